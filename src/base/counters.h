@@ -1,0 +1,40 @@
+/* What the tracer counts: plain integers, one set a worker, summed after the join, so that counting
+ * disturbs nothing and the totals do not depend on the number of threads. A ray is a straight piece
+ * between two events: its counter goes up when it is traced (not when it is spawned). A build with
+ * -DCUVETTE_COUNTERS=0 leaves the per-ray counters at zero. Ownership: values. */
+#ifndef CUVETTE_BASE_COUNTERS_H
+#define CUVETTE_BASE_COUNTERS_H
+
+#include <stdint.h>
+
+#ifndef CUVETTE_COUNTERS
+#define CUVETTE_COUNTERS 1
+#endif
+
+enum {
+    COUNTERS_DEPTH_MAX = 64,  /* render.depth is 0..64 */
+    COUNTERS_SOLID_MAX = 64   /* solids of a scene */
+};
+
+/* Throughput is summed in fixed point, CUT_ONE = 1.0, so that its sum has no order. */
+#define COUNTERS_CUT_ONE 68719476736.0 /* 2^36 */
+
+typedef struct ray_counters {
+    uint64_t camera, reflect, refract, shadow; /* rays traced, by kind */
+    uint64_t by_depth[COUNTERS_DEPTH_MAX + 1]; /* camera, reflected and refracted rays by depth */
+    uint64_t total_internal;                   /* total internal reflections */
+    uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
+    int64_t cut_depth_throughput[3];           /* their throughput, RGB, in units of 1/COUNTERS_CUT_ONE */
+    int64_t cut_weight_throughput[3];
+    uint64_t tests[COUNTERS_SOLID_MAX];        /* rays tested against the solid, shadow rays too */
+    uint64_t hits[COUNTERS_SOLID_MAX];         /* interfaces met on the solid, not by shadow rays */
+    uint64_t first_hits[COUNTERS_SOLID_MAX];   /* camera rays whose first interface is on the solid */
+} ray_counters;
+
+/* Adds from to *into, field by field. */
+void ray_counters_add(ray_counters *into, const ray_counters *from);
+
+/* camera + reflect + refract + shadow. */
+uint64_t ray_counters_total(const ray_counters *counters);
+
+#endif

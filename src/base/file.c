@@ -1,0 +1,316 @@
+#include "base/file.h"
+
+#include "base/text.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Fills *why with an error of the system about path. The reason is text of its own, because strerror is not
+ * safe among threads and follows the locale. */
+static status system_error(diagnostic *why, status code, const char *path, const char *doing, int error)
+{
+    const char *reason = strerrordesc_np(error), *remedy = NULL;
+    switch (error) {
+    case ENOSPC: case EDQUOT: remedy = "free some space or choose another disk"; break;
+    case EFBIG: remedy = "raise the limit on file size"; break;
+    case EACCES: case EPERM: case EROFS: remedy = "change the permissions or choose another place"; break;
+    case ENOENT: remedy = "check the path"; break;
+    default: break;
+    }
+    diagnostic_locate(why, path, 0, 0);
+    return diagnose(why, code, remedy, "%s: %s", doing, reason ? reason : "unknown error");
+}
+
+static status no_memory(diagnostic *why, const char *path)
+{
+    diagnostic_locate(why, path, 0, 0);
+    return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+}
+
+/* Reads to the end of the file whatever fstat said: files of /proc claim to be empty. */
+static status read_descriptor(int fd, const char *path, size_t limit, size_t expected, char **text, size_t *size,
+                              diagnostic *why)
+{
+    size_t capacity = expected < limit ? expected + 1 : limit + 1, used = 0;
+    char *buffer = malloc(capacity + 1);
+    while (buffer) {
+        ssize_t got = read(fd, buffer + used, capacity - used);
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        if (got < 0) {
+            status code = system_error(why, STATUS_FAILURE, path, "cannot read", errno);
+            free(buffer);
+            return code;
+        }
+        if (got == 0) {
+            buffer[used] = 0;
+            *text = buffer;
+            *size = used;
+            return STATUS_OK;
+        }
+        used += (size_t)got;
+        if (used > limit) {
+            free(buffer);
+            diagnostic_locate(why, path, 0, 0);
+            return diagnose(why, STATUS_BAD_INPUT, NULL, "the file is larger than %zu bytes", limit);
+        }
+        if (used == capacity) {
+            capacity = capacity > limit / 2 ? limit + 1 : capacity * 2 + 4096;
+            capacity = capacity > limit + 1 ? limit + 1 : capacity;
+            char *larger = realloc(buffer, capacity + 1);
+            if (!larger) {
+                free(buffer);
+            }
+            buffer = larger;
+        }
+    }
+    return no_memory(why, path);
+}
+
+status file_read(const char *path, size_t limit, char **text, size_t *size, diagnostic *why)
+{
+    *text = NULL;
+    *size = 0;
+    /* O_NONBLOCK: opening a FIFO must not wait for a writer. */
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (fd < 0) {
+        bool ours = errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == EIO;
+        return system_error(why, ours ? STATUS_FAILURE : STATUS_BAD_INPUT, path, "cannot open", errno);
+    }
+    struct stat about;
+    status code;
+    if (fstat(fd, &about) != 0) {
+        code = system_error(why, STATUS_FAILURE, path, "cannot read", errno);
+    } else if (!S_ISREG(about.st_mode)) {
+        diagnostic_locate(why, path, 0, 0);
+        code = diagnose(why, STATUS_BAD_INPUT, "name a file", "%s",
+                        S_ISDIR(about.st_mode) ? "is a folder" : "is not a regular file");
+    } else {
+        if (limit > SIZE_MAX / 4) {
+            limit = SIZE_MAX / 4;
+        }
+        size_t expected = about.st_size > 0 ? (size_t)about.st_size : 4096;
+        code = read_descriptor(fd, path, limit, expected, text, size, why);
+    }
+    close(fd);
+    return code;
+}
+
+/* The text of path up to and with its last slash ("" when it has none), followed by name; fresh memory. */
+static char *beside(const char *path, const char *name)
+{
+    const char *slash = strrchr(path, '/');
+    int folder = slash ? (int)(slash - path) + 1 : 0;
+    return text_format("%.*s%s", folder, path, name);
+}
+
+/* The file that path stands for after its symbolic links, which need not exist yet; NULL with errno. */
+static char *resolve(const char *path)
+{
+    char *current = strdup(path);
+    for (int links = 0; current && links < 40; links++) { /* as many as Linux follows, path_resolution(7) */
+        char target[PATH_MAX];
+        ssize_t length = readlink(current, target, sizeof target - 1);
+        if (length < 0) {
+            return current;
+        }
+        target[length] = 0;
+        char *next = target[0] == '/' ? strdup(target) : beside(current, target);
+        free(current);
+        current = next;
+    }
+    errno = current ? ELOOP : ENOMEM;
+    free(current);
+    return NULL;
+}
+
+/* Creates a new file beside writer->path. open() applies the umask, which could be read only by changing it for
+ * every thread; the name is short, because the target's may be as long as the file system allows. */
+static int open_temporary(file_writer *writer)
+{
+    for (unsigned n = 0; n < 10000; n++) {
+        char name[64];
+        snprintf(name, sizeof name, ".cuvette-%ld-%u.part", (long)getpid(), n);
+        free(writer->temporary);
+        writer->temporary = beside(writer->path, name);
+        if (!writer->temporary) {
+            errno = ENOMEM;
+            return -1;
+        }
+        int fd = open(writer->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd >= 0 || errno != EEXIST) {
+            return fd;
+        }
+    }
+    return -1;
+}
+
+static int open_target(file_writer *writer)
+{
+    if (strcmp(writer->path, "-") == 0) {
+        fflush(stdout); /* what was printed before stays before */
+        return fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+    }
+    char *resolved = resolve(writer->path);
+    if (!resolved) {
+        return -1;
+    }
+    free(writer->path);
+    writer->path = resolved;
+    struct stat about;
+    bool exists = stat(resolved, &about) == 0;
+    if (!exists && errno != ENOENT) {
+        return -1;
+    }
+    if (exists && !S_ISREG(about.st_mode)) {
+        return open(resolved, O_WRONLY | O_CLOEXEC | O_NOCTTY); /* devices and pipes have no other version to keep */
+    }
+    if (exists && euidaccess(resolved, W_OK) != 0) {
+        return -1;
+    }
+    int fd = open_temporary(writer);
+    if (fd >= 0 && exists && fchmod(fd, about.st_mode & 0777) != 0 && errno != EPERM && errno != EOPNOTSUPP) {
+        int error = errno;
+        close(fd);
+        unlink(writer->temporary);
+        errno = error;
+        return -1;
+    }
+    return fd;
+}
+
+static void release(file_writer *writer)
+{
+    free(writer->path);
+    free(writer->temporary);
+    *writer = (file_writer){0};
+}
+
+status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
+{
+    *writer = (file_writer){0};
+    if (!*path) {
+        diagnostic_locate(why, NULL, 0, 0);
+        return diagnose(why, STATUS_BAD_INPUT, "name a file, or - for standard output",
+                        "the name of the file to write is empty");
+    }
+    writer->path = strdup(path);
+    if (!writer->path) {
+        return no_memory(why, path);
+    }
+    int fd = open_target(writer);
+    if (fd >= 0) {
+        writer->stream = fdopen(fd, "wb");
+    }
+    if (writer->stream) {
+        return STATUS_OK;
+    }
+    int error = errno;
+    if (fd >= 0) {
+        close(fd);
+        if (writer->temporary) {
+            unlink(writer->temporary);
+        }
+    }
+    release(writer);
+    return system_error(why, STATUS_FAILURE, path, "cannot write", error);
+}
+
+/* The entry in the folder must reach the disk too; some file systems cannot do that, which is no error. */
+static void flush_folder(const char *path)
+{
+    char *folder = beside(path, ".");
+    int fd = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+    if (fd >= 0) {
+        fsync(fd);
+        close(fd);
+    }
+    free(folder);
+}
+
+status file_writer_commit(file_writer *writer, diagnostic *why)
+{
+    bool failed = ferror(writer->stream) != 0;
+    int error = 0;
+    if (fflush(writer->stream) != 0 || (writer->temporary && !failed && fsync(fileno(writer->stream)) != 0)) {
+        failed = true;
+        error = errno;
+    }
+    if (fclose(writer->stream) != 0 && !failed) {
+        failed = true;
+        error = errno;
+    }
+    if (!failed && writer->temporary && rename(writer->temporary, writer->path) != 0) {
+        failed = true;
+        error = errno;
+    }
+    status code = STATUS_OK;
+    if (failed) {
+        if (writer->temporary) {
+            unlink(writer->temporary);
+        }
+        if (error) {
+            code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error);
+        } else {
+            diagnostic_locate(why, writer->path, 0, 0);
+            code = diagnose(why, STATUS_FAILURE, "check the space that is left on the disk",
+                            "cannot write: a write failed");
+        }
+    } else if (writer->temporary) {
+        flush_folder(writer->path);
+    }
+    release(writer);
+    return code;
+}
+
+void file_writer_abandon(file_writer *writer)
+{
+    if (writer->stream) {
+        fclose(writer->stream);
+    }
+    if (writer->temporary) {
+        unlink(writer->temporary);
+    }
+    release(writer);
+}
+
+static int make_one_directory(const char *path)
+{
+    struct stat about;
+    if (mkdir(path, 0777) == 0) {
+        return 0;
+    }
+    int error = errno;
+    if (stat(path, &about) == 0) {
+        return S_ISDIR(about.st_mode) ? 0 : ENOTDIR;
+    }
+    return error;
+}
+
+status file_make_directory(const char *path, diagnostic *why)
+{
+    char *part = strdup(path);
+    if (!part) {
+        return no_memory(why, path);
+    }
+    int error = *path ? 0 : ENOENT;
+    for (char *c = part; *c && !error; c++) {
+        if (*c == '/' && c > part && c[-1] != '/') {
+            *c = 0;
+            error = make_one_directory(part);
+            *c = '/';
+        }
+    }
+    if (!error) {
+        error = make_one_directory(part);
+    }
+    free(part);
+    return error ? system_error(why, STATUS_FAILURE, path, "cannot make the folder", error) : STATUS_OK;
+}

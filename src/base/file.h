@@ -1,0 +1,26 @@
+/* Whole files in and out. A file that is written appears whole or not at all: it is built beside its
+ * place, flushed to disk and renamed over it. Ownership: read text is the caller's, release with free. */
+#ifndef CUVETTE_BASE_FILE_H
+#define CUVETTE_BASE_FILE_H
+
+#include "base/status.h"
+#include <stdio.h>
+
+/* Reads a regular file of at most limit bytes; *text is its bytes and a final 0 that *size leaves out. */
+status file_read(const char *path, size_t limit, char **text, size_t *size, diagnostic *why);
+
+/* A file being written. Open, write to stream, then commit or abandon: both release it. path "-" is standard
+ * output. Nothing shows under path before the commit. The errors of all the writes come out at the commit. */
+typedef struct file_writer {
+    FILE *stream;
+    char *path, *temporary;
+} file_writer;
+
+status file_writer_open(file_writer *writer, const char *path, diagnostic *why);
+status file_writer_commit(file_writer *writer, diagnostic *why);
+void file_writer_abandon(file_writer *writer);
+
+/* Makes a directory and its parents; no error if it is there. */
+status file_make_directory(const char *path, diagnostic *why);
+
+#endif

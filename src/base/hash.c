@@ -1,0 +1,37 @@
+#include "base/hash.h"
+
+static const uint64_t FNV_PRIME = UINT64_C(1099511628211); /* 64-bit FNV prime, draft-eastlake-fnv */
+
+/* Multiplication carries upwards only: without the shift, changes to the top bits of two words could cancel. */
+static uint64_t step(uint64_t hash, uint64_t word)
+{
+    hash = (hash ^ word) * FNV_PRIME;
+    return hash ^ hash >> 32;
+}
+
+uint64_t hash_words(uint64_t hash, const int64_t *words, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        hash = step(hash, (uint64_t)words[i]);
+    }
+    return hash;
+}
+
+uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
+{
+    const unsigned char *byte = bytes;
+    for (size_t i = 0; i < count; i++) {
+        hash = step(hash, byte[i]);
+    }
+    return hash;
+}
+
+/* Austin Appleby, MurmurHash3, fmix64. */
+uint64_t hash_finish(uint64_t hash)
+{
+    hash ^= hash >> 33;
+    hash *= UINT64_C(0xff51afd7ed558ccd);
+    hash ^= hash >> 33;
+    hash *= UINT64_C(0xc4ceb9fe1a85ec53);
+    return hash ^ hash >> 33;
+}

@@ -1,0 +1,103 @@
+#include "base/number.h"
+
+#include <errno.h>
+#include <float.h>
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *skip_sign(const char *c)
+{
+    return *c == '+' || *c == '-' ? c + 1 : c;
+}
+
+static const char *skip_digits(const char *c)
+{
+    while (*c >= '0' && *c <= '9') {
+        c++;
+    }
+    return c;
+}
+
+/* sign? (digits ('.' digits?)? | '.' digits) ([eE] sign? digits)?, and nothing after it. */
+static bool is_decimal(const char *text)
+{
+    const char *whole = skip_sign(text), *c = skip_digits(whole);
+    bool has_digits = c > whole;
+    if (*c == '.') {
+        const char *fraction = c + 1;
+        c = skip_digits(fraction);
+        has_digits = has_digits || c > fraction;
+    }
+    if (!has_digits) {
+        return false;
+    }
+    if (*c == 'e' || *c == 'E') {
+        const char *exponent = skip_sign(c + 1);
+        c = skip_digits(exponent);
+        if (c == exponent) {
+            return false;
+        }
+    }
+    return *c == 0;
+}
+
+/* glibc and musl hand out a constant for "C": nothing is allocated and nothing has to be freed. */
+static locale_t c_locale(void)
+{
+    return newlocale(LC_ALL_MASK, "C", (locale_t)0);
+}
+
+bool number_parse_real(const char *text, double *value)
+{
+    if (!text || !is_decimal(text)) {
+        return false;
+    }
+    double parsed = strtod_l(text, NULL, c_locale());
+    if (!isfinite(parsed)) {
+        return false;
+    }
+    *value = parsed;
+    return true;
+}
+
+bool number_parse_int(const char *text, int64_t *value)
+{
+    if (!text) {
+        return false;
+    }
+    const char *digits = skip_sign(text), *end = skip_digits(digits);
+    if (end == digits || *end) {
+        return false;
+    }
+    int before = errno;
+    errno = 0;
+    long long parsed = strtoll(text, NULL, 10);
+    bool fits = errno == 0;
+    errno = before;
+    if (fits) {
+        *value = parsed;
+    }
+    return fits;
+}
+
+char *number_format(double value, char text[NUMBER_TEXT_MAX])
+{
+    if (isnan(value) || isinf(value)) {
+        return strcpy(text, isnan(value) ? "nan" : value < 0 ? "-inf" : "inf");
+    }
+    /* 15 digits always survive in a normal double and 17 always tell it, so the first that reads back is the
+     * shortest; %g drops trailing zeros. Subnormal numbers hold fewer digits. */
+    locale_t c = c_locale(), before = uselocale(c);
+    for (int digits = fabs(value) < DBL_MIN ? 1 : 15; digits <= 17; digits++) {
+        snprintf(text, NUMBER_TEXT_MAX, "%.*g", digits, value);
+        double back = strtod_l(text, NULL, c);
+        if (!(back < value) && !(back > value)) {
+            break;
+        }
+    }
+    uselocale(before);
+    return text;
+}

@@ -1,0 +1,90 @@
+#include "base/status.h"
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Replaces ASCII control characters and the C1 controls of Unicode (UTF-8 C2 80 .. C2 9F), which terminals obey too. */
+static void make_one_line(char *text)
+{
+    for (unsigned char *c = (unsigned char *)text; *c; c++) {
+        if (*c < 0x20 || *c == 0x7f) {
+            *c = '?';
+        } else if (c[0] == 0xc2 && c[1] >= 0x80 && c[1] <= 0x9f) {
+            c[0] = '?';
+            c[1] = '?';
+        }
+    }
+}
+
+/* Drops a UTF-8 sequence that was cut by the end of the buffer. */
+static void drop_cut_sequence(char *text)
+{
+    size_t length = strlen(text), start = length;
+    while (start > 0 && length - start < 4 && ((unsigned char)text[start - 1] & 0xc0) == 0x80) {
+        start--;
+    }
+    if (start == 0 || (unsigned char)text[start - 1] < 0xc0) {
+        return;
+    }
+    unsigned char lead = (unsigned char)text[start - 1];
+    size_t needed = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : 1;
+    if (length - start < needed) {
+        text[start - 1] = 0;
+    }
+}
+
+static void copy_line(char *to, size_t size, const char *from)
+{
+    if (snprintf(to, size, "%s", from) >= (int)size) {
+        drop_cut_sequence(to);
+    }
+    make_one_line(to);
+}
+
+status diagnose(diagnostic *why, status code, const char *remedy, const char *what, ...)
+{
+    if (!why) {
+        return code;
+    }
+    /* Through copies, because the arguments may lie in *why itself. */
+    char what_text[sizeof why->what + 1], remedy_text[sizeof why->remedy];
+    copy_line(remedy_text, sizeof remedy_text, remedy ? remedy : "");
+    va_list arguments;
+    va_start(arguments, what);
+    if (vsnprintf(what_text, sizeof what_text, what, arguments) < 0) {
+        what_text[0] = 0;
+    }
+    va_end(arguments);
+    copy_line(why->what, sizeof why->what, what_text);
+    memcpy(why->remedy, remedy_text, sizeof remedy_text);
+    return code;
+}
+
+void diagnostic_locate(diagnostic *why, const char *file, long line, long column)
+{
+    if (!why) {
+        return;
+    }
+    char name[sizeof why->file];
+    copy_line(name, sizeof name, file ? file : "");
+    memcpy(why->file, name, sizeof name);
+    why->line = line > 0 ? line : 0;
+    why->column = column > 0 ? column : 0;
+}
+
+char *diagnostic_text(const diagnostic *why, char *text, size_t size)
+{
+    char line[24] = "", column[24] = "";
+    if (why->line > 0) {
+        snprintf(line, sizeof line, "%s%ld", why->file[0] ? ":" : "", why->line);
+        if (why->column > 0) {
+            snprintf(column, sizeof column, ":%ld", why->column);
+        }
+    }
+    bool located = why->file[0] || line[0];
+    snprintf(text, size, "%s%s%s%s%s%s%s", why->file, line, column, located ? ": " : "", why->what,
+             why->remedy[0] ? "; " : "", why->remedy);
+    return text;
+}

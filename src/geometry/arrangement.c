@@ -1,0 +1,170 @@
+#include "geometry/arrangement.h"
+
+#include <stdlib.h>
+
+static double largest3(double a, double b, double c)
+{
+    double m = a > b ? a : b;
+    return m > c ? m : c;
+}
+
+static primitive primitive_placed(const solid_shape *shape, primitive_kind kind, double reach)
+{
+    primitive p = {.kind = kind, .origin = shape->position, .m2 = 1.0};
+    vec3 r = shape->rotation_deg;
+    p.rotation = rotation_from_deg(r);
+    p.turned = r.x != 0.0 || r.y != 0.0 || r.z != 0.0;
+    p.extent = largest3(fabs(p.origin.x), fabs(p.origin.y), fabs(p.origin.z)) + reach;
+    return p;
+}
+
+static primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top)
+{
+    primitive p = primitive_placed(shape, PRIMITIVE_CYLINDER, shape->height + radius);
+    p.radius = radius;
+    p.m2 = shape->kind == SHAPE_CYLINDER ? shape->m * shape->m : 1.0;
+    p.bottom = bottom;
+    p.top = top;
+    if (p.m2 < 1.0) /* the long axis is radius / m */
+        p.extent += radius / shape->m;
+    return p;
+}
+
+/* Writes the one or two primitives of a shape; returns how many. */
+static int primitives_of(const solid_shape *shape, primitive out[2])
+{
+    switch (shape->kind) {
+    case SHAPE_PLANE:
+        out[0] = primitive_placed(shape, PRIMITIVE_HALFSPACE, 0.0);
+        return 1;
+    case SHAPE_CYLINDER:
+        out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
+        return 1;
+    case SHAPE_CUP:
+        out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
+        out[1] = cylinder_placed(shape, shape->inner_radius, shape->floor, HUGE_VAL);
+        return 2;
+    case SHAPE_BOX:
+        out[0] = primitive_placed(shape, PRIMITIVE_BOX, largest3(shape->size.x, shape->size.y, shape->size.z));
+        out[0].half = vec3_scale(shape->size, 0.5);
+        return 1;
+    case SHAPE_SPHERE:
+        out[0] = primitive_placed(shape, PRIMITIVE_SPHERE, shape->radius);
+        out[0].radius = shape->radius;
+        return 1;
+    case SHAPE_COUNT:
+        break;
+    }
+    return 0;
+}
+
+/* Indices of the sources, lowest rank first: ascending priority, and of equals the later one first. */
+static void order_by_priority(const body_source *sources, int count, int *order)
+{
+    for (int i = 0; i < count; i++) {
+        int at = i;
+        while (at > 0 && sources[order[at - 1]].priority >= sources[i].priority) {
+            order[at] = order[at - 1];
+            at--;
+        }
+        order[at] = i;
+    }
+}
+
+static void add_body(arrangement *a, int rank, const body_source *source)
+{
+    primitive parts[2];
+    int n = primitives_of(source->shape, parts);
+    body *b = &a->bodies[rank];
+    *b = (body){.outside = a->primitive_count, .hollow = n == 2 ? a->primitive_count + 1 : -1, .medium = source->medium,
+                .opaque = source->opaque, .clearness = source->opaque ? 0.0 : source->clearness, .solid = source->solid};
+    for (int k = 0; k < n; k++) {
+        parts[k].rank = rank;
+        parts[k].first_face = (int64_t)a->primitive_count * FACES_MAX;
+        if (parts[k].extent > a->extent)
+            a->extent = parts[k].extent;
+        a->primitives[a->primitive_count++] = parts[k];
+    }
+}
+
+static bool media_are_distinct(const arrangement *a)
+{
+    for (int r = 1; r <= a->body_count; r++)
+        for (int q = 0; q < r; q++)
+            if (a->bodies[q].medium == a->bodies[r].medium)
+                return false;
+    return true;
+}
+
+status arrangement_build(const body_source *sources, int count, int64_t outside_medium, arrangement **out, diagnostic *why)
+{
+    int primitives = 0;
+    for (int i = 0; i < count; i++)
+        primitives += sources[i].shape->kind == SHAPE_CUP ? 2 : 1;
+    if (primitives > PRIMITIVES_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 64 in all; a cup counts as two",
+                        "the visible solids make %d primitives", primitives);
+    arrangement *a = calloc(1, sizeof *a);
+    int *order = calloc((size_t)count + 1, sizeof *order);
+    if (a) {
+        a->primitives = calloc((size_t)primitives + 1, sizeof *a->primitives);
+        a->bodies = calloc((size_t)count + 1, sizeof *a->bodies);
+    }
+    if (!a || !order || !a->primitives || !a->bodies) {
+        free(order);
+        arrangement_destroy(a);
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    }
+    a->bodies[0] = (body){.outside = -1, .hollow = -1, .medium = outside_medium, .clearness = 1.0, .solid = -1};
+    a->body_count = count;
+    order_by_priority(sources, count, order);
+    for (int r = 0; r < count; r++)
+        add_body(a, r + 1, &sources[order[r]]);
+    free(order);
+    a->distinct = media_are_distinct(a);
+    *out = a;
+    return STATUS_OK;
+}
+
+void arrangement_destroy(arrangement *a)
+{
+    if (!a)
+        return;
+    free(a->primitives);
+    free(a->bodies);
+    free(a);
+}
+
+static bool primitive_contains(const primitive *p, vec3 point)
+{
+    vec3 q = mat3_apply_transposed(p->rotation, vec3_sub(point, p->origin));
+    switch (p->kind) {
+    case PRIMITIVE_HALFSPACE: return q.y <= 0.0;
+    case PRIMITIVE_CYLINDER:
+        return q.x * q.x + p->m2 * q.z * q.z <= p->radius * p->radius && q.y >= p->bottom && q.y <= p->top;
+    case PRIMITIVE_BOX: return fabs(q.x) <= p->half.x && fabs(q.y) <= p->half.y && fabs(q.z) <= p->half.z;
+    case PRIMITIVE_SPHERE: return vec3_dot(q, q) <= p->radius * p->radius;
+    }
+    return false;
+}
+
+uint64_t arrangement_inside(const arrangement *a, vec3 point)
+{
+    uint64_t inside = 0;
+    for (int i = 0; i < a->primitive_count; i++)
+        inside |= (uint64_t)primitive_contains(&a->primitives[i], point) << i;
+    return inside;
+}
+
+static bool set_has(uint64_t inside, int bit)
+{
+    return bit >= 0 && (inside >> bit & 1);
+}
+
+int arrangement_rank(const arrangement *a, uint64_t inside)
+{
+    for (int r = a->body_count; r > 0; r--)
+        if (set_has(inside, a->bodies[r].outside) && !set_has(inside, a->bodies[r].hollow))
+            return r;
+    return 0;
+}

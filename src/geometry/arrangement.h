@@ -1,0 +1,77 @@
+/* Solids as the kernels see them: convex primitives, and bodies ordered by priority. A body is one primitive,
+ * or one less another (a cup: its outside less its hollow), so that every solid is at most two intervals on a ray.
+ *
+ * The medium at a point is the body of the highest rank that contains it (rank 0: none, the surrounding medium). A ray carries
+ * one bit for each primitive that it is in. An interface is a point of the ray where the medium changes:
+ * crossings that a higher body hides, or that lead into an equal medium, are none (Schmidt and Budge,
+ * "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2), 2002).
+ *
+ * Ownership: arrangement_build gives, arrangement_destroy releases; kernels borrow. Geometry knows no colour: of
+ * a medium it knows a number (equal numbers, equal media) and whether it is opaque. */
+#ifndef CUVETTE_GEOMETRY_ARRANGEMENT_H
+#define CUVETTE_GEOMETRY_ARRANGEMENT_H
+
+#include "base/status.h"
+#include "geometry/solid.h"
+#include <stdint.h>
+
+enum {
+    PRIMITIVES_MAX = 64, /* one bit each in a ray's set */
+    FACES_MAX = 8,       /* a face's number is primitive * FACES_MAX + face */
+    FACE_NONE = -1
+};
+
+typedef enum primitive_kind { PRIMITIVE_HALFSPACE, PRIMITIVE_CYLINDER, PRIMITIVE_BOX, PRIMITIVE_SPHERE } primitive_kind;
+
+/* Faces: half-space 0. Cylinder 0 side, 1 bottom, 2 top. Box 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. Sphere 0. */
+typedef struct primitive {
+    primitive_kind kind;
+    bool turned;         /* rotation is not the identity */
+    mat3 rotation;       /* local to world */
+    vec3 origin;         /* of the local frame, in the world */
+    double radius, m2;   /* cylinder x^2 + m2 z^2 <= radius^2; sphere (m2 = 1) */
+    double bottom, top;  /* of a cylinder, local y; top may be infinite */
+    vec3 half;           /* box */
+    int64_t first_face;
+    int rank;            /* of its body */
+    double extent;       /* farthest finite coordinate from the world's origin, for error bounds */
+} primitive;
+
+typedef struct body {
+    int outside, hollow; /* primitives; hollow = -1 for none */
+    int64_t medium;      /* equal numbers are equal media */
+    bool opaque;
+    double clearness;    /* share of light that a shadow ray keeps at each of its interfaces; 0 when opaque */
+    int solid;           /* index of the solid it came from */
+} body;
+
+typedef struct arrangement {
+    int primitive_count;
+    primitive *primitives;
+    int body_count;      /* ranks 1 .. body_count */
+    body *bodies;        /* [0] is the surrounding medium */
+    double extent;       /* largest of the primitives' */
+    bool distinct;       /* no two bodies are of one medium, nor is any of the surrounding one */
+} arrangement;
+
+/* What arrangement_build wants to know of a solid. */
+typedef struct body_source {
+    const solid_shape *shape;
+    int64_t priority;    /* higher wins; of equals the one that comes first */
+    int64_t medium;
+    bool opaque;
+    double clearness;
+    int solid;
+} body_source;
+
+/* outside_medium is the medium of rank 0. STATUS_BAD_INPUT for more than PRIMITIVES_MAX primitives. */
+status arrangement_build(const body_source *sources, int count, int64_t outside_medium, arrangement **out, diagnostic *why);
+void arrangement_destroy(arrangement *a);
+
+/* The set of primitives that contain a point, bit by bit, by the primitives' own definitions (surfaces included). */
+uint64_t arrangement_inside(const arrangement *a, vec3 point);
+
+/* The rank of the medium where a ray is in that set of primitives. */
+int arrangement_rank(const arrangement *a, uint64_t inside);
+
+#endif

@@ -1,0 +1,13 @@
+/* The kernels' parts, by instruction set; for src/geometry's own *_kernel.c files. */
+#ifndef CUVETTE_GEOMETRY_KERNELS_H
+#define CUVETTE_GEOMETRY_KERNELS_H
+
+#include "base/kernel.h"
+#include "geometry/rays.h"
+
+/* scratch->in and out of every primitive for every ray; scratch->slack is not touched. */
+void KERNEL(intervals_of)(const arrangement *a, const ray_batch *rays, ray_scratch *scratch);
+
+void KERNEL(surface_points)(const primitive *p, const ray_batch *rays, const double *t, const int64_t *leaving, surface_batch *points);
+
+#endif

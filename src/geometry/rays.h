@@ -1,0 +1,65 @@
+/* Batches of rays and what they hit, as structures of arrays. A batch is short enough for the first-level
+ * cache. Ownership: the arrays of a ray_batch belong to whoever queued the rays; hits and scratch are plain values. */
+#ifndef CUVETTE_GEOMETRY_RAYS_H
+#define CUVETTE_GEOMETRY_RAYS_H
+
+#include "geometry/arrangement.h"
+#include <stdint.h>
+
+/* Rows are a cache line longer than a batch: rows of exactly 1024 bytes would all fall into the same few sets of the
+ * first-level cache and drive one another out. */
+enum { BATCH = 128, LANES_MAX = 8 /* doubles in the widest vector */, ROW = BATCH + LANES_MAX };
+
+/* A view of up to BATCH rays. Directions of rays that look for their nearest interface are unit vectors; a shadow
+ * ray's reaches from its start to the light. start is the face that the ray starts on, or FACE_NONE; that
+ * face's own root is known to be zero. inside is the set of primitives that the ray is in when it sets out. */
+typedef struct ray_batch {
+    int count;
+    const double *ox, *oy, *oz, *dx, *dy, *dz;
+    const int64_t *start;
+    const uint64_t *inside;
+} ray_batch;
+
+/* Nearest interface by ray. */
+typedef struct hit_batch {
+    double t[ROW];           /* infinite for a miss */
+    int64_t crossed[ROW];    /* the primitive whose surface it is; -1 for a miss */
+    int64_t before[ROW];     /* rank of the medium before it ... */
+    int64_t after[ROW];      /* ... and behind it */
+    uint64_t inside_before[ROW], inside_after[ROW]; /* sets just before and just behind it */
+} hit_batch;
+
+/* Intervals [in, out] by primitive and ray, and what is derived from them. Contents mean nothing between calls. */
+typedef struct ray_scratch {
+    double in[PRIMITIVES_MAX][ROW], out[PRIMITIVES_MAX][ROW];
+    double inverse_y[ROW], inverse_x[ROW], inverse_z[ROW];
+    double axial[ROW], inverse_axial[ROW];
+    double slack[ROW];
+    uint64_t inside[ROW];
+    hit_batch again;           /* of rays that are looked at another time */
+    int64_t attention[ROW], undecided[ROW], blocked[ROW];
+    int ray[ROW];            /* which ray of the batch a column belongs to */
+} ray_scratch;
+
+/* Points on one primitive's surface. normal is a unit vector against the ray; cos_i = -d.n / |d|, in (0, 1]. error is a bound
+ * on the distance from the point to the exact one across the surface, in scene units. */
+typedef struct surface_batch {
+    double px[ROW], py[ROW], pz[ROW];
+    double nx[ROW], ny[ROW], nz[ROW];
+    double cos_i[ROW], error[ROW];
+    int64_t face[ROW];
+} surface_batch;
+
+/* The kernels, one set for each instruction set; the same bits from all. */
+typedef struct geometry_kernels {
+    /* The nearest interface of every ray. */
+    void (*nearest)(const arrangement *a, const ray_batch *rays, ray_scratch *scratch, hit_batch *hits);
+    /* The share of light, 0..1, that comes through from the other end (t = 1). With solid_shadows any interface blocks. */
+    void (*shadow)(const arrangement *a, const ray_batch *rays, int solid_shadows, ray_scratch *scratch, double *transmitted);
+    /* Points where rays (gathered, all with that primitive's surface at t) meet it. leaving: -1 where the ray leaves the primitive, 0 where it enters. */
+    void (*surface)(const primitive *p, const ray_batch *rays, const double *t, const int64_t *leaving, surface_batch *points);
+} geometry_kernels;
+
+extern const geometry_kernels geometry_kernels_sse2, geometry_kernels_avx2, geometry_kernels_avx512;
+
+#endif

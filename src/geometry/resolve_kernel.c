@@ -1,0 +1,303 @@
+/* Second pass over a batch: from the intervals of all primitives, who wins.
+ *
+ * While a ray is in the body of rank b the medium can change at two kinds of points only: where it leaves
+ * that body, and where it enters one of a higher rank. The nearest of these is the next change; everything
+ * that happens below rank b before it has no effect. So one pass over the bodies finds it.
+ *
+ * If the media on both sides are equal it is no interface: the crossing is marked as done in the intervals (the ray is not started anew) and the
+ * next change is sought, for those rays alone. Crossings that coincide to within their error bounds are
+ * one crossing: where any other boundary lies suspiciously near, the sets on both sides are read again at the
+ * distance of the true error bound. */
+#include "geometry/kernels.h"
+
+#include "base/lanes.h"
+#include <float.h>
+#include <math.h>
+
+/* Beyond this a crossing is never: see roots.h. */
+#define NEVER 1e150
+/* Share of the distance and of the arrangement's extent within which a second boundary is looked at closely. It changes no
+ * result: it only must be wider than the error bounds, which it is unless a ray grazes within 2e-7 rad. */
+#define CLOSE 0x1p-24
+
+ALWAYS_INLINE int64_t set_mask(uint64_t set, int bit)
+{
+    return -(int64_t)((set & (uint64_t)1 << bit) != 0);
+}
+
+/* In which bodies is the set; the highest of them. */
+static void ranks_of(const arrangement *a, int n, const uint64_t *restrict set, int64_t *restrict rank)
+{
+    for (int i = 0; i < n; i++)
+        rank[i] = 0;
+    for (int r = 1; r <= a->body_count; r++) {
+        const int outside = a->bodies[r].outside, hollow = a->bodies[r].hollow;
+        const uint64_t wanted = (uint64_t)1 << outside, both = wanted | (hollow < 0 ? 0 : (uint64_t)1 << hollow);
+        /* VECTORISE */
+        for (int i = 0; i < n; i++)
+            rank[i] = blend_int(-(int64_t)((set[i] & both) == wanted), r, rank[i]);
+    }
+}
+
+/* Next change by a body without a hollow. */
+static void next_of_plain(int n, int64_t rank, int64_t crossed, const double *restrict in, const double *restrict out, const ray_scratch *restrict s,
+                          hit_batch *restrict c)
+{
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        int64_t within = set_mask(s->inside[i], (int)crossed);
+        double t = blend(within, out[i], in[i]);
+        int64_t take = mask_less(t, c->t[i]) & -(int64_t)(c->before[i] <= rank);
+        c->t[i] = blend(take, t, c->t[i]);
+        c->crossed[i] = blend_int(take, crossed, c->crossed[i]);
+    }
+}
+
+/* Next change by a body with a hollow. Its one boundary ahead is where it is left, if the ray is in it: out of its outside or
+ * into its hollow; else where it is entered: through its outside, or out of the hollow if that covers the entry. */
+static void next_of_hollow(int n, int64_t rank, int64_t outside, int64_t hollow, const double *restrict in, const double *restrict out,
+                           const double *restrict hollow_in, const double *restrict hollow_out, const ray_scratch *restrict s,
+                           hit_batch *restrict c)
+{
+    const uint64_t wanted = (uint64_t)1 << outside, both = wanted | (uint64_t)1 << hollow;
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        int64_t within = -(int64_t)((s->inside[i] & both) == wanted);
+        int64_t by_hollow = mask_less(hollow_in[i], out[i]);
+        double leave = blend(by_hollow, hollow_in[i], out[i]);
+        int64_t covered = mask_less_equal(hollow_in[i], in[i]) & mask_less(in[i], hollow_out[i]);
+        double emerge = blend(mask_less(hollow_out[i], out[i]), hollow_out[i], HUGE_VAL);
+        double enter = blend(covered, emerge, in[i]);
+        double t = blend(within, leave, enter);
+        int64_t through_hollow = blend_int(within, by_hollow, covered);
+        int64_t take = mask_less(t, c->t[i]) & -(int64_t)(c->before[i] <= rank);
+        c->t[i] = blend(take, t, c->t[i]);
+        c->crossed[i] = blend_int(take, blend_int(through_hollow, hollow, outside), c->crossed[i]);
+    }
+}
+
+/* Adds one primitive to the sets just before and just behind t. */
+static void sets_around(int n, int which, const double *restrict in, const double *restrict out, const ray_scratch *restrict s,
+                        hit_batch *restrict c)
+{
+    const int64_t bit = (int64_t)((uint64_t)1 << which);
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        double close = CLOSE * (c->t[i] + s->slack[i]), low = c->t[i] - close, high = c->t[i] + close;
+        c->inside_before[i] |= (uint64_t)(mask_less_equal(in[i], low) & mask_less(low, out[i]) & bit);
+        c->inside_after[i] |= (uint64_t)(mask_less_equal(in[i], high) & mask_less(high, out[i]) & bit);
+    }
+}
+
+/* Columns that cannot simply be believed: another boundary lies near, or the media are perhaps equal. */
+static void mark_attention(const arrangement *a, int n, const hit_batch *restrict c, int64_t *restrict attention)
+{
+    const int64_t doubt = -(int64_t)!a->distinct;
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        uint64_t only = (uint64_t)1 << (c->crossed[i] & (PRIMITIVES_MAX - 1));
+        int64_t unclean = ~mask_same((int64_t)(c->inside_before[i] ^ c->inside_after[i]), (int64_t)only);
+        attention[i] = (unclean | mask_same(c->before[i], c->after[i]) | doubt) & -(int64_t)(c->crossed[i] >= 0);
+    }
+}
+
+/* The next change of medium of the first n columns. */
+static void next_changes(const arrangement *a, int n, ray_scratch *s, hit_batch *c)
+{
+    ranks_of(a, n, s->inside, c->before);
+    for (int i = 0; i < n; i++) {
+        c->t[i] = NEVER;
+        c->crossed[i] = -1;
+        c->inside_before[i] = c->inside_after[i] = 0;
+    }
+    for (int r = 1; r <= a->body_count; r++) {
+        const int o = a->bodies[r].outside, h = a->bodies[r].hollow;
+        if (h < 0)
+            next_of_plain(n, r, o, s->in[o], s->out[o], s, c);
+        else
+            next_of_hollow(n, r, o, h, s->in[o], s->out[o], s->in[h], s->out[h], s, c);
+    }
+    for (int k = 0; k < a->primitive_count; k++)
+        sets_around(n, k, s->in[k], s->out[k], s, c);
+    ranks_of(a, n, c->inside_after, c->after);
+    mark_attention(a, n, c, s->attention);
+}
+
+/* The sets around column k's crossing again, at the distance of its error bound: other boundaries within it are
+ * part of the same crossing. */
+static void look_closely(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c)
+{
+    const int i = s->ray[k], crossed = (int)c->crossed[k];
+    const ray_batch one = {1,           &rays->ox[i], &rays->oy[i], &rays->oz[i],    &rays->dx[i],
+                           &rays->dy[i], &rays->dz[i], &rays->start[i], &rays->inside[i]};
+    const int64_t leaving = set_mask(s->inside[k], crossed);
+    surface_batch point;
+    KERNEL(surface_points)(&a->primitives[crossed], &one, &c->t[k], &leaving, &point);
+    double length = sqrt(rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i]);
+    double reach = 2.0 * point.error[0] / (point.cos_i[0] * length), widest = CLOSE * (c->t[k] + s->slack[k]);
+    reach = lesser(reach, widest);
+    double low = c->t[k] - reach, high = c->t[k] + reach;
+    uint64_t before = 0, after = 0;
+    for (int p = 0; p < a->primitive_count; p++) {
+        before |= (uint64_t)(s->in[p][k] <= low && low < s->out[p][k]) << p;
+        after |= (uint64_t)(s->in[p][k] <= high && high < s->out[p][k]) << p;
+    }
+    c->inside_before[k] = before;
+    c->inside_after[k] = after;
+    c->after[k] = arrangement_rank(a, after);
+}
+
+/* Is column k an interface? Looks closely where another boundary is near. */
+static bool is_interface(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c)
+{
+    if ((c->inside_before[k] ^ c->inside_after[k]) != (uint64_t)1 << c->crossed[k])
+        look_closely(a, rays, k, s, c);
+    return a->bodies[c->before[k]].medium != a->bodies[c->after[k]].medium;
+}
+
+/* Column k crosses without effect: what lies behind the crossing becomes column m, to be looked at again. */
+static void pass_on(const arrangement *a, int k, int m, ray_scratch *s, const hit_batch *c)
+{
+    const uint64_t set = c->inside_after[k];
+    const double t = c->t[k];
+    for (int p = 0; p < a->primitive_count; p++) {
+        double in = s->in[p][k], out = s->out[p][k];
+        bool inside = set >> p & 1, spent = !inside && in <= t;
+        s->in[p][m] = inside ? -HUGE_VAL : spent ? HUGE_VAL : in;
+        s->out[p][m] = spent ? -HUGE_VAL : inside && out < t ? t : out;
+    }
+    s->inside[m] = set;
+    s->slack[m] = s->slack[k];
+    s->ray[m] = s->ray[k];
+}
+
+static void begin(const ray_batch *rays, ray_scratch *s)
+{
+    for (int i = 0; i < rays->count; i++) {
+        s->inside[i] = rays->inside[i];
+        s->ray[i] = i;
+    }
+}
+
+static void copy_hit(const hit_batch *from, int k, hit_batch *to, int i)
+{
+    to->t[i] = from->t[k];
+    to->crossed[i] = from->crossed[k];
+    to->before[i] = from->before[k];
+    to->after[i] = from->after[k];
+    to->inside_before[i] = from->inside_before[k];
+    to->inside_after[i] = from->inside_after[k];
+}
+
+static void nearest(const arrangement *a, const ray_batch *rays, ray_scratch *s, hit_batch *hits)
+{
+    KERNEL(intervals_of)(a, rays, s);
+    begin(rays, s);
+    for (int i = 0; i < rays->count; i++)
+        s->slack[i] = a->extent;
+    next_changes(a, rays->count, s, hits);
+    int left = 0;
+    for (int i = 0; i < rays->count; i++)
+        if (s->attention[i] && !is_interface(a, rays, i, s, hits))
+            pass_on(a, i, left++, s, hits);
+    while (left > 0) {
+        const int n = left;
+        next_changes(a, n, s, &s->again);
+        left = 0;
+        for (int k = 0; k < n; k++) {
+            if (s->attention[k] && !is_interface(a, rays, k, s, &s->again))
+                pass_on(a, k, left++, s, &s->again);
+            else
+                copy_hit(&s->again, k, hits, s->ray[k]);
+        }
+    }
+}
+
+/* Does the way from 0 to 1 touch the body's matter? For shadow rays, whatever hides it. */
+static void touching(const body *b, int n, const ray_scratch *s, int64_t *restrict touched)
+{
+    const double *restrict in = s->in[b->outside], *restrict out = s->out[b->outside];
+    if (b->hollow < 0) {
+        /* VECTORISE */
+        for (int i = 0; i < n; i++)
+            touched[i] |= mask_less(in[i], 1.0) & mask_less(0.0, out[i]);
+        return;
+    }
+    const double *restrict hollow_in = s->in[b->hollow], *restrict hollow_out = s->out[b->hollow];
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        double first_out = lesser(out[i], hollow_in[i]), second_in = greater(in[i], hollow_out[i]);
+        int64_t first = mask_less(in[i], lesser(first_out, 1.0)) & mask_less(0.0, first_out);
+        int64_t second = mask_less(second_in, lesser(out[i], 1.0)) & mask_less(0.0, out[i]);
+        touched[i] |= first | second;
+    }
+}
+
+/* First sight: blocked for certain by an opaque body that nothing clear can hide; undecided where order or attenuation matters. */
+static void first_sight(const arrangement *a, int solid_shadows, int n, ray_scratch *s)
+{
+    for (int i = 0; i < n; i++)
+        s->blocked[i] = s->undecided[i] = 0;
+    bool hidden = false; /* can a clear body of a higher rank hide this one? */
+    for (int r = a->body_count; r >= 1; r--) {
+        const body *b = &a->bodies[r];
+        if (b->opaque)
+            touching(b, n, s, hidden ? s->undecided : s->blocked);
+        else if (solid_shadows || b->clearness < 1.0)
+            touching(b, n, s, s->undecided);
+        hidden |= !b->opaque;
+    }
+}
+
+/* One interface on the way of the shadow ray in column k: what of the light it lets through. */
+static double let_through(const arrangement *a, int solid_shadows, const hit_batch *c, int k)
+{
+    const body *before = &a->bodies[c->before[k]], *after = &a->bodies[c->after[k]];
+    if (solid_shadows || after->opaque || before->opaque)
+        return 0.0;
+    return c->before[k] > c->after[k] ? before->clearness : after->clearness;
+}
+
+/* Moves the undecided columns to the front; returns how many. */
+static int keep_undecided(const arrangement *a, const ray_batch *rays, ray_scratch *s)
+{
+    int n = 0;
+    for (int i = 0; i < rays->count; i++) {
+        if (s->blocked[i] || !s->undecided[i])
+            continue;
+        double length = sqrt(rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i]);
+        s->slack[n] = a->extent / length;
+        s->inside[n] = rays->inside[i];
+        s->ray[n] = i;
+        for (int p = 0; p < a->primitive_count; p++) {
+            s->in[p][n] = s->in[p][i];
+            s->out[p][n] = s->out[p][i];
+        }
+        n++;
+    }
+    return n;
+}
+
+static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadows, ray_scratch *s, double *transmitted)
+{
+    KERNEL(intervals_of)(a, rays, s);
+    first_sight(a, solid_shadows, rays->count, s);
+    for (int i = 0; i < rays->count; i++)
+        transmitted[i] = s->blocked[i] ? 0.0 : 1.0;
+    for (int left = keep_undecided(a, rays, s); left > 0;) {
+        const int n = left;
+        hit_batch *c = &s->again;
+        next_changes(a, n, s, c);
+        left = 0;
+        for (int k = 0; k < n; k++) {
+            if (c->crossed[k] < 0 || c->t[k] >= 1.0)
+                continue;
+            if (!s->attention[k] || is_interface(a, rays, k, s, c))
+                transmitted[s->ray[k]] *= let_through(a, solid_shadows, c, k);
+            if (transmitted[s->ray[k]] > 0.0)
+                pass_on(a, k, left++, s, c);
+        }
+    }
+}
+
+const geometry_kernels KERNEL(geometry_kernels) = {nearest, shadow, KERNEL(surface_points)};

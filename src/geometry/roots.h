@@ -1,0 +1,86 @@
+/* Where a straight line enters and leaves each convex primitive, in the primitive's own frame: the one set of
+ * formulas, used by the pass over all rays and again for the face of a hit. No branches; pure.
+ *
+ * The root of the face that a ray starts on is zero exactly, not nearly. A component of a direction that
+ * is zero is taken as 1e-300: its crossings then lie at +-1e284 and more, which is never, without a special case. */
+#ifndef CUVETTE_GEOMETRY_ROOTS_H
+#define CUVETTE_GEOMETRY_ROOTS_H
+
+#include "base/kernel.h"
+#include "base/lanes.h"
+#include "geometry/arrangement.h"
+#include <math.h>
+
+typedef struct local_ray { double x, y, z, dx, dy, dz; } local_ray;
+
+ALWAYS_INLINE local_ray ray_to_local(const primitive *p, bool turned, double ox, double oy, double oz, double dx, double dy, double dz)
+{
+    local_ray r = {ox - p->origin.x, oy - p->origin.y, oz - p->origin.z, dx, dy, dz};
+    if (turned) {
+        vec3 o = mat3_apply_transposed(p->rotation, vec3_make(r.x, r.y, r.z));
+        vec3 d = mat3_apply_transposed(p->rotation, vec3_make(dx, dy, dz));
+        r = (local_ray){o.x, o.y, o.z, d.x, d.y, d.z};
+    }
+    return r;
+}
+
+ALWAYS_INLINE double inverse_of_component(double d)
+{
+    double sign = lanes_double((lanes_bits(d) & INT64_MIN) | lanes_bits(1e-300));
+    return 1.0 / blend(mask_less(magnitude(d), 1e-300), sign, d);
+}
+
+/* Crossings of the planes y = bottom and y = top. */
+typedef struct slab_roots { double in, out; } slab_roots;
+
+ALWAYS_INLINE slab_roots slab_cross(double y, double inverse_y, double low, double high, int64_t on_low, int64_t on_high)
+{
+    double a = blend(on_low, 0.0, (low - y) * inverse_y), b = blend(on_high, 0.0, (high - y) * inverse_y);
+    slab_roots s = {lesser(a, b), greater(a, b)};
+    return s;
+}
+
+/* Crossings of a quadric a t^2 + 2 b t + c = 0 given its reduced discriminant b^2 - a c: [in, out] and whether it is met. */
+typedef struct quadric_roots { double in, out; int64_t hit; } quadric_roots;
+
+ALWAYS_INLINE quadric_roots quadric_cross(double b, double inverse_a, double discriminant, int64_t own)
+{
+    double middle = -b * inverse_a;
+    double half = blend(own, magnitude(middle), sqrt(greater(discriminant, 0.0)) * inverse_a);
+    quadric_roots q = {middle - half, middle + half, own | mask_less(0.0, discriminant)};
+    return q;
+}
+
+/* a = dx^2 + m2 dz^2 of a cylinder, and 1/a, where a line along the axis (a = 0) gets a harmless 1. */
+ALWAYS_INLINE double cylinder_axial(local_ray r, double m2)
+{
+    return r.dx * r.dx + m2 * r.dz * r.dz;
+}
+ALWAYS_INLINE double cylinder_inverse(double a)
+{
+    return 1.0 / blend(mask_less(a, 1e-280), 1.0, a);
+}
+
+/* The endless cylinder x^2 + m2 z^2 = radius^2. The discriminant is a r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does
+ * not cancel as b^2 - a c does far from the cylinder. A line along the axis is inside for ever or never. */
+ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, local_ray r, double a, double inverse_a, int64_t own)
+{
+    double r2 = p->radius * p->radius, cross = r.x * r.dz - r.z * r.dx;
+    double b = r.x * r.dx + p->m2 * r.z * r.dz;
+    quadric_roots q = quadric_cross(b, inverse_a, a * r2 - p->m2 * (cross * cross), own);
+    double c = r.x * r.x + p->m2 * r.z * r.z - r2;
+    int64_t parallel = mask_less(a, 1e-280);
+    q.in = blend(parallel, -HUGE_VAL, q.in);
+    q.out = blend(parallel, HUGE_VAL, q.out);
+    q.hit = blend_int(parallel, own | mask_less_equal(c, 0.0), q.hit);
+    return q;
+}
+
+ALWAYS_INLINE quadric_roots sphere_cross(const primitive *p, local_ray r, int64_t own)
+{
+    vec3 o = vec3_make(r.x, r.y, r.z), d = vec3_make(r.dx, r.dy, r.dz), cross = vec3_cross(o, d);
+    double a = vec3_dot(d, d);
+    return quadric_cross(vec3_dot(o, d), 1.0 / a, a * (p->radius * p->radius) - vec3_dot(cross, cross), own);
+}
+
+#endif

@@ -1,0 +1,39 @@
+/* The analytic solids, as a person describes them, and the convex primitives that the kernels work on.
+ * A solid stands in a frame of its own: local y is its axis; it is turned by rotation_deg (about x, then y,
+ * then z, right-hand rule on the axes' names) and then moved to position.
+ *
+ *   plane     the half-space y <= 0
+ *   cylinder  x^2 + m^2 z^2 <= radius^2, 0 <= y <= height (position is the centre of its base)
+ *   cup       a cylinder of radius and height less one of inner_radius that stands on the floor's thickness
+ *             and is open at the top (position is the centre of its base)
+ *   box       |x| <= size.x/2 and so on (position is its centre)
+ *   sphere    x^2 + y^2 + z^2 <= radius^2
+ *
+ * Pure; ownership: values. */
+#ifndef CUVETTE_GEOMETRY_SOLID_H
+#define CUVETTE_GEOMETRY_SOLID_H
+
+#include "base/status.h"
+#include "base/vec3.h"
+#include <stdbool.h>
+
+typedef enum shape_kind { SHAPE_PLANE, SHAPE_CYLINDER, SHAPE_CUP, SHAPE_BOX, SHAPE_SPHERE, SHAPE_COUNT } shape_kind;
+
+typedef struct solid_shape {
+    shape_kind kind;
+    vec3 position;     /* scene units */
+    vec3 rotation_deg; /* about x, then y, then z */
+    double radius, height, m, inner_radius, floor; /* those that kind has; the others are ignored */
+    vec3 size;
+} solid_shape;
+
+/* Checks what single ranges cannot: inner_radius < radius, floor < height. */
+status solid_shape_check(const solid_shape *shape, diagnostic *why);
+
+/* Does the closed solid contain the point? By its definition above; for tests and for the camera. */
+bool solid_shape_contains(const solid_shape *shape, vec3 point);
+
+/* The rotation of rotation_deg: local to world. */
+mat3 rotation_from_deg(vec3 rotation_deg);
+
+#endif

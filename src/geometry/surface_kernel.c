@@ -1,0 +1,128 @@
+/* Third pass, for the rays that met one primitive: the point, put back exactly on the surface, the normal there, the face, and a
+ * bound on the point's error.
+ *
+ * The bound: local coordinates come out of at most 8 roundings of numbers no larger than the ray's start, the
+ * way t d and the frame's origin; the root's own error moves the point along the ray, and putting it back on the surface leaves what
+ * is across it. 32 half-ulps of the sum of these magnitudes covers it with room to spare (Higham, Accuracy and
+ * Stability of Numerical Algorithms, 3.1: gamma_n), which the tests check against quadruple precision. */
+#include "geometry/kernels.h"
+
+#include "geometry/roots.h"
+#include <float.h>
+
+#define ERROR_FACTOR (32.0 * DBL_EPSILON / 2.0)
+
+typedef struct local_point { vec3 point, normal; int64_t face; } local_point;
+
+ALWAYS_INLINE local_point halfspace_point(vec3 q, int64_t first)
+{
+    local_point l = {vec3_make(q.x, 0.0, q.z), vec3_make(0.0, 1.0, 0.0), first};
+    return l;
+}
+
+/* The same comparisons of the same roots as in the first pass: the face is the one that bounded the interval there. */
+ALWAYS_INLINE local_point cylinder_point(const primitive *p, local_ray r, vec3 q, int64_t on_side, int64_t on_bottom, int64_t on_top, int64_t leaving)
+{
+    double a = cylinder_axial(r, p->m2), inverse_y = inverse_of_component(r.dy);
+    quadric_roots side = cylinder_side(p, r, a, cylinder_inverse(a), on_side);
+    slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, on_bottom, on_top);
+    int64_t is_side = blend_int(leaving, mask_less(side.out, caps.out), mask_less(caps.in, side.in));
+    int64_t is_top = leaving ^ mask_less(r.dy, 0.0); /* in from above or out upwards */
+    double shrink = p->radius / sqrt(q.x * q.x + p->m2 * q.z * q.z);
+    double x = q.x * shrink, z = q.z * shrink, nz = p->m2 * z, norm = 1.0 / sqrt(x * x + nz * nz);
+    double cap = blend(is_top, p->top, p->bottom), up = blend(is_top, 1.0, -1.0);
+    local_point l;
+    l.point = vec3_make(blend(is_side, x, q.x), blend(is_side, q.y, cap), blend(is_side, z, q.z));
+    l.normal = vec3_make(blend(is_side, x * norm, 0.0), blend(is_side, 0.0, up), blend(is_side, nz * norm, 0.0));
+    l.face = p->first_face + blend_int(is_side, 0, blend_int(is_top, 2, 1));
+    return l;
+}
+
+ALWAYS_INLINE local_point box_point(const primitive *p, local_ray r, vec3 q, int64_t at, int64_t leaving)
+{
+    const vec3 h = p->half;
+    slab_roots x = slab_cross(r.x, inverse_of_component(r.dx), -h.x, h.x, mask_same(at, 0), mask_same(at, 1));
+    slab_roots y = slab_cross(r.y, inverse_of_component(r.dy), -h.y, h.y, mask_same(at, 2), mask_same(at, 3));
+    slab_roots z = slab_cross(r.z, inverse_of_component(r.dz), -h.z, h.z, mask_same(at, 4), mask_same(at, 5));
+    int64_t is_x = blend_int(leaving, mask_less(x.out, y.out) & mask_less(x.out, z.out), mask_less(y.in, x.in) & mask_less(z.in, x.in));
+    int64_t is_y = ~is_x & blend_int(leaving, mask_less(y.out, z.out), mask_less(z.in, y.in));
+    int64_t is_z = ~is_x & ~is_y;
+    /* The face on the positive side: left when the direction is positive there, entered when it is negative. */
+    double along = blend(is_x, r.dx, blend(is_y, r.dy, r.dz));
+    int64_t positive = leaving ^ mask_less(along, 0.0);
+    double sign = blend(positive, 1.0, -1.0);
+    local_point l;
+    l.point = vec3_make(blend(is_x, sign * h.x, q.x), blend(is_y, sign * h.y, q.y), blend(is_z, sign * h.z, q.z));
+    l.normal = vec3_make(blend(is_x, sign, 0.0), blend(is_y, sign, 0.0), blend(is_z, sign, 0.0));
+    l.face = p->first_face + blend_int(is_x, 0, blend_int(is_y, 2, 4)) + (positive & 1);
+    return l;
+}
+
+ALWAYS_INLINE local_point sphere_point(const primitive *p, vec3 q)
+{
+    double inverse = 1.0 / vec3_length(q);
+    local_point l;
+    l.normal = vec3_scale(q, inverse);
+    l.point = vec3_scale(l.normal, p->radius);
+    l.face = p->first_face;
+    return l;
+}
+
+ALWAYS_INLINE void points_on(const primitive *p, primitive_kind kind, bool turned, const ray_batch *rays, const double *restrict t,
+                             const int64_t *restrict leaving, surface_batch *restrict s)
+{
+    /* VECTORISE */
+    for (int i = 0; i < rays->count; i++) {
+        local_ray r = ray_to_local(p, turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        vec3 d = vec3_make(r.dx, r.dy, r.dz), o = vec3_make(r.x, r.y, r.z), way = vec3_scale(d, t[i]), q = vec3_add(o, way);
+        int64_t at = rays->start[i] - p->first_face;
+        local_point l = kind == PRIMITIVE_HALFSPACE ? halfspace_point(q, p->first_face)
+                      : kind == PRIMITIVE_CYLINDER
+                          ? cylinder_point(p, r, q, mask_same(at, 0), mask_same(at, 1), mask_same(at, 2), leaving[i])
+                      : kind == PRIMITIVE_BOX ? box_point(p, r, q, at, leaving[i])
+                                              : sphere_point(p, q);
+        double side = blend(leaving[i], -1.0, 1.0); /* the normal faces the ray */
+        vec3 n = vec3_scale(l.normal, side), point = l.point;
+        double cosine = -vec3_dot(d, n) / vec3_length(d);
+        double size = magnitude(o.x) + magnitude(o.y) + magnitude(o.z) + magnitude(way.x) + magnitude(way.y) + magnitude(way.z);
+        if (turned) {
+            n = mat3_apply(p->rotation, n);
+            point = mat3_apply(p->rotation, point);
+        }
+        s->px[i] = point.x + p->origin.x;
+        s->py[i] = point.y + p->origin.y;
+        s->pz[i] = point.z + p->origin.z;
+        s->nx[i] = n.x;
+        s->ny[i] = n.y;
+        s->nz[i] = n.z;
+        s->cos_i[i] = lesser(greater(cosine, DBL_MIN), 1.0);
+        s->error[i] = ERROR_FACTOR * (size + p->extent);
+        s->face[i] = l.face;
+    }
+}
+
+void KERNEL(surface_points)(const primitive *primitive_met, const ray_batch *rays, const double *t, const int64_t *leaving, surface_batch *points)
+{
+    const primitive p = *primitive_met;
+    switch (p.kind) {
+    case PRIMITIVE_HALFSPACE:
+        if (p.turned)
+            points_on(&p, PRIMITIVE_HALFSPACE, true, rays, t, leaving, points);
+        else
+            points_on(&p, PRIMITIVE_HALFSPACE, false, rays, t, leaving, points);
+        break;
+    case PRIMITIVE_CYLINDER:
+        if (p.turned)
+            points_on(&p, PRIMITIVE_CYLINDER, true, rays, t, leaving, points);
+        else
+            points_on(&p, PRIMITIVE_CYLINDER, false, rays, t, leaving, points);
+        break;
+    case PRIMITIVE_BOX:
+        if (p.turned)
+            points_on(&p, PRIMITIVE_BOX, true, rays, t, leaving, points);
+        else
+            points_on(&p, PRIMITIVE_BOX, false, rays, t, leaving, points);
+        break;
+    case PRIMITIVE_SPHERE: points_on(&p, PRIMITIVE_SPHERE, false, rays, t, leaving, points); break;
+    }
+}

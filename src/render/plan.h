@@ -1,0 +1,30 @@
+/* A scene made ready for tracing: solids in order of rank, materials and indices by rank, the camera's frame. Built once a
+ * frame, then read by all workers. Ownership: plan_build gives, plan_destroy releases; it borrows the scene's lights and sky. */
+#ifndef CUVETTE_RENDER_PLAN_H
+#define CUVETTE_RENDER_PLAN_H
+
+#include "geometry/arrangement.h"
+#include "scene/scene.h"
+
+/* Directions of camera rays: forward + u right + v up, for u in (-half_width, half_width), v likewise. */
+typedef struct camera_frame {
+    vec3 eye, forward, right, up;
+    double half_width, half_height;
+} camera_frame;
+
+typedef struct plan {
+    arrangement *solids;
+    const material **materials; /* by rank; [0] is NULL */
+    double *ior;                /* by rank; [0] is the surrounding medium's */
+    camera_frame view;
+    uint64_t eye_inside;        /* the set of primitives that the camera stands in */
+    render_settings render;
+    const background *sky;
+    const light *lights;
+    int light_count;
+} plan;
+
+status plan_build(const scene *s, plan **out, diagnostic *why);
+void plan_destroy(plan *p);
+
+#endif

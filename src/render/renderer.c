@@ -1,0 +1,336 @@
+#include "render/renderer.h"
+
+#include "measure/clock.h"
+#include "render/plan.h"
+#include "render/pool.h"
+#include "render/schedule.h"
+#include "render/tracer.h"
+#include <stdlib.h>
+#include <string.h>
+
+struct renderer {
+    isa level;
+    const topology *machine;
+    pool *threads;
+    tracer **tracers;     /* by worker, made by the worker that first needs one */
+    int tracer_count;
+};
+
+typedef struct event_list { tile_event *event; size_t count, capacity; } event_list;
+
+/* What one worker writes during a frame, on cache lines of its own. */
+typedef struct desk {
+    _Alignas(64) worker_report report;
+    event_list events;
+    atomic_uint_fast64_t pixels; /* begun; read by the watcher */
+    bool out_of_memory, overflow;
+} desk;
+
+typedef struct frame {
+    renderer *owner;
+    const scene *s;
+    const render_options *options;
+    tracer_target target;
+    schedule pieces;
+    desk *desks;
+    double began_s;
+    atomic_bool stop;
+} frame;
+
+status renderer_create(isa level, const topology *machine, renderer **out, diagnostic *why)
+{
+    renderer *r = calloc(1, sizeof *r);
+    if (r)
+        r->threads = pool_create();
+    if (!r || !r->threads) {
+        free(r);
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    }
+    r->level = level;
+    r->machine = machine;
+    *out = r;
+    return STATUS_OK;
+}
+
+void renderer_destroy(renderer *r)
+{
+    if (!r)
+        return;
+    pool_destroy(r->threads);
+    for (int i = 0; i < r->tracer_count; i++)
+        tracer_destroy(r->tracers[i]);
+    free(r->tracers);
+    free(r);
+}
+
+static status reserve_tracers(renderer *r, int count, diagnostic *why)
+{
+    if (count <= r->tracer_count)
+        return STATUS_OK;
+    tracer **grown = realloc(r->tracers, (size_t)count * sizeof(tracer *));
+    if (!grown)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    memset(grown + r->tracer_count, 0, (size_t)(count - r->tracer_count) * sizeof(tracer *));
+    r->tracers = grown;
+    r->tracer_count = count;
+    return STATUS_OK;
+}
+
+status renderer_prepare(renderer *r, const scene *s, diagnostic *why)
+{
+    const int count = (int)s->render.threads;
+    status code = reserve_tracers(r, count, why);
+    return code == STATUS_OK && s->render.pool ? pool_reserve(r->threads, count, why) : code;
+}
+
+static pin_policy policy_of(const scene *s)
+{
+    switch ((pin_rule)s->render.pin) {
+    case PIN_RULE_NONE: break;
+    case PIN_RULE_COMPACT: return PIN_COMPACT;
+    case PIN_RULE_SCATTER: return PIN_SCATTER;
+    }
+    return PIN_NONE;
+}
+
+/* Threads of a kept pool remember where they were put. */
+static void take_place(const frame *f, int worker)
+{
+    static _Thread_local int bound_to = -1;
+    if (!f->owner->machine)
+        return;
+    int pu = topology_place(f->owner->machine, policy_of(f->s), worker, (int)f->s->render.threads);
+    if (pu != bound_to && topology_bind_thread(f->owner->machine, pu, NULL) == STATUS_OK)
+        bound_to = pu;
+}
+
+static double since(const frame *f)
+{
+    return clock_wall_s() - f->began_s;
+}
+
+static void note_tile(const frame *f, desk *d, int worker, const span *piece, double began_s)
+{
+    event_list *l = &d->events;
+    if (l->count == l->capacity) {
+        size_t capacity = l->capacity ? 2 * l->capacity : 64;
+        tile_event *grown = realloc(l->event, capacity * sizeof *grown);
+        if (!grown) {
+            d->out_of_memory = true;
+            return;
+        }
+        l->event = grown;
+        l->capacity = capacity;
+    }
+    l->event[l->count++] = (tile_event){worker, piece->x0, piece->y0, piece->x1, piece->y1, began_s, since(f)};
+}
+
+static tracer *tracer_of(frame *f, int worker)
+{
+    tracer **t = &f->owner->tracers[worker];
+    if (!*t)
+        *t = tracer_create(f->owner->level);
+    return *t && tracer_begin(*t, &f->target) ? *t : NULL;
+}
+
+/* Pieces one after another; rays that do not fill a batch at the end of one piece go on with the next. */
+static void trace_pieces(frame *f, int worker, desk *d, span piece)
+{
+    const bool timeline = f->options && f->options->timeline;
+    const double began_s = since(f);
+    tracer *t = tracer_of(f, worker);
+    if (!t) {
+        d->out_of_memory = true;
+        return;
+    }
+    do {
+        double tile_began_s = timeline ? since(f) : 0.0;
+        tracer_span(t, &piece, &f->stop);
+        d->report.tiles++;
+        atomic_fetch_add_explicit(&d->pixels, (uint64_t)(piece.x1 - piece.x0) * (uint64_t)(piece.y1 - piece.y0), memory_order_relaxed);
+        if (timeline)
+            note_tile(f, d, worker, &piece, tile_began_s);
+    } while (!atomic_load_explicit(&f->stop, memory_order_relaxed) && schedule_next(&f->pieces, worker, d->report.tiles, &piece));
+    tracer_finish(t, &f->stop);
+    if (timeline && d->events.count > 0)
+        d->events.event[d->events.count - 1].end_s = since(f);
+    d->report.busy_s = since(f) - began_s;
+    d->report.rays = ray_counters_total(tracer_counters(t));
+    d->overflow = tracer_overflowed(t);
+}
+
+static void work(void *context, int worker)
+{
+    frame *f = context;
+    desk *d = &f->desks[worker];
+    const double began_s = since(f), cpu_s = clock_thread_cpu_s();
+    take_place(f, worker);
+    span piece;
+    if (schedule_next(&f->pieces, worker, 0, &piece))
+        trace_pieces(f, worker, d, piece);
+    d->report.start_s = began_s;
+    d->report.pu = topology_current_pu();
+    d->report.cpu_s = clock_thread_cpu_s() - cpu_s;
+    d->report.wall_s = since(f) - began_s;
+}
+
+static void watch(void *context)
+{
+    frame *f = context;
+    uint64_t begun = 0;
+    for (int i = 0; i < (int)f->s->render.threads; i++)
+        begun += atomic_load_explicit(&f->desks[i].pixels, memory_order_relaxed);
+    double share = (double)begun / ((double)f->s->render.width * (double)f->s->render.height);
+    if (!f->options->progress(f->options->context, share))
+        atomic_store(&f->stop, true);
+}
+
+static int compare_events(const void *a, const void *b)
+{
+    const tile_event *x = a, *y = b;
+    if (x->begin_s != y->begin_s)
+        return x->begin_s < y->begin_s ? -1 : 1;
+    return (x->worker > y->worker) - (x->worker < y->worker);
+}
+
+static bool join_events(const desk *desks, int count, render_result *result)
+{
+    size_t total = 0;
+    for (int i = 0; i < count; i++)
+        total += desks[i].events.count;
+    result->events = calloc(total + 1, sizeof *result->events);
+    if (!result->events)
+        return false;
+    for (int i = 0; i < count; i++)
+        for (size_t k = 0; k < desks[i].events.count; k++)
+            result->events[result->event_count++] = desks[i].events.event[k];
+    qsort(result->events, total, sizeof *result->events, compare_events);
+    return true;
+}
+
+/* Every ray is tested against every visible solid. */
+static void count_tests(const plan *p, ray_counters *c)
+{
+    for (int r = 1; r <= p->solids->body_count; r++)
+        c->tests[p->solids->bodies[r].solid] = ray_counters_total(c);
+}
+
+/* Sums up what the workers left on their desks. */
+static status collect(frame *f, render_result *result, diagnostic *why)
+{
+    const int count = (int)f->s->render.threads;
+    bool out_of_memory = false, overflow = false;
+    for (int i = 0; i < count; i++) {
+        desk *d = &f->desks[i];
+        d->report.waiting_s = result->wall_s - d->report.busy_s;
+        result->workers[i] = d->report;
+        if (d->report.tiles > 0)
+            ray_counters_add(&result->counters, tracer_counters(f->owner->tracers[i]));
+        out_of_memory |= d->out_of_memory;
+        overflow |= d->overflow;
+    }
+    count_tests(f->target.scene, &result->counters);
+    if (f->options && f->options->timeline)
+        out_of_memory |= !join_events(f->desks, count, result);
+    if (out_of_memory)
+        return diagnose(why, STATUS_FAILURE, "use fewer threads or less depth", "out of memory while tracing");
+    if (overflow)
+        return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
+                        "the picture is brighter than the film holds (524288 in a channel)");
+    return atomic_load(&f->stop) ? STATUS_INTERRUPTED : STATUS_OK;
+}
+
+static status make_result(const scene *s, const render_options *options, render_result **out, diagnostic *why)
+{
+    const size_t pixels = (size_t)s->render.width * (size_t)s->render.height;
+    render_result *result = calloc(1, sizeof *result);
+    if (!result)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = film_create((int)s->render.width, (int)s->render.height, &result->picture, why);
+    if (code == STATUS_OK) {
+        result->worker_count = (int)s->render.threads;
+        result->workers = calloc((size_t)result->worker_count, sizeof *result->workers);
+        bool missing = !result->workers;
+        if (options && options->pixel_rays)
+            missing |= !(result->pixel_rays = calloc(pixels, sizeof(double)));
+        if (options && options->pixel_time)
+            missing |= !(result->pixel_ns = calloc(pixels, sizeof(double)));
+        if (missing)
+            code = diagnose(why, STATUS_FAILURE, "render a smaller picture", "out of memory");
+    }
+    if (code != STATUS_OK) {
+        render_result_destroy(result);
+        return code;
+    }
+    *out = result;
+    return STATUS_OK;
+}
+
+static desk *make_desks(int count)
+{
+    desk *desks = aligned_alloc(64, (size_t)count * sizeof *desks);
+    if (desks)
+        memset(desks, 0, (size_t)count * sizeof *desks);
+    return desks;
+}
+
+static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, render_result *result, diagnostic *why)
+{
+    const int count = (int)s->render.threads;
+    frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
+    desk *desks = make_desks(count);
+    status code = f && desks ? renderer_prepare(r, s, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK) {
+        memset(f, 0, sizeof *f);
+        f->owner = r;
+        f->s = s;
+        f->options = options;
+        f->target = (tracer_target){p, result->picture, result->pixel_rays, result->pixel_ns};
+        f->desks = desks;
+        schedule_start(&f->pieces, &s->render);
+        const double cpu_s = clock_process_cpu_s();
+        f->began_s = clock_wall_s();
+        code = pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL, f, why);
+        result->wall_s = clock_wall_s() - f->began_s;
+        result->cpu_s = clock_process_cpu_s() - cpu_s;
+        if (code == STATUS_OK)
+            code = collect(f, result, why);
+        for (int i = 0; i < count; i++)
+            free(desks[i].events.event);
+    }
+    free(desks);
+    free(f);
+    return code;
+}
+
+status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out, diagnostic *why)
+{
+    status code = scene_check(s, why);
+    plan *p = NULL;
+    render_result *result = NULL;
+    if (code == STATUS_OK)
+        code = plan_build(s, &p, why);
+    if (code == STATUS_OK)
+        code = make_result(s, options, &result, why);
+    if (code == STATUS_OK)
+        code = run_frame(r, s, options, p, result, why);
+    plan_destroy(p);
+    if (code != STATUS_OK && code != STATUS_INTERRUPTED) {
+        render_result_destroy(result);
+        return code;
+    }
+    *out = result;
+    return code;
+}
+
+void render_result_destroy(render_result *result)
+{
+    if (!result)
+        return;
+    film_destroy(result->picture);
+    free(result->workers);
+    free(result->pixel_rays);
+    free(result->pixel_ns);
+    free(result->events);
+    free(result);
+}

@@ -1,0 +1,66 @@
+/* Renders a scene: camera rays, Whitted's recursion, Phong's local light, on a pool of workers. The film depends on the scene and its
+ * parameters alone (design, decision 5): not on threads, schedule, tile, pinning, batch or instruction set.
+ * Ownership: a renderer owns its pool, and may serve many frames and scenes, one at a time; a result is the caller's,
+ * release it with render_result_destroy. No global state: several renderers may run in one process. */
+#ifndef CUVETTE_RENDER_RENDERER_H
+#define CUVETTE_RENDER_RENDERER_H
+
+#include "base/counters.h"
+#include "base/isa.h"
+#include "base/status.h"
+#include "measure/topology.h"
+#include "render/film.h"
+#include "scene/scene.h"
+#include <stdbool.h>
+
+typedef struct renderer renderer;
+
+/* level: from isa_choose. machine is borrowed for pinning; it may be NULL, then nothing is pinned. */
+status renderer_create(isa level, const topology *machine, renderer **out, diagnostic *why);
+void renderer_destroy(renderer *r);
+
+/* One worker's account of a frame; seconds from the frame's start. */
+typedef struct worker_report {
+    double wall_s;     /* from its first instruction to its last in this frame */
+    double cpu_s;      /* CLOCK_THREAD_CPUTIME_ID over the same stretch */
+    double start_s;    /* when it began to work, after the frame's start */
+    double busy_s;     /* from its first tile taken to its last ray traced; 0 without a tile */
+    double waiting_s;  /* the frame's wall time less busy_s */
+    uint64_t tiles;    /* pieces of the picture that it took */
+    uint64_t rays;     /* of all kinds */
+    int pu;            /* processing unit it ended on; -1 unknown */
+} worker_report;
+
+typedef struct tile_event { int worker; int x0, y0, x1, y1; double begin_s, end_s; } tile_event;
+
+/* What is wanted beside the film. */
+typedef struct render_options {
+    bool pixel_rays;    /* rays of all kinds by pixel */
+    bool pixel_time;    /* nanoseconds by pixel; a batch's time is shared among its rays */
+    bool timeline;      /* when each tile was taken, and by whom */
+    /* Called about ten times a second from the thread that called render; return false to stop the frame. May be NULL. */
+    bool (*progress)(void *context, double share_done);
+    void *context;
+} render_options;
+
+typedef struct render_result {
+    film *picture;
+    ray_counters counters;       /* summed over workers */
+    double wall_s;               /* from the release of the workers to the end of the last; with pool off, their creation and join too */
+    double cpu_s;                /* of the process over the same stretch */
+    int worker_count;
+    worker_report *workers;
+    double *pixel_rays;          /* NULL unless wanted; width * height */
+    double *pixel_ns;
+    tile_event *events;          /* in order of begin_s; NULL unless wanted */
+    size_t event_count;
+} render_result;
+
+/* Loads pictures must have been called. STATUS_INTERRUPTED when progress returned false: *out then holds what was done. */
+status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out, diagnostic *why);
+void render_result_destroy(render_result *result);
+
+/* Makes the pool as large as s asks for beforehand (render.pool on), so that the first frame does not pay for it. */
+status renderer_prepare(renderer *r, const scene *s, diagnostic *why);
+
+#endif

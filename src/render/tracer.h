@@ -1,0 +1,39 @@
+/* One worker's tracer: queues of rays by depth, run a batch at a time, deepest full batch first, so that what waits
+ * stays small whatever the depth; the film, the counters and the scratch it works on. There is no other tracer: a
+ * single ray is a batch of one. Ownership: tracer_create gives, tracer_destroy releases; plan and film are borrowed. */
+#ifndef CUVETTE_RENDER_TRACER_H
+#define CUVETTE_RENDER_TRACER_H
+
+#include "base/counters.h"
+#include "base/isa.h"
+#include "render/film.h"
+#include "render/plan.h"
+#include "render/schedule.h"
+#include <stdatomic.h>
+
+typedef struct tracer tracer;
+
+/* What a frame is traced into. pixel_rays and pixel_ns may be NULL. */
+typedef struct tracer_target {
+    const plan *scene;
+    film *picture;
+    double *pixel_rays, *pixel_ns;
+} tracer_target;
+
+tracer *tracer_create(isa level);
+void tracer_destroy(tracer *t);
+
+/* Begins a frame: counters to zero, queues for its depth. False when memory is out. */
+bool tracer_begin(tracer *t, const tracer_target *target);
+
+/* Puts the camera rays of a piece of the picture in line and traces until fewer than a batch of anything waits. */
+void tracer_span(tracer *t, const span *piece, const atomic_bool *stop);
+
+/* Traces what still waits. */
+void tracer_finish(tracer *t, const atomic_bool *stop);
+
+const ray_counters *tracer_counters(const tracer *t);
+/* Did a contribution or a pixel's sum leave the film's range, or was it not a number? */
+bool tracer_overflowed(const tracer *t);
+
+#endif
