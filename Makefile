@@ -1,0 +1,225 @@
+# Cuvette. `make help` lists the targets.
+#   make config=debug|release|sanitize|tsan|nocounters [CC=clang] [target]    each has a build folder of its own
+MAKEFLAGS += --no-builtin-rules
+SHELL := /bin/bash
+config ?= release
+CC ?= gcc
+ifeq ($(origin CC),default)
+CC := gcc
+endif
+PREFIX ?= /usr/local
+FUZZ_SECONDS ?= 60
+RESULTS ?= results
+export RESULTS
+
+# Short lines while it builds; `make V=1` shows the commands.
+quiet := $(if $(V),,@)
+say = @$(if $(V),true,echo '  $(1)')
+
+# As many jobs as processors, unless the caller says how many.
+ifeq ($(MAKELEVEL)$(findstring -j,$(MAKEFLAGS)),0)
+MAKEFLAGS += -j$(shell nproc)
+endif
+
+# build, build/clang, build/sanitize, build/sanitize-clang, ...
+clang := $(findstring clang,$(notdir $(firstword $(CC))))
+ifeq ($(config),release)
+build := build$(clang:%=/%)
+else
+build := build/$(config)$(clang:%=-%)
+endif
+
+PACKAGES := libpng libjpeg hwloc yaml-0.1 jansson
+warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
+# Bits must not depend on the compiler: no contraction to FMA, and only the loosenings that change no result.
+arithmetic := -ffp-contract=off -fno-math-errno -fno-trapping-math
+optimize_release    := -O3
+optimize_nocounters := -O3 -DCUVETTE_COUNTERS=0
+optimize_debug      := -O0
+optimize_sanitize   := -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+optimize_tsan       := -O1 -fsanitize=thread
+optimize_fuzz       := -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+optimize := $(optimize_$(config))
+$(if $(optimize),,$(error config=$(config) is not one of debug, release, sanitize, tsan, nocounters))
+
+version := 0.1.0
+# pkg-config is asked at its first use, not when this file is read: `make setup all` installs the libraries first.
+pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
+pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
+CFLAGS ?= -g
+# What may change a result; the rest is about warnings and paths.
+code_flags = -std=gnu17 -D_GNU_SOURCE $(arithmetic) $(optimize) $(CFLAGS) -Isrc -pthread
+all_cflags = $(code_flags) -DCUVETTE_VERSION='"$(version)"' \
+  -DCUVETTE_COMPILER_FLAGS='"$(config): $(optimize) $(arithmetic)"' $(warnings)
+all_libs = $(pkg_libs) -lm -pthread
+
+# One source, three instruction sets: *_kernel.c is compiled once for each level.
+isa_flags_sse2   := -msse2
+isa_flags_avx2   := -mavx2
+isa_flags_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
+isas := sse2 avx2 avx512
+
+sources := $(wildcard src/*.c src/*/*.c)
+kernels := $(filter %_kernel.c,$(sources))
+library := $(filter-out src/cli/% $(kernels),$(sources))
+program := $(wildcard src/cli/*.c)
+kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
+library_objects := $(library:src/%.c=$(build)/obj/%.o) $(kernel_objects)
+program_objects := $(program:src/%.c=$(build)/obj/%.o)
+tests := $(wildcard tests/test_*.c)
+test_programs := $(tests:tests/%.c=$(build)/tests/%)
+fuzzers := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/fuzz_*.c))
+
+.PHONY: all
+all: $(build)/cuvette ## build build/cuvette (the default)
+
+# A half-written file would look newer than its sources.
+.DELETE_ON_ERROR:
+
+$(build)/cuvette: $(program_objects) $(build)/libcuvette.a
+	$(call say,link $@)
+	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(all_libs)
+
+$(build)/libcuvette.a: $(library_objects)
+	@rm -f $@
+	$(quiet)ar rcs $@ $^
+
+$(build)/obj/%.o: src/%.c $(build)/flags
+	$(call say,$(CC) $<)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -MMD -MP -c -o $@ $<
+
+define kernel_rule
+$(build)/obj/%_kernel.$(1).o: src/%_kernel.c $(build)/flags
+	$$(call say,$$(CC) $$< for $(1))
+	@mkdir -p $$(@D)
+	$$(quiet)$$(CC) $$(all_cflags) $$(isa_flags_$(1)) -DKERNEL_ISA=$(1) -MMD -MP -c -o $$@ $$<
+endef
+$(foreach i,$(isas),$(eval $(call kernel_rule,$(i))))
+
+$(build)/tests/test_%: tests/test_%.c $(build)/libcuvette.a $(build)/flags
+	$(call say,$(CC) $<)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs) -lcmocka
+
+$(build)/tests/fuzz_%: tests/fuzz_%.c $(build)/libcuvette.a $(build)/flags
+	$(call say,$(CC) $<)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -fsanitize=fuzzer -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
+
+# Rebuilds everything when the compiler or its flags change. Everything that is compiled depends on it, so that it is
+# also the place to wait for setup when both are asked for.
+.PHONY: always
+$(build)/flags: always $(if $(filter setup,$(MAKECMDGOALS)),| setup)
+	@mkdir -p $(@D)
+	@echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512))' | cmp -s - $@ || echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512))' >$@
+
+-include $(library_objects:.o=.d) $(program_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d)
+
+.PHONY: setup
+setup: ## install what is needed (Debian 12); does nothing when it is there
+	@.ci/setup
+
+# --- tests ---
+
+# Checks that read the sources; one run of them is enough, whatever the configuration.
+source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh
+scripts := $(filter-out $(source_checks),$(wildcard tests/*.sh))
+ifeq ($(config)$(clang)$(RUNNER),release)
+scripts += $(wildcard $(source_checks))
+endif
+# make test only=statistics runs tests/test_statistics.c alone, without the scripts.
+selected := $(if $(only),$(only:%=$(build)/tests/test_%),$(test_programs))
+selected_scripts := $(if $(only),,$(scripts))
+
+kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
+
+.PHONY: test
+test: $(selected) $(if $(only),,$(build)/cuvette) ## build and run every test; only=NAME for tests/test_NAME.c alone
+	@CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' $(kernel_environment) \
+	  tests/run $(selected) $(selected_scripts)
+
+.PHONY: layers headers vectorise
+layers: ## check that includes stay on their floors
+	@tests/run tests/layers.sh
+headers: $(build)/flags ## check that every header compiles alone, as C17 and as C++17
+	@CC='$(CC)' tests/run tests/headers.sh
+vectorise: $(build)/flags ## report which loops of the kernels are vectorised; fail for one that must be and is not
+	@$(kernel_environment) bash tests/vectorise.sh | sed -n 's/^# //p; /^not ok/p'; exit $${PIPESTATUS[0]}
+
+.PHONY: sanitize tsan valgrind clang
+sanitize: ## build and test with AddressSanitizer and UndefinedBehaviorSanitizer
+	@$(MAKE) config=sanitize build=$(build)/sanitize test
+tsan: ## build and test with ThreadSanitizer
+	@$(MAKE) config=tsan build=$(build)/tsan test
+valgrind: ## run the test programs under valgrind
+	@$(MAKE) RUNNER='valgrind -q --error-exitcode=9 --leak-check=full --suppressions=tests/valgrind.supp' \
+	  TEST_LIMIT_S=3600 selected_scripts= test
+clang: ## build and test with clang
+	@$(MAKE) CC=clang build=$(build)/clang test
+
+.PHONY: fuzz run_fuzzers
+fuzz: ## feed the readers with libFuzzer (clang), FUZZ_SECONDS=60 each
+	@$(MAKE) config=fuzz CC=clang build=$(build)/fuzz run_fuzzers
+run_fuzzers: $(fuzzers)
+	@for fuzzer in $(fuzzers); do \
+	    name=$$(basename $$fuzzer); mkdir -p $(build)/corpus/$$name; \
+	    echo "$$name, $(FUZZ_SECONDS) s"; \
+	    $$fuzzer -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
+	      -artifact_prefix=$(build)/corpus/ -verbosity=0 $(build)/corpus/$$name $(wildcard experiments tests/golden) || exit 1; \
+	done
+
+# --- studies, figures, paper ---
+
+.PHONY: experiments tables figures paper bench
+experiments: $(build)/cuvette ## run the studies (goes on where it stopped), make tables and figures
+	$(build)/cuvette study run experiments/*.study
+	@$(MAKE) --no-print-directory build=$(build) tables figures
+
+# A study's summary, when its rows are newer.
+studies := $(patsubst experiments/%.study,%,$(wildcard experiments/*.study))
+measured := $(foreach s,$(studies),$(if $(wildcard $(RESULTS)/$(s)/rows.csv),$(s)))
+tables: $(measured:%=$(RESULTS)/tables/%.tsv) ## summarise the rows that are there
+$(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv experiments/%.study | $(build)/cuvette
+	@mkdir -p $(@D)
+	$(build)/cuvette study summary experiments/$*.study >$@
+
+figures: tables ## draw the figures whose rows or scripts are newer
+	@$(MAKE) --no-print-directory build=$(build) $(RESULTS)/figures/drawn
+$(RESULTS)/figures/drawn: $(wildcard $(RESULTS)/tables/*.tsv plots/*)
+	plots/draw.sh
+	@touch $@
+
+paper: ## rebuild the report from the rows that are there; measures nothing
+	$(MAKE) -C paper
+
+bench: all ## time against the programs a user would pick instead, and what counters cost
+	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters all
+	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' experiments/bench.sh
+
+# --- installation, upkeep ---
+
+.PHONY: install uninstall
+man := $(DESTDIR)$(PREFIX)/share/man/man1/cuvette.1
+completion := $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cuvette
+shared := $(DESTDIR)$(PREFIX)/share/cuvette
+install: $(build)/cuvette ## install under PREFIX (/usr/local), below DESTDIR
+	install -D -m 755 $(build)/cuvette $(DESTDIR)$(PREFIX)/bin/cuvette
+	install -D -m 644 src/cli/cuvette.1 $(man)
+	install -D -m 644 src/cli/cuvette.bash $(completion)
+	find experiments plots -type f -exec sh -c 'for f; do test -x "$$f" && mode=755 || mode=644; \
+	  install -D -m $$mode "$$f" "$(shared)/$$f"; done' sh {} +
+uninstall: ## remove what install put there
+	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(man) $(completion)
+	rm -rf $(shared)
+
+.PHONY: format clean distclean help
+format: ## lay out the sources with clang-format
+	find src tests -name '*.[ch]' -exec clang-format -i {} +
+clean: ## remove everything that was built
+	rm -rf $(build)
+distclean: clean ## also remove tables and figures; measured rows stay in results/
+	rm -rf build $(RESULTS)/tables $(RESULTS)/figures
+	@test ! -f paper/Makefile || $(MAKE) -C paper clean
+help: ## list the targets
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20

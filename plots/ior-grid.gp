@@ -1,0 +1,31 @@
+# Pictures over the grid of the vessel's and the liquid's refractive index; each shows the vessel alone.
+# needs: tables/ior-grid.tsv ior-grid/images/0000.png
+width = 800; height = 1150
+load "plots/style.gp"
+
+load "plots/picture.gp"
+rows = table("ior-grid")
+vessel = system(select(rows, "", "vessel.ior")[3:*]." | sort -gu | tr '\\n' ' '")
+liquid = system(select(rows, "", "liquid.ior")[3:*]." | sort -gu | tr '\\n' ' '")
+set multiplot layout words(vessel),words(liquid) margins 0.085,0.995,0.005,0.953 spacing 0.006,0.004
+# Shown of each picture: the vessel, by shares of the width from the left and of the height from the bottom.
+set label 1 "refractive index of the liquid" at screen 0.54,0.983 center font ",12"
+set label 2 "refractive index of the vessel" at screen 0.018,0.48 center rotate font ",12"
+do for [i=1:words(vessel)] {
+    do for [k=1:words(liquid)] {
+        cell = text(rows, sprintf("vessel.ior=%s liquid.ior=%s", word(vessel, i), word(liquid, k)), "cell")
+        file = image("ior-grid", int(cell eq "" ? -1 : "1".cell) - 10000)
+        set title (i == 1 ? word(liquid, k) : "")
+        set ylabel (k == 1 ? word(vessel, i) : "") rotate by 0
+        if (readable(file)) {
+            set xrange [0.28*png_width(file):0.72*png_width(file)]
+            set yrange [0.10*png_height(file):0.98*png_height(file)]
+            plot file binary filetype=png with rgbimage notitle
+        } else {
+            @empty
+        }
+        unset label 1
+        unset label 2
+    }
+}
+unset multiplot

@@ -1,0 +1,16 @@
+# What figures made of pictures share: no axes, the picture's own proportions, labels above.
+unset border
+unset tics
+unset grid
+unset key
+set size ratio -1
+set autoscale xfix
+set autoscale yfix
+set title offset 0,-0.9
+cell_value(rows, cell, column) = first(rows, sprintf("cell=%04d", cell), column)
+# A panel whose picture is missing.
+empty = "plot [0:1] [0:1] NaN notitle"
+# Size of a PNG, from its header.
+png_side(path, at) = int(system(sprintf("od -An -tu1 -j %d -N 4 '%s' | awk '{ print (($1*256 + $2)*256 + $3)*256 + $4 }'", at, path)))
+png_width(path) = png_side(path, 16)
+png_height(path) = png_side(path, 20)

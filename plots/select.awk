@@ -1,0 +1,31 @@
+# Columns by name from a table with a header line (tab separated .tsv, or comma separated .csv whose quoted fields
+# hold no commas), for the lines where other columns have given values; tab separated, lines with NA are left out.
+#   awk -f select.awk -v where='render.schedule=rows warmup=0' -v columns='render.threads wall_s_median' FILE
+# A column that the table lacks counts as NA. `a-b` is not arithmetic: columns are only copied.
+BEGIN {
+    conditions = split(where, condition, " ")
+    wanted = split(columns, name, " ")
+}
+{
+    gsub(/[\r"]/, "")
+    separator = FILENAME ~ /\.csv$/ ? "," : "\t"
+    fields = split($0, field, separator)
+}
+FNR == 1 {
+    for (i = 1; i <= fields; i++) place[field[i]] = i
+    next
+}
+{
+    for (i = 1; i <= conditions; i++) {
+        cut = index(condition[i], "=")
+        key = substr(condition[i], 1, cut - 1)
+        if (!(key in place) || field[place[key]] != substr(condition[i], cut + 1)) next
+    }
+    line = ""
+    for (i = 1; i <= wanted; i++) {
+        value = (name[i] in place) ? field[place[name[i]]] : "NA"
+        if (value == "NA" || value == "") next
+        line = line (i > 1 ? "\t" : "") value
+    }
+    print line
+}

@@ -1,0 +1,94 @@
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "base/text.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { COMMANDS_MAX = 16 };
+
+typedef struct choice {
+    int at; /* index in argv of the command's name; 0 while none is known */
+} choice;
+
+static error_t take_word(int key, char *word, struct argp_state *state)
+{
+    choice *chosen = ((options_input *)state->input)->request;
+    if (key != ARGP_KEY_ARG)
+        return ARGP_ERR_UNKNOWN;
+    (void)word;
+    chosen->at = state->next - 1;
+    state->next = state->argc; /* the rest is the command's own */
+    return 0;
+}
+
+/* Help text made from the table, so that it cannot fall behind it. */
+static char *table_text(const command *table, size_t count, const char *about, const char *program)
+{
+    char *text = text_format("%s\vCommands:\n", about);
+    for (size_t i = 0; text && i < count; i++) {
+        char *longer = text_format("%s  %-9s %s\n", text, table[i].name, table[i].purpose);
+        free(text);
+        text = longer;
+    }
+    if (!text)
+        return NULL;
+    char *whole = text_format("%s\n'%s COMMAND --help' explains one. The manual page is cuvette(1).", text, program);
+    free(text);
+    return whole;
+}
+
+static status unknown_command(const command *table, size_t count, const char *program, const char *word, diagnostic *why)
+{
+    const char *names[COMMANDS_MAX];
+    size_t named = 0;
+    for (; named < count && named < COMMANDS_MAX; named++)
+        names[named] = table[named].name;
+    options_unknown_word("command", word, names, named, why);
+    options_locate(why, program);
+    return STATUS_BAD_INPUT;
+}
+
+static status run_command(const command *chosen, int argc, char **argv, diagnostic *why)
+{
+    char *program = text_format("%s %s", argv[0], chosen->name);
+    char **own = calloc((size_t)argc + 1, sizeof *own);
+    status result;
+    if (!program || !own) {
+        result = diagnose(why, STATUS_FAILURE, "", "out of memory");
+    } else {
+        own[0] = program;
+        memcpy(own + 1, argv + 2, (size_t)(argc - 2) * sizeof *own);
+        result = chosen->run(argc - 1, own, why);
+    }
+    free(own);
+    free(program);
+    return result;
+}
+
+status command_dispatch(const command *table, size_t count, const char *about, int argc, char **argv, diagnostic *why)
+{
+    char *help = table_text(table, count, about, argv[0]);
+    if (!help)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    const struct argp argp = {.parser = take_word, .args_doc = "COMMAND [ARGUMENT...]", .doc = help};
+    choice chosen = {0};
+    status result = options_parse(&argp, ARGP_IN_ORDER, argc, argv, &chosen, why);
+    free(help);
+    if (result != STATUS_OK)
+        return result;
+    if (chosen.at == 0) {
+        char remedy[96];
+        snprintf(remedy, sizeof remedy, "'%s --help' lists them", argv[0]);
+        diagnose(why, STATUS_BAD_INPUT, remedy, "name a command");
+        options_locate(why, argv[0]);
+        return STATUS_BAD_INPUT;
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(argv[chosen.at], table[i].name) == 0) {
+            argv[chosen.at - 1] = argv[0]; /* only a "--" can stand before the command */
+            return run_command(&table[i], argc - chosen.at + 1, argv + chosen.at - 1, why);
+        }
+    }
+    return unknown_command(table, count, argv[0], argv[chosen.at], why);
+}

@@ -1,0 +1,101 @@
+# bash completion for cuvette(1)                                        -*- shell-script -*-
+# The names of parameters come from the program itself, so that they cannot fall behind it.
+
+_cuvette_files() # ENDINGS: a pattern for files, and folders
+{
+    local IFS=$'\n'
+    compopt -o filenames
+    mapfile -t COMPREPLY < <(compgen -f -X "!*.@($1)" -- "$current"; compgen -d -- "$current")
+}
+
+_cuvette_words() # WORD...
+{
+    mapfile -t COMPREPLY < <(compgen -W "$*" -- "$current")
+}
+
+# Paths of the parameters of the scene on the line, of a scene without names when there is none.
+_cuvette_parameters()
+{
+    local word scene=
+    for word in "${COMP_WORDS[@]}"; do
+        [[ $word == *.@(yaml|yml) && -r $word ]] && scene=$word
+    done
+    compopt -o nospace
+    _cuvette_words "$("${COMP_WORDS[0]}" params ${scene:+"$scene"} 2>/dev/null |
+        awk 'NR > 1 && $1 !~ /^(LIGHT|MATERIAL|SOLID)\./ { print $1 "=" }')"
+}
+
+_cuvette_value() # OPTION: completes what follows it; false when it takes nothing
+{
+    case $1 in
+    -s | --set) _cuvette_parameters ;;
+    -o | --output) _cuvette_files 'png|jpg|jpeg|pfm' ;;
+    --rays | --time) _cuvette_files 'png|pfm' ;;
+    --timeline) _cuvette_files 'json' ;;
+    --bits) _cuvette_words 8 16 ;;
+    --repeat | --shard) COMPREPLY=() ;;
+    -r | --results)
+        compopt -o filenames
+        mapfile -t COMPREPLY < <(compgen -d -- "$current")
+        ;;
+    *) return 1 ;;
+    esac
+}
+
+_cuvette_study() # VERB
+{
+    local -A options=([run]='--results --shard --quiet' [status]=--results [merge]=--results [summary]=--results [list]='')
+    if [[ $current == -* ]]; then
+        _cuvette_words "${options[$1]} --help --usage --version"
+    elif [[ $1 == list ]]; then
+        compopt -o filenames
+        mapfile -t COMPREPLY < <(compgen -d -- "$current")
+    else
+        _cuvette_files 'study'
+    fi
+}
+
+_cuvette()
+{
+    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+    local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
+    COMPREPLY=()
+    if ((COMP_CWORD == 1)); then
+        _cuvette_words render params study machine help --help --usage --version
+        return
+    fi
+    _cuvette_value "$previous" && return
+    case $command in
+    render)
+        if [[ $current == -* ]]; then
+            _cuvette_words --output --set --json --bits --rays --time --timeline --repeat --help --usage --version
+        else
+            _cuvette_files 'yaml|yml'
+        fi
+        ;;
+    params)
+        if [[ $current == -* ]]; then
+            _cuvette_words --json --man --help --usage --version
+        else
+            _cuvette_files 'yaml|yml'
+        fi
+        ;;
+    study)
+        if ((COMP_CWORD == 2)); then
+            _cuvette_words "$verbs" --help
+        else
+            _cuvette_study "${COMP_WORDS[2]}"
+        fi
+        ;;
+    machine) _cuvette_words --json --help --usage --version ;;
+    help)
+        if [[ $previous == study ]]; then
+            _cuvette_words "$verbs"
+        elif ((COMP_CWORD == 2)); then
+            _cuvette_words render params study machine
+        fi
+        ;;
+    esac
+}
+
+complete -F _cuvette cuvette

@@ -1,0 +1,124 @@
+#include "cli/json.h"
+#include "base/number.h"
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+json_t *json_of_real(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *json_of_count(int64_t value)
+{
+    return value == -1 ? json_null() : json_integer(value);
+}
+
+json_t *json_of_text(const char *text)
+{
+    json_t *value = json_string(text);
+    if (value)
+        return value;
+    char *plain = strdup(text);
+    for (char *c = plain; c && *c; c++)
+        if ((unsigned char)*c >= 0x80)
+            *c = '?';
+    value = plain ? json_string(plain) : NULL;
+    free(plain);
+    return value;
+}
+
+static void write_real(FILE *stream, double value)
+{
+    char text[NUMBER_TEXT_MAX];
+    number_format(value, text);
+    /* A real stays one when it is read back. */
+    fprintf(stream, "%s%s", text, strpbrk(text, ".e") ? "" : ".0");
+}
+
+static bool write_value(FILE *stream, const json_t *value, int indent);
+
+static bool write_text(FILE *stream, const char *text)
+{
+    json_t *value = json_string(text);
+    char *quoted = value ? json_dumps(value, JSON_ENCODE_ANY) : NULL;
+    json_decref(value);
+    if (quoted)
+        fputs(quoted, stream);
+    free(quoted);
+    return quoted != NULL;
+}
+
+static bool is_flat(const json_t *list)
+{
+    size_t i;
+    json_t *item;
+    json_array_foreach(list, i, item)
+        if (json_is_array(item) || json_is_object(item))
+            return false;
+    return true;
+}
+
+static bool write_list(FILE *stream, const json_t *list, int indent)
+{
+    size_t i;
+    json_t *item;
+    bool flat = is_flat(list), good = true;
+    fputc('[', stream);
+    json_array_foreach(list, i, item) {
+        fputs(i ? "," : "", stream);
+        if (flat)
+            fputs(i ? " " : "", stream);
+        else
+            fprintf(stream, "\n%*s", indent + 2, "");
+        good = write_value(stream, item, indent + 2) && good;
+    }
+    if (!flat)
+        fprintf(stream, "\n%*s", indent, "");
+    fputc(']', stream);
+    return good;
+}
+
+static bool write_object(FILE *stream, json_t *object, int indent)
+{
+    const char *key;
+    json_t *value;
+    bool good = true, first = true;
+    fputc('{', stream);
+    json_object_foreach(object, key, value) {
+        fprintf(stream, "%s\n%*s", first ? "" : ",", indent + 2, "");
+        good = write_text(stream, key) && good;
+        fputs(": ", stream);
+        good = write_value(stream, value, indent + 2) && good;
+        first = false;
+    }
+    if (!first)
+        fprintf(stream, "\n%*s", indent, "");
+    fputc('}', stream);
+    return good;
+}
+
+static bool write_value(FILE *stream, const json_t *value, int indent)
+{
+    switch (json_typeof(value)) {
+    case JSON_OBJECT:
+        /* jansson iterates over objects that are not const; nothing is changed */
+        return write_object(stream, (json_t *)(uintptr_t)value, indent);
+    case JSON_ARRAY: return write_list(stream, value, indent);
+    case JSON_STRING: return write_text(stream, json_string_value(value));
+    case JSON_INTEGER: fprintf(stream, "%" JSON_INTEGER_FORMAT, json_integer_value(value)); return true;
+    case JSON_REAL: write_real(stream, json_real_value(value)); return true;
+    case JSON_TRUE: fputs("true", stream); return true;
+    case JSON_FALSE: fputs("false", stream); return true;
+    case JSON_NULL: fputs("null", stream); return true;
+    }
+    return false;
+}
+
+status json_write(FILE *stream, const json_t *value, diagnostic *why)
+{
+    bool good = value && write_value(stream, value, 0);
+    fputc('\n', stream);
+    return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
+}

@@ -1,0 +1,21 @@
+/* JSON out: jansson builds the value, this writes it. Reals get the fewest digits that read back the same, lists of plain
+ * values stand on one line, keys keep the order they were put in. Ownership: json_* return new references. */
+#ifndef CUVETTE_CLI_JSON_H
+#define CUVETTE_CLI_JSON_H
+
+#include "base/status.h"
+#include <jansson.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* NULL (the JSON one) for what is not finite. */
+json_t *json_of_real(double value);
+/* null for -1, which stands for "the kernel does not say". */
+json_t *json_of_count(int64_t value);
+/* Text that is not UTF-8, such as a file's name, gets '?' for its odd bytes. */
+json_t *json_of_text(const char *text);
+
+/* Writes the value and a newline. Errors of the stream are left in the stream. */
+status json_write(FILE *stream, const json_t *value, diagnostic *why);
+
+#endif

@@ -1,0 +1,69 @@
+#include "cli/cli.h"
+#include "cli/terminal.h"
+#include <stdio.h>
+#include <string.h>
+
+static status command_help(int argc, char **argv, diagnostic *why);
+
+static const command commands[] = {
+    {"render", "render a scene; write the picture, the counts, the times", command_render},
+    {"params", "print the table of parameters", command_params},
+    {"study", "run, list, merge and sum up studies", command_study},
+    {"machine", "print what this machine is, and what could disturb a measurement", command_machine},
+    {"help", "explain a command", command_help},
+};
+
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static const char about[] = "Cuvette, a ray-tracing laboratory: describe a scene, sweep any of its parameters, get the picture, the exact "
+                            "ray counts and honest times.";
+
+static status dispatch(int argc, char **argv, diagnostic *why)
+{
+    return command_dispatch(commands, COMMAND_COUNT, about, argc, argv, why);
+}
+
+/* "cuvette help study run" is "cuvette study run --help". */
+static status command_help(int argc, char **argv, diagnostic *why)
+{
+    enum { WORDS_MAX = 8 };
+    char program[] = "cuvette", help[] = "--help";
+    char *words[WORDS_MAX + 1] = {program};
+    int count = 1;
+    for (int i = 1; i < argc && count < WORDS_MAX - 1; i++) {
+        if (strcmp(argv[i], "help") == 0 || argv[i][0] == '-')
+            continue;
+        words[count++] = argv[i];
+    }
+    words[count++] = help;
+    return dispatch(count, words, why);
+}
+
+static void print_version(FILE *stream, struct argp_state *state)
+{
+    (void)state;
+    fprintf(stream, "cuvette %s\n", CUVETTE_VERSION);
+}
+
+int main(int argc, char **argv)
+{
+    terminal_prepare();
+    argp_err_exit_status = STATUS_BAD_INPUT;
+    argp_program_version_hook = print_version;
+    char program[] = "cuvette";
+    char *alone[] = {program, NULL};
+    if (argc < 1)
+        argc = 1, argv = alone;
+    argv[0] = program;
+    diagnostic why = {0};
+    status result = dispatch(argc, argv, &why);
+    diagnostic unwritten = {0};
+    status flushed = terminal_flush(&unwritten);
+    if (result == STATUS_OK && flushed != STATUS_OK) {
+        why = unwritten;
+        result = flushed;
+    }
+    if (result != STATUS_OK)
+        terminal_error(&why);
+    return (int)result;
+}

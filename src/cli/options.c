@@ -1,0 +1,163 @@
+#include "cli/options.h"
+#include "base/number.h"
+#include "base/text.h"
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OPTIONS_MAX = 32, KEY_USAGE = 0x10000, KEY_HELP };
+
+/* The same options as argp will see, in getopt's form. */
+typedef struct getopt_table {
+    struct option options[OPTIONS_MAX + 4];
+    const char *names[OPTIONS_MAX + 4];
+    size_t count;
+    char short_options[2 * OPTIONS_MAX + 8];
+} getopt_table;
+
+static void add(getopt_table *table, const char *name, int key, bool takes_value)
+{
+    table->options[table->count] = (struct option){name, takes_value ? required_argument : no_argument, NULL, key};
+    table->names[table->count++] = name;
+    if (key > ' ' && key < 127) {
+        size_t end = strlen(table->short_options);
+        table->short_options[end] = (char)key;
+        if (takes_value)
+            table->short_options[end + 1] = ':';
+    }
+}
+
+static void make_table(const struct argp *argp, unsigned flags, getopt_table *table)
+{
+    memset(table, 0, sizeof *table);
+    strcpy(table->short_options, flags & ARGP_IN_ORDER ? "+:" : ":");
+    for (const struct argp_option *o = argp->options; o && o->name && table->count < OPTIONS_MAX; o++)
+        add(table, o->name, o->key, o->arg != NULL);
+    add(table, "help", KEY_HELP, false);
+    add(table, "usage", KEY_USAGE, false);
+    add(table, "version", 'V', false);
+}
+
+static const char *name_of_key(const getopt_table *table, int key)
+{
+    for (size_t i = 0; i < table->count; i++)
+        if (table->options[i].val == key)
+            return table->names[i];
+    return NULL;
+}
+
+static size_t count_with_prefix(const getopt_table *table, const char *prefix)
+{
+    size_t found = 0;
+    for (size_t i = 0; i < table->count; i++)
+        found += strncmp(table->names[i], prefix, strlen(prefix)) == 0;
+    return found;
+}
+
+static status unknown_long_option(const getopt_table *table, const char *program, const char *typed, diagnostic *why)
+{
+    char word[64], remedy[192];
+    size_t length = strcspn(typed + 2, "=");
+    snprintf(word, sizeof word, "%.*s", (int)(length < 63 ? length : 63), typed + 2);
+    if (count_with_prefix(table, word) > 1) {
+        snprintf(remedy, sizeof remedy, "write it out; '%s --help' lists the options", program);
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "option '--%s' stands for several", word);
+    }
+    const char *nearest = text_nearest(word, table->names, table->count);
+    if (nearest)
+        snprintf(remedy, sizeof remedy, "did you mean '--%s'?", nearest);
+    else
+        snprintf(remedy, sizeof remedy, "'%s --help' lists the options", program);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "there is no option '--%s'", word);
+}
+
+static status explain(const getopt_table *table, int result, const char *program, const char *typed, diagnostic *why)
+{
+    char remedy[192];
+    const char *known = name_of_key(table, optopt);
+    if (result == ':') {
+        snprintf(remedy, sizeof remedy, "'%s --help' says what it takes", program);
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "option '--%s' needs a value", known ? known : "?");
+    }
+    if (optopt == 0)
+        return unknown_long_option(table, program, typed, why);
+    if (known)
+        return diagnose(why, STATUS_BAD_INPUT, "leave out what follows the '='", "option '--%s' takes no value", known);
+    snprintf(remedy, sizeof remedy, "'%s --help' lists the options", program);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "there is no option '-%c'", optopt);
+}
+
+/* Goes through a copy of argv as argp will, since argp does not say what it stumbled over. */
+static status check(const struct argp *argp, unsigned flags, int argc, char **argv, diagnostic *why)
+{
+    getopt_table table;
+    make_table(argp, flags, &table);
+    char **copy = calloc((size_t)argc + 1, sizeof *copy);
+    if (!copy)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    memcpy(copy, argv, (size_t)argc * sizeof *copy);
+    status result = STATUS_OK;
+    optind = 0; /* glibc: start anew */
+    opterr = 0;
+    for (;;) {
+        int key = getopt_long(argc, copy, table.short_options, table.options, NULL);
+        bool leaves = key == -1 || key == KEY_HELP || key == KEY_USAGE || key == 'V' || (key == '?' && optopt == '?');
+        if (leaves) /* argp prints the help and exits */
+            break;
+        if (key == '?' || key == ':') {
+            result = explain(&table, key, argv[0], copy[optind - 1], why);
+            options_locate(why, argv[0]);
+            break;
+        }
+    }
+    free(copy);
+    return result;
+}
+
+void options_locate(diagnostic *why, const char *program)
+{
+    const char *words = strchr(program, ' ');
+    diagnostic_locate(why, words ? words + 1 : "command line", 0, 0);
+}
+
+status options_parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *request, diagnostic *why)
+{
+    status result = check(argp, flags, argc, argv, why);
+    if (result != STATUS_OK)
+        return result;
+    options_input input = {request, why};
+    error_t error = argp_parse(argp, argc, argv, flags, NULL, &input);
+    if (error == EINVAL)
+        return STATUS_BAD_INPUT;
+    return error ? diagnose(why, STATUS_FAILURE, "", "cannot read the command line: %s", strerror(error)) : STATUS_OK;
+}
+
+status options_integer(const char *option, const char *value, int64_t lowest, int64_t highest, int64_t *out, diagnostic *why)
+{
+    int64_t number;
+    if (!number_parse_int(value, &number) || number < lowest || number > highest) {
+        char remedy[96], where[512];
+        snprintf(remedy, sizeof remedy, "give an integer from %lld to %lld", (long long)lowest, (long long)highest);
+        snprintf(where, sizeof where, "%s %s", option, value);
+        diagnose(why, STATUS_BAD_INPUT, remedy, "'%.64s' is not such a number", value);
+        diagnostic_locate(why, where, 0, 0);
+        return STATUS_BAD_INPUT;
+    }
+    *out = number;
+    return STATUS_OK;
+}
+
+status options_unknown_word(const char *what, const char *wrong, const char *const *words, size_t count, diagnostic *why)
+{
+    char remedy[256] = "give one of:";
+    const char *nearest = text_nearest(wrong, words, count);
+    if (nearest)
+        snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
+    for (size_t i = 0; !nearest && i < count; i++) {
+        size_t used = strlen(remedy);
+        snprintf(remedy + used, sizeof remedy - used, "%s %s", i ? "," : "", words[i]);
+    }
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "there is no %s '%.64s'", what, wrong);
+}

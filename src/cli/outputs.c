@@ -1,0 +1,157 @@
+#include "cli/outputs.h"
+#include "base/text.h"
+#include "cli/timeline.h"
+#include "image/heatmap.h"
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct named_file {
+    const char *option, *path;
+} named_file;
+
+static status wrong(const named_file *file, diagnostic *why, const char *remedy, const char *what)
+{
+    char where[512];
+    snprintf(where, sizeof where, "%s %s", file->option, file->path);
+    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+    diagnostic_locate(why, where, 0, 0);
+    return STATUS_BAD_INPUT;
+}
+
+static bool ends_with(const char *path, const char *ending)
+{
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && strcasecmp(path + length - tail, ending) == 0;
+}
+
+static status check_folder(const named_file *file, diagnostic *why)
+{
+    struct stat about;
+    if (stat(file->path, &about) == 0 && S_ISDIR(about.st_mode))
+        return wrong(file, why, "name a file in it", "is a folder");
+    const char *slash = strrchr(file->path, '/');
+    if (!slash)
+        return STATUS_OK;
+    char *folder = slash == file->path ? strdup("/") : strndup(file->path, (size_t)(slash - file->path));
+    if (!folder)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    bool there = stat(folder, &about) == 0 && S_ISDIR(about.st_mode);
+    free(folder);
+    return there ? STATUS_OK : wrong(file, why, "make it first, or name another", "its folder is not there");
+}
+
+static bool same_file(const char *a, const char *b)
+{
+    struct stat first, second;
+    if (strcmp(a, b) == 0)
+        return true;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev && first.st_ino == second.st_ino &&
+           S_ISREG(first.st_mode);
+}
+
+/* The sky's path is relative to the scene file. */
+static bool is_sky_of(const char *path, const scene *s)
+{
+    const char *sky = s->background.picture_path;
+    if (!sky || !sky[0])
+        return false;
+    const char *slash = s->path && sky[0] != '/' ? strrchr(s->path, '/') : NULL;
+    char *whole = slash ? text_format("%.*s/%s", (int)(slash - s->path), s->path, sky) : strdup(sky);
+    bool same = whole && same_file(path, whole);
+    free(whole);
+    return same;
+}
+
+static status check_picture(const outputs *o, const named_file *file, bool is_map, diagnostic *why)
+{
+    image_format format = image_format_of(file->path);
+    if (strcmp(file->path, "-") == 0)
+        return wrong(file, why, "name a file that ends in .png, .jpg or .pfm", "standard output has no picture format");
+    if (is_map && format != IMAGE_PNG && format != IMAGE_PFM)
+        return wrong(file, why, "end it in .png for a picture with a key, .pfm for the numbers", "no format for a map");
+    if (format == IMAGE_UNKNOWN)
+        return wrong(file, why, "end it in .png, .jpg or .pfm", "the ending names no picture format");
+    if (!is_map && o->bits == 16 && format != IMAGE_PNG)
+        return wrong(file, why, "leave out --bits, or end it in .png", "only PNG has 16 bits");
+    return STATUS_OK;
+}
+
+static status check_file(const outputs *o, const named_file *files, size_t at, const scene *s, diagnostic *why)
+{
+    enum { TIMELINE = 3 };
+    const named_file *file = &files[at];
+    status result = STATUS_OK;
+    if (at < TIMELINE)
+        result = check_picture(o, file, at > 0, why);
+    else if (!ends_with(file->path, ".json"))
+        result = wrong(file, why, "end it in .json", "a timeline is a JSON file");
+    if (result == STATUS_OK)
+        result = check_folder(file, why);
+    if (result == STATUS_OK && ((s->path && same_file(file->path, s->path)) || is_sky_of(file->path, s)))
+        result = wrong(file, why, "name another file", "the scene is read from it");
+    for (size_t i = 0; i < at && result == STATUS_OK; i++)
+        if (files[i].path && same_file(file->path, files[i].path))
+            result = wrong(file, why, "name another file", "two results cannot go into one file");
+    return result;
+}
+
+status outputs_check(const outputs *o, const scene *s, diagnostic *why)
+{
+    const named_file files[] = {{"-o", o->picture}, {"--rays", o->rays}, {"--time", o->time}, {"--timeline", o->timeline}};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        status result = files[i].path ? check_file(o, files, i, s, why) : STATUS_OK;
+        if (result != STATUS_OK)
+            return result;
+    }
+    return STATUS_OK;
+}
+
+static status picture_of_values(const double *values, int width, int height, image **out, diagnostic *why)
+{
+    status result = image_create(width, height, out, why);
+    for (size_t i = 0; result == STATUS_OK && i < (size_t)width * (size_t)height; i++)
+        for (size_t channel = 0; channel < 3; channel++)
+            (*out)->pixel[i * 3 + channel] = (float)values[i];
+    return result;
+}
+
+static status write_map(const double *values, const film *size, const char *title, const char *path, diagnostic *why)
+{
+    image *picture = NULL;
+    status result = image_format_of(path) == IMAGE_PFM
+                        ? picture_of_values(values, size->width, size->height, &picture, why)
+                        : heatmap_create(values, size->width, size->height, title, &picture, why);
+    if (result == STATUS_OK)
+        result = image_write(picture, path, 8, why);
+    image_destroy(picture);
+    return result;
+}
+
+static status write_picture(const film *f, const char *path, int bits, diagnostic *why)
+{
+    image *picture = NULL;
+    status result = film_image(f, &picture, why);
+    if (result == STATUS_OK)
+        result = image_write(picture, path, bits == 16 ? 16 : 8, why);
+    image_destroy(picture);
+    return result;
+}
+
+status outputs_write(const outputs *o, const render_result *result, diagnostic *why)
+{
+    status ended = STATUS_OK;
+    if (o->picture)
+        ended = write_picture(result->picture, o->picture, o->bits, why);
+    if (ended == STATUS_OK && o->rays && result->pixel_rays)
+        ended = write_map(result->pixel_rays, result->picture, "rays per pixel", o->rays, why);
+    if (ended == STATUS_OK && o->time && result->pixel_ns)
+        ended = write_map(result->pixel_ns, result->picture, "nanoseconds per pixel", o->time, why);
+    if (ended == STATUS_OK && o->timeline && result->events)
+        ended = timeline_write(result, o->timeline, why);
+    return ended;
+}

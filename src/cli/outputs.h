@@ -1,0 +1,19 @@
+/* The files that a render leaves: the picture, the maps of rays and time by pixel, the timeline. Their names are looked at before
+ * anything is rendered, so that an hour's work is not lost to a misspelt ending. Ownership: names are borrowed. */
+#ifndef CUVETTE_CLI_OUTPUTS_H
+#define CUVETTE_CLI_OUTPUTS_H
+
+#include "render/renderer.h"
+
+typedef struct outputs {
+    const char *picture, *rays, *time, *timeline; /* NULL: not wanted */
+    int bits;                                     /* of a PNG picture: 8 or 16; 0 when not said */
+} outputs;
+
+/* Endings, folders, and no file named twice or in place of one that is read: the scene's own and its sky. */
+status outputs_check(const outputs *o, const scene *s, diagnostic *why);
+
+/* Writes them all; result has what was wanted, or a part of it. */
+status outputs_write(const outputs *o, const render_result *result, diagnostic *why);
+
+#endif

@@ -1,0 +1,211 @@
+#include "cli/cli.h"
+#include "cli/frames.h"
+#include "cli/json.h"
+#include "cli/options.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "measure/statistics.h"
+#include "scene/params.h"
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct render_request {
+    const char *scene_path;
+    outputs files;
+    char **assignments; /* of --set, in order; as many as argv has places */
+    size_t assignment_count;
+    bool json, repeated;
+    int64_t repeat;
+} render_request;
+
+enum { KEY_JSON = 0x100, KEY_BITS, KEY_RAYS, KEY_TIME, KEY_TIMELINE, KEY_REPEAT };
+
+static const struct argp_option options[] = {
+    {"output", 'o', "FILE", 0, "write the picture: .png, .jpg or .pfm (linear floats)", 0},
+    {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'render.depth=8' or 'lamp.position.x=2'; may be given many times", 0},
+    {"json", KEY_JSON, NULL, 0, "print the account as one JSON object: hash, times, counts, parameters", 0},
+    {"bits", KEY_BITS, "N", 0, "bits a channel of a PNG: 8 (the default) or 16", 0},
+    {"rays", KEY_RAYS, "FILE", 0, "write the rays by pixel: .png with a key, or .pfm", 0},
+    {"time", KEY_TIME, "FILE", 0, "write the nanoseconds by pixel: .png with a key, or .pfm", 0},
+    {"timeline", KEY_TIMELINE, "FILE", 0, "write when each tile was taken by whom: .json, for chrome://tracing or Perfetto", 0},
+    {"repeat", KEY_REPEAT, "N", 0, "render N times; wall_s and cpu_s are the medians", 0},
+    {0},
+};
+
+static error_t take_bits(const char *value, render_request *request, diagnostic *why)
+{
+    int64_t bits;
+    if (options_integer("--bits", value, 8, 16, &bits, why) != STATUS_OK)
+        return EINVAL;
+    if (bits != 8 && bits != 16) {
+        diagnose(why, STATUS_BAD_INPUT, "give 8 or 16", "a PNG cannot have %d bits", (int)bits);
+        diagnostic_locate(why, "--bits", 0, 0);
+        return EINVAL;
+    }
+    request->files.bits = (int)bits;
+    return 0;
+}
+
+static error_t take_argument(const char *argument, render_request *request, diagnostic *why)
+{
+    if (!request->scene_path) {
+        request->scene_path = argument;
+        return 0;
+    }
+    diagnose(why, STATUS_BAD_INPUT, "render takes one scene; a parameter is set by --set PATH=VALUE", "'%.128s' is one too many",
+             argument);
+    diagnostic_locate(why, "render", 0, 0);
+    return EINVAL;
+}
+
+static error_t take_option(int key, char *value, struct argp_state *state)
+{
+    options_input *input = state->input;
+    render_request *request = input->request;
+    switch (key) {
+    case 'o': request->files.picture = value; return 0;
+    case 's': request->assignments[request->assignment_count++] = value; return 0;
+    case KEY_JSON: request->json = true; return 0;
+    case KEY_BITS: return take_bits(value, request, input->why);
+    case KEY_RAYS: request->files.rays = value; return 0;
+    case KEY_TIME: request->files.time = value; return 0;
+    case KEY_TIMELINE: request->files.timeline = value; return 0;
+    case KEY_REPEAT:
+        request->repeated = true;
+        return options_integer("--repeat", value, 1, 1000000, &request->repeat, input->why) == STATUS_OK ? 0 : EINVAL;
+    case ARGP_KEY_ARG: return take_argument(value, request, input->why);
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp parser = {
+    .options = options,
+    .parser = take_option,
+    .args_doc = "SCENE",
+    .doc = "Render the scene file SCENE.\vFor example:\n"
+           "  cuvette render experiments/scenes/rod.yaml -o rod.png --set render.depth=4\n"
+           "'cuvette params SCENE' lists what --set can reach.",
+};
+
+static status check_request(const render_request *request, diagnostic *why)
+{
+    const outputs *files = &request->files;
+    const char *remedy = NULL, *what = NULL;
+    if (!request->scene_path)
+        what = "no scene is named", remedy = "name a scene file, as experiments/scenes/rod.yaml";
+    else if (!files->picture && !files->rays && !files->time && !files->timeline && !request->json)
+        what = "nothing is asked for", remedy = "add -o FILE for the picture or --json for the counts";
+    if (!what)
+        return STATUS_OK;
+    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+    diagnostic_locate(why, "render", 0, 0);
+    return STATUS_BAD_INPUT;
+}
+
+/* The scene as the command line changes it, its sky loaded, checked. */
+static status load_scene(const render_request *request, scene **out, diagnostic *why)
+{
+    status result = scene_read(request->scene_path, out, why);
+    for (size_t i = 0; i < request->assignment_count && result == STATUS_OK; i++) {
+        result = scene_set_assignment(*out, request->assignments[i], why);
+        if (result != STATUS_OK) {
+            char where[512];
+            snprintf(where, sizeof where, "--set %s", request->assignments[i]);
+            diagnostic_locate(why, where, 0, 0);
+        }
+    }
+    if (result == STATUS_OK) {
+        diagnostic_locate(why, request->scene_path, 0, 0); /* for checks that have no line to name */
+        result = scene_check(*out, why);
+    }
+    if (result == STATUS_OK)
+        result = outputs_check(&request->files, *out, why);
+    if (result == STATUS_OK)
+        result = scene_load_pictures(*out, why);
+    return result;
+}
+
+static status choose_isa(isa *level, diagnostic *why)
+{
+    status result = isa_choose(level, why);
+    if (result != STATUS_OK)
+        diagnostic_locate(why, "environment", 0, 0);
+    return result;
+}
+
+/* One line for people; programs take --json. */
+static void print_summary(const scene *s, const frames *f)
+{
+    uint64_t rays = ray_counters_total(&f->result->counters);
+    double wall_s = f->count ? summarize(f->wall_s, f->count).median : f->result->wall_s;
+    printf("%lldx%lld pixels, depth %lld: %llu rays in %.3f s (%.1f million a second), film %016llx\n", (long long)s->render.width,
+           (long long)s->render.height, (long long)s->render.depth, (unsigned long long)rays, wall_s,
+           wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0, (unsigned long long)film_hash(f->result->picture));
+}
+
+static status print_report(const scene *s, isa level, const frames *f, bool repeated, diagnostic *why)
+{
+    json_t *account = report_create(s, level, f, repeated);
+    status result = json_write(stdout, account, why);
+    json_decref(account);
+    return result;
+}
+
+static status write_results(const render_request *request, const scene *s, isa level, const frames *f, diagnostic *why)
+{
+    status result = outputs_write(&request->files, f->result, why);
+    if (result != STATUS_OK)
+        return result;
+    if (request->json)
+        return print_report(s, level, f, request->repeated, why);
+    print_summary(s, f);
+    return STATUS_OK;
+}
+
+static status say_interrupted(const render_request *request, const frames *f, diagnostic *why)
+{
+    if (!f->result)
+        return diagnose(why, STATUS_INTERRUPTED, "", "interrupted before the first pixel");
+    bool partial = f->count == 0 && request->files.picture;
+    diagnose(why, STATUS_INTERRUPTED, "", "interrupted; %s", partial ? "the picture holds what was finished" : "what was finished is kept");
+    diagnostic_locate(why, request->files.picture, 0, 0);
+    return STATUS_INTERRUPTED;
+}
+
+static status render_and_write(const render_request *request, const scene *s, isa level, diagnostic *why)
+{
+    const outputs *files = &request->files;
+    const render_options wanted = {.pixel_rays = files->rays, .pixel_time = files->time, .timeline = files->timeline};
+    frames measured;
+    status result = frames_render(s, level, (size_t)request->repeat, &wanted, &measured, why);
+    if ((result == STATUS_OK || result == STATUS_INTERRUPTED) && measured.result) {
+        status written = write_results(request, s, level, &measured, why);
+        result = written == STATUS_OK ? result : written;
+    }
+    if (result == STATUS_INTERRUPTED)
+        result = say_interrupted(request, &measured, why);
+    frames_release(&measured);
+    return result;
+}
+
+status command_render(int argc, char **argv, diagnostic *why)
+{
+    render_request request = {.repeat = 1, .assignments = calloc((size_t)argc + 1, sizeof(char *))};
+    if (!request.assignments)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    scene *s = NULL;
+    isa level = ISA_SSE2;
+    status result = options_parse(&parser, 0, argc, argv, &request, why);
+    if (result == STATUS_OK)
+        result = check_request(&request, why);
+    if (result == STATUS_OK)
+        result = choose_isa(&level, why);
+    if (result == STATUS_OK)
+        result = load_scene(&request, &s, why);
+    if (result == STATUS_OK)
+        result = render_and_write(&request, s, level, why);
+    scene_destroy(s);
+    free(request.assignments);
+    return result;
+}

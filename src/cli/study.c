@@ -1,0 +1,183 @@
+#include "cli/cli.h"
+#include "cli/study_request.h"
+#include "cli/terminal.h"
+#include "study/study.h"
+#include "study/summary.h"
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* What a subcommand does with each study that it was given. */
+typedef status study_action(const study *s, const study_request *request, diagnostic *why);
+
+/* All files are read before anything is done with the first: a mistake in the last one shows at once. */
+static status for_each_study(const study_request *request, study_action *act, diagnostic *why)
+{
+    study **studies = calloc(request->file_count + 1, sizeof *studies);
+    if (!studies)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status result = STATUS_OK;
+    for (size_t i = 0; i < request->file_count && result == STATUS_OK; i++)
+        result = study_read(request->files[i], &studies[i], why);
+    for (size_t i = 0; i < request->file_count && result == STATUS_OK; i++)
+        result = act(studies[i], request, why);
+    for (size_t i = 0; i < request->file_count; i++)
+        study_destroy(studies[i]);
+    free(studies);
+    return result;
+}
+
+static status run_one(const study *s, const study_request *request, diagnostic *why)
+{
+    FILE *terminal = !request->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
+    const study_options options = {
+        .results = request->results, .shard = request->shard, .shards = request->shards, .progress = terminal, .stop = terminal_stop_asked};
+    size_t rows = 0;
+    status result = study_run(s, &options, &rows, why);
+    if (result == STATUS_INTERRUPTED) {
+        diagnose(why, STATUS_INTERRUPTED, "run it again to go on", "interrupted; its %zu new rows are kept", rows);
+        diagnostic_locate(why, s->path, 0, 0);
+    }
+    if (result != STATUS_OK || request->quiet)
+        return result;
+    if (rows)
+        printf("%s: %zu rows written into %s/%s\n", s->name, rows, request->results, s->name);
+    else
+        printf("%s: complete, nothing to do\n", s->name);
+    return terminal_flush(why); /* an hour may pass before the next one */
+}
+
+static status print_status(const study *s, const study_request *request, diagnostic *why)
+{
+    study_progress progress;
+    status result = study_status(s, request->results, &progress, why);
+    if (result == STATUS_OK)
+        printf("%s: %zu of %zu cells done, %zu rows, %zu marked\n", s->name, progress.cells_done, progress.cells, progress.rows,
+               progress.rows_marked);
+    return result;
+}
+
+static status merge_one(const study *s, const study_request *request, diagnostic *why)
+{
+    size_t rows = 0;
+    status result = study_merge(s, request->results, &rows, why);
+    if (result == STATUS_OK)
+        printf("%s: %zu rows in %s/%s/rows.csv\n", s->name, rows, request->results, s->name);
+    return result;
+}
+
+static status print_summary(const study *s, const study_request *request, diagnostic *why)
+{
+    return study_summary(s, request->results, stdout, why);
+}
+
+static status command_run(int argc, char **argv, diagnostic *why)
+{
+    study_request request;
+    status result = study_request_parse(STUDY_RUN, argc, argv, &request, why);
+    if (result == STATUS_OK)
+        result = for_each_study(&request, run_one, why);
+    study_request_release(&request);
+    return result;
+}
+
+static status command_status(int argc, char **argv, diagnostic *why)
+{
+    study_request request;
+    status result = study_request_parse(STUDY_STATUS, argc, argv, &request, why);
+    if (result == STATUS_OK)
+        result = for_each_study(&request, print_status, why);
+    study_request_release(&request);
+    return result;
+}
+
+static status command_merge(int argc, char **argv, diagnostic *why)
+{
+    study_request request;
+    status result = study_request_parse(STUDY_MERGE, argc, argv, &request, why);
+    if (result == STATUS_OK)
+        result = for_each_study(&request, merge_one, why);
+    study_request_release(&request);
+    return result;
+}
+
+static status command_summary(int argc, char **argv, diagnostic *why)
+{
+    study_request request;
+    status result = study_request_parse(STUDY_SUMMARY, argc, argv, &request, why);
+    if (result == STATUS_OK)
+        result = for_each_study(&request, print_summary, why);
+    study_request_release(&request);
+    return result;
+}
+
+static int is_study_file(const struct dirent *entry)
+{
+    size_t length = strlen(entry->d_name);
+    return length > 6 && strcmp(entry->d_name + length - 6, ".study") == 0;
+}
+
+/* A file that cannot be read has its line too, and the list goes on. */
+static status list_one(const char *folder, const char *name, diagnostic *why)
+{
+    char path[4096];
+    study *s = NULL;
+    diagnostic error = {0};
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    status result = study_read(path, &s, &error);
+    if (result == STATUS_OK)
+        printf("%-40s %5zu cells  %s\n", path, study_cell_count(s), s->title ? s->title : "");
+    else
+        *why = error;
+    study_destroy(s);
+    return result;
+}
+
+static status list_folder(const char *folder, diagnostic *why)
+{
+    struct dirent **entries = NULL;
+    int count = scandir(folder, &entries, is_study_file, alphasort);
+    if (count < 0) {
+        diagnose(why, STATUS_BAD_INPUT, "name a folder with *.study files", "cannot be listed: %s", strerrordesc_np(errno));
+        diagnostic_locate(why, folder, 0, 0);
+        return STATUS_BAD_INPUT;
+    }
+    status result = STATUS_OK;
+    for (int i = 0; i < count; i++) {
+        if (result != STATUS_OK)
+            terminal_error(why); /* main prints the last one */
+        status listed = list_one(folder, entries[i]->d_name, why);
+        result = listed == STATUS_OK ? result : listed;
+        free(entries[i]);
+    }
+    free(entries);
+    return result;
+}
+
+static status command_list(int argc, char **argv, diagnostic *why)
+{
+    study_request request;
+    status result = study_request_parse(STUDY_LIST, argc, argv, &request, why);
+    if (result == STATUS_OK)
+        result = list_folder(request.file_count ? request.files[0] : "experiments", why);
+    study_request_release(&request);
+    return result;
+}
+
+static const command commands[] = {
+    {"run", "measure what is missing of studies", command_run},
+    {"list", "list the studies of a folder", command_list},
+    {"status", "say how far studies are", command_status},
+    {"merge", "join the rows of shards", command_merge},
+    {"summary", "print medians and intervals by cell", command_summary},
+};
+
+status command_study(int argc, char **argv, diagnostic *why)
+{
+    return command_dispatch(commands, sizeof commands / sizeof commands[0],
+                            "A study is a scene, a grid over its parameters, and repetitions; its rows go to results/STUDY/rows.csv.",
+                            argc, argv, why);
+}

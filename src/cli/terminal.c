@@ -1,0 +1,151 @@
+#include "cli/terminal.h"
+#include "measure/clock.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdio_ext.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+static volatile sig_atomic_t stop_asked;
+
+static void ask_stop(int signal_number)
+{
+    (void)signal_number;
+    stop_asked = 1;
+}
+
+bool terminal_stop_asked(void)
+{
+    return stop_asked != 0;
+}
+
+/* A picture must never land in descriptor 1 because the caller had closed it: hold the place with something that
+ * cannot be written (read, for standard input). */
+static void hold_standard_descriptors(void)
+{
+    for (int fd = 0; fd <= 2; fd++)
+        if (fcntl(fd, F_GETFD) == -1 && errno == EBADF)
+            (void)!open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
+}
+
+/* The errno of an earlier failed write is gone: a pipe without a reader can still be told. */
+static bool reader_left(void)
+{
+    struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT};
+    return poll(&output, 1, 0) == 1 && (output.revents & POLLERR);
+}
+
+status terminal_flush(diagnostic *why)
+{
+    bool failed_before = ferror(stdout) != 0;
+    errno = 0;
+    if (fflush(stdout) == 0 && !failed_before)
+        return STATUS_OK;
+    int error = errno ? errno : EIO;
+    __fpurge(stdout);
+    clearerr(stdout); /* said once */
+    if (error == EPIPE || reader_left())
+        return STATUS_FAILURE;
+    return diagnose(why, STATUS_FAILURE, "", "cannot write to standard output: %s", strerror(error));
+}
+
+/* For the ways out through exit(), such as argp's help. */
+static void check_stdout_at_exit(void)
+{
+    if (__fpending(stdout) == 0 && !ferror(stdout))
+        return;
+    diagnostic why = {0};
+    if (terminal_flush(&why) != STATUS_OK) {
+        terminal_error(&why);
+        _exit(STATUS_FAILURE);
+    }
+}
+
+void terminal_prepare(void)
+{
+    hold_standard_descriptors();
+    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = (int)SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    signal(SIGPIPE, SIG_IGN);
+    atexit(check_stdout_at_exit);
+}
+
+static bool is_smart(int fd)
+{
+    const char *kind = getenv("TERM");
+    return isatty(fd) && !(kind && strcmp(kind, "dumb") == 0);
+}
+
+static bool has_color(int fd)
+{
+    const char *refused = getenv("NO_COLOR"); /* no-color.org: set and not empty */
+    return is_smart(fd) && !(refused && refused[0]);
+}
+
+void terminal_error(const diagnostic *why)
+{
+    char text[DIAGNOSTIC_TEXT_MAX];
+    if (why->what[0] == '\0')
+        return;
+    diagnostic_text(why, text, sizeof text);
+    for (char *c = text; *c; c++) /* a file's name may hold anything; an error is one line */
+        if ((unsigned char)*c < ' ' || *c == 127)
+            *c = '?';
+    bool color = has_color(STDERR_FILENO);
+    fprintf(stderr, "%scuvette:%s %s\n", color ? "\033[1;31m" : "", color ? "\033[0m" : "", text);
+}
+
+void progress_start(progress_line *line, const char *label)
+{
+    *line = (progress_line){.label = label, .started_s = clock_wall_s(), .enabled = isatty(STDERR_FILENO) != 0};
+}
+
+static int columns(void)
+{
+    struct winsize size;
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1 : 79;
+}
+
+static void write_duration(double seconds, char *text, size_t size)
+{
+    long s = seconds < 359999 ? (long)(seconds + 0.5) : 359999;
+    if (s >= 3600)
+        snprintf(text, size, "%ld h %02ld min", s / 3600, s / 60 % 60);
+    else if (s >= 60)
+        snprintf(text, size, "%ld min %02ld s", s / 60, s % 60);
+    else
+        snprintf(text, size, "%ld s", s);
+}
+
+void progress_draw(progress_line *line, double share_done)
+{
+    double elapsed_s = clock_wall_s() - line->started_s;
+    if (!line->enabled || elapsed_s < 0.5)
+        return;
+    char text[160], left[48] = "?";
+    if (share_done > 0)
+        write_duration(elapsed_s * (1 - share_done) / share_done, left, sizeof left);
+    snprintf(text, sizeof text, "%.64s: %3d%%, %s left", line->label, (int)(share_done * 100), left);
+    int wide = columns();
+    int length = (int)strlen(text) < wide ? (int)strlen(text) : wide;
+    int blanks = line->shown > length ? line->shown - length : 0;
+    fprintf(stderr, "\r%.*s%*s", length, text, blanks, "");
+    fflush(stderr);
+    line->shown = length;
+}
+
+void progress_erase(progress_line *line)
+{
+    if (line->shown > 0) {
+        fprintf(stderr, "\r%*s\r", line->shown, "");
+        fflush(stderr);
+    }
+    line->shown = 0;
+}

@@ -1,0 +1,35 @@
+/* The three file formats behind image.h. Writers put a picture on a stream and leave the stream's own errors to
+ * whoever closes it; readers decode a whole file that lies in memory. Diagnostics are filled without the file's name.
+ * Ownership: a read picture is the caller's; nothing is allocated when a status other than STATUS_OK comes back. */
+#ifndef CUVETTE_IMAGE_CODEC_H
+#define CUVETTE_IMAGE_CODEC_H
+
+#include "image/image.h"
+#include <stddef.h>
+#include <stdio.h>
+
+/* As many pixels as a picture from disk may have, 2^28. */
+#define CODEC_PIXELS_MAX 268435456LL
+
+/* STATUS_BAD_INPUT unless a file may have this size. */
+status codec_check_size(long long width, long long height, diagnostic *why);
+
+/* sRGB-encoded and correctly rounded to 0..maximum; NaN is 0. */
+unsigned codec_quantize(float linear, unsigned maximum);
+
+/* The same for 0..255, faster: least[b] is the least linear value that becomes the byte b or a greater one. */
+typedef struct codec_bytes { float least[256]; } codec_bytes;
+void codec_bytes_prepare(codec_bytes *table);
+unsigned char codec_byte(const codec_bytes *table, float linear);
+/* Linear light of the encoded values 0..maximum; free it. NULL without memory. */
+float *codec_decode_table(unsigned maximum);
+
+status codec_png_write(const image *picture, FILE *stream, int bits, diagnostic *why);
+status codec_jpeg_write(const image *picture, FILE *stream, diagnostic *why);
+status codec_pfm_write(const image *picture, FILE *stream, diagnostic *why);
+
+status codec_png_read(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why);
+status codec_jpeg_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
+status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
+
+#endif

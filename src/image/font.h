@@ -1,0 +1,13 @@
+/* A 5 by 7 dot-matrix font for the keys of pictures: printable ASCII. Pure; cannot fail. */
+#ifndef CUVETTE_IMAGE_FONT_H
+#define CUVETTE_IMAGE_FONT_H
+
+#include <stdbool.h>
+
+enum { FONT_WIDTH = 5, FONT_HEIGHT = 8, FONT_ADVANCE = 6 }; /* the eighth row is for descenders */
+
+/* Whether the dot in this column and row of a character is set; what is not printable ASCII looks like '?',
+ * dots outside the cell are unset. */
+bool font_dot(char character, int column, int row);
+
+#endif

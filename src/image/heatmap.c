@@ -1,0 +1,219 @@
+#include "image/heatmap.h"
+
+#include "base/number.h"
+#include "image/codec.h"
+#include "image/font.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* viridis by S. van der Walt and N. Smith for matplotlib 2015 (CC0), every fifth of its 256 colours; straight lines
+ * between them stay within 1/255 of the rest. */
+enum { VIRIDIS_KNOTS = 52 };
+static const unsigned char VIRIDIS[VIRIDIS_KNOTS][3] = {
+    {68, 1, 84}, {70, 8, 92}, {71, 16, 99}, {72, 23, 105}, {72, 29, 111}, {72, 36, 117},
+    {71, 42, 122}, {70, 48, 126}, {69, 55, 129}, {67, 61, 132}, {65, 66, 135}, {63, 72, 137},
+    {61, 78, 138}, {58, 83, 139}, {56, 89, 140}, {53, 94, 141}, {51, 99, 141}, {49, 104, 142},
+    {46, 109, 142}, {44, 113, 142}, {42, 118, 142}, {41, 123, 142}, {39, 128, 142}, {37, 132, 142},
+    {35, 137, 142}, {33, 142, 141}, {32, 146, 140}, {31, 151, 139}, {30, 156, 137}, {31, 161, 136},
+    {33, 165, 133}, {36, 170, 131}, {40, 174, 128}, {46, 179, 124}, {53, 183, 121}, {61, 188, 116},
+    {70, 192, 111}, {80, 196, 106}, {90, 200, 100}, {101, 203, 94}, {112, 207, 87}, {124, 210, 80},
+    {137, 213, 72}, {149, 216, 64}, {162, 218, 55}, {176, 221, 47}, {189, 223, 38}, {202, 225, 31},
+    {216, 226, 25}, {229, 228, 25}, {241, 229, 29}, {253, 231, 37},
+};
+
+static const unsigned char PAPER[3] = {255, 255, 255}, INK[3] = {34, 34, 34}, FRAME[3] = {120, 120, 120};
+
+enum { WIDTH_MIN = 240, SCALE_MAX = 16 };
+
+/* Sizes of the key in pixels; scale is how many pixels a dot of the font is wide. */
+typedef struct key_layout {
+    int scale, margin, bar_x, bar_width, bar_y, bar_height, tick, numbers_y, title_y, height;
+} key_layout;
+
+void heatmap_color(double t, unsigned char rgb[3])
+{
+    double at = (t > 0 ? t < 1 ? t : 1 : 0) * (VIRIDIS_KNOTS - 1); /* NaN is 0 */
+    int knot = at < VIRIDIS_KNOTS - 2 ? (int)at : VIRIDIS_KNOTS - 2;
+    for (int channel = 0; channel < 3; channel++) {
+        double from = VIRIDIS[knot][channel], to = VIRIDIS[knot + 1][channel];
+        rgb[channel] = (unsigned char)floor(from + (to - from) * (at - knot) + 0.5);
+    }
+}
+
+/* A picture and the linear light of the 256 encoded values. */
+typedef struct canvas {
+    image *picture;
+    const float *decoded;
+} canvas;
+
+static void fill(const canvas *on, int x, int y, int width, int height, const unsigned char rgb[3])
+{
+    image *picture = on->picture;
+    float linear[3] = {on->decoded[rgb[0]], on->decoded[rgb[1]], on->decoded[rgb[2]]};
+    int right = x + width < picture->width ? x + width : picture->width;
+    int bottom = y + height < picture->height ? y + height : picture->height;
+    for (int row = y > 0 ? y : 0; row < bottom; row++) {
+        for (int column = x > 0 ? x : 0; column < right; column++) {
+            memcpy(picture->pixel + ((size_t)row * (size_t)picture->width + (size_t)column) * 3, linear, sizeof linear);
+        }
+    }
+}
+
+static int text_width(size_t length, int scale)
+{
+    return length == 0 ? 0 : ((int)length * FONT_ADVANCE - (FONT_ADVANCE - FONT_WIDTH)) * scale;
+}
+
+static void draw_text(const canvas *on, int x, int y, int scale, const char *text)
+{
+    for (; *text; text++, x += FONT_ADVANCE * scale) {
+        for (int dot = 0; dot < FONT_WIDTH * FONT_HEIGHT; dot++) {
+            int column = dot % FONT_WIDTH, row = dot / FONT_WIDTH;
+            if (font_dot(*text, column, row)) {
+                fill(on, x + column * scale, y + row * scale, scale, scale, INK);
+            }
+        }
+    }
+}
+
+/* A number of the key: four digits, and a prefix of the SI where it would be long: 0, 29.5, 118, 3.086M. */
+static void format_key(double value, double largest, char text[NUMBER_TEXT_MAX + 2])
+{
+    static const struct { double unit; const char *prefix; } prefixes[] = {
+        {1e12, "T"}, {1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"},
+    };
+    size_t i = 4;
+    if (largest >= 1e4 || largest < 1e-2) {
+        for (i = 0; i < 7 && largest < prefixes[i].unit; i++) {
+        }
+    }
+    double scaled = value / prefixes[i].unit, power = 1.0;
+    while (scaled > 0 && scaled * power < 999.95 && power < 1e15) {
+        power *= 10.0;
+    }
+    number_format(floor(scaled * power + 0.5) / power, text);
+    strcat(text, scaled > 0 ? prefixes[i].prefix : "");
+}
+
+static key_layout lay_out_key(int width)
+{
+    int scale = (width + 200) / 400;
+    scale = scale < 1 ? 1 : scale > SCALE_MAX ? SCALE_MAX : scale;
+    key_layout key = {.scale = scale, .margin = 7 * scale, .bar_x = 20 * scale, .bar_width = width - 40 * scale};
+    key.bar_y = key.margin;
+    key.bar_height = 9 * scale;
+    key.tick = 3 * scale;
+    key.numbers_y = key.bar_y + key.bar_height + key.tick + 2 * scale;
+    key.title_y = key.numbers_y + (FONT_HEIGHT + 5) * scale;
+    key.height = key.title_y + (FONT_HEIGHT - 1) * scale + key.margin;
+    return key;
+}
+
+/* At most as many characters as fit; the last three are dots when the title does not. */
+static void draw_title(const canvas *on, const key_layout *key, int top, const char *title)
+{
+    char shown[256];
+    size_t room = (size_t)((on->picture->width - 2 * key->margin) / (FONT_ADVANCE * key->scale));
+    room = room < sizeof shown ? room : sizeof shown - 1;
+    size_t length = strlen(title);
+    snprintf(shown, room + 1, "%s", title);
+    if (length > room && room > 3) {
+        memcpy(shown + room - 3, "...", 3);
+    }
+    int x = (on->picture->width - text_width(strlen(shown), key->scale)) / 2;
+    draw_text(on, x, top + key->title_y, key->scale, shown);
+}
+
+static void draw_number(const canvas *on, const key_layout *key, int top, int center, const char *text)
+{
+    int width = text_width(strlen(text), key->scale), x = center - width / 2;
+    int rightmost = on->picture->width - width - 2 * key->scale;
+    x = x > rightmost ? rightmost : x;
+    draw_text(on, x < 2 * key->scale ? 2 * key->scale : x, top + key->numbers_y, key->scale, text);
+}
+
+static void draw_key(const canvas *on, const key_layout *key, int top, double largest, const char *title)
+{
+    int line = (key->scale + 1) / 2, bar_top = top + key->bar_y;
+    fill(on, key->bar_x - line, bar_top - line, key->bar_width + 2 * line, key->bar_height + 2 * line, FRAME);
+    for (int x = 0; x < key->bar_width; x++) {
+        unsigned char rgb[3];
+        heatmap_color((x + 0.5) / key->bar_width, rgb);
+        fill(on, key->bar_x + x, bar_top, 1, key->bar_height, rgb);
+    }
+    for (int quarter = 0; quarter <= 4; quarter++) {
+        char text[NUMBER_TEXT_MAX + 2];
+        int x = key->bar_x + (key->bar_width * quarter + 2) / 4;
+        int left = x - (quarter == 0 ? line : quarter == 4 ? 0 : line / 2);
+        fill(on, left, bar_top + key->bar_height, line, key->tick, FRAME);
+        format_key(largest * quarter / 4.0, largest, text);
+        if (largest > 0 || quarter == 0) {
+            draw_number(on, key, top, x, text);
+        }
+    }
+    draw_title(on, key, top, title);
+}
+
+/* The largest value, or STATUS_BAD_INPUT. */
+static status find_largest(const double *values, size_t count, double *largest, diagnostic *why)
+{
+    *largest = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        if (!(values[i] >= 0.0) || isinf(values[i])) {
+            return diagnose(why, STATUS_BAD_INPUT, "values are finite and not negative",
+                            "value %zu of the heat map cannot be drawn", i);
+        }
+        *largest = values[i] > *largest ? values[i] : *largest;
+    }
+    return STATUS_OK;
+}
+
+static void draw_values(const canvas *on, int left, const double *values, int width, int height, double largest)
+{
+    for (int y = 0; y < height; y++) {
+        for (int x = 0; x < width; x++) {
+            unsigned char rgb[3];
+            double value = values[(size_t)y * (size_t)width + (size_t)x];
+            heatmap_color(largest > 0 ? value / largest : 0.0, rgb);
+            fill(on, left + x, y, 1, 1, rgb);
+        }
+    }
+}
+
+static void draw(const canvas *on, const double *values, int width, int height, double largest, const char *title,
+                 const key_layout *key)
+{
+    fill(on, 0, 0, on->picture->width, on->picture->height, PAPER);
+    draw_values(on, (on->picture->width - width) / 2, values, width, height, largest);
+    draw_key(on, key, height, largest, title);
+}
+
+status heatmap_create(const double *values, int width, int height, const char *title, image **out, diagnostic *why)
+{
+    double largest;
+    *out = NULL;
+    if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
+                        "a heat map of %d x %d values is not possible", width, height);
+    }
+    status code = find_largest(values, (size_t)width * (size_t)height, &largest, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    int picture_width = width < WIDTH_MIN ? WIDTH_MIN : width;
+    key_layout key = lay_out_key(picture_width);
+    float *decoded = codec_decode_table(255);
+    image *picture = NULL;
+    if (!decoded) {
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+    }
+    code = image_create(picture_width, height + key.height, &picture, why);
+    if (code == STATUS_OK) {
+        draw(&(canvas){picture, decoded}, values, width, height, largest, title ? title : "", &key);
+        *out = picture;
+    }
+    free(decoded);
+    return code;
+}

@@ -1,0 +1,15 @@
+/* A quantity per pixel as a false-colour picture with a key: scale bar, its numbers and a title under it.
+ * Ownership: the picture is the caller's. */
+#ifndef CUVETTE_IMAGE_HEATMAP_H
+#define CUVETTE_IMAGE_HEATMAP_H
+
+#include "image/image.h"
+
+/* values: width*height, rows from the top, finite, >= 0. The scale runs from 0 to the largest value, linear,
+ * in a perceptually uniform map (viridis). The picture is as wide as the data (at least 240) and taller by the key. */
+status heatmap_create(const double *values, int width, int height, const char *title, image **out, diagnostic *why);
+
+/* The map's colour for 0..1, sRGB-encoded 0..255. */
+void heatmap_color(double t, unsigned char rgb[3]);
+
+#endif

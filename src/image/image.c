@@ -1,0 +1,143 @@
+#include "image/image.h"
+
+#include "base/file.h"
+#include "image/codec.h"
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* The largest file that can hold a picture of CODEC_PIXELS_MAX pixels: a PFM of 12 bytes a pixel and its header. */
+#define FILE_BYTES_MAX ((size_t)CODEC_PIXELS_MAX * 12 + 4096)
+
+status image_create(int width, int height, image **out, diagnostic *why)
+{
+    *out = NULL;
+    if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
+                        "a picture of %d x %d pixels is not possible", width, height);
+    }
+    image *picture = malloc(sizeof *picture);
+    float *pixel = calloc((size_t)width * (size_t)height * 3, sizeof *pixel);
+    if (!picture || !pixel) {
+        free(picture);
+        free(pixel);
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a picture of %d x %d pixels", width, height);
+    }
+    *picture = (image){.width = width, .height = height, .pixel = pixel};
+    *out = picture;
+    return STATUS_OK;
+}
+
+void image_destroy(image *picture)
+{
+    if (picture) {
+        free(picture->pixel);
+        free(picture);
+    }
+}
+
+image_format image_format_of(const char *path)
+{
+    static const struct { const char *ending; image_format format; } endings[] = {
+        {".png", IMAGE_PNG}, {".jpg", IMAGE_JPEG}, {".jpeg", IMAGE_JPEG}, {".pfm", IMAGE_PFM},
+    };
+    size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        size_t ending = strlen(endings[i].ending);
+        if (length > ending && strcasecmp(path + length - ending, endings[i].ending) == 0) {
+            return endings[i].format;
+        }
+    }
+    bool nameless = strcmp(path, "-") == 0 || strncmp(path, "/dev/", 5) == 0;
+    return nameless ? IMAGE_PNG : IMAGE_UNKNOWN;
+}
+
+status codec_check_size(long long width, long long height, diagnostic *why)
+{
+    bool sides = width >= 1 && height >= 1 && width <= IMAGE_SIDE_MAX && height <= IMAGE_SIDE_MAX;
+    if (!sides || width * height > CODEC_PIXELS_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "sides are 1 to 65536 and at most 2^28 pixels in all",
+                        "the picture claims to have %lld x %lld pixels", width, height);
+    }
+    return STATUS_OK;
+}
+
+status image_write(const image *picture, const char *path, int bits, diagnostic *why)
+{
+    image_format format = image_format_of(path);
+    if (format == IMAGE_UNKNOWN) {
+        diagnostic_locate(why, path, 0, 0);
+        return diagnose(why, STATUS_BAD_INPUT, "end the name in .png, .jpg, .jpeg or .pfm", "unknown kind of picture");
+    }
+    if (format == IMAGE_PNG && bits != 8 && bits != 16) {
+        diagnostic_locate(why, path, 0, 0);
+        return diagnose(why, STATUS_BAD_INPUT, "8 or 16", "a PNG picture cannot have %d bits", bits);
+    }
+    file_writer writer;
+    status code = file_writer_open(&writer, path, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = format == IMAGE_PNG    ? codec_png_write(picture, writer.stream, bits, why)
+           : format == IMAGE_JPEG ? codec_jpeg_write(picture, writer.stream, why)
+                                  : codec_pfm_write(picture, writer.stream, why);
+    if (code == STATUS_OK || ferror(writer.stream)) {
+        return file_writer_commit(&writer, why); /* knows best why the stream failed */
+    }
+    file_writer_abandon(&writer);
+    diagnostic_locate(why, path, 0, 0);
+    return code;
+}
+
+/* The formats' signatures: PNG specification 5.2; JPEG's SOI and the next marker; PFM's PF or Pf. */
+static image_format format_of_bytes(const unsigned char *bytes, size_t size)
+{
+    if (size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0) {
+        return IMAGE_PNG;
+    }
+    if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0) {
+        return IMAGE_JPEG;
+    }
+    bool pfm = size >= 3 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f')
+               && (bytes[2] == '\n' || bytes[2] == '\r' || bytes[2] == ' ');
+    return pfm ? IMAGE_PFM : IMAGE_UNKNOWN;
+}
+
+static status decode(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why)
+{
+    switch (format_of_bytes(bytes, size)) {
+    case IMAGE_PNG:
+        return codec_png_read(bytes, size, out, bits, why);
+    case IMAGE_JPEG:
+        *bits = 8;
+        return codec_jpeg_read(bytes, size, out, why);
+    case IMAGE_PFM:
+        *bits = 32;
+        return codec_pfm_read(bytes, size, out, why);
+    case IMAGE_UNKNOWN:
+        break;
+    }
+    return diagnose(why, STATUS_BAD_INPUT, "give a PNG, JPEG or PFM file", "%s",
+                    size == 0 ? "the file is empty" : "this is not a picture of a known kind");
+}
+
+status image_read(const char *path, image **out, int *file_bits, diagnostic *why)
+{
+    char *bytes;
+    size_t size;
+    int bits = 0;
+    *out = NULL;
+    status code = file_read(path, FILE_BYTES_MAX, &bytes, &size, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = decode((const unsigned char *)bytes, size, out, &bits, why);
+    free(bytes);
+    if (code != STATUS_OK) {
+        diagnostic_locate(why, path, 0, 0);
+    } else if (file_bits) {
+        *file_bits = bits;
+    }
+    return code;
+}

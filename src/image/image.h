@@ -1,0 +1,37 @@
+/* Pictures in memory and on disk: PNG (libpng), JPEG (libjpeg-turbo), PFM (Debevec). No time stamps, the
+ * same bytes for the same picture; files appear whole or not at all. Ownership: image_create and
+ * image_read give a picture to the caller, image_destroy releases it. */
+#ifndef CUVETTE_IMAGE_IMAGE_H
+#define CUVETTE_IMAGE_IMAGE_H
+
+#include "base/status.h"
+
+/* RGB, linear light, rows from the top, pixel[(y * width + x) * 3 + channel]; 1.0 is white. */
+typedef struct image { int width, height; float *pixel; } image;
+
+enum { IMAGE_SIDE_MAX = 65536 };
+
+/* Black picture, 1 <= width, height <= IMAGE_SIDE_MAX. */
+status image_create(int width, int height, image **out, diagnostic *why);
+void image_destroy(image *picture);
+
+/* The sRGB transfer function, IEC 61966-2-1, both ways. Values under 0 and over 1 are clamped by the encoder. */
+double srgb_encode(double linear);
+double srgb_decode(double encoded);
+
+/* Which format the ending of a file's name stands for: .png .jpg .jpeg .pfm (letter case ignored). "-" (standard
+ * output) and what lies under /dev/ have no ending and are PNG. */
+typedef enum image_format { IMAGE_UNKNOWN, IMAGE_PNG, IMAGE_JPEG, IMAGE_PFM } image_format;
+image_format image_format_of(const char *path);
+
+/* PNG at 8 or 16 bits and JPEG (quality 92, 4:4:4) are sRGB-encoded, with a PNG sRGB chunk, correctly rounded, NaN as
+ * 0; PFM is linear, little-endian float. bits matters to PNG only. */
+status image_write(const image *picture, const char *path, int bits, diagnostic *why);
+
+/* Reads PNG (any depth and kind; alpha is dropped after blending over black), JPEG (grey or RGB) or PFM (colour or
+ * grey, either byte order, finite), told by its first bytes, not by its name; PNG and JPEG are decoded from sRGB to
+ * linear. Truncated, damaged or larger than 2^28 pixels is STATUS_BAD_INPUT.
+ * file_bits, when not NULL, receives 8 or 16 for PNG, 8 for JPEG and 32 for PFM. */
+status image_read(const char *path, image **out, int *file_bits, diagnostic *why);
+
+#endif

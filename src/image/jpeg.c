@@ -1,0 +1,219 @@
+/* JPEG through libjpeg-turbo. Whatever outlives a longjmp stands in a job, which belongs to a function that does
+ * not call setjmp; the function that does has no variable of its own that changes. */
+#include "image/codec.h"
+
+#include <jpeglib.h>
+#include <jerror.h>
+#include <setjmp.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+enum { QUALITY = 92, SCANS_MAX = 500 };
+
+typedef struct jpeg_job {
+    struct jpeg_error_mgr errors; /* first, so that cinfo->err points to the job */
+    jmp_buf escape;
+    char message[JMSG_LENGTH_MAX];
+    unsigned char *row;
+    image *picture;
+    float *linear;
+    status code;
+    diagnostic *why;
+} jpeg_job;
+
+static _Noreturn void on_error(j_common_ptr cinfo)
+{
+    jpeg_job *job = (jpeg_job *)cinfo->err;
+    cinfo->err->format_message(cinfo, job->message);
+    longjmp(job->escape, 1);
+}
+
+/* libjpeg calls damage a warning and invents the missing pixels: here it is an error, unless no pixel is concerned. */
+static void on_message(j_common_ptr cinfo, int level)
+{
+    int message = cinfo->err->msg_code;
+    bool harmless = message == JWRN_EXTRANEOUS_DATA || message == JWRN_JFIF_MAJOR || message == JWRN_ADOBE_XFORM;
+    if (level < 0 && !harmless) {
+        on_error(cinfo);
+    }
+}
+
+static void no_output(j_common_ptr cinfo)
+{
+    (void)cinfo;
+}
+
+static void prepare(jpeg_job *job)
+{
+    jpeg_std_error(&job->errors);
+    job->errors.error_exit = on_error;
+    job->errors.emit_message = on_message;
+    job->errors.output_message = no_output;
+}
+
+/* ---- writing ---- */
+
+static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image *picture, FILE *stream)
+{
+    jpeg_create_compress(cinfo);
+    jpeg_stdio_dest(cinfo, stream);
+    cinfo->image_width = (JDIMENSION)picture->width;
+    cinfo->image_height = (JDIMENSION)picture->height;
+    cinfo->input_components = 3;
+    cinfo->in_color_space = JCS_RGB;
+    jpeg_set_defaults(cinfo);
+    jpeg_set_quality(cinfo, QUALITY, TRUE);
+    cinfo->dct_method = JDCT_ISLOW; /* integers: the same bytes with and without SIMD */
+    cinfo->optimize_coding = TRUE;
+    cinfo->comp_info[0].h_samp_factor = 1; /* 4:4:4 */
+    cinfo->comp_info[0].v_samp_factor = 1;
+    jpeg_start_compress(cinfo, TRUE);
+    codec_bytes bytes;
+    codec_bytes_prepare(&bytes);
+    size_t count = (size_t)picture->width * 3;
+    while (cinfo->next_scanline < cinfo->image_height) {
+        const float *pixel = picture->pixel + cinfo->next_scanline * count;
+        for (size_t i = 0; i < count; i++) {
+            job->row[i] = codec_byte(&bytes, pixel[i]);
+        }
+        JSAMPROW row = job->row;
+        jpeg_write_scanlines(cinfo, &row, 1);
+    }
+    jpeg_finish_compress(cinfo);
+}
+
+static bool write_guarded(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image *picture, FILE *stream)
+{
+    if (setjmp(job->escape)) {
+        return false;
+    }
+    write_rows(job, cinfo, picture, stream);
+    return true;
+}
+
+status codec_jpeg_write(const image *picture, FILE *stream, diagnostic *why)
+{
+    if (picture->width > JPEG_MAX_DIMENSION || picture->height > JPEG_MAX_DIMENSION) {
+        return diagnose(why, STATUS_BAD_INPUT, "write a PNG instead", "a JPEG picture has at most %ld pixels a side",
+                        JPEG_MAX_DIMENSION);
+    }
+    struct jpeg_compress_struct cinfo = {0};
+    jpeg_job job = {0};
+    status code = STATUS_FAILURE;
+    prepare(&job);
+    cinfo.err = &job.errors;
+    job.row = malloc((size_t)picture->width * 3);
+    if (!job.row) {
+        diagnose(why, code, NULL, "out of memory");
+    } else if (!write_guarded(&job, &cinfo, picture, stream)) {
+        diagnose(why, code, NULL, "cannot write the JPEG file: %s", job.message);
+    } else {
+        code = STATUS_OK;
+    }
+    jpeg_destroy_compress(&cinfo);
+    free(job.row);
+    return code;
+}
+
+/* ---- reading ---- */
+
+/* A small progressive file can ask for scan after scan over a huge picture. */
+static void limit_scans(j_common_ptr cinfo)
+{
+    if (((j_decompress_ptr)cinfo)->input_scan_number > SCANS_MAX) {
+        ERREXIT(cinfo, JERR_BAD_PROGRESSION);
+    }
+}
+
+static bool choose_colors(jpeg_job *job, j_decompress_ptr cinfo)
+{
+    switch (cinfo->jpeg_color_space) {
+    case JCS_GRAYSCALE:
+        cinfo->out_color_space = JCS_GRAYSCALE;
+        return true;
+    case JCS_YCbCr: case JCS_RGB:
+        cinfo->out_color_space = JCS_RGB;
+        return true;
+    default:
+        job->code = diagnose(job->why, STATUS_BAD_INPUT, "convert it to RGB", "the JPEG file is neither grey nor RGB");
+        return false;
+    }
+}
+
+static bool allocate(jpeg_job *job, long long width, long long height)
+{
+    job->code = codec_check_size(width, height, job->why);
+    if (job->code == STATUS_OK) {
+        job->code = image_create((int)width, (int)height, &job->picture, job->why);
+    }
+    if (job->code != STATUS_OK) {
+        return false;
+    }
+    job->linear = codec_decode_table(255);
+    job->row = malloc((size_t)width * 3);
+    if (!job->linear || !job->row) {
+        job->code = diagnose(job->why, STATUS_FAILURE, NULL, "out of memory");
+        return false;
+    }
+    return true;
+}
+
+static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progress_mgr *progress,
+                      const unsigned char *bytes, size_t size)
+{
+    jpeg_create_decompress(cinfo);
+    progress->progress_monitor = limit_scans;
+    cinfo->progress = progress;
+    jpeg_mem_src(cinfo, bytes, size);
+    jpeg_read_header(cinfo, TRUE);
+    if (!choose_colors(job, cinfo) || !allocate(job, cinfo->image_width, cinfo->image_height)) {
+        return false;
+    }
+    cinfo->dct_method = JDCT_ISLOW;
+    jpeg_start_decompress(cinfo);
+    size_t width = (size_t)job->picture->width, channels = (size_t)cinfo->output_components;
+    while (cinfo->output_scanline < cinfo->output_height) {
+        float *pixel = job->picture->pixel + cinfo->output_scanline * width * 3;
+        JSAMPROW row = job->row;
+        jpeg_read_scanlines(cinfo, &row, 1);
+        for (size_t i = 0; i < width * 3; i++) {
+            pixel[i] = job->linear[job->row[channels == 3 ? i : i / 3]];
+        }
+    }
+    jpeg_finish_decompress(cinfo); /* reads on to the end of the image, which must be there */
+    return true;
+}
+
+static void read_guarded(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progress_mgr *progress,
+                         const unsigned char *bytes, size_t size)
+{
+    if (setjmp(job->escape)) {
+        bool memory = job->errors.msg_code == JERR_OUT_OF_MEMORY;
+        job->code = diagnose(job->why, memory ? STATUS_FAILURE : STATUS_BAD_INPUT, NULL, "%s%s",
+                             memory ? "" : "the JPEG file is damaged: ", job->message);
+        return;
+    }
+    if (read_rows(job, cinfo, progress, bytes, size)) {
+        job->code = STATUS_OK;
+    }
+}
+
+status codec_jpeg_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why)
+{
+    struct jpeg_decompress_struct cinfo = {0};
+    struct jpeg_progress_mgr progress = {0};
+    jpeg_job job = {.why = why, .code = STATUS_FAILURE};
+    *out = NULL;
+    prepare(&job);
+    cinfo.err = &job.errors;
+    read_guarded(&job, &cinfo, &progress, bytes, size);
+    jpeg_destroy_decompress(&cinfo);
+    free(job.row);
+    free(job.linear);
+    if (job.code != STATUS_OK) {
+        image_destroy(job.picture);
+        return job.code;
+    }
+    *out = job.picture;
+    return STATUS_OK;
+}

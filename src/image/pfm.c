@@ -1,0 +1,122 @@
+/* PFM, Paul Debevec's portable float map: "PF" (colour) or "Pf" (grey), width height, a scale whose sign tells the
+ * byte order (negative: little-endian), one blank, then floats, rows from the bottom. The scale's size only names a
+ * unit and is not applied, as in other readers. */
+#include "image/codec.h"
+
+#include "base/number.h"
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+status codec_pfm_write(const image *picture, FILE *stream, diagnostic *why)
+{
+    size_t count = (size_t)picture->width * 3;
+    unsigned char *row = malloc(count * 4);
+    if (!row) {
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+    }
+    fprintf(stream, "PF\n%d %d\n-1.0\n", picture->width, picture->height);
+    for (int y = picture->height - 1; y >= 0; y--) {
+        const float *pixel = picture->pixel + (size_t)y * count;
+        for (size_t i = 0; i < count; i++) {
+            uint32_t word;
+            memcpy(&word, &pixel[i], sizeof word);
+            for (int byte = 0; byte < 4; byte++) {
+                row[4 * i + (size_t)byte] = (unsigned char)(word >> 8 * byte);
+            }
+        }
+        if (fwrite(row, 4, count, stream) != count) {
+            break; /* the stream remembers */
+        }
+    }
+    free(row);
+    return STATUS_OK;
+}
+
+typedef struct cursor { const unsigned char *at, *end; } cursor;
+
+static bool is_blank(unsigned char c)
+{
+    return c == ' ' || c == '\n' || c == '\r' || c == '\t';
+}
+
+/* The next word of the header, without the blanks before it; false when it is missing or too long. */
+static bool read_word(cursor *c, char word[NUMBER_TEXT_MAX])
+{
+    size_t length = 0;
+    while (c->at < c->end && is_blank(*c->at)) {
+        c->at++;
+    }
+    while (c->at < c->end && !is_blank(*c->at) && length < NUMBER_TEXT_MAX - 1) {
+        word[length++] = (char)*c->at++;
+    }
+    word[length] = 0;
+    return length > 0 && c->at < c->end && is_blank(*c->at);
+}
+
+static float read_float(const unsigned char *b, bool little)
+{
+    uint32_t word = little ? (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24
+                           : (uint32_t)b[3] | (uint32_t)b[2] << 8 | (uint32_t)b[1] << 16 | (uint32_t)b[0] << 24;
+    float value;
+    memcpy(&value, &word, sizeof value);
+    return value;
+}
+
+static status read_pixels(const unsigned char *bytes, int channels, bool little, image *picture, diagnostic *why)
+{
+    for (int y = picture->height - 1; y >= 0; y--) {
+        for (int x = 0; x < picture->width; x++) {
+            float *pixel = picture->pixel + ((size_t)y * (size_t)picture->width + (size_t)x) * 3;
+            for (int channel = 0; channel < 3; channel++) {
+                pixel[channel] = read_float(bytes + (channels == 3 ? 4 * channel : 0), little);
+                if (!isfinite(pixel[channel])) {
+                    return diagnose(why, STATUS_BAD_INPUT, NULL,
+                                    "the pixel in column %d, row %d from the top is not a finite number", x, y);
+                }
+            }
+            bytes += 4 * channels;
+        }
+    }
+    return STATUS_OK;
+}
+
+status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why)
+{
+    cursor c = {bytes + 2, bytes + size};
+    char width_text[NUMBER_TEXT_MAX], height_text[NUMBER_TEXT_MAX], scale_text[NUMBER_TEXT_MAX];
+    int64_t width, height;
+    double scale;
+    int channels = bytes[1] == 'F' ? 3 : 1;
+    *out = NULL;
+    if (!read_word(&c, width_text) || !read_word(&c, height_text) || !read_word(&c, scale_text)
+        || !number_parse_int(width_text, &width) || !number_parse_int(height_text, &height)
+        || !number_parse_real(scale_text, &scale) || !(fabs(scale) > 0)) {
+        return diagnose(why, STATUS_BAD_INPUT, "it gives width, height and a scale that is not zero",
+                        "the header of the PFM file is damaged");
+    }
+    c.at++;
+    status code = codec_check_size(width, height, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    size_t expected = (size_t)width * (size_t)height * (size_t)channels * 4, got = (size_t)(c.end - c.at);
+    if (got != expected) {
+        return diagnose(why, STATUS_BAD_INPUT, NULL, "the PFM file is %s: %zu bytes of pixels where %zu should be",
+                        got < expected ? "truncated" : "too long", got, expected);
+    }
+    image *picture;
+    code = image_create((int)width, (int)height, &picture, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = read_pixels(c.at, channels, scale < 0, picture, why);
+    if (code != STATUS_OK) {
+        image_destroy(picture);
+        return code;
+    }
+    *out = picture;
+    return STATUS_OK;
+}

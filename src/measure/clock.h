@@ -1,0 +1,18 @@
+/* Clocks, in seconds. wall: CLOCK_MONOTONIC; thread CPU: CLOCK_THREAD_CPUTIME_ID; process CPU:
+ * CLOCK_PROCESS_CPUTIME_ID. Pure reads; cannot fail on Linux. */
+#ifndef CUVETTE_MEASURE_CLOCK_H
+#define CUVETTE_MEASURE_CLOCK_H
+
+#include <stdint.h>
+
+double clock_wall_s(void);
+int64_t clock_wall_ns(void);
+double clock_thread_cpu_s(void);
+double clock_process_cpu_s(void);
+
+/* What a clock can resolve, measured now: the smallest step seen, and the cost of one reading, in seconds. */
+typedef struct clock_quality { double tick_s, overhead_s; } clock_quality;
+clock_quality clock_wall_quality(void);
+clock_quality clock_thread_cpu_quality(void);
+
+#endif

@@ -1,0 +1,157 @@
+#include "measure/disturbances.h"
+
+#include "measure/small_file.h"
+#include "measure/usage.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+typedef struct report {
+    const char *root;
+    disturbance_line line;
+    void *context;
+} report;
+
+__attribute__((format(printf, 2, 3)))
+static void say(const report *to, const char *format, ...)
+{
+    char text[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    to->line(to->context, text);
+}
+
+/* The first word of a file; false if there is none. */
+static bool read_word(const report *from, const char *path, char *word, size_t size)
+{
+    if (!small_file_read(from->root, path, word, size))
+        return false;
+    word[strcspn(word, " \t\n")] = '\0';
+    return word[0] != '\0';
+}
+
+static bool reads_as(const report *from, const char *path, const char *expected)
+{
+    char word[64];
+    return read_word(from, path, word, sizeof word) && strcmp(word, expected) == 0;
+}
+
+/* Each policy directory is a group of units that share one frequency; the first unlike "performance" is named. */
+static void check_governor(const report *to)
+{
+    enum { POLICY_MAX = 1024 };
+    for (int i = 0; i < POLICY_MAX; i++) {
+        char path[96], governor[64];
+        snprintf(path, sizeof path, "/sys/devices/system/cpu/cpufreq/policy%d/scaling_governor", i);
+        if (read_word(to, path, governor, sizeof governor) && strcmp(governor, "performance") != 0) {
+            say(to, "governor %s", governor);
+            return;
+        }
+    }
+}
+
+static void check_settings(const report *to)
+{
+    check_governor(to);
+    if (reads_as(to, "/sys/devices/system/cpu/intel_pstate/no_turbo", "0") ||
+        reads_as(to, "/sys/devices/system/cpu/cpufreq/boost", "1"))
+        say(to, "turbo on");
+    if (reads_as(to, "/sys/devices/system/cpu/smt/active", "1"))
+        say(to, "threads share cores (SMT on)");
+}
+
+static void check_hypervisor(const report *to)
+{
+    char text[8192]; /* more than the entry of the first processor */
+    small_file_read(to->root, "/proc/cpuinfo", text, sizeof text);
+    const char *flags = strstr(text, "\nflags");
+    const char *word = flags ? strstr(flags, " hypervisor") : NULL;
+    const char *end = flags ? strchr(flags + 1, '\n') : NULL;
+    if (word && (!end || word < end))
+        say(to, "virtual machine: its hypervisor may run others on the same cores");
+}
+
+/* CPU time that the control group may use, as units: cpu.max of cgroup 2, or the pair of cgroup 1. */
+static void check_quota(const report *to)
+{
+    char text[64];
+    long long quota = -1, period = -1;
+    if (small_file_read(to->root, "/sys/fs/cgroup/cpu.max", text, sizeof text)) {
+        char *end;
+        quota = strtoll(text, &end, 10); /* "max 100000" reads as 0 */
+        period = strtoll(end, NULL, 10);
+    } else if (small_file_read(to->root, "/sys/fs/cgroup/cpu/cpu.cfs_quota_us", text, sizeof text)) {
+        quota = strtoll(text, NULL, 10);
+        small_file_read(to->root, "/sys/fs/cgroup/cpu/cpu.cfs_period_us", text, sizeof text);
+        period = strtoll(text, NULL, 10);
+    }
+    if (quota <= 0 || period <= 0)
+        return;
+    long long tenths = (quota * 10 + period / 2) / period;
+    say(to, "control group limits the process to %lld.%lld units", tenths / 10, tenths % 10);
+}
+
+static void check_load(const report *to)
+{
+    char word[64];
+    if (!read_word(to, "/proc/loadavg", word, sizeof word))
+        return;
+    char *end;
+    long whole = strtol(word, &end, 10); /* in two integers: the kernel writes "0.52" whatever LC_NUMERIC says */
+    long tenths = *end == '.' && end[1] >= '0' && end[1] <= '9' ? end[1] - '0' : 0;
+    if (whole > 0 || tenths >= 3)
+        say(to, "load %ld.%ld", whole, tenths);
+}
+
+static void check_swap(const report *to)
+{
+    char text[8192];
+    small_file_read(to->root, "/proc/meminfo", text, sizeof text);
+    int64_t total_kib = small_file_field(text, "SwapTotal"), free_kib = small_file_field(text, "SwapFree");
+    if (free_kib >= 0 && total_kib - free_kib >= 1024)
+        say(to, "swap in use, %lld MiB", (long long)(total_kib - free_kib) / 1024);
+}
+
+static void check_build(const report *to)
+{
+#if !defined(__OPTIMIZE__)
+    say(to, "built without optimisation");
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    say(to, "built with a sanitizer");
+#endif
+    (void)to;
+}
+
+void disturbances_of_machine(const char *root, disturbance_line line, void *context)
+{
+    const report to = {root, line, context};
+    check_settings(&to);
+    check_hypervisor(&to);
+    check_quota(&to);
+    check_load(&to);
+    check_swap(&to);
+}
+
+void usage_disturbances(double sample_s, void (*line)(void *context, const char *text), void *context)
+{
+    const report to = {"", line, context};
+    disturbances_of_machine("", line, context);
+    check_build(&to);
+    if (!(sample_s > 0.0))
+        return;
+    usage before = usage_now();
+    struct timespec pause = {.tv_sec = (time_t)sample_s};
+    pause.tv_nsec = (long)((sample_s - (double)pause.tv_sec) * 1e9);
+    nanosleep(&pause, NULL);
+    usage passed = usage_since(&before);
+    double share = usage_others_share(&passed);
+    if (!isnan(share) && share >= 0.02)
+        say(&to, "others use %ld%% of the machine", lround(100.0 * share));
+}

@@ -1,0 +1,16 @@
+/* Small files of /proc and /sys, whose size is not known beforehand. Inside this room. */
+#ifndef CUVETTE_MEASURE_SMALL_FILE_H
+#define CUVETTE_MEASURE_SMALL_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Reads at most size - 1 bytes of the file root/path into text and ends them with 0; false, and text empty, if there is
+ * no such file. root may be "". */
+bool small_file_read(const char *root, const char *path, char *text, size_t size);
+
+/* The decimal integer after "key:" at the start of a line, as in /proc/meminfo; -1 if there is none. */
+int64_t small_file_field(const char *text, const char *key);
+
+#endif

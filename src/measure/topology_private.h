@@ -1,0 +1,19 @@
+/* What a topology holds. Inside this room. */
+#ifndef CUVETTE_MEASURE_TOPOLOGY_PRIVATE_H
+#define CUVETTE_MEASURE_TOPOLOGY_PRIVATE_H
+
+#include "measure/topology.h"
+
+#include <hwloc.h>
+
+struct topology {
+    hwloc_topology_t tree; /* only the units that this process may use */
+    int installed;         /* units of the whole machine, usable or not */
+    int rounds;            /* the most units that one core has */
+    hwloc_topology_t *round; /* round[r]: the tree with the r-th unit of every core that has so many, and nothing else */
+};
+
+/* Cores, or units where the machine shows no cores. */
+hwloc_obj_type_t topology_core_type(hwloc_topology_t tree);
+
+#endif

@@ -1,0 +1,79 @@
+#include "measure/usage.h"
+
+#include "measure/clock.h"
+#include "measure/proc_stat.h"
+#include "measure/small_file.h"
+
+#include <math.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+/* VmHWM rather than ru_maxrss: the latter survives exec, so that a small program started by a large one seems large. */
+static int64_t peak_rss_bytes(int64_t maxrss_kib)
+{
+    char text[4096];
+    int64_t kib = -1;
+    if (small_file_read("", "/proc/self/status", text, sizeof text))
+        kib = small_file_field(text, "VmHWM");
+    if (kib < 0)
+        kib = maxrss_kib;
+    return kib < 0 ? -1 : kib * 1024;
+}
+
+static void read_machine(usage *u)
+{
+    enum { PROC_STAT_MAX = 65536 }; /* a line is under 128 bytes: over 500 units; interrupts, which follow, may be cut */
+    char text[PROC_STAT_MAX];
+    proc_stat machine;
+    long units = sysconf(_SC_NPROCESSORS_ONLN);
+    u->machine_busy_s = NAN;
+    u->machine_units = units > 0 ? (double)units : NAN;
+    if (!small_file_read("", "/proc/stat", text, sizeof text))
+        return;
+    if (!proc_stat_parse(text, (double)sysconf(_SC_CLK_TCK), &machine))
+        return;
+    u->machine_busy_s = machine.busy_s;
+}
+
+usage usage_now(void)
+{
+    usage u = {0};
+    struct rusage r;
+    if (getrusage(RUSAGE_SELF, &r) == 0) {
+        u.voluntary_switches = r.ru_nvcsw;
+        u.involuntary_switches = r.ru_nivcsw;
+        u.peak_rss_bytes = peak_rss_bytes(r.ru_maxrss);
+    } else {
+        u.voluntary_switches = u.involuntary_switches = -1;
+        u.peak_rss_bytes = peak_rss_bytes(-1);
+    }
+    read_machine(&u);
+    u.cpu_s = clock_process_cpu_s();
+    u.wall_s = clock_wall_s();
+    return u;
+}
+
+static int64_t difference(int64_t before, int64_t after)
+{
+    return before < 0 || after < 0 ? -1 : after - before;
+}
+
+usage usage_since(const usage *before)
+{
+    usage u = usage_now();
+    u.wall_s -= before->wall_s;
+    u.cpu_s -= before->cpu_s;
+    u.voluntary_switches = difference(before->voluntary_switches, u.voluntary_switches);
+    u.involuntary_switches = difference(before->involuntary_switches, u.involuntary_switches);
+    u.machine_busy_s -= before->machine_busy_s;
+    return u;
+}
+
+double usage_others_share(const usage *d)
+{
+    double capacity_s = d->wall_s * d->machine_units;
+    if (!(capacity_s > 0.0) || isnan(d->machine_busy_s) || isnan(d->cpu_s))
+        return NAN;
+    double share = (d->machine_busy_s - d->cpu_s) / capacity_s;
+    return share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share; /* ticks of 10 ms can push it over either end */
+}

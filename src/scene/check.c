@@ -1,0 +1,177 @@
+#include "scene/check.h"
+#include "base/counters.h"
+#include "scene/params.h"
+
+#include <string.h>
+
+/* A solid is at least one primitive, so the counters' room for solids follows. */
+_Static_assert((int)SCENE_PRIMITIVES_MAX <= (int)COUNTERS_SOLID_MAX, "a counter for every solid");
+
+static bool is_reserved(const char *name)
+{
+    static const char *const sections[] = { "title", "materials", "lights", "solids" };
+    for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
+        if (strcmp(name, sections[i]) == 0) {
+            return true;
+        }
+    }
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
+        if (strcmp(name, param_group_name((param_group)g)) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+status check_name(const char *name, diagnostic *why)
+{
+    size_t length = strlen(name);
+    bool right = is_letter(name[0]) && length <= SCENE_NAME_MAX;
+    for (const char *c = name; right && *c; c++) {
+        right = is_letter(*c) || (*c >= '0' && *c <= '9') || *c == '-';
+    }
+    if (!right) {
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "a name is letters, digits, _ and -, begins with a letter or _, and has at most 63 of them",
+                        "'%.80s' cannot be a name", name);
+    }
+    if (is_reserved(name)) {
+        return diagnose(why, STATUS_BAD_INPUT, "choose another one", "the name '%s' is a word of scene files", name);
+    }
+    return STATUS_OK;
+}
+
+static size_t count_name(const scene *s, const char *name)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < s->light_count; i++) {
+        count += strcmp(s->lights[i].name, name) == 0;
+    }
+    for (size_t i = 0; i < s->material_count; i++) {
+        count += strcmp(s->materials[i].name, name) == 0;
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        count += strcmp(s->solids[i].name, name) == 0;
+    }
+    return count;
+}
+
+static status name_taken(const char *name, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, "lights, materials and solids need different names, because paths use them",
+                    "the name '%s' is taken", name);
+}
+
+status check_name_is_free(const scene *s, const char *name, diagnostic *why)
+{
+    return count_name(s, name) == 0 ? STATUS_OK : name_taken(name, why);
+}
+
+static status check_own_name(const scene *s, const char *name, diagnostic *why)
+{
+    status code = check_name(name, why);
+    return code != STATUS_OK || count_name(s, name) == 1 ? code : name_taken(name, why);
+}
+
+status check_render(const scene *s, diagnostic *why)
+{
+    if (s->render.width > SCENE_PIXELS_MAX / s->render.height) {
+        return diagnose(why, STATUS_BAD_INPUT, "keep width times height within 268435456",
+                        "a picture of %lld x %lld pixels is too large", (long long)s->render.width,
+                        (long long)s->render.height);
+    }
+    return STATUS_OK;
+}
+
+status check_camera(const scene *s, diagnostic *why)
+{
+    vec3 d = vec3_sub(s->camera.target, s->camera.position);
+    if (s->camera.aimed && !(vec3_dot(d, d) > 0.0)) {
+        return diagnose(why, STATUS_BAD_INPUT, "move camera.position or camera.target", "the camera stands at its own target");
+    }
+    return STATUS_OK;
+}
+
+status check_background(const scene *s, diagnostic *why)
+{
+    if (s->background.kind == BACKGROUND_PICTURE && !s->background.picture_path[0]) {
+        return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG or PFM file",
+                        "the background is a picture, but which one is not said");
+    }
+    return STATUS_OK;
+}
+
+status check_solid(const scene *s, const solid *owner, diagnostic *why)
+{
+    diagnostic shape = { .what = "" };
+    status code = solid_shape_check(&owner->shape, &shape);
+    if (code != STATUS_OK) {
+        return diagnose(why, code, shape.remedy, "%.80s: %s", owner->name, shape.what);
+    }
+    /* What a surface hands on is at most what it gets; the slack is for sums like 0.7 + 0.2 + 0.1. Under Fresnel weights
+     * R + T = 1 by themselves, and reflectivity counts for opaque surfaces alone. */
+    double sum = owner->surface.reflectivity + owner->surface.transparency;
+    if (s->render.weights == WEIGHTS_CONSTANT && sum > 1.0 + 1e-12) {
+        return diagnose(why, STATUS_BAD_INPUT, "lower one of them, or set render.weights to fresnel",
+                        "%.80s: under constant weights reflectivity %g + transparency %g is more than 1", owner->name,
+                        owner->surface.reflectivity, owner->surface.transparency);
+    }
+    return STATUS_OK;
+}
+
+status check_limits(const scene *s, diagnostic *why)
+{
+    size_t primitives = 0;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        primitives += s->solids[i].shape.kind == SHAPE_CUP ? 2 : 1;
+    }
+    if (primitives > SCENE_PRIMITIVES_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64, and a cup counts as two", "more than 64 solids");
+    }
+    if (s->light_count > SCENE_LIGHTS_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64", "more than 64 lights");
+    }
+    if (s->material_count > SCENE_MATERIALS_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 256", "more than 256 materials");
+    }
+    return STATUS_OK;
+}
+
+static status check_names(const scene *s, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; i < s->light_count && code == STATUS_OK; i++) {
+        code = check_own_name(s, s->lights[i].name, why);
+    }
+    for (size_t i = 0; i < s->material_count && code == STATUS_OK; i++) {
+        code = check_own_name(s, s->materials[i].name, why);
+    }
+    for (size_t i = 0; i < s->solid_count && code == STATUS_OK; i++) {
+        code = check_own_name(s, s->solids[i].name, why);
+    }
+    return code;
+}
+
+status scene_check(const scene *s, diagnostic *why)
+{
+    status (*const checks[])(const scene *, diagnostic *) = { check_limits, check_names, check_render, check_camera,
+                                                              check_background };
+    for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
+        status code = checks[i](s, why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        status code = check_solid(s, &s->solids[i], why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,30 @@
+/* What the sections of a scene file have in common: entries that are rows of the parameter table. For read.c and
+ * read_objects.c. Ownership: a scene_reader borrows. */
+#ifndef CUVETTE_SCENE_READ_ENTRIES_H
+#define CUVETTE_SCENE_READ_ENTRIES_H
+
+#include "scene/document.h"
+#include "scene/params.h"
+
+typedef struct scene_reader { const document *file; scene *scene; diagnostic *why; } scene_reader;
+
+/* Returns code; on a failure, puts the node's place into a diagnostic that a function without knowledge of the file filled. */
+status read_located(const scene_reader *r, const node *at, status code);
+status read_out_of_memory(const scene_reader *r);
+
+/* A map, or nothing at all (which counts as a map without entries). */
+status read_expect_map(const scene_reader *r, const node *n, const char *name);
+/* A scalar that is not empty. */
+status read_expect_word(const scene_reader *r, const node *n, const char *name);
+
+/* Refuses keys that are no rows of the group. */
+status read_check_keys(const scene_reader *r, param_group group, const node *map);
+/* Sets the entries of a map that are rows of the group; name is the path's first word. Others are left to the caller. */
+status read_entries(const scene_reader *r, const char *name, param_group group, const node *map);
+
+/* The sections of named objects. Materials come first: solids refer to them. */
+status read_materials(const scene_reader *r, const char *name, const node *map);
+status read_lights(const scene_reader *r, const char *name, const node *map);
+status read_solids(const scene_reader *r, const char *name, const node *map);
+
+#endif

@@ -1,0 +1,114 @@
+/* A scene as a person describes it: render settings, camera, background, lights, materials, solids.
+ * Every field that may be turned is a row of the parameter table (scene/params.h), which is how files,
+ * --set, studies and manuals reach it. Ownership: scene_create, scene_read and scene_clone give a scene to the caller,
+ * scene_destroy releases it; the renderer borrows it. */
+#ifndef CUVETTE_SCENE_SCENE_H
+#define CUVETTE_SCENE_SCENE_H
+
+#include "base/status.h"
+#include "base/vec3.h"
+#include "geometry/solid.h"
+#include "image/image.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum weights_rule { WEIGHTS_FRESNEL, WEIGHTS_CONSTANT } weights_rule;
+typedef enum beyond_rule { BEYOND_SKY, BEYOND_BLACK } beyond_rule;
+typedef enum shadow_rule { SHADOWS_OFF, SHADOWS_OPAQUE, SHADOWS_ATTENUATED } shadow_rule;
+typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SCHEDULE_DYNAMIC } schedule_rule;
+typedef enum pin_rule { PIN_RULE_NONE, PIN_RULE_COMPACT, PIN_RULE_SCATTER } pin_rule;
+typedef enum background_kind { BACKGROUND_UNIFORM, BACKGROUND_GRADIENT, BACKGROUND_PICTURE } background_kind;
+
+/* Integer and enum parameters are int64_t, switches (on/off) too: one type a kind of parameter. */
+typedef struct render_settings {
+    int64_t width, height;  /* pixels */
+    int64_t depth;          /* recursion depth; 0 = camera rays only */
+    int64_t samples;        /* 1 or 4 a pixel */
+    int64_t weights;        /* weights_rule */
+    int64_t beyond;         /* beyond_rule */
+    int64_t shadows;        /* shadow_rule */
+    double min_weight;      /* children whose largest throughput channel is under it are not traced; 0 = the whole tree */
+    int64_t threads;        /* 1..1024 */
+    int64_t pool;           /* 1: threads started beforehand; 0: fresh ones for every frame */
+    int64_t schedule;       /* schedule_rule */
+    int64_t tile;           /* tile edge, pixels */
+    int64_t pin;            /* pin_rule */
+} render_settings;
+
+/* y is up; yaw 0 looks along +z, positive yaw turns towards +x, positive pitch looks up; x is to the right at yaw 0. */
+typedef struct camera {
+    vec3 position;
+    vec3 target;            /* used when aimed */
+    double yaw_deg, pitch_deg; /* used when not aimed */
+    int64_t aimed;          /* 1: looks at target; 0: along yaw and pitch. Set by whichever was written last */
+    double fov_deg;         /* vertical */
+} camera;
+
+typedef struct background {
+    int64_t kind;           /* background_kind */
+    vec3 color;             /* linear RGB in x, y, z; uniform, and the zenith of a gradient */
+    vec3 horizon;           /* gradient: colour at and below the horizon */
+    char *picture_path;     /* equirectangular sky; "" for none; relative to the scene file */
+    image *picture;         /* owned; NULL until loaded by scene_load_pictures */
+    vec3 ambient;           /* I_a of Phong's sum, linear RGB */
+} background;
+
+/* Fields mean what Phong's sum I = k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n and the weights rule say. */
+typedef struct material {
+    vec3 color;             /* C, linear RGB */
+    double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
+    double reflectivity;    /* constant weights, and opaque materials under fresnel weights */
+    double transparency;    /* 0 = opaque; else share of the refracted light that passes an interface */
+    double ior;             /* relative to vacuum */
+    double checker;         /* edge of the checker cells in the solid's own frame; 0 = none */
+    vec3 checker_color;     /* colour of the other cells */
+} material;
+
+typedef struct named_material { char *name; material value; } named_material;
+typedef struct light { char *name; vec3 position; vec3 color; double intensity; } light;
+typedef struct solid {
+    char *name;
+    solid_shape shape;
+    int64_t priority;       /* the higher one wins where solids overlap; of equals the one listed first */
+    int64_t visible;        /* 0: left out of the picture altogether */
+    int material_index;     /* into scene.materials; -1 when it has none */
+    material surface;       /* its own copy, with its own changes */
+} solid;
+
+typedef struct scene {
+    char *path;             /* file it came from, "" if none */
+    char *title;
+    render_settings render;
+    camera camera;
+    background background;
+    named_material *materials; size_t material_count;
+    light *lights; size_t light_count;
+    solid *solids; size_t solid_count;
+} scene;
+
+/* Limits of a scene. Primitives are the convex pieces that solids are made of: a cup is two, the others are one. */
+enum { SCENE_LIGHTS_MAX = 64, SCENE_MATERIALS_MAX = 256, SCENE_PRIMITIVES_MAX = 64, SCENE_NAME_MAX = 63 };
+#define SCENE_PIXELS_MAX 268435456 /* 2^28 */
+
+/* An empty scene: every parameter at its default, no lights, no solids. NULL when memory is out. */
+scene *scene_create(void);
+scene *scene_clone(const scene *original);
+void scene_destroy(scene *s);
+
+/* Reads a scene file (YAML; grammar in scene/read.c's head and the manual). Pictures are not loaded yet. */
+status scene_read(const char *path, scene **out, diagnostic *why);
+/* The same from memory; name stands for the file in diagnostics, and its folder is where relative paths start. */
+status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why);
+
+/* Loads the sky picture if the background wants one that is not loaded. */
+status scene_load_pictures(scene *s, diagnostic *why);
+
+/* Checks what single ranges cannot: shapes, energy (under constant weights: reflectivity + transparency <= 1), names, limits,
+ * camera not at its own target, a picture sky that names its picture. Run by scene_read and before every render. */
+status scene_check(const scene *s, diagnostic *why);
+
+/* Index of the solid of that name, or -1. */
+int scene_find_solid(const scene *s, const char *name);
+
+#endif

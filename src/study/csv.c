@@ -1,0 +1,245 @@
+#include "study/csv.h"
+#include "base/file.h"
+#include "base/number.h"
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { CSV_BYTES_MAX = 1 << 30 };
+
+static void add(csv_line *line, const char *bytes, size_t count)
+{
+    if (line->failed)
+        return;
+    if (line->size + count + 1 > line->capacity) {
+        size_t capacity = 2 * (line->size + count + 1);
+        char *text = realloc(line->text, capacity);
+        if (!text) {
+            line->failed = true;
+            return;
+        }
+        line->text = text;
+        line->capacity = capacity;
+    }
+    memcpy(line->text + line->size, bytes, count);
+    line->size += count;
+    line->text[line->size] = 0;
+}
+
+static void separate(csv_line *line)
+{
+    if (line->started)
+        add(line, ",", 1);
+    line->started = true;
+}
+
+void csv_text(csv_line *line, const char *text)
+{
+    separate(line);
+    if (!text)
+        text = "NA";
+    if (!strpbrk(text, ",;\" ")) {
+        add(line, text, strlen(text));
+        return;
+    }
+    add(line, "\"", 1);
+    for (const char *quote; (quote = strchr(text, '"')); text = quote + 1) {
+        add(line, text, (size_t)(quote - text));
+        add(line, "\"\"", 2);
+    }
+    add(line, text, strlen(text));
+    add(line, "\"", 1);
+}
+
+void csv_real(csv_line *line, double value)
+{
+    char text[NUMBER_TEXT_MAX];
+    csv_text(line, isnan(value) ? NULL : number_format(value, text));
+}
+
+void csv_count(csv_line *line, int64_t value)
+{
+    char text[NUMBER_TEXT_MAX];
+    snprintf(text, sizeof text, "%" PRId64, value);
+    csv_text(line, value < 0 ? NULL : text);
+}
+
+void csv_hash(csv_line *line, uint64_t value)
+{
+    char text[NUMBER_TEXT_MAX];
+    snprintf(text, sizeof text, "%016" PRIx64, value);
+    csv_text(line, text);
+}
+
+void csv_end(csv_line *line)
+{
+    add(line, "\n", 1);
+    line->started = false;
+}
+
+void csv_line_free(csv_line *line)
+{
+    free(line->text);
+    *line = (csv_line){0};
+}
+
+/* Cuts the fields of one line apart, in place; returns how many, or 0 when quotes are wrong. fields may be NULL. */
+static size_t split_line(char *text, char **fields)
+{
+    size_t count = 0;
+    for (char *read = text;; read++) {
+        char *field = read, *write = read;
+        if (*read == '"') {
+            for (read++; *read; *write++ = *read++) {
+                if (*read == '"' && read[1] != '"')
+                    break;
+                read += *read == '"';
+            }
+            if (*read++ != '"')
+                return 0;
+        } else {
+            for (; *read && *read != ','; read++, write++)
+                if (*read == '"')
+                    return 0;
+        }
+        if (*read && *read != ',')
+            return 0;
+        bool last = !*read;
+        *write = 0;
+        if (fields)
+            fields[count] = field;
+        count++;
+        if (last)
+            return count;
+    }
+}
+
+static status damaged(const char *path, long line, diagnostic *why)
+{
+    diagnostic_locate(why, path, line, 1);
+    return diagnose(why, STATUS_BAD_INPUT, "move the file away, or take this line out of a copy", "the row is damaged");
+}
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+/* Counts lines and columns, and finds where rows start. */
+static status measure(csv *table, const char *path, diagnostic *why)
+{
+    size_t lines = 0;
+    for (size_t i = 0; i < table->whole; i++)
+        lines += table->raw[i] == '\n';
+    if (lines == 0)
+        return STATUS_OK;
+    if (memchr(table->raw, 0, table->whole))
+        return damaged(path, 1, why);
+    table->row_count = lines - 1;
+    table->start = malloc(lines * sizeof *table->start);
+    table->split = malloc(table->whole);
+    if (!table->start || !table->split)
+        return no_memory(why);
+    memcpy(table->split, table->raw, table->whole);
+    size_t line = 0;
+    table->column_count = 1;
+    for (size_t i = 0; i < table->whole; i++) {
+        table->column_count += line == 0 && table->raw[i] == ','; /* at most: a quoted comma counts too */
+        if (table->raw[i] == '\n') {
+            table->split[i] = 0;
+            table->start[line++] = i + 1;
+        }
+    }
+    return STATUS_OK;
+}
+
+static status split_all(csv *table, const char *path, diagnostic *why)
+{
+    status code = measure(table, path, why);
+    if (code != STATUS_OK || !table->split)
+        return code;
+    table->header = calloc(table->column_count, sizeof *table->header);
+    if (!table->header)
+        return no_memory(why);
+    table->column_count = split_line(table->split, table->header);
+    if (table->column_count == 0)
+        return damaged(path, 1, why);
+    table->fields = calloc(table->row_count * table->column_count + 1, sizeof *table->fields);
+    if (!table->fields)
+        return no_memory(why);
+    for (size_t row = 0; row < table->row_count; row++) {
+        char *text = table->split + table->start[row];
+        /* A quoted field may hold commas, so a line is counted before its fields are kept. */
+        size_t commas = 1;
+        for (const char *c = text; *c; c++)
+            commas += *c == ',';
+        if (commas < table->column_count)
+            return damaged(path, (long)row + 2, why);
+        char **fields = malloc(commas * sizeof *fields);
+        if (!fields)
+            return no_memory(why);
+        bool right = split_line(text, fields) == table->column_count;
+        if (right)
+            memcpy(table->fields + row * table->column_count, fields, table->column_count * sizeof *fields);
+        free(fields);
+        if (!right)
+            return damaged(path, (long)row + 2, why);
+    }
+    return STATUS_OK;
+}
+
+status csv_read(const char *path, csv **out, diagnostic *why)
+{
+    *out = NULL;
+    if (access(path, F_OK) != 0)
+        return STATUS_OK;
+    csv *table = calloc(1, sizeof *table);
+    if (!table)
+        return no_memory(why);
+    status code = file_read(path, CSV_BYTES_MAX, &table->raw, &table->size, why);
+    if (code == STATUS_OK) {
+        const char *newline = table->size ? memrchr(table->raw, '\n', table->size) : NULL;
+        table->whole = newline ? (size_t)(newline - table->raw) + 1 : 0;
+        code = split_all(table, path, why);
+    }
+    if (code != STATUS_OK) {
+        csv_destroy(table);
+        return code;
+    }
+    *out = table;
+    return STATUS_OK;
+}
+
+void csv_destroy(csv *table)
+{
+    if (!table)
+        return;
+    free(table->raw);
+    free(table->split);
+    free(table->header);
+    free(table->fields);
+    free(table->start);
+    free(table);
+}
+
+int csv_column(const csv *table, const char *name)
+{
+    for (size_t i = 0; table->header && i < table->column_count; i++)
+        if (strcmp(table->header[i], name) == 0)
+            return (int)i;
+    return -1;
+}
+
+const char *csv_field(const csv *table, size_t row, int column)
+{
+    return table->fields[row * table->column_count + (size_t)column];
+}
+
+double csv_field_real(const csv *table, size_t row, int column)
+{
+    double value;
+    return column >= 0 && number_parse_real(csv_field(table, row, column), &value) ? value : NAN;
+}

@@ -1,0 +1,19 @@
+/* What a study keeps of each cell beside its rows: pictures, ray and time maps, timeline, in results/<study>/images/. They come
+ * from a frame of their own after the rows, so that looking disturbs nothing that is measured; its film must be
+ * that of the rows. Every file appears whole or not at all. */
+#ifndef CUVETTE_STUDY_KEEP_H
+#define CUVETTE_STUDY_KEEP_H
+
+#include "render/renderer.h"
+#include "study/study.h"
+
+/* Does the cell lack a file that the study keeps? */
+bool keep_missing(const study *s, const char *folder, size_t cell);
+
+/* The frame's options for what is kept; progress and context are left NULL. */
+render_options keep_options(const study *s);
+
+/* Writes the cell's files from a frame rendered with those options. */
+status keep_write(const study *s, const char *folder, size_t cell, const render_result *frame, diagnostic *why);
+
+#endif

@@ -1,0 +1,101 @@
+#include "study/ledger.h"
+#include "measure/statistics.h"
+#include "study/row_files.h"
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+status ledger_add(ledger *l, const ledger_entry *entry, diagnostic *why)
+{
+    ledger_cell *cell = &l->cells[entry->cell];
+    if (!entry->warmup) {
+        double *grown = realloc(cell->wall_s, (cell->counted + 1) * sizeof *grown);
+        if (!grown)
+            return no_memory(why);
+        cell->wall_s = grown;
+        grown[cell->counted++] = entry->wall_s;
+    }
+    if (cell->rows++ == 0)
+        cell->film_expected = entry->film_expected;
+    if (entry->repetition >= cell->next_repetition)
+        cell->next_repetition = entry->repetition + 1;
+    bool marked = entry->film_hash != cell->film_expected;
+    cell->marked += marked;
+    l->marked += marked;
+    l->rows++;
+    return STATUS_OK;
+}
+
+static uint64_t field_hash(const row_ref *ref, const char *name)
+{
+    return strtoull(csv_field(ref->table, ref->row, csv_column(ref->table, name)), NULL, 16);
+}
+
+status ledger_read(const study *s, const char *results, ledger **out, diagnostic *why)
+{
+    *out = NULL;
+    row_files *files;
+    status code = row_files_read(s, results, ROWS, &files, why);
+    if (code != STATUS_OK)
+        return code;
+    ledger *l = calloc(1, sizeof *l);
+    if (l)
+        l->cells = calloc(l->cell_count = study_cell_count(s), sizeof *l->cells);
+    if (!l || !l->cells)
+        code = no_memory(why);
+    for (size_t i = 0; code == STATUS_OK && i < files->row_count; i++) {
+        const row_ref *ref = &files->rows[i];
+        ledger_entry entry = {.cell = ref->cell, .repetition = ref->repetition, .warmup = ref->warmup,
+                              .film_hash = field_hash(ref, "film_hash"), .film_expected = field_hash(ref, "film_expected"),
+                              .wall_s = csv_field_real(ref->table, ref->row, csv_column(ref->table, "wall_s"))};
+        code = ledger_add(l, &entry, why);
+    }
+    row_files_destroy(files);
+    if (code != STATUS_OK) {
+        ledger_destroy(l);
+        return code;
+    }
+    *out = l;
+    return STATUS_OK;
+}
+
+void ledger_destroy(ledger *l)
+{
+    if (!l)
+        return;
+    for (size_t i = 0; l->cells && i < l->cell_count; i++)
+        free(l->cells[i].wall_s);
+    free(l->cells);
+    free(l);
+}
+
+bool ledger_cell_done(const ledger *l, const study *s, size_t cell)
+{
+    const ledger_cell *at = &l->cells[cell];
+    if (at->counted >= (size_t)s->repetitions_max)
+        return true;
+    if (at->counted < (size_t)s->repetitions_min || s->relative_width <= 0)
+        return false;
+    summary walls = summarize(at->wall_s, at->counted); /* sorting them does no harm */
+    double width = summary_relative_width(&walls);
+    return isfinite(width) && width < s->relative_width;
+}
+
+status study_status(const study *s, const char *results, study_progress *out, diagnostic *why)
+{
+    ledger *l;
+    status code = ledger_read(s, results, &l, why);
+    if (code != STATUS_OK)
+        return code;
+    *out = (study_progress){.cells = l->cell_count, .rows = l->rows, .rows_marked = l->marked};
+    for (size_t cell = 0; cell < l->cell_count; cell++)
+        out->cells_done += ledger_cell_done(l, s, cell);
+    ledger_destroy(l);
+    return STATUS_OK;
+}

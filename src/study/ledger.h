@@ -1,0 +1,27 @@
+/* What has been measured so far, by cell: read from the rows on disk, kept up to date while a study runs.
+ * Ownership: ledger_read gives, ledger_destroy releases. */
+#ifndef CUVETTE_STUDY_LEDGER_H
+#define CUVETTE_STUDY_LEDGER_H
+
+#include "study/study.h"
+
+typedef struct ledger_cell {
+    size_t rows, counted, marked; /* counted: those that are no warm-ups */
+    long next_repetition;         /* after the highest one that is there */
+    uint64_t film_expected;       /* of its first row; meaningless while rows == 0 */
+    double *wall_s;               /* of the counted rows */
+} ledger_cell;
+
+typedef struct ledger { ledger_cell *cells; size_t cell_count, rows, marked; } ledger;
+
+/* What a new row says; film_expected is only looked at when it is the first one of the cell. */
+typedef struct ledger_entry { size_t cell; long repetition; bool warmup; uint64_t film_hash, film_expected; double wall_s; } ledger_entry;
+
+status ledger_read(const study *s, const char *results, ledger **out, diagnostic *why);
+status ledger_add(ledger *l, const ledger_entry *entry, diagnostic *why);
+void ledger_destroy(ledger *l);
+
+/* Has the cell its repetitions: the most there may be, or the least there must be and an interval as narrow as asked for? */
+bool ledger_cell_done(const ledger *l, const study *s, size_t cell);
+
+#endif

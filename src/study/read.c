@@ -1,0 +1,250 @@
+/* Study files, YAML:
+ *
+ *   study: depth                     the name: folder under results/, first column of the rows
+ *   title: Time by recursion depth   optional
+ *   scene: scenes/rod.yaml           relative to the study file
+ *   set: {render.threads: 1}         parameters of all cells, by path
+ *   grid:                            a list of axes; the last one runs fastest
+ *     - {render.depth: [0, 1, 2]}    one parameter
+ *     - name: pair                   or several together
+ *       points: [{vessel.ior: 1.0, liquid.ior: 1.5}, {vessel.ior: 1.3, liquid.ior: 1.0}]
+ *   repetitions: 10                  or {min: 5, max: 20, relative_width: 0.02}
+ *   warmups: 1
+ *   order: {shuffle: on, seed: 1}
+ *   keep: {image: on, pfm: off, workers: off, pixel_rays: off, pixel_time: off, timeline: off}
+ *
+ * Every path and value is tried on the scene here, so that a study that was read can be run. */
+#include "base/file.h"
+#include "base/number.h"
+#include "scene/document.h"
+#include "study/grid.h"
+#include "study/read_grid.h"
+#include <libgen.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { FILE_BYTES_MAX = 1 << 20, NAME_MAX_LENGTH = 64, TITLE_MAX_LENGTH = 200 };
+
+#define COUNT(array) (sizeof(array) / sizeof((array)[0]))
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+static status read_integer(const document *d, const node *n, const char *key, int64_t lowest, int64_t highest, int64_t *out, diagnostic *why)
+{
+    if (n->kind != NODE_SCALAR || !number_parse_int(n->text, out) || *out < lowest || *out > highest) {
+        char remedy[128];
+        snprintf(remedy, sizeof remedy, "write an integer from %lld to %lld", (long long)lowest, (long long)highest);
+        return node_error(d, n, why, remedy, "%s is not such a number", key);
+    }
+    return STATUS_OK;
+}
+
+static status read_switch(const document *d, const node *n, const char *key, bool *out, diagnostic *why)
+{
+    static const char *const words[] = {"off", "on", "false", "true", "no", "yes"};
+    for (size_t i = 0; n->kind == NODE_SCALAR && i < COUNT(words); i++)
+        if (strcmp(n->text, words[i]) == 0) {
+            *out = i & 1;
+            return STATUS_OK;
+        }
+    return node_error(d, n, why, "write on or off", "%s is not a switch", key);
+}
+
+/* A file name that needs no quoting anywhere, and that is none of the folders beside the studies'. */
+static bool name_is_fit(const char *name)
+{
+    static const char *const taken[] = {"figures", "tables", "reference"};
+    for (size_t i = 0; i < COUNT(taken); i++)
+        if (strcmp(name, taken[i]) == 0)
+            return false;
+    size_t length = strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_");
+    return length > 0 && length <= NAME_MAX_LENGTH && !name[length] && name[0] != '-';
+}
+
+static status read_names(study *s, const document *d, const node *root, diagnostic *why)
+{
+    const node *name = node_get(root, "study"), *title = node_get(root, "title");
+    if (!name)
+        return node_error(d, root, why, "add a line study: NAME", "the study has no name");
+    if (name->kind != NODE_SCALAR || !name_is_fit(name->text))
+        return node_error(d, name, why, "use 1 to 64 letters, digits, - and _; not figures, tables or reference",
+                          "this cannot name a study");
+    if (title && (title->kind != NODE_SCALAR || strlen(title->text) > TITLE_MAX_LENGTH || !read_grid_plain(title->text)))
+        return node_error(d, title, why, "write one line of at most 200 characters", "this is not a title");
+    s->name = strdup(name->text);
+    s->title = strdup(title ? title->text : name->text);
+    return s->name && s->title ? STATUS_OK : no_memory(why);
+}
+
+static status read_repetitions(study *s, const document *d, const node *n, diagnostic *why)
+{
+    static const char *const keys[] = {"min", "max", "relative_width"};
+    s->repetitions_min = s->repetitions_max = 5;
+    if (!n)
+        return STATUS_OK;
+    int64_t value;
+    status code;
+    if (n->kind != NODE_MAP) {
+        code = read_integer(d, n, "repetitions", 1, STUDY_REPETITIONS_MAX, &value, why);
+        s->repetitions_min = s->repetitions_max = code == STATUS_OK ? (long)value : 0;
+        return code;
+    }
+    code = node_check_keys(d, n, keys, COUNT(keys), why);
+    if (code != STATUS_OK)
+        return code;
+    const node *min = node_get(n, "min"), *max = node_get(n, "max"), *width = node_get(n, "relative_width");
+    if (!min || !max || !width)
+        return node_error(d, n, why, "write {min: 5, max: 20, relative_width: 0.02}, or a number", "repetitions lack min, max or relative_width");
+    if ((code = read_integer(d, min, "min", 2, STUDY_REPETITIONS_MAX, &value, why)) != STATUS_OK)
+        return code;
+    s->repetitions_min = (long)value;
+    if ((code = read_integer(d, max, "max", s->repetitions_min, STUDY_REPETITIONS_MAX, &value, why)) != STATUS_OK)
+        return code;
+    s->repetitions_max = (long)value;
+    double share;
+    if (width->kind != NODE_SCALAR || !number_parse_real(width->text, &share) || share < 0 || share > 1)
+        return node_error(d, width, why, "write a number from 0 to 1", "relative_width is not such a number");
+    s->relative_width = share;
+    return STATUS_OK;
+}
+
+static status read_order(study *s, const document *d, const node *warmups, const node *order, diagnostic *why)
+{
+    static const char *const keys[] = {"shuffle", "seed"};
+    int64_t value = 1;
+    status code = STATUS_OK;
+    s->shuffle = true;
+    s->seed = 1;
+    s->warmups = 1;
+    if (warmups) {
+        code = read_integer(d, warmups, "warmups", 0, STUDY_WARMUPS_MAX, &value, why);
+        s->warmups = (long)value;
+    }
+    if (code != STATUS_OK || !order)
+        return code;
+    if (order->kind != NODE_MAP)
+        return node_error(d, order, why, "write {shuffle: on, seed: 1}", "order is not a map");
+    code = node_check_keys(d, order, keys, COUNT(keys), why);
+    const node *shuffle = node_get(order, "shuffle"), *seed = node_get(order, "seed");
+    if (code == STATUS_OK && shuffle)
+        code = read_switch(d, shuffle, "shuffle", &s->shuffle, why);
+    if (code == STATUS_OK && seed) {
+        code = read_integer(d, seed, "seed", 0, INT64_MAX, &value, why);
+        s->seed = (uint64_t)value;
+    }
+    return code;
+}
+
+static status read_keep(study *s, const document *d, const node *n, diagnostic *why)
+{
+    static const char *const keys[] = {"image", "pfm", "workers", "pixel_rays", "pixel_time", "timeline"};
+    bool *const kept[] = {&s->keep_image, &s->keep_pfm, &s->keep_workers, &s->keep_pixel_rays, &s->keep_pixel_time, &s->keep_timeline};
+    if (!n)
+        return STATUS_OK;
+    if (n->kind != NODE_MAP)
+        return node_error(d, n, why, "write {image: on}", "keep is not a map");
+    status code = node_check_keys(d, n, keys, COUNT(keys), why);
+    for (size_t i = 0; code == STATUS_OK && i < COUNT(keys); i++) {
+        const node *value = node_get(n, keys[i]);
+        if (value)
+            code = read_switch(d, value, keys[i], kept[i], why);
+    }
+    return code;
+}
+
+/* The scene's file, its text for the manifest and its model. Errors inside it are located in it. */
+static status read_scene(study *s, const document *d, const node *root, diagnostic *why)
+{
+    const node *n = node_get(root, "scene");
+    if (!n)
+        return node_error(d, root, why, "add a line scene: FILE, relative to this file", "the study has no scene");
+    if (n->kind != NODE_SCALAR || !n->text[0] || !read_grid_plain(n->text))
+        return node_error(d, n, why, "write the name of a scene file, relative to this file", "this is not a file name");
+    char *copy = strdup(s->path);
+    if (!copy)
+        return no_memory(why);
+    const char *folder = dirname(copy);
+    bool as_is = n->text[0] == '/' || strcmp(folder, ".") == 0;
+    s->scene_path = malloc(strlen(folder) + strlen(n->text) + 2);
+    if (s->scene_path) {
+        strcpy(s->scene_path, as_is ? "" : folder);
+        strcat(s->scene_path, as_is ? "" : "/");
+        strcat(s->scene_path, n->text);
+    }
+    free(copy);
+    if (!s->scene_path)
+        return no_memory(why);
+    struct stat found;
+    if (stat(s->scene_path, &found) != 0 || !S_ISREG(found.st_mode) || access(s->scene_path, R_OK) != 0)
+        return node_error(d, n, why, "name a scene file that is there, relative to this file", "scene %s cannot be read", s->scene_path);
+    size_t size;
+    status code = file_read(s->scene_path, FILE_BYTES_MAX, &s->scene_text, &size, why);
+    return code == STATUS_OK ? scene_read_text(s->scene_path, s->scene_text, size, &s->base, why) : code;
+}
+
+static status read_root(study *s, const document *d, diagnostic *why)
+{
+    static const char *const keys[] = {"study", "title", "scene", "set", "grid", "repetitions", "warmups", "order", "keep"};
+    const node *root = document_root(d);
+    if (!root || root->kind != NODE_MAP) {
+        if (root)
+            return node_error(d, root, why, "begin with study: NAME and scene: FILE", "this is not a study");
+        diagnostic_locate(why, s->path, 1, 1);
+        return diagnose(why, STATUS_BAD_INPUT, "begin with study: NAME and scene: FILE", "the study is empty");
+    }
+    status code = node_check_keys(d, root, keys, COUNT(keys), why);
+    if (code == STATUS_OK)
+        code = read_names(s, d, root, why);
+    if (code == STATUS_OK)
+        code = read_repetitions(s, d, node_get(root, "repetitions"), why);
+    if (code == STATUS_OK)
+        code = read_order(s, d, node_get(root, "warmups"), node_get(root, "order"), why);
+    if (code == STATUS_OK)
+        code = read_keep(s, d, node_get(root, "keep"), why);
+    if (code == STATUS_OK)
+        code = read_scene(s, d, root, why);
+    if (code == STATUS_OK)
+        code = read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why);
+    if (code == STATUS_OK)
+        code = grid_check_cells(s, why);
+    return code == STATUS_OK ? grid_definition(s, &s->definition_hash, why) : code;
+}
+
+status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why)
+{
+    *out = NULL;
+    study *s = calloc(1, sizeof *s);
+    document *d = NULL;
+    if (!s || !(s->path = strdup(name)) || !(s->text = strndup(text, size))) {
+        study_destroy(s);
+        return no_memory(why);
+    }
+    status code = document_parse(name, text, size, &d, why);
+    if (code == STATUS_OK)
+        code = read_root(s, d, why);
+    document_destroy(d);
+    if (code != STATUS_OK) {
+        study_destroy(s);
+        return code;
+    }
+    *out = s;
+    return STATUS_OK;
+}
+
+status study_read(const char *path, study **out, diagnostic *why)
+{
+    char *text;
+    size_t size;
+    *out = NULL;
+    status code = file_read(path, FILE_BYTES_MAX, &text, &size, why);
+    if (code != STATUS_OK)
+        return code;
+    code = study_read_text(path, text, size, out, why);
+    free(text);
+    return code;
+}

@@ -1,0 +1,221 @@
+#include "study/read_grid.h"
+#include "base/text.h"
+#include "scene/params.h"
+#include "study/grid.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { POINTS_MAX = 4096 };
+
+bool read_grid_plain(const char *text)
+{
+    for (; *text; text++)
+        if ((unsigned char)*text < ' ' || *text == 0x7f)
+            return false;
+    return true;
+}
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+static status locate(const document *d, const node *at, diagnostic *why, status code)
+{
+    diagnostic_locate(why, document_name(d), at->line, at->column);
+    return code;
+}
+
+/* Sets one parameter on the scene, and gives the value as scene_get writes it: 1.0 and 1 are one value. */
+static status try_value(scene *on, const document *d, const node *key, const node *value, char **canonical, diagnostic *why)
+{
+    char *now = NULL;
+    *canonical = NULL;
+    status code = scene_get(on, key->text, &now, why);
+    free(now);
+    if (code != STATUS_OK)
+        return locate(d, key, why, code);
+    char *text = node_value_text(value);
+    if (!text)
+        return node_error(d, value, why, "write a number, a word, or a list of numbers", "%s cannot be set to this", key->text);
+    if (!read_grid_plain(text))
+        code = node_error(d, value, why, "write it on one line", "%s has control characters", key->text);
+    else if ((code = scene_set(on, key->text, text, why)) != STATUS_OK ||
+             (code = scene_get(on, key->text, canonical, why)) != STATUS_OK)
+        locate(d, value, why, code);
+    free(text);
+    return code;
+}
+
+static status point_reserve(study_point *point, const node *at, size_t count, diagnostic *why)
+{
+    point->line = at->line;
+    point->column = at->column;
+    point->paths = calloc(count + 1, sizeof *point->paths);
+    point->values = calloc(count + 1, sizeof *point->values);
+    return point->paths && point->values ? STATUS_OK : no_memory(why);
+}
+
+static status point_add(study_point *point, scene *on, const document *d, const node *key, const node *value, diagnostic *why)
+{
+    char *canonical;
+    status code = try_value(on, d, key, value, &canonical, why);
+    if (code != STATUS_OK)
+        return code;
+    point->values[point->count] = canonical;
+    point->paths[point->count] = strdup(key->text);
+    return point->paths[point->count++] ? STATUS_OK : no_memory(why);
+}
+
+/* Every entry of a map path: value. */
+static status read_point(study_point *point, scene *on, const document *d, const node *map, diagnostic *why)
+{
+    if (map->kind != NODE_MAP || map->count == 0)
+        return node_error(d, map, why, "write {path: value}", "this sets no parameter");
+    status code = point_reserve(point, map, map->count, why);
+    for (size_t i = 0; code == STATUS_OK && i < map->count; i++)
+        code = point_add(point, on, d, map->keys[i], map->items[i], why);
+    return code;
+}
+
+/* Brings the point's paths into the order of the axis' first point. */
+static status align_point(study_point *point, const study_point *first, const document *d, const node *at, diagnostic *why)
+{
+    for (size_t i = 0; i < first->count; i++) {
+        size_t found = i;
+        while (found < point->count && strcmp(point->paths[found], first->paths[i]) != 0)
+            found++;
+        if (found >= point->count)
+            return node_error(d, at, why, "let every point of an axis set the same parameters", "this point does not set %s", first->paths[i]);
+        char *path = point->paths[found], *value = point->values[found];
+        point->paths[found] = point->paths[i];
+        point->values[found] = point->values[i];
+        point->paths[i] = path;
+        point->values[i] = value;
+    }
+    if (point->count > first->count)
+        return node_error(d, at, why, "let every point of an axis set the same parameters", "the axis' first point does not set %s",
+                          point->paths[first->count]);
+    return STATUS_OK;
+}
+
+static bool points_equal(const study_point *a, const study_point *b)
+{
+    for (size_t i = 0; i < a->count; i++)
+        if (strcmp(a->values[i], b->values[i]) != 0)
+            return false;
+    return true;
+}
+
+/* One parameter: the values are a list. */
+static status read_values(study_axis *axis, scene *on, const document *d, const node *key, const node *list, diagnostic *why)
+{
+    axis->name = strdup(key->text);
+    status code = axis->name ? STATUS_OK : no_memory(why);
+    for (size_t i = 0; code == STATUS_OK && i < list->count; i++) {
+        study_point *point = &axis->points[axis->count++];
+        code = point_reserve(point, list->items[i], 1, why);
+        if (code == STATUS_OK)
+            code = point_add(point, on, d, key, list->items[i], why);
+    }
+    return code;
+}
+
+/* Several parameters together: name and points. */
+static status read_points(study_axis *axis, scene *on, const document *d, const node *name, const node *list, diagnostic *why)
+{
+    if (!name || name->kind != NODE_SCALAR || !name->text[0] || !read_grid_plain(name->text))
+        return node_error(d, name ? name : list, why, "write {name: WORD, points: [...]}", "the axis has no name");
+    axis->name = strdup(name->text);
+    status code = axis->name ? STATUS_OK : no_memory(why);
+    for (size_t i = 0; code == STATUS_OK && i < list->count; i++) {
+        study_point *point = &axis->points[axis->count++];
+        code = read_point(point, on, d, list->items[i], why);
+        if (code == STATUS_OK)
+            code = align_point(point, &axis->points[0], d, list->items[i], why);
+    }
+    return code;
+}
+
+static status read_axis(study_axis *axis, scene *on, const document *d, const node *n, diagnostic *why)
+{
+    static const char *const keys[] = {"name", "points"};
+    const char *const form = "write {path: [values]} or {name: WORD, points: [{path: value}, ...]}";
+    if (n->kind != NODE_MAP || n->count == 0 || (n->count > 1 && !node_get(n, "name") && !node_get(n, "points")))
+        return node_error(d, n, why, form, "this is not an axis");
+    bool together = n->count > 1 || strcmp(n->keys[0]->text, "points") == 0;
+    if (together) {
+        status code = node_check_keys(d, n, keys, 2, why);
+        if (code != STATUS_OK)
+            return code;
+    }
+    const node *list = together ? node_get(n, "points") : n->items[0];
+    if (!list || list->kind != NODE_LIST || list->count == 0)
+        return node_error(d, list ? list : n, why, form, "the axis has no list of values");
+    if (list->count > POINTS_MAX)
+        return node_error(d, list, why, "write at most 4096 values", "the axis has %zu values", list->count);
+    axis->points = calloc(list->count, sizeof *axis->points);
+    if (!axis->points)
+        return no_memory(why);
+    status code = together ? read_points(axis, on, d, node_get(n, "name"), list, why) : read_values(axis, on, d, n->keys[0], list, why);
+    for (size_t i = 1; code == STATUS_OK && i < axis->count; i++)
+        for (size_t k = 0; code == STATUS_OK && k < i; k++)
+            if (points_equal(&axis->points[i], &axis->points[k]))
+                code = node_error(d, list->items[i], why, "name each value once", "value %zu is the same as value %zu", i + 1, k + 1);
+    return code;
+}
+
+/* A parameter may be set in one place only: else one of the two would silently lose. */
+static status check_once(const study *s, size_t axis, const document *d, const node *at, diagnostic *why)
+{
+    const study_point *point = &s->axes[axis].points[0];
+    for (size_t i = 0; i < point->count; i++) {
+        for (size_t k = 0; k < s->fixed.count; k++)
+            if (strcmp(point->paths[i], s->fixed.paths[k]) == 0)
+                return node_error(d, at, why, "take it out of set or out of the grid", "%s is set for all cells already", point->paths[i]);
+        for (size_t other = 0; other < axis; other++)
+            for (size_t k = 0; k < s->axes[other].points[0].count; k++)
+                if (strcmp(point->paths[i], s->axes[other].points[0].paths[k]) == 0)
+                    return node_error(d, at, why, "let one axis set it", "%s is on axis %zu already", point->paths[i], other + 1);
+    }
+    return STATUS_OK;
+}
+
+static status read_axes(study *s, scene *on, const document *d, const node *grid, diagnostic *why)
+{
+    if (grid->kind != NODE_LIST || grid->count == 0)
+        return node_error(d, grid, why, "write a list of axes, each - {path: [values]}", "grid is not a list of axes");
+    if (grid->count > STUDY_AXES_MAX)
+        return node_error(d, grid, why, "use at most 16 axes", "the grid has %zu axes", grid->count);
+    s->axes = calloc(grid->count, sizeof *s->axes);
+    if (!s->axes)
+        return no_memory(why);
+    size_t cells = 1;
+    for (size_t i = 0; i < grid->count; i++) {
+        s->axis_count++;
+        status code = read_axis(&s->axes[i], on, d, grid->items[i], why);
+        if (code == STATUS_OK)
+            code = check_once(s, i, d, grid->items[i], why);
+        if (code != STATUS_OK)
+            return code;
+        cells *= s->axes[i].count;
+        if (cells > STUDY_CELLS_MAX)
+            return node_error(d, grid, why, "use at most 65536 cells", "the grid has more than 65536 cells");
+    }
+    return STATUS_OK;
+}
+
+status read_grid(study *s, const document *d, const node *set, const node *grid, diagnostic *why)
+{
+    status code = STATUS_OK;
+    if (set)
+        code = read_point(&s->fixed, s->base, d, set, why);
+    if (code != STATUS_OK || !grid)
+        return code;
+    scene *on = scene_clone(s->base);
+    if (!on)
+        return no_memory(why);
+    code = read_axes(s, on, d, grid, why);
+    scene_destroy(on);
+    return code;
+}

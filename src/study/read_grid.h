@@ -1,0 +1,14 @@
+/* The part of a study file that names parameters: what is set, and the grid. For study/read.c. */
+#ifndef CUVETTE_STUDY_READ_GRID_H
+#define CUVETTE_STUDY_READ_GRID_H
+
+#include "scene/document.h"
+#include "study/study.h"
+
+/* Tries every path and value on s->base, sets the fixed ones in it, and fills s->fixed and s->axes. set and grid may be NULL. */
+status read_grid(study *s, const document *d, const node *set, const node *grid, diagnostic *why);
+
+/* Has the text no control characters? A row is one line. */
+bool read_grid_plain(const char *text);
+
+#endif

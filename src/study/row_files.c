@@ -1,0 +1,266 @@
+#include "study/row_files.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "study/rows.h"
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const stems[] = {"rows", "workers"};
+
+char *study_folder(const study *s, const char *results)
+{
+    return text_format("%s/%s", results, s->name);
+}
+
+char *row_file_path(const char *folder, row_kind kind, long shard, long shards)
+{
+    return shards > 1 ? text_format("%s/%s.shard-%ld-of-%ld.csv", folder, stems[kind], shard, shards)
+                      : text_format("%s/%s.csv", folder, stems[kind]);
+}
+
+char *row_file_header(const study *s, row_kind kind)
+{
+    csv_line line = {0};
+    (kind == ROWS ? row_header : worker_header)(&line, s);
+    if (!line.failed)
+        return line.text;
+    csv_line_free(&line);
+    return NULL;
+}
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+typedef struct shard_name { long shard, shards; } shard_name;
+
+static int compare_shards(const void *a, const void *b)
+{
+    const shard_name *x = a, *y = b;
+    if (x->shards != y->shards)
+        return x->shards < y->shards ? -1 : 1;
+    return (x->shard > y->shard) - (x->shard < y->shard);
+}
+
+/* Is name exactly the file of a shard? rows.shard-0-of-2.torn.csv is not. */
+static bool parse_shard(const char *name, row_kind kind, shard_name *out)
+{
+    char format[64], again[128];
+    snprintf(format, sizeof format, "%s.shard-%%9ld-of-%%9ld.csv", stems[kind]);
+    if (sscanf(name, format, &out->shard, &out->shards) != 2)
+        return false;
+    snprintf(again, sizeof again, "%s.shard-%ld-of-%ld.csv", stems[kind], out->shard, out->shards);
+    return strcmp(name, again) == 0;
+}
+
+/* The shards' files in a folder, in order. *list is the caller's. */
+static status list_shards(const char *folder, row_kind kind, shard_name **list, size_t *count, diagnostic *why)
+{
+    *list = NULL;
+    *count = 0;
+    DIR *open = opendir(folder);
+    if (!open) {
+        if (errno == ENOENT)
+            return STATUS_OK;
+        diagnostic_locate(why, folder, 0, 0);
+        return diagnose(why, STATUS_FAILURE, "make the folder readable", "it cannot be read: %s", strerror(errno));
+    }
+    status code = STATUS_OK;
+    for (struct dirent *entry; code == STATUS_OK && (entry = readdir(open));) {
+        shard_name name;
+        if (!parse_shard(entry->d_name, kind, &name))
+            continue;
+        shard_name *grown = realloc(*list, (*count + 1) * sizeof **list);
+        if (grown) {
+            *list = grown;
+            grown[(*count)++] = name;
+        } else {
+            code = no_memory(why);
+        }
+    }
+    closedir(open);
+    if (*count)
+        qsort(*list, *count, sizeof **list, compare_shards);
+    return code;
+}
+
+static status add_file(row_files *files, char *path, diagnostic *why)
+{
+    if (!path)
+        return no_memory(why);
+    csv *table;
+    status code = csv_read(path, &table, why);
+    if (code != STATUS_OK || !table) {
+        free(path);
+        return code;
+    }
+    files->paths[files->count] = path;
+    files->tables[files->count++] = table;
+    return STATUS_OK;
+}
+
+static status open_files(row_files *files, const char *folder, row_kind kind, diagnostic *why)
+{
+    shard_name *shards;
+    size_t count;
+    status code = list_shards(folder, kind, &shards, &count, why);
+    if (code == STATUS_OK) {
+        files->paths = calloc(count + 1, sizeof *files->paths);
+        files->tables = calloc(count + 1, sizeof *files->tables);
+        code = files->paths && files->tables ? add_file(files, row_file_path(folder, kind, 0, 1), why) : no_memory(why);
+    }
+    for (size_t i = 0; code == STATUS_OK && i < count; i++)
+        code = add_file(files, row_file_path(folder, kind, shards[i].shard, shards[i].shards), why);
+    free(shards);
+    return code;
+}
+
+static status another_definition(const char *path, long line, const char *what, diagnostic *why)
+{
+    diagnostic_locate(why, path, line, 1);
+    return diagnose(why, STATUS_BAD_INPUT, "move this folder away, or choose another with --results", "%s", what);
+}
+
+/* A whole number from 0 to highest in the column of that name. */
+static bool field_integer(const csv *table, size_t row, const char *name, int64_t highest, int64_t *out)
+{
+    return number_parse_int(csv_field(table, row, csv_column(table, name)), out) && *out >= 0 && *out <= highest;
+}
+
+static status read_row(const study *s, row_ref *ref, const char *path, row_kind kind, diagnostic *why)
+{
+    char definition[NUMBER_TEXT_MAX];
+    snprintf(definition, sizeof definition, "%016" PRIx64, s->definition_hash);
+    long line = (long)ref->row + 2;
+    if (strcmp(csv_field(ref->table, ref->row, csv_column(ref->table, "definition")), definition) != 0 ||
+        strcmp(csv_field(ref->table, ref->row, csv_column(ref->table, "study")), s->name) != 0)
+        return another_definition(path, line, "these rows are of another definition: the study or its scene has changed since", why);
+    int64_t cell, repetition, warmup, worker = 0;
+    if (!field_integer(ref->table, ref->row, "cell", (int64_t)study_cell_count(s) - 1, &cell) ||
+        !field_integer(ref->table, ref->row, "repetition", INT32_MAX, &repetition) ||
+        !field_integer(ref->table, ref->row, "warmup", 1, &warmup) ||
+        (kind == WORKER_ROWS && !field_integer(ref->table, ref->row, "worker", INT32_MAX, &worker))) {
+        diagnostic_locate(why, path, line, 1);
+        return diagnose(why, STATUS_BAD_INPUT, "move the file away, or take this line out of a copy", "the row is damaged");
+    }
+    ref->cell = (size_t)cell;
+    ref->repetition = (long)repetition;
+    ref->warmup = warmup != 0;
+    ref->worker = (long)worker;
+    return STATUS_OK;
+}
+
+static status read_rows(row_files *files, const study *s, row_kind kind, diagnostic *why)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < files->count; i++)
+        total += files->tables[i]->row_count;
+    files->rows = malloc((total + 1) * sizeof *files->rows);
+    char *header = row_file_header(s, kind);
+    status code = files->rows && header ? STATUS_OK : no_memory(why);
+    for (size_t i = 0; code == STATUS_OK && i < files->count; i++) {
+        const csv *table = files->tables[i];
+        if (!table->header)
+            continue;
+        size_t length = strlen(header);
+        if (table->whole < length || memcmp(table->raw, header, length) != 0)
+            code = another_definition(files->paths[i], 1, "these columns are not the study's: it or the program has changed since", why);
+        for (size_t row = 0; code == STATUS_OK && row < table->row_count; row++) {
+            row_ref *ref = &files->rows[files->row_count++];
+            *ref = (row_ref){.table = table, .row = row};
+            code = read_row(s, ref, files->paths[i], kind, why);
+        }
+    }
+    free(header);
+    return code;
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+    const row_ref *x = *(row_ref *const *)a, *y = *(row_ref *const *)b;
+    if (x->cell != y->cell)
+        return x->cell < y->cell ? -1 : 1;
+    if (x->repetition != y->repetition)
+        return x->repetition < y->repetition ? -1 : 1;
+    if (x->worker != y->worker)
+        return x->worker < y->worker ? -1 : 1;
+    return (x > y) - (x < y);
+}
+
+static bool same_line(const row_ref *a, const row_ref *b)
+{
+    size_t from_a = a->table->start[a->row], from_b = b->table->start[b->row];
+    size_t size = a->table->start[a->row + 1] - from_a;
+    return size == b->table->start[b->row + 1] - from_b && memcmp(a->table->raw + from_a, b->table->raw + from_b, size) == 0;
+}
+
+/* Drops rows that stand twice; two that differ are an error. */
+static status drop_twins(row_files *files, diagnostic *why)
+{
+    row_ref **sorted = malloc((files->row_count + 1) * sizeof(row_ref *));
+    if (!sorted)
+        return no_memory(why);
+    for (size_t i = 0; i < files->row_count; i++)
+        sorted[i] = &files->rows[i];
+    qsort(sorted, files->row_count, sizeof *sorted, compare_keys);
+    status code = STATUS_OK;
+    for (size_t i = 1, kept = 0; code == STATUS_OK && i < files->row_count; i++) {
+        const row_ref *a = sorted[kept];
+        row_ref *b = sorted[i];
+        if (a->cell != b->cell || a->repetition != b->repetition || a->worker != b->worker) {
+            kept = i;
+        } else if (same_line(a, b) && a->table != b->table) {
+            b->table = NULL;
+        } else {
+            for (size_t f = 0; f < files->count; f++)
+                if (files->tables[f] == b->table)
+                    diagnostic_locate(why, files->paths[f], (long)b->row + 2, 1);
+            code = diagnose(why, STATUS_BAD_INPUT, "two processes ran the same cells: move one of the files away",
+                            "cell %zu repetition %ld stands twice, with different values", b->cell, b->repetition);
+        }
+    }
+    free(sorted);
+    size_t kept = 0;
+    for (size_t i = 0; i < files->row_count; i++)
+        if (files->rows[i].table)
+            files->rows[kept++] = files->rows[i];
+    files->row_count = kept;
+    return code;
+}
+
+status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why)
+{
+    *out = NULL;
+    row_files *files = calloc(1, sizeof *files);
+    char *folder = study_folder(s, results);
+    status code = files && folder ? open_files(files, folder, kind, why) : no_memory(why);
+    if (code == STATUS_OK)
+        code = read_rows(files, s, kind, why);
+    if (code == STATUS_OK)
+        code = drop_twins(files, why);
+    free(folder);
+    if (code != STATUS_OK) {
+        row_files_destroy(files);
+        return code;
+    }
+    *out = files;
+    return STATUS_OK;
+}
+
+void row_files_destroy(row_files *files)
+{
+    if (!files)
+        return;
+    for (size_t i = 0; i < files->count; i++) {
+        free(files->paths[i]);
+        csv_destroy(files->tables[i]);
+    }
+    free(files->paths);
+    free(files->tables);
+    free(files->rows);
+    free(files);
+}

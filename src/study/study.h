@@ -1,0 +1,73 @@
+/* A study: a scene, fixed parameters, a grid over any parameters, repetitions, and what to keep; run so
+ * that raw rows are sacred (design, decision 7). results/<study>/ holds rows.csv (one row a repetition, appended and
+ * flushed at once, never rewritten), manifest.json, images/ (one a cell).
+ * Ownership: study_read gives, study_destroy releases. Errors in the file are located there: file, line, column. */
+#ifndef CUVETTE_STUDY_STUDY_H
+#define CUVETTE_STUDY_STUDY_H
+
+#include "base/status.h"
+#include "scene/scene.h"
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+enum {
+    STUDY_CELLS_MAX = 65536,
+    STUDY_AXES_MAX = 16,
+    STUDY_REPETITIONS_MAX = 100000,
+    STUDY_WARMUPS_MAX = 1000
+};
+
+/* One point of an axis sets one or more parameters together. Values are as scene_get writes them. */
+typedef struct study_point { char **paths, **values; size_t count; long line, column; } study_point;
+/* All points of an axis set the same paths, in the same order. */
+typedef struct study_axis { char *name; study_point *points; size_t count; } study_axis;
+
+typedef struct study {
+    char *path, *name, *title;
+    char *scene_path;                 /* resolved against the study file's folder */
+    study_point fixed;                /* parameters set for all cells */
+    study_axis *axes; size_t axis_count;
+    long repetitions_min, repetitions_max; /* counted, without warm-ups */
+    double relative_width;            /* stop after min once the 95% interval of the mean wall time is narrower than this share of it; 0: always max */
+    long warmups;                     /* frames of a cell before its first measured one, in every process that runs it */
+    bool shuffle; uint64_t seed;
+    bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_timeline; /* of each cell, once */
+    char *text, *scene_text;          /* both files, as they were read */
+    scene *base;                      /* the scene with the fixed parameters set */
+    /* Of what a row means: name, scene, fixed parameters, grid; rows of another definition are not mixed in.
+     * Repetitions, order, title and what is kept may change, and the study goes on. */
+    uint64_t definition_hash;
+} study;
+
+status study_read(const char *path, study **out, diagnostic *why);
+/* The same from memory; name stands for the file in diagnostics, and its folder is where the scene's path starts. */
+status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why);
+void study_destroy(study *s);
+
+/* Cells are the grid's points, numbered 0.. with the last axis fastest. */
+size_t study_cell_count(const study *s);
+/* The axis point of a cell: study.axes[axis].points[study_cell_point(...)]. */
+size_t study_cell_point(const study *s, size_t cell, size_t axis);
+/* The study's scene with the fixed parameters and the cell's set; pictures are not loaded. */
+status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *why);
+
+typedef struct study_options {
+    const char *results;   /* folder; results/<name>/ is made in it */
+    long shard, shards;    /* this process does the cells whose place in the shuffled grid, modulo shards, is shard; 0 of 1 (or 0 of 0) for all */
+    FILE *progress;        /* a terminal for the progress line with ETA, or NULL */
+    bool (*stop)(void);    /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
+} study_options;
+
+/* Runs what is missing; a study that is complete costs nothing and says so through *ran = 0 (rows written). */
+status study_run(const study *s, const study_options *options, size_t *ran, diagnostic *why);
+
+/* How far it is, over rows.csv and the shards' files. */
+typedef struct study_progress { size_t cells, cells_done, rows, rows_marked; } study_progress;
+status study_status(const study *s, const char *results, study_progress *out, diagnostic *why);
+
+/* Joins the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv; no row lost or twice. rows.csv appears whole
+ * or not at all; the shards' files stay. */
+status study_merge(const study *s, const char *results, size_t *rows, diagnostic *why);
+
+#endif

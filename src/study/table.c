@@ -1,0 +1,190 @@
+#include "study/table.h"
+#include "base/text.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <libgen.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+struct table { char *path; int fd; };
+
+static status failed(const char *path, const char *doing, int error, diagnostic *why)
+{
+    diagnostic_locate(why, path, 0, 0);
+    const char *remedy = error == ENOSPC || error == EDQUOT || error == EFBIG
+                             ? "make room and run it again: it goes on where it stopped"
+                             : "make the folder writable and run it again: it goes on where it stopped";
+    return diagnose(why, STATUS_FAILURE, remedy, "%s failed: %s", doing, strerror(error));
+}
+
+/* Makes a new name last through a power failure: its folder is flushed too. */
+static void flush_folder(const char *path)
+{
+    char *copy = strdup(path);
+    int fd = copy ? open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+    if (fd >= 0) {
+        fsync(fd);
+        close(fd);
+    }
+    free(copy);
+}
+
+/* All of bytes at the end of the file, flushed; on failure the file is cut back and errno tells why. */
+static int append_all(int fd, const char *bytes, size_t size)
+{
+    struct stat before;
+    if (fstat(fd, &before) != 0)
+        return -1;
+    int error = 0;
+    for (size_t written = 0; written < size && !error;) {
+        ssize_t count = write(fd, bytes + written, size - written);
+        if (count > 0)
+            written += (size_t)count;
+        else if (count == 0 || errno != EINTR)
+            error = count < 0 ? errno : ENOSPC;
+    }
+    if (!error && fsync(fd) != 0)
+        error = errno;
+    if (!error)
+        return 0;
+    if (ftruncate(fd, before.st_size) == 0)
+        fsync(fd);
+    errno = error;
+    return -1;
+}
+
+/* rows.csv -> rows.torn.csv */
+static char *torn_path(const char *path)
+{
+    size_t length = strlen(path);
+    size_t stem = length > 4 && strcmp(path + length - 4, ".csv") == 0 ? length - 4 : length;
+    return text_format("%.*s.torn.csv", (int)stem, path);
+}
+
+static status keep_torn(const char *path, const char *bytes, size_t size, diagnostic *why)
+{
+    char *torn = torn_path(path);
+    if (!torn)
+        return failed(path, "setting a torn row aside", ENOMEM, why);
+    status code = STATUS_OK;
+    int fd = open(torn, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
+    /* A torn end gets a newline of its own, so that the next one starts a line. */
+    if (fd < 0 || append_all(fd, bytes, size) != 0 || (bytes[size - 1] != '\n' && append_all(fd, "\n", 1) != 0))
+        code = failed(torn, "setting a torn row aside", errno, why);
+    if (fd >= 0)
+        close(fd);
+    flush_folder(torn);
+    free(torn);
+    return code;
+}
+
+status table_set_aside(table *t, size_t offset, diagnostic *why)
+{
+    struct stat now;
+    if (fstat(t->fd, &now) != 0)
+        return failed(t->path, "looking at the file", errno, why);
+    if ((size_t)now.st_size <= offset)
+        return STATUS_OK;
+    size_t size = (size_t)now.st_size - offset;
+    char *bytes = malloc(size);
+    if (!bytes)
+        return failed(t->path, "setting a torn row aside", ENOMEM, why);
+    status code = STATUS_OK;
+    if (pread(t->fd, bytes, size, (off_t)offset) != (ssize_t)size)
+        code = failed(t->path, "reading the torn row", errno, why);
+    if (code == STATUS_OK)
+        code = keep_torn(t->path, bytes, size, why);
+    if (code == STATUS_OK && (ftruncate(t->fd, (off_t)offset) != 0 || fsync(t->fd) != 0))
+        code = failed(t->path, "cutting the torn row off", errno, why);
+    free(bytes);
+    return code;
+}
+
+/* Where the last whole line ends. */
+static status whole_lines(table *t, size_t *end, diagnostic *why)
+{
+    struct stat now;
+    if (fstat(t->fd, &now) != 0)
+        return failed(t->path, "looking at the file", errno, why);
+    char block[4096];
+    off_t from = now.st_size;
+    *end = 0;
+    while (from > 0 && *end == 0) {
+        size_t size = from < (off_t)sizeof block ? (size_t)from : sizeof block;
+        from -= (off_t)size;
+        if (pread(t->fd, block, size, from) != (ssize_t)size)
+            return failed(t->path, "reading", errno, why);
+        const char *newline = memrchr(block, '\n', size);
+        if (newline)
+            *end = (size_t)from + (size_t)(newline - block) + 1;
+    }
+    return STATUS_OK;
+}
+
+/* Opens and locks. A merge puts a new file in the old one's place, so the name must still mean the file that is locked. */
+static status lock(table *t, diagnostic *why)
+{
+    for (;;) {
+        t->fd = open(t->path, O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
+        if (t->fd < 0)
+            return failed(t->path, "opening", errno, why);
+        if (flock(t->fd, LOCK_EX | LOCK_NB) != 0) {
+            if (errno != EWOULDBLOCK)
+                return failed(t->path, "locking", errno, why);
+            diagnostic_locate(why, t->path, 0, 0);
+            return diagnose(why, STATUS_BAD_INPUT, "wait for it to end, or give each process its own --shard i/N",
+                            "another process is writing these rows");
+        }
+        struct stat named, opened;
+        if (fstat(t->fd, &opened) == 0 && stat(t->path, &named) == 0 && named.st_ino == opened.st_ino &&
+            named.st_dev == opened.st_dev)
+            return STATUS_OK;
+        close(t->fd);
+    }
+}
+
+status table_open(const char *path, const char *header, table **out, diagnostic *why)
+{
+    *out = NULL;
+    table *t = calloc(1, sizeof *t);
+    if (!t || !(t->path = strdup(path))) {
+        free(t);
+        return failed(path, "opening", ENOMEM, why);
+    }
+    size_t end = 0;
+    status code = lock(t, why);
+    if (code == STATUS_OK)
+        code = whole_lines(t, &end, why);
+    if (code == STATUS_OK)
+        code = table_set_aside(t, end, why);
+    if (code == STATUS_OK && end == 0) {
+        code = table_append(t, header, strlen(header), why);
+        flush_folder(path);
+    }
+    if (code != STATUS_OK) {
+        table_close(t);
+        return code;
+    }
+    *out = t;
+    return STATUS_OK;
+}
+
+status table_append(table *t, const char *lines, size_t size, diagnostic *why)
+{
+    if (append_all(t->fd, lines, size) != 0)
+        return failed(t->path, "writing a row", errno, why);
+    return STATUS_OK;
+}
+
+void table_close(table *t)
+{
+    if (!t)
+        return;
+    if (t->fd >= 0)
+        close(t->fd);
+    free(t->path);
+    free(t);
+}

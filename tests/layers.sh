@@ -1,0 +1,71 @@
+#!/bin/bash
+# A file under src/ includes only from its own room and from floors below it, written from src/. Reads the #include lines;
+# then plants bad ones in a copy, to see that they are caught.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+
+# Prints one line an include that breaks the rule; silence is good.
+check() {
+    (cd "$1" && find . -name '*.[ch]' -printf '%P\n' | sort | xargs awk '
+        BEGIN {
+            split("base 0 optics 1 geometry 1 measure 1 softbody 2 image 2 scene 3 render 4 study 5 engine 6 cli 7 web 7 mpi 7", word)
+            for (i = 1; i in word; i += 2) floor[word[i]] = word[i + 1]
+        }
+        function room(path) { return path ~ /\// ? substr(path, 1, index(path, "/") - 1) : "engine" }
+        function complain(what) { printf "%s:%d: %s\n", FILENAME, FNR, what }
+        FNR == 1 { own = room(FILENAME); if (!(own in floor)) complain("room " own " stands on no floor") }
+        /^[ \t]*#[ \t]*include[ \t]*"/ {
+            split($0, part, "\""); target = part[2]; other = room(target)
+            if (target ~ /(^|\/)\.\.?\//) complain("\"" target "\" is not written from src/")
+            else if (target !~ /\// && target != "cuvette.h") complain("\"" target "\" is not written from src/")
+            else if (!(other in floor)) complain("\"" target "\" leads to a room that stands on no floor")
+            else if (other != own && floor[other] > floor[own]) complain("\"" target "\" climbs from " own " to " other)
+            else if (other != own && floor[other] == floor[own]) complain("\"" target "\" goes sideways from " own " to " other)
+        }' /dev/null)
+}
+
+case_number=0
+report() { # report NAME FINDINGS: passes when there are none
+    case_number=$((case_number + 1))
+    if [[ -z $2 ]]; then
+        echo "ok $case_number - $1"
+    else
+        echo "not ok $case_number - $1"
+        sed 's/^/# src\//' <<<"$2"
+        failed=1
+    fi
+}
+
+plant() { # plant FILE INCLUDE EXPECTED: a copy with that line must be refused with that word
+    local copy=$folder/planted
+    mkdir -p "$copy/$(dirname "$1")"
+    printf '#include <stdio.h>\n  #  include %s\n' "$2" >"$copy/$1"
+    local found
+    found=$(check "$copy")
+    rm -r "$copy"
+    if [[ -z $3 ]]; then
+        report "$1 may include $2" "$found"
+    elif [[ $found == "$1:2: "*"$3"* ]]; then
+        report "$1 may not include $2" ''
+    else
+        report "$1 may not include $2" "$1: not refused with '$3': $found"
+    fi
+}
+
+failed=0
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+report 'includes stay on their floors' "$(check src)"
+plant base/a.h '"optics/interface.h"' climbs
+plant render/a.c '"cuvette.h"' climbs
+plant geometry/a.c '"measure/clock.h"' sideways
+plant cli/a.c '"web/page.h"' sideways
+plant scene/a.c '"params.h"' 'not written from src/'
+plant scene/a.c '"../base/status.h"' 'not written from src/'
+plant scene/a.c '"scene/../render/film.h"' 'not written from src/'
+plant scene/a.c '"attic/old.h"' 'no floor'
+plant cuvette.c '"cli/cli.h"' climbs
+plant cuvette.c '"study/study.h"' ''
+plant cli/a.c '"cuvette.h"' ''
+plant scene/a.c '"scene/scene.h"' ''
+exit $failed

@@ -1,0 +1,113 @@
+#include "study_fixture.h"
+#include "study/csv.h"
+
+static void fields_are_written_and_read_back(void **state)
+{
+    const fixture *f = *state;
+    csv_line line = {0};
+    csv_text(&line, "name");
+    csv_text(&line, "a,b");
+    csv_text(&line, "say \"it\"");
+    csv_end(&line);
+    csv_text(&line, NULL);
+    csv_real(&line, 0.1);
+    csv_real(&line, NAN);
+    csv_end(&line);
+    csv_count(&line, -1);
+    csv_count(&line, INT64_MAX);
+    csv_hash(&line, 0xab);
+    csv_end(&line);
+    assert_false(line.failed);
+    assert_string_equal(line.text, "name,\"a,b\",\"say \"\"it\"\"\"\nNA,0.1,NA\nNA,9223372036854775807,00000000000000ab\n");
+    fixture_write(f, "t.csv", line.text);
+    csv_line_free(&line);
+    char path[400];
+    fixture_path(f, "t.csv", path);
+    csv *table = NULL;
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    assert_int_equal(table->column_count, 3);
+    assert_int_equal(table->row_count, 2);
+    assert_int_equal(csv_column(table, "a,b"), 1);
+    assert_int_equal(csv_column(table, "say \"it\""), 2);
+    assert_int_equal(csv_column(table, "b"), -1);
+    assert_true(csv_field_real(table, 0, 1) == 0.1);
+    assert_true(isnan(csv_field_real(table, 0, 0)));
+    assert_true(isnan(csv_field_real(table, 0, -1)));
+    assert_string_equal(csv_field(table, 1, 2), "00000000000000ab");
+    csv_destroy(table);
+}
+
+/* What the file holds -> rows read, or -1 for an error, and its line. */
+static int rows_of(const fixture *f, const char *text, long *line)
+{
+    char path[400];
+    diagnostic why = {0};
+    csv *table = NULL;
+    fixture_write(f, "t.csv", text);
+    fixture_path(f, "t.csv", path);
+    status code = csv_read(path, &table, &why);
+    int rows = code == STATUS_OK ? (int)table->row_count : -1;
+    if (line)
+        *line = why.line;
+    csv_destroy(table);
+    return rows;
+}
+
+static void only_whole_lines_are_rows(void **state)
+{
+    const fixture *f = *state;
+    assert_int_equal(rows_of(f, "", NULL), 0);
+    assert_int_equal(rows_of(f, "a,b", NULL), 0);
+    assert_int_equal(rows_of(f, "a,b\n", NULL), 0);
+    assert_int_equal(rows_of(f, "a,b\n1,2\n3,4", NULL), 1);
+    assert_int_equal(rows_of(f, "a,b\n1,2\n3,\"4", NULL), 1);
+    assert_int_equal(rows_of(f, "a,b\n,\n\"\",\"x,y\"\n", NULL), 2);
+}
+
+static void damaged_rows_are_named(void **state)
+{
+    const fixture *f = *state;
+    long line;
+    assert_int_equal(rows_of(f, "a,b\n1,2\n3\n", &line), -1);
+    assert_int_equal(line, 3);
+    assert_int_equal(rows_of(f, "a,b\n1,2,3\n", &line), -1);
+    assert_int_equal(line, 2);
+    assert_int_equal(rows_of(f, "a,b\n1,\"2\n", &line), -1);
+    assert_int_equal(rows_of(f, "a,b\n1,2\"\n", &line), -1);
+    assert_int_equal(rows_of(f, "a,b\n\"1\"2,3\n", &line), -1);
+    assert_int_equal(rows_of(f, "a,\"b\n1,2\n", &line), -1);
+    assert_int_equal(line, 1);
+}
+
+static void zero_bytes_are_damage(void **state)
+{
+    const fixture *f = *state;
+    char path[400];
+    fixture_path(f, "t.csv", path);
+    FILE *file = fopen(path, "w");
+    fwrite("a,b\n\0\0\0\0\n", 1, 9, file);
+    fclose(file);
+    csv *table = NULL;
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_BAD_INPUT);
+    assert_null(table);
+}
+
+static void no_file_is_no_table(void **state)
+{
+    (void)state;
+    csv *table = (csv *)1;
+    assert_int_equal(csv_read("/nowhere/t.csv", &table, NULL), STATUS_OK);
+    assert_null(table);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(fields_are_written_and_read_back, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(only_whole_lines_are_rows, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(damaged_rows_are_named, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(zero_bytes_are_damage, fixture_setup, fixture_teardown),
+        cmocka_unit_test(no_file_is_no_table),
+    };
+    return cmocka_run_group_tests_name("csv", tests, NULL, NULL);
+}

@@ -1,0 +1,91 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "study/order.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+enum { COUNT = 50 };
+
+static void every_cell_once(void **state)
+{
+    (void)state;
+    for (uint64_t stream = 0; stream < 100; stream++) {
+        size_t order[COUNT];
+        bool seen[COUNT] = {false};
+        order_shuffle(7, stream, order, COUNT);
+        for (size_t i = 0; i < COUNT; i++) {
+            assert_true(order[i] < COUNT && !seen[order[i]]);
+            seen[order[i]] = true;
+        }
+    }
+}
+
+static void seed_and_stream_decide(void **state)
+{
+    (void)state;
+    size_t a[COUNT], b[COUNT];
+    order_shuffle(1, 0, a, COUNT);
+    order_shuffle(1, 0, b, COUNT);
+    assert_memory_equal(a, b, sizeof a);
+    static const uint64_t other[][2] = {{1, 1}, {2, 0}, {UINT64_C(1) << 32 | 1, 0}, {1, UINT64_C(1) << 32}, {1, ORDER_STREAM_SHARDS}};
+    for (size_t i = 0; i < sizeof other / sizeof other[0]; i++) {
+        order_shuffle(other[i][0], other[i][1], b, COUNT);
+        assert_memory_not_equal(a, b, sizeof a);
+    }
+}
+
+/* The order of a published study must never change: these were written down once. */
+static void orders_stay_what_they_were(void **state)
+{
+    (void)state;
+    static const size_t known[9] = {7, 4, 5, 0, 6, 8, 2, 1, 3};
+    size_t order[9];
+    order_shuffle(1, 0, order, 9);
+    assert_memory_equal(order, known, sizeof known);
+}
+
+/* 4! orders, 24000 draws: chi squared with 23 degrees of freedom is over 49.7 once in 1000 fair seeds. */
+static void orders_are_drawn_evenly(void **state)
+{
+    (void)state;
+    unsigned count[256] = {0};
+    for (uint64_t stream = 0; stream < 24000; stream++) {
+        size_t order[4];
+        order_shuffle(12345, stream, order, 4);
+        count[order[0] << 6 | order[1] << 4 | order[2] << 2 | order[3]]++;
+    }
+    double chi_squared = 0;
+    size_t kinds = 0;
+    for (size_t i = 0; i < 256; i++)
+        if (count[i]) {
+            double off = (double)count[i] - 1000;
+            chi_squared += off * off / 1000;
+            kinds++;
+        }
+    assert_int_equal(kinds, 24);
+    assert_true(chi_squared < 49.7);
+}
+
+static void small_counts(void **state)
+{
+    (void)state;
+    size_t order[1] = {99};
+    order_shuffle(1, 0, order, 0);
+    assert_int_equal(order[0], 99);
+    order_shuffle(1, 0, order, 1);
+    assert_int_equal(order[0], 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_cell_once),    cmocka_unit_test(seed_and_stream_decide), cmocka_unit_test(orders_stay_what_they_were),
+        cmocka_unit_test(orders_are_drawn_evenly), cmocka_unit_test(small_counts),
+    };
+    return cmocka_run_group_tests_name("order", tests, NULL, NULL);
+}

@@ -1,0 +1,168 @@
+#include "study_fixture.h"
+#include "study/table.h"
+#include <signal.h>
+#include <sys/resource.h>
+
+static const char header[] = "a,b\n";
+
+static table *open_table(const fixture *f)
+{
+    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    diagnostic why = {0};
+    table *t = NULL;
+    fixture_path(f, "rows.csv", path);
+    if (table_open(path, header, &t, &why) != STATUS_OK)
+        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+    return t;
+}
+
+static void append(table *t, const char *line)
+{
+    assert_int_equal(table_append(t, line, strlen(line), NULL), STATUS_OK);
+}
+
+static void expect(const fixture *f, const char *name, const char *text)
+{
+    char *there = fixture_text(f, name);
+    assert_string_equal(there, text);
+    free(there);
+}
+
+static void rows_add_up(void **state)
+{
+    const fixture *f = *state;
+    table *t = open_table(f);
+    expect(f, "rows.csv", "a,b\n");
+    append(t, "1,2\n");
+    append(t, "3,4\n5,6\n");
+    table_close(t);
+    t = open_table(f);
+    append(t, "7,8\n");
+    table_close(t);
+    expect(f, "rows.csv", "a,b\n1,2\n3,4\n5,6\n7,8\n");
+    assert_false(fixture_has(f, "rows.torn.csv"));
+}
+
+static void torn_ends_are_moved_aside(void **state)
+{
+    const fixture *f = *state;
+    fixture_write(f, "rows.csv", "a,b\n1,2\n3,");
+    table_close(open_table(f));
+    expect(f, "rows.csv", "a,b\n1,2\n");
+    expect(f, "rows.torn.csv", "3,\n");
+    fixture_write(f, "rows.csv", "a,b\n1,2\n5");
+    table *t = open_table(f);
+    append(t, "5,6\n");
+    table_close(t);
+    expect(f, "rows.csv", "a,b\n1,2\n5,6\n");
+    expect(f, "rows.torn.csv", "3,\n5\n");
+}
+
+static void torn_headers_are_written_again(void **state)
+{
+    const fixture *f = *state;
+    fixture_write(f, "rows.csv", "a,");
+    table_close(open_table(f));
+    expect(f, "rows.csv", "a,b\n");
+    expect(f, "rows.torn.csv", "a,\n");
+}
+
+/* Longer than the blocks in which the end is looked for. */
+static void long_torn_ends(void **state)
+{
+    const fixture *f = *state;
+    char *text = malloc(20000);
+    strcpy(text, "a,b\n1,2\n");
+    memset(text + 8, 'x', 15000);
+    text[15008] = 0;
+    fixture_write(f, "rows.csv", text);
+    table_close(open_table(f));
+    expect(f, "rows.csv", "a,b\n1,2\n");
+    strcat(text, "\n");
+    expect(f, "rows.torn.csv", text + 8);
+    free(text);
+}
+
+static void whole_lines_can_be_set_aside(void **state)
+{
+    const fixture *f = *state;
+    table *t = open_table(f);
+    append(t, "1,2\n3,4\n");
+    assert_int_equal(table_set_aside(t, 8, NULL), STATUS_OK);
+    assert_int_equal(table_set_aside(t, 8, NULL), STATUS_OK);
+    append(t, "5,6\n");
+    table_close(t);
+    expect(f, "rows.csv", "a,b\n1,2\n5,6\n");
+    expect(f, "rows.torn.csv", "3,4\n");
+}
+
+static void one_writer_at_a_time(void **state)
+{
+    const fixture *f = *state;
+    char path[400];
+    diagnostic why = {0};
+    table *t = open_table(f), *second = NULL;
+    fixture_path(f, "rows.csv", path);
+    assert_int_equal(table_open(path, header, &second, &why), STATUS_BAD_INPUT);
+    assert_null(second);
+    assert_non_null(strstr(why.what, "another process"));
+    assert_string_equal(why.file, path);
+    table_close(t);
+    table_close(open_table(f));
+}
+
+/* A file as large as it may be stands in for a full disk: a write comes back short, then fails. */
+static void a_full_disk_leaves_rows_whole(void **state)
+{
+    const fixture *f = *state;
+    struct rlimit before, small;
+    diagnostic why = {0};
+    table *t = open_table(f);
+    append(t, "1,2\n");
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    signal(SIGXFSZ, SIG_IGN);
+    small = before;
+    small.rlim_cur = 11;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    status code = table_append(t, "33,44\n", 6, &why);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    signal(SIGXFSZ, SIG_DFL);
+    assert_int_equal(code, STATUS_FAILURE);
+    assert_non_null(strstr(why.remedy, "make room"));
+    expect(f, "rows.csv", "a,b\n1,2\n");
+    append(t, "33,44\n");
+    table_close(t);
+    expect(f, "rows.csv", "a,b\n1,2\n33,44\n");
+}
+
+static void unwritable_places(void **state)
+{
+    const fixture *f = *state;
+    static const char *const places[] = {"scene.yaml/rows.csv", "nowhere/rows.csv"};
+    for (size_t i = 0; i < 2; i++) {
+        char path[400];
+        diagnostic why = {0};
+        table *t = NULL;
+        fixture_path(f, places[i], path);
+        assert_int_equal(table_open(path, header, &t, &why), STATUS_FAILURE);
+        assert_null(t);
+        assert_string_equal(why.file, path);
+        assert_true(why.what[0] && why.remedy[0]);
+    }
+    table_close(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(rows_add_up, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(torn_ends_are_moved_aside, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(torn_headers_are_written_again, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(long_torn_ends, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(whole_lines_can_be_set_aside, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(one_writer_at_a_time, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_full_disk_leaves_rows_whole, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(unwritable_places, fixture_setup, fixture_teardown),
+    };
+    return cmocka_run_group_tests_name("table", tests, NULL, NULL);
+}

@@ -1,0 +1,276 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "measure/clock.h"
+#include "measure/disturbances.h"
+#include "measure/proc_stat.h"
+#include "measure/small_file.h"
+#include "measure/usage.h"
+
+#include <ftw.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+static void proc_stat_is_read(void **state)
+{
+    (void)state;
+    /* user 100, nice 20, system 30, idle 1000, iowait 50, irq 4, softirq 5, steal 60, guest 70 (within user), 0 */
+    static const char text[] = "cpu  100 20 30 1000 50 4 5 60 70 0\n"
+                               "cpu0 50 10 15 500 25 2 3 30 35 0\n"
+                               "cpu1 50 10 15 500 25 2 2 30 35 0\n"
+                               "intr 12345 0 9 cpu2 1\n"
+                               "ctxt 99\n";
+    proc_stat machine;
+    assert_true(proc_stat_parse(text, 100.0, &machine));
+    assert_near(machine.busy_s, 2.19, 1e-12);
+    assert_near(machine.idle_s, 10.5, 1e-12);
+    assert_int_equal(machine.units, 2);
+}
+
+static void proc_stat_of_other_machines(void **state)
+{
+    (void)state;
+    proc_stat machine;
+    assert_true(proc_stat_parse("cpu 1 2 3 4", 1.0, &machine)); /* Linux 2.4: four counts, and no last newline */
+    assert_near(machine.busy_s, 6.0, 0.0);
+    assert_int_equal(machine.units, 0);
+    static const char *const bad[] = {"", "\n\n", "cpu", "cpu ", "cpu  1 2 3\n", "cpu  0 0 0 0 0 0 0 0 0 0\ncpu0 0 0 0 0\n",
+                                      "cpu0 1 2 3 4\n", "cpu  a b c d\n", "intr 1 2 3 4 5\n", "cpu  -1 2 3 4\n"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        assert_false(proc_stat_parse(bad[i], 100.0, &machine));
+    assert_false(proc_stat_parse("cpu  1 2 3 4\n", 0.0, &machine));
+}
+
+static void fields_are_found(void **state)
+{
+    (void)state;
+    static const char text[] = "Name:\tcuvette\nVmHWM:\t    1234 kB\nVmHWMx:\t 9 kB\nEmpty:\n";
+    assert_int_equal(small_file_field(text, "VmHWM"), 1234);
+    assert_int_equal(small_file_field(text, "Vm"), -1);
+    assert_int_equal(small_file_field(text, "Name"), -1);
+    assert_int_equal(small_file_field("", "Name"), -1);
+    char read[8];
+    assert_false(small_file_read("/nowhere", "/file", read, sizeof read));
+    assert_string_equal(read, "");
+    assert_true(small_file_read("/proc", "/self/status", read, sizeof read));
+    assert_int_equal(strlen(read), sizeof read - 1);
+}
+
+static void share_of_others(void **state)
+{
+    (void)state;
+    /* 2 s on 4 units are 8 s; 3 of the 5 busy seconds were others' */
+    usage d = {.wall_s = 2.0, .cpu_s = 2.0, .machine_busy_s = 5.0, .machine_units = 4.0};
+    assert_near(usage_others_share(&d), 0.375, 1e-15);
+    d.machine_busy_s = 1.99;
+    assert_near(usage_others_share(&d), 0.0, 0.0);
+    d.machine_busy_s = 20.0;
+    assert_near(usage_others_share(&d), 1.0, 0.0);
+    d.machine_busy_s = NAN;
+    assert_true(isnan(usage_others_share(&d)));
+    d.machine_busy_s = 5.0;
+    d.wall_s = 0.0;
+    assert_true(isnan(usage_others_share(&d)));
+}
+
+static void *burn(void *context)
+{
+    double end = clock_thread_cpu_s() + 0.02;
+    while (clock_thread_cpu_s() < end)
+        *(volatile int *)context += 1;
+    return NULL;
+}
+
+static void usage_counts_all_threads(void **state)
+{
+    (void)state;
+    usage before = usage_now();
+    pthread_t other;
+    int spins[2] = {0, 0};
+    assert_int_equal(pthread_create(&other, NULL, burn, &spins[0]), 0);
+    burn(&spins[1]);
+    pthread_join(other, NULL);
+    struct timespec pause = {.tv_nsec = 1000000};
+    nanosleep(&pause, NULL);
+    usage d = usage_since(&before);
+    assert_true(d.cpu_s >= 0.039); /* both burn loops are measured by CPU clocks */
+    assert_true(d.wall_s > 0.0 && d.wall_s < before.wall_s + d.wall_s);
+    assert_true(d.voluntary_switches >= 1 && d.involuntary_switches >= 0);
+    assert_true(d.machine_units >= 1.0);
+    assert_true(isnan(d.machine_busy_s) || d.machine_busy_s >= 0.0);
+    double share = usage_others_share(&d);
+    assert_true(isnan(share) || (share >= 0.0 && share <= 1.0));
+}
+
+static void absent_switches_stay_absent(void **state)
+{
+    (void)state;
+    usage before = usage_now();
+    before.voluntary_switches = -1;
+    before.machine_busy_s = NAN;
+    usage d = usage_since(&before);
+    assert_int_equal(d.voluntary_switches, -1);
+    assert_true(isnan(d.machine_busy_s));
+}
+
+static void peak_memory_is_remembered(void **state)
+{
+    (void)state;
+    enum { BYTES = 48 << 20 };
+    int64_t before = usage_now().peak_rss_bytes;
+    assert_true(before > 0);
+    char *block = malloc(BYTES);
+    assert_non_null(block);
+    memset(block, 1, BYTES);
+    assert_int_equal(block[BYTES / 2], 1);
+    free(block);
+    usage later = usage_now();
+    assert_true(later.peak_rss_bytes >= BYTES && later.peak_rss_bytes >= before);
+    assert_int_equal(usage_since(&later).peak_rss_bytes >= later.peak_rss_bytes, 1); /* no difference is taken */
+}
+
+static void assert_grows(int64_t first, int64_t second)
+{
+    assert_true((first == -1 && second == -1) || (first >= 0 && second > first));
+}
+
+static void hardware_counts_grow_or_are_absent(void **state)
+{
+    (void)state;
+    hardware_counter *counter = hardware_counter_create();
+    assert_non_null(counter);
+    int spins = 0;
+    burn(&spins);
+    hardware_counts first = hardware_counter_read(counter);
+    pthread_t other;
+    assert_int_equal(pthread_create(&other, NULL, burn, &spins), 0);
+    pthread_join(other, NULL);
+    hardware_counts second = hardware_counter_read(counter);
+    assert_grows(first.cycles, second.cycles);
+    assert_grows(first.instructions, second.instructions);
+    assert_true(second.branch_misses >= first.branch_misses && first.branch_misses >= -1);
+    assert_true(second.cache_misses >= first.cache_misses && first.cache_misses >= -1);
+    hardware_counter_destroy(counter);
+
+    hardware_counts none = hardware_counter_read(NULL);
+    assert_true(none.cycles == -1 && none.instructions == -1 && none.branch_misses == -1 && none.cache_misses == -1);
+    hardware_counter_destroy(NULL);
+}
+
+/* --- a machine made of files --- */
+
+static void put(const char *root, const char *path, const char *text)
+{
+    char full[512];
+    snprintf(full, sizeof full, "%s%s", root, path);
+    for (char *slash = strchr(full + strlen(root) + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        mkdir(full, 0777);
+        *slash = '/';
+    }
+    FILE *file = fopen(full, "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+static int remove_entry(const char *path, const struct stat *s, int kind, struct FTW *where)
+{
+    (void)s, (void)kind, (void)where;
+    return remove(path);
+}
+
+static void collect(void *context, const char *text)
+{
+    char *all = context;
+    strcat(strcat(all, text), "\n");
+}
+
+static char *make_root(char *root, size_t size)
+{
+    const char *parent = getenv("TMPDIR");
+    snprintf(root, size, "%s/cuvette-usage-XXXXXX", parent ? parent : "/tmp");
+    assert_non_null(mkdtemp(root));
+    return root;
+}
+
+static void a_disturbed_machine_is_described(void **state)
+{
+    (void)state;
+    char root[256], said[2048] = "";
+    make_root(root, sizeof root);
+    put(root, "/sys/devices/system/cpu/cpufreq/policy0/scaling_governor", "performance\n");
+    put(root, "/sys/devices/system/cpu/cpufreq/policy4/scaling_governor", "powersave\n");
+    put(root, "/sys/devices/system/cpu/intel_pstate/no_turbo", "0\n");
+    put(root, "/sys/devices/system/cpu/smt/active", "1\n");
+    put(root, "/sys/fs/cgroup/cpu.max", "150000 100000\n");
+    put(root, "/proc/cpuinfo", "processor\t: 0\nflags\t\t: fpu sse2 hypervisor lahf_lm\n");
+    put(root, "/proc/loadavg", "3.25 1.00 0.50 1/200 4242\n");
+    put(root, "/proc/meminfo", "MemTotal: 8000000 kB\nSwapTotal:  4096000 kB\nSwapFree:  1024000 kB\n");
+    disturbances_of_machine(root, collect, said);
+    assert_string_equal(said, "governor powersave\n"
+                              "turbo on\n"
+                              "threads share cores (SMT on)\n"
+                              "virtual machine: its hypervisor may run others on the same cores\n"
+                              "control group limits the process to 1.5 units\n"
+                              "load 3.2\n"
+                              "swap in use, 3000 MiB\n");
+    assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
+}
+
+static void a_quiet_machine_says_nothing(void **state)
+{
+    (void)state;
+    char root[256], said[2048] = "";
+    make_root(root, sizeof root);
+    put(root, "/sys/devices/system/cpu/cpufreq/policy0/scaling_governor", "performance\n");
+    put(root, "/sys/devices/system/cpu/intel_pstate/no_turbo", "1\n");
+    put(root, "/sys/devices/system/cpu/cpufreq/boost", "0\n");
+    put(root, "/sys/devices/system/cpu/smt/active", "0\n");
+    put(root, "/sys/fs/cgroup/cpu.max", "max 100000\n");
+    put(root, "/proc/cpuinfo", "processor\t: 0\nflags\t\t: fpu sse2\nbugs : hypervisor\n");
+    put(root, "/proc/loadavg", "0.12 1.00 0.50 1/200 4242\n");
+    put(root, "/proc/meminfo", "MemTotal: 8000000 kB\nSwapTotal:  4096000 kB\nSwapFree:  4096000 kB\n");
+    disturbances_of_machine(root, collect, said);
+    assert_string_equal(said, "");
+    assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
+    disturbances_of_machine("/nowhere", collect, said); /* a system without /proc and /sys */
+    assert_string_equal(said, "");
+}
+
+static void this_machine_is_looked_at(void **state)
+{
+    (void)state;
+    char said[4096] = "";
+    usage_disturbances(0.05, collect, said);
+    assert_null(strstr(said, "\n\n"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(proc_stat_is_read),
+        cmocka_unit_test(proc_stat_of_other_machines),
+        cmocka_unit_test(fields_are_found),
+        cmocka_unit_test(share_of_others),
+        cmocka_unit_test(usage_counts_all_threads),
+        cmocka_unit_test(absent_switches_stay_absent),
+        cmocka_unit_test(peak_memory_is_remembered),
+        cmocka_unit_test(hardware_counts_grow_or_are_absent),
+        cmocka_unit_test(a_disturbed_machine_is_described),
+        cmocka_unit_test(a_quiet_machine_says_nothing),
+        cmocka_unit_test(this_machine_is_looked_at),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,59 @@
+#!/bin/bash
+# Which loops of the kernels gcc vectorised, for each instruction set. A loop under the comment VECTORISE must be
+# vectorised for AVX2 and AVX-512; plain SSE2 may stay scalar. KERNEL_FLAGS and KERNEL_FLAGS_<isa> come from the Makefile.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+cc=${KERNEL_CC:-gcc}
+if ! command -v "$cc" >/dev/null; then
+    echo "# no $cc, whose report this reads"
+    exit 77
+fi
+if [[ -z ${KERNEL_FLAGS:-} ]]; then
+    exec make --no-print-directory vectorise # run by hand: the Makefile knows the flags
+fi
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+case_number=0 failed=0
+read -ra flags <<<"$KERNEL_FLAGS"
+
+# report FILE ISA: compiles, and prints "line bytes" for every loop of the file itself that was vectorised.
+report() {
+    local isa_flags=KERNEL_FLAGS_$2
+    read -ra isa_flags <<<"${!isa_flags}"
+    "$cc" "${flags[@]}" "${isa_flags[@]}" -DKERNEL_ISA="$2" -fopt-info-vec-all="$folder/all" -c -o "$folder/object" "$1" || return
+    awk -F: -v file="$1" '$1 == file && /loop vectorized using/ {
+        match($0, /using [0-9]+/); bytes = substr($0, RSTART + 6, RLENGTH - 6)
+        if (bytes > width[$2]) width[$2] = bytes + 0 }
+        END { for (line in width) print line, width[line] }' "$folder/all" | sort -n >"$folder/vectorised"
+}
+
+while read -r file; do
+    marks=$(awk '/\/\* VECTORISE \*\// { marked = 1; next } marked { print FNR ($0 ~ /for *\(/ ? "" : "!"); marked = 0 }' "$file")
+    for isa in sse2 avx2 avx512; do
+        case_number=$((case_number + 1))
+        if ! report "$file" "$isa"; then
+            echo "not ok $case_number - $file for $isa does not compile"
+            failed=1
+            continue
+        fi
+        scalar=()
+        for line in $marks; do
+            grep -q "^$line " "$folder/vectorised" || scalar+=("$line")
+        done
+        summary=$(awk '{ printf " %s(%s)", $1, $2 }' "$folder/vectorised")
+        if ((${#scalar[@]})) && [[ $isa != sse2 ]]; then
+            echo "not ok $case_number - $file for $isa"
+            failed=1
+        else
+            echo "ok $case_number - $file for $isa"
+        fi
+        echo "# $isa: $file: lines (bytes of a vector):${summary:- none}"
+        for line in "${scalar[@]}"; do
+            echo "# $isa: $file:${line%!}: scalar, $([[ $line == *! ]] && echo 'no for loop follows the mark' ||
+                awk -v at="$file:$line:" 'index($0, at) == 1 && /vectorize loop/ { mine = 1 }
+                    mine && sub(/.*not vectorized: /, "") { print; exit }' "$folder/all")"
+        done
+    done
+done < <(find src -name '*_kernel.c' | sort)
+exit $failed
