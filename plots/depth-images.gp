@@ -1,5 +1,5 @@
 # The picture by recursion depth.
-# needs: depth/images/0000.png
+# needs: depth/images/*.png tables/depth.tsv
 width = 1000; height = 790
 load "plots/style.gp"
 

@@ -11,8 +11,7 @@ published_0 = first(published."depth.csv", "depth=0", "cpu_s")
 
 set multiplot layout 1,2 margins 0.08,0.985,0.13,0.92 spacing 0.15
 set xlabel "recursion depth"
-set xrange [-0.5:*]
-set offsets 0,0.5,0,0
+set xrange [-0.5:largest(rows, "render.depth") + 0.5]
 set xtics 1
 
 set title "Time and rays of a frame"

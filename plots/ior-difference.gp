@@ -1,5 +1,5 @@
 # What the indices change: luminance of each pair's picture less that of pair 1, which has no interface at all.
-# needs: tables/ior.tsv ior/images/0000.pfm ior/images/0001.pfm
+# needs: tables/ior.tsv ior/images/0000.pfm ior/images/*.pfm
 width = 1000; height = 345
 load "plots/style.gp"
 

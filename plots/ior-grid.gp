@@ -1,5 +1,5 @@
 # Pictures over the grid of the vessel's and the liquid's refractive index; each shows the vessel alone.
-# needs: tables/ior-grid.tsv ior-grid/images/0000.png
+# needs: tables/ior-grid.tsv ior-grid/images/*.png
 width = 800; height = 1150
 load "plots/style.gp"
 
@@ -13,8 +13,8 @@ set label 1 "refractive index of the liquid" at screen 0.54,0.983 center font ",
 set label 2 "refractive index of the vessel" at screen 0.018,0.48 center rotate font ",12"
 do for [i=1:words(vessel)] {
     do for [k=1:words(liquid)] {
-        cell = text(rows, sprintf("vessel.ior=%s liquid.ior=%s", word(vessel, i), word(liquid, k)), "cell")
-        file = image("ior-grid", int(cell eq "" ? -1 : "1".cell) - 10000)
+        cell = first(rows, sprintf("vessel.ior=%s liquid.ior=%s", word(vessel, i), word(liquid, k)), "cell")
+        file = cell >= 0 ? image("ior-grid", int(cell)) : ""
         set title (i == 1 ? word(liquid, k) : "")
         set ylabel (k == 1 ? word(vessel, i) : "") rotate by 0
         if (readable(file)) {

@@ -1,5 +1,5 @@
 # The pictures of the four pairs of refractive indices.
-# needs: tables/ior.tsv ior/images/0000.png
+# needs: tables/ior.tsv ior/images/*.png
 width = 1000; height = 800
 load "plots/style.gp"
 

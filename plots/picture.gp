@@ -7,7 +7,7 @@ set size ratio -1
 set autoscale xfix
 set autoscale yfix
 set title offset 0,-0.9
-cell_value(rows, cell, column) = first(rows, sprintf("cell=%04d", cell), column)
+cell_value(rows, cell, column) = first(rows, sprintf("cell=%d", cell), column)
 # A panel whose picture is missing.
 empty = "plot [0:1] [0:1] NaN notitle"
 # Size of a PNG, from its header.

@@ -1,8 +1,12 @@
 # Columns by name from a table with a header line (tab separated .tsv, or comma separated .csv whose quoted fields
 # hold no commas), for the lines where other columns have given values; tab separated, lines with NA are left out.
 #   awk -f select.awk -v where='render.schedule=rows warmup=0' -v columns='render.threads wall_s_median' FILE
-# A column that the table lacks counts as NA. `a-b` is not arithmetic: columns are only copied.
+# A column that the table lacks counts as NA. Values that are numbers are compared as numbers.
+function same(a, b) {
+    return a == b || (a ~ number && b ~ number && a + 0 == b + 0)
+}
 BEGIN {
+    number = "^[-+]?[0-9]+[.]?[0-9]*([eE][-+]?[0-9]+)?$"
     conditions = split(where, condition, " ")
     wanted = split(columns, name, " ")
 }
@@ -19,7 +23,7 @@ FNR == 1 {
     for (i = 1; i <= conditions; i++) {
         cut = index(condition[i], "=")
         key = substr(condition[i], 1, cut - 1)
-        if (!(key in place) || field[place[key]] != substr(condition[i], cut + 1)) next
+        if (!(key in place) || !same(field[place[key]], substr(condition[i], cut + 1))) next
     }
     line = ""
     for (i = 1; i <= wanted; i++) {

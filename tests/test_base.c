@@ -556,6 +556,32 @@ static void a_full_disk_keeps_the_old_file(void **state)
     free(path);
 }
 
+/* Space that comes back before the commit does not bring back what was lost. */
+static void an_early_failure_is_remembered(void **state)
+{
+    (void)state;
+    char *path = in_folder("a");
+    struct rlimit before, small;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    small = before;
+    small.rlim_cur = 100;
+    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    file_writer writer;
+    diagnostic why = {0};
+    assert_int_equal(file_writer_open(&writer, path, NULL), STATUS_OK);
+    setvbuf(writer.stream, NULL, _IONBF, 0);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    char block[300] = {0};
+    size_t written = fwrite(block, 1, sizeof block, writer.stream);
+    setrlimit(RLIMIT_FSIZE, &before);
+    signal(SIGXFSZ, handler);
+    assert_true(written < sizeof block);
+    assert_int_equal(file_writer_commit(&writer, &why), STATUS_FAILURE);
+    assert_string_equal(why.file, path);
+    assert_int_equal(entries_in(folder), 0);
+    free(path);
+}
+
 static void unwritable_places_are_refused(void **state)
 {
     (void)state;
@@ -668,6 +694,7 @@ int main(void)
         file_test(links_stay_links),
         file_test(devices_are_written_straight),
         file_test(a_full_disk_keeps_the_old_file),
+        file_test(an_early_failure_is_remembered),
         file_test(unwritable_places_are_refused),
         file_test(minus_is_standard_output),
         file_test(folders_are_made_with_their_parents),

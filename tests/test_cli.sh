@@ -72,7 +72,7 @@ run render "$scene" -o b.png "${small[@]}"
 check "the same scene gives the same bytes" cmp a.png b.png
 run render "$scene" -o c.png --bits 16 "${small[@]}"
 check "--bits 16 gives a PNG of 16 bits" is "$(od -An -tu1 -j24 -N1 c.png | tr -d ' ')" 16
-check "no other files are left" is "$(find . -maxdepth 1 -name '*[a-c].p*' -o -maxdepth 1 -name '.*[a-c].*' | wc -l)" 4
+check "no other files are left" is "$(find . -type f -printf '%f\n' | LC_ALL=C sort | tr '\n' ' ')" "a.jpg a.pfm a.png b.png c.png check.log err out "
 
 # --- the JSON account
 run render "$scene" --json "${small[@]}" --set render.depth=3 --set lamp.position.x=2 --set render.threads=3
@@ -207,7 +207,8 @@ check "study merge joins the shards" is "$(wc -l <parts/tiny/rows.csv)" "$lines"
 # --- broken pipes, full disks, closed descriptors, signals
 "$program" params --json 2>err | head -1 >/dev/null
 check "a reader who leaves is no drama" is "$(<err)" ""
-(trap '' PIPE; "$program" render "$scene" --json "${small[@]}" 2>err; echo $? >code) | sleep 0
+# shellcheck disable=SC2216
+(sleep 0.3; "$program" render "$scene" --json "${small[@]}" 2>err; echo $? >code) | true
 check "a closed pipe exits 1 without words" is "$(cat code err)" 1
 if [[ -w /dev/full ]]; then
     for words in params "params --json" machine --help "render --help" "render $scene --json --set render.width=8"; do
@@ -233,6 +234,19 @@ for signal in INT TERM; do
     check "SIG$signal: one line says so" is "$(grep -c interrupted err)" 1
     check "SIG$signal: the account says that it is a part" json_is '.whole == false'
 done
+sed -e 's/^study: .*/study: long/' -e 's/render.width: 40, render.height: 30/render.width: 1000, render.height: 750/' \
+    -e 's/repetitions: 2/repetitions: 500/' studies/tiny.study >studies/long.study
+"$program" study run studies/long.study --results res >out 2>err &
+job=$!
+for _ in {1..100}; do # until two rows are there
+    [[ -e res/long/rows.csv ]] && (($(wc -l <res/long/rows.csv) > 2)) && break
+    sleep 0.1
+done
+kill -INT $job
+wait $job
+check "SIGINT ends a study with 130" is $? 130
+check "SIGINT: one line says so, and how to go on" is "$(grep -c 'interrupted.*run it again' err) $(wc -l <err)" "1 1"
+check "SIGINT: its rows are whole" awk -F, 'NR == 1 {n = NF} NF < n {bad = 1} END {exit bad || NR < 3}' res/long/rows.csv
 if command -v script >/dev/null; then
     script -qec "'$program' rendr" /dev/null >tty.txt 2>&1
     check "errors have colour on a terminal" grep -q $'\033\[' tty.txt

@@ -15,12 +15,28 @@
 static void t_quantile_agrees_with_tables(void **state)
 {
     (void)state;
-    static const struct { size_t freedom; double t, tolerance; } table[] = {
-        {1, 12.7062047, 1e-6}, {2, 4.3026527, 1e-6},   {3, 3.1824463, 1e-6},  {4, 2.7764451, 1e-6},
-        {5, 2.5705818, 1e-6},  {10, 2.2281389, 1e-6},  {20, 2.0859634, 1e-6}, {30, 2.0422725, 1e-6},
-        {60, 2.0002978, 1e-6}, {120, 1.9799304, 1e-6}, {6, 2.447, 5e-4},      {7, 2.365, 5e-4},
-        {8, 2.306, 5e-4},      {9, 2.262, 5e-4},       {15, 2.131, 5e-4},     {25, 2.060, 5e-4},
-        {50, 2.009, 5e-4},     {100, 1.984, 5e-4},     {1000000000, 1.9599640, 1e-6}};
+    static const struct {
+        size_t freedom;
+        double t, tolerance;
+    } table[] = {{1, 12.7062047, 1e-6},
+                 {2, 4.3026527, 1e-6},
+                 {3, 3.1824463, 1e-6},
+                 {4, 2.7764451, 1e-6},
+                 {5, 2.5705818, 1e-6},
+                 {10, 2.2281389, 1e-6},
+                 {20, 2.0859634, 1e-6},
+                 {30, 2.0422725, 1e-6},
+                 {60, 2.0002978, 1e-6},
+                 {120, 1.9799304, 1e-6},
+                 {6, 2.447, 5e-4},
+                 {7, 2.365, 5e-4},
+                 {8, 2.306, 5e-4},
+                 {9, 2.262, 5e-4},
+                 {15, 2.131, 5e-4},
+                 {25, 2.060, 5e-4},
+                 {50, 2.009, 5e-4},
+                 {100, 1.984, 5e-4},
+                 {1000000000, 1.9599640, 1e-6}};
     for (size_t i = 0; i < COUNT(table); i++)
         assert_near(student_t_975(table[i].freedom), table[i].t, table[i].tolerance);
     assert_true(isnan(student_t_975(0)));
@@ -51,9 +67,10 @@ static void t_quantile_falls_without_a_step(void **state)
 static void median_interval_agrees_with_the_sign_test(void **state)
 {
     (void)state;
-    static const struct { size_t n, r; } table[] = {{6, 0},  {7, 0},  {8, 0},  {9, 1},   {10, 1},  {11, 1}, {12, 2},
-                                                    {15, 3}, {17, 4}, {20, 5}, {25, 7},  {30, 9},  {35, 11}, {40, 13},
-                                                    {45, 15}, {50, 17}, {60, 21}, {80, 30}, {100, 39}};
+    static const struct {
+        size_t n, r;
+    } table[] = {{6, 0},  {7, 0},  {8, 0},   {9, 1},   {10, 1},  {11, 1},  {12, 2},  {15, 3},  {17, 4},  {20, 5},
+                 {25, 7}, {30, 9}, {35, 11}, {40, 13}, {45, 15}, {50, 17}, {60, 21}, {80, 30}, {100, 39}};
     double values[100];
     for (size_t i = 0; i < COUNT(table); i++) {
         size_t n = table[i].n;
@@ -127,14 +144,10 @@ static void a_nan_is_not_hidden(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(t_quantile_agrees_with_tables),
-        cmocka_unit_test(t_quantile_agrees_with_closed_forms),
-        cmocka_unit_test(t_quantile_falls_without_a_step),
-        cmocka_unit_test(median_interval_agrees_with_the_sign_test),
-        cmocka_unit_test(too_few_values_have_no_interval),
-        cmocka_unit_test(summary_of_students_sleep),
-        cmocka_unit_test(median_interval_of_many_values),
-        cmocka_unit_test(a_nan_is_not_hidden),
+        cmocka_unit_test(t_quantile_agrees_with_tables),   cmocka_unit_test(t_quantile_agrees_with_closed_forms),
+        cmocka_unit_test(t_quantile_falls_without_a_step), cmocka_unit_test(median_interval_agrees_with_the_sign_test),
+        cmocka_unit_test(too_few_values_have_no_interval), cmocka_unit_test(summary_of_students_sleep),
+        cmocka_unit_test(median_interval_of_many_values),  cmocka_unit_test(a_nan_is_not_hidden),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -92,8 +92,13 @@ static void assert_scatter_is_fair(const topology *machine, int threads_a_core)
 static void scatter_uses_every_core_once_before_any_twice(void **state)
 {
     (void)state;
-    static const struct { const char *tree; int threads; } trees[] = {
-        {"pack:2 core:4 pu:2", 2}, {"pack:3 core:5 pu:4", 4}, {"pack:4 l3:2 core:3 pu:1", 1}, {"numa:2 core:3 pu:2", 2}};
+    static const struct {
+        const char *tree;
+        int threads;
+    } trees[] = {{"pack:2 core:4 pu:2", 2},
+                 {"pack:3 core:5 pu:4", 4},
+                 {"pack:4 l3:2 core:3 pu:1", 1},
+                 {"numa:2 core:3 pu:2", 2}};
     for (size_t i = 0; i < sizeof trees / sizeof trees[0]; i++) {
         topology *machine = described(trees[i].tree);
         assert_scatter_is_fair(machine, trees[i].threads);

@@ -45,8 +45,16 @@ static void proc_stat_of_other_machines(void **state)
     assert_true(proc_stat_parse("cpu 1 2 3 4", 1.0, &machine)); /* Linux 2.4: four counts, and no last newline */
     assert_near(machine.busy_s, 6.0, 0.0);
     assert_int_equal(machine.units, 0);
-    static const char *const bad[] = {"", "\n\n", "cpu", "cpu ", "cpu  1 2 3\n", "cpu  0 0 0 0 0 0 0 0 0 0\ncpu0 0 0 0 0\n",
-                                      "cpu0 1 2 3 4\n", "cpu  a b c d\n", "intr 1 2 3 4 5\n", "cpu  -1 2 3 4\n"};
+    static const char *const bad[] = {"",
+                                      "\n\n",
+                                      "cpu",
+                                      "cpu ",
+                                      "cpu  1 2 3\n",
+                                      "cpu  0 0 0 0 0 0 0 0 0 0\ncpu0 0 0 0 0\n",
+                                      "cpu0 1 2 3 4\n",
+                                      "cpu  a b c d\n",
+                                      "intr 1 2 3 4 5\n",
+                                      "cpu  -1 2 3 4\n"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         assert_false(proc_stat_parse(bad[i], 100.0, &machine));
     assert_false(proc_stat_parse("cpu  1 2 3 4\n", 0.0, &machine));

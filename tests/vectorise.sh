@@ -21,11 +21,18 @@ read -ra flags <<<"$KERNEL_FLAGS"
 report() {
     local isa_flags=KERNEL_FLAGS_$2
     read -ra isa_flags <<<"${!isa_flags}"
-    "$cc" "${flags[@]}" "${isa_flags[@]}" -DKERNEL_ISA="$2" -fopt-info-vec-all="$folder/all" -c -o "$folder/object" "$1" || return
+    "$cc" "${flags[@]}" "${isa_flags[@]}" -DKERNEL_ISA="$2" -fopt-info-vec="$folder/all" \
+        -fdump-tree-vect-details="$folder/details" -c -o "$folder/object" "$1" || return
     awk -F: -v file="$1" '$1 == file && /loop vectorized using/ {
-        match($0, /using [0-9]+/); bytes = substr($0, RSTART + 6, RLENGTH - 6)
-        if (bytes > width[$2]) width[$2] = bytes + 0 }
+        match($0, /using [0-9]+/); bytes = substr($0, RSTART + 6, RLENGTH - 6) + 0
+        if (bytes > width[$2]) width[$2] = bytes }
         END { for (line in width) print line, width[line] }' "$folder/all" | sort -n >"$folder/vectorised"
+}
+
+# Why a loop stayed scalar: gcc's first objection, which is about the widest vectors; its short report gives the last one.
+reason() { # reason FILE LINE
+    awk -v loop="Analyzing loop at $1:$2" '/Analyzing loop at/ { mine = $0 == loop }
+        mine && sub(/.*not vectorized: /, "") { print; exit }' "$folder/details"
 }
 
 while read -r file; do
@@ -51,8 +58,7 @@ while read -r file; do
         echo "# $isa: $file: lines (bytes of a vector):${summary:- none}"
         for line in "${scalar[@]}"; do
             echo "# $isa: $file:${line%!}: scalar, $([[ $line == *! ]] && echo 'no for loop follows the mark' ||
-                awk -v at="$file:$line:" 'index($0, at) == 1 && /vectorize loop/ { mine = 1 }
-                    mine && sub(/.*not vectorized: /, "") { print; exit }' "$folder/all")"
+                reason "$file" "$line")"
         done
     done
 done < <(find src -name '*_kernel.c' | sort)

@@ -1,6 +1,6 @@
-/* The program `cuvette`: a table of subcommands, and what they share. A subcommand parses its own options with argp, does its
- * work through the rooms below, and returns a status with the reason in a diagnostic; main.c alone prints the error and
- * turns the status into the exit code (0 done, 1 the machine failed, 2 wrong input, 130 interrupted).
+/* The program `cuvette`: a table of subcommands, and what they share. A subcommand parses its own options with argp,
+ * does its work through the rooms below, and returns a status with the reason in a diagnostic; main.c alone prints
+ * the error and turns the status into the exit code (0 done, 1 the machine failed, 2 wrong input, 130 interrupted).
  * Data goes to standard output, progress and errors to standard error. */
 #ifndef CUVETTE_CLI_CLI_H
 #define CUVETTE_CLI_CLI_H

@@ -38,7 +38,8 @@ static char *table_text(const command *table, size_t count, const char *about, c
     return whole;
 }
 
-static status unknown_command(const command *table, size_t count, const char *program, const char *word, diagnostic *why)
+static status unknown_command(const command *table, size_t count, const char *program, const char *word,
+                              diagnostic *why)
 {
     const char *names[COMMANDS_MAX];
     size_t named = 0;

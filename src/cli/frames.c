@@ -106,7 +106,8 @@ static status render_all(renderer *r, const scene *s, size_t count, const render
     return ended;
 }
 
-status frames_render(const scene *s, isa level, size_t count, const render_options *options, frames *out, diagnostic *why)
+status frames_render(const scene *s, isa level, size_t count, const render_options *options, frames *out,
+                     diagnostic *why)
 {
     *out = (frames){.wall_s = calloc(count + 1, sizeof(double)), .cpu_s = calloc(count + 1, sizeof(double))};
     if (!out->wall_s || !out->cpu_s)

@@ -54,9 +54,7 @@ static bool is_flat(const json_t *list)
 {
     size_t i;
     json_t *item;
-    json_array_foreach(list, i, item)
-        if (json_is_array(item) || json_is_object(item))
-            return false;
+    json_array_foreach(list, i, item) if (json_is_array(item) || json_is_object(item)) return false;
     return true;
 }
 
@@ -66,7 +64,8 @@ static bool write_list(FILE *stream, const json_t *list, int indent)
     json_t *item;
     bool flat = is_flat(list), good = true;
     fputc('[', stream);
-    json_array_foreach(list, i, item) {
+    json_array_foreach(list, i, item)
+    {
         fputs(i ? "," : "", stream);
         if (flat)
             fputs(i ? " " : "", stream);
@@ -86,7 +85,8 @@ static bool write_object(FILE *stream, json_t *object, int indent)
     json_t *value;
     bool good = true, first = true;
     fputc('{', stream);
-    json_object_foreach(object, key, value) {
+    json_object_foreach(object, key, value)
+    {
         fprintf(stream, "%s\n%*s", first ? "" : ",", indent + 2, "");
         good = write_text(stream, key) && good;
         fputs(": ", stream);

@@ -1,5 +1,5 @@
-/* JSON out: jansson builds the value, this writes it. Reals get the fewest digits that read back the same, lists of plain
- * values stand on one line, keys keep the order they were put in. Ownership: json_* return new references. */
+/* JSON out: jansson builds the value, this writes it. Reals get the fewest digits that read back the same, lists of
+ * plain values stand on one line, keys keep the order they were put in. Ownership: json_* return new references. */
 #ifndef CUVETTE_CLI_JSON_H
 #define CUVETTE_CLI_JSON_H
 

@@ -37,8 +37,8 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 static const struct argp parser = {
     .options = options,
     .parser = take_option,
-    .doc = "Print what this machine is: its processors and caches, the step and the cost of its clocks, the vector instructions "
-           "in use, and what could disturb a measurement now.",
+    .doc = "Print what this machine is: its processors and caches, the step and the cost of its clocks, the vector "
+           "instructions in use, and what could disturb a measurement now.",
 };
 
 typedef struct account {
@@ -122,7 +122,8 @@ static status print_json(const account *a, diagnostic *why)
     bad |= json_object_set_new(o, "packages", json_integer(topology_package_count(a->machine)));
     bad |= json_object_set_new(o, "isa", json_string(isa_name(a->chosen)));
     bad |= json_object_set_new(o, "isa_best", json_string(isa_name(a->best)));
-    bad |= json_object_set_new(o, "kernel", json_pack("[s,s,s]", a->kernel.sysname, a->kernel.release, a->kernel.machine));
+    bad |=
+        json_object_set_new(o, "kernel", json_pack("[s,s,s]", a->kernel.sysname, a->kernel.release, a->kernel.machine));
     bad |= json_object_set_new(o, "wall_clock", clock_json(a->wall));
     bad |= json_object_set_new(o, "thread_clock", clock_json(a->cpu));
     bad |= json_object_set_new(o, "hardware_counters", json_boolean(a->has_hardware_counters));

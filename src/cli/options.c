@@ -134,7 +134,8 @@ status options_parse(const struct argp *argp, unsigned flags, int argc, char **a
     return error ? diagnose(why, STATUS_FAILURE, "", "cannot read the command line: %s", strerror(error)) : STATUS_OK;
 }
 
-status options_integer(const char *option, const char *value, int64_t lowest, int64_t highest, int64_t *out, diagnostic *why)
+status options_integer(const char *option, const char *value, int64_t lowest, int64_t highest, int64_t *out,
+                       diagnostic *why)
 {
     int64_t number;
     if (!number_parse_int(value, &number) || number < lowest || number > highest) {
@@ -149,7 +150,8 @@ status options_integer(const char *option, const char *value, int64_t lowest, in
     return STATUS_OK;
 }
 
-status options_unknown_word(const char *what, const char *wrong, const char *const *words, size_t count, diagnostic *why)
+status options_unknown_word(const char *what, const char *wrong, const char *const *words, size_t count,
+                            diagnostic *why)
 {
     char remedy[256] = "give one of:";
     const char *nearest = text_nearest(wrong, words, count);

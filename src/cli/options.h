@@ -1,6 +1,6 @@
-/* argp with errors as values: argp prints two lines of its own and exits, whereas here a mistake on the command line becomes a
- * diagnostic that names the option at fault and the nearest right one. --help, --usage and --version are argp's: they
- * print and exit. Ownership: nothing is kept. */
+/* argp with errors as values: argp prints two lines of its own and exits, whereas here a mistake on the command line
+ * becomes a diagnostic that names the option at fault and the nearest right one. --help, --usage and --version are
+ * argp's: they print and exit. Ownership: nothing is kept. */
 #ifndef CUVETTE_CLI_OPTIONS_H
 #define CUVETTE_CLI_OPTIONS_H
 
@@ -22,9 +22,11 @@ status options_parse(const struct argp *argp, unsigned flags, int argc, char **a
 void options_locate(diagnostic *why, const char *program);
 
 /* The value of an option as an integer lowest..highest. */
-status options_integer(const char *option, const char *value, int64_t lowest, int64_t highest, int64_t *out, diagnostic *why);
+status options_integer(const char *option, const char *value, int64_t lowest, int64_t highest, int64_t *out,
+                       diagnostic *why);
 
 /* "there is no WHAT 'wrong'", with the nearest of words as the remedy, or else all of them. */
-status options_unknown_word(const char *what, const char *wrong, const char *const *words, size_t count, diagnostic *why);
+status options_unknown_word(const char *what, const char *wrong, const char *const *words, size_t count,
+                            diagnostic *why);
 
 #endif

@@ -2,13 +2,11 @@
 #include "base/text.h"
 #include "cli/timeline.h"
 #include "image/heatmap.h"
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 typedef struct named_file {
     const char *option, *path;
@@ -29,29 +27,51 @@ static bool ends_with(const char *path, const char *ending)
     return length > tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
+static bool same_entry(const char *a, const char *b)
+{
+    struct stat first, second;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
+/* The folder of a path, fresh memory; a bare name lies in ".". */
+static char *folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash)
+        return strdup(".");
+    return slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
+}
+
+static const char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Do two paths, spelt as they may be, stand for one file? It need not exist yet. */
+static bool same_file(const char *a, const char *b)
+{
+    if (strcmp(a, b) == 0 || same_entry(a, b))
+        return true;
+    char *first = folder_of(a), *second = folder_of(b);
+    bool same = first && second && strcmp(name_of(a), name_of(b)) == 0 && same_entry(first, second);
+    free(first);
+    free(second);
+    return same;
+}
+
 static status check_folder(const named_file *file, diagnostic *why)
 {
     struct stat about;
     if (stat(file->path, &about) == 0 && S_ISDIR(about.st_mode))
         return wrong(file, why, "name a file in it", "is a folder");
-    const char *slash = strrchr(file->path, '/');
-    if (!slash)
-        return STATUS_OK;
-    char *folder = slash == file->path ? strdup("/") : strndup(file->path, (size_t)(slash - file->path));
+    char *folder = folder_of(file->path);
     if (!folder)
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     bool there = stat(folder, &about) == 0 && S_ISDIR(about.st_mode);
     free(folder);
     return there ? STATUS_OK : wrong(file, why, "make it first, or name another", "its folder is not there");
-}
-
-static bool same_file(const char *a, const char *b)
-{
-    struct stat first, second;
-    if (strcmp(a, b) == 0)
-        return true;
-    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev && first.st_ino == second.st_ino &&
-           S_ISREG(first.st_mode);
 }
 
 /* The sky's path is relative to the scene file. */
@@ -102,7 +122,8 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
 
 status outputs_check(const outputs *o, const scene *s, diagnostic *why)
 {
-    const named_file files[] = {{"-o", o->picture}, {"--rays", o->rays}, {"--time", o->time}, {"--timeline", o->timeline}};
+    const named_file files[] = {
+        {"-o", o->picture}, {"--rays", o->rays}, {"--time", o->time}, {"--timeline", o->timeline}};
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         status result = files[i].path ? check_file(o, files, i, s, why) : STATUS_OK;
         if (result != STATUS_OK)

@@ -1,5 +1,6 @@
-/* The files that a render leaves: the picture, the maps of rays and time by pixel, the timeline. Their names are looked at before
- * anything is rendered, so that an hour's work is not lost to a misspelt ending. Ownership: names are borrowed. */
+/* The files that a render leaves: the picture, the maps of rays and time by pixel, the timeline. Their names are
+ * looked at before anything is rendered, so that an hour's work is not lost to a misspelt ending. Ownership: names
+ * are borrowed. */
 #ifndef CUVETTE_CLI_OUTPUTS_H
 #define CUVETTE_CLI_OUTPUTS_H
 

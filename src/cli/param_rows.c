@@ -96,11 +96,12 @@ static void print_lines(FILE *stream, const lines *all, const char *value_title)
         unit = wider(unit, all->line[i].row->unit);
         range = wider(range, param_range_text(all->line[i].row, text, sizeof text));
     }
-    fprintf(stream, "%-*s  %-*s  %-*s  %-*s  %s\n", path, "name", value, value_title, unit, "unit", range, "range", "meaning");
+    fprintf(stream, "%-*s  %-*s  %-*s  %-*s  %s\n", path, "name", value, value_title, unit, "unit", range, "range",
+            "meaning");
     for (size_t i = 0; i < all->count; i++) {
         const line *l = &all->line[i];
-        fprintf(stream, "%-*s  %-*s  %-*s  %-*s  %s\n", path, l->path, value, or_dash(l->value), unit, or_dash(l->row->unit), range,
-                param_range_text(l->row, text, sizeof text), l->row->meaning);
+        fprintf(stream, "%-*s  %-*s  %-*s  %-*s  %s\n", path, l->path, value, or_dash(l->value), unit,
+                or_dash(l->row->unit), range, param_range_text(l->row, text, sizeof text), l->row->meaning);
     }
 }
 

@@ -41,8 +41,8 @@ static const struct argp parser = {
     .options = options,
     .parser = take_option,
     .args_doc = "[SCENE]",
-    .doc = "Print the table of parameters: name, default, unit, range, meaning. With a scene, its own parameters and their "
-           "values.\vA name is what --set takes, what a scene file has under its group, and what a study sweeps. "
+    .doc = "Print the table of parameters: name, default, unit, range, meaning. With a scene, its own parameters and "
+           "their values.\vA name is what --set takes, what a scene file has under its group, and what a study sweeps. "
            "LIGHT, MATERIAL and SOLID stand for the names that a scene gives. One element of a vector is "
            "lamp.position.x (.y .z, for colours .r .g .b).",
 };

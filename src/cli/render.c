@@ -23,12 +23,14 @@ enum { KEY_JSON = 0x100, KEY_BITS, KEY_RAYS, KEY_TIME, KEY_TIMELINE, KEY_REPEAT 
 
 static const struct argp_option options[] = {
     {"output", 'o', "FILE", 0, "write the picture: .png, .jpg or .pfm (linear floats)", 0},
-    {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'render.depth=8' or 'lamp.position.x=2'; may be given many times", 0},
+    {"set", 's', "PATH=VALUE", 0,
+     "set a parameter, as 'render.depth=8' or 'lamp.position.x=2'; may be given many times", 0},
     {"json", KEY_JSON, NULL, 0, "print the account as one JSON object: hash, times, counts, parameters", 0},
     {"bits", KEY_BITS, "N", 0, "bits a channel of a PNG: 8 (the default) or 16", 0},
     {"rays", KEY_RAYS, "FILE", 0, "write the rays by pixel: .png with a key, or .pfm", 0},
     {"time", KEY_TIME, "FILE", 0, "write the nanoseconds by pixel: .png with a key, or .pfm", 0},
-    {"timeline", KEY_TIMELINE, "FILE", 0, "write when each tile was taken by whom: .json, for chrome://tracing or Perfetto", 0},
+    {"timeline", KEY_TIMELINE, "FILE", 0,
+     "write when each tile was taken by whom: .json, for chrome://tracing or Perfetto", 0},
     {"repeat", KEY_REPEAT, "N", 0, "render N times; wall_s and cpu_s are the medians", 0},
     {0},
 };
@@ -53,8 +55,8 @@ static error_t take_argument(const char *argument, render_request *request, diag
         request->scene_path = argument;
         return 0;
     }
-    diagnose(why, STATUS_BAD_INPUT, "render takes one scene; a parameter is set by --set PATH=VALUE", "'%.128s' is one too many",
-             argument);
+    diagnose(why, STATUS_BAD_INPUT, "render takes one scene; a parameter is set by --set PATH=VALUE",
+             "'%.128s' is one too many", argument);
     diagnostic_locate(why, "render", 0, 0);
     return EINVAL;
 }
@@ -139,9 +141,10 @@ static void print_summary(const scene *s, const frames *f)
 {
     uint64_t rays = ray_counters_total(&f->result->counters);
     double wall_s = f->count ? summarize(f->wall_s, f->count).median : f->result->wall_s;
-    printf("%lldx%lld pixels, depth %lld: %llu rays in %.3f s (%.1f million a second), film %016llx\n", (long long)s->render.width,
-           (long long)s->render.height, (long long)s->render.depth, (unsigned long long)rays, wall_s,
-           wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0, (unsigned long long)film_hash(f->result->picture));
+    printf("%lldx%lld pixels, depth %lld: %llu rays in %.3f s (%.1f million a second), film %016llx\n",
+           (long long)s->render.width, (long long)s->render.height, (long long)s->render.depth,
+           (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
+           (unsigned long long)film_hash(f->result->picture));
 }
 
 static status print_report(const scene *s, isa level, const frames *f, bool repeated, diagnostic *why)
@@ -168,7 +171,8 @@ static status say_interrupted(const render_request *request, const frames *f, di
     if (!f->result)
         return diagnose(why, STATUS_INTERRUPTED, "", "interrupted before the first pixel");
     bool partial = f->count == 0 && request->files.picture;
-    diagnose(why, STATUS_INTERRUPTED, "", "interrupted; %s", partial ? "the picture holds what was finished" : "what was finished is kept");
+    diagnose(why, STATUS_INTERRUPTED, "", "interrupted; %s",
+             partial ? "the picture holds what was finished" : "what was finished is kept");
     diagnostic_locate(why, request->files.picture, 0, 0);
     return STATUS_INTERRUPTED;
 }

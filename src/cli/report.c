@@ -65,8 +65,9 @@ json_t *report_params(const scene *s)
 
 static json_t *rays(const ray_counters *c)
 {
-    return json_pack("{s:I,s:I,s:I,s:I,s:I}", "camera", (count_type)c->camera, "reflect", (count_type)c->reflect, "refract",
-                     (count_type)c->refract, "shadow", (count_type)c->shadow, "total", (count_type)ray_counters_total(c));
+    return json_pack("{s:I,s:I,s:I,s:I,s:I}", "camera", (count_type)c->camera, "reflect", (count_type)c->reflect,
+                     "refract", (count_type)c->refract, "shadow", (count_type)c->shadow, "total",
+                     (count_type)ray_counters_total(c));
 }
 
 static json_t *rays_by_depth(const scene *s, const ray_counters *c)
@@ -104,9 +105,10 @@ static double cut_throughput(const ray_counters *c)
 
 static json_t *worker(int index, const worker_report *w)
 {
-    return json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:I,s:I,s:i}", "worker", index, "wall_s", json_of_real(w->wall_s), "cpu_s",
-                     json_of_real(w->cpu_s), "start_s", json_of_real(w->start_s), "busy_s", json_of_real(w->busy_s), "waiting_s",
-                     json_of_real(w->waiting_s), "tiles", (count_type)w->tiles, "rays", (count_type)w->rays, "pu", w->pu);
+    return json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:I,s:I,s:i}", "worker", index, "wall_s", json_of_real(w->wall_s),
+                     "cpu_s", json_of_real(w->cpu_s), "start_s", json_of_real(w->start_s), "busy_s",
+                     json_of_real(w->busy_s), "waiting_s", json_of_real(w->waiting_s), "tiles", (count_type)w->tiles,
+                     "rays", (count_type)w->rays, "pu", w->pu);
 }
 
 static json_t *workers(const render_result *result)
@@ -142,8 +144,9 @@ static json_t *median(const double *values, size_t count, double otherwise)
 
 static json_t *hardware(const hardware_counts *h)
 {
-    return json_pack("{s:o,s:o,s:o,s:o}", "cycles", json_of_count(h->cycles), "instructions", json_of_count(h->instructions),
-                     "branch_misses", json_of_count(h->branch_misses), "cache_misses", json_of_count(h->cache_misses));
+    return json_pack("{s:o,s:o,s:o,s:o}", "cycles", json_of_count(h->cycles), "instructions",
+                     json_of_count(h->instructions), "branch_misses", json_of_count(h->branch_misses), "cache_misses",
+                     json_of_count(h->cache_misses));
 }
 
 static int add_times(json_t *o, const frames *f, bool repeated)
@@ -166,8 +169,9 @@ static int add_counts(json_t *o, const scene *s, const ray_counters *c)
     bad |= json_object_set_new(o, "first_hits", by_solid(s, c->first_hits));
     bad |= json_object_set_new(o, "hits", by_solid(s, c->hits));
     bad |= json_object_set_new(o, "tests", by_solid(s, c->tests));
-    bad |= json_object_set_new(o, "cut", json_pack("{s:o,s:o}", "depth", cut(c->cut_depth, c->cut_depth_throughput), "weight",
-                                                   cut(c->cut_weight, c->cut_weight_throughput)));
+    bad |= json_object_set_new(o, "cut",
+                               json_pack("{s:o,s:o}", "depth", cut(c->cut_depth, c->cut_depth_throughput), "weight",
+                                         cut(c->cut_weight, c->cut_weight_throughput)));
     bad |= json_object_set_new(o, "cut_throughput", json_of_real(cut_throughput(c)));
     return bad;
 }

@@ -8,7 +8,8 @@
 
 enum { REPORT_SCHEMA = 1 }; /* goes up when a key changes its meaning or goes away */
 
-/* The account of measured frames, with at least one result; NULL when memory is out. repeated: asked for by --repeat. */
+/* The account of measured frames, with at least one result; NULL when memory is out. repeated: asked for by
+ * --repeat. */
 json_t *report_create(const scene *s, isa level, const frames *f, bool repeated);
 
 /* Each parameter of the scene under its path, as number, list or word; NULL when memory is out. */

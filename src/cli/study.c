@@ -33,8 +33,11 @@ static status for_each_study(const study_request *request, study_action *act, di
 static status run_one(const study *s, const study_request *request, diagnostic *why)
 {
     FILE *terminal = !request->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
-    const study_options options = {
-        .results = request->results, .shard = request->shard, .shards = request->shards, .progress = terminal, .stop = terminal_stop_asked};
+    const study_options options = {.results = request->results,
+                                   .shard = request->shard,
+                                   .shards = request->shards,
+                                   .progress = terminal,
+                                   .stop = terminal_stop_asked};
     size_t rows = 0;
     status result = study_run(s, &options, &rows, why);
     if (result == STATUS_INTERRUPTED) {
@@ -55,8 +58,8 @@ static status print_status(const study *s, const study_request *request, diagnos
     study_progress progress;
     status result = study_status(s, request->results, &progress, why);
     if (result == STATUS_OK)
-        printf("%s: %zu of %zu cells done, %zu rows, %zu marked\n", s->name, progress.cells_done, progress.cells, progress.rows,
-               progress.rows_marked);
+        printf("%s: %zu of %zu cells done, %zu rows, %zu marked\n", s->name, progress.cells_done, progress.cells,
+               progress.rows, progress.rows_marked);
     return result;
 }
 
@@ -141,7 +144,8 @@ static status list_folder(const char *folder, diagnostic *why)
     struct dirent **entries = NULL;
     int count = scandir(folder, &entries, is_study_file, alphasort);
     if (count < 0) {
-        diagnose(why, STATUS_BAD_INPUT, "name a folder with *.study files", "cannot be listed: %s", strerrordesc_np(errno));
+        diagnose(why, STATUS_BAD_INPUT, "name a folder with *.study files", "cannot be listed: %s",
+                 strerrordesc_np(errno));
         diagnostic_locate(why, folder, 0, 0);
         return STATUS_BAD_INPUT;
     }
@@ -177,7 +181,8 @@ static const command commands[] = {
 
 status command_study(int argc, char **argv, diagnostic *why)
 {
-    return command_dispatch(commands, sizeof commands / sizeof commands[0],
-                            "A study is a scene, a grid over its parameters, and repetitions; its rows go to results/STUDY/rows.csv.",
-                            argc, argv, why);
+    return command_dispatch(
+        commands, sizeof commands / sizeof commands[0],
+        "A study is a scene, a grid over its parameters, and repetitions; its rows go to results/STUDY/rows.csv.", argc,
+        argv, why);
 }

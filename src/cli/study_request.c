@@ -10,7 +10,8 @@ enum { KEY_SHARD = 0x100, SHARDS_MAX = 10000 };
 
 static const struct argp_option run_options[] = {
     {"results", 'r', "DIR", 0, "put results/STUDY/ into DIR instead of results", 0},
-    {"shard", KEY_SHARD, "I/N", 0, "do part I of N, counted from 0: the parts may run at one time, on one or many machines", 0},
+    {"shard", KEY_SHARD, "I/N", 0,
+     "do part I of N, counted from 0: the parts may run at one time, on one or many machines", 0},
     {"quiet", 'q', NULL, 0, "say nothing but errors", 0},
     {0},
 };
@@ -62,16 +63,28 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 }
 
 static const struct argp parsers[STUDY_VERB_COUNT] = {
-    [STUDY_RUN] = {.options = run_options, .parser = take_option, .args_doc = "FILE...",
-                   .doc = "Measure what is missing of each study, row by row.\vA study that is stopped, or killed, goes on where "
-                          "it was when it is run again. Rows are never rewritten."},
-    [STUDY_LIST] = {.options = no_options, .parser = take_option, .args_doc = "[DIR]",
+    [STUDY_RUN] =
+        {.options = run_options,
+         .parser = take_option,
+         .args_doc = "FILE...",
+         .doc = "Measure what is missing of each study, row by row.\vA study that is stopped, or killed, goes on where "
+                "it was when it is run again. Rows are never rewritten."},
+    [STUDY_LIST] = {.options = no_options,
+                    .parser = take_option,
+                    .args_doc = "[DIR]",
                     .doc = "List the study files of a folder; 'experiments' if none is named."},
-    [STUDY_STATUS] = {.options = results_options, .parser = take_option, .args_doc = "FILE...",
-                      .doc = "Say how many cells of each study are done, and how many rows are marked because their film differs."},
-    [STUDY_MERGE] = {.options = results_options, .parser = take_option, .args_doc = "FILE...",
+    [STUDY_STATUS] =
+        {.options = results_options,
+         .parser = take_option,
+         .args_doc = "FILE...",
+         .doc = "Say how many cells of each study are done, and how many rows are marked because their film differs."},
+    [STUDY_MERGE] = {.options = results_options,
+                     .parser = take_option,
+                     .args_doc = "FILE...",
                      .doc = "Join the rows of a study's shards into its rows.csv."},
-    [STUDY_SUMMARY] = {.options = results_options, .parser = take_option, .args_doc = "FILE",
+    [STUDY_SUMMARY] = {.options = results_options,
+                       .parser = take_option,
+                       .args_doc = "FILE",
                        .doc = "Print one line a cell, separated by tabs: medians, 95% intervals, counts."},
 };
 
@@ -96,7 +109,8 @@ static status check_files(const study_request *request, const char *program, dia
 
 status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why)
 {
-    *out = (study_request){.verb = verb, .results = "results", .shards = 1, .files = calloc((size_t)argc + 1, sizeof(char *))};
+    *out = (study_request){
+        .verb = verb, .results = "results", .shards = 1, .files = calloc((size_t)argc + 1, sizeof(char *))};
     if (!out->files)
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     status result = options_parse(&parsers[verb], 0, argc, argv, out, why);

@@ -1,5 +1,5 @@
-/* The command lines of `cuvette study`. Ownership: study_request_release releases what parsing filled, also after an error; words
- * are borrowed from argv. */
+/* The command lines of `cuvette study`. Ownership: study_request_release releases what parsing filled, also after an
+ * error; words are borrowed from argv. */
 #ifndef CUVETTE_CLI_STUDY_REQUEST_H
 #define CUVETTE_CLI_STUDY_REQUEST_H
 
@@ -7,7 +7,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-typedef enum study_verb { STUDY_RUN, STUDY_LIST, STUDY_STATUS, STUDY_MERGE, STUDY_SUMMARY, STUDY_VERB_COUNT } study_verb;
+typedef enum study_verb {
+    STUDY_RUN,
+    STUDY_LIST,
+    STUDY_STATUS,
+    STUDY_MERGE,
+    STUDY_SUMMARY,
+    STUDY_VERB_COUNT
+} study_verb;
 
 typedef struct study_request {
     study_verb verb;

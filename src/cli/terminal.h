@@ -1,20 +1,21 @@
-/* What the program does with the terminal and with signals: the one line of progress, colour, the wish to stop, and standard
- * output that is known to have arrived. The stop flag and the exit handler are the program's only global state. */
+/* What the program does with the terminal and with signals: the one line of progress, colour, the wish to stop, and
+ * standard output that is known to have arrived. The stop flag and the exit handler are the program's only global
+ * state. */
 #ifndef CUVETTE_CLI_TERMINAL_H
 #define CUVETTE_CLI_TERMINAL_H
 
 #include "base/status.h"
 #include <stdbool.h>
 
-/* Opens what is closed of descriptors 0 to 2, ignores SIGPIPE, makes SIGINT and SIGTERM a wish to stop (the second one kills), and
- * has exit() check that standard output was written. Call it first. */
+/* Opens what is closed of descriptors 0 to 2, ignores SIGPIPE, makes SIGINT and SIGTERM a wish to stop (the second
+ * one kills), and has exit() check that standard output was written. Call it first. */
 void terminal_prepare(void);
 
 /* Has SIGINT or SIGTERM come? */
 bool terminal_stop_asked(void);
 
-/* Flushes standard output; failure if something could not be written. The reader of a pipe who left is a failure without
- * words: *why is then left empty. */
+/* Flushes standard output; failure if something could not be written. The reader of a pipe who left is a failure
+ * without words: *why is then left empty. */
 status terminal_flush(diagnostic *why);
 
 /* "cuvette: ..." in one line on standard error; nothing for an empty diagnostic. */

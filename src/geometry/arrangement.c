@@ -168,3 +168,10 @@ int arrangement_rank(const arrangement *a, uint64_t inside)
             return r;
     return 0;
 }
+
+int arrangement_surface(const arrangement *a, int before, int after)
+{
+    if (a->bodies[after].opaque || a->bodies[before].opaque)
+        return a->bodies[after].opaque ? after : before;
+    return after > before ? after : before;
+}

@@ -71,6 +71,10 @@ void arrangement_destroy(arrangement *a);
 /* The set of primitives that contain a point, bit by bit, by the primitives' own definitions (surfaces included). */
 uint64_t arrangement_inside(const arrangement *a, vec3 point);
 
+/* The rank of the body whose surface an interface between two ranks is: an opaque body's if either is opaque (the one behind, if
+ * both are), else that of the higher rank. */
+int arrangement_surface(const arrangement *a, int before, int after);
+
 /* The rank of the medium where a ray is in that set of primitives. */
 int arrangement_rank(const arrangement *a, uint64_t inside);
 

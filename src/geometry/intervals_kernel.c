@@ -36,20 +36,20 @@ ALWAYS_INLINE void halfspaces(const primitive *p, bool turned, int bit, const ra
     }
 }
 
-ALWAYS_INLINE void cylinders(const primitive *p, bool turned, bool round, int bit, const ray_batch *rays, ray_scratch *s)
+ALWAYS_INLINE void cylinders(const primitive *p, bool turned, int bit, const ray_batch *rays, ray_scratch *s)
 {
     double *restrict in = s->in[bit], *restrict out = s->out[bit];
     const int64_t first = p->first_face;
-    const bool shared = !turned && round; /* all upright round cylinders share their leading coefficient */
     /* VECTORISE */
     for (int i = 0; i < rays->count; i++) {
         local_ray r = ray_to_local(p, turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
         int64_t on_side = mask_same(rays->start[i], first), on_bottom = mask_same(rays->start[i], first + 1),
                 on_top = mask_same(rays->start[i], first + 2);
-        double a = shared ? s->axial[i] : cylinder_axial(r, p->m2);
-        double inverse_a = shared ? s->inverse_axial[i] : cylinder_inverse(a);
+        double dx = turned ? cylinder_dx(r.dx, r.dz) : s->axial_dx[i];
+        double a = turned ? cylinder_axial(dx, r.dz, p->m2) : s->axial[i]; /* upright round cylinders share it */
+        double inverse_a = turned ? 1.0 / a : s->inverse_axial[i];
         double inverse_y = turned ? inverse_of_component(r.dy) : s->inverse_y[i];
-        quadric_roots side = cylinder_side(p, r, a, inverse_a, on_side);
+        quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, inverse_a, on_side);
         slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, on_bottom, on_top);
         double near = greater(side.in, caps.in), far = lesser(side.out, caps.out);
         store_interval(near, far, side.hit & mask_less(near, far), on_side | on_bottom | on_top,
@@ -97,25 +97,27 @@ static void shared_terms(const ray_batch *rays, ray_scratch *restrict s)
         s->inverse_x[i] = inverse_of_component(r.dx);
         s->inverse_y[i] = inverse_of_component(r.dy);
         s->inverse_z[i] = inverse_of_component(r.dz);
-        s->axial[i] = cylinder_axial(r, 1.0);
-        s->inverse_axial[i] = cylinder_inverse(s->axial[i]);
+        s->axial_dx[i] = cylinder_dx(r.dx, r.dz);
+        s->axial[i] = cylinder_axial(s->axial_dx[i], r.dz, 1.0);
+        s->inverse_axial[i] = 1.0 / s->axial[i];
     }
 }
 
+/* An upright elliptic cylinder is turned by the identity, which changes no bit. */
 static void cylinder_any(const primitive *p, int bit, const ray_batch *rays, ray_scratch *s)
 {
-    if (p->turned)
-        cylinders(p, true, false, bit, rays, s);
-    else if (p->m2 == 1.0)
-        cylinders(p, false, true, bit, rays, s);
+    if (p->turned || p->m2 != 1.0)
+        cylinders(p, true, bit, rays, s);
     else
-        cylinders(p, false, false, bit, rays, s);
+        cylinders(p, false, bit, rays, s);
 }
 
-void KERNEL(intervals_of)(const arrangement *a, const ray_batch *rays, ray_scratch *s)
+void KERNEL(intervals_of)(const arrangement *a, const ray_batch *rays, uint64_t wanted, ray_scratch *s)
 {
     shared_terms(rays, s);
     for (int k = 0; k < a->primitive_count; k++) {
+        if (!(wanted >> k & 1))
+            continue;
         const primitive p = a->primitives[k]; /* a copy: no store below can alias it */
         switch (p.kind) {
         case PRIMITIVE_HALFSPACE:

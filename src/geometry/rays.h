@@ -26,6 +26,7 @@ typedef struct hit_batch {
     int64_t crossed[ROW];    /* the primitive whose surface it is; -1 for a miss */
     int64_t before[ROW];     /* rank of the medium before it ... */
     int64_t after[ROW];      /* ... and behind it */
+    int64_t surface[ROW];      /* rank of the body whose surface it is: an opaque one's if either side is opaque, else the higher one's */
     uint64_t inside_before[ROW], inside_after[ROW]; /* sets just before and just behind it */
 } hit_batch;
 
@@ -33,15 +34,15 @@ typedef struct hit_batch {
 typedef struct ray_scratch {
     double in[PRIMITIVES_MAX][ROW], out[PRIMITIVES_MAX][ROW];
     double inverse_y[ROW], inverse_x[ROW], inverse_z[ROW];
-    double axial[ROW], inverse_axial[ROW];
-    double slack[ROW];
+    double axial_dx[ROW], axial[ROW], inverse_axial[ROW];
+    double slack[ROW], low[ROW], high[ROW];
     uint64_t inside[ROW];
     hit_batch again;           /* of rays that are looked at another time */
-    int64_t attention[ROW], undecided[ROW], blocked[ROW];
+    int64_t opaque_before[ROW], opaque_after[ROW], attention[ROW], undecided[ROW], blocked[ROW];
     int ray[ROW];            /* which ray of the batch a column belongs to */
 } ray_scratch;
 
-/* Points on one primitive's surface. normal is a unit vector against the ray; cos_i = -d.n / |d|, in (0, 1]. error is a bound
+/* Points on one primitive's surface. normal is a unit vector against the ray; cos_i = -d.n, in (0, 1] for a unit vector d. error is a bound
  * on the distance from the point to the exact one across the surface, in scene units. */
 typedef struct surface_batch {
     double px[ROW], py[ROW], pz[ROW];
@@ -56,8 +57,9 @@ typedef struct geometry_kernels {
     void (*nearest)(const arrangement *a, const ray_batch *rays, ray_scratch *scratch, hit_batch *hits);
     /* The share of light, 0..1, that comes through from the other end (t = 1). With solid_shadows any interface blocks. */
     void (*shadow)(const arrangement *a, const ray_batch *rays, int solid_shadows, ray_scratch *scratch, double *transmitted);
-    /* Points where rays (gathered, all with that primitive's surface at t) meet it. leaving: -1 where the ray leaves the primitive, 0 where it enters. */
-    void (*surface)(const primitive *p, const ray_batch *rays, const double *t, const int64_t *leaving, surface_batch *points);
+    /* Points where rays, all of which meet primitive p (numbered bit) at t, meet it. rays->inside is here the set just before the point: it says
+     * whether a ray enters the primitive or leaves it. */
+    void (*surface)(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points);
 } geometry_kernels;
 
 extern const geometry_kernels geometry_kernels_sse2, geometry_kernels_avx2, geometry_kernels_avx512;

@@ -15,7 +15,7 @@
 #include <math.h>
 
 /* Beyond this a crossing is never: see roots.h. */
-#define NEVER 1e150
+#define NEVER 1e120
 /* Share of the distance and of the arrangement's extent within which a second boundary is looked at closely. It changes no
  * result: it only must be wider than the error bounds, which it is unless a ray grazes within 2e-7 rad. */
 #define CLOSE 0x1p-24
@@ -76,16 +76,63 @@ static void next_of_hollow(int n, int64_t rank, int64_t outside, int64_t hollow,
     }
 }
 
-/* Adds one primitive to the sets just before and just behind t. */
-static void sets_around(int n, int which, const double *restrict in, const double *restrict out, const ray_scratch *restrict s,
-                        hit_batch *restrict c)
+/* Adds `many` primitives from the one numbered first to the sets just before and just behind t; the first call starts the sets. */
+ALWAYS_INLINE void sets_around(int n, int first, int many, ray_scratch *restrict s, hit_batch *restrict c)
 {
-    const int64_t bit = (int64_t)((uint64_t)1 << which);
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
-        double close = CLOSE * (c->t[i] + s->slack[i]), low = c->t[i] - close, high = c->t[i] + close;
-        c->inside_before[i] |= (uint64_t)(mask_less_equal(in[i], low) & mask_less(low, out[i]) & bit);
-        c->inside_after[i] |= (uint64_t)(mask_less_equal(in[i], high) & mask_less(high, out[i]) & bit);
+        int64_t before = first == 0 ? 0 : (int64_t)c->inside_before[i], after = first == 0 ? 0 : (int64_t)c->inside_after[i];
+        for (int k = 0; k < many; k++) {
+            const int64_t bit = (int64_t)((uint64_t)1 << (first + k));
+            double in = s->in[first + k][i], out = s->out[first + k][i];
+            before |= mask_less_equal(in, s->low[i]) & mask_less(s->low[i], out) & bit;
+            after |= mask_less_equal(in, s->high[i]) & mask_less(s->high[i], out) & bit;
+        }
+        c->inside_before[i] = (uint64_t)before;
+        c->inside_after[i] = (uint64_t)after;
+    }
+}
+
+/* Constant counts, so that the inner loop unrolls. */
+static void all_sets_around(const arrangement *a, int n, ray_scratch *s, hit_batch *c)
+{
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        double close = CLOSE * (c->t[i] + s->slack[i]);
+        s->low[i] = c->t[i] - close;
+        s->high[i] = c->t[i] + close;
+    }
+    sets_around(n, 0, 1, s, c);
+    int k = 1;
+    for (; k + 4 <= a->primitive_count; k += 4)
+        sets_around(n, k, 4, s, c);
+    for (; k < a->primitive_count; k++)
+        sets_around(n, k, 1, s, c);
+}
+
+/* -1 where the body of that rank is opaque. */
+static void opaque_ranks(const arrangement *a, int n, const int64_t *restrict rank, int64_t *restrict opaque)
+{
+    for (int i = 0; i < n; i++)
+        opaque[i] = 0;
+    for (int r = 1; r <= a->body_count; r++) {
+        if (!a->bodies[r].opaque)
+            continue;
+        /* VECTORISE */
+        for (int i = 0; i < n; i++)
+            opaque[i] |= mask_same(rank[i], r);
+    }
+}
+
+/* Whose surface it is: arrangement_surface. */
+static void surfaces(const arrangement *a, int n, ray_scratch *restrict s, hit_batch *restrict c)
+{
+    opaque_ranks(a, n, c->before, s->opaque_before);
+    opaque_ranks(a, n, c->after, s->opaque_after);
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        int64_t higher = blend_int(-(int64_t)(c->after[i] > c->before[i]), c->after[i], c->before[i]);
+        c->surface[i] = blend_int(s->opaque_after[i], c->after[i], blend_int(s->opaque_before[i], c->before[i], higher));
     }
 }
 
@@ -95,9 +142,10 @@ static void mark_attention(const arrangement *a, int n, const hit_batch *restric
     const int64_t doubt = -(int64_t)!a->distinct;
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
-        uint64_t only = (uint64_t)1 << (c->crossed[i] & (PRIMITIVES_MAX - 1));
-        int64_t unclean = ~mask_same((int64_t)(c->inside_before[i] ^ c->inside_after[i]), (int64_t)only);
-        attention[i] = (unclean | mask_same(c->before[i], c->after[i]) | doubt) & -(int64_t)(c->crossed[i] >= 0);
+        const int64_t met = -(int64_t)(c->crossed[i] >= 0);
+        const uint64_t changed = c->inside_before[i] ^ c->inside_after[i];
+        const int64_t unclean = ~mask_same((int64_t)(changed >> (uint64_t)(c->crossed[i] & met)), 1);
+        attention[i] = (unclean | mask_same(c->before[i], c->after[i]) | doubt) & met;
     }
 }
 
@@ -108,7 +156,6 @@ static void next_changes(const arrangement *a, int n, ray_scratch *s, hit_batch 
     for (int i = 0; i < n; i++) {
         c->t[i] = NEVER;
         c->crossed[i] = -1;
-        c->inside_before[i] = c->inside_after[i] = 0;
     }
     for (int r = 1; r <= a->body_count; r++) {
         const int o = a->bodies[r].outside, h = a->bodies[r].hollow;
@@ -117,9 +164,9 @@ static void next_changes(const arrangement *a, int n, ray_scratch *s, hit_batch 
         else
             next_of_hollow(n, r, o, h, s->in[o], s->out[o], s->in[h], s->out[h], s, c);
     }
-    for (int k = 0; k < a->primitive_count; k++)
-        sets_around(n, k, s->in[k], s->out[k], s, c);
+    all_sets_around(a, n, s, c);
     ranks_of(a, n, c->inside_after, c->after);
+    surfaces(a, n, s, c);
     mark_attention(a, n, c, s->attention);
 }
 
@@ -129,12 +176,10 @@ static void look_closely(const arrangement *a, const ray_batch *rays, int k, con
 {
     const int i = s->ray[k], crossed = (int)c->crossed[k];
     const ray_batch one = {1,           &rays->ox[i], &rays->oy[i], &rays->oz[i],    &rays->dx[i],
-                           &rays->dy[i], &rays->dz[i], &rays->start[i], &rays->inside[i]};
-    const int64_t leaving = set_mask(s->inside[k], crossed);
+                           &rays->dy[i], &rays->dz[i], &rays->start[i], &s->inside[k]};
     surface_batch point;
-    KERNEL(surface_points)(&a->primitives[crossed], &one, &c->t[k], &leaving, &point);
-    double length = sqrt(rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i]);
-    double reach = 2.0 * point.error[0] / (point.cos_i[0] * length), widest = CLOSE * (c->t[k] + s->slack[k]);
+    KERNEL(surface_points)(&a->primitives[crossed], &one, &c->t[k], crossed, &point);
+    double reach = 2.0 * point.error[0] / point.cos_i[0], widest = CLOSE * (c->t[k] + s->slack[k]);
     reach = lesser(reach, widest);
     double low = c->t[k] - reach, high = c->t[k] + reach;
     uint64_t before = 0, after = 0;
@@ -145,6 +190,7 @@ static void look_closely(const arrangement *a, const ray_batch *rays, int k, con
     c->inside_before[k] = before;
     c->inside_after[k] = after;
     c->after[k] = arrangement_rank(a, after);
+    c->surface[k] = arrangement_surface(a, (int)c->before[k], (int)c->after[k]);
 }
 
 /* Is column k an interface? Looks closely where another boundary is near. */
@@ -185,13 +231,14 @@ static void copy_hit(const hit_batch *from, int k, hit_batch *to, int i)
     to->crossed[i] = from->crossed[k];
     to->before[i] = from->before[k];
     to->after[i] = from->after[k];
+    to->surface[i] = from->surface[k];
     to->inside_before[i] = from->inside_before[k];
     to->inside_after[i] = from->inside_after[k];
 }
 
 static void nearest(const arrangement *a, const ray_batch *rays, ray_scratch *s, hit_batch *hits)
 {
-    KERNEL(intervals_of)(a, rays, s);
+    KERNEL(intervals_of)(a, rays, UINT64_MAX, s);
     begin(rays, s);
     for (int i = 0; i < rays->count; i++)
         s->slack[i] = a->extent;
@@ -233,6 +280,32 @@ static void touching(const body *b, int n, const ray_scratch *s, int64_t *restri
     }
 }
 
+/* Can a body take light away from a shadow ray by itself? */
+static bool casts_shadow(const body *b, int solid_shadows)
+{
+    return b->opaque || solid_shadows || b->clearness < 1.0;
+}
+
+/* The primitives of the bodies that first sight looks at. */
+static uint64_t first_sight_primitives(const arrangement *a, int solid_shadows)
+{
+    uint64_t wanted = 0;
+    for (int r = 1; r <= a->body_count; r++) {
+        const body *b = &a->bodies[r];
+        if (casts_shadow(b, solid_shadows))
+            wanted |= (uint64_t)1 << b->outside | (b->hollow < 0 ? 0 : (uint64_t)1 << b->hollow);
+    }
+    return wanted;
+}
+
+static bool any_undecided(int n, const ray_scratch *s)
+{
+    int64_t any = 0;
+    for (int i = 0; i < n; i++)
+        any |= s->undecided[i] & ~s->blocked[i];
+    return any != 0;
+}
+
 /* First sight: blocked for certain by an opaque body that nothing clear can hide; undecided where order or attenuation matters. */
 static void first_sight(const arrangement *a, int solid_shadows, int n, ray_scratch *s)
 {
@@ -241,10 +314,8 @@ static void first_sight(const arrangement *a, int solid_shadows, int n, ray_scra
     bool hidden = false; /* can a clear body of a higher rank hide this one? */
     for (int r = a->body_count; r >= 1; r--) {
         const body *b = &a->bodies[r];
-        if (b->opaque)
-            touching(b, n, s, hidden ? s->undecided : s->blocked);
-        else if (solid_shadows || b->clearness < 1.0)
-            touching(b, n, s, s->undecided);
+        if (casts_shadow(b, solid_shadows))
+            touching(b, n, s, hidden || !b->opaque ? s->undecided : s->blocked);
         hidden |= !b->opaque;
     }
 }
@@ -280,10 +351,14 @@ static int keep_undecided(const arrangement *a, const ray_batch *rays, ray_scrat
 
 static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadows, ray_scratch *s, double *transmitted)
 {
-    KERNEL(intervals_of)(a, rays, s);
+    const uint64_t wanted = first_sight_primitives(a, solid_shadows);
+    KERNEL(intervals_of)(a, rays, wanted, s);
     first_sight(a, solid_shadows, rays->count, s);
     for (int i = 0; i < rays->count; i++)
         transmitted[i] = s->blocked[i] ? 0.0 : 1.0;
+    if (!any_undecided(rays->count, s))
+        return;
+    KERNEL(intervals_of)(a, rays, ~wanted, s);
     for (int left = keep_undecided(a, rays, s); left > 0;) {
         const int n = left;
         hit_batch *c = &s->again;

@@ -2,7 +2,8 @@
  * formulas, used by the pass over all rays and again for the face of a hit. No branches; pure.
  *
  * The root of the face that a ray starts on is zero exactly, not nearly. A component of a direction that
- * is zero is taken as 1e-300: its crossings then lie at +-1e284 and more, which is never, without a special case. */
+ * is zero is taken as 1e-300, and a line along a cylinder's axis as leaning by 1e-140: the crossings that this makes lie at
+ * 1e130 and beyond, which is never, without a special case. */
 #ifndef CUVETTE_GEOMETRY_ROOTS_H
 #define CUVETTE_GEOMETRY_ROOTS_H
 
@@ -43,37 +44,33 @@ ALWAYS_INLINE slab_roots slab_cross(double y, double inverse_y, double low, doub
 /* Crossings of a quadric a t^2 + 2 b t + c = 0 given its reduced discriminant b^2 - a c: [in, out] and whether it is met. */
 typedef struct quadric_roots { double in, out; int64_t hit; } quadric_roots;
 
+/* Without a crossing the roots are not numbers and hit is 0. */
 ALWAYS_INLINE quadric_roots quadric_cross(double b, double inverse_a, double discriminant, int64_t own)
 {
     double middle = -b * inverse_a;
-    double half = blend(own, magnitude(middle), sqrt(greater(discriminant, 0.0)) * inverse_a);
+    double half = blend(own, magnitude(middle), sqrt(discriminant) * inverse_a);
     quadric_roots q = {middle - half, middle + half, own | mask_less(0.0, discriminant)};
     return q;
 }
 
-/* a = dx^2 + m2 dz^2 of a cylinder, and 1/a, where a line along the axis (a = 0) gets a harmless 1. */
-ALWAYS_INLINE double cylinder_axial(local_ray r, double m2)
+/* dx of a ray in a cylinder's frame, kept from vanishing together with dz. */
+ALWAYS_INLINE double cylinder_dx(double dx, double dz)
 {
-    return r.dx * r.dx + m2 * r.dz * r.dz;
-}
-ALWAYS_INLINE double cylinder_inverse(double a)
-{
-    return 1.0 / blend(mask_less(a, 1e-280), 1.0, a);
+    return blend(mask_less(magnitude(dx), 1e-140) & mask_less(magnitude(dz), 1e-140), 1e-140, dx);
 }
 
-/* The endless cylinder x^2 + m2 z^2 = radius^2. The discriminant is a r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does
- * not cancel as b^2 - a c does far from the cylinder. A line along the axis is inside for ever or never. */
-ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, local_ray r, double a, double inverse_a, int64_t own)
+/* The leading coefficient of a cylinder's quadric, for dx as cylinder_dx gives it. */
+ALWAYS_INLINE double cylinder_axial(double dx, double dz, double m2)
 {
-    double r2 = p->radius * p->radius, cross = r.x * r.dz - r.z * r.dx;
-    double b = r.x * r.dx + p->m2 * r.z * r.dz;
-    quadric_roots q = quadric_cross(b, inverse_a, a * r2 - p->m2 * (cross * cross), own);
-    double c = r.x * r.x + p->m2 * r.z * r.z - r2;
-    int64_t parallel = mask_less(a, 1e-280);
-    q.in = blend(parallel, -HUGE_VAL, q.in);
-    q.out = blend(parallel, HUGE_VAL, q.out);
-    q.hit = blend_int(parallel, own | mask_less_equal(c, 0.0), q.hit);
-    return q;
+    return dx * dx + m2 * dz * dz;
+}
+
+/* The endless cylinder x^2 + m2 z^2 = radius^2; dx as cylinder_dx gives it, inverse_a = 1/a. The discriminant is
+ * a r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does not cancel as b^2 - a c does far from the cylinder. */
+ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, double x, double z, double dx, double dz, double a, double inverse_a, int64_t own)
+{
+    double r2 = p->radius * p->radius, cross = x * dz - z * dx;
+    return quadric_cross(x * dx + p->m2 * z * dz, inverse_a, a * r2 - p->m2 * (cross * cross), own);
 }
 
 ALWAYS_INLINE quadric_roots sphere_cross(const primitive *p, local_ray r, int64_t own)

@@ -21,19 +21,20 @@ ALWAYS_INLINE local_point halfspace_point(vec3 q, int64_t first)
 }
 
 /* The same comparisons of the same roots as in the first pass: the face is the one that bounded the interval there. */
-ALWAYS_INLINE local_point cylinder_point(const primitive *p, local_ray r, vec3 q, int64_t on_side, int64_t on_bottom, int64_t on_top, int64_t leaving)
+ALWAYS_INLINE local_point cylinder_point(const primitive *p, bool round, local_ray r, vec3 q, int64_t on_side, int64_t on_bottom, int64_t on_top, int64_t leaving)
 {
-    double a = cylinder_axial(r, p->m2), inverse_y = inverse_of_component(r.dy);
-    quadric_roots side = cylinder_side(p, r, a, cylinder_inverse(a), on_side);
+    double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, p->m2), inverse_y = inverse_of_component(r.dy);
+    quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, on_side);
     slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, on_bottom, on_top);
     int64_t is_side = blend_int(leaving, mask_less(side.out, caps.out), mask_less(caps.in, side.in));
     int64_t is_top = leaving ^ mask_less(r.dy, 0.0); /* in from above or out upwards */
-    double shrink = p->radius / sqrt(q.x * q.x + p->m2 * q.z * q.z);
-    double x = q.x * shrink, z = q.z * shrink, nz = p->m2 * z, norm = 1.0 / sqrt(x * x + nz * nz);
+    double inverse = 1.0 / sqrt(q.x * q.x + p->m2 * q.z * q.z);
+    double ux = q.x * inverse, uz = q.z * inverse, x = p->radius * ux, z = p->radius * uz;
+    double slope = p->m2 * uz, norm = round ? 1.0 : 1.0 / sqrt(ux * ux + slope * slope);
     double cap = blend(is_top, p->top, p->bottom), up = blend(is_top, 1.0, -1.0);
     local_point l;
     l.point = vec3_make(blend(is_side, x, q.x), blend(is_side, q.y, cap), blend(is_side, z, q.z));
-    l.normal = vec3_make(blend(is_side, x * norm, 0.0), blend(is_side, 0.0, up), blend(is_side, nz * norm, 0.0));
+    l.normal = vec3_make(blend(is_side, ux * norm, 0.0), blend(is_side, 0.0, up), blend(is_side, slope * norm, 0.0));
     l.face = p->first_face + blend_int(is_side, 0, blend_int(is_top, 2, 1));
     return l;
 }
@@ -68,22 +69,22 @@ ALWAYS_INLINE local_point sphere_point(const primitive *p, vec3 q)
     return l;
 }
 
-ALWAYS_INLINE void points_on(const primitive *p, primitive_kind kind, bool turned, const ray_batch *rays, const double *restrict t,
-                             const int64_t *restrict leaving, surface_batch *restrict s)
+ALWAYS_INLINE void points_on(const primitive *p, primitive_kind kind, bool turned, bool round, const ray_batch *rays, const double *restrict t,
+                             int bit, surface_batch *restrict s)
 {
     /* VECTORISE */
     for (int i = 0; i < rays->count; i++) {
         local_ray r = ray_to_local(p, turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
         vec3 d = vec3_make(r.dx, r.dy, r.dz), o = vec3_make(r.x, r.y, r.z), way = vec3_scale(d, t[i]), q = vec3_add(o, way);
-        int64_t at = rays->start[i] - p->first_face;
+        int64_t at = rays->start[i] - p->first_face, leaving = -(int64_t)((rays->inside[i] & (uint64_t)1 << bit) != 0);
         local_point l = kind == PRIMITIVE_HALFSPACE ? halfspace_point(q, p->first_face)
                       : kind == PRIMITIVE_CYLINDER
-                          ? cylinder_point(p, r, q, mask_same(at, 0), mask_same(at, 1), mask_same(at, 2), leaving[i])
-                      : kind == PRIMITIVE_BOX ? box_point(p, r, q, at, leaving[i])
+                          ? cylinder_point(p, round, r, q, mask_same(at, 0), mask_same(at, 1), mask_same(at, 2), leaving)
+                      : kind == PRIMITIVE_BOX ? box_point(p, r, q, at, leaving)
                                               : sphere_point(p, q);
-        double side = blend(leaving[i], -1.0, 1.0); /* the normal faces the ray */
+        double side = blend(leaving, -1.0, 1.0); /* the normal faces the ray */
         vec3 n = vec3_scale(l.normal, side), point = l.point;
-        double cosine = -vec3_dot(d, n) / vec3_length(d);
+        double cosine = -vec3_dot(d, n);
         double size = magnitude(o.x) + magnitude(o.y) + magnitude(o.z) + magnitude(way.x) + magnitude(way.y) + magnitude(way.z);
         if (turned) {
             n = mat3_apply(p->rotation, n);
@@ -101,28 +102,29 @@ ALWAYS_INLINE void points_on(const primitive *p, primitive_kind kind, bool turne
     }
 }
 
-void KERNEL(surface_points)(const primitive *primitive_met, const ray_batch *rays, const double *t, const int64_t *leaving, surface_batch *points)
+void KERNEL(surface_points)(const primitive *primitive_met, const ray_batch *rays, const double *t, int bit, surface_batch *points)
 {
     const primitive p = *primitive_met;
+    const bool round = p.m2 == 1.0;
     switch (p.kind) {
     case PRIMITIVE_HALFSPACE:
         if (p.turned)
-            points_on(&p, PRIMITIVE_HALFSPACE, true, rays, t, leaving, points);
+            points_on(&p, PRIMITIVE_HALFSPACE, true, true, rays, t, bit, points);
         else
-            points_on(&p, PRIMITIVE_HALFSPACE, false, rays, t, leaving, points);
+            points_on(&p, PRIMITIVE_HALFSPACE, false, true, rays, t, bit, points);
         break;
     case PRIMITIVE_CYLINDER:
-        if (p.turned)
-            points_on(&p, PRIMITIVE_CYLINDER, true, rays, t, leaving, points);
+        if (p.turned || !round)
+            points_on(&p, PRIMITIVE_CYLINDER, true, false, rays, t, bit, points);
         else
-            points_on(&p, PRIMITIVE_CYLINDER, false, rays, t, leaving, points);
+            points_on(&p, PRIMITIVE_CYLINDER, false, true, rays, t, bit, points);
         break;
     case PRIMITIVE_BOX:
         if (p.turned)
-            points_on(&p, PRIMITIVE_BOX, true, rays, t, leaving, points);
+            points_on(&p, PRIMITIVE_BOX, true, true, rays, t, bit, points);
         else
-            points_on(&p, PRIMITIVE_BOX, false, rays, t, leaving, points);
+            points_on(&p, PRIMITIVE_BOX, false, true, rays, t, bit, points);
         break;
-    case PRIMITIVE_SPHERE: points_on(&p, PRIMITIVE_SPHERE, false, rays, t, leaving, points); break;
+    case PRIMITIVE_SPHERE: points_on(&p, PRIMITIVE_SPHERE, false, true, rays, t, bit, points); break;
     }
 }

@@ -11,7 +11,9 @@ double clock_thread_cpu_s(void);
 double clock_process_cpu_s(void);
 
 /* What a clock can resolve, measured now: the smallest step seen, and the cost of one reading, in seconds. */
-typedef struct clock_quality { double tick_s, overhead_s; } clock_quality;
+typedef struct clock_quality {
+    double tick_s, overhead_s;
+} clock_quality;
 clock_quality clock_wall_quality(void);
 clock_quality clock_thread_cpu_quality(void);
 

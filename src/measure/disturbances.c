@@ -16,8 +16,7 @@ typedef struct report {
     void *context;
 } report;
 
-__attribute__((format(printf, 2, 3)))
-static void say(const report *to, const char *format, ...)
+__attribute__((format(printf, 2, 3))) static void say(const report *to, const char *format, ...)
 {
     char text[256];
     va_list arguments;

@@ -49,7 +49,9 @@ hardware_counter *hardware_counter_create(void)
 /* The count, scaled by time enabled / time running where the kernel shared the register among events. */
 static int64_t read_event(int file)
 {
-    struct { uint64_t value, enabled_ns, running_ns; } got;
+    struct {
+        uint64_t value, enabled_ns, running_ns;
+    } got;
     if (file < 0 || read(file, &got, sizeof got) != (ssize_t)sizeof got || got.running_ns == 0)
         return -1;
     if (got.running_ns >= got.enabled_ns)

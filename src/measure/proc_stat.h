@@ -6,9 +6,9 @@
 #include <stdbool.h>
 
 typedef struct proc_stat {
-    double busy_s;   /* user, nice, system, irq, softirq and steal, all units together, since boot */
-    double idle_s;   /* idle and iowait */
-    int units;       /* lines cpu0, cpu1, ...: processing units online */
+    double busy_s; /* user, nice, system, irq, softirq and steal, all units together, since boot */
+    double idle_s; /* idle and iowait */
+    int units;     /* lines cpu0, cpu1, ...: processing units online */
 } proc_stat;
 
 /* text is the file's; ticks_per_s is sysconf(_SC_CLK_TCK). False when it has no line "cpu " with four counts or more,

@@ -7,9 +7,9 @@
 typedef struct summary {
     size_t count;
     double mean, median, minimum, maximum;
-    double deviation;                  /* sample standard deviation (n - 1); NaN for fewer than 2 values */
-    double mean_low, mean_high;        /* 95% interval of the mean, Student's t; NaN for fewer than 2 values */
-    double median_low, median_high;    /* at least 95% interval of the median by order statistics (binomial); NaN for fewer
+    double deviation;               /* sample standard deviation (n - 1); NaN for fewer than 2 values */
+    double mean_low, mean_high;     /* 95% interval of the mean, Student's t; NaN for fewer than 2 values */
+    double median_low, median_high; /* at least 95% interval of the median by order statistics (binomial); NaN for fewer
                                           than 6 values, where no such interval exists */
 } summary;
 

@@ -160,7 +160,8 @@ status topology_restrict(topology *machine, const char *units, diagnostic *why)
     status result = STATUS_OK;
     if (hwloc_bitmap_list_sscanf(set, units) != 0 ||
         !hwloc_bitmap_intersects(set, hwloc_topology_get_topology_cpuset(machine->tree)))
-        result = diagnose(why, STATUS_BAD_INPUT, "write a list such as 0-3,8", "'%s' names no unit of this machine", units);
+        result =
+            diagnose(why, STATUS_BAD_INPUT, "write a list such as 0-3,8", "'%s' names no unit of this machine", units);
     else if (restrict_tree(machine->tree, set) != 0 || !make_rounds(machine))
         result = no_memory(why);
     hwloc_bitmap_free(set);
@@ -255,8 +256,8 @@ status topology_bind_thread(const topology *machine, int pu, diagnostic *why)
     hwloc_bitmap_free(set);
     if (failed) {
         char text[128];
-        return diagnose(why, STATUS_FAILURE, "render with render.pin none", "cannot bind a thread to processing unit %d: %s",
-                        pu, strerror_r(reason, text, sizeof text));
+        return diagnose(why, STATUS_FAILURE, "render with render.pin none",
+                        "cannot bind a thread to processing unit %d: %s", pu, strerror_r(reason, text, sizeof text));
     }
     return STATUS_OK;
 }

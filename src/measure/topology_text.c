@@ -7,7 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct line { char text[512]; size_t used; } line;
+typedef struct line {
+    char text[512];
+    size_t used;
+} line;
 
 static void append(line *to, const char *text)
 {
@@ -36,8 +39,10 @@ static void append_size(line *to, const char *name, uint64_t bytes)
 /* The first cache of each level: on a machine of unlike cores, that of the first core. */
 static void append_caches(line *to, hwloc_topology_t tree)
 {
-    static const struct { hwloc_obj_type_t type; const char *name; } levels[] = {
-        {HWLOC_OBJ_L1CACHE, "L1d"}, {HWLOC_OBJ_L2CACHE, "L2"}, {HWLOC_OBJ_L3CACHE, "L3"}};
+    static const struct {
+        hwloc_obj_type_t type;
+        const char *name;
+    } levels[] = {{HWLOC_OBJ_L1CACHE, "L1d"}, {HWLOC_OBJ_L2CACHE, "L2"}, {HWLOC_OBJ_L3CACHE, "L3"}};
     for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
         hwloc_obj_t cache = hwloc_get_obj_by_type(tree, levels[i].type, 0);
         if (cache && cache->attr->cache.size > 0)

@@ -22,7 +22,9 @@ static int64_t peak_rss_bytes(int64_t maxrss_kib)
 
 static void read_machine(usage *u)
 {
-    enum { PROC_STAT_MAX = 65536 }; /* a line is under 128 bytes: over 500 units; interrupts, which follow, may be cut */
+    enum {
+        PROC_STAT_MAX = 65536
+    }; /* a line is under 128 bytes: over 500 units; interrupts, which follow, may be cut */
     char text[PROC_STAT_MAX];
     proc_stat machine;
     long units = sysconf(_SC_NPROCESSORS_ONLN);

@@ -6,11 +6,11 @@
 
 /* Absent values are NaN (reals) or -1 (integers), and are written as NA. */
 typedef struct usage {
-    double wall_s, cpu_s;                 /* of the process; a difference after usage_since */
-    int64_t peak_rss_bytes;               /* highest resident memory of the process so far; never a difference */
+    double wall_s, cpu_s;   /* of the process; a difference after usage_since */
+    int64_t peak_rss_bytes; /* highest resident memory of the process so far; never a difference */
     int64_t voluntary_switches, involuntary_switches;
-    double machine_busy_s;                /* CPU seconds used by everyone since boot (/proc/stat) */
-    double machine_units;                 /* processing units online */
+    double machine_busy_s; /* CPU seconds used by everyone since boot (/proc/stat) */
+    double machine_units;  /* processing units online */
 } usage;
 
 usage usage_now(void);
@@ -22,7 +22,9 @@ double usage_others_share(const usage *difference);
 
 /* Hardware counters of the calling thread and the threads it starts later (perf_event_open), user mode only;
  * values that the kernel does not give are -1. */
-typedef struct hardware_counts { int64_t cycles, instructions, branch_misses, cache_misses; } hardware_counts;
+typedef struct hardware_counts {
+    int64_t cycles, instructions, branch_misses, cache_misses;
+} hardware_counts;
 typedef struct hardware_counter hardware_counter;
 
 /* Never fails: where the kernel gives nothing every count is -1. Counts from here on, and threads started after it was

@@ -15,6 +15,5 @@ void group_gather(const ray_queue *q, int first, const hit_batch *hits, const do
         g->n_to[k] = ior[hits->after[i]];
         g->inside_before[k] = hits->inside_before[i];
         g->inside_after[k] = hits->inside_after[i];
-        g->leaving[k] = -(int64_t)(hits->inside_before[i] >> hits->crossed[i] & 1);
     }
 }

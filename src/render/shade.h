@@ -13,7 +13,7 @@ typedef struct group {
     double wr[ROW], wg[ROW], wb[ROW]; /* throughput */
     double t[ROW];
     double n_from[ROW], n_to[ROW];      /* indices on the ray's side and beyond */
-    int64_t start[ROW], pixel[ROW], leaving[ROW];
+    int64_t start[ROW], pixel[ROW];
     uint64_t inside_before[ROW], inside_after[ROW];
     surface_batch points;
     double cr[ROW], cg[ROW], cb[ROW]; /* the material's colour at the point */
@@ -39,6 +39,8 @@ typedef struct branch_group {
  * one by one are faster than the gather instructions of the processors it was measured on. */
 void group_gather(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count, group *g);
 
+typedef struct cut_sum { int64_t branches, throughput[3]; } cut_sum;
+
 typedef struct shade_kernels {
     /* The material's colour at the points of its surface on p: checker cells in the solid's own frame. */
     void (*color)(const material *m, const primitive *p, group *g);
@@ -48,6 +50,8 @@ typedef struct shade_kernels {
     void (*fresnel_branches)(const material *m, const group *g, branch_group *b);
     /* The same with the material's constant weights; opaque surfaces too. */
     void (*constant_branches)(const material *m, bool opaque, const group *g, branch_group *b);
+    /* Adds up branches that are not to be traced: their number, and their throughput in units of 1/COUNTERS_CUT_ONE. */
+    void (*cut)(const group *g, const branch_group *b, cut_sum *sum);
     /* Appends all of g to q as rays along (dx, dy, dz) with throughput times weight; rays with weight 0 are then to be taken out. */
     void (*append)(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,
                    const uint64_t *inside, ray_queue *q);

@@ -21,7 +21,7 @@ struct tracer {
     _Alignas(64) lit_group lit;
     _Alignas(64) branch_group branches;
     _Alignas(64) double transmitted[ROW];
-    int list[PRIMITIVES_MAX + 1][ROW], listed[PRIMITIVES_MAX + 1]; /* rays by primitive met; the last one: none */
+    int list[PRIMITIVES_MAX + 2][ROW], listed[PRIMITIVES_MAX + 2]; /* see sort_by_primitive */
 };
 
 #if CUVETTE_COUNTERS
@@ -169,27 +169,34 @@ static void local_light(tracer *t, const material *m)
     }
 }
 
+/* Branches that the depth limit cuts off: counted, and given what lies beyond it. */
+static void cut_branches(tracer *t)
+{
+    const group *g = &t->gathered;
+    const branch_group *b = &t->branches;
+    const plan *p = t->target.scene;
+#if CUVETTE_COUNTERS
+    cut_sum sum;
+    t->shade->cut(g, b, &sum);
+    t->counters.cut_depth += (uint64_t)sum.branches;
+    for (int c = 0; c < 3; c++)
+        t->counters.cut_depth_throughput[c] += sum.throughput[c];
+#endif
+    if (p->render.beyond == BEYOND_BLACK)
+        return;
+    const bool uniform = p->sky->kind == BACKGROUND_UNIFORM; /* then directions do not matter */
+    for (int i = 0; i < g->count; i++) {
+        const double first = uniform ? b->reflect[i] + b->refract[i] : b->reflect[i], second = uniform ? 0.0 : b->refract[i];
+        if (first > 0.0)
+            expose_sky(t, g->pixel[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first, g->wg[i] * first, g->wb[i] * first);
+        if (second > 0.0)
+            expose_sky(t, g->pixel[i], vec3_make(b->tx[i], b->ty[i], b->tz[i]), g->wr[i] * second, g->wg[i] * second, g->wb[i] * second);
+    }
+}
+
 static int64_t cut_units(double throughput)
 {
     return (int64_t)(throughput * COUNTERS_CUT_ONE + 0.5);
-}
-
-/* Branches that the depth limit cuts off: counted, and given what lies beyond it. */
-static void cut_branches(tracer *t, const double *dx, const double *dy, const double *dz, const double *weight)
-{
-    const group *g = &t->gathered;
-    const bool sky = t->target.scene->render.beyond == BEYOND_SKY;
-    for (int i = 0; i < g->count; i++) {
-        if (weight[i] == 0.0)
-            continue;
-        double wr = g->wr[i] * weight[i], wg = g->wg[i] * weight[i], wb = g->wb[i] * weight[i];
-        COUNT(t->counters.cut_depth++);
-        COUNT(t->counters.cut_depth_throughput[0] += cut_units(wr));
-        COUNT(t->counters.cut_depth_throughput[1] += cut_units(wg));
-        COUNT(t->counters.cut_depth_throughput[2] += cut_units(wb));
-        if (sky)
-            expose_sky(t, g->pixel[i], vec3_make(dx[i], dy[i], dz[i]), wr, wg, wb);
-    }
 }
 
 static bool too_light(tracer *t, const ray_queue *q, int i, double least)
@@ -233,8 +240,7 @@ static void branch(tracer *t, int depth, const material *m, bool opaque)
         for (int i = 0; i < g->count; i++)
             COUNT(t->counters.total_internal -= (uint64_t)b->total[i]);
     if (depth == t->depth_limit) {
-        cut_branches(t, b->rx, b->ry, b->rz, b->reflect);
-        cut_branches(t, b->tx, b->ty, b->tz, b->refract);
+        cut_branches(t);
         return;
     }
     int reflected = put_children_in_line(t, depth + 1, b->rx, b->ry, b->rz, b->reflect, g->inside_before);
@@ -242,15 +248,6 @@ static void branch(tracer *t, int depth, const material *m, bool opaque)
     COUNT(t->counters.reflect += (uint64_t)reflected);
     COUNT(t->counters.refract += (uint64_t)refracted);
     (void)reflected, (void)refracted;
-}
-
-/* The body whose surface it is: an opaque one if either side is opaque, else the one of the higher rank. */
-static int surface_rank(const plan *p, int before, int after)
-{
-    const body *bodies = p->solids->bodies;
-    if (bodies[after].opaque || bodies[before].opaque)
-        return bodies[after].opaque ? after : before;
-    return after > before ? after : before;
 }
 
 static void shade_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
@@ -261,7 +258,7 @@ static void shade_group(tracer *t, int depth, int first, int met, int rank, cons
     group *g = &t->gathered;
     group_gather(&t->waiting[depth], first, &t->hits, p->ior, list, count, g);
     const ray_batch rays = {g->padded, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
-    t->geometry->surface(surface, &rays, g->t, g->leaving, &g->points);
+    t->geometry->surface(surface, &rays, g->t, met, &g->points);
     const int owner = p->solids->bodies[rank].solid;
     COUNT(t->counters.hits[owner] += (uint64_t)count);
     if (depth == 0)
@@ -272,34 +269,37 @@ static void shade_group(tracer *t, int depth, int first, int met, int rank, cons
     branch(t, depth, m, p->solids->bodies[rank].opaque);
 }
 
-/* Groups the rays that met one primitive by the body whose surface it is there; nearly always they all belong to
- * the primitive's own. */
-static void shade_primitive(tracer *t, int depth, int first, int met)
+/* Rays by the primitive they met. Those that met another body's surface there (an opaque one behind a clear one's, or two in
+ * one place) are listed last but one, those that met nothing last. */
+static void sort_by_primitive(tracer *t, int count)
 {
-    const plan *p = t->target.scene;
-    int *list = t->list[met], left = t->listed[met], same[ROW];
+    const arrangement *a = t->target.scene->solids;
+    const int foreign = a->primitive_count, none = foreign + 1;
+    memset(t->listed, 0, ((size_t)none + 1) * sizeof *t->listed);
+    for (int i = 0; i < count; i++) {
+        const int met = (int)t->hits.crossed[i];
+        const int at = met < 0 ? none : t->hits.surface[i] == a->primitives[met].rank ? met : foreign;
+        t->list[at][t->listed[at]++] = i;
+    }
+}
+
+/* The few rays on foreign surfaces, in groups of one primitive and one body. */
+static void shade_foreign(tracer *t, int depth, int first)
+{
+    const int foreign = t->target.scene->solids->primitive_count;
+    int *list = t->list[foreign], left = t->listed[foreign], same[BATCH];
     while (left > 0) {
-        const int rank = surface_rank(p, (int)t->hits.before[list[0]], (int)t->hits.after[list[0]]);
+        const int64_t met = t->hits.crossed[list[0]], rank = t->hits.surface[list[0]];
         int count = 0, others = 0;
         for (int k = 0; k < left; k++) {
             const int i = list[k];
-            if (surface_rank(p, (int)t->hits.before[i], (int)t->hits.after[i]) == rank)
+            if (t->hits.crossed[i] == met && t->hits.surface[i] == rank)
                 same[count++] = i;
             else
                 list[others++] = i;
         }
-        shade_group(t, depth, first, met, rank, same, count);
+        shade_group(t, depth, first, (int)met, (int)rank, same, count);
         left = others;
-    }
-}
-
-static void sort_by_primitive(tracer *t, int count)
-{
-    const int none = t->target.scene->solids->primitive_count;
-    memset(t->listed, 0, ((size_t)none + 1) * sizeof *t->listed);
-    for (int i = 0; i < count; i++) {
-        const int met = t->hits.crossed[i] < 0 ? none : (int)t->hits.crossed[i];
-        t->list[met][t->listed[met]++] = i;
     }
 }
 
@@ -314,13 +314,15 @@ static void trace_batch(tracer *t, int depth)
         COUNT(t->counters.camera += (uint64_t)rays.count);
     t->geometry->nearest(p->solids, &rays, &t->scratch, &t->hits);
     sort_by_primitive(t, rays.count);
-    const int none = p->solids->primitive_count;
+    const int primitives = p->solids->primitive_count, none = primitives + 1;
     for (int k = 0; k < t->listed[none]; k++) {
         const int i = t->list[none][k], at = first + i;
         expose_sky(t, q->pixel[at], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
     }
-    for (int met = 0; met < none; met++)
-        shade_primitive(t, depth, first, met);
+    for (int met = 0; met < primitives; met++)
+        if (t->listed[met] > 0)
+            shade_group(t, depth, first, met, p->solids->primitives[met].rank, t->list[met], t->listed[met]);
+    shade_foreign(t, depth, first);
 }
 
 static void trace_shadows(tracer *t)

@@ -232,7 +232,7 @@ static status drop_twins(row_files *files, diagnostic *why)
     return code;
 }
 
-status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why)
+static status load(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why)
 {
     *out = NULL;
     row_files *files = calloc(1, sizeof *files);
@@ -240,8 +240,6 @@ status row_files_read(const study *s, const char *results, row_kind kind, row_fi
     status code = files && folder ? open_files(files, folder, kind, why) : no_memory(why);
     if (code == STATUS_OK)
         code = read_rows(files, s, kind, why);
-    if (code == STATUS_OK)
-        code = drop_twins(files, why);
     free(folder);
     if (code != STATUS_OK) {
         row_files_destroy(files);
@@ -249,6 +247,66 @@ status row_files_read(const study *s, const char *results, row_kind kind, row_fi
     }
     *out = files;
     return STATUS_OK;
+}
+
+/* The file of the rows that the worker rows of a file belong to: workers.shard-0-of-2.csv -> rows.shard-0-of-2.csv. */
+static const csv *rows_beside(const row_files *rows, const char *workers_path)
+{
+    const char *ending = strrchr(workers_path, '/') + 1 + strlen(stems[WORKER_ROWS]);
+    for (size_t i = 0; i < rows->count; i++)
+        if (strcmp(strrchr(rows->paths[i], '/') + 1 + strlen(stems[ROWS]), ending) == 0)
+            return rows->tables[i];
+    return NULL;
+}
+
+static bool has_row(const row_files *rows, const csv *table, const row_ref *worker)
+{
+    for (size_t i = rows->row_count; i > 0; i--) {
+        const row_ref *ref = &rows->rows[i - 1];
+        if (ref->table == table && ref->cell == worker->cell && ref->repetition == worker->repetition)
+            return true;
+    }
+    return false;
+}
+
+/* Drops worker rows whose repetition has no row beside them: a process was killed between the two writes. */
+static status drop_orphans(row_files *workers, const study *s, const char *results, diagnostic *why)
+{
+    row_files *rows;
+    status code = load(s, results, ROWS, &rows, why);
+    if (code != STATUS_OK)
+        return code;
+    size_t kept = 0;
+    row_ref last = {0};
+    bool last_kept = false;
+    for (size_t i = 0, file = 0; i < workers->row_count; i++) {
+        row_ref ref = workers->rows[i];
+        while (workers->tables[file] != ref.table)
+            file++;
+        /* Those of one repetition stand together. */
+        if (ref.table != last.table || ref.cell != last.cell || ref.repetition != last.repetition)
+            last_kept = has_row(rows, rows_beside(rows, workers->paths[file]), &ref);
+        last = ref;
+        if (last_kept)
+            workers->rows[kept++] = ref;
+    }
+    workers->row_count = kept;
+    row_files_destroy(rows);
+    return STATUS_OK;
+}
+
+status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why)
+{
+    status code = load(s, results, kind, out, why);
+    if (code == STATUS_OK && kind == WORKER_ROWS)
+        code = drop_orphans(*out, s, results, why);
+    if (code == STATUS_OK)
+        code = drop_twins(*out, why);
+    if (code != STATUS_OK) {
+        row_files_destroy(*out);
+        *out = NULL;
+    }
+    return code;
 }
 
 void row_files_destroy(row_files *files)

@@ -32,7 +32,7 @@ char *row_file_path(const char *folder, row_kind kind, long shard, long shards);
 char *row_file_header(const study *s, row_kind kind);
 
 /* STATUS_BAD_INPUT when a file is damaged, is of another definition or has other columns, or when one repetition stands in two files
- * with different values. */
+ * with different values. Worker rows whose repetition has no row (a process was killed between the two) are left out. */
 status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why);
 void row_files_destroy(row_files *files);
 

@@ -10,41 +10,53 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
-/* Worker rows are written before the row that they belong to; those without one are what a killed process left. */
-static status set_orphans_aside(run *r, const char *path, diagnostic *why)
+/* Worker rows are written before the row that they belong to; those at the end without one are what a killed process left. */
+static status set_orphans_aside(run *r, const csv *rows, const char *path, diagnostic *why)
 {
-    row_files *rows = NULL;
     csv *workers = NULL;
-    status code = row_files_read(r->s, r->options->results, ROWS, &rows, why);
-    if (code == STATUS_OK)
-        code = csv_read(path, &workers, why);
-    size_t keep = code == STATUS_OK && workers ? workers->row_count : 0;
-    for (bool orphan = true; keep > 0 && orphan; keep -= orphan) {
-        double cell = csv_field_real(workers, keep - 1, csv_column(workers, "cell"));
-        double repetition = csv_field_real(workers, keep - 1, csv_column(workers, "repetition"));
-        for (size_t i = rows->row_count; orphan && i > 0; i--)
-            orphan = (double)rows->rows[i - 1].cell != cell || (double)rows->rows[i - 1].repetition != repetition;
+    status code = csv_read(path, &workers, why);
+    if (code != STATUS_OK || !workers || !workers->header) {
+        csv_destroy(workers);
+        return code;
     }
-    if (code == STATUS_OK && workers && workers->header)
-        code = table_set_aside(r->workers, workers->start[keep], why);
+    int cell = csv_column(workers, "cell"), repetition = csv_column(workers, "repetition");
+    int row_cell = rows ? csv_column(rows, "cell") : -1, row_repetition = rows ? csv_column(rows, "repetition") : -1;
+    size_t keep = workers->row_count;
+    for (bool orphan = true; keep > 0 && cell >= 0 && repetition >= 0; keep--) {
+        for (size_t i = row_cell >= 0 && row_repetition >= 0 ? rows->row_count : 0; orphan && i > 0; i--)
+            orphan = strcmp(csv_field(rows, i - 1, row_cell), csv_field(workers, keep - 1, cell)) != 0 ||
+                     strcmp(csv_field(rows, i - 1, row_repetition), csv_field(workers, keep - 1, repetition)) != 0;
+        if (!orphan)
+            break;
+    }
+    code = table_set_aside(r->workers, workers->start[keep], why);
     csv_destroy(workers);
-    row_files_destroy(rows);
     return code;
 }
 
-static status open_table(run *r, row_kind kind, table **out, diagnostic *why)
+static status open_table(const run *r, row_kind kind, table **out, char **path, diagnostic *why)
 {
-    char *path = row_file_path(r->folder, kind, r->options->shard, r->options->shards);
     char *header = row_file_header(r->s, kind);
-    status code = path && header ? table_open(path, header, out, why) : no_memory(why);
-    csv *written = NULL;
-    if (code == STATUS_OK && kind == ROWS && (code = csv_read(path, &written, why)) == STATUS_OK && written)
-        r->row_number = written->row_count;
-    if (code == STATUS_OK && kind == WORKER_ROWS)
-        code = set_orphans_aside(r, path, why);
-    csv_destroy(written);
+    *path = row_file_path(r->folder, kind, r->options->shard, r->options->shards);
+    status code = *path && header ? table_open(*path, header, out, why) : no_memory(why);
     free(header);
+    return code;
+}
+
+static status open_tables(run *r, diagnostic *why)
+{
+    char *path = NULL, *workers_path = NULL;
+    csv *rows = NULL;
+    status code = open_table(r, ROWS, &r->rows, &path, why);
+    if (code == STATUS_OK && (code = csv_read(path, &rows, why)) == STATUS_OK && rows)
+        r->row_number = rows->row_count;
+    if (code == STATUS_OK && r->s->keep_workers)
+        code = open_table(r, WORKER_ROWS, &r->workers, &workers_path, why);
+    if (code == STATUS_OK && r->workers)
+        code = set_orphans_aside(r, rows, workers_path, why);
+    csv_destroy(rows);
     free(path);
+    free(workers_path);
     return code;
 }
 
@@ -55,9 +67,7 @@ status run_prepare(run *r, diagnostic *why)
     if (code == STATUS_OK)
         code = file_make_directory(r->folder, why);
     if (code == STATUS_OK)
-        code = open_table(r, ROWS, &r->rows, why);
-    if (code == STATUS_OK && r->s->keep_workers)
-        code = open_table(r, WORKER_ROWS, &r->workers, why);
+        code = open_tables(r, why);
     if (code != STATUS_OK)
         return code;
     ledger_destroy(r->done);

@@ -1,0 +1,104 @@
+#!/bin/bash
+# Draws the figures whose rows exist and are newer than the figure, as PNG and SVG.
+#   plots/draw.sh [--results DIR] [--out DIR] [--format png,svg] [FIGURE...]
+# DIR is results unless told; figures go to DIR/figures. A figure named on the command line is always drawn.
+# A figure says in its head what it needs (`# needs:`, paths below DIR, * allowed); without that it is skipped with one line.
+# The same rows give the same bytes: no figure holds a time or a name of the machine.
+set -euo pipefail
+export LC_ALL=C.UTF-8
+
+fail() { echo "draw.sh: $*" >&2; exit 1; }
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+results=$root/results
+out=
+formats=(png svg)
+figures=()
+while [ $# -gt 0 ]; do
+    case $1 in
+    --results) results=$(cd "${2:?--results needs a folder}" && pwd) || exit 1; shift ;;
+    --out) mkdir -p "${2:?--out needs a folder}"; out=$(cd "$2" && pwd); shift ;;
+    --format) IFS=, read -r -a formats <<<"${2:?--format needs png, svg or both}"; shift ;;
+    -*) fail "unknown option $1; usage: plots/draw.sh [--results DIR] [--out DIR] [--format png,svg] [FIGURE...]" ;;
+    *) figures+=("$1") ;;
+    esac
+    shift
+done
+cd "$root"
+out=${out:-$results/figures}
+named=${#figures[@]}
+[ "$named" -gt 0 ] || mapfile -t figures < <(grep -l '^# needs:' plots/*.gp | sed 's|.*/||; s|\.gp$||')
+command -v gnuplot >/dev/null || fail "gnuplot is missing; apt-get install --no-install-recommends gnuplot-nox"
+gnuplot -e 'set terminal pngcairo' 2>/dev/null || fail "this gnuplot has no pngcairo; apt-get install --no-install-recommends gnuplot-nox"
+
+# Does a table hold a measured cell?
+has_rows() {
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "n") n = i } NR > 1 && $n > 0 { found = 1 } END { exit !found }' "$1"
+}
+
+# Sets `missing` to the first thing that a figure lacks, or to nothing, and `inputs` to the files that it is drawn from.
+look_for_inputs() {
+    local pattern found
+    missing=
+    inputs=("plots/$1.gp" plots/style.gp plots/picture.gp plots/*.awk plots/*.sh experiments/published/*.csv)
+    for pattern in $(sed -n 's/^# needs: *//p' "plots/$1.gp"); do
+        mapfile -t found < <(compgen -G "$results/$pattern")
+        if [ ${#found[@]} -eq 0 ]; then
+            missing=${missing:-$pattern}
+        elif [[ $pattern == tables/* ]] && ! has_rows "${found[0]}"; then
+            missing=${missing:-measured cells in $pattern}
+        fi
+        inputs+=("${found[@]}")
+    done
+}
+
+is_fresh() {
+    local format input
+    for format in "${formats[@]}"; do
+        [ -s "$out/$1.$format" ] || return 1
+        for input in "${inputs[@]}"; do
+            [ ! "$input" -nt "$out/$1.$format" ] || return 1
+        done
+    done
+}
+
+# The processing units of the machine that measured, 0 if no manifest tells.
+units() {
+    { cat "$results"/{threads,profile,depth,pool}/manifest.json 2>/dev/null || true; } |
+        sed -n 's/.*"processing_units": *\([0-9][0-9]*\).*/\1/p' | sed -n 1p
+}
+
+draw() {
+    local format scratch=$out/.$1.drawing
+    for format in "${formats[@]}"; do
+        if ! gnuplot -e "results = '$results'; output = '$scratch'; format = '$format'; units = ${machine_units:-0}" "plots/$1.gp" \
+            2>"$scratch.log" || [ ! -s "$scratch.$format" ]; then
+            sed "s/^/    /" "$scratch.log" | grep -v '^ *$' | head -n 5 >&2 || true
+            rm -f "$scratch".*
+            return 1
+        fi
+        mv "$scratch.$format" "$out/$1.$format"
+    done
+    rm -f "$scratch.log"
+}
+
+mkdir -p "$out"
+machine_units=$(units)
+drawn=0 fresh=0 failed=0
+for figure in "${figures[@]}"; do
+    [ -f "plots/$figure.gp" ] || fail "there is no plots/$figure.gp"
+    look_for_inputs "$figure"
+    if [ -n "$missing" ]; then
+        echo "$figure: skipped, no $missing"
+    elif [ "$named" -eq 0 ] && is_fresh "$figure"; then
+        fresh=$((fresh + 1))
+    elif draw "$figure"; then
+        drawn=$((drawn + 1))
+        echo "$figure: drawn"
+    else
+        failed=$((failed + 1))
+        echo "$figure: gnuplot failed" >&2
+    fi
+done
+echo "figures: $drawn drawn, $fresh up to date, in ${out#"$root"/}"
+[ "$failed" -eq 0 ]

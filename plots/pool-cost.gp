@@ -1,0 +1,28 @@
+# What fresh threads for every frame cost against a pool that was started beforehand.
+# needs: tables/pool.tsv
+width = 1000; height = 430
+load "plots/style.gp"
+
+rows = table("pool")
+times(pool) = select(rows, "render.pool=".pool, "render.threads wall_s_median wall_s_low wall_s_high")
+# Both on one line, by threads.
+both = sprintf("< plots/join.sh '%s' render.threads 'render.pool=off' 'render.pool=on' 'wall_s_median wall_s_low wall_s_high'", rows)
+
+set multiplot layout 1,2 margins 0.08,0.985,0.14,0.92 spacing 0.11
+set logscale x 2
+set xlabel "threads"
+set xrange [0.9:1140]
+set xtics rotate by 0 1,4
+set yrange [0:*]
+set title "Wall time of a frame"
+set ylabel "wall time / ms"
+set key bottom left
+plot times("off") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 2 title "fresh threads", \
+     times("on") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 1 title "pool"
+set title "What fresh threads add to a frame"
+set ylabel "fresh less pool / ms"
+set autoscale y
+set xzeroaxis lc rgb ink lw 0.8
+unset key
+plot both using 1:(($2 - $5)*1e3):(($3 - $7)*1e3):(($4 - $6)*1e3) with yerrorlines lt 4
+unset multiplot

@@ -1,0 +1,26 @@
+#!/bin/sh
+# The pieces of a frame from its timeline (Chrome trace JSON): begin and end in ms, worker, and the piece's
+# place in the picture as a share of all, in reading order (0 first, 1 last).
+#   plots/timeline.sh TIMELINE.json
+export LC_ALL=C
+set -eu
+
+awk 'function value(name) {
+         if (!match($0, "\"" name "\": *[-+0-9.eE]+")) return "NA"
+         text = substr($0, RSTART, RLENGTH)
+         sub(/.*: */, "", text)
+         return text
+     }
+     # A piece is named by its corner: "32,64-..." or "tile 32,64".
+     function corner(which) {
+         match($0, "\"name\": *\"[^\"]*\"")
+         text = substr($0, RSTART + 6, RLENGTH - 6)
+         gsub(/[^0-9]+/, " ", text)
+         split(text, at, " ")
+         return at[which]
+     }
+     BEGIN { RS = "}" }
+     /"ph": *"X"/ { print corner(2), corner(1), value("ts") / 1e3, (value("ts") + value("dur")) / 1e3, value("tid") }' "$1" |
+    sort -n -k 1,1 -k 2,2 |
+    awk '{ begin[NR] = $3; end[NR] = $4; worker[NR] = $5 }
+         END { for (i = 1; i <= NR; i++) print begin[i], end[i], worker[i], (NR > 1 ? (i - 1) / (NR - 1) : 0) }'

@@ -1,0 +1,195 @@
+#!/bin/bash
+# Wrong command lines, variables, scenes, studies and sky pictures: tests/bad_input.sh [PROGRAM]. Each must end with exit 2,
+# nothing on standard output, and exactly one line on standard error that says where, what, and (for a person's slip) the
+# remedy. One line a check, then "N passed, N failed".
+set -uo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
+scene=$root/experiments/scenes/rod.yaml
+work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-bad.XXXXXX") || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+unset CUVETTE_ISA
+
+passed=0 failed=0
+located='^cuvette: [^:]+(:[0-9]+(:[0-9]+)?)?: [^;]+(; .+)?$'
+refused() # WHAT PATTERN ARGUMENT...: the line must also match PATTERN
+{
+    local what=$1 pattern=$2 wrong=
+    shift 2
+    timeout 60 "$program" "$@" >out 2>err </dev/null
+    local code=$?
+    ((code == 2)) || wrong+=" exit $code;"
+    [[ -s out ]] && wrong+=" something on standard output;"
+    (($(wc -l <err) == 1)) || wrong+=" $(wc -l <err) lines;"
+    LC_ALL=C grep -qE "$located" err || wrong+=" not located;"
+    LC_ALL=C grep -qE -- "$pattern" err || wrong+=" does not match '$pattern';"
+    if [[ -z $wrong ]]; then
+        passed=$((passed + 1))
+        echo "ok $((passed + failed)) - $what"
+    else
+        failed=$((failed + 1))
+        echo "not ok $((passed + failed)) - $what:$wrong $(head -c 400 err)"
+    fi
+}
+render() # WHAT PATTERN ARGUMENT...
+{
+    refused "$1" "$2" render "$scene" --json --set render.width=8 --set render.height=6 "${@:3}"
+}
+
+# --- command lines
+refused "no command" "name a command"
+refused "misspelt command" "did you mean 'render'" rendr
+refused "unknown command" "give one of: render" frobnicate
+refused "unknown option of the program" "no option '--bogus'" --bogus
+refused "no scene" "no scene" render
+refused "nothing asked for" "add -o FILE" render "$scene"
+refused "two scenes" "one too many" render "$scene" "$scene" --json
+refused "misspelt option" "did you mean '--output'" render "$scene" --outptu x.png
+refused "unknown short option" "no option '-z'" render "$scene" -z
+refused "ambiguous option" "stands for several" render "$scene" --ti x.png
+refused "option without its value" "needs a value" render "$scene" -o
+refused "value for an option that takes none" "takes no value" render "$scene" --json=yes
+refused "scene is not there" "nowhere.yaml" render nowhere.yaml --json
+refused "scene is a folder" "folder" render . --json
+refused "picture to standard output" "-o -" render "$scene" -o -
+refused "unknown ending" "x.gif" render "$scene" -o x.gif
+refused "no ending" "x: " render "$scene" -o x
+refused "empty name of a picture" "-o" render "$scene" -o ""
+refused "folder is not there" "folder is not there" render "$scene" -o nowhere/x.png
+mkdir folder.png
+refused "picture is a folder" "is a folder" render "$scene" -o folder.png
+refused "JPEG with 16 bits" "only PNG" render "$scene" -o x.jpg --bits 16
+refused "12 bits" "8 or 16" render "$scene" -o x.png --bits 12
+refused "bits are no number" "integer" render "$scene" -o x.png --bits many
+refused "map as JPEG" "no format for a map" render "$scene" --rays x.jpg
+refused "timeline without .json" "json" render "$scene" --timeline x.png
+refused "two results into one file" "one file" render "$scene" -o x.png --rays ./../"${work##*/}"/x.png
+refused "repeat 0" "integer from 1" render "$scene" --json --repeat 0
+refused "repeat is no integer" "integer from 1" render "$scene" --json --repeat 2.5
+refused "repeat too large for 64 bits" "integer from 1" render "$scene" --json --repeat 99999999999999999999
+cp "$scene" same.yaml
+ln -s same.yaml same.png
+refused "picture over the scene" "the scene is read from it" render same.yaml -o same.png
+CUVETTE_ISA=mmx render "unknown instruction set" "CUVETTE_ISA"
+CUVETTE_ISA=mmx refused "unknown instruction set, machine" "CUVETTE_ISA" machine
+printf '%s\n' 'study: isa' "scene: $scene" 'grid: [{render.depth: [0]}]' 'repetitions: 1' >isa.study
+CUVETTE_ISA=mmx refused "unknown instruction set, study" "CUVETTE_ISA" study run isa.study --results isa-results
+refused "machine with an argument" "too many" machine now
+refused "params of two scenes" "too many" params "$scene" "$scene"
+echo 'render: [' >text.yaml
+refused "params of what is no scene" "text.yaml:[0-9]" params text.yaml
+refused "help for a misspelt command" "did you mean 'study'" help studdy
+refused "study without a command" "name a command" study
+refused "misspelt study command" "did you mean 'merge'" study merg
+refused "study run without a file" "no study" study run
+refused "study file is not there" "nowhere.study" study run nowhere.study
+refused "study list of nothing" "nowhere" study list nowhere
+refused "shard out of range" "0 <= I < N" study run --shard 2/2 x.study
+refused "shard without N" "0 <= I < N" study run --shard 1 x.study
+refused "shard of words" "0 <= I < N" study run --shard a/b x.study
+refused "shard of a huge number" "0 <= I < N" study run --shard 0/99999999999999999999999 x.study
+refused "summary of two studies" "more than one" study summary a.study b.study
+refused "empty results folder" "empty" study status --results "" x.study
+
+# --- parameters
+render "--set of an unknown group" "rendr" --set rendr.depth=3
+render "--set of a misspelt parameter" "did you mean 'render.depth'" --set render.dpth=3
+render "--set without =" "path=value" --set render.depth
+render "--set without a path" "--set" --set =3
+render "--set without a value" "render.depth" --set render.depth=
+render "--set out of range" "0\.\.64" --set render.depth=65
+render "--set of a word for a number" "render.depth" --set render.depth=deep
+render "--set of a real for an integer" "render.depth" --set render.depth=4.5
+render "--set of NaN" "vessel.ior" --set vessel.ior=nan
+render "--set of infinity" "vessel.ior" --set vessel.ior=inf
+render "--set of a decimal comma" "vessel.ior" --set vessel.ior=1,5
+render "--set of hexadecimal" "vessel.ior" --set vessel.ior=0x1p1
+render "--set of an overflow" "vessel.ior" --set vessel.ior=1e999
+render "--set of an unknown word" "fresnel" --set render.weights=frenel
+render "--set of two numbers for three" "lamp.position" --set lamp.position=1,2
+render "--set of four numbers for three" "lamp.position" --set lamp.position=1,2,3,4
+render "--set of an unknown element" "lamp.position" --set lamp.position.w=1
+render "--set of an unknown solid" "vesel" --set vesel.ior=1.5
+render "--set of a parameter that the shape lacks" "ground" --set ground.radius=1
+render "--set of control characters" "--set" --set $'render.depth=\e[31m4'
+render "--set that makes no shape" "vessel" --set vessel.inner_radius=2
+render "a camera at its own target" "camera" --set camera.target=0,2.75,-6
+render "a sky without a picture" "picture" --set background.kind=picture
+
+# --- sky pictures
+printf '%s\n' 'background: {kind: picture, picture: sky.png}' 'render: {width: 8, height: 6}' >sky.yaml
+sky() # WHAT: the file sky.png is bad
+{
+    refused "sky: $1" "sky\." render sky.yaml --json
+}
+rm -f sky.png
+sky "not there"
+mkdir sky.png
+sky "a folder"
+rmdir sky.png
+: >sky.png
+sky "empty"
+head -c 3000 /dev/urandom >sky.png
+sky "noise"
+echo "a text" >sky.png
+sky "text"
+"$program" render "$scene" -o good.png --set render.width=40 --set render.height=20 >/dev/null
+"$program" render "$scene" -o good.jpg --set render.width=40 --set render.height=20 >/dev/null
+"$program" render "$scene" -o good.pfm --set render.width=40 --set render.height=20 >/dev/null
+for kind in png jpg pfm; do
+    head -c $(($(wc -c <good.$kind) / 2)) good.$kind >sky.png
+    sky "truncated $kind"
+done
+head -c 20 good.png >sky.png
+sky "PNG cut in its header"
+# Width and height 2^31 - 1, the CRC of the header wrong as well.
+{ head -c 16 good.png; printf '\x7f\xff\xff\xff\x7f\xff\xff\xff'; tail -c +25 good.png; } >sky.png
+sky "PNG of a huge size"
+{ head -c 60 good.png; printf '\xde\xad\xbe\xef'; tail -c +65 good.png; } >sky.png
+sky "PNG with damaged data"
+printf 'PF\n99999 99999\n-1.0\nabcd' >sky.png
+sky "PFM of a huge size"
+printf 'PF\n2 -2\n-1.0\n' >sky.png
+sky "PFM of a negative size"
+{ printf 'PF\n1 1\n-1.0\n'; printf '\x00\x00\xc0\x7f\x00\x00\xc0\x7f\x00\x00\xc0\x7f'; } >sky.png
+sky "PFM with NaN"
+printf 'GIF89a\1\0\1\0\0\0\0;' >sky.png
+sky "a GIF"
+rm sky.png
+cp good.jpg sky.jpg
+printf '%s\n' 'background: {kind: picture, picture: sky.jpg}' 'render: {width: 8, height: 6}' >sky.yaml
+refused "picture over the sky" "the scene is read from it" render sky.yaml -o sky.jpg
+
+# --- scenes and studies; the modules' own tests go deeper
+bad_scene() # WHAT PATTERN TEXT
+{
+    printf '%b' "$3" >bad.yaml
+    refused "scene: $1" "^cuvette: bad\.yaml.*$2" render bad.yaml --json
+}
+bad_scene "unknown key" ":2:.*did you mean" 'title: a\nrendr: {depth: 1}\n'
+bad_scene "wrong type" ":1:" 'render: {width: [1, 2]}\n'
+bad_scene "out of range" ":1:" 'render: {width: 0}\n'
+bad_scene "NaN" ":2:" 'lights:\n  lamp: {intensity: .nan}\n'
+bad_scene "an alias" ":1:" 'render: &a {width: 8}\ncamera: *a\n'
+bad_scene "binary" "" '\x00\x01\x02\xff'
+bad_scene "not closed" ":" 'render: {width: 8\n'
+bad_scene "a key twice" ":1:" 'render: {width: 8, width: 9}\n'
+bad_scene "unknown shape" ":2:" 'solids:\n  a: {shape: torus}\n'
+bad_scene "a material that is not there" ":2:" 'solids:\n  a: {shape: box, material: gold}\n'
+bad_scene "a list instead of a map" ":1:" '- a\n- b\n'
+bad_study() # WHAT PATTERN TEXT
+{
+    printf '%b' "$3" >bad.study
+    refused "study: $1" "^cuvette: bad\.study.*$2" study run bad.study --results results
+}
+bad_study "unknown key" ":2:" "study: a\nscen: $scene\n"
+bad_study "scene is not there" ":2:" 'study: a\nscene: nowhere.yaml\n'
+bad_study "unknown parameter" ":3:" "study: a\nscene: $scene\ngrid: [{render.dpth: [1, 2]}]\nrepetitions: 1\n"
+bad_study "value out of range" ":3:" "study: a\nscene: $scene\ngrid: [{render.depth: [1, 200]}]\nrepetitions: 1\n"
+bad_study "no repetitions" ":" "study: a\nscene: $scene\ngrid: [{render.depth: [1]}]\nrepetitions: 0\n"
+[[ -e results ]] && echo "# a refused study has made results/"
+
+echo "$passed passed, $failed failed"
+((failed == 0))

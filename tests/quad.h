@@ -1,0 +1,78 @@
+/* Quadruple precision (113 bits) for tests to compare with: enough arithmetic for roots, rotations and Fresnel's angles,
+ * written here because libquadmath is gcc's alone, and long double is a double under valgrind. Pure. */
+#ifndef CUVETTE_TESTS_QUAD_H
+#define CUVETTE_TESTS_QUAD_H
+
+#include "base/vec3.h"
+#include <math.h>
+
+__extension__ typedef __float128 quad;
+typedef struct quad3 { quad x, y, z; } quad3;
+
+static inline quad quad_abs(quad a) { return a < 0 ? -a : a; }
+static inline quad quad_min(quad a, quad b) { return a < b ? a : b; }
+static inline quad quad_max(quad a, quad b) { return a > b ? a : b; }
+
+/* Newton's steps from the root in doubles: 53, 106, 113 bits. */
+static inline quad quad_sqrt(quad a)
+{
+    if (a <= 0)
+        return 0;
+    quad y = sqrt((double)a);
+    for (int i = 0; i < 3; i++)
+        y = (y + a / y) / 2;
+    return y;
+}
+
+static inline quad quad_pi(void)
+{
+    return (quad)3.141592653589793 + (quad)1.2246467991473532e-16 - (quad)2.9947698097183397e-33; /* exact doubles */
+}
+
+/* Taylor series after the whole quarter turns are taken out. */
+static inline void quad_sincos_deg(quad degrees, quad *sine, quad *cosine)
+{
+    int quarter = (int)floor((double)degrees / 90.0 + 0.5);
+    quad x = (degrees - (quad)90 * quarter) * quad_pi() / 180, s = x, c = 1, term_s = x, term_c = 1;
+    for (int k = 1; k < 18; k++) {
+        term_s *= -x * x / ((2 * k) * (2 * k + 1));
+        term_c *= -x * x / ((2 * k - 1) * (2 * k));
+        s += term_s;
+        c += term_c;
+    }
+    switch ((quarter % 4 + 4) % 4) {
+    case 0: *sine = s, *cosine = c; break;
+    case 1: *sine = c, *cosine = -s; break;
+    case 2: *sine = -s, *cosine = -c; break;
+    default: *sine = -c, *cosine = s; break;
+    }
+}
+
+static inline quad3 quad3_make(quad x, quad y, quad z) { quad3 v = {x, y, z}; return v; }
+static inline quad3 quad3_from(vec3 v) { return quad3_make(v.x, v.y, v.z); }
+static inline quad3 quad3_add(quad3 a, quad3 b) { return quad3_make(a.x + b.x, a.y + b.y, a.z + b.z); }
+static inline quad3 quad3_sub(quad3 a, quad3 b) { return quad3_make(a.x - b.x, a.y - b.y, a.z - b.z); }
+static inline quad3 quad3_scale(quad3 a, quad k) { return quad3_make(a.x * k, a.y * k, a.z * k); }
+static inline quad quad3_dot(quad3 a, quad3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline quad quad3_length(quad3 a) { return quad_sqrt(quad3_dot(a, a)); }
+static inline quad3 quad3_cross(quad3 a, quad3 b)
+{
+    return quad3_make(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+/* v turned about x, then y, then z (right-hand rule); backwards: the inverse. */
+static inline quad3 quad3_turn(quad3 v, vec3 degrees, int backwards)
+{
+    const double angles[3] = {degrees.x, degrees.y, degrees.z};
+    for (int k = 0; k < 3; k++) {
+        const int axis = backwards ? 2 - k : k;
+        quad s, c;
+        quad_sincos_deg(backwards ? -angles[axis] : angles[axis], &s, &c);
+        v = axis == 0   ? quad3_make(v.x, c * v.y - s * v.z, s * v.y + c * v.z)
+            : axis == 1 ? quad3_make(c * v.x + s * v.z, v.y, c * v.z - s * v.x)
+                        : quad3_make(c * v.x - s * v.y, s * v.x + c * v.y, v.z);
+    }
+    return v;
+}
+
+#endif

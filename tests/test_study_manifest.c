@@ -1,0 +1,164 @@
+#include "study_fixture.h"
+#include "study/provenance.h"
+#include <jansson.h>
+
+static json_t *manifest_of(const fixture *f)
+{
+    char path[400];
+    fixture_path(f, "results/test/manifest.json", path);
+    json_t *manifest = json_load_file(path, 0, NULL);
+    assert_non_null(manifest);
+    return manifest;
+}
+
+static const char *text_at(const json_t *object, const char *key)
+{
+    const char *text = json_string_value(json_object_get(object, key));
+    if (!text)
+        fail_msg("no text under %s", key);
+    return text;
+}
+
+static const char first_text[] = "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\n";
+static const char second_text[] = "study: test\nscene: scene.yaml\nrepetitions: 2\nwarmups: 0\n";
+
+static void manifests_say_where_rows_come_from(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, first_text);
+    fixture_run(f, s);
+    json_t *manifest = manifest_of(f);
+    const json_t *about = json_object_get(manifest, "study"), *machine = json_object_get(manifest, "machine");
+    assert_string_equal(text_at(about, "name"), "test");
+    assert_string_equal(text_at(about, "file"), "test.study");
+    assert_string_equal(text_at(about, "text"), first_text);
+    assert_string_equal(text_at(about, "scene_file"), "scene.yaml");
+    assert_string_equal(text_at(about, "scene_text"), fixture_scene);
+    assert_int_equal(strtoull(text_at(about, "definition"), NULL, 16), s->definition_hash);
+    assert_non_null(strstr(text_at(machine, "hwloc_xml"), "<topology"));
+    assert_true(text_at(machine, "topology")[0]);
+    assert_true(json_integer_value(json_object_get(machine, "processing_units")) >= 1);
+    assert_true(json_real_value(json_object_get(json_object_get(machine, "clocks"), "wall_tick_s")) > 0);
+    const json_t *runs = json_object_get(manifest, "runs");
+    assert_int_equal(json_array_size(runs), 1);
+    const json_t *run = json_array_get(runs, 0);
+    static const char *const keys[] = {"started_utc", "version", "compiler", "flags", "config", "isa", "kernel", "binding"};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+        assert_true(text_at(run, keys[i])[0]);
+    static const char *const libraries[] = {"libpng", "libjpeg-turbo", "hwloc", "libyaml", "jansson"};
+    for (size_t i = 0; i < sizeof libraries / sizeof libraries[0]; i++)
+        assert_true(strchr(text_at(json_object_get(run, "libraries"), libraries[i]), '.') != NULL);
+    assert_true(json_is_array(json_object_get(run, "disturbances")));
+    json_decref(manifest);
+    study_destroy(s);
+}
+
+static void each_run_is_added(void **state)
+{
+    const fixture *f = *state;
+    assert_int_equal(setenv("SOURCE_DATE_EPOCH", "1000000000", 1), 0);
+    study *s = fixture_study(f, first_text);
+    fixture_run(f, s);
+    study_destroy(s);
+    json_t *before = manifest_of(f);
+    assert_int_equal(setenv("SOURCE_DATE_EPOCH", "1000000001", 1), 0);
+    s = fixture_study(f, second_text);
+    assert_int_equal(fixture_run(f, s), 1);
+    assert_int_equal(fixture_run(f, s), 0);
+    unsetenv("SOURCE_DATE_EPOCH");
+    json_t *after = manifest_of(f);
+    assert_int_equal(json_array_size(json_object_get(after, "runs")), 2);
+    assert_true(json_equal(json_object_get(before, "study"), json_object_get(after, "study")));
+    assert_true(json_equal(json_array_get(json_object_get(before, "runs"), 0), json_array_get(json_object_get(after, "runs"), 0)));
+    assert_string_equal(text_at(json_array_get(json_object_get(after, "runs"), 0), "started_utc"), "2001-09-09T01:46:40.000Z");
+    assert_string_equal(text_at(json_array_get(json_object_get(after, "runs"), 1), "started_utc"), "2001-09-09T01:46:41.000Z");
+    json_decref(before);
+    json_decref(after);
+    study_destroy(s);
+}
+
+static void manifests_name_no_host_and_no_path(void **state)
+{
+    const fixture *f = *state;
+    char host[256] = "";
+    study *s = fixture_study(f, first_text);
+    fixture_run(f, s);
+    char *text = fixture_text(f, "results/test/manifest.json");
+    assert_int_equal(gethostname(host, sizeof host - 1), 0);
+    assert_null(strstr(text, f->folder));
+    /* A short name may be part of another word. */
+    if (strlen(host) > 8)
+        assert_null(strstr(text, host));
+    static const char *const telling[] = {"HostName", "Serial", "UUID"};
+    for (size_t i = 0; i < sizeof telling / sizeof telling[0]; i++)
+        assert_null(strstr(text, telling[i]));
+    free(text);
+    study_destroy(s);
+}
+
+static void damaged_manifests_are_refused(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, first_text);
+    fixture_run(f, s);
+    study_destroy(s);
+    fixture_write(f, "results/test/manifest.json", "{\"study\": 1");
+    s = fixture_study(f, second_text);
+    diagnostic why = {0};
+    size_t ran;
+    study_options options = {.results = f->results};
+    assert_int_equal(study_run(s, &options, &ran, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.file, "manifest.json"));
+    study_destroy(s);
+}
+
+static void what_tells_a_machine_is_taken_out(void **state)
+{
+    (void)state;
+    char xml[] = "<topology>\n  <info name=\"HostName\" value=\"alpha\"/>\n  <info name=\"OSName\" value=\"Linux\"/>\n"
+                 "  <info name=\"DMIProductSerial\" value=\"123\"/>\n  <info name=\"LinuxCgroup\" value=\"/user/me\"/>\n"
+                 "  <object type=\"PU\"/>\n  <info name=\"DMIProductUUID\" value=\"x\"/>\n</topology>";
+    provenance_anonymize(xml);
+    assert_string_equal(xml, "<topology>\n  <info name=\"OSName\" value=\"Linux\"/>\n  <object type=\"PU\"/>\n</topology>");
+    provenance_anonymize(NULL);
+}
+
+/* A checkout of its own with one commit; quiet where there is no git. */
+static void commits_are_found(void **state)
+{
+    const fixture *f = *state;
+    char command[2000];
+    bool dirty = true;
+    assert_null(provenance_git_commit("/", &dirty));
+    assert_false(dirty);
+    assert_null(provenance_git_commit("/nowhere at all", &dirty));
+    snprintf(command, sizeof command,
+             "cd '%s' && git init -q . && git add scene.yaml && git -c user.name=x -c user.email=x@example.org commit -q -m x 2>/dev/null",
+             f->folder);
+    if (system(command) != 0)
+        skip();
+    char *commit = provenance_git_commit(f->folder, &dirty);
+    assert_non_null(commit);
+    assert_int_equal(strlen(commit), 40);
+    assert_false(dirty);
+    free(commit);
+    fixture_write(f, "other", "untracked files do not count");
+    free(provenance_git_commit(f->folder, &dirty));
+    assert_false(dirty);
+    fixture_write(f, "scene.yaml", "title: changed\n");
+    free(provenance_git_commit(f->folder, &dirty));
+    assert_true(dirty);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(manifests_say_where_rows_come_from, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(each_run_is_added, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(manifests_name_no_host_and_no_path, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(damaged_manifests_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test(what_tells_a_machine_is_taken_out),
+        cmocka_unit_test_setup_teardown(commits_are_found, fixture_setup, fixture_teardown),
+    };
+    return cmocka_run_group_tests_name("study_manifest", tests, NULL, NULL);
+}

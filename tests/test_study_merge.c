@@ -1,0 +1,214 @@
+#include "study_fixture.h"
+#include "study/csv.h"
+
+static const char study_text[] = "study: test\n"
+                                 "scene: scene.yaml\n"
+                                 "grid:\n"
+                                 "  - {render.depth: [0, 1, 2]}\n"
+                                 "  - {ball.ior: [1.1, 1.2, 1.3]}\n"
+                                 "repetitions: 2\n"
+                                 "warmups: 0\n"
+                                 "keep: {workers: on, image: on}\n";
+
+static size_t run_shard(const fixture *f, const study *s, long shard, long shards)
+{
+    char said[DIAGNOSTIC_TEXT_MAX];
+    diagnostic why = {0};
+    size_t ran = 0;
+    study_options options = {.results = f->results, .shard = shard, .shards = shards};
+    if (study_run(s, &options, &ran, &why) != STATUS_OK)
+        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+    return ran;
+}
+
+static size_t merge(const fixture *f, const study *s)
+{
+    char said[DIAGNOSTIC_TEXT_MAX];
+    diagnostic why = {0};
+    size_t rows = 0;
+    if (study_merge(s, f->results, &rows, &why) != STATUS_OK)
+        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+    return rows;
+}
+
+static void shards_share_the_cells(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    size_t ran = 0;
+    for (long shard = 0; shard < 4; shard++) {
+        size_t part = run_shard(f, s, shard, 4);
+        assert_true(part == 4 || part == 6); /* 9 cells over 4 shards: 3, 2, 2, 2 */
+        ran += part;
+    }
+    assert_int_equal(ran, 18);
+    assert_false(fixture_has(f, "results/test/rows.csv"));
+    study_progress progress;
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
+    assert_int_equal(progress.cells_done, 9);
+    assert_int_equal(progress.rows, 18);
+    for (int cell = 0; cell < 9; cell++) {
+        char name[64];
+        snprintf(name, sizeof name, "results/test/images/%04d.png", cell);
+        assert_true(fixture_has(f, name));
+    }
+    study_destroy(s);
+}
+
+static void merging_loses_nothing(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    for (long shard = 0; shard < 2; shard++)
+        run_shard(f, s, shard, 2);
+    char *parts[2] = {fixture_text(f, "results/test/rows.shard-0-of-2.csv"), fixture_text(f, "results/test/rows.shard-1-of-2.csv")};
+    assert_int_equal(merge(f, s), 18);
+    char *joined = fixture_text(f, "results/test/rows.csv");
+    /* Header and lines, each as it was. */
+    const char *second = strchr(parts[1], '\n') + 1;
+    assert_int_equal(strlen(joined), strlen(parts[0]) + strlen(second));
+    assert_memory_equal(joined, parts[0], strlen(parts[0]));
+    assert_string_equal(joined + strlen(parts[0]), second);
+    char *workers = fixture_text(f, "results/test/workers.csv");
+    assert_int_equal(fixture_count(workers, "\n"), 19);
+    /* Again: nothing twice, and the study is complete for everybody. */
+    assert_int_equal(merge(f, s), 18);
+    char *again = fixture_text(f, "results/test/rows.csv");
+    assert_string_equal(joined, again);
+    assert_int_equal(run_shard(f, s, 0, 1), 0);
+    assert_int_equal(run_shard(f, s, 2, 3), 0);
+    free(parts[0]);
+    free(parts[1]);
+    free(joined);
+    free(again);
+    free(workers);
+    study_destroy(s);
+}
+
+/* A run without shards does what the shards that ran have left. */
+static void runs_see_the_shards_rows(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    size_t part = run_shard(f, s, 1, 3);
+    assert_int_equal(part, 6);
+    assert_int_equal(run_shard(f, s, 0, 1), 12);
+    assert_int_equal(merge(f, s), 18);
+    assert_int_equal(merge(f, s), 18);
+    study_destroy(s);
+}
+
+static void torn_shards_are_cut(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    run_shard(f, s, 0, 2);
+    run_shard(f, s, 1, 2);
+    char *part = fixture_text(f, "results/test/rows.shard-1-of-2.csv");
+    part[strlen(part) - 5] = 0;
+    fixture_write(f, "results/test/rows.shard-1-of-2.csv", part);
+    free(part);
+    assert_int_equal(merge(f, s), 17);
+    assert_true(fixture_has(f, "results/test/rows.shard-1-of-2.torn.csv"));
+    /* The worker rows of the torn row are still there, but it is measured again and they must not stand twice. */
+    assert_int_equal(run_shard(f, s, 1, 2), 1);
+    assert_int_equal(merge(f, s), 18);
+    study_destroy(s);
+}
+
+static void contradictions_are_errors(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    run_shard(f, s, 0, 1);
+    char *rows = fixture_text(f, "results/test/rows.csv");
+    char *digit = rows + strlen(rows) - 1;
+    while (!strchr("12345678", *digit))
+        digit--;
+    (*digit)++;
+    fixture_write(f, "results/test/rows.shard-0-of-2.csv", rows);
+    free(rows);
+    diagnostic why = {0};
+    size_t count;
+    assert_int_equal(study_merge(s, f->results, &count, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "stands twice"));
+    assert_non_null(strstr(why.file, "rows.shard-0-of-2.csv"));
+    assert_int_equal(why.line, 19);
+    study_destroy(s);
+}
+
+/* One repetition twice in one file is never right, alike or not. */
+static void rows_twice_in_a_file_are_errors(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    run_shard(f, s, 0, 1);
+    char *rows = fixture_text(f, "results/test/rows.csv");
+    char *last = rows + strlen(rows) - 1;
+    while (last[-1] != '\n')
+        last--;
+    char *twice = calloc(1, strlen(rows) + strlen(last) + 1);
+    strcat(strcat(twice, rows), last);
+    fixture_write(f, "results/test/rows.csv", twice);
+    study_progress progress;
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_BAD_INPUT);
+    free(twice);
+    free(rows);
+    study_destroy(s);
+}
+
+static void damaged_rows_are_refused(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    run_shard(f, s, 0, 1);
+    char *rows = fixture_text(f, "results/test/rows.csv");
+    char *line = strchr(rows, '\n') + 1;
+    char *cell = strchr(strchr(line, ',') + 1, ',') + 1;
+    *cell = '9'; /* there are cells 0 to 8 */
+    fixture_write(f, "results/test/rows.csv", rows);
+    free(rows);
+    diagnostic why = {0};
+    study_progress progress;
+    assert_int_equal(study_status(s, f->results, &progress, &why), STATUS_BAD_INPUT);
+    assert_int_equal(why.line, 2);
+    study_destroy(s);
+}
+
+static void there_is_nothing_to_merge(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    assert_int_equal(merge(f, s), 0);
+    assert_false(fixture_has(f, "results/test/rows.csv"));
+    study_destroy(s);
+}
+
+static void wrong_shards_are_refused(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    static const long wrong[][2] = {{2, 2}, {-1, 2}, {5, 3}};
+    for (size_t i = 0; i < 3; i++) {
+        size_t ran;
+        study_options options = {.results = f->results, .shard = wrong[i][0], .shards = wrong[i][1]};
+        assert_int_equal(study_run(s, &options, &ran, NULL), STATUS_BAD_INPUT);
+    }
+    study_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(shards_share_the_cells, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(merging_loses_nothing, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(runs_see_the_shards_rows, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(torn_shards_are_cut, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(contradictions_are_errors, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(rows_twice_in_a_file_are_errors, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(damaged_rows_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(there_is_nothing_to_merge, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(wrong_shards_are_refused, fixture_setup, fixture_teardown),
+    };
+    return cmocka_run_group_tests_name("study_merge", tests, NULL, NULL);
+}

@@ -1,0 +1,239 @@
+#include "study_fixture.h"
+#include "scene/params.h"
+#include <dirent.h>
+
+static const char bad_folder[] = "tests/bad-studies";
+
+static const char *axis_value(const study *s, size_t cell, size_t axis, size_t path)
+{
+    return s->axes[axis].points[study_cell_point(s, cell, axis)].values[path];
+}
+
+static void the_whole_grammar(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: all\n"
+                                "title: All there is\n"
+                                "scene: scene.yaml\n"
+                                "set: {render.width: 32, lamp.position.y: 9.50}\n"
+                                "grid:\n"
+                                "  - {render.depth: [0, 4]}\n"
+                                "  - name: pair\n"
+                                "    points:\n"
+                                "      - {ball.ior: 1.0, lamp.position.x: 1}\n"
+                                "      - {lamp.position.x: 2, ball.ior: 1.50}\n"
+                                "      - {ball.ior: 1.33, lamp.position.x: 3}\n"
+                                "repetitions: {min: 5, max: 20, relative_width: 0.02}\n"
+                                "warmups: 2\n"
+                                "order: {shuffle: off, seed: 42}\n"
+                                "keep: {image: on, pfm: yes, workers: true, pixel_rays: off, pixel_time: no, timeline: on}\n");
+    assert_string_equal(s->name, "all");
+    assert_string_equal(s->title, "All there is");
+    assert_int_equal(s->repetitions_min, 5);
+    assert_int_equal(s->repetitions_max, 20);
+    assert_true(s->relative_width == 0.02);
+    assert_int_equal(s->warmups, 2);
+    assert_false(s->shuffle);
+    assert_int_equal(s->seed, 42);
+    assert_true(s->keep_image && s->keep_pfm && s->keep_workers && s->keep_timeline);
+    assert_false(s->keep_pixel_rays || s->keep_pixel_time);
+    assert_int_equal(s->base->render.width, 32);
+    assert_true(s->base->lights[0].position.y == 9.5);
+    assert_int_equal(study_cell_count(s), 6);
+    assert_int_equal(s->axis_count, 2);
+    assert_string_equal(s->axes[0].name, "render.depth");
+    assert_string_equal(s->axes[1].name, "pair");
+    /* The last axis runs fastest; values are as scene_get writes them; paths stand in the first point's order. */
+    assert_string_equal(axis_value(s, 0, 0, 0), "0");
+    assert_string_equal(axis_value(s, 2, 0, 0), "0");
+    assert_string_equal(axis_value(s, 3, 0, 0), "4");
+    assert_string_equal(axis_value(s, 4, 1, 0), "1.5");
+    assert_string_equal(axis_value(s, 4, 1, 1), "2");
+    scene *setting;
+    assert_int_equal(study_cell_scene(s, 4, &setting, NULL), STATUS_OK);
+    assert_int_equal(setting->render.depth, 4);
+    assert_int_equal(setting->render.width, 32);
+    assert_true(setting->solids[scene_find_solid(setting, "ball")].surface.ior == 1.5);
+    assert_true(setting->lights[0].position.x == 2 && setting->lights[0].position.y == 9.5);
+    scene_destroy(setting);
+    study_destroy(s);
+}
+
+static void what_is_left_out(void **state)
+{
+    study *s = fixture_study(*state, "study: small\nscene: scene.yaml\n");
+    assert_string_equal(s->title, "small");
+    assert_int_equal(study_cell_count(s), 1);
+    assert_int_equal(s->repetitions_min, 5);
+    assert_int_equal(s->repetitions_max, 5);
+    assert_int_equal(s->warmups, 1);
+    assert_true(s->shuffle);
+    assert_int_equal(s->seed, 1);
+    assert_false(s->keep_image);
+    scene *setting;
+    assert_int_equal(study_cell_scene(s, 0, &setting, NULL), STATUS_OK);
+    assert_int_equal(setting->render.width, 24);
+    scene_destroy(setting);
+    study_destroy(s);
+}
+
+static uint64_t hash_of(const fixture *f, const char *text)
+{
+    study *s = fixture_study(f, text);
+    uint64_t hash = s->definition_hash;
+    study_destroy(s);
+    return hash;
+}
+
+/* The definition is what a row means, not how the file is written nor how often it is measured. */
+static void what_is_the_same_definition(void **state)
+{
+    const fixture *f = *state;
+    uint64_t hash = hash_of(f, "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n");
+    assert_int_equal(hash_of(f, "# why\nstudy: x\ntitle: T\nscene: scene.yaml\nset:\n  render.width: 32\n"
+                                "grid: [{ball.ior: [1, 1.50]}]\nrepetitions: 9\nwarmups: 0\norder: {seed: 2}\nkeep: {image: on}\n"), hash);
+    static const char *const others[] = {
+        "study: y\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n",
+        "study: x\nscene: scene.yaml\nset: {render.width: 33}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n",
+        "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.6]}\n",
+        "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.5, 1.0]}\n",
+        "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {clear.ior: [1.0, 1.5]}\n",
+        "study: x\nscene: scene.yaml\nset: {render.width: 32}\n",
+    };
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        assert_int_not_equal(hash_of(f, others[i]), hash);
+    fixture_write(f, "scene.yaml", "title: a ball alone\n"
+                                   "render: {width: 24, height: 18, depth: 2, tile: 8}\n"
+                                   "materials: {clear: {transparency: 1, ior: 1.5}}\n"
+                                   "solids: {ball: {shape: sphere, material: clear, position: [0, 1, 0], radius: 1, priority: 1}}\n");
+    assert_int_not_equal(hash_of(f, "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n"), hash);
+}
+
+static void scenes_lie_beside_the_study(void **state)
+{
+    const fixture *f = *state;
+    char folder[400], path[400], absolute[512];
+    fixture_path(f, "deeper", folder);
+    assert_int_equal(mkdir(folder, 0777), 0);
+    fixture_write(f, "deeper/a.study", "study: a\nscene: ../scene.yaml\n");
+    fixture_path(f, "deeper/a.study", path);
+    study *s = NULL;
+    assert_int_equal(study_read(path, &s, NULL), STATUS_OK);
+    assert_string_equal(s->scene_text, fixture_scene);
+    study_destroy(s);
+    snprintf(absolute, sizeof absolute, "study: a\nscene: %s/scene.yaml\n", f->folder);
+    s = fixture_study(f, absolute);
+    assert_string_equal(s->scene_text, fixture_scene);
+    study_destroy(s);
+}
+
+/* A mistake in the scene is located in the scene. */
+static void wrong_scenes_are_located_there(void **state)
+{
+    const fixture *f = *state;
+    char path[400], scene_path[400];
+    diagnostic why = {0};
+    study *s = NULL;
+    fixture_write(f, "scene.yaml", "render:\n  widht: 5\n");
+    fixture_write(f, "test.study", "study: a\nscene: scene.yaml\n");
+    fixture_path(f, "test.study", path);
+    fixture_path(f, "scene.yaml", scene_path);
+    assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
+    assert_null(s);
+    assert_string_equal(why.file, scene_path);
+    assert_int_equal(why.line, 2);
+}
+
+static void check_bad(const char *name, long line, long column, const char *what)
+{
+    char path[1100];
+    diagnostic why = {0};
+    study *s = NULL;
+    snprintf(path, sizeof path, "%s/%s", bad_folder, name);
+    status code = study_read(path, &s, &why);
+    if (code != STATUS_BAD_INPUT || s || strcmp(why.file, path) != 0 || why.line != line || why.column != column ||
+        strcmp(why.what, what) != 0 || strchr(why.remedy, '\n'))
+        fail_msg("%s: status %d, %s:%ld:%ld: %s", name, code, why.file, why.line, why.column, why.what);
+}
+
+/* tests/bad-studies/expected.tsv names every file there and what is said about it. */
+static void bad_studies_are_located(void **state)
+{
+    (void)state;
+    char line[1024], path[400];
+    size_t listed = 0, there = 0;
+    snprintf(path, sizeof path, "%s/expected.tsv", bad_folder);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file)) {
+        if (line[0] == '#')
+            continue;
+        line[strcspn(line, "\n")] = 0;
+        char *place = strchr(line, '\t'), *what = place ? strchr(place + 1, '\t') : NULL;
+        assert_non_null(what);
+        *place++ = 0;
+        *what++ = 0;
+        long row, column;
+        assert_int_equal(sscanf(place, "%ld:%ld", &row, &column), 2);
+        check_bad(line, row, column, what);
+        listed++;
+    }
+    fclose(file);
+    DIR *folder = opendir(bad_folder);
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder));)
+        there += strlen(entry->d_name) > 6 && strcmp(entry->d_name + strlen(entry->d_name) - 6, ".study") == 0;
+    closedir(folder);
+    assert_int_equal(listed, there);
+    assert_true(listed >= 25);
+}
+
+/* A file that was cut off anywhere is an error or a smaller study, never a crash. */
+static void cut_off_anywhere(void **state)
+{
+    const fixture *f = *state;
+    static const char text[] = "study: cut\nscene: scene.yaml\nset: {render.width: 32}\n"
+                               "grid:\n  - {render.depth: [0, 1]}\n  - name: p\n    points: [{ball.ior: 1.2}]\n"
+                               "repetitions: {min: 2, max: 3, relative_width: 0.1}\norder: {shuffle: on}\nkeep: {image: on}\n";
+    char name[400];
+    fixture_path(f, "test.study", name);
+    for (size_t size = 0; size < sizeof text; size++) {
+        diagnostic why = {0};
+        study *s = NULL;
+        status code = study_read_text(name, text, size, &s, &why);
+        assert_true(code == STATUS_OK ? s != NULL : code == STATUS_BAD_INPUT && !s && why.what[0]);
+        study_destroy(s);
+    }
+}
+
+static void the_studies_of_the_house(void **state)
+{
+    (void)state;
+    static const struct { const char *name; size_t cells; } known[] = {{"depth", 9}, {"threads", 44}, {"ior", 4}, {"ior-grid", 25}, {"profile", 12}, {"pool", 10}};
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+        char path[400], said[DIAGNOSTIC_TEXT_MAX];
+        diagnostic why = {0};
+        study *s = NULL;
+        snprintf(path, sizeof path, "experiments/%s.study", known[i].name);
+        if (study_read(path, &s, &why) != STATUS_OK)
+            fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        assert_string_equal(s->name, known[i].name);
+        assert_int_equal(study_cell_count(s), known[i].cells);
+        study_destroy(s);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(the_whole_grammar, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(what_is_left_out, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(what_is_the_same_definition, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(scenes_lie_beside_the_study, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(wrong_scenes_are_located_there, fixture_setup, fixture_teardown),
+        cmocka_unit_test(bad_studies_are_located),
+        cmocka_unit_test_setup_teardown(cut_off_anywhere, fixture_setup, fixture_teardown),
+        cmocka_unit_test(the_studies_of_the_house),
+    };
+    return cmocka_run_group_tests_name("study_read", tests, NULL, NULL);
+}

@@ -1,0 +1,165 @@
+#include "study_fixture.h"
+#include "study/rows.h"
+#include "study/row_files.h"
+
+static const char grid_text[] = "study: test\n"
+                                "scene: scene.yaml\n"
+                                "grid:\n"
+                                "  - {render.schedule: [rows, dynamic]}\n"
+                                "  - name: pair\n"
+                                "    points: [{ball.ior: 1.5, lamp.position: [0, 9, 0]}, {lamp.position: [1, 9, 0], ball.ior: 1.25}]\n";
+
+/* A row whose every number is known. */
+static char *write_row(const study *s, const scene *setting, bool workers)
+{
+    worker_report reports[3] = {
+        {.wall_s = 1, .cpu_s = 0.5, .start_s = 0.125, .busy_s = 0.75, .waiting_s = 0.25, .tiles = 2, .rays = 100, .pu = 1},
+        {.wall_s = 1, .cpu_s = 0.25, .start_s = 0.25, .busy_s = 0.25, .waiting_s = 0.75, .tiles = 1, .rays = 50, .pu = -1},
+        {.wall_s = 1, .cpu_s = 0.125, .start_s = 0.5, .busy_s = 0, .waiting_s = 1, .pu = 0},
+    };
+    render_result frame = {.wall_s = 1, .cpu_s = 0.875, .worker_count = 3, .workers = reports};
+    frame.counters.camera = 100;
+    frame.counters.reflect = 20;
+    frame.counters.refract = 20;
+    frame.counters.shadow = 10;
+    frame.counters.by_depth[0] = 100;
+    frame.counters.by_depth[2] = 40;
+    frame.counters.cut_depth_throughput[0] = (int64_t)(3 * COUNTERS_CUT_ONE);
+    frame.counters.first_hits[0] = 60;
+    frame.counters.first_hits[1] = 40;
+    frame.counters.hits[1] = 80;
+    study_row row = {.of = s, .cell = 3, .setting = setting, .repetition = 2, .order = 17, .time_ms = INT64_C(1700000000250),
+                     .film_hash = 0xabc, .film_expected = 0xabd, .frame = &frame, .level = ISA_AVX2,
+                     .used = {.wall_s = 1, .cpu_s = 0.875, .peak_rss_bytes = 4096, .voluntary_switches = 1, .involuntary_switches = 0,
+                              .machine_busy_s = NAN, .machine_units = 2},
+                     .hardware = {-1, -1, 5, 0}};
+    csv_line line = {0};
+    (workers ? worker_header : row_header)(&line, s);
+    (workers ? worker_rows_write : row_write)(&line, &row);
+    assert_false(line.failed);
+    return line.text;
+}
+
+static csv *table_of(const fixture *f, bool workers)
+{
+    study *s = fixture_study(f, grid_text);
+    scene *setting;
+    assert_int_equal(study_cell_scene(s, 3, &setting, NULL), STATUS_OK);
+    char *text = write_row(s, setting, workers), path[400];
+    fixture_write(f, "t.csv", text);
+    free(text);
+    scene_destroy(setting);
+    study_destroy(s);
+    csv *table = NULL;
+    fixture_path(f, "t.csv", path);
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    assert_non_null(table);
+    return table;
+}
+
+static void expect(const csv *table, size_t row, const char *column, const char *value)
+{
+    int at = csv_column(table, column);
+    if (at < 0)
+        fail_msg("no column %s", column);
+    if (strcmp(csv_field(table, row, at), value) != 0)
+        fail_msg("%s is %s, not %s", column, csv_field(table, row, at), value);
+}
+
+static void rows_say_what_happened(void **state)
+{
+    csv *table = table_of(*state, false);
+    static const char *const known[][2] = {
+        {"study", "test"}, {"cell", "3"}, {"repetition", "2"}, {"warmup", "0"}, {"order", "17"}, {"time_utc", "2023-11-14T22:13:20.250Z"},
+        {"render.schedule", "dynamic"}, {"ball.ior", "1.25"}, {"lamp.position", "1,9,0"}, {"film_hash", "0000000000000abc"},
+        {"film_expected", "0000000000000abd"}, {"marked", "1"}, {"wall_s", "1"}, {"cpu_s", "0.875"}, {"rays_camera", "100"},
+        {"rays_reflect", "20"}, {"rays_refract", "20"}, {"rays_shadow", "10"}, {"rays_total", "150"}, {"rays_by_depth", "100;0;40"},
+        {"cut_depth_throughput", "1"}, {"first_hits.ground", "60"}, {"first_hits.ball", "40"}, {"hits.ground", "0"}, {"hits.ball", "80"},
+        {"workers", "3"}, {"workers_with_tiles", "2"}, {"busy_s_mean", "0.5"}, {"busy_s_max", "0.75"}, {"waiting_s_mean", "0.5"},
+        {"worker_cpu_s_sum", "0.875"}, {"imbalance", "0.5"}, {"peak_rss_bytes", "4096"}, {"voluntary_switches", "1"},
+        {"involuntary_switches", "0"}, {"others_share", "NA"}, {"cycles", "NA"}, {"branch_misses", "5"}, {"cache_misses", "0"},
+        {"isa", "avx2"},
+    };
+    assert_int_equal(table->row_count, 1);
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+        expect(table, 0, known[i][0], known[i][1]);
+    csv_destroy(table);
+}
+
+static void columns_keep_their_order(void **state)
+{
+    study *s = fixture_study(*state, grid_text);
+    char *header = row_file_header(s, ROWS);
+    static const char start[] = "study,definition,cell,repetition,warmup,order,time_utc,render.schedule,ball.ior,lamp.position,"
+                                "film_hash,film_expected,marked,wall_s,cpu_s,rays_camera,";
+    assert_memory_equal(header, start, sizeof start - 1);
+    free(header);
+    header = row_file_header(s, WORKER_ROWS);
+    assert_string_equal(header, "study,definition,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays,"
+                                "start_s,wall_s,cpu_s,busy_s,waiting_s\n");
+    free(header);
+    study_destroy(s);
+}
+
+static void each_worker_has_its_row(void **state)
+{
+    csv *table = table_of(*state, true);
+    assert_int_equal(table->row_count, 3);
+    for (size_t i = 0; i < 3; i++)
+        expect(table, i, "lamp.position", "1,9,0");
+    expect(table, 0, "worker", "0");
+    expect(table, 2, "worker", "2");
+    expect(table, 0, "rays", "100");
+    expect(table, 1, "pu", "NA");
+    expect(table, 1, "start_s", "0.25");
+    expect(table, 2, "busy_s", "0");
+    expect(table, 2, "waiting_s", "1");
+    csv_destroy(table);
+}
+
+static void check_dictionary(const char *text, const row_column *columns, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        char line[1024];
+        snprintf(line, sizeof line, "\n| `%s` | %s | %s |\n", columns[i].name, columns[i].unit, columns[i].meaning);
+        if (!strstr(text, line))
+            fail_msg("results/README.md lacks the line%s", line);
+    }
+}
+
+/* The data dictionary lists every column, with the unit and meaning that the program knows. */
+static void the_dictionary_is_whole(void **state)
+{
+    (void)state;
+    FILE *file = fopen("results/README.md", "r");
+    assert_non_null(file);
+    char *text = calloc(1, 1 << 18);
+    assert_true(fread(text, 1, (1 << 18) - 1, file) > 0);
+    fclose(file);
+    char *second = strstr(text, "\n## workers.csv");
+    assert_non_null(second);
+    check_dictionary(second, worker_columns, worker_column_count);
+    *second = 0;
+    check_dictionary(text, row_columns, row_column_count);
+    free(text);
+}
+
+static void times_are_utc(void **state)
+{
+    (void)state;
+    char text[ROW_TIME_MAX];
+    assert_string_equal(row_time(0, text), "1970-01-01T00:00:00.000Z");
+    assert_string_equal(row_time(INT64_C(951782400007), text), "2000-02-29T00:00:00.007Z");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(rows_say_what_happened, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(columns_keep_their_order, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(each_worker_has_its_row, fixture_setup, fixture_teardown),
+        cmocka_unit_test(the_dictionary_is_whole),
+        cmocka_unit_test(times_are_utc),
+    };
+    return cmocka_run_group_tests_name("rows", tests, NULL, NULL);
+}

@@ -1,0 +1,431 @@
+#include "study_fixture.h"
+#include "image/image.h"
+#include "study/csv.h"
+#include <signal.h>
+#include <sys/file.h>
+#include <fcntl.h>
+#include <sys/resource.h>
+
+static const char study_text[] = "study: test\n"
+                                 "scene: scene.yaml\n"
+                                 "grid:\n"
+                                 "  - {render.depth: [0, 1, 2]}\n"
+                                 "  - {render.threads: [1, 2]}\n"
+                                 "repetitions: 3\n"
+                                 "warmups: 1\n"
+                                 "keep: {workers: on}\n";
+
+/* The rows, read back; how many of each cell are warm-ups and measured ones. */
+typedef struct tally { size_t rows, warmups[8], counted[8], marked; } tally;
+
+static tally tally_rows(const fixture *f, const char *name)
+{
+    tally t = {0};
+    char path[400];
+    csv *table = NULL;
+    fixture_path(f, name, path);
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    assert_non_null(table);
+    assert_int_equal(table->whole, table->size);
+    bool seen[8][64] = {{false}};
+    for (t.rows = 0; t.rows < table->row_count; t.rows++) {
+        size_t cell = (size_t)csv_field_real(table, t.rows, csv_column(table, "cell"));
+        size_t repetition = (size_t)csv_field_real(table, t.rows, csv_column(table, "repetition"));
+        assert_true(cell < 8 && repetition < 64);
+        assert_false(seen[cell][repetition]);
+        seen[cell][repetition] = true;
+        bool warmup = csv_field_real(table, t.rows, csv_column(table, "warmup")) != 0;
+        (warmup ? t.warmups : t.counted)[cell]++;
+        t.marked += csv_field_real(table, t.rows, csv_column(table, "marked")) != 0;
+        assert_true(csv_field_real(table, t.rows, csv_column(table, "order")) == (double)t.rows);
+    }
+    csv_destroy(table);
+    return t;
+}
+
+/* Is the earlier text still there, byte for byte, at the beginning? */
+static void expect_begins(const fixture *f, const char *name, const char *earlier)
+{
+    char *now = fixture_text(f, name);
+    assert_true(strlen(now) >= strlen(earlier));
+    assert_memory_equal(now, earlier, strlen(earlier));
+    free(now);
+}
+
+static void every_cell_gets_its_repetitions(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    assert_int_equal(fixture_run(f, s), 6 * 4);
+    tally t = tally_rows(f, "results/test/rows.csv");
+    assert_int_equal(t.rows, 24);
+    assert_int_equal(t.marked, 0);
+    for (size_t cell = 0; cell < 6; cell++) {
+        assert_int_equal(t.warmups[cell], 1);
+        assert_int_equal(t.counted[cell], 3);
+    }
+    study_progress progress;
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
+    assert_int_equal(progress.cells, 6);
+    assert_int_equal(progress.cells_done, 6);
+    assert_int_equal(progress.rows, 24);
+    assert_int_equal(progress.rows_marked, 0);
+    /* 1 and 2 threads: 3 cells of 4 frames each. */
+    char *workers = fixture_text(f, "results/test/workers.csv");
+    assert_int_equal(fixture_count(workers, "\n"), 1 + 12 * 1 + 12 * 2);
+    free(workers);
+    study_destroy(s);
+}
+
+static void a_complete_study_costs_nothing(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    char *rows = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/manifest.json");
+    assert_int_equal(fixture_run(f, s), 0);
+    char *rows_now = fixture_text(f, "results/test/rows.csv"), *manifest_now = fixture_text(f, "results/test/manifest.json");
+    assert_string_equal(rows, rows_now);
+    assert_string_equal(manifest, manifest_now);
+    free(rows);
+    free(rows_now);
+    free(manifest);
+    free(manifest_now);
+    study_destroy(s);
+}
+
+/* Warm-ups come right before the first repetition of their cell, and rounds are whole: no cell gets its second
+ * repetition before all have their first. */
+static void rounds_are_shuffled_blocks(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    char path[400];
+    csv *table = NULL;
+    fixture_path(f, "results/test/rows.csv", path);
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    int cell = csv_column(table, "cell"), warmup = csv_column(table, "warmup");
+    char first_order[8] = "", second_order[8] = "";
+    for (size_t i = 0; i < 12; i += 2) {
+        assert_string_equal(csv_field(table, i, warmup), "1");
+        assert_string_equal(csv_field(table, i + 1, warmup), "0");
+        assert_string_equal(csv_field(table, i, cell), csv_field(table, i + 1, cell));
+        assert_null(strstr(first_order, csv_field(table, i, cell)));
+        strcat(first_order, csv_field(table, i, cell));
+    }
+    for (size_t i = 12; i < 18; i++) {
+        assert_null(strstr(second_order, csv_field(table, i, cell)));
+        strcat(second_order, csv_field(table, i, cell));
+    }
+    assert_string_not_equal(first_order, "012345");
+    assert_string_not_equal(first_order, second_order);
+    csv_destroy(table);
+    study_destroy(s);
+}
+
+static void without_shuffling_cells_go_in_order(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\nrepetitions: 2\nwarmups: 0\norder: {shuffle: off}\n");
+    fixture_run(f, s);
+    char path[400];
+    csv *table = NULL;
+    fixture_path(f, "results/test/rows.csv", path);
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    for (size_t i = 0; i < 6; i++)
+        assert_true(csv_field_real(table, i, csv_column(table, "cell")) == (double)(i % 3));
+    csv_destroy(table);
+    study_destroy(s);
+}
+
+/* Asked before and during each frame: stops the run after a while. */
+static int stop_after;
+static bool stop_soon(void)
+{
+    return --stop_after < 0;
+}
+
+static void an_interrupted_study_goes_on(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    size_t total = 0;
+    char *earlier = calloc(1, 1);
+    for (int polls = 1; polls < 200; polls += 3) {
+        diagnostic why = {0};
+        size_t ran = 99;
+        stop_after = polls;
+        study_options options = {.results = f->results, .stop = stop_soon};
+        status code = study_run(s, &options, &ran, &why);
+        total += ran;
+        expect_begins(f, "results/test/rows.csv", earlier);
+        free(earlier);
+        earlier = fixture_text(f, "results/test/rows.csv");
+        assert_int_equal(fixture_count(earlier, "\n"), total + 1);
+        if (code == STATUS_OK)
+            break;
+        assert_int_equal(code, STATUS_INTERRUPTED);
+        assert_true(why.what[0]);
+    }
+    free(earlier);
+    tally t = tally_rows(f, "results/test/rows.csv");
+    for (size_t cell = 0; cell < 6; cell++) {
+        assert_int_equal(t.counted[cell], 3);
+        assert_true(t.warmups[cell] >= 1);
+    }
+    assert_int_equal(fixture_run(f, s), 0);
+    study_destroy(s);
+}
+
+/* What a kill inside the write leaves: half a row, and the worker rows of a frame whose row was never written. */
+static void torn_rows_are_measured_again(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    char *rows = fixture_text(f, "results/test/rows.csv"), *workers = fixture_text(f, "results/test/workers.csv");
+    rows[strlen(rows) - 20] = 0;
+    fixture_write(f, "results/test/rows.csv", rows);
+    *(strrchr(rows, '\n') + 1) = 0;
+    assert_int_equal(fixture_run(f, s), 2); /* the warm-up of this process and the repetition */
+    expect_begins(f, "results/test/rows.csv", rows);
+    tally t = tally_rows(f, "results/test/rows.csv");
+    for (size_t cell = 0; cell < 6; cell++)
+        assert_int_equal(t.counted[cell], 3);
+    assert_true(fixture_has(f, "results/test/rows.torn.csv"));
+    assert_true(fixture_has(f, "results/test/workers.torn.csv"));
+    /* Every row has its workers' rows, once. */
+    char *now = fixture_text(f, "results/test/workers.csv"), *aside = fixture_text(f, "results/test/workers.torn.csv");
+    size_t cut = fixture_count(aside, "\n");
+    assert_true(cut == 1 || cut == 2);
+    assert_int_equal(fixture_count(now, "\n"), fixture_count(workers, "\n") - cut + 2 * cut);
+    free(rows);
+    free(workers);
+    free(now);
+    free(aside);
+    study_destroy(s);
+}
+
+static void other_definitions_are_refused(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    study_destroy(s);
+    static const char *const changed[] = {
+        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}, {render.threads: [1, 3]}]\nkeep: {workers: on}\n",
+        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\n",
+    };
+    char *before = fixture_text(f, "results/test/rows.csv");
+    for (size_t i = 0; i < 2; i++) {
+        diagnostic why = {0};
+        size_t ran;
+        study_progress progress;
+        s = fixture_study(f, changed[i]);
+        study_options options = {.results = f->results};
+        assert_int_equal(study_run(s, &options, &ran, &why), STATUS_BAD_INPUT);
+        assert_int_equal(ran, 0);
+        assert_non_null(strstr(why.what, "changed"));
+        assert_non_null(strstr(why.remedy, "--results"));
+        assert_non_null(strstr(why.file, "rows.csv"));
+        assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_BAD_INPUT);
+        study_destroy(s);
+    }
+    char *after = fixture_text(f, "results/test/rows.csv");
+    assert_string_equal(before, after);
+    free(before);
+    free(after);
+}
+
+/* More repetitions, other order, more kept: the study goes on. */
+static void studies_may_grow(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 2\nwarmups: 0\n");
+    assert_int_equal(fixture_run(f, s), 4);
+    study_destroy(s);
+    s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: 0\norder: {seed: 9}\n");
+    assert_int_equal(fixture_run(f, s), 2);
+    study_destroy(s);
+    s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: 0\nkeep: {image: on}\n");
+    assert_int_equal(fixture_run(f, s), 0);
+    assert_true(fixture_has(f, "results/test/images/0001.png"));
+    study_destroy(s);
+}
+
+/* Any interval is narrow enough at twice the mean, and none at a millionth: min and max rule. */
+static void repetitions_follow_the_interval(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: narrow\nscene: scene.yaml\nrepetitions: {min: 3, max: 7, relative_width: 0.0000001}\nwarmups: 0\n");
+    assert_int_equal(fixture_run(f, s), 7);
+    assert_int_equal(fixture_run(f, s), 0);
+    study_destroy(s);
+    s = fixture_study(f, "study: wide\nscene: scene.yaml\nset: {render.width: 400, render.height: 300}\n"
+                         "repetitions: {min: 4, max: 60, relative_width: 1}\nwarmups: 1\n");
+    size_t ran = fixture_run(f, s);
+    assert_true(ran >= 5 && ran < 60);
+    assert_int_equal(fixture_run(f, s), 0);
+    study_destroy(s);
+}
+
+/* A row that says it saw another picture is marked, not dropped, and counts as a repetition. */
+static void wrong_films_are_marked(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 3\nwarmups: 1\n");
+    char path[400];
+    fixture_run(f, s);
+    /* A first row with another hash: all later ones differ from it. */
+    char *rows = fixture_text(f, "results/test/rows.csv");
+    csv *table = NULL;
+    fixture_path(f, "results/test/rows.csv", path);
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    char *hash = strdup(csv_field(table, 0, csv_column(table, "film_hash")));
+    rows[table->start[1]] = 0;
+    csv_destroy(table);
+    for (char *at = rows; (at = strstr(at, hash)); at += 16)
+        memcpy(at, "0123456789abcdef", 16);
+    fixture_write(f, "results/test/rows.csv", rows);
+    assert_int_equal(fixture_run(f, s), 4);
+    tally t = tally_rows(f, "results/test/rows.csv");
+    assert_int_equal(t.rows, 5);
+    assert_int_equal(t.marked, 4);
+    study_progress progress;
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
+    assert_int_equal(progress.rows_marked, 4);
+    free(rows);
+    free(hash);
+    study_destroy(s);
+}
+
+static void pictures_and_maps_are_kept(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 2]}]\nrepetitions: 1\nwarmups: 0\n"
+                                "keep: {image: on, pfm: on, pixel_rays: on, pixel_time: on, timeline: on}\n");
+    assert_int_equal(fixture_run(f, s), 2);
+    static const char *const endings[] = {".png", ".pfm", "-rays.png", "-rays.pfm", "-ns.png", "-ns.pfm", "-timeline.json"};
+    char name[64], path[400];
+    for (size_t cell = 0; cell < 2; cell++)
+        for (size_t i = 0; i < 7; i++) {
+            snprintf(name, sizeof name, "results/test/images/%04zu%s", cell, endings[i]);
+            assert_true(fixture_has(f, name));
+        }
+    /* The map of rays adds up to the rays of the row. */
+    image *rays;
+    fixture_path(f, "results/test/images/0001-rays.pfm", path);
+    assert_int_equal(image_read(path, &rays, NULL, NULL), STATUS_OK);
+    double sum = 0;
+    for (int i = 0; i < rays->width * rays->height; i++)
+        sum += (double)rays->pixel[3 * i];
+    image_destroy(rays);
+    csv *table = NULL;
+    fixture_path(f, "results/test/rows.csv", path);
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    size_t row = csv_field_real(table, 0, csv_column(table, "cell")) == 1 ? 0 : 1;
+    assert_true(sum == csv_field_real(table, row, csv_column(table, "rays_total")));
+    csv_destroy(table);
+    char *timeline = fixture_text(f, "results/test/images/0000-timeline.json");
+    assert_true(fixture_count(timeline, "\"ph\"") >= 3 * 3);
+    free(timeline);
+    /* One that got lost is made again, without a row. */
+    fixture_path(f, "results/test/images/0001.png", path);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(fixture_run(f, s), 0);
+    assert_true(fixture_has(f, "results/test/images/0001.png"));
+    study_destroy(s);
+}
+
+static void two_processes_do_not_mix(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    char path[400];
+    fixture_path(f, "results", path);
+    assert_int_equal(mkdir(path, 0777), 0);
+    fixture_path(f, "results/test", path);
+    assert_int_equal(mkdir(path, 0777), 0);
+    fixture_path(f, "results/test/rows.csv", path);
+    int other = open(path, O_RDWR | O_CREAT, 0666);
+    assert_int_equal(flock(other, LOCK_EX), 0);
+    diagnostic why = {0};
+    size_t ran;
+    study_options options = {.results = f->results};
+    assert_int_equal(study_run(s, &options, &ran, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "another process"));
+    close(other);
+    assert_int_equal(fixture_run(f, s), 24);
+    study_destroy(s);
+}
+
+static void a_full_disk_keeps_whole_rows(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 40\nwarmups: 0\n");
+    struct rlimit before, small;
+    diagnostic why = {0};
+    size_t ran = 0;
+    study_options options = {.results = f->results};
+    stop_after = 12;
+    options.stop = stop_soon;
+    assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_INTERRUPTED);
+    options.stop = NULL;
+    char *earlier = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/manifest.json");
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    small = before;
+    small.rlim_cur = (strlen(earlier) > strlen(manifest) + 2000 ? strlen(earlier) : strlen(manifest) + 2000) + 1234;
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    status code = study_run(s, &options, &ran, &why);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    signal(SIGXFSZ, SIG_DFL);
+    assert_int_equal(code, STATUS_FAILURE);
+    assert_true(ran >= 1);
+    assert_non_null(strstr(why.what, "File too large"));
+    expect_begins(f, "results/test/rows.csv", earlier);
+    tally_rows(f, "results/test/rows.csv"); /* no torn end */
+    fixture_run(f, s);
+    assert_int_equal(tally_rows(f, "results/test/rows.csv").counted[0], 40);
+    free(earlier);
+    free(manifest);
+    study_destroy(s);
+}
+
+static void unwritable_results(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    char path[400];
+    diagnostic why = {0};
+    size_t ran;
+    fixture_path(f, "scene.yaml/results", path);
+    study_options options = {.results = path};
+    assert_int_not_equal(study_run(s, &options, &ran, &why), STATUS_OK);
+    assert_true(why.what[0]);
+    options.results = "/proc/cuvette";
+    assert_int_not_equal(study_run(s, &options, &ran, &why), STATUS_OK);
+    study_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(every_cell_gets_its_repetitions, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_complete_study_costs_nothing, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(rounds_are_shuffled_blocks, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(without_shuffling_cells_go_in_order, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(an_interrupted_study_goes_on, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(torn_rows_are_measured_again, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(other_definitions_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(studies_may_grow, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(repetitions_follow_the_interval, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(wrong_films_are_marked, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(pictures_and_maps_are_kept, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(two_processes_do_not_mix, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_full_disk_keeps_whole_rows, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(unwritable_results, fixture_setup, fixture_teardown),
+    };
+    return cmocka_run_group_tests_name("study_run", tests, NULL, NULL);
+}

@@ -1,0 +1,180 @@
+#include "study_fixture.h"
+#include "study/row_files.h"
+#include "study/summary.h"
+#include <inttypes.h>
+#include <locale.h>
+
+static const char study_text[] = "study: test\n"
+                                 "scene: scene.yaml\n"
+                                 "grid: [{render.depth: [0, 1, 2]}]\n"
+                                 "repetitions: 8\n";
+
+typedef struct written { int cell, repetition, warmup, marked; double wall_s; } written;
+
+/* rows.csv with these rows: every column that is not named below is NA. */
+static void write_rows(const fixture *f, const study *s, const written *rows, size_t count)
+{
+    char *header = row_file_header(s, ROWS), folder[400];
+    header[strlen(header) - 1] = 0;
+    char *text = malloc(1 << 18);
+    size_t size = (size_t)sprintf(text, "%s\n", header);
+    for (size_t i = 0; i < count; i++) {
+        char *names = strdup(header), *rest = names;
+        for (const char *name; (name = strsep(&rest, ","));) {
+            char value[64] = "NA";
+            if (strcmp(name, "study") == 0)
+                strcpy(value, "test");
+            else if (strcmp(name, "definition") == 0)
+                sprintf(value, "%016" PRIx64, s->definition_hash);
+            else if (strcmp(name, "cell") == 0)
+                sprintf(value, "%d", rows[i].cell);
+            else if (strcmp(name, "repetition") == 0)
+                sprintf(value, "%d", rows[i].repetition);
+            else if (strcmp(name, "warmup") == 0)
+                sprintf(value, "%d", rows[i].warmup);
+            else if (strcmp(name, "marked") == 0)
+                sprintf(value, "%d", rows[i].marked);
+            else if (strcmp(name, "film_expected") == 0)
+                strcpy(value, "00000000000000aa");
+            else if (strcmp(name, "wall_s") == 0)
+                sprintf(value, "%d.%d", (int)rows[i].wall_s, (int)(rows[i].wall_s * 10) % 10);
+            else if (strcmp(name, "rays_total") == 0 || strcmp(name, "first_hits.ball") == 0)
+                sprintf(value, "%d", 1000 + rows[i].cell);
+            size += (size_t)sprintf(text + size, "%s%s", value, rest ? "," : "\n");
+        }
+        free(names);
+    }
+    fixture_path(f, "results", folder);
+    mkdir(folder, 0777);
+    fixture_path(f, "results/test", folder);
+    mkdir(folder, 0777);
+    fixture_write(f, "results/test/rows.csv", text);
+    free(text);
+    free(header);
+}
+
+static char *summary_of(const fixture *f, const study *s)
+{
+    char *text = NULL, said[DIAGNOSTIC_TEXT_MAX];
+    size_t size;
+    diagnostic why = {0};
+    FILE *out = open_memstream(&text, &size);
+    if (study_summary(s, f->results, out, &why) != STATUS_OK)
+        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+    fclose(out);
+    return text;
+}
+
+/* The field of a line (0: header) under a name; static storage. */
+static const char *field(const char *text, int line, const char *name)
+{
+    static char value[256];
+    int column = -1, at = 0;
+    char *copy = strdup(text), *lines = copy;
+    char *header = strsep(&lines, "\n");
+    for (const char *word; (word = strsep(&header, "\t")); at++)
+        if (strcmp(word, name) == 0)
+            column = at;
+    if (column < 0)
+        fail_msg("no column %s", name);
+    char *wanted = NULL;
+    for (int i = 0; i < line; i++)
+        wanted = strsep(&lines, "\n");
+    const char *word = NULL;
+    for (at = 0; at <= column; at++)
+        word = strsep(&wanted, "\t");
+    snprintf(value, sizeof value, "%s", word ? word : "(none)");
+    free(copy);
+    return value;
+}
+
+static void medians_and_intervals(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    /* Cell 0: a warm-up and a marked row far off, six measured 1 to 6. Cell 2: three rows. Cell 1: none. */
+    static const written rows[] = {
+        {0, 0, 1, 0, 99}, {0, 1, 0, 0, 6}, {0, 2, 0, 0, 1}, {0, 3, 0, 1, 50}, {0, 4, 0, 0, 2}, {2, 0, 0, 0, 1}, {0, 5, 0, 0, 5},
+        {0, 6, 0, 0, 3}, {2, 1, 0, 0, 2}, {0, 7, 0, 0, 4}, {2, 2, 0, 0, 3},
+    };
+    write_rows(f, s, rows, sizeof rows / sizeof rows[0]);
+    char *text = summary_of(f, s);
+    assert_int_equal(fixture_count(text, "\n"), 4);
+    assert_string_equal(field(text, 1, "cell"), "0");
+    assert_string_equal(field(text, 1, "render.depth"), "0");
+    assert_string_equal(field(text, 1, "n"), "6");
+    assert_string_equal(field(text, 1, "wall_s_median"), "3.5");
+    assert_string_equal(field(text, 1, "wall_s_mean"), "3.5");
+    assert_string_equal(field(text, 1, "wall_s_min"), "1");
+    assert_string_equal(field(text, 1, "wall_s_max"), "6");
+    /* Six values: the 95% interval of the median is from the smallest to the largest (1 - 2/64 = 96.9%). */
+    assert_string_equal(field(text, 1, "wall_s_low"), "1");
+    assert_string_equal(field(text, 1, "wall_s_high"), "6");
+    assert_string_equal(field(text, 1, "cpu_s_median"), "NA");
+    assert_string_equal(field(text, 1, "marked"), "1");
+    assert_string_equal(field(text, 1, "film_hash"), "00000000000000aa");
+    assert_string_equal(field(text, 1, "rays_total"), "1000");
+    assert_string_equal(field(text, 1, "first_hits.ball"), "1000");
+    assert_string_equal(field(text, 1, "first_hits.ground"), "NA");
+    /* A cell without rows has its line. */
+    assert_string_equal(field(text, 2, "render.depth"), "1");
+    assert_string_equal(field(text, 2, "n"), "0");
+    assert_string_equal(field(text, 2, "wall_s_median"), "NA");
+    assert_string_equal(field(text, 2, "film_hash"), "NA");
+    assert_string_equal(field(text, 2, "marked"), "0");
+    /* Three values: Student's interval of the mean, 2 -+ 4.302653 / sqrt(3). */
+    assert_string_equal(field(text, 3, "n"), "3");
+    assert_true(fabs(atof(field(text, 3, "wall_s_low")) - (2 - 4.302653 / sqrt(3))) < 1e-5);
+    assert_true(fabs(atof(field(text, 3, "wall_s_high")) - (2 + 4.302653 / sqrt(3))) < 1e-5);
+    free(text);
+    study_destroy(s);
+}
+
+static void columns_keep_their_order(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    char *text = summary_of(f, s);
+    static const char header[] =
+        "cell\trender.depth\tn\twall_s_median\twall_s_low\twall_s_high\twall_s_mean\twall_s_min\twall_s_max\tcpu_s_median\tcpu_s_low\t"
+        "cpu_s_high\tcpu_s_mean\tcpu_s_min\tcpu_s_max\trays_total\trays_camera\trays_reflect\trays_refract\trays_shadow\t"
+        "cut_depth_throughput\ttotal_internal\tfilm_hash\tmarked\tbusy_s_mean\tbusy_s_max\twaiting_s_mean\timbalance\tothers_share\t"
+        "worker_cpu_s_sum\tpeak_rss_bytes\tfirst_hits.ground\tfirst_hits.ball\n";
+    assert_memory_equal(text, header, sizeof header - 1);
+    size_t columns = fixture_count(header, "\t");
+    assert_int_equal(fixture_count(text, "\t"), 4 * columns);
+    free(text);
+    study_destroy(s);
+}
+
+/* A summary of a real run, in a locale with a decimal comma where the system has one. */
+static void points_stay_points(void **state)
+{
+    const fixture *f = *state;
+    setlocale(LC_ALL, "de_DE.UTF-8");
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nset: {ball.ior: 1.25}\ngrid: [{render.min_weight: [0.5, 0.25]}]\nrepetitions: 2\n");
+    fixture_run(f, s);
+    char *text = summary_of(f, s), *rows = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/manifest.json");
+    assert_null(strchr(text, ','));
+    assert_string_equal(field(text, 2, "render.min_weight"), "0.25");
+    size_t commas = 0;
+    for (const char *c = rows; *c != '\n'; c++)
+        commas += *c == ',';
+    assert_int_equal(fixture_count(rows, ","), commas * fixture_count(rows, "\n"));
+    assert_non_null(strstr(manifest, "\"wall_tick_s\": "));
+    free(text);
+    free(rows);
+    free(manifest);
+    study_destroy(s);
+    setlocale(LC_ALL, "C");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(medians_and_intervals, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(columns_keep_their_order, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(points_stay_points, fixture_setup, fixture_teardown),
+    };
+    return cmocka_run_group_tests_name("study_summary", tests, NULL, NULL);
+}
