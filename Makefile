@@ -10,7 +10,6 @@ endif
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
 RESULTS ?= results
-export RESULTS
 
 # Short lines while it builds; `make V=1` shows the commands.
 quiet := $(if $(V),,@)
@@ -177,8 +176,13 @@ run_fuzzers: $(fuzzers)
 # --- studies, figures, paper ---
 
 .PHONY: experiments tables figures paper bench
+# Nothing runs beside a measurement, whatever is asked for together.
+asked = $(filter $(1),$(MAKECMDGOALS))
+experiments: | $(call asked,test)
+bench: | $(call asked,test experiments)
+paper: | $(call asked,experiments figures)
 experiments: $(build)/cuvette ## run the studies (goes on where it stopped), make tables and figures
-	$(build)/cuvette study run experiments/*.study
+	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
 	@$(MAKE) --no-print-directory build=$(build) tables figures
 
 # A study's summary, when its rows are newer.
@@ -187,13 +191,11 @@ measured := $(foreach s,$(studies),$(if $(wildcard $(RESULTS)/$(s)/rows.csv),$(s
 tables: $(measured:%=$(RESULTS)/tables/%.tsv) ## summarise the rows that are there
 $(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv experiments/%.study | $(build)/cuvette
 	@mkdir -p $(@D)
-	$(build)/cuvette study summary experiments/$*.study >$@
+	$(build)/cuvette study summary --results $(RESULTS) experiments/$*.study >$@
 
 figures: tables ## draw the figures whose rows or scripts are newer
-	@$(MAKE) --no-print-directory build=$(build) $(RESULTS)/figures/drawn
-$(RESULTS)/figures/drawn: $(wildcard $(RESULTS)/tables/*.tsv plots/*)
-	plots/draw.sh
-	@touch $@
+	@mkdir -p $(RESULTS)
+	plots/draw.sh --results $(RESULTS)
 
 paper: ## rebuild the report from the rows that are there; measures nothing
 	$(MAKE) -C paper

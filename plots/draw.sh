@@ -40,7 +40,7 @@ has_rows() {
 look_for_inputs() {
     local pattern found
     missing=
-    inputs=("plots/$1.gp" plots/style.gp plots/picture.gp plots/*.awk plots/*.sh experiments/published/*.csv)
+    inputs=("plots/$1.gp" plots/{style,rows,picture,laws}.gp plots/*.awk plots/*.sh experiments/published/*.csv)
     for pattern in $(sed -n 's/^# needs: *//p' "plots/$1.gp"); do
         mapfile -t found < <(compgen -G "$results/$pattern")
         if [ ${#found[@]} -eq 0 ]; then

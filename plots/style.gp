@@ -1,4 +1,4 @@
-# The look that all figures share, and how they reach their rows. A figure sets `width` and `height` (CSS pixels)
+# The look that all figures share. A figure sets `width` and `height` (CSS pixels)
 # and loads this. draw.sh gives: results, output (a path without its ending), format (png or svg), units.
 #
 # Colours: Okabe and Ito's eight, told apart with any kind of colour vision; a second sign (point, dash) goes with each.
@@ -11,12 +11,10 @@ if (format eq "svg") {
     set terminal svg size width,height font "DejaVu Sans,10" background "#ffffff" linewidth 1 fontscale 1
 }
 set output output.".".format
+load "plots/rows.gp"
 
 set encoding utf8
 set decimalsign "."
-set datafile missing "NA"
-set datafile separator tab
-set fit quiet nolog errorvariables
 
 blue = 0x0072B2; vermillion = 0xD55E00; green = 0x009E73; purple = 0xCC79A7; orange = 0xE69F00; sky = 0x56B4E9
 ink = 0x222222; grey = 0x777777; pale = 0xD9D9D9
@@ -41,25 +39,5 @@ set style fill solid 1.0 noborder
 
 published = "experiments/published/"
 published_name = "published (4-core laptop)"
-table(study) = results."/tables/".study.".tsv"
-image(study, cell) = sprintf("%s/%s/images/%04d.png", results, study, int(cell))
-readable(path) = int(system("test -r '".path."' && echo 1 || echo 0"))
-
-# Lines of a table or of rows whose columns have these values, as tab separated numbers; see select.awk.
-select(file, where, columns) = sprintf("< awk -f plots/select.awk -v where='%s' -v columns='%s' '%s'", where, columns, file)
-count(file, where, columns) = int(system(select(file, where, columns)[3:*]." | wc -l"))
-# The first one, as text and as a number; the largest one.
-text(file, where, column) = system(select(file, where, column)[3:*]." | head -n 1")
-largest(file, column) = number(system(select(file, "", column)[3:*]." | sort -g | tail -n 1"))
-number(text) = text eq "" ? NaN : real(text)
-first(file, where, column) = number(text(file, where, column))
-
 viridis = "(0 '#440154', 1 '#472d7b', 2 '#3b528b', 3 '#2c728e', 4 '#21918c', 5 '#28ae80', 6 '#5ec962', 7 '#addc30', 8 '#fde725')"
 signed = "(-3 '#003a5c', -2 '#0072b2', -1 '#8fc3e0', 0 '#ffffff', 1 '#f0b48a', 2 '#d55e00', 3 '#7a3000')"
-
-# PFM: three lines of text, then little-endian floats from the bottom row up.
-pfm_start(path) = int(system("head -n 3 '".path."' | wc -c"))
-pfm_line(path) = system("head -n 2 '".path."' | tail -n 1")
-pfm_channels(path) = system("head -c 2 '".path."'") eq "PF" ? 3 : 1
-pfm(path) = sprintf("binary skip=%d array=(%s,%s) format='%s' endian=little", pfm_start(path), \
-    word(pfm_line(path), 1), word(pfm_line(path), 2), pfm_channels(path) == 3 ? "%float%float%float" : "%float")

@@ -1,5 +1,5 @@
-/* libFuzzer entry: any bytes are a scene file. A scene that is accepted must also survive what is done with every scene:
- * each parameter visited, set again to its own text, and the whole checked, copied and released.
+/* libFuzzer entry: any bytes are a scene file. A scene that is accepted must also survive what is done with every
+ * scene: each parameter visited, set again to its own text, and the whole checked, copied and released.
  *   clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz_scene.c; ./fuzz_scene CORPUS tests/bad/scenes */
 #include "scene/params.h"
 
@@ -16,7 +16,7 @@ static status set_again(void *context, const char *path, const param *row, const
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     scene *s;
-    diagnostic why = { .what = "" };
+    diagnostic why = {.what = ""};
     status code = scene_read_text("fuzz.yaml", (const char *)data, size, &s, &why);
     if (code != STATUS_OK) {
         if (code != STATUS_BAD_INPUT || why.line < 1 || why.column < 1 || !why.what[0]) {

@@ -60,19 +60,41 @@ static inline quad3 quad3_cross(quad3 a, quad3 b)
     return quad3_make(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-/* v turned about x, then y, then z (right-hand rule); backwards: the inverse. */
-static inline quad3 quad3_turn(quad3 v, vec3 degrees, int backwards)
+typedef struct quad_rotation { vec3 degrees; quad3 row[3]; } quad_rotation;
+
+/* About x, then y, then z; right-hand rule. */
+static inline quad_rotation quad_rotation_make(vec3 degrees)
 {
     const double angles[3] = {degrees.x, degrees.y, degrees.z};
+    quad3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int k = 0; k < 3; k++) {
-        const int axis = backwards ? 2 - k : k;
-        quad s, c;
-        quad_sincos_deg(backwards ? -angles[axis] : angles[axis], &s, &c);
-        v = axis == 0   ? quad3_make(v.x, c * v.y - s * v.z, s * v.y + c * v.z)
-            : axis == 1 ? quad3_make(c * v.x + s * v.z, v.y, c * v.z - s * v.x)
-                        : quad3_make(c * v.x - s * v.y, s * v.x + c * v.y, v.z);
+        for (int axis = 0; axis < 3; axis++) {
+            quad3 v = axes[k];
+            quad s, c;
+            quad_sincos_deg(angles[axis], &s, &c);
+            axes[k] = axis == 0   ? quad3_make(v.x, c * v.y - s * v.z, s * v.y + c * v.z)
+                      : axis == 1 ? quad3_make(c * v.x + s * v.z, v.y, c * v.z - s * v.x)
+                                  : quad3_make(c * v.x - s * v.y, s * v.x + c * v.y, v.z);
+        }
     }
-    return v;
+    quad_rotation r = {degrees,
+                       {{axes[0].x, axes[1].x, axes[2].x}, {axes[0].y, axes[1].y, axes[2].y}, {axes[0].z, axes[1].z, axes[2].z}}};
+    return r;
+}
+
+/* v turned; backwards: the inverse. The last rotation is kept, because its sines cost much more than the turn. */
+static inline quad3 quad3_turn(quad3 v, vec3 degrees, int backwards)
+{
+    static _Thread_local quad_rotation last;
+    static _Thread_local int known;
+    if (!known || last.degrees.x != degrees.x || last.degrees.y != degrees.y || last.degrees.z != degrees.z) {
+        last = quad_rotation_make(degrees);
+        known = 1;
+    }
+    const quad3 *r = last.row;
+    if (!backwards)
+        return quad3_make(quad3_dot(r[0], v), quad3_dot(r[1], v), quad3_dot(r[2], v));
+    return quad3_add(quad3_add(quad3_scale(r[0], v.x), quad3_scale(r[1], v.y)), quad3_scale(r[2], v.z));
 }
 
 #endif

@@ -1,4 +1,5 @@
-/* Every file of tests/bad/scenes ends in STATUS_BAD_INPUT with the one line that expected.txt says. Run from the repository root. */
+/* Every file of tests/bad/scenes ends in STATUS_BAD_INPUT with the one line that expected.txt says. Run from the
+ * repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -124,6 +124,7 @@ fi
 # --- maps and timeline
 run render "$scene" "${small[@]}" --rays rays.png --time time.png --timeline line.json --set render.threads=2
 check "maps and a timeline without a picture" silent_success
+check "looking leaves the film alone" grep -q "film $hash" out
 check "the map of rays is a PNG with a key" is "$(($(od -An -tu1 -j22 -N2 rays.png | awk '{print $1*256+$2}') > 60))" 1
 check "the map of time is a PNG" magic time.png 89504e47
 check "the timeline is JSON with events" jq -e '.traceEvents | length > 3' line.json

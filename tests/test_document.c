@@ -121,7 +121,9 @@ static void what_makes_files_cyclic_or_ambiguous_is_refused(void **state)
     expect_error("", 0, 1, 1);
     expect_error("a: \"x\\0y\"", 9, 1, 4);
     expect_error("a: b\n\tc: d\n", 11, 2, 1);
-    expect_error("\xff\xfe" "a", 3, 1, 1);
+    expect_error("\xff\xfe"
+                 "a",
+                 3, 1, 1);
 }
 
 static void check_keys_names_the_nearest(void **state)
@@ -147,9 +149,13 @@ static void check_keys_names_the_nearest(void **state)
 static void value_text_is_what_the_command_line_takes(void **state)
 {
     (void)state;
-    static const struct { const char *yaml, *text; } cases[] = {
-        {"v: 8", "8"}, {"v: [0, 2.75, -6]", "0,2.75,-6"}, {"v: []", ""}, {"v: [a]", "a"}, {"v: {a: 1}", NULL},
-        {"v: [[1], 2]", NULL}, {"v: ['1,2', 3]", NULL}, {"v: 'a b'", "a b"},
+    static const struct {
+        const char *yaml, *text;
+    } cases[] = {
+        {"v: 8", "8"},           {"v: [0, 2.75, -6]", "0,2.75,-6"},
+        {"v: []", ""},           {"v: [a]", "a"},
+        {"v: {a: 1}", NULL},     {"v: [[1], 2]", NULL},
+        {"v: ['1,2', 3]", NULL}, {"v: 'a b'", "a b"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         document *d = parse(cases[i].yaml);

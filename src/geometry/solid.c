@@ -68,16 +68,12 @@ status solid_shape_check(const solid_shape *shape, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "position or rotation is not finite");
     }
     switch (shape->kind) {
-    case SHAPE_PLANE:
-        return STATUS_OK;
+    case SHAPE_PLANE: return STATUS_OK;
     case SHAPE_CYLINDER:
     case SHAPE_CUP:
-    case SHAPE_SPHERE:
-        return check_round(shape, why);
-    case SHAPE_BOX:
-        return check_box(shape, why);
-    case SHAPE_COUNT:
-        break;
+    case SHAPE_SPHERE: return check_round(shape, why);
+    case SHAPE_BOX: return check_box(shape, why);
+    case SHAPE_COUNT: break;
     }
     return diagnose(why, STATUS_BAD_INPUT, "", "no such shape");
 }
@@ -98,18 +94,13 @@ bool solid_shape_contains(const solid_shape *shape, vec3 point)
     mat3 rotation = rotation_from_deg(shape->rotation_deg);
     vec3 p = mat3_apply_transposed(rotation, vec3_sub(point, shape->position));
     switch (shape->kind) {
-    case SHAPE_PLANE:
-        return p.y <= 0.0;
-    case SHAPE_CYLINDER:
-        return in_cylinder(p, shape->radius, shape->m, 0.0, shape->height);
-    case SHAPE_CUP:
-        return in_cylinder(p, shape->radius, 1.0, 0.0, shape->height) && !in_hollow(shape, p);
+    case SHAPE_PLANE: return p.y <= 0.0;
+    case SHAPE_CYLINDER: return in_cylinder(p, shape->radius, shape->m, 0.0, shape->height);
+    case SHAPE_CUP: return in_cylinder(p, shape->radius, 1.0, 0.0, shape->height) && !in_hollow(shape, p);
     case SHAPE_BOX:
         return fabs(p.x) <= shape->size.x / 2 && fabs(p.y) <= shape->size.y / 2 && fabs(p.z) <= shape->size.z / 2;
-    case SHAPE_SPHERE:
-        return vec3_dot(p, p) <= shape->radius * shape->radius;
-    case SHAPE_COUNT:
-        break;
+    case SHAPE_SPHERE: return vec3_dot(p, p) <= shape->radius * shape->radius;
+    case SHAPE_COUNT: break;
     }
     return false;
 }

@@ -32,7 +32,7 @@ typedef struct lit_group {
 typedef struct branch_group {
     double rx[ROW], ry[ROW], rz[ROW], reflect[ROW];
     double tx[ROW], ty[ROW], tz[ROW], refract[ROW];
-    int64_t total[ROW]; /* -1: total internal reflection */
+    int64_t total;      /* how many of the group are total internal reflections */
 } branch_group;
 
 /* Fills g from rays list[0..count-1] of a batch; first is the batch's place in the queue; ior: by rank. Not a kernel: copies

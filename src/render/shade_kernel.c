@@ -103,20 +103,30 @@ ALWAYS_INLINE fresnel branch_directions(const group *g, int i, branch_group *b)
     vec3 r = direction_reflect(d, n, p->cos_i[i]), t = direction_refract(d, n, p->cos_i[i], f.eta, f.cos_t);
     b->rx[i] = r.x, b->ry[i] = r.y, b->rz[i] = r.z;
     b->tx[i] = t.x, b->ty[i] = t.y, b->tz[i] = t.z;
-    b->total[i] = f.total;
     return f;
+}
+
+/* Total reflections among the group's rays, from their number among the padded lanes. */
+static int64_t without_padding(const group *g, int64_t among_padded)
+{
+    const int last = g->count - 1;
+    const int64_t of_last = fresnel_dielectric(g->points.cos_i[last], g->n_from[last], g->n_to[last]).total;
+    return among_padded + (g->padded - g->count) * of_last;
 }
 
 static void fresnel_branches(const material *m, const group *g, branch_group *restrict b)
 {
     const double transparency = m->transparency;
     const int count = g->padded;
+    int64_t total = 0;
     /* VECTORISE */
     for (int i = 0; i < count; i++) {
         fresnel f = branch_directions(g, i, b);
         b->reflect[i] = f.R;
         b->refract[i] = transparency * (1.0 - f.R);
+        total -= f.total;
     }
+    b->total = without_padding(g, total);
 }
 
 /* Under total internal reflection the light that cannot pass goes back too. */
@@ -124,12 +134,15 @@ static void constant_branches(const material *m, bool opaque, const group *g, br
 {
     const double reflectivity = m->reflectivity, transparency = opaque ? 0.0 : m->transparency;
     const int count = g->padded;
+    int64_t total = 0;
     /* VECTORISE */
     for (int i = 0; i < count; i++) {
         fresnel f = branch_directions(g, i, b);
         b->reflect[i] = blend(f.total, reflectivity + transparency, reflectivity);
         b->refract[i] = blend(f.total, 0.0, transparency);
+        total -= f.total;
     }
+    b->total = without_padding(g, total);
 }
 
 /* Rounds to the nearest unit by the bits of 1.5 2^52 + v: a conversion that every instruction set has; 0 <= throughput <= 1. */

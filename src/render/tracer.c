@@ -24,11 +24,8 @@ struct tracer {
     int list[PRIMITIVES_MAX + 2][ROW], listed[PRIMITIVES_MAX + 2]; /* see sort_by_primitive */
 };
 
-#if CUVETTE_COUNTERS
-#define COUNT(statement) (statement)
-#else
-#define COUNT(statement) ((void)0)
-#endif
+/* A build without counters compiles the statement and throws it away. */
+#define COUNT(statement) ((void)(CUVETTE_COUNTERS ? (statement) : 0))
 
 tracer *tracer_create(isa level)
 {
@@ -175,13 +172,13 @@ static void cut_branches(tracer *t)
     const group *g = &t->gathered;
     const branch_group *b = &t->branches;
     const plan *p = t->target.scene;
-#if CUVETTE_COUNTERS
-    cut_sum sum;
-    t->shade->cut(g, b, &sum);
-    t->counters.cut_depth += (uint64_t)sum.branches;
-    for (int c = 0; c < 3; c++)
-        t->counters.cut_depth_throughput[c] += sum.throughput[c];
-#endif
+    if (CUVETTE_COUNTERS) {
+        cut_sum sum;
+        t->shade->cut(g, b, &sum);
+        t->counters.cut_depth += (uint64_t)sum.branches;
+        for (int c = 0; c < 3; c++)
+            t->counters.cut_depth_throughput[c] += sum.throughput[c];
+    }
     if (p->render.beyond == BEYOND_BLACK)
         return;
     const bool uniform = p->sky->kind == BACKGROUND_UNIFORM; /* then directions do not matter */
@@ -237,8 +234,7 @@ static void branch(tracer *t, int depth, const material *m, bool opaque)
     else
         t->shade->fresnel_branches(m, g, b);
     if (!opaque)
-        for (int i = 0; i < g->count; i++)
-            COUNT(t->counters.total_internal -= (uint64_t)b->total[i]);
+        COUNT(t->counters.total_internal += (uint64_t)b->total);
     if (depth == t->depth_limit) {
         cut_branches(t);
         return;
@@ -247,7 +243,6 @@ static void branch(tracer *t, int depth, const material *m, bool opaque)
     int refracted = put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
     COUNT(t->counters.reflect += (uint64_t)reflected);
     COUNT(t->counters.refract += (uint64_t)refracted);
-    (void)reflected, (void)refracted;
 }
 
 static void shade_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
@@ -263,7 +258,6 @@ static void shade_group(tracer *t, int depth, int first, int met, int rank, cons
     COUNT(t->counters.hits[owner] += (uint64_t)count);
     if (depth == 0)
         COUNT(t->counters.first_hits[owner] += (uint64_t)count);
-    (void)owner;
     t->shade->color(m, surface, g);
     local_light(t, m);
     branch(t, depth, m, p->solids->bodies[rank].opaque);

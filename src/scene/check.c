@@ -9,7 +9,7 @@ _Static_assert((int)SCENE_PRIMITIVES_MAX <= (int)COUNTERS_SOLID_MAX, "a counter 
 
 static bool is_reserved(const char *name)
 {
-    static const char *const sections[] = { "title", "materials", "lights", "solids" };
+    static const char *const sections[] = {"title", "materials", "lights", "solids"};
     for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
         if (strcmp(name, sections[i]) == 0) {
             return true;
@@ -92,7 +92,8 @@ status check_camera(const scene *s, diagnostic *why)
 {
     vec3 d = vec3_sub(s->camera.target, s->camera.position);
     if (s->camera.aimed && !(vec3_dot(d, d) > 0.0)) {
-        return diagnose(why, STATUS_BAD_INPUT, "move camera.position or camera.target", "the camera stands at its own target");
+        return diagnose(why, STATUS_BAD_INPUT, "move camera.position or camera.target",
+                        "the camera stands at its own target");
     }
     return STATUS_OK;
 }
@@ -108,13 +109,13 @@ status check_background(const scene *s, diagnostic *why)
 
 status check_solid(const scene *s, const solid *owner, diagnostic *why)
 {
-    diagnostic shape = { .what = "" };
+    diagnostic shape = {.what = ""};
     status code = solid_shape_check(&owner->shape, &shape);
     if (code != STATUS_OK) {
         return diagnose(why, code, shape.remedy, "%.80s: %s", owner->name, shape.what);
     }
-    /* What a surface hands on is at most what it gets; the slack is for sums like 0.7 + 0.2 + 0.1. Under Fresnel weights
-     * R + T = 1 by themselves, and reflectivity counts for opaque surfaces alone. */
+    /* What a surface hands on is at most what it gets; the slack is for sums like 0.7 + 0.2 + 0.1. Under Fresnel
+     * weights R + T = 1 by themselves, and reflectivity counts for opaque surfaces alone. */
     double sum = owner->surface.reflectivity + owner->surface.transparency;
     if (s->render.weights == WEIGHTS_CONSTANT && sum > 1.0 + 1e-12) {
         return diagnose(why, STATUS_BAD_INPUT, "lower one of them, or set render.weights to fresnel",
@@ -159,8 +160,8 @@ static status check_names(const scene *s, diagnostic *why)
 
 status scene_check(const scene *s, diagnostic *why)
 {
-    status (*const checks[])(const scene *, diagnostic *) = { check_limits, check_names, check_render, check_camera,
-                                                              check_background };
+    status (*const checks[])(const scene *, diagnostic *) = {check_limits, check_names, check_render, check_camera,
+                                                             check_background};
     for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
         status code = checks[i](s, why);
         if (code != STATUS_OK) {

@@ -4,7 +4,8 @@
 
 #include "scene/scene.h"
 
-/* Letters, digits, _ and -, a letter or _ first, at most SCENE_NAME_MAX, and not a word that paths or scene files use. */
+/* Letters, digits, _ and -, a letter or _ first, at most SCENE_NAME_MAX, and not a word that paths or scene
+ * files use. */
 status check_name(const char *name, diagnostic *why);
 
 /* Is the name free among the scene's lights, materials and solids? */

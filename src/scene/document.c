@@ -8,7 +8,10 @@
 
 enum { SIZE_LIMIT = 1 << 20, DEPTH_LIMIT = 16, NODE_LIMIT = 65536 };
 
-struct document { char *name; node *root; };
+struct document {
+    char *name;
+    node *root;
+};
 
 static void node_destroy(node *n)
 {
@@ -99,7 +102,8 @@ static int compare_keys(const void *a, const void *b)
     if (order != 0) {
         return order;
     }
-    return x->line != y->line ? (x->line > y->line) - (x->line < y->line) : (x->column > y->column) - (x->column < y->column);
+    return x->line != y->line ? (x->line > y->line) - (x->line < y->line)
+                              : (x->column > y->column) - (x->column < y->column);
 }
 
 static status check_unique_keys(event_reader *r, const node *map)
@@ -178,7 +182,8 @@ static status read_node(event_reader *r, yaml_event_t *event, int depth, node **
         return read_scalar(r, event, out);
     }
     if (depth > DEPTH_LIMIT) {
-        return events_error(r, event->start_mark, "a scene or study needs four levels at most", "nested deeper than 16 levels");
+        return events_error(r, event->start_mark, "a scene or study needs four levels at most",
+                            "nested deeper than 16 levels");
     }
     bool map = event->type == YAML_MAPPING_START_EVENT;
     node *n = NULL;
@@ -243,7 +248,7 @@ status document_parse(const char *name, const char *text, size_t size, document 
         text += 3;
         size -= 3;
     }
-    event_reader r = { .name = name, .text = text, .size = size, .node_count = 0, .why = why };
+    event_reader r = {.name = name, .text = text, .size = size, .node_count = 0, .why = why};
     if (size > SIZE_LIMIT) {
         diagnostic_locate(why, name, 1, 1);
         return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 1 MiB");

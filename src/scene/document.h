@@ -1,6 +1,7 @@
-/* A YAML file as a tree whose every node knows its line and column, read through libyaml's events. Scene
- * and study files are both read through it. Anchors and aliases, tags and several documents in one file are refused: a
- * file says what it means where it says it, and cannot be cyclic or explode. Ownership: document_destroy releases the whole tree. */
+/* A YAML file as a tree whose every node knows its line and column, read through libyaml's events. Scene and
+ * study files are both read through it. Anchors and aliases, tags and several documents in one file are refused:
+ * a file says what it means where it says it, and cannot be cyclic or explode. Ownership: document_destroy
+ * releases the whole tree. */
 #ifndef CUVETTE_SCENE_DOCUMENT_H
 #define CUVETTE_SCENE_DOCUMENT_H
 
@@ -37,7 +38,8 @@ status node_error(const document *d, const node *at, diagnostic *why, const char
 /* Error, with the nearest right key, if the map has a key that is not among words[0..count-1]. */
 status node_check_keys(const document *d, const node *map, const char *const *words, size_t count, diagnostic *why);
 
-/* A scalar, or a list of scalars, as text in the form scene_set takes ("8", "0,2.75,-6"); fresh memory, NULL for other kinds. */
+/* A scalar, or a list of scalars, as text in the form scene_set takes ("8", "0,2.75,-6"); fresh memory, NULL for
+ * other kinds. */
 char *node_value_text(const node *n);
 
 #endif

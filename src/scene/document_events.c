@@ -22,7 +22,7 @@ static bool is_utf8_follower(char c)
 /* Line and column (in characters) of a byte: libyaml's reader knows only the byte where decoding failed. */
 static yaml_mark_t mark_of_byte(const event_reader *r, size_t offset)
 {
-    yaml_mark_t mark = { .index = 0, .line = 0, .column = 0 };
+    yaml_mark_t mark = {.index = 0, .line = 0, .column = 0};
     for (size_t i = 0; i < offset && i < r->size; i++) {
         if (r->text[i] == '\n') {
             mark.line++;
@@ -50,24 +50,22 @@ static status syntax_error(event_reader *r)
 {
     const yaml_parser_t *p = &r->parser;
     switch (p->error) {
-    case YAML_MEMORY_ERROR:
-        return events_out_of_memory(r);
+    case YAML_MEMORY_ERROR: return events_out_of_memory(r);
     case YAML_READER_ERROR:
         return events_error(r, mark_of_byte(r, p->problem_offset), "save the file as plain UTF-8 text",
-                        p->problem ? p->problem : "the file is not text");
+                            p->problem ? p->problem : "the file is not text");
     case YAML_NO_ERROR:
     case YAML_SCANNER_ERROR:
     case YAML_PARSER_ERROR:
     case YAML_COMPOSER_ERROR:
     case YAML_WRITER_ERROR:
-    case YAML_EMITTER_ERROR:
-        break;
+    case YAML_EMITTER_ERROR: break;
     }
     const char *remedy = tab_stands_at(r, p->problem_mark) ? "indent with spaces, a tab cannot"
                                                            : "check the indentation, colons, brackets and quotes here";
     diagnostic_locate(r->why, r->name, (long)p->problem_mark.line + 1, (long)p->problem_mark.column + 1);
-    return diagnose(r->why, STATUS_BAD_INPUT, remedy, "%s%s%s", p->context ? p->context : "",
-                    p->context ? ", " : "", p->problem ? p->problem : "the YAML is damaged");
+    return diagnose(r->why, STATUS_BAD_INPUT, remedy, "%s%s%s", p->context ? p->context : "", p->context ? ", " : "",
+                    p->problem ? p->problem : "the YAML is damaged");
 }
 
 /* The next event; what the grammar of scene and study files leaves out (aliases, anchors, tags) ends here. */
@@ -90,7 +88,7 @@ status events_next(event_reader *r, yaml_event_t *event)
         return STATUS_OK;
     }
     status code = events_error(r, event->start_mark, "write the value itself where it is needed",
-                           anchor ? "anchors and aliases (& and *) are not allowed" : "tags (!) are not allowed");
+                               anchor ? "anchors and aliases (& and *) are not allowed" : "tags (!) are not allowed");
     yaml_event_delete(event);
     return code;
 }

@@ -102,12 +102,9 @@ static char *list_text(const node *list)
 char *node_value_text(const node *n)
 {
     switch (n->kind) {
-    case NODE_SCALAR:
-        return strdup(n->text);
-    case NODE_LIST:
-        return list_text(n);
-    case NODE_MAP:
-        break;
+    case NODE_SCALAR: return strdup(n->text);
+    case NODE_LIST: return list_text(n);
+    case NODE_MAP: break;
     }
     return NULL;
 }

@@ -11,22 +11,16 @@
 static void *place_base(scene *s, const place *at)
 {
     switch (at->group) {
-    case PARAM_RENDER:
-        return &s->render;
-    case PARAM_CAMERA:
-        return &s->camera;
-    case PARAM_BACKGROUND:
-        return &s->background;
-    case PARAM_LIGHT:
-        return &s->lights[at->index];
-    case PARAM_MATERIAL:
-        return &s->materials[at->index].value;
+    case PARAM_RENDER: return &s->render;
+    case PARAM_CAMERA: return &s->camera;
+    case PARAM_BACKGROUND: return &s->background;
+    case PARAM_LIGHT: return &s->lights[at->index];
+    case PARAM_MATERIAL: return &s->materials[at->index].value;
     case PARAM_SOLID: {
         solid *owner = &s->solids[at->index];
         return at->row->group == PARAM_MATERIAL ? (void *)&owner->surface : (void *)owner;
     }
-    case PARAM_GROUP_COUNT:
-        break;
+    case PARAM_GROUP_COUNT: break;
     }
     return NULL;
 }
@@ -103,7 +97,8 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
 {
     const char *equals = strchr(assignment, '=');
     if (!equals) {
-        return diagnose(why, STATUS_BAD_INPUT, "write path=value, such as render.depth=8", "'%.80s' has no '='", assignment);
+        return diagnose(why, STATUS_BAD_INPUT, "write path=value, such as render.depth=8", "'%.80s' has no '='",
+                        assignment);
     }
     char *path = strndup(assignment, (size_t)(equals - assignment));
     if (!path) {
@@ -168,7 +163,7 @@ status scene_each_param(const scene *s, param_visit *visit, void *context)
 {
     status code = STATUS_OK;
     for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
-        place at = { .row = NULL, .group = (param_group)g, .index = 0, .element = -1 };
+        place at = {.row = NULL, .group = (param_group)g, .index = 0, .element = -1};
         for (; at.index < place_group_size(s, at.group) && code == STATUS_OK; at.index++) {
             code = visit_rows(s, at, at.group, visit, context);
             if (code == STATUS_OK && at.group == PARAM_SOLID) {

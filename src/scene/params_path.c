@@ -15,7 +15,7 @@ typedef struct path_words {
 
 const char *shape_name(shape_kind kind)
 {
-    static const char *const names[] = { "plane", "cylinder", "cup", "box", "sphere" };
+    static const char *const names[] = {"plane", "cylinder", "cup", "box", "sphere"};
     return (size_t)kind < SHAPE_COUNT ? names[kind] : "";
 }
 
@@ -27,17 +27,13 @@ bool solid_has(const solid *owner, const param *row)
 size_t place_group_size(const scene *s, param_group group)
 {
     switch (group) {
-    case PARAM_LIGHT:
-        return s->light_count;
-    case PARAM_MATERIAL:
-        return s->material_count;
-    case PARAM_SOLID:
-        return s->solid_count;
+    case PARAM_LIGHT: return s->light_count;
+    case PARAM_MATERIAL: return s->material_count;
+    case PARAM_SOLID: return s->solid_count;
     case PARAM_RENDER:
     case PARAM_CAMERA:
     case PARAM_BACKGROUND:
-    case PARAM_GROUP_COUNT:
-        break;
+    case PARAM_GROUP_COUNT: break;
     }
     return 1;
 }
@@ -45,17 +41,13 @@ size_t place_group_size(const scene *s, param_group group)
 const char *place_group_name(const scene *s, param_group group, size_t index)
 {
     switch (group) {
-    case PARAM_LIGHT:
-        return s->lights[index].name;
-    case PARAM_MATERIAL:
-        return s->materials[index].name;
-    case PARAM_SOLID:
-        return s->solids[index].name;
+    case PARAM_LIGHT: return s->lights[index].name;
+    case PARAM_MATERIAL: return s->materials[index].name;
+    case PARAM_SOLID: return s->solids[index].name;
     case PARAM_RENDER:
     case PARAM_CAMERA:
     case PARAM_BACKGROUND:
-    case PARAM_GROUP_COUNT:
-        break;
+    case PARAM_GROUP_COUNT: break;
     }
     return param_group_name(group);
 }
@@ -136,7 +128,7 @@ static void list_words(const char *prefix, const char *const *words, size_t coun
 static const param *nearest_setting(const scene *s, const char *word)
 {
     for (int g = 0; g < PARAM_LIGHT; g++) {
-        const place at = { .row = NULL, .group = (param_group)g, .index = 0, .element = -1 };
+        const place at = {.row = NULL, .group = (param_group)g, .index = 0, .element = -1};
         const char *words[WORDS_MAX];
         size_t count = row_words(s, &at, at.group, words, 0);
         const char *nearest = text_nearest(word, words, count);
@@ -155,8 +147,9 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
         return diagnose(why, STATUS_FAILURE, "", "memory is out");
     }
     const char *nearest = text_nearest(path->group, words, count);
-    char remedy[300] = "a path is render.NAME, camera.NAME, background.NAME, or the name of a light, material or solid, a dot "
-                       "and a parameter";
+    char remedy[300] =
+        "a path is render.NAME, camera.NAME, background.NAME, or the name of a light, material or solid, a dot "
+        "and a parameter";
     const param *setting = nearest || path->name ? NULL : nearest_setting(s, path->group);
     if (nearest) {
         snprintf(remedy, sizeof remedy, "did you mean '%.80s%s%.80s'?", nearest, path->name ? "." : "",
@@ -214,7 +207,8 @@ static status find_element(const path_words *path, place *out, diagnostic *why)
     }
     const char *letters = color ? "rgb" : "xyz", *letter = strchr(letters, path->element[0]);
     if (!path->element[0] || path->element[1] || !letter) {
-        return diagnose(why, STATUS_BAD_INPUT, color ? "the elements are .r, .g and .b" : "the elements are .x, .y and .z",
+        return diagnose(why, STATUS_BAD_INPUT,
+                        color ? "the elements are .r, .g and .b" : "the elements are .x, .y and .z",
                         "%.80s.%.80s has no element '%.20s'", path->group, path->name, path->element);
     }
     out->element = (int)(letter - letters);
@@ -225,7 +219,8 @@ status place_find(const scene *s, const char *path, place *out, diagnostic *why)
 {
     path_words words;
     if (!split_path(path, &words)) {
-        return diagnose(why, STATUS_BAD_INPUT, "a path is group.name, such as render.depth", "the path '%.60s...' is too long", path);
+        return diagnose(why, STATUS_BAD_INPUT, "a path is group.name, such as render.depth",
+                        "the path '%.60s...' is too long", path);
     }
     if (!find_group(s, words.group, out)) {
         return unknown_group(s, &words, why);

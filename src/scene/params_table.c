@@ -5,18 +5,22 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const off_on[] = { "off", "on", NULL };
-static const char *const sample_counts[] = { "1", "4", NULL };
-static const char *const weights_words[] = { "fresnel", "constant", NULL };
-static const char *const beyond_words[] = { "sky", "black", NULL };
-static const char *const shadows_words[] = { "off", "opaque", "attenuated", NULL };
-static const char *const schedule_words[] = { "columns", "rows", "tiles", "dynamic", NULL };
-static const char *const pin_words[] = { "none", "compact", "scatter", NULL };
-static const char *const background_words[] = { "uniform", "gradient", "picture", NULL };
+static const char *const off_on[] = {"off", "on", NULL};
+static const char *const sample_counts[] = {"1", "4", NULL};
+static const char *const weights_words[] = {"fresnel", "constant", NULL};
+static const char *const beyond_words[] = {"sky", "black", NULL};
+static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
+static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynamic", NULL};
+static const char *const pin_words[] = {"none", "compact", "scatter", NULL};
+static const char *const background_words[] = {"uniform", "gradient", "picture", NULL};
 
 enum {
-    ON_PLANE = 1 << SHAPE_PLANE, ON_CYLINDER = 1 << SHAPE_CYLINDER, ON_CUP = 1 << SHAPE_CUP, ON_BOX = 1 << SHAPE_BOX,
-    ON_SPHERE = 1 << SHAPE_SPHERE, ON_ALL = 0
+    ON_PLANE = 1 << SHAPE_PLANE,
+    ON_CYLINDER = 1 << SHAPE_CYLINDER,
+    ON_CUP = 1 << SHAPE_CUP,
+    ON_BOX = 1 << SHAPE_BOX,
+    ON_SPHERE = 1 << SHAPE_SPHERE,
+    ON_ALL = 0
 };
 
 /* Positions and lengths stay where doubles still resolve 1e-10 of a scene unit. */
@@ -24,21 +28,36 @@ enum {
 /* Well under the film's 524288, with room for many lights. */
 #define BRIGHT 1e4
 
-#define INTEGER(group, type, field, unit, low, high, fallback, meaning) \
-    { group, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, ON_ALL, offsetof(type, field) }
-#define REAL(group, type, field, unit, low, high, fallback, meaning) \
-    { group, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, ON_ALL, offsetof(type, field) }
-#define POSITIVE(group, type, field, unit, high, fallback, meaning) \
-    { group, #field, PARAM_REAL, unit, 0, high, true, fallback, meaning, NULL, ON_ALL, offsetof(type, field) }
-#define CHOICE(group, type, field, words, fallback, meaning) \
-    { group, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, ON_ALL, offsetof(type, field) }
-#define VECTOR(group, type, field, fallback, meaning) \
-    { group, #field, PARAM_VECTOR, "scene units", -FAR, FAR, false, fallback, meaning, NULL, ON_ALL, offsetof(type, field) }
-#define COLOR(group, type, field, high, fallback, meaning) \
-    { group, #field, PARAM_COLOR, "", 0, high, false, fallback, meaning, NULL, ON_ALL, offsetof(type, field) }
-#define LENGTH(field, shapes, fallback, meaning) \
-    { PARAM_SOLID, #field, PARAM_REAL, "scene units", 0, FAR, true, fallback, meaning, NULL, shapes, \
-      offsetof(solid, shape.field) }
+#define INTEGER(group, type, field, unit, low, high, fallback, meaning)                                          \
+    {                                                                                                            \
+        group, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, ON_ALL, offsetof(type, field) \
+    }
+#define REAL(group, type, field, unit, low, high, fallback, meaning)                                              \
+    {                                                                                                             \
+        group, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, ON_ALL, offsetof(type, field) \
+    }
+#define POSITIVE(group, type, field, unit, high, fallback, meaning)                                            \
+    {                                                                                                          \
+        group, #field, PARAM_REAL, unit, 0, high, true, fallback, meaning, NULL, ON_ALL, offsetof(type, field) \
+    }
+#define CHOICE(group, type, field, words, fallback, meaning)                                                  \
+    {                                                                                                         \
+        group, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, ON_ALL, offsetof(type, field) \
+    }
+#define VECTOR(group, type, field, fallback, meaning)                                                  \
+    {                                                                                                  \
+        group, #field, PARAM_VECTOR, "scene units", -FAR, FAR, false, fallback, meaning, NULL, ON_ALL, \
+            offsetof(type, field)                                                                      \
+    }
+#define COLOR(group, type, field, high, fallback, meaning)                                                     \
+    {                                                                                                          \
+        group, #field, PARAM_COLOR, "", 0, high, false, fallback, meaning, NULL, ON_ALL, offsetof(type, field) \
+    }
+#define LENGTH(field, shapes, fallback, meaning)                                                       \
+    {                                                                                                  \
+        PARAM_SOLID, #field, PARAM_REAL, "scene units", 0, FAR, true, fallback, meaning, NULL, shapes, \
+            offsetof(solid, shape.field)                                                               \
+    }
 
 /* In the order in which they are listed and printed; the groups stand together.
  *
@@ -50,8 +69,8 @@ static const param table[] = {
     INTEGER(PARAM_RENDER, render_settings, width, "px", 1, 65536, "800", "width of the picture"),
     INTEGER(PARAM_RENDER, render_settings, height, "px", 1, 65536, "600", "height of the picture"),
     INTEGER(PARAM_RENDER, render_settings, depth, "", 0, 64, "4", "recursion depth: 0 follows camera rays only"),
-    { PARAM_RENDER, "samples", PARAM_INT, "", 1, 4, false, "1", "camera rays a pixel", sample_counts, ON_ALL,
-      offsetof(render_settings, samples) },
+    {PARAM_RENDER, "samples", PARAM_INT, "", 1, 4, false, "1", "camera rays a pixel", sample_counts, ON_ALL,
+     offsetof(render_settings, samples)},
     CHOICE(PARAM_RENDER, render_settings, weights, weights_words, "fresnel",
            "share of the reflected and refracted branch: Fresnel's equations, or each material's constants"),
     CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky", "what a ray beyond the last depth brings back"),
@@ -60,7 +79,8 @@ static const param table[] = {
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",
          "branches whose throughput is under this are not followed; 0 follows the whole tree"),
     INTEGER(PARAM_RENDER, render_settings, threads, "", 1, 1024, "1", "workers"),
-    CHOICE(PARAM_RENDER, render_settings, pool, off_on, "on", "workers wait between frames; off starts fresh ones for each"),
+    CHOICE(PARAM_RENDER, render_settings, pool, off_on, "on",
+           "workers wait between frames; off starts fresh ones for each"),
     CHOICE(PARAM_RENDER, render_settings, schedule, schedule_words, "dynamic",
            "how the picture is shared: fixed blocks of columns or rows, fixed tiles, or tiles as workers ask"),
     INTEGER(PARAM_RENDER, render_settings, tile, "px", 1, 65536, "32", "edge of a tile"),
@@ -69,16 +89,19 @@ static const param table[] = {
 
     VECTOR(PARAM_CAMERA, camera, position, "0,1,-6", "where the eye stands"),
     VECTOR(PARAM_CAMERA, camera, target, "0,1,0", "point in the middle of the picture; takes the place of the angles"),
-    REAL(PARAM_CAMERA, camera, yaw_deg, "deg", -360, 360, "0", "direction: 0 along +z, 90 along +x; takes the place of the target"),
-    REAL(PARAM_CAMERA, camera, pitch_deg, "deg", -90, 90, "0", "elevation: 90 looks straight up; takes the place of the target"),
+    REAL(PARAM_CAMERA, camera, yaw_deg, "deg", -360, 360, "0",
+         "direction: 0 along +z, 90 along +x; takes the place of the target"),
+    REAL(PARAM_CAMERA, camera, pitch_deg, "deg", -90, 90, "0",
+         "elevation: 90 looks straight up; takes the place of the target"),
     POSITIVE(PARAM_CAMERA, camera, fov_deg, "deg", 179, "45", "vertical field of view"),
 
     CHOICE(PARAM_BACKGROUND, background, kind, background_words, "uniform",
            "one colour, a vertical gradient, or an equirectangular picture"),
     COLOR(PARAM_BACKGROUND, background, color, BRIGHT, "0.53,0.75,0.92", "linear colour; of a gradient, at the zenith"),
-    COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1", "linear colour of a gradient at the horizon and below"),
-    { PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "", "PNG, JPEG or PFM file, from the scene file's folder", NULL,
-      ON_ALL, offsetof(background, picture_path) },
+    COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
+          "linear colour of a gradient at the horizon and below"),
+    {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
+     "PNG, JPEG or PFM file, from the scene file's folder", NULL, ON_ALL, offsetof(background, picture_path)},
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of Phong's sum"),
 
     VECTOR(PARAM_LIGHT, light, position, "0,10,0", "where the point light stands"),
@@ -89,26 +112,30 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, ambient, "", 0, 1, "0", "k_a of Phong's sum"),
     REAL(PARAM_MATERIAL, material, diffuse, "", 0, 1, "0", "k_d of Phong's sum"),
     REAL(PARAM_MATERIAL, material, specular, "", 0, 1, "0", "k_s of Phong's sum"),
-    REAL(PARAM_MATERIAL, material, shininess, "", 0, 100000, "80", "n of Phong's sum: the larger, the smaller the highlight"),
+    REAL(PARAM_MATERIAL, material, shininess, "", 0, 100000, "80",
+         "n of Phong's sum: the larger, the smaller the highlight"),
     REAL(PARAM_MATERIAL, material, reflectivity, "", 0, 1, "0",
          "share reflected by an opaque surface, and by every surface under constant weights"),
-    REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0", "share of the refracted light that passes; 0 is opaque"),
+    REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0",
+         "share of the refracted light that passes; 0 is opaque"),
     REAL(PARAM_MATERIAL, material, ior, "", 0.1, 100, "1", "refractive index, relative to vacuum"),
-    REAL(PARAM_MATERIAL, material, checker, "scene units", 0, FAR, "0", "edge of checker cells in the solid's frame; 0 for none"),
+    REAL(PARAM_MATERIAL, material, checker, "scene units", 0, FAR, "0",
+         "edge of checker cells in the solid's frame; 0 for none"),
     COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of every second checker cell"),
 
-    { PARAM_SOLID, "position", PARAM_VECTOR, "scene units", -FAR, FAR, false, "0,0,0",
-      "centre of a box or sphere, of the base of a cylinder or cup, a point of a plane", NULL, ON_ALL, offsetof(solid, shape.position) },
-    { PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0", "turn about x, then y, then z", NULL, ON_ALL,
-      offsetof(solid, shape.rotation_deg) },
+    {PARAM_SOLID, "position", PARAM_VECTOR, "scene units", -FAR, FAR, false, "0,0,0",
+     "centre of a box or sphere, of the base of a cylinder or cup, a point of a plane", NULL, ON_ALL,
+     offsetof(solid, shape.position)},
+    {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0", "turn about x, then y, then z", NULL,
+     ON_ALL, offsetof(solid, shape.rotation_deg)},
     LENGTH(radius, ON_CYLINDER | ON_CUP | ON_SPHERE, "1", "radius; of a cup, of its outside"),
     LENGTH(height, ON_CYLINDER | ON_CUP, "1", "height above the base"),
-    { PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1", "ellipse x^2 + m^2 z^2 = radius^2; 1 is a circle", NULL, ON_CYLINDER,
-      offsetof(solid, shape.m) },
+    {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1", "ellipse x^2 + m^2 z^2 = radius^2; 1 is a circle", NULL,
+     ON_CYLINDER, offsetof(solid, shape.m)},
     LENGTH(inner_radius, ON_CUP, "0.9", "radius of the hollow"),
     LENGTH(floor, ON_CUP, "0.1", "thickness of the bottom"),
-    { PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges along x, y and z", NULL, ON_BOX,
-      offsetof(solid, shape.size) },
+    {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges along x, y and z", NULL, ON_BOX,
+     offsetof(solid, shape.size)},
     INTEGER(PARAM_SOLID, solid, priority, "", -1000000, 1000000, "0", "where solids overlap, the highest one is there"),
     CHOICE(PARAM_SOLID, solid, visible, off_on, "on", "off leaves the solid out of the picture altogether"),
 };
@@ -127,7 +154,7 @@ const param *param_at(size_t index)
 
 const char *param_group_name(param_group group)
 {
-    static const char *const names[] = { "render", "camera", "background", "light", "material", "solid" };
+    static const char *const names[] = {"render", "camera", "background", "light", "material", "solid"};
     return (size_t)group < PARAM_GROUP_COUNT ? names[group] : "";
 }
 

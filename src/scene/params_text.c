@@ -73,19 +73,15 @@ char *param_value_text(const param *row, int element, const void *field)
 {
     char number[NUMBER_TEXT_MAX];
     switch (row->type) {
-    case PARAM_INT:
-        return text_format("%lld", (long long)*(const int64_t *)field);
-    case PARAM_CHOICE:
-        return strdup(row->choices[*(const int64_t *)field]);
-    case PARAM_REAL:
-        return strdup(number_format(*(const double *)field, number));
+    case PARAM_INT: return text_format("%lld", (long long)*(const int64_t *)field);
+    case PARAM_CHOICE: return strdup(row->choices[*(const int64_t *)field]);
+    case PARAM_REAL: return strdup(number_format(*(const double *)field, number));
     case PARAM_VECTOR:
     case PARAM_COLOR: {
         vec3 v = *(const vec3 *)field;
         return element < 0 ? vector_text(&v) : strdup(number_format(element_of(&v, element), number));
     }
-    case PARAM_PATH:
-        return strdup(*(char *const *)field ? *(char *const *)field : "");
+    case PARAM_PATH: return strdup(*(char *const *)field ? *(char *const *)field : "");
     }
     return NULL;
 }

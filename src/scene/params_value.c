@@ -77,7 +77,8 @@ static status parse_choice(const param *row, const char *label, const char *text
     const char *nearest = text_nearest(text, row->choices, count_words(row->choices));
     if (nearest) {
         char range[200], remedy[260];
-        snprintf(remedy, sizeof remedy, "did you mean '%s'? It is %s", nearest, param_range_text(row, range, sizeof range));
+        snprintf(remedy, sizeof remedy, "did you mean '%s'? It is %s", nearest,
+                 param_range_text(row, range, sizeof range));
         return diagnose(why, STATUS_BAD_INPUT, remedy, "%s: no choice '" SHOWN "'", label, text);
     }
     return wrong(row, false, why, "%s: no choice '" SHOWN "'", label, text);
@@ -162,7 +163,8 @@ static status parse_path(const param *row, const char *label, char *text, char *
 }
 
 /* text is a copy without blanks around it, which the parsers may cut up. */
-static status parse_trimmed(const param *row, int element, const char *label, char *text, param_value *out, diagnostic *why)
+static status parse_trimmed(const param *row, int element, const char *label, char *text, param_value *out,
+                            diagnostic *why)
 {
     if (!*text && row->type != PARAM_PATH) {
         return wrong(row, element >= 0, why, "%s has no value", label);
@@ -171,17 +173,12 @@ static status parse_trimmed(const param *row, int element, const char *label, ch
         return parse_real(row, label, text, &out->real, why);
     }
     switch (row->type) {
-    case PARAM_INT:
-        return parse_integer(row, label, text, &out->integer, why);
-    case PARAM_REAL:
-        return parse_real(row, label, text, &out->real, why);
-    case PARAM_CHOICE:
-        return parse_choice(row, label, text, &out->integer, why);
+    case PARAM_INT: return parse_integer(row, label, text, &out->integer, why);
+    case PARAM_REAL: return parse_real(row, label, text, &out->real, why);
+    case PARAM_CHOICE: return parse_choice(row, label, text, &out->integer, why);
     case PARAM_VECTOR:
-    case PARAM_COLOR:
-        return parse_vector(row, label, text, &out->vector, why);
-    case PARAM_PATH:
-        return parse_path(row, label, text, &out->path, why);
+    case PARAM_COLOR: return parse_vector(row, label, text, &out->vector, why);
+    case PARAM_PATH: return parse_path(row, label, text, &out->path, why);
     }
     return STATUS_FAILURE;
 }
@@ -214,12 +211,8 @@ void param_value_store(const param *row, int element, void *field, param_value v
 {
     switch (row->type) {
     case PARAM_INT:
-    case PARAM_CHOICE:
-        *(int64_t *)field = value.integer;
-        break;
-    case PARAM_REAL:
-        *(double *)field = value.real;
-        break;
+    case PARAM_CHOICE: *(int64_t *)field = value.integer; break;
+    case PARAM_REAL: *(double *)field = value.real; break;
     case PARAM_VECTOR:
     case PARAM_COLOR:
         if (element >= 0) {

@@ -5,7 +5,12 @@
 
 #include "scene/params.h"
 
-typedef union param_value { int64_t integer; double real; vec3 vector; char *path; } param_value;
+typedef union param_value {
+    int64_t integer;
+    double real;
+    vec3 vector;
+    char *path;
+} param_value;
 
 /* Parses and checks text; label names the parameter in messages. element -1 for the whole value, 0..2 for one
  * element of a vector or colour, which arrives in real. A path is fresh memory. */

@@ -9,8 +9,8 @@
  *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
  *
  * SHAPE is plane, cylinder, cup, box or sphere. The parameters are the rows of the table (scene/params.h); a
- * solid also takes those of a material, for itself alone. Vectors and colours are lists: [0, 1, 2]. The file's order is kept.
- * Sections and objects may be empty. */
+ * solid also takes those of a material, for itself alone. Vectors and colours are lists: [0, 1, 2]. The file's
+ * order is kept. Sections and objects may be empty. */
 #include "scene/check.h"
 #include "scene/read_entries.h"
 
@@ -78,8 +78,9 @@ static status read_sections(const scene_reader *r)
         const char *name;
         status (*read)(const scene_reader *, const char *, const node *);
     } sections[] = {
-        { "title", read_title }, { "render", read_render }, { "camera", read_camera }, { "background", read_background },
-        { "materials", read_materials }, { "lights", read_lights }, { "solids", read_solids },
+        {"title", read_title},           {"render", read_render},       {"camera", read_camera},
+        {"background", read_background}, {"materials", read_materials}, {"lights", read_lights},
+        {"solids", read_solids},
     };
     enum { COUNT = sizeof sections / sizeof sections[0] };
     const node *root = document_root(r->file);
@@ -88,7 +89,8 @@ static status read_sections(const scene_reader *r)
         names[i] = sections[i].name;
     }
     if (root->kind != NODE_MAP) {
-        return node_error(r->file, root, r->why, "begin with keys such as camera:, lights: and solids:", "this is not a scene");
+        return node_error(r->file, root, r->why,
+                          "begin with keys such as camera:, lights: and solids:", "this is not a scene");
     }
     status code = node_check_keys(r->file, root, names, COUNT, r->why);
     for (size_t i = 0; i < COUNT && code == STATUS_OK; i++) {
@@ -109,7 +111,7 @@ static status build(const document *file, scene **out, diagnostic *why)
     }
     free(s->path);
     s->path = path;
-    scene_reader r = { .file = file, .scene = s, .why = why };
+    scene_reader r = {.file = file, .scene = s, .why = why};
     status code = read_sections(&r);
     if (code == STATUS_OK) {
         code = read_located(&r, document_root(file), scene_check(s, why));

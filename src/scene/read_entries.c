@@ -29,8 +29,8 @@ status read_expect_map(const scene_reader *r, const node *n, const char *name)
     if (n->kind == NODE_MAP || is_empty(n)) {
         return STATUS_OK;
     }
-    return node_error(r->file, n, r->why, "write key: value lines, indented, below it", "%.80s is not a map of keys and values",
-                      name);
+    return node_error(r->file, n, r->why, "write key: value lines, indented, below it",
+                      "%.80s is not a map of keys and values", name);
 }
 
 status read_expect_word(const scene_reader *r, const node *n, const char *name)
@@ -48,10 +48,12 @@ static status check_value_kind(const scene_reader *r, const param *row, const ch
     char remedy[220];
     param_remedy(row, false, remedy, sizeof remedy);
     if (value->kind == NODE_MAP || (value->kind == NODE_LIST && !vector)) {
-        return node_error(r->file, value, r->why, remedy, "%.150s is a %s", path, value->kind == NODE_MAP ? "map" : "list");
+        return node_error(r->file, value, r->why, remedy, "%.150s is a %s", path,
+                          value->kind == NODE_MAP ? "map" : "list");
     }
     if (value->quoted && number) {
-        return node_error(r->file, value, r->why, "take the quotes away", "%.150s is a text, where a number belongs", path);
+        return node_error(r->file, value, r->why, "take the quotes away", "%.150s is a text, where a number belongs",
+                          path);
     }
     return STATUS_OK;
 }

@@ -6,9 +6,14 @@
 #include "scene/document.h"
 #include "scene/params.h"
 
-typedef struct scene_reader { const document *file; scene *scene; diagnostic *why; } scene_reader;
+typedef struct scene_reader {
+    const document *file;
+    struct scene *scene;
+    diagnostic *why;
+} scene_reader;
 
-/* Returns code; on a failure, puts the node's place into a diagnostic that a function without knowledge of the file filled. */
+/* Returns code; on a failure, puts the node's place into a diagnostic that a function without knowledge of the
+ * file filled. */
 status read_located(const scene_reader *r, const node *at, status code);
 status read_out_of_memory(const scene_reader *r);
 
@@ -19,7 +24,8 @@ status read_expect_word(const scene_reader *r, const node *n, const char *name);
 
 /* Refuses keys that are no rows of the group. */
 status read_check_keys(const scene_reader *r, param_group group, const node *map);
-/* Sets the entries of a map that are rows of the group; name is the path's first word. Others are left to the caller. */
+/* Sets the entries of a map that are rows of the group; name is the path's first word. Others are left to the
+ * caller. */
 status read_entries(const scene_reader *r, const char *name, param_group group, const node *map);
 
 /* The sections of named objects. Materials come first: solids refer to them. */

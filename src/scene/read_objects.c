@@ -84,7 +84,8 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
 {
     const node *shape = node_get(map, "shape");
     if (!shape) {
-        return node_error(r->file, key, r->why, "add shape: plane, cylinder, cup, box or sphere", "%s has no shape", key->text);
+        return node_error(r->file, key, r->why, "add shape: plane, cylinder, cup, box or sphere", "%s has no shape",
+                          key->text);
     }
     status code = read_expect_word(r, shape, "shape");
     if (code != STATUS_OK) {
@@ -100,8 +101,8 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
     }
     const char *nearest = text_nearest(shape->text, words, SHAPE_COUNT);
     char remedy[100];
-    snprintf(remedy, sizeof remedy, nearest ? "did you mean '%s'?" : "the shapes are plane, cylinder, cup, box and sphere",
-             nearest);
+    snprintf(remedy, sizeof remedy,
+             nearest ? "did you mean '%s'?" : "the shapes are plane, cylinder, cup, box and sphere", nearest);
     return node_error(r->file, shape, r->why, remedy, "no shape '%.60s'", shape->text);
 }
 

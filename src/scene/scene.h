@@ -28,7 +28,7 @@ typedef struct render_settings {
     int64_t weights;        /* weights_rule */
     int64_t beyond;         /* beyond_rule */
     int64_t shadows;        /* shadow_rule */
-    double min_weight;      /* children whose largest throughput channel is under it are not traced; 0 = the whole tree */
+    double min_weight;      /* children with a lower throughput in every channel are not traced; 0: all are */
     int64_t threads;        /* 1..1024 */
     int64_t pool;           /* 1: threads started beforehand; 0: fresh ones for every frame */
     int64_t schedule;       /* schedule_rule */
@@ -54,7 +54,8 @@ typedef struct background {
     vec3 ambient;           /* I_a of Phong's sum, linear RGB */
 } background;
 
-/* Fields mean what Phong's sum I = k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n and the weights rule say. */
+/* Fields mean what Phong's sum I = k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n and the weights
+ * rule say. */
 typedef struct material {
     vec3 color;             /* C, linear RGB */
     double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
@@ -80,8 +81,8 @@ typedef struct scene {
     char *path;             /* file it came from, "" if none */
     char *title;
     render_settings render;
-    camera camera;
-    background background;
+    struct camera camera;
+    struct background background;
     named_material *materials; size_t material_count;
     light *lights; size_t light_count;
     solid *solids; size_t solid_count;
@@ -104,8 +105,9 @@ status scene_read_text(const char *name, const char *text, size_t size, scene **
 /* Loads the sky picture if the background wants one that is not loaded. */
 status scene_load_pictures(scene *s, diagnostic *why);
 
-/* Checks what single ranges cannot: shapes, energy (under constant weights: reflectivity + transparency <= 1), names, limits,
- * camera not at its own target, a picture sky that names its picture. Run by scene_read and before every render. */
+/* Checks what single ranges cannot: shapes, energy (under constant weights: reflectivity + transparency <= 1),
+ * names, limits, camera not at its own target, a picture sky that names its picture. Run by scene_read and
+ * before every render. */
 status scene_check(const scene *s, diagnostic *why);
 
 /* Index of the solid of that name, or -1. */

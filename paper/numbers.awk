@@ -1,0 +1,78 @@
+# Every value of a study's table as a TeX number, \setval{study/axis values/column}{text}, formatted by what it is:
+# times in ms, rays in millions, shares in percent; and the numbers derived from them. awk -v study=NAME -f numbers.awk TABLE.tsv
+# NA makes no number: the paper then prints n/a.
+function set(key, text) { if (text != "") printf "\\setval{%s}{%s}\n", key, text }
+
+# About four digits, without an exponent.
+function digits(v,   size) {
+    size = v < 0 ? -v : v
+    return sprintf(size >= 1000 ? "%.0f" : size >= 100 ? "%.1f" : size >= 10 ? "%.2f" : "%.3f", v)
+}
+# A power of ten where plain digits would hide the value.
+function scientific(v,   exponent) {
+    if (v == 0) return "0"
+    exponent = 0
+    while (v < 1) { v *= 10; exponent-- }
+    while (v >= 10) { v /= 10; exponent++ }
+    return sprintf("\\ensuremath{%.2f\\cdot 10^{%d}}", v, exponent)
+}
+function formatted(column, v) {
+    if (v == "NA" || v == "") return ""
+    if (column ~ /_s(_[a-z]+)?$/) return digits(v * 1e3)
+    if (column ~ /^rays_/) return sprintf("%.3f", v / 1e6)
+    if (column ~ /^(imbalance|others_share)$/) return sprintf("%.1f", v * 100)
+    if (column == "peak_rss_bytes") return sprintf("%.1f", v / 1048576)
+    if (column ~ /^(first_hits|total_internal|n$|marked)/) return sprintf("%d", v)
+    return v
+}
+function value(column) { return (column in at) && $at[column] != "NA" ? $at[column] + 0 : "" }
+
+BEGIN { FS = "\t" }
+NR == 1 {
+    for (i = 1; i <= NF; i++) {
+        at[$i] = i
+        name[i] = $i
+    }
+    axes = at["n"] - 2
+    next
+}
+value("n") > 0 {
+    key = study
+    for (i = 2; i <= axes + 1; i++) key = key "/" ($i ~ /^[-+0-9.]+$/ ? $i + 0 : $i)
+    for (i = at["n"]; i <= NF; i++) set(key "/" name[i], formatted(name[i], $i))
+    rays = value("rays_total")
+    cpu = value("cpu_s_median")
+    wall = value("wall_s_median")
+    if (rays && cpu) set(key "/rate", sprintf("%.1f", rays / cpu / 1e6))
+    if (value("rays_camera") && value("cut_depth_throughput") != "")
+        set(key "/cut", scientific(value("cut_depth_throughput") / value("rays_camera")))
+    cells++
+    rows += value("n")
+    marked += value("marked")
+    if (study == "depth") {
+        if ($2 == 0) { cpu_0 = cpu; rays_0 = rays }
+        if (cpu_0) set(key "/growth", digits(cpu / cpu_0))
+        if (rays_0) set(key "/rays-growth", digits(rays / rays_0))
+    }
+    if (study == "threads") {
+        if ($3 == 1) one[$2] = wall
+        if (one[$2]) set(key "/speedup", digits(one[$2] / wall))
+        if (!($2 in best) || wall < best[$2]) { best[$2] = wall; best_count[$2] = $3 }
+        if ($3 == 1024) most[$2] = wall
+    }
+    if (study == "pool") wall_of[$2, $3] = wall
+}
+END {
+    set(study "/cells", cells)
+    set(study "/rows", rows)
+    set(study "/marked", marked + 0)
+    for (s in best) {
+        set("threads/" s "/best", best_count[s])
+        if (s in most) set("threads/" s "/loss", sprintf("%.1f", (most[s] / best[s] - 1) * 100))
+    }
+    for (pair in wall_of) {
+        split(pair, part, SUBSEP)
+        if (part[1] == "off" && ("on", part[2]) in wall_of)
+            set("pool/" part[2] "/added", digits((wall_of[pair] - wall_of["on", part[2]]) * 1e3))
+    }
+}

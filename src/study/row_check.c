@@ -1,0 +1,94 @@
+#include "study/row_check.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* The file of the rows that the worker rows of a file belong to: workers.shard-0-of-2.csv -> rows.shard-0-of-2.csv. */
+static const csv *rows_beside(const row_files *rows, const char *workers_path)
+{
+    const char *ending = strrchr(workers_path, '/') + 1 + strlen("workers");
+    for (size_t i = 0; i < rows->count; i++)
+        if (strcmp(strrchr(rows->paths[i], '/') + 1 + strlen("rows"), ending) == 0)
+            return rows->tables[i];
+    return NULL;
+}
+
+static bool has_row(const row_files *rows, const csv *table, const row_ref *worker)
+{
+    for (size_t i = rows->row_count; i > 0; i--) {
+        const row_ref *ref = &rows->rows[i - 1];
+        if (ref->table == table && ref->cell == worker->cell && ref->repetition == worker->repetition)
+            return true;
+    }
+    return false;
+}
+
+void row_check_drop_orphans(row_files *workers, const row_files *rows)
+{
+    size_t kept = 0;
+    row_ref last = {0};
+    bool last_kept = false;
+    for (size_t i = 0, file = 0; i < workers->row_count; i++) {
+        row_ref ref = workers->rows[i];
+        while (workers->tables[file] != ref.table)
+            file++;
+        /* Those of one repetition stand together. */
+        if (ref.table != last.table || ref.cell != last.cell || ref.repetition != last.repetition)
+            last_kept = has_row(rows, rows_beside(rows, workers->paths[file]), &ref);
+        last = ref;
+        if (last_kept)
+            workers->rows[kept++] = ref;
+    }
+    workers->row_count = kept;
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+    const row_ref *x = *(row_ref *const *)a, *y = *(row_ref *const *)b;
+    if (x->cell != y->cell)
+        return x->cell < y->cell ? -1 : 1;
+    if (x->repetition != y->repetition)
+        return x->repetition < y->repetition ? -1 : 1;
+    if (x->worker != y->worker)
+        return x->worker < y->worker ? -1 : 1;
+    return (x > y) - (x < y);
+}
+
+static bool same_line(const row_ref *a, const row_ref *b)
+{
+    size_t from_a = a->table->start[a->row], from_b = b->table->start[b->row];
+    size_t size = a->table->start[a->row + 1] - from_a;
+    return size == b->table->start[b->row + 1] - from_b && memcmp(a->table->raw + from_a, b->table->raw + from_b, size) == 0;
+}
+
+status row_check_drop_twins(row_files *files, diagnostic *why)
+{
+    row_ref **sorted = malloc((files->row_count + 1) * sizeof(row_ref *));
+    if (!sorted)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    for (size_t i = 0; i < files->row_count; i++)
+        sorted[i] = &files->rows[i];
+    qsort(sorted, files->row_count, sizeof *sorted, compare_keys);
+    status code = STATUS_OK;
+    for (size_t i = 1, kept = 0; code == STATUS_OK && i < files->row_count; i++) {
+        const row_ref *a = sorted[kept];
+        row_ref *b = sorted[i];
+        if (a->cell != b->cell || a->repetition != b->repetition || a->worker != b->worker) {
+            kept = i;
+        } else if (same_line(a, b) && a->table != b->table) {
+            b->table = NULL;
+        } else {
+            for (size_t f = 0; f < files->count; f++)
+                if (files->tables[f] == b->table)
+                    diagnostic_locate(why, files->paths[f], (long)b->row + 2, 1);
+            code = diagnose(why, STATUS_BAD_INPUT, "two processes ran the same cells: move one of the files away",
+                            "cell %zu repetition %ld stands twice, with different values", b->cell, b->repetition);
+        }
+    }
+    free(sorted);
+    size_t kept = 0;
+    for (size_t i = 0; i < files->row_count; i++)
+        if (files->rows[i].table)
+            files->rows[kept++] = files->rows[i];
+    files->row_count = kept;
+    return code;
+}

@@ -1,0 +1,61 @@
+/* One ray through the kernels of geometry/rays.h, and the arrangement of a few shapes, for tests. Ownership: what
+ * arrange_shapes gives is released with arrangement_destroy. */
+#ifndef CUVETTE_TESTS_RAY_FIXTURE_H
+#define CUVETTE_TESTS_RAY_FIXTURE_H
+
+#include "base/isa.h"
+#include "geometry/rays.h"
+
+typedef struct one_ray { vec3 o, d; int64_t start; uint64_t inside; } one_ray;
+
+typedef struct one_hit {
+    double t;
+    int crossed, before, after, surface; /* crossed -1: a miss */
+    uint64_t inside_before, inside_after;
+    vec3 point, normal;
+    double cos_i, error;
+    int64_t face;
+} one_hit;
+
+static inline const geometry_kernels *kernels_of(isa level)
+{
+    return level == ISA_AVX512 ? &geometry_kernels_avx512 : level == ISA_AVX2 ? &geometry_kernels_avx2 : &geometry_kernels_sse2;
+}
+
+static inline ray_batch batch_of_one(const one_ray *r)
+{
+    return (ray_batch){1, &r->o.x, &r->o.y, &r->o.z, &r->d.x, &r->d.y, &r->d.z, &r->start, &r->inside};
+}
+
+static inline one_hit nearest_interface(const arrangement *a, one_ray r)
+{
+    static ray_scratch scratch;
+    static hit_batch hits;
+    static surface_batch points;
+    const geometry_kernels *kernels = kernels_of(isa_best());
+    const ray_batch batch = batch_of_one(&r);
+    kernels->nearest(a, &batch, &scratch, &hits);
+    one_hit h = {.t = hits.t[0], .crossed = (int)hits.crossed[0], .before = (int)hits.before[0], .after = (int)hits.after[0], .surface = (int)hits.surface[0],
+                 .inside_before = hits.inside_before[0], .inside_after = hits.inside_after[0], .face = FACE_NONE};
+    if (h.crossed < 0)
+        return h;
+    r.inside = h.inside_before;
+    kernels->surface(&a->primitives[h.crossed], &batch, hits.t, h.crossed, &points);
+    h.point = vec3_make(points.px[0], points.py[0], points.pz[0]);
+    h.normal = vec3_make(points.nx[0], points.ny[0], points.nz[0]);
+    h.cos_i = points.cos_i[0];
+    h.error = points.error[0];
+    h.face = points.face[0];
+    return h;
+}
+
+static inline double light_through(const arrangement *a, one_ray r, int solid_shadows)
+{
+    static ray_scratch scratch;
+    static double transmitted[ROW];
+    const ray_batch batch = batch_of_one(&r);
+    kernels_of(isa_best())->shadow(a, &batch, solid_shadows, &scratch, transmitted);
+    return transmitted[0];
+}
+
+#endif

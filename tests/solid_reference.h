@@ -1,0 +1,147 @@
+/* Solids in quadruple precision for tests to compare with, by the definitions at the head of geometry/solid.h and nothing else:
+ * every crossing of a line with every surface of a shape, containment, and distance to the surface. What lies between two
+ * crossings is found by asking its midpoint. Pure; ownership: values. */
+#ifndef CUVETTE_TESTS_SOLID_REFERENCE_H
+#define CUVETTE_TESTS_SOLID_REFERENCE_H
+
+#include "geometry/solid.h"
+#include "quad.h"
+
+enum { REFERENCE_CROSSINGS_MAX = 8 }; /* of one shape with a line */
+
+typedef struct reference_line { quad3 o, d; } reference_line; /* d need not be of unit length */
+
+static inline quad3 reference_at(const reference_line *line, quad t) { return quad3_add(line->o, quad3_scale(line->d, t)); }
+
+static inline reference_line reference_local(const solid_shape *s, const reference_line *line)
+{
+    reference_line l = {quad3_turn(quad3_sub(line->o, quad3_from(s->position)), s->rotation_deg, 1),
+                        quad3_turn(line->d, s->rotation_deg, 1)};
+    return l;
+}
+
+/* a t^2 + 2 b t + c = 0 */
+static inline int reference_quadratic(quad a, quad b, quad c, quad *t)
+{
+    quad discriminant = b * b - a * c;
+    if (a == 0 || discriminant < 0)
+        return 0;
+    quad root = quad_sqrt(discriminant);
+    t[0] = (-b - root) / a;
+    t[1] = (-b + root) / a;
+    return 2;
+}
+
+static inline int reference_side(const reference_line *l, quad m, quad radius, quad *t)
+{
+    return reference_quadratic(l->d.x * l->d.x + m * m * l->d.z * l->d.z, l->o.x * l->d.x + m * m * l->o.z * l->d.z,
+                               l->o.x * l->o.x + m * m * l->o.z * l->o.z - radius * radius, t);
+}
+
+static inline int reference_level(quad o, quad d, quad level, quad *t)
+{
+    *t = d == 0 ? 0 : (level - o) / d;
+    return d != 0;
+}
+
+/* Every t, before and behind, where the line meets one of the shape's surfaces or their continuations; unordered. */
+static inline int reference_crossings(const solid_shape *s, const reference_line *line, quad *t)
+{
+    const reference_line l = reference_local(s, line);
+    const double half[3] = {s->size.x / 2, s->size.y / 2, s->size.z / 2};
+    const quad o[3] = {l.o.x, l.o.y, l.o.z}, d[3] = {l.d.x, l.d.y, l.d.z};
+    int n = 0;
+    switch (s->kind) {
+    case SHAPE_PLANE: return reference_level(l.o.y, l.d.y, 0, t);
+    case SHAPE_SPHERE:
+        return reference_quadratic(quad3_dot(l.d, l.d), quad3_dot(l.o, l.d), quad3_dot(l.o, l.o) - (quad)s->radius * s->radius, t);
+    case SHAPE_BOX:
+        for (int k = 0; k < 3; k++) {
+            n += reference_level(o[k], d[k], -half[k], t + n);
+            n += reference_level(o[k], d[k], half[k], t + n);
+        }
+        return n;
+    case SHAPE_CUP:
+        n += reference_side(&l, 1, s->inner_radius, t);
+        n += reference_level(l.o.y, l.d.y, s->floor, t + n);
+        n += reference_side(&l, 1, s->radius, t + n);
+        n += reference_level(l.o.y, l.d.y, 0, t + n);
+        return n + reference_level(l.o.y, l.d.y, s->height, t + n);
+    case SHAPE_CYLINDER:
+        n += reference_side(&l, s->m, s->radius, t);
+        n += reference_level(l.o.y, l.d.y, 0, t + n);
+        return n + reference_level(l.o.y, l.d.y, s->height, t + n);
+    case SHAPE_COUNT: break;
+    }
+    return 0;
+}
+
+/* Signed distance to x^2 + m^2 z^2 = radius^2, negative inside; to first order in it for an ellipse. */
+static inline quad reference_from_side(quad3 p, quad m, quad radius)
+{
+    quad level = quad_sqrt(p.x * p.x + m * m * p.z * p.z);
+    if (m == 1 || level == 0)
+        return level - radius;
+    return (level - radius) * level / quad_sqrt(p.x * p.x + m * m * m * m * p.z * p.z);
+}
+
+/* Of two distances to the parts of a corner: outside both, their hypotenuse; else the larger. */
+static inline quad reference_corner(quad a, quad b)
+{
+    return a > 0 && b > 0 ? quad_sqrt(a * a + b * b) : quad_max(a, b);
+}
+
+static inline quad reference_from_cylinder(quad3 p, quad m, quad radius, quad bottom, quad top)
+{
+    return reference_corner(reference_from_side(p, m, radius), quad_max(bottom - p.y, p.y - top));
+}
+
+/* Distance from the shape's surface, negative inside; exact near the surface. */
+static inline quad reference_distance(const solid_shape *s, quad3 point)
+{
+    const quad3 p = quad3_turn(quad3_sub(point, quad3_from(s->position)), s->rotation_deg, 1);
+    switch (s->kind) {
+    case SHAPE_PLANE: return p.y;
+    case SHAPE_SPHERE: return quad3_length(p) - s->radius;
+    case SHAPE_BOX: {
+        quad x = quad_abs(p.x) - s->size.x / 2, y = quad_abs(p.y) - s->size.y / 2, z = quad_abs(p.z) - s->size.z / 2;
+        return reference_corner(reference_corner(x, y), z);
+    }
+    case SHAPE_CUP: {
+        quad hollow = reference_from_cylinder(p, 1, s->inner_radius, s->floor, 1e30);
+        return quad_max(reference_from_cylinder(p, 1, s->radius, 0, s->height), -hollow);
+    }
+    case SHAPE_CYLINDER: return reference_from_cylinder(p, s->m, s->radius, 0, s->height);
+    case SHAPE_COUNT: break;
+    }
+    return 1;
+}
+
+static inline int reference_contains(const solid_shape *s, quad3 point) { return reference_distance(s, point) <= 0; }
+
+static inline void reference_sort(quad *t, int n)
+{
+    for (int i = 1; i < n; i++)
+        for (int k = i; k > 0 && t[k - 1] > t[k]; k--) {
+            quad swap = t[k];
+            t[k] = t[k - 1];
+            t[k - 1] = swap;
+        }
+}
+
+/* Every t > after where the line really enters or leaves the shape, in order. */
+static inline int reference_events(const solid_shape *s, const reference_line *line, quad after, quad *t)
+{
+    quad all[REFERENCE_CROSSINGS_MAX];
+    const int n = reference_crossings(s, line, all);
+    reference_sort(all, n);
+    int events = 0;
+    for (int i = 0; i < n; i++) {
+        quad before = i > 0 ? (all[i - 1] + all[i]) / 2 : all[i] - 1, behind = i < n - 1 ? (all[i] + all[i + 1]) / 2 : all[i] + 1;
+        if (all[i] > after && reference_contains(s, reference_at(line, before)) != reference_contains(s, reference_at(line, behind)))
+            t[events++] = all[i];
+    }
+    return events;
+}
+
+#endif

@@ -1,0 +1,406 @@
+/* The parameter table: its rows, setting and getting by path, what it says when something is wrong. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "base/number.h"
+#include "scene/params.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const char example[] = "materials:\n"
+                              "  glass: {ior: 1.5, transparency: 1}\n"
+                              "  matte: {diffuse: 0.7}\n"
+                              "lights:\n"
+                              "  lamp: {position: [4, 7, -5]}\n"
+                              "solids:\n"
+                              "  vessel: {shape: cup, material: glass}\n"
+                              "  lens: {shape: sphere, material: glass, ior: 1.7}\n"
+                              "  block: {shape: box, material: matte}\n"
+                              "  tank: {shape: cylinder}\n"
+                              "  ground: {shape: plane}\n";
+
+static scene *make(void)
+{
+    scene *s;
+    diagnostic why = {.what = ""};
+    status code = scene_read_text("example.yaml", example, sizeof example - 1, &s, &why);
+    assert_string_equal(why.what, "");
+    assert_int_equal(code, STATUS_OK);
+    return s;
+}
+
+static void set(scene *s, const char *path, const char *value)
+{
+    diagnostic why = {.what = ""};
+    status code = scene_set(s, path, value, &why);
+    assert_string_equal(why.what, "");
+    assert_int_equal(code, STATUS_OK);
+}
+
+static void assert_value(const scene *s, const char *path, const char *value)
+{
+    char *text;
+    assert_int_equal(scene_get(s, path, &text, NULL), STATUS_OK);
+    assert_string_equal(text, value);
+    free(text);
+}
+
+/* A value as text whose number is near; for angles that were derived. */
+static void assert_value_near(const scene *s, const char *path, double value)
+{
+    char *text;
+    double got;
+    assert_int_equal(scene_get(s, path, &text, NULL), STATUS_OK);
+    assert_true(number_parse_real(text, &got) && fabs(got - value) < 1e-12);
+    free(text);
+}
+
+/* ---- the table ---- */
+
+static void rows_are_complete_and_defaults_are_in_range(void **state)
+{
+    (void)state;
+    assert_true(param_count() > 40);
+    assert_null(param_at(param_count()));
+    scene *s = make();
+    for (size_t i = 0; i < param_count(); i++) {
+        const param *row = param_at(i);
+        char text[200];
+        assert_true(row->name[0] && row->meaning[0] && row->unit && row->fallback);
+        assert_true(row->meaning[strlen(row->meaning) - 1] != '.');
+        assert_true(strlen(param_range_text(row, text, sizeof text)) > 3);
+        assert_true(row->type != PARAM_CHOICE || row->choices);
+        assert_ptr_equal(param_find(row->group, row->name), row);
+        for (size_t j = 0; j < i; j++) { /* a solid's own rows and its surface's share paths */
+            const param *other = param_at(j);
+            bool share = other->group == row->group || (other->group >= PARAM_MATERIAL && row->group >= PARAM_MATERIAL);
+            assert_false(share && strcmp(other->name, row->name) == 0);
+        }
+        assert_true(i == 0 || param_at(i - 1)->group <= row->group);
+    }
+    assert_ptr_equal(param_find(PARAM_SOLID, "ior"), param_find(PARAM_MATERIAL, "ior"));
+    assert_null(param_find(PARAM_MATERIAL, "radius"));
+    assert_null(param_find(PARAM_RENDER, "Depth"));
+    assert_string_equal(param_group_name(PARAM_BACKGROUND), "background");
+    scene_destroy(s);
+}
+
+static void ranges_read_like_a_manual(void **state)
+{
+    (void)state;
+    static const struct {
+        param_group group;
+        const char *name, *text;
+    } cases[] = {
+        {PARAM_RENDER, "width", "integer 1..65536"},
+        {PARAM_RENDER, "beyond", "one of: sky, black"},
+        {PARAM_RENDER, "samples", "one of: 1, 4"},
+        {PARAM_RENDER, "min_weight", "number 0..1"},
+        {PARAM_CAMERA, "fov_deg", "number > 0, at most 179"},
+        {PARAM_MATERIAL, "color", "3 numbers, each 0..1"},
+        {PARAM_BACKGROUND, "picture", "path of a file"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[200];
+        assert_string_equal(param_range_text(param_find(cases[i].group, cases[i].name), text, sizeof text),
+                            cases[i].text);
+    }
+}
+
+static status same_as_fallback(void *context, const char *path, const param *row, const char *value)
+{
+    (void)path;
+    assert_string_equal(value, row->fallback);
+    ++*(size_t *)context;
+    return STATUS_OK;
+}
+
+/* So a scene that prints its parameters prints the table's defaults, and the defaults are written the way values
+ * are printed. */
+static void an_empty_scene_is_the_defaults(void **state)
+{
+    (void)state;
+    scene *s = scene_create();
+    assert_non_null(s);
+    size_t count = 0;
+    assert_int_equal(scene_each_param(s, same_as_fallback, &count), STATUS_OK);
+    assert_int_equal(count, 13 + 3 + 5);
+    assert_int_equal(s->render.width, 800);
+    assert_int_equal(s->render.shadows, SHADOWS_ATTENUATED);
+    assert_int_equal(s->render.schedule, SCHEDULE_DYNAMIC);
+    assert_int_equal(s->render.pool, 1);
+    assert_int_equal(s->camera.aimed, 1);
+    scene_destroy(s);
+}
+
+/* ---- setting ---- */
+
+static void every_type_is_set_and_got(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *value, *got;
+    } cases[] = {
+        {"render.depth", "8", "8"},
+        {"render.depth", " 0 ", "0"},
+        {"render.min_weight", "0.1", "0.1"},
+        {"render.min_weight", "1e-3", "0.001"},
+        {"render.weights", "constant", "constant"},
+        {"render.pool", "off", "off"},
+        {"render.samples", "4", "4"},
+        {"camera.position", "0,2.75,-6", "0,2.75,-6"},
+        {"camera.position", "[0, 1e2, -.5]", "0,100,-0.5"},
+        {"camera.position.y", "3", "3"},
+        {"background.picture", "sky 1.png", "sky 1.png"},
+        {"background.picture", "", ""},
+        {"lamp.color", "1,0.5,0.25", "1,0.5,0.25"},
+        {"lamp.color.g", "0.75", "0.75"},
+        {"vessel.ior", "1.3", "1.3"},
+        {"vessel.inner_radius", "0.8", "0.8"},
+        {"tank.m", "2", "2"},
+        {"block.size.z", "0.125", "0.125"},
+        {"ground.visible", "off", "off"},
+        {"block.priority", "-3", "-3"},
+    };
+    scene *s = make();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        set(s, cases[i].path, cases[i].value);
+        assert_value(s, cases[i].path, cases[i].got);
+    }
+    assert_value(s, "camera.position", "0,3,-0.5");
+    assert_value(s, "lamp.color", "1,0.75,0.25");
+    assert_true(s->solids[3].shape.m == 2 && s->solids[2].shape.size.z == 0.125 && s->solids[4].visible == 0);
+    assert_true(s->lights[0].color.y == 0.75 && s->render.weights == WEIGHTS_CONSTANT);
+    scene_destroy(s);
+}
+
+static void a_material_is_set_for_all_and_a_solid_for_itself(void **state)
+{
+    (void)state;
+    scene *s = make();
+    assert_value(s, "vessel.ior", "1.5");
+    assert_value(s, "lens.ior", "1.7"); /* its own in the file */
+    set(s, "vessel.ior", "1.4");
+    assert_value(s, "glass.ior", "1.5");
+    assert_value(s, "lens.ior", "1.7");
+    set(s, "glass.ior", "1.6"); /* the last one wins, everywhere */
+    assert_value(s, "vessel.ior", "1.6");
+    assert_value(s, "lens.ior", "1.6");
+    assert_value(s, "block.ior", "1");
+    set(s, "glass.color.g", "0.5");
+    assert_value(s, "lens.color", "1,0.5,1");
+    scene_destroy(s);
+}
+
+static void target_and_angles_take_each_others_place(void **state)
+{
+    (void)state;
+    scene *s = make();
+    set(s, "camera.position", "1,2,3");
+    set(s, "camera.target", "2,2,4");
+    assert_int_equal(s->camera.aimed, 1);
+    assert_value_near(s, "camera.yaw_deg", 45);
+    assert_value_near(s, "camera.pitch_deg", 0);
+    set(s, "camera.pitch_deg", "30"); /* the yaw stays */
+    assert_int_equal(s->camera.aimed, 0);
+    assert_true(fabs(s->camera.yaw_deg - 45) < 1e-12);
+    assert_value_near(s, "camera.target.y", 2.5); /* one unit ahead */
+    assert_value_near(s, "camera.target.x", 1 + sqrt(0.375));
+    set(s, "camera.position", "0,0,0"); /* the direction stays */
+    assert_value(s, "camera.pitch_deg", "30");
+    set(s, "camera.yaw_deg", "-90");
+    set(s, "camera.pitch_deg", "0");
+    assert_value(s, "camera.target", "-1,0,0");
+    set(s, "camera.target.y", "1"); /* the other elements are where it looked */
+    assert_int_equal(s->camera.aimed, 1);
+    assert_value_near(s, "camera.pitch_deg", 45);
+    assert_value_near(s, "camera.yaw_deg", -90);
+    scene_destroy(s);
+}
+
+typedef struct copy {
+    scene *s;
+    size_t count;
+} copy;
+
+static status set_in_copy(void *context, const char *path, const param *row, const char *value)
+{
+    copy *c = context;
+    assert_non_null(row);
+    c->count++;
+    return scene_set(c->s, path, value, NULL);
+}
+
+static status compare_with_copy(void *context, const char *path, const param *row, const char *value)
+{
+    (void)row;
+    assert_value(((copy *)context)->s, path, value);
+    return STATUS_OK;
+}
+
+static void expect_reproduced(const scene *changed)
+{
+    copy c = {.s = make()};
+    assert_int_equal(scene_each_param(changed, set_in_copy, &c), STATUS_OK);
+    assert_true(c.count > 100);
+    assert_int_equal(scene_each_param(changed, compare_with_copy, &c), STATUS_OK);
+    assert_int_equal(c.s->camera.aimed, changed->camera.aimed);
+    scene_destroy(c.s);
+}
+
+static void what_is_printed_makes_the_same_scene(void **state)
+{
+    (void)state;
+    scene *s = make();
+    expect_reproduced(s);
+    set(s, "glass.ior", "1.1"); /* before the solid's own, against the order of printing */
+    set(s, "lens.ior", "1.33333333333333333");
+    set(s, "vessel.reflectivity", "0.1");
+    set(s, "glass.reflectivity", "0.3");
+    set(s, "render.shadows", "opaque");
+    set(s, "background.picture", "a b.png");
+    set(s, "camera.target", "0.1,0.2,0.30000000000000004");
+    expect_reproduced(s);
+    set(s, "camera.pitch_deg", "-12.3");
+    expect_reproduced(s);
+    set(s, "camera.position", "9,8,7");
+    expect_reproduced(s);
+    scene_destroy(s);
+}
+
+static status stop_at_third(void *context, const char *path, const param *row, const char *value)
+{
+    (void)path, (void)row, (void)value;
+    return ++*(int *)context == 3 ? STATUS_INTERRUPTED : STATUS_OK;
+}
+
+static void a_visit_stops_when_told(void **state)
+{
+    (void)state;
+    scene *s = make();
+    int count = 0;
+    assert_int_equal(scene_each_param(s, stop_at_third, &count), STATUS_INTERRUPTED);
+    assert_int_equal(count, 3);
+    scene_destroy(s);
+}
+
+/* ---- what is wrong ---- */
+
+static void wrong_paths_and_values_say_what_is_right(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *assignment, *text;
+    } cases[] = {
+        {"vesel.ior=1", "nothing in the scene is named 'vesel'; did you mean 'vessel.ior'?"},
+        {"rendr.depth=1", "nothing in the scene is named 'rendr'; did you mean 'render.depth'?"},
+        {"vessel.iro=1", "vessel has no parameter 'iro'; did you mean 'vessel.ior'?"},
+        {"render.dpeth=1", "render has no parameter 'dpeth'; did you mean 'render.depth'?"},
+        {"depth=1", "nothing in the scene is named 'depth'; did you mean 'render.depth'?"},
+        {"fov_dge=1", "nothing in the scene is named 'fov_dge'; did you mean 'camera.fov_deg'?"},
+        {"lens.height=2",
+         "lens is a sphere, which has no height; a sphere has position, rotation, radius, priority, visible"},
+        {"glass.radius=2", "glass has no parameter 'radius'; glass has color, ambient, diffuse, specular, shininess, "
+                           "reflectivity, transparency, ior, checker, checker_color"},
+        {"lamp.position.w=2", "lamp.position has no element 'w'; the elements are .x, .y and .z"},
+        {"lamp.color.x=2", "lamp.color has no element 'x'; the elements are .r, .g and .b"},
+        {"lamp.position.xy=2", "lamp.position has no element 'xy'; the elements are .x, .y and .z"},
+        {"lamp.position.=2", "lamp.position has no element ''; the elements are .x, .y and .z"},
+        {"render.depth.x=2", "render.depth has no elements; leave out what follows the second dot"},
+        {"render.depth", "'render.depth' has no '='; write path=value, such as render.depth=8"},
+        {"render.depth=", "render.depth has no value; give an integer 0..64"},
+        {"render.depth=65", "render.depth: 65 is out of range; give an integer 0..64"},
+        {"render.depth=4.0", "render.depth: '4.0' is not an integer; give an integer 0..64"},
+        {"render.samples=3", "render.samples: 3 is out of range; give one of: 1, 4"},
+        {"render.schedule=dinamic",
+         "render.schedule: no choice 'dinamic'; did you mean 'dynamic'? It is one of: columns, "
+         "rows, tiles, dynamic"},
+        {"render.pin=", "render.pin has no value; give one of: none, compact, scatter"},
+        {"camera.fov_deg=0", "camera.fov_deg: 0 is out of range; give a number > 0, at most 179"},
+        {"camera.fov_deg=nan", "camera.fov_deg: 'nan' is not a finite number; give a number > 0, at most 179"},
+        {"camera.position=1,2", "camera.position: 2 values where 3 belong; give 3 numbers, each -1000000..1000000"},
+        {"camera.position=1,inf,2", "camera.position.y: 'inf' is not a finite number; give a number -1000000..1000000"},
+        {"lamp.color=0,-1,0", "lamp.color.g: -1 is out of range; give a number 0..10000"},
+        {"block.size.x=0", "block.size.x: 0 is out of range; give a number > 0, at most 1000000"},
+        {"vessel.ior=0x1p3", "vessel.ior: '0x1p3' is not a finite number; give a number 0.1..100"},
+        {"background.picture=a\nb", "background.picture: the path holds a control character; give a path of a file"},
+    };
+    scene *s = make(), *untouched = make();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        diagnostic why = {.what = ""};
+        char text[DIAGNOSTIC_TEXT_MAX];
+        assert_int_equal(scene_set_assignment(s, cases[i].assignment, &why), STATUS_BAD_INPUT);
+        assert_string_equal(diagnostic_text(&why, text, sizeof text), cases[i].text);
+        assert_int_equal(scene_set_assignment(s, cases[i].assignment, NULL), STATUS_BAD_INPUT);
+    }
+    copy c = {.s = s};
+    assert_int_equal(scene_each_param(untouched, compare_with_copy, &c), STATUS_OK);
+    scene_destroy(s);
+    scene_destroy(untouched);
+}
+
+static void odd_paths_are_refused(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"",
+                                        ".",
+                                        "..",
+                                        "...",
+                                        "render",
+                                        "render.",
+                                        ".depth",
+                                        "render..x",
+                                        "vessel",
+                                        "lights.lamp",
+                                        "solid.ior",
+                                        "camera.aimed",
+                                        "vessel.shape",
+                                        "vessel.material",
+                                        "lamp.position.x.y"};
+    scene *s = make();
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        char *value;
+        diagnostic why = {.what = ""};
+        assert_int_equal(scene_set(s, paths[i], "1", &why), STATUS_BAD_INPUT);
+        assert_true(why.what[0] && why.remedy[0]);
+        assert_int_equal(scene_get(s, paths[i], &value, NULL), STATUS_BAD_INPUT);
+        assert_null(value);
+    }
+    char huge[5000];
+    memset(huge, 'a', sizeof huge - 1);
+    huge[sizeof huge - 1] = 0;
+    assert_int_equal(scene_set(s, huge, "1", NULL), STATUS_BAD_INPUT);
+    assert_int_equal(scene_set(s, "render.depth", huge, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(scene_set(s, "background.picture", huge, NULL), STATUS_BAD_INPUT);
+    scene_destroy(s);
+}
+
+static void an_assignment_splits_at_its_first_equals_sign(void **state)
+{
+    (void)state;
+    scene *s = make();
+    assert_int_equal(scene_set_assignment(s, "background.picture=a=b.png", NULL), STATUS_OK);
+    assert_value(s, "background.picture", "a=b.png");
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows_are_complete_and_defaults_are_in_range),
+        cmocka_unit_test(ranges_read_like_a_manual),
+        cmocka_unit_test(an_empty_scene_is_the_defaults),
+        cmocka_unit_test(every_type_is_set_and_got),
+        cmocka_unit_test(a_material_is_set_for_all_and_a_solid_for_itself),
+        cmocka_unit_test(target_and_angles_take_each_others_place),
+        cmocka_unit_test(what_is_printed_makes_the_same_scene),
+        cmocka_unit_test(a_visit_stops_when_told),
+        cmocka_unit_test(wrong_paths_and_values_say_what_is_right),
+        cmocka_unit_test(odd_paths_are_refused),
+        cmocka_unit_test(an_assignment_splits_at_its_first_equals_sign),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

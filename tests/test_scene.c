@@ -1,0 +1,332 @@
+/* Scenes: reading, copying, checking, and the geometry of the reference scene. Run from the repository root. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "scene/params.h"
+#include <float.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define SCENES "experiments/scenes/"
+
+static scene *read_file(const char *path)
+{
+    scene *s;
+    diagnostic why = {.what = ""};
+    status code = scene_read(path, &s, &why);
+    assert_string_equal(why.what, "");
+    assert_int_equal(code, STATUS_OK);
+    return s;
+}
+
+static scene *read_text(const char *text)
+{
+    scene *s;
+    diagnostic why = {.what = ""};
+    status code = scene_read_text("folder/test.yaml", text, strlen(text), &s, &why);
+    assert_string_equal(why.what, "");
+    assert_int_equal(code, STATUS_OK);
+    return s;
+}
+
+static void assert_vector(vec3 v, double x, double y, double z)
+{
+    assert_true(v.x == x && v.y == y && v.z == z);
+}
+
+static const solid *find(const scene *s, const char *name)
+{
+    int index = scene_find_solid(s, name);
+    assert_true(index >= 0);
+    return &s->solids[index];
+}
+
+/* ---- the reference scene: shared with the renderers that ours is compared with ---- */
+
+static void rod_has_the_reference_camera_and_light(void **state)
+{
+    (void)state;
+    scene *s = read_file(SCENES "rod.yaml");
+    assert_int_equal(s->render.width, 800);
+    assert_int_equal(s->render.height, 600);
+    assert_int_equal(s->render.depth, 4);
+    assert_int_equal(s->render.weights, WEIGHTS_FRESNEL);
+    assert_true(s->render.min_weight == 0);
+    assert_vector(s->camera.position, 0, 2.75, -6);
+    assert_vector(s->camera.target, 0, 1.5, 0);
+    assert_int_equal(s->camera.aimed, 1);
+    assert_true(s->camera.fov_deg == 45);
+    assert_int_equal(s->background.kind, BACKGROUND_UNIFORM);
+    assert_vector(s->background.color, 0.53, 0.75, 0.92);
+    assert_vector(s->background.ambient, 1, 1, 1);
+    assert_int_equal(s->light_count, 1);
+    assert_string_equal(s->lights[0].name, "lamp");
+    assert_vector(s->lights[0].position, 4, 7, -5);
+    assert_vector(s->lights[0].color, 1, 1, 1);
+    assert_true(s->lights[0].intensity == 1);
+    scene_destroy(s);
+}
+
+static void rod_has_the_reference_solids(void **state)
+{
+    (void)state;
+    scene *s = read_file(SCENES "rod.yaml");
+    assert_int_equal(s->solid_count, 4);
+    const solid *ground = find(s, "ground"), *vessel = find(s, "vessel"), *liquid = find(s, "liquid"),
+                *rod = find(s, "rod");
+    assert_int_equal(ground->shape.kind, SHAPE_PLANE);
+    assert_vector(ground->shape.position, 0, 0, 0);
+    assert_true(ground->surface.checker == 0.5 && ground->surface.ambient == 0.1 && ground->surface.diffuse == 0.7);
+    assert_vector(ground->surface.color, 0.85, 0.85, 0.85);
+    assert_vector(ground->surface.checker_color, 0.25, 0.30, 0.35);
+    assert_int_equal(vessel->shape.kind, SHAPE_CUP);
+    assert_vector(vessel->shape.position, 0, 0.001, 0);
+    assert_true(vessel->shape.radius == 1 && vessel->shape.inner_radius == 0.9 && vessel->shape.floor == 0.1);
+    assert_true(vessel->shape.height == 3 && vessel->surface.ior == 1.5 && vessel->surface.transparency == 1);
+    assert_int_equal(liquid->shape.kind, SHAPE_CYLINDER);
+    assert_true(fabs(liquid->shape.position.y + liquid->shape.height - 2.001) <= DBL_EPSILON * 2);
+    /* It reaches into the wall and the floor of the vessel, and not through them. */
+    assert_true(liquid->shape.radius > 0.9 && liquid->shape.radius < 1);
+    assert_true(liquid->shape.position.y > 0.001 && liquid->shape.position.y < 0.101);
+    assert_true(liquid->surface.ior == 1.33 && liquid->shape.m == 1);
+    for (int i = 0; i < 2; i++) {
+        const material *clear = i ? &liquid->surface : &vessel->surface;
+        assert_true(clear->specular == 0.6 && clear->shininess == 80 && clear->ambient == 0 && clear->diffuse == 0);
+    }
+    assert_int_equal(rod->shape.kind, SHAPE_BOX);
+    assert_vector(rod->shape.size, 0.25, 3, 0.25);
+    assert_vector(rod->shape.position, 0.2, 2.101, 0);
+    assert_true(fabs(rod->shape.position.y - 1.5 - 0.601) < 1e-15 &&
+                fabs(rod->shape.position.x - 0.125 - 0.075) < 1e-15);
+    assert_vector(rod->surface.color, 0.85, 0.15, 0.10);
+    assert_true(rod->surface.specular == 0.5 && rod->surface.shininess == 40 && rod->surface.transparency == 0);
+    assert_true(rod->priority > vessel->priority && vessel->priority > liquid->priority &&
+                liquid->priority > ground->priority);
+    scene_destroy(s);
+}
+
+/* The four index pairs of the report, and its constant weights, are settings of the one scene. */
+static void the_reports_settings_are_overrides(void **state)
+{
+    (void)state;
+    static const char *const pairs[][2] = {{"1.0", "1.0"}, {"1.0", "1.5"}, {"1.3", "1.0"}, {"1.3", "1.5"}};
+    scene *s = read_file(SCENES "rod.yaml");
+    for (size_t i = 0; i < 4; i++) {
+        assert_int_equal(scene_set(s, "vessel.ior", pairs[i][0], NULL), STATUS_OK);
+        assert_int_equal(scene_set(s, "liquid.ior", pairs[i][1], NULL), STATUS_OK);
+        assert_int_equal(scene_check(s, NULL), STATUS_OK);
+    }
+    assert_int_equal(scene_set_assignment(s, "render.weights=constant", NULL), STATUS_OK);
+    assert_int_equal(scene_set_assignment(s, "clear.reflectivity=0.1", NULL), STATUS_OK);
+    diagnostic why = {.what = ""};
+    assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
+    assert_string_equal(why.what, "vessel: under constant weights reflectivity 0.1 + transparency 1 is more than 1");
+    assert_int_equal(scene_set_assignment(s, "clear.transparency=0.9", NULL), STATUS_OK);
+    assert_int_equal(scene_check(s, NULL), STATUS_OK);
+    scene_destroy(s);
+}
+
+static void every_scene_of_the_project_is_right(void **state)
+{
+    (void)state;
+    scene *leaning = read_file(SCENES "rod-leaning.yaml"), *inside = read_file(SCENES "rod-from-inside.yaml"),
+          *solids = read_file(SCENES "solids.yaml");
+    assert_true(find(leaning, "rod")->shape.rotation_deg.z != 0);
+    assert_true(solid_shape_contains(&find(inside, "liquid")->shape, inside->camera.position));
+    assert_false(solid_shape_contains(&find(inside, "vessel")->shape, inside->camera.position));
+    assert_false(solid_shape_contains(&find(inside, "rod")->shape, inside->camera.position));
+    unsigned shapes = 0;
+    for (size_t i = 0; i < solids->solid_count; i++) {
+        shapes |= 1u << solids->solids[i].shape.kind;
+    }
+    assert_int_equal(shapes, (1u << SHAPE_COUNT) - 1);
+    /* The leaning rod stays clear of the vessel. */
+    const solid *rod = find(leaning, "rod"), *vessel = find(leaning, "vessel");
+    mat3 turn = rotation_from_deg(rod->shape.rotation_deg);
+    for (int corner = 0; corner < 8; corner++) {
+        vec3 half = vec3_scale(rod->shape.size, 0.5);
+        vec3 local =
+            vec3_make(corner & 1 ? half.x : -half.x, corner & 2 ? half.y : -half.y, corner & 4 ? half.z : -half.z);
+        assert_false(solid_shape_contains(&vessel->shape, vec3_add(rod->shape.position, mat3_apply(turn, local))));
+    }
+    scene_destroy(leaning);
+    scene_destroy(inside);
+    scene_destroy(solids);
+}
+
+/* ---- reading ---- */
+
+static void the_order_of_the_file_is_kept_and_solids_may_come_first(void **state)
+{
+    (void)state;
+    scene *s = read_text("solids:\n  zebra: {shape: sphere, material: glass}\n  ape: {shape: box, ior: 2}\n"
+                         "materials:\n  glass: {ior: 1.5}\nlights:\n  b: {}\n  a: {}\ntitle: Zoo\n");
+    assert_string_equal(s->title, "Zoo");
+    assert_string_equal(s->path, "folder/test.yaml");
+    assert_string_equal(s->solids[0].name, "zebra");
+    assert_string_equal(s->lights[1].name, "a");
+    assert_int_equal(s->solids[0].material_index, 0);
+    assert_int_equal(s->solids[1].material_index, -1);
+    assert_true(s->solids[0].surface.ior == 1.5 && s->solids[1].surface.ior == 2);
+    assert_int_equal(scene_find_solid(s, "ape"), 1);
+    assert_int_equal(scene_find_solid(s, "glass"), -1);
+    scene_destroy(s);
+}
+
+static void what_is_left_out_keeps_its_default(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"{}", "render:\nlights:\nsolids:\n", "camera: {}\nmaterials: {}\n",
+                                        "lights:\n  l:\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        scene *s = read_text(texts[i]);
+        assert_int_equal(s->solid_count, 0);
+        assert_int_equal(s->render.depth, 4);
+        scene_destroy(s);
+    }
+    scene *s = read_text("solids:\n  s: {shape: cup}\n");
+    const solid *cup = &s->solids[0];
+    assert_true(cup->shape.radius == 1 && cup->shape.inner_radius == 0.9 && cup->visible == 1 && cup->surface.ior == 1);
+    assert_true(cup->surface.ambient == 0 && cup->surface.diffuse == 0 && cup->surface.transparency == 0);
+    scene_destroy(s);
+}
+
+/* The angle that a file leaves out is 0, in whatever order its keys stand. */
+static void angles_do_not_depend_on_the_order_of_keys(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"camera: {yaw_deg: 30, position: [1, 9, 2]}",
+                                        "camera: {position: [1, 9, 2], yaw_deg: 30}"};
+    for (size_t i = 0; i < 2; i++) {
+        scene *s = read_text(texts[i]);
+        assert_int_equal(s->camera.aimed, 0);
+        assert_true(s->camera.yaw_deg == 30 && s->camera.pitch_deg == 0);
+        scene_destroy(s);
+    }
+}
+
+/* ---- copies, checks, pictures ---- */
+
+static status compare(void *context, const char *path, const param *row, const char *value)
+{
+    (void)row;
+    char *other;
+    assert_int_equal(scene_get(context, path, &other, NULL), STATUS_OK);
+    assert_string_equal(other, value);
+    free(other);
+    return STATUS_OK;
+}
+
+static void a_copy_is_equal_and_independent(void **state)
+{
+    (void)state;
+    scene *s = read_file(SCENES "rod.yaml");
+    assert_int_equal(image_create(2, 1, &s->background.picture, NULL), STATUS_OK);
+    s->background.picture->pixel[5] = 0.25f;
+    scene *c = scene_clone(s);
+    assert_non_null(c);
+    assert_int_equal(scene_each_param(s, compare, c), STATUS_OK);
+    assert_string_equal(c->path, SCENES "rod.yaml");
+    assert_string_equal(c->title, s->title);
+    assert_true(c->background.picture->pixel[5] == 0.25f);
+    assert_int_equal(scene_set(c, "clear.ior", "3", NULL), STATUS_OK);
+    c->background.picture->pixel[5] = 1;
+    assert_true(s->background.picture->pixel[5] == 0.25f);
+    assert_true(find(s, "vessel")->surface.ior == 1.5 && find(c, "vessel")->surface.ior == 3);
+    scene_destroy(s); /* the copy outlives it */
+    assert_string_equal(c->solids[1].name, "vessel");
+    assert_int_equal(scene_check(c, NULL), STATUS_OK);
+    scene_destroy(c);
+    scene_destroy(NULL);
+}
+
+static void assert_check_finds(scene *s, const char *assignment, const char *word)
+{
+    scene *c = scene_clone(s);
+    diagnostic why = {.what = ""};
+    assert_int_equal(scene_set_assignment(c, assignment, NULL), STATUS_OK);
+    assert_int_equal(scene_check(c, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, word));
+    scene_destroy(c);
+}
+
+static void check_finds_what_single_ranges_cannot(void **state)
+{
+    (void)state;
+    scene *s = read_file(SCENES "rod.yaml");
+    assert_check_finds(s, "vessel.inner_radius=1", "inner_radius");
+    assert_check_finds(s, "vessel.floor=5", "floor");
+    assert_check_finds(s, "camera.target=0,2.75,-6", "target");
+    assert_check_finds(s, "background.kind=picture", "picture");
+    assert_int_equal(scene_set(s, "render.width", "65536", NULL), STATUS_OK);
+    assert_check_finds(s, "render.height=4097", "too large");
+    assert_int_equal(scene_set(s, "render.width", "8", NULL), STATUS_OK);
+    free(s->solids[3].name);
+    s->solids[3].name = strdup("lamp");
+    assert_check_finds(s, "render.depth=1", "taken");
+    s->solids[3].name[0] = '.';
+    assert_check_finds(s, "render.depth=1", "name");
+    scene_destroy(s);
+}
+
+static void a_sky_picture_is_found_beside_its_scene(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/test_scene_XXXXXX", picture_path[64], scene_path[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(picture_path, sizeof picture_path, "%s/sky.pfm", folder);
+    snprintf(scene_path, sizeof scene_path, "%s/s.yaml", folder);
+    image *sky;
+    assert_int_equal(image_create(4, 2, &sky, NULL), STATUS_OK);
+    sky->pixel[3] = 0.5f;
+    assert_int_equal(image_write(sky, picture_path, 8, NULL), STATUS_OK);
+    image_destroy(sky);
+    FILE *file = fopen(scene_path, "w");
+    assert_non_null(file);
+    fputs("background: {kind: picture, picture: sky.pfm}\n", file);
+    fclose(file);
+    scene *s = read_file(scene_path);
+    assert_null(s->background.picture);
+    assert_int_equal(scene_load_pictures(s, NULL), STATUS_OK);
+    const image *loaded = s->background.picture;
+    assert_true(loaded && loaded->width == 4 && loaded->height == 2 && loaded->pixel[3] == 0.5f);
+    assert_int_equal(scene_load_pictures(s, NULL), STATUS_OK);
+    assert_ptr_equal(s->background.picture, loaded); /* once */
+    assert_int_equal(scene_set(s, "background.picture", "other.pfm", NULL), STATUS_OK);
+    assert_null(s->background.picture); /* another path, another picture */
+    diagnostic why = {.what = ""};
+    assert_int_equal(scene_load_pictures(s, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.file, "other.pfm"));
+    assert_int_equal(scene_set(s, "background.picture", picture_path, NULL), STATUS_OK); /* absolute */
+    assert_int_equal(scene_load_pictures(s, NULL), STATUS_OK);
+    assert_non_null(s->background.picture);
+    assert_int_equal(scene_set(s, "background.picture", "none.png", NULL), STATUS_OK);
+    assert_int_equal(scene_set(s, "background.kind", "uniform", NULL), STATUS_OK);
+    assert_int_equal(scene_load_pictures(s, NULL), STATUS_OK); /* not wanted, not read */
+    scene_destroy(s);
+    unlink(picture_path);
+    unlink(scene_path);
+    rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rod_has_the_reference_camera_and_light),
+        cmocka_unit_test(rod_has_the_reference_solids),
+        cmocka_unit_test(the_reports_settings_are_overrides),
+        cmocka_unit_test(every_scene_of_the_project_is_right),
+        cmocka_unit_test(the_order_of_the_file_is_kept_and_solids_may_come_first),
+        cmocka_unit_test(what_is_left_out_keeps_its_default),
+        cmocka_unit_test(angles_do_not_depend_on_the_order_of_keys),
+        cmocka_unit_test(a_copy_is_equal_and_independent),
+        cmocka_unit_test(check_finds_what_single_ranges_cannot),
+        cmocka_unit_test(a_sky_picture_is_found_beside_its_scene),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

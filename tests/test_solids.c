@@ -1,0 +1,287 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <cmocka.h>
+
+#include "random_stream.h"
+#include "ray_fixture.h"
+#include "solid_reference.h"
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+
+static const solid_shape shapes[] = {
+    {.kind = SHAPE_PLANE, .position = {0.3, -0.2, 0.1}},
+    {.kind = SHAPE_CYLINDER, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .height = 1.95, .m = 1.0},
+    {.kind = SHAPE_CYLINDER, .position = {-0.1, -0.4, 0.2}, .radius = 0.8, .height = 1.1, .m = 2.5},
+    {.kind = SHAPE_CYLINDER, .position = {-0.1, -0.4, 0.2}, .radius = 0.7, .height = 1.3, .m = 0.4},
+    {.kind = SHAPE_CYLINDER, .position = {0.0, 0.0, 0.0}, .radius = 0.01, .height = 3.0, .m = 1.0},
+    {.kind = SHAPE_CUP, .position = {0.0, -0.999, 0.0}, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1},
+    {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
+    {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
+};
+static const vec3 turns[] = {{0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}, {0.0, 0.0, 30.0}, {90.0, 0.0, 0.0}, {0.1, 180.0, -0.3}};
+
+static vec3 double_of(quad3 v)
+{
+    return vec3_make((double)v.x, (double)v.y, (double)v.z);
+}
+
+/* A failure that can be looked at: the shape, the ray and what came out. */
+static void told(int good, const char *what, const solid_shape *s, const reference_line *line, const one_hit *h)
+{
+    if (good)
+        return;
+    print_error("shape %d turned (%g %g %g): from (%.17g %.17g %.17g) along (%.17g %.17g %.17g): t %.17g face %d cos_i %g error %g\n",
+                s->kind, s->rotation_deg.x, s->rotation_deg.y, s->rotation_deg.z, (double)line->o.x, (double)line->o.y, (double)line->o.z,
+                (double)line->d.x, (double)line->d.y, (double)line->d.z, h->t, (int)h->face, h->cos_i, h->error);
+    fail_msg("%s", what);
+}
+#define expect(condition, s, line, h) told(condition, #condition, s, line, h)
+
+static arrangement *arrange_one(const solid_shape *shape)
+{
+    const body_source source = {.shape = shape, .medium = 1, .clearness = 1.0};
+    arrangement *a = NULL;
+    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    return a;
+}
+
+static reference_line line_of(one_ray r)
+{
+    return (reference_line){quad3_from(r.o), quad3_from(r.d)};
+}
+
+/* The greatest distance that the line keeps within the surface between two crossings, from a few points. */
+static quad depth_between(const solid_shape *s, const reference_line *line, quad from, quad to)
+{
+    quad depth = 0;
+    for (int k = 1; k < 8; k++)
+        depth = quad_max(depth, quad_abs(reference_distance(s, reference_at(line, from + (to - from) * k / 8))));
+    return depth;
+}
+
+/* The outward unit normal of a face at a point on it, in the shape's own frame. */
+static quad3 normal_of(const solid_shape *s, int64_t face, quad3 p)
+{
+    const int own = (int)(face % FACES_MAX);
+    quad3 n = quad3_make(0, 0, 0);
+    if (s->kind == SHAPE_PLANE)
+        n.y = 1;
+    else if (s->kind == SHAPE_SPHERE)
+        n = p;
+    else if (s->kind == SHAPE_BOX)
+        *(own < 2 ? &n.x : own < 4 ? &n.y : &n.z) = own % 2 ? 1 : -1;
+    else if (own > 0)
+        n.y = own == 2 ? 1 : -1;
+    else
+        n = quad3_make(p.x, 0, p.z * (s->kind == SHAPE_CYLINDER ? (quad)s->m * s->m : (quad)1));
+    return quad3_scale(n, 1 / quad3_length(n));
+}
+
+/* Does the face, continued, pass through the point (its own frame)? */
+static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
+{
+    const int part = (int)(face / FACES_MAX), own = (int)(face % FACES_MAX);
+    switch (s->kind) {
+    case SHAPE_PLANE: return quad_abs(p.y);
+    case SHAPE_SPHERE: return quad_abs(quad3_length(p) - s->radius);
+    case SHAPE_BOX: {
+        const double half = own < 2 ? s->size.x / 2 : own < 4 ? s->size.y / 2 : s->size.z / 2;
+        return quad_abs((own < 2 ? p.x : own < 4 ? p.y : p.z) - (own % 2 ? half : -half));
+    }
+    case SHAPE_CUP:
+        if (own == 0)
+            return quad_abs(reference_from_side(p, 1, part ? s->inner_radius : s->radius));
+        return quad_abs(p.y - (own == 1 ? (part ? s->floor : 0.0) : s->height));
+    case SHAPE_CYLINDER:
+        return own == 0 ? quad_abs(reference_from_side(p, s->m, s->radius)) : quad_abs(p.y - (own == 1 ? 0.0 : s->height));
+    case SHAPE_COUNT: break;
+    }
+    return 1;
+}
+
+/* The smallest radius of curvature. */
+static double least_radius(const solid_shape *s)
+{
+    const double m = s->kind == SHAPE_CYLINDER ? s->m : 1.0;
+    return (s->kind == SHAPE_CUP ? s->inner_radius : s->radius) * (m > 1.0 ? 1.0 / (m * m) : m);
+}
+
+static void check_point(const solid_shape *s, const arrangement *a, const reference_line *line, const one_hit *h)
+{
+    const quad3 p = quad3_from(h->point), d = quad3_scale(line->d, 1 / quad3_length(line->d)), n = quad3_from(h->normal);
+    const quad3 local = quad3_turn(quad3_sub(p, quad3_from(s->position)), s->rotation_deg, 1);
+    expect(quad_abs(reference_distance(s, p)) <= h->error, s, line, h);
+    expect(distance_to_face(s, h->face, local) <= h->error, s, line, h);
+    expect(quad3_length(quad3_sub(p, reference_at(line, h->t))) <= h->error, s, line, h);
+    expect(quad_abs(reference_distance(s, reference_at(line, h->t))) <= h->error, s, line, h);
+    /* 16 roundings of what was added up, and not more */
+    expect(h->error <= 4e-15 * (3.0 * vec3_length(double_of(line->o)) + 2.0 * h->t + 6.0 * a->extent), s, line, h);
+    const quad3 outward = quad3_turn(normal_of(s, h->face, local), s->rotation_deg, 0);
+    const double curved = s->kind == SHAPE_PLANE || s->kind == SHAPE_BOX ? 0.0 : h->error / least_radius(s);
+    expect(quad_abs(quad3_length(n) - 1) <= 1e-15, s, line, h);
+    expect(quad3_length(quad3_sub(n, quad3_scale(outward, quad3_dot(outward, n) < 0 ? -1 : 1))) <= 2e-15 + curved, s, line, h);
+    expect(quad3_dot(n, d) <= 2e-15, s, line, h);
+    expect(h->cos_i > 0.0 && h->cos_i <= 1.0, s, line, h);
+    expect(quad_abs(h->cos_i - quad_max(-quad3_dot(n, d), 0)) <= 2e-15, s, line, h);
+}
+
+/* One ray against quadruple precision: the next crossing, or none. What passes the surface within the error bound may be seen as
+ * either. */
+static void check_ray(const solid_shape *s, const arrangement *a, one_ray r)
+{
+    const reference_line line = line_of(r);
+    quad t[REFERENCE_CROSSINGS_MAX];
+    const int events = reference_events(s, &line, 0, t);
+    const one_hit h = nearest_interface(a, r);
+    const double reach = 4e-15 * (3.0 * vec3_length(r.o) + 6.0 * a->extent);
+    if (h.crossed < 0) {
+        for (int k = 0; k + 1 < events; k += 2) /* only what grazes is overlooked */
+            expect(depth_between(s, &line, t[k], t[k + 1]) <= reach + 8e-15 * (double)t[k], s, &line, &h);
+        return;
+    }
+    check_point(s, a, &line, &h);
+    for (int k = 0; k < events; k += 2) {
+        if (quad_abs(t[k] - h.t) * h.cos_i <= h.error || depth_between(s, &line, t[k], h.t) <= h.error)
+            break; /* this one: across the surface within the bound, also along an edge or a tangent */
+        expect(t[k] < h.t && k + 1 < events && depth_between(s, &line, t[k], t[k + 1]) <= h.error, s, &line, &h);
+    }
+    expect(h.before == (reference_contains(s, reference_at(&line, 0)) ? 1 : 0), s, &line, &h);
+    expect(h.after == 1 - h.before, s, &line, &h);
+}
+
+/* A start well off the surface, so that in and out are not a matter of roundings. */
+static int start_at(const solid_shape *s, const arrangement *a, vec3 o, one_ray *r)
+{
+    const double clear = 1e-9 * (1.0 + vec3_length(o));
+    if (quad_abs(reference_distance(s, quad3_from(o))) < clear)
+        return 0;
+    *r = (one_ray){.o = o, .start = FACE_NONE, .inside = arrangement_inside(a, o)};
+    return 1;
+}
+
+static void aim(const solid_shape *s, const arrangement *a, vec3 from, vec3 direction)
+{
+    one_ray r;
+    if (!start_at(s, a, from, &r))
+        return;
+    r.d = vec3_normalize(direction);
+    check_ray(s, a, r);
+}
+
+typedef void ray_maker(const solid_shape *s, const arrangement *a, uint64_t *seed);
+
+static void for_all_shapes(ray_maker *make, int rays)
+{
+    uint64_t seed = 11;
+    for (size_t i = 0; i < COUNT(shapes); i++) {
+        for (size_t k = 0; k < COUNT(turns); k++) {
+            solid_shape s = shapes[i];
+            s.rotation_deg = turns[k];
+            arrangement *a = arrange_one(&s);
+            for (int n = 0; n < rays; n++)
+                make(&s, a, &seed);
+            arrangement_destroy(a);
+        }
+    }
+}
+
+/* A place of the shape that matters: its middle, a rim, an edge, a corner, or anywhere about it; in the world. */
+static vec3 place_on(const solid_shape *s, uint64_t *seed)
+{
+    static const double eighths[] = {-1.0, 1.0, 0.0, 0.5};
+    const double turn = random_real(seed, 0.0, 6.3), level = random_below(seed, 2) ? s->height : 0.0;
+    vec3 p = random_point(seed, 1.0);
+    if (s->kind == SHAPE_BOX && random_below(seed, 3))
+        p = vec3_make(eighths[random_below(seed, 4)] * s->size.x / 2, eighths[random_below(seed, 4)] * s->size.y / 2,
+                      eighths[random_below(seed, 4)] * s->size.z / 2);
+    else if (s->radius > 0.0 && s->height > 0.0 && random_below(seed, 3))
+        p = s->kind == SHAPE_CUP && random_below(seed, 2)
+                ? vec3_make(s->inner_radius * cos(turn), level > 0.0 ? level : s->floor, s->inner_radius * sin(turn))
+                : vec3_make(s->radius * cos(turn), random_below(seed, 2) ? level : random_real(seed, 0.0, s->height),
+                            s->radius * sin(turn) / (s->kind == SHAPE_CYLINDER ? s->m : 1.0));
+    return vec3_add(double_of(quad3_turn(quad3_from(p), s->rotation_deg, 0)), s->position);
+}
+
+static void from_near(const solid_shape *s, const arrangement *a, uint64_t *seed)
+{
+    vec3 from = random_point(seed, random_below(seed, 2) ? 4.0 : 1.0);
+    aim(s, a, from, vec3_sub(place_on(s, seed), from));
+    aim(s, a, from, random_direction(seed));
+}
+
+static void any_ray_agrees_with_quadruple_precision(void **state)
+{
+    (void)state;
+    for_all_shapes(from_near, 1500);
+}
+
+static void from_far(const solid_shape *s, const arrangement *a, uint64_t *seed)
+{
+    vec3 from = vec3_scale(random_direction(seed), exp(random_real(seed, 2.0, 11.5)));
+    aim(s, a, from, vec3_sub(place_on(s, seed), from));
+}
+
+static void rays_from_far_away(void **state)
+{
+    (void)state;
+    for_all_shapes(from_far, 800);
+}
+
+/* Along a local axis but for a component that is 0, -0 or next to nothing. */
+static void along_an_axis(const solid_shape *s, const arrangement *a, uint64_t *seed)
+{
+    static const double little[] = {0.0, -0.0, 1e-320, -1e-310, 1e-300, -1e-200, 1e-160, 1e-100, -1e-20, 1e-16, -1e-12, 1e-8, -1e-4};
+    double d[3];
+    const int axis = random_below(seed, 3);
+    for (int k = 0; k < 3; k++)
+        d[k] = k == axis ? (random_below(seed, 2) ? 1.0 : -1.0) : little[random_below(seed, COUNT(little))];
+    vec3 local = vec3_make(d[0], d[1], d[2]);
+    vec3 direction = random_below(seed, 2) ? local : double_of(quad3_turn(quad3_from(local), s->rotation_deg, 0));
+    vec3 to = place_on(s, seed), from = vec3_sub(to, vec3_scale(vec3_normalize(direction), random_real(seed, 0.0, 4.0)));
+    aim(s, a, from, direction);
+}
+
+static void rays_along_the_axes(void **state)
+{
+    (void)state;
+    for_all_shapes(along_an_axis, 1500);
+}
+
+/* Past a point of the surface in its tangent plane, at a height from 1e-14 to 1 above or under it. */
+static void grazing(const solid_shape *s, const arrangement *a, uint64_t *seed)
+{
+    vec3 from = random_point(seed, 3.0);
+    one_ray r;
+    if (!start_at(s, a, from, &r))
+        return;
+    r.d = vec3_normalize(vec3_sub(place_on(s, seed), from));
+    const one_hit h = nearest_interface(a, r);
+    if (h.crossed < 0)
+        return;
+    vec3 along = vec3_normalize(vec3_cross(h.normal, random_direction(seed)));
+    const double off = exp(random_real(seed, -32.0, 0.0)) * (random_below(seed, 2) ? 1.0 : -1.0), tilt = exp(random_real(seed, -32.0, 0.0));
+    vec3 back = vec3_sub(vec3_add(h.point, vec3_scale(h.normal, off)), vec3_scale(along, random_real(seed, 0.1, 5.0)));
+    aim(s, a, back, along);
+    aim(s, a, back, vec3_sub(along, vec3_scale(h.normal, tilt)));
+}
+
+static void grazing_rays(void **state)
+{
+    (void)state;
+    for_all_shapes(grazing, 800);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_ray_agrees_with_quadruple_precision),
+        cmocka_unit_test(rays_from_far_away),
+        cmocka_unit_test(rays_along_the_axes),
+        cmocka_unit_test(grazing_rays),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
