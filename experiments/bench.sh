@@ -7,8 +7,8 @@
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
-[ $# -ge 1 ] || { echo "usage: bench.sh CUVETTE [CUVETTE_WITHOUT_COUNTERS]" >&2; exit 2; }
-ours=$1 bare=${2:-} reps=${REPS:-7} peers=${PEERS:-}
+[ -x "${1:-${CUVETTE:-build/cuvette}}" ] || { echo "usage: bench.sh [CUVETTE [CUVETTE_WITHOUT_COUNTERS]]" >&2; exit 2; }
+ours=${1:-${CUVETTE:-build/cuvette}} bare=${2:-${NOCOUNTERS:-}} reps=${REPS:-7} peers=${PEERS:-}
 scene=$here/scenes/rod.yaml
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 

@@ -26,6 +26,6 @@ do for [i=1:4] {
          select(published."threads.csv", "", "threads wall_s") using 1:(published_1/$2) with linespoints lt 7 title published_name, \
          (gunther_fits[i] ? gunther(x, gunther_s[i], gunther_k[i]) : NaN) with lines lc rgb orange lw 4 title name_g, \
          (amdahl_fits[i] ? amdahl(x, amdahl_s[i]) : NaN) with lines lc rgb ink lw 1.2 title name_a, \
-         times(schedule) using 1:(one/$2):(one/$4):(one/$3) with yerrorbars lt i title "measured, wall"
+         times(schedule) using 1:(one/$2):(one/$4):($3 > 0 ? one/$3 : 1e3) with yerrorbars lt i title "measured, wall"
 }
 unset multiplot

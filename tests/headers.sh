@@ -1,5 +1,5 @@
 #!/bin/bash
-# Every header under src/ compiles alone, as C17 and as C++17 where there is a C++ compiler.
+# Every header under src/ compiles alone, as C17 and as C++17 where there is a C++ compiler; one with C11 atomics as C only.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 cc=${CC:-gcc}
@@ -23,7 +23,12 @@ compile() { # compile HEADER LANGUAGE COMPILER FLAG...
 
 for header in $(find src -name '*.h' | sort); do
     compile "$header" C17 "$cc" -std=c17 -Wpedantic -x c
-    if command -v "$cxx" >/dev/null; then
+    if ! command -v "$cxx" >/dev/null; then
+        continue
+    elif "$cc" -D_GNU_SOURCE -Isrc "${libraries[@]}" -M -x c "$header" 2>/dev/null | grep -q '/stdatomic\.h'; then
+        case_number=$((case_number + 1)) # private to the room that shares them among its threads
+        echo "ok $case_number # SKIP $header as C++17, which has no C11 atomics"
+    else
         compile "$header" C++17 "$cxx" -std=c++17 -x c++
     fi
 done

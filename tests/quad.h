@@ -18,10 +18,15 @@ static inline quad quad_sqrt(quad a)
 {
     if (a <= 0)
         return 0;
+    quad scale = 1; /* into the range of doubles */
+    for (; a > (quad)0x1p900; a *= (quad)0x1p-1000)
+        scale *= (quad)0x1p500;
+    for (; a < (quad)0x1p-900; a *= (quad)0x1p1000)
+        scale *= (quad)0x1p-500;
     quad y = sqrt((double)a);
     for (int i = 0; i < 3; i++)
         y = (y + a / y) / 2;
-    return y;
+    return y * scale;
 }
 
 static inline quad quad_pi(void)

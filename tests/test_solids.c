@@ -129,26 +129,25 @@ static void check_point(const solid_shape *s, const arrangement *a, const refere
     expect(quad_abs(h->cos_i - quad_max(-quad3_dot(n, d), 0)) <= 2e-15, s, line, h);
 }
 
-/* One ray against quadruple precision: the next crossing, or none. What passes the surface within the error bound may be seen as
- * either. */
+/* One ray against quadruple precision. Before the hit (or for ever, for a miss) the ray is where it was to within the error bound: what it
+ * passes on the other side is no deeper than that; and the hit is on the surface, which check_point sees to. */
 static void check_ray(const solid_shape *s, const arrangement *a, one_ray r)
 {
     const reference_line line = line_of(r);
     quad t[REFERENCE_CROSSINGS_MAX];
     const int events = reference_events(s, &line, 0, t);
     const one_hit h = nearest_interface(a, r);
-    const double reach = 4e-15 * (3.0 * vec3_length(r.o) + 6.0 * a->extent);
-    if (h.crossed < 0) {
-        for (int k = 0; k + 1 < events; k += 2) /* only what grazes is overlooked */
-            expect(depth_between(s, &line, t[k], t[k + 1]) <= reach + 8e-15 * (double)t[k], s, &line, &h);
+    const int missed = h.crossed < 0;
+    for (int k = 0; k < events && (missed || t[k] < h.t); k += 2) {
+        const double bound = missed ? 4e-15 * (3.0 * vec3_length(r.o) + 6.0 * a->extent + 2.0 * (double)t[k]) : h.error;
+        quad until = k + 1 < events ? t[k + 1] : t[k] + 1;
+        if (!missed && h.t < until)
+            until = h.t;
+        expect(depth_between(s, &line, t[k], until) <= bound, s, &line, &h);
+    }
+    if (missed)
         return;
-    }
     check_point(s, a, &line, &h);
-    for (int k = 0; k < events; k += 2) {
-        if (quad_abs(t[k] - h.t) * h.cos_i <= h.error || depth_between(s, &line, t[k], h.t) <= h.error)
-            break; /* this one: across the surface within the bound, also along an edge or a tangent */
-        expect(t[k] < h.t && k + 1 < events && depth_between(s, &line, t[k], t[k + 1]) <= h.error, s, &line, &h);
-    }
     expect(h.before == (reference_contains(s, reference_at(&line, 0)) ? 1 : 0), s, &line, &h);
     expect(h.after == 1 - h.before, s, &line, &h);
 }

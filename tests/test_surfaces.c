@@ -1,0 +1,230 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "optics/interface.h"
+#include "random_stream.h"
+#include "ray_fixture.h"
+#include "solid_reference.h"
+
+/* Rays that start on a surface: its own root is exact, so that nothing escapes, sticks or drifts. */
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+#define assert_near(a, b, tolerance) assert_true(quad_abs((quad)(a) - (quad)(b)) <= (quad)(tolerance))
+
+static const vec3 turns[] = {{0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}};
+
+static arrangement *arrange_one(const solid_shape *shape)
+{
+    const body_source source = {.shape = shape, .medium = 1, .clearness = 1.0};
+    arrangement *a = NULL;
+    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    return a;
+}
+
+static quad apart(vec3 a, vec3 b)
+{
+    return quad3_length(quad3_sub(quad3_from(a), quad3_from(b)));
+}
+
+/* The mirrored ray, on the side that it came from. */
+static one_ray mirrored(one_ray r, const one_hit *h)
+{
+    return (one_ray){h->point, direction_reflect(r.d, h->normal, h->cos_i), h->face, h->inside_before};
+}
+
+/* Mirrored inside over and over; returns the number of chords. Every one ends on the surface, at a distance ahead. */
+static int bounce_inside(const solid_shape *s, arrangement *a, one_ray r, int bounces, double loosest)
+{
+    for (int i = 0; i < bounces; i++) {
+        const one_hit h = nearest_interface(a, r);
+        if (h.crossed != 0 || h.before != 1 || h.after != 0 || h.t < 0.0 || h.t > 100.0)
+            return i;
+        if (quad_abs(reference_distance(s, quad3_from(h.point))) > loosest || quad_abs(vec3_length(h.normal) - 1.0) > 1e-15)
+            return i;
+        r = mirrored(r, &h);
+    }
+    return bounces;
+}
+
+/* Mirror in a sphere: all chords are 2 r cos_i, in one plane, for ever. */
+static void chords_of_a_sphere(void **state)
+{
+    (void)state;
+    uint64_t seed = 1;
+    for (int trial = 0; trial < 12; trial++) {
+        const double radius = exp(random_real(&seed, -5.0, 5.0));
+        solid_shape s = {.kind = SHAPE_SPHERE, .radius = radius, .rotation_deg = turns[trial % 2]};
+        arrangement *a = arrange_one(&s);
+        one_ray r = {.o = vec3_scale(random_direction(&seed), 0.7 * radius), .d = random_direction(&seed), .start = FACE_NONE, .inside = 1};
+        one_hit h = nearest_interface(a, r);
+        const double cos_i = h.cos_i;
+        for (int i = 0; i < 10000; i++) {
+            r = mirrored(r, &h);
+            h = nearest_interface(a, r);
+            assert_int_equal(h.crossed, 0);
+            assert_near(h.t, 2.0 * radius * cos_i, 1e-11 * radius); /* 10000 half-ulps, at random or not */
+            assert_near(apart(r.o, h.point), h.t, 1e-15 * radius * 4.0);
+            assert_near(quad3_length(quad3_from(h.point)), radius, 5e-16 * radius);
+            assert_near(h.cos_i, cos_i, 1e-11);
+        }
+        arrangement_destroy(a);
+    }
+}
+
+/* In a round cylinder the chords between two meetings with the side are 2 r cos_i / sin^2 of the angle to the axis. */
+static void chords_of_a_cylinder(void **state)
+{
+    (void)state;
+    uint64_t seed = 2;
+    for (int trial = 0; trial < 12; trial++) {
+        const double radius = random_real(&seed, 0.2, 2.0), tall = 1e6;
+        solid_shape s = {.kind = SHAPE_CYLINDER, .position = {0.0, -tall / 2, 0.0}, .radius = radius, .height = tall, .m = 1.0};
+        arrangement *a = arrange_one(&s);
+        one_ray r = {.o = vec3_make(0.3 * radius, 0.0, 0.2 * radius), .d = random_direction(&seed), .start = FACE_NONE, .inside = 1};
+        r.d = vec3_normalize(vec3_make(r.d.x, 0.01 * r.d.y, r.d.z));
+        one_hit h = nearest_interface(a, r);
+        const double cos_i = h.cos_i, rise = r.d.y, level = h.point.y;
+        quad length = 0;
+        for (int i = 0; i < 10000; i++) {
+            r = mirrored(r, &h);
+            h = nearest_interface(a, r);
+            assert_int_equal(h.face, 0);
+            assert_near(h.t, 2.0 * radius * cos_i / (1.0 - rise * rise), 1e-10 * radius);
+            assert_near(quad_sqrt((quad)h.point.x * h.point.x + (quad)h.point.z * h.point.z), radius, 5e-16 * radius);
+            length += h.t;
+        }
+        assert_near(h.point.y - level, length * rise, 1e-9 * radius); /* the slope is kept */
+        arrangement_destroy(a);
+    }
+}
+
+static void nothing_escapes_from_a_closed_mirror(void **state)
+{
+    (void)state;
+    static const solid_shape shapes[] = {
+        {.kind = SHAPE_CYLINDER, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .height = 1.95, .m = 1.0},
+        {.kind = SHAPE_CYLINDER, .position = {-0.1, -0.4, 0.2}, .radius = 0.8, .height = 1.1, .m = 2.5},
+        {.kind = SHAPE_CYLINDER, .radius = 0.9, .height = 1e-4, .m = 1.0},
+        {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
+        {.kind = SHAPE_BOX, .position = {20.0, 10.0, -30.0}, .size = {1.0, 1.0, 1.0}},
+        {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
+    };
+    uint64_t seed = 3;
+    for (size_t i = 0; i < COUNT(shapes); i++) {
+        for (int trial = 0; trial < 8; trial++) {
+            solid_shape s = shapes[i];
+            s.rotation_deg = turns[trial % 2];
+            arrangement *a = arrange_one(&s);
+            const double up = s.kind == SHAPE_CYLINDER ? s.height / 2 : 0.0;
+            quad3 middle = quad3_turn(quad3_make(0, up, 0), s.rotation_deg, 0);
+            one_ray r = {.o = vec3_add(s.position, vec3_make((double)middle.x, (double)middle.y, (double)middle.z)),
+                         .d = random_direction(&seed), .start = FACE_NONE, .inside = 1};
+            /* 1e-15 of the coordinates' size: their own rounding */
+            assert_int_equal(bounce_inside(&s, a, r, 10000, 1e-15 * (1.0 + vec3_length(s.position))), 10000);
+            arrangement_destroy(a);
+        }
+    }
+}
+
+/* Whispering: at grazing incidence the chords are as short as 2e-9 radii and must still be ahead. */
+static void grazing_chords_do_not_stick(void **state)
+{
+    (void)state;
+    uint64_t seed = 4;
+    solid_shape s = {.kind = SHAPE_SPHERE, .radius = 1.0};
+    arrangement *a = arrange_one(&s);
+    for (int trial = 0; trial < 200; trial++) {
+        vec3 n = random_direction(&seed), side = vec3_normalize(vec3_cross(n, random_direction(&seed)));
+        const double steep = exp(random_real(&seed, -20.0, 0.0));
+        one_ray r = {.o = n, .d = vec3_normalize(vec3_sub(side, vec3_scale(n, steep))), .start = 0, .inside = 1};
+        for (int i = 0; i < 100; i++) {
+            const one_hit h = nearest_interface(a, r);
+            assert_int_equal(h.crossed, 0);
+            assert_true(h.t > 0.5 * steep && h.t < 2.001);
+            r = mirrored(r, &h);
+        }
+    }
+    arrangement_destroy(a);
+}
+
+/* What leaves a convex solid, by reflection or refraction, never meets it again; what enters leaves on the far side, and the chord is
+ * that of quadruple precision. */
+static void convex_solids_are_met_twice_and_no_more(void **state)
+{
+    (void)state;
+    static const solid_shape shapes[] = {
+        {.kind = SHAPE_CYLINDER, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .height = 1.95, .m = 1.0},
+        {.kind = SHAPE_CYLINDER, .position = {-0.1, -0.4, 0.2}, .radius = 0.8, .height = 1.1, .m = 2.5},
+        {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
+        {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
+    };
+    uint64_t seed = 5;
+    int entered = 0;
+    for (int trial = 0; trial < 20000; trial++) {
+        solid_shape s = shapes[trial % (int)COUNT(shapes)];
+        s.rotation_deg = turns[trial / 4 % 2];
+        arrangement *a = arrange_one(&s);
+        vec3 from = vec3_scale(random_direction(&seed), 5.0), to = random_point(&seed, 1.0);
+        one_ray r = {.o = from, .d = vec3_normalize(vec3_sub(to, from)), .start = FACE_NONE, .inside = 0};
+        const one_hit in = nearest_interface(a, r);
+        if (in.crossed >= 0) {
+            entered++;
+            assert_int_equal(nearest_interface(a, mirrored(r, &in)).crossed, -1);
+            const one_ray on = {in.point, r.d, in.face, in.inside_after};
+            const one_hit out = nearest_interface(a, on);
+            assert_int_equal(out.crossed, 0);
+            assert_true(out.after == 0 && out.before == 1 && out.t >= 0.0);
+            assert_int_equal(nearest_interface(a, (one_ray){out.point, r.d, out.face, 0}).crossed, -1);
+            const reference_line line = {quad3_from(in.point), quad3_from(r.d)};
+            quad t[REFERENCE_CROSSINGS_MAX];
+            const int n = reference_events(&s, &line, (quad)1e-9, t);
+            if (n > 0 && in.cos_i > 1e-3 && out.cos_i > 1e-3)
+                assert_near(out.t, t[n - 1], 2e-15 * 8.0 / (in.cos_i * out.cos_i));
+        }
+        arrangement_destroy(a);
+    }
+    assert_true(entered > 8000);
+}
+
+/* A mirrored ray on the wall of a cup's hollow crosses it to the other side, and leaves it by the open top. */
+static void a_cup_is_met_again_through_its_hollow(void **state)
+{
+    (void)state;
+    const solid_shape s = {.kind = SHAPE_CUP, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
+    arrangement *a = arrange_one(&s);
+    one_ray r = {.o = vec3_make(0.0, 1.0, 0.0), .d = vec3_make(0.6, 0.8, 0.0), .start = FACE_NONE, .inside = arrangement_inside(a, vec3_make(0, 1, 0))};
+    assert_int_equal(arrangement_rank(a, r.inside), 0);
+    one_hit h = nearest_interface(a, r);
+    assert_near(h.t, 1.5, 1e-15);
+    assert_int_equal(h.face, FACES_MAX); /* the hollow's side */
+    assert_true(h.before == 0 && h.after == 1 && h.normal.x == -1.0);
+    r = mirrored(r, &h);
+    assert_int_equal(nearest_interface(a, r).crossed, -1); /* it rises 2.4 on its way across */
+    r.d = vec3_make(-0.8, 0.6, 0.0);
+    r.o.y = 0.5;
+    h = nearest_interface(a, r);
+    assert_near(h.t, 2.25, 1e-15);
+    assert_near(h.point.y, 1.85, 1e-15);
+    const one_ray wall = {h.point, r.d, h.face, h.inside_after};
+    h = nearest_interface(a, wall);
+    assert_near(h.t, 0.125, 1e-15); /* 0.1 of wall at cosine 0.8 */
+    assert_true(h.face == 0 && h.before == 1 && h.after == 0);
+    arrangement_destroy(a);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(chords_of_a_sphere),
+        cmocka_unit_test(chords_of_a_cylinder),
+        cmocka_unit_test(nothing_escapes_from_a_closed_mirror),
+        cmocka_unit_test(grazing_chords_do_not_stick),
+        cmocka_unit_test(convex_solids_are_met_twice_and_no_more),
+        cmocka_unit_test(a_cup_is_met_again_through_its_hollow),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
