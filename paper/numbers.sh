@@ -56,4 +56,9 @@ mkdir -p "$out"
     done | sort
     machine
     laws
+    # Rays by pixel are the same for every schedule.
+    for map in "$results"/profile/images/*-rays.pfm; do
+        [ ! -r "$map" ] || "$here/blocks.sh" "$map"
+        break
+    done
 } >"$out/numbers.tex"

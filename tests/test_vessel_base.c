@@ -87,7 +87,7 @@ static double radiance(const char *depth, double entry_y)
 static void the_base_shows_the_sky(void **state)
 {
     (void)state;
-    for (double entry_y = 0.35; entry_y < 0.66; entry_y += 0.1) {
+    for (double entry_y = 0.32; entry_y < 0.46; entry_y += 0.04) {
         double share = share_by_hand(entry_y);
         assert_true(share > 0.6);
         double with = radiance("render.depth=7", entry_y), without = radiance("render.depth=6", entry_y);
