@@ -6,7 +6,7 @@ function set(key, text) { if (text != "") printf "\\setval{%s}{%s}\n", key, text
 # About four digits, without an exponent.
 function digits(v,   size) {
     size = v < 0 ? -v : v
-    return sprintf(size >= 1000 ? "%.0f" : size >= 100 ? "%.1f" : size >= 10 ? "%.2f" : "%.3f", v)
+    return (v < 0 ? "\\ensuremath{-}" : "") sprintf(size >= 1000 ? "%.0f" : size >= 100 ? "%.1f" : size >= 10 ? "%.2f" : "%.3f", size)
 }
 # A power of ten where plain digits would hide the value.
 function scientific(v,   exponent) {
@@ -46,6 +46,8 @@ value("n") > 0 {
     if (rays && cpu) set(key "/rate", sprintf("%.1f", rays / cpu / 1e6))
     if (value("rays_camera") && value("cut_depth_throughput") != "")
         set(key "/cut", scientific(value("cut_depth_throughput") / value("rays_camera")))
+    if (value("rays_camera"))
+        set(key "/glass", sprintf("%.1f", (value("first_hits.vessel") + value("first_hits.liquid")) / value("rays_camera") * 100))
     cells++
     rows += value("n")
     marked += value("marked")

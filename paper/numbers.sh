@@ -19,7 +19,7 @@ plain() { sed 's/[\\{}~^]/ /g; s/[_%$#&]/\\&/g'; }
 machine() {
     for study in threads depth profile ior pool; do
         [ -r "$results/$study/manifest.json" ] || continue
-        for name in cpu_model processing_units cores topology kernel compiler flags isa version git_commit governor; do
+        for name in processing_units topology compiler flags isa version; do
             text=$(fact "$study" "$name" | plain)
             [ -z "$text" ] || [ "$text" = null ] || echo "\\setval{machine/$name}{$text}"
         done

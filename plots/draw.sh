@@ -38,10 +38,11 @@ has_rows() {
 
 # Sets `missing` to the first thing that a figure lacks, or to nothing, and `inputs` to the files that it is drawn from.
 look_for_inputs() {
-    local pattern found
+    local pattern found needs
     missing=
     inputs=("plots/$1.gp" plots/{style,rows,picture,laws}.gp plots/*.awk plots/*.sh experiments/published/*.csv)
-    for pattern in $(sed -n 's/^# needs: *//p' "plots/$1.gp"); do
+    read -r -a needs <<<"$(sed -n 's/^# needs: *//p' "plots/$1.gp")"
+    for pattern in "${needs[@]}"; do
         mapfile -t found < <(compgen -G "$results/$pattern")
         if [ ${#found[@]} -eq 0 ]; then
             missing=${missing:-$pattern}
@@ -82,11 +83,13 @@ draw() {
     rm -f "$scratch.log"
 }
 
+for figure in "${figures[@]}"; do
+    [ -f "plots/$figure.gp" ] || fail "there is no plots/$figure.gp"
+done
 mkdir -p "$out"
 machine_units=$(units)
 drawn=0 fresh=0 failed=0
 for figure in "${figures[@]}"; do
-    [ -f "plots/$figure.gp" ] || fail "there is no plots/$figure.gp"
     look_for_inputs "$figure"
     if [ -n "$missing" ]; then
         echo "$figure: skipped, no $missing"

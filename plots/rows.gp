@@ -9,7 +9,6 @@ readable(path) = int(system("test -r '".path."' && echo 1 || echo 0"))
 
 # Lines of a table or of rows whose columns have these values, as tab separated numbers; see select.awk.
 select(file, where, columns) = sprintf("< awk -f plots/select.awk -v where='%s' -v columns='%s' '%s'", where, columns, file)
-count(file, where, columns) = int(system(select(file, where, columns)[3:*]." | wc -l"))
 # The first one, as text and as a number; the largest one.
 text(file, where, column) = system(select(file, where, column)[3:*]." | head -n 1")
 largest(file, column) = number(system(select(file, "", column)[3:*]." | sort -g | tail -n 1"))

@@ -18,18 +18,21 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char fixture_scene[] = "title: test\n"
-                                    "render: {width: 24, height: 18, depth: 2, tile: 8}\n"
-                                    "camera: {position: [0, 1, -5], target: [0, 1, 0]}\n"
-                                    "materials:\n"
-                                    "  clear: {transparency: 1, ior: 1.5}\n"
-                                    "lights:\n"
-                                    "  lamp: {position: [4, 7, -5]}\n"
-                                    "solids:\n"
-                                    "  ground: {shape: plane, ambient: 0.1, diffuse: 0.7, checker: 0.5}\n"
-                                    "  ball: {shape: sphere, material: clear, position: [0, 1, 0], radius: 1, priority: 1}\n";
+static const char fixture_scene[] =
+    "title: test\n"
+    "render: {width: 24, height: 18, depth: 2, tile: 8}\n"
+    "camera: {position: [0, 1, -5], target: [0, 1, 0]}\n"
+    "materials:\n"
+    "  clear: {transparency: 1, ior: 1.5}\n"
+    "lights:\n"
+    "  lamp: {position: [4, 7, -5]}\n"
+    "solids:\n"
+    "  ground: {shape: plane, ambient: 0.1, diffuse: 0.7, checker: 0.5}\n"
+    "  ball: {shape: sphere, material: clear, position: [0, 1, 0], radius: 1, priority: 1}\n";
 
-typedef struct fixture { char folder[256], results[300]; } fixture;
+typedef struct fixture {
+    char folder[256], results[300];
+} fixture;
 
 __attribute__((unused)) static void fixture_path(const fixture *f, const char *name, char path[400])
 {

@@ -162,7 +162,7 @@ static void random_rooms_agree_with_brute_force(void **state)
             interfaces += walk_agrees(&m, random_point(&seed, k % 2 ? 0.7 : 4.0), random_direction(&seed)); /* also from inside solids */
         arrangement_destroy(m.solids);
     }
-    print_message("%d\n",interfaces);assert_true(interfaces > 20000);
+    assert_true(interfaces > 20000);
 }
 
 /* From 0 to 1: the product of what each interface lets through, by the body of the higher rank; opaque matter lets nothing. */

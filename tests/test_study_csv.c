@@ -18,7 +18,8 @@ static void fields_are_written_and_read_back(void **state)
     csv_hash(&line, 0xab);
     csv_end(&line);
     assert_false(line.failed);
-    assert_string_equal(line.text, "name,\"a,b\",\"say \"\"it\"\"\"\nNA,0.1,NA\nNA,9223372036854775807,00000000000000ab\n");
+    assert_string_equal(line.text,
+                        "name,\"a,b\",\"say \"\"it\"\"\"\nNA,0.1,NA\nNA,9223372036854775807,00000000000000ab\n");
     fixture_write(f, "t.csv", line.text);
     csv_line_free(&line);
     char path[400];

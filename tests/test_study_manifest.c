@@ -42,7 +42,8 @@ static void manifests_say_where_rows_come_from(void **state)
     const json_t *runs = json_object_get(manifest, "runs");
     assert_int_equal(json_array_size(runs), 1);
     const json_t *run = json_array_get(runs, 0);
-    static const char *const keys[] = {"started_utc", "version", "compiler", "flags", "config", "isa", "kernel", "binding"};
+    static const char *const keys[] = {"started_utc", "version", "compiler", "flags",
+                                       "config",      "isa",     "kernel",   "binding"};
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
         assert_true(text_at(run, keys[i])[0]);
     static const char *const libraries[] = {"libpng", "libjpeg-turbo", "hwloc", "libyaml", "jansson"};
@@ -69,9 +70,12 @@ static void each_run_is_added(void **state)
     json_t *after = manifest_of(f);
     assert_int_equal(json_array_size(json_object_get(after, "runs")), 2);
     assert_true(json_equal(json_object_get(before, "study"), json_object_get(after, "study")));
-    assert_true(json_equal(json_array_get(json_object_get(before, "runs"), 0), json_array_get(json_object_get(after, "runs"), 0)));
-    assert_string_equal(text_at(json_array_get(json_object_get(after, "runs"), 0), "started_utc"), "2001-09-09T01:46:40.000Z");
-    assert_string_equal(text_at(json_array_get(json_object_get(after, "runs"), 1), "started_utc"), "2001-09-09T01:46:41.000Z");
+    assert_true(json_equal(json_array_get(json_object_get(before, "runs"), 0),
+                           json_array_get(json_object_get(after, "runs"), 0)));
+    assert_string_equal(text_at(json_array_get(json_object_get(after, "runs"), 0), "started_utc"),
+                        "2001-09-09T01:46:40.000Z");
+    assert_string_equal(text_at(json_array_get(json_object_get(after, "runs"), 1), "started_utc"),
+                        "2001-09-09T01:46:41.000Z");
     json_decref(before);
     json_decref(after);
     study_destroy(s);
@@ -115,11 +119,13 @@ static void damaged_manifests_are_refused(void **state)
 static void what_tells_a_machine_is_taken_out(void **state)
 {
     (void)state;
-    char xml[] = "<topology>\n  <info name=\"HostName\" value=\"alpha\"/>\n  <info name=\"OSName\" value=\"Linux\"/>\n"
-                 "  <info name=\"DMIProductSerial\" value=\"123\"/>\n  <info name=\"LinuxCgroup\" value=\"/user/me\"/>\n"
-                 "  <object type=\"PU\"/>\n  <info name=\"DMIProductUUID\" value=\"x\"/>\n</topology>";
+    char xml[] =
+        "<topology>\n  <info name=\"HostName\" value=\"alpha\"/>\n  <info name=\"OSName\" value=\"Linux\"/>\n"
+        "  <info name=\"DMIProductSerial\" value=\"123\"/>\n  <info name=\"LinuxCgroup\" value=\"/user/me\"/>\n"
+        "  <object type=\"PU\"/>\n  <info name=\"DMIProductUUID\" value=\"x\"/>\n</topology>";
     provenance_anonymize(xml);
-    assert_string_equal(xml, "<topology>\n  <info name=\"OSName\" value=\"Linux\"/>\n  <object type=\"PU\"/>\n</topology>");
+    assert_string_equal(xml,
+                        "<topology>\n  <info name=\"OSName\" value=\"Linux\"/>\n  <object type=\"PU\"/>\n</topology>");
     provenance_anonymize(NULL);
 }
 
@@ -132,9 +138,10 @@ static void commits_are_found(void **state)
     assert_null(provenance_git_commit("/", &dirty));
     assert_false(dirty);
     assert_null(provenance_git_commit("/nowhere at all", &dirty));
-    snprintf(command, sizeof command,
-             "cd '%s' && git init -q . && git add scene.yaml && git -c user.name=x -c user.email=x@example.org commit -q -m x 2>/dev/null",
-             f->folder);
+    snprintf(
+        command, sizeof command,
+        "cd '%s' && git init -q . && git add scene.yaml && git -c user.name=x -c user.email=x@example.org commit -q -m x 2>/dev/null",
+        f->folder);
     if (system(command) != 0)
         skip();
     char *commit = provenance_git_commit(f->folder, &dirty);

@@ -61,7 +61,8 @@ static void merging_loses_nothing(void **state)
     study *s = fixture_study(f, study_text);
     for (long shard = 0; shard < 2; shard++)
         run_shard(f, s, shard, 2);
-    char *parts[2] = {fixture_text(f, "results/test/rows.shard-0-of-2.csv"), fixture_text(f, "results/test/rows.shard-1-of-2.csv")};
+    char *parts[2] = {fixture_text(f, "results/test/rows.shard-0-of-2.csv"),
+                      fixture_text(f, "results/test/rows.shard-1-of-2.csv")};
     assert_int_equal(merge(f, s), 18);
     char *joined = fixture_text(f, "results/test/rows.csv");
     /* Header and lines, each as it was. */

@@ -32,7 +32,8 @@ static void seed_and_stream_decide(void **state)
     order_shuffle(1, 0, a, COUNT);
     order_shuffle(1, 0, b, COUNT);
     assert_memory_equal(a, b, sizeof a);
-    static const uint64_t other[][2] = {{1, 1}, {2, 0}, {UINT64_C(1) << 32 | 1, 0}, {1, UINT64_C(1) << 32}, {1, ORDER_STREAM_SHARDS}};
+    static const uint64_t other[][2] = {
+        {1, 1}, {2, 0}, {UINT64_C(1) << 32 | 1, 0}, {1, UINT64_C(1) << 32}, {1, ORDER_STREAM_SHARDS}};
     for (size_t i = 0; i < sizeof other / sizeof other[0]; i++) {
         order_shuffle(other[i][0], other[i][1], b, COUNT);
         assert_memory_not_equal(a, b, sizeof a);
@@ -84,8 +85,11 @@ static void small_counts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_cell_once),    cmocka_unit_test(seed_and_stream_decide), cmocka_unit_test(orders_stay_what_they_were),
-        cmocka_unit_test(orders_are_drawn_evenly), cmocka_unit_test(small_counts),
+        cmocka_unit_test(every_cell_once),
+        cmocka_unit_test(seed_and_stream_decide),
+        cmocka_unit_test(orders_stay_what_they_were),
+        cmocka_unit_test(orders_are_drawn_evenly),
+        cmocka_unit_test(small_counts),
     };
     return cmocka_run_group_tests_name("order", tests, NULL, NULL);
 }

@@ -12,21 +12,22 @@ static const char *axis_value(const study *s, size_t cell, size_t axis, size_t p
 static void the_whole_grammar(void **state)
 {
     const fixture *f = *state;
-    study *s = fixture_study(f, "study: all\n"
-                                "title: All there is\n"
-                                "scene: scene.yaml\n"
-                                "set: {render.width: 32, lamp.position.y: 9.50}\n"
-                                "grid:\n"
-                                "  - {render.depth: [0, 4]}\n"
-                                "  - name: pair\n"
-                                "    points:\n"
-                                "      - {ball.ior: 1.0, lamp.position.x: 1}\n"
-                                "      - {lamp.position.x: 2, ball.ior: 1.50}\n"
-                                "      - {ball.ior: 1.33, lamp.position.x: 3}\n"
-                                "repetitions: {min: 5, max: 20, relative_width: 0.02}\n"
-                                "warmups: 2\n"
-                                "order: {shuffle: off, seed: 42}\n"
-                                "keep: {image: on, pfm: yes, workers: true, pixel_rays: off, pixel_time: no, timeline: on}\n");
+    study *s =
+        fixture_study(f, "study: all\n"
+                         "title: All there is\n"
+                         "scene: scene.yaml\n"
+                         "set: {render.width: 32, lamp.position.y: 9.50}\n"
+                         "grid:\n"
+                         "  - {render.depth: [0, 4]}\n"
+                         "  - name: pair\n"
+                         "    points:\n"
+                         "      - {ball.ior: 1.0, lamp.position.x: 1}\n"
+                         "      - {lamp.position.x: 2, ball.ior: 1.50}\n"
+                         "      - {ball.ior: 1.33, lamp.position.x: 3}\n"
+                         "repetitions: {min: 5, max: 20, relative_width: 0.02}\n"
+                         "warmups: 2\n"
+                         "order: {shuffle: off, seed: 42}\n"
+                         "keep: {image: on, pfm: yes, workers: true, pixel_rays: off, pixel_time: no, timeline: on}\n");
     assert_string_equal(s->name, "all");
     assert_string_equal(s->title, "All there is");
     assert_int_equal(s->repetitions_min, 5);
@@ -89,9 +90,12 @@ static uint64_t hash_of(const fixture *f, const char *text)
 static void what_is_the_same_definition(void **state)
 {
     const fixture *f = *state;
-    uint64_t hash = hash_of(f, "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n");
-    assert_int_equal(hash_of(f, "# why\nstudy: x\ntitle: T\nscene: scene.yaml\nset:\n  render.width: 32\n"
-                                "grid: [{ball.ior: [1, 1.50]}]\nrepetitions: 9\nwarmups: 0\norder: {seed: 2}\nkeep: {image: on}\n"), hash);
+    uint64_t hash =
+        hash_of(f, "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n");
+    assert_int_equal(
+        hash_of(f, "# why\nstudy: x\ntitle: T\nscene: scene.yaml\nset:\n  render.width: 32\n"
+                   "grid: [{ball.ior: [1, 1.50]}]\nrepetitions: 9\nwarmups: 0\norder: {seed: 2}\nkeep: {image: on}\n"),
+        hash);
     static const char *const others[] = {
         "study: y\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n",
         "study: x\nscene: scene.yaml\nset: {render.width: 33}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n",
@@ -102,11 +106,13 @@ static void what_is_the_same_definition(void **state)
     };
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         assert_int_not_equal(hash_of(f, others[i]), hash);
-    fixture_write(f, "scene.yaml", "title: a ball alone\n"
-                                   "render: {width: 24, height: 18, depth: 2, tile: 8}\n"
-                                   "materials: {clear: {transparency: 1, ior: 1.5}}\n"
-                                   "solids: {ball: {shape: sphere, material: clear, position: [0, 1, 0], radius: 1, priority: 1}}\n");
-    assert_int_not_equal(hash_of(f, "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n"), hash);
+    fixture_write(f, "scene.yaml",
+                  "title: a ball alone\n"
+                  "render: {width: 24, height: 18, depth: 2, tile: 8}\n"
+                  "materials: {clear: {transparency: 1, ior: 1.5}}\n"
+                  "solids: {ball: {shape: sphere, material: clear, position: [0, 1, 0], radius: 1, priority: 1}}\n");
+    assert_int_not_equal(
+        hash_of(f, "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n"), hash);
 }
 
 static void scenes_lie_beside_the_study(void **state)
@@ -192,9 +198,10 @@ static void bad_studies_are_located(void **state)
 static void cut_off_anywhere(void **state)
 {
     const fixture *f = *state;
-    static const char text[] = "study: cut\nscene: scene.yaml\nset: {render.width: 32}\n"
-                               "grid:\n  - {render.depth: [0, 1]}\n  - name: p\n    points: [{ball.ior: 1.2}]\n"
-                               "repetitions: {min: 2, max: 3, relative_width: 0.1}\norder: {shuffle: on}\nkeep: {image: on}\n";
+    static const char text[] =
+        "study: cut\nscene: scene.yaml\nset: {render.width: 32}\n"
+        "grid:\n  - {render.depth: [0, 1]}\n  - name: p\n    points: [{ball.ior: 1.2}]\n"
+        "repetitions: {min: 2, max: 3, relative_width: 0.1}\norder: {shuffle: on}\nkeep: {image: on}\n";
     char name[400];
     fixture_path(f, "test.study", name);
     for (size_t size = 0; size < sizeof text; size++) {
@@ -209,7 +216,10 @@ static void cut_off_anywhere(void **state)
 static void the_studies_of_the_house(void **state)
 {
     (void)state;
-    static const struct { const char *name; size_t cells; } known[] = {{"depth", 9}, {"threads", 44}, {"ior", 4}, {"ior-grid", 25}, {"profile", 12}, {"pool", 10}};
+    static const struct {
+        const char *name;
+        size_t cells;
+    } known[] = {{"depth", 9}, {"threads", 44}, {"ior", 4}, {"ior-grid", 25}, {"profile", 12}, {"pool", 10}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         char path[400], said[DIAGNOSTIC_TEXT_MAX];
         diagnostic why = {0};

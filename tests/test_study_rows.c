@@ -2,19 +2,34 @@
 #include "study/rows.h"
 #include "study/row_files.h"
 
-static const char grid_text[] = "study: test\n"
-                                "scene: scene.yaml\n"
-                                "grid:\n"
-                                "  - {render.schedule: [rows, dynamic]}\n"
-                                "  - name: pair\n"
-                                "    points: [{ball.ior: 1.5, lamp.position: [0, 9, 0]}, {lamp.position: [1, 9, 0], ball.ior: 1.25}]\n";
+static const char grid_text[] =
+    "study: test\n"
+    "scene: scene.yaml\n"
+    "grid:\n"
+    "  - {render.schedule: [rows, dynamic]}\n"
+    "  - name: pair\n"
+    "    points: [{ball.ior: 1.5, lamp.position: [0, 9, 0]}, {lamp.position: [1, 9, 0], ball.ior: 1.25}]\n";
 
 /* A row whose every number is known. */
 static char *write_row(const study *s, const scene *setting, bool workers)
 {
     worker_report reports[3] = {
-        {.wall_s = 1, .cpu_s = 0.5, .start_s = 0.125, .busy_s = 0.75, .waiting_s = 0.25, .tiles = 2, .rays = 100, .pu = 1},
-        {.wall_s = 1, .cpu_s = 0.25, .start_s = 0.25, .busy_s = 0.25, .waiting_s = 0.75, .tiles = 1, .rays = 50, .pu = -1},
+        {.wall_s = 1,
+         .cpu_s = 0.5,
+         .start_s = 0.125,
+         .busy_s = 0.75,
+         .waiting_s = 0.25,
+         .tiles = 2,
+         .rays = 100,
+         .pu = 1},
+        {.wall_s = 1,
+         .cpu_s = 0.25,
+         .start_s = 0.25,
+         .busy_s = 0.25,
+         .waiting_s = 0.75,
+         .tiles = 1,
+         .rays = 50,
+         .pu = -1},
         {.wall_s = 1, .cpu_s = 0.125, .start_s = 0.5, .busy_s = 0, .waiting_s = 1, .pu = 0},
     };
     render_result frame = {.wall_s = 1, .cpu_s = 0.875, .worker_count = 3, .workers = reports};
@@ -28,10 +43,23 @@ static char *write_row(const study *s, const scene *setting, bool workers)
     frame.counters.first_hits[0] = 60;
     frame.counters.first_hits[1] = 40;
     frame.counters.hits[1] = 80;
-    study_row row = {.of = s, .cell = 3, .setting = setting, .repetition = 2, .order = 17, .time_ms = INT64_C(1700000000250),
-                     .film_hash = 0xabc, .film_expected = 0xabd, .frame = &frame, .level = ISA_AVX2,
-                     .used = {.wall_s = 1, .cpu_s = 0.875, .peak_rss_bytes = 4096, .voluntary_switches = 1, .involuntary_switches = 0,
-                              .machine_busy_s = NAN, .machine_units = 2},
+    study_row row = {.of = s,
+                     .cell = 3,
+                     .setting = setting,
+                     .repetition = 2,
+                     .order = 17,
+                     .time_ms = INT64_C(1700000000250),
+                     .film_hash = 0xabc,
+                     .film_expected = 0xabd,
+                     .frame = &frame,
+                     .level = ISA_AVX2,
+                     .used = {.wall_s = 1,
+                              .cpu_s = 0.875,
+                              .peak_rss_bytes = 4096,
+                              .voluntary_switches = 1,
+                              .involuntary_switches = 0,
+                              .machine_busy_s = NAN,
+                              .machine_units = 2},
                      .hardware = {-1, -1, 5, 0}};
     csv_line line = {0};
     (workers ? worker_header : row_header)(&line, s);
@@ -70,14 +98,45 @@ static void rows_say_what_happened(void **state)
 {
     csv *table = table_of(*state, false);
     static const char *const known[][2] = {
-        {"study", "test"}, {"cell", "3"}, {"repetition", "2"}, {"warmup", "0"}, {"order", "17"}, {"time_utc", "2023-11-14T22:13:20.250Z"},
-        {"render.schedule", "dynamic"}, {"ball.ior", "1.25"}, {"lamp.position", "1,9,0"}, {"film_hash", "0000000000000abc"},
-        {"film_expected", "0000000000000abd"}, {"marked", "1"}, {"wall_s", "1"}, {"cpu_s", "0.875"}, {"rays_camera", "100"},
-        {"rays_reflect", "20"}, {"rays_refract", "20"}, {"rays_shadow", "10"}, {"rays_total", "150"}, {"rays_by_depth", "100;0;40"},
-        {"cut_depth_throughput", "1"}, {"first_hits.ground", "60"}, {"first_hits.ball", "40"}, {"hits.ground", "0"}, {"hits.ball", "80"},
-        {"workers", "3"}, {"workers_with_tiles", "2"}, {"busy_s_mean", "0.5"}, {"busy_s_max", "0.75"}, {"waiting_s_mean", "0.5"},
-        {"worker_cpu_s_sum", "0.875"}, {"imbalance", "0.5"}, {"peak_rss_bytes", "4096"}, {"voluntary_switches", "1"},
-        {"involuntary_switches", "0"}, {"others_share", "NA"}, {"cycles", "NA"}, {"branch_misses", "5"}, {"cache_misses", "0"},
+        {"study", "test"},
+        {"cell", "3"},
+        {"repetition", "2"},
+        {"warmup", "0"},
+        {"order", "17"},
+        {"time_utc", "2023-11-14T22:13:20.250Z"},
+        {"render.schedule", "dynamic"},
+        {"ball.ior", "1.25"},
+        {"lamp.position", "1,9,0"},
+        {"film_hash", "0000000000000abc"},
+        {"film_expected", "0000000000000abd"},
+        {"marked", "1"},
+        {"wall_s", "1"},
+        {"cpu_s", "0.875"},
+        {"rays_camera", "100"},
+        {"rays_reflect", "20"},
+        {"rays_refract", "20"},
+        {"rays_shadow", "10"},
+        {"rays_total", "150"},
+        {"rays_by_depth", "100;0;40"},
+        {"cut_depth_throughput", "1"},
+        {"first_hits.ground", "60"},
+        {"first_hits.ball", "40"},
+        {"hits.ground", "0"},
+        {"hits.ball", "80"},
+        {"workers", "3"},
+        {"workers_with_tiles", "2"},
+        {"busy_s_mean", "0.5"},
+        {"busy_s_max", "0.75"},
+        {"waiting_s_mean", "0.5"},
+        {"worker_cpu_s_sum", "0.875"},
+        {"imbalance", "0.5"},
+        {"peak_rss_bytes", "4096"},
+        {"voluntary_switches", "1"},
+        {"involuntary_switches", "0"},
+        {"others_share", "NA"},
+        {"cycles", "NA"},
+        {"branch_misses", "5"},
+        {"cache_misses", "0"},
         {"isa", "avx2"},
     };
     assert_int_equal(table->row_count, 1);
@@ -90,13 +149,15 @@ static void columns_keep_their_order(void **state)
 {
     study *s = fixture_study(*state, grid_text);
     char *header = row_file_header(s, ROWS);
-    static const char start[] = "study,definition,cell,repetition,warmup,order,time_utc,render.schedule,ball.ior,lamp.position,"
-                                "film_hash,film_expected,marked,wall_s,cpu_s,rays_camera,";
+    static const char start[] =
+        "study,definition,cell,repetition,warmup,order,time_utc,render.schedule,ball.ior,lamp.position,"
+        "film_hash,film_expected,marked,wall_s,cpu_s,rays_camera,";
     assert_memory_equal(header, start, sizeof start - 1);
     free(header);
     header = row_file_header(s, WORKER_ROWS);
-    assert_string_equal(header, "study,definition,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays,"
-                                "start_s,wall_s,cpu_s,busy_s,waiting_s\n");
+    assert_string_equal(
+        header, "study,definition,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays,"
+                "start_s,wall_s,cpu_s,busy_s,waiting_s\n");
     free(header);
     study_destroy(s);
 }

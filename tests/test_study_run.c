@@ -16,7 +16,9 @@ static const char study_text[] = "study: test\n"
                                  "keep: {workers: on}\n";
 
 /* The rows, read back; how many of each cell are warm-ups and measured ones. */
-typedef struct tally { size_t rows, warmups[8], counted[8], marked; } tally;
+typedef struct tally {
+    size_t rows, warmups[8], counted[8], marked;
+} tally;
 
 static tally tally_rows(const fixture *f, const char *name)
 {
@@ -38,6 +40,8 @@ static tally tally_rows(const fixture *f, const char *name)
         (warmup ? t.warmups : t.counted)[cell]++;
         t.marked += csv_field_real(table, t.rows, csv_column(table, "marked")) != 0;
         assert_true(csv_field_real(table, t.rows, csv_column(table, "order")) == (double)t.rows);
+        assert_true(csv_field_real(table, t.rows, csv_column(table, "rays_total")) >= 24 * 18);
+        assert_true(csv_field_real(table, t.rows, csv_column(table, "total_internal")) >= 0);
     }
     csv_destroy(table);
     return t;
@@ -84,7 +88,8 @@ static void a_complete_study_costs_nothing(void **state)
     fixture_run(f, s);
     char *rows = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/manifest.json");
     assert_int_equal(fixture_run(f, s), 0);
-    char *rows_now = fixture_text(f, "results/test/rows.csv"), *manifest_now = fixture_text(f, "results/test/manifest.json");
+    char *rows_now = fixture_text(f, "results/test/rows.csv"),
+         *manifest_now = fixture_text(f, "results/test/manifest.json");
     assert_string_equal(rows, rows_now);
     assert_string_equal(manifest, manifest_now);
     free(rows);
@@ -127,7 +132,9 @@ static void rounds_are_shuffled_blocks(void **state)
 static void without_shuffling_cells_go_in_order(void **state)
 {
     const fixture *f = *state;
-    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\nrepetitions: 2\nwarmups: 0\norder: {shuffle: off}\n");
+    study *s = fixture_study(
+        f,
+        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\nrepetitions: 2\nwarmups: 0\norder: {shuffle: off}\n");
     fixture_run(f, s);
     char path[400];
     csv *table = NULL;
@@ -238,17 +245,41 @@ static void other_definitions_are_refused(void **state)
     free(after);
 }
 
+/* Rows that another version of the program wrote, with other columns, are not mixed in either. */
+static void other_columns_are_refused(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    char *rows = fixture_text(f, "results/test/rows.csv");
+    memcpy(strstr(rows, "imbalance"), "unbalance", 9);
+    fixture_write(f, "results/test/rows.csv", rows);
+    free(rows);
+    diagnostic why = {0};
+    size_t ran;
+    study_options options = {.results = f->results};
+    assert_int_equal(study_run(s, &options, &ran, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "columns"));
+    assert_int_equal(why.line, 1);
+    study_destroy(s);
+}
+
 /* More repetitions, other order, more kept: the study goes on. */
 static void studies_may_grow(void **state)
 {
     const fixture *f = *state;
-    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 2\nwarmups: 0\n");
+    study *s = fixture_study(
+        f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 2\nwarmups: 0\n");
     assert_int_equal(fixture_run(f, s), 4);
     study_destroy(s);
-    s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: 0\norder: {seed: 9}\n");
+    s = fixture_study(
+        f,
+        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: 0\norder: {seed: 9}\n");
     assert_int_equal(fixture_run(f, s), 2);
     study_destroy(s);
-    s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: 0\nkeep: {image: on}\n");
+    s = fixture_study(
+        f,
+        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: 0\nkeep: {image: on}\n");
     assert_int_equal(fixture_run(f, s), 0);
     assert_true(fixture_has(f, "results/test/images/0001.png"));
     study_destroy(s);
@@ -258,7 +289,8 @@ static void studies_may_grow(void **state)
 static void repetitions_follow_the_interval(void **state)
 {
     const fixture *f = *state;
-    study *s = fixture_study(f, "study: narrow\nscene: scene.yaml\nrepetitions: {min: 3, max: 7, relative_width: 0.0000001}\nwarmups: 0\n");
+    study *s = fixture_study(
+        f, "study: narrow\nscene: scene.yaml\nrepetitions: {min: 3, max: 7, relative_width: 0.0000001}\nwarmups: 0\n");
     assert_int_equal(fixture_run(f, s), 7);
     assert_int_equal(fixture_run(f, s), 0);
     study_destroy(s);
@@ -303,10 +335,12 @@ static void wrong_films_are_marked(void **state)
 static void pictures_and_maps_are_kept(void **state)
 {
     const fixture *f = *state;
-    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 2]}]\nrepetitions: 1\nwarmups: 0\n"
-                                "keep: {image: on, pfm: on, pixel_rays: on, pixel_time: on, timeline: on}\n");
+    study *s =
+        fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 2]}]\nrepetitions: 1\nwarmups: 0\n"
+                         "keep: {image: on, pfm: on, pixel_rays: on, pixel_time: on, timeline: on}\n");
     assert_int_equal(fixture_run(f, s), 2);
-    static const char *const endings[] = {".png", ".pfm", "-rays.png", "-rays.pfm", "-ns.png", "-ns.pfm", "-timeline.json"};
+    static const char *const endings[] = {".png",    ".pfm",    "-rays.png",     "-rays.pfm",
+                                          "-ns.png", "-ns.pfm", "-timeline.json"};
     char name[64], path[400];
     for (size_t cell = 0; cell < 2; cell++)
         for (size_t i = 0; i < 7; i++) {
@@ -419,6 +453,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(an_interrupted_study_goes_on, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(torn_rows_are_measured_again, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(other_definitions_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(other_columns_are_refused, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(studies_may_grow, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(repetitions_follow_the_interval, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(wrong_films_are_marked, fixture_setup, fixture_teardown),

@@ -9,7 +9,10 @@ static const char study_text[] = "study: test\n"
                                  "grid: [{render.depth: [0, 1, 2]}]\n"
                                  "repetitions: 8\n";
 
-typedef struct written { int cell, repetition, warmup, marked; double wall_s; } written;
+typedef struct written {
+    int cell, repetition, warmup, marked;
+    double wall_s;
+} written;
 
 /* rows.csv with these rows: every column that is not named below is NA. */
 static void write_rows(const fixture *f, const study *s, const written *rows, size_t count)
@@ -94,8 +97,8 @@ static void medians_and_intervals(void **state)
     study *s = fixture_study(f, study_text);
     /* Cell 0: a warm-up and a marked row far off, six measured 1 to 6. Cell 2: three rows. Cell 1: none. */
     static const written rows[] = {
-        {0, 0, 1, 0, 99}, {0, 1, 0, 0, 6}, {0, 2, 0, 0, 1}, {0, 3, 0, 1, 50}, {0, 4, 0, 0, 2}, {2, 0, 0, 0, 1}, {0, 5, 0, 0, 5},
-        {0, 6, 0, 0, 3}, {2, 1, 0, 0, 2}, {0, 7, 0, 0, 4}, {2, 2, 0, 0, 3},
+        {0, 0, 1, 0, 99}, {0, 1, 0, 0, 6}, {0, 2, 0, 0, 1}, {0, 3, 0, 1, 50}, {0, 4, 0, 0, 2}, {2, 0, 0, 0, 1},
+        {0, 5, 0, 0, 5},  {0, 6, 0, 0, 3}, {2, 1, 0, 0, 2}, {0, 7, 0, 0, 4},  {2, 2, 0, 0, 3},
     };
     write_rows(f, s, rows, sizeof rows / sizeof rows[0]);
     char *text = summary_of(f, s);
@@ -152,9 +155,12 @@ static void points_stay_points(void **state)
 {
     const fixture *f = *state;
     setlocale(LC_ALL, "de_DE.UTF-8");
-    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nset: {ball.ior: 1.25}\ngrid: [{render.min_weight: [0.5, 0.25]}]\nrepetitions: 2\n");
+    study *s = fixture_study(
+        f,
+        "study: test\nscene: scene.yaml\nset: {ball.ior: 1.25}\ngrid: [{render.min_weight: [0.5, 0.25]}]\nrepetitions: 2\n");
     fixture_run(f, s);
-    char *text = summary_of(f, s), *rows = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/manifest.json");
+    char *text = summary_of(f, s), *rows = fixture_text(f, "results/test/rows.csv"),
+         *manifest = fixture_text(f, "results/test/manifest.json");
     assert_null(strchr(text, ','));
     assert_string_equal(field(text, 2, "render.min_weight"), "0.25");
     size_t commas = 0;

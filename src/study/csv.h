@@ -1,6 +1,6 @@
-/* Comma-separated values after RFC 4180, with the one restriction that no field holds a line break, so that a
- * line is whole exactly when its newline is there. Ownership: csv_read gives, csv_destroy releases; a
- * csv_line is released with csv_line_free. */
+/* Comma-separated values after RFC 4180, with the one restriction that no field holds a line break, so that a line
+ * is whole exactly when its newline is there. Ownership: csv_read gives, csv_destroy releases; a csv_line is
+ * released with csv_line_free. */
 #ifndef CUVETTE_STUDY_CSV_H
 #define CUVETTE_STUDY_CSV_H
 
@@ -11,7 +11,8 @@
 /* A line under construction. Running out of memory is remembered in failed, and every later call does nothing. */
 typedef struct csv_line { char *text; size_t size, capacity; bool started, failed; } csv_line;
 
-/* Each adds one field. Absent values are written NA: text NULL, a real that is NaN, an integer under 0 for csv_count. */
+/* Each adds one field. Absent values are written NA: text NULL, a real that is NaN, an integer under 0 for
+ * csv_count. */
 void csv_text(csv_line *line, const char *text);
 void csv_real(csv_line *line, double value);
 void csv_count(csv_line *line, int64_t value);
@@ -32,7 +33,8 @@ typedef struct csv {
     size_t *start;            /* where row i begins in raw; start[row_count] = whole */
 } csv;
 
-/* STATUS_OK and *out = NULL when there is no such file. A row with another number of fields than the header is STATUS_BAD_INPUT. */
+/* STATUS_OK and *out = NULL when there is no such file. A row with another number of fields than the header is
+ * STATUS_BAD_INPUT. */
 status csv_read(const char *path, csv **out, diagnostic *why);
 void csv_destroy(csv *table);
 

@@ -7,15 +7,26 @@
 #include <string.h>
 #include <unistd.h>
 
-typedef enum kept { KEPT_PNG, KEPT_PFM, KEPT_RAYS_PNG, KEPT_RAYS_PFM, KEPT_NS_PNG, KEPT_NS_PFM, KEPT_TIMELINE, KEPT_COUNT } kept;
+typedef enum kept {
+    KEPT_PNG,
+    KEPT_PFM,
+    KEPT_RAYS_PNG,
+    KEPT_RAYS_PFM,
+    KEPT_NS_PNG,
+    KEPT_NS_PFM,
+    KEPT_TIMELINE,
+    KEPT_COUNT
+} kept;
 
 static bool wanted(const study *s, kept what)
 {
     switch (what) {
     case KEPT_PNG: return s->keep_image;
     case KEPT_PFM: return s->keep_pfm;
-    case KEPT_RAYS_PNG: case KEPT_RAYS_PFM: return s->keep_pixel_rays;
-    case KEPT_NS_PNG: case KEPT_NS_PFM: return s->keep_pixel_time;
+    case KEPT_RAYS_PNG:
+    case KEPT_RAYS_PFM: return s->keep_pixel_rays;
+    case KEPT_NS_PNG:
+    case KEPT_NS_PFM: return s->keep_pixel_time;
     case KEPT_TIMELINE: return s->keep_timeline;
     case KEPT_COUNT: break;
     }
@@ -24,7 +35,8 @@ static bool wanted(const study *s, kept what)
 
 static char *kept_path(const char *folder, size_t cell, kept what)
 {
-    static const char *const endings[KEPT_COUNT] = {".png", ".pfm", "-rays.png", "-rays.pfm", "-ns.png", "-ns.pfm", "-timeline.json"};
+    static const char *const endings[KEPT_COUNT] = {".png",    ".pfm",    "-rays.png",     "-rays.pfm",
+                                                    "-ns.png", "-ns.pfm", "-timeline.json"};
     return text_format("%s/images/%04zu%s", folder, cell, endings[what]);
 }
 
@@ -42,7 +54,8 @@ bool keep_missing(const study *s, const char *folder, size_t cell)
 
 render_options keep_options(const study *s)
 {
-    return (render_options){.pixel_rays = s->keep_pixel_rays, .pixel_time = s->keep_pixel_time, .timeline = s->keep_timeline};
+    return (render_options){
+        .pixel_rays = s->keep_pixel_rays, .pixel_time = s->keep_pixel_time, .timeline = s->keep_timeline};
 }
 
 static status write_film(const render_result *frame, const char *path, diagnostic *why)
@@ -71,7 +84,8 @@ static status write_values(const double *values, int width, int height, const ch
     return code;
 }
 
-static status write_heatmap(const double *values, int width, int height, const char *title, const char *path, diagnostic *why)
+static status write_heatmap(const double *values, int width, int height, const char *title, const char *path,
+                            diagnostic *why)
 {
     image *picture;
     status code = heatmap_create(values, width, height, title, &picture, why);
@@ -94,9 +108,10 @@ static status write_timeline(const render_result *frame, const char *path, diagn
         const tile_event *e = &frame->events[i];
         /* Whole nanoseconds: no decimal point that a locale could change. */
         long long begin_ns = (long long)(e->begin_s * 1e9), length_ns = (long long)((e->end_s - e->begin_s) * 1e9);
-        fprintf(writer.stream,
-                "%s\n{\"name\": \"%d,%d-%d,%d\", \"ph\": \"X\", \"pid\": 0, \"tid\": %d, \"ts\": %lld.%03lld, \"dur\": %lld.%03lld}",
-                i ? "," : "", e->x0, e->y0, e->x1, e->y1, e->worker, begin_ns / 1000, begin_ns % 1000, length_ns / 1000, length_ns % 1000);
+        fprintf(writer.stream, "%s\n{\"name\": \"%d,%d-%d,%d\", \"ph\": \"X\", \"pid\": 0, \"tid\": %d", i ? "," : "", e->x0,
+                e->y0, e->x1, e->y1, e->worker);
+        fprintf(writer.stream, ", \"ts\": %lld.%03lld, \"dur\": %lld.%03lld}", begin_ns / 1000, begin_ns % 1000,
+                length_ns / 1000, length_ns % 1000);
     }
     fputs("\n]}\n", writer.stream);
     return file_writer_commit(&writer, why);
@@ -106,7 +121,8 @@ static status write_kept(const render_result *frame, kept what, const char *path
 {
     int width = frame->picture->width, height = frame->picture->height;
     switch (what) {
-    case KEPT_PNG: case KEPT_PFM: return write_film(frame, path, why);
+    case KEPT_PNG:
+    case KEPT_PFM: return write_film(frame, path, why);
     case KEPT_RAYS_PNG: return write_heatmap(frame->pixel_rays, width, height, "rays per pixel", path, why);
     case KEPT_RAYS_PFM: return write_values(frame->pixel_rays, width, height, path, why);
     case KEPT_NS_PNG: return write_heatmap(frame->pixel_ns, width, height, "nanoseconds per pixel", path, why);

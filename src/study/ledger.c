@@ -51,8 +51,11 @@ status ledger_read(const study *s, const char *results, ledger **out, diagnostic
         code = no_memory(why);
     for (size_t i = 0; code == STATUS_OK && i < files->row_count; i++) {
         const row_ref *ref = &files->rows[i];
-        ledger_entry entry = {.cell = ref->cell, .repetition = ref->repetition, .warmup = ref->warmup,
-                              .film_hash = field_hash(ref, "film_hash"), .film_expected = field_hash(ref, "film_expected"),
+        ledger_entry entry = {.cell = ref->cell,
+                              .repetition = ref->repetition,
+                              .warmup = ref->warmup,
+                              .film_hash = field_hash(ref, "film_hash"),
+                              .film_expected = field_hash(ref, "film_expected"),
                               .wall_s = csv_field_real(ref->table, ref->row, csv_column(ref->table, "wall_s"))};
         code = ledger_add(l, &entry, why);
     }

@@ -15,13 +15,20 @@ typedef struct ledger_cell {
 typedef struct ledger { ledger_cell *cells; size_t cell_count, rows, marked; } ledger;
 
 /* What a new row says; film_expected is only looked at when it is the first one of the cell. */
-typedef struct ledger_entry { size_t cell; long repetition; bool warmup; uint64_t film_hash, film_expected; double wall_s; } ledger_entry;
+typedef struct ledger_entry {
+    size_t cell;
+    long repetition;
+    bool warmup;
+    uint64_t film_hash, film_expected;
+    double wall_s;
+} ledger_entry;
 
 status ledger_read(const study *s, const char *results, ledger **out, diagnostic *why);
 status ledger_add(ledger *l, const ledger_entry *entry, diagnostic *why);
 void ledger_destroy(ledger *l);
 
-/* Has the cell its repetitions: the most there may be, or the least there must be and an interval as narrow as asked for? */
+/* Has the cell its repetitions: the most there may be, or the least there must be and an interval as narrow as
+ * asked for? */
 bool ledger_cell_done(const ledger *l, const study *s, size_t cell);
 
 #endif

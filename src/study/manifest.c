@@ -73,15 +73,16 @@ static json_t *time_text(void)
 
 static json_t *libraries(void)
 {
-    return json_pack("{s:s, s:s, s:s, s:s, s:s}", "libpng", png_get_libpng_ver(NULL), "libjpeg-turbo", TEXT_OF(LIBJPEG_TURBO_VERSION),
-                     "hwloc", HWLOC_VERSION, "libyaml", yaml_get_version_string(), "jansson", jansson_version_str());
+    return json_pack("{s:s, s:s, s:s, s:s, s:s}", "libpng", png_get_libpng_ver(NULL), "libjpeg-turbo",
+                     TEXT_OF(LIBJPEG_TURBO_VERSION), "hwloc", HWLOC_VERSION, "libyaml", yaml_get_version_string(),
+                     "jansson", jansson_version_str());
 }
 
 static json_t *clocks(void)
 {
     clock_quality wall = clock_wall_quality(), cpu = clock_thread_cpu_quality();
-    return json_pack("{s:f, s:f, s:f, s:f}", "wall_tick_s", wall.tick_s, "wall_overhead_s", wall.overhead_s, "thread_cpu_tick_s",
-                     cpu.tick_s, "thread_cpu_overhead_s", cpu.overhead_s);
+    return json_pack("{s:f, s:f, s:f, s:f}", "wall_tick_s", wall.tick_s, "wall_overhead_s", wall.overhead_s,
+                     "thread_cpu_tick_s", cpu.tick_s, "thread_cpu_overhead_s", cpu.overhead_s);
 }
 
 static json_t *machine_facts(const topology *machine)
@@ -89,17 +90,19 @@ static json_t *machine_facts(const topology *machine)
     char *xml = topology_xml(machine);
     provenance_anonymize(xml);
     return json_pack("{s:o, s:o, s:i, s:i, s:i, s:o, s:o}", "cpu_model", taken(provenance_cpu_model()), "topology",
-                     taken(topology_summary(machine)), "packages", topology_package_count(machine), "cores", topology_core_count(machine),
-                     "processing_units", topology_pu_count(machine), "clocks", clocks(), "hwloc_xml", taken(xml));
+                     taken(topology_summary(machine)), "packages", topology_package_count(machine), "cores",
+                     topology_core_count(machine), "processing_units", topology_pu_count(machine), "clocks", clocks(),
+                     "hwloc_xml", taken(xml));
 }
 
 static json_t *study_facts(const study *s)
 {
     char hash[NUMBER_TEXT_MAX];
     snprintf(hash, sizeof hash, "%016" PRIx64, s->definition_hash);
-    return json_pack("{s:s, s:o, s:s, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title), "definition", hash,
-                     "cells", (json_int_t)study_cell_count(s), "file", borrowed(file_name(s->path)), "text", borrowed(s->text),
-                     "scene_file", borrowed(file_name(s->scene_path)), "scene_text", borrowed(s->scene_text));
+    return json_pack("{s:s, s:o, s:s, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title),
+                     "definition", hash, "cells", (json_int_t)study_cell_count(s), "file", borrowed(file_name(s->path)),
+                     "text", borrowed(s->text), "scene_file", borrowed(file_name(s->scene_path)), "scene_text",
+                     borrowed(s->scene_text));
 }
 
 static void add_disturbance(void *list, const char *text)
@@ -118,10 +121,11 @@ static json_t *run_facts(const study *s, isa level, long shard, long shards)
     json_t *disturbances = json_array();
     usage_disturbances(load_sample_s, add_disturbance, disturbances);
     json_t *is_dirty = commit ? json_boolean(dirty) : json_null();
-    return json_pack("{s:o, s:i, s:i, s:s, s:o, s:o, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o}", "started_utc", time_text(), "shard",
-                     (int)shard, "shards", (int)(shards > 1 ? shards : 1), "version", CUVETTE_VERSION, "git_commit", taken(commit),
-                     "git_dirty", is_dirty, "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config", row_build_config(config),
-                     "isa", isa_name(level), "kernel", taken(provenance_kernel()), "governor", taken(provenance_governor()), "binding",
+    return json_pack("{s:o, s:i, s:i, s:s, s:o, s:o, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o}", "started_utc",
+                     time_text(), "shard", (int)shard, "shards", (int)(shards > 1 ? shards : 1), "version",
+                     CUVETTE_VERSION, "git_commit", taken(commit), "git_dirty", is_dirty, "compiler", COMPILER, "flags",
+                     CUVETTE_COMPILER_FLAGS, "config", row_build_config(config), "isa", isa_name(level), "kernel",
+                     taken(provenance_kernel()), "governor", taken(provenance_governor()), "binding",
                      taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances);
 }
 
@@ -164,7 +168,8 @@ static status save(const json_t *manifest, const char *path, diagnostic *why)
     return code;
 }
 
-status manifest_write(const study *s, const char *folder, const topology *machine, isa level, long shard, long shards, diagnostic *why)
+status manifest_write(const study *s, const char *folder, const topology *machine, isa level, long shard, long shards,
+                      diagnostic *why)
 {
     json_t *run = run_facts(s, level, shard, shards), *manifest = NULL;
     char *path = text_format("%s/manifest.json", folder);

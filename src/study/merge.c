@@ -43,7 +43,8 @@ static status join(const study *s, const char *results, row_kind kind, size_t *r
     if (code == STATUS_OK)
         locked_count = 1;
     for (size_t i = 0; code == STATUS_OK && i < files->count; i++)
-        if (strcmp(files->paths[i], joined) != 0 && (code = table_open(files->paths[i], header, &locked[locked_count], why)) == STATUS_OK)
+        if (strcmp(files->paths[i], joined) != 0 &&
+            (code = table_open(files->paths[i], header, &locked[locked_count], why)) == STATUS_OK)
             locked_count++;
     row_files_destroy(files);
     files = NULL;

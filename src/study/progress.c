@@ -8,7 +8,7 @@ struct progress_line {
     FILE *terminal;
     const char *name;
     size_t frames_done, frames_all;
-    double left_s;          /* of the frames to come, at the time of the last count; < 0 unknown */
+    double left_s; /* of the frames to come, at the time of the last count; < 0 unknown */
     double shown_s;
 };
 
@@ -55,7 +55,8 @@ void progress_show(progress_line *line, double share_done)
         return;
     line->shown_s = now_s;
     double done = line->frames_all ? ((double)line->frames_done + share_done) / (double)line->frames_all : 1;
-    fprintf(line->terminal, "\r%s: %zu of %zu frames, %d%%", line->name, line->frames_done, line->frames_all, (int)(100 * done));
+    fprintf(line->terminal, "\r%s: %zu of %zu frames, %d%%", line->name, line->frames_done, line->frames_all,
+            (int)(100 * done));
     if (line->left_s >= 0)
         fprintf(line->terminal, ", about %ld s left", (long)(line->left_s + 0.5));
     fputs("\033[K", line->terminal);

@@ -1,5 +1,6 @@
-/* The line that shows on a terminal how far a study is and about how long it takes. Written only to the stream that is given;
- * with NULL every call does nothing. progress_begin gives (NULL when memory is out), progress_end releases. */
+/* The line that shows on a terminal how far a study is and about how long it takes. Written only to the stream that
+ * is given; with NULL every call does nothing. progress_begin gives (NULL when memory is out), progress_end
+ * releases. */
 #ifndef CUVETTE_STUDY_PROGRESS_H
 #define CUVETTE_STUDY_PROGRESS_H
 

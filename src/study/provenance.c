@@ -118,7 +118,8 @@ char *provenance_git_commit(const char *folder, bool *dirty)
 
 void provenance_anonymize(char *xml)
 {
-    static const char *const telling[] = {"HostName", "Serial", "UUID", "Address", "AssetTag", "Cgroup", "CGroup", "ProcessName"};
+    static const char *const telling[] = {"HostName", "Serial", "UUID",   "Address",
+                                          "AssetTag", "Cgroup", "CGroup", "ProcessName"};
     if (!xml)
         return;
     char *write = xml;

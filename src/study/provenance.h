@@ -1,5 +1,5 @@
-/* Facts about the machine and the program that a manifest names. Fresh memory, release with free; NULL when a fact is not
- * to be had. Never fails otherwise. */
+/* Facts about the machine and the program that a manifest names. Fresh memory, release with free; NULL when a fact
+ * is not to be had. Never fails otherwise. */
 #ifndef CUVETTE_STUDY_PROVENANCE_H
 #define CUVETTE_STUDY_PROVENANCE_H
 
@@ -16,8 +16,8 @@ char *provenance_governor(void);
 char *provenance_binding(void);
 /* The commit checked out where folder lies, 40 hex digits; *dirty: tracked files differ from it. Quiet without git. */
 char *provenance_git_commit(const char *folder, bool *dirty);
-/* hwloc's XML without what tells one machine from another of its kind: host name, serial numbers, addresses, control groups.
- * Changes xml in place; NULL is allowed. */
+/* hwloc's XML without what tells one machine from another of its kind: host name, serial numbers, addresses,
+ * control groups. Changes xml in place; NULL is allowed. */
 void provenance_anonymize(char *xml);
 
 #endif

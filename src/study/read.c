@@ -34,7 +34,8 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
-static status read_integer(const document *d, const node *n, const char *key, int64_t lowest, int64_t highest, int64_t *out, diagnostic *why)
+static status read_integer(const document *d, const node *n, const char *key, int64_t lowest, int64_t highest,
+                           int64_t *out, diagnostic *why)
 {
     if (n->kind != NODE_SCALAR || !number_parse_int(n->text, out) || *out < lowest || *out > highest) {
         char remedy[128];
@@ -74,7 +75,8 @@ static status read_names(study *s, const document *d, const node *root, diagnost
     if (name->kind != NODE_SCALAR || !name_is_fit(name->text))
         return node_error(d, name, why, "use 1 to 64 letters, digits, - and _; not figures, tables or reference",
                           "this cannot name a study");
-    if (title && (title->kind != NODE_SCALAR || strlen(title->text) > TITLE_MAX_LENGTH || !read_grid_plain(title->text)))
+    if (title &&
+        (title->kind != NODE_SCALAR || strlen(title->text) > TITLE_MAX_LENGTH || !read_grid_plain(title->text)))
         return node_error(d, title, why, "write one line of at most 200 characters", "this is not a title");
     s->name = strdup(name->text);
     s->title = strdup(title ? title->text : name->text);
@@ -99,7 +101,8 @@ static status read_repetitions(study *s, const document *d, const node *n, diagn
         return code;
     const node *min = node_get(n, "min"), *max = node_get(n, "max"), *width = node_get(n, "relative_width");
     if (!min || !max || !width)
-        return node_error(d, n, why, "write {min: 5, max: 20, relative_width: 0.02}, or a number", "repetitions lack min, max or relative_width");
+        return node_error(d, n, why, "write {min: 5, max: 20, relative_width: 0.02}, or a number",
+                          "repetitions lack min, max or relative_width");
     if ((code = read_integer(d, min, "min", 2, STUDY_REPETITIONS_MAX, &value, why)) != STATUS_OK)
         return code;
     s->repetitions_min = (long)value;
@@ -143,7 +146,8 @@ static status read_order(study *s, const document *d, const node *warmups, const
 static status read_keep(study *s, const document *d, const node *n, diagnostic *why)
 {
     static const char *const keys[] = {"image", "pfm", "workers", "pixel_rays", "pixel_time", "timeline"};
-    bool *const kept[] = {&s->keep_image, &s->keep_pfm, &s->keep_workers, &s->keep_pixel_rays, &s->keep_pixel_time, &s->keep_timeline};
+    bool *const kept[] = {&s->keep_image,      &s->keep_pfm,        &s->keep_workers,
+                          &s->keep_pixel_rays, &s->keep_pixel_time, &s->keep_timeline};
     if (!n)
         return STATUS_OK;
     if (n->kind != NODE_MAP)
@@ -164,7 +168,8 @@ static status read_scene(study *s, const document *d, const node *root, diagnost
     if (!n)
         return node_error(d, root, why, "add a line scene: FILE, relative to this file", "the study has no scene");
     if (n->kind != NODE_SCALAR || !n->text[0] || !read_grid_plain(n->text))
-        return node_error(d, n, why, "write the name of a scene file, relative to this file", "this is not a file name");
+        return node_error(d, n, why, "write the name of a scene file, relative to this file",
+                          "this is not a file name");
     char *copy = strdup(s->path);
     if (!copy)
         return no_memory(why);
@@ -181,7 +186,8 @@ static status read_scene(study *s, const document *d, const node *root, diagnost
         return no_memory(why);
     struct stat found;
     if (stat(s->scene_path, &found) != 0 || !S_ISREG(found.st_mode) || access(s->scene_path, R_OK) != 0)
-        return node_error(d, n, why, "name a scene file that is there, relative to this file", "scene %s cannot be read", s->scene_path);
+        return node_error(d, n, why, "name a scene file that is there, relative to this file",
+                          "scene %s cannot be read", s->scene_path);
     size_t size;
     status code = file_read(s->scene_path, FILE_BYTES_MAX, &s->scene_text, &size, why);
     return code == STATUS_OK ? scene_read_text(s->scene_path, s->scene_text, size, &s->base, why) : code;
@@ -189,7 +195,8 @@ static status read_scene(study *s, const document *d, const node *root, diagnost
 
 static status read_root(study *s, const document *d, diagnostic *why)
 {
-    static const char *const keys[] = {"study", "title", "scene", "set", "grid", "repetitions", "warmups", "order", "keep"};
+    static const char *const keys[] = {"study",       "title",   "scene", "set", "grid",
+                                       "repetitions", "warmups", "order", "keep"};
     const node *root = document_root(d);
     if (!root || root->kind != NODE_MAP) {
         if (root)

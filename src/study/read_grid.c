@@ -27,7 +27,8 @@ static status locate(const document *d, const node *at, diagnostic *why, status 
 }
 
 /* Sets one parameter on the scene, and gives the value as scene_get writes it: 1.0 and 1 are one value. */
-static status try_value(scene *on, const document *d, const node *key, const node *value, char **canonical, diagnostic *why)
+static status try_value(scene *on, const document *d, const node *key, const node *value, char **canonical,
+                        diagnostic *why)
 {
     char *now = NULL;
     *canonical = NULL;
@@ -37,7 +38,8 @@ static status try_value(scene *on, const document *d, const node *key, const nod
         return locate(d, key, why, code);
     char *text = node_value_text(value);
     if (!text)
-        return node_error(d, value, why, "write a number, a word, or a list of numbers", "%s cannot be set to this", key->text);
+        return node_error(d, value, why, "write a number, a word, or a list of numbers", "%s cannot be set to this",
+                          key->text);
     if (!read_grid_plain(text))
         code = node_error(d, value, why, "write it on one line", "%s has control characters", key->text);
     else if ((code = scene_set(on, key->text, text, why)) != STATUS_OK ||
@@ -56,7 +58,8 @@ static status point_reserve(study_point *point, const node *at, size_t count, di
     return point->paths && point->values ? STATUS_OK : no_memory(why);
 }
 
-static status point_add(study_point *point, scene *on, const document *d, const node *key, const node *value, diagnostic *why)
+static status point_add(study_point *point, scene *on, const document *d, const node *key, const node *value,
+                        diagnostic *why)
 {
     char *canonical;
     status code = try_value(on, d, key, value, &canonical, why);
@@ -79,14 +82,16 @@ static status read_point(study_point *point, scene *on, const document *d, const
 }
 
 /* Brings the point's paths into the order of the axis' first point. */
-static status align_point(study_point *point, const study_point *first, const document *d, const node *at, diagnostic *why)
+static status align_point(study_point *point, const study_point *first, const document *d, const node *at,
+                          diagnostic *why)
 {
     for (size_t i = 0; i < first->count; i++) {
         size_t found = i;
         while (found < point->count && strcmp(point->paths[found], first->paths[i]) != 0)
             found++;
         if (found >= point->count)
-            return node_error(d, at, why, "let every point of an axis set the same parameters", "this point does not set %s", first->paths[i]);
+            return node_error(d, at, why, "let every point of an axis set the same parameters",
+                              "this point does not set %s", first->paths[i]);
         char *path = point->paths[found], *value = point->values[found];
         point->paths[found] = point->paths[i];
         point->values[found] = point->values[i];
@@ -94,8 +99,8 @@ static status align_point(study_point *point, const study_point *first, const do
         point->values[i] = value;
     }
     if (point->count > first->count)
-        return node_error(d, at, why, "let every point of an axis set the same parameters", "the axis' first point does not set %s",
-                          point->paths[first->count]);
+        return node_error(d, at, why, "let every point of an axis set the same parameters",
+                          "the axis' first point does not set %s", point->paths[first->count]);
     return STATUS_OK;
 }
 
@@ -108,7 +113,8 @@ static bool points_equal(const study_point *a, const study_point *b)
 }
 
 /* One parameter: the values are a list. */
-static status read_values(study_axis *axis, scene *on, const document *d, const node *key, const node *list, diagnostic *why)
+static status read_values(study_axis *axis, scene *on, const document *d, const node *key, const node *list,
+                          diagnostic *why)
 {
     axis->name = strdup(key->text);
     status code = axis->name ? STATUS_OK : no_memory(why);
@@ -122,7 +128,8 @@ static status read_values(study_axis *axis, scene *on, const document *d, const 
 }
 
 /* Several parameters together: name and points. */
-static status read_points(study_axis *axis, scene *on, const document *d, const node *name, const node *list, diagnostic *why)
+static status read_points(study_axis *axis, scene *on, const document *d, const node *name, const node *list,
+                          diagnostic *why)
 {
     if (!name || name->kind != NODE_SCALAR || !name->text[0] || !read_grid_plain(name->text))
         return node_error(d, name ? name : list, why, "write {name: WORD, points: [...]}", "the axis has no name");
@@ -157,11 +164,13 @@ static status read_axis(study_axis *axis, scene *on, const document *d, const no
     axis->points = calloc(list->count, sizeof *axis->points);
     if (!axis->points)
         return no_memory(why);
-    status code = together ? read_points(axis, on, d, node_get(n, "name"), list, why) : read_values(axis, on, d, n->keys[0], list, why);
+    status code = together ? read_points(axis, on, d, node_get(n, "name"), list, why)
+                           : read_values(axis, on, d, n->keys[0], list, why);
     for (size_t i = 1; code == STATUS_OK && i < axis->count; i++)
         for (size_t k = 0; code == STATUS_OK && k < i; k++)
             if (points_equal(&axis->points[i], &axis->points[k]))
-                code = node_error(d, list->items[i], why, "name each value once", "value %zu is the same as value %zu", i + 1, k + 1);
+                code = node_error(d, list->items[i], why, "name each value once", "value %zu is the same as value %zu",
+                                  i + 1, k + 1);
     return code;
 }
 
@@ -172,11 +181,13 @@ static status check_once(const study *s, size_t axis, const document *d, const n
     for (size_t i = 0; i < point->count; i++) {
         for (size_t k = 0; k < s->fixed.count; k++)
             if (strcmp(point->paths[i], s->fixed.paths[k]) == 0)
-                return node_error(d, at, why, "take it out of set or out of the grid", "%s is set for all cells already", point->paths[i]);
+                return node_error(d, at, why, "take it out of set or out of the grid",
+                                  "%s is set for all cells already", point->paths[i]);
         for (size_t other = 0; other < axis; other++)
             for (size_t k = 0; k < s->axes[other].points[0].count; k++)
                 if (strcmp(point->paths[i], s->axes[other].points[0].paths[k]) == 0)
-                    return node_error(d, at, why, "let one axis set it", "%s is on axis %zu already", point->paths[i], other + 1);
+                    return node_error(d, at, why, "let one axis set it", "%s is on axis %zu already", point->paths[i],
+                                      other + 1);
     }
     return STATUS_OK;
 }

@@ -5,7 +5,8 @@
 #include "scene/document.h"
 #include "study/study.h"
 
-/* Tries every path and value on s->base, sets the fixed ones in it, and fills s->fixed and s->axes. set and grid may be NULL. */
+/* Tries every path and value on s->base, sets the fixed ones in it, and fills s->fixed and s->axes. set and grid
+ * may be NULL. */
 status read_grid(study *s, const document *d, const node *set, const node *grid, diagnostic *why);
 
 /* Has the text no control characters? A row is one line. */

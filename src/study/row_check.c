@@ -57,7 +57,8 @@ static bool same_line(const row_ref *a, const row_ref *b)
 {
     size_t from_a = a->table->start[a->row], from_b = b->table->start[b->row];
     size_t size = a->table->start[a->row + 1] - from_a;
-    return size == b->table->start[b->row + 1] - from_b && memcmp(a->table->raw + from_a, b->table->raw + from_b, size) == 0;
+    return size == b->table->start[b->row + 1] - from_b &&
+           memcmp(a->table->raw + from_a, b->table->raw + from_b, size) == 0;
 }
 
 status row_check_drop_twins(row_files *files, diagnostic *why)

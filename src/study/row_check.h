@@ -7,7 +7,8 @@
 /* Drops rows that stand in two files alike; two that differ, or stand in one file, are an error. */
 status row_check_drop_twins(row_files *files, diagnostic *why);
 
-/* Drops worker rows whose repetition has no row in the file beside theirs: a process was killed between the two writes. */
+/* Drops worker rows whose repetition has no row in the file beside theirs: a process was killed between the two
+ * writes. */
 void row_check_drop_orphans(row_files *workers, const row_files *rows);
 
 #endif

@@ -37,7 +37,9 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
-typedef struct shard_name { long shard, shards; } shard_name;
+typedef struct shard_name {
+    long shard, shards;
+} shard_name;
 
 static int compare_shards(const void *a, const void *b)
 {
@@ -139,14 +141,16 @@ static status read_row(const study *s, row_ref *ref, const char *path, row_kind 
     long line = (long)ref->row + 2;
     if (strcmp(csv_field(ref->table, ref->row, csv_column(ref->table, "definition")), definition) != 0 ||
         strcmp(csv_field(ref->table, ref->row, csv_column(ref->table, "study")), s->name) != 0)
-        return another_definition(path, line, "these rows are of another definition: the study or its scene has changed since", why);
+        return another_definition(
+            path, line, "these rows are of another definition: the study or its scene has changed since", why);
     int64_t cell, repetition, warmup, worker = 0;
     if (!field_integer(ref->table, ref->row, "cell", (int64_t)study_cell_count(s) - 1, &cell) ||
         !field_integer(ref->table, ref->row, "repetition", INT32_MAX, &repetition) ||
         !field_integer(ref->table, ref->row, "warmup", 1, &warmup) ||
         (kind == WORKER_ROWS && !field_integer(ref->table, ref->row, "worker", INT32_MAX, &worker))) {
         diagnostic_locate(why, path, line, 1);
-        return diagnose(why, STATUS_BAD_INPUT, "move the file away, or take this line out of a copy", "the row is damaged");
+        return diagnose(why, STATUS_BAD_INPUT, "move the file away, or take this line out of a copy",
+                        "the row is damaged");
     }
     ref->cell = (size_t)cell;
     ref->repetition = (long)repetition;
@@ -169,7 +173,8 @@ static status read_rows(row_files *files, const study *s, row_kind kind, diagnos
             continue;
         size_t length = strlen(header);
         if (table->whole < length || memcmp(table->raw, header, length) != 0)
-            code = another_definition(files->paths[i], 1, "these columns are not the study's: it or the program has changed since", why);
+            code = another_definition(files->paths[i], 1,
+                                      "these columns are not the study's: it or the program has changed since", why);
         for (size_t row = 0; code == STATUS_OK && row < table->row_count; row++) {
             row_ref *ref = &files->rows[files->row_count++];
             *ref = (row_ref){.table = table, .row = row};

@@ -1,6 +1,6 @@
-/* All the rows of a study that are on disk: rows.csv and the shards' files, or the same of workers.csv, read and checked.
- * Rows that several files hold alike (after a merge) count once.
- * Ownership: row_files_read gives, row_files_destroy releases; what it gives points into it. */
+/* All the rows of a study that are on disk: rows.csv and the shards' files, or the same of workers.csv, read and
+ * checked. Rows that several files hold alike (after a merge) count once. Ownership: row_files_read gives,
+ * row_files_destroy releases; what it gives points into it. */
 #ifndef CUVETTE_STUDY_ROW_FILES_H
 #define CUVETTE_STUDY_ROW_FILES_H
 
@@ -31,8 +31,9 @@ char *row_file_path(const char *folder, row_kind kind, long shard, long shards);
 /* The header line of that kind of file; fresh memory, or NULL. */
 char *row_file_header(const study *s, row_kind kind);
 
-/* STATUS_BAD_INPUT when a file is damaged, is of another definition or has other columns, or when one repetition stands in two files
- * with different values. Worker rows whose repetition has no row (a process was killed between the two) are left out. */
+/* STATUS_BAD_INPUT when a file is damaged, is of another definition or has other columns, or when one repetition
+ * stands in two files with different values. Worker rows whose repetition has no row (a process was killed between
+ * the two) are left out. */
 status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why);
 void row_files_destroy(row_files *files);
 

@@ -14,7 +14,10 @@
 
 /* What the workers' accounts come to. Means are over the workers that had a tile: with more threads than pieces the
  * others only wait, and would hide how evenly the work was shared. */
-typedef struct workers_sum { int64_t with_tiles; double busy_mean, busy_max, waiting_mean, cpu_sum, imbalance; } workers_sum;
+typedef struct workers_sum {
+    int64_t with_tiles;
+    double busy_mean, busy_max, waiting_mean, cpu_sum, imbalance;
+} workers_sum;
 
 static workers_sum sum_workers(const render_result *frame)
 {
@@ -110,8 +113,9 @@ static void put_time(csv_line *line, const study_row *r)
     csv_text(line, row_time(r->time_ms, text));
 }
 
-/* A column's name, unit, meaning and how it is written stand together, so that header, dictionary and row cannot part.
- * In the last one: line, r (the row), c (its counters), w (its workers' sum). */
+/* A column's name, unit, meaning and how it is written stand together, so that header, dictionary and row cannot
+ * part. In the last one: line, r (the row), c (its counters), w (its workers' sum). */
+/* clang-format off */
 #define WHOSE(X) \
     X("study", "", "name of the study", csv_text(line, r->of->name)) \
     X("definition", "", "fingerprint of scene, fixed parameters and grid, 16 hex digits", csv_hash(line, r->of->definition_hash)) \
@@ -171,6 +175,7 @@ static void put_time(csv_line *line, const study_row *r)
     X("cpu_s", "s", "its CPU time over the same stretch", csv_real(line, k->cpu_s)) \
     X("busy_s", "s", "from its first piece taken to its last ray traced; 0 without a piece", csv_real(line, k->busy_s)) \
     X("waiting_s", "s", "wall time of the frame less busy_s", csv_real(line, k->waiting_s))
+/* clang-format on */
 
 #define DESCRIBE(name, unit, meaning, put) {name, unit, meaning},
 #define PUT(name, unit, meaning, put) put;

@@ -1,6 +1,6 @@
 /* The rows of a study: what stands in each column of rows.csv and workers.csv, and the one way to write them.
- * results/README.md is the data dictionary: it lists every column of the two tables here.
- * Pure but for memory; a csv_line that ran out of it has failed set. */
+ * results/README.md is the data dictionary: it lists every column of the two tables here. Pure but for memory; a
+ * csv_line that ran out of it has failed set. */
 #ifndef CUVETTE_STUDY_ROWS_H
 #define CUVETTE_STUDY_ROWS_H
 
@@ -10,8 +10,8 @@
 #include "study/csv.h"
 #include "study/study.h"
 
-/* A name in angle brackets stands for as many columns as the study has of them: "<axis>" one for each path of
- * the grid, "first_hits.<solid>" one for each solid of the scene. */
+/* A name in angle brackets stands for as many columns as the study has of them: "<axis>" one for each path of the
+ * grid, "first_hits.<solid>" one for each solid of the scene. */
 typedef struct row_column { const char *name, *unit, *meaning; } row_column;
 
 extern const row_column row_columns[];

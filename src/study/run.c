@@ -1,7 +1,8 @@
-/* Runs what a study lacks. Repetitions go in rounds: round k measures every cell once that has k measured repetitions, in an
- * order shuffled afresh, so that slow drift of the machine falls on all cells alike (a randomised complete block design;
- * Montgomery, Design and Analysis of Experiments, 4.1). A cell's warm-ups come right before its first repetition in
- * this process. A continued run finds the round where it stopped from the rows themselves. */
+/* Runs what a study lacks. Repetitions go in rounds: round k measures every cell once that has k measured
+ * repetitions, in an order shuffled afresh, so that slow drift of the machine falls on all cells alike (a
+ * randomised complete block design; Montgomery, Design and Analysis of Experiments, 4.1). A cell's warm-ups come
+ * right before its first repetition in this process. A continued run finds the round where it stopped from the rows
+ * themselves. */
 #include "study/keep.h"
 #include "study/order.h"
 #include "study/row_files.h"
@@ -64,7 +65,8 @@ static int64_t count_since(int64_t before, int64_t now)
 static hardware_counts counts_since(hardware_counts before, hardware_counts now)
 {
     return (hardware_counts){count_since(before.cycles, now.cycles), count_since(before.instructions, now.instructions),
-                             count_since(before.branch_misses, now.branch_misses), count_since(before.cache_misses, now.cache_misses)};
+                             count_since(before.branch_misses, now.branch_misses),
+                             count_since(before.cache_misses, now.cache_misses)};
 }
 
 /* Linux forgets the highest resident memory so far when 5 is written there (proc(5)); elsewhere it stays as it is. */
@@ -96,7 +98,8 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
         return code;
     r->row_number++;
     r->ran++;
-    ledger_entry entry = {row->cell, row->repetition, row->warmup, row->film_hash, row->film_expected, row->frame->wall_s};
+    ledger_entry entry = {row->cell,      row->repetition,    row->warmup,
+                          row->film_hash, row->film_expected, row->frame->wall_s};
     return ledger_add(r->done, &entry, why);
 }
 
@@ -120,8 +123,13 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
         return code;
     }
     const ledger_cell *known = &r->done->cells[cell];
-    study_row row = {.of = r->s, .cell = cell, .setting = setting, .repetition = known->next_repetition, .warmup = warmup,
-                     .order = r->row_number, .level = r->level};
+    study_row row = {.of = r->s,
+                     .cell = cell,
+                     .setting = setting,
+                     .repetition = known->next_repetition,
+                     .warmup = warmup,
+                     .order = r->row_number,
+                     .level = r->level};
     render_options options = {.progress = frame_progress, .context = r};
     render_result *frame = NULL;
     reset_peak_memory();
@@ -212,12 +220,18 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
     if (ran)
         *ran = 0;
     if (options->shards > 1 && (options->shard < 0 || options->shard >= options->shards))
-        return diagnose(why, STATUS_BAD_INPUT, "write --shard i/N with i from 0 to N - 1", "there is no shard %ld of %ld", options->shard,
-                        options->shards);
+        return diagnose(why, STATUS_BAD_INPUT, "write --shard i/N with i from 0 to N - 1",
+                        "there is no shard %ld of %ld", options->shard, options->shards);
     size_t total = study_cell_count(s);
-    run r = {.s = s, .options = options, .folder = study_folder(s, options->results), .cells = calloc(total, sizeof *r.cells),
-             .warm = calloc(total, sizeof *r.warm), .order = calloc(total, sizeof *r.order), .line = progress_begin(options->progress, s)};
-    status code = r.folder && r.cells && r.warm && r.order && r.line ? ledger_read(s, options->results, &r.done, why) : no_memory(why);
+    run r = {.s = s,
+             .options = options,
+             .folder = study_folder(s, options->results),
+             .cells = calloc(total, sizeof *r.cells),
+             .warm = calloc(total, sizeof *r.warm),
+             .order = calloc(total, sizeof *r.order),
+             .line = progress_begin(options->progress, s)};
+    status code = r.folder && r.cells && r.warm && r.order && r.line ? ledger_read(s, options->results, &r.done, why)
+                                                                     : no_memory(why);
     if (code == STATUS_OK) {
         choose_cells(&r);
         if (!complete(&r)) {

@@ -10,7 +10,8 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
-/* Worker rows are written before the row that they belong to; those at the end without one are what a killed process left. */
+/* Worker rows are written before the row that they belong to; those at the end without one are what a killed
+ * process left. */
 static status set_orphans_aside(run *r, const csv *rows, const char *path, diagnostic *why)
 {
     csv *workers = NULL;

@@ -25,8 +25,8 @@ typedef struct run {
     progress_line *line;
 } run;
 
-/* Folder, locks, the rows so far (read again under the lock), manifest, machine, renderer. What was opened when it fails is
- * released by run_release too. */
+/* Folder, locks, the rows so far (read again under the lock), manifest, machine, renderer. What was opened when it
+ * fails is released by run_release too. */
 status run_prepare(run *r, diagnostic *why);
 void run_release(run *r);
 

@@ -1,7 +1,7 @@
-/* A study: a scene, fixed parameters, a grid over any parameters, repetitions, and what to keep; run so
- * that raw rows are sacred (design, decision 7). results/<study>/ holds rows.csv (one row a repetition, appended and
- * flushed at once, never rewritten), manifest.json, images/ (one a cell).
- * Ownership: study_read gives, study_destroy releases. Errors in the file are located there: file, line, column. */
+/* A study: a scene, fixed parameters, a grid over any parameters, repetitions, and what to keep; run so that raw
+ * rows are sacred (design, decision 7). results/<study>/ holds rows.csv (one row a repetition, appended and flushed
+ * at once, never rewritten), manifest.json, images/ (one a cell). Ownership: study_read gives, study_destroy
+ * releases. Errors in the file are located there: file, line, column. */
 #ifndef CUVETTE_STUDY_STUDY_H
 #define CUVETTE_STUDY_STUDY_H
 
@@ -29,8 +29,9 @@ typedef struct study {
     study_point fixed;                /* parameters set for all cells */
     study_axis *axes; size_t axis_count;
     long repetitions_min, repetitions_max; /* counted, without warm-ups */
-    double relative_width;            /* stop after min once the 95% interval of the mean wall time is narrower than this share of it; 0: always max */
-    long warmups;                     /* frames of a cell before its first measured one, in every process that runs it */
+    double relative_width;            /* stop after min once the 95% interval of the mean wall time is narrower than
+                                         this share of it; 0: always max */
+    long warmups;                     /* frames of a cell before its first measured one, in every process */
     bool shuffle; uint64_t seed;
     bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_timeline; /* of each cell, once */
     char *text, *scene_text;          /* both files, as they were read */
@@ -54,7 +55,8 @@ status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *wh
 
 typedef struct study_options {
     const char *results;   /* folder; results/<name>/ is made in it */
-    long shard, shards;    /* this process does the cells whose place in the shuffled grid, modulo shards, is shard; 0 of 1 (or 0 of 0) for all */
+    long shard, shards;    /* this process does the cells whose place in the shuffled grid, modulo shards, is shard;
+                              0 of 1 (or 0 of 0) for all */
     FILE *progress;        /* a terminal for the progress line with ETA, or NULL */
     bool (*stop)(void);    /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
 } study_options;
@@ -66,8 +68,8 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
 typedef struct study_progress { size_t cells, cells_done, rows, rows_marked; } study_progress;
 status study_status(const study *s, const char *results, study_progress *out, diagnostic *why);
 
-/* Joins the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv; no row lost or twice. rows.csv appears whole
- * or not at all; the shards' files stay. */
+/* Joins the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv; no row lost or twice. rows.csv
+ * appears whole or not at all; the shards' files stay. */
 status study_merge(const study *s, const char *results, size_t *rows, diagnostic *why);
 
 #endif

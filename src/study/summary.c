@@ -13,14 +13,19 @@
 enum { MEDIAN_INTERVAL_COUNT = 6 };
 
 static const char *const timed[] = {"wall_s", "cpu_s"};
-static const char *const before_hash[] = {"rays_total", "rays_camera", "rays_reflect", "rays_refract", "rays_shadow",
-                                          "cut_depth_throughput", "total_internal"};
-static const char *const after_marked[] = {"busy_s_mean", "busy_s_max", "waiting_s_mean", "imbalance", "others_share",
-                                           "worker_cpu_s_sum", "peak_rss_bytes"};
+static const char *const before_hash[] = {"rays_total",  "rays_camera",          "rays_reflect",  "rays_refract",
+                                          "rays_shadow", "cut_depth_throughput", "total_internal"};
+static const char *const after_marked[] = {"busy_s_mean",  "busy_s_max",       "waiting_s_mean", "imbalance",
+                                           "others_share", "worker_cpu_s_sum", "peak_rss_bytes"};
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-typedef struct cell_rows { const row_ref **rows; size_t count, marked; double *values; FILE *out; } cell_rows;
+typedef struct cell_rows {
+    const row_ref **rows;
+    size_t count, marked;
+    double *values;
+    FILE *out;
+} cell_rows;
 
 static const char *field(const row_ref *ref, const char *name)
 {
@@ -125,7 +130,8 @@ static status put_cell(const study *s, size_t number, const char *film_expected,
 static status put_cells(const study *s, const row_files *files, FILE *out, diagnostic *why)
 {
     size_t room = files->row_count + 1;
-    cell_rows cell = {.rows = malloc(room * sizeof *cell.rows), .values = malloc(room * sizeof *cell.values), .out = out};
+    cell_rows cell = {
+        .rows = malloc(room * sizeof *cell.rows), .values = malloc(room * sizeof *cell.values), .out = out};
     status code = cell.rows && cell.values ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
     for (size_t number = 0; code == STATUS_OK && number < study_cell_count(s); number++) {
         const char *film_expected = NULL;

@@ -9,7 +9,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-struct table { char *path; int fd; };
+struct table {
+    char *path;
+    int fd;
+};
 
 static status failed(const char *path, const char *doing, int error, diagnostic *why)
 {
@@ -124,7 +127,8 @@ static status whole_lines(table *t, size_t *end, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Opens and locks. A merge puts a new file in the old one's place, so the name must still mean the file that is locked. */
+/* Opens and locks. A merge puts a new file in the old one's place, so the name must still mean the file that is
+ * locked. */
 static status lock(table *t, diagnostic *why)
 {
     for (;;) {

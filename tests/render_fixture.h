@@ -1,0 +1,86 @@
+/* Scenes from text and pictures of them, for tests. Each call asserts that it worked. Ownership: scene_from and render give; release
+ * with scene_destroy and render_result_destroy. */
+#ifndef CUVETTE_TESTS_RENDER_FIXTURE_H
+#define CUVETTE_TESTS_RENDER_FIXTURE_H
+
+#include "render/renderer.h"
+#include "scene/params.h"
+#include <stdio.h>
+#include <string.h>
+
+/* Tests run in the project's root. */
+#define ROD_SCENE "experiments/scenes/rod.yaml"
+
+/* What a build without counters cannot show. */
+static inline void need_counters(void)
+{
+    if (!CUVETTE_COUNTERS)
+        skip();
+}
+
+static inline void worked(status code, const diagnostic *why)
+{
+    char text[DIAGNOSTIC_TEXT_MAX];
+    if (code != STATUS_OK)
+        fail_msg("%s", diagnostic_text(why, text, sizeof text));
+}
+
+static inline void set(scene *s, const char *assignment)
+{
+    diagnostic why = {0};
+    worked(scene_set_assignment(s, assignment, &why), &why);
+}
+
+/* Assignments one after another, separated by blanks. */
+static inline void set_all(scene *s, const char *assignments)
+{
+    char text[512];
+    snprintf(text, sizeof text, "%s", assignments);
+    char *rest = text;
+    for (char *word; (word = strtok_r(rest, " ", &rest));)
+        set(s, word);
+}
+
+static inline scene *scene_from(const char *text)
+{
+    scene *s = NULL;
+    diagnostic why = {0};
+    worked(scene_read_text("test.yaml", text, strlen(text), &s, &why), &why);
+    return s;
+}
+
+static inline scene *rod_scene(const char *assignments)
+{
+    scene *s = NULL;
+    diagnostic why = {0};
+    worked(scene_read(ROD_SCENE, &s, &why), &why);
+    set_all(s, assignments);
+    return s;
+}
+
+static inline render_result *render_at(const scene *s, isa level, const render_options *options)
+{
+    renderer *r = NULL;
+    render_result *result = NULL;
+    diagnostic why = {0};
+    worked(renderer_create(level, NULL, &r, &why), &why);
+    worked(renderer_render(r, s, options, &result, &why), &why);
+    renderer_destroy(r);
+    return result;
+}
+
+static inline render_result *render(const scene *s)
+{
+    return render_at(s, isa_best(), NULL);
+}
+
+/* The radiance of a picture of one pixel, which looks exactly along the camera's axis. */
+static inline vec3 look(const scene *s)
+{
+    render_result *result = render(s);
+    vec3 seen = vec3_make(film_value(result->picture, 0, 0, 0), film_value(result->picture, 0, 0, 1), film_value(result->picture, 0, 0, 2));
+    render_result_destroy(result);
+    return seen;
+}
+
+#endif

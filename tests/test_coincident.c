@@ -1,0 +1,247 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "optics/interface.h"
+#include "quad.h"
+#include "random_stream.h"
+#include "ray_fixture.h"
+
+/* Faces that coincide, exactly or to within the roundings of a turn: one interface or none, and never a film of air between. */
+
+enum { PARTS_MAX = 4, STEPS_MAX = 8 };
+
+typedef struct assembly {
+    int count;
+    solid_shape shape[PARTS_MAX];
+    int64_t priority[PARTS_MAX], medium[PARTS_MAX];
+    vec3 turn; /* of the whole, about the origin */
+    arrangement *solids;
+} assembly;
+
+static vec3 turned(vec3 v, vec3 degrees)
+{
+    quad3 w = quad3_turn(quad3_from(v), degrees, 0);
+    return vec3_make((double)w.x, (double)w.y, (double)w.z);
+}
+
+/* The parts are described upright; they are turned as one here. */
+static void assemble(assembly *m, vec3 turn)
+{
+    body_source sources[PARTS_MAX];
+    m->turn = turn;
+    for (int i = 0; i < m->count; i++) {
+        m->shape[i].rotation_deg = turn;
+        m->shape[i].position = turned(m->shape[i].position, turn);
+        sources[i] = (body_source){&m->shape[i], m->priority[i], m->medium[i], false, 1.0, i};
+    }
+    assert_int_equal(arrangement_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
+}
+
+/* Media in order along the line, as digits: "01230". */
+static void expect_media(const assembly *m, one_ray r, const char *wanted)
+{
+    for (int k = 0; wanted[k + 1]; k++) {
+        const one_hit h = nearest_interface(m->solids, r);
+        assert_true(h.crossed >= 0);
+        assert_int_equal(m->solids->bodies[h.before].medium, wanted[k] - '0');
+        assert_int_equal(m->solids->bodies[h.after].medium, wanted[k + 1] - '0');
+        r = (one_ray){h.point, r.d, h.face, h.inside_after};
+    }
+    assert_int_equal(nearest_interface(m->solids, r).crossed, -1);
+}
+
+/* A line through a point of the contact plane y = level, from above, at an angle to that plane down to 1e-7 (both upright). */
+static one_ray line_through(const assembly *m, vec3 contact, double away, uint64_t *seed)
+{
+    const double steep = exp(random_real(seed, -16.0, 0.5)), turn = random_real(seed, 0.0, 6.2831853);
+    vec3 d = turned(vec3_normalize(vec3_make(cos(turn), -steep, sin(turn))), m->turn);
+    vec3 o = vec3_sub(turned(contact, m->turn), vec3_scale(d, away));
+    return (one_ray){o, d, FACE_NONE, arrangement_inside(m->solids, o)};
+}
+
+static const vec3 turns[] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 13.7}, {17.3, -33.1, 71.9}, {-5.7, 123.4, 3.3}};
+
+typedef assembly assembly_maker(void);
+
+static void through_the_contact(assembly_maker *make, const char *wanted)
+{
+    uint64_t seed = 31;
+    for (size_t k = 0; k < sizeof turns / sizeof *turns; k++) {
+        assembly m = make();
+        assemble(&m, turns[k]);
+        for (int i = 0; i < 4000; i++) {
+            vec3 contact = vec3_make(random_real(&seed, -0.4, 0.4), 0.3, random_real(&seed, -0.4, 0.4));
+            expect_media(&m, line_through(&m, contact, 5.0, &seed), wanted);
+        }
+        arrangement_destroy(m.solids);
+    }
+}
+
+/* Two unit blocks on one another, touching at y = 0.3. */
+static assembly blocks(int64_t lower, int64_t upper)
+{
+    assembly m = {.count = 2, .priority = {1, 2}, .medium = {lower, upper}};
+    m.shape[0] = (solid_shape){.kind = SHAPE_BOX, .position = {0.0, 0.3 - 0.35, 0.0}, .size = {1.0, 0.7, 1.0}};
+    m.shape[1] = (solid_shape){.kind = SHAPE_BOX, .position = {0.0, 0.3 + 0.15, 0.0}, .size = {1.0, 0.3, 1.0}};
+    return m;
+}
+
+static assembly blocks_of_one_glass(void) { return blocks(1, 1); }
+static assembly blocks_of_two_glasses(void) { return blocks(1, 2); }
+
+static assembly block_on_a_plane(void)
+{
+    assembly m = {.count = 2, .priority = {0, 1}, .medium = {1, 2}};
+    m.shape[0] = (solid_shape){.kind = SHAPE_PLANE, .position = {0.0, 0.3, 0.0}};
+    m.shape[1] = (solid_shape){.kind = SHAPE_BOX, .position = {0.0, 0.3 + 0.15, 0.0}, .size = {1.0, 0.3, 1.0}};
+    return m;
+}
+
+static assembly cylinder_on_a_plane_that_wins(void)
+{
+    assembly m = {.count = 2, .priority = {5, 1}, .medium = {1, 2}};
+    m.shape[0] = (solid_shape){.kind = SHAPE_PLANE, .position = {0.0, 0.3, 0.0}};
+    m.shape[1] = (solid_shape){.kind = SHAPE_CYLINDER, .position = {0.0, 0.3, 0.0}, .radius = 0.9, .height = 0.7, .m = 1.0};
+    return m;
+}
+
+static void one_glass_has_no_seam(void **state)
+{
+    (void)state;
+    through_the_contact(blocks_of_one_glass, "010");
+}
+
+static void two_glasses_meet_in_one_interface(void **state)
+{
+    (void)state;
+    through_the_contact(blocks_of_two_glasses, "0210");
+}
+
+static void what_stands_on_a_plane_touches_it(void **state)
+{
+    (void)state;
+    through_the_contact(block_on_a_plane, "021");
+    through_the_contact(cylinder_on_a_plane_that_wins, "021");
+}
+
+/* Mirrored at the contact the ray goes back through the upper block alone. */
+static void a_mirrored_ray_leaves_the_contact(void **state)
+{
+    (void)state;
+    uint64_t seed = 32;
+    for (size_t k = 0; k < sizeof turns / sizeof *turns; k++) {
+        assembly m = blocks_of_two_glasses();
+        assemble(&m, turns[k]);
+        for (int i = 0; i < 4000; i++) {
+            vec3 contact = vec3_make(random_real(&seed, -0.4, 0.4), 0.3, random_real(&seed, -0.4, 0.4));
+            one_ray r = line_through(&m, contact, 5.0, &seed);
+            one_hit h = nearest_interface(m.solids, r);
+            h = nearest_interface(m.solids, (one_ray){h.point, r.d, h.face, h.inside_after});
+            assert_int_equal(m.solids->bodies[h.after].medium, 1);
+            expect_media(&m, (one_ray){h.point, direction_reflect(r.d, h.normal, h.cos_i), h.face, h.inside_before}, "20");
+        }
+        arrangement_destroy(m.solids);
+    }
+}
+
+/* A liquid that fills its vessel exactly: same radius, same floor, same height; the vessel of the higher priority, then the liquid. */
+static void a_liquid_that_fits_its_vessel_exactly(void **state)
+{
+    (void)state;
+    uint64_t seed = 33;
+    for (size_t k = 0; k < 2 * sizeof turns / sizeof *turns; k++) {
+        assembly m = {.count = 2, .priority = {2, k % 2 ? 3 : 1}, .medium = {1, 2}};
+        m.shape[0] = (solid_shape){.kind = SHAPE_CUP, .position = {0.0, -1.0, 0.0}, .radius = 1.0, .inner_radius = 0.9, .height = 2.0, .floor = 0.1};
+        m.shape[1] = (solid_shape){.kind = SHAPE_CYLINDER, .position = {0.0, -0.9, 0.0}, .radius = 0.9, .height = 1.9, .m = 1.0};
+        assemble(&m, turns[k / 2]);
+        for (int i = 0; i < 4000; i++) {
+            /* from the liquid, to a point of the wall that is well under the rim */
+            vec3 from = vec3_make(random_real(&seed, -0.5, 0.5), random_real(&seed, -0.6, 0.6), random_real(&seed, -0.5, 0.5));
+            const double turn = random_real(&seed, 0.0, 6.2831853);
+            vec3 wall = vec3_make(0.9 * cos(turn), random_real(&seed, -0.5, 0.5), 0.9 * sin(turn));
+            one_ray r = {turned(from, m.turn), turned(vec3_normalize(vec3_sub(wall, from)), m.turn), FACE_NONE, 0};
+            r.inside = arrangement_inside(m.solids, r.o);
+            expect_media(&m, r, "210");
+            /* and back from outside */
+            vec3 far = vec3_add(r.o, vec3_scale(r.d, 4.0));
+            const one_hit in = nearest_interface(m.solids, (one_ray){far, vec3_scale(r.d, -1.0), FACE_NONE, arrangement_inside(m.solids, far)});
+            assert_int_equal(m.solids->bodies[in.after].medium, 1);
+            const one_hit wet = nearest_interface(m.solids, (one_ray){in.point, vec3_scale(r.d, -1.0), in.face, in.inside_after});
+            assert_int_equal(m.solids->bodies[wet.before].medium, 1);
+            assert_int_equal(m.solids->bodies[wet.after].medium, 2);
+        }
+        /* down the axis: through the surface and the floor */
+        vec3 above = turned(vec3_make(0.1, 3.0, 0.2), m.turn);
+        expect_media(&m, (one_ray){above, turned(vec3_make(0.0, -1.0, 0.0), m.turn), FACE_NONE, arrangement_inside(m.solids, above)}, "0210");
+        arrangement_destroy(m.solids);
+    }
+}
+
+/* The reference scene's way of saying it: the liquid reaches into the wall and loses to it there. */
+static void a_liquid_that_reaches_into_the_wall(void **state)
+{
+    (void)state;
+    static const double turning_points[] = {1.0, 1.1, 2.9, 3.0}; /* from x = -2 */
+    static const int64_t media[] = {0, 1, 2, 1, 0};
+    assembly m = {.count = 2, .priority = {2, 1}, .medium = {1, 2}};
+    m.shape[0] = (solid_shape){.kind = SHAPE_CUP, .position = {0.0, 0.001, 0.0}, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
+    m.shape[1] = (solid_shape){.kind = SHAPE_CYLINDER, .position = {0.0, 0.051, 0.0}, .radius = 0.95, .height = 1.95, .m = 1.0};
+    assemble(&m, turns[0]);
+    one_ray r = {vec3_make(-2.0, 1.0, 0.0), vec3_make(1.0, 0.0, 0.0), FACE_NONE, 0};
+    for (int k = 0; k < 4; k++) {
+        const one_hit h = nearest_interface(m.solids, r);
+        assert_true(fabs(h.point.x - (turning_points[k] - 2.0)) < 1e-15);
+        assert_int_equal(m.solids->bodies[h.before].medium, media[k]);
+        assert_int_equal(m.solids->bodies[h.after].medium, media[k + 1]);
+        r = (one_ray){h.point, r.d, h.face, h.inside_after};
+    }
+    assert_int_equal(nearest_interface(m.solids, r).crossed, -1);
+    one_ray down = {vec3_make(0.2, 5.0, 0.1), vec3_make(0.0, -1.0, 0.0), FACE_NONE, 0};
+    down.inside = arrangement_inside(m.solids, down.o);
+    const one_hit surface = nearest_interface(m.solids, down);
+    assert_true(fabs(surface.point.y - 2.001) < 1e-15);
+    expect_media(&m, down, "0210");
+    arrangement_destroy(m.solids);
+}
+
+/* Solids of the surrounding medium are not there, alone or over one another; in another medium they are bubbles. */
+static void equal_media_are_no_interface(void **state)
+{
+    (void)state;
+    assembly m = {.count = 3, .priority = {0, 1, 2}, .medium = {0, 0, 0}};
+    m.shape[0] = (solid_shape){.kind = SHAPE_SPHERE, .radius = 1.0};
+    m.shape[1] = (solid_shape){.kind = SHAPE_BOX, .position = {0.5, 0.0, 0.0}, .size = {1.0, 1.0, 1.0}};
+    m.shape[2] = (solid_shape){.kind = SHAPE_CUP, .position = {0.0, -0.5, 0.0}, .radius = 1.0, .inner_radius = 0.9, .height = 1.5, .floor = 0.1};
+    assembly bubble = m;
+    bubble.medium[0] = 1;
+    bubble.count = 2;
+    assemble(&m, turns[2]);
+    uint64_t seed = 34;
+    for (int i = 0; i < 5000; i++) {
+        vec3 o = random_point(&seed, 2.0);
+        assert_int_equal(nearest_interface(m.solids, (one_ray){o, random_direction(&seed), FACE_NONE, arrangement_inside(m.solids, o)}).crossed, -1);
+    }
+    arrangement_destroy(m.solids);
+    bubble.shape[1].size = vec3_make(0.5, 0.5, 0.5);
+    assemble(&bubble, turns[0]);
+    expect_media(&bubble, (one_ray){vec3_make(-3.0, 0.1, 0.0), vec3_make(1.0, 0.0, 0.0), FACE_NONE, 0}, "01010");
+    arrangement_destroy(bubble.solids);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_glass_has_no_seam),
+        cmocka_unit_test(two_glasses_meet_in_one_interface),
+        cmocka_unit_test(what_stands_on_a_plane_touches_it),
+        cmocka_unit_test(a_mirrored_ray_leaves_the_contact),
+        cmocka_unit_test(a_liquid_that_fits_its_vessel_exactly),
+        cmocka_unit_test(a_liquid_that_reaches_into_the_wall),
+        cmocka_unit_test(equal_media_are_no_interface),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

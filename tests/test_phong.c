@@ -1,0 +1,215 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "render_fixture.h"
+
+/* Local light at points worked out by hand: Phong's sum, shadows, checkers. One pixel, which looks along the camera's axis. */
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+/* The eye sees the origin of a plane at V = (0, 0.6, -0.8); the lamp stands at L = (0.6, 0.8, 0), so R = (-0.6, 0.8, 0). */
+static const char plane_scene[] = "render: {width: 1, height: 1, depth: 0}\n"
+                                  "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
+                                  "background: {color: [0.1, 0.2, 0.3], ambient: [0.5, 1, 2]}\n"
+                                  "lights: {lamp: {position: [3, 4, 0], color: [1, 0.5, 0.25], intensity: 2}}\n"
+                                  "solids: {ground: {shape: plane, color: [0.9, 0.6, 0.3]}}\n";
+
+static void expect_color(vec3 seen, double r, double g, double b)
+{
+    assert_near(seen.x, r, 1e-12);
+    assert_near(seen.y, g, 1e-12);
+    assert_near(seen.z, b, 1e-12);
+}
+
+static void each_term_of_phongs_sum(void **state)
+{
+    (void)state;
+    scene *s = scene_from(plane_scene);
+    expect_color(look(s), 0.0, 0.0, 0.0);
+    set(s, "ground.ambient=0.1");
+    expect_color(look(s), 0.1 * 0.5 * 0.9, 0.1 * 1.0 * 0.6, 0.1 * 2.0 * 0.3);
+    set_all(s, "ground.ambient=0 ground.diffuse=0.7"); /* N.L = 0.8 */
+    expect_color(look(s), 0.7 * 2.0 * 0.9 * 0.8, 0.7 * 1.0 * 0.6 * 0.8, 0.7 * 0.5 * 0.3 * 0.8);
+    set_all(s, "ground.diffuse=0 ground.specular=0.5 ground.shininess=3"); /* R.V = 0.48, and the lamp's colour alone */
+    const double cubed = 0.48 * 0.48 * 0.48;
+    expect_color(look(s), 0.5 * 2.0 * cubed, 0.5 * 1.0 * cubed, 0.5 * 0.5 * cubed);
+    set_all(s, "ground.ambient=0.1 ground.diffuse=0.7");
+    vec3 seen = look(s);
+    assert_near(seen.x, 0.045 + 1.008 + cubed, 1e-12);
+    scene_destroy(s);
+}
+
+static void highlight_is_a_power_of_the_cosine(void **state)
+{
+    (void)state;
+    static const double exponents[] = {0.0, 0.5, 1.0, 2.0, 2.5, 7.0, 80.0, 80.5, 1000.0, 5000.0};
+    static const double heights[] = {4.0, 1.0, 2.25, 9.0};
+    scene *s = scene_from(plane_scene);
+    set_all(s, "ground.specular=1 lamp.intensity=1 lamp.color=1,1,1");
+    for (size_t k = 0; k < sizeof exponents / sizeof *exponents; k++) {
+        for (size_t i = 0; i < sizeof heights / sizeof *heights; i++) {
+            s->solids[0].surface.shininess = exponents[k];
+            s->lights[0].position = vec3_make(0.0, heights[i], 3.0);
+            /* R = (0, h, -3) / l, V = (0, 0.6, -0.8) */
+            const double l = sqrt(heights[i] * heights[i] + 9.0), cosine = (0.6 * heights[i] + 2.4) / l;
+            const double wanted = pow(cosine, exponents[k]);
+            assert_near(look(s).x, wanted, 1e-12 + 1e-15 * exponents[k] * wanted);
+        }
+    }
+    scene_destroy(s);
+}
+
+static void a_lamp_behind_the_surface_gives_nothing(void **state)
+{
+    (void)state;
+    scene *s = scene_from(plane_scene);
+    set_all(s, "ground.diffuse=1 ground.specular=1 ground.shininess=1 render.shadows=off lamp.position=3,-4,0");
+    expect_color(look(s), 0.0, 0.0, 0.0);
+    set(s, "lamp.position=3,0.001,0");
+    assert_true(look(s).x > 0.0);
+    scene_destroy(s);
+}
+
+/* A ball of radius 2, met at (0, 0, -2): N = V = (0, 0, -1), L = (0, 0.6, -0.8), R = (0, -0.6, -0.8). Several lamps add up. */
+static void light_on_a_ball(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
+                          "camera: {position: [0, 0, -10], yaw_deg: 0}\n"
+                          "background: {ambient: [0, 0, 0]}\n"
+                          "lights:\n  one: {position: [0, 3, -6]}\n  two: {position: [-3, 0, -6], color: [0, 1, 0]}\n"
+                          "  behind: {position: [0, 0, 9], intensity: 100}\n"
+                          "solids: {ball: {shape: sphere, radius: 2, color: [1, 0.5, 0], diffuse: 0.5, specular: 0.25, shininess: 4}}\n");
+    const double highlight = 0.25 * pow(0.8, 4.0), matte = 0.5 * 0.8;
+    expect_color(look(s), matte + highlight, 2.0 * (matte * 0.5 + highlight), highlight);
+    set(s, "ball.rotation=11,22,33");
+    expect_color(look(s), matte + highlight, 2.0 * (matte * 0.5 + highlight), highlight);
+    scene_destroy(s);
+}
+
+/* A clear surface shines on the side that the eye is on. */
+static void highlight_of_a_clear_surface(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 0, shadows: off, beyond: black}\n"
+                          "camera: {position: [0, 0, -10], yaw_deg: 0}\n"
+                          "lights: {lamp: {position: [0, 3, -6]}}\n"
+                          "solids: {ball: {shape: sphere, radius: 2, transparency: 1, ior: 1.5, specular: 0.25, shininess: 4}}\n");
+    expect_color(look(s), 0.25 * pow(0.8, 4.0), 0.25 * pow(0.8, 4.0), 0.25 * pow(0.8, 4.0));
+    set(s, "camera.position=0,0,0"); /* from inside the far side is met, at (0, 0, 2), with N = (0, 0, -1) towards the lamp outside */
+    s->lights[0].position = vec3_make(0.0, 0.0, 1.0);
+    assert_near(look(s).x, 0.25, 1e-12);
+    s->lights[0].position = vec3_make(0.0, 0.0, 5.0);
+    assert_true(look(s).x == 0.0);
+    scene_destroy(s);
+}
+
+/* Something stands half way to the lamp: off ignores it, opaque shadows ask only whether it is there, attenuated ones what it
+ * lets through at each of its two surfaces. */
+static void shadows_by_rule(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
+                          "camera: {position: [0, 3, -4], target: [0, 0, 0]}\n"
+                          "background: {ambient: [0, 0, 0]}\n"
+                          "lights: {lamp: {position: [3, 4, 0]}}\n"
+                          "solids:\n"
+                          "  ground: {shape: plane, diffuse: 1}\n"
+                          "  between: {shape: sphere, radius: 0.5, position: [1.5, 2, 0], transparency: 0.8, ior: 1.5}\n");
+    static const struct { const char *settings; double share; } cases[] = {
+        {"render.shadows=off", 1.0},
+        {"render.shadows=opaque", 0.0},
+        {"render.shadows=attenuated", 0.64},
+        {"between.transparency=1", 1.0},
+        {"render.shadows=opaque", 0.0},
+        {"between.ior=1", 1.0},                                     /* of index 1 there is nothing there */
+        {"render.shadows=attenuated between.transparency=0.5", 1.0},
+        {"between.ior=1.5", 0.25},
+        {"render.weights=constant between.ior=1", 0.25},            /* constant weights: a surface for all that */
+        {"between.transparency=0", 0.0},
+        {"between.position=6,8,0", 1.0},                            /* behind the lamp */
+        {"between.position=3,4,0", 0.0},                            /* around the lamp */
+        {"between.position=-1.5,-2,0", 1.0},                        /* under the ground */
+        {"between.visible=off between.position=1.5,2,0", 1.0}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        set_all(s, cases[k].settings);
+        assert_near(look(s).x, 0.8 * cases[k].share, 1e-12);
+    }
+    scene_destroy(s);
+}
+
+/* Straight down on points of a plane: cells of 0.5, even ones of the first colour, also left of and behind the origin. */
+static void checkers_of_a_plane(void **state)
+{
+    (void)state;
+    static const double at[] = {-1.3, -0.8, -0.3, 0.2, 0.7, 1.2};
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
+                          "camera: {pitch_deg: -90}\n"
+                          "background: {ambient: [1, 1, 1]}\n"
+                          "solids: {ground: {shape: plane, ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n");
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++) {
+            s->camera.position = vec3_make(at[i], 2.0, at[k]);
+            const int even = ((int)floor(at[i] / 0.5) + (int)floor(at[k] / 0.5)) % 2 == 0;
+            expect_color(look(s), even, !even, 0.0);
+        }
+    scene_destroy(s);
+}
+
+/* The pattern turns and moves with its solid. */
+static void checkers_move_with_their_solid(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
+                          "camera: {pitch_deg: -90}\n"
+                          "background: {ambient: [1, 1, 1]}\n"
+                          "solids: {slab: {shape: box, size: [4, 0.9, 4], ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n");
+    s->camera.position = vec3_make(0.7, 2.0, 0.2); /* cells 1, 0 and, at y = 0.45, 0: odd */
+    expect_color(look(s), 0.0, 1.0, 0.0);
+    set(s, "slab.rotation=0,90,0"); /* z goes to x: local (-0.2, 0.45, 0.7), cells -1, 0, 1 */
+    expect_color(look(s), 1.0, 0.0, 0.0);
+    set(s, "slab.position=0.5,0,0"); /* local (-0.2, 0.45, 0.2): cells -1, 0, 0 */
+    expect_color(look(s), 0.0, 1.0, 0.0);
+    set_all(s, "slab.position=0,0,0 slab.rotation=0,0,0 slab.size=4,1.9,4"); /* y = 0.95: cell 1 */
+    expect_color(look(s), 1.0, 0.0, 0.0);
+    scene_destroy(s);
+}
+
+/* An opaque mirror gives its reflectivity of what it sees, once for each bounce. */
+static void mirrors_multiply(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 2, beyond: black}\n"
+                          "camera: {position: [0, 3, -4], target: [0, 0, 0]}\n"
+                          "background: {color: [1, 1, 1], ambient: [0, 0, 0]}\n"
+                          "solids:\n  ground: {shape: plane, reflectivity: 0.5}\n"
+                          "  wall: {shape: plane, position: [0, 0, 4], rotation: [-90, 0, 0], reflectivity: 0.4}\n");
+    expect_color(look(s), 0.2, 0.2, 0.2); /* off the ground, off the wall, into the sky behind the eye */
+    set(s, "render.depth=1");
+    expect_color(look(s), 0.0, 0.0, 0.0);
+    set(s, "render.beyond=sky");
+    expect_color(look(s), 0.2, 0.2, 0.2);
+    set(s, "wall.visible=off");
+    expect_color(look(s), 0.5, 0.5, 0.5);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_term_of_phongs_sum),
+        cmocka_unit_test(highlight_is_a_power_of_the_cosine),
+        cmocka_unit_test(a_lamp_behind_the_surface_gives_nothing),
+        cmocka_unit_test(light_on_a_ball),
+        cmocka_unit_test(highlight_of_a_clear_surface),
+        cmocka_unit_test(shadows_by_rule),
+        cmocka_unit_test(checkers_of_a_plane),
+        cmocka_unit_test(checkers_move_with_their_solid),
+        cmocka_unit_test(mirrors_multiply),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

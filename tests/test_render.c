@@ -1,0 +1,256 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "render_fixture.h"
+
+/* Whole pictures against closed forms: slabs, furnaces, Phong's sum at points worked out by hand. */
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+/* A slab seen head-on from below. What passes goes up, to a red zenith; what comes back goes down, to a green horizon. */
+static const char slab_scene[] = "render: {width: 1, height: 1, shadows: off}\n"
+                                 "camera: {position: [0, -5, 0], pitch_deg: 90, fov_deg: 1}\n"
+                                 "background: {kind: gradient, color: [1, 0, 0], horizon: [0, 1, 0]}\n"
+                                 "materials: {glass: {transparency: 1, ior: 1.5, reflectivity: 0}}\n"
+                                 "solids: {slab: {shape: box, material: glass, size: [50, 1, 50]}}\n";
+
+typedef struct slab_light { double passed, back, inside_up, inside_down; } slab_light;
+
+/* All paths of at most depth interfaces, R and T at each; the light then still inside, by where it goes. Born and Wolf, 7.6.1, without
+ * interference: R + T^2 R + T^2 R^3 + ... comes back, T^2 + T^2 R^2 + ... passes. */
+static slab_light slab_series(double R, double T, int depth)
+{
+    slab_light l = {0.0, 0.0, 0.0, 0.0};
+    double inside = T; /* after the first interface */
+    if (depth == 0)
+        return (slab_light){0.0, 0.0, 1.0, 0.0};
+    l.back = R;
+    int up = 1;
+    for (int met = 2; met <= depth; met++) {
+        *(up ? &l.passed : &l.back) += inside * T;
+        inside *= R;
+        up = !up;
+    }
+    *(up ? &l.inside_up : &l.inside_down) = inside;
+    return l;
+}
+
+/* Head-on there is one ray inside, and each interface makes two of it. */
+static void check_slab_counters(const ray_counters *c, int depth, double cut)
+{
+    assert_near((double)c->cut_depth_throughput[0] / COUNTERS_CUT_ONE, cut, 1e-10);
+    assert_near((double)c->cut_depth_throughput[2] / COUNTERS_CUT_ONE, cut, 1e-10);
+    assert_int_equal(c->cut_depth, 2);
+    assert_int_equal(c->cut_weight, 0);
+    for (int d = 0; d <= depth; d++)
+        assert_int_equal(c->by_depth[d], d == 0 ? 1 : 2);
+    assert_int_equal(c->reflect, depth);
+    assert_int_equal(c->refract, depth);
+}
+
+static void check_slab(scene *s, double R, double T, double lost_share)
+{
+    for (int depth = 0; depth <= 12; depth++) {
+        s->render.depth = depth;
+        s->render.beyond = BEYOND_BLACK;
+        const slab_light wanted = slab_series(R, T, depth);
+        render_result *result = render(s);
+        assert_near(film_value(result->picture, 0, 0, 0), wanted.passed, 1e-12);
+        assert_near(film_value(result->picture, 0, 0, 1), wanted.back, 1e-12);
+        assert_true(film_value(result->picture, 0, 0, 2) == 0.0);
+        /* what is cut off is the light that the last ray inside carries to its interface, and what that interface makes of it */
+        const double inside = wanted.inside_up + wanted.inside_down, cut = inside * (R + T);
+        if (CUVETTE_COUNTERS)
+            check_slab_counters(&result->counters, depth, cut);
+        render_result_destroy(result);
+        if (lost_share == 0.0)
+            assert_near(wanted.passed + wanted.back + cut, 1.0, 1e-14);
+        /* beyond the last depth the sky: the two cut branches see it where they would have gone */
+        s->render.beyond = BEYOND_SKY;
+        const slab_light next = slab_series(R, T, depth + 1);
+        vec3 seen = look(s);
+        assert_near(seen.x, next.passed + next.inside_up, 1e-12);
+        assert_near(seen.y, next.back + next.inside_down, 1e-12);
+    }
+}
+
+static void slab_under_fresnel_weights(void **state)
+{
+    (void)state;
+    scene *s = scene_from(slab_scene);
+    check_slab(s, 0.04, 0.96, 0.0);
+    set(s, "slab.ior=2.42");
+    const double r = 1.42 / 3.42;
+    check_slab(s, r * r, 1.0 - r * r, 0.0);
+    set(s, "slab.transparency=0.8"); /* each interface keeps a fifth of what it refracts */
+    check_slab(s, r * r, 0.8 * (1.0 - r * r), 0.2);
+    scene_destroy(s);
+}
+
+static void slab_under_constant_weights(void **state)
+{
+    (void)state;
+    scene *s = scene_from(slab_scene);
+    set_all(s, "slab.reflectivity=0.1 slab.transparency=0.9 render.weights=constant");
+    check_slab(s, 0.1, 0.9, 0.0);
+    set_all(s, "slab.reflectivity=0.3 slab.transparency=0.5 slab.ior=1"); /* as in the report, index 1 reflects too */
+    check_slab(s, 0.3, 0.5, 0.2);
+    scene_destroy(s);
+}
+
+static void branches_that_weigh_too_little_are_cut(void **state)
+{
+    (void)state;
+    scene *s = scene_from(slab_scene);
+    set_all(s, "render.depth=8 render.min_weight=0.01");
+    render_result *result = render(s);
+    assert_near(film_value(result->picture, 0, 0, 0), 0.96 * 0.96, 1e-12);
+    assert_near(film_value(result->picture, 0, 0, 1), 0.04 + 0.96 * 0.96 * 0.04, 1e-12);
+    if (CUVETTE_COUNTERS) {
+        assert_int_equal(result->counters.cut_weight, 1);
+        assert_near((double)result->counters.cut_weight_throughput[1] / COUNTERS_CUT_ONE, 0.96 * 0.04 * 0.04, 1e-10);
+        assert_int_equal(result->counters.cut_depth, 0);
+    }
+    render_result_destroy(result);
+    scene_destroy(s);
+}
+
+/* Clear solids in one another, a mirror, and the camera among them. */
+static const char furnace_scene[] =
+    "render: {width: 24, height: 18, shadows: off}\n"
+    "camera: {position: [0.3, 2.5, -5], target: [0, 1, 0], fov_deg: 40}\n"
+    "background: {kind: uniform, color: [1, 1, 1], ambient: [0, 0, 0]}\n"
+    "materials: {clear: {transparency: 1}}\n"
+    "solids:\n"
+    "  vessel: {shape: cup, material: clear, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: 2}\n"
+    "  liquid: {shape: cylinder, material: clear, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.95, priority: 1}\n"
+    "  ball: {shape: sphere, material: clear, ior: 2.4, position: [0.2, 1.2, 0.1], radius: 0.5, priority: 3}\n"
+    "  bubble: {shape: sphere, material: clear, ior: 1, position: [0.2, 1.3, 0], radius: 0.2, priority: 4}\n"
+    "  block: {shape: box, material: clear, ior: 1.6, position: [-1.2, 0.5, -1], size: [0.8, 1, 0.8], rotation: [10, 20, 30], priority: 5}\n"
+    "  mirror: {shape: sphere, reflectivity: 1, position: [1.5, 0.5, -1], radius: 0.4, priority: 6}\n";
+
+static void every_pixel_of_a_white_furnace_is_white(void **state)
+{
+    (void)state;
+    static const char *const eyes[] = {"0.3,2.5,-5", "0.1,0.5,-0.3", "0.2,1.25,0.1"}; /* in the air, the liquid, the bubble */
+    scene *s = scene_from(furnace_scene);
+    for (size_t eye = 0; eye < 3; eye++) {
+        diagnostic why = {0};
+        worked(scene_set(s, "camera.position", eyes[eye], &why), &why);
+        for (int depth = 0; depth <= 10; depth += depth < 4 ? 1 : 3) {
+            s->render.depth = depth;
+            render_result *result = render(s);
+            for (int y = 0; y < 18; y++)
+                for (int x = 0; x < 24; x++)
+                    for (int c = 0; c < 3; c++)
+                        assert_near(film_value(result->picture, x, y, c), 1.0, 1e-9);
+            assert_true(!CUVETTE_COUNTERS || result->counters.total_internal > 0 || depth < 4);
+            render_result_destroy(result);
+        }
+    }
+    scene_destroy(s);
+}
+
+/* What the film lacks of white was cut off, by depth or by weight, and is counted. */
+static void light_that_is_cut_off_is_accounted_for(void **state)
+{
+    (void)state;
+    need_counters();
+    scene *s = scene_from(furnace_scene);
+    for (int pruned = 0; pruned <= 1; pruned++) {
+        for (int depth = 0; depth <= 8; depth += 2) {
+            set(s, pruned ? "render.min_weight=0.02" : "render.min_weight=0");
+            s->render.depth = depth;
+            s->render.beyond = BEYOND_BLACK;
+            render_result *result = render(s);
+            for (int c = 0; c < 3; c++) {
+                double sum = (double)(result->counters.cut_depth_throughput[c] + result->counters.cut_weight_throughput[c]) / COUNTERS_CUT_ONE;
+                for (int y = 0; y < 18; y++)
+                    for (int x = 0; x < 24; x++)
+                        sum += film_value(result->picture, x, y, c);
+                assert_near(sum / (24 * 18), 1.0, 1e-9);
+            }
+            assert_true((result->counters.cut_weight > 0) == (pruned && depth > 0));
+            render_result_destroy(result);
+        }
+    }
+    scene_destroy(s);
+}
+
+/* The 2 x 2 samples of a pixel are the centres of the pixels of a picture twice as fine. */
+static void four_samples_are_the_mean_of_four_pixels(void **state)
+{
+    (void)state;
+    scene *coarse = rod_scene("render.width=40 render.height=30 render.samples=4 render.depth=3");
+    scene *fine = rod_scene("render.width=80 render.height=60 render.samples=1 render.depth=3");
+    render_result *four = render(coarse), *one = render(fine);
+    for (int y = 0; y < 30; y++)
+        for (int x = 0; x < 40; x++)
+            for (int c = 0; c < 3; c++) {
+                double mean = 0.0;
+                for (int k = 0; k < 4; k++)
+                    mean += 0.25 * film_value(one->picture, 2 * x + k % 2, 2 * y + k / 2, c);
+                assert_near(film_value(four->picture, x, y, c), mean, 1e-11);
+            }
+    assert_int_equal(four->counters.camera, CUVETTE_COUNTERS ? 4 * 40 * 30 : 0);
+    render_result_destroy(four);
+    render_result_destroy(one);
+    scene_destroy(coarse);
+    scene_destroy(fine);
+}
+
+/* A crossing between equal indices is no interface: no highlight, no depth, no ray. */
+static void solids_of_index_one_are_not_there(void **state)
+{
+    (void)state;
+    for (int depth = 0; depth <= 4; depth += 2) {
+        scene *there = rod_scene("render.width=120 render.height=90 vessel.ior=1 liquid.ior=1");
+        scene *away = rod_scene("render.width=120 render.height=90 vessel.visible=off liquid.visible=off");
+        there->render.depth = away->render.depth = depth;
+        render_result *a = render(there), *b = render(away);
+        assert_true(film_hash(a->picture) == film_hash(b->picture));
+        assert_memory_equal(a->counters.hits, b->counters.hits, sizeof a->counters.hits);
+        assert_memory_equal(a->counters.first_hits, b->counters.first_hits, sizeof a->counters.hits);
+        assert_memory_equal(a->counters.by_depth, b->counters.by_depth, sizeof a->counters.by_depth);
+        assert_int_equal(ray_counters_total(&a->counters), ray_counters_total(&b->counters));
+        assert_int_equal(a->counters.refract, 0);
+        render_result_destroy(a);
+        render_result_destroy(b);
+        scene_destroy(there);
+        scene_destroy(away);
+    }
+}
+
+/* As POV-Ray and a third program count them for this scene. */
+static void first_hits_of_the_rod_scene(void **state)
+{
+    (void)state;
+    need_counters();
+    scene *s = rod_scene("render.depth=0 render.shadows=off");
+    render_result *result = render(s);
+    const uint64_t vessel = result->counters.first_hits[scene_find_solid(s, "vessel")];
+    const uint64_t liquid = result->counters.first_hits[scene_find_solid(s, "liquid")];
+    assert_int_equal(result->counters.camera, 480000);
+    assert_in_range(vessel + liquid, 95458 - 20, 95458 + 20);
+    render_result_destroy(result);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slab_under_fresnel_weights),
+        cmocka_unit_test(slab_under_constant_weights),
+        cmocka_unit_test(branches_that_weigh_too_little_are_cut),
+        cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
+        cmocka_unit_test(light_that_is_cut_off_is_accounted_for),
+        cmocka_unit_test(four_samples_are_the_mean_of_four_pixels),
+        cmocka_unit_test(solids_of_index_one_are_not_there),
+        cmocka_unit_test(first_hits_of_the_rod_scene),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,204 @@
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "render_fixture.h"
+
+/* What a renderer promises beside its picture: errors by value, interruption, no state shared between two of them. */
+
+static status try_to_render(const scene *s, diagnostic *why)
+{
+    renderer *r = NULL;
+    render_result *result = NULL;
+    assert_int_equal(renderer_create(isa_best(), NULL, &r, NULL), STATUS_OK);
+    const status code = renderer_render(r, s, NULL, &result, why);
+    assert_true((code == STATUS_OK) == (result != NULL));
+    render_result_destroy(result);
+    renderer_destroy(r);
+    return code;
+}
+
+static void light_beyond_the_films_range_is_an_error(void **state)
+{
+    (void)state;
+    diagnostic why = {0};
+    scene *s = rod_scene("render.width=80 render.height=60 render.depth=1");
+    assert_int_equal(scene_set(s, "lamp.intensity", "1e9", &why), STATUS_BAD_INPUT); /* the table's own range */
+    s->lights[0].intensity = 1e9;
+    assert_int_equal(try_to_render(s, &why), STATUS_BAD_INPUT);
+    set_all(s, "lamp.intensity=10000 lamp.color=10000,1,1"); /* each allowed, both together not */
+    assert_int_equal(try_to_render(s, &why), STATUS_BAD_INPUT);
+    assert_true(why.what[0] && why.remedy[0]);
+    set(s, "lamp.color=20,1,1");
+    assert_int_equal(try_to_render(s, &why), STATUS_OK);
+    s->lights[0].intensity = (double)NAN;
+    assert_int_equal(try_to_render(s, &why), STATUS_BAD_INPUT);
+    scene_destroy(s);
+}
+
+/* Many contributions, each in range, whose sum is not. */
+static void a_sum_beyond_the_films_range_is_an_error(void **state)
+{
+    (void)state;
+    char text[4096];
+    int length = snprintf(text, sizeof text, "render: {width: 2, height: 2, depth: 0, shadows: off}\n"
+                                             "camera: {position: [0, 3, -4], target: [0, 0, 0]}\nsolids: {ground: {shape: plane, diffuse: 1}}\nlights:\n");
+    for (int i = 0; i < 12; i++)
+        length += snprintf(text + length, sizeof text - (size_t)length, "  lamp%d: {position: [0, 9, 0], color: [10, 10, 10], intensity: 10000}\n", i);
+    scene *s = scene_from(text);
+    assert_int_equal(try_to_render(s, NULL), STATUS_BAD_INPUT); /* 1.2e6 */
+    for (int i = 5; i < 12; i++)
+        s->lights[i].intensity = 0.0;
+    assert_int_equal(try_to_render(s, NULL), STATUS_OK); /* 5e5 */
+    scene_destroy(s);
+}
+
+static void a_scene_that_is_wrong_is_refused(void **state)
+{
+    (void)state;
+    diagnostic why = {0};
+    scene *s = rod_scene("vessel.inner_radius=2");
+    assert_int_equal(try_to_render(s, &why), STATUS_BAD_INPUT);
+    assert_true(why.what[0] != '\0');
+    scene_destroy(s);
+}
+
+typedef struct watch { int calls; double last; } watch;
+
+static bool stop_at_once(void *context, double share)
+{
+    watch *w = context;
+    w->calls++;
+    w->last = share;
+    return false;
+}
+
+static bool go_on(void *context, double share)
+{
+    watch *w = context;
+    assert_true(share >= w->last && share <= 1.0);
+    w->calls++;
+    w->last = share;
+    return true;
+}
+
+/* A frame that would take minutes ends when it is told to; what was done is there, and the next frame is right. */
+static void an_interrupted_frame_ends_and_leaves_no_trace(void **state)
+{
+    (void)state;
+    scene *large = rod_scene("render.width=4000 render.height=3000 render.depth=16 render.threads=3");
+    scene *small = rod_scene("render.width=64 render.height=48 render.threads=3");
+    render_result *undisturbed = render(small), *part = NULL, *after = NULL;
+    renderer *r = NULL;
+    assert_int_equal(renderer_create(isa_best(), NULL, &r, NULL), STATUS_OK);
+    for (int pool = 0; pool <= 1; pool++) {
+        watch w = {0, 0.0};
+        const render_options options = {.progress = stop_at_once, .context = &w};
+        large->render.pool = pool;
+        assert_int_equal(renderer_render(r, large, &options, &part, NULL), STATUS_INTERRUPTED);
+        assert_non_null(part);
+        assert_true(w.calls >= 1 && w.last < 1.0);
+        assert_true(!CUVETTE_COUNTERS || (part->counters.camera > 0 && part->counters.camera < 12000000));
+        render_result_destroy(part);
+        assert_int_equal(renderer_render(r, small, NULL, &after, NULL), STATUS_OK);
+        assert_true(film_hash(after->picture) == film_hash(undisturbed->picture));
+        assert_memory_equal(&after->counters, &undisturbed->counters, sizeof after->counters);
+        render_result_destroy(after);
+    }
+    renderer_destroy(r);
+    render_result_destroy(undisturbed);
+    scene_destroy(large);
+    scene_destroy(small);
+}
+
+static void progress_changes_nothing(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=64 render.height=48");
+    render_result *plain = render(s);
+    watch w = {0, 0.0};
+    const render_options options = {.progress = go_on, .context = &w};
+    render_result *watched = render_at(s, isa_best(), &options);
+    assert_true(film_hash(plain->picture) == film_hash(watched->picture));
+    render_result_destroy(plain);
+    render_result_destroy(watched);
+    scene_destroy(s);
+}
+
+typedef struct studio { const scene *s; uint64_t wanted; int wrong; } studio;
+
+static void *work_in(void *argument)
+{
+    studio *w = argument;
+    renderer *r = NULL;
+    w->wrong = renderer_create(isa_best(), NULL, &r, NULL) != STATUS_OK;
+    for (int i = 0; i < 10 && !w->wrong; i++) {
+        render_result *result = NULL;
+        w->wrong = renderer_render(r, w->s, NULL, &result, NULL) != STATUS_OK || film_hash(result->picture) != w->wanted;
+        render_result_destroy(result);
+    }
+    renderer_destroy(r);
+    return NULL;
+}
+
+static void two_renderers_at_once(void **state)
+{
+    (void)state;
+    scene *scenes[2] = {rod_scene("render.width=80 render.height=60 render.threads=2"),
+                        rod_scene("render.width=60 render.height=80 render.depth=6 vessel.ior=1.7 render.threads=3 render.pool=off")};
+    studio studios[2];
+    pthread_t threads[2];
+    for (int i = 0; i < 2; i++) {
+        render_result *alone = render(scenes[i]);
+        studios[i] = (studio){scenes[i], film_hash(alone->picture), 0};
+        render_result_destroy(alone);
+    }
+    assert_true(studios[0].wanted != studios[1].wanted);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, work_in, &studios[i]), 0);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(pthread_join(threads[i], NULL), 0);
+        assert_int_equal(studios[i].wrong, 0);
+        scene_destroy(scenes[i]);
+    }
+}
+
+/* One renderer, scenes of different depth, size, light and thread counts one after another. */
+static void a_renderer_serves_one_scene_after_another(void **state)
+{
+    (void)state;
+    static const char *const settings[] = {"render.depth=0 render.threads=5", "render.depth=9", "render.depth=2 render.samples=4 render.threads=2",
+                                           "render.depth=64 render.min_weight=0.001", "render.depth=1 render.width=7 render.height=3"};
+    renderer *r = NULL;
+    assert_int_equal(renderer_create(isa_best(), NULL, &r, NULL), STATUS_OK);
+    for (int i = 0; i < 15; i++) {
+        scene *s = rod_scene("render.width=40 render.height=30");
+        set_all(s, settings[i * 7 % 5]);
+        render_result *alone = render(s), *served = NULL;
+        assert_int_equal(renderer_render(r, s, NULL, &served, NULL), STATUS_OK);
+        assert_true(film_hash(alone->picture) == film_hash(served->picture));
+        assert_memory_equal(&alone->counters, &served->counters, sizeof served->counters);
+        render_result_destroy(alone);
+        render_result_destroy(served);
+        scene_destroy(s);
+    }
+    renderer_destroy(r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(light_beyond_the_films_range_is_an_error),
+        cmocka_unit_test(a_sum_beyond_the_films_range_is_an_error),
+        cmocka_unit_test(a_scene_that_is_wrong_is_refused),
+        cmocka_unit_test(an_interrupted_frame_ends_and_leaves_no_trace),
+        cmocka_unit_test(progress_changes_nothing),
+        cmocka_unit_test(two_renderers_at_once),
+        cmocka_unit_test(a_renderer_serves_one_scene_after_another),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,150 @@
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "render/schedule.h"
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+
+static render_settings settings_of(schedule_rule rule, int width, int height, int tile, int workers)
+{
+    return (render_settings){.width = width, .height = height, .schedule = rule, .tile = tile, .threads = workers};
+}
+
+/* Marks a piece, which must lie in the picture and be new. */
+static void mark(unsigned char *seen, int width, int height, const span *s)
+{
+    assert_true(s->x0 >= 0 && s->x0 < s->x1 && s->x1 <= width);
+    assert_true(s->y0 >= 0 && s->y0 < s->y1 && s->y1 <= height);
+    for (int y = s->y0; y < s->y1; y++)
+        for (int x = s->x0; x < s->x1; x++)
+            assert_int_equal(seen[y * width + x]++, 0);
+}
+
+static void every_pixel_goes_to_exactly_one_worker(void **state)
+{
+    (void)state;
+    static const int sizes[][2] = {{1, 1}, {7, 5}, {64, 48}, {37, 91}, {100, 1}, {1, 100}};
+    static const int tiles[] = {1, 3, 8, 64, 65536}, workers[] = {1, 2, 3, 7, 64, 1024};
+    for (size_t i = 0; i < COUNT(sizes); i++)
+        for (size_t k = 0; k < COUNT(tiles); k++)
+            for (size_t n = 0; n < COUNT(workers); n++)
+                for (int rule = SCHEDULE_COLUMNS; rule <= SCHEDULE_DYNAMIC; rule++) {
+                    const int width = sizes[i][0], height = sizes[i][1];
+                    const render_settings settings = settings_of((schedule_rule)rule, width, height, tiles[k], workers[n]);
+                    unsigned char *seen = calloc((size_t)(width * height), 1);
+                    schedule s;
+                    span piece;
+                    assert_non_null(seen);
+                    schedule_start(&s, &settings);
+                    for (int w = 0; w < workers[n]; w++)
+                        for (uint64_t taken = 0; schedule_next(&s, w, taken, &piece); taken++)
+                            mark(seen, width, height, &piece);
+                    for (int p = 0; p < width * height; p++)
+                        assert_int_equal(seen[p], 1);
+                    free(seen);
+                }
+}
+
+/* As the report deals them out: ceil(width / threads) columns each, the last ones what is left. */
+static void columns_and_rows_are_one_block_a_worker(void **state)
+{
+    (void)state;
+    const render_settings columns = settings_of(SCHEDULE_COLUMNS, 800, 600, 32, 7), rows = settings_of(SCHEDULE_ROWS, 800, 600, 32, 7);
+    schedule s;
+    span piece;
+    for (int w = 0; w < 7; w++) {
+        schedule_start(&s, &columns);
+        assert_true(schedule_next(&s, w, 0, &piece));
+        assert_int_equal(piece.x0, 115 * w);
+        assert_int_equal(piece.x1, w < 6 ? 115 * (w + 1) : 800);
+        assert_true(piece.y0 == 0 && piece.y1 == 600);
+        assert_false(schedule_next(&s, w, 1, &piece));
+        schedule_start(&s, &rows);
+        assert_true(schedule_next(&s, w, 0, &piece));
+        assert_int_equal(piece.y0, 86 * w);
+        assert_int_equal(piece.y1, w < 6 ? 86 * (w + 1) : 600);
+        assert_true(piece.x0 == 0 && piece.x1 == 800);
+        assert_false(schedule_next(&s, w, 1, &piece));
+    }
+}
+
+static void workers_without_a_share_get_none(void **state)
+{
+    (void)state;
+    const render_settings settings = settings_of(SCHEDULE_COLUMNS, 10, 10, 8, 1024);
+    schedule s;
+    span piece;
+    schedule_start(&s, &settings);
+    for (int w = 0; w < 1024; w++)
+        assert_true(schedule_next(&s, w, 0, &piece) == (w < 10));
+}
+
+/* Tiles are dealt out in turn, in reading order. */
+static void static_tiles_go_round(void **state)
+{
+    (void)state;
+    const render_settings settings = settings_of(SCHEDULE_TILES, 100, 50, 32, 3);
+    schedule s;
+    span piece;
+    schedule_start(&s, &settings);
+    assert_true(schedule_next(&s, 1, 0, &piece)); /* tile 1 of 4 across */
+    assert_true(piece.x0 == 32 && piece.x1 == 64 && piece.y0 == 0 && piece.y1 == 32);
+    assert_true(schedule_next(&s, 1, 1, &piece)); /* tile 4 */
+    assert_true(piece.x0 == 0 && piece.x1 == 32 && piece.y0 == 32 && piece.y1 == 50);
+    assert_true(schedule_next(&s, 1, 2, &piece)); /* tile 7 */
+    assert_true(piece.x0 == 96 && piece.x1 == 100 && piece.y0 == 32 && piece.y1 == 50);
+    assert_false(schedule_next(&s, 1, 3, &piece));
+}
+
+enum { WIDTH = 301, HEIGHT = 203, ASKERS = 8 };
+
+typedef struct asker { schedule *pieces; int worker; unsigned char *seen; } asker;
+
+/* Each pixel is marked by one thread alone if the schedule is right; ThreadSanitizer sees it if not. */
+static void *ask(void *argument)
+{
+    const asker *a = argument;
+    span piece;
+    for (uint64_t taken = 0; schedule_next(a->pieces, a->worker, taken, &piece); taken++)
+        for (int y = piece.y0; y < piece.y1; y++)
+            for (int x = piece.x0; x < piece.x1; x++)
+                a->seen[y * WIDTH + x]++;
+    return NULL;
+}
+
+static void threads_that_ask_at_once_share_all_tiles(void **state)
+{
+    (void)state;
+    const render_settings settings = settings_of(SCHEDULE_DYNAMIC, WIDTH, HEIGHT, 2, ASKERS);
+    static unsigned char seen[WIDTH * HEIGHT];
+    schedule s;
+    asker askers[ASKERS];
+    pthread_t threads[ASKERS];
+    schedule_start(&s, &settings);
+    for (int i = 0; i < ASKERS; i++) {
+        askers[i] = (asker){&s, i, seen};
+        assert_int_equal(pthread_create(&threads[i], NULL, ask, &askers[i]), 0);
+    }
+    for (int i = 0; i < ASKERS; i++)
+        assert_int_equal(pthread_join(threads[i], NULL), 0);
+    for (int p = 0; p < WIDTH * HEIGHT; p++)
+        assert_int_equal(seen[p], 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_pixel_goes_to_exactly_one_worker),
+        cmocka_unit_test(columns_and_rows_are_one_block_a_worker),
+        cmocka_unit_test(workers_without_a_share_get_none),
+        cmocka_unit_test(static_tiles_go_round),
+        cmocka_unit_test(threads_that_ask_at_once_share_all_tiles),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
