@@ -35,8 +35,18 @@ static void light_beyond_the_films_range_is_an_error(void **state)
     assert_true(why.what[0] && why.remedy[0]);
     set(s, "lamp.color=20,1,1");
     assert_int_equal(try_to_render(s, &why), STATUS_OK);
+    scene_destroy(s);
+}
+
+/* As render/tracer.c says of contributions that are not numbers; with shadow rays and without. */
+static void light_that_is_not_a_number_is_an_error(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=80 render.height=60 render.depth=1 render.shadows=off");
     s->lights[0].intensity = (double)NAN;
-    assert_int_equal(try_to_render(s, &why), STATUS_BAD_INPUT);
+    assert_int_equal(try_to_render(s, NULL), STATUS_BAD_INPUT);
+    set(s, "render.shadows=opaque");
+    assert_int_equal(try_to_render(s, NULL), STATUS_BAD_INPUT);
     scene_destroy(s);
 }
 
@@ -193,6 +203,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_beyond_the_films_range_is_an_error),
+        cmocka_unit_test(light_that_is_not_a_number_is_an_error),
         cmocka_unit_test(a_sum_beyond_the_films_range_is_an_error),
         cmocka_unit_test(a_scene_that_is_wrong_is_refused),
         cmocka_unit_test(an_interrupted_frame_ends_and_leaves_no_trace),

@@ -1,7 +1,6 @@
 #include "cli/outputs.h"
+#include "render/record.h"
 #include "base/text.h"
-#include "cli/timeline.h"
-#include "image/heatmap.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -132,47 +131,16 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-static status picture_of_values(const double *values, int width, int height, image **out, diagnostic *why)
-{
-    status result = image_create(width, height, out, why);
-    for (size_t i = 0; result == STATUS_OK && i < (size_t)width * (size_t)height; i++)
-        for (size_t channel = 0; channel < 3; channel++)
-            (*out)->pixel[i * 3 + channel] = (float)values[i];
-    return result;
-}
-
-static status write_map(const double *values, const film *size, const char *title, const char *path, diagnostic *why)
-{
-    image *picture = NULL;
-    status result = image_format_of(path) == IMAGE_PFM
-                        ? picture_of_values(values, size->width, size->height, &picture, why)
-                        : heatmap_create(values, size->width, size->height, title, &picture, why);
-    if (result == STATUS_OK)
-        result = image_write(picture, path, 8, why);
-    image_destroy(picture);
-    return result;
-}
-
-static status write_picture(const film *f, const char *path, int bits, diagnostic *why)
-{
-    image *picture = NULL;
-    status result = film_image(f, &picture, why);
-    if (result == STATUS_OK)
-        result = image_write(picture, path, bits == 16 ? 16 : 8, why);
-    image_destroy(picture);
-    return result;
-}
-
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why)
 {
     status ended = STATUS_OK;
     if (o->picture)
-        ended = write_picture(result->picture, o->picture, o->bits, why);
+        ended = record_picture(result->picture, o->picture, o->bits == 16 ? 16 : 8, why);
     if (ended == STATUS_OK && o->rays && result->pixel_rays)
-        ended = write_map(result->pixel_rays, result->picture, "rays per pixel", o->rays, why);
+        ended = record_map(result->pixel_rays, result->picture, "rays per pixel", o->rays, why);
     if (ended == STATUS_OK && o->time && result->pixel_ns)
-        ended = write_map(result->pixel_ns, result->picture, "nanoseconds per pixel", o->time, why);
+        ended = record_map(result->pixel_ns, result->picture, "nanoseconds per pixel", o->time, why);
     if (ended == STATUS_OK && o->timeline && result->events)
-        ended = timeline_write(result, o->timeline, why);
+        ended = record_timeline(result, o->timeline, why);
     return ended;
 }

@@ -1,6 +1,38 @@
-#include "cli/timeline.h"
+#include "render/record.h"
+
 #include "base/file.h"
 #include "base/number.h"
+#include "image/heatmap.h"
+
+status record_picture(const film *f, const char *path, int bits, diagnostic *why)
+{
+    image *picture = NULL;
+    status code = film_image(f, &picture, why);
+    if (code == STATUS_OK)
+        code = image_write(picture, path, bits, why);
+    image_destroy(picture);
+    return code;
+}
+
+static status picture_of_values(const double *values, const film *f, image **out, diagnostic *why)
+{
+    status code = image_create(f->width, f->height, out, why);
+    for (size_t i = 0; code == STATUS_OK && i < (size_t)f->width * (size_t)f->height; i++)
+        for (size_t channel = 0; channel < 3; channel++)
+            (*out)->pixel[i * 3 + channel] = (float)values[i];
+    return code;
+}
+
+status record_map(const double *values, const film *f, const char *title, const char *path, diagnostic *why)
+{
+    image *picture = NULL;
+    status code = image_format_of(path) == IMAGE_PFM ? picture_of_values(values, f, &picture, why)
+                                                     : heatmap_create(values, f->width, f->height, title, &picture, why);
+    if (code == STATUS_OK)
+        code = image_write(picture, path, 8, why);
+    image_destroy(picture);
+    return code;
+}
 
 static void write_row_name(FILE *stream, int worker)
 {
@@ -22,7 +54,7 @@ static void write_event(FILE *stream, const tile_event *e)
     fprintf(stream, "\"args\":{\"x0\":%d,\"y0\":%d,\"x1\":%d,\"y1\":%d}}", e->x0, e->y0, e->x1, e->y1);
 }
 
-status timeline_write(const render_result *result, const char *path, diagnostic *why)
+status record_timeline(const render_result *result, const char *path, diagnostic *why)
 {
     file_writer file;
     status opened = file_writer_open(&file, path, why);
