@@ -48,6 +48,7 @@ value("n") > 0 {
         set(key "/cut", scientific(value("cut_depth_throughput") / value("rays_camera")))
     if (value("rays_camera"))
         set(key "/glass", sprintf("%.1f", (value("first_hits.vessel") + value("first_hits.liquid")) / value("rays_camera") * 100))
+    if (value("others_share") != "") { others += value("others_share"); told++ }
     cells++
     rows += value("n")
     marked += value("marked")
@@ -68,6 +69,7 @@ END {
     set(study "/cells", cells)
     set(study "/rows", rows)
     set(study "/marked", marked + 0)
+    if (told) set(study "/others", sprintf("%.0f", others / told * 100))
     for (s in best) {
         set("threads/" s "/best", best_count[s])
         if (s in most) set("threads/" s "/loss", sprintf("%.1f", (most[s] / best[s] - 1) * 100))

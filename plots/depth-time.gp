@@ -9,6 +9,7 @@ cpu_0 = first(rows, "render.depth=0", "cpu_s_median")
 rays_0 = first(rows, "render.depth=0", "rays_total")
 published_0 = first(published."depth.csv", "depth=0", "cpu_s")
 
+set label 100 disturbed("depth") at screen 0.995,0.015 right font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.08,0.985,0.13,0.92 spacing 0.15
 set xlabel "recursion depth"
 set xrange [-0.5:largest(rows, "render.depth") + 0.5]
@@ -25,6 +26,7 @@ set boxwidth 0.62
 plot select(rows, "", "render.depth rays_total") using 1:($2/1e6) axes x1y2 with boxes lc rgb pale title "rays (right axis)", \
      times("wall_s") using 1:2:3:4 with yerrorlines lt 1 title "wall, median", \
      times("cpu_s") using 1:2:3:4 with yerrorlines lt 2 pt 4 dt (4,2) title "CPU, median"
+unset label 100
 
 unset y2tics
 unset y2label

@@ -8,6 +8,7 @@ times(pool) = select(rows, "render.pool=".pool, "render.threads wall_s_median wa
 # Both on one line, by threads.
 both = sprintf("< plots/join.sh '%s' render.threads 'render.pool=off' 'render.pool=on' 'wall_s_median wall_s_low wall_s_high'", rows)
 
+set label 100 disturbed("pool") at screen 0.995,0.015 right font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.08,0.985,0.14,0.92 spacing 0.11
 set logscale x 2
 set xlabel "threads"
@@ -19,6 +20,7 @@ set ylabel "wall time / ms"
 set key bottom left
 plot times("off") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 2 title "fresh threads", \
      times("on") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 1 title "pool"
+unset label 100
 set title "What fresh threads add to a frame"
 set ylabel "fresh less pool / ms"
 set autoscale y

@@ -14,6 +14,9 @@ text(file, where, column) = system(select(file, where, column)[3:*]." | head -n 
 largest(file, column) = number(system(select(file, "", column)[3:*]." | sort -g | tail -n 1"))
 number(text) = text eq "" ? NaN : real(text)
 first(file, where, column) = number(text(file, where, column))
+# The share of the machine that other processes used meanwhile, mean over the cells; a disturbed run says so in its figures.
+others(study) = number(system(select(table(study), "", "others_share")[3:*]." | awk '{ sum += $1 } END { if (NR) print sum/NR }'"))
+disturbed(study) = others(study) > 0.05 ? sprintf("other processes used %.0f %% of the machine meanwhile", others(study)*100) : ""
 
 # PFM: three lines of text, then little-endian floats from the bottom row up.
 pfm_start(path) = int(system("head -n 3 '".path."' | wc -c"))

@@ -6,6 +6,7 @@ load "plots/style.gp"
 load "plots/laws.gp"
 published_1 = first(published."threads.csv", "threads=1", "wall_s")
 
+set label 100 disturbed("threads") at screen 0.995,0.015 right font ",8" textcolor rgb grey
 set multiplot layout 2,2 margins 0.07,0.985,0.08,0.955 spacing 0.09,0.12
 set logscale x 2
 set xrange [0.9:1140]
@@ -27,5 +28,6 @@ do for [i=1:4] {
          (gunther_fits[i] ? gunther(x, gunther_s[i], gunther_k[i]) : NaN) with lines lc rgb orange lw 4 title name_g, \
          (amdahl_fits[i] ? amdahl(x, amdahl_s[i]) : NaN) with lines lc rgb ink lw 1.2 title name_a, \
          times(schedule) using 1:(one/$2):(one/$4):($3 > 0 ? one/$3 : 1e3) with yerrorbars lt i title "measured, wall"
+    unset label 100
 }
 unset multiplot

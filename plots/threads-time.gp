@@ -7,6 +7,7 @@ rows = table("threads")
 times(schedule, v) = select(rows, "render.schedule=".schedule, sprintf("render.threads %s_median %s_low %s_high", v, v, v))
 schedules = "columns rows tiles dynamic"
 
+set label 100 disturbed("threads") at screen 0.995,0.015 right font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.08,0.985,0.14,0.92 spacing 0.1
 set logscale x 2
 set xlabel "threads"
@@ -22,5 +23,6 @@ do for [v in "wall cpu"] {
     set title v eq "wall" ? "Wall time of a frame" : "CPU time of a frame"
     set ylabel (v eq "wall" ? "wall time / s" : "CPU time / s")
     plot for [i=1:words(schedules)] times(word(schedules, i), v."_s") using 1:2:3:4 with yerrorlines lt i title word(schedules, i)
+    unset label 100
 }
 unset multiplot

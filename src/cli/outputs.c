@@ -1,6 +1,6 @@
 #include "cli/outputs.h"
-#include "render/record.h"
 #include "base/text.h"
+#include "render/record.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -51,6 +51,7 @@ typedef struct arrangement {
     int body_count;      /* ranks 1 .. body_count */
     body *bodies;        /* [0] is the surrounding medium */
     double extent;       /* largest of the primitives' */
+    uint64_t opaque_ranks; /* bit r - 1: the body of rank r is opaque */
     bool distinct;       /* no two bodies are of one medium, nor is any of the surrounding one */
 } arrangement;
 

@@ -38,7 +38,7 @@ typedef struct ray_scratch {
     double slack[ROW], low[ROW], high[ROW];
     uint64_t inside[ROW];
     hit_batch again;           /* of rays that are looked at another time */
-    int64_t opaque_before[ROW], opaque_after[ROW], attention[ROW], undecided[ROW], blocked[ROW];
+    int64_t attention[ROW], undecided[ROW], blocked[ROW];
     int ray[ROW];            /* which ray of the batch a column belongs to */
 } ray_scratch;
 

@@ -110,29 +110,21 @@ static void all_sets_around(const arrangement *a, int n, ray_scratch *s, hit_bat
         sets_around(n, k, 1, s, c);
 }
 
-/* -1 where the body of that rank is opaque. */
-static void opaque_ranks(const arrangement *a, int n, const int64_t *restrict rank, int64_t *restrict opaque)
+/* -1 where the body of that rank is opaque: bit rank - 1 of the set. */
+ALWAYS_INLINE int64_t opaque_mask(uint64_t opaque_ranks, int64_t rank)
 {
-    for (int i = 0; i < n; i++)
-        opaque[i] = 0;
-    for (int r = 1; r <= a->body_count; r++) {
-        if (!a->bodies[r].opaque)
-            continue;
-        /* VECTORISE */
-        for (int i = 0; i < n; i++)
-            opaque[i] |= mask_same(rank[i], r);
-    }
+    const int64_t some = -(int64_t)(rank > 0);
+    return -(int64_t)(opaque_ranks >> (uint64_t)(rank + some) & 1) & some;
 }
 
 /* Whose surface it is: arrangement_surface. */
-static void surfaces(const arrangement *a, int n, ray_scratch *restrict s, hit_batch *restrict c)
+static void surfaces(uint64_t opaque_ranks, int n, const int64_t *restrict before, const int64_t *restrict after, int64_t *restrict surface)
 {
-    opaque_ranks(a, n, c->before, s->opaque_before);
-    opaque_ranks(a, n, c->after, s->opaque_after);
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
-        int64_t higher = blend_int(-(int64_t)(c->after[i] > c->before[i]), c->after[i], c->before[i]);
-        c->surface[i] = blend_int(s->opaque_after[i], c->after[i], blend_int(s->opaque_before[i], c->before[i], higher));
+        const int64_t opaque_after = opaque_mask(opaque_ranks, after[i]), opaque_before = opaque_mask(opaque_ranks, before[i]);
+        const int64_t higher = blend_int(-(int64_t)(after[i] > before[i]), after[i], before[i]);
+        surface[i] = blend_int(opaque_after, after[i], blend_int(opaque_before, before[i], higher));
     }
 }
 
@@ -166,7 +158,7 @@ static void next_changes(const arrangement *a, int n, ray_scratch *s, hit_batch 
     }
     all_sets_around(a, n, s, c);
     ranks_of(a, n, c->inside_after, c->after);
-    surfaces(a, n, s, c);
+    surfaces(a->opaque_ranks, n, c->before, c->after, c->surface);
     mark_attention(a, n, c, s->attention);
 }
 

@@ -1,0 +1,88 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "room_fixture.h"
+
+/* Shadow rays against marching from interface to interface. */
+
+/* From 0 to 1: the product of what each interface lets through, by the body of the higher rank; opaque matter lets nothing. */
+static double light_by_marching(const room *m, const reference_line *line, int solid_shadows)
+{
+    change met[SOLIDS_MAX * REFERENCE_CROSSINGS_MAX];
+    const int n = changes_of(m, line, met);
+    double light = 1.0;
+    for (int k = 0; k < n && met[k].t < 1; k++) {
+        if (solid_shadows || is_opaque(m, met[k].before) || is_opaque(m, met[k].after))
+            return 0.0;
+        light *= m->clearness[higher_of(m, met[k].before, met[k].after)];
+    }
+    return n < 0 ? -1.0 : light;
+}
+
+static void shadows_agree_with_marching(void **state)
+{
+    (void)state;
+    uint64_t seed = 22;
+    int partly = 0, dark = 0, lit = 0;
+    for (int trial = 0; trial < 800; trial++) {
+        room m;
+        room_fill(&m, &seed);
+        for (int k = 0; k < 12; k++) {
+            vec3 from = random_point(&seed, 3.0), to = random_point(&seed, 5.0);
+            if (winner(&m, from) >= 0 && m.opaque[winner(&m, from)])
+                continue; /* no light falls on a point within opaque matter */
+            one_ray r = {from, vec3_sub(to, from), FACE_NONE, arrangement_inside(m.solids, from)};
+            const reference_line line = {quad3_from(r.o), quad3_from(r.d)};
+            const double wanted = light_by_marching(&m, &line, k % 2), got = light_through(m.solids, r, k % 2);
+            if (wanted < 0.0)
+                continue;
+            assert_true(fabs(got - wanted) <= 1e-15);
+            partly += wanted > 0.0 && wanted < 1.0;
+            dark += wanted == 0.0;
+            lit += wanted == 1.0;
+        }
+        arrangement_destroy(m.solids);
+    }
+    assert_true(partly > 300 && dark > 600 && lit > 600);
+}
+
+/* An opaque cup: light comes in by its open top and through nothing else. */
+static void light_enters_an_opaque_cup_from_above(void **state)
+{
+    (void)state;
+    room m = {.count = 1, .opaque = {1}, .medium = {1}};
+    m.shape[0] = (solid_shape){.kind = SHAPE_CUP, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
+    room_build(&m);
+    const vec3 floor_point = vec3_make(0.0, 0.1, 0.0);
+    const uint64_t inside = arrangement_inside(m.solids, vec3_make(0.0, 0.2, 0.0));
+    const int64_t floor_face = FACES_MAX + 1;
+    for (int k = 0; k <= 100; k++) {
+        const double slope = k * 0.01; /* the lamp is 29 high above the floor; the rim stands 2.9 high at 0.9 */
+        one_ray r = {floor_point, vec3_make(29.0 * slope, 29.0, 0.0), floor_face, inside};
+        if (fabs(slope - 0.9 / 2.9) > 1e-9)
+            assert_true(light_through(m.solids, r, 0) == (slope < 0.9 / 2.9 ? 1.0 : 0.0));
+    }
+    one_ray below = {vec3_make(0.5, -1.0, 0.0), vec3_make(0.0, 10.0, 0.0), FACE_NONE, 0};
+    assert_true(light_through(m.solids, below, 0) == 0.0); /* through the bottom */
+    one_ray across = {vec3_make(-2.0, 1.0, 0.0), vec3_make(4.0, 0.0, 0.0), FACE_NONE, 0};
+    assert_true(light_through(m.solids, across, 0) == 0.0);
+    across.o.y = 3.5;
+    assert_true(light_through(m.solids, across, 0) == 1.0);
+    across.o.y = 1.0;
+    across.d.x = 0.99; /* the lamp is in front of the wall */
+    assert_true(light_through(m.solids, across, 0) == 1.0);
+    arrangement_destroy(m.solids);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shadows_agree_with_marching),
+        cmocka_unit_test(light_enters_an_opaque_cup_from_above),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

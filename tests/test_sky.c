@@ -1,0 +1,111 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "quad.h"
+#include "random_stream.h"
+#include "render/sky.h"
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+static void expect_radiance(vec3 got, double r, double g, double b)
+{
+    assert_near(got.x, r, 1e-12);
+    assert_near(got.y, g, 1e-12);
+    assert_near(got.z, b, 1e-12);
+}
+
+/* longitude 0 is +z, 90 is +x */
+static vec3 towards(double longitude, double latitude)
+{
+    quad s, c, sl, cl;
+    quad_sincos_deg(longitude, &s, &c);
+    quad_sincos_deg(latitude, &sl, &cl);
+    return vec3_make((double)(cl * s), (double)sl, (double)(cl * c));
+}
+
+static void a_uniform_sky_is_the_same_everywhere(void **state)
+{
+    (void)state;
+    const background sky = {.kind = BACKGROUND_UNIFORM, .color = {0.1, 0.2, 0.3}, .horizon = {1.0, 1.0, 1.0}};
+    uint64_t seed = 1;
+    for (int i = 0; i < 100; i++)
+        expect_radiance(sky_radiance(&sky, random_direction(&seed)), 0.1, 0.2, 0.3);
+}
+
+/* Linear in the direction's height, and the horizon's colour below it. */
+static void a_gradient_rises_with_the_sine_of_the_height(void **state)
+{
+    (void)state;
+    const background sky = {.kind = BACKGROUND_GRADIENT, .color = {1.0, 0.0, 0.5}, .horizon = {0.0, 1.0, 0.5}};
+    expect_radiance(sky_radiance(&sky, vec3_make(0.0, 1.0, 0.0)), 1.0, 0.0, 0.5);
+    expect_radiance(sky_radiance(&sky, vec3_make(0.6, 0.8, 0.0)), 0.8, 0.2, 0.5);
+    expect_radiance(sky_radiance(&sky, vec3_make(0.0, 0.28, -0.96)), 0.28, 0.72, 0.5);
+    expect_radiance(sky_radiance(&sky, vec3_make(1.0, 0.0, 0.0)), 0.0, 1.0, 0.5);
+    expect_radiance(sky_radiance(&sky, vec3_make(0.0, -1.0, 0.0)), 0.0, 1.0, 0.5);
+}
+
+enum { WIDTH = 8, HEIGHT = 4 };
+
+/* Column in red, row in green. */
+static image *numbered(void)
+{
+    image *picture = NULL;
+    assert_int_equal(image_create(WIDTH, HEIGHT, &picture, NULL), STATUS_OK);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            float *p = &picture->pixel[(y * WIDTH + x) * 3];
+            p[0] = (float)x;
+            p[1] = (float)y;
+            p[2] = 0.5f;
+        }
+    return picture;
+}
+
+static void a_picture_is_met_texel_by_texel(void **state)
+{
+    (void)state;
+    image *picture = numbered();
+    const background sky = {.kind = BACKGROUND_PICTURE, .picture = picture};
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            /* the middle column is +z, the right half +x, the top row straight up */
+            const double longitude = (x + 0.5) / WIDTH * 360.0 - 180.0, latitude = 90.0 - (y + 0.5) / HEIGHT * 180.0;
+            expect_radiance(sky_radiance(&sky, towards(longitude, latitude)), x, y, 0.5);
+        }
+    expect_radiance(sky_radiance(&sky, vec3_make(0.0, 0.0, 1.0)), 3.5, 1.5, 0.5);
+    expect_radiance(sky_radiance(&sky, vec3_make(1.0, 0.0, 0.0)), 5.5, 1.5, 0.5);
+    expect_radiance(sky_radiance(&sky, vec3_make(-1.0, 0.0, 0.0)), 1.5, 1.5, 0.5);
+    image_destroy(picture);
+}
+
+static void a_picture_closes_behind_and_ends_at_the_poles(void **state)
+{
+    (void)state;
+    image *picture = numbered();
+    const background sky = {.kind = BACKGROUND_PICTURE, .picture = picture};
+    const double texel = 360.0 / WIDTH;
+    for (int k = -4; k <= 4; k++) { /* across the seam from column 7 to column 0 */
+        const double share = 0.5 + k / 8.0;
+        expect_radiance(sky_radiance(&sky, towards(180.0 + k / 8.0 * texel, 22.5)), 7.0 * (1.0 - share), 1.0, 0.5);
+    }
+    assert_near(sky_radiance(&sky, vec3_make(0.0, 1.0, 0.0)).y, 0.0, 1e-12);
+    assert_near(sky_radiance(&sky, vec3_make(0.0, -1.0, 0.0)).y, HEIGHT - 1.0, 1e-12);
+    assert_near(sky_radiance(&sky, towards(10.0, 80.0)).y, 0.0, 1e-12); /* above the first row's middle */
+    assert_near(sky_radiance(&sky, towards(10.0, 45.0)).y, 0.5, 1e-12); /* between the first two */
+    image_destroy(picture);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_uniform_sky_is_the_same_everywhere),
+        cmocka_unit_test(a_gradient_rises_with_the_sine_of_the_height),
+        cmocka_unit_test(a_picture_is_met_texel_by_texel),
+        cmocka_unit_test(a_picture_closes_behind_and_ends_at_the_poles),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
