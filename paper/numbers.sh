@@ -57,7 +57,7 @@ mkdir -p "$out"
     machine
     laws
     # Rays by pixel are the same for every schedule.
-    for map in "$results"/profile/images/*-rays.pfm; do
+    for map in "$results"/maps/images/*-rays.pfm; do
         [ ! -r "$map" ] || "$here/blocks.sh" "$map"
         break
     done

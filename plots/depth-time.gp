@@ -9,7 +9,7 @@ cpu_0 = first(rows, "render.depth=0", "cpu_s_median")
 rays_0 = first(rows, "render.depth=0", "rays_total")
 published_0 = first(published."depth.csv", "depth=0", "cpu_s")
 
-set label 100 disturbed("depth") at screen 0.995,0.015 right font ",8" textcolor rgb grey
+set label 100 disturbed("depth") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.08,0.985,0.13,0.92 spacing 0.15
 set xlabel "recursion depth"
 set xrange [-0.5:largest(rows, "render.depth") + 0.5]

@@ -8,7 +8,7 @@ times(pool) = select(rows, "render.pool=".pool, "render.threads wall_s_median wa
 # Both on one line, by threads.
 both = sprintf("< plots/join.sh '%s' render.threads 'render.pool=off' 'render.pool=on' 'wall_s_median wall_s_low wall_s_high'", rows)
 
-set label 100 disturbed("pool") at screen 0.995,0.015 right font ",8" textcolor rgb grey
+set label 100 disturbed("pool") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.08,0.985,0.14,0.92 spacing 0.11
 set logscale x 2
 set xlabel "threads"

@@ -14,7 +14,7 @@ of(pin) = strcol(2) eq pin ? 1 : NaN
 
 stats bars using ($5 + $6)*1e3 nooutput
 longest = STATS_max
-set label 100 (readable(table("profile")) ? disturbed("profile") : "") at screen 0.995,0.015 right font ",8" textcolor rgb grey
+set label 100 (readable(table("profile")) ? disturbed("profile") : "") at screen 0.985,0.97 right font ",8" textcolor rgb grey
 set multiplot layout 1,3 margins 0.08,0.985,0.13,0.86 spacing 0.02
 set yrange [4:0]
 set xrange [0:longest*1.08]

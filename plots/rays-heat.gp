@@ -1,11 +1,11 @@
 # Where the work lies: rays of all kinds and time by pixel, of one frame.
 # The colours end where all but 1 in 100 pixels lie, at either end.
-# needs: profile/images/0000-rays.pfm profile/images/0000-ns.pfm
+# needs: maps/images/0000-rays.pfm maps/images/0000-ns.pfm
 width = 1000; height = 338
 load "plots/style.gp"
 
 load "plots/picture.gp"
-values(kind) = sprintf("%s/profile/images/0000-%s.pfm", results, kind)
+values(kind) = sprintf("%s/maps/images/0000-%s.pfm", results, kind)
 set palette defined @viridis
 set logscale cb 10
 set cbtics ("1" 1, "2" 2, "5" 5, "10" 10, "20" 20, "50" 50, "100" 100, "200" 200, "500" 500, "1000" 1000, "2000" 2000, \

@@ -6,7 +6,7 @@ load "plots/style.gp"
 load "plots/laws.gp"
 published_1 = first(published."threads.csv", "threads=1", "wall_s")
 
-set label 100 disturbed("threads") at screen 0.995,0.015 right font ",8" textcolor rgb grey
+set label 100 disturbed("threads") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 2,2 margins 0.07,0.985,0.08,0.955 spacing 0.09,0.12
 set logscale x 2
 set xrange [0.9:1140]

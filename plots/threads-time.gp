@@ -7,7 +7,7 @@ rows = table("threads")
 times(schedule, v) = select(rows, "render.schedule=".schedule, sprintf("render.threads %s_median %s_low %s_high", v, v, v))
 schedules = "columns rows tiles dynamic"
 
-set label 100 disturbed("threads") at screen 0.995,0.015 right font ",8" textcolor rgb grey
+set label 100 disturbed("threads") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.08,0.985,0.14,0.92 spacing 0.1
 set logscale x 2
 set xlabel "threads"

@@ -1,5 +1,5 @@
-/* Quadruple precision (113 bits) for tests to compare with: enough arithmetic for roots, rotations and Fresnel's angles,
- * written here because libquadmath is gcc's alone, and long double is a double under valgrind. Pure. */
+/* Quadruple precision (113 bits) for tests to compare with: enough arithmetic for roots, rotations and Fresnel's
+ * angles, written here because libquadmath is gcc's alone, and long double is a double under valgrind. Pure. */
 #ifndef CUVETTE_TESTS_QUAD_H
 #define CUVETTE_TESTS_QUAD_H
 
@@ -7,11 +7,22 @@
 #include <math.h>
 
 __extension__ typedef __float128 quad;
-typedef struct quad3 { quad x, y, z; } quad3;
+typedef struct quad3 {
+    quad x, y, z;
+} quad3;
 
-static inline quad quad_abs(quad a) { return a < 0 ? -a : a; }
-static inline quad quad_min(quad a, quad b) { return a < b ? a : b; }
-static inline quad quad_max(quad a, quad b) { return a > b ? a : b; }
+static inline quad quad_abs(quad a)
+{
+    return a < 0 ? -a : a;
+}
+static inline quad quad_min(quad a, quad b)
+{
+    return a < b ? a : b;
+}
+static inline quad quad_max(quad a, quad b)
+{
+    return a > b ? a : b;
+}
 
 /* Newton's steps from the root in doubles: 53, 106, 113 bits. */
 static inline quad quad_sqrt(quad a)
@@ -53,19 +64,44 @@ static inline void quad_sincos_deg(quad degrees, quad *sine, quad *cosine)
     }
 }
 
-static inline quad3 quad3_make(quad x, quad y, quad z) { quad3 v = {x, y, z}; return v; }
-static inline quad3 quad3_from(vec3 v) { return quad3_make(v.x, v.y, v.z); }
-static inline quad3 quad3_add(quad3 a, quad3 b) { return quad3_make(a.x + b.x, a.y + b.y, a.z + b.z); }
-static inline quad3 quad3_sub(quad3 a, quad3 b) { return quad3_make(a.x - b.x, a.y - b.y, a.z - b.z); }
-static inline quad3 quad3_scale(quad3 a, quad k) { return quad3_make(a.x * k, a.y * k, a.z * k); }
-static inline quad quad3_dot(quad3 a, quad3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static inline quad quad3_length(quad3 a) { return quad_sqrt(quad3_dot(a, a)); }
+static inline quad3 quad3_make(quad x, quad y, quad z)
+{
+    quad3 v = {x, y, z};
+    return v;
+}
+static inline quad3 quad3_from(vec3 v)
+{
+    return quad3_make(v.x, v.y, v.z);
+}
+static inline quad3 quad3_add(quad3 a, quad3 b)
+{
+    return quad3_make(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+static inline quad3 quad3_sub(quad3 a, quad3 b)
+{
+    return quad3_make(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+static inline quad3 quad3_scale(quad3 a, quad k)
+{
+    return quad3_make(a.x * k, a.y * k, a.z * k);
+}
+static inline quad quad3_dot(quad3 a, quad3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+static inline quad quad3_length(quad3 a)
+{
+    return quad_sqrt(quad3_dot(a, a));
+}
 static inline quad3 quad3_cross(quad3 a, quad3 b)
 {
     return quad3_make(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-typedef struct quad_rotation { vec3 degrees; quad3 row[3]; } quad_rotation;
+typedef struct quad_rotation {
+    vec3 degrees;
+    quad3 row[3];
+} quad_rotation;
 
 /* About x, then y, then z; right-hand rule. */
 static inline quad_rotation quad_rotation_make(vec3 degrees)
@@ -82,8 +118,9 @@ static inline quad_rotation quad_rotation_make(vec3 degrees)
                                   : quad3_make(c * v.x - s * v.y, s * v.x + c * v.y, v.z);
         }
     }
-    quad_rotation r = {degrees,
-                       {{axes[0].x, axes[1].x, axes[2].x}, {axes[0].y, axes[1].y, axes[2].y}, {axes[0].z, axes[1].z, axes[2].z}}};
+    quad_rotation r = {
+        degrees,
+        {{axes[0].x, axes[1].x, axes[2].x}, {axes[0].y, axes[1].y, axes[2].y}, {axes[0].z, axes[1].z, axes[2].z}}};
     return r;
 }
 

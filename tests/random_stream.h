@@ -29,7 +29,8 @@ static inline int random_below(uint64_t *seed, int count)
 
 static inline vec3 random_point(uint64_t *seed, double reach)
 {
-    double x = random_real(seed, -reach, reach), y = random_real(seed, -reach, reach), z = random_real(seed, -reach, reach);
+    double x = random_real(seed, -reach, reach), y = random_real(seed, -reach, reach),
+           z = random_real(seed, -reach, reach);
     return vec3_make(x, y, z);
 }
 

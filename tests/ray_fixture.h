@@ -6,7 +6,11 @@
 #include "base/isa.h"
 #include "geometry/rays.h"
 
-typedef struct one_ray { vec3 o, d; int64_t start; uint64_t inside; } one_ray;
+typedef struct one_ray {
+    vec3 o, d;
+    int64_t start;
+    uint64_t inside;
+} one_ray;
 
 typedef struct one_hit {
     double t;
@@ -19,7 +23,9 @@ typedef struct one_hit {
 
 static inline const geometry_kernels *kernels_of(isa level)
 {
-    return level == ISA_AVX512 ? &geometry_kernels_avx512 : level == ISA_AVX2 ? &geometry_kernels_avx2 : &geometry_kernels_sse2;
+    return level == ISA_AVX512 ? &geometry_kernels_avx512
+           : level == ISA_AVX2 ? &geometry_kernels_avx2
+                               : &geometry_kernels_sse2;
 }
 
 static inline ray_batch batch_of_one(const one_ray *r)
@@ -35,8 +41,14 @@ static inline one_hit nearest_interface(const arrangement *a, one_ray r)
     const geometry_kernels *kernels = kernels_of(isa_best());
     const ray_batch batch = batch_of_one(&r);
     kernels->nearest(a, &batch, &scratch, &hits);
-    one_hit h = {.t = hits.t[0], .crossed = (int)hits.crossed[0], .before = (int)hits.before[0], .after = (int)hits.after[0], .surface = (int)hits.surface[0],
-                 .inside_before = hits.inside_before[0], .inside_after = hits.inside_after[0], .face = FACE_NONE};
+    one_hit h = {.t = hits.t[0],
+                 .crossed = (int)hits.crossed[0],
+                 .before = (int)hits.before[0],
+                 .after = (int)hits.after[0],
+                 .surface = (int)hits.surface[0],
+                 .inside_before = hits.inside_before[0],
+                 .inside_after = hits.inside_after[0],
+                 .face = FACE_NONE};
     if (h.crossed < 0)
         return h;
     r.inside = h.inside_before;

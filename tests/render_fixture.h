@@ -1,5 +1,5 @@
-/* Scenes from text and pictures of them, for tests. Each call asserts that it worked. Ownership: scene_from and render give; release
- * with scene_destroy and render_result_destroy. */
+/* Scenes from text and pictures of them, for tests. Each call asserts that it worked. Ownership: scene_from and
+ * render give; release with scene_destroy and render_result_destroy. */
 #ifndef CUVETTE_TESTS_RENDER_FIXTURE_H
 #define CUVETTE_TESTS_RENDER_FIXTURE_H
 
@@ -78,7 +78,8 @@ static inline render_result *render(const scene *s)
 static inline vec3 look(const scene *s)
 {
     render_result *result = render(s);
-    vec3 seen = vec3_make(film_value(result->picture, 0, 0, 0), film_value(result->picture, 0, 0, 1), film_value(result->picture, 0, 0, 2));
+    vec3 seen = vec3_make(film_value(result->picture, 0, 0, 0), film_value(result->picture, 0, 0, 1),
+                          film_value(result->picture, 0, 0, 2));
     render_result_destroy(result);
     return seen;
 }

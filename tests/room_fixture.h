@@ -1,5 +1,5 @@
-/* Rooms of a few overlapping solids, at random, and what is where in them by definition and in quadruple precision. Ownership:
- * room_fill and room_build give m->solids; release it with arrangement_destroy. */
+/* Rooms of a few overlapping solids, at random, and what is where in them by definition and in quadruple precision.
+ * Ownership: room_fill and room_build give m->solids; release it with arrangement_destroy. */
 #ifndef CUVETTE_TESTS_ROOM_FIXTURE_H
 #define CUVETTE_TESTS_ROOM_FIXTURE_H
 
@@ -18,13 +18,17 @@ typedef struct room {
     arrangement *solids;
 } room;
 
-typedef struct change { quad t; int before, after; } change; /* solids' indices; -1 for none */
+typedef struct change {
+    quad t;
+    int before, after;
+} change; /* solids' indices; -1 for none */
 
 static inline void room_build(room *m)
 {
     body_source sources[SOLIDS_MAX];
     for (int i = 0; i < m->count; i++)
-        sources[i] = (body_source){&m->shape[i], m->priority[i], m->medium[i], m->opaque[i], m->opaque[i] ? 0.0 : m->clearness[i], i};
+        sources[i] = (body_source){
+            &m->shape[i], m->priority[i], m->medium[i], m->opaque[i], m->opaque[i] ? 0.0 : m->clearness[i], i};
     assert_int_equal(arrangement_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
 }
 
@@ -87,8 +91,9 @@ static inline int crossings_of(const room *m, const reference_line *line, quad *
     return n;
 }
 
-/* Changes of the winning solid along the line; those between equal media are left out. Crossings at one and the same distance are
- * one. A returned -1: crossings that are so close together, and yet apart, that doubles may see them otherwise. */
+/* Changes of the winning solid along the line; those between equal media are left out. Crossings at one and the same
+ * distance are one. A returned -1: crossings that are so close together, and yet apart, that doubles may see them
+ * otherwise. */
 static inline int changes_of(const room *m, const reference_line *line, change *out)
 {
     const quad same = (quad)1e-13, apart = (quad)1e-6;
@@ -102,7 +107,8 @@ static inline int changes_of(const room *m, const reference_line *line, change *
         const quad behind = next < n ? t[next] : t[i] + 1;
         if (t[i] - last < apart || behind - t[i] < apart)
             return -1;
-        const int before = winner(m, point_at(line, (last + t[i]) / 2)), after = winner(m, point_at(line, (t[i] + behind) / 2));
+        const int before = winner(m, point_at(line, (last + t[i]) / 2)),
+                  after = winner(m, point_at(line, (t[i] + behind) / 2));
         if (medium_of(m, before) != medium_of(m, after))
             out[count++] = (change){t[i], before, after};
         last = t[i];
@@ -146,14 +152,17 @@ static inline void room_fill_on_a_grid(room *m, uint64_t *seed)
     arrangement_destroy(m->solids);
     for (int i = 0; i < m->count; i++) {
         solid_shape *s = &m->shape[i];
-        s->position = vec3_make(0.25 * (random_below(seed, 5) - 2), 0.25 * (random_below(seed, 5) - 2), 0.25 * (random_below(seed, 5) - 2));
-        s->rotation_deg = vec3_make(90.0 * random_below(seed, 4), 0.0, random_below(seed, 2) ? 0.0 : 90.0 * random_below(seed, 4));
+        s->position = vec3_make(0.25 * (random_below(seed, 5) - 2), 0.25 * (random_below(seed, 5) - 2),
+                                0.25 * (random_below(seed, 5) - 2));
+        s->rotation_deg =
+            vec3_make(90.0 * random_below(seed, 4), 0.0, random_below(seed, 2) ? 0.0 : 90.0 * random_below(seed, 4));
         s->radius = 0.25 * (2 + random_below(seed, 4));
         s->inner_radius = s->radius - 0.25;
         s->height = 0.25 * (2 + random_below(seed, 5));
         s->floor = 0.25;
         s->m = 1.0;
-        s->size = vec3_make(0.5 * (1 + random_below(seed, 3)), 0.5 * (1 + random_below(seed, 3)), 0.5 * (1 + random_below(seed, 3)));
+        s->size = vec3_make(0.5 * (1 + random_below(seed, 3)), 0.5 * (1 + random_below(seed, 3)),
+                            0.5 * (1 + random_below(seed, 3)));
     }
     room_build(m);
 }

@@ -1,6 +1,6 @@
-/* Solids in quadruple precision for tests to compare with, by the definitions at the head of geometry/solid.h and nothing else:
- * every crossing of a line with every surface of a shape, containment, and distance to the surface. What lies between two
- * crossings is found by asking its midpoint. Pure; ownership: values. */
+/* Solids in quadruple precision for tests to compare with, by the definitions at the head of geometry/solid.h and
+ * nothing else: every crossing of a line with every surface of a shape, containment, and distance to the surface.
+ * What lies between two crossings is found by asking its midpoint. Pure; ownership: values. */
 #ifndef CUVETTE_TESTS_SOLID_REFERENCE_H
 #define CUVETTE_TESTS_SOLID_REFERENCE_H
 
@@ -9,9 +9,14 @@
 
 enum { REFERENCE_CROSSINGS_MAX = 8 }; /* of one shape with a line */
 
-typedef struct reference_line { quad3 o, d; } reference_line; /* d need not be of unit length */
+typedef struct reference_line {
+    quad3 o, d;
+} reference_line; /* d need not be of unit length */
 
-static inline quad3 reference_at(const reference_line *line, quad t) { return quad3_add(line->o, quad3_scale(line->d, t)); }
+static inline quad3 reference_at(const reference_line *line, quad t)
+{
+    return quad3_add(line->o, quad3_scale(line->d, t));
+}
 
 static inline reference_line reference_local(const solid_shape *s, const reference_line *line)
 {
@@ -54,7 +59,8 @@ static inline int reference_crossings(const solid_shape *s, const reference_line
     switch (s->kind) {
     case SHAPE_PLANE: return reference_level(l.o.y, l.d.y, 0, t);
     case SHAPE_SPHERE:
-        return reference_quadratic(quad3_dot(l.d, l.d), quad3_dot(l.o, l.d), quad3_dot(l.o, l.o) - (quad)s->radius * s->radius, t);
+        return reference_quadratic(quad3_dot(l.d, l.d), quad3_dot(l.o, l.d),
+                                   quad3_dot(l.o, l.o) - (quad)s->radius * s->radius, t);
     case SHAPE_BOX:
         for (int k = 0; k < 3; k++) {
             n += reference_level(o[k], d[k], -half[k], t + n);
@@ -117,7 +123,10 @@ static inline quad reference_distance(const solid_shape *s, quad3 point)
     return 1;
 }
 
-static inline int reference_contains(const solid_shape *s, quad3 point) { return reference_distance(s, point) <= 0; }
+static inline int reference_contains(const solid_shape *s, quad3 point)
+{
+    return reference_distance(s, point) <= 0;
+}
 
 static inline void reference_sort(quad *t, int n)
 {
@@ -137,8 +146,10 @@ static inline int reference_events(const solid_shape *s, const reference_line *l
     reference_sort(all, n);
     int events = 0;
     for (int i = 0; i < n; i++) {
-        quad before = i > 0 ? (all[i - 1] + all[i]) / 2 : all[i] - 1, behind = i < n - 1 ? (all[i] + all[i + 1]) / 2 : all[i] + 1;
-        if (all[i] > after && reference_contains(s, reference_at(line, before)) != reference_contains(s, reference_at(line, behind)))
+        quad before = i > 0 ? (all[i - 1] + all[i]) / 2 : all[i] - 1,
+             behind = i < n - 1 ? (all[i] + all[i + 1]) / 2 : all[i] + 1;
+        if (all[i] > after &&
+            reference_contains(s, reference_at(line, before)) != reference_contains(s, reference_at(line, behind)))
             t[events++] = all[i];
     }
     return events;

@@ -10,7 +10,8 @@
 #include "random_stream.h"
 #include "ray_fixture.h"
 
-/* Faces that coincide, exactly or to within the roundings of a turn: one interface or none, and never a film of air between. */
+/* Faces that coincide, exactly or to within the roundings of a turn: one interface or none, and never a film of air
+ * between. */
 
 enum { PARTS_MAX = 4, STEPS_MAX = 8 };
 
@@ -54,7 +55,8 @@ static void expect_media(const assembly *m, one_ray r, const char *wanted)
     assert_int_equal(nearest_interface(m->solids, r).crossed, -1);
 }
 
-/* A line through a point of the contact plane y = level, from above, at an angle to that plane down to 1e-7 (both upright). */
+/* A line through a point of the contact plane y = level, from above, at an angle to that plane down to 1e-7 (both
+ * upright). */
 static one_ray line_through(const assembly *m, vec3 contact, double away, uint64_t *seed)
 {
     const double steep = exp(random_real(seed, -16.0, 0.5)), turn = random_real(seed, 0.0, 6.2831853);
@@ -90,9 +92,18 @@ static assembly blocks(int64_t lower, int64_t upper, int64_t lower_priority)
     return m;
 }
 
-static assembly blocks_of_one_glass(void) { return blocks(1, 1, 1); }
-static assembly blocks_of_two_glasses(void) { return blocks(1, 2, 1); }
-static assembly blocks_of_which_the_lower_wins(void) { return blocks(1, 2, 3); }
+static assembly blocks_of_one_glass(void)
+{
+    return blocks(1, 1, 1);
+}
+static assembly blocks_of_two_glasses(void)
+{
+    return blocks(1, 2, 1);
+}
+static assembly blocks_of_which_the_lower_wins(void)
+{
+    return blocks(1, 2, 3);
+}
 
 static assembly block_on_a_plane(void)
 {
@@ -106,7 +117,8 @@ static assembly cylinder_on_a_plane_that_wins(void)
 {
     assembly m = {.count = 2, .priority = {5, 1}, .medium = {1, 2}};
     m.shape[0] = (solid_shape){.kind = SHAPE_PLANE, .position = {0.0, 0.3, 0.0}};
-    m.shape[1] = (solid_shape){.kind = SHAPE_CYLINDER, .position = {0.0, 0.3, 0.0}, .radius = 0.9, .height = 0.7, .m = 1.0};
+    m.shape[1] =
+        (solid_shape){.kind = SHAPE_CYLINDER, .position = {0.0, 0.3, 0.0}, .radius = 0.9, .height = 0.7, .m = 1.0};
     return m;
 }
 
@@ -143,7 +155,8 @@ static void mirror_at_the_contact(assembly_maker *make)
             one_hit h = nearest_interface(m.solids, r);
             h = nearest_interface(m.solids, (one_ray){h.point, r.d, h.face, h.inside_after});
             assert_int_equal(m.solids->bodies[h.after].medium, 1);
-            expect_media(&m, (one_ray){h.point, direction_reflect(r.d, h.normal, h.cos_i), h.face, h.inside_before}, "20");
+            expect_media(&m, (one_ray){h.point, direction_reflect(r.d, h.normal, h.cos_i), h.face, h.inside_before},
+                         "20");
         }
         arrangement_destroy(m.solids);
     }
@@ -156,19 +169,27 @@ static void a_mirrored_ray_leaves_the_contact(void **state)
     mirror_at_the_contact(blocks_of_which_the_lower_wins);
 }
 
-/* A liquid that fills its vessel exactly: same radius, same floor, same height; the vessel of the higher priority, then the liquid. */
+/* A liquid that fills its vessel exactly: same radius, same floor, same height; the vessel of the higher priority,
+ * then the liquid. */
 static void a_liquid_that_fits_its_vessel_exactly(void **state)
 {
     (void)state;
     uint64_t seed = 33;
     for (size_t k = 0; k < 2 * sizeof turns / sizeof *turns; k++) {
         assembly m = {.count = 2, .priority = {2, k % 2 ? 3 : 1}, .medium = {1, 2}};
-        m.shape[0] = (solid_shape){.kind = SHAPE_CUP, .position = {0.0, -1.0, 0.0}, .radius = 1.0, .inner_radius = 0.9, .height = 2.0, .floor = 0.1};
-        m.shape[1] = (solid_shape){.kind = SHAPE_CYLINDER, .position = {0.0, -0.9, 0.0}, .radius = 0.9, .height = 1.9, .m = 1.0};
+        m.shape[0] = (solid_shape){.kind = SHAPE_CUP,
+                                   .position = {0.0, -1.0, 0.0},
+                                   .radius = 1.0,
+                                   .inner_radius = 0.9,
+                                   .height = 2.0,
+                                   .floor = 0.1};
+        m.shape[1] =
+            (solid_shape){.kind = SHAPE_CYLINDER, .position = {0.0, -0.9, 0.0}, .radius = 0.9, .height = 1.9, .m = 1.0};
         assemble(&m, turns[k / 2]);
         for (int i = 0; i < 4000; i++) {
             /* from the liquid, to a point of the wall that is well under the rim */
-            vec3 from = vec3_make(random_real(&seed, -0.5, 0.5), random_real(&seed, -0.6, 0.6), random_real(&seed, -0.5, 0.5));
+            vec3 from =
+                vec3_make(random_real(&seed, -0.5, 0.5), random_real(&seed, -0.6, 0.6), random_real(&seed, -0.5, 0.5));
             const double turn = random_real(&seed, 0.0, 6.2831853);
             vec3 wall = vec3_make(0.9 * cos(turn), random_real(&seed, -0.5, 0.5), 0.9 * sin(turn));
             one_ray r = {turned(from, m.turn), turned(vec3_normalize(vec3_sub(wall, from)), m.turn), FACE_NONE, 0};
@@ -176,15 +197,20 @@ static void a_liquid_that_fits_its_vessel_exactly(void **state)
             expect_media(&m, r, "210");
             /* and back from outside */
             vec3 far = vec3_add(r.o, vec3_scale(r.d, 4.0));
-            const one_hit in = nearest_interface(m.solids, (one_ray){far, vec3_scale(r.d, -1.0), FACE_NONE, arrangement_inside(m.solids, far)});
+            const one_hit in = nearest_interface(
+                m.solids, (one_ray){far, vec3_scale(r.d, -1.0), FACE_NONE, arrangement_inside(m.solids, far)});
             assert_int_equal(m.solids->bodies[in.after].medium, 1);
-            const one_hit wet = nearest_interface(m.solids, (one_ray){in.point, vec3_scale(r.d, -1.0), in.face, in.inside_after});
+            const one_hit wet =
+                nearest_interface(m.solids, (one_ray){in.point, vec3_scale(r.d, -1.0), in.face, in.inside_after});
             assert_int_equal(m.solids->bodies[wet.before].medium, 1);
             assert_int_equal(m.solids->bodies[wet.after].medium, 2);
         }
         /* down the axis: through the surface and the floor */
         vec3 above = turned(vec3_make(0.1, 3.0, 0.2), m.turn);
-        expect_media(&m, (one_ray){above, turned(vec3_make(0.0, -1.0, 0.0), m.turn), FACE_NONE, arrangement_inside(m.solids, above)}, "0210");
+        expect_media(
+            &m,
+            (one_ray){above, turned(vec3_make(0.0, -1.0, 0.0), m.turn), FACE_NONE, arrangement_inside(m.solids, above)},
+            "0210");
         arrangement_destroy(m.solids);
     }
 }
@@ -196,8 +222,14 @@ static void a_liquid_that_reaches_into_the_wall(void **state)
     static const double turning_points[] = {1.0, 1.1, 2.9, 3.0}; /* from x = -2 */
     static const int64_t media[] = {0, 1, 2, 1, 0};
     assembly m = {.count = 2, .priority = {2, 1}, .medium = {1, 2}};
-    m.shape[0] = (solid_shape){.kind = SHAPE_CUP, .position = {0.0, 0.001, 0.0}, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
-    m.shape[1] = (solid_shape){.kind = SHAPE_CYLINDER, .position = {0.0, 0.051, 0.0}, .radius = 0.95, .height = 1.95, .m = 1.0};
+    m.shape[0] = (solid_shape){.kind = SHAPE_CUP,
+                               .position = {0.0, 0.001, 0.0},
+                               .radius = 1.0,
+                               .inner_radius = 0.9,
+                               .height = 3.0,
+                               .floor = 0.1};
+    m.shape[1] =
+        (solid_shape){.kind = SHAPE_CYLINDER, .position = {0.0, 0.051, 0.0}, .radius = 0.95, .height = 1.95, .m = 1.0};
     assemble(&m, turns[0]);
     one_ray r = {vec3_make(-2.0, 1.0, 0.0), vec3_make(1.0, 0.0, 0.0), FACE_NONE, 0};
     for (int k = 0; k < 4; k++) {
@@ -223,7 +255,12 @@ static void equal_media_are_no_interface(void **state)
     assembly m = {.count = 3, .priority = {0, 1, 2}, .medium = {0, 0, 0}};
     m.shape[0] = (solid_shape){.kind = SHAPE_SPHERE, .radius = 1.0};
     m.shape[1] = (solid_shape){.kind = SHAPE_BOX, .position = {0.5, 0.0, 0.0}, .size = {1.0, 1.0, 1.0}};
-    m.shape[2] = (solid_shape){.kind = SHAPE_CUP, .position = {0.0, -0.5, 0.0}, .radius = 1.0, .inner_radius = 0.9, .height = 1.5, .floor = 0.1};
+    m.shape[2] = (solid_shape){.kind = SHAPE_CUP,
+                               .position = {0.0, -0.5, 0.0},
+                               .radius = 1.0,
+                               .inner_radius = 0.9,
+                               .height = 1.5,
+                               .floor = 0.1};
     assembly bubble = m;
     bubble.medium[0] = 1;
     bubble.count = 2;
@@ -231,7 +268,10 @@ static void equal_media_are_no_interface(void **state)
     uint64_t seed = 34;
     for (int i = 0; i < 5000; i++) {
         vec3 o = random_point(&seed, 2.0);
-        assert_int_equal(nearest_interface(m.solids, (one_ray){o, random_direction(&seed), FACE_NONE, arrangement_inside(m.solids, o)}).crossed, -1);
+        assert_int_equal(nearest_interface(m.solids, (one_ray){o, random_direction(&seed), FACE_NONE,
+                                                               arrangement_inside(m.solids, o)})
+                             .crossed,
+                         -1);
     }
     arrangement_destroy(m.solids);
     bubble.shape[1].size = vec3_make(0.5, 0.5, 0.5);

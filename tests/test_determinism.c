@@ -13,7 +13,10 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define SMALL "render.width=160 render.height=120 render.depth=4"
 
-typedef struct fingerprint { uint64_t hash; ray_counters counters; } fingerprint;
+typedef struct fingerprint {
+    uint64_t hash;
+    ray_counters counters;
+} fingerprint;
 
 static fingerprint fingerprint_at(const scene *s, isa level, const render_options *options)
 {
@@ -33,9 +36,9 @@ static void expect_same(const fingerprint *a, const fingerprint *b)
     assert_memory_equal(&a->counters, &b->counters, sizeof a->counters);
 }
 
-/* Golden: film_hash of the reference scene at 160x120, depth 4. When the picture changes on purpose, the new hash is what
- *     build/cuvette render experiments/scenes/rod.yaml -o /dev/null --json --set render.width=160 --set render.height=120
- * prints as film_hash, and what this test prints when it fails. Say in the commit why the picture changed. */
+/* Golden: film_hash of the reference scene at 160x120, depth 4. When the picture changes on purpose, take the new one from
+ *     build/cuvette render experiments/scenes/rod.yaml -o out.png --json --set render.width=160 --set render.height=120
+ * or from this test's message, and say in the commit why the picture changed. */
 static void the_picture_is_the_golden_one(void **state)
 {
     (void)state;
@@ -54,8 +57,10 @@ static void the_picture_is_the_golden_one(void **state)
 static void instruction_sets(void **state)
 {
     (void)state;
-    static const char *const variants[] = {SMALL, SMALL " render.weights=constant vessel.reflectivity=0.1 vessel.transparency=0.9 render.shadows=opaque",
-                                           SMALL " render.samples=4 render.min_weight=0.01 clear.shininess=80.5 rod.rotation=5,7,-18 ground.rotation=1,2,1"};
+    static const char *const variants[] = {
+        SMALL, SMALL " render.weights=constant vessel.reflectivity=0.1 vessel.transparency=0.9 render.shadows=opaque",
+        SMALL
+        " render.samples=4 render.min_weight=0.01 clear.shininess=80.5 rod.rotation=5,7,-18 ground.rotation=1,2,1"};
     for (size_t v = 0; v < COUNT(variants); v++) {
         scene *s = rod_scene(variants[v]);
         const fingerprint wanted = fingerprint_at(s, ISA_SSE2, NULL);
@@ -160,12 +165,9 @@ static void counters_are_consistent(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_picture_is_the_golden_one),
-        cmocka_unit_test(instruction_sets),
-        cmocka_unit_test(threads_schedules_tiles_and_pool),
-        cmocka_unit_test(a_thousand_threads),
-        cmocka_unit_test(side_pictures_change_nothing),
-        cmocka_unit_test(counters_are_consistent),
+        cmocka_unit_test(the_picture_is_the_golden_one),    cmocka_unit_test(instruction_sets),
+        cmocka_unit_test(threads_schedules_tiles_and_pool), cmocka_unit_test(a_thousand_threads),
+        cmocka_unit_test(side_pictures_change_nothing),     cmocka_unit_test(counters_are_consistent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,10 +41,12 @@ static void power_keeps_its_bound_over_the_range(void **state)
     need_long_double();
     uint64_t seed = 1;
     for (int i = 0; i < 200000; i++) {
-        check_power(random_real(&seed, 0.0, 1.0), random_real(&seed, 0.0, 200.0));             /* as highlights use it */
-        check_power(exp2(random_real(&seed, -1000.0, 1000.0)), random_real(&seed, -3.0, 3.0)); /* over the whole range */
-        check_power(1.0 + random_real(&seed, -1e-6, 1e-6), random_real(&seed, 0.0, 1e6));      /* log x near 0 */
-        check_power(random_real(&seed, 1.4142, 1.4143), random_real(&seed, -9.0, 9.0));        /* where the mantissa is halved */
+        check_power(random_real(&seed, 0.0, 1.0), random_real(&seed, 0.0, 200.0)); /* as highlights use it */
+        check_power(exp2(random_real(&seed, -1000.0, 1000.0)),
+                    random_real(&seed, -3.0, 3.0));                                       /* over the whole range */
+        check_power(1.0 + random_real(&seed, -1e-6, 1e-6), random_real(&seed, 0.0, 1e6)); /* log x near 0 */
+        check_power(random_real(&seed, 1.4142, 1.4143),
+                    random_real(&seed, -9.0, 9.0)); /* where the mantissa is halved */
     }
 }
 

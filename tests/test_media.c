@@ -9,8 +9,8 @@
 #include "optics/interface.h"
 #include "room_fixture.h"
 
-/* Media by priority against brute force: all crossings of all shapes in quadruple precision, and between each two of them the winner at
- * the midpoint by definition. */
+/* Media by priority against brute force: all crossings of all shapes in quadruple precision, and between each two of
+ * them the winner at the midpoint by definition. */
 
 /* Follows a line through all its interfaces, each time as a ray that starts on the last one. */
 static int walk_agrees(const room *m, vec3 from, vec3 direction)
@@ -50,7 +50,8 @@ static void random_rooms_agree_with_brute_force(void **state)
         room m;
         room_fill(&m, &seed);
         for (int k = 0; k < 12; k++)
-            interfaces += walk_agrees(&m, random_point(&seed, k % 2 ? 0.7 : 4.0), random_direction(&seed)); /* also from inside solids */
+            interfaces += walk_agrees(&m, random_point(&seed, k % 2 ? 0.7 : 4.0),
+                                      random_direction(&seed)); /* also from inside solids */
         arrangement_destroy(m.solids);
     }
     assert_true(interfaces > 10000);
@@ -71,7 +72,8 @@ static void rooms_full_of_coincident_faces_agree_with_brute_force(void **state)
     assert_true(interfaces > 8000);
 }
 
-/* Along the grid's own planes and edges there is no right answer, but there is an end: media follow one another, and at last nothing. */
+/* Along the grid's own planes and edges there is no right answer, but there is an end: media follow one another, and
+ * at last nothing. */
 static void rays_in_coincident_faces_come_to_an_end(void **state)
 {
     (void)state;
@@ -80,14 +82,16 @@ static void rays_in_coincident_faces_come_to_an_end(void **state)
         room m;
         room_fill_on_a_grid(&m, &seed);
         for (int k = 0; k < 12; k++) {
-            vec3 o = vec3_make(0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16));
+            vec3 o = vec3_make(0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16),
+                               0.125 * (random_below(&seed, 33) - 16));
             vec3 d = vec3_make(random_below(&seed, 3) - 1, random_below(&seed, 3) - 1, random_below(&seed, 3) - 1);
             if (vec3_dot(d, d) == 0.0)
                 continue;
             one_ray r = {o, vec3_normalize(d), FACE_NONE, arrangement_inside(m.solids, o)};
             int64_t medium = m.solids->bodies[arrangement_rank(m.solids, r.inside)].medium;
             int steps = 0;
-            for (one_hit h = nearest_interface(m.solids, r); h.crossed >= 0; h = nearest_interface(m.solids, r), steps++) {
+            for (one_hit h = nearest_interface(m.solids, r); h.crossed >= 0;
+                 h = nearest_interface(m.solids, r), steps++) {
                 assert_int_equal(m.solids->bodies[h.before].medium, medium);
                 assert_true(m.solids->bodies[h.after].medium != medium);
                 assert_true(h.t >= 0.0 && steps < WALK_MAX);
@@ -100,8 +104,8 @@ static void rays_in_coincident_faces_come_to_an_end(void **state)
     }
 }
 
-/* Mirrored or refracted at every interface, at random. Half way to the next one the ray is in the medium that its set says, but where a
- * surface is so near that this is a matter of roundings. */
+/* Mirrored or refracted at every interface, at random. Half way to the next one the ray is in the medium that its
+ * set says, but where a surface is so near that this is a matter of roundings. */
 static void walk_at_random(const room *m, one_ray r, uint64_t *seed)
 {
     for (int step = 0; step < 100; step++) {
@@ -134,7 +138,8 @@ static void sets_stay_true_on_long_walks(void **state)
             room_fill(&m, &seed);
         for (int k = 0; k < 12; k++) {
             vec3 o = random_point(&seed, 1.5);
-            walk_at_random(&m, (one_ray){o, random_direction(&seed), FACE_NONE, arrangement_inside(m.solids, o)}, &seed);
+            walk_at_random(&m, (one_ray){o, random_direction(&seed), FACE_NONE, arrangement_inside(m.solids, o)},
+                           &seed);
         }
         arrangement_destroy(m.solids);
     }

@@ -12,11 +12,13 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(quad_abs((quad)(a) - (quad)(b)) <= (quad)(tolerance))
 
-static const struct { double from, to; } pairs[] = {{1.0, 1.5},  {1.5, 1.0},  {1.0, 1.33},  {1.33, 1.0}, {1.5, 1.33},
-                                                     {1.33, 1.5}, {1.0, 2.42}, {2.42, 1.0}, {1.3, 1.31}, {1.31, 1.3},
-                                                     {1.0, 100.0}, {100.0, 1.0}, {1.0, 1.0}};
+static const struct {
+    double from, to;
+} pairs[] = {{1.0, 1.5},  {1.5, 1.0},  {1.0, 1.33}, {1.33, 1.0},  {1.5, 1.33},  {1.33, 1.5}, {1.0, 2.42},
+             {2.42, 1.0}, {1.3, 1.31}, {1.31, 1.3}, {1.0, 100.0}, {100.0, 1.0}, {1.0, 1.0}};
 
-/* Fresnel's sine and tangent laws, Hecht, Optics, 5th ed., eqs. 4.42 and 4.43, with Snell's law for the angle beyond. */
+/* Fresnel's sine and tangent laws, Hecht, Optics, 5th ed., eqs. 4.42 and 4.43, with Snell's law for the angle
+ * beyond. */
 static void reflectances_by_angle(quad degrees, double n_from, double n_to, quad *R_s, quad *R_p)
 {
     quad sin_i, cos_i;
@@ -96,7 +98,8 @@ static void brewsters_angle(void **state)
         double cos_i = (double)(1 / quad_sqrt(1 + ratio * ratio));
         fresnel f = fresnel_dielectric(cos_i, pairs[k].from, pairs[k].to);
         assert_true(f.R_p >= 0.0);
-        assert_true(f.R_p < (pairs[k].from > 10.0 ? 1e-16 : 2e-31)); /* 100 to 1: eta^2 enlarges the cosine's rounding */
+        assert_true(f.R_p <
+                    (pairs[k].from > 10.0 ? 1e-16 : 2e-31)); /* 100 to 1: eta^2 enlarges the cosine's rounding */
         quad less = (quad)1 - ratio * ratio, sum = 1 + ratio * ratio;
         assert_near(f.R_s, less / sum * (less / sum), pairs[k].from > 10.0 ? 1e-9 : 1e-15);
     }
@@ -117,7 +120,8 @@ static void shares_stay_in_range_and_equal_media_reflect_nothing(void **state)
     (void)state;
     uint64_t seed = 1;
     for (int i = 0; i < 100000; i++) {
-        double cos_i = random_real(&seed, 0.0, 1.0), from = exp(random_real(&seed, -2.3, 4.6)), to = exp(random_real(&seed, -2.3, 4.6));
+        double cos_i = random_real(&seed, 0.0, 1.0), from = exp(random_real(&seed, -2.3, 4.6)),
+               to = exp(random_real(&seed, -2.3, 4.6));
         fresnel f = fresnel_dielectric(cos_i, from, to);
         assert_true(f.R_s >= 0.0 && f.R_s <= 1.0 && f.R_p >= 0.0 && f.R_p <= 1.0 && f.R >= 0.0 && f.R <= 1.0);
         assert_true(f.cos_t >= 0.0 && f.cos_t <= 1.0);
@@ -128,8 +132,8 @@ static void shares_stay_in_range_and_equal_media_reflect_nothing(void **state)
     }
 }
 
-/* sin theta_c = n_to / n_from. The verdict is exact but for the roundings of 1 - eta^2 (1 - cos^2): an ulp of the cosine either
- * side may go either way, and the share that passes there is under the square root of a rounding. */
+/* sin theta_c = n_to / n_from. The verdict is exact but for the roundings of 1 - eta^2 (1 - cos^2): an ulp of the
+ * cosine either side may go either way, and the share that passes there is under the square root of a rounding. */
 static void total_reflection_begins_at_the_critical_angle(void **state)
 {
     (void)state;
@@ -167,7 +171,8 @@ static void both_sides_reflect_alike(void **state)
     (void)state;
     uint64_t seed = 2;
     for (int i = 0; i < 100000; i++) {
-        double cos_i = random_real(&seed, 0.05, 1.0), from = random_real(&seed, 1.0, 3.0), to = random_real(&seed, 1.0, 3.0);
+        double cos_i = random_real(&seed, 0.05, 1.0), from = random_real(&seed, 1.0, 3.0),
+               to = random_real(&seed, 1.0, 3.0);
         fresnel there = fresnel_dielectric(cos_i, from, to);
         if (there.total || there.cos_t < 0.05)
             continue;
@@ -178,7 +183,10 @@ static void both_sides_reflect_alike(void **state)
     }
 }
 
-typedef struct incidence { vec3 d, n; double cos_i; } incidence;
+typedef struct incidence {
+    vec3 d, n;
+    double cos_i;
+} incidence;
 
 static incidence random_incidence(uint64_t *seed)
 {
@@ -209,7 +217,8 @@ static void directions_obey_snell(void **state)
         quad3 t = quad3_from(direction_refract(w.d, w.n, w.cos_i, f.eta, f.cos_t));
         quad3 across_t = quad3_cross(n, t);
         assert_near(quad3_length(t), 1, 2.5e-16);
-        assert_near(quad3_length(quad3_sub(quad3_scale(across_i, from), quad3_scale(across_t, to))), 0, 3e-15); /* n sin, as vectors */
+        assert_near(quad3_length(quad3_sub(quad3_scale(across_i, from), quad3_scale(across_t, to))), 0,
+                    3e-15); /* n sin, as vectors */
         assert_near(quad3_dot(n, t), -f.cos_t, 2e-15 / (f.cos_t + 1e-8));
     }
 }
@@ -225,7 +234,8 @@ static void refraction_is_reversible(void **state)
         fresnel f = fresnel_dielectric(w.cos_i, from, to);
         if (f.total || f.cos_t < 0.05 || w.cos_i < 0.05)
             continue;
-        vec3 t = direction_refract(w.d, w.n, w.cos_i, f.eta, f.cos_t), turned = vec3_scale(t, -1.0), other = vec3_scale(w.n, -1.0);
+        vec3 t = direction_refract(w.d, w.n, w.cos_i, f.eta, f.cos_t), turned = vec3_scale(t, -1.0),
+             other = vec3_scale(w.n, -1.0);
         double cos_back = -vec3_dot(turned, other);
         fresnel g = fresnel_dielectric(cos_back, to, from);
         vec3 back = direction_refract(turned, other, cos_back, g.eta, g.cos_t);

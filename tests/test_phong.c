@@ -7,11 +7,13 @@
 
 #include "render_fixture.h"
 
-/* Local light at points worked out by hand: Phong's sum, shadows, checkers. One pixel, which looks along the camera's axis. */
+/* Local light at points worked out by hand: Phong's sum, shadows, checkers. One pixel, which looks along the
+ * camera's axis. */
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* The eye sees the origin of a plane at V = (0, 0.6, -0.8); the lamp stands at L = (0.6, 0.8, 0), so R = (-0.6, 0.8, 0). */
+/* The eye sees the origin of a plane at V = (0, 0.6, -0.8); the lamp stands at L = (0.6, 0.8, 0), so R = (-0.6, 0.8,
+ * 0). */
 static const char plane_scene[] = "render: {width: 1, height: 1, depth: 0}\n"
                                   "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
                                   "background: {color: [0.1, 0.2, 0.3], ambient: [0.5, 1, 2]}\n"
@@ -74,16 +76,18 @@ static void a_lamp_behind_the_surface_gives_nothing(void **state)
     scene_destroy(s);
 }
 
-/* A ball of radius 2, met at (0, 0, -2): N = V = (0, 0, -1), L = (0, 0.6, -0.8), R = (0, -0.6, -0.8). Several lamps add up. */
+/* A ball of radius 2, met at (0, 0, -2): N = V = (0, 0, -1), L = (0, 0.6, -0.8), R = (0, -0.6, -0.8). Several lamps
+ * add up. */
 static void light_on_a_ball(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
-                          "camera: {position: [0, 0, -10], yaw_deg: 0}\n"
-                          "background: {ambient: [0, 0, 0]}\n"
-                          "lights:\n  one: {position: [0, 3, -6]}\n  two: {position: [-3, 0, -6], color: [0, 1, 0]}\n"
-                          "  behind: {position: [0, 0, 9], intensity: 100}\n"
-                          "solids: {ball: {shape: sphere, radius: 2, color: [1, 0.5, 0], diffuse: 0.5, specular: 0.25, shininess: 4}}\n");
+    scene *s = scene_from(
+        "render: {width: 1, height: 1, depth: 0}\n"
+        "camera: {position: [0, 0, -10], yaw_deg: 0}\n"
+        "background: {ambient: [0, 0, 0]}\n"
+        "lights:\n  one: {position: [0, 3, -6]}\n  two: {position: [-3, 0, -6], color: [0, 1, 0]}\n"
+        "  behind: {position: [0, 0, 9], intensity: 100}\n"
+        "solids: {ball: {shape: sphere, radius: 2, color: [1, 0.5, 0], diffuse: 0.5, specular: 0.25, shininess: 4}}\n");
     const double highlight = 0.25 * pow(0.8, 4.0), matte = 0.5 * 0.8;
     expect_color(look(s), matte + highlight, 2.0 * (matte * 0.5 + highlight), highlight);
     set(s, "ball.rotation=11,22,33");
@@ -95,12 +99,14 @@ static void light_on_a_ball(void **state)
 static void highlight_of_a_clear_surface(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 1, height: 1, depth: 0, shadows: off, beyond: black}\n"
-                          "camera: {position: [0, 0, -10], yaw_deg: 0}\n"
-                          "lights: {lamp: {position: [0, 3, -6]}}\n"
-                          "solids: {ball: {shape: sphere, radius: 2, transparency: 1, ior: 1.5, specular: 0.25, shininess: 4}}\n");
+    scene *s = scene_from(
+        "render: {width: 1, height: 1, depth: 0, shadows: off, beyond: black}\n"
+        "camera: {position: [0, 0, -10], yaw_deg: 0}\n"
+        "lights: {lamp: {position: [0, 3, -6]}}\n"
+        "solids: {ball: {shape: sphere, radius: 2, transparency: 1, ior: 1.5, specular: 0.25, shininess: 4}}\n");
     expect_color(look(s), 0.25 * pow(0.8, 4.0), 0.25 * pow(0.8, 4.0), 0.25 * pow(0.8, 4.0));
-    set(s, "camera.position=0,0,0"); /* from inside the far side is met, at (0, 0, 2), with N = (0, 0, -1) towards the lamp outside */
+    /* from inside the far side is met, at (0, 0, 2), with N = (0, 0, -1), away from the lamp outside */
+    set(s, "camera.position=0,0,0");
     s->lights[0].position = vec3_make(0.0, 0.0, 1.0);
     assert_near(look(s).x, 0.25, 1e-12);
     s->lights[0].position = vec3_make(0.0, 0.0, 5.0);
@@ -108,33 +114,36 @@ static void highlight_of_a_clear_surface(void **state)
     scene_destroy(s);
 }
 
-/* Something stands half way to the lamp: off ignores it, opaque shadows ask only whether it is there, attenuated ones what it
- * lets through at each of its two surfaces. */
+/* Something stands half way to the lamp: off ignores it, opaque shadows ask only whether it is there, attenuated
+ * ones what it lets through at each of its two surfaces. */
 static void shadows_by_rule(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
-                          "camera: {position: [0, 3, -4], target: [0, 0, 0]}\n"
-                          "background: {ambient: [0, 0, 0]}\n"
-                          "lights: {lamp: {position: [3, 4, 0]}}\n"
-                          "solids:\n"
-                          "  ground: {shape: plane, diffuse: 1}\n"
-                          "  between: {shape: sphere, radius: 0.5, position: [1.5, 2, 0], transparency: 0.8, ior: 1.5}\n");
-    static const struct { const char *settings; double share; } cases[] = {
-        {"render.shadows=off", 1.0},
-        {"render.shadows=opaque", 0.0},
-        {"render.shadows=attenuated", 0.64},
-        {"between.transparency=1", 1.0},
-        {"render.shadows=opaque", 0.0},
-        {"between.ior=1", 1.0},                                     /* of index 1 there is nothing there */
-        {"render.shadows=attenuated between.transparency=0.5", 1.0},
-        {"between.ior=1.5", 0.25},
-        {"render.weights=constant between.ior=1", 0.25},            /* constant weights: a surface for all that */
-        {"between.transparency=0", 0.0},
-        {"between.position=6,8,0", 1.0},                            /* behind the lamp */
-        {"between.position=3,4,0", 0.0},                            /* around the lamp */
-        {"between.position=-1.5,-2,0", 1.0},                        /* under the ground */
-        {"between.visible=off between.position=1.5,2,0", 1.0}};
+    scene *s =
+        scene_from("render: {width: 1, height: 1, depth: 0}\n"
+                   "camera: {position: [0, 3, -4], target: [0, 0, 0]}\n"
+                   "background: {ambient: [0, 0, 0]}\n"
+                   "lights: {lamp: {position: [3, 4, 0]}}\n"
+                   "solids:\n"
+                   "  ground: {shape: plane, diffuse: 1}\n"
+                   "  between: {shape: sphere, radius: 0.5, position: [1.5, 2, 0], transparency: 0.8, ior: 1.5}\n");
+    static const struct {
+        const char *settings;
+        double share;
+    } cases[] = {{"render.shadows=off", 1.0},
+                 {"render.shadows=opaque", 0.0},
+                 {"render.shadows=attenuated", 0.64},
+                 {"between.transparency=1", 1.0},
+                 {"render.shadows=opaque", 0.0},
+                 {"between.ior=1", 1.0}, /* of index 1 there is nothing there */
+                 {"render.shadows=attenuated between.transparency=0.5", 1.0},
+                 {"between.ior=1.5", 0.25},
+                 {"render.weights=constant between.ior=1", 0.25}, /* constant weights: a surface for all that */
+                 {"between.transparency=0", 0.0},
+                 {"between.position=6,8,0", 1.0},     /* behind the lamp */
+                 {"between.position=3,4,0", 0.0},     /* around the lamp */
+                 {"between.position=-1.5,-2,0", 1.0}, /* under the ground */
+                 {"between.visible=off between.position=1.5,2,0", 1.0}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         set_all(s, cases[k].settings);
         assert_near(look(s).x, 0.8 * cases[k].share, 1e-12);
@@ -142,7 +151,8 @@ static void shadows_by_rule(void **state)
     scene_destroy(s);
 }
 
-/* Straight down on points of a plane: cells of 0.5, even ones of the first colour, also left of and behind the origin. */
+/* Straight down on points of a plane: cells of 0.5, even ones of the first colour, also left of and behind the
+ * origin. */
 static void checkers_of_a_plane(void **state)
 {
     (void)state;
@@ -150,7 +160,8 @@ static void checkers_of_a_plane(void **state)
     scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
                           "camera: {pitch_deg: -90}\n"
                           "background: {ambient: [1, 1, 1]}\n"
-                          "solids: {ground: {shape: plane, ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n");
+                          "solids: {ground: {shape: plane, ambient: 1, color: [1, 0, 0], "
+                          "checker: 0.5, checker_color: [0, 1, 0]}}\n");
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < 6; k++) {
             s->camera.position = vec3_make(at[i], 2.0, at[k]);
@@ -167,7 +178,8 @@ static void checkers_move_with_their_solid(void **state)
     scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
                           "camera: {pitch_deg: -90}\n"
                           "background: {ambient: [1, 1, 1]}\n"
-                          "solids: {slab: {shape: box, size: [4, 0.9, 4], ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n");
+                          "solids: {slab: {shape: box, size: [4, 0.9, 4], ambient: 1, color: [1, 0, 0], "
+                          "checker: 0.5, checker_color: [0, 1, 0]}}\n");
     s->camera.position = vec3_make(0.7, 2.0, 0.2); /* cells 1, 0 and, at y = 0.45, 0: odd */
     expect_color(look(s), 0.0, 1.0, 0.0);
     set(s, "slab.rotation=0,90,0"); /* z goes to x: local (-0.2, 0.45, 0.7), cells -1, 0, 1 */

@@ -18,7 +18,7 @@ typedef struct job {
     pthread_t thread[WORKERS_MAX]; /* who ran it */
     atomic_int total;
     int watched;
-    atomic_bool go_on;             /* set by the watcher */
+    atomic_bool go_on; /* set by the watcher */
 } job;
 
 static void note(void *context, int worker)

@@ -11,17 +11,20 @@
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* A slab seen head-on from below. What passes goes up, to a red zenith; what comes back goes down, to a green horizon. */
+/* A slab seen head-on from below. What passes goes up, to a red zenith; what comes back goes down, to a green
+ * horizon. */
 static const char slab_scene[] = "render: {width: 1, height: 1, shadows: off}\n"
                                  "camera: {position: [0, -5, 0], pitch_deg: 90, fov_deg: 1}\n"
                                  "background: {kind: gradient, color: [1, 0, 0], horizon: [0, 1, 0]}\n"
                                  "materials: {glass: {transparency: 1, ior: 1.5, reflectivity: 0}}\n"
                                  "solids: {slab: {shape: box, material: glass, size: [50, 1, 50]}}\n";
 
-typedef struct slab_light { double passed, back, inside_up, inside_down; } slab_light;
+typedef struct slab_light {
+    double passed, back, inside_up, inside_down;
+} slab_light;
 
-/* All paths of at most depth interfaces, R and T at each; the light then still inside, by where it goes. Born and Wolf, 7.6.1, without
- * interference: R + T^2 R + T^2 R^3 + ... comes back, T^2 + T^2 R^2 + ... passes. */
+/* All paths of at most depth interfaces, R and T at each; the light then still inside, by where it goes. Born and
+ * Wolf, 7.6.1, without interference: R + T^2 R + T^2 R^3 + ... comes back, T^2 + T^2 R^2 + ... passes. */
 static slab_light slab_series(double R, double T, int depth)
 {
     slab_light l = {0.0, 0.0, 0.0, 0.0};
@@ -62,7 +65,8 @@ static void check_slab(scene *s, double R, double T, double lost_share)
         assert_near(film_value(result->picture, 0, 0, 0), wanted.passed, 1e-12);
         assert_near(film_value(result->picture, 0, 0, 1), wanted.back, 1e-12);
         assert_true(film_value(result->picture, 0, 0, 2) == 0.0);
-        /* what is cut off is the light that the last ray inside carries to its interface, and what that interface makes of it */
+        /* what is cut off is the light that the last ray inside carries to its interface, and what that interface
+         * makes of it */
         const double inside = wanted.inside_up + wanted.inside_down, cut = inside * (R + T);
         if (CUVETTE_COUNTERS)
             check_slab_counters(&result->counters, depth, cut);
@@ -126,17 +130,21 @@ static const char furnace_scene[] =
     "background: {kind: uniform, color: [1, 1, 1], ambient: [0, 0, 0]}\n"
     "materials: {clear: {transparency: 1}}\n"
     "solids:\n"
-    "  vessel: {shape: cup, material: clear, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: 2}\n"
-    "  liquid: {shape: cylinder, material: clear, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.95, priority: 1}\n"
+    "  vessel: {shape: cup, material: clear, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, "
+    "priority: 2}\n"
+    "  liquid: {shape: cylinder, material: clear, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, "
+    "height: 1.95, priority: 1}\n"
     "  ball: {shape: sphere, material: clear, ior: 2.4, position: [0.2, 1.2, 0.1], radius: 0.5, priority: 3}\n"
     "  bubble: {shape: sphere, material: clear, ior: 1, position: [0.2, 1.3, 0], radius: 0.2, priority: 4}\n"
-    "  block: {shape: box, material: clear, ior: 1.6, position: [-1.2, 0.5, -1], size: [0.8, 1, 0.8], rotation: [10, 20, 30], priority: 5}\n"
+    "  block: {shape: box, material: clear, ior: 1.6, position: [-1.2, 0.5, -1], size: [0.8, 1, 0.8], "
+    "rotation: [10, 20, 30], priority: 5}\n"
     "  mirror: {shape: sphere, reflectivity: 1, position: [1.5, 0.5, -1], radius: 0.4, priority: 6}\n";
 
 static void every_pixel_of_a_white_furnace_is_white(void **state)
 {
     (void)state;
-    static const char *const eyes[] = {"0.3,2.5,-5", "0.1,0.5,-0.3", "0.2,1.25,0.1"}; /* in the air, the liquid, the bubble */
+    static const char *const eyes[] = {"0.3,2.5,-5", "0.1,0.5,-0.3",
+                                       "0.2,1.25,0.1"}; /* in the air, the liquid, the bubble */
     scene *s = scene_from(furnace_scene);
     for (size_t eye = 0; eye < 3; eye++) {
         diagnostic why = {0};
@@ -168,7 +176,9 @@ static void light_that_is_cut_off_is_accounted_for(void **state)
             s->render.beyond = BEYOND_BLACK;
             render_result *result = render(s);
             for (int c = 0; c < 3; c++) {
-                double sum = (double)(result->counters.cut_depth_throughput[c] + result->counters.cut_weight_throughput[c]) / COUNTERS_CUT_ONE;
+                double sum =
+                    (double)(result->counters.cut_depth_throughput[c] + result->counters.cut_weight_throughput[c]) /
+                    COUNTERS_CUT_ONE;
                 for (int y = 0; y < 18; y++)
                     for (int x = 0; x < 24; x++)
                         sum += film_value(result->picture, x, y, c);

@@ -55,10 +55,13 @@ static void a_sum_beyond_the_films_range_is_an_error(void **state)
 {
     (void)state;
     char text[4096];
-    int length = snprintf(text, sizeof text, "render: {width: 2, height: 2, depth: 0, shadows: off}\n"
-                                             "camera: {position: [0, 3, -4], target: [0, 0, 0]}\nsolids: {ground: {shape: plane, diffuse: 1}}\nlights:\n");
+    int length = snprintf(
+        text, sizeof text,
+        "render: {width: 2, height: 2, depth: 0, shadows: off}\n"
+        "camera: {position: [0, 3, -4], target: [0, 0, 0]}\nsolids: {ground: {shape: plane, diffuse: 1}}\nlights:\n");
     for (int i = 0; i < 12; i++)
-        length += snprintf(text + length, sizeof text - (size_t)length, "  lamp%d: {position: [0, 9, 0], color: [10, 10, 10], intensity: 10000}\n", i);
+        length += snprintf(text + length, sizeof text - (size_t)length,
+                           "  lamp%d: {position: [0, 9, 0], color: [10, 10, 10], intensity: 10000}\n", i);
     scene *s = scene_from(text);
     assert_int_equal(try_to_render(s, NULL), STATUS_BAD_INPUT); /* 1.2e6 */
     for (int i = 5; i < 12; i++)
@@ -77,7 +80,10 @@ static void a_scene_that_is_wrong_is_refused(void **state)
     scene_destroy(s);
 }
 
-typedef struct watch { int calls; double last; } watch;
+typedef struct watch {
+    int calls;
+    double last;
+} watch;
 
 static bool stop_at_once(void *context, double share)
 {
@@ -139,7 +145,11 @@ static void progress_changes_nothing(void **state)
     scene_destroy(s);
 }
 
-typedef struct studio { const scene *s; uint64_t wanted; int wrong; } studio;
+typedef struct studio {
+    const scene *s;
+    uint64_t wanted;
+    int wrong;
+} studio;
 
 static void *work_in(void *argument)
 {
@@ -148,7 +158,8 @@ static void *work_in(void *argument)
     w->wrong = renderer_create(isa_best(), NULL, &r, NULL) != STATUS_OK;
     for (int i = 0; i < 10 && !w->wrong; i++) {
         render_result *result = NULL;
-        w->wrong = renderer_render(r, w->s, NULL, &result, NULL) != STATUS_OK || film_hash(result->picture) != w->wanted;
+        w->wrong =
+            renderer_render(r, w->s, NULL, &result, NULL) != STATUS_OK || film_hash(result->picture) != w->wanted;
         render_result_destroy(result);
     }
     renderer_destroy(r);
@@ -158,8 +169,9 @@ static void *work_in(void *argument)
 static void two_renderers_at_once(void **state)
 {
     (void)state;
-    scene *scenes[2] = {rod_scene("render.width=80 render.height=60 render.threads=2"),
-                        rod_scene("render.width=60 render.height=80 render.depth=6 vessel.ior=1.7 render.threads=3 render.pool=off")};
+    scene *scenes[2] = {
+        rod_scene("render.width=80 render.height=60 render.threads=2"),
+        rod_scene("render.width=60 render.height=80 render.depth=6 vessel.ior=1.7 render.threads=3 render.pool=off")};
     studio studios[2];
     pthread_t threads[2];
     for (int i = 0; i < 2; i++) {
@@ -181,8 +193,9 @@ static void two_renderers_at_once(void **state)
 static void a_renderer_serves_one_scene_after_another(void **state)
 {
     (void)state;
-    static const char *const settings[] = {"render.depth=0 render.threads=5", "render.depth=9", "render.depth=2 render.samples=4 render.threads=2",
-                                           "render.depth=64 render.min_weight=0.001", "render.depth=1 render.width=7 render.height=3"};
+    static const char *const settings[] = {
+        "render.depth=0 render.threads=5", "render.depth=9", "render.depth=2 render.samples=4 render.threads=2",
+        "render.depth=64 render.min_weight=0.001", "render.depth=1 render.width=7 render.height=3"};
     renderer *r = NULL;
     assert_int_equal(renderer_create(isa_best(), NULL, &r, NULL), STATUS_OK);
     for (int i = 0; i < 15; i++) {

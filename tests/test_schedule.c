@@ -36,7 +36,8 @@ static void every_pixel_goes_to_exactly_one_worker(void **state)
             for (size_t n = 0; n < COUNT(workers); n++)
                 for (int rule = SCHEDULE_COLUMNS; rule <= SCHEDULE_DYNAMIC; rule++) {
                     const int width = sizes[i][0], height = sizes[i][1];
-                    const render_settings settings = settings_of((schedule_rule)rule, width, height, tiles[k], workers[n]);
+                    const render_settings settings =
+                        settings_of((schedule_rule)rule, width, height, tiles[k], workers[n]);
                     unsigned char *seen = calloc((size_t)(width * height), 1);
                     schedule s;
                     span piece;
@@ -55,7 +56,8 @@ static void every_pixel_goes_to_exactly_one_worker(void **state)
 static void columns_and_rows_are_one_block_a_worker(void **state)
 {
     (void)state;
-    const render_settings columns = settings_of(SCHEDULE_COLUMNS, 800, 600, 32, 7), rows = settings_of(SCHEDULE_ROWS, 800, 600, 32, 7);
+    const render_settings columns = settings_of(SCHEDULE_COLUMNS, 800, 600, 32, 7),
+                          rows = settings_of(SCHEDULE_ROWS, 800, 600, 32, 7);
     schedule s;
     span piece;
     for (int w = 0; w < 7; w++) {
@@ -104,7 +106,11 @@ static void static_tiles_go_round(void **state)
 
 enum { WIDTH = 301, HEIGHT = 203, ASKERS = 8 };
 
-typedef struct asker { schedule *pieces; int worker; unsigned char *seen; } asker;
+typedef struct asker {
+    schedule *pieces;
+    int worker;
+    unsigned char *seen;
+} asker;
 
 /* Each pixel is marked by one thread alone if the schedule is right; ThreadSanitizer sees it if not. */
 static void *ask(void *argument)

@@ -9,7 +9,8 @@
 
 /* Shadow rays against marching from interface to interface. */
 
-/* From 0 to 1: the product of what each interface lets through, by the body of the higher rank; opaque matter lets nothing. */
+/* From 0 to 1: the product of what each interface lets through, by the body of the higher rank; opaque matter lets
+ * nothing. */
 static double light_by_marching(const room *m, const reference_line *line, int solid_shadows)
 {
     change met[SOLIDS_MAX * REFERENCE_CROSSINGS_MAX];

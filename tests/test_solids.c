@@ -20,11 +20,17 @@ static const solid_shape shapes[] = {
     {.kind = SHAPE_CYLINDER, .position = {0.1, -0.4, 0.2}, .radius = 0.9, .height = 1.2, .m = 50.0},
     {.kind = SHAPE_CYLINDER, .position = {0.1, -0.4, 0.2}, .radius = 0.05, .height = 1.2, .m = 0.02},
     {.kind = SHAPE_CYLINDER, .position = {0.0, 0.0, 0.0}, .radius = 0.01, .height = 3.0, .m = 1.0},
-    {.kind = SHAPE_CUP, .position = {0.0, -0.999, 0.0}, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1},
+    {.kind = SHAPE_CUP,
+     .position = {0.0, -0.999, 0.0},
+     .radius = 1.0,
+     .inner_radius = 0.9,
+     .height = 3.0,
+     .floor = 0.1},
     {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
     {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
 };
-static const vec3 turns[] = {{0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}, {0.0, 0.0, 30.0}, {90.0, 0.0, 0.0}, {0.1, 180.0, -0.3}};
+static const vec3 turns[] = {
+    {0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}, {0.0, 0.0, 30.0}, {90.0, 0.0, 0.0}, {0.1, 180.0, -0.3}};
 
 static vec3 double_of(quad3 v)
 {
@@ -36,9 +42,11 @@ static void told(int good, const char *what, const solid_shape *s, const referen
 {
     if (good)
         return;
-    print_error("shape %d turned (%g %g %g): from (%.17g %.17g %.17g) along (%.17g %.17g %.17g): t %.17g face %d cos_i %g error %g\n",
-                s->kind, s->rotation_deg.x, s->rotation_deg.y, s->rotation_deg.z, (double)line->o.x, (double)line->o.y, (double)line->o.z,
-                (double)line->d.x, (double)line->d.y, (double)line->d.z, h->t, (int)h->face, h->cos_i, h->error);
+    print_error("shape %d turned (%g %g %g): from (%.17g %.17g %.17g) along (%.17g %.17g %.17g): "
+                "t %.17g face %d cos_i %g error %g\n",
+                s->kind, s->rotation_deg.x, s->rotation_deg.y, s->rotation_deg.z, (double)line->o.x, (double)line->o.y,
+                (double)line->o.z, (double)line->d.x, (double)line->d.y, (double)line->d.z, h->t, (int)h->face,
+                h->cos_i, h->error);
     fail_msg("%s", what);
 }
 #define expect(condition, s, line, h) told(condition, #condition, s, line, h)
@@ -99,7 +107,8 @@ static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
             return quad_abs(reference_from_side(p, 1, part ? s->inner_radius : s->radius));
         return quad_abs(p.y - (own == 1 ? (part ? s->floor : 0.0) : s->height));
     case SHAPE_CYLINDER:
-        return own == 0 ? quad_abs(reference_from_side(p, s->m, s->radius)) : quad_abs(p.y - (own == 1 ? 0.0 : s->height));
+        return own == 0 ? quad_abs(reference_from_side(p, s->m, s->radius))
+                        : quad_abs(p.y - (own == 1 ? 0.0 : s->height));
     case SHAPE_COUNT: break;
     }
     return 1;
@@ -114,7 +123,8 @@ static double least_radius(const solid_shape *s)
 
 static void check_point(const solid_shape *s, const arrangement *a, const reference_line *line, const one_hit *h)
 {
-    const quad3 p = quad3_from(h->point), d = quad3_scale(line->d, 1 / quad3_length(line->d)), n = quad3_from(h->normal);
+    const quad3 p = quad3_from(h->point), d = quad3_scale(line->d, 1 / quad3_length(line->d)),
+                n = quad3_from(h->normal);
     const quad3 local = quad3_turn(quad3_sub(p, quad3_from(s->position)), s->rotation_deg, 1);
     expect(quad_abs(reference_distance(s, p)) <= h->error, s, line, h);
     expect(distance_to_face(s, h->face, local) <= h->error, s, line, h);
@@ -127,14 +137,16 @@ static void check_point(const solid_shape *s, const arrangement *a, const refere
     const quad3 outward = quad3_turn(normal_of(s, h->face, local), s->rotation_deg, 0);
     const double curved = s->kind == SHAPE_PLANE || s->kind == SHAPE_BOX ? 0.0 : h->error / least_radius(s);
     expect(quad_abs(quad3_length(n) - 1) <= 1e-15, s, line, h);
-    expect(quad3_length(quad3_sub(n, quad3_scale(outward, quad3_dot(outward, n) < 0 ? -1 : 1))) <= 2e-15 + curved, s, line, h);
+    expect(quad3_length(quad3_sub(n, quad3_scale(outward, quad3_dot(outward, n) < 0 ? -1 : 1))) <= 2e-15 + curved, s,
+           line, h);
     expect(quad3_dot(n, d) <= 2e-15, s, line, h);
     expect(h->cos_i > 0.0 && h->cos_i <= 1.0, s, line, h);
     expect(quad_abs(h->cos_i - quad_max(-quad3_dot(n, d), 0)) <= 2e-15, s, line, h);
 }
 
-/* One ray against quadruple precision. Before the hit (or for ever, for a miss) the ray is where it was to within the error bound: what it
- * passes on the other side is no deeper than that; and the hit is on the surface, which check_point sees to. */
+/* One ray against quadruple precision. Before the hit (or for ever, for a miss) the ray is where it was to within
+ * the error bound: what it passes on the other side is no deeper than that; and the hit is on the surface, which
+ * check_point sees to. */
 static void check_ray(const solid_shape *s, const arrangement *a, one_ray r)
 {
     const reference_line line = line_of(r);
@@ -237,14 +249,16 @@ static void rays_from_far_away(void **state)
 /* Along a local axis but for a component that is 0, -0 or next to nothing. */
 static void along_an_axis(const solid_shape *s, const arrangement *a, uint64_t *seed)
 {
-    static const double little[] = {0.0, -0.0, 1e-320, -1e-310, 1e-300, -1e-200, 1e-160, 1e-100, -1e-20, 1e-16, -1e-12, 1e-8, -1e-4};
+    static const double little[] = {0.0,    -0.0,   1e-320, -1e-310, 1e-300, -1e-200, 1e-160,
+                                    1e-100, -1e-20, 1e-16,  -1e-12,  1e-8,   -1e-4};
     double d[3];
     const int axis = random_below(seed, 3);
     for (int k = 0; k < 3; k++)
         d[k] = k == axis ? (random_below(seed, 2) ? 1.0 : -1.0) : little[random_below(seed, COUNT(little))];
     vec3 local = vec3_make(d[0], d[1], d[2]);
     vec3 direction = random_below(seed, 2) ? local : double_of(quad3_turn(quad3_from(local), s->rotation_deg, 0));
-    vec3 to = place_on(s, seed), from = vec3_sub(to, vec3_scale(vec3_normalize(direction), random_real(seed, 0.0, 4.0)));
+    vec3 to = place_on(s, seed),
+         from = vec3_sub(to, vec3_scale(vec3_normalize(direction), random_real(seed, 0.0, 4.0)));
     aim(s, a, from, direction);
 }
 
@@ -266,7 +280,8 @@ static void grazing(const solid_shape *s, const arrangement *a, uint64_t *seed)
     if (h.crossed < 0)
         return;
     vec3 along = vec3_normalize(vec3_cross(h.normal, random_direction(seed)));
-    const double off = exp(random_real(seed, -32.0, 0.0)) * (random_below(seed, 2) ? 1.0 : -1.0), tilt = exp(random_real(seed, -32.0, 0.0));
+    const double off = exp(random_real(seed, -32.0, 0.0)) * (random_below(seed, 2) ? 1.0 : -1.0),
+                 tilt = exp(random_real(seed, -32.0, 0.0));
     vec3 back = vec3_sub(vec3_add(h.point, vec3_scale(h.normal, off)), vec3_scale(along, random_real(seed, 0.1, 5.0)));
     aim(s, a, back, along);
     aim(s, a, back, vec3_sub(along, vec3_scale(h.normal, tilt)));

@@ -219,7 +219,7 @@ static void the_studies_of_the_house(void **state)
     static const struct {
         const char *name;
         size_t cells;
-    } known[] = {{"depth", 9}, {"threads", 44}, {"ior", 4}, {"ior-grid", 25}, {"profile", 12}, {"pool", 10}};
+    } known[] = {{"depth", 9}, {"threads", 44}, {"ior", 4}, {"ior-grid", 25}, {"profile", 12}, {"pool", 10}, {"maps", 1}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         char path[400], said[DIAGNOSTIC_TEXT_MAX];
         diagnostic why = {0};

@@ -43,7 +43,8 @@ static int bounce_inside(const solid_shape *s, arrangement *a, one_ray r, int bo
         const one_hit h = nearest_interface(a, r);
         if (h.crossed != 0 || h.before != 1 || h.after != 0 || h.t < 0.0 || h.t > 100.0)
             return i;
-        if (quad_abs(reference_distance(s, quad3_from(h.point))) > loosest || quad_abs(vec3_length(h.normal) - 1.0) > 1e-15)
+        if (quad_abs(reference_distance(s, quad3_from(h.point))) > loosest ||
+            quad_abs(vec3_length(h.normal) - 1.0) > 1e-15)
             return i;
         r = mirrored(r, &h);
     }
@@ -59,7 +60,10 @@ static void chords_of_a_sphere(void **state)
         const double radius = exp(random_real(&seed, -5.0, 5.0));
         solid_shape s = {.kind = SHAPE_SPHERE, .radius = radius, .rotation_deg = turns[trial % 2]};
         arrangement *a = arrange_one(&s);
-        one_ray r = {.o = vec3_scale(random_direction(&seed), 0.7 * radius), .d = random_direction(&seed), .start = FACE_NONE, .inside = 1};
+        one_ray r = {.o = vec3_scale(random_direction(&seed), 0.7 * radius),
+                     .d = random_direction(&seed),
+                     .start = FACE_NONE,
+                     .inside = 1};
         one_hit h = nearest_interface(a, r);
         const double cos_i = h.cos_i;
         for (int i = 0; i < 10000; i++) {
@@ -82,9 +86,13 @@ static void chords_of_a_cylinder(void **state)
     uint64_t seed = 2;
     for (int trial = 0; trial < 12; trial++) {
         const double radius = random_real(&seed, 0.2, 2.0), tall = 2000.0;
-        solid_shape s = {.kind = SHAPE_CYLINDER, .position = {0.0, -tall / 2, 0.0}, .radius = radius, .height = tall, .m = 1.0};
+        solid_shape s = {
+            .kind = SHAPE_CYLINDER, .position = {0.0, -tall / 2, 0.0}, .radius = radius, .height = tall, .m = 1.0};
         arrangement *a = arrange_one(&s);
-        one_ray r = {.o = vec3_make(0.3 * radius, 0.0, 0.2 * radius), .d = random_direction(&seed), .start = FACE_NONE, .inside = 1};
+        one_ray r = {.o = vec3_make(0.3 * radius, 0.0, 0.2 * radius),
+                     .d = random_direction(&seed),
+                     .start = FACE_NONE,
+                     .inside = 1};
         r.d = vec3_normalize(vec3_make(r.d.x, 0.01 * r.d.y, r.d.z));
         one_hit h = nearest_interface(a, r);
         const double cos_i = h.cos_i, rise = r.d.y, level = h.point.y;
@@ -122,7 +130,9 @@ static void nothing_escapes_from_a_closed_mirror(void **state)
             const double up = s.kind == SHAPE_CYLINDER ? s.height / 2 : 0.0;
             quad3 middle = quad3_turn(quad3_make(0, up, 0), s.rotation_deg, 0);
             one_ray r = {.o = vec3_add(s.position, vec3_make((double)middle.x, (double)middle.y, (double)middle.z)),
-                         .d = random_direction(&seed), .start = FACE_NONE, .inside = 1};
+                         .d = random_direction(&seed),
+                         .start = FACE_NONE,
+                         .inside = 1};
             /* 1e-15 of the coordinates' size: their own rounding */
             assert_int_equal(bounce_inside(&s, a, r, 10000, 1e-15 * (1.0 + vec3_length(s.position))), 10000);
             arrangement_destroy(a);
@@ -151,8 +161,8 @@ static void grazing_chords_do_not_stick(void **state)
     arrangement_destroy(a);
 }
 
-/* What leaves a convex solid, by reflection or refraction, never meets it again; what enters leaves on the far side, and the chord is
- * that of quadruple precision. */
+/* What leaves a convex solid, by reflection or refraction, never meets it again; what enters leaves on the far side,
+ * and the chord is that of quadruple precision. */
 static void convex_solids_are_met_twice_and_no_more(void **state)
 {
     (void)state;
@@ -196,7 +206,10 @@ static void a_cup_is_met_again_through_its_hollow(void **state)
     (void)state;
     const solid_shape s = {.kind = SHAPE_CUP, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
     arrangement *a = arrange_one(&s);
-    one_ray r = {.o = vec3_make(0.0, 1.0, 0.0), .d = vec3_make(0.6, 0.8, 0.0), .start = FACE_NONE, .inside = arrangement_inside(a, vec3_make(0, 1, 0))};
+    one_ray r = {.o = vec3_make(0.0, 1.0, 0.0),
+                 .d = vec3_make(0.6, 0.8, 0.0),
+                 .start = FACE_NONE,
+                 .inside = arrangement_inside(a, vec3_make(0, 1, 0))};
     assert_int_equal(arrangement_rank(a, r.inside), 0);
     one_hit h = nearest_interface(a, r);
     assert_near(h.t, 1.5, 1e-15);
