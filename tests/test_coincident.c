@@ -122,6 +122,32 @@ static assembly cylinder_on_a_plane_that_wins(void)
     return m;
 }
 
+/* A gap of 1e-9 is no rounding: it is there. */
+static assembly blocks_a_hair_apart(void)
+{
+    assembly m = blocks(1, 2, 3);
+    m.shape[1].position.y += 1e-9;
+    return m;
+}
+
+/* A sheet of a third glass, 1e-9 thick, between the blocks. */
+static assembly blocks_with_a_sheet_between(void)
+{
+    assembly m = blocks(1, 2, 3);
+    m.count = 3;
+    m.shape[2] = (solid_shape){.kind = SHAPE_BOX, .position = {0.0, 0.3, 0.0}, .size = {1.0, 1e-9, 1.0}};
+    m.priority[2] = 4;
+    m.medium[2] = 3;
+    return m;
+}
+
+static void thin_films_that_are_there_are_seen(void **state)
+{
+    (void)state;
+    through_the_contact(blocks_a_hair_apart, "02010");
+    through_the_contact(blocks_with_a_sheet_between, "02310");
+}
+
 static void one_glass_has_no_seam(void **state)
 {
     (void)state;
@@ -285,6 +311,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_glass_has_no_seam),
         cmocka_unit_test(two_glasses_meet_in_one_interface),
+        cmocka_unit_test(thin_films_that_are_there_are_seen),
         cmocka_unit_test(what_stands_on_a_plane_touches_it),
         cmocka_unit_test(a_mirrored_ray_leaves_the_contact),
         cmocka_unit_test(a_liquid_that_fits_its_vessel_exactly),

@@ -191,6 +191,57 @@ static void checkers_move_with_their_solid(void **state)
     scene_destroy(s);
 }
 
+/* On a turned flat face the coordinate across it is zero but for rounding, or on a border between cells: rounding must not choose
+ * the cell. */
+static void checkers_on_turned_faces_are_whole(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
+                          "background: {ambient: [1, 1, 1]}\n"
+                          "materials: {board: {ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n"
+                          "solids:\n"
+                          "  floor: {shape: plane, material: board, rotation: [10, 20, 7]}\n"
+                          "  block: {shape: box, material: board, size: [6, 1, 6], rotation: [10, 20, 7], visible: off}\n");
+    const mat3 turn = rotation_from_deg(vec3_make(10.0, 20.0, 7.0));
+    for (int block = 0; block < 2; block++) {
+        for (int i = -5; i < 5; i++)
+            for (int k = -5; k < 5; k++) {
+                const double x = i * 0.5 + 0.1, z = k * 0.5 + 0.3, y = block ? 0.5 : 0.0;
+                s->camera.target = mat3_apply(turn, vec3_make(x, y, z));
+                s->camera.position = mat3_apply(turn, vec3_make(x, y + 2.0, z));
+                s->camera.aimed = 1;
+                /* the block's face y = 0.5 shows the cells under it, 0 <= y < 0.5: as the plane */
+                const int even = (i + k) % 2 == 0;
+                expect_color(look(s), even, !even, 0.0);
+            }
+        set_all(s, "floor.visible=off block.visible=on");
+    }
+    scene_destroy(s);
+}
+
+/* Yaw turns the picture when the camera looks straight down, too. */
+static void yaw_counts_looking_down(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 8, height: 6, depth: 0}\n"
+                          "camera: {position: [0.5, 3, 0.2], pitch_deg: -90}\n"
+                          "background: {ambient: [1, 1, 1]}\n"
+                          "solids: {floor: {shape: plane, ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n");
+    render_result *level = render_at(s, isa_best(), NULL);
+    set(s, "camera.yaw_deg=180");
+    render_result *turned = render_at(s, isa_best(), NULL);
+    for (int y = 0; y < 6; y++)
+        for (int x = 0; x < 8; x++)
+            assert_true(film_value(level->picture, x, y, 0) == film_value(turned->picture, 7 - x, 5 - y, 0));
+    set(s, "camera.yaw_deg=40");
+    render_result *askew = render_at(s, isa_best(), NULL);
+    assert_true(film_hash(askew->picture) != film_hash(level->picture));
+    render_result_destroy(level);
+    render_result_destroy(turned);
+    render_result_destroy(askew);
+    scene_destroy(s);
+}
+
 /* An opaque mirror gives its reflectivity of what it sees, once for each bounce. */
 static void mirrors_multiply(void **state)
 {
@@ -221,6 +272,8 @@ int main(void)
         cmocka_unit_test(shadows_by_rule),
         cmocka_unit_test(checkers_of_a_plane),
         cmocka_unit_test(checkers_move_with_their_solid),
+        cmocka_unit_test(checkers_on_turned_faces_are_whole),
+        cmocka_unit_test(yaw_counts_looking_down),
         cmocka_unit_test(mirrors_multiply),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

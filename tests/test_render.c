@@ -140,12 +140,12 @@ static const char furnace_scene[] =
     "rotation: [10, 20, 30], priority: 5}\n"
     "  mirror: {shape: sphere, reflectivity: 1, position: [1.5, 0.5, -1], radius: 0.4, priority: 6}\n";
 
-static void every_pixel_of_a_white_furnace_is_white(void **state)
+static void check_furnace(const char *settings)
 {
-    (void)state;
     static const char *const eyes[] = {"0.3,2.5,-5", "0.1,0.5,-0.3",
                                        "0.2,1.25,0.1"}; /* in the air, the liquid, the bubble */
     scene *s = scene_from(furnace_scene);
+    set_all(s, settings);
     for (size_t eye = 0; eye < 3; eye++) {
         diagnostic why = {0};
         worked(scene_set(s, "camera.position", eyes[eye], &why), &why);
@@ -161,6 +161,19 @@ static void every_pixel_of_a_white_furnace_is_white(void **state)
         }
     }
     scene_destroy(s);
+}
+
+static void every_pixel_of_a_white_furnace_is_white(void **state)
+{
+    (void)state;
+    check_furnace("");
+}
+
+/* With shares that add up to 1; what total internal reflection does not let pass goes back too. */
+static void a_furnace_under_constant_weights_is_white(void **state)
+{
+    (void)state;
+    check_furnace("render.weights=constant clear.reflectivity=0.1 clear.transparency=0.9");
 }
 
 /* What the film lacks of white was cut off, by depth or by weight, and is counted. */
@@ -257,6 +270,7 @@ int main(void)
         cmocka_unit_test(slab_under_constant_weights),
         cmocka_unit_test(branches_that_weigh_too_little_are_cut),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
+        cmocka_unit_test(a_furnace_under_constant_weights_is_white),
         cmocka_unit_test(light_that_is_cut_off_is_accounted_for),
         cmocka_unit_test(four_samples_are_the_mean_of_four_pixels),
         cmocka_unit_test(solids_of_index_one_are_not_there),

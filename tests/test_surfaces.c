@@ -200,6 +200,44 @@ static void convex_solids_are_met_twice_and_no_more(void **state)
     assert_true(entered > 8000);
 }
 
+/* A ray that is inside, on a face, and leans outwards by however little leaves there and then: the root of the face
+ * that it starts on is zero, not nearly. */
+static void the_root_of_the_starting_face_is_zero(void **state)
+{
+    (void)state;
+    static const solid_shape shapes[] = {
+        {.kind = SHAPE_PLANE, .position = {0.3, -0.2, 0.1}},
+        {.kind = SHAPE_CYLINDER, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .height = 1.95, .m = 1.0},
+        {.kind = SHAPE_CYLINDER, .position = {-0.1, -0.4, 0.2}, .radius = 0.8, .height = 1.1, .m = 2.5},
+        {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
+        {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
+    };
+    uint64_t seed = 6;
+    int faces[COUNT(shapes)] = {0};
+    for (int trial = 0; trial < 20000; trial++) {
+        const int which = trial % (int)COUNT(shapes);
+        solid_shape s = shapes[which];
+        s.rotation_deg = turns[trial / 5 % 2];
+        arrangement *a = arrange_one(&s);
+        vec3 from = vec3_scale(random_direction(&seed), 5.0), to = random_point(&seed, 1.0);
+        const one_ray r = {from, vec3_normalize(vec3_sub(to, from)), FACE_NONE, arrangement_inside(a, from)};
+        const one_hit h = nearest_interface(a, r);
+        if (h.crossed >= 0) {
+            const vec3 outward = h.before == 0 ? h.normal : vec3_scale(h.normal, -1.0);
+            const vec3 along = vec3_normalize(vec3_cross(outward, random_direction(&seed)));
+            const double lean = exp(random_real(&seed, -28.0, 0.0));
+            const vec3 d = vec3_normalize(vec3_add(along, vec3_scale(outward, lean)));
+            const one_hit out = nearest_interface(a, (one_ray){h.point, d, h.face, 1});
+            assert_int_equal(out.crossed, 0);
+            assert_true(out.t == 0.0 && out.after == 0);
+            faces[which] |= 1 << h.face;
+        }
+        arrangement_destroy(a);
+    }
+    static const int all[COUNT(shapes)] = {1, 7, 7, 63, 1};
+    assert_memory_equal(faces, all, sizeof all);
+}
+
 /* A mirrored ray on the wall of a cup's hollow crosses it to the other side, and leaves it by the open top. */
 static void a_cup_is_met_again_through_its_hollow(void **state)
 {
@@ -237,6 +275,7 @@ int main(void)
         cmocka_unit_test(nothing_escapes_from_a_closed_mirror),
         cmocka_unit_test(grazing_chords_do_not_stick),
         cmocka_unit_test(convex_solids_are_met_twice_and_no_more),
+        cmocka_unit_test(the_root_of_the_starting_face_is_zero),
         cmocka_unit_test(a_cup_is_met_again_through_its_hollow),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

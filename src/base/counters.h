@@ -5,6 +5,7 @@
 #ifndef CUVETTE_BASE_COUNTERS_H
 #define CUVETTE_BASE_COUNTERS_H
 
+#include "base/lanes.h"
 #include <stdint.h>
 
 #ifndef CUVETTE_COUNTERS
@@ -26,10 +27,18 @@ typedef struct ray_counters {
     uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
     int64_t cut_depth_throughput[3];           /* their throughput, RGB, in units of 1/COUNTERS_CUT_ONE */
     int64_t cut_weight_throughput[3];
-    uint64_t tests[COUNTERS_SOLID_MAX];        /* rays tested against the solid, shadow rays too */
+    uint64_t tests[COUNTERS_SOLID_MAX];        /* rays tested against the solid: all but shadow rays, and of these those of solids
+                                                * that can take light away by themselves (the further look at the few undecided
+                                                * shadow rays is not counted again) */
     uint64_t hits[COUNTERS_SOLID_MAX];         /* interfaces met on the solid, not by shadow rays */
     uint64_t first_hits[COUNTERS_SOLID_MAX];   /* camera rays whose first interface is on the solid */
 } ray_counters;
+
+/* Throughput (0 .. 1) in those units, to the nearest; by the bits of 1.5 2^52 + v, a conversion that every instruction set has. */
+static inline int64_t counters_cut_units(double throughput)
+{
+    return lanes_bits(throughput * COUNTERS_CUT_ONE + 6755399441055744.0) - lanes_bits(6755399441055744.0);
+}
 
 /* Adds from to *into, field by field. */
 void ray_counters_add(ray_counters *into, const ray_counters *from);

@@ -13,6 +13,7 @@
 
 #include "base/status.h"
 #include "geometry/solid.h"
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -54,6 +55,12 @@ typedef struct arrangement {
     uint64_t opaque_ranks; /* bit r - 1: the body of rank r is opaque */
     bool distinct;       /* no two bodies are of one medium, nor is any of the surrounding one */
 } arrangement;
+
+/* Can a body take light away from a shadow ray by itself? With solid_shadows every body does. */
+static inline bool body_casts_shadow(const body *b, bool solid_shadows)
+{
+    return b->opaque || solid_shadows || b->clearness < 1.0;
+}
 
 /* What arrangement_build wants to know of a solid. */
 typedef struct body_source {

@@ -272,19 +272,13 @@ static void touching(const body *b, int n, const ray_scratch *s, int64_t *restri
     }
 }
 
-/* Can a body take light away from a shadow ray by itself? */
-static bool casts_shadow(const body *b, int solid_shadows)
-{
-    return b->opaque || solid_shadows || b->clearness < 1.0;
-}
-
 /* The primitives of the bodies that first sight looks at. */
 static uint64_t first_sight_primitives(const arrangement *a, int solid_shadows)
 {
     uint64_t wanted = 0;
     for (int r = 1; r <= a->body_count; r++) {
         const body *b = &a->bodies[r];
-        if (casts_shadow(b, solid_shadows))
+        if (body_casts_shadow(b, solid_shadows))
             wanted |= (uint64_t)1 << b->outside | (b->hollow < 0 ? 0 : (uint64_t)1 << b->hollow);
     }
     return wanted;
@@ -306,7 +300,7 @@ static void first_sight(const arrangement *a, int solid_shadows, int n, ray_scra
     bool hidden = false; /* can a clear body of a higher rank hide this one? */
     for (int r = a->body_count; r >= 1; r--) {
         const body *b = &a->bodies[r];
-        if (casts_shadow(b, solid_shadows))
+        if (body_casts_shadow(b, solid_shadows))
             touching(b, n, s, hidden || !b->opaque ? s->undecided : s->blocked);
         hidden |= !b->opaque;
     }

@@ -1,5 +1,5 @@
 /* The film sums radiance in 64-bit fixed point, so that the order of the sums cannot matter: one unit is
- * 2^-44 (5.7e-14) and a channel holds -524288 .. 524288. A contribution or a sum beyond that raises the
+ * 2^-44 (5.7e-14); a channel holds up to 524288, and one contribution is from 0 to 262144. What is beyond that, or is no number, raises the
  * overflow flag, which makes the render an error. Linear light; row 0 is the top.
  * Ownership: film_create gives, film_destroy releases. Different pixels may be written by different threads. */
 #ifndef CUVETTE_RENDER_FILM_H

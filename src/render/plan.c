@@ -6,23 +6,30 @@
 /* Refractive index of the medium around all solids. */
 #define SURROUNDING_IOR 1.0
 
-static vec3 looking_along(const camera *c)
+static void aim_at_target(const struct camera *c, camera_frame *f)
 {
-    if (c->aimed)
-        return vec3_normalize(vec3_sub(c->target, c->position));
+    f->forward = vec3_normalize(vec3_sub(c->target, c->position));
+    vec3 side = vec3_cross(vec3_make(0.0, 1.0, 0.0), f->forward);
+    f->right = vec3_length(side) > 1e-12 ? vec3_normalize(side) : vec3_make(1.0, 0.0, 0.0); /* straight up or down */
+}
+
+static void aim_along_angles(const struct camera *c, camera_frame *f)
+{
     double sin_yaw, cos_yaw, sin_pitch, cos_pitch;
     elementary_sincos_deg(c->yaw_deg, &sin_yaw, &cos_yaw);
     elementary_sincos_deg(c->pitch_deg, &sin_pitch, &cos_pitch);
-    return vec3_make(cos_pitch * sin_yaw, sin_pitch, cos_pitch * cos_yaw);
+    f->forward = vec3_make(cos_pitch * sin_yaw, sin_pitch, cos_pitch * cos_yaw);
+    f->right = vec3_make(cos_yaw, 0.0, -sin_yaw);
 }
 
-static camera_frame frame_of(const camera *c, double aspect)
+static camera_frame frame_of(const struct camera *c, double aspect)
 {
     camera_frame f;
     f.eye = c->position;
-    f.forward = looking_along(c);
-    vec3 side = vec3_cross(vec3_make(0.0, 1.0, 0.0), f.forward);
-    f.right = vec3_length(side) > 1e-12 ? vec3_normalize(side) : vec3_make(1.0, 0.0, 0.0); /* straight up or down */
+    if (c->aimed)
+        aim_at_target(c, &f);
+    else
+        aim_along_angles(c, &f);
     f.up = vec3_cross(f.forward, f.right);
     double s, k;
     elementary_sincos_deg(0.5 * c->fov_deg, &s, &k);

@@ -23,7 +23,7 @@ typedef struct desk {
     _Alignas(64) worker_report report;
     event_list events;
     atomic_uint_fast64_t pixels; /* begun; read by the watcher */
-    bool out_of_memory, overflow;
+    bool out_of_memory, overflow, misplaced;
 } desk;
 
 typedef struct frame {
@@ -93,15 +93,19 @@ static pin_policy policy_of(const scene *s)
     return PIN_NONE;
 }
 
-/* Threads of a kept pool remember where they were put. */
-static void take_place(const frame *f, int worker)
+/* Threads of a kept pool remember where they were put. False if a thread cannot be put where it belongs. */
+static bool take_place(const frame *f, int worker)
 {
     static _Thread_local int bound_to = -1;
     if (!f->owner->machine)
-        return;
+        return true;
     int pu = topology_place(f->owner->machine, policy_of(f->s), worker, (int)f->s->render.threads);
-    if (pu != bound_to && topology_bind_thread(f->owner->machine, pu, NULL) == STATUS_OK)
-        bound_to = pu;
+    if (pu == bound_to)
+        return true;
+    if (topology_bind_thread(f->owner->machine, pu, NULL) != STATUS_OK)
+        return false;
+    bound_to = pu;
+    return true;
 }
 
 static double since(const frame *f)
@@ -145,9 +149,8 @@ static void trace_pieces(frame *f, int worker, desk *d, span piece)
     }
     do {
         double tile_began_s = timeline ? since(f) : 0.0;
-        tracer_span(t, &piece, &f->stop);
+        tracer_span(t, &piece, &d->pixels, &f->stop);
         d->report.tiles++;
-        atomic_fetch_add_explicit(&d->pixels, (uint64_t)(piece.x1 - piece.x0) * (uint64_t)(piece.y1 - piece.y0), memory_order_relaxed);
         if (timeline)
             note_tile(f, d, worker, &piece, tile_began_s);
     } while (!atomic_load_explicit(&f->stop, memory_order_relaxed) && schedule_next(&f->pieces, worker, d->report.tiles, &piece));
@@ -155,7 +158,9 @@ static void trace_pieces(frame *f, int worker, desk *d, span piece)
     if (timeline && d->events.count > 0)
         d->events.event[d->events.count - 1].end_s = since(f);
     d->report.busy_s = since(f) - began_s;
-    d->report.rays = ray_counters_total(tracer_counters(t));
+    const ray_counters *c = tracer_counters(t);
+    d->report.rays = ray_counters_total(c);
+    d->report.camera = c->camera, d->report.reflect = c->reflect, d->report.refract = c->refract, d->report.shadow = c->shadow;
     d->overflow = tracer_overflowed(t);
 }
 
@@ -164,7 +169,7 @@ static void work(void *context, int worker)
     frame *f = context;
     desk *d = &f->desks[worker];
     const double began_s = since(f), cpu_s = clock_thread_cpu_s();
-    take_place(f, worker);
+    d->misplaced = !take_place(f, worker);
     span piece;
     if (schedule_next(&f->pieces, worker, 0, &piece))
         trace_pieces(f, worker, d, piece);
@@ -208,18 +213,21 @@ static bool join_events(const desk *desks, int count, render_result *result)
     return true;
 }
 
-/* Every ray is tested against every visible solid. */
+/* Rays that look for their nearest interface are tested against every visible solid, shadow rays against those that cast shadows. */
 static void count_tests(const plan *p, ray_counters *c)
 {
-    for (int r = 1; r <= p->solids->body_count; r++)
-        c->tests[p->solids->bodies[r].solid] = ray_counters_total(c);
+    const uint64_t nearest = c->camera + c->reflect + c->refract;
+    for (int r = 1; r <= p->solids->body_count; r++) {
+        const body *b = &p->solids->bodies[r];
+        c->tests[b->solid] = nearest + (body_casts_shadow(b, p->render.shadows == SHADOWS_OPAQUE) ? c->shadow : 0);
+    }
 }
 
 /* Sums up what the workers left on their desks. */
 static status collect(frame *f, render_result *result, diagnostic *why)
 {
     const int count = (int)f->s->render.threads;
-    bool out_of_memory = false, overflow = false;
+    bool out_of_memory = false, overflow = false, misplaced = false;
     for (int i = 0; i < count; i++) {
         desk *d = &f->desks[i];
         d->report.waiting_s = result->wall_s - d->report.busy_s;
@@ -228,12 +236,15 @@ static status collect(frame *f, render_result *result, diagnostic *why)
             ray_counters_add(&result->counters, tracer_counters(f->owner->tracers[i]));
         out_of_memory |= d->out_of_memory;
         overflow |= d->overflow;
+        misplaced |= d->misplaced;
     }
     count_tests(f->target.scene, &result->counters);
     if (f->options && f->options->timeline)
         out_of_memory |= !join_events(f->desks, count, result);
     if (out_of_memory)
         return diagnose(why, STATUS_FAILURE, "use fewer threads or less depth", "out of memory while tracing");
+    if (misplaced)
+        return diagnose(why, STATUS_FAILURE, "set render.pin to none", "a worker cannot be bound to its processing unit");
     if (overflow)
         return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
                         "the picture is brighter than the film holds (524288 in a channel)");
@@ -308,6 +319,8 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
     status code = scene_check(s, why);
     plan *p = NULL;
     render_result *result = NULL;
+    if (code == STATUS_OK && s->background.kind == BACKGROUND_PICTURE && !s->background.picture)
+        code = diagnose(why, STATUS_FAILURE, "call scene_load_pictures before", "the sky's picture is not loaded");
     if (code == STATUS_OK)
         code = plan_build(s, &p, why);
     if (code == STATUS_OK)

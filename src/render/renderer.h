@@ -27,7 +27,8 @@ typedef struct worker_report {
     double busy_s;     /* from its first tile taken to its last ray traced; 0 without a tile */
     double waiting_s;  /* the frame's wall time less busy_s */
     uint64_t tiles;    /* pieces of the picture that it took */
-    uint64_t rays;     /* of all kinds */
+    uint64_t rays;     /* of all kinds, and by kind: */
+    uint64_t camera, reflect, refract, shadow;
     int pu;            /* processing unit it ended on; -1 unknown */
 } worker_report;
 
@@ -56,7 +57,7 @@ typedef struct render_result {
     size_t event_count;
 } render_result;
 
-/* Loads pictures must have been called. STATUS_INTERRUPTED when progress returned false: *out then holds what was done. */
+/* scene_load_pictures must have been called. STATUS_INTERRUPTED when progress returned false: *out then holds what was done. */
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out, diagnostic *why);
 void render_result_destroy(render_result *result);
 

@@ -37,6 +37,36 @@ static void raise_to(double exponent, int count, double *restrict base)
     }
 }
 
+/* For each flat face of a primitive: which coordinate is constant there, and the one to look up the cell with instead, half a
+ * cell inside; of a half-space the surface itself. Rounding across the face must not choose the cell. */
+enum { FLAT_FACES = 6 };
+typedef struct flat_faces {
+    int64_t is_x[FLAT_FACES], is_y[FLAT_FACES], is_z[FLAT_FACES]; /* masks */
+    double at[FLAT_FACES];
+} flat_faces;
+
+static flat_faces flat_faces_of(const primitive *p, double cell)
+{
+    flat_faces f = {{0}, {0}, {0}, {0}};
+    const double half[3] = {p->half.x, p->half.y, p->half.z};
+    switch (p->kind) {
+    case PRIMITIVE_HALFSPACE: f.is_y[0] = -1; break;
+    case PRIMITIVE_CYLINDER:
+        f.is_y[1] = f.is_y[2] = -1;
+        f.at[1] = p->bottom + 0.5 * cell;
+        f.at[2] = p->top - 0.5 * cell;
+        break;
+    case PRIMITIVE_BOX:
+        for (int k = 0; k < FLAT_FACES; k++) {
+            f.is_x[k] = mask_of(k / 2 == 0), f.is_y[k] = mask_of(k / 2 == 1), f.is_z[k] = mask_of(k / 2 == 2);
+            f.at[k] = k % 2 ? half[k / 2] - 0.5 * cell : 0.5 * cell - half[k / 2];
+        }
+        break;
+    case PRIMITIVE_SPHERE: break;
+    }
+    return f;
+}
+
 static void color(const material *m, const primitive *p, group *restrict g)
 {
     const int count = g->padded;
@@ -49,9 +79,17 @@ static void color(const material *m, const primitive *p, group *restrict g)
     const vec3 origin = p->origin;
     const mat3 rotation = p->rotation; /* the identity where it is not turned, which changes no bit */
     const double size = m->checker;
+    const int64_t first = p->first_face;
+    const flat_faces flat = flat_faces_of(p, size);
     for (int i = 0; i < count; i++) {
         vec3 q = vec3_make(g->points.px[i] - origin.x, g->points.py[i] - origin.y, g->points.pz[i] - origin.z);
         q = mat3_apply_transposed(rotation, q);
+        for (int k = 0; k < FLAT_FACES; k++) {
+            const int64_t here = mask_same(g->points.face[i], first + k);
+            q.x = blend(here & flat.is_x[k], flat.at[k], q.x);
+            q.y = blend(here & flat.is_y[k], flat.at[k], q.y);
+            q.z = blend(here & flat.is_z[k], flat.at[k], q.z);
+        }
         double cell = floor(q.x / size) + floor(q.y / size) + floor(q.z / size);
         int64_t is_even = mask_same(lanes_bits(cell * 0.5), lanes_bits(floor(cell * 0.5)));
         g->cr[i] = blend(is_even, even.x, odd.x);
@@ -91,7 +129,8 @@ static void direct(const material *m, const light *lamp, const group *g, lit_gro
         lit->r[i] = blend(facing, g->wr[i] * ir * (diffuse * g->cr[i] + highlight), 0.0);
         lit->g[i] = blend(facing, g->wg[i] * ig * (diffuse * g->cg[i] + highlight), 0.0);
         lit->b[i] = blend(facing, g->wb[i] * ib * (diffuse * g->cb[i] + highlight), 0.0);
-        lit->shows[i] = mask_less_equal(least, lit->r[i]) | mask_less_equal(least, lit->g[i]) | mask_less_equal(least, lit->b[i]);
+        /* What is no number shows, so that it is found out. */
+        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }
 }
 
@@ -145,12 +184,6 @@ static void constant_branches(const material *m, bool opaque, const group *g, br
     b->total = without_padding(g, total);
 }
 
-/* Rounds to the nearest unit by the bits of 1.5 2^52 + v: a conversion that every instruction set has; 0 <= throughput <= 1. */
-ALWAYS_INLINE int64_t cut_units(double throughput)
-{
-    return lanes_bits(throughput * COUNTERS_CUT_ONE + 0x1.8p52) - lanes_bits(0x1.8p52);
-}
-
 static void cut(const group *g, const branch_group *b, cut_sum *sum)
 {
     const int count = g->count;
@@ -159,9 +192,9 @@ static void cut(const group *g, const branch_group *b, cut_sum *sum)
     for (int i = 0; i < count; i++) {
         const double reflect = b->reflect[i], refract = b->refract[i];
         branches -= mask_less(0.0, reflect) + mask_less(0.0, refract);
-        red += cut_units(g->wr[i] * reflect) + cut_units(g->wr[i] * refract);
-        green += cut_units(g->wg[i] * reflect) + cut_units(g->wg[i] * refract);
-        blue += cut_units(g->wb[i] * reflect) + cut_units(g->wb[i] * refract);
+        red += counters_cut_units(g->wr[i] * reflect) + counters_cut_units(g->wr[i] * refract);
+        green += counters_cut_units(g->wg[i] * reflect) + counters_cut_units(g->wg[i] * refract);
+        blue += counters_cut_units(g->wb[i] * reflect) + counters_cut_units(g->wb[i] * refract);
     }
     *sum = (cut_sum){branches, {red, green, blue}};
 }

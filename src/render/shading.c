@@ -100,19 +100,14 @@ static void cut_branches(tracer *t)
     }
 }
 
-static int64_t cut_units(double throughput)
-{
-    return (int64_t)(throughput * COUNTERS_CUT_ONE + 0.5);
-}
-
 static bool too_light(tracer *t, const ray_queue *q, int i, double least)
 {
     if (q->wr[i] >= least || q->wg[i] >= least || q->wb[i] >= least)
         return false;
     COUNT(t->counters.cut_weight++);
-    COUNT(t->counters.cut_weight_throughput[0] += cut_units(q->wr[i]));
-    COUNT(t->counters.cut_weight_throughput[1] += cut_units(q->wg[i]));
-    COUNT(t->counters.cut_weight_throughput[2] += cut_units(q->wb[i]));
+    COUNT(t->counters.cut_weight_throughput[0] += counters_cut_units(q->wr[i]));
+    COUNT(t->counters.cut_weight_throughput[1] += counters_cut_units(q->wg[i]));
+    COUNT(t->counters.cut_weight_throughput[2] += counters_cut_units(q->wb[i]));
     return true;
 }
 

@@ -214,7 +214,7 @@ static void put_camera_rays_in_line(tracer *t, int y, int x0, int x1, int sample
     q->count += count;
 }
 
-void tracer_span(tracer *t, const span *piece, const atomic_bool *stop)
+void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop)
 {
     const int samples = (int)t->target.scene->render.samples, at_once = BATCH / samples;
     for (int y = piece->y0; y < piece->y1; y++) {
@@ -224,6 +224,7 @@ void tracer_span(tracer *t, const span *piece, const atomic_bool *stop)
                 if (stopped(stop))
                     return;
         }
+        atomic_fetch_add_explicit(begun, (uint64_t)(piece->x1 - piece->x0), memory_order_relaxed);
     }
 }
 

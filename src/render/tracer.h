@@ -26,8 +26,9 @@ void tracer_destroy(tracer *t);
 /* Begins a frame: counters to zero, queues for its depth. False when memory is out. */
 bool tracer_begin(tracer *t, const tracer_target *target);
 
-/* Puts the camera rays of a piece of the picture in line and traces until fewer than a batch of anything waits. */
-void tracer_span(tracer *t, const span *piece, const atomic_bool *stop);
+/* Puts the camera rays of a piece of the picture in line and traces until fewer than a batch of anything waits. Adds the
+ * pixels of each row to *begun when they are in line. */
+void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop);
 
 /* Traces what still waits. */
 void tracer_finish(tracer *t, const atomic_bool *stop);
