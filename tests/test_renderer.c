@@ -131,6 +131,32 @@ static void an_interrupted_frame_ends_and_leaves_no_trace(void **state)
     scene_destroy(small);
 }
 
+/* More workers than processors: those that come late must not go on where the stopped ones left off. */
+static void a_stopped_crowd_leaves_nothing_behind(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=1024 render.height=1024 render.depth=30 render.threads=512 render.schedule=rows "
+                         "camera.fov_deg=25");
+    scene *small = rod_scene("render.width=64 render.height=48 render.threads=512 render.tile=4");
+    render_result *undisturbed = render(small), *part = NULL, *after = NULL;
+    renderer *r = NULL;
+    assert_int_equal(renderer_create(isa_best(), NULL, &r, NULL), STATUS_OK);
+    for (int i = 0; i < 3; i++) {
+        watch w = {0, 0.0};
+        const render_options options = {.progress = stop_at_once, .context = &w};
+        assert_int_equal(renderer_render(r, s, &options, &part, NULL), STATUS_INTERRUPTED);
+        render_result_destroy(part);
+        assert_int_equal(renderer_render(r, small, NULL, &after, NULL), STATUS_OK);
+        assert_true(film_hash(after->picture) == film_hash(undisturbed->picture));
+        assert_memory_equal(&after->counters, &undisturbed->counters, sizeof after->counters);
+        render_result_destroy(after);
+    }
+    renderer_destroy(r);
+    render_result_destroy(undisturbed);
+    scene_destroy(s);
+    scene_destroy(small);
+}
+
 static void progress_changes_nothing(void **state)
 {
     (void)state;
@@ -220,6 +246,7 @@ int main(void)
         cmocka_unit_test(a_sum_beyond_the_films_range_is_an_error),
         cmocka_unit_test(a_scene_that_is_wrong_is_refused),
         cmocka_unit_test(an_interrupted_frame_ends_and_leaves_no_trace),
+        cmocka_unit_test(a_stopped_crowd_leaves_nothing_behind),
         cmocka_unit_test(progress_changes_nothing),
         cmocka_unit_test(two_renderers_at_once),
         cmocka_unit_test(a_renderer_serves_one_scene_after_another),

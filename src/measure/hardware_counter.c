@@ -71,6 +71,22 @@ hardware_counts hardware_counter_read(const hardware_counter *counter)
     };
 }
 
+static int64_t since(int64_t before, int64_t now)
+{
+    return before < 0 || now < 0 ? -1 : now - before;
+}
+
+hardware_counts hardware_counts_since(const hardware_counter *counter, const hardware_counts *before)
+{
+    hardware_counts now = hardware_counter_read(counter);
+    return (hardware_counts){
+        .cycles = since(before->cycles, now.cycles),
+        .instructions = since(before->instructions, now.instructions),
+        .branch_misses = since(before->branch_misses, now.branch_misses),
+        .cache_misses = since(before->cache_misses, now.cache_misses),
+    };
+}
+
 void hardware_counter_destroy(hardware_counter *counter)
 {
     if (!counter)

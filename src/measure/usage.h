@@ -31,6 +31,8 @@ typedef struct hardware_counter hardware_counter;
  * created. NULL when there is no memory, which the other two take. Release with hardware_counter_destroy. */
 hardware_counter *hardware_counter_create(void);
 hardware_counts hardware_counter_read(const hardware_counter *counter);
+/* What was counted since an earlier reading. */
+hardware_counts hardware_counts_since(const hardware_counter *counter, const hardware_counts *before);
 void hardware_counter_destroy(hardware_counter *counter);
 
 /* What could disturb a measurement now: one short line each ("governor powersave", "turbo on", "load 3.2",

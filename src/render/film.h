@@ -11,7 +11,11 @@
 
 #define FILM_ONE 17592186044416.0 /* 2^44 */
 
-typedef struct film { int width, height; int64_t *sum; /* [(y*width + x)*3 + channel] */ } film;
+typedef struct film {
+    int width, height;
+    int64_t *sum;   /* [(y*width + x)*3 + channel], in memory */
+    void *memory;
+} film;
 
 status film_create(int width, int height, film **out, diagnostic *why);
 void film_destroy(film *f);

@@ -4,16 +4,14 @@
 #include "render/plan.h"
 #include "render/pool.h"
 #include "render/schedule.h"
-#include "render/tracer.h"
+#include "render/tracer_set.h"
 #include <stdlib.h>
 #include <string.h>
 
 struct renderer {
-    isa level;
     const topology *machine;
     pool *threads;
-    tracer **tracers;     /* by worker, made by the worker that first needs one */
-    int tracer_count;
+    tracer_set *tracers;
 };
 
 typedef struct event_list { tile_event *event; size_t count, capacity; } event_list;
@@ -23,14 +21,14 @@ typedef struct desk {
     _Alignas(64) worker_report report;
     event_list events;
     atomic_uint_fast64_t pixels; /* begun; read by the watcher */
-    bool out_of_memory, overflow, misplaced;
+    bool out_of_memory, misplaced;
 } desk;
 
 typedef struct frame {
     renderer *owner;
     const scene *s;
     const render_options *options;
-    tracer_target target;
+    const plan *scene;
     schedule pieces;
     desk *desks;
     double began_s;
@@ -40,14 +38,15 @@ typedef struct frame {
 status renderer_create(isa level, const topology *machine, renderer **out, diagnostic *why)
 {
     renderer *r = calloc(1, sizeof *r);
-    if (r)
+    if (r) {
         r->threads = pool_create();
-    if (!r || !r->threads) {
-        free(r);
+        r->tracers = tracer_set_create(level);
+        r->machine = machine;
+    }
+    if (!r || !r->threads || !r->tracers) {
+        renderer_destroy(r);
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
-    r->level = level;
-    r->machine = machine;
     *out = r;
     return STATUS_OK;
 }
@@ -57,30 +56,13 @@ void renderer_destroy(renderer *r)
     if (!r)
         return;
     pool_destroy(r->threads);
-    for (int i = 0; i < r->tracer_count; i++)
-        tracer_destroy(r->tracers[i]);
-    free(r->tracers);
+    tracer_set_destroy(r->tracers);
     free(r);
-}
-
-static status reserve_tracers(renderer *r, int count, diagnostic *why)
-{
-    if (count <= r->tracer_count)
-        return STATUS_OK;
-    tracer **grown = realloc(r->tracers, (size_t)count * sizeof(tracer *));
-    if (!grown)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
-    memset(grown + r->tracer_count, 0, (size_t)(count - r->tracer_count) * sizeof(tracer *));
-    r->tracers = grown;
-    r->tracer_count = count;
-    return STATUS_OK;
 }
 
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why)
 {
-    const int count = (int)s->render.threads;
-    status code = reserve_tracers(r, count, why);
-    return code == STATUS_OK && s->render.pool ? pool_reserve(r->threads, count, why) : code;
+    return s->render.pool ? pool_reserve(r->threads, (int)s->render.threads, why) : STATUS_OK;
 }
 
 static pin_policy policy_of(const scene *s)
@@ -129,24 +111,18 @@ static void note_tile(const frame *f, desk *d, int worker, const span *piece, do
     l->event[l->count++] = (tile_event){worker, piece->x0, piece->y0, piece->x1, piece->y1, began_s, since(f)};
 }
 
-static tracer *tracer_of(frame *f, int worker)
-{
-    tracer **t = &f->owner->tracers[worker];
-    if (!*t)
-        *t = tracer_create(f->owner->level);
-    return *t && tracer_begin(*t, &f->target) ? *t : NULL;
-}
-
 /* Pieces one after another; rays that do not fill a batch at the end of one piece go on with the next. */
 static void trace_pieces(frame *f, int worker, desk *d, span piece)
 {
     const bool timeline = f->options && f->options->timeline;
     const double began_s = since(f);
-    tracer *t = tracer_of(f, worker);
+    tracer *t = tracer_set_take(f->owner->tracers);
     if (!t) {
         d->out_of_memory = true;
         return;
     }
+    const ray_counters *c = tracer_counters(t);
+    const uint64_t camera_rays = c->camera, reflect = c->reflect, refract = c->refract, shadow = c->shadow;
     do {
         double tile_began_s = timeline ? since(f) : 0.0;
         tracer_span(t, &piece, &d->pixels, &f->stop);
@@ -158,10 +134,10 @@ static void trace_pieces(frame *f, int worker, desk *d, span piece)
     if (timeline && d->events.count > 0)
         d->events.event[d->events.count - 1].end_s = since(f);
     d->report.busy_s = since(f) - began_s;
-    const ray_counters *c = tracer_counters(t);
-    d->report.rays = ray_counters_total(c);
-    d->report.camera = c->camera, d->report.reflect = c->reflect, d->report.refract = c->refract, d->report.shadow = c->shadow;
-    d->overflow = tracer_overflowed(t);
+    d->report.camera = c->camera - camera_rays, d->report.reflect = c->reflect - reflect;
+    d->report.refract = c->refract - refract, d->report.shadow = c->shadow - shadow;
+    d->report.rays = d->report.camera + d->report.reflect + d->report.refract + d->report.shadow;
+    tracer_set_give(f->owner->tracers, t);
 }
 
 static void work(void *context, int worker)
@@ -171,7 +147,7 @@ static void work(void *context, int worker)
     const double began_s = since(f), cpu_s = clock_thread_cpu_s();
     d->misplaced = !take_place(f, worker);
     span piece;
-    if (schedule_next(&f->pieces, worker, 0, &piece))
+    if (!atomic_load_explicit(&f->stop, memory_order_relaxed) && schedule_next(&f->pieces, worker, 0, &piece))
         trace_pieces(f, worker, d, piece);
     d->report.start_s = began_s;
     d->report.pu = topology_current_pu();
@@ -227,18 +203,16 @@ static void count_tests(const plan *p, ray_counters *c)
 static status collect(frame *f, render_result *result, diagnostic *why)
 {
     const int count = (int)f->s->render.threads;
-    bool out_of_memory = false, overflow = false, misplaced = false;
+    bool out_of_memory = false, misplaced = false;
     for (int i = 0; i < count; i++) {
         desk *d = &f->desks[i];
         d->report.waiting_s = result->wall_s - d->report.busy_s;
         result->workers[i] = d->report;
-        if (d->report.tiles > 0)
-            ray_counters_add(&result->counters, tracer_counters(f->owner->tracers[i]));
         out_of_memory |= d->out_of_memory;
-        overflow |= d->overflow;
         misplaced |= d->misplaced;
     }
-    count_tests(f->target.scene, &result->counters);
+    const bool overflow = tracer_set_collect(f->owner->tracers, &result->counters);
+    count_tests(f->scene, &result->counters);
     if (f->options && f->options->timeline)
         out_of_memory |= !join_events(f->desks, count, result);
     if (out_of_memory)
@@ -247,8 +221,17 @@ static status collect(frame *f, render_result *result, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "set render.pin to none", "a worker cannot be bound to its processing unit");
     if (overflow)
         return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
-                        "the picture is brighter than the film holds (524288 in a channel)");
+                        "the picture is brighter than the film holds (262144 in one contribution, 524288 in a pixel)");
     return atomic_load(&f->stop) ? STATUS_INTERRUPTED : STATUS_OK;
+}
+
+/* Zeros that are written, so that no pixel's time holds the making of a page. */
+static double *make_map(size_t pixels)
+{
+    double *map = malloc(pixels * sizeof *map);
+    for (size_t i = 0; map && i < pixels; i++)
+        map[i] = 0.0;
+    return map;
 }
 
 static status make_result(const scene *s, const render_options *options, render_result **out, diagnostic *why)
@@ -263,9 +246,9 @@ static status make_result(const scene *s, const render_options *options, render_
         result->workers = calloc((size_t)result->worker_count, sizeof *result->workers);
         bool missing = !result->workers;
         if (options && options->pixel_rays)
-            missing |= !(result->pixel_rays = calloc(pixels, sizeof(double)));
+            missing |= !(result->pixel_rays = make_map(pixels));
         if (options && options->pixel_time)
-            missing |= !(result->pixel_ns = calloc(pixels, sizeof(double)));
+            missing |= !(result->pixel_ns = make_map(pixels));
         if (missing)
             code = diagnose(why, STATUS_FAILURE, "render a smaller picture", "out of memory");
     }
@@ -290,13 +273,15 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
     const int count = (int)s->render.threads;
     frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
     desk *desks = make_desks(count);
-    status code = f && desks ? renderer_prepare(r, s, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns};
+    bool has_memory = f && desks && tracer_set_begin(r->tracers, count, &target);
+    status code = has_memory ? renderer_prepare(r, s, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK) {
         memset(f, 0, sizeof *f);
         f->owner = r;
         f->s = s;
         f->options = options;
-        f->target = (tracer_target){p, result->picture, result->pixel_rays, result->pixel_ns};
+        f->scene = p;
         f->desks = desks;
         schedule_start(&f->pieces, &s->render);
         const double cpu_s = clock_process_cpu_s();

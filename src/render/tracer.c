@@ -42,6 +42,13 @@ static bool make_queues(tracer *t, int depths)
     return true;
 }
 
+static void drop_all(tracer *t)
+{
+    for (int d = 0; d < t->queue_count; d++)
+        t->waiting[d].count = 0;
+    t->shadows.count = 0;
+}
+
 bool tracer_begin(tracer *t, const tracer_target *target)
 {
     t->target = *target;
@@ -54,9 +61,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     }
     if (!make_queues(t, t->depth_limit + 1))
         return false;
-    for (int d = 0; d < t->queue_count; d++)
-        t->waiting[d].count = 0;
-    t->shadows.count = 0;
+    drop_all(t);
     memset(&t->counters, 0, sizeof t->counters);
     t->overflow = 0;
     return true;
@@ -239,4 +244,5 @@ void tracer_finish(tracer *t, const atomic_bool *stop)
     }
     while (t->shadows.count > 0 && !stopped(stop))
         run_batch(t, -1);
+    drop_all(t);
 }

@@ -30,7 +30,7 @@ bool tracer_begin(tracer *t, const tracer_target *target);
  * pixels of each row to *begun when they are in line. */
 void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop);
 
-/* Traces what still waits. */
+/* Traces what still waits; when told to stop, drops it. Nothing waits afterwards. */
 void tracer_finish(tracer *t, const atomic_bool *stop);
 
 const ray_counters *tracer_counters(const tracer *t);

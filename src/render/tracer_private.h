@@ -13,6 +13,7 @@ struct tracer {
     ray_queue *waiting;      /* by depth, 0 .. depth_limit */
     ray_queue shadows;
     ray_counters counters;
+    uint64_t frame;          /* of its tracer_set, in which it was last begun; 0 before */
     int64_t overflow;        /* negative: a sum or contribution left the film's range */
     _Alignas(64) ray_scratch scratch; /* whole vectors on whole cache lines, here and below */
     _Alignas(64) hit_batch hits;
