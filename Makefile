@@ -43,7 +43,7 @@ optimize_sanitize   := -O1 -fsanitize=address,undefined -fno-sanitize-recover=al
 optimize_tsan       := -O1 -fsanitize=thread
 optimize_fuzz       := -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 optimize := $(optimize_$(config))
-$(if $(optimize),,$(error config=$(config) is not one of debug, release, sanitize, tsan, nocounters))
+$(if $(optimize),,$(error config=$(config) is not one of debug, release, sanitize, tsan, fuzz, nocounters))
 
 version := 0.1.0
 # pkg-config is asked at its first use, not when this file is read: `make setup all` installs the libraries first.
@@ -156,7 +156,7 @@ sanitize: ## build and test with AddressSanitizer and UndefinedBehaviorSanitizer
 tsan: ## build and test with ThreadSanitizer
 	@$(MAKE) config=tsan build=$(build)/tsan test
 valgrind: ## run the test programs under valgrind
-	@$(MAKE) RUNNER='valgrind -q --error-exitcode=9 --leak-check=full --suppressions=tests/valgrind.supp' \
+	@$(MAKE) RUNNER='valgrind -q --error-exitcode=9 --leak-check=full --max-threads=1100 --suppressions=tests/valgrind.supp' \
 	  TEST_LIMIT_S=3600 selected_scripts= test
 clang: ## build and test with clang
 	@$(MAKE) CC=clang build=$(build)/clang test
@@ -200,9 +200,9 @@ figures: tables ## draw the figures whose rows or scripts are newer
 paper: ## rebuild the report from the rows that are there; measures nothing
 	$(MAKE) -C paper
 
-bench: all ## time against the programs a user would pick instead, and what counters cost
+bench: all ## frame times, what counters cost; PEERS=DIR (rod.pov, listing_baseline.cpp): against these too
 	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters all
-	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' experiments/bench.sh
+	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' PEERS='$(PEERS)' experiments/bench.sh
 
 # --- installation, upkeep ---
 
@@ -214,11 +214,13 @@ install: $(build)/cuvette ## install under PREFIX (/usr/local), below DESTDIR
 	install -D -m 755 $(build)/cuvette $(DESTDIR)$(PREFIX)/bin/cuvette
 	install -D -m 644 src/cli/cuvette.1 $(man)
 	install -D -m 644 src/cli/cuvette.bash $(completion)
+	install -D -m 644 LICENSE $(DESTDIR)$(PREFIX)/share/doc/cuvette/LICENSE
+	install -D -m 644 README.md $(DESTDIR)$(PREFIX)/share/doc/cuvette/README.md
 	find experiments plots -type f -exec sh -c 'for f; do test -x "$$f" && mode=755 || mode=644; \
 	  install -D -m $$mode "$$f" "$(shared)/$$f"; done' sh {} +
 uninstall: ## remove what install put there
 	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(man) $(completion)
-	rm -rf $(shared)
+	rm -rf $(shared) $(DESTDIR)$(PREFIX)/share/doc/cuvette
 
 .PHONY: format clean distclean help
 format: ## lay out the sources with clang-format

@@ -92,7 +92,7 @@ drawn=0 fresh=0 failed=0
 for figure in "${figures[@]}"; do
     look_for_inputs "$figure"
     if [ -n "$missing" ]; then
-        echo "$figure: skipped, no $missing"
+        echo "$figure: skipped, no $missing (make experiments makes it)"
     elif [ "$named" -eq 0 ] && is_fresh "$figure"; then
         fresh=$((fresh + 1))
     elif draw "$figure"; then

@@ -80,6 +80,10 @@ refused "machine with an argument" "too many" machine now
 refused "params of two scenes" "too many" params "$scene" "$scene"
 echo 'render: [' >text.yaml
 refused "params of what is no scene" "text.yaml:[0-9]" params text.yaml
+refused "params of a misspelt path" "did you mean 'render.depth'" params render.dpth
+refused "params of a word that stands nowhere" "no parameter fits 'zzz'" params "$scene" zzz
+refused "params of two words" "one too many" params "$scene" liquid vessel
+refused "params --man of a scene" "leave out" params --man "$scene"
 refused "help for a misspelt command" "did you mean 'study'" help studdy
 refused "study without a command" "name a command" study
 refused "misspelt study command" "did you mean 'merge'" study merg
@@ -189,7 +193,23 @@ bad_study "scene is not there" ":2:" 'study: a\nscene: nowhere.yaml\n'
 bad_study "unknown parameter" ":3:" "study: a\nscene: $scene\ngrid: [{render.dpth: [1, 2]}]\nrepetitions: 1\n"
 bad_study "value out of range" ":3:" "study: a\nscene: $scene\ngrid: [{render.depth: [1, 200]}]\nrepetitions: 1\n"
 bad_study "no repetitions" ":" "study: a\nscene: $scene\ngrid: [{render.depth: [1]}]\nrepetitions: 0\n"
+bad_study "a range without steps" ":3:.*steps: 5" "study: a\nscene: $scene\ngrid: [{liquid.ior: {from: 1, to: 2}}]\n"
+bad_study "a range of one value" ":3:" "study: a\nscene: $scene\ngrid: [{liquid.ior: {from: 2, to: 2, steps: 3}}]\n"
+bad_study "more repetitions at least than at most" ":3:.*less than" \
+    "study: a\nscene: $scene\nrepetitions: {min: 9, max: 3, relative_width: 0.1}\n"
 [[ -e results ]] && echo "# a refused study has made results/"
+changed() # GRID
+{
+    printf '%s\n' 'study: changed' "scene: $scene" 'set: {render.width: 8, render.height: 6}' "grid: [$1]" 'repetitions: 1' \
+        >changed.study
+}
+changed '{render.depth: [0, 1]}'
+"$program" study run changed.study --results changed-results >/dev/null
+changed '{render.depth: [0, 2]}'
+for verb in run status summary; do
+    refused "study $verb: rows of another definition" "rows\.csv.*move this folder away.*--results.*another name" \
+        study "$verb" changed.study --results changed-results
+done
 
 echo "$passed passed, $failed failed"
 ((failed == 0))

@@ -119,6 +119,9 @@ static void what_makes_files_cyclic_or_ambiguous_is_refused(void **state)
     expect_error("a: 1\nb: 2\na: 3\n", 15, 3, 1);
     expect_error("a: 1\n---\nb: 1\n", 14, 2, 1);
     expect_error("", 0, 1, 1);
+    expect_error("\n# x\n", 5, 1, 1);
+    expect_error("\x89PNG", 4, 1, 1);
+    expect_error("\xff\xd8\xff\xe0", 4, 1, 1);
     expect_error("a: \"x\\0y\"", 9, 1, 4);
     expect_error("a: b\n\tc: d\n", 11, 2, 1);
     expect_error("\xff\xfe"
@@ -144,6 +147,41 @@ static void check_keys_names_the_nearest(void **state)
     document_destroy(d);
     document_destroy(far);
     document_destroy(good);
+}
+
+static void a_remedy_fits_its_wrong_key(void **state)
+{
+    (void)state;
+    static const char *const words[] = {"radius", "ior", "yaw_deg", "pitch_deg", "checker", "checker_color", "m", "shape", "color"};
+    static const struct {
+        const char *key, *remedy;
+    } cases[] = {
+        {"n", "did you mean 'ior'?"},
+        {"Index", "did you mean 'ior'?"},
+        {"refractive_index", "did you mean 'ior'?"},
+        {"type", "did you mean 'shape'?"},
+        {"colour", "did you mean 'color'?"},
+        {"yaw", "did you mean 'yaw_deg'?"},
+        {"raduis", "did you mean 'radius'?"},
+        {"chec", "the keys here are: "}, /* begins two */
+        {"alpha", "the keys here are: "}, /* transparency is no word here */
+        {"io", "the keys here are: "},
+        {"r", "the keys here are: "},
+        {"5", "a decimal comma? write 1.5; a vector is [0, 1, 2]"},
+        {"0.25", "a decimal comma? write 1.5; a vector is [0, 1, 2]"},
+        {"radius:2", "put a space after the colon"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[100], remedy[100];
+        snprintf(text, sizeof text, "{%s: 1}", cases[i].key);
+        document *d = parse(text);
+        diagnostic why = {.what = ""};
+        assert_int_equal(node_check_keys(d, document_root(d), words, sizeof words / sizeof *words, &why),
+                         STATUS_BAD_INPUT);
+        snprintf(remedy, strlen(cases[i].remedy) + 1, "%s", why.remedy);
+        assert_string_equal(remedy, cases[i].remedy);
+        document_destroy(d);
+    }
 }
 
 static void value_text_is_what_the_command_line_takes(void **state)
@@ -205,6 +243,7 @@ int main(void)
         cmocka_unit_test(size_and_number_of_values_are_limited),
         cmocka_unit_test(what_makes_files_cyclic_or_ambiguous_is_refused),
         cmocka_unit_test(check_keys_names_the_nearest),
+        cmocka_unit_test(a_remedy_fits_its_wrong_key),
         cmocka_unit_test(value_text_is_what_the_command_line_takes),
         cmocka_unit_test(files_are_read_and_missing_ones_named),
     };

@@ -224,6 +224,52 @@ static void the_key_shows_quarters_of_the_range(void **state)
     check_key(2e-6, (const char *const[]){"0", "0.5u", "1u", "1.5u", "2u"});
 }
 
+static void whole_values_have_whole_numbers_at_the_scale(void **state)
+{
+    (void)state;
+    static const struct {
+        double largest;
+        const char *shown, *hidden;
+    } cases[] = {{118, "30", "29.5"}, {118, "118", "88.5"}, {3, "2", "1.5"}, {1, "1", "0.5"}, {50000, "12.5k", "12500"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        double values[300];
+        for (int x = 0; x < 300; x++) {
+            values[x] = x % 2 * cases[i].largest;
+        }
+        image *picture = draw(values, 300, 1, "");
+        assert_true(shows(picture, 1, "0") && shows(picture, 1, cases[i].shown));
+        assert_false(shows(picture, 1, cases[i].hidden));
+        image_destroy(picture);
+    }
+}
+
+static void the_scale_is_not_set_by_a_few_outliers(void **state)
+{
+    (void)state;
+    double values[1200];
+    for (int i = 0; i < 1200; i++) {
+        values[i] = i * 7 % 1200 / 2.0 + 0.25;
+    }
+    values[0] = 1e9;
+    image *picture = draw(values, 300, 4, "t"); /* 6 of 1200 are above the percentile: the outlier, and 5 more */
+    assert_true(shows(picture, 4, ">=597.3"));
+    assert_true(pixel_is(picture, 0, 0, 253, 231, 37));
+    unsigned char rgb[3];
+    heatmap_color(values[1] / 597.25, rgb);
+    assert_true(pixel_is(picture, 1, 0, rgb[0], rgb[1], rgb[2]));
+    image_destroy(picture);
+    values[0] = 1190; /* not twice as much */
+    picture = draw(values, 300, 4, "t");
+    assert_true(shows(picture, 4, "1190") && !shows(picture, 4, ">=1190"));
+    image_destroy(picture);
+    for (int i = 0; i < 1200; i++) {
+        values[i] = i == 7 ? 5 : -0.0; /* the percentile is 0 */
+    }
+    picture = draw(values, 300, 4, "t");
+    assert_true(shows(picture, 4, "5") && pixel_is(picture, 7, 0, 253, 231, 37) && pixel_is(picture, 8, 0, 68, 1, 84));
+    image_destroy(picture);
+}
+
 static void a_long_title_is_cut(void **state)
 {
     (void)state;
@@ -255,7 +301,9 @@ static void text_grows_with_the_picture(void **state)
 {
     (void)state;
     double *values = make_values(1600, 2, 1.0);
-    values[0] = 1.0;
+    for (int i = 0; i < 1600 * 2; i++) { /* the same numbers at the scale of both */
+        values[i] = i % 5 / 4.0;
+    }
     image *small = draw(values, 400, 2, "title"), *large = draw(values, 1600, 2, "title");
     assert_int_equal((large->height - 2), 4 * (small->height - 2));
     assert_int_equal(ink_in(large, 0, 1600, 2, large->height), 16 * ink_in(small, 0, 400, 2, small->height));
@@ -293,6 +341,8 @@ int main(void)
         cmocka_unit_test(values_become_colors),
         cmocka_unit_test(narrow_data_stand_in_the_middle),
         cmocka_unit_test(the_key_shows_quarters_of_the_range),
+        cmocka_unit_test(whole_values_have_whole_numbers_at_the_scale),
+        cmocka_unit_test(the_scale_is_not_set_by_a_few_outliers),
         cmocka_unit_test(a_long_title_is_cut),
         cmocka_unit_test(nothing_but_zeros_is_no_error),
         cmocka_unit_test(text_grows_with_the_picture),

@@ -163,6 +163,12 @@ static void every_type_is_set_and_got(void **state)
         {"tank.m", "2", "2"},
         {"block.size.z", "0.125", "0.125"},
         {"ground.visible", "off", "off"},
+        {"ground.visible", "yes", "on"},
+        {"ground.visible", "no", "off"},
+        {"ground.visible", "true", "on"},
+        {"ground.visible", "False", "off"},
+        {"ground.visible", "ON", "on"},
+        {"ground.visible", "off", "off"},
         {"block.priority", "-3", "-3"},
     };
     scene *s = make();
@@ -221,6 +227,20 @@ static void target_and_angles_take_each_others_place(void **state)
     scene_destroy(s);
 }
 
+static void a_picture_makes_the_background_one(void **state)
+{
+    (void)state;
+    scene *s = make();
+    set(s, "background.picture", "");
+    assert_value(s, "background.kind", "uniform");
+    set(s, "background.picture", "sky.png");
+    assert_value(s, "background.kind", "picture");
+    set(s, "background.kind", "gradient"); /* the last one wins */
+    assert_value(s, "background.kind", "gradient");
+    assert_value(s, "background.picture", "sky.png");
+    scene_destroy(s);
+}
+
 typedef struct copy {
     scene *s;
     size_t count;
@@ -248,6 +268,7 @@ static void expect_reproduced(const scene *changed)
     assert_true(c.count > 100);
     assert_int_equal(scene_each_param(changed, compare_with_copy, &c), STATUS_OK);
     assert_int_equal(c.s->camera.aimed, changed->camera.aimed);
+    assert_int_equal(c.s->background.kind, changed->background.kind);
     scene_destroy(c.s);
 }
 
@@ -263,6 +284,8 @@ static void what_is_printed_makes_the_same_scene(void **state)
     set(s, "render.shadows", "opaque");
     set(s, "background.picture", "a b.png");
     set(s, "camera.target", "0.1,0.2,0.30000000000000004");
+    expect_reproduced(s);
+    set(s, "background.kind", "gradient"); /* beside a picture that is not shown */
     expect_reproduced(s);
     set(s, "camera.pitch_deg", "-12.3");
     expect_reproduced(s);
@@ -302,7 +325,20 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
         {"depth=1", "nothing in the scene is named 'depth'; did you mean 'render.depth'?"},
         {"fov_dge=1", "nothing in the scene is named 'fov_dge'; did you mean 'camera.fov_deg'?"},
         {"lens.height=2",
-         "lens is a sphere, which has no height; a sphere has position, rotation, radius, priority, visible"},
+         "lens is a sphere, which has no height; a sphere has position, rotation, radius, priority, visible, "
+         "and the parameters of a material"},
+        {"lens.n=1.5", "lens has no parameter 'n'; did you mean 'lens.ior'?"},
+        {"lens.opacity=0.5", "lens has no parameter 'opacity'; did you mean 'lens.transparency'?"},
+        {"lens.material=glass", "lens has no parameter 'material'; shape and material are set in the scene file only; "
+                                "for glass set lens.transparency=1 and lens.ior=1.5"},
+        {"lens.radius=75cm", "lens.radius: '75cm' is not a finite number; write the number alone, in scene units"},
+        {"lens.ior=1,5", "lens.ior: '1,5' is not a finite number; a decimal comma? write 1.5"},
+        {"camera.fov=45", "camera has no parameter 'fov'; did you mean 'camera.fov_deg'?"},
+        {"camera.5=1", "camera has no parameter '5'; camera has position, target, yaw_deg, pitch_deg, fov_deg"},
+        {"fov=45", "nothing in the scene is named 'fov'; did you mean 'camera.fov_deg'?"},
+        {"lens.visible=of", "lens.visible: no choice 'of'; give one of: off, on"},
+        {"lens.visible=noo", "lens.visible: no choice 'noo'; give one of: off, on"},
+        {"render.shadows=no", "render.shadows: no choice 'no'; give one of: off, opaque, attenuated"},
         {"glass.radius=2", "glass has no parameter 'radius'; glass has color, ambient, diffuse, specular, shininess, "
                            "reflectivity, transparency, ior, checker, checker_color"},
         {"lamp.position.w=2", "lamp.position has no element 'w'; the elements are .x, .y and .z"},
@@ -396,6 +432,7 @@ int main(void)
         cmocka_unit_test(every_type_is_set_and_got),
         cmocka_unit_test(a_material_is_set_for_all_and_a_solid_for_itself),
         cmocka_unit_test(target_and_angles_take_each_others_place),
+        cmocka_unit_test(a_picture_makes_the_background_one),
         cmocka_unit_test(what_is_printed_makes_the_same_scene),
         cmocka_unit_test(a_visit_stops_when_told),
         cmocka_unit_test(wrong_paths_and_values_say_what_is_right),

@@ -274,6 +274,37 @@ static void check_finds_what_single_ranges_cannot(void **state)
     scene_destroy(s);
 }
 
+static void a_sky_is_neither_negative_nor_endless(void **state)
+{
+    (void)state;
+    static const float bad[] = {-1e-6F, 65600.0F, 1e30F}, good[] = {0.0F, 65536.0F};
+    char path[] = "/tmp/test_scene_XXXXXX.pfm", text[128], said[DIAGNOSTIC_TEXT_MAX];
+    int file = mkstemps(path, 4);
+    assert_true(file >= 0);
+    close(file);
+    snprintf(text, sizeof text, "background: {picture: %s}\n", path);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad + sizeof good / sizeof *good; i++) {
+        bool is_bad = i < sizeof bad / sizeof *bad;
+        image *sky;
+        scene *s;
+        diagnostic why = {.what = ""};
+        assert_int_equal(image_create(4, 2, &sky, NULL), STATUS_OK);
+        sky->pixel[(1 * 4 + 2) * 3 + 1] = is_bad ? bad[i] : good[i - sizeof bad / sizeof *bad];
+        assert_int_equal(image_write(sky, path, 8, NULL), STATUS_OK);
+        image_destroy(sky);
+        assert_int_equal(scene_read_text("s.yaml", text, strlen(text), &s, NULL), STATUS_OK);
+        assert_int_equal(scene_load_pictures(s, &why), is_bad ? STATUS_BAD_INPUT : STATUS_OK);
+        assert_true(is_bad == !s->background.picture);
+        if (is_bad) {
+            diagnostic_text(&why, said, sizeof said);
+            assert_memory_equal(said, "s.yaml:1:23: background.picture: ", 33);
+            assert_non_null(strstr(said, "pixel 2,1 is "));
+        }
+        scene_destroy(s);
+    }
+    unlink(path);
+}
+
 static void a_sky_picture_is_found_beside_its_scene(void **state)
 {
     (void)state;
@@ -288,9 +319,10 @@ static void a_sky_picture_is_found_beside_its_scene(void **state)
     image_destroy(sky);
     FILE *file = fopen(scene_path, "w");
     assert_non_null(file);
-    fputs("background: {kind: picture, picture: sky.pfm}\n", file);
+    fputs("background: {picture: sky.pfm}\n", file);
     fclose(file);
     scene *s = read_file(scene_path);
+    assert_int_equal(s->background.kind, BACKGROUND_PICTURE);
     assert_null(s->background.picture);
     assert_int_equal(scene_load_pictures(s, NULL), STATUS_OK);
     const image *loaded = s->background.picture;
@@ -310,6 +342,14 @@ static void a_sky_picture_is_found_beside_its_scene(void **state)
     assert_int_equal(scene_load_pictures(s, NULL), STATUS_OK); /* not wanted, not read */
     scene_destroy(s);
     unlink(picture_path);
+    s = read_file(scene_path); /* which names a picture that is no more */
+    scene *c = scene_clone(s);
+    char where[200], text[DIAGNOSTIC_TEXT_MAX];
+    snprintf(where, sizeof where, "%s:1:23: background.picture: %s: ", scene_path, picture_path);
+    assert_int_equal(scene_load_pictures(c, &why), STATUS_BAD_INPUT);
+    assert_int_equal(strncmp(diagnostic_text(&why, text, sizeof text), where, strlen(where)), 0);
+    scene_destroy(c);
+    scene_destroy(s);
     unlink(scene_path);
     rmdir(folder);
 }
@@ -326,6 +366,7 @@ int main(void)
         cmocka_unit_test(angles_do_not_depend_on_the_order_of_keys),
         cmocka_unit_test(a_copy_is_equal_and_independent),
         cmocka_unit_test(check_finds_what_single_ranges_cannot),
+        cmocka_unit_test(a_sky_is_neither_negative_nor_endless),
         cmocka_unit_test(a_sky_picture_is_found_beside_its_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

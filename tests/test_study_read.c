@@ -65,8 +65,8 @@ static void what_is_left_out(void **state)
     study *s = fixture_study(*state, "study: small\nscene: scene.yaml\n");
     assert_string_equal(s->title, "small");
     assert_int_equal(study_cell_count(s), 1);
-    assert_int_equal(s->repetitions_min, 5);
-    assert_int_equal(s->repetitions_max, 5);
+    assert_int_equal(s->repetitions_min, 6);
+    assert_int_equal(s->repetitions_max, 6);
     assert_int_equal(s->warmups, 1);
     assert_true(s->shuffle);
     assert_int_equal(s->seed, 1);
@@ -75,6 +75,21 @@ static void what_is_left_out(void **state)
     assert_int_equal(study_cell_scene(s, 0, &setting, NULL), STATUS_OK);
     assert_int_equal(setting->render.width, 24);
     scene_destroy(setting);
+    study_destroy(s);
+}
+
+static void ranges_are_even(void **state)
+{
+    study *s = fixture_study(*state, "study: ranges\nscene: scene.yaml\ngrid:\n"
+                                     "  - {ball.ior: {from: 1.0, to: 1.6, steps: 4}}\n"
+                                     "  - {render.depth: {from: 4, to: 0, steps: 3}}\n"
+                                     "  - {lamp.position.x: {from: 0, to: 1, steps: 4}}\n");
+    static const char *const expected[3][4] = {
+        {"1", "1.2", "1.4", "1.6"}, {"4", "2", "0"}, {"0", "0.333333333333333", "0.666666666666667", "1"}};
+    assert_int_equal(study_cell_count(s), 4 * 3 * 4);
+    for (size_t axis = 0; axis < 3; axis++)
+        for (size_t i = 0; i < s->axes[axis].count; i++)
+            assert_string_equal(s->axes[axis].points[i].values[0], expected[axis][i]);
     study_destroy(s);
 }
 
@@ -219,7 +234,8 @@ static void the_studies_of_the_house(void **state)
     static const struct {
         const char *name;
         size_t cells;
-    } known[] = {{"depth", 9}, {"threads", 44}, {"ior", 4}, {"ior-grid", 25}, {"profile", 12}, {"pool", 10}, {"maps", 1}};
+    } known[] = {{"depth", 9}, {"threads", 44}, {"ior", 4}, {"ior-grid", 25}, {"profile", 12}, {"pool", 10},
+                 {"maps", 1},  {"portrait", 1}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         char path[400], said[DIAGNOSTIC_TEXT_MAX];
         diagnostic why = {0};
@@ -238,6 +254,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_whole_grammar, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(what_is_left_out, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(ranges_are_even, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(what_is_the_same_definition, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(scenes_lie_beside_the_study, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(wrong_scenes_are_located_there, fixture_setup, fixture_teardown),

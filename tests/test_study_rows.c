@@ -21,6 +21,10 @@ static char *write_row(const study *s, const scene *setting, bool workers)
          .waiting_s = 0.25,
          .tiles = 2,
          .rays = 100,
+         .camera = 70,
+         .reflect = 16,
+         .refract = 9,
+         .shadow = 5,
          .pu = 1},
         {.wall_s = 1,
          .cpu_s = 0.25,
@@ -125,11 +129,11 @@ static void rows_say_what_happened(void **state)
         {"hits.ball", "80"},
         {"workers", "3"},
         {"workers_with_tiles", "2"},
-        {"busy_s_mean", "0.5"},
+        {"busy_s_mean", "0.3333333333333333"},
         {"busy_s_max", "0.75"},
-        {"waiting_s_mean", "0.5"},
+        {"waiting_s_mean", "0.6666666666666666"},
         {"worker_cpu_s_sum", "0.875"},
-        {"imbalance", "0.5"},
+        {"imbalance", "1.25"},
         {"peak_rss_bytes", "4096"},
         {"voluntary_switches", "1"},
         {"involuntary_switches", "0"},
@@ -156,8 +160,8 @@ static void columns_keep_their_order(void **state)
     free(header);
     header = row_file_header(s, WORKER_ROWS);
     assert_string_equal(
-        header, "study,definition,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays,"
-                "start_s,wall_s,cpu_s,busy_s,waiting_s\n");
+        header, "study,definition,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays_total,"
+                "rays_camera,rays_reflect,rays_refract,rays_shadow,start_s,wall_s,cpu_s,busy_s,waiting_s\n");
     free(header);
     study_destroy(s);
 }
@@ -170,7 +174,11 @@ static void each_worker_has_its_row(void **state)
         expect(table, i, "lamp.position", "1,9,0");
     expect(table, 0, "worker", "0");
     expect(table, 2, "worker", "2");
-    expect(table, 0, "rays", "100");
+    expect(table, 0, "rays_total", "100");
+    expect(table, 0, "rays_camera", "70");
+    expect(table, 0, "rays_reflect", "16");
+    expect(table, 0, "rays_refract", "9");
+    expect(table, 0, "rays_shadow", "5");
     expect(table, 1, "pu", "NA");
     expect(table, 1, "start_s", "0.25");
     expect(table, 2, "busy_s", "0");

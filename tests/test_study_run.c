@@ -332,6 +332,48 @@ static void wrong_films_are_marked(void **state)
     study_destroy(s);
 }
 
+/* Threads and schedules make no other film, so the cells of a grid over them vouch for one another. */
+static void cells_of_one_film_are_compared(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\norder: {shuffle: off}\ngrid:\n"
+                                "  - {render.schedule: [tiles, rows]}\n"
+                                "  - {render.depth: [0, 1]}\n"
+                                "  - {render.threads: [1, 2]}\n");
+    static const size_t films[] = {0, 0, 2, 2, 0, 0, 2, 2};
+    for (size_t cell = 0; cell < 8; cell++)
+        assert_int_equal(study_cell_film(s, cell), films[cell]);
+    assert_int_equal(fixture_run(f, s), 8);
+    assert_int_equal(tally_rows(f, "results/test/rows.csv").marked, 0);
+    /* Only the row of cell 1 is left, and says that it saw another film: cells 0, 4 and 5 then differ from it. */
+    char *rows = fixture_text(f, "results/test/rows.csv"), path[400];
+    csv *table = NULL;
+    fixture_path(f, "results/test/rows.csv", path);
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    assert_string_equal(csv_field(table, 1, csv_column(table, "cell")), "1");
+    char *hash = strdup(csv_field(table, 1, csv_column(table, "film_hash")));
+    rows[table->start[2]] = 0;
+    memmove(rows + table->start[0], rows + table->start[1], table->start[2] - table->start[1] + 1);
+    csv_destroy(table);
+    for (char *at = rows; (at = strstr(at, hash)); at += 16)
+        memcpy(at, "0123456789abcdef", 16);
+    fixture_write(f, "results/test/rows.csv", rows);
+    assert_int_equal(fixture_run(f, s), 7);
+    study_progress progress;
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
+    assert_int_equal(progress.rows_marked, 3);
+    free(rows);
+    free(hash);
+    study_destroy(s);
+    s = fixture_study(f, "study: pairs\nscene: scene.yaml\ngrid:\n  - name: pair\n    points:\n"
+                         "      - {render.threads: 1, ball.ior: 1.5}\n"
+                         "      - {render.threads: 2, ball.ior: 1.3}\n"
+                         "      - {render.threads: 2, ball.ior: 1.5}\n");
+    assert_int_equal(study_cell_film(s, 1), 1);
+    assert_int_equal(study_cell_film(s, 2), 0);
+    study_destroy(s);
+}
+
 static void pictures_and_maps_are_kept(void **state)
 {
     const fixture *f = *state;
@@ -457,6 +499,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(studies_may_grow, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(repetitions_follow_the_interval, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(wrong_films_are_marked, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(cells_of_one_film_are_compared, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(pictures_and_maps_are_kept, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(two_processes_do_not_mix, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(a_full_disk_keeps_whole_rows, fixture_setup, fixture_teardown),

@@ -83,6 +83,14 @@ bool number_parse_int(const char *text, int64_t *value)
     return fits;
 }
 
+char *number_format_digits(double value, int digits, char text[NUMBER_TEXT_MAX])
+{
+    locale_t before = uselocale(c_locale());
+    snprintf(text, NUMBER_TEXT_MAX, "%.*g", digits, value);
+    uselocale(before);
+    return text;
+}
+
 char *number_format(double value, char text[NUMBER_TEXT_MAX])
 {
     if (isnan(value) || isinf(value)) {
@@ -90,14 +98,12 @@ char *number_format(double value, char text[NUMBER_TEXT_MAX])
     }
     /* 15 digits always survive in a normal double and 17 always tell it, so the first that reads back is the
      * shortest; %g drops trailing zeros. Subnormal numbers hold fewer digits. */
-    locale_t c = c_locale(), before = uselocale(c);
     for (int digits = fabs(value) < DBL_MIN ? 1 : 15; digits <= 17; digits++) {
-        snprintf(text, NUMBER_TEXT_MAX, "%.*g", digits, value);
-        double back = strtod_l(text, NULL, c);
+        number_format_digits(value, digits, text);
+        double back = strtod_l(text, NULL, c_locale());
         if (!(back < value) && !(back > value)) {
             break;
         }
     }
-    uselocale(before);
     return text;
 }

@@ -19,4 +19,7 @@ bool number_parse_int(const char *text, int64_t *value);
  * "nan"); returns text. */
 char *number_format(double value, char text[NUMBER_TEXT_MAX]);
 
+/* The same for finite values with that many digits, 1 to 17, rounded, no trailing zeros. */
+char *number_format_digits(double value, int digits, char text[NUMBER_TEXT_MAX]);
+
 #endif

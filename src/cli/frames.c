@@ -66,20 +66,6 @@ static status add_maps(renderer *r, const scene *s, const render_options *option
     return ended;
 }
 
-static hardware_counts counts_since(hardware_counts before, hardware_counts now)
-{
-    hardware_counts passed = {-1, -1, -1, -1};
-    if (before.cycles >= 0 && now.cycles >= 0)
-        passed.cycles = now.cycles - before.cycles;
-    if (before.instructions >= 0 && now.instructions >= 0)
-        passed.instructions = now.instructions - before.instructions;
-    if (before.branch_misses >= 0 && now.branch_misses >= 0)
-        passed.branch_misses = now.branch_misses - before.branch_misses;
-    if (before.cache_misses >= 0 && now.cache_misses >= 0)
-        passed.cache_misses = now.cache_misses - before.cache_misses;
-    return passed;
-}
-
 static status render_all(renderer *r, const scene *s, size_t count, const render_options *wanted,
                          const hardware_counter *counter, frames *out, diagnostic *why)
 {
@@ -97,7 +83,7 @@ static status render_all(renderer *r, const scene *s, size_t count, const render
         ended = render_one(r, s, count > 1 ? &bare : &full, out, why);
         out->count += ended == STATUS_OK;
     }
-    out->hardware = counts_since(counts_before, hardware_counter_read(counter));
+    out->hardware = hardware_counts_since(counter, &counts_before);
     out->spent = usage_since(&before);
     if (ended == STATUS_OK && extra)
         ended = add_maps(r, s, &full, out, why);

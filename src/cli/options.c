@@ -142,7 +142,9 @@ status options_integer(const char *option, const char *value, int64_t lowest, in
         char remedy[96], where[512];
         snprintf(remedy, sizeof remedy, "give an integer from %lld to %lld", (long long)lowest, (long long)highest);
         snprintf(where, sizeof where, "%s %s", option, value);
-        diagnose(why, STATUS_BAD_INPUT, remedy, "'%.64s' is not such a number", value);
+        const char *digits = value + (value[0] == '-');
+        bool whole = digits[0] && digits[strspn(digits, "0123456789")] == 0;
+        diagnose(why, STATUS_BAD_INPUT, remedy, whole ? "%.64s is out of range" : "'%.64s' is not an integer", value);
         diagnostic_locate(why, where, 0, 0);
         return STATUS_BAD_INPUT;
     }

@@ -1,79 +1,9 @@
 #include "cli/param_rows.h"
 #include "cli/json.h"
+#include "cli/param_lines.h"
 #include "cli/report.h"
-#include <stdlib.h>
+#include <stdbool.h>
 #include <string.h>
-
-enum { CELL_MAX = 160 };
-
-/* One line of the printed table; value is the default, or the scene's. */
-typedef struct line {
-    char *path, *value;
-    const param *row;
-} line;
-
-typedef struct lines {
-    line *line;
-    size_t count, capacity;
-} lines;
-
-static const char *group_prefix(param_group group)
-{
-    switch (group) {
-    case PARAM_LIGHT: return "LIGHT";
-    case PARAM_MATERIAL: return "MATERIAL";
-    case PARAM_SOLID: return "SOLID";
-    case PARAM_RENDER:
-    case PARAM_CAMERA:
-    case PARAM_BACKGROUND:
-    case PARAM_GROUP_COUNT: break;
-    }
-    return param_group_name(group);
-}
-
-char *param_rows_path(const param *row, char *text, size_t size)
-{
-    snprintf(text, size, "%s.%s", group_prefix(row->group), row->name);
-    return text;
-}
-
-static status add_line(void *context, const char *path, const param *row, const char *value)
-{
-    lines *all = context;
-    if (all->count == all->capacity) {
-        size_t capacity = all->capacity * 2 + 64;
-        line *larger = realloc(all->line, capacity * sizeof *larger);
-        if (!larger)
-            return STATUS_FAILURE;
-        all->line = larger;
-        all->capacity = capacity;
-    }
-    line *added = &all->line[all->count];
-    *added = (line){strdup(path), strdup(value), row};
-    all->count++;
-    return added->path && added->value ? STATUS_OK : STATUS_FAILURE;
-}
-
-static status add_lines(lines *all, const scene *s)
-{
-    if (s)
-        return scene_each_param(s, add_line, all);
-    status result = STATUS_OK;
-    for (size_t i = 0; i < param_count() && result == STATUS_OK; i++) {
-        char path[CELL_MAX];
-        result = add_line(all, param_rows_path(param_at(i), path, sizeof path), param_at(i), param_at(i)->fallback);
-    }
-    return result;
-}
-
-static void release(lines *all)
-{
-    for (size_t i = 0; i < all->count; i++) {
-        free(all->line[i].path);
-        free(all->line[i].value);
-    }
-    free(all->line);
-}
 
 static int wider(int width, const char *text)
 {
@@ -86,33 +16,71 @@ static const char *or_dash(const char *text)
     return text[0] ? text : "-";
 }
 
-static void print_lines(FILE *stream, const lines *all, const char *value_title)
+/* Wraps text to the columns from indent on, of those that the terminal has. */
+static void print_wrapped(FILE *stream, const char *text, int indent, int columns)
+{
+    int at = indent;
+    for (const char *word = text; *word;) {
+        int length = (int)strcspn(word, " ");
+        if (columns && at > indent && at + 1 + length > columns) {
+            fprintf(stream, "\n%*s", indent, "");
+            at = indent;
+        }
+        at += fprintf(stream, "%s%.*s", at > indent ? " " : "", length, word);
+        word += length + (word[length] == ' ');
+    }
+    fputc('\n', stream);
+}
+
+/* Has the terminal no room for the meaning at the end of the line? It then stands below. */
+static bool is_narrow(int used, int columns)
+{
+    enum { ROOM_MIN = 24 };
+    return columns && columns - used < ROOM_MIN;
+}
+
+static void print_meaning(FILE *stream, const char *text, int used, int columns)
+{
+    enum { BELOW = 4 };
+    bool below = is_narrow(used, columns);
+    if (below)
+        fprintf(stream, "\n%*s", BELOW, "");
+    else
+        fputs("  ", stream);
+    print_wrapped(stream, text, below ? BELOW : used + 2, columns);
+}
+
+static void print_lines(FILE *stream, const param_lines *all, const char *value_title, int columns)
 {
     int path = 4, value = wider(0, value_title), unit = 4, range = 5;
-    char text[CELL_MAX];
+    char text[PARAM_PATH_MAX];
     for (size_t i = 0; i < all->count; i++) {
         path = wider(path, all->line[i].path);
         value = wider(value, all->line[i].value);
         unit = wider(unit, all->line[i].row->unit);
         range = wider(range, param_range_text(all->line[i].row, text, sizeof text));
     }
-    fprintf(stream, "%-*s  %-*s  %-*s  %-*s  %s\n", path, "name", value, value_title, unit, "unit", range, "range",
-            "meaning");
+    int used = path + value + unit + range + 6;
+    if (is_narrow(used, columns))
+        range = 0; /* no blanks at the end of a line */
+    fprintf(stream, "%-*s  %-*s  %-*s  %-*s", path, "name", value, value_title, unit, "unit", range, "range");
+    print_meaning(stream, "meaning", used, columns);
     for (size_t i = 0; i < all->count; i++) {
-        const line *l = &all->line[i];
-        fprintf(stream, "%-*s  %-*s  %-*s  %-*s  %s\n", path, l->path, value, or_dash(l->value), unit,
-                or_dash(l->row->unit), range, param_range_text(l->row, text, sizeof text), l->row->meaning);
+        const param_line *l = &all->line[i];
+        fprintf(stream, "%-*s  %-*s  %-*s  %-*s", path, l->path, value, or_dash(l->value), unit, or_dash(l->row->unit),
+                range, param_range_text(l->row, text, sizeof text));
+        print_meaning(stream, l->row->meaning, used, columns);
     }
 }
 
-status param_rows_print(FILE *stream, const scene *s, diagnostic *why)
+status param_rows_print(FILE *stream, const scene *s, const char *filter, int columns, diagnostic *why)
 {
-    lines all = {0};
-    status result = add_lines(&all, s);
+    param_lines all;
+    status result = param_lines_collect(s, filter, &all, why);
     if (result == STATUS_OK)
-        print_lines(stream, &all, s ? "value" : "default");
-    release(&all);
-    return result == STATUS_OK ? result : diagnose(why, result, "", "out of memory");
+        print_lines(stream, &all, s ? "value" : "default", columns);
+    param_lines_release(&all);
+    return result;
 }
 
 static const char *type_name(param_type type)
@@ -146,11 +114,11 @@ static json_t *shapes(const param *row)
     return list;
 }
 
-static json_t *line_json(const line *l, bool has_value)
+static json_t *line_json(const param_line *l, bool has_value)
 {
     const param *row = l->row;
     bool bounded = row->type != PARAM_CHOICE && row->type != PARAM_PATH;
-    char range[CELL_MAX];
+    char range[PARAM_PATH_MAX];
     json_t *o = json_object();
     int bad = json_object_set_new(o, "path", json_of_text(l->path));
     bad |= json_object_set_new(o, "group", json_string(param_group_name(row->group)));
@@ -172,18 +140,21 @@ static json_t *line_json(const line *l, bool has_value)
     return NULL;
 }
 
-json_t *param_rows_json(const scene *s)
+status param_rows_json(const scene *s, const char *filter, json_t **out, diagnostic *why)
 {
-    lines all = {0};
-    json_t *list = json_array();
-    int bad = !list || add_lines(&all, s) != STATUS_OK;
+    param_lines all;
+    *out = NULL;
+    status result = param_lines_collect(s, filter, &all, why);
+    json_t *list = result == STATUS_OK ? json_array() : NULL;
+    int bad = !list;
     for (size_t i = 0; i < all.count && !bad; i++)
         bad |= json_array_append_new(list, line_json(&all.line[i], s != NULL));
-    release(&all);
+    param_lines_release(&all);
     if (!bad)
-        return json_pack("{s:i,s:o}", "schema", REPORT_SCHEMA, "params", list);
-    json_decref(list);
-    return NULL;
+        *out = json_pack("{s:i,s:o}", "schema", REPORT_SCHEMA, "params", list);
+    else
+        json_decref(list);
+    return result == STATUS_OK && !*out ? diagnose(why, STATUS_FAILURE, "", "out of memory") : result;
 }
 
 /* roff reads '-' as a hyphen, '\' as an escape, and '.' or a quote at the start of a line as a request. */
@@ -218,13 +189,13 @@ static const char *group_title(param_group group)
 
 void param_rows_manual(FILE *stream)
 {
-    char text[CELL_MAX];
+    char text[PARAM_PATH_MAX];
     for (size_t i = 0; i < param_count(); i++) {
         const param *row = param_at(i);
         if (i == 0 || param_at(i - 1)->group != row->group)
             fprintf(stream, ".SS %s\n", group_title(row->group));
         fprintf(stream, ".TP\n.B ");
-        write_roff(stream, param_rows_path(row, text, sizeof text));
+        write_roff(stream, param_lines_path(row, text, sizeof text));
         fputc('\n', stream);
         write_roff(stream, row->meaning);
         fprintf(stream, ".\n(");

@@ -6,14 +6,13 @@
 #include <jansson.h>
 #include <stdio.h>
 
-/* "render.depth"; "LIGHT.intensity" where the scene gives the name. */
-char *param_rows_path(const param *row, char *text, size_t size);
+/* The table; with a scene, each of its parameters and the value. filter, unless NULL: only the parameters of that path,
+ * group or name, or else those that have the word in their path or meaning; STATUS_BAD_INPUT when there are none.
+ * columns: of the terminal, to which meanings are wrapped; 0 leaves them alone. */
+status param_rows_print(FILE *stream, const scene *s, const char *filter, int columns, diagnostic *why);
 
-/* The table; with a scene, each of its parameters and the value. */
-status param_rows_print(FILE *stream, const scene *s, diagnostic *why);
-
-/* The same as JSON; NULL when memory is out. */
-json_t *param_rows_json(const scene *s);
+/* The same as JSON; the caller's. */
+status param_rows_json(const scene *s, const char *filter, json_t **out, diagnostic *why);
 
 /* The parameter part of cuvette.1. */
 void param_rows_manual(FILE *stream);

@@ -4,7 +4,9 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
+#include "cli/terminal.h"
 #include "measure/statistics.h"
+#include "scene/hints.h"
 #include "scene/params.h"
 #include <errno.h>
 #include <stdio.h>
@@ -128,6 +130,12 @@ static status load_scene(const render_request *request, scene **out, diagnostic 
     return result;
 }
 
+static void print_note(void *context, const char *text)
+{
+    (void)context;
+    terminal_note(text);
+}
+
 static status choose_isa(isa *level, diagnostic *why)
 {
     status result = isa_choose(level, why);
@@ -137,14 +145,22 @@ static status choose_isa(isa *level, diagnostic *why)
 }
 
 /* One line for people; programs take --json. */
-static void print_summary(const scene *s, const frames *f)
+static void print_summary(const scene *s, const frames *f, const outputs *files)
 {
+    const char *const written[] = {files->picture, files->rays, files->time, files->timeline};
     uint64_t rays = ray_counters_total(&f->result->counters);
     double wall_s = f->count ? summarize(f->wall_s, f->count).median : f->result->wall_s;
-    printf("%lldx%lld pixels, depth %lld: %llu rays in %.3f s (%.1f million a second), film %016llx\n",
-           (long long)s->render.width, (long long)s->render.height, (long long)s->render.depth,
+    printf("%s%lldx%lld pixels, depth %lld: %llu rays in %.3f s (%.1f million a second), film %016llx",
+           f->whole ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height, (long long)s->render.depth,
            (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
            (unsigned long long)film_hash(f->result->picture));
+    const char *before = " -> ";
+    for (size_t i = 0; i < sizeof written / sizeof written[0]; i++)
+        if (written[i]) {
+            printf("%s%s", before, written[i]);
+            before = ", ";
+        }
+    putchar('\n');
 }
 
 static status print_report(const scene *s, isa level, const frames *f, bool repeated, diagnostic *why)
@@ -162,7 +178,7 @@ static status write_results(const render_request *request, const scene *s, isa l
         return result;
     if (request->json)
         return print_report(s, level, f, request->repeated, why);
-    print_summary(s, f);
+    print_summary(s, f, &request->files);
     return STATUS_OK;
 }
 
@@ -207,6 +223,8 @@ status command_render(int argc, char **argv, diagnostic *why)
         result = choose_isa(&level, why);
     if (result == STATUS_OK)
         result = load_scene(&request, &s, why);
+    if (result == STATUS_OK && !request.json)
+        scene_hints(s, print_note, NULL);
     if (result == STATUS_OK)
         result = render_and_write(&request, s, level, why);
     scene_destroy(s);

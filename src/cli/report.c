@@ -1,5 +1,6 @@
 #include "cli/report.h"
 #include "cli/json.h"
+#include "cli/param_lines.h"
 #include "base/number.h"
 #include "measure/statistics.h"
 #include <stdlib.h>
@@ -51,23 +52,47 @@ json_t *report_value(const param *row, const char *text)
 
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
+    json_object_del(context, path); /* so that what is added last stands last */
     return json_object_set_new(context, path, report_value(row, value)) ? STATUS_FAILURE : STATUS_OK;
 }
 
+/* The camera's and the background's, of which some may be out of use. */
+static status add_alternatives(json_t *params, const scene *s)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; i < param_count() && code == STATUS_OK; i++) {
+        const param *row = param_at(i);
+        char *value = NULL, path[PARAM_PATH_MAX];
+        if (row->group != PARAM_CAMERA && row->group != PARAM_BACKGROUND)
+            continue;
+        code = scene_get(s, param_lines_path(row, path, sizeof path), &value, NULL);
+        if (code == STATUS_OK)
+            code = add_param(params, path, row, value);
+        free(value);
+    }
+    return code;
+}
+
+/* Those out of use stand before those that take their place: set one by one in this order they make the scene. */
 json_t *report_params(const scene *s)
 {
     json_t *params = json_object();
-    if (params && scene_each_param(s, add_param, params) == STATUS_OK)
+    if (params && add_alternatives(params, s) == STATUS_OK && scene_each_param(s, add_param, params) == STATUS_OK)
         return params;
     json_decref(params);
     return NULL;
 }
 
+static json_t *by_kind(uint64_t primary, uint64_t reflect, uint64_t refract, uint64_t shadow)
+{
+    return json_pack("{s:I,s:I,s:I,s:I,s:I}", "camera", (count_type)primary, "reflect", (count_type)reflect, "refract",
+                     (count_type)refract, "shadow", (count_type)shadow, "total",
+                     (count_type)(primary + reflect + refract + shadow));
+}
+
 static json_t *rays(const ray_counters *c)
 {
-    return json_pack("{s:I,s:I,s:I,s:I,s:I}", "camera", (count_type)c->camera, "reflect", (count_type)c->reflect,
-                     "refract", (count_type)c->refract, "shadow", (count_type)c->shadow, "total",
-                     (count_type)ray_counters_total(c));
+    return by_kind(c->camera, c->reflect, c->refract, c->shadow);
 }
 
 static json_t *rays_by_depth(const scene *s, const ray_counters *c)
@@ -105,10 +130,10 @@ static double cut_throughput(const ray_counters *c)
 
 static json_t *worker(int index, const worker_report *w)
 {
-    return json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:I,s:I,s:i}", "worker", index, "wall_s", json_of_real(w->wall_s),
+    return json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:I,s:o,s:i}", "worker", index, "wall_s", json_of_real(w->wall_s),
                      "cpu_s", json_of_real(w->cpu_s), "start_s", json_of_real(w->start_s), "busy_s",
                      json_of_real(w->busy_s), "waiting_s", json_of_real(w->waiting_s), "tiles", (count_type)w->tiles,
-                     "rays", (count_type)w->rays, "pu", w->pu);
+                     "rays", by_kind(w->camera, w->reflect, w->refract, w->shadow), "pu", w->pu);
 }
 
 static json_t *workers(const render_result *result)

@@ -1,5 +1,6 @@
 #include "cli/cli.h"
 #include "cli/study_request.h"
+#include "cli/study_table.h"
 #include "cli/terminal.h"
 #include "study/study.h"
 #include "study/summary.h"
@@ -30,9 +31,14 @@ static status for_each_study(const study_request *request, study_action *act, di
     return result;
 }
 
+static bool keeps_files(const study *s)
+{
+    return s->keep_image || s->keep_pfm || s->keep_pixel_rays || s->keep_pixel_time || s->keep_timeline;
+}
+
 static status run_one(const study *s, const study_request *request, diagnostic *why)
 {
-    FILE *terminal = !request->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
+    FILE *terminal = !request->quiet && terminal_is_smart(STDERR_FILENO) ? stderr : NULL;
     const study_options options = {.results = request->results,
                                    .shard = request->shard,
                                    .shards = request->shards,
@@ -41,13 +47,15 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     size_t rows = 0;
     status result = study_run(s, &options, &rows, why);
     if (result == STATUS_INTERRUPTED) {
-        diagnose(why, STATUS_INTERRUPTED, "run it again to go on", "interrupted; its %zu new rows are kept", rows);
+        diagnose(why, STATUS_INTERRUPTED, keeps_files(s) ? "run it again to go on; pictures are made at the end" : "run it again to go on",
+                 "interrupted; its %zu new rows are kept", rows);
         diagnostic_locate(why, s->path, 0, 0);
     }
     if (result != STATUS_OK || request->quiet)
         return result;
     if (rows)
-        printf("%s: %zu rows written into %s/%s\n", s->name, rows, request->results, s->name);
+        printf("%s: %zu rows, warm-ups among them, written into %s/%s%s\n", s->name, rows, request->results, s->name,
+               keeps_files(s) ? "; see images/index.tsv there for what is kept" : "");
     else
         printf("%s: complete, nothing to do\n", s->name);
     return terminal_flush(why); /* an hour may pass before the next one */
@@ -58,8 +66,9 @@ static status print_status(const study *s, const study_request *request, diagnos
     study_progress progress;
     status result = study_status(s, request->results, &progress, why);
     if (result == STATUS_OK)
-        printf("%s: %zu of %zu cells done, %zu rows, %zu marked\n", s->name, progress.cells_done, progress.cells,
-               progress.rows, progress.rows_marked);
+        printf("%s: %zu of %zu cells done, %zu rows and %zu warm-ups in %s/%s, %zu marked\n", s->name,
+               progress.cells_done, progress.cells, progress.rows - progress.warmups, progress.warmups,
+               request->results, s->name, progress.rows_marked);
     return result;
 }
 
@@ -72,9 +81,21 @@ static status merge_one(const study *s, const study_request *request, diagnostic
     return result;
 }
 
+/* People see the columns that one looks at first, programs all of them. */
 static status print_summary(const study *s, const study_request *request, diagnostic *why)
 {
-    return study_summary(s, request->results, stdout, why);
+    if (!terminal_columns(STDOUT_FILENO))
+        return study_summary(s, request->results, stdout, why);
+    char *text = NULL;
+    size_t size;
+    FILE *whole = open_memstream(&text, &size);
+    status result = whole ? study_summary(s, request->results, whole, why) : STATUS_FAILURE;
+    if (!whole || (fclose(whole) != 0 && result == STATUS_OK))
+        result = diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (result == STATUS_OK)
+        result = study_table_print(stdout, text, why);
+    free(text);
+    return result;
 }
 
 static status command_run(int argc, char **argv, diagnostic *why)

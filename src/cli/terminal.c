@@ -77,16 +77,25 @@ void terminal_prepare(void)
     atexit(check_stdout_at_exit);
 }
 
-static bool is_smart(int fd)
+bool terminal_is_smart(int fd)
 {
     const char *kind = getenv("TERM");
     return isatty(fd) && !(kind && strcmp(kind, "dumb") == 0);
 }
 
+int terminal_columns(int fd)
+{
+    enum { COLUMNS = 80 }; /* of a terminal that does not say */
+    struct winsize size;
+    if (!isatty(fd))
+        return 0;
+    return ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : COLUMNS;
+}
+
 static bool has_color(int fd)
 {
     const char *refused = getenv("NO_COLOR"); /* no-color.org: set and not empty */
-    return is_smart(fd) && !(refused && refused[0]);
+    return terminal_is_smart(fd) && !(refused && refused[0]);
 }
 
 void terminal_error(const diagnostic *why)
@@ -102,15 +111,15 @@ void terminal_error(const diagnostic *why)
     fprintf(stderr, "%scuvette:%s %s\n", color ? "\033[1;31m" : "", color ? "\033[0m" : "", text);
 }
 
-void progress_start(progress_line *line, const char *label)
+void terminal_note(const char *text)
 {
-    *line = (progress_line){.label = label, .started_s = clock_wall_s(), .enabled = isatty(STDERR_FILENO) != 0};
+    bool color = has_color(STDERR_FILENO);
+    fprintf(stderr, "%scuvette: note:%s %s\n", color ? "\033[1m" : "", color ? "\033[0m" : "", text);
 }
 
-static int columns(void)
+void progress_start(progress_line *line, const char *label)
 {
-    struct winsize size;
-    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1 : 79;
+    *line = (progress_line){.label = label, .started_s = clock_wall_s(), .enabled = terminal_is_smart(STDERR_FILENO)};
 }
 
 static void write_duration(double seconds, char *text, size_t size)
@@ -133,7 +142,7 @@ void progress_draw(progress_line *line, double share_done)
     if (share_done > 0)
         write_duration(elapsed_s * (1 - share_done) / share_done, left, sizeof left);
     snprintf(text, sizeof text, "%.64s: %3d%%, %s left", line->label, (int)(share_done * 100), left);
-    int wide = columns();
+    int wide = terminal_columns(STDERR_FILENO) - 1;
     int length = (int)strlen(text) < wide ? (int)strlen(text) : wide;
     int blanks = line->shown > length ? line->shown - length : 0;
     fprintf(stderr, "\r%.*s%*s", length, text, blanks, "");

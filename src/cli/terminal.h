@@ -18,8 +18,17 @@ bool terminal_stop_asked(void);
  * without words: *why is then left empty. */
 status terminal_flush(diagnostic *why);
 
+/* Is fd a terminal that moves its cursor, and takes colour? TERM=dumb does not. */
+bool terminal_is_smart(int fd);
+
+/* Columns of the terminal that fd is; 0 when it is none. */
+int terminal_columns(int fd);
+
 /* "cuvette: ..." in one line on standard error; nothing for an empty diagnostic. */
 void terminal_error(const diagnostic *why);
+
+/* "cuvette: note: ..." in one line on standard error. */
+void terminal_note(const char *text);
 
 /* One line of progress with the time left, on standard error if that is a terminal, nothing elsewhere. Work of under
  * half a second shows none. Ownership: the label is borrowed. */

@@ -4,6 +4,8 @@
 #include "image/codec.h"
 #include "image/font.h"
 #include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +33,13 @@ enum { WIDTH_MIN = 240, SCALE_MAX = 16 };
 typedef struct key_layout {
     int scale, margin, bar_x, bar_width, bar_y, bar_height, tick, numbers_y, title_y, height;
 } key_layout;
+
+/* What the colours stand for. */
+typedef struct key_scale {
+    double end;  /* value of the last colour; the first one is 0 */
+    bool cut;    /* values above end were drawn in its colour */
+    bool whole;  /* all values are integers */
+} key_scale;
 
 void heatmap_color(double t, unsigned char rgb[3])
 {
@@ -134,7 +143,20 @@ static void draw_number(const canvas *on, const key_layout *key, int top, int ce
     draw_text(on, x < 2 * key->scale ? 2 * key->scale : x, top + key->numbers_y, key->scale, text);
 }
 
-static void draw_key(const canvas *on, const key_layout *key, int top, double largest, const char *title)
+/* A tick and its number, at its place in the bar. */
+static void draw_tick(const canvas *on, const key_layout *key, int top, double value, const key_scale *scale)
+{
+    int line = (key->scale + 1) / 2;
+    bool first = value == 0, last = value == scale->end;
+    int x = key->bar_x + (first ? 0 : (int)floor(key->bar_width * (value / scale->end) + 0.5));
+    int left = x - (first ? line : last ? 0 : line / 2);
+    fill(on, left, top + key->bar_y + key->bar_height, line, key->tick, FRAME);
+    char text[NUMBER_TEXT_MAX + 4] = ">=";
+    format_key(value, scale->end, text + (last && scale->cut ? 2 : 0));
+    draw_number(on, key, top, x, text);
+}
+
+static void draw_key(const canvas *on, const key_layout *key, int top, const key_scale *scale, const char *title)
 {
     int line = (key->scale + 1) / 2, bar_top = top + key->bar_y;
     fill(on, key->bar_x - line, bar_top - line, key->bar_width + 2 * line, key->bar_height + 2 * line, FRAME);
@@ -143,62 +165,102 @@ static void draw_key(const canvas *on, const key_layout *key, int top, double la
         heatmap_color((x + 0.5) / key->bar_width, rgb);
         fill(on, key->bar_x + x, bar_top, 1, key->bar_height, rgb);
     }
-    for (int quarter = 0; quarter <= 4; quarter++) {
-        char text[NUMBER_TEXT_MAX + 2];
-        int x = key->bar_x + (key->bar_width * quarter + 2) / 4;
-        int left = x - (quarter == 0 ? line : quarter == 4 ? 0 : line / 2);
-        fill(on, left, bar_top + key->bar_height, line, key->tick, FRAME);
-        format_key(largest * quarter / 4.0, largest, text);
-        if (largest > 0 || quarter == 0) {
-            draw_number(on, key, top, x, text);
+    double before = -1.0;
+    for (int quarter = 0; quarter <= (scale->end > 0 ? 4 : 0); quarter++) {
+        double value = scale->end * quarter / 4.0;
+        value = scale->whole ? floor(value + 0.5) : value;
+        if (value > before) {
+            draw_tick(on, key, top, value, scale);
         }
+        before = value;
     }
     draw_title(on, key, top, title);
 }
 
-/* The largest value, or STATUS_BAD_INPUT. */
-static status find_largest(const double *values, size_t count, double *largest, diagnostic *why)
+/* Checks every value; on success *largest is the largest, and *whole says whether all are integers. */
+static status inspect(const double *values, size_t count, double *largest, bool *whole, diagnostic *why)
 {
     *largest = 0.0;
+    *whole = true;
     for (size_t i = 0; i < count; i++) {
         if (!(values[i] >= 0.0) || isinf(values[i])) {
             return diagnose(why, STATUS_BAD_INPUT, "values are finite and not negative",
                             "value %zu of the heat map cannot be drawn", i);
         }
         *largest = values[i] > *largest ? values[i] : *largest;
+        *whole = *whole && values[i] == floor(values[i]);
     }
     return STATUS_OK;
 }
 
-static void draw_values(const canvas *on, int left, const double *values, int width, int height, double largest)
+/* The value that rank others stand before in ascending order. Doubles that are not negative are ordered as their bits
+ * are (IEEE 754), so a radix selection finds it byte by byte, without a copy. */
+static double nth_smallest(const double *values, size_t count, size_t rank)
+{
+    uint64_t found = 0;
+    for (int shift = 56; shift >= 0; shift -= 8) {
+        size_t counts[256] = {0};
+        for (size_t i = 0; i < count; i++) {
+            double value = values[i] + 0.0; /* -0 becomes 0 */
+            uint64_t bits;
+            memcpy(&bits, &value, sizeof bits);
+            if (shift == 56 || bits >> (shift + 8) == found) {
+                counts[bits >> shift & 255]++;
+            }
+        }
+        unsigned byte = 0;
+        while (rank >= counts[byte]) {
+            rank -= counts[byte++];
+        }
+        found = found << 8 | byte;
+    }
+    double value;
+    memcpy(&value, &found, sizeof value);
+    return value;
+}
+
+static status find_scale(const double *values, size_t count, key_scale *out, diagnostic *why)
+{
+    double largest;
+    status code = inspect(values, count, &largest, &out->whole, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    double percentile = nth_smallest(values, count, count - 1 - count / 200); /* the 99.5th, by nearest rank */
+    out->cut = percentile > 0 && largest > 2 * percentile; /* of little but zeros the percentile says nothing */
+    out->end = out->cut ? percentile : largest;
+    return STATUS_OK;
+}
+
+static void draw_values(const canvas *on, int left, const double *values, int width, int height, double end)
 {
     for (int y = 0; y < height; y++) {
         for (int x = 0; x < width; x++) {
             unsigned char rgb[3];
             double value = values[(size_t)y * (size_t)width + (size_t)x];
-            heatmap_color(largest > 0 ? value / largest : 0.0, rgb);
+            heatmap_color(end > 0 ? value / end : 0.0, rgb);
             fill(on, left + x, y, 1, 1, rgb);
         }
     }
 }
 
-static void draw(const canvas *on, const double *values, int width, int height, double largest, const char *title,
-                 const key_layout *key)
+static void draw(const canvas *on, const double *values, int width, int height, const key_scale *scale,
+                 const char *title, const key_layout *key)
 {
     fill(on, 0, 0, on->picture->width, on->picture->height, PAPER);
-    draw_values(on, (on->picture->width - width) / 2, values, width, height, largest);
-    draw_key(on, key, height, largest, title);
+    draw_values(on, (on->picture->width - width) / 2, values, width, height, scale->end);
+    draw_key(on, key, height, scale, title);
 }
 
 status heatmap_create(const double *values, int width, int height, const char *title, image **out, diagnostic *why)
 {
-    double largest;
+    key_scale scale;
     *out = NULL;
     if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX) {
         return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
                         "a heat map of %d x %d values is not possible", width, height);
     }
-    status code = find_largest(values, (size_t)width * (size_t)height, &largest, why);
+    status code = find_scale(values, (size_t)width * (size_t)height, &scale, why);
     if (code != STATUS_OK) {
         return code;
     }
@@ -211,7 +273,7 @@ status heatmap_create(const double *values, int width, int height, const char *t
     }
     code = image_create(picture_width, height + key.height, &picture, why);
     if (code == STATUS_OK) {
-        draw(&(canvas){picture, decoded}, values, width, height, largest, title ? title : "", &key);
+        draw(&(canvas){picture, decoded}, values, width, height, &scale, title ? title : "", &key);
         *out = picture;
     }
     free(decoded);

@@ -213,7 +213,8 @@ static status read_stream(event_reader *r, node **root)
         if (type == YAML_DOCUMENT_START_EVENT && *root) {
             code = events_error(r, event.start_mark, "put it into a file of its own", "a second document begins here");
         } else if (type == YAML_STREAM_END_EVENT && !*root) {
-            code = events_error(r, event.start_mark, "", "the file is empty");
+            code = events_error(r, (yaml_mark_t){0}, "begin a scene with keys such as solids: and lights:, a study with study:",
+                                "the file is empty");
         } else if (type == YAML_SCALAR_EVENT || type == YAML_SEQUENCE_START_EVENT || type == YAML_MAPPING_START_EVENT) {
             code = read_node(r, &event, 1, root);
         }
@@ -240,6 +241,11 @@ static status wrap(const char *name, node *root, document **out, diagnostic *why
     return STATUS_OK;
 }
 
+static bool is_picture(const char *text, size_t size)
+{
+    return size >= 4 && (memcmp(text, "\x89PNG", 4) == 0 || memcmp(text, "\xff\xd8\xff", 3) == 0);
+}
+
 status document_parse(const char *name, const char *text, size_t size, document **out, diagnostic *why)
 {
     *out = NULL;
@@ -252,6 +258,9 @@ status document_parse(const char *name, const char *text, size_t size, document 
     if (size > SIZE_LIMIT) {
         diagnostic_locate(why, name, 1, 1);
         return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 1 MiB");
+    }
+    if (is_picture(text, size)) {
+        return events_error(&r, (yaml_mark_t){0}, "give the file that describes it", "this is a picture, not a scene");
     }
     if (!yaml_parser_initialize(&r.parser)) {
         return events_out_of_memory(&r);

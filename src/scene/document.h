@@ -35,7 +35,7 @@ const node *node_get(const node *map, const char *key);
 /* diagnose() located at a node. */
 status node_error(const document *d, const node *at, diagnostic *why, const char *remedy, const char *what, ...)
     __attribute__((format(printf, 5, 6)));
-/* Error, with the nearest right key, if the map has a key that is not among words[0..count-1]. */
+/* Error, with the key that was meant (scene/suggest.h), if the map has a key that is not among words[0..count-1]. */
 status node_check_keys(const document *d, const node *map, const char *const *words, size_t count, diagnostic *why);
 
 /* A scalar, or a list of scalars, as text in the form scene_set takes ("8", "0,2.75,-6"); fresh memory, NULL for

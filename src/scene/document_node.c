@@ -1,6 +1,6 @@
 /* What readers of a document's tree ask of its nodes. */
 #include "scene/document.h"
-#include "base/text.h"
+#include "scene/suggest.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -33,17 +33,6 @@ status node_error(const document *d, const node *at, diagnostic *why, const char
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", text);
 }
 
-/* "a, b, c", cut at the end of the buffer. */
-static void join_words(const char *const *words, size_t count, char *text, size_t size)
-{
-    size_t used = 0;
-    text[0] = 0;
-    for (size_t i = 0; i < count && used < size; i++) {
-        int length = snprintf(text + used, size - used, "%s%s", i ? ", " : "", words[i]);
-        used += length > 0 ? (size_t)length : 0;
-    }
-}
-
 static bool is_among(const char *word, const char *const *words, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -61,14 +50,8 @@ status node_check_keys(const document *d, const node *map, const char *const *wo
         if (is_among(key->text, words, count)) {
             continue;
         }
-        char all[400], remedy[500];
-        join_words(words, count, all, sizeof all);
-        const char *nearest = text_nearest(key->text, words, count);
-        if (nearest) {
-            snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
-        } else {
-            snprintf(remedy, sizeof remedy, "the keys here are: %s", all);
-        }
+        char remedy[500];
+        suggest_key(key->text, words, count, remedy, sizeof remedy);
         return node_error(d, key, why, remedy, "unknown key '%.80s'", key->text);
     }
     return STATUS_OK;

@@ -69,6 +69,10 @@ static void store(scene *s, const place *at, param_value value)
     if (row->type == PARAM_PATH) {
         image_destroy(s->background.picture);
         s->background.picture = NULL;
+        s->background.picture_line = s->background.picture_column = 0;
+        if (value.path[0]) {
+            s->background.kind = BACKGROUND_PICTURE;
+        }
     }
     param_value_store(row, at->element, (char *)place_base(s, at) + row->offset, value);
     for (size_t i = 0; at->group == PARAM_MATERIAL && i < s->solid_count; i++) {
@@ -139,9 +143,12 @@ static status visit_one(const scene *s, const place *at, param_visit *visit, voi
     return code;
 }
 
-/* Setting the camera's direction that is not in use would put it in use. */
+/* Setting the camera's direction, or the sky's picture, that is not in use would put it in use. */
 static bool is_in_use(const scene *s, const param *row)
 {
+    if (row->type == PARAM_PATH && s->background.kind != BACKGROUND_PICTURE) {
+        return !s->background.picture_path[0];
+    }
     return s->camera.aimed ? !is_angle(row) : !is_target(row);
 }
 

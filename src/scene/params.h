@@ -31,10 +31,12 @@ typedef struct param {
     bool above_lowest;          /* true: lowest itself is not allowed */
     const char *fallback;       /* the default, as text */
     const char *meaning;        /* one line, no full stop */
-    const char *const *choices; /* PARAM_CHOICE: words by value, NULL at the end; switches are {"off", "on"}.
+    const char *const *choices; /* PARAM_CHOICE: words by value, NULL at the end; switches are {"off", "on"},
+                                 * and no, yes, false and true are read as these.
                                  * PARAM_INT: the only numbers allowed, or NULL */
     unsigned shapes;            /* PARAM_SOLID geometry: bit 1 << shape_kind for the kinds that have it; 0 = all */
     size_t offset;              /* within the group's struct */
+    bool is_how;                /* of how a frame is computed: the film is the same whatever it is */
 } param;
 
 size_t param_count(void);
@@ -49,7 +51,9 @@ char *param_range_text(const param *row, char *text, size_t size);
 
 /* A camera looks at its target or along its angles, by whichever was set last. When that changes, and in
  * scene_get, the other way of saying it is derived, so that setting one angle of an aimed camera leaves the
- * other as it was. */
+ * other as it was.
+ *
+ * Setting background.picture to a file makes background.kind picture; a kind that is set later wins. */
 
 /* Sets one parameter from text, as on the command line: "8", "1.5", "sky", "0,2.75,-6" or "[0, 2.75, -6]".
  * STATUS_BAD_INPUT when no such path (remedy: the nearest right one), wrong type, out of range; the scene is
@@ -64,7 +68,7 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
 
 /* Visits every parameter of the scene in a fixed order (table order in a group; lights, materials, solids in
  * scene order), with its full path and value as text. solid rows include those of its surface. Of the camera's
- * target and angles only what is in use is visited, so that setting all that is visited, in order, on a copy of
+ * target and angles only what is in use is visited, and a picture that the background does not show is not, so that setting all that is visited, in order, on a copy of
  * the scene as its file gives it makes the same scene. Stops when visit returns other than STATUS_OK, and
  * returns that. */
 typedef status param_visit(void *context, const char *path, const param *row, const char *value);

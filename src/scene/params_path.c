@@ -1,5 +1,5 @@
 #include "scene/params_path.h"
-#include "base/text.h"
+#include "scene/suggest.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -116,14 +116,6 @@ static size_t row_words(const scene *s, const place *at, param_group rows, const
     return count;
 }
 
-static void list_words(const char *prefix, const char *const *words, size_t count, char *text, size_t size)
-{
-    int used = snprintf(text, size, "%s", prefix);
-    for (size_t i = 0; i < count && used >= 0 && (size_t)used < size; i++) {
-        used += snprintf(text + used, size - (size_t)used, "%s%s", i ? ", " : "", words[i]);
-    }
-}
-
 /* `depth` or `depht` alone: the group was forgotten. The nearest row of the groups without names, or NULL. */
 static const param *nearest_setting(const scene *s, const char *word)
 {
@@ -131,7 +123,7 @@ static const param *nearest_setting(const scene *s, const char *word)
         const place at = {.row = NULL, .group = (param_group)g, .index = 0, .element = -1};
         const char *words[WORDS_MAX];
         size_t count = row_words(s, &at, at.group, words, 0);
-        const char *nearest = text_nearest(word, words, count);
+        const char *nearest = suggest_word(word, words, count);
         if (nearest) {
             return param_find(at.group, nearest);
         }
@@ -146,7 +138,7 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
     if (!words) {
         return diagnose(why, STATUS_FAILURE, "", "memory is out");
     }
-    const char *nearest = text_nearest(path->group, words, count);
+    const char *nearest = suggest_word(path->group, words, count);
     char remedy[300] =
         "a path is render.NAME, camera.NAME, background.NAME, or the name of a light, material or solid, a dot "
         "and a parameter";
@@ -167,7 +159,9 @@ static status wrong_shape(const scene *s, const place *at, const path_words *pat
     size_t count = row_words(s, at, PARAM_SOLID, words, 0);
     char prefix[40], remedy[400];
     snprintf(prefix, sizeof prefix, "a %s has ", shape);
-    list_words(prefix, words, count, remedy, sizeof remedy);
+    suggest_list(prefix, words, count, remedy, sizeof remedy);
+    size_t used = strlen(remedy);
+    snprintf(remedy + used, sizeof remedy - used, ", and the parameters of a material");
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s is a %s, which has no %s", path->group, shape, path->name);
 }
 
@@ -181,15 +175,19 @@ static status unknown_name(const scene *s, const place *at, const path_words *pa
     count = at->group == PARAM_SOLID ? row_words(s, at, PARAM_MATERIAL, words, count) : count;
     char remedy[400], prefix[140];
     if (!path->name || !*path->name) {
-        list_words("add a dot and one of: ", words, count, remedy, sizeof remedy);
+        suggest_list("add a dot and one of: ", words, count, remedy, sizeof remedy);
         return diagnose(why, STATUS_BAD_INPUT, remedy, "'%s' alone is no parameter", path->group);
     }
-    const char *nearest = text_nearest(path->name, words, count);
-    if (nearest) {
+    const char *nearest = suggest_word(path->name, words, count);
+    if (at->group == PARAM_SOLID && (strcmp(path->name, "material") == 0 || strcmp(path->name, "shape") == 0)) {
+        snprintf(remedy, sizeof remedy,
+                 "shape and material are set in the scene file only; for glass set %s.transparency=1 and %s.ior=1.5",
+                 path->group, path->group);
+    } else if (nearest) {
         snprintf(remedy, sizeof remedy, "did you mean '%s.%s'?", path->group, nearest);
     } else {
         snprintf(prefix, sizeof prefix, "%s has ", path->group);
-        list_words(prefix, words, count, remedy, sizeof remedy);
+        suggest_list(prefix, words, count, remedy, sizeof remedy);
     }
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s has no parameter '%.80s'", path->group, path->name);
 }

@@ -30,33 +30,44 @@ enum {
 
 #define INTEGER(group, type, field, unit, low, high, fallback, meaning)                                          \
     {                                                                                                            \
-        group, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, ON_ALL, offsetof(type, field) \
+        group, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, ON_ALL, .offset = offsetof(type, field) \
     }
 #define REAL(group, type, field, unit, low, high, fallback, meaning)                                              \
     {                                                                                                             \
-        group, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, ON_ALL, offsetof(type, field) \
+        group, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, ON_ALL, .offset = offsetof(type, field) \
+    }
+/* How, not what: see param.is_how. */
+#define HOW_INTEGER(field, unit, low, high, fallback, meaning)                                            \
+    {                                                                                                     \
+        PARAM_RENDER, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, ON_ALL,         \
+            .offset = offsetof(render_settings, field), .is_how = true                                              \
+    }
+#define HOW_CHOICE(field, words, fallback, meaning)                                                       \
+    {                                                                                                     \
+        PARAM_RENDER, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, ON_ALL,            \
+            .offset = offsetof(render_settings, field), .is_how = true                                              \
     }
 #define POSITIVE(group, type, field, unit, high, fallback, meaning)                                            \
     {                                                                                                          \
-        group, #field, PARAM_REAL, unit, 0, high, true, fallback, meaning, NULL, ON_ALL, offsetof(type, field) \
+        group, #field, PARAM_REAL, unit, 0, high, true, fallback, meaning, NULL, ON_ALL, .offset = offsetof(type, field) \
     }
 #define CHOICE(group, type, field, words, fallback, meaning)                                                  \
     {                                                                                                         \
-        group, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, ON_ALL, offsetof(type, field) \
+        group, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, ON_ALL, .offset = offsetof(type, field) \
     }
 #define VECTOR(group, type, field, fallback, meaning)                                                  \
     {                                                                                                  \
         group, #field, PARAM_VECTOR, "scene units", -FAR, FAR, false, fallback, meaning, NULL, ON_ALL, \
-            offsetof(type, field)                                                                      \
+            .offset = offsetof(type, field)                                                                      \
     }
 #define COLOR(group, type, field, high, fallback, meaning)                                                     \
     {                                                                                                          \
-        group, #field, PARAM_COLOR, "", 0, high, false, fallback, meaning, NULL, ON_ALL, offsetof(type, field) \
+        group, #field, PARAM_COLOR, "", 0, high, false, fallback, meaning, NULL, ON_ALL, .offset = offsetof(type, field) \
     }
 #define LENGTH(field, shapes, fallback, meaning)                                                       \
     {                                                                                                  \
         PARAM_SOLID, #field, PARAM_REAL, "scene units", 0, FAR, true, fallback, meaning, NULL, shapes, \
-            offsetof(solid, shape.field)                                                               \
+            .offset = offsetof(solid, shape.field)                                                               \
     }
 
 /* In the order in which they are listed and printed; the groups stand together.
@@ -70,21 +81,21 @@ static const param table[] = {
     INTEGER(PARAM_RENDER, render_settings, height, "px", 1, 65536, "600", "height of the picture"),
     INTEGER(PARAM_RENDER, render_settings, depth, "", 0, 64, "4", "recursion depth: 0 follows camera rays only"),
     {PARAM_RENDER, "samples", PARAM_INT, "", 1, 4, false, "1", "camera rays a pixel", sample_counts, ON_ALL,
-     offsetof(render_settings, samples)},
+     .offset = offsetof(render_settings, samples)},
     CHOICE(PARAM_RENDER, render_settings, weights, weights_words, "fresnel",
            "share of the reflected and refracted branch: Fresnel's equations, or each material's constants"),
     CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky", "what a ray beyond the last depth brings back"),
     CHOICE(PARAM_RENDER, render_settings, shadows, shadows_words, "attenuated",
-           "what stands in a light's way: nothing, every solid, or each by what it lets through"),
+           "what stands in a light's way: nothing, every solid, or each by what it lets straight through; no caustics"),
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",
          "branches whose throughput is under this are not followed; 0 follows the whole tree"),
-    INTEGER(PARAM_RENDER, render_settings, threads, "", 1, 1024, "1", "workers"),
-    CHOICE(PARAM_RENDER, render_settings, pool, off_on, "on",
+    HOW_INTEGER(threads, "", 1, 1024, "1", "workers"),
+    HOW_CHOICE(pool, off_on, "on",
            "workers wait between frames; off starts fresh ones for each"),
-    CHOICE(PARAM_RENDER, render_settings, schedule, schedule_words, "dynamic",
+    HOW_CHOICE(schedule, schedule_words, "dynamic",
            "how the picture is shared: fixed blocks of columns or rows, fixed tiles, or tiles as workers ask"),
-    INTEGER(PARAM_RENDER, render_settings, tile, "px", 1, 65536, "32", "edge of a tile"),
-    CHOICE(PARAM_RENDER, render_settings, pin, pin_words, "none",
+    HOW_INTEGER(tile, "px", 1, 65536, "32", "edge of a tile"),
+    HOW_CHOICE(pin, pin_words, "none",
            "workers bound to processing units: not, next to each other, or far from each other"),
 
     VECTOR(PARAM_CAMERA, camera, position, "0,1,-6", "where the eye stands"),
@@ -101,7 +112,7 @@ static const param table[] = {
     COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
           "linear colour of a gradient at the horizon and below"),
     {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
-     "PNG, JPEG or PFM file, from the scene file's folder", NULL, ON_ALL, offsetof(background, picture_path)},
+     "PNG, JPEG or PFM file, from the scene file's folder; makes the kind picture", NULL, ON_ALL, .offset = offsetof(background, picture_path)},
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of Phong's sum"),
 
     VECTOR(PARAM_LIGHT, light, position, "0,10,0", "where the point light stands"),
@@ -125,18 +136,19 @@ static const param table[] = {
 
     {PARAM_SOLID, "position", PARAM_VECTOR, "scene units", -FAR, FAR, false, "0,0,0",
      "centre of a box or sphere, of the base of a cylinder or cup, a point of a plane", NULL, ON_ALL,
-     offsetof(solid, shape.position)},
+     .offset = offsetof(solid, shape.position)},
     {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0", "turn about x, then y, then z", NULL,
-     ON_ALL, offsetof(solid, shape.rotation_deg)},
+     ON_ALL, .offset = offsetof(solid, shape.rotation_deg)},
     LENGTH(radius, ON_CYLINDER | ON_CUP | ON_SPHERE, "1", "radius; of a cup, of its outside"),
     LENGTH(height, ON_CYLINDER | ON_CUP, "1", "height above the base"),
     {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1", "ellipse x^2 + m^2 z^2 = radius^2; 1 is a circle", NULL,
-     ON_CYLINDER, offsetof(solid, shape.m)},
+     ON_CYLINDER, .offset = offsetof(solid, shape.m)},
     LENGTH(inner_radius, ON_CUP, "0.9", "radius of the hollow"),
     LENGTH(floor, ON_CUP, "0.1", "thickness of the bottom"),
     {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges along x, y and z", NULL, ON_BOX,
-     offsetof(solid, shape.size)},
-    INTEGER(PARAM_SOLID, solid, priority, "", -1000000, 1000000, "0", "where solids overlap, the highest one is there"),
+     .offset = offsetof(solid, shape.size)},
+    INTEGER(PARAM_SOLID, solid, priority, "", -1000000, 1000000, "0",
+            "where solids overlap the highest one is there; of equal ones the first listed"),
     CHOICE(PARAM_SOLID, solid, visible, off_on, "on", "off leaves the solid out of the picture altogether"),
 };
 

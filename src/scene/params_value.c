@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* How much of a wrong value a message repeats. */
 #define SHOWN "%.60s"
@@ -45,17 +46,53 @@ static bool in_range(const param *row, double value)
     return value <= row->highest && (row->above_lowest ? value > row->lowest : value >= row->lowest);
 }
 
+/* A number with something after it: a decimal comma, a unit? */
+static status not_a_number(const param *row, const char *label, const char *text, diagnostic *why)
+{
+    const char *digits = text + strspn(text, "+-."), *rest = digits + strspn(digits, "0123456789.eE+-");
+    bool comma = rest > digits && *rest == ',';
+    bool unit = rest > digits && *rest && rest[strspn(rest, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ")] == 0;
+    if (!comma && !unit) {
+        return wrong(row, true, why, "%s: '" SHOWN "' is not a finite number", label, text);
+    }
+    char remedy[120];
+    if (comma) {
+        snprintf(remedy, sizeof remedy, "a decimal comma? write 1.5");
+    } else {
+        snprintf(remedy, sizeof remedy, "write the number alone%s%s", row->unit[0] ? ", in " : "", row->unit);
+    }
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%s: '" SHOWN "' is not a finite number", label, text);
+}
+
 static status parse_real(const param *row, const char *label, const char *text, double *out, diagnostic *why)
 {
     double value;
     if (!number_parse_real(text, &value)) {
-        return wrong(row, true, why, "%s: '" SHOWN "' is not a finite number", label, text);
+        return not_a_number(row, label, text, why);
     }
     if (!in_range(row, value)) {
         return wrong(row, true, why, "%s: " SHOWN " is out of range", label, text);
     }
     *out = value;
     return STATUS_OK;
+}
+
+static bool is_switch(const param *row)
+{
+    return count_words(row->choices) == 2 && strcmp(row->choices[0], "off") == 0 && strcmp(row->choices[1], "on") == 0;
+}
+
+/* YAML's other words for off and on, in any case. */
+static bool choose_switch(const char *text, int64_t *index)
+{
+    static const char *const words[] = {"off", "on", "no", "yes", "false", "true"};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        if (strcasecmp(words[i], text) == 0) {
+            *index = i % 2;
+            return true;
+        }
+    }
+    return false;
 }
 
 static bool choose(const param *row, const char *text, int64_t *index)
@@ -71,10 +108,11 @@ static bool choose(const param *row, const char *text, int64_t *index)
 
 static status parse_choice(const param *row, const char *label, const char *text, int64_t *out, diagnostic *why)
 {
-    if (choose(row, text, out)) {
+    if (choose(row, text, out) || (is_switch(row) && choose_switch(text, out))) {
         return STATUS_OK;
     }
-    const char *nearest = text_nearest(text, row->choices, count_words(row->choices));
+    /* off and on are as near to each other as to a slip, and mean the opposite. */
+    const char *nearest = is_switch(row) ? NULL : text_nearest(text, row->choices, count_words(row->choices));
     if (nearest) {
         char range[200], remedy[260];
         snprintf(remedy, sizeof remedy, "did you mean '%s'? It is %s", nearest,

@@ -8,6 +8,8 @@
  *   lights: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
  *
+ * A background with a picture is of the kind picture, which need not be said. Switches are on or off, also written
+ * yes or no, true or false.
  * SHAPE is plane, cylinder, cup, box or sphere. The parameters are the rows of the table (scene/params.h); a
  * solid also takes those of a material, for itself alone. Vectors and colours are lists: [0, 1, 2]. The file's
  * order is kept. Sections and objects may be empty. */
@@ -52,7 +54,17 @@ static status read_camera(const scene_reader *r, const char *name, const node *m
 static status read_background(const scene_reader *r, const char *name, const node *map)
 {
     (void)name;
+    const node *kind = node_get(map, "kind"), *picture = node_get(map, "picture");
+    bool shown = picture && picture->kind == NODE_SCALAR && picture->text[0];
     status code = read_settings(r, PARAM_BACKGROUND, map);
+    if (code == STATUS_OK && shown) {
+        r->scene->background.picture_line = picture->line;
+        r->scene->background.picture_column = picture->column;
+    }
+    if (code == STATUS_OK && shown && kind && strcmp(kind->text, "picture") != 0) {
+        return node_error(r->file, kind, r->why, "set it to picture, or take the picture away",
+                          "background.kind is %s, and there is a picture", kind->text);
+    }
     return code == STATUS_OK ? read_located(r, map, check_background(r->scene, r->why)) : code;
 }
 
@@ -91,6 +103,11 @@ static status read_sections(const scene_reader *r)
     if (root->kind != NODE_MAP) {
         return node_error(r->file, root, r->why,
                           "begin with keys such as camera:, lights: and solids:", "this is not a scene");
+    }
+    const node *name = node_get(root, "study");
+    if (name) {
+        return node_error(r->file, name, r->why, "this looks like a study; cuvette study run FILE",
+                          "unknown key 'study'");
     }
     status code = node_check_keys(r->file, root, names, COUNT, r->why);
     for (size_t i = 0; i < COUNT && code == STATUS_OK; i++) {

@@ -124,6 +124,36 @@ int scene_find_solid(const scene *s, const char *name)
     return -1;
 }
 
+/* A picture that the scene file names is wrong there. */
+static status picture_error(const scene *s, const diagnostic *bad, status code, diagnostic *why)
+{
+    if (s->background.picture_line == 0) {
+        diagnostic_locate(why, bad->file, bad->line, bad->column);
+        return diagnose(why, code, bad->remedy, "background.picture: %s", bad->what);
+    }
+    diagnostic_locate(why, s->path, s->background.picture_line, s->background.picture_column);
+    return diagnose(why, code, bad->remedy, "background.picture: %s%s%s", bad->file, bad->file[0] ? ": " : "", bad->what);
+}
+
+/* Light is not negative, and the film must hold it. */
+static status check_sky(const image *sky, const char *path, diagnostic *bad)
+{
+    for (int y = 0; y < sky->height; y++) {
+        for (int x = 0; x < sky->width; x++) {
+            const float *pixel = &sky->pixel[((size_t)y * (size_t)sky->width + (size_t)x) * 3];
+            for (int channel = 0; channel < 3; channel++) {
+                if (!(pixel[channel] >= 0.0F && pixel[channel] <= SCENE_SKY_MAX)) {
+                    diagnostic_locate(bad, path, 0, 0);
+                    return diagnose(bad, STATUS_BAD_INPUT, "scale the picture to 0..65536",
+                                    "pixel %d,%d is %g in channel %d, and a sky's light is from 0 to 65536", x, y,
+                                    (double)pixel[channel], channel);
+                }
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
 status scene_load_pictures(scene *s, diagnostic *why)
 {
     background *sky = &s->background;
@@ -136,7 +166,12 @@ status scene_load_pictures(scene *s, diagnostic *why)
     if (!path) {
         return diagnose(why, STATUS_FAILURE, "", "memory is out");
     }
-    status code = image_read(path, &sky->picture, NULL, why);
+    diagnostic bad = {.what = ""};
+    status code = image_read(path, &sky->picture, NULL, &bad);
+    if (code == STATUS_OK && (code = check_sky(sky->picture, path, &bad)) != STATUS_OK) {
+        image_destroy(sky->picture);
+        sky->picture = NULL;
+    }
     free(path);
-    return code;
+    return code == STATUS_OK ? code : picture_error(s, &bad, code, why);
 }

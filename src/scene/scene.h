@@ -50,6 +50,7 @@ typedef struct background {
     vec3 color;             /* linear RGB in x, y, z; uniform, and the zenith of a gradient */
     vec3 horizon;           /* gradient: colour at and below the horizon */
     char *picture_path;     /* equirectangular sky; "" for none; relative to the scene file */
+    long picture_line, picture_column; /* where the scene file names it; 0 when it was set otherwise */
     image *picture;         /* owned; NULL until loaded by scene_load_pictures */
     vec3 ambient;           /* I_a of Phong's sum, linear RGB */
 } background;
@@ -90,6 +91,7 @@ typedef struct scene {
 
 /* Limits of a scene. Primitives are the convex pieces that solids are made of: a cup is two, the others are one. */
 enum { SCENE_LIGHTS_MAX = 64, SCENE_MATERIALS_MAX = 256, SCENE_PRIMITIVES_MAX = 64, SCENE_NAME_MAX = 63 };
+#define SCENE_SKY_MAX 65536.0F         /* of a sky picture's values: under the film's limit, and all that a half float holds */
 #define SCENE_PIXELS_MAX 268435456 /* 2^28 */
 
 /* An empty scene: every parameter at its default, no lights, no solids. NULL when memory is out. */
@@ -102,7 +104,8 @@ status scene_read(const char *path, scene **out, diagnostic *why);
 /* The same from memory; name stands for the file in diagnostics, and its folder is where relative paths start. */
 status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why);
 
-/* Loads the sky picture if the background wants one that is not loaded. */
+/* Loads the sky picture if the background wants one that is not loaded. A diagnostic about a picture that the scene
+ * file names is located there. Its values must be from 0 to SCENE_SKY_MAX. */
 status scene_load_pictures(scene *s, diagnostic *why);
 
 /* Checks what single ranges cannot: shapes, energy (under constant weights: reflectivity + transparency <= 1),

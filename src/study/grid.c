@@ -52,6 +52,37 @@ size_t study_cell_point(const study *s, size_t cell, size_t axis)
     return cell % s->axes[axis].count;
 }
 
+size_t study_cell_film(const study *s, size_t cell)
+{
+    size_t film = 0;
+    for (size_t axis = 0; axis < s->axis_count; axis++)
+        film = film * s->axes[axis].count + s->axes[axis].points[study_cell_point(s, cell, axis)].film;
+    return film;
+}
+
+static bool is_how(const char *path)
+{
+    static const char group[] = "render.";
+    const param *row =
+        strncmp(path, group, sizeof group - 1) == 0 ? param_find(PARAM_RENDER, path + sizeof group - 1) : NULL;
+    return row && row->is_how;
+}
+
+static bool have_one_film(const study_point *a, const study_point *b)
+{
+    for (size_t i = 0; i < a->count; i++)
+        if (!is_how(a->paths[i]) && strcmp(a->values[i], b->values[i]) != 0)
+            return false;
+    return true;
+}
+
+void axis_find_films(study_axis *axis)
+{
+    for (size_t i = 0; i < axis->count; i++)
+        for (axis->points[i].film = 0; !have_one_film(&axis->points[i], &axis->points[axis->points[i].film]);)
+            axis->points[i].film++;
+}
+
 static status set_point(scene *to, const study_point *point, diagnostic *why)
 {
     for (size_t i = 0; i < point->count; i++) {
@@ -81,6 +112,35 @@ status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *wh
     return STATUS_OK;
 }
 
+/* Has one of a cell's parameters been overwritten by another, which its row would then not tell? */
+static status check_kept(const study *s, const study_point *point, const scene *setting, diagnostic *why)
+{
+    for (size_t i = 0; i < point->count; i++) {
+        char *value;
+        status code = scene_get(setting, point->paths[i], &value, why);
+        if (code != STATUS_OK)
+            return code;
+        if (strcmp(value, point->values[i]) != 0) {
+            code = diagnose(why, STATUS_BAD_INPUT, "set one of the two alone, or the wider one before the narrower",
+                            "%s is set to %s here, and a later parameter makes it %s", point->paths[i],
+                            point->values[i], value);
+            diagnostic_locate(why, s->path, point->line, point->column);
+        }
+        free(value);
+        if (code != STATUS_OK)
+            return code;
+    }
+    return STATUS_OK;
+}
+
+static status check_all_kept(const study *s, size_t cell, const scene *setting, diagnostic *why)
+{
+    status code = check_kept(s, &s->fixed, setting, why);
+    for (size_t axis = 0; code == STATUS_OK && axis < s->axis_count; axis++)
+        code = check_kept(s, &s->axes[axis].points[study_cell_point(s, cell, axis)], setting, why);
+    return code;
+}
+
 status grid_check_cells(const study *s, diagnostic *why)
 {
     for (size_t cell = 0, count = study_cell_count(s); cell < count; cell++) {
@@ -88,8 +148,11 @@ status grid_check_cells(const study *s, diagnostic *why)
         status code = study_cell_scene(s, cell, &setting, why);
         if (code != STATUS_OK)
             return code;
-        code = scene_check(setting, why);
+        status kept = check_all_kept(s, cell, setting, why);
+        code = kept == STATUS_OK ? scene_check(setting, why) : kept;
         scene_destroy(setting);
+        if (kept != STATUS_OK)
+            return kept;
         if (code == STATUS_OK)
             continue;
         const study_point *at = &s->fixed;

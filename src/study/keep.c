@@ -2,8 +2,11 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "render/record.h"
+#include "study/rows.h"
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 typedef enum kept {
@@ -84,5 +87,66 @@ status keep_write(const study *s, const char *folder, size_t cell, const render_
         code = path ? write_kept(frame, what, path, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
         free(path);
     }
+    return code;
+}
+
+static void index_header(const study *s, FILE *out)
+{
+    const char *path;
+    fputs("file\tcell", out);
+    for (size_t i = 0; (path = study_grid_path(s, i)); i++)
+        fprintf(out, "\t%s", path);
+    fputc('\n', out);
+}
+
+static void index_line(const study *s, const char *path, size_t cell, FILE *out)
+{
+    fprintf(out, "%s\t%zu", strrchr(path, '/') + 1, cell);
+    for (size_t axis = 0; axis < s->axis_count; axis++) {
+        const study_point *point = &s->axes[axis].points[study_cell_point(s, cell, axis)];
+        for (size_t i = 0; i < point->count; i++)
+            fprintf(out, "\t%s", point->values[i]);
+    }
+    fputc('\n', out);
+}
+
+static status list_kept(const study *s, const char *folder, FILE *out, diagnostic *why)
+{
+    index_header(s, out);
+    for (size_t cell = 0; cell < study_cell_count(s); cell++)
+        for (kept what = 0; what < KEPT_COUNT; what++) {
+            char *path = kept_path(folder, cell, what);
+            if (!path)
+                return diagnose(why, STATUS_FAILURE, "", "out of memory");
+            if (access(path, F_OK) == 0)
+                index_line(s, path, cell, out);
+            free(path);
+        }
+    return STATUS_OK;
+}
+
+status keep_index(const study *s, const char *folder, bool renew, diagnostic *why)
+{
+    bool keeps = false;
+    for (kept what = 0; what < KEPT_COUNT; what++)
+        keeps = keeps || wanted(s, what);
+    char *path = text_format("%s/images/index.tsv", folder), *images = text_format("%s/images", folder);
+    status code = path && images ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK && keeps && access(images, F_OK) == 0 && (renew || access(path, F_OK) != 0)) {
+        file_writer writer;
+        /* Of shards that end at one time the last one must list the files of all. */
+        int lock = open(images, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (lock >= 0)
+            flock(lock, LOCK_EX);
+        code = file_writer_open(&writer, path, why);
+        if (code == STATUS_OK && (code = list_kept(s, folder, writer.stream, why)) != STATUS_OK)
+            file_writer_abandon(&writer);
+        else if (code == STATUS_OK)
+            code = file_writer_commit(&writer, why);
+        if (lock >= 0)
+            close(lock);
+    }
+    free(images);
+    free(path);
     return code;
 }

@@ -16,4 +16,8 @@ render_options keep_options(const study *s);
 /* Writes the cell's files from a frame rendered with those options. */
 status keep_write(const study *s, const char *folder, size_t cell, const render_result *frame, diagnostic *why);
 
+/* Writes images/index.tsv: file, cell and axis values of every kept file that is there, all shards' together. Unless
+ * renew, only when it is missing. Nothing for a study that keeps nothing. */
+status keep_index(const study *s, const char *folder, bool renew, diagnostic *why);
+
 #endif

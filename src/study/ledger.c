@@ -21,11 +21,13 @@ status ledger_add(ledger *l, const ledger_entry *entry, diagnostic *why)
         cell->wall_s = grown;
         grown[cell->counted++] = entry->wall_s;
     }
-    if (cell->rows++ == 0)
-        cell->film_expected = entry->film_expected;
+    ledger_cell *film = &l->cells[study_cell_film(l->s, entry->cell)];
+    film->film_expected = ledger_film(l, entry->cell, entry->film_hash);
+    film->film_known = true;
+    cell->rows++;
     if (entry->repetition >= cell->next_repetition)
         cell->next_repetition = entry->repetition + 1;
-    bool marked = entry->film_hash != cell->film_expected;
+    bool marked = entry->film_hash != film->film_expected;
     cell->marked += marked;
     l->marked += marked;
     l->rows++;
@@ -45,8 +47,10 @@ status ledger_read(const study *s, const char *results, ledger **out, diagnostic
     if (code != STATUS_OK)
         return code;
     ledger *l = calloc(1, sizeof *l);
-    if (l)
+    if (l) {
+        l->s = s;
         l->cells = calloc(l->cell_count = study_cell_count(s), sizeof *l->cells);
+    }
     if (!l || !l->cells)
         code = no_memory(why);
     for (size_t i = 0; code == STATUS_OK && i < files->row_count; i++) {
@@ -55,7 +59,6 @@ status ledger_read(const study *s, const char *results, ledger **out, diagnostic
                               .repetition = ref->repetition,
                               .warmup = ref->warmup,
                               .film_hash = field_hash(ref, "film_hash"),
-                              .film_expected = field_hash(ref, "film_expected"),
                               .wall_s = csv_field_real(ref->table, ref->row, csv_column(ref->table, "wall_s"))};
         code = ledger_add(l, &entry, why);
     }
@@ -78,8 +81,15 @@ void ledger_destroy(ledger *l)
     free(l);
 }
 
-bool ledger_cell_done(const ledger *l, const study *s, size_t cell)
+uint64_t ledger_film(const ledger *l, size_t cell, uint64_t film_hash)
 {
+    const ledger_cell *film = &l->cells[study_cell_film(l->s, cell)];
+    return film->film_known ? film->film_expected : film_hash;
+}
+
+bool ledger_cell_done(const ledger *l, size_t cell)
+{
+    const study *s = l->s;
     const ledger_cell *at = &l->cells[cell];
     if (at->counted >= (size_t)s->repetitions_max)
         return true;
@@ -97,8 +107,10 @@ status study_status(const study *s, const char *results, study_progress *out, di
     if (code != STATUS_OK)
         return code;
     *out = (study_progress){.cells = l->cell_count, .rows = l->rows, .rows_marked = l->marked};
-    for (size_t cell = 0; cell < l->cell_count; cell++)
-        out->cells_done += ledger_cell_done(l, s, cell);
+    for (size_t cell = 0; cell < l->cell_count; cell++) {
+        out->cells_done += ledger_cell_done(l, cell);
+        out->warmups += l->cells[cell].rows - l->cells[cell].counted;
+    }
     ledger_destroy(l);
     return STATUS_OK;
 }

@@ -110,8 +110,8 @@ static void add_disturbance(void *list, const char *text)
     json_array_append_new(list, borrowed(text));
 }
 
-/* What may differ from one run of a study to the next. */
-static json_t *run_facts(const study *s, isa level, long shard, long shards)
+/* What may differ from one run of a study to the next; of its file the repetitions, the order, what is kept. */
+static json_t *run_facts(const study *s, const topology *machine, isa level, long shard, long shards)
 {
     char config[ROW_TIME_MAX];
     char *folder = strdup(s->path);
@@ -121,12 +121,14 @@ static json_t *run_facts(const study *s, isa level, long shard, long shards)
     json_t *disturbances = json_array();
     usage_disturbances(load_sample_s, add_disturbance, disturbances);
     json_t *is_dirty = commit ? json_boolean(dirty) : json_null();
-    return json_pack("{s:o, s:i, s:i, s:s, s:o, s:o, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o}", "started_utc",
-                     time_text(), "shard", (int)shard, "shards", (int)(shards > 1 ? shards : 1), "version",
+    return json_pack("{s:o, s:i, s:i, s:o, s:o, s:s, s:o, s:o, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o}",
+                     "started_utc", time_text(), "shard", (int)shard, "shards", (int)(shards > 1 ? shards : 1),
+                     "cpu_model", taken(provenance_cpu_model()), "topology", taken(topology_summary(machine)), "version",
                      CUVETTE_VERSION, "git_commit", taken(commit), "git_dirty", is_dirty, "compiler", COMPILER, "flags",
                      CUVETTE_COMPILER_FLAGS, "config", row_build_config(config), "isa", isa_name(level), "kernel",
                      taken(provenance_kernel()), "governor", taken(provenance_governor()), "binding",
-                     taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances);
+                     taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances, "study_text",
+                     borrowed(s->text));
 }
 
 /* The manifest that is there, or a new one. */
@@ -171,7 +173,7 @@ static status save(const json_t *manifest, const char *path, diagnostic *why)
 status manifest_write(const study *s, const char *folder, const topology *machine, isa level, long shard, long shards,
                       diagnostic *why)
 {
-    json_t *run = run_facts(s, level, shard, shards), *manifest = NULL;
+    json_t *run = run_facts(s, machine, level, shard, shards), *manifest = NULL;
     char *path = text_format("%s/manifest.json", folder);
     status code = run && path ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
     /* Shards may start at one time, and each reads the list before it writes it. */

@@ -8,6 +8,7 @@ struct progress_line {
     FILE *terminal;
     const char *name;
     size_t frames_done, frames_all;
+    size_t picture, pictures; /* 0 while rows are measured */
     double left_s; /* of the frames to come, at the time of the last count; < 0 unknown */
     double shown_s;
 };
@@ -35,7 +36,7 @@ void progress_count(progress_line *line, const study *s, const ledger *done, con
     line->left_s = known_frames > 0 ? 0 : -1;
     for (size_t i = 0; i < cell_count; i++) {
         const ledger_cell *cell = &done->cells[cells[i]];
-        size_t lacking = ledger_cell_done(done, s, cells[i]) ? 0 : (size_t)s->repetitions_max - cell->counted;
+        size_t lacking = ledger_cell_done(done, cells[i]) ? 0 : (size_t)s->repetitions_max - cell->counted;
         double mean_s = known_frames > 0 ? known_s / known_frames : 0;
         if (cell->counted) {
             mean_s = 0;
@@ -48,17 +49,32 @@ void progress_count(progress_line *line, const study *s, const ledger *done, con
     }
 }
 
+void progress_pictures(progress_line *line, size_t picture, size_t pictures)
+{
+    line->picture = picture;
+    line->pictures = pictures;
+}
+
+static void write_line(const progress_line *line, double share_done)
+{
+    if (line->pictures) {
+        fprintf(line->terminal, "\r%s: pictures: %zu of %zu", line->name, line->picture, line->pictures);
+        return;
+    }
+    double done = line->frames_all ? ((double)line->frames_done + share_done) / (double)line->frames_all : 1;
+    fprintf(line->terminal, "\r%s: %zu of %zu frames, %d%%", line->name, line->frames_done, line->frames_all,
+            (int)(100 * done));
+    if (line->left_s >= 0)
+        fprintf(line->terminal, ", about %ld s left", (long)(line->left_s + 0.5));
+}
+
 void progress_show(progress_line *line, double share_done)
 {
     double now_s = clock_wall_s();
     if (!line->terminal || now_s - line->shown_s < refresh_s)
         return;
     line->shown_s = now_s;
-    double done = line->frames_all ? ((double)line->frames_done + share_done) / (double)line->frames_all : 1;
-    fprintf(line->terminal, "\r%s: %zu of %zu frames, %d%%", line->name, line->frames_done, line->frames_all,
-            (int)(100 * done));
-    if (line->left_s >= 0)
-        fprintf(line->terminal, ", about %ld s left", (long)(line->left_s + 0.5));
+    write_line(line, share_done);
     fputs("\033[K", line->terminal);
     fflush(line->terminal);
 }

@@ -6,9 +6,10 @@
  *   set: {render.threads: 1}         parameters of all cells, by path
  *   grid:                            a list of axes; the last one runs fastest
  *     - {render.depth: [0, 1, 2]}    one parameter
+ *     - {liquid.ior: {from: 1.0, to: 2.0, steps: 5}}   evenly spaced, both ends included
  *     - name: pair                   or several together
  *       points: [{vessel.ior: 1.0, liquid.ior: 1.5}, {vessel.ior: 1.3, liquid.ior: 1.0}]
- *   repetitions: 10                  or {min: 5, max: 20, relative_width: 0.02}
+ *   repetitions: 10                  or {min: 6, max: 20, relative_width: 0.02}
  *   warmups: 1
  *   order: {shuffle: on, seed: 1}
  *   keep: {image: on, pfm: off, workers: off, pixel_rays: off, pixel_time: off, timeline: off}
@@ -34,15 +35,26 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
+/* An integer, though perhaps of more digits than a number holds? */
+static bool only_digits(const char *text)
+{
+    text += *text == '-' || *text == '+';
+    return *text && text[strspn(text, "0123456789")] == 0;
+}
+
 static status read_integer(const document *d, const node *n, const char *key, int64_t lowest, int64_t highest,
                            int64_t *out, diagnostic *why)
 {
-    if (n->kind != NODE_SCALAR || !number_parse_int(n->text, out) || *out < lowest || *out > highest) {
-        char remedy[128];
-        snprintf(remedy, sizeof remedy, "write an integer from %lld to %lld", (long long)lowest, (long long)highest);
-        return node_error(d, n, why, remedy, "%s is not such a number", key);
-    }
-    return STATUS_OK;
+    char remedy[128];
+    snprintf(remedy, sizeof remedy, "write an integer from %lld to %lld", (long long)lowest, (long long)highest);
+    bool is_integer = n->kind == NODE_SCALAR && number_parse_int(n->text, out);
+    if (is_integer && *out >= lowest && *out <= highest)
+        return STATUS_OK;
+    if (n->kind != NODE_SCALAR)
+        return node_error(d, n, why, remedy, "%s is not a number", key);
+    if (is_integer || only_digits(n->text))
+        return node_error(d, n, why, remedy, "%s: %.64s is out of range", key, n->text);
+    return node_error(d, n, why, remedy, "%s: '%.64s' is not an integer", key, n->text);
 }
 
 static status read_switch(const document *d, const node *n, const char *key, bool *out, diagnostic *why)
@@ -83,37 +95,52 @@ static status read_names(study *s, const document *d, const node *root, diagnost
     return s->name && s->title ? STATUS_OK : no_memory(why);
 }
 
-static status read_repetitions(study *s, const document *d, const node *n, diagnostic *why)
+/* With six the median has a 95% interval (measure/statistics.h). */
+enum { REPETITIONS_DEFAULT = 6 };
+
+/* {min: 6, max: 20, relative_width: 0.02} */
+static status read_interval_rule(study *s, const document *d, const node *n, diagnostic *why)
 {
     static const char *const keys[] = {"min", "max", "relative_width"};
-    s->repetitions_min = s->repetitions_max = 5;
-    if (!n)
-        return STATUS_OK;
-    int64_t value;
-    status code;
-    if (n->kind != NODE_MAP) {
-        code = read_integer(d, n, "repetitions", 1, STUDY_REPETITIONS_MAX, &value, why);
-        s->repetitions_min = s->repetitions_max = code == STATUS_OK ? (long)value : 0;
-        return code;
-    }
-    code = node_check_keys(d, n, keys, COUNT(keys), why);
+    status code = node_check_keys(d, n, keys, COUNT(keys), why);
+    const node *min = node_get(n, "min"), *max = node_get(n, "max"), *width = node_get(n, "relative_width");
+    int64_t least = 0, most = 0;
+    if (code == STATUS_OK && min)
+        code = read_integer(d, min, "min", 2, STUDY_REPETITIONS_MAX, &least, why);
+    if (code == STATUS_OK && max)
+        code = read_integer(d, max, "max", 2, STUDY_REPETITIONS_MAX, &most, why);
     if (code != STATUS_OK)
         return code;
-    const node *min = node_get(n, "min"), *max = node_get(n, "max"), *width = node_get(n, "relative_width");
-    if (!min || !max || !width)
-        return node_error(d, n, why, "write {min: 5, max: 20, relative_width: 0.02}, or a number",
-                          "repetitions lack min, max or relative_width");
-    if ((code = read_integer(d, min, "min", 2, STUDY_REPETITIONS_MAX, &value, why)) != STATUS_OK)
-        return code;
-    s->repetitions_min = (long)value;
-    if ((code = read_integer(d, max, "max", s->repetitions_min, STUDY_REPETITIONS_MAX, &value, why)) != STATUS_OK)
-        return code;
-    s->repetitions_max = (long)value;
+    if (min && max && most < least)
+        return node_error(d, max, why, "let max be at least min", "max %lld is less than min %lld", (long long)most,
+                          (long long)least);
+    for (size_t i = 0; i < COUNT(keys); i++)
+        if (!node_get(n, keys[i]))
+            return node_error(d, n, why, "write {min: 6, max: 20, relative_width: 0.02}, or one number alone",
+                              "repetitions has no %s", keys[i]);
     double share;
-    if (width->kind != NODE_SCALAR || !number_parse_real(width->text, &share) || share < 0 || share > 1)
-        return node_error(d, width, why, "write a number from 0 to 1", "relative_width is not such a number");
+    if (width->kind != NODE_SCALAR || !number_parse_real(width->text, &share))
+        return node_error(d, width, why, "write a number from 0 to 1", "relative_width is not a number");
+    if (share < 0 || share > 1)
+        return node_error(d, width, why, "write a number from 0 to 1", "relative_width: %.64s is out of range",
+                          width->text);
+    s->repetitions_min = (long)least;
+    s->repetitions_max = (long)most;
     s->relative_width = share;
     return STATUS_OK;
+}
+
+static status read_repetitions(study *s, const document *d, const node *n, diagnostic *why)
+{
+    s->repetitions_min = s->repetitions_max = REPETITIONS_DEFAULT;
+    if (!n)
+        return STATUS_OK;
+    if (n->kind == NODE_MAP)
+        return read_interval_rule(s, d, n, why);
+    int64_t value = 0;
+    status code = read_integer(d, n, "repetitions", 1, STUDY_REPETITIONS_MAX, &value, why);
+    s->repetitions_min = s->repetitions_max = (long)value;
+    return code;
 }
 
 static status read_order(study *s, const document *d, const node *warmups, const node *order, diagnostic *why)

@@ -1,5 +1,5 @@
 #include "study/read_grid.h"
-#include "base/text.h"
+#include "base/number.h"
 #include "scene/params.h"
 #include "study/grid.h"
 #include <stdlib.h>
@@ -127,6 +127,57 @@ static status read_values(study_axis *axis, scene *on, const document *d, const 
     return code;
 }
 
+static status read_step_count(const document *d, const node *n, int64_t *steps, diagnostic *why)
+{
+    static const char *const remedy = "write an integer from 2 to 4096";
+    if (n->kind != NODE_SCALAR || !number_parse_int(n->text, steps))
+        return node_error(d, n, why, remedy, "steps is not an integer");
+    if (*steps < 2 || *steps > POINTS_MAX)
+        return node_error(d, n, why, remedy, "steps: %.64s is out of range", n->text);
+    return STATUS_OK;
+}
+
+/* {from: 1.0, to: 2.0, steps: 5}: evenly spaced, both ends included. What lies between is taken to 15 digits, so that
+ * 1.0 to 1.6 in 4 steps has 1.4, not 1.4000000000000001. */
+static status read_range(study_axis *axis, scene *on, const document *d, const node *key, const node *range,
+                         diagnostic *why)
+{
+    static const char *const keys[] = {"from", "to", "steps"};
+    double end[2] = {0, 0};
+    int64_t steps = 2;
+    status code = node_check_keys(d, range, keys, 3, why);
+    for (size_t i = 0; code == STATUS_OK && i < 3; i++) {
+        const node *n = node_get(range, keys[i]);
+        if (!n)
+            code = node_error(d, range, why, "write {from: 1.0, to: 2.0, steps: 5}", "the range has no %s", keys[i]);
+        else if (i == 2)
+            code = read_step_count(d, n, &steps, why);
+        else if (n->kind != NODE_SCALAR || !number_parse_real(n->text, &end[i]))
+            code = node_error(d, n, why, "write a number", "%s is not a number", keys[i]);
+    }
+    if (code == STATUS_OK && !(end[0] < end[1]) && !(end[0] > end[1]))
+        code = node_error(d, range, why, "let them differ", "from and to are the same");
+    if (code != STATUS_OK)
+        return code;
+    axis->points = calloc((size_t)steps, sizeof *axis->points);
+    axis->name = strdup(key->text);
+    code = axis->points && axis->name ? STATUS_OK : no_memory(why);
+    for (int64_t i = 0; code == STATUS_OK && i < steps; i++) {
+        char text[NUMBER_TEXT_MAX];
+        double value = i == steps - 1 ? end[1] : end[0] + (double)i * (end[1] - end[0]) / (double)(steps - 1);
+        node at = {.kind = NODE_SCALAR, .line = range->line, .column = range->column, .text = text};
+        if (i % (steps - 1))
+            number_format_digits(value, 15, text);
+        else
+            number_format(value, text);
+        study_point *point = &axis->points[axis->count++];
+        code = point_reserve(point, range, 1, why);
+        if (code == STATUS_OK)
+            code = point_add(point, on, d, key, &at, why);
+    }
+    return code;
+}
+
 /* Several parameters together: name and points. */
 static status read_points(study_axis *axis, scene *on, const document *d, const node *name, const node *list,
                           diagnostic *why)
@@ -144,19 +195,33 @@ static status read_points(study_axis *axis, scene *on, const document *d, const 
     return code;
 }
 
+/* at: where the points stand; its items are theirs if it is a list. */
+static status check_distinct(const study_axis *axis, const document *d, const node *at, diagnostic *why)
+{
+    for (size_t i = 1; i < axis->count; i++)
+        for (size_t k = 0; k < i; k++)
+            if (points_equal(&axis->points[i], &axis->points[k]))
+                return node_error(d, at->kind == NODE_LIST ? at->items[i] : at, why, "name each value once",
+                                  "value %zu is the same as value %zu", i + 1, k + 1);
+    return STATUS_OK;
+}
+
 static status read_axis(study_axis *axis, scene *on, const document *d, const node *n, diagnostic *why)
 {
     static const char *const keys[] = {"name", "points"};
-    const char *const form = "write {path: [values]} or {name: WORD, points: [{path: value}, ...]}";
+    const char *const form =
+        "write {path: [values]}, {path: {from: 1, to: 2, steps: 5}} or {name: WORD, points: [{path: value}, ...]}";
     if (n->kind != NODE_MAP || n->count == 0 || (n->count > 1 && !node_get(n, "name") && !node_get(n, "points")))
         return node_error(d, n, why, form, "this is not an axis");
     bool together = n->count > 1 || strcmp(n->keys[0]->text, "points") == 0;
-    if (together) {
-        status code = node_check_keys(d, n, keys, 2, why);
-        if (code != STATUS_OK)
-            return code;
-    }
+    status code = together ? node_check_keys(d, n, keys, 2, why) : STATUS_OK;
+    if (code != STATUS_OK)
+        return code;
     const node *list = together ? node_get(n, "points") : n->items[0];
+    if (!together && list->kind == NODE_MAP) {
+        code = read_range(axis, on, d, n->keys[0], list, why);
+        return code == STATUS_OK ? check_distinct(axis, d, list, why) : code;
+    }
     if (!list || list->kind != NODE_LIST || list->count == 0)
         return node_error(d, list ? list : n, why, form, "the axis has no list of values");
     if (list->count > POINTS_MAX)
@@ -164,14 +229,9 @@ static status read_axis(study_axis *axis, scene *on, const document *d, const no
     axis->points = calloc(list->count, sizeof *axis->points);
     if (!axis->points)
         return no_memory(why);
-    status code = together ? read_points(axis, on, d, node_get(n, "name"), list, why)
-                           : read_values(axis, on, d, n->keys[0], list, why);
-    for (size_t i = 1; code == STATUS_OK && i < axis->count; i++)
-        for (size_t k = 0; code == STATUS_OK && k < i; k++)
-            if (points_equal(&axis->points[i], &axis->points[k]))
-                code = node_error(d, list->items[i], why, "name each value once", "value %zu is the same as value %zu",
-                                  i + 1, k + 1);
-    return code;
+    code = together ? read_points(axis, on, d, node_get(n, "name"), list, why)
+                    : read_values(axis, on, d, n->keys[0], list, why);
+    return code == STATUS_OK ? check_distinct(axis, d, list, why) : code;
 }
 
 /* A parameter may be set in one place only: else one of the two would silently lose. */
@@ -205,8 +265,10 @@ static status read_axes(study *s, scene *on, const document *d, const node *grid
     for (size_t i = 0; i < grid->count; i++) {
         s->axis_count++;
         status code = read_axis(&s->axes[i], on, d, grid->items[i], why);
-        if (code == STATUS_OK)
+        if (code == STATUS_OK) {
+            axis_find_films(&s->axes[i]);
             code = check_once(s, i, d, grid->items[i], why);
+        }
         if (code != STATUS_OK)
             return code;
         cells *= s->axes[i].count;

@@ -125,7 +125,8 @@ static status open_files(row_files *files, const char *folder, row_kind kind, di
 static status another_definition(const char *path, long line, const char *what, diagnostic *why)
 {
     diagnostic_locate(why, path, line, 1);
-    return diagnose(why, STATUS_BAD_INPUT, "move this folder away, or choose another with --results", "%s", what);
+    return diagnose(why, STATUS_BAD_INPUT, 
+                    "move this folder away, choose another with --results, or give the study another name", "%s", what);
 }
 
 /* A whole number from 0 to highest in the column of that name. */

@@ -25,14 +25,12 @@ static workers_sum sum_workers(const render_result *frame)
     for (int i = 0; i < frame->worker_count; i++) {
         const worker_report *w = &frame->workers[i];
         sum.cpu_sum += w->cpu_s;
-        if (w->tiles == 0)
-            continue;
-        sum.with_tiles++;
+        sum.with_tiles += w->tiles > 0;
         sum.busy_mean += w->busy_s;
         sum.waiting_mean += w->waiting_s;
         sum.busy_max = fmax(sum.busy_max, w->busy_s);
     }
-    double count = sum.with_tiles ? (double)sum.with_tiles : NAN;
+    double count = frame->worker_count > 0 ? (double)frame->worker_count : NAN;
     sum.busy_mean /= count;
     sum.waiting_mean /= count;
     sum.imbalance = sum.busy_mean > 0 ? sum.busy_max / sum.busy_mean - 1 : NAN;
@@ -128,7 +126,7 @@ static void put_time(csv_line *line, const study_row *r)
     X("time_utc", "", "when the frame had ended, ISO 8601", put_time(line, r)) \
     X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", put_axes(line, r)) \
     X("film_hash", "", "fingerprint of the film, 16 hex digits", csv_hash(line, r->film_hash)) \
-    X("film_expected", "", "film_hash of the first row of the cell", csv_hash(line, r->film_expected)) \
+    X("film_expected", "", "film_hash of the first row of all cells that must have one film: they differ only in threads, pool, schedule, tile or pin", csv_hash(line, r->film_expected)) \
     X("marked", "", "1: film_hash is not film_expected, do not trust this row", csv_count(line, r->film_hash != r->film_expected)) \
     X("wall_s", "s", "wall time of the frame; with render.pool off, making and joining threads too", csv_real(line, r->frame->wall_s)) \
     X("cpu_s", "s", "CPU time of the process over the same stretch", csv_real(line, r->frame->cpu_s)) \
@@ -147,9 +145,9 @@ static void put_time(csv_line *line, const study_row *r)
     X("hits.<solid>", "rays", "interfaces met on that solid by rays of all kinds but shadow rays", put_solids(line, r, c->hits)) \
     X("workers", "", "threads of the frame", csv_count(line, r->frame->worker_count)) \
     X("workers_with_tiles", "", "those that had a piece of the picture", csv_count(line, w.with_tiles)) \
-    X("busy_s_mean", "s", "from a worker's first piece to its last ray, mean over those with a piece", csv_real(line, w.busy_mean)) \
+    X("busy_s_mean", "s", "from a worker's first piece to its last ray, 0 without a piece; mean over all workers", csv_real(line, w.busy_mean)) \
     X("busy_s_max", "s", "the longest of them", csv_real(line, w.busy_max)) \
-    X("waiting_s_mean", "s", "wall_s less busy time, mean over workers with a piece", csv_real(line, w.waiting_mean)) \
+    X("waiting_s_mean", "s", "wall_s less busy time, mean over all workers", csv_real(line, w.waiting_mean)) \
     X("worker_cpu_s_sum", "s", "CPU time of all workers", csv_real(line, w.cpu_sum)) \
     X("imbalance", "", "busy_s_max / busy_s_mean - 1", csv_real(line, w.imbalance)) \
     X("peak_rss_bytes", "bytes", "highest resident memory of the process: since the frame began where Linux lets it be reset, else so far", csv_count(line, r->used.peak_rss_bytes)) \
@@ -169,7 +167,11 @@ static void put_time(csv_line *line, const study_row *r)
     X("worker", "", "number of the worker, from 0", csv_count(line, worker)) \
     X("pu", "", "processing unit that it ended on (the system's number)", csv_count(line, k->pu)) \
     X("tiles", "", "pieces of the picture that it took", csv_count(line, (int64_t)k->tiles)) \
-    X("rays", "rays", "rays of all kinds that it traced", csv_count(line, (int64_t)k->rays)) \
+    X("rays_total", "rays", "rays of all kinds that it traced", csv_count(line, (int64_t)k->rays)) \
+    X("rays_camera", "rays", "camera rays among them", csv_count(line, (int64_t)k->camera)) \
+    X("rays_reflect", "rays", "reflected rays among them", csv_count(line, (int64_t)k->reflect)) \
+    X("rays_refract", "rays", "refracted rays among them", csv_count(line, (int64_t)k->refract)) \
+    X("rays_shadow", "rays", "shadow rays among them", csv_count(line, (int64_t)k->shadow)) \
     X("start_s", "s", "when it began to work, after the frame's start", csv_real(line, k->start_s)) \
     X("wall_s", "s", "from its first instruction to its last in the frame", csv_real(line, k->wall_s)) \
     X("cpu_s", "s", "its CPU time over the same stretch", csv_real(line, k->cpu_s)) \

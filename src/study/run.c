@@ -52,21 +52,9 @@ static void choose_cells(run *r)
 static bool complete(const run *r)
 {
     for (size_t i = 0; i < r->cell_count; i++)
-        if (!ledger_cell_done(r->done, r->s, r->cells[i]) || keep_missing(r->s, r->folder, r->cells[i]))
+        if (!ledger_cell_done(r->done, r->cells[i]) || keep_missing(r->s, r->folder, r->cells[i]))
             return false;
     return true;
-}
-
-static int64_t count_since(int64_t before, int64_t now)
-{
-    return before < 0 || now < 0 ? -1 : now - before;
-}
-
-static hardware_counts counts_since(hardware_counts before, hardware_counts now)
-{
-    return (hardware_counts){count_since(before.cycles, now.cycles), count_since(before.instructions, now.instructions),
-                             count_since(before.branch_misses, now.branch_misses),
-                             count_since(before.cache_misses, now.cache_misses)};
 }
 
 /* Linux forgets the highest resident memory so far when 5 is written there (proc(5)); elsewhere it stays as it is. */
@@ -98,8 +86,7 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
         return code;
     r->row_number++;
     r->ran++;
-    ledger_entry entry = {row->cell,      row->repetition,    row->warmup,
-                          row->film_hash, row->film_expected, row->frame->wall_s};
+    ledger_entry entry = {row->cell, row->repetition, row->warmup, row->film_hash, row->frame->wall_s};
     return ledger_add(r->done, &entry, why);
 }
 
@@ -137,14 +124,14 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
     usage used = usage_now();
     code = renderer_render(r->tracer, setting, &options, &frame, why);
     row.used = usage_since(&used);
-    row.hardware = counts_since(counted, hardware_counter_read(r->hardware));
+    row.hardware = hardware_counts_since(r->hardware, &counted);
     if (code == STATUS_OK) {
         struct timespec now;
         clock_gettime(CLOCK_REALTIME, &now);
         row.time_ms = (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
         row.frame = frame;
         row.film_hash = film_hash(frame->picture);
-        row.film_expected = known->rows ? known->film_expected : row.film_hash;
+        row.film_expected = ledger_film(r->done, cell, row.film_hash);
         code = append_row(r, &row, why);
     } else if (code == STATUS_INTERRUPTED) {
         code = interrupted(why);
@@ -174,7 +161,7 @@ static status run_rounds(run *r, diagnostic *why)
             order_shuffle(r->s->seed, (uint64_t)round, r->order, r->cell_count);
         for (size_t i = 0; i < r->cell_count; i++) {
             size_t cell = r->cells[r->order[i]];
-            if (r->done->cells[cell].counted > (size_t)round || ledger_cell_done(r->done, r->s, cell))
+            if (r->done->cells[cell].counted > (size_t)round || ledger_cell_done(r->done, cell))
                 continue;
             progress_count(r->line, r->s, r->done, r->cells, r->cell_count);
             status code = measure_warm(r, cell, why);
@@ -196,7 +183,8 @@ static status keep_cell(run *r, size_t cell, diagnostic *why)
     status code = should_stop(r) ? interrupted(why) : cell_setting(r, cell, &setting, why);
     if (code == STATUS_OK && (code = renderer_render(r->tracer, setting, &options, &frame, why)) == STATUS_INTERRUPTED)
         interrupted(why);
-    if (code == STATUS_OK && film_hash(frame->picture) != r->done->cells[cell].film_expected)
+    uint64_t seen = code == STATUS_OK ? film_hash(frame->picture) : 0;
+    if (code == STATUS_OK && seen != ledger_film(r->done, cell, seen))
         code = diagnose(why, STATUS_FAILURE, "look for marked rows; the image must depend on the scene alone",
                         "the picture of cell %zu is not the one that its rows saw", cell);
     if (code == STATUS_OK)
@@ -209,9 +197,14 @@ static status keep_cell(run *r, size_t cell, diagnostic *why)
 static status keep_all(run *r, diagnostic *why)
 {
     status code = STATUS_OK;
+    size_t pictures = 0, picture = 0;
+    for (size_t i = 0; i < r->cell_count; i++)
+        pictures += keep_missing(r->s, r->folder, r->cells[i]);
     for (size_t i = 0; code == STATUS_OK && i < r->cell_count; i++)
-        if (keep_missing(r->s, r->folder, r->cells[i]))
+        if (keep_missing(r->s, r->folder, r->cells[i])) {
+            progress_pictures(r->line, ++picture, pictures);
             code = keep_cell(r, r->cells[i], why);
+        }
     return code;
 }
 
@@ -234,13 +227,16 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
                                                                      : no_memory(why);
     if (code == STATUS_OK) {
         choose_cells(&r);
-        if (!complete(&r)) {
+        bool idle = complete(&r);
+        if (!idle) {
             code = run_prepare(&r, why);
             if (code == STATUS_OK)
                 code = run_rounds(&r, why);
             if (code == STATUS_OK)
                 code = keep_all(&r, why);
         }
+        if (code == STATUS_OK)
+            code = keep_index(s, r.folder, !idle, why);
     }
     if (ran)
         *ran = r.ran;

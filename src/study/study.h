@@ -19,7 +19,12 @@ enum {
 };
 
 /* One point of an axis sets one or more parameters together. Values are as scene_get writes them. */
-typedef struct study_point { char **paths, **values; size_t count; long line, column; } study_point;
+typedef struct study_point {
+    char **paths, **values;
+    size_t count;
+    size_t film;              /* the axis' first point of which a frame has the same film: they differ in how it is computed */
+    long line, column;
+} study_point;
 /* All points of an axis set the same paths, in the same order. */
 typedef struct study_axis { char *name; study_point *points; size_t count; } study_axis;
 
@@ -50,6 +55,8 @@ void study_destroy(study *s);
 size_t study_cell_count(const study *s);
 /* The axis point of a cell: study.axes[axis].points[study_cell_point(...)]. */
 size_t study_cell_point(const study *s, size_t cell, size_t axis);
+/* The first cell that must have the same film: its parameters differ only in how a frame is computed (param.is_how). */
+size_t study_cell_film(const study *s, size_t cell);
 /* The study's scene with the fixed parameters and the cell's set; pictures are not loaded. */
 status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *why);
 
@@ -65,7 +72,7 @@ typedef struct study_options {
 status study_run(const study *s, const study_options *options, size_t *ran, diagnostic *why);
 
 /* How far it is, over rows.csv and the shards' files. */
-typedef struct study_progress { size_t cells, cells_done, rows, rows_marked; } study_progress;
+typedef struct study_progress { size_t cells, cells_done, rows, warmups, rows_marked; } study_progress; /* warmups: of the rows */
 status study_status(const study *s, const char *results, study_progress *out, diagnostic *why);
 
 /* Joins the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv; no row lost or twice. rows.csv

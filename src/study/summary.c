@@ -9,9 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* From n = 6 on the median has a 95% interval by order statistics. */
-enum { MEDIAN_INTERVAL_COUNT = 6 };
-
 static const char *const timed[] = {"wall_s", "cpu_s"};
 static const char *const before_hash[] = {"rays_total",  "rays_camera",          "rays_reflect",  "rays_refract",
                                           "rays_shadow", "cut_depth_throughput", "total_internal"};
@@ -55,10 +52,9 @@ static summary summarize_column(const cell_rows *cell, const char *name)
 static void put_timed(const cell_rows *cell, const char *name)
 {
     summary s = summarize_column(cell, name);
-    bool of_median = s.count >= MEDIAN_INTERVAL_COUNT;
     put_real(cell->out, s.median);
-    put_real(cell->out, of_median ? s.median_low : s.mean_low);
-    put_real(cell->out, of_median ? s.median_high : s.mean_high);
+    put_real(cell->out, s.median_low);
+    put_real(cell->out, s.median_high);
     put_real(cell->out, s.mean);
     put_real(cell->out, s.minimum);
     put_real(cell->out, s.maximum);
@@ -157,6 +153,12 @@ status study_summary(const study *s, const char *results, FILE *out, diagnostic 
 {
     row_files *files;
     status code = row_files_read(s, results, ROWS, &files, why);
+    if (code == STATUS_OK && files->row_count == 0) {
+        char remedy[256];
+        snprintf(remedy, sizeof remedy, "run cuvette study run %.128s first, or name the folder of its results with --results", s->path);
+        code = diagnose(why, STATUS_FAILURE, remedy, "no rows in %s/%s", results, s->name);
+        diagnostic_locate(why, s->path, 0, 0);
+    }
     if (code == STATUS_OK)
         code = put_header(s, out, why);
     if (code == STATUS_OK)

@@ -1,0 +1,133 @@
+#include "cli/param_lines.h"
+#include "base/text.h"
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *group_prefix(param_group group)
+{
+    switch (group) {
+    case PARAM_LIGHT: return "LIGHT";
+    case PARAM_MATERIAL: return "MATERIAL";
+    case PARAM_SOLID: return "SOLID";
+    case PARAM_RENDER:
+    case PARAM_CAMERA:
+    case PARAM_BACKGROUND:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return param_group_name(group);
+}
+
+char *param_lines_path(const param *row, char *text, size_t size)
+{
+    snprintf(text, size, "%s.%s", group_prefix(row->group), row->name);
+    return text;
+}
+
+static status add_line(void *context, const char *path, const param *row, const char *value)
+{
+    param_lines *all = context;
+    if (all->count == all->capacity) {
+        size_t capacity = all->capacity * 2 + 64;
+        param_line *larger = realloc(all->line, capacity * sizeof *larger);
+        if (!larger)
+            return STATUS_FAILURE;
+        all->line = larger;
+        all->capacity = capacity;
+    }
+    param_line *added = &all->line[all->count];
+    *added = (param_line){strdup(path), strdup(value), row};
+    all->count++;
+    return added->path && added->value ? STATUS_OK : STATUS_FAILURE;
+}
+
+static status add_lines(param_lines *all, const scene *s)
+{
+    if (s)
+        return scene_each_param(s, add_line, all);
+    status result = STATUS_OK;
+    for (size_t i = 0; i < param_count() && result == STATUS_OK; i++) {
+        char path[PARAM_PATH_MAX];
+        result = add_line(all, param_lines_path(param_at(i), path, sizeof path), param_at(i), param_at(i)->fallback);
+    }
+    return result;
+}
+
+void param_lines_release(param_lines *all)
+{
+    for (size_t i = 0; i < all->count; i++) {
+        free(all->line[i].path);
+        free(all->line[i].value);
+    }
+    free(all->line);
+    *all = (param_lines){0};
+}
+
+/* Is the word the path, or whole words of it ("rod", "priority", "lamp.position")? An element of a vector names it. */
+static bool names(const char *word, const char *path)
+{
+    size_t length = strlen(word), whole = strlen(path);
+    if (strncasecmp(word, path, whole) == 0 && word[whole] == '.' && length == whole + 2)
+        return true;
+    for (const char *at = path; at; at = strchr(at, '.') ? strchr(at, '.') + 1 : NULL)
+        if (strncasecmp(at, word, length) == 0 && (at[length] == 0 || at[length] == '.'))
+            return true;
+    return false;
+}
+
+static bool mentions(const char *word, const param_line *l)
+{
+    return strcasestr(l->path, word) || strcasestr(l->row->meaning, word);
+}
+
+static status nothing_fits(const param_lines *all, const char *filter, bool of_scene, diagnostic *why)
+{
+    char remedy[256] = "'cuvette params' without it lists all";
+    const char **known = calloc(2 * all->count + 1, sizeof *known);
+    for (size_t i = 0; known && i < all->count; i++) {
+        known[2 * i] = all->line[i].path;
+        known[2 * i + 1] = all->line[i].row->name;
+    }
+    const char *nearest = known ? text_nearest(filter, known, 2 * all->count) : NULL;
+    if (nearest)
+        snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
+    else if (!of_scene && strchr(filter, '.'))
+        snprintf(remedy, sizeof remedy, "name the scene before it, for the names that a scene gives");
+    free(known);
+    diagnose(why, STATUS_BAD_INPUT, remedy, "no parameter fits '%.64s'", filter);
+    diagnostic_locate(why, "params", 0, 0);
+    return STATUS_BAD_INPUT;
+}
+
+static status narrow(param_lines *all, const char *filter, bool of_scene, diagnostic *why)
+{
+    bool named = false;
+    size_t kept = 0;
+    for (size_t i = 0; i < all->count; i++)
+        named = named || names(filter, all->line[i].path);
+    for (size_t i = 0; i < all->count; i++)
+        kept += named ? names(filter, all->line[i].path) : mentions(filter, &all->line[i]);
+    if (kept == 0)
+        return nothing_fits(all, filter, of_scene, why);
+    kept = 0;
+    for (size_t i = 0; i < all->count; i++) {
+        param_line l = all->line[i];
+        if (named ? names(filter, l.path) : mentions(filter, &l)) {
+            all->line[kept++] = l;
+        } else {
+            free(l.path);
+            free(l.value);
+        }
+    }
+    all->count = kept;
+    return STATUS_OK;
+}
+
+status param_lines_collect(const scene *s, const char *filter, param_lines *out, diagnostic *why)
+{
+    *out = (param_lines){0};
+    if (add_lines(out, s) != STATUS_OK)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return filter ? narrow(out, filter, s != NULL, why) : STATUS_OK;
+}

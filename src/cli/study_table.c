@@ -1,0 +1,100 @@
+#include "cli/study_table.h"
+#include "base/number.h"
+#include "base/text.h"
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Fields of the text, row by row; row 0 is the header. */
+typedef struct fields {
+    char **field;
+    size_t rows, columns;
+} fields;
+
+static size_t count_of(const char *text, const char *end, char wanted)
+{
+    size_t count = 0;
+    for (; text < end; text++)
+        count += *text == wanted;
+    return count;
+}
+
+static bool split(char *tsv, fields *out)
+{
+    out->columns = count_of(tsv, tsv + strcspn(tsv, "\n"), '\t') + 1;
+    out->rows = count_of(tsv, tsv + strlen(tsv), '\n');
+    out->field = calloc(out->rows * out->columns + 1, sizeof *out->field);
+    for (size_t row = 0; out->field && row < out->rows; row++) {
+        char *line = strsep(&tsv, "\n");
+        for (size_t column = 0; column < out->columns; column++)
+            out->field[row * out->columns + column] = strsep(&line, "\t");
+    }
+    return out->field != NULL;
+}
+
+static size_t column_of(const fields *f, const char *name)
+{
+    size_t column = 0;
+    while (column + 1 < f->columns && strcmp(f->field[column], name) != 0)
+        column++;
+    return column;
+}
+
+/* A time to four digits; more would be noise. */
+static const char *rounded(const fields *f, size_t row, const char *name, char text[NUMBER_TEXT_MAX])
+{
+    double value;
+    const char *field = f->field[row * f->columns + column_of(f, name)];
+    if (!number_parse_real(field, &value))
+        return field;
+    snprintf(text, NUMBER_TEXT_MAX, "%.4g", value);
+    return text;
+}
+
+/* The columns from the cell to n as they are, then wall_s, cpu_s, rays and marked. Fresh memory. */
+static char *shown(const fields *f, size_t row, size_t column)
+{
+    size_t plain = column_of(f, "n") + 1;
+    char median[NUMBER_TEXT_MAX], low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
+    if (column < plain)
+        return strdup(f->field[row * f->columns + column]);
+    switch (column - plain) {
+    case 0:
+        return row == 0 ? strdup("wall_s [95% interval]")
+                        : text_format("%s [%s, %s]", rounded(f, row, "wall_s_median", median),
+                                      rounded(f, row, "wall_s_low", low), rounded(f, row, "wall_s_high", high));
+    case 1: return strdup(row == 0 ? "cpu_s" : rounded(f, row, "cpu_s_median", median));
+    case 2: return strdup(row == 0 ? "rays" : f->field[row * f->columns + column_of(f, "rays_total")]);
+    default: return strdup(f->field[row * f->columns + column_of(f, "marked")]);
+    }
+}
+
+static void print_aligned(FILE *out, char **text, size_t rows, size_t columns, int *width)
+{
+    for (size_t i = 0; i < rows * columns; i++) {
+        int length = (int)strlen(text[i]);
+        width[i % columns] = length > width[i % columns] ? length : width[i % columns];
+    }
+    for (size_t i = 0; i < rows * columns; i++)
+        fprintf(out, "%*s%s", width[i % columns], text[i], (i + 1) % columns ? "  " : "\n");
+}
+
+status study_table_print(FILE *out, char *tsv, diagnostic *why)
+{
+    fields f = {0};
+    bool good = split(tsv, &f);
+    size_t columns = good ? column_of(&f, "n") + 1 + 4 : 0, cells = f.rows * columns;
+    char **text = calloc(cells + 1, sizeof *text);
+    int *width = calloc(columns + 1, sizeof *width);
+    good = good && text && width;
+    for (size_t i = 0; good && i < cells; i++)
+        good = (text[i] = shown(&f, i / columns, i % columns)) != NULL;
+    if (good)
+        print_aligned(out, text, f.rows, columns, width);
+    for (size_t i = 0; text && i < cells; i++)
+        free(text[i]);
+    free(text);
+    free(width);
+    free(f.field);
+    return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+}

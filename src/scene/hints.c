@@ -1,0 +1,134 @@
+#include "scene/hints.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { HINT_MAX = 256 };
+
+static bool is_lit(const material *m)
+{
+    return m->diffuse > 0.0 || m->specular > 0.0;
+}
+
+/* Does another medium hold the solid, so that one of the air's index is a bubble? Its position says so: the centre, or
+ * that of the base. */
+static bool is_inside_medium(const scene *s, const solid *bubble)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *other = &s->solids[i];
+        if (other != bubble && other->visible && other->surface.transparency > 0.0 && other->surface.ior != 1.0 &&
+            solid_shape_contains(&other->shape, bubble->shape.position)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What the solid seems to lack, or NULL; text is room for it. */
+static const char *solid_hint(const scene *s, const solid *owner, char text[HINT_MAX])
+{
+    const material *m = &owner->surface;
+    const char *problem = NULL;
+    if (m->transparency > 0.0) {
+        if (s->render.weights == WEIGHTS_FRESNEL && m->ior == 1.0 && !is_inside_medium(s, owner)) {
+            problem = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m)
+                          ? "is transparent with ior 1, like the air around it: it bends no light; set its ior"
+                          : "is transparent with ior 1, like the air around it: it is invisible; set its ior";
+        }
+    } else if (m->ior != 1.0) {
+        problem = "has an ior but is opaque; set its transparency";
+    } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m)) {
+        problem = "is neither transparent, nor diffuse, nor lit: it is black; set its diffuse";
+    }
+    if (problem) {
+        snprintf(text, HINT_MAX, "%s %s", owner->name, problem);
+    }
+    return problem ? text : NULL;
+}
+
+/* A radius about the position that the solid does not reach beyond. */
+static double reach(const solid_shape *shape)
+{
+    switch (shape->kind) {
+    case SHAPE_CYLINDER: return hypot(shape->radius * fmax(1.0, 1.0 / shape->m), shape->height);
+    case SHAPE_CUP: return hypot(shape->radius, shape->height);
+    case SHAPE_BOX: return 0.5 * vec3_length(shape->size);
+    case SHAPE_SPHERE: return shape->radius;
+    case SHAPE_PLANE:
+    case SHAPE_COUNT: break;
+    }
+    return INFINITY;
+}
+
+/* Both of one scene. */
+static bool wins(const solid *winner, const solid *loser)
+{
+    return winner != loser && winner->visible &&
+           (winner->priority > loser->priority || (winner->priority == loser->priority && winner < loser));
+}
+
+/* The solid that holds all of another and wins there, so that nothing of the other is met; NULL if there is none. Looks at
+ * points of a grid, turned so that no face of a box lies along it, and says nothing when too few of them are inside. */
+static const solid *find_cover(const scene *s, const solid *hidden)
+{
+    enum { STEPS = 24, ENOUGH = 20 };
+    const double radius = reach(&hidden->shape);
+    const mat3 turn = rotation_from_deg(vec3_make(11.0, 23.0, 37.0));
+    const solid *cover = NULL;
+    size_t inside = 0;
+    for (int i = 0; i < STEPS * STEPS * STEPS && isfinite(radius); i++) {
+        const double u = (i % STEPS + 0.5) / STEPS, v = (i / STEPS % STEPS + 0.5) / STEPS,
+                     w = (i / STEPS / STEPS + 0.5) / STEPS;
+        const vec3 offset = mat3_apply(turn, vec3_make(2 * u - 1, 2 * v - 1, 2 * w - 1));
+        const vec3 point = vec3_add(hidden->shape.position, vec3_scale(offset, radius));
+        if (!solid_shape_contains(&hidden->shape, point)) {
+            continue;
+        }
+        inside++;
+        for (size_t k = 0; !cover && k < s->solid_count; k++) {
+            if (wins(&s->solids[k], hidden) && solid_shape_contains(&s->solids[k].shape, point)) {
+                cover = &s->solids[k];
+            }
+        }
+        if (!cover || !solid_shape_contains(&cover->shape, point)) {
+            return NULL;
+        }
+    }
+    return inside >= ENOUGH ? cover : NULL;
+}
+
+static void hint_at_cover(const scene *s, const solid *hidden, void (*note)(void *context, const char *text), void *context)
+{
+    const solid *cover = find_cover(s, hidden);
+    if (cover) {
+        char text[HINT_MAX];
+        snprintf(text, HINT_MAX, "%s lies wholly inside %s, which wins there and hides it; give %s the higher priority",
+                 hidden->name, cover->name, hidden->name);
+        note(context, text);
+    }
+}
+
+void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context)
+{
+    size_t visible = 0, lit = 0;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        visible += s->solids[i].visible != 0;
+        lit += s->solids[i].visible && is_lit(&s->solids[i].surface);
+    }
+    if (visible == 0) {
+        note(context, "no visible solids: the picture shows the background alone; add solids:");
+    }
+    if (lit > 0 && s->light_count == 0) {
+        note(context, "no lights: opaque surfaces are dark but for their ambient light; add lights:");
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        char text[HINT_MAX];
+        const char *hint = s->solids[i].visible ? solid_hint(s, &s->solids[i], text) : NULL;
+        if (hint) {
+            note(context, hint);
+        }
+        if (s->solids[i].visible) {
+            hint_at_cover(s, &s->solids[i], note, context);
+        }
+    }
+}

@@ -1,0 +1,12 @@
+/* What a scene that is right in every part still shows nothing of, most often because a line was forgotten. Pure. */
+#ifndef CUVETTE_SCENE_HINTS_H
+#define CUVETTE_SCENE_HINTS_H
+
+#include "scene/scene.h"
+
+/* Calls note with one line of text, without a full stop, for each: no visible solid; no light where something would
+ * be lit; a visible solid that is black, that is transparent and bends no light, that is opaque and has a refractive
+ * index, or that lies wholly inside another one that wins there. The text lasts for the call. A scene may be meant so: these are hints, not errors. */
+void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context);
+
+#endif

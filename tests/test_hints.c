@@ -1,0 +1,122 @@
+/* Hints: each shows where something was forgotten, and not where all is there. Run from the repository root. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "scene/hints.h"
+#include "scene/params.h"
+#include <stdio.h>
+#include <string.h>
+
+#define LIT "lights: {lamp: {}}\n"
+
+/* All the lines, each with its newline. */
+static void append_line(void *context, const char *text)
+{
+    char *all = context;
+    assert_true(text[0] && !strchr(text, '\n') && strlen(all) + strlen(text) < 900);
+    strcat(strcat(all, text), "\n");
+}
+
+static void expect_hints(const char *file, const char *hints)
+{
+    scene *s;
+    char all[1000] = "";
+    assert_int_equal(scene_read_text("t.yaml", file, strlen(file), &s, NULL), STATUS_OK);
+    scene_hints(s, append_line, all);
+    assert_string_equal(all, hints);
+    scene_destroy(s);
+}
+
+static void what_is_forgotten_is_hinted_at(void **state)
+{
+    (void)state;
+    static const char none[] = "no visible solids: the picture shows the background alone; add solids:\n";
+    expect_hints("{}", none);
+    expect_hints("solids: {ball: {shape: sphere, visible: no}}", none);
+    expect_hints("solids: {ball: {shape: sphere, diffuse: 1}, egg: {shape: sphere, specular: 1, radius: 2}}",
+                 "no lights: opaque surfaces are dark but for their ambient light; add lights:\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere}}",
+                 "ball is neither transparent, nor diffuse, nor lit: it is black; set its diffuse\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1}}",
+                 "ball is transparent with ior 1, like the air around it: it is invisible; set its ior\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, specular: 0.5}}",
+                 "ball is transparent with ior 1, like the air around it: it bends no light; set its ior\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 0.5}}",
+                 "ball is transparent with ior 1, like the air around it: it bends no light; set its ior\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, ior: 1.5}, egg: {shape: sphere, diffuse: 1, ior: 0.9, radius: 2}}",
+                 "ball has an ior but is opaque; set its transparency\n"
+                 "egg has an ior but is opaque; set its transparency\n");
+}
+
+static void what_is_hidden_is_hinted_at(void **state)
+{
+    (void)state;
+    static const char shell[] = "lights: {lamp: {}}\nsolids: {shell: {shape: sphere, transparency: 1, ior: 1.5}, ";
+    static const struct {
+        const char *solid;
+        bool hidden;
+    } cases[] = {
+        {"x: {shape: sphere, diffuse: 1, radius: 0.5}}", true},
+        {"x: {shape: sphere, diffuse: 1, radius: 0.999}}", true},
+        {"x: {shape: sphere, diffuse: 1}}", true},
+        {"x: {shape: sphere, diffuse: 1, radius: 0.5, priority: -1}}", true},
+        {"x: {shape: sphere, diffuse: 1, radius: 0.5, priority: 1}}", false},
+        {"x: {shape: sphere, diffuse: 1, radius: 1.2}}", false},
+        {"x: {shape: box, diffuse: 1, size: [1, 1, 1]}}", true},
+        {"x: {shape: box, diffuse: 1, size: [1, 1, 2]}}", false},
+        {"x: {shape: box, diffuse: 1, size: [0.1, 1.9, 0.1], rotation: [0, 0, 45]}}", true},
+        {"x: {shape: cylinder, diffuse: 1, radius: 0.5, height: 0.8}}", true},
+        {"x: {shape: cylinder, diffuse: 1, radius: 0.5, height: 1.1}}", false},
+        {"x: {shape: cup, diffuse: 1, radius: 0.5, inner_radius: 0.3, height: 0.8}}", true},
+        {"x: {shape: plane, diffuse: 1}}", false},
+        {"x: {shape: sphere, diffuse: 1, radius: 0.5, visible: off}}", false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char file[300];
+        snprintf(file, sizeof file, "%s%s", shell, cases[i].solid);
+        expect_hints(file, cases[i].hidden
+                               ? "x lies wholly inside shell, which wins there and hides it; give x the higher priority\n"
+                               : "");
+    }
+}
+
+static void what_is_meant_is_not(void **state)
+{
+    (void)state;
+    expect_hints(LIT "solids: {a: {shape: sphere, ambient: 1}, b: {shape: sphere, reflectivity: 1, radius: 2}, "
+                     "c: {shape: sphere, specular: 1, radius: 3}, d: {shape: sphere, visible: off}}", "");
+    expect_hints("solids: {glow: {shape: sphere, ambient: 1}}", "");
+    expect_hints("solids: {lens: {shape: sphere, transparency: 1, ior: 1.5}}", "");
+    expect_hints("solids: {lens: {shape: sphere, transparency: 1, ior: 1.5}, "
+                 "bubble: {shape: sphere, transparency: 1, radius: 0.5, priority: 1}}", "");
+    expect_hints("render: {weights: constant}\nsolids: {veil: {shape: sphere, transparency: 0.5}}", "");
+}
+
+static void the_projects_scenes_lack_nothing(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"rod", "rod-leaning", "rod-from-inside", "solids"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char path[100], all[1000] = "";
+        scene *s;
+        snprintf(path, sizeof path, "experiments/scenes/%s.yaml", names[i]);
+        assert_int_equal(scene_read(path, &s, NULL), STATUS_OK);
+        scene_hints(s, append_line, all);
+        assert_string_equal(all, "");
+        scene_destroy(s);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_forgotten_is_hinted_at),
+        cmocka_unit_test(what_is_hidden_is_hinted_at),
+        cmocka_unit_test(what_is_meant_is_not),
+        cmocka_unit_test(the_projects_scenes_lack_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
