@@ -225,12 +225,13 @@ static status collect(frame *f, render_result *result, diagnostic *why)
     return atomic_load(&f->stop) ? STATUS_INTERRUPTED : STATUS_OK;
 }
 
-/* Zeros that are written, so that no pixel's time holds the making of a page. */
+/* Zeros that are written, so that no pixel's time holds the making of a page; of malloc and memset the compiler would
+ * make a calloc, which writes nothing. */
 static double *make_map(size_t pixels)
 {
     double *map = malloc(pixels * sizeof *map);
-    for (size_t i = 0; map && i < pixels; i++)
-        map[i] = 0.0;
+    if (map)
+        explicit_bzero(map, pixels * sizeof *map);
     return map;
 }
 
