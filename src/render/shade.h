@@ -35,7 +35,7 @@ typedef struct branch_group {
     int64_t total;      /* how many of the group are total internal reflections */
 } branch_group;
 
-/* Fills g from rays list[0..count-1] of a batch; first is the batch's place in the queue; ior: by rank. Not a kernel: copies
+/* Fills g from rays list[0..count-1] of a batch, ascending; first is the batch's place in the queue; ior: by rank. Not a kernel: copies
  * one by one are faster than the gather instructions of the processors it was measured on. */
 void group_gather(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count, group *g);
 
