@@ -3,30 +3,42 @@
 
 #include "render/sky.h"
 
-/* One channel of radiance, rounded to the film's unit. What is not in the film's range, NaN too, sets the flag. */
-static int64_t in_film_units(tracer *t, double radiance)
+/* Is it in the film's range? Not if it is no number. */
+static inline bool is_exposable(double radiance)
 {
     const double limit = 262144.0; /* half of what a channel holds */
-    if (radiance >= 0.0 && radiance < limit)
-        return (int64_t)(radiance * FILM_ONE + 0.5);
-    t->overflow = -1;
-    return 0;
+    return (int)(radiance >= 0.0) & (int)(radiance < limit);
+}
+
+static inline int64_t in_film_units(double radiance)
+{
+    return (int64_t)(radiance * FILM_ONE + 0.5);
+}
+
+static inline void expose(tracer *t, int64_t pixel, double r, double g, double b)
+{
+    if (!((int)is_exposable(r) & (int)is_exposable(g) & (int)is_exposable(b))) {
+        t->overflow = -1;
+        return;
+    }
+    int64_t *sum = &t->target.picture->sum[pixel * 3];
+    const int64_t red = (int64_t)((uint64_t)sum[0] + (uint64_t)in_film_units(r));
+    const int64_t green = (int64_t)((uint64_t)sum[1] + (uint64_t)in_film_units(g));
+    const int64_t blue = (int64_t)((uint64_t)sum[2] + (uint64_t)in_film_units(b));
+    sum[0] = red, sum[1] = green, sum[2] = blue;
+    t->overflow |= red | green | blue;
 }
 
 void shading_expose(tracer *t, int64_t pixel, double r, double g, double b)
 {
-    int64_t *sum = &t->target.picture->sum[pixel * 3];
-    const int64_t units[3] = {in_film_units(t, r), in_film_units(t, g), in_film_units(t, b)};
-    for (int c = 0; c < 3; c++) {
-        sum[c] = (int64_t)((uint64_t)sum[c] + (uint64_t)units[c]);
-        t->overflow |= sum[c];
-    }
+    expose(t, pixel, r, g, b);
 }
 
 void shading_expose_sky(tracer *t, int64_t pixel, vec3 direction, double wr, double wg, double wb)
 {
-    vec3 l = sky_radiance(t->target.scene->sky, direction);
-    shading_expose(t, pixel, wr * l.x, wg * l.y, wb * l.z);
+    const background *sky = t->target.scene->sky;
+    const vec3 l = sky->kind == BACKGROUND_UNIFORM ? sky->color : sky_radiance(sky, direction);
+    expose(t, pixel, wr * l.x, wg * l.y, wb * l.z);
 }
 
 static void expose_ambient(tracer *t, const material *m)
@@ -34,7 +46,7 @@ static void expose_ambient(tracer *t, const material *m)
     const group *g = &t->gathered;
     vec3 a = vec3_scale(t->target.scene->sky->ambient, m->ambient);
     for (int i = 0; i < g->count; i++)
-        shading_expose(t, g->pixel[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
+        expose(t, g->pixel[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
 }
 
 /* A shadow ray is worth its while only if its light can change the film. */
@@ -71,7 +83,7 @@ static void local_light(tracer *t, const material *m)
             continue;
         }
         for (int i = 0; i < t->gathered.count; i++)
-            shading_expose(t, t->gathered.pixel[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
+            expose(t, t->gathered.pixel[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
     }
 }
 
