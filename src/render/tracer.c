@@ -84,10 +84,14 @@ static void sort_by_primitive(tracer *t, int count)
     const arrangement *a = t->target.scene->solids;
     const int foreign = a->primitive_count, none = foreign + 1;
     memset(t->listed, 0, ((size_t)none + 1) * sizeof *t->listed);
-    for (int i = 0; i < count; i++) {
-        const int met = (int)t->hits.crossed[i];
-        const int at = met < 0 ? none : t->hits.surface[i] == a->primitives[met].rank ? met : foreign;
-        t->list[at][t->listed[at]++] = i;
+    for (int i = 0; i < count;) {
+        const int64_t met = t->hits.crossed[i], rank = t->hits.surface[i];
+        const int at = met < 0 ? none : rank == a->primitives[met].rank ? (int)met : foreign;
+        int *list = t->list[at], listed = t->listed[at];
+        do /* neighbours often meet the same */
+            list[listed++] = i++;
+        while (i < count && t->hits.crossed[i] == met && (t->hits.surface[i] == rank || met < 0));
+        t->listed[at] = listed;
     }
 }
 
