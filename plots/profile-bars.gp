@@ -1,4 +1,4 @@
-# Busy and waiting time of each worker, for every schedule and pinning.
+# Busy and waiting time of each worker, means over the repetitions, for every schedule and pinning.
 # needs: profile/workers.csv
 width = 1000; height = 430
 load "plots/style.gp"
