@@ -23,8 +23,10 @@ static fingerprint fingerprint_at(const scene *s, isa level, const render_option
     render_result *result = render_at(s, level, options);
     const fingerprint f = {film_hash(result->picture), result->counters};
     uint64_t rays = 0;
-    for (int i = 0; i < result->worker_count; i++)
-        rays += result->workers[i].rays;
+    for (int i = 0; i < result->worker_count; i++) {
+        const worker_report *w = &result->workers[i];
+        rays += w->camera + w->reflect + w->refract + w->shadow;
+    }
     assert_int_equal(rays, ray_counters_total(&f.counters));
     render_result_destroy(result);
     return f;

@@ -20,7 +20,6 @@ static char *write_row(const study *s, const scene *setting, bool workers)
          .busy_s = 0.75,
          .waiting_s = 0.25,
          .tiles = 2,
-         .rays = 100,
          .camera = 70,
          .reflect = 16,
          .refract = 9,
@@ -32,7 +31,6 @@ static char *write_row(const study *s, const scene *setting, bool workers)
          .busy_s = 0.25,
          .waiting_s = 0.75,
          .tiles = 1,
-         .rays = 50,
          .pu = -1},
         {.wall_s = 1, .cpu_s = 0.125, .start_s = 0.5, .busy_s = 0, .waiting_s = 1, .pu = 0},
     };

@@ -302,24 +302,31 @@ static void repetitions_follow_the_interval(void **state)
     study_destroy(s);
 }
 
+/* Leaves one row of rows.csv, which then says that it saw another film. */
+static void leave_row_of_another_film(const fixture *f, size_t row)
+{
+    char *rows = fixture_text(f, "results/test/rows.csv"), path[400];
+    csv *table = NULL;
+    fixture_path(f, "results/test/rows.csv", path);
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    char *hash = strdup(csv_field(table, row, csv_column(table, "film_hash")));
+    rows[table->start[row + 1]] = 0;
+    memmove(rows + table->start[0], rows + table->start[row], table->start[row + 1] - table->start[row] + 1);
+    csv_destroy(table);
+    for (char *at = rows; (at = strstr(at, hash)); at += 16)
+        memcpy(at, "0123456789abcdef", 16);
+    fixture_write(f, "results/test/rows.csv", rows);
+    free(rows);
+    free(hash);
+}
+
 /* A row that says it saw another picture is marked, not dropped, and counts as a repetition. */
 static void wrong_films_are_marked(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 3\nwarmups: 1\n");
-    char path[400];
     fixture_run(f, s);
-    /* A first row with another hash: all later ones differ from it. */
-    char *rows = fixture_text(f, "results/test/rows.csv");
-    csv *table = NULL;
-    fixture_path(f, "results/test/rows.csv", path);
-    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
-    char *hash = strdup(csv_field(table, 0, csv_column(table, "film_hash")));
-    rows[table->start[1]] = 0;
-    csv_destroy(table);
-    for (char *at = rows; (at = strstr(at, hash)); at += 16)
-        memcpy(at, "0123456789abcdef", 16);
-    fixture_write(f, "results/test/rows.csv", rows);
+    leave_row_of_another_film(f, 0); /* all later ones differ from it */
     assert_int_equal(fixture_run(f, s), 4);
     tally t = tally_rows(f, "results/test/rows.csv");
     assert_int_equal(t.rows, 5);
@@ -327,8 +334,6 @@ static void wrong_films_are_marked(void **state)
     study_progress progress;
     assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
     assert_int_equal(progress.rows_marked, 4);
-    free(rows);
-    free(hash);
     study_destroy(s);
 }
 
@@ -345,25 +350,11 @@ static void cells_of_one_film_are_compared(void **state)
         assert_int_equal(study_cell_film(s, cell), films[cell]);
     assert_int_equal(fixture_run(f, s), 8);
     assert_int_equal(tally_rows(f, "results/test/rows.csv").marked, 0);
-    /* Only the row of cell 1 is left, and says that it saw another film: cells 0, 4 and 5 then differ from it. */
-    char *rows = fixture_text(f, "results/test/rows.csv"), path[400];
-    csv *table = NULL;
-    fixture_path(f, "results/test/rows.csv", path);
-    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
-    assert_string_equal(csv_field(table, 1, csv_column(table, "cell")), "1");
-    char *hash = strdup(csv_field(table, 1, csv_column(table, "film_hash")));
-    rows[table->start[2]] = 0;
-    memmove(rows + table->start[0], rows + table->start[1], table->start[2] - table->start[1] + 1);
-    csv_destroy(table);
-    for (char *at = rows; (at = strstr(at, hash)); at += 16)
-        memcpy(at, "0123456789abcdef", 16);
-    fixture_write(f, "results/test/rows.csv", rows);
+    leave_row_of_another_film(f, 1); /* the row of cell 1; cells 0, 4 and 5 then differ from it */
     assert_int_equal(fixture_run(f, s), 7);
     study_progress progress;
     assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
     assert_int_equal(progress.rows_marked, 3);
-    free(rows);
-    free(hash);
     study_destroy(s);
     s = fixture_study(f, "study: pairs\nscene: scene.yaml\ngrid:\n  - name: pair\n    points:\n"
                          "      - {render.threads: 1, ball.ior: 1.5}\n"

@@ -31,11 +31,6 @@ static status for_each_study(const study_request *request, study_action *act, di
     return result;
 }
 
-static bool keeps_files(const study *s)
-{
-    return s->keep_image || s->keep_pfm || s->keep_pixel_rays || s->keep_pixel_time || s->keep_timeline;
-}
-
 static status run_one(const study *s, const study_request *request, diagnostic *why)
 {
     FILE *terminal = !request->quiet && terminal_is_smart(STDERR_FILENO) ? stderr : NULL;
@@ -47,7 +42,7 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     size_t rows = 0;
     status result = study_run(s, &options, &rows, why);
     if (result == STATUS_INTERRUPTED) {
-        diagnose(why, STATUS_INTERRUPTED, keeps_files(s) ? "run it again to go on; pictures are made at the end" : "run it again to go on",
+        diagnose(why, STATUS_INTERRUPTED, study_keeps_files(s) ? "run it again to go on; pictures are made at the end" : "run it again to go on",
                  "interrupted; its %zu new rows are kept", rows);
         diagnostic_locate(why, s->path, 0, 0);
     }
@@ -55,7 +50,7 @@ static status run_one(const study *s, const study_request *request, diagnostic *
         return result;
     if (rows)
         printf("%s: %zu rows, warm-ups among them, written into %s/%s%s\n", s->name, rows, request->results, s->name,
-               keeps_files(s) ? "; see images/index.tsv there for what is kept" : "");
+               study_keeps_files(s) ? "; see images/index.tsv there for what is kept" : "");
     else
         printf("%s: complete, nothing to do\n", s->name);
     return terminal_flush(why); /* an hour may pass before the next one */

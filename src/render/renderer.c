@@ -136,7 +136,6 @@ static void trace_pieces(frame *f, int worker, desk *d, span piece)
     d->report.busy_s = since(f) - began_s;
     d->report.camera = c->camera - camera_rays, d->report.reflect = c->reflect - reflect;
     d->report.refract = c->refract - refract, d->report.shadow = c->shadow - shadow;
-    d->report.rays = d->report.camera + d->report.reflect + d->report.refract + d->report.shadow;
     tracer_set_give(f->owner->tracers, t);
 }
 

@@ -27,8 +27,7 @@ typedef struct worker_report {
     double busy_s;     /* from its first tile taken to its last ray traced; 0 without a tile */
     double waiting_s;  /* the frame's wall time less busy_s */
     uint64_t tiles;    /* pieces of the picture that it took */
-    uint64_t rays;     /* of all kinds, and by kind: */
-    uint64_t camera, reflect, refract, shadow;
+    uint64_t camera, reflect, refract, shadow; /* rays that it traced */
     int pu;            /* processing unit it ended on; -1 unknown */
 } worker_report;
 

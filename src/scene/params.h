@@ -68,9 +68,9 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
 
 /* Visits every parameter of the scene in a fixed order (table order in a group; lights, materials, solids in
  * scene order), with its full path and value as text. solid rows include those of its surface. Of the camera's
- * target and angles only what is in use is visited, and a picture that the background does not show is not, so that setting all that is visited, in order, on a copy of
- * the scene as its file gives it makes the same scene. Stops when visit returns other than STATUS_OK, and
- * returns that. */
+ * target and angles only what is in use is visited, and a picture that the background does not show is not, so
+ * that setting all that is visited, in order, on a copy of the scene as its file gives it makes the same scene. Stops
+ * when visit returns other than STATUS_OK, and returns that. */
 typedef status param_visit(void *context, const char *path, const param *row, const char *value);
 status scene_each_param(const scene *s, param_visit *visit, void *context);
 

@@ -112,7 +112,8 @@ static const param table[] = {
     COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
           "linear colour of a gradient at the horizon and below"),
     {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
-     "PNG, JPEG or PFM file, from the scene file's folder; makes the kind picture", NULL, ON_ALL, .offset = offsetof(background, picture_path)},
+     "PNG, JPEG or PFM file, from the scene file's folder; makes the kind picture", NULL, ON_ALL,
+     .offset = offsetof(background, picture_path)},
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of Phong's sum"),
 
     VECTOR(PARAM_LIGHT, light, position, "0,10,0", "where the point light stands"),

@@ -35,6 +35,14 @@ static bool wanted(const study *s, kept what)
     return false;
 }
 
+bool study_keeps_files(const study *s)
+{
+    for (kept what = 0; what < KEPT_COUNT; what++)
+        if (wanted(s, what))
+            return true;
+    return false;
+}
+
 static char *kept_path(const char *folder, size_t cell, kept what)
 {
     static const char *const endings[KEPT_COUNT] = {".png",    ".pfm",    "-rays.png",     "-rays.pfm",
@@ -127,9 +135,7 @@ static status list_kept(const study *s, const char *folder, FILE *out, diagnosti
 
 status keep_index(const study *s, const char *folder, bool renew, diagnostic *why)
 {
-    bool keeps = false;
-    for (kept what = 0; what < KEPT_COUNT; what++)
-        keeps = keeps || wanted(s, what);
+    bool keeps = study_keeps_files(s);
     char *path = text_format("%s/images/index.tsv", folder), *images = text_format("%s/images", folder);
     status code = path && images ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK && keeps && access(images, F_OK) == 0 && (renew || access(path, F_OK) != 0)) {

@@ -125,7 +125,7 @@ static status open_files(row_files *files, const char *folder, row_kind kind, di
 static status another_definition(const char *path, long line, const char *what, diagnostic *why)
 {
     diagnostic_locate(why, path, line, 1);
-    return diagnose(why, STATUS_BAD_INPUT, 
+    return diagnose(why, STATUS_BAD_INPUT,
                     "move this folder away, choose another with --results, or give the study another name", "%s", what);
 }
 

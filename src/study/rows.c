@@ -167,7 +167,7 @@ static void put_time(csv_line *line, const study_row *r)
     X("worker", "", "number of the worker, from 0", csv_count(line, worker)) \
     X("pu", "", "processing unit that it ended on (the system's number)", csv_count(line, k->pu)) \
     X("tiles", "", "pieces of the picture that it took", csv_count(line, (int64_t)k->tiles)) \
-    X("rays_total", "rays", "rays of all kinds that it traced", csv_count(line, (int64_t)k->rays)) \
+    X("rays_total", "rays", "rays of all kinds that it traced", csv_count(line, (int64_t)(k->camera + k->reflect + k->refract + k->shadow))) \
     X("rays_camera", "rays", "camera rays among them", csv_count(line, (int64_t)k->camera)) \
     X("rays_reflect", "rays", "reflected rays among them", csv_count(line, (int64_t)k->reflect)) \
     X("rays_refract", "rays", "refracted rays among them", csv_count(line, (int64_t)k->refract)) \

@@ -46,6 +46,9 @@ typedef struct study {
     uint64_t definition_hash;
 } study;
 
+/* Does it keep files of its cells, beside rows? */
+bool study_keeps_files(const study *s);
+
 status study_read(const char *path, study **out, diagnostic *why);
 /* The same from memory; name stands for the file in diagnostics, and its folder is where the scene's path starts. */
 status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why);
