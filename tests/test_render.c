@@ -263,6 +263,29 @@ static void first_hits_of_the_rod_scene(void **state)
     scene_destroy(s);
 }
 
+/* Neighbours leave one slab through one face, some into an opaque box, some into the open: the surface is not the same body's. */
+static void neighbours_may_meet_different_bodies_on_one_face(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 64, height: 2, depth: 4}\n"
+                          "camera: {position: [0, 50, 0], yaw_deg: 0, pitch_deg: -90, fov_deg: 0.05}\n"
+                          "background: {color: [0, 0, 0]}\n"
+                          "solids:\n"
+                          "  slab: {shape: box, transparency: 1, ior: 1.5, position: [0, 0.5, 0], size: [9, 1, 9], priority: 1}\n"
+                          "  half: {shape: box, ambient: 1, color: [1, 0, 0], position: [-2, -0.25, 0], size: [4, 1.5, 9]}\n");
+    render_result *result = render(s);
+    int lit = 0;
+    for (int y = 0; y < 2; y++)
+        for (int x = 0; x < 64; x++) {
+            const double red = film_value(result->picture, x, y, 0);
+            assert_true((red > 0.9) == (x < 32));
+            lit += red > 0.0;
+        }
+    assert_int_equal(lit, 64);
+    render_result_destroy(result);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -275,6 +298,7 @@ int main(void)
         cmocka_unit_test(four_samples_are_the_mean_of_four_pixels),
         cmocka_unit_test(solids_of_index_one_are_not_there),
         cmocka_unit_test(first_hits_of_the_rod_scene),
+        cmocka_unit_test(neighbours_may_meet_different_bodies_on_one_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
