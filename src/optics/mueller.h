@@ -1,0 +1,179 @@
+/* Polarised light at smooth interfaces: Stokes vectors, Mueller matrices, and what a ray that is followed backwards from
+ * the eye carries instead of them. What a tracer calls for every ray is inline and without branches (+ - * / sqrt alone),
+ * so that kernels and tests use the one formula. Pure; cannot fail; all values, nothing is owned.
+ *
+ * Signs. A ray runs from the eye along a unit vector d; its light travels along -d. Its frame is (x, y) with y = d x x
+ * (d cross x), so x cross y = d. Of a Stokes vector in that frame
+ *   i  is the intensity (radiance),
+ *   q > 0: the field lies along x, q < 0: along y,
+ *   u > 0: the field lies at +45 degrees, from x towards y,
+ *   v > 0: the field turns from x towards y: clockwise for the eye that the light runs into, which is right-handed light
+ *          in Hecht's and Born and Wolf's sense. (Of light that travels along +d the same v is left-handed.)
+ * In complex amplitudes with exp(-i omega t), as in Born and Wolf: u + i v = 2 conj(E_x) E_y.
+ * In an s/p frame x = s = d x n / |d x n| and y = p = d x s, for each ray its own p: at normal incidence the reflected p
+ * is the other way round, r_p = -r_s, and nothing jumps. The normal n faces the ray: cos_i = -d.n >= 0; n_from is the index
+ * on the side of the ray that comes from the eye, n_to the one beyond.
+ *
+ * Transmittance is that of power, n_t cos_t / (n_i cos_i) |t|^2 = 1 - R, the same number from either side. The factor n^2
+ * that radiance takes on behind an interface is left out, as renderers commonly do: eye and lights stand in one medium,
+ * where it has gone again. */
+#ifndef CUVETTE_OPTICS_MUELLER_H
+#define CUVETTE_OPTICS_MUELLER_H
+
+#include "base/lanes.h"
+#include "base/vec3.h"
+#include "optics/interface.h"
+#include <math.h>
+
+typedef struct stokes { double i, q, u, v; } stokes;
+typedef struct mueller { double m[4][4]; } mueller; /* row: light that leaves; column: light that arrives */
+
+/* --- frames --- */
+
+/* The canonical frame of direction d, a function of d alone, so that no ray carries its frame: Duff and others, Building
+ * an Orthonormal Basis, Revisited, JCGT 6(1), 2017, listing 3. Where d.z changes sign it jumps. */
+static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
+{
+    double sign = blend(mask_less(d.z, 0.0), -1.0, 1.0);
+    double a = -1.0 / (sign + d.z), b = d.x * d.y * a;
+    *x = vec3_make(1.0 + sign * d.x * d.x * a, sign * b, -sign * d.x);
+    *y = vec3_make(b, sign + d.y * d.y * a, -d.y);
+}
+
+/* A turn of the frame by an angle a, from x towards y, as Stokes vectors feel it. */
+typedef struct frame_turn { double cos_2a, sin_2a; } frame_turn;
+
+/* The turn that brings x of the frame (x, y) into the direction e, of any length; what e has across the frame's plane
+ * does not count. No turn for an e without a part in the plane. */
+static inline frame_turn frame_turn_to(vec3 x, vec3 y, vec3 e)
+{
+    double c = vec3_dot(e, x), s = vec3_dot(e, y), length2 = c * c + s * s;
+    int64_t none = mask_less_equal(length2, 0.0);
+    double over = 1.0 / blend(none, 1.0, length2);
+    frame_turn t;
+    t.cos_2a = blend(none, 1.0, (c * c - s * s) * over);
+    t.sin_2a = 2.0 * c * s * over;
+    return t;
+}
+
+/* The same light in a frame turned by a (Chipman, Lam and Young, Polarized Light and Optical Systems, 2019, eq. 6.33). An
+ * analyser's row turns alike. */
+static inline stokes stokes_rotate(stokes s, double cos_2a, double sin_2a)
+{
+    stokes r = {s.i, s.q * cos_2a + s.u * sin_2a, s.u * cos_2a - s.q * sin_2a, s.v};
+    return r;
+}
+
+/* Light of intensity 1 with its field along e, in the canonical frame of ray d. Half of it is the row of an ideal
+ * polarising filter that lets e pass. */
+static inline stokes stokes_linear(vec3 d, vec3 e)
+{
+    vec3 x, y;
+    polarisation_frame(d, &x, &y);
+    frame_turn t = frame_turn_to(x, y, e);
+    stokes s = {1.0, t.cos_2a, t.sin_2a, 0.0};
+    return s;
+}
+
+/* --- interfaces, in s/p frames --- */
+
+/* What an interface does to amplitudes r_s, r_p (or t_s, t_p), as powers: the four numbers of its Mueller matrix
+ *   | mean half  0     0     |
+ *   | half mean  0     0     |
+ *   | 0    0     real -imag  |
+ *   | 0    0     imag  real  |
+ * A dielectric is a diattenuator (half) and, where it reflects totally, a retarder (imag). */
+typedef struct sp_response {
+    double mean, half;      /* (|r_s|^2 + |r_p|^2) / 2, (|r_s|^2 - |r_p|^2) / 2 */
+    double real, imag;      /* conj(r_s) r_p */
+} sp_response;
+
+/* Reflection. f is fresnel_dielectric at cos_i. Below the critical angle r_s r_p is real. Under total reflection
+ * conj(r_s) r_p = exp(-i delta) with tan(delta / 2) = cos_i sqrt(sin_i^2 - n^2) / sin_i^2, n = n_to / n_from:
+ * Born and Wolf, Principles of Optics, 7th ed., 1.5.4, eq. (61). Halved angles make cos and sin delta rational. */
+static inline sp_response sp_reflect(fresnel f, double cos_i)
+{
+    double below = (f.eta * cos_i + f.cos_t) * (cos_i + f.eta * f.cos_t);
+    double real = (f.eta * cos_i - f.cos_t) * (cos_i - f.eta * f.cos_t) / blend(f.total, 1.0, below);
+    double sin2 = 1.0 - cos_i * cos_i, lost2 = greater(sin2 - 1.0 / (f.eta * f.eta), 0.0);
+    double opposite = cos_i * sqrt(lost2), over = 1.0 / blend(f.total, sin2 * sin2 + opposite * opposite, 1.0);
+    sp_response r;
+    r.mean = f.R;
+    r.half = blend(f.total, 0.0, 0.5 * (f.R_s - f.R_p));
+    r.real = blend(f.total, (sin2 * sin2 - opposite * opposite) * over, real);
+    r.imag = blend(f.total, -2.0 * sin2 * opposite * over, 0.0);
+    return r;
+}
+
+/* Refraction: t_s and t_p are positive, so that conj(t_s) t_p is the root of the powers' product. 0 under total reflection. */
+static inline sp_response sp_refract(fresnel f)
+{
+    sp_response r = {1.0 - f.R, 0.5 * (f.R_p - f.R_s), sqrt((1.0 - f.R_s) * (1.0 - f.R_p)), 0.0};
+    return r;
+}
+
+/* An ideal mirror, r_s = -1 and r_p = 1 at every angle. */
+static inline sp_response sp_mirror(void)
+{
+    sp_response r = {1.0, 0.0, -1.0, 0.0};
+    return r;
+}
+
+/* --- backwards: the analyser's row --- */
+
+/* A ray from the eye carries the first row of the product of all Mueller matrices between eye and ray, in the ray's
+ * canonical frame: (1, 0, 0, 0) at the eye, and .i is at every place the weight of unpolarised light from there. What
+ * the eye sees of light s that joins at a ray is analyser_sees(row, s), both in that ray's canonical frame. */
+static inline double analyser_sees(stokes row, stokes s)
+{
+    return row.i * s.i + row.q * s.q + row.u * s.u + row.v * s.v;
+}
+
+/* The row beyond an interface, in the frame of child, the reflected or refracted direction. */
+static inline stokes analyser_across(stokes row, vec3 d, vec3 n, vec3 child, sp_response r)
+{
+    vec3 x, y, child_x, child_y, s = vec3_cross(d, n);
+    polarisation_frame(d, &x, &y);
+    polarisation_frame(child, &child_x, &child_y);
+    /* At normal incidence any plane is one of incidence; under 1e-9 radians d x n is mostly rounding, and s and p
+     * differ by less than that (by the angle's square). */
+    int64_t any = mask_less(vec3_dot(s, s), 0x1p-60);
+    s = vec3_make(blend(any, x.x, s.x), blend(any, x.y, s.y), blend(any, x.z, s.z));
+    frame_turn to_sp = frame_turn_to(x, y, s), from_sp = frame_turn_to(child_x, child_y, s);
+    stokes w = stokes_rotate(row, to_sp.cos_2a, to_sp.sin_2a);
+    stokes beyond = {w.i * r.mean + w.q * r.half, w.i * r.half + w.q * r.mean, w.u * r.real + w.v * r.imag,
+                     w.v * r.real - w.u * r.imag};
+    return stokes_rotate(beyond, from_sp.cos_2a, -from_sp.sin_2a);
+}
+
+static inline stokes analyser_reflect(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to, vec3 reflected)
+{
+    return analyser_across(row, d, n, reflected, sp_reflect(fresnel_dielectric(cos_i, n_from, n_to), cos_i));
+}
+
+/* The light goes from n_to into n_from; its transmittances are those of the way back. A row of zeros under total reflection. */
+static inline stokes analyser_refract(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to, vec3 refracted)
+{
+    return analyser_across(row, d, n, refracted, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
+}
+
+/* To be scaled by the mirror's reflectance. */
+static inline stokes analyser_mirror(stokes row, vec3 d, vec3 n, vec3 reflected)
+{
+    return analyser_across(row, d, n, reflected, sp_mirror());
+}
+
+/* --- forwards: whole matrices, for tables and tests --- */
+
+mueller mueller_from(sp_response r);
+/* Of light that arrives at cos_i in n_from, from its s/p frame into that of the light that leaves. m[0][0] is the share
+ * of unpolarised light. */
+mueller mueller_reflect(double cos_i, double n_from, double n_to);
+mueller mueller_refract(double cos_i, double n_from, double n_to);
+/* Into a frame turned by a. */
+mueller mueller_rotation(double cos_2a, double sin_2a);
+/* a b: light meets b first. */
+mueller mueller_multiply(mueller a, mueller b);
+stokes mueller_apply(mueller m, stokes s);
+
+#endif
