@@ -1,0 +1,41 @@
+/* Colours of three numbers lifted to spectra: S(lambda) = sigmoid(c0 t^2 + c1 t + c2) with t the wavelength, -1 at
+ * OBSERVER_LOW_NM and 1 at OBSERVER_HIGH_NM, and sigmoid(x) = 1/2 + x / (2 sqrt(1 + x^2)): smooth, and within 0 .. 1
+ * whatever the coefficients, so that a lifted reflectance keeps energy. Jakob and Hanika, "A Low-Dimensional Function
+ * Space for Efficient Spectral Upsampling", Computer Graphics Forum 38(2), 2019. The coefficients are fitted at the
+ * call (tens of microseconds: lift a colour once, not once a ray), so that the spectrum seen by the
+ * observer under D65 is the colour again. Greys are exact: a constant spectrum, of black 0 and of white 1.
+ * Values, not objects: nothing to release. Pure; cannot fail. */
+#ifndef CUVETTE_OPTICS_LIFT_H
+#define CUVETTE_OPTICS_LIFT_H
+
+#include "optics/observer.h"
+#include <math.h>
+
+typedef struct lifted {
+    double c[3];  /* c0, c1, c2 */
+    double scale; /* 1 for a reflectance; of an emission, what its largest component is half of */
+} lifted;
+
+/* Linear sRGB; components are taken to 0 .. 1 first (and what is not a number to 0). */
+lifted lift_reflectance(const double rgb[3]);
+
+/* Linear sRGB of any size; negative components (and what is not a number) are taken to 0. The shape is fitted to the
+ * colour at half of full brightness, where every hue is in reach of smooth spectra; white is D65 exactly. */
+lifted lift_emission(const double rgb[3]);
+
+/* S(lambda), 0 .. 1. */
+static inline double lifted_reflectance(const lifted *l, double lambda_nm)
+{
+    const double middle = 0.5 * (OBSERVER_LOW_NM + OBSERVER_HIGH_NM), reach = 0.5 * (OBSERVER_HIGH_NM - OBSERVER_LOW_NM);
+    double t = (lambda_nm - middle) / reach;
+    double x = (l->c[0] * t + l->c[1]) * t + l->c[2];
+    return 0.5 + 0.5 * x / sqrt(1.0 + x * x); /* Jakob and Hanika, eq. 4 */
+}
+
+/* scale S(lambda) D65(lambda), radiance in the unit of observer_d65. */
+static inline double lifted_emission(const lifted *l, double lambda_nm)
+{
+    return l->scale * lifted_reflectance(l, lambda_nm) * observer_d65(lambda_nm);
+}
+
+#endif
