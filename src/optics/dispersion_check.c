@@ -1,0 +1,149 @@
+#include "base/number.h"
+#include "optics/dispersion.h"
+#include <math.h>
+#include <stdio.h>
+
+static const double index_low = 0.1, index_high = 100.0;
+
+static const char *coefficients_of(dispersion_kind kind)
+{
+    switch (kind) {
+    case DISPERSION_CONSTANT: return "give one number, n";
+    case DISPERSION_SELLMEIER: return "give pairs B C, with C in um^2";
+    case DISPERSION_SELLMEIER_LENGTHS: return "give pairs B C, with C in um";
+    case DISPERSION_POLYNOMIAL:
+    case DISPERSION_CAUCHY_POWERS: return "give a0, then pairs of a coefficient and its power";
+    case DISPERSION_CAUCHY: return "give A, then B in um^2, C in um^4 and so on";
+    case DISPERSION_GAS: return "give pairs B C, both in um^-2";
+    case DISPERSION_TABLE: return "give pairs of a wavelength in nm and an index, by ascending wavelength";
+    }
+    return "";
+}
+
+static bool count_fits(dispersion_kind kind, int count)
+{
+    if (count < 1 || count > DISPERSION_TERMS_MAX)
+        return false;
+    switch (kind) {
+    case DISPERSION_CONSTANT: return count == 1;
+    case DISPERSION_SELLMEIER:
+    case DISPERSION_SELLMEIER_LENGTHS:
+    case DISPERSION_GAS:
+    case DISPERSION_TABLE: return count % 2 == 0;
+    case DISPERSION_POLYNOMIAL:
+    case DISPERSION_CAUCHY_POWERS: return count % 2 == 1;
+    case DISPERSION_CAUCHY: return true;
+    }
+    return false;
+}
+
+static status check_numbers(const dispersion *law, diagnostic *why)
+{
+    if ((unsigned)law->kind >= DISPERSION_KIND_COUNT)
+        return diagnose(why, STATUS_BAD_INPUT, "", "there is no dispersion law of number %d", (int)law->kind);
+    const char *remedy = coefficients_of(law->kind), *name = dispersion_name(law->kind);
+    if (law->count > DISPERSION_TERMS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "a dispersion law has at most %d numbers, not %d",
+                        DISPERSION_TERMS_MAX, law->count);
+    if (!count_fits(law->kind, law->count))
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "%d numbers do not make the dispersion law '%s'", law->count,
+                        name);
+    for (int i = 0; i < law->count; i++)
+        if (!isfinite(law->coefficient[i]))
+            return diagnose(why, STATUS_BAD_INPUT, "give a finite one",
+                            "number %d of the dispersion law '%s' is not finite", i + 1, name);
+    const double low = law->low_nm, high = law->high_nm;
+    if ((low != 0.0 || high != 0.0) && !(low > 0.0 && low <= high && isfinite(high)))
+        return diagnose(why, STATUS_BAD_INPUT, "give a lower and a higher wavelength in nm, both above 0",
+                        "%g..%g nm is no range of wavelengths", low, high);
+    return STATUS_OK;
+}
+
+static status check_powers(const dispersion *law, diagnostic *why)
+{
+    char remedy[64];
+    snprintf(remedy, sizeof remedy, "use a whole power from %d to %d", -DISPERSION_POWER_MAX, DISPERSION_POWER_MAX);
+    for (int i = 2; i < law->count; i += 2) {
+        const double p = law->coefficient[i];
+        if (p != floor(p) || fabs(p) > DISPERSION_POWER_MAX)
+            return diagnose(why, STATUS_BAD_INPUT, remedy,
+                            "the wavelength's power %g is not one that a dispersion law takes", p);
+    }
+    return STATUS_OK;
+}
+
+static status check_table(const dispersion *law, diagnostic *why)
+{
+    char n[NUMBER_TEXT_MAX], before[NUMBER_TEXT_MAX], after[NUMBER_TEXT_MAX];
+    for (int i = 0; i < law->count; i += 2) {
+        const double lambda_nm = law->coefficient[i], previous = i ? law->coefficient[i - 2] : 0.0;
+        if (!(lambda_nm > previous))
+            return diagnose(why, STATUS_BAD_INPUT, "give wavelengths above 0 in ascending order",
+                            "a table of indices has %s nm after %s nm", number_format(lambda_nm, after),
+                            number_format(previous, before));
+        if (!(law->coefficient[i + 1] >= index_low && law->coefficient[i + 1] <= index_high))
+            return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind), "a table of indices has the index %s",
+                            number_format(law->coefficient[i + 1], n));
+    }
+    return STATUS_OK;
+}
+
+/* The samples could straddle a resonance, where the index is infinite. */
+static status check_resonances(const dispersion *law, diagnostic *why)
+{
+    for (int i = 1; i < law->count; i += 2) {
+        const double C = law->coefficient[i];
+        double lambda_nm = 0.0;
+        if (law->kind == DISPERSION_SELLMEIER)
+            lambda_nm = 1000.0 * sqrt(C > 0.0 ? C : 0.0);
+        else if (law->kind == DISPERSION_SELLMEIER_LENGTHS)
+            lambda_nm = 1000.0 * fabs(C);
+        else if (C > 0.0)
+            lambda_nm = 1000.0 / sqrt(C);
+        if (lambda_nm >= VISIBLE_LOW_NM && lambda_nm <= VISIBLE_HIGH_NM)
+            return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind),
+                            "the dispersion law '%s' has a resonance at %.6g nm, in the visible",
+                            dispersion_name(law->kind), lambda_nm);
+    }
+    return STATUS_OK;
+}
+
+static status check_own(const dispersion *law, diagnostic *why)
+{
+    switch (law->kind) {
+    case DISPERSION_SELLMEIER:
+    case DISPERSION_SELLMEIER_LENGTHS:
+    case DISPERSION_GAS: return check_resonances(law, why);
+    case DISPERSION_POLYNOMIAL:
+    case DISPERSION_CAUCHY_POWERS: return check_powers(law, why);
+    case DISPERSION_TABLE: return check_table(law, why);
+    case DISPERSION_CONSTANT:
+    case DISPERSION_CAUCHY: break;
+    }
+    return STATUS_OK;
+}
+
+static status check_visible(const dispersion *law, diagnostic *why)
+{
+    for (double lambda_nm = VISIBLE_LOW_NM; lambda_nm <= VISIBLE_HIGH_NM; lambda_nm += 1.0) {
+        const double n = dispersion_index(law, lambda_nm);
+        if (n >= index_low && n <= index_high)
+            continue;
+        if (isnan(n))
+            return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind),
+                            "the dispersion law '%s' gives no real index at %g nm", dispersion_name(law->kind),
+                            lambda_nm);
+        return diagnose(why, STATUS_BAD_INPUT, coefficients_of(law->kind),
+                        "the dispersion law '%s' gives the index %.6g at %g nm, which is not from 0.1 to 100",
+                        dispersion_name(law->kind), n, lambda_nm);
+    }
+    return STATUS_OK;
+}
+
+status dispersion_check(const dispersion *law, diagnostic *why)
+{
+    status result = check_numbers(law, why);
+    if (result == STATUS_OK)
+        result = check_own(law, why);
+    return result == STATUS_OK ? check_visible(law, why) : result;
+}

@@ -1,0 +1,35 @@
+/* The catalogue of media: what liquids, glasses, plastics and crystals of a laboratory refract, by published dispersion
+ * laws. Each row says who measured it, at which temperature and over which wavelengths.
+ * Ownership: all is constant and lives as long as the program. Errors: none; an unknown name is NULL.
+ * A refractometer and a prism on a table compare with the air around them, and so do glass catalogues: such a law is
+ * relative to air. medium_index is absolute, relative to vacuum, for all; air itself is a row. */
+#ifndef CUVETTE_OPTICS_MEDIA_H
+#define CUVETTE_OPTICS_MEDIA_H
+
+#include "optics/dispersion.h"
+
+/* The names, in the catalogue's order, for whoever needs them as words. */
+#define MEDIA_NAMES(X) \
+    X("air") X("water") X("ethanol") X("glycerol") X("toluene") X("olive-oil") X("bk7-liquid") X("fused-silica") X("bk7") \
+    X("sf11") X("n-sf11") X("soda-lime") X("pmma") X("sapphire") X("diamond")
+
+typedef struct medium {
+    const char *name;     /* "fused-silica" */
+    const char *title;    /* "fused silica" */
+    dispersion law;       /* as published */
+    bool relative_to_air; /* the law; else to vacuum */
+    double temperature_c; /* of the medium; NaN: at room temperature */
+    const char *source;   /* who measured or published it */
+    const char *verified; /* what the coefficients were compared with */
+    const char *note;     /* what to beware of; "" when nothing */
+} medium;
+
+size_t media_count(void);
+const medium *media_at(size_t i); /* i < media_count() */
+const medium *media_find(const char *name);
+
+/* Index relative to vacuum. A law relative to air is multiplied by the index of dry air at 15 C and 101325 Pa; Ciddor,
+ * Appl. Opt. 35, 1566 (1996). That the air of a laboratory at sea level is warmer and moist changes it by less than 4e-5. */
+double medium_index(const medium *m, double lambda_nm);
+
+#endif
