@@ -4,6 +4,7 @@ enum { FIRST_NM = 360, LAST_NM = 830, STEP_NM = 5, ENTRIES = (LAST_NM - FIRST_NM
 
 /* xbar, ybar, zbar, and D65 as published (100 at 560 nm). CIE 15:2018, tables 5 and 6; as distributed by the Colour
  * and Vision Research Laboratory, UCL (ciexyz31, Illuminantd65). The comment is the row's first wavelength. */
+/* clang-format off */
 static const double table[ENTRIES][4] = {
     {0.0001299, 0.000003917, 0.0006061, 46.6383}, {0.0002321, 0.000006965, 0.001086, 49.3637}, /* 360 */
     {0.0004149, 0.00001239, 0.001946, 52.0891}, {0.0007416, 0.00002202, 0.003486, 51.0323}, /* 370 */
@@ -54,6 +55,7 @@ static const double table[ENTRIES][4] = {
     {0.000002522525, 0.00000091093, 0.0, 57.4406}, {0.000001776509, 0.00000064153, 0.0, 58.8765}, /* 820 */
     {0.000001251141, 0.00000045181, 0.0, 60.3125}, /* 830 */
 };
+/* clang-format on */
 
 /* From these tables over 380 .. 780 nm, in rational arithmetic, rounded once. */
 static const double ONE_OVER_YBAR = 0.009358344722132764; /* 1 / integral of ybar, 106.8565 nm */
