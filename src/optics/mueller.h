@@ -31,7 +31,7 @@ typedef struct mueller { double m[4][4]; } mueller; /* row: light that leaves; c
 /* --- frames --- */
 
 /* The canonical frame of direction d, a function of d alone, so that no ray carries its frame: Duff and others, Building
- * an Orthonormal Basis, Revisited, JCGT 6(1), 2017, listing 3. Where d.z changes sign it jumps. */
+ * an Orthonormal Basis, Revisited, JCGT 6(1), 2017. Where d.z changes sign it jumps. */
 static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
 {
     double sign = blend(mask_less(d.z, 0.0), -1.0, 1.0);
@@ -56,8 +56,7 @@ static inline frame_turn frame_turn_to(vec3 x, vec3 y, vec3 e)
     return t;
 }
 
-/* The same light in a frame turned by a (Chipman, Lam and Young, Polarized Light and Optical Systems, 2019, eq. 6.33). An
- * analyser's row turns alike. */
+/* The same light in a frame turned by a: q + i u turns by -2a. An analyser's row turns alike. */
 static inline stokes stokes_rotate(stokes s, double cos_2a, double sin_2a)
 {
     stokes r = {s.i, s.q * cos_2a + s.u * sin_2a, s.u * cos_2a - s.q * sin_2a, s.v};
@@ -90,7 +89,7 @@ typedef struct sp_response {
 
 /* Reflection. f is fresnel_dielectric at cos_i. Below the critical angle r_s r_p is real. Under total reflection
  * conj(r_s) r_p = exp(-i delta) with tan(delta / 2) = cos_i sqrt(sin_i^2 - n^2) / sin_i^2, n = n_to / n_from:
- * Born and Wolf, Principles of Optics, 7th ed., 1.5.4, eq. (61). Halved angles make cos and sin delta rational. */
+ * Born and Wolf, Principles of Optics, 7th ed., 1.5.4. Halved angles make cos and sin delta rational. */
 static inline sp_response sp_reflect(fresnel f, double cos_i)
 {
     double below = (f.eta * cos_i + f.cos_t) * (cos_i + f.eta * f.cos_t);
@@ -99,7 +98,7 @@ static inline sp_response sp_reflect(fresnel f, double cos_i)
     double opposite = cos_i * sqrt(lost2), over = 1.0 / blend(f.total, sin2 * sin2 + opposite * opposite, 1.0);
     sp_response r;
     r.mean = f.R;
-    r.half = blend(f.total, 0.0, 0.5 * (f.R_s - f.R_p));
+    r.half = 0.5 * (f.R_s - f.R_p);
     r.real = blend(f.total, (sin2 * sin2 - opposite * opposite) * over, real);
     r.imag = blend(f.total, -2.0 * sin2 * opposite * over, 0.0);
     return r;
@@ -135,8 +134,8 @@ static inline stokes analyser_across(stokes row, vec3 d, vec3 n, vec3 child, sp_
     vec3 x, y, child_x, child_y, s = vec3_cross(d, n);
     polarisation_frame(d, &x, &y);
     polarisation_frame(child, &child_x, &child_y);
-    /* At normal incidence any plane is one of incidence; under 1e-9 radians d x n is mostly rounding, and s and p
-     * differ by less than that (by the angle's square). */
+    /* At normal incidence any plane is one of incidence, but it must be the same one for both frames. Nearer to it than
+     * 1e-9 radians s and p reflect alike up to the angle's square, which is below the last place. */
     int64_t any = mask_less(vec3_dot(s, s), 0x1p-60);
     s = vec3_make(blend(any, x.x, s.x), blend(any, x.y, s.y), blend(any, x.z, s.z));
     frame_turn to_sp = frame_turn_to(x, y, s), from_sp = frame_turn_to(child_x, child_y, s);
