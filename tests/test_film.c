@@ -12,7 +12,7 @@
 static film *made(int width, int height)
 {
     film *f = NULL;
-    assert_int_equal(film_create(width, height, &f, NULL), STATUS_OK);
+    assert_int_equal(film_create(width, height, 1, FILM_RGB, &f, NULL), STATUS_OK);
     return f;
 }
 
@@ -86,7 +86,7 @@ static void a_queue_gives_back_the_last_first(void **state)
     assert_true(queue_create(&q, 3 * BATCH + LANES_MAX));
     for (int count = 1; count <= 3 * BATCH + LANES_MAX; count++) {
         for (int i = 0; i < count; i++) {
-            q.ox[i] = i, q.inside[i] = (uint64_t)i, q.pixel[i] = i, q.wb[i] = -i;
+            q.ox[i] = i, q.inside[i] = (uint64_t)i, q.ticket[i] = i, q.wb[i] = -i;
         }
         q.count = count;
         int first, left = count;
@@ -101,7 +101,7 @@ static void a_queue_gives_back_the_last_first(void **state)
         }
     }
     queue_move(&q, 3, 200);
-    assert_true(q.ox[3] == 200.0 && q.inside[3] == 200 && q.pixel[3] == 200 && q.wb[3] == -200.0);
+    assert_true(q.ox[3] == 200.0 && q.inside[3] == 200 && q.ticket[3] == 200 && q.wb[3] == -200.0);
     queue_destroy(&q);
 }
 

@@ -127,7 +127,7 @@ static void an_empty_scene_is_the_defaults(void **state)
     assert_non_null(s);
     size_t count = 0;
     assert_int_equal(scene_each_param(s, same_as_fallback, &count), STATUS_OK);
-    assert_int_equal(count, 13 + 3 + 5);
+    assert_int_equal(count, 23 + 3 + 7);
     assert_int_equal(s->render.width, 800);
     assert_int_equal(s->render.shadows, SHADOWS_ATTENUATED);
     assert_int_equal(s->render.schedule, SCHEDULE_DYNAMIC);
@@ -340,7 +340,8 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
         {"lens.visible=noo", "lens.visible: no choice 'noo'; give one of: off, on"},
         {"render.shadows=no", "render.shadows: no choice 'no'; give one of: off, opaque, attenuated"},
         {"glass.radius=2", "glass has no parameter 'radius'; glass has color, ambient, diffuse, specular, shininess, "
-                           "reflectivity, transparency, ior, checker, checker_color"},
+                           "reflectivity, transparency, ior, medium, coefficients, absorb_per_m, absorb_spectrum, checker, "
+                           "checker_color"},
         {"lamp.position.w=2", "lamp.position has no element 'w'; the elements are .x, .y and .z"},
         {"lamp.color.x=2", "lamp.color has no element 'x'; the elements are .r, .g and .b"},
         {"lamp.position.xy=2", "lamp.position has no element 'xy'; the elements are .x, .y and .z"},

@@ -5,7 +5,7 @@
 
 #include "scene/params.h"
 
-enum { PARAM_PATH_MAX = 160 };
+enum { PARAM_PATH_MAX = 400 };
 
 typedef struct param_line {
     char *path, *value; /* the value is the default where there is no scene */

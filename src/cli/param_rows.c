@@ -91,6 +91,7 @@ static const char *type_name(param_type type)
     case PARAM_CHOICE: return "choice";
     case PARAM_VECTOR: return "vector";
     case PARAM_COLOR: return "color";
+    case PARAM_LIST: return "list";
     case PARAM_PATH: return "path";
     }
     return "";

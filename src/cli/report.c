@@ -38,7 +38,8 @@ json_t *report_value(const param *row, const char *text)
             return json_of_real(real);
         break;
     case PARAM_VECTOR:
-    case PARAM_COLOR: {
+    case PARAM_COLOR:
+    case PARAM_LIST: {
         json_t *list = list_of_numbers(text);
         if (list)
             return list;

@@ -78,7 +78,9 @@ static void add_body(arrangement *a, int rank, const body_source *source)
     a->opaque_ranks |= (uint64_t)source->opaque << (rank - 1);
     body *b = &a->bodies[rank];
     *b = (body){.outside = a->primitive_count, .hollow = n == 2 ? a->primitive_count + 1 : -1, .medium = source->medium,
-                .opaque = source->opaque, .clearness = source->opaque ? 0.0 : source->clearness, .solid = source->solid};
+                .opaque = source->opaque, .clearness = source->opaque ? 0.0 : source->clearness,
+                .absorbs = source->absorbs && !source->opaque, .solid = source->solid};
+    a->absorbs |= b->absorbs;
     for (int k = 0; k < n; k++) {
         parts[k].rank = rank;
         parts[k].first_face = (int64_t)a->primitive_count * FACES_MAX;

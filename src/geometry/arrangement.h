@@ -7,7 +7,7 @@
  * "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2), 2002).
  *
  * Ownership: arrangement_build gives, arrangement_destroy releases; kernels borrow. Geometry knows no colour: of
- * a medium it knows a number (equal numbers, equal media) and whether it is opaque. */
+ * a medium it knows a number (equal numbers, equal indices: no interface between them), whether it is opaque, and whether it absorbs. */
 #ifndef CUVETTE_GEOMETRY_ARRANGEMENT_H
 #define CUVETTE_GEOMETRY_ARRANGEMENT_H
 
@@ -43,6 +43,7 @@ typedef struct body {
     int64_t medium;      /* equal numbers are equal media */
     bool opaque;
     double clearness;    /* share of light that a shadow ray keeps at each of its interfaces; 0 when opaque */
+    bool absorbs;        /* its medium takes light away with length */
     int solid;           /* index of the solid it came from */
 } body;
 
@@ -54,12 +55,13 @@ typedef struct arrangement {
     double extent;       /* largest of the primitives' */
     uint64_t opaque_ranks; /* bit r - 1: the body of rank r is opaque */
     bool distinct;       /* no two bodies are of one medium, nor is any of the surrounding one */
+    bool absorbs;        /* one of the bodies does */
 } arrangement;
 
 /* Can a body take light away from a shadow ray by itself? With solid_shadows every body does. */
 static inline bool body_casts_shadow(const body *b, bool solid_shadows)
 {
-    return b->opaque || solid_shadows || b->clearness < 1.0;
+    return b->opaque || solid_shadows || b->clearness < 1.0 || b->absorbs;
 }
 
 /* What arrangement_build wants to know of a solid. */
@@ -69,6 +71,7 @@ typedef struct body_source {
     int64_t medium;
     bool opaque;
     double clearness;
+    bool absorbs;
     int solid;
 } body_source;
 

@@ -30,7 +30,12 @@ typedef struct hit_batch {
     uint64_t inside_before[ROW], inside_after[ROW]; /* sets just before and just behind it */
 } hit_batch;
 
-/* Intervals [in, out] by primitive and ray, and what is derived from them. Contents mean nothing between calls. */
+/* A piece of a ray within one medium, and how long it is (scene units; for ever on a ray that meets nothing: 1e120). */
+typedef struct stretch { int ray, rank; double length; } stretch;
+
+enum { STRETCHES_MAX = BATCH * (2 * PRIMITIVES_MAX + 2) };
+
+/* Intervals [in, out] by primitive and ray, and what is derived from them. Contents but the stretches mean nothing between calls. */
 typedef struct ray_scratch {
     double in[PRIMITIVES_MAX][ROW], out[PRIMITIVES_MAX][ROW];
     double inverse_y[ROW], inverse_x[ROW], inverse_z[ROW];
@@ -40,6 +45,10 @@ typedef struct ray_scratch {
     hit_batch again;           /* of rays that are looked at another time */
     int64_t attention[ROW], undecided[ROW], blocked[ROW];
     int ray[ROW];            /* which ray of the batch a column belongs to */
+    double passed[ROW], unit[ROW]; /* how far a column has been followed; length of a step of 1 */
+    /* Of an arrangement that absorbs: the media that each ray went through, up to its hit or its light; those of one ray in order. */
+    int stretch_count;
+    stretch stretches[STRETCHES_MAX];
 } ray_scratch;
 
 /* Points on one primitive's surface. normal is a unit vector against the ray; cos_i = -d.n, in (0, 1] for a unit vector d. error is a bound

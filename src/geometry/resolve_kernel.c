@@ -207,6 +207,16 @@ static void pass_on(const arrangement *a, int k, int m, ray_scratch *s, const hi
     s->inside[m] = set;
     s->slack[m] = s->slack[k];
     s->ray[m] = s->ray[k];
+    s->passed[m] = t;
+    s->unit[m] = s->unit[k];
+}
+
+/* Column k was followed on through one medium to its crossing, or to `end`. */
+static void note_stretch(int k, double end, ray_scratch *s, const hit_batch *c)
+{
+    const double length = (lesser(c->t[k], end) - s->passed[k]) * s->unit[k];
+    if (s->stretch_count < STRETCHES_MAX) /* always: a ray crosses a convex primitive's surface twice at most */
+        s->stretches[s->stretch_count++] = (stretch){s->ray[k], (int)c->before[k], length};
 }
 
 static void begin(const ray_batch *rays, ray_scratch *s)
@@ -214,6 +224,17 @@ static void begin(const ray_batch *rays, ray_scratch *s)
     for (int i = 0; i < rays->count; i++) {
         s->inside[i] = rays->inside[i];
         s->ray[i] = i;
+    }
+    s->stretch_count = 0;
+}
+
+/* The media up to each ray's first crossing. */
+static void note_first_stretches(int n, ray_scratch *s, const hit_batch *hits)
+{
+    for (int i = 0; i < n; i++) {
+        s->passed[i] = 0.0;
+        s->unit[i] = 1.0;
+        note_stretch(i, HUGE_VAL, s, hits);
     }
 }
 
@@ -235,6 +256,8 @@ static void nearest(const arrangement *a, const ray_batch *rays, ray_scratch *s,
     for (int i = 0; i < rays->count; i++)
         s->slack[i] = a->extent;
     next_changes(a, rays->count, s, hits);
+    if (a->absorbs)
+        note_first_stretches(rays->count, s, hits);
     int left = 0;
     for (int i = 0; i < rays->count; i++)
         if (s->attention[i] && !is_interface(a, rays, i, s, hits))
@@ -244,6 +267,8 @@ static void nearest(const arrangement *a, const ray_batch *rays, ray_scratch *s,
         next_changes(a, n, s, &s->again);
         left = 0;
         for (int k = 0; k < n; k++) {
+            if (a->absorbs)
+                note_stretch(k, HUGE_VAL, s, &s->again);
             if (s->attention[k] && !is_interface(a, rays, k, s, &s->again))
                 pass_on(a, k, left++, s, &s->again);
             else
@@ -326,6 +351,8 @@ static int keep_undecided(const arrangement *a, const ray_batch *rays, ray_scrat
         s->slack[n] = a->extent / length;
         s->inside[n] = rays->inside[i];
         s->ray[n] = i;
+        s->passed[n] = 0.0;
+        s->unit[n] = length;
         for (int p = 0; p < a->primitive_count; p++) {
             s->in[p][n] = s->in[p][i];
             s->out[p][n] = s->out[p][i];
@@ -338,6 +365,7 @@ static int keep_undecided(const arrangement *a, const ray_batch *rays, ray_scrat
 static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadows, ray_scratch *s, double *transmitted)
 {
     const uint64_t wanted = first_sight_primitives(a, solid_shadows);
+    s->stretch_count = 0;
     KERNEL(intervals_of)(a, rays, wanted, s);
     first_sight(a, solid_shadows, rays->count, s);
     for (int i = 0; i < rays->count; i++)
@@ -351,6 +379,8 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
         next_changes(a, n, s, c);
         left = 0;
         for (int k = 0; k < n; k++) {
+            if (a->absorbs)
+                note_stretch(k, 1.0, s, c);
             if (c->crossed[k] < 0 || c->t[k] >= 1.0)
                 continue;
             if (!s->attention[k] || is_interface(a, rays, k, s, c))

@@ -1,6 +1,8 @@
 #include "render/film.h"
 
 #include "base/hash.h"
+#include "optics/observer.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,9 +10,14 @@
  * of 16, tiles then share none, and workers do not take lines from one another. */
 enum { ALIGNMENT = 128 };
 
-status film_create(int width, int height, film **out, diagnostic *why)
+static size_t values_of(const film *f)
 {
-    const size_t bytes = (size_t)width * (size_t)height * 3 * sizeof(int64_t);
+    return (size_t)f->width * (size_t)f->height * 3;
+}
+
+status film_create(int width, int height, int layers, film_space space, film **out, diagnostic *why)
+{
+    const size_t bytes = (size_t)width * (size_t)height * 3 * sizeof(int64_t) * (size_t)layers;
     film *f = calloc(1, sizeof *f);
     if (f)
         f->memory = malloc(bytes + ALIGNMENT); /* aligned_alloc would leave gaps that the next film does not fit into */
@@ -22,6 +29,8 @@ status film_create(int width, int height, film **out, diagnostic *why)
     memset(f->sum, 0, bytes); /* the pages are there before the clock starts */
     f->width = width;
     f->height = height;
+    f->layers = layers;
+    f->space = space;
     *out = f;
     return STATUS_OK;
 }
@@ -34,17 +43,53 @@ void film_destroy(film *f)
     free(f);
 }
 
+void film_add_layers(film *f, double *variance)
+{
+    const size_t count = values_of(f), layers = (size_t)f->layers;
+    if (layers == 1)
+        return;
+    for (size_t i = 0; i < count; i++) {
+        double total = 0.0, squares = 0.0;
+        int64_t sum = 0;
+        for (size_t k = 0; k < layers; k++) {
+            sum = (int64_t)((uint64_t)sum + (uint64_t)f->sum[k * count + i]);
+            total += (double)f->sum[k * count + i] / FILM_ONE;
+        }
+        for (size_t k = 0; k < layers; k++) {
+            const double from_mean = (double)f->sum[k * count + i] / FILM_ONE - total / (double)layers;
+            squares += from_mean * from_mean;
+        }
+        if (variance) /* a sum of n values of variance squares / (n - 1) each */
+            variance[i] = squares * (double)layers / (double)(layers - 1);
+        f->sum[i] = sum;
+    }
+    f->layers = 1;
+}
+
+/* The pixel's colour, linear sRGB. */
+static void pixel_rgb(const film *f, size_t pixel, double rgb[3])
+{
+    double value[3];
+    for (size_t c = 0; c < 3; c++)
+        value[c] = (double)f->sum[pixel * 3 + c] / FILM_ONE;
+    if (f->space == FILM_XYZ)
+        xyz_to_linear_srgb(value, rgb);
+    else
+        memcpy(rgb, value, sizeof value);
+}
+
 double film_value(const film *f, int x, int y, int channel)
 {
-    size_t at = ((size_t)y * (size_t)f->width + (size_t)x) * 3 + (size_t)channel;
-    return (double)f->sum[at] / FILM_ONE;
+    double rgb[3];
+    pixel_rgb(f, (size_t)y * (size_t)f->width + (size_t)x, rgb);
+    return rgb[channel];
 }
 
 uint64_t film_hash(const film *f)
 {
     const int64_t size[2] = {f->width, f->height};
     uint64_t hash = hash_words(HASH_START, size, 2);
-    return hash_finish(hash_words(hash, f->sum, (size_t)f->width * (size_t)f->height * 3));
+    return hash_finish(hash_words(hash, f->sum, values_of(f)));
 }
 
 status film_image(const film *f, image **out, diagnostic *why)
@@ -52,8 +97,12 @@ status film_image(const film *f, image **out, diagnostic *why)
     status code = image_create(f->width, f->height, out, why);
     if (code != STATUS_OK)
         return code;
-    size_t count = (size_t)f->width * (size_t)f->height * 3;
-    for (size_t i = 0; i < count; i++)
-        (*out)->pixel[i] = (float)((double)f->sum[i] / FILM_ONE);
+    const size_t pixels = (size_t)f->width * (size_t)f->height;
+    for (size_t i = 0; i < pixels; i++) {
+        double rgb[3];
+        pixel_rgb(f, i, rgb);
+        for (size_t c = 0; c < 3; c++)
+            (*out)->pixel[3 * i + c] = (float)rgb[c];
+    }
     return STATUS_OK;
 }

@@ -3,9 +3,6 @@
 #include "base/elementary.h"
 #include <stdlib.h>
 
-/* Refractive index of the medium around all solids. */
-#define SURROUNDING_IOR 1.0
-
 static void aim_at_target(const struct camera *c, camera_frame *f)
 {
     f->forward = vec3_normalize(vec3_sub(c->target, c->position));
@@ -38,24 +35,31 @@ static camera_frame frame_of(const struct camera *c, double aspect)
     return f;
 }
 
+/* No light is bent where two laws meet: at the one wavelength of an rgb film, or at all of them. */
+static bool laws_match(const scene *s, const index_law *a, const index_law *b)
+{
+    const double lambda_nm = s->render.lambda_nm;
+    return s->render.spectrum == SPECTRUM_SPECTRAL ? index_laws_equal(a, b) : index_law_at(a, lambda_nm) == index_law_at(b, lambda_nm);
+}
+
 /* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface; under constant weights, as
- * in the report, every surface reflects whatever its index. */
-static int64_t medium_of(const scene *s, int solid_index)
+ * in the report, every surface reflects whatever its index. laws: by solid, [solid_count] the surroundings'. */
+static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
     if (m->transparency == 0.0 || s->render.weights == WEIGHTS_CONSTANT)
         return solid_index + 1;
-    if (m->ior == SURROUNDING_IOR)
+    if (laws_match(s, &laws[solid_index], &laws[s->solid_count]))
         return 0;
     for (int i = 0; i < solid_index; i++) {
         const solid *other = &s->solids[i];
-        if (other->visible && other->surface.transparency > 0.0 && other->surface.ior == m->ior)
+        if (other->visible && other->surface.transparency > 0.0 && laws_match(s, &laws[i], &laws[solid_index]))
             return i + 1;
     }
     return solid_index + 1;
 }
 
-static status arrange(const scene *s, arrangement **out, diagnostic *why)
+static status arrange(const scene *s, const index_law *laws, arrangement **out, diagnostic *why)
 {
     body_source *sources = calloc(s->solid_count + 1, sizeof *sources);
     if (!sources)
@@ -64,36 +68,63 @@ static status arrange(const scene *s, arrangement **out, diagnostic *why)
     for (int i = 0; i < (int)s->solid_count; i++) {
         const solid *one = &s->solids[i];
         if (one->visible)
-            sources[count++] = (body_source){.shape = &one->shape, .priority = one->priority, .medium = medium_of(s, i),
+            sources[count++] = (body_source){.shape = &one->shape, .priority = one->priority, .medium = medium_of(s, laws, i),
                                              .opaque = one->surface.transparency == 0.0,
-                                             .clearness = one->surface.transparency, .solid = i};
+                                             .clearness = one->surface.transparency,
+                                             .absorbs = material_absorbs(&one->surface), .solid = i};
     }
     status code = arrangement_build(sources, count, 0, out, why);
     free(sources);
     return code;
 }
 
+/* By solid; the last one is that of the surroundings. */
+static status laws_of(const scene *s, index_law *laws, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; i < s->solid_count && code == STATUS_OK; i++)
+        code = material_index_law(&s->solids[i].surface, s->solids[i].name, &laws[i], why);
+    laws[s->solid_count] = surrounding_index_law(&s->background);
+    return code;
+}
+
+/* What each rank's body is made of. */
+static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnostic *why)
+{
+    const size_t ranks = (size_t)p->solids->body_count + 1;
+    p->materials = calloc(ranks, sizeof *p->materials);
+    p->ior = calloc(ranks, sizeof *p->ior);
+    p->laws = calloc(ranks, sizeof *p->laws);
+    p->absorption = calloc(ranks, sizeof *p->absorption);
+    if (!p->materials || !p->ior || !p->laws || !p->absorption)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    for (size_t r = 0; r < ranks; r++) {
+        const int solid_index = p->solids->bodies[r].solid;
+        p->laws[r] = laws[solid_index < 0 ? (int)s->solid_count : solid_index];
+        p->ior[r] = index_law_at(&p->laws[r], s->render.lambda_nm);
+        if (solid_index < 0)
+            continue;
+        p->materials[r] = &s->solids[solid_index].surface;
+        p->absorption[r] = vec3_scale(material_absorption(p->materials[r]), s->render.unit_m);
+    }
+    if (s->render.spectrum == SPECTRUM_SPECTRAL && !(p->spectral = spectra_create(s, p->materials, ranks)))
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return STATUS_OK;
+}
+
 status plan_build(const scene *s, plan **out, diagnostic *why)
 {
     plan *p = calloc(1, sizeof *p);
-    if (!p)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
-    status code = arrange(s, &p->solids, why);
-    if (code == STATUS_OK) {
-        size_t ranks = (size_t)p->solids->body_count + 1;
-        p->materials = calloc(ranks, sizeof *p->materials);
-        p->ior = calloc(ranks, sizeof *p->ior);
-        if (!p->materials || !p->ior)
-            code = diagnose(why, STATUS_FAILURE, "", "out of memory");
-    }
+    index_law *laws = calloc(s->solid_count + 1, sizeof *laws);
+    status code = p && laws ? laws_of(s, laws, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK)
+        code = arrange(s, laws, &p->solids, why);
+    if (code == STATUS_OK)
+        code = fill_ranks(s, laws, p, why);
+    free(laws);
     if (code != STATUS_OK) {
         plan_destroy(p);
         return code;
-    }
-    p->ior[0] = SURROUNDING_IOR;
-    for (int r = 1; r <= p->solids->body_count; r++) {
-        p->materials[r] = &s->solids[p->solids->bodies[r].solid].surface;
-        p->ior[r] = p->materials[r]->ior;
     }
     p->view = frame_of(&s->camera, (double)s->render.width / (double)s->render.height);
     p->eye_inside = arrangement_inside(p->solids, p->view.eye);
@@ -101,6 +132,9 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     p->sky = &s->background;
     p->lights = s->lights;
     p->light_count = (int)s->light_count;
+    p->solid_shadows = s->render.shadows == SHADOWS_OPAQUE;
+    for (size_t i = 0; i < s->light_count && s->render.integrator == INTEGRATOR_PATH; i++)
+        p->solid_shadows |= s->lights[i].radius > 0.0;
     *out = p;
     return STATUS_OK;
 }
@@ -112,5 +146,8 @@ void plan_destroy(plan *p)
     arrangement_destroy(p->solids);
     free(p->materials);
     free(p->ior);
+    free(p->laws);
+    free(p->absorption);
+    spectra_destroy(p->spectral);
     free(p);
 }

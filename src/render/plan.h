@@ -4,6 +4,8 @@
 #define CUVETTE_RENDER_PLAN_H
 
 #include "geometry/arrangement.h"
+#include "render/spectra.h"
+#include "scene/medium.h"
 #include "scene/scene.h"
 
 /* Directions of camera rays: forward + u right + v up, for u in (-half_width, half_width), v likewise. */
@@ -15,10 +17,14 @@ typedef struct camera_frame {
 typedef struct plan {
     arrangement *solids;
     const material **materials; /* by rank; [0] is NULL */
-    double *ior;                /* by rank; [0] is the surrounding medium's */
+    double *ior;                /* by rank; [0] is the surrounding medium's; at render.lambda_nm */
+    index_law *laws;            /* by rank: what ior was taken from */
+    vec3 *absorption;           /* by rank: Beer and Lambert's coefficients by channel, in 1 / scene unit */
+    spectra *spectral;          /* of a spectral film, else NULL */
     camera_frame view;
     uint64_t eye_inside;        /* the set of primitives that the camera stands in */
     render_settings render;
+    bool solid_shadows;         /* every solid blocks a light: it is asked for, or what comes through is found by random paths */
     const background *sky;
     const light *lights;
     int light_count;

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIELDS = 12, LINE = 64, LANES = LANES_MAX };
+enum { FIELDS = 15, LINE = 64, LANES = LANES_MAX };
 
 bool queue_create(ray_queue *q, int capacity)
 {
@@ -12,12 +12,12 @@ bool queue_create(ray_queue *q, int capacity)
     char *memory = aligned_alloc(LINE, FIELDS * length * sizeof(double));
     if (!memory)
         return false;
-    double **reals[] = {&q->ox, &q->oy, &q->oz, &q->dx, &q->dy, &q->dz, &q->wr, &q->wg, &q->wb};
+    double **reals[] = {&q->ox, &q->oy, &q->oz, &q->dx, &q->dy, &q->dz, &q->wr, &q->wg, &q->wb, &q->sq, &q->su, &q->sv};
     double *at = (double *)(void *)memory;
     for (size_t i = 0; i < sizeof reals / sizeof *reals; i++, at += length)
         *reals[i] = at;
     q->start = (int64_t *)(void *)at;
-    q->pixel = (int64_t *)(void *)(at + length);
+    q->ticket = (int64_t *)(void *)(at + length);
     q->inside = (uint64_t *)(void *)(at + 2 * length);
     q->memory = memory;
     q->capacity = capacity;

@@ -194,7 +194,7 @@ static void count_tests(const plan *p, ray_counters *c)
     const uint64_t nearest = c->camera + c->reflect + c->refract;
     for (int r = 1; r <= p->solids->body_count; r++) {
         const body *b = &p->solids->bodies[r];
-        c->tests[b->solid] = nearest + (body_casts_shadow(b, p->render.shadows == SHADOWS_OPAQUE) ? c->shadow : 0);
+        c->tests[b->solid] = nearest + (body_casts_shadow(b, p->solid_shadows) ? c->shadow : 0);
     }
 }
 
@@ -234,13 +234,23 @@ static double *make_map(size_t pixels)
     return map;
 }
 
+/* As many equal shares of a pixel's paths as there can be, to tell how they differ. */
+static int layers_of(const scene *s)
+{
+    int layers = s->render.integrator == INTEGRATOR_PATH ? FILM_LAYERS_MAX : 1;
+    while (s->render.paths % layers != 0)
+        layers--;
+    return layers;
+}
+
 static status make_result(const scene *s, const render_options *options, render_result **out, diagnostic *why)
 {
     const size_t pixels = (size_t)s->render.width * (size_t)s->render.height;
     render_result *result = calloc(1, sizeof *result);
     if (!result)
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
-    status code = film_create((int)s->render.width, (int)s->render.height, &result->picture, why);
+    const film_space space = s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
+    status code = film_create((int)s->render.width, (int)s->render.height, layers_of(s), space, &result->picture, why);
     if (code == STATUS_OK) {
         result->worker_count = (int)s->render.threads;
         result->workers = calloc((size_t)result->worker_count, sizeof *result->workers);
@@ -249,6 +259,8 @@ static status make_result(const scene *s, const render_options *options, render_
             missing |= !(result->pixel_rays = make_map(pixels));
         if (options && options->pixel_time)
             missing |= !(result->pixel_ns = make_map(pixels));
+        if (layers_of(s) > 1)
+            missing |= !(result->variance = make_map(3 * pixels));
         if (missing)
             code = diagnose(why, STATUS_FAILURE, "render a smaller picture", "out of memory");
     }
@@ -289,8 +301,10 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         code = pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL, f, why);
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
-        if (code == STATUS_OK)
+        if (code == STATUS_OK) {
+            film_add_layers(result->picture, result->variance);
             code = collect(f, result, why);
+        }
         for (int i = 0; i < count; i++)
             free(desks[i].events.event);
     }
@@ -329,6 +343,7 @@ void render_result_destroy(render_result *result)
     free(result->workers);
     free(result->pixel_rays);
     free(result->pixel_ns);
+    free(result->variance);
     free(result->events);
     free(result);
 }

@@ -52,6 +52,8 @@ typedef struct render_result {
     worker_report *workers;
     double *pixel_rays;          /* NULL unless wanted; width * height */
     double *pixel_ns;
+    double *variance;            /* of random paths: square of the standard error of each value of the film, [(y*width + x)*3 + channel]
+                                  * in the film's own space; NULL where it is not known */
     tile_event *events;          /* in order of begin_s; NULL unless wanted */
     size_t event_count;
 } render_result;

@@ -98,6 +98,20 @@ static void color(const material *m, const primitive *p, group *restrict g)
     }
 }
 
+/* The inverse square of the distance, 1 at the light's reach. */
+static void fall_off(double reach, int count, lit_group *restrict lit)
+{
+    const double least = 0.5 / FILM_ONE, reach2 = reach * reach;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        double share = reach2 / (lit->lx[i] * lit->lx[i] + lit->ly[i] * lit->ly[i] + lit->lz[i] * lit->lz[i]);
+        lit->r[i] *= share;
+        lit->g[i] *= share;
+        lit->b[i] *= share;
+        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+    }
+}
+
 /* Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975: k_d I_L C (N.L) + k_s I_L (R.V)^n with
  * R = 2(N.L)N - L; both terms only where the light stands on the ray's side (N.L > 0). */
 static void direct(const material *m, const light *lamp, const group *g, lit_group *restrict lit)
@@ -132,6 +146,8 @@ static void direct(const material *m, const light *lamp, const group *g, lit_gro
         /* What is no number shows, so that it is found out. */
         lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }
+    if (lamp->reach > 0.0)
+        fall_off(lamp->reach, count, lit);
 }
 
 ALWAYS_INLINE fresnel branch_directions(const group *g, int i, branch_group *b)
@@ -209,7 +225,7 @@ static void append(const group *g, const double *dx, const double *dy, const dou
     const size_t bytes = (size_t)n * sizeof(double);
     memcpy(to.ox, p->px, bytes), memcpy(to.oy, p->py, bytes), memcpy(to.oz, p->pz, bytes);
     memcpy(to.dx, dx, bytes), memcpy(to.dy, dy, bytes), memcpy(to.dz, dz, bytes);
-    memcpy(q->start + at, p->face, bytes), memcpy(q->pixel + at, g->pixel, bytes), memcpy(q->inside + at, inside, bytes);
+    memcpy(q->start + at, p->face, bytes), memcpy(q->ticket + at, g->ticket, bytes), memcpy(q->inside + at, inside, bytes);
     double *restrict wr = to.wr, *restrict wg = to.wg, *restrict wb = to.wb;
     /* VECTORISE */
     for (int i = 0; i < n; i++) {

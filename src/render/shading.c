@@ -2,6 +2,7 @@
 #include "render/tracer_private.h"
 
 #include "render/sky.h"
+#include <string.h>
 
 /* Is it in the film's range? Not if it is no number. */
 static inline bool is_exposable(double radiance)
@@ -15,8 +16,22 @@ static inline int64_t in_film_units(double radiance)
     return (int64_t)(radiance * FILM_ONE + 0.5);
 }
 
-static inline void expose(tracer *t, int64_t pixel, double r, double g, double b)
+/* Where a ticket's radiance goes, and as what. */
+static int64_t place_by_ticket(const tracer *t, int64_t ticket, double *r, double *g, double *b)
 {
+    const plan *p = t->target.scene;
+    const film *f = t->target.picture;
+    if (p->spectral) {
+        double weights[3];
+        observer_weights(spectra_lambda(&p->render, ticket), weights);
+        *r *= weights[0], *g *= weights[1], *b *= weights[2];
+    }
+    return ticket_pixel(ticket) + ticket_sample(ticket) % f->layers * f->width * f->height;
+}
+
+static inline void expose(tracer *t, int64_t ticket, double r, double g, double b)
+{
+    const int64_t pixel = t->by_ticket ? place_by_ticket(t, ticket, &r, &g, &b) : ticket;
     if (!((int)is_exposable(r) & (int)is_exposable(g) & (int)is_exposable(b))) {
         t->overflow = -1;
         return;
@@ -29,24 +44,38 @@ static inline void expose(tracer *t, int64_t pixel, double r, double g, double b
     t->overflow |= red | green | blue;
 }
 
-void shading_expose(tracer *t, int64_t pixel, double r, double g, double b)
+void shading_expose(tracer *t, int64_t ticket, double r, double g, double b)
 {
-    expose(t, pixel, r, g, b);
+    expose(t, ticket, r, g, b);
 }
 
-void shading_expose_sky(tracer *t, int64_t pixel, vec3 direction, double wr, double wg, double wb)
+void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
 {
-    const background *sky = t->target.scene->sky;
+    const plan *p = t->target.scene;
+    const background *sky = p->sky;
+    if (p->spectral) {
+        const double l = spectra_sky(p->spectral, sky, direction, spectra_lambda(&p->render, ticket));
+        expose(t, ticket, wr * l, wg * l, wb * l);
+        return;
+    }
     const vec3 l = sky->kind == BACKGROUND_UNIFORM ? sky->color : sky_radiance(sky, direction);
-    expose(t, pixel, wr * l.x, wg * l.y, wb * l.z);
+    expose(t, ticket, wr * l.x, wg * l.y, wb * l.z);
 }
 
 static void expose_ambient(tracer *t, const material *m)
 {
     const group *g = &t->gathered;
-    vec3 a = vec3_scale(t->target.scene->sky->ambient, m->ambient);
+    const plan *p = t->target.scene;
+    if (p->spectral) {
+        for (int i = 0; i < g->count; i++) {
+            const double a = m->ambient * lifted_emission(&p->spectral->ambient, spectra_lambda(&p->render, g->ticket[i])) * g->cr[i];
+            expose(t, g->ticket[i], g->wr[i] * a, g->wg[i] * a, g->wb[i] * a);
+        }
+        return;
+    }
+    vec3 a = vec3_scale(p->sky->ambient, m->ambient);
     for (int i = 0; i < g->count; i++)
-        expose(t, g->pixel[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
+        expose(t, g->ticket[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
 }
 
 /* A shadow ray is worth its while only if its light can change the film. */
@@ -65,25 +94,46 @@ static void put_shadow_rays_in_line(tracer *t)
         q->ox[at] = g->points.px[i], q->oy[at] = g->points.py[i], q->oz[at] = g->points.pz[i];
         q->dx[at] = l->lx[i], q->dy[at] = l->ly[i], q->dz[at] = l->lz[i];
         q->wr[at] = l->r[i], q->wg[at] = l->g[i], q->wb[at] = l->b[i];
-        q->start[at] = g->points.face[i], q->pixel[at] = g->pixel[i], q->inside[at] = g->inside_before[i];
+        q->start[at] = g->points.face[i], q->ticket[at] = g->ticket[i], q->inside[at] = g->inside_before[i];
     }
 }
 
-static void local_light(tracer *t, const material *m)
+/* One light on the gathered group, with the light's own spectrum where there is one. */
+static void direct_light(tracer *t, const material *m, int lamp)
 {
     const plan *p = t->target.scene;
-    if (m->ambient > 0.0)
+    light l = p->lights[lamp];
+    if (p->spectral)
+        l.color = vec3_make(1.0, 1.0, 1.0), l.intensity = 1.0;
+    t->shade->direct(m, &l, &t->gathered, &t->lit);
+    if (p->spectral)
+        spectral_light(t, lamp);
+}
+
+void local_light(tracer *t, int rank)
+{
+    const plan *p = t->target.scene;
+    const material *m = p->materials[rank];
+    material dull;
+    if (p->render.lighting == LIGHTING_LAMBERT && p->render.integrator != INTEGRATOR_PATH) {
+        dull = *m;
+        dull.specular = 0.0;
+        m = &dull;
+    }
+    if (m->ambient > 0.0 && p->render.integrator != INTEGRATOR_PATH)
         expose_ambient(t, m);
     if (m->diffuse == 0.0 && m->specular == 0.0)
         return;
     for (int k = 0; k < p->light_count; k++) {
-        t->shade->direct(m, &p->lights[k], &t->gathered, &t->lit);
+        if (p->render.integrator == INTEGRATOR_PATH && p->lights[k].radius > 0.0)
+            continue;
+        direct_light(t, m, k);
         if (p->render.shadows != SHADOWS_OFF) {
             put_shadow_rays_in_line(t);
             continue;
         }
         for (int i = 0; i < t->gathered.count; i++)
-            expose(t, t->gathered.pixel[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
+            expose(t, t->gathered.ticket[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
     }
 }
 
@@ -106,9 +156,9 @@ static void cut_branches(tracer *t)
     for (int i = 0; i < g->count; i++) {
         const double first = uniform ? b->reflect[i] + b->refract[i] : b->reflect[i], second = uniform ? 0.0 : b->refract[i];
         if (first > 0.0)
-            shading_expose_sky(t, g->pixel[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first, g->wg[i] * first, g->wb[i] * first);
+            shading_expose_sky(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first, g->wg[i] * first, g->wb[i] * first);
         if (second > 0.0)
-            shading_expose_sky(t, g->pixel[i], vec3_make(b->tx[i], b->ty[i], b->tz[i]), g->wr[i] * second, g->wg[i] * second, g->wb[i] * second);
+            shading_expose_sky(t, g->ticket[i], vec3_make(b->tx[i], b->ty[i], b->tz[i]), g->wr[i] * second, g->wg[i] * second, g->wb[i] * second);
     }
 }
 
@@ -123,32 +173,57 @@ static bool too_light(tracer *t, const ray_queue *q, int i, double least)
     return true;
 }
 
+/* The same as below, with the Stokes vectors. */
+static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, const double *weight, double least)
+{
+    const polar_group *p = &t->polar;
+    const size_t bytes = (size_t)t->gathered.count * sizeof(double);
+    memcpy(q->sq + first, reflected ? p->rq : p->tq, bytes);
+    memcpy(q->su + first, reflected ? p->ru : p->tu, bytes);
+    memcpy(q->sv + first, reflected ? p->rv : p->tv, bytes);
+    for (int i = t->gathered.count - 1; i >= 0; i--)
+        if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
+            queue_move_polarised(q, first + i, --q->count);
+    return q->count - first;
+}
+
 /* Puts a kind of children in line: all of them at once, then the last one into each hole of those that do not exist or weigh
  * too little. Returns how many there are. */
-static int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
+int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
                                 const uint64_t *inside)
 {
     ray_queue *q = &t->waiting[depth];
     const double least = t->target.scene->render.min_weight;
     const int first = q->count;
     t->shade->append(&t->gathered, dx, dy, dz, weight, inside, q);
+    if (t->target.scene->render.polarisation)
+        return keep_polarised(t, q, first, dx == t->branches.rx, weight, least);
     for (int i = t->gathered.count - 1; i >= 0; i--)
         if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
             queue_move(q, first + i, --q->count);
     return q->count - first;
 }
 
-static void branch(tracer *t, int depth, const material *m, bool opaque)
+void shading_branches(tracer *t, int rank, bool opaque)
 {
     const plan *p = t->target.scene;
+    const material *m = p->materials[rank];
+    if (opaque || p->render.weights == WEIGHTS_CONSTANT)
+        t->shade->constant_branches(m, opaque, &t->gathered, &t->branches);
+    else
+        t->shade->fresnel_branches(m, &t->gathered, &t->branches);
+    if (p->render.polarisation)
+        polarised_branches(t, m, opaque);
+}
+
+static void branch(tracer *t, int depth, int rank, bool opaque)
+{
+    const material *m = t->target.scene->materials[rank];
     group *g = &t->gathered;
     branch_group *b = &t->branches;
     if (opaque && m->reflectivity == 0.0)
         return;
-    if (opaque || p->render.weights == WEIGHTS_CONSTANT)
-        t->shade->constant_branches(m, opaque, g, b);
-    else
-        t->shade->fresnel_branches(m, g, b);
+    shading_branches(t, rank, opaque);
     if (!opaque)
         COUNT(t->counters.total_internal += (uint64_t)b->total);
     if (depth == t->depth_limit) {
@@ -161,20 +236,43 @@ static void branch(tracer *t, int depth, const material *m, bool opaque)
     COUNT(t->counters.refract += (uint64_t)refracted);
 }
 
+static void color(tracer *t, int rank, const primitive *surface)
+{
+    const plan *p = t->target.scene;
+    if (!p->spectral) {
+        t->shade->color(p->materials[rank], surface, &t->gathered);
+        return;
+    }
+    /* Which of the two colours, and then its spectrum. */
+    material marked = *p->materials[rank];
+    marked.color = vec3_make(1.0, 0.0, 0.0);
+    marked.checker_color = vec3_make(0.0, 1.0, 0.0);
+    t->shade->color(&marked, surface, &t->gathered);
+    spectral_colors(t, rank);
+}
+
 void shading_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
 {
     const plan *p = t->target.scene;
     const primitive *surface = &p->solids->primitives[met];
-    const material *m = p->materials[rank];
     group *g = &t->gathered;
     group_gather(&t->waiting[depth], first, &t->hits, p->ior, list, count, g);
+    if (p->spectral)
+        spectral_indices(t, list);
+    if (p->render.polarisation)
+        polarised_gather(t, &t->waiting[depth], first, list);
     const ray_batch rays = {g->padded, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
     t->geometry->surface(surface, &rays, g->t, met, &g->points);
     const int owner = p->solids->bodies[rank].solid;
     COUNT(t->counters.hits[owner] += (uint64_t)count);
     if (depth == 0)
         COUNT(t->counters.first_hits[owner] += (uint64_t)count);
-    t->shade->color(m, surface, g);
-    local_light(t, m);
-    branch(t, depth, m, p->solids->bodies[rank].opaque);
+    color(t, rank, surface);
+    if (p->render.integrator == INTEGRATOR_PATH) {
+        path_group(t, depth, rank);
+        return;
+    }
+    local_light(t, rank);
+    if (t->branching)
+        branch(t, depth, rank, p->solids->bodies[rank].opaque);
 }

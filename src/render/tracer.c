@@ -52,7 +52,10 @@ static void drop_all(tracer *t)
 bool tracer_begin(tracer *t, const tracer_target *target)
 {
     t->target = *target;
-    t->depth_limit = (int)target->scene->render.depth;
+    const render_settings *r = &target->scene->render;
+    t->depth_limit = (int)r->depth;
+    t->branching = r->integrator == INTEGRATOR_WHITTED && r->lighting == LIGHTING_WHITTED;
+    t->by_ticket = r->integrator == INTEGRATOR_PATH || r->spectrum == SPECTRUM_SPECTRAL;
     int shadows_at_once = BATCH * (target->scene->light_count + 1);
     if (t->shadows.capacity < shadows_at_once) {
         queue_destroy(&t->shadows);
@@ -125,11 +128,19 @@ static void trace_batch(tracer *t, int depth)
     if (depth == 0)
         COUNT(t->counters.camera += (uint64_t)rays.count);
     t->geometry->nearest(p->solids, &rays, &t->scratch, &t->hits);
+    const bool random_paths = p->render.integrator == INTEGRATOR_PATH;
+    if (random_paths)
+        path_meet_lights(t, q, first, rays.count);
+    if (p->solids->absorbs)
+        absorption_dim(t, q, first, rays.count);
     sort_by_primitive(t, rays.count);
     const int primitives = p->solids->primitive_count, none = primitives + 1;
     for (int k = 0; k < t->listed[none]; k++) {
         const int i = t->list[none][k], at = first + i;
-        shading_expose_sky(t, q->pixel[at], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
+        if (random_paths && t->met_light[i] >= 0)
+            path_expose_light(t, q->ticket[at], t->met_light[i], q->wr[at], q->wg[at], q->wb[at]);
+        else
+            shading_expose_sky(t, q->ticket[at], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
     }
     for (int met = 0; met < primitives; met++)
         if (t->listed[met] > 0)
@@ -144,17 +155,18 @@ static void trace_shadows(tracer *t)
     int first;
     const ray_batch rays = queue_take(q, &first);
     COUNT(t->counters.shadow += (uint64_t)rays.count);
-    t->geometry->shadow(p->solids, &rays, p->render.shadows == SHADOWS_OPAQUE, &t->scratch, t->transmitted);
+    t->geometry->shadow(p->solids, &rays, p->solid_shadows, &t->scratch, t->transmitted);
+    if (p->solids->absorbs)
+        absorption_dim(t, q, first, rays.count);
     for (int i = 0; i < rays.count; i++) {
         const double share = t->transmitted[i];
         const int at = first + i;
         if (share > 0.0)
-            shading_expose(t, q->pixel[at], share * q->wr[at], share * q->wg[at], share * q->wb[at]);
+            shading_expose(t, q->ticket[at], share * q->wr[at], share * q->wg[at], share * q->wb[at]);
     }
 }
 
-/* Runs one batch of a queue (depth -1: shadow rays), and gives each pixel its share of the time and its rays if that is wanted. */
-static void run_batch(tracer *t, int depth)
+void tracer_run_batch(tracer *t, int depth)
 {
     const tracer_target *target = &t->target;
     if (!target->pixel_ns && !target->pixel_rays) {
@@ -170,9 +182,9 @@ static void run_batch(tracer *t, int depth)
     double share = (double)(clock_wall_ns() - began) / count;
     for (int i = first; i < first + count; i++) {
         if (target->pixel_rays)
-            target->pixel_rays[q->pixel[i]] += 1.0;
+            target->pixel_rays[ticket_pixel(q->ticket[i])] += 1.0;
         if (target->pixel_ns)
-            target->pixel_ns[q->pixel[i]] += share;
+            target->pixel_ns[ticket_pixel(q->ticket[i])] += share;
     }
 }
 
@@ -180,12 +192,12 @@ static void run_batch(tracer *t, int depth)
 static bool run_full(tracer *t)
 {
     if (t->shadows.count >= BATCH) {
-        run_batch(t, -1);
+        tracer_run_batch(t, -1);
         return true;
     }
     for (int d = t->depth_limit; d >= 0; d--) {
         if (t->waiting[d].count >= BATCH) {
-            run_batch(t, d);
+            tracer_run_batch(t, d);
             return true;
         }
     }
@@ -197,38 +209,68 @@ static bool stopped(const atomic_bool *stop)
     return atomic_load_explicit(stop, memory_order_relaxed);
 }
 
-/* The points of a pixel that are sampled: its centre, or (+-1/4, +-1/4) from it. */
-static void put_camera_rays_in_line(tracer *t, int y, int x0, int x1, int samples)
+/* How many camera rays a pixel has. */
+static int64_t rays_a_pixel(const render_settings *r)
+{
+    if (r->integrator == INTEGRATOR_PATH)
+        return r->paths;
+    return r->spectrum == SPECTRUM_SPECTRAL ? r->samples * r->wavelengths : r->samples;
+}
+
+/* The point of a pixel that a ray goes through: its centre, or one of (+-1/4, +-1/4) from it. */
+static int64_t point_of(const render_settings *r, int64_t ray)
+{
+    const bool wavelengths_inside = r->integrator != INTEGRATOR_PATH && r->spectrum == SPECTRUM_SPECTRAL;
+    return wavelengths_inside ? ray / r->wavelengths : ray % r->samples;
+}
+
+/* Rays first .. first + count - 1 of a row of pixels from x0 on. */
+static void put_camera_rays_in_line(tracer *t, int y, int x0, int64_t first, int count)
 {
     const plan *p = t->target.scene;
+    const render_settings *r = &p->render;
     ray_queue *q = &t->waiting[0];
     double u[ROW], v[ROW];
-    const double across = 2.0 * p->view.half_width / (double)p->render.width, down = 2.0 * p->view.half_height / (double)p->render.height;
-    int count = 0;
+    const double across = 2.0 * p->view.half_width / (double)r->width, down = 2.0 * p->view.half_height / (double)r->height;
+    const int64_t each = rays_a_pixel(r), flag = r->integrator == INTEGRATOR_PATH ? TICKET_SEES_LIGHTS : 0;
     const int at = q->count;
-    for (int x = x0; x < x1; x++) {
-        for (int s = 0; s < samples; s++, count++) {
-            double sx = samples == 1 ? 0.5 : s % 2 ? 0.75 : 0.25, sy = samples == 1 ? 0.5 : s / 2 ? 0.75 : 0.25;
-            u[count] = (x + sx) * across - p->view.half_width;
-            v[count] = p->view.half_height - (y + sy) * down;
-            const int i = at + count;
-            q->ox[i] = p->view.eye.x, q->oy[i] = p->view.eye.y, q->oz[i] = p->view.eye.z;
-            q->wr[i] = q->wg[i] = q->wb[i] = 1.0 / samples;
-            q->start[i] = FACE_NONE;
-            q->pixel[i] = (int64_t)y * p->render.width + x;
-            q->inside[i] = p->eye_inside;
-        }
+    for (int k = 0; k < count; k++) {
+        const int64_t x = x0 + (first + k) / each, ray = (first + k) % each, s = point_of(r, ray);
+        double sx = r->samples == 1 ? 0.5 : s % 2 ? 0.75 : 0.25, sy = r->samples == 1 ? 0.5 : s / 2 ? 0.75 : 0.25;
+        u[k] = ((double)x + sx) * across - p->view.half_width;
+        v[k] = p->view.half_height - (y + sy) * down;
+        const int i = at + k;
+        q->ox[i] = p->view.eye.x, q->oy[i] = p->view.eye.y, q->oz[i] = p->view.eye.z;
+        q->wr[i] = q->wg[i] = q->wb[i] = 1.0 / (double)each;
+        q->start[i] = FACE_NONE;
+        q->ticket[i] = ticket_make((int64_t)y * r->width + x, t->by_ticket ? ray : 0) | flag;
+        q->inside[i] = p->eye_inside;
+        q->sq[i] = q->su[i] = q->sv[i] = 0.0;
     }
     t->shade->camera(&p->view, count, u, v, q->dx + at, q->dy + at, q->dz + at);
     q->count += count;
 }
 
+/* Whole pixels at once, as many as fit into a batch. */
+static int rays_at_once(int64_t each)
+{
+    return each >= BATCH ? BATCH : (int)(BATCH / each * each);
+}
+
+int tracer_camera_rays(tracer *t, int x, int y)
+{
+    const int count = (int)rays_a_pixel(&t->target.scene->render);
+    put_camera_rays_in_line(t, y, x, 0, count);
+    return count;
+}
+
 void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop)
 {
-    const int samples = (int)t->target.scene->render.samples, at_once = BATCH / samples;
+    const int64_t each = rays_a_pixel(&t->target.scene->render), all = each * (piece->x1 - piece->x0);
+    const int at_once = rays_at_once(each);
     for (int y = piece->y0; y < piece->y1; y++) {
-        for (int x = piece->x0; x < piece->x1; x += at_once) {
-            put_camera_rays_in_line(t, y, x, x + at_once < piece->x1 ? x + at_once : piece->x1, samples);
+        for (int64_t ray = 0; ray < all; ray += at_once) {
+            put_camera_rays_in_line(t, y, piece->x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
             while (run_full(t))
                 if (stopped(stop))
                     return;
@@ -242,11 +284,11 @@ void tracer_finish(tracer *t, const atomic_bool *stop)
 {
     for (int d = 0; d <= t->depth_limit && !stopped(stop); d++) {
         while (t->waiting[d].count > 0 && !stopped(stop))
-            run_batch(t, d);
+            tracer_run_batch(t, d);
         while (run_full(t) && !stopped(stop))
             ;
     }
     while (t->shadows.count > 0 && !stopped(stop))
-        run_batch(t, -1);
+        tracer_run_batch(t, -1);
     drop_all(t);
 }

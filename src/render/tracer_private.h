@@ -3,7 +3,11 @@
 #define CUVETTE_RENDER_TRACER_PRIVATE_H
 
 #include "render/shade.h"
+#include "render/ticket.h"
 #include "render/tracer.h"
+
+/* Stokes vectors relative to their first element, of a group and of its two branches. */
+typedef struct polar_group { double q[ROW], u[ROW], v[ROW], rq[ROW], ru[ROW], rv[ROW], tq[ROW], tu[ROW], tv[ROW]; } polar_group;
 
 struct tracer {
     const geometry_kernels *geometry;
@@ -12,6 +16,8 @@ struct tracer {
     int depth_limit, queue_count;
     ray_queue *waiting;      /* by depth, 0 .. depth_limit */
     ray_queue shadows;
+    bool branching;          /* reflected and refracted rays are followed */
+    bool by_ticket;          /* the film wants more of a ticket than its pixel */
     ray_counters counters;
     uint64_t frame;          /* of its tracer_set, in which it was last begun; 0 before */
     int64_t overflow;        /* negative: a sum or contribution left the film's range */
@@ -21,17 +27,56 @@ struct tracer {
     _Alignas(64) lit_group lit;
     _Alignas(64) branch_group branches;
     _Alignas(64) double transmitted[ROW];
+    double kept[3][ROW];     /* of an arrangement that absorbs: share of light that the way to the hit left, by channel */
+    polar_group polar;
+    int met_light[ROW];      /* of random paths: the light that a ray ran into, or -1 */
     int list[PRIMITIVES_MAX + 2][ROW], listed[PRIMITIVES_MAX + 2]; /* see sort_by_primitive */
 };
 
 /* A build without counters compiles the statement and throws it away. */
 #define COUNT(statement) ((void)(CUVETTE_COUNTERS ? (statement) : 0))
 
-/* Adds radiance to a pixel. */
-void shading_expose(tracer *t, int64_t pixel, double r, double g, double b);
+/* Runs one batch of a queue (depth -1: shadow rays), and gives each pixel its share of the time and its rays if that is wanted. */
+void tracer_run_batch(tracer *t, int depth);
+
+/* Puts the camera rays of one pixel of an rgb film in line; returns how many. */
+int tracer_camera_rays(tracer *t, int x, int y);
+
+/* Adds radiance to a ticket's pixel. Of a spectral film the three channels are one: radiance at the ticket's wavelength. */
+void shading_expose(tracer *t, int64_t ticket, double r, double g, double b);
 
 /* Adds what the sky sends along a direction, weighted. */
-void shading_expose_sky(tracer *t, int64_t pixel, vec3 direction, double wr, double wg, double wb);
+void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb);
+
+/* Local light of the lights and the ambient, weighted, of the gathered group. */
+void local_light(tracer *t, int rank);
+
+/* Branches of the gathered group at a surface: directions, weights. */
+void shading_branches(tracer *t, int rank, bool opaque);
+
+/* Puts a kind of children in line, with tickets as the gathered ones'. Returns how many there are. */
+int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
+                         const uint64_t *inside);
+
+/* absorption.c: what the media on the way leave, from the stretches of the batch just looked at; and a batch of rays
+ * dimmed by it. */
+void absorption_shares(tracer *t, const int64_t *tickets, int count);
+void absorption_dim(tracer *t, ray_queue *q, int first, int count);
+
+/* spectral.c: the gathered group's indices, colours and light at each ray's wavelength. */
+void spectral_indices(tracer *t, const int *list);
+void spectral_colors(tracer *t, int rank);
+void spectral_light(tracer *t, int lamp);
+
+/* polarised.c: the group's Stokes vectors, and what an interface makes of weights and vectors. */
+void polarised_gather(tracer *t, const ray_queue *q, int first, const int *list);
+void polarised_branches(tracer *t, const material *m, bool opaque);
+
+/* path.c: one random continuation of each of the gathered group's rays, and light that is looked for at opaque surfaces; the
+ * lights that rays of a batch run into before they hit anything. */
+void path_group(tracer *t, int depth, int rank);
+void path_meet_lights(tracer *t, const ray_queue *q, int first, int count);
+void path_expose_light(tracer *t, int64_t ticket, int lamp, double wr, double wg, double wb);
 
 /* Shades rays list[0 .. count-1] of the batch at `first` in the queue of a depth, all of which met primitive `met` as the surface of the
  * body of that rank: local light, shadow rays and children put in line. */

@@ -1,5 +1,6 @@
 #include "scene/check.h"
 #include "base/counters.h"
+#include "scene/medium.h"
 #include "scene/params.h"
 
 #include <string.h>
@@ -85,6 +86,23 @@ status check_render(const scene *s, diagnostic *why)
                         "a picture of %lld x %lld pixels is too large", (long long)s->render.width,
                         (long long)s->render.height);
     }
+    if (s->render.polarisation && s->render.integrator == INTEGRATOR_PATH) {
+        return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
+                        "the path integrator does not follow polarisation");
+    }
+    if (s->render.polarisation && s->render.weights == WEIGHTS_CONSTANT) {
+        return diagnose(why, STATUS_BAD_INPUT, "set render.weights to fresnel",
+                        "constant weights know no polarisation, which Fresnel's equations give");
+    }
+    return STATUS_OK;
+}
+
+status check_light(const scene *s, const light *lamp, diagnostic *why)
+{
+    if (s->render.integrator == INTEGRATOR_PATH && lamp->radius > 0.0 && lamp->reach == 0.0) {
+        return diagnose(why, STATUS_BAD_INPUT, "give the distance at which it has its intensity, as 'reach: 8', or radius 0",
+                        "%.80s: a sphere's light falls off with distance, and no reach says from where", lamp->name);
+    }
     return STATUS_OK;
 }
 
@@ -113,6 +131,14 @@ status check_solid(const scene *s, const solid *owner, diagnostic *why)
     status code = solid_shape_check(&owner->shape, &shape);
     if (code != STATUS_OK) {
         return diagnose(why, code, shape.remedy, "%.80s: %s", owner->name, shape.what);
+    }
+    index_law unused;
+    code = material_index_law(&owner->surface, owner->name, &unused, why);
+    if (code == STATUS_OK) {
+        code = material_absorption_check(&owner->surface, owner->name, why);
+    }
+    if (code != STATUS_OK) {
+        return code;
     }
     /* What a surface hands on is at most what it gets; the slack is for sums like 0.7 + 0.2 + 0.1. Under Fresnel
      * weights R + T = 1 by themselves, and reflectivity counts for opaque surfaces alone. */
@@ -164,6 +190,12 @@ status scene_check(const scene *s, diagnostic *why)
                                                              check_background};
     for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
         status code = checks[i](s, why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    for (size_t i = 0; i < s->light_count; i++) {
+        status code = check_light(s, &s->lights[i], why);
         if (code != STATUS_OK) {
             return code;
         }

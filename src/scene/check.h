@@ -12,6 +12,7 @@ status check_name(const char *name, diagnostic *why);
 status check_name_is_free(const scene *s, const char *name, diagnostic *why);
 
 status check_render(const scene *s, diagnostic *why);
+status check_light(const scene *s, const light *lamp, diagnostic *why);
 status check_camera(const scene *s, diagnostic *why);
 status check_background(const scene *s, diagnostic *why);
 status check_solid(const scene *s, const solid *owner, diagnostic *why);

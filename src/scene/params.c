@@ -1,6 +1,7 @@
 #include "scene/params.h"
 #include "base/elementary.h"
 #include "base/text.h"
+#include "scene/medium.h"
 #include "scene/params_path.h"
 #include "scene/params_value.h"
 
@@ -56,8 +57,30 @@ static camera camera_with_both(camera c)
     return c;
 }
 
+/* A plain index takes the place of a medium that was named before. */
+static void forget_medium(scene *s, const place *at)
+{
+    if (at->row->group == PARAM_BACKGROUND && at->row->offset == offsetof(background, ior)) {
+        s->background.medium = MEDIUM_IOR;
+    }
+    if (at->row->group != PARAM_MATERIAL || at->row->offset != offsetof(material, ior)) {
+        return;
+    }
+    if (at->group == PARAM_SOLID) {
+        s->solids[at->index].surface.medium = MEDIUM_IOR;
+        return;
+    }
+    s->materials[at->index].value.medium = MEDIUM_IOR;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (s->solids[i].material_index == (int)at->index) {
+            s->solids[i].surface.medium = MEDIUM_IOR;
+        }
+    }
+}
+
 static void store(scene *s, const place *at, param_value value)
 {
+    forget_medium(s, at);
     const param *row = at->row;
     if (is_target(row) || is_angle(row)) {
         int64_t aimed = is_target(row);

@@ -20,7 +20,7 @@ typedef enum param_group {
     PARAM_SOLID,
     PARAM_GROUP_COUNT
 } param_group;
-typedef enum param_type { PARAM_INT, PARAM_REAL, PARAM_CHOICE, PARAM_VECTOR, PARAM_COLOR, PARAM_PATH } param_type;
+typedef enum param_type { PARAM_INT, PARAM_REAL, PARAM_CHOICE, PARAM_VECTOR, PARAM_COLOR, PARAM_LIST, PARAM_PATH } param_type;
 
 typedef struct param {
     param_group group;
@@ -53,7 +53,9 @@ char *param_range_text(const param *row, char *text, size_t size);
  * scene_get, the other way of saying it is derived, so that setting one angle of an aimed camera leaves the
  * other as it was.
  *
- * Setting background.picture to a file makes background.kind picture; a kind that is set later wins. */
+ * Setting background.picture to a file makes background.kind picture; a kind that is set later wins.
+ *
+ * Setting a refractive index by ior makes medium `ior`; a medium that is set later wins. */
 
 /* Sets one parameter from text, as on the command line: "8", "1.5", "sky", "0,2.75,-6" or "[0, 2.75, -6]".
  * STATUS_BAD_INPUT when no such path (remedy: the nearest right one), wrong type, out of range; the scene is

@@ -1,4 +1,5 @@
 /* The table itself: a new parameter is one new row here, and a field in scene.h. */
+#include "scene/medium.h"
 #include "scene/params.h"
 
 #include <stddef.h>
@@ -12,6 +13,9 @@ static const char *const beyond_words[] = {"sky", "black", NULL};
 static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
 static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynamic", NULL};
 static const char *const pin_words[] = {"none", "compact", "scatter", NULL};
+static const char *const integrator_words[] = {"raycast", "whitted", "path", NULL};
+static const char *const lighting_words[] = {"lambert", "phong", "whitted", NULL};
+static const char *const spectrum_words[] = {"rgb", "spectral", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "picture", NULL};
 
 enum {
@@ -70,6 +74,11 @@ enum {
             .offset = offsetof(solid, shape.field)                                                               \
     }
 
+#define LIST(group, type, field, unit, high, fallback, meaning)                                                 \
+    {                                                                                                           \
+        group, #field, PARAM_LIST, unit, -(high), high, false, fallback, meaning, NULL, ON_ALL, .offset = offsetof(type, field) \
+    }
+
 /* In the order in which they are listed and printed; the groups stand together.
  *
  * A material's terms are all 0 by default: a picture then shows no term of Phong's sum, and no branch of the tree, that
@@ -82,6 +91,10 @@ static const param table[] = {
     INTEGER(PARAM_RENDER, render_settings, depth, "", 0, 64, "4", "recursion depth: 0 follows camera rays only"),
     {PARAM_RENDER, "samples", PARAM_INT, "", 1, 4, false, "1", "camera rays a pixel", sample_counts, ON_ALL,
      .offset = offsetof(render_settings, samples)},
+    CHOICE(PARAM_RENDER, render_settings, integrator, integrator_words, "whitted",
+           "how light is followed: to the first surface, through reflections and refractions, or along random paths"),
+    CHOICE(PARAM_RENDER, render_settings, lighting, lighting_words, "whitted",
+           "diffuse light alone, with highlights, or with reflected and refracted light too; not of the path integrator"),
     CHOICE(PARAM_RENDER, render_settings, weights, weights_words, "fresnel",
            "share of the reflected and refracted branch: Fresnel's equations, or each material's constants"),
     CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky", "what a ray beyond the last depth brings back"),
@@ -89,6 +102,18 @@ static const param table[] = {
            "what stands in a light's way: nothing, every solid, or each by what it lets straight through; no caustics"),
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",
          "branches whose throughput is under this are not followed; 0 follows the whole tree"),
+    INTEGER(PARAM_RENDER, render_settings, paths, "", 1, 1048576, "16", "paths a pixel of the path integrator"),
+    CHOICE(PARAM_RENDER, render_settings, roulette, off_on, "off",
+           "paths that have become faint end by chance, the others weigh more for it; path integrator"),
+    INTEGER(PARAM_RENDER, render_settings, seed, "", 0, 2147483647, "1", "seed of all that is drawn by chance"),
+    CHOICE(PARAM_RENDER, render_settings, polarisation, off_on, "off",
+           "on carries each ray's Stokes vector through Fresnel's equations; off takes the unpolarised mean at each interface"),
+    CHOICE(PARAM_RENDER, render_settings, spectrum, spectrum_words, "rgb",
+           "three channels at one wavelength's indices, or wavelengths of their own indices, seen by the CIE 1931 observer"),
+    INTEGER(PARAM_RENDER, render_settings, wavelengths, "", 1, 65536, "32", "wavelengths a camera ray of the spectral film, 380 to 780 nm"),
+    REAL(PARAM_RENDER, render_settings, lambda_nm, "nm", 200, 2000, "587.5618",
+         "wavelength at which the rgb film takes refractive indices; the default is the d line"),
+    POSITIVE(PARAM_RENDER, render_settings, unit_m, "m", 1e6, "1", "length of one scene unit, for absorption"),
     HOW_INTEGER(threads, "", 1, 1024, "1", "workers"),
     HOW_CHOICE(pool, off_on, "on",
            "workers wait between frames; off starts fresh ones for each"),
@@ -116,9 +141,15 @@ static const param table[] = {
      .offset = offsetof(background, picture_path)},
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of Phong's sum"),
 
+    REAL(PARAM_BACKGROUND, background, ior, "", 0.1, 100, "1", "refractive index of what surrounds all solids, relative to vacuum"),
+    CHOICE(PARAM_BACKGROUND, background, medium, surrounding_words, "ior", "what surrounds all solids: as ior says, or from the catalogue"),
+
     VECTOR(PARAM_LIGHT, light, position, "0,10,0", "where the point light stands"),
     COLOR(PARAM_LIGHT, light, color, BRIGHT, "1,1,1", "linear colour, times intensity"),
-    REAL(PARAM_LIGHT, light, intensity, "", 0, BRIGHT, "1", "factor of the colour; the same at every distance"),
+    REAL(PARAM_LIGHT, light, intensity, "", 0, BRIGHT, "1", "factor of the colour; at every distance, or at reach"),
+    REAL(PARAM_LIGHT, light, radius, "scene units", 0, FAR, "0", "of the sphere that shines, which the path integrator sees; 0 is a point"),
+    REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
+         "distance at which intensity holds, less with the square of the distance; 0 for the same everywhere"),
 
     COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1", "linear colour of ambient and diffuse light"),
     REAL(PARAM_MATERIAL, material, ambient, "", 0, 1, "0", "k_a of Phong's sum"),
@@ -131,6 +162,13 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0",
          "share of the refracted light that passes; 0 is opaque"),
     REAL(PARAM_MATERIAL, material, ior, "", 0.1, 100, "1", "refractive index, relative to vacuum"),
+    CHOICE(PARAM_MATERIAL, material, medium, medium_words, "ior",
+           "what gives the index: ior, a law with coefficients, or a medium of the catalogue (cuvette media)"),
+    LIST(PARAM_MATERIAL, material, coefficients, "", 1e6, "[]",
+         "of the law: cauchy A,B,C.. n = A + B/L^2 + C/L^4; sellmeier B1,C1,B2,C2.. (um^2); table nm,n,nm,n.. (L in um)"),
+    COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "absorption coefficient of Beer and Lambert by channel, 1/m"),
+    LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
+         "the same by wavelength, as nm,1/m,nm,1/m..; takes the place of absorb_per_m"),
     REAL(PARAM_MATERIAL, material, checker, "scene units", 0, FAR, "0",
          "edge of checker cells in the solid's frame; 0 for none"),
     COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of every second checker cell"),

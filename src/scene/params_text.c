@@ -4,6 +4,7 @@
 #include "scene/params_value.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static bool is_vector(const param *row)
@@ -36,6 +37,8 @@ static char *element_range_text(const param *row, bool one_element, char *text, 
         choice_text(row, text, size);
     } else if (row->type == PARAM_PATH) {
         snprintf(text, size, "path of a file");
+    } else if (row->type == PARAM_LIST && !one_element) {
+        snprintf(text, size, "a list of at most %d numbers, each %s", (int)NUMBER_LIST_MAX, interval);
     } else if (is_vector(row) && !one_element) {
         snprintf(text, size, "3 numbers, each %s", interval);
     } else {
@@ -51,9 +54,9 @@ char *param_range_text(const param *row, char *text, size_t size)
 
 char *param_remedy(const param *row, bool one_element, char *text, size_t size)
 {
-    char range[200];
+    char range[400];
     element_range_text(row, one_element, range, sizeof range);
-    bool several = row->choices || (is_vector(row) && !one_element);
+    bool several = row->choices || (is_vector(row) && !one_element) || range[0] == 'a';
     snprintf(text, size, "give %s%s", several ? "" : range[0] == 'i' ? "an " : "a ", range);
     return text;
 }
@@ -69,6 +72,21 @@ static char *vector_text(const vec3 *v)
     return text_format("%s,%s,%s", number_format(v->x, x), number_format(v->y, y), number_format(v->z, z));
 }
 
+/* "[]", "[1,2.5]" */
+static char *list_text(const number_list *list)
+{
+    char *text = strdup("[");
+    for (int64_t i = 0; text && i < list->count; i++) {
+        char number[NUMBER_TEXT_MAX];
+        char *longer = text_format("%s%s%s", text, i ? "," : "", number_format(list->value[i], number));
+        free(text);
+        text = longer;
+    }
+    char *whole = text ? text_format("%s]", text) : NULL;
+    free(text);
+    return whole;
+}
+
 char *param_value_text(const param *row, int element, const void *field)
 {
     char number[NUMBER_TEXT_MAX];
@@ -81,6 +99,7 @@ char *param_value_text(const param *row, int element, const void *field)
         vec3 v = *(const vec3 *)field;
         return element < 0 ? vector_text(&v) : strdup(number_format(element_of(&v, element), number));
     }
+    case PARAM_LIST: return list_text(field);
     case PARAM_PATH: return strdup(*(char *const *)field ? *(char *const *)field : "");
     }
     return NULL;

@@ -31,7 +31,7 @@ static status wrong(const param *row, bool one_element, diagnostic *why, const c
 /* An error whose remedy is the row's range. */
 static status wrong(const param *row, bool one_element, diagnostic *why, const char *what, ...)
 {
-    char text[300], remedy[220];
+    char text[300], remedy[420];
     va_list arguments;
     va_start(arguments, what);
     if (vsnprintf(text, sizeof text, what, arguments) < 0) {
@@ -114,7 +114,7 @@ static status parse_choice(const param *row, const char *label, const char *text
     /* off and on are as near to each other as to a slip, and mean the opposite. */
     const char *nearest = is_switch(row) ? NULL : text_nearest(text, row->choices, count_words(row->choices));
     if (nearest) {
-        char range[200], remedy[260];
+        char range[400], remedy[460];
         snprintf(remedy, sizeof remedy, "did you mean '%s'? It is %s", nearest,
                  param_range_text(row, range, sizeof range));
         return diagnose(why, STATUS_BAD_INPUT, remedy, "%s: no choice '" SHOWN "'", label, text);
@@ -137,8 +137,8 @@ static status parse_integer(const param *row, const char *label, const char *tex
     return STATUS_OK;
 }
 
-/* Splits "0,1,2" or "[0, 1, 2]" in place; returns how many parts there are, of which parts[] holds three. */
-static size_t split_vector(char *text, char *parts[3])
+/* Splits "0,1,2" or "[0, 1, 2]" in place; returns how many parts there are, of which parts[] holds the first `room`. */
+static size_t split_numbers(char *text, char **parts, size_t room)
 {
     size_t length = strlen(text), count = 0;
     if (length >= 2 && text[0] == '[' && text[length - 1] == ']') {
@@ -158,7 +158,7 @@ static size_t split_vector(char *text, char *parts[3])
         while (end > part && is_blank(end[-1])) {
             *--end = 0;
         }
-        if (count < 3) {
+        if (count < room) {
             parts[count] = part;
         }
     }
@@ -169,7 +169,7 @@ static status parse_vector(const param *row, const char *label, char *text, vec3
 {
     char *parts[3];
     double values[3];
-    size_t count = split_vector(text, parts);
+    size_t count = split_numbers(text, parts, 3);
     if (count != 3) {
         return wrong(row, false, why, "%s: %zu value%s where 3 belong", label, count, count == 1 ? "" : "s");
     }
@@ -182,6 +182,26 @@ static status parse_vector(const param *row, const char *label, char *text, vec3
         }
     }
     *out = vec3_make(values[0], values[1], values[2]);
+    return STATUS_OK;
+}
+
+static status parse_list(const param *row, const char *label, char *text, number_list *out, diagnostic *why)
+{
+    char *parts[NUMBER_LIST_MAX];
+    size_t count = split_numbers(text, parts, NUMBER_LIST_MAX);
+    if (count == 1 && !*parts[0]) {
+        count = 0;
+    }
+    if (count > NUMBER_LIST_MAX) {
+        return wrong(row, false, why, "%s: %zu numbers are too many", label, count);
+    }
+    *out = (number_list){.count = (int64_t)count};
+    for (size_t i = 0; i < count; i++) {
+        status code = parse_real(row, label, parts[i], &out->value[i], why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
     return STATUS_OK;
 }
 
@@ -204,7 +224,7 @@ static status parse_path(const param *row, const char *label, char *text, char *
 static status parse_trimmed(const param *row, int element, const char *label, char *text, param_value *out,
                             diagnostic *why)
 {
-    if (!*text && row->type != PARAM_PATH) {
+    if (!*text && row->type != PARAM_PATH && row->type != PARAM_LIST) {
         return wrong(row, element >= 0, why, "%s has no value", label);
     }
     if (element >= 0) {
@@ -216,6 +236,7 @@ static status parse_trimmed(const param *row, int element, const char *label, ch
     case PARAM_CHOICE: return parse_choice(row, label, text, &out->integer, why);
     case PARAM_VECTOR:
     case PARAM_COLOR: return parse_vector(row, label, text, &out->vector, why);
+    case PARAM_LIST: return parse_list(row, label, text, &out->list, why);
     case PARAM_PATH: return parse_path(row, label, text, &out->path, why);
     }
     return STATUS_FAILURE;
@@ -259,6 +280,7 @@ void param_value_store(const param *row, int element, void *field, param_value v
             *(vec3 *)field = value.vector;
         }
         break;
+    case PARAM_LIST: *(number_list *)field = value.list; break;
     case PARAM_PATH:
         free(*(char **)field);
         *(char **)field = value.path;

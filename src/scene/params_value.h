@@ -9,6 +9,7 @@ typedef union param_value {
     int64_t integer;
     double real;
     vec3 vector;
+    number_list list;
     char *path;
 } param_value;
 

@@ -57,6 +57,9 @@ static status read_background(const scene_reader *r, const char *name, const nod
     const node *kind = node_get(map, "kind"), *picture = node_get(map, "picture");
     bool shown = picture && picture->kind == NODE_SCALAR && picture->text[0];
     status code = read_settings(r, PARAM_BACKGROUND, map);
+    if (code == STATUS_OK) {
+        code = read_one_medium(r, map);
+    }
     if (code == STATUS_OK && shown) {
         r->scene->background.picture_line = picture->line;
         r->scene->background.picture_column = picture->column;

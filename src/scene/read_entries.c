@@ -43,9 +43,9 @@ status read_expect_word(const scene_reader *r, const node *n, const char *name)
 
 static status check_value_kind(const scene_reader *r, const param *row, const char *path, const node *value)
 {
-    bool vector = row->type == PARAM_VECTOR || row->type == PARAM_COLOR;
+    bool vector = row->type == PARAM_VECTOR || row->type == PARAM_COLOR || row->type == PARAM_LIST;
     bool number = row->type == PARAM_INT || row->type == PARAM_REAL;
-    char remedy[220];
+    char remedy[420];
     param_remedy(row, false, remedy, sizeof remedy);
     if (value->kind == NODE_MAP || (value->kind == NODE_LIST && !vector)) {
         return node_error(r->file, value, r->why, remedy, "%.150s is a %s", path,
@@ -66,7 +66,7 @@ static status read_value(const scene_reader *r, const char *path, const param *r
     }
     char *text = node_value_text(value);
     if (!text) { /* a list that holds more than numbers; or no memory, which shows again soon */
-        return node_error(r->file, value, r->why, "give 3 numbers", "%.150s holds more than plain numbers", path);
+        return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers", "%.150s holds more than plain numbers", path);
     }
     code = read_located(r, value, scene_set(r->scene, path, text, r->why));
     free(text);
@@ -91,6 +91,15 @@ status read_entries(const scene_reader *r, const char *name, param_group group, 
         if (code != STATUS_OK) {
             return code;
         }
+    }
+    return STATUS_OK;
+}
+
+status read_one_medium(const scene_reader *r, const node *map)
+{
+    const node *ior = node_get(map, "ior"), *medium = node_get(map, "medium");
+    if (ior && medium && strcmp(medium->text ? medium->text : "", "ior") != 0) {
+        return node_error(r->file, ior, r->why, "keep the ior, or the medium", "there is an ior and a medium too");
     }
     return STATUS_OK;
 }

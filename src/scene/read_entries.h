@@ -22,6 +22,9 @@ status read_expect_map(const scene_reader *r, const node *n, const char *name);
 /* A scalar that is not empty. */
 status read_expect_word(const scene_reader *r, const node *n, const char *name);
 
+/* A map that gives an index must not name a medium too. */
+status read_one_medium(const scene_reader *r, const node *map);
+
 /* Refuses keys that are no rows of the group. */
 status read_check_keys(const scene_reader *r, param_group group, const node *map);
 /* Sets the entries of a map that are rows of the group; name is the path's first word. Others are left to the

@@ -54,6 +54,9 @@ static status read_material(const scene_reader *r, const node *key, const node *
     if (code == STATUS_OK) {
         code = read_check_keys(r, PARAM_MATERIAL, map);
     }
+    if (code == STATUS_OK) {
+        code = read_one_medium(r, map);
+    }
     return code == STATUS_OK ? read_entries(r, name, PARAM_MATERIAL, map) : code;
 }
 
@@ -77,7 +80,10 @@ static status read_light(const scene_reader *r, const node *key, const node *map
     if (code == STATUS_OK) {
         code = read_check_keys(r, PARAM_LIGHT, map);
     }
-    return code == STATUS_OK ? read_entries(r, name, PARAM_LIGHT, map) : code;
+    if (code == STATUS_OK) {
+        code = read_entries(r, name, PARAM_LIGHT, map);
+    }
+    return code == STATUS_OK ? read_located(r, key, check_light(r->scene, l, r->why)) : code;
 }
 
 static status read_shape(const scene_reader *r, const node *key, const node *map, shape_kind *out)
@@ -157,6 +163,9 @@ static status read_solid(const scene_reader *r, const node *key, const node *map
     }
     if (code == STATUS_OK) {
         code = read_check_keys(r, PARAM_SOLID, map);
+    }
+    if (code == STATUS_OK) {
+        code = read_one_medium(r, map);
     }
     if (code == STATUS_OK) {
         code = read_shape(r, key, map, &owner->shape.kind);

@@ -18,17 +18,34 @@ typedef enum beyond_rule { BEYOND_SKY, BEYOND_BLACK } beyond_rule;
 typedef enum shadow_rule { SHADOWS_OFF, SHADOWS_OPAQUE, SHADOWS_ATTENUATED } shadow_rule;
 typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SCHEDULE_DYNAMIC } schedule_rule;
 typedef enum pin_rule { PIN_RULE_NONE, PIN_RULE_COMPACT, PIN_RULE_SCATTER } pin_rule;
+typedef enum integrator_rule { INTEGRATOR_RAYCAST, INTEGRATOR_WHITTED, INTEGRATOR_PATH } integrator_rule;
+typedef enum lighting_rule { LIGHTING_LAMBERT, LIGHTING_PHONG, LIGHTING_WHITTED } lighting_rule;
+typedef enum spectrum_rule { SPECTRUM_RGB, SPECTRUM_SPECTRAL } spectrum_rule;
 typedef enum background_kind { BACKGROUND_UNIFORM, BACKGROUND_GRADIENT, BACKGROUND_PICTURE } background_kind;
+
+/* Numbers, as many as one gives. */
+enum { NUMBER_LIST_MAX = 32 };
+typedef struct number_list { int64_t count; double value[NUMBER_LIST_MAX]; } number_list;
 
 /* Integer and enum parameters are int64_t, switches (on/off) too: one type a kind of parameter. */
 typedef struct render_settings {
     int64_t width, height;  /* pixels */
     int64_t depth;          /* recursion depth; 0 = camera rays only */
     int64_t samples;        /* 1 or 4 a pixel */
+    int64_t integrator;     /* integrator_rule */
+    int64_t lighting;       /* lighting_rule */
     int64_t weights;        /* weights_rule */
     int64_t beyond;         /* beyond_rule */
     int64_t shadows;        /* shadow_rule */
     double min_weight;      /* children with a lower throughput in every channel are not traced; 0: all are */
+    int64_t paths;          /* of the path tracer, a pixel */
+    int64_t roulette;       /* 1: the path tracer ends faint paths by chance */
+    int64_t seed;           /* of everything that is drawn by chance */
+    int64_t polarisation;   /* 1: a ray carries its Stokes vector */
+    int64_t spectrum;       /* spectrum_rule */
+    int64_t wavelengths;    /* of the spectral film, a camera ray */
+    double lambda_nm;       /* at which indices are taken where there is no spectrum */
+    double unit_m;          /* length of one scene unit in metres */
     int64_t threads;        /* 1..1024 */
     int64_t pool;           /* 1: threads started beforehand; 0: fresh ones for every frame */
     int64_t schedule;       /* schedule_rule */
@@ -53,6 +70,8 @@ typedef struct background {
     long picture_line, picture_column; /* where the scene file names it; 0 when it was set otherwise */
     image *picture;         /* owned; NULL until loaded by scene_load_pictures */
     vec3 ambient;           /* I_a of Phong's sum, linear RGB */
+    double ior;             /* of what surrounds all solids, where medium is MEDIUM_IOR */
+    int64_t medium;         /* see scene/medium.h */
 } background;
 
 /* Fields mean what Phong's sum I = k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n and the weights
@@ -62,13 +81,23 @@ typedef struct material {
     double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
     double reflectivity;    /* constant weights, and opaque materials under fresnel weights */
     double transparency;    /* 0 = opaque; else share of the refracted light that passes an interface */
-    double ior;             /* relative to vacuum */
+    double ior;             /* relative to vacuum, where medium is MEDIUM_IOR */
+    int64_t medium;         /* see scene/medium.h */
+    number_list coefficients; /* of the medium's own law of dispersion */
+    vec3 absorb_per_m;      /* Beer and Lambert's coefficient by channel */
+    number_list absorb_spectrum; /* the same by wavelength: nm, 1/m, nm, 1/m ...; takes the place of absorb_per_m unless empty */
     double checker;         /* edge of the checker cells in the solid's own frame; 0 = none */
     vec3 checker_color;     /* colour of the other cells */
 } material;
 
 typedef struct named_material { char *name; material value; } named_material;
-typedef struct light { char *name; vec3 position; vec3 color; double intensity; } light;
+typedef struct light {
+    char *name;
+    vec3 position, color;
+    double intensity;
+    double radius;          /* of the sphere that shines, for the path tracer; 0 = a point */
+    double reach;           /* distance at which intensity holds, falling off with the square; 0 = the same everywhere */
+} light;
 typedef struct solid {
     char *name;
     solid_shape shape;

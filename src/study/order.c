@@ -1,22 +1,12 @@
 #include "study/order.h"
 
-/* Random123's headers convert freely. */
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpedantic"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wmissing-prototypes"
-#include <Random123/philox.h>
-#pragma GCC diagnostic pop
+#include "base/random.h"
 
 /* 64 random bits: draw number attempt for place i. */
 static uint64_t random_bits(uint64_t seed, uint64_t stream, uint32_t place, uint32_t attempt)
 {
-    philox4x32_key_t key = {{(uint32_t)seed, (uint32_t)(seed >> 32)}};
-    philox4x32_ctr_t counter = {{place, attempt, (uint32_t)stream, (uint32_t)(stream >> 32)}};
-    philox4x32_ctr_t drawn = philox4x32(counter, key);
-    return (uint64_t)drawn.v[1] << 32 | drawn.v[0];
+    random_words drawn = random_at(seed, place, attempt, (uint32_t)stream, (uint32_t)(stream >> 32));
+    return (uint64_t)drawn.word[1] << 32 | drawn.word[0];
 }
 
 /* Even on 0..bound-1: bits of the last, incomplete stretch of bound values are drawn again. */

@@ -1,0 +1,49 @@
+/* Beer and Lambert: light falls by exp(-a d) over a length d of a medium with absorption coefficient a. */
+#include "render/tracer_private.h"
+
+#include "base/elementary_inline.h"
+
+#define LOG2_E 1.4426950408889634074
+
+/* Coefficients of a rank, by channel; of a spectral film at the ray's wavelength. */
+static vec3 coefficients(const plan *p, int rank, int64_t ticket)
+{
+    if (!p->spectral || !p->materials[rank])
+        return p->absorption[rank];
+    const double a = material_absorption_at(p->materials[rank], spectra_lambda(&p->render, ticket)) * p->render.unit_m;
+    return vec3_make(a, a, a);
+}
+
+static double share_left(double optical_depth)
+{
+    return elementary_exp2_inline(-LOG2_E * optical_depth);
+}
+
+void absorption_shares(tracer *t, const int64_t *tickets, int count)
+{
+    const plan *p = t->target.scene;
+    for (int i = 0; i < count; i++)
+        t->kept[0][i] = t->kept[1][i] = t->kept[2][i] = 0.0; /* optical depths first */
+    for (int k = 0; k < t->scratch.stretch_count; k++) {
+        const stretch *s = &t->scratch.stretches[k];
+        if (!p->solids->bodies[s->rank].absorbs)
+            continue;
+        const vec3 a = coefficients(p, s->rank, tickets[s->ray]);
+        t->kept[0][s->ray] += a.x * s->length;
+        t->kept[1][s->ray] += a.y * s->length;
+        t->kept[2][s->ray] += a.z * s->length;
+    }
+    for (int i = 0; i < count; i++)
+        for (int c = 0; c < 3; c++)
+            t->kept[c][i] = t->kept[c][i] > 0.0 ? share_left(t->kept[c][i]) : 1.0;
+}
+
+void absorption_dim(tracer *t, ray_queue *q, int first, int count)
+{
+    absorption_shares(t, q->ticket + first, count);
+    for (int i = 0; i < count; i++) {
+        q->wr[first + i] *= t->kept[0][i];
+        q->wg[first + i] *= t->kept[1][i];
+        q->wb[first + i] *= t->kept[2][i];
+    }
+}
