@@ -1,0 +1,108 @@
+#include "image/compare.h"
+
+#include "image/codec.h"
+#include "image/compare_parts.h"
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+static size_t pixels_of(const image *picture)
+{
+    return (size_t)picture->width * (size_t)picture->height;
+}
+
+static status check_numbers(const image *picture, const char *which, diagnostic *why)
+{
+    for (size_t i = 0; i < 3 * pixels_of(picture); i++) {
+        if (isnan(picture->pixel[i])) {
+            size_t pixel = i / 3, width = (size_t)picture->width;
+            return diagnose(why, STATUS_BAD_INPUT, "give pictures of numbers",
+                            "pixel %zu,%zu of the %s picture is not a number", pixel % width, pixel / width, which);
+        }
+    }
+    return STATUS_OK;
+}
+
+status compare_check(const image *a, const image *b, diagnostic *why)
+{
+    if (a->width != b->width || a->height != b->height) {
+        return diagnose(why, STATUS_BAD_INPUT, "give two pictures of one size",
+                        "a picture of %d x %d pixels cannot be compared with one of %d x %d", a->width, a->height,
+                        b->width, b->height);
+    }
+    status code = check_numbers(a, "first", why);
+    return code == STATUS_OK ? check_numbers(b, "second", why) : code;
+}
+
+/* Luma of ITU-R BT.601. */
+static double luma(const double encoded[3])
+{
+    return 0.299 * encoded[0] + 0.587 * encoded[1] + 0.114 * encoded[2];
+}
+
+/* What can be said of each pixel by itself; the lumas are kept for the structural similarity. */
+static void compare_pixels(const image *a, const image *b, double *luma_a, double *luma_b, image_comparison *out)
+{
+    size_t count = pixels_of(a), differing = 0;
+    double sum = 0.0;
+    codec_bytes table;
+    codec_bytes_prepare(&table);
+    for (size_t i = 0; i < count; i++) {
+        double encoded_a[3], encoded_b[3];
+        bool differs = false;
+        for (size_t channel = 0; channel < 3; channel++) {
+            float linear_a = a->pixel[3 * i + channel], linear_b = b->pixel[3 * i + channel];
+            encoded_a[channel] = srgb_encode(linear_a);
+            encoded_b[channel] = srgb_encode(linear_b);
+            double difference = fabs(encoded_a[channel] - encoded_b[channel]);
+            sum += difference * difference;
+            differs = differs || codec_byte(&table, linear_a) != codec_byte(&table, linear_b);
+            if (difference > out->largest) {
+                out->largest = difference;
+                out->largest_x = (int)(i % (size_t)a->width);
+                out->largest_y = (int)(i / (size_t)a->width);
+            }
+        }
+        differing += differs;
+        luma_a[i] = luma(encoded_a);
+        luma_b[i] = luma(encoded_b);
+    }
+    out->mse = sum / (3.0 * (double)count);
+    out->psnr_db = out->mse > 0 ? -10.0 * log10(out->mse) : (double)INFINITY;
+    out->differing_share = (double)differing / (double)count;
+}
+
+static double mean(const double *values, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        sum += values[i];
+    }
+    return sum / (double)count;
+}
+
+status image_compare(const image *a, const image *b, image_comparison *out, diagnostic *why)
+{
+    status code = compare_check(a, b, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    size_t count = pixels_of(a);
+    double *first = malloc(count * sizeof *first), *second = malloc(count * sizeof *second);
+    if (!first || !second) {
+        code = diagnose(why, STATUS_FAILURE, NULL, "out of memory for the comparison");
+    } else {
+        *out = (image_comparison){0};
+        compare_pixels(a, b, first, second, out);
+        code = compare_ssim(first, second, a->width, a->height, &out->ssim, why);
+    }
+    if (code == STATUS_OK) {
+        code = compare_flip(a, b, first, why);
+    }
+    if (code == STATUS_OK) {
+        out->flip = mean(first, count);
+    }
+    free(first);
+    free(second);
+    return code;
+}

@@ -1,0 +1,173 @@
+/* FLIP, the difference that a viewer sees who alternates between two pictures: Andersson, Nilsson, Akenine-Moller,
+ * Oskarsson, Astrom, Fairchild, FLIP: A Difference Evaluator for Alternating Images, Proceedings of the ACM on Computer
+ * Graphics and Interactive Techniques 3(2), 2020, for low dynamic range, with the paper's constants. Its viewer sits 0.7 m
+ * before a display 0.7 m and 3840 pixels wide: 67.02 pixels a degree. Its filters are sums of separable ones, so that they
+ * run along rows and columns; where they reach over the border, the border pixels go on. */
+#include "image/compare_parts.h"
+
+#include "base/elementary.h"
+#include "image/convolve.h"
+#include <math.h>
+#include <stdlib.h>
+
+#define PI 3.14159265358979323846
+#define PIXELS_PER_DEGREE (3840.0 * PI / 180.0)
+
+/* What a viewer gets of a picture, a plane each: the filtered opponent colours, how strong edges and points are. */
+enum { LUMINANCE, RED_GREEN, YELLOW_BLUE, EDGES, POINTS, SEEN };
+typedef struct sight { double *plane[SEEN]; } sight;
+
+/* Planes to work in, all of one size. */
+typedef struct desk {
+    int width, height;
+    size_t count;
+    double *opponent[3], *scratch;
+    sight a, b;
+    double *memory;
+} desk;
+
+static status lay_out_desk(desk *d, const image *picture, diagnostic *why)
+{
+    enum { PLANES = 2 * SEEN + 4 };
+    *d = (desk){.width = picture->width, .height = picture->height};
+    d->count = (size_t)d->width * (size_t)d->height;
+    d->memory = calloc(d->count, PLANES * sizeof *d->memory);
+    if (!d->memory) {
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for the FLIP error");
+    }
+    double *next = d->memory;
+    for (int i = 0; i < SEEN; i++, next += 2 * d->count) {
+        d->a.plane[i] = next;
+        d->b.plane[i] = next + d->count;
+    }
+    for (int i = 0; i < 3; i++, next += d->count) {
+        d->opponent[i] = next;
+    }
+    d->scratch = next;
+    return STATUS_OK;
+}
+
+/* Contrast sensitivity as Gaussians, section 4.1.1 with table 1: exp(-pi^2 x^2 / b) at x degrees is one of sigma
+ * sqrt(b / 2) / pi, here in pixels. All reach as far as three sigmas of the widest. */
+static convolve_taps sensitivity(double b)
+{
+    const double widest = 0.04;
+    int radius = (int)ceil(3.0 * sqrt(widest / 2.0) / PI * PIXELS_PER_DEGREE);
+    return convolve_gaussian(2 * radius + 1, sqrt(b / 2.0) / PI * PIXELS_PER_DEGREE);
+}
+
+/* The middle of a Gaussian of sum 1 is the inverse of its sum before: what a peak of 1 weighs in the plane. */
+static double weight_of_peak(const convolve_taps *gaussian)
+{
+    double middle = gaussian->weight[gaussian->before];
+    return 1.0 / (middle * middle);
+}
+
+static void filter_colors(const desk *d, const sight *s)
+{
+    convolve_taps luminance = sensitivity(0.0047), red_green = sensitivity(0.0053);
+    convolve_taps wide = sensitivity(0.04), narrow = sensitivity(0.025);
+    double wide_weight = 34.1 * sqrt(PI / 0.04) * weight_of_peak(&wide);
+    double narrow_weight = 13.5 * sqrt(PI / 0.025) * weight_of_peak(&narrow);
+    double sum = wide_weight + narrow_weight;
+    int width = d->width, height = d->height;
+    convolve_add(d->opponent[0], width, height, &luminance, &luminance, 1.0, d->scratch, s->plane[LUMINANCE]);
+    convolve_add(d->opponent[1], width, height, &red_green, &red_green, 1.0, d->scratch, s->plane[RED_GREEN]);
+    convolve_add(d->opponent[2], width, height, &wide, &wide, wide_weight / sum, d->scratch, s->plane[YELLOW_BLUE]);
+    convolve_add(d->opponent[2], width, height, &narrow, &narrow, narrow_weight / sum, d->scratch,
+                 s->plane[YELLOW_BLUE]);
+}
+
+/* Positive weights get the sum 1, negative ones -1. */
+static void balance(convolve_taps *taps)
+{
+    double positive = 0.0, negative = 0.0;
+    for (int i = 0; i < taps->count; i++) {
+        positive += taps->weight[i] > 0 ? taps->weight[i] : 0.0;
+        negative -= taps->weight[i] < 0 ? taps->weight[i] : 0.0;
+    }
+    for (int i = 0; i < taps->count; i++) {
+        taps->weight[i] /= taps->weight[i] > 0 ? positive : negative;
+    }
+}
+
+/* Section 4.2: first and second derivatives of a Gaussian whose sigma is half of 0.082 degrees, the width of the edges that
+ * the eye detects. */
+static void make_detectors(convolve_taps *smooth, convolve_taps *edge, convolve_taps *point)
+{
+    const double sigma = 0.5 * 0.082 * PIXELS_PER_DEGREE;
+    int radius = (int)ceil(3.0 * sigma);
+    *smooth = *edge = *point = convolve_gaussian(2 * radius + 1, sigma);
+    for (int i = 0; i < smooth->count; i++) {
+        double x = i - radius;
+        edge->weight[i] *= -x;
+        point->weight[i] *= x * x / (sigma * sigma) - 1.0;
+    }
+    balance(edge);
+    balance(point);
+}
+
+/* The length of the gradient by a detector. across and down are overwritten. */
+static void detect(const desk *d, const convolve_taps *detector, const convolve_taps *smooth, double *across,
+                   double *down, double *strength)
+{
+    for (size_t i = 0; i < d->count; i++) {
+        across[i] = down[i] = 0.0;
+    }
+    convolve_add(d->opponent[0], d->width, d->height, detector, smooth, 1.0, d->scratch, across);
+    convolve_add(d->opponent[0], d->width, d->height, smooth, detector, 1.0, d->scratch, down);
+    for (size_t i = 0; i < d->count; i++) {
+        strength[i] = sqrt(across[i] * across[i] + down[i] * down[i]);
+    }
+}
+
+static void look_at(const desk *d, const image *picture, const sight *s)
+{
+    for (size_t i = 0; i < d->count; i++) {
+        double opponent[3];
+        flip_opponent(picture->pixel + 3 * i, opponent);
+        for (int channel = 0; channel < 3; channel++) {
+            d->opponent[channel][i] = opponent[channel];
+        }
+    }
+    filter_colors(d, s);
+    convolve_taps smooth, edge, point;
+    make_detectors(&smooth, &edge, &point);
+    detect(d, &edge, &smooth, d->opponent[1], d->opponent[2], s->plane[EDGES]); /* the colours have been filtered */
+    detect(d, &point, &smooth, d->opponent[1], d->opponent[2], s->plane[POINTS]);
+}
+
+static void lab_at(const sight *s, size_t at, double lab[3])
+{
+    double opponent[3] = {s->plane[LUMINANCE][at], s->plane[RED_GREEN][at], s->plane[YELLOW_BLUE][at]};
+    flip_hunt_lab(opponent, lab);
+}
+
+/* Section 4.3: a difference of features raises that of colours. */
+static double error_at(const sight *a, const sight *b, size_t at, double farthest)
+{
+    double lab_a[3], lab_b[3];
+    lab_at(a, at, lab_a);
+    lab_at(b, at, lab_b);
+    double edges = fabs(a->plane[EDGES][at] - b->plane[EDGES][at]);
+    double points = fabs(a->plane[POINTS][at] - b->plane[POINTS][at]);
+    double feature = sqrt((edges > points ? edges : points) * sqrt(0.5));
+    return elementary_pow(flip_color_error(lab_a, lab_b, farthest), feature < 1.0 ? 1.0 - feature : 0.0);
+}
+
+status compare_flip(const image *a, const image *b, double *errors, diagnostic *why)
+{
+    desk d;
+    status code = lay_out_desk(&d, a, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    look_at(&d, a, &d.a);
+    look_at(&d, b, &d.b);
+    double farthest = flip_farthest();
+    for (size_t i = 0; i < d.count; i++) {
+        errors[i] = error_at(&d.a, &d.b, i, farthest);
+    }
+    free(d.memory);
+    return STATUS_OK;
+}
