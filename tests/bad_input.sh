@@ -1,5 +1,5 @@
 #!/bin/bash
-# Wrong command lines, variables, scenes, studies and sky pictures: tests/bad_input.sh [PROGRAM]. Each must end with exit 2,
+# Wrong command lines, variables, scenes, studies, sky pictures and comparisons: tests/bad_input.sh [PROGRAM]. Each must end with exit 2,
 # nothing on standard output, and exactly one line on standard error that says where, what, and (for a person's slip) the
 # remedy. One line a check, then "N passed, N failed".
 set -uo pipefail
@@ -165,6 +165,29 @@ rm sky.png
 cp good.jpg sky.jpg
 printf '%s\n' 'background: {kind: picture, picture: sky.jpg}' 'render: {width: 8, height: 6}' >sky.yaml
 refused "picture over the sky" "the scene is read from it" render sky.yaml -o sky.jpg
+
+# --- pictures to compare
+refused "compare of nothing" "no pictures are named" compare
+refused "compare of one picture" "nothing to compare" compare good.png
+refused "compare of three pictures" "one too many" compare good.png good.jpg good.pfm
+refused "compare of a picture that is not there" "nowhere.png" compare good.png nowhere.png
+refused "compare of a folder" "folder.png" compare folder.png good.png
+refused "compare of a scene" "not a picture" compare "$scene" good.png
+"$program" render "$scene" -o other.png --set render.width=20 --set render.height=40 >/dev/null
+refused "compare of two sizes" "40 x 20 .* 20 x 40.*one size" compare good.png other.png
+head -c $(($(wc -c <good.png) / 2)) good.png >half.png
+refused "compare of a truncated PNG" "half.png" compare good.png half.png
+{ printf 'PF\n1 1\n-1.0\n'; printf '\x00\x00\xc0\x7f\x00\x00\xc0\x7f\x00\x00\xc0\x7f'; } >nan.pfm
+refused "compare of a PFM with NaN" "nan.pfm" compare nan.pfm nan.pfm
+refused "misspelt option of compare" "did you mean '--diff'" compare good.png good.jpg --dif-f x.png
+refused "--diff without a file" "needs a value" compare good.png good.jpg --diff
+refused "--diff with an unknown ending" "x.gif.*\.png" compare good.png good.jpg --diff x.gif
+refused "--diff without a name" "ending" compare good.png good.jpg --diff ""
+refused "--diff to standard output" "--diff -: " compare good.png good.jpg --diff -
+refused "--diff into a folder that is not there" "folder is not there" compare good.png good.jpg --diff nowhere/x.png
+refused "--diff onto a folder" "is a folder" compare good.png good.jpg --diff folder.png
+refused "--diff over a picture" "is read from it" compare good.png good.jpg --diff ./good.jpg
+refused "--diff is checked before the pictures" "x.gif" compare nowhere.png nowhere.png --diff x.gif
 
 # --- scenes and studies; the modules' own tests go deeper
 bad_scene() # WHAT PATTERN TEXT

@@ -53,10 +53,10 @@ run --version
 check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render params study machine help; do
+for command in render params study compare machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render params study machine "study run" "study list" "study status" "study merge" "study summary"; do
+for command in render params study compare machine "study run" "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -199,6 +199,45 @@ for option in $("$program" render --help | grep -o '^ .*--[a-z]*' | grep -o -- '
     check "cuvette.1 explains render $option" grep -qF -- "${option/--/\\-\\-}" "$page"
 done
 
+# --- comparison
+pfm() # WIDTH HEIGHT CHANNEL...: bytes of little-endian floats, rows from the bottom
+{
+    printf 'PF\n%d %d\n-1.0\n' "$1" "$2"
+    printf '%b' "${@:3}"
+}
+zero='\x00\x00\x00\x00' one='\x00\x00\x80\x3f'
+pfm 2 1 $zero $zero $zero $one $one $one >left.pfm
+pfm 2 1 $zero $zero $zero $one $zero $one >right.pfm
+run compare left.pfm right.pfm
+check "compare succeeds where pictures differ" silent_success
+check "compare prints a table" is "$(cut -c1-12 out | tr -d ' ' | tr '\n' ' ')" "size mse psnr ssim flip largest differing "
+check "one channel of six: mse 1/6, psnr 10 log10 6" is "$(sed -n 's/^\(mse\|psnr\) *//p' out)" "$(lines 0.166667 "7.78 dB")"
+check "the largest difference and its place" grep -q '^largest     1 at 1,0$' out
+check "the share that differs" grep -q '^differing   50% of the pixels' out
+run compare left.pfm right.pfm --json
+check "compare --json" is "$(json schema width height mse 'largest_at[]' differing_share 'bits[]')" \
+    "$(lines 1 2 1 0.16666666666666666 1 0 0.5 32 32)"
+check "keys of compare --json" is "$(json @keys | sort | tr '\n' ' ')" \
+    "bits differing_share files flip height largest largest_at mse psnr_db schema ssim width "
+run compare a.png b.png --diff where.png
+check "compare of equal pictures" is "$(sed -n '/^size/d; s/  */ /p' out | tr '\n' ';')" \
+    "mse 0;psnr identical;ssim 1.000000;flip 0.000000;largest 0;differing 0% of the pixels, at 8 bits;"
+check "--diff writes a PNG" magic where.png 89504e47
+check "of the pictures' size" is "$(od -An -tu1 -j16 -N8 where.png | tr -s ' ')" " 0 0 0 80 0 0 0 60"
+run compare a.png b.png --json
+check "equal pictures have no psnr" is "$(json psnr_db@type largest_at@type flip)" "$(lines null null 0.0)"
+run compare a.png a.pfm --json
+check "8 bits are half a step off at most" holds "$(json largest) <= 0.5 / 255 + 1e-6 && $(json largest) > 0.4 / 255"
+check "which is no difference at 8 bits" is "$(json differing_share)" 0.0
+run compare a.jpg a.png --diff where.jpg
+check "a JPEG goes with a PNG" silent_success
+check "--diff writes a JPEG" magic where.jpg ffd8ff
+run compare a.jpg a.png --diff where.pfm
+check "--diff writes a PFM" is "$(head -c 9 where.pfm | tr '\n' ' ')" "PF 80 60 "
+for option in $("$program" compare --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
+    check "cuvette.1 explains compare $option" grep -qF -- "${option/--/\\-\\-}" "$page"
+done
+
 # --- machine
 run machine
 check "machine prints what it is" grep -q '^wall clock ' out
@@ -322,6 +361,7 @@ check "completion offers commands" is "$(complete_line cuvette ren)" render
 check "completion offers options" matches "$(complete_line cuvette render --t)" '--time.*--timeline'
 check "completion offers parameters of the scene" \
     is "$(complete_line "$program" render "$scene" --set liquid.io)" "liquid.ior="
+check "completion offers options of compare" is "$(complete_line cuvette compare --d)" --diff
 check "completion offers study verbs" is "$(complete_line cuvette study mer)" merge
 
 echo "$passed passed, $failed failed"

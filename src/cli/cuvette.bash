@@ -29,7 +29,7 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
 {
     case $1 in
     -s | --set) _cuvette_parameters ;;
-    -o | --output) _cuvette_files 'png|jpg|jpeg|pfm' ;;
+    -o | --output | --diff) _cuvette_files 'png|jpg|jpeg|pfm' ;;
     --rays | --time) _cuvette_files 'png|pfm' ;;
     --timeline) _cuvette_files 'json' ;;
     --bits) _cuvette_words 8 16 ;;
@@ -61,7 +61,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render params study machine help --help --usage --version
+        _cuvette_words render params study compare machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -87,12 +87,19 @@ _cuvette()
             _cuvette_study "${COMP_WORDS[2]}"
         fi
         ;;
+    compare)
+        if [[ $current == -* ]]; then
+            _cuvette_words --diff --json --help --usage --version
+        else
+            _cuvette_files 'png|jpg|jpeg|pfm'
+        fi
+        ;;
     machine) _cuvette_words --json --help --usage --version ;;
     help)
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render params study machine
+            _cuvette_words render params study compare machine
         fi
         ;;
     esac

@@ -131,6 +131,19 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
+status outputs_check_picture(const char *option, const char *path, const char *const *read, size_t count,
+                             diagnostic *why)
+{
+    const named_file file = {option, path};
+    status result = check_picture(&(outputs){0}, &file, false, why);
+    if (result == STATUS_OK)
+        result = check_folder(&file, why);
+    for (size_t i = 0; i < count && result == STATUS_OK; i++)
+        if (same_file(path, read[i]))
+            result = wrong(&file, why, "name another file", "one of the pictures is read from it");
+    return result;
+}
+
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why)
 {
     status ended = STATUS_OK;

@@ -14,6 +14,11 @@ typedef struct outputs {
 /* Endings, folders, and no file named twice or in place of one that is read: the scene's own and its sky. */
 status outputs_check(const outputs *o, const scene *s, diagnostic *why);
 
+/* The same for one picture by itself that no scene has to do with; read are the count files that are read. option is what
+ * named it. */
+status outputs_check_picture(const char *option, const char *path, const char *const *read, size_t count,
+                             diagnostic *why);
+
 /* Writes them all; result has what was wanted, or a part of it. */
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why);
 
