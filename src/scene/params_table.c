@@ -94,7 +94,7 @@ static const param table[] = {
     CHOICE(PARAM_RENDER, render_settings, integrator, integrator_words, "whitted",
            "how light is followed: to the first surface, through reflections and refractions, or along random paths"),
     CHOICE(PARAM_RENDER, render_settings, lighting, lighting_words, "whitted",
-           "diffuse light alone, with highlights, or with reflected and refracted light too; not of the path integrator"),
+           "diffuse light alone, specular light too, or reflected and refracted light as well; not of the path integrator"),
     CHOICE(PARAM_RENDER, render_settings, weights, weights_words, "fresnel",
            "share of the reflected and refracted branch: Fresnel's equations, or each material's constants"),
     CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky", "what a ray beyond the last depth brings back"),
