@@ -1,9 +1,9 @@
 /* The eye and daylight: what colour a spectrum has. The CIE 1931 standard observer (2 degrees; CIE 15:2018 and
  * ISO/CIE 11664-1) and the CIE standard illuminant D65 (ISO/CIE 11664-2), both tabulated at 5 nm from 360 to 830 nm
- * and linear between, as CIE 15 allows; both are 0 outside. Wavelengths are in nm, in vacuum or air alike.
- * A spectrum is sampled from OBSERVER_LOW_NM to OBSERVER_HIGH_NM: of D65 that leaves out 6e-5 of X, 3e-6 of Y and
- * 2.2e-4 of Z. Every integral here is over that range, and exact for these tables (their products are quadratic
- * between entries), so that white in is white out.
+ * and linear between, as CIE 15 allows; both are 0 outside. Wavelengths are in nm, in air (in vacuum they are 0.03%
+ * longer: not told apart here). A spectrum is sampled from OBSERVER_LOW_NM to OBSERVER_HIGH_NM: of D65 that leaves out
+ * 6e-5 of X, 3e-6 of Y and 2.2e-4 of Z. Every integral here is over that range, and exact for these tables (their
+ * products are quadratic between entries), so that white in is white out.
  * Radiance: a light of linear sRGB (1, 1, 1) has the spectrum observer_d65 and Y = 1.
  * Pure; cannot fail; only + - * / and sqrt. */
 #ifndef CUVETTE_OPTICS_OBSERVER_H
