@@ -77,6 +77,13 @@ CUVETTE_ISA=mmx refused "unknown instruction set, machine" "CUVETTE_ISA" machine
 printf '%s\n' 'study: isa' "scene: $scene" 'grid: [{render.depth: [0]}]' 'repetitions: 1' >isa.study
 CUVETTE_ISA=mmx refused "unknown instruction set, study" "CUVETTE_ISA" study run isa.study --results isa-results
 refused "machine with an argument" "too many" machine now
+refused "media of an unknown name" "did you mean 'pmma'" media pmna
+refused "media of two names" "one too many" media water air
+refused "media at no wavelength" "nanometres" media --at 5,5
+refused "media at wavelength 0" "nanometres" media water --at 0
+refused "media at infinity" "nanometres" media water --at 1e999
+refused "media outside the range" "was not measured at 500 nm; .* 589\.3\.\.1050 nm" media glycerol --at 500
+refused "media outside the one wavelength" "its one wavelength is 589.3 nm" media olive-oil --at 589
 refused "params of two scenes" "too many" params "$scene" "$scene"
 echo 'render: [' >text.yaml
 refused "params of what is no scene" "text.yaml:[0-9]" params text.yaml

@@ -53,10 +53,10 @@ run --version
 check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render params study compare machine help; do
+for command in render params media study compare machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render params study compare machine "study run" "study list" "study status" "study merge" "study summary"; do
+for command in render params media study compare machine "study run" "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -238,6 +238,36 @@ for option in $("$program" compare --help | grep -o '^ .*--[a-z]*' | grep -o -- 
     check "cuvette.1 explains compare $option" grep -qF -- "${option/--/\\-\\-}" "$page"
 done
 
+# --- media
+run media
+check "media prints the catalogue" silent_success
+check "media has n_d, n_F, n_C, Abbe's number, range, temperature, reference and source" \
+    grep -qE '^bk7 +1\.51680 +1\.52238 +1\.51432 +64\.17 +300\.\.2500 +20 +air +Schott' out
+check "media marks what is extrapolated" grep -qE '^glycerol +1\.47227\* +1\.47683\* +1\.46991 +68\.30\* ' out
+check "media has no Abbe's number without dispersion" grep -qE '^olive-oil .* - +589\.3 ' out
+check "media: one line each" is "$(wc -l <out) $(cut -d' ' -f1 out | sort -u | wc -l)" "16 16"
+run media --at 500
+check "media --at has one more column" is "$(awk 'NR == 1 || $1 == "bk7" {print $6}' out)" "$(lines n_at 1.52141)"
+check "media --at leaves out what was not measured there" grep -qE '^glycerol .* - +589' out
+run media fused-silica --at 632.8
+check "media of a name has its coefficients" grep -qE '^coefficients +0\.6961663 0\.0684043 0\.4079426 0\.1162414 0\.8974794 9\.896161$' out
+check "and its formula" grep -qE '^law .*n\^2 = 1 \+ .*L\^2 - C\^2' out
+check "and --at, also relative to vacuum" grep -qE '^n_at +1\.4570[0-9]* at 632\.8 nm, relative to vacuum 1\.4574' out
+run media glycerol
+check "media of a name says what to beware of" grep -qE '^note .*extrapolated' out
+run media water --json
+check "media --json of a name has that one" is "$(json schema media@length 'media[0].name' 'media[0].law')" "$(lines 1 1 water sellmeier)"
+check "media --json: absolute is n_d of a law relative to vacuum" is "$(json 'media[0].n_d')" "$(json 'media[0].absolute.n_d')"
+run media --json --at 500
+check "media --json has all" is "$(json media@length)" 15
+check "media --json: relative to air and absolute" holds \
+    "($(json 'media[name=bk7].absolute.n_d') / $(json 'media[name=bk7].n_d') - 1.00027717) ^ 2 < 1e-16"
+check "media --json --at" holds "($(json 'media[name=bk7].at.n') - 1.52141) ^ 2 < 1e-10"
+check "media --json --at is null where it was not measured" is "$(json 'media[name=glycerol].at.n' 'media[name=glycerol].extrapolated')" \
+    "$(lines null '["n_d","n_F"]')"
+check "media --json: room temperature and no Abbe's number are null" \
+    is "$(json 'media[name=diamond].temperature_c' 'media[name=olive-oil].V_d')" "$(lines null null)"
+
 # --- machine
 run machine
 check "machine prints what it is" grep -q '^wall clock ' out
@@ -300,7 +330,7 @@ check "a reader who leaves is no drama" is "$(<err)" ""
 (sleep 0.3; "$program" render "$scene" --json "${small[@]}" 2>err; echo $? >code) | true
 check "a closed pipe exits 1 without words" is "$(cat code err)" 1
 if [[ -w /dev/full ]]; then
-    for words in params "params --json" machine --help "render --help" "render $scene --json --set render.width=8"; do
+    for words in params "params --json" media "media --json" machine --help "render --help" "render $scene --json --set render.width=8"; do
         # shellcheck disable=SC2086
         "$program" $words >/dev/full 2>err
         check "a full disk is exit 1 and one line: ${words%% /*}" is "$? $(wc -l <err)" "1 1"
@@ -362,6 +392,7 @@ check "completion offers options" matches "$(complete_line cuvette render --t)" 
 check "completion offers parameters of the scene" \
     is "$(complete_line "$program" render "$scene" --set liquid.io)" "liquid.ior="
 check "completion offers options of compare" is "$(complete_line cuvette compare --d)" --diff
+check "completion offers media" is "$(complete_line "$program" media fused)" fused-silica
 check "completion offers study verbs" is "$(complete_line cuvette study mer)" merge
 
 echo "$passed passed, $failed failed"

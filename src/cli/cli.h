@@ -17,6 +17,7 @@ typedef struct command {
 
 status command_render(int argc, char **argv, diagnostic *why);
 status command_params(int argc, char **argv, diagnostic *why);
+status command_media(int argc, char **argv, diagnostic *why);
 status command_study(int argc, char **argv, diagnostic *why);
 status command_compare(int argc, char **argv, diagnostic *why);
 status command_machine(int argc, char **argv, diagnostic *why);

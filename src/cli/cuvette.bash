@@ -33,7 +33,7 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
     --rays | --time) _cuvette_files 'png|pfm' ;;
     --timeline) _cuvette_files 'json' ;;
     --bits) _cuvette_words 8 16 ;;
-    --repeat | --shard) COMPREPLY=() ;;
+    --repeat | --shard | --at) COMPREPLY=() ;;
     -r | --results)
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$current")
@@ -61,7 +61,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render params study compare machine help --help --usage --version
+        _cuvette_words render params media study compare machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -78,6 +78,13 @@ _cuvette()
             _cuvette_words --json --man --help --usage --version
         else
             _cuvette_files 'yaml|yml'
+        fi
+        ;;
+    media)
+        if [[ $current == -* ]]; then
+            _cuvette_words --at --json --help --usage --version
+        else
+            _cuvette_words "$("${COMP_WORDS[0]}" media 2>/dev/null | awk 'NR > 1 { print $1 }')"
         fi
         ;;
     study)
@@ -99,7 +106,7 @@ _cuvette()
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render params study compare machine
+            _cuvette_words render params media study compare machine
         fi
         ;;
     esac

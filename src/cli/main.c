@@ -8,6 +8,7 @@ static status command_help(int argc, char **argv, diagnostic *why);
 static const command commands[] = {
     {"render", "render a scene; write the picture, the counts, the times", command_render},
     {"params", "print the table of parameters", command_params},
+    {"media", "print the catalogue of media: refractive indices, dispersion, sources", command_media},
     {"study", "run, list, merge and sum up studies", command_study},
     {"compare", "say how far two pictures lie apart", command_compare},
     {"machine", "print what this machine is, and what could disturb a measurement", command_machine},

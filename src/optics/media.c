@@ -56,7 +56,7 @@ static const medium catalogue[] = {
      .relative_to_air = true,
      .temperature_c = 20.0,
      .source = "Codex Alimentarius, CXS 33",
-     .verified = "nothing: quoted from memory of the standard",
+     .verified = "nothing yet",
      .note = "The middle of the range 1.4677 to 1.4705 that the standard allows at 589.3 nm. No dispersion law of good standing "
              "was found: constant, so not for a study of colours."},
     {.name = "bk7-liquid",

@@ -1,0 +1,187 @@
+#include "cli/media_rows.h"
+#include "cli/json.h"
+#include "base/number.h"
+#include <math.h>
+#include <string.h>
+
+typedef struct spectral_line {
+    const char *name;
+    double lambda_nm;
+} spectral_line;
+
+static const spectral_line lines[] = {
+    {"n_d", LINE_HELIUM_D_NM}, {"n_F", LINE_HYDROGEN_F_NM}, {"n_C", LINE_HYDROGEN_C_NM}, {"n_D", LINE_SODIUM_D_NM}};
+
+enum { LINES_TABLE = 3, LINES_ALL = 4 }; /* the table leaves out the sodium line */
+
+char *media_range_text(const medium *m, char text[MEDIA_RANGE_MAX])
+{
+    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
+    const dispersion *law = &m->law;
+    if (law->high_nm == 0.0)
+        snprintf(text, MEDIA_RANGE_MAX, "-");
+    else if (law->low_nm == law->high_nm)
+        snprintf(text, MEDIA_RANGE_MAX, "%s", number_format(law->low_nm, low));
+    else
+        snprintf(text, MEDIA_RANGE_MAX, "%s..%s", number_format(law->low_nm, low), number_format(law->high_nm, high));
+    return text;
+}
+
+static const char *temperature_text(const medium *m, char text[NUMBER_TEXT_MAX])
+{
+    return isnan(m->temperature_c) ? "room" : number_format(m->temperature_c, text);
+}
+
+static const char *reference_of(const medium *m)
+{
+    return m->relative_to_air ? "air" : "vacuum";
+}
+
+static void print_row(FILE *stream, const medium *m, double at_nm)
+{
+    char text[NUMBER_TEXT_MAX], range[MEDIA_RANGE_MAX];
+    const double abbe = dispersion_abbe_number(&m->law);
+    fprintf(stream, "%-12s", m->name);
+    for (int i = 0; i < LINES_TABLE; i++) {
+        const double lambda_nm = lines[i].lambda_nm;
+        fprintf(stream, "  %.5f%c", dispersion_index(&m->law, lambda_nm),
+                dispersion_covers(&m->law, lambda_nm, lambda_nm) ? ' ' : '*');
+    }
+    if (isfinite(abbe))
+        fprintf(stream, "  %5.2f%c", abbe, dispersion_covers(&m->law, LINE_HYDROGEN_F_NM, LINE_HYDROGEN_C_NM) ? ' ' : '*');
+    else
+        fprintf(stream, "  %5s ", "-");
+    if (at_nm > 0.0 && dispersion_covers(&m->law, at_nm, at_nm))
+        fprintf(stream, "  %.5f", dispersion_index(&m->law, at_nm));
+    else if (at_nm > 0.0)
+        fprintf(stream, "  %-7s", "-");
+    fprintf(stream, "  %-11s", media_range_text(m, range));
+    fprintf(stream, "  %-4s  %-8s  %s\n", temperature_text(m, text), reference_of(m), m->source);
+}
+
+void media_rows_table(FILE *stream, double at_nm)
+{
+    fprintf(stream, "%-12s  %-8s  %-8s  %-8s  %5s ", "name", lines[0].name, lines[1].name, lines[2].name, "V_d");
+    if (at_nm > 0.0)
+        fprintf(stream, "  %-7s", "n_at");
+    fprintf(stream, "  %-11s  %-4s  %-8s  %s\n", "range_nm", "T_C", "relative", "source");
+    for (size_t i = 0; i < media_count(); i++)
+        print_row(stream, media_at(i), at_nm);
+}
+
+static void print_index(FILE *stream, const medium *m, const char *label, double lambda_nm)
+{
+    char at[NUMBER_TEXT_MAX];
+    fprintf(stream, "%-15s %.8f at %s nm", label, dispersion_index(&m->law, lambda_nm), number_format(lambda_nm, at));
+    if (m->relative_to_air)
+        fprintf(stream, ", relative to vacuum %.8f", medium_index(m, lambda_nm));
+    fprintf(stream, "%s\n", dispersion_covers(&m->law, lambda_nm, lambda_nm) ? "" : ", extrapolated");
+}
+
+void media_rows_details(FILE *stream, const medium *m, double at_nm)
+{
+    char text[NUMBER_TEXT_MAX], range[MEDIA_RANGE_MAX];
+    const double abbe = dispersion_abbe_number(&m->law);
+    fprintf(stream, "name            %s\n", m->name);
+    fprintf(stream, "medium          %s\n", m->title);
+    for (int i = 0; i < LINES_ALL; i++)
+        print_index(stream, m, lines[i].name, lines[i].lambda_nm);
+    if (isfinite(abbe))
+        fprintf(stream, "V_d             %.4f%s\n", abbe,
+                dispersion_covers(&m->law, LINE_HYDROGEN_F_NM, LINE_HYDROGEN_C_NM) ? "" : ", extrapolated");
+    else
+        fprintf(stream, "V_d             none: the law has no dispersion\n");
+    if (at_nm > 0.0)
+        print_index(stream, m, "n_at", at_nm);
+    fprintf(stream, "relative to     %s\n", reference_of(m));
+    fprintf(stream, "range           %s nm\n", media_range_text(m, range));
+    fprintf(stream, "temperature     %s%s\n", temperature_text(m, text), isnan(m->temperature_c) ? "" : " C");
+    fprintf(stream, "law             %s: %s\n", dispersion_name(m->law.kind), dispersion_formula(m->law.kind));
+    fprintf(stream, "coefficients   ");
+    for (int i = 0; i < m->law.count; i++)
+        fprintf(stream, " %s", number_format(m->law.coefficient[i], text));
+    fprintf(stream, "\nsource          %s\n", m->source);
+    fprintf(stream, "compared with   %s\n", m->verified);
+    if (m->note[0])
+        fprintf(stream, "note            %s\n", m->note);
+}
+
+/* The lines' indices, published or relative to vacuum. */
+static json_t *indices_json(const medium *m, bool absolute)
+{
+    json_t *o = json_object();
+    int bad = 0;
+    for (int i = 0; i < LINES_ALL; i++) {
+        const double lambda_nm = lines[i].lambda_nm;
+        const double n = absolute ? medium_index(m, lambda_nm) : dispersion_index(&m->law, lambda_nm);
+        bad |= json_object_set_new(o, lines[i].name, json_of_real(n));
+    }
+    bad |= absolute ? 0 : json_object_set_new(o, "V_d", json_of_real(dispersion_abbe_number(&m->law)));
+    if (!bad)
+        return o;
+    json_decref(o);
+    return NULL;
+}
+
+static json_t *extrapolated_json(const medium *m)
+{
+    json_t *list = json_array();
+    for (int i = 0; list && i < LINES_ALL; i++)
+        if (!dispersion_covers(&m->law, lines[i].lambda_nm, lines[i].lambda_nm))
+            json_array_append_new(list, json_string(lines[i].name));
+    return list;
+}
+
+static json_t *coefficients_json(const medium *m)
+{
+    json_t *list = json_array();
+    for (int i = 0; list && i < m->law.count; i++)
+        json_array_append_new(list, json_of_real(m->law.coefficient[i]));
+    return list;
+}
+
+static json_t *at_json(const medium *m, double at_nm)
+{
+    const bool covered = dispersion_covers(&m->law, at_nm, at_nm);
+    return json_pack("{s:o,s:o,s:o}", "lambda_nm", json_of_real(at_nm), "n",
+                     json_of_real(covered ? dispersion_index(&m->law, at_nm) : (double)NAN), "n_absolute",
+                     json_of_real(covered ? medium_index(m, at_nm) : (double)NAN));
+}
+
+static json_t *medium_json(const medium *m, double at_nm)
+{
+    json_t *o = json_object();
+    int bad = json_object_set_new(o, "name", json_string(m->name));
+    bad |= json_object_set_new(o, "title", json_string(m->title));
+    bad |= json_object_update_new(o, indices_json(m, false));
+    bad |= json_object_set_new(o, "absolute", indices_json(m, true));
+    bad |= json_object_set_new(o, "extrapolated", extrapolated_json(m));
+    bad |= at_nm > 0.0 ? json_object_set_new(o, "at", at_json(m, at_nm)) : 0;
+    bad |= json_object_set_new(o, "relative_to", json_string(reference_of(m)));
+    bad |= json_object_set_new(o, "low_nm", m->law.low_nm > 0.0 ? json_of_real(m->law.low_nm) : json_null());
+    bad |= json_object_set_new(o, "high_nm", m->law.high_nm > 0.0 ? json_of_real(m->law.high_nm) : json_null());
+    bad |= json_object_set_new(o, "temperature_c", json_of_real(m->temperature_c));
+    bad |= json_object_set_new(o, "law", json_string(dispersion_name(m->law.kind)));
+    bad |= json_object_set_new(o, "formula", json_string(dispersion_formula(m->law.kind)));
+    bad |= json_object_set_new(o, "coefficients", coefficients_json(m));
+    bad |= json_object_set_new(o, "source", json_string(m->source));
+    bad |= json_object_set_new(o, "verified", json_string(m->verified));
+    bad |= json_object_set_new(o, "note", json_string(m->note));
+    if (!bad)
+        return o;
+    json_decref(o);
+    return NULL;
+}
+
+json_t *media_rows_json(const medium *only, double at_nm)
+{
+    json_t *list = json_array();
+    int bad = !list;
+    for (size_t i = 0; i < media_count() && !bad; i++)
+        if (!only || only == media_at(i))
+            bad |= json_array_append_new(list, medium_json(media_at(i), at_nm));
+    if (!bad)
+        return json_pack("{s:i,s:o}", "schema", 1, "media", list);
+    json_decref(list);
+    return NULL;
+}
