@@ -104,6 +104,7 @@ check "keys of a worker" is "$(json 'threads[0]@keys' | sort | tr '\n' ' ')" \
     "busy_s cpu_s pu rays start_s tiles waiting_s wall_s worker "
 check "times and process" holds "$(json wall_s) > 0 && $(json cpu_s) > 0 && $(json peak_rss_bytes) > 0"
 check "switches and others" json voluntary_switches involuntary_switches others_share
+check "without chance there is no noise" is "$(json noise@type)" null
 check "hardware counters are there or null" is "$(json hardware@keys | sort | tr '\n' ' ')" \
     "branch_misses cache_misses cycles instructions "
 check "parameters have types" is "$(json 'params["render.depth"]@type' 'params["render.weights"]')" "$(lines integer fresnel)"

@@ -41,14 +41,27 @@ static void what_is_forgotten_is_hinted_at(void **state)
     expect_hints(LIT "solids: {ball: {shape: sphere}}",
                  "ball is neither transparent, nor diffuse, nor lit: it is black; set its diffuse\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1}}",
-                 "ball is transparent with ior 1, like the air around it: it is invisible; set its ior\n");
+                 "ball is transparent with the index of what is around it: it is invisible; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, specular: 0.5}}",
-                 "ball is transparent with ior 1, like the air around it: it bends no light; set its ior\n");
+                 "ball is transparent with the index of what is around it: it bends no light; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 0.5}}",
-                 "ball is transparent with ior 1, like the air around it: it bends no light; set its ior\n");
+                 "ball is transparent with the index of what is around it: it bends no light; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, ior: 1.5}, egg: {shape: sphere, diffuse: 1, ior: 0.9, radius: 2}}",
-                 "ball has an ior but is opaque; set its transparency\n"
-                 "egg has an ior but is opaque; set its transparency\n");
+                 "ball has a refractive index but is opaque; set its transparency\n"
+                 "egg has a refractive index but is opaque; set its transparency\n");
+}
+
+static void a_law_beyond_its_measurements_is_hinted_at(void **state)
+{
+    (void)state;
+    expect_hints("solids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}", "");
+    expect_hints("render: {lambda_nm: 450}\nsolids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}",
+                 "drop: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond\n");
+    expect_hints("render: {spectrum: spectral}\nsolids: {drop: {shape: sphere, transparency: 1, medium: water}}", "");
+    expect_hints("render: {spectrum: spectral}\nsolids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}",
+                 "drop: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond\n");
+    expect_hints("background: {medium: water}\nsolids: {drop: {shape: sphere, transparency: 1, medium: water}}",
+                 "drop is transparent with the index of what is around it: it is invisible; set its ior\n");
 }
 
 static void what_is_hidden_is_hinted_at(void **state)
@@ -114,6 +127,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_forgotten_is_hinted_at),
+        cmocka_unit_test(a_law_beyond_its_measurements_is_hinted_at),
         cmocka_unit_test(what_is_hidden_is_hinted_at),
         cmocka_unit_test(what_is_meant_is_not),
         cmocka_unit_test(the_projects_scenes_lack_nothing),

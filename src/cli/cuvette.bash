@@ -30,7 +30,7 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
     case $1 in
     -s | --set) _cuvette_parameters ;;
     -o | --output | --diff) _cuvette_files 'png|jpg|jpeg|pfm' ;;
-    --rays | --time) _cuvette_files 'png|pfm' ;;
+    --rays | --time | --noise) _cuvette_files 'png|pfm' ;;
     --timeline) _cuvette_files 'json' ;;
     --bits) _cuvette_words 8 16 ;;
     --repeat | --shard | --at) COMPREPLY=() ;;
@@ -68,7 +68,7 @@ _cuvette()
     case $command in
     render)
         if [[ $current == -* ]]; then
-            _cuvette_words --output --set --json --bits --rays --time --timeline --repeat --help --usage --version
+            _cuvette_words --output --set --json --bits --rays --time --noise --timeline --repeat --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi

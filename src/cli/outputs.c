@@ -102,7 +102,7 @@ static status check_picture(const outputs *o, const named_file *file, bool is_ma
 
 static status check_file(const outputs *o, const named_file *files, size_t at, const scene *s, diagnostic *why)
 {
-    enum { TIMELINE = 3 };
+    enum { TIMELINE = 4 };
     const named_file *file = &files[at];
     status result = STATUS_OK;
     if (at < TIMELINE)
@@ -122,7 +122,9 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
 status outputs_check(const outputs *o, const scene *s, diagnostic *why)
 {
     const named_file files[] = {
-        {"-o", o->picture}, {"--rays", o->rays}, {"--time", o->time}, {"--timeline", o->timeline}};
+        {"-o", o->picture}, {"--rays", o->rays}, {"--time", o->time}, {"--noise", o->noise}, {"--timeline", o->timeline}};
+    if (o->noise && (s->render.integrator != INTEGRATOR_PATH || s->render.paths < 2))
+        return wrong(&files[3], why, "set render.integrator to path and render.paths to 16 or more", "nothing is drawn by chance");
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         status result = files[i].path ? check_file(o, files, i, s, why) : STATUS_OK;
         if (result != STATUS_OK)
@@ -153,6 +155,8 @@ status outputs_write(const outputs *o, const render_result *result, diagnostic *
         ended = record_map(result->pixel_rays, result->picture, "rays per pixel", o->rays, why);
     if (ended == STATUS_OK && o->time && result->pixel_ns)
         ended = record_map(result->pixel_ns, result->picture, "nanoseconds per pixel", o->time, why);
+    if (ended == STATUS_OK && o->noise && result->variance)
+        ended = record_noise(result, o->noise, why);
     if (ended == STATUS_OK && o->timeline && result->events)
         ended = record_timeline(result, o->timeline, why);
     return ended;

@@ -7,7 +7,7 @@
 #include "render/renderer.h"
 
 typedef struct outputs {
-    const char *picture, *rays, *time, *timeline; /* NULL: not wanted */
+    const char *picture, *rays, *time, *noise, *timeline; /* NULL: not wanted */
     int bits;                                     /* of a PNG picture: 8 or 16; 0 when not said */
 } outputs;
 

@@ -21,7 +21,7 @@ typedef struct render_request {
     int64_t repeat;
 } render_request;
 
-enum { KEY_JSON = 0x100, KEY_BITS, KEY_RAYS, KEY_TIME, KEY_TIMELINE, KEY_REPEAT };
+enum { KEY_JSON = 0x100, KEY_BITS, KEY_RAYS, KEY_TIME, KEY_NOISE, KEY_TIMELINE, KEY_REPEAT };
 
 static const struct argp_option options[] = {
     {"output", 'o', "FILE", 0, "write the picture: .png, .jpg or .pfm (linear floats)", 0},
@@ -31,6 +31,7 @@ static const struct argp_option options[] = {
     {"bits", KEY_BITS, "N", 0, "bits a channel of a PNG: 8 (the default) or 16", 0},
     {"rays", KEY_RAYS, "FILE", 0, "write the rays by pixel: .png with a key, or .pfm", 0},
     {"time", KEY_TIME, "FILE", 0, "write the nanoseconds by pixel: .png with a key, or .pfm", 0},
+    {"noise", KEY_NOISE, "FILE", 0, "write the standard error of random paths by pixel: .png with a key, or .pfm", 0},
     {"timeline", KEY_TIMELINE, "FILE", 0,
      "write when each tile was taken by whom: .json, for chrome://tracing or Perfetto", 0},
     {"repeat", KEY_REPEAT, "N", 0, "render N times; wall_s and cpu_s are the medians", 0},
@@ -74,6 +75,7 @@ static error_t take_option(int key, char *value, struct argp_state *state)
     case KEY_BITS: return take_bits(value, request, input->why);
     case KEY_RAYS: request->files.rays = value; return 0;
     case KEY_TIME: request->files.time = value; return 0;
+    case KEY_NOISE: request->files.noise = value; return 0;
     case KEY_TIMELINE: request->files.timeline = value; return 0;
     case KEY_REPEAT:
         request->repeated = true;
@@ -98,7 +100,7 @@ static status check_request(const render_request *request, diagnostic *why)
     const char *remedy = NULL, *what = NULL;
     if (!request->scene_path)
         what = "no scene is named", remedy = "name a scene file, as experiments/scenes/rod.yaml";
-    else if (!files->picture && !files->rays && !files->time && !files->timeline && !request->json)
+    else if (!files->picture && !files->rays && !files->time && !files->noise && !files->timeline && !request->json)
         what = "nothing is asked for", remedy = "add -o FILE for the picture or --json for the counts";
     if (!what)
         return STATUS_OK;
@@ -147,7 +149,7 @@ static status choose_isa(isa *level, diagnostic *why)
 /* One line for people; programs take --json. */
 static void print_summary(const scene *s, const frames *f, const outputs *files)
 {
-    const char *const written[] = {files->picture, files->rays, files->time, files->timeline};
+    const char *const written[] = {files->picture, files->rays, files->time, files->noise, files->timeline};
     uint64_t rays = ray_counters_total(&f->result->counters);
     double wall_s = f->count ? summarize(f->wall_s, f->count).median : f->result->wall_s;
     printf("%s%lldx%lld pixels, depth %lld: %llu rays in %.3f s (%.1f million a second), film %016llx",

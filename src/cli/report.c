@@ -202,6 +202,20 @@ static int add_counts(json_t *o, const scene *s, const ray_counters *c)
     return bad;
 }
 
+/* Mean variance of the film's values by channel, in the film's own space, and the root of its mean; null where nothing is drawn by
+ * chance. */
+static json_t *noise(const render_result *r)
+{
+    double mean[3] = {0.0, 0.0, 0.0};
+    const size_t pixels = (size_t)r->picture->width * (size_t)r->picture->height;
+    if (!r->variance)
+        return json_null();
+    for (size_t i = 0; i < 3 * pixels; i++)
+        mean[i % 3] += r->variance[i] / (double)pixels;
+    return json_pack("{s:o,s:[o,o,o]}", "rms", json_of_real(render_noise_rms(r)), "variance", json_of_real(mean[0]),
+                     json_of_real(mean[1]), json_of_real(mean[2]));
+}
+
 static int add_process(json_t *o, const frames *f)
 {
     int bad = json_object_set_new(o, "threads", workers(f->result));
@@ -221,6 +235,7 @@ json_t *report_create(const scene *s, isa level, const frames *f, bool repeated)
     if (!o)
         return NULL;
     int bad = add_times(o, f, repeated) | add_counts(o, s, &f->result->counters) | add_process(o, f);
+    bad |= json_object_set_new(o, "noise", noise(f->result));
     bad |= json_object_set_new(o, "isa", json_string(isa_name(level)));
     bad |= json_object_set_new(o, "version", json_string(CUVETTE_VERSION));
     bad |= json_object_set_new(o, "scene", json_of_text(s->path ? s->path : ""));

@@ -3,6 +3,8 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "image/heatmap.h"
+#include <math.h>
+#include <stdlib.h>
 
 status record_picture(const film *f, const char *path, int bits, diagnostic *why)
 {
@@ -31,6 +33,21 @@ status record_map(const double *values, const film *f, const char *title, const 
     if (code == STATUS_OK)
         code = image_write(picture, path, 8, why);
     image_destroy(picture);
+    return code;
+}
+
+status record_noise(const render_result *result, const char *path, diagnostic *why)
+{
+    const size_t pixels = (size_t)result->picture->width * (size_t)result->picture->height;
+    double *error = malloc((pixels + 1) * sizeof *error);
+    if (!error)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    for (size_t i = 0; i < pixels; i++) {
+        const double *v = &result->variance[3 * i];
+        error[i] = sqrt((v[0] + v[1] + v[2]) / 3.0);
+    }
+    status code = record_map(error, result->picture, "standard error per pixel", path, why);
+    free(error);
     return code;
 }
 

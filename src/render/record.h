@@ -14,6 +14,9 @@ status record_map(const double *values, const film *f, const char *title, const 
 
 /* The timeline in Chrome's trace event format (Google 2016): one row a worker, one bar a tile, microseconds from the frame's
  * start. Opens in chrome://tracing and in Perfetto. Needs a result with events. */
+/* The standard error of each pixel, root of the mean over its channels; result has a variance. */
+status record_noise(const render_result *result, const char *path, diagnostic *why);
+
 status record_timeline(const render_result *result, const char *path, diagnostic *why);
 
 #endif

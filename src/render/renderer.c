@@ -5,6 +5,7 @@
 #include "render/pool.h"
 #include "render/schedule.h"
 #include "render/tracer_set.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -333,6 +334,15 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
     }
     *out = result;
     return code;
+}
+
+double render_noise_rms(const render_result *result)
+{
+    const size_t count = 3 * (size_t)result->picture->width * (size_t)result->picture->height;
+    double sum = 0.0;
+    for (size_t i = 0; result->variance && i < count; i++)
+        sum += result->variance[i];
+    return result->variance ? sqrt(sum / (double)count) : (double)NAN;
 }
 
 void render_result_destroy(render_result *result)

@@ -58,6 +58,10 @@ typedef struct render_result {
     size_t event_count;
 } render_result;
 
+/* Root of the mean variance over pixels and channels: how far off a value of the film typically is by chance. NaN where nothing is
+ * drawn by chance, or too few paths tell. */
+double render_noise_rms(const render_result *result);
+
 /* scene_load_pictures must have been called. STATUS_INTERRUPTED when progress returned false: *out then holds what was done. */
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out, diagnostic *why);
 void render_result_destroy(render_result *result);

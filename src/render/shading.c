@@ -17,7 +17,7 @@ static inline int64_t in_film_units(double radiance)
 }
 
 /* Where a ticket's radiance goes, and as what. */
-static int64_t place_by_ticket(const tracer *t, int64_t ticket, double *r, double *g, double *b)
+static __attribute__((noinline)) int64_t place_by_ticket(const tracer *t, int64_t ticket, double *r, double *g, double *b)
 {
     const plan *p = t->target.scene;
     const film *f = t->target.picture;
@@ -31,7 +31,7 @@ static int64_t place_by_ticket(const tracer *t, int64_t ticket, double *r, doubl
 
 static inline void expose(tracer *t, int64_t ticket, double r, double g, double b)
 {
-    const int64_t pixel = t->by_ticket ? place_by_ticket(t, ticket, &r, &g, &b) : ticket;
+    const int64_t pixel = __builtin_expect(t->by_ticket, 0) ? place_by_ticket(t, ticket, &r, &g, &b) : ticket;
     if (!((int)is_exposable(r) & (int)is_exposable(g) & (int)is_exposable(b))) {
         t->overflow = -1;
         return;

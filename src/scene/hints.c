@@ -1,4 +1,5 @@
 #include "scene/hints.h"
+#include "scene/medium.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,13 +11,20 @@ static bool is_lit(const material *m)
     return m->diffuse > 0.0 || m->specular > 0.0;
 }
 
+static bool is_like_surroundings(const scene *s, const material *m)
+{
+    index_law own, around = surrounding_index_law(&s->background);
+    return material_index_law(m, "", &own, NULL) == STATUS_OK &&
+           index_law_at(&own, s->render.lambda_nm) == index_law_at(&around, s->render.lambda_nm);
+}
+
 /* Does another medium hold the solid, so that one of the air's index is a bubble? Its position says so: the centre, or
  * that of the base. */
 static bool is_inside_medium(const scene *s, const solid *bubble)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *other = &s->solids[i];
-        if (other != bubble && other->visible && other->surface.transparency > 0.0 && other->surface.ior != 1.0 &&
+        if (other != bubble && other->visible && other->surface.transparency > 0.0 && !is_like_surroundings(s, &other->surface) &&
             solid_shape_contains(&other->shape, bubble->shape.position)) {
             return true;
         }
@@ -30,13 +38,13 @@ static const char *solid_hint(const scene *s, const solid *owner, char text[HINT
     const material *m = &owner->surface;
     const char *problem = NULL;
     if (m->transparency > 0.0) {
-        if (s->render.weights == WEIGHTS_FRESNEL && m->ior == 1.0 && !is_inside_medium(s, owner)) {
+        if (s->render.weights == WEIGHTS_FRESNEL && is_like_surroundings(s, m) && !is_inside_medium(s, owner)) {
             problem = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m)
-                          ? "is transparent with ior 1, like the air around it: it bends no light; set its ior"
-                          : "is transparent with ior 1, like the air around it: it is invisible; set its ior";
+                          ? "is transparent with the index of what is around it: it bends no light; set its ior"
+                          : "is transparent with the index of what is around it: it is invisible; set its ior";
         }
-    } else if (m->ior != 1.0) {
-        problem = "has an ior but is opaque; set its transparency";
+    } else if (m->medium != MEDIUM_IOR || m->ior != 1.0) {
+        problem = "has a refractive index but is opaque; set its transparency";
     } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m)) {
         problem = "is neither transparent, nor diffuse, nor lit: it is black; set its diffuse";
     }
@@ -108,6 +116,22 @@ static void hint_at_cover(const scene *s, const solid *hidden, void (*note)(void
     }
 }
 
+/* A law that is used outside the wavelengths where its medium was measured. */
+static void hint_at_range(const scene *s, const solid *owner, void (*note)(void *context, const char *text), void *context)
+{
+    const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
+    const double low_nm = spectral ? VISIBLE_LOW_NM : s->render.lambda_nm, high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
+    index_law law;
+    if (owner->surface.transparency == 0.0 || material_index_law(&owner->surface, "", &law, NULL) != STATUS_OK ||
+        dispersion_covers(&law.law, low_nm, high_nm)) {
+        return;
+    }
+    char text[HINT_MAX];
+    snprintf(text, HINT_MAX, "%s: %s was measured from %g to %g nm only, and is extrapolated beyond", owner->name,
+             medium_words[owner->surface.medium], law.law.low_nm, law.law.high_nm);
+    note(context, text);
+}
+
 void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context)
 {
     size_t visible = 0, lit = 0;
@@ -128,6 +152,7 @@ void scene_hints(const scene *s, void (*note)(void *context, const char *text), 
             note(context, hint);
         }
         if (s->solids[i].visible) {
+            hint_at_range(s, &s->solids[i], note, context);
             hint_at_cover(s, &s->solids[i], note, context);
         }
     }
