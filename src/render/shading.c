@@ -16,27 +16,13 @@ static inline int64_t in_film_units(double radiance)
     return (int64_t)(radiance * FILM_ONE + 0.5);
 }
 
-/* Where a ticket's radiance goes, and as what. */
-static __attribute__((noinline)) int64_t place_by_ticket(const tracer *t, int64_t ticket, double *r, double *g, double *b)
+static inline void expose_at(tracer *t, int64_t place, double r, double g, double b)
 {
-    const plan *p = t->target.scene;
-    const film *f = t->target.picture;
-    if (p->spectral) {
-        double weights[3];
-        observer_weights(spectra_lambda(&p->render, ticket), weights);
-        *r *= weights[0], *g *= weights[1], *b *= weights[2];
-    }
-    return ticket_pixel(ticket) + ticket_sample(ticket) % f->layers * f->width * f->height;
-}
-
-static inline void expose(tracer *t, int64_t ticket, double r, double g, double b)
-{
-    const int64_t pixel = __builtin_expect(t->by_ticket, 0) ? place_by_ticket(t, ticket, &r, &g, &b) : ticket;
     if (!((int)is_exposable(r) & (int)is_exposable(g) & (int)is_exposable(b))) {
         t->overflow = -1;
         return;
     }
-    int64_t *sum = &t->target.picture->sum[pixel * 3];
+    int64_t *sum = &t->target.picture->sum[place * 3];
     const int64_t red = (int64_t)((uint64_t)sum[0] + (uint64_t)in_film_units(r));
     const int64_t green = (int64_t)((uint64_t)sum[1] + (uint64_t)in_film_units(g));
     const int64_t blue = (int64_t)((uint64_t)sum[2] + (uint64_t)in_film_units(b));
@@ -44,22 +30,52 @@ static inline void expose(tracer *t, int64_t ticket, double r, double g, double 
     t->overflow |= red | green | blue;
 }
 
+/* The ticket's layer and pixel; of a spectral film as what the eye makes of its wavelength. Never inline, so that the rgb film's
+ * way keeps its registers. */
+static __attribute__((noinline)) void expose_by_ticket(tracer *t, int64_t ticket, double r, double g, double b)
+{
+    const plan *p = t->target.scene;
+    const film *f = t->target.picture;
+    const int64_t place = ticket_pixel(ticket) + ticket_sample(ticket) % f->layers * f->width * f->height;
+    double weights[3] = {1.0, 1.0, 1.0};
+    if (p->spectral)
+        observer_weights(spectra_lambda(&p->render, ticket), weights);
+    expose_at(t, place, r * weights[0], g * weights[1], b * weights[2]);
+}
+
+static inline void expose(tracer *t, int64_t ticket, double r, double g, double b)
+{
+    if (t->by_ticket)
+        expose_by_ticket(t, ticket, r, g, b);
+    else
+        expose_at(t, ticket, r, g, b);
+}
+
 void shading_expose(tracer *t, int64_t ticket, double r, double g, double b)
 {
     expose(t, ticket, r, g, b);
 }
 
-void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+static __attribute__((noinline)) void expose_sky_by_ticket(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
 {
     const plan *p = t->target.scene;
-    const background *sky = p->sky;
-    if (p->spectral) {
-        const double l = spectra_sky(p->spectral, sky, direction, spectra_lambda(&p->render, ticket));
-        expose(t, ticket, wr * l, wg * l, wb * l);
+    vec3 l;
+    if (p->spectral)
+        l.x = l.y = l.z = spectra_sky(p->spectral, p->sky, direction, spectra_lambda(&p->render, ticket));
+    else
+        l = sky_radiance(p->sky, direction);
+    expose_by_ticket(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+}
+
+void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+{
+    const background *sky = t->target.scene->sky;
+    if (t->by_ticket) {
+        expose_sky_by_ticket(t, ticket, direction, wr, wg, wb);
         return;
     }
     const vec3 l = sky->kind == BACKGROUND_UNIFORM ? sky->color : sky_radiance(sky, direction);
-    expose(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+    expose_at(t, ticket, wr * l.x, wg * l.y, wb * l.z);
 }
 
 static void expose_ambient(tracer *t, const material *m)
