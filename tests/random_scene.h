@@ -1,0 +1,59 @@
+/* Random scenes as text, from room_fixture.h's shapes: overlapping solids of all kinds, turned, their priorities shuffled and some of
+ * them equal, indices shared. Ownership: values. */
+#ifndef CUVETTE_TESTS_RANDOM_SCENE_H
+#define CUVETTE_TESTS_RANDOM_SCENE_H
+
+#include "room_fixture.h"
+
+#include "probe_fixture.h"
+
+static inline void add_shape(scene_text *t, const solid_shape *s)
+{
+    add(t, "position: [%.17g, %.17g, %.17g], rotation: [%.17g, %.17g, %.17g], ", s->position.x, s->position.y, s->position.z,
+        s->rotation_deg.x, s->rotation_deg.y, s->rotation_deg.z);
+    switch (s->kind) {
+    case SHAPE_CYLINDER: add(t, "shape: cylinder, radius: %.17g, height: %.17g, m: %.17g", s->radius, s->height, s->m); break;
+    case SHAPE_CUP:
+        add(t, "shape: cup, radius: %.17g, height: %.17g, inner_radius: %.17g, floor: %.17g", s->radius, s->height, s->inner_radius, s->floor);
+        break;
+    case SHAPE_BOX: add(t, "shape: box, size: [%.17g, %.17g, %.17g]", s->size.x, s->size.y, s->size.z); break;
+    case SHAPE_SPHERE: add(t, "shape: sphere, radius: %.17g", s->radius); break;
+    case SHAPE_PLANE:
+    case SHAPE_COUNT: add(t, "shape: plane"); break;
+    }
+}
+
+/* Media that are shared are 0, the surrounding one, -1 and -2: see room_fill. */
+static inline double random_ior(uint64_t *seed, int64_t medium, double outside)
+{
+    return medium == 0 ? outside : medium == -1 ? 1.33 : medium == -2 ? 1.5 : random_real(seed, 1.0, 2.5);
+}
+
+/* Solids s0, s1, ...: every one clear, or as the room says; an opaque one reflects and shines by ambient light, together at most 1. */
+static inline void add_room(scene_text *t, uint64_t *seed, const room *m, double outside, bool all_clear, bool absorbing)
+{
+    for (int i = 0; i < m->count; i++) {
+        add(t, "  s%d: {priority: %d, ", i, (int)m->priority[i]);
+        if (m->opaque[i] && !all_clear) {
+            const double mirror = random_below(seed, 2) ? random_real(seed, 0.0, 1.0) : 0.0;
+            add(t, "reflectivity: %.17g, ambient: %.17g, diffuse: 0.5, ", mirror, 1.0 - mirror);
+        } else {
+            add(t, "ior: %.17g, transparency: %.17g, reflectivity: 0, ", random_ior(seed, m->medium[i], outside), all_clear ? 1.0 : m->clearness[i]);
+        }
+        if (absorbing && random_below(seed, 2))
+            add(t, "absorb_per_m: [%.17g, 0, %.17g], ", random_real(seed, 0.0, 0.5), random_real(seed, 0.0, 1.0));
+        add_shape(t, &m->shape[i]);
+        add(t, "}\n");
+    }
+}
+
+static inline room random_room(uint64_t *seed, bool on_a_grid)
+{
+    room m;
+    (on_a_grid ? room_fill_on_a_grid : room_fill)(&m, seed);
+    arrangement_destroy(m.solids);
+    m.solids = NULL;
+    return m;
+}
+
+#endif
