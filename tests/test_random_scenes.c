@@ -1,0 +1,180 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "random_scene.h"
+
+/* A thousand random scenes: what must hold whatever the solids are and wherever the camera stands. */
+
+enum { SCENES = 1000, WIDTH = 8, HEIGHT = 6 };
+
+/* The kinds of scenes: every one of these in turn. */
+static const char *const ways_to_render[] = {
+    "render.depth=5",
+    "render.depth=5 render.beyond=black",
+    "render.depth=5 render.polarisation=on",
+    "render.depth=4 render.weights=constant render.samples=4",
+    "render.depth=7 render.min_weight=0.01 render.beyond=black",
+    "render.depth=3 render.shadows=opaque",
+};
+
+static scene_text random_scene(uint64_t *seed, int number, bool lit)
+{
+    const room m = random_room(seed, number % 3 == 0);
+    const double outside = random_below(seed, 3) ? 1.0 : random_real(seed, 1.0, 2.0);
+    const vec3 eye = random_point(seed, random_below(seed, 3) ? 3.0 : 0.7), target = random_point(seed, 0.5);
+    scene_text t = {.length = 0};
+    add(&t, "background: {color: [1, 1, 1], ior: %.17g}\nrender: {width: %d, height: %d}\n", outside, WIDTH, HEIGHT);
+    add(&t, "camera: {position: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], fov_deg: 50}\n", eye.x, eye.y, eye.z, target.x,
+        target.y, target.z);
+    for (int k = 0; k < 3 && lit; k++) {
+        const vec3 p = random_point(seed, 4.0);
+        add(&t, "%s  lamp%d: {position: [%.17g, %.17g, %.17g], reach: %d}\n", k ? "" : "lights:\n", k, p.x, p.y, p.z, 3 * k);
+    }
+    add(&t, "solids:\n");
+    add_room(&t, seed, &m, outside, false, random_below(seed, 3) == 0);
+    return t;
+}
+
+static bool is_share(double a)
+{
+    return a >= 0.0 && a <= 1.0;
+}
+
+static bool is_point(vec3 p)
+{
+    return isfinite(p.x) && isfinite(p.y) && isfinite(p.z);
+}
+
+/* Numbers are numbers, shares are shares, unit vectors are unit vectors, and no child outweighs its parent. */
+static const char *fault_of(const ray_tree *tree, const ray_node *node)
+{
+    const ray_hit *h = &node->hit;
+    if (!is_point(node->origin) || !(fabs(vec3_length(node->direction) - 1.0) <= 1e-14))
+        return "its origin or direction";
+    for (int c = 0; c < 3; c++) {
+        if (!(node->throughput[c] >= 0.0 && node->brought[c] >= 0.0 && isfinite(node->throughput[c]) && isfinite(node->brought[c])))
+            return "its throughput";
+        if (node->kind != RAY_SHADOW && node->parent != RAY_NONE && node->throughput[c] > tree->node[node->parent].throughput[c])
+            return "more throughput than its parent";
+    }
+    if (node->end != RAY_END_HIT)
+        return NULL;
+    if (!is_point(h->point) || !(fabs(vec3_length(h->normal) - 1.0) <= 1e-14) || !(vec3_dot(h->normal, node->direction) <= 0.0))
+        return "the point or normal where it hits";
+    if (!(h->t >= 0.0 && h->error_bound >= 0.0 && h->error_bound <= 1e-14 * (100.0 + vec3_length(node->origin) + h->t)))
+        return "the distance to its hit";
+    const double shares[] = {h->cos_i, h->cos_t, h->R_s, h->R_p, h->R, h->transmittance[0], h->transmittance[1], h->transmittance[2]};
+    for (size_t k = 0; k < COUNT(shares); k++)
+        if (!is_share(shares[k]))
+            return "a share at its hit";
+    return NULL;
+}
+
+/* Which medium is a little along a direction from a point: by the solids' own shapes. false where another boundary lies within
+ * the step, so that a near and a far step do not agree. */
+static bool medium_along(const probe *p, vec3 point, vec3 direction, int *medium)
+{
+    *medium = probe_medium_at(p, vec3_add(point, vec3_scale(direction, 1e-8)));
+    return *medium == probe_medium_at(p, vec3_add(point, vec3_scale(direction, 1e-6))) &&
+           *medium == probe_medium_at(p, vec3_add(point, vec3_scale(direction, 1e-10)));
+}
+
+typedef struct census { int asked, unsure, wrong; } census;
+
+static void ask(census *sum, const probe *p, vec3 point, vec3 direction, int believed)
+{
+    int medium;
+    sum->asked++;
+    if (!medium_along(p, point, direction, &medium))
+        sum->unsure++;
+    else
+        sum->wrong += medium != believed;
+}
+
+static void ask_media(census *sum, const probe *p, const ray_tree *tree)
+{
+    for (size_t i = 0; i < tree->count; i++) {
+        const ray_node *node = &tree->node[i];
+        if (node->kind == RAY_REFLECT || node->kind == RAY_REFRACT)
+            ask(sum, p, node->origin, node->direction, node->medium);
+        if (node->end != RAY_END_HIT || node->kind == RAY_SHADOW)
+            continue;
+        ask(sum, p, node->hit.point, vec3_scale(node->direction, -1.0), node->hit.from);
+        ask(sum, p, node->hit.point, node->direction, node->hit.to);
+    }
+}
+
+typedef struct survey { census media; size_t rays; int hits; double brightest; } survey;
+
+static void look_at_scene(uint64_t *seed, int number, bool lit, renderer *r, survey *sum)
+{
+    const scene_text text = random_scene(seed, number, lit);
+    stage g = stage_of(text.at, ways_to_render[number % (int)COUNT(ways_to_render)]);
+    render_result *picture = NULL;
+    diagnostic why = {0};
+    worked(renderer_render(r, g.setting, NULL, &picture, &why), &why);
+    for (int y = 0; y < HEIGHT; y++) {
+        for (int x = 0; x < WIDTH; x++) {
+            const ray_tree *tree = stage_pixel(&g, x, y);
+            for (size_t i = 0; i < tree->count; i++) {
+                const char *fault = fault_of(tree, &tree->node[i]);
+                if (fault)
+                    fail_msg("scene %d, pixel %d,%d, ray %zu: %s", number, x, y, i, fault);
+                sum->hits += tree->node[i].end == RAY_END_HIT;
+            }
+            sum->rays += tree->count;
+            ask_media(&sum->media, g.probe, tree);
+            for (int c = 0; c < 3; c++) {
+                if (tree->radiance[c] != film_value(picture->picture, x, y, c))
+                    fail_msg("scene %d, pixel %d,%d: the probe and the picture differ", number, x, y);
+                /* each contribution is rounded to a unit of the film */
+                sum->brightest = fmax(sum->brightest, tree->radiance[c] - (double)tree->count / FILM_ONE);
+            }
+        }
+    }
+    if (sum->media.wrong)
+        fail_msg("scene %d: the media of %d places are not those of the solids there", number, sum->media.wrong);
+    render_result_destroy(picture);
+    stage_close(&g);
+}
+
+static survey look_at_scenes(uint64_t seed, bool lit)
+{
+    survey sum = {.rays = 0};
+    renderer *r = NULL;
+    diagnostic why = {0};
+    print_message("seed %llu\n", (unsigned long long)seed);
+    worked(renderer_create(isa_best(), NULL, &r, &why), &why);
+    for (int number = 0; number < SCENES / 2; number++)
+        look_at_scene(&seed, number, lit, r, &sum);
+    renderer_destroy(r);
+    assert_true(sum.media.unsure < sum.media.asked / 1000);
+    assert_true(sum.rays > 100000 && sum.hits > 50000 && sum.media.asked > 100000);
+    return sum;
+}
+
+/* No interface hands on more than it gets, no opaque surface either: R + T <= 1, k_a + k_r <= 1. */
+static void under_a_sky_of_one_nothing_is_brighter(void **state)
+{
+    (void)state;
+    assert_true(look_at_scenes(5, false).brightest <= 1.0 + 1e-12);
+}
+
+static void with_lights_the_probe_sees_what_the_picture_shows(void **state)
+{
+    (void)state;
+    assert_true(look_at_scenes(6, true).brightest > 1.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(under_a_sky_of_one_nothing_is_brighter),
+        cmocka_unit_test(with_lights_the_probe_sees_what_the_picture_shows),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
