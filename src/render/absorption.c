@@ -8,9 +8,9 @@
 /* Coefficients of a rank, by channel; of a spectral film at the ray's wavelength. */
 static vec3 coefficients(const plan *p, int rank, int64_t ticket)
 {
-    if (!p->spectral || !p->materials[rank])
+    if (!p->spectral)
         return p->absorption[rank];
-    const double a = material_absorption_at(p->materials[rank], spectra_lambda(&p->render, ticket)) * p->render.unit_m;
+    const double a = spectra_body(p->spectral, ticket, rank)->absorption;
     return vec3_make(a, a, a);
 }
 

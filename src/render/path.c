@@ -29,7 +29,7 @@ static vec3 light_color(const tracer *t, int lamp, int64_t ticket)
     const light *l = &p->lights[lamp];
     if (!p->spectral)
         return vec3_scale(l->color, l->intensity);
-    const double radiance = lifted_emission(&p->spectral->light[lamp], spectra_lambda(&p->render, ticket));
+    const double radiance = spectra_light(p->spectral, ticket, lamp);
     return vec3_make(radiance, radiance, radiance);
 }
 

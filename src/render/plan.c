@@ -107,7 +107,7 @@ static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnos
         p->materials[r] = &s->solids[solid_index].surface;
         p->absorption[r] = vec3_scale(material_absorption(p->materials[r]), s->render.unit_m);
     }
-    if (s->render.spectrum == SPECTRUM_SPECTRAL && !(p->spectral = spectra_create(s, p->materials, ranks)))
+    if (s->render.spectrum == SPECTRUM_SPECTRAL && !(p->spectral = spectra_create(s, p->materials, p->laws, ranks)))
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     return STATUS_OK;
 }

@@ -36,11 +36,13 @@ static __attribute__((noinline)) void expose_by_ticket(tracer *t, int64_t ticket
 {
     const plan *p = t->target.scene;
     const film *f = t->target.picture;
-    const int64_t place = ticket_pixel(ticket) + ticket_sample(ticket) % f->layers * f->width * f->height;
-    double weights[3] = {1.0, 1.0, 1.0};
-    if (p->spectral)
-        observer_weights(spectra_lambda(&p->render, ticket), weights);
-    expose_at(t, place, r * weights[0], g * weights[1], b * weights[2]);
+    const int64_t layer = f->layers == 1 ? 0 : ticket_sample(ticket) % f->layers;
+    const int64_t place = ticket_pixel(ticket) + layer * f->width * f->height;
+    if (p->spectral) {
+        const double *eye = spectra_row(p->spectral, ticket)->eye;
+        r *= eye[0], g *= eye[1], b *= eye[2];
+    }
+    expose_at(t, place, r, g, b);
 }
 
 static inline void expose(tracer *t, int64_t ticket, double r, double g, double b)
@@ -61,7 +63,7 @@ static __attribute__((noinline)) void expose_sky_by_ticket(tracer *t, int64_t ti
     const plan *p = t->target.scene;
     vec3 l;
     if (p->spectral)
-        l.x = l.y = l.z = spectra_sky(p->spectral, p->sky, direction, spectra_lambda(&p->render, ticket));
+        l.x = l.y = l.z = spectra_sky(spectra_row(p->spectral, ticket), p->sky, direction);
     else
         l = sky_radiance(p->sky, direction);
     expose_by_ticket(t, ticket, wr * l.x, wg * l.y, wb * l.z);
@@ -84,7 +86,7 @@ static void expose_ambient(tracer *t, const material *m)
     const plan *p = t->target.scene;
     if (p->spectral) {
         for (int i = 0; i < g->count; i++) {
-            const double a = m->ambient * lifted_emission(&p->spectral->ambient, spectra_lambda(&p->render, g->ticket[i])) * g->cr[i];
+            const double a = m->ambient * spectra_row(p->spectral, g->ticket[i])->ambient * g->cr[i];
             expose(t, g->ticket[i], g->wr[i] * a, g->wg[i] * a, g->wb[i] * a);
         }
         return;

@@ -1,30 +1,61 @@
-/* The spectra of a scene, for films that are traced wavelength by wavelength: every colour lifted once a frame
- * (optics/lift.h), and the wavelength that each camera ray carries. Ownership: spectra_create gives, spectra_destroy
- * releases; the sky's picture is borrowed. Lookups are pure. */
+/* The spectra of a scene, for films that are traced wavelength by wavelength. Light is told apart in SPECTRA_COUNT wavelengths,
+ * 0.1 nm from one to the next; what a scene does at each of them (its colours lifted by optics/lift.h, its indices of refraction,
+ * its absorption, and how the eye sees it) is worked out once a frame, in tables. Ownership: spectra_create gives, spectra_destroy releases; the scene is borrowed during the
+ * call only. Lookups are pure. */
 #ifndef CUVETTE_RENDER_SPECTRA_H
 #define CUVETTE_RENDER_SPECTRA_H
 
 #include "optics/lift.h"
+#include "render/ticket.h"
+#include "scene/medium.h"
 #include "scene/scene.h"
 
-enum { SKY_BASIS_COUNT = 7 };
+/* A number of wavelengths that puts each of the observer's 5 nm into 50 of them. */
+enum { SPECTRA_COUNT = 10 * (OBSERVER_HIGH_NM - OBSERVER_LOW_NM), SKY_BASIS_COUNT = 7 };
+
+/* What all share at one wavelength. */
+typedef struct spectral_row {
+    double eye[3]; /* observer_weights */
+    double sky, horizon, ambient;
+    double basis[SKY_BASIS_COUNT]; /* white, cyan, magenta, yellow, red, green, blue: of a sky picture's texels */
+} spectral_row;
+
+/* A body at one wavelength; absorption: in 1 / scene unit. */
+typedef struct body_spectrum { double color, checker_color, index, absorption; } body_spectrum;
 
 typedef struct spectra {
-    lifted *color, *checker_color; /* by rank */
-    lifted *light;                 /* by light: its colour times its intensity */
-    lifted sky, horizon, ambient;
-    lifted basis[SKY_BASIS_COUNT]; /* white, cyan, magenta, yellow, red, green, blue: of a sky picture's texels */
+    spectral_row *rows;    /* by wavelength */
+    body_spectrum *bodies; /* by wavelength, then rank */
+    double *lights;        /* by wavelength, then light: radiance of its colour times its intensity */
+    size_t ranks, light_count;
 } spectra;
 
-/* materials: by rank, [0] is NULL; ranks counts that one too. NULL when memory is out. */
-spectra *spectra_create(const scene *s, const material *const *materials, size_t ranks);
+/* laws, materials: by rank, materials[0] is NULL; ranks counts that one too. NULL when memory is out. */
+spectra *spectra_create(const scene *s, const material *const *materials, const index_law *laws, size_t ranks);
 void spectra_destroy(spectra *p);
 
-/* The wavelength of a ray: its sample's stretch of 380..780 nm, and within it a place that is hashed from seed, pixel and
- * sample. */
-double spectra_lambda(const render_settings *render, int64_t ticket);
+/* The wavelength of that number, in the middle of its 0.1 nm. */
+double spectra_lambda(int64_t number);
 
-/* Radiance of the sky at a wavelength. */
-double spectra_sky(const spectra *p, const background *sky, vec3 direction, double lambda_nm);
+/* A ticket with its wavelength: of its sample's stretch of 380..780 nm a place that is hashed from seed, pixel and sample. */
+int64_t spectra_choose(const render_settings *render, int64_t ticket);
+
+static inline const spectral_row *spectra_row(const spectra *p, int64_t ticket)
+{
+    return &p->rows[ticket_wavelength(ticket)];
+}
+
+static inline const body_spectrum *spectra_body(const spectra *p, int64_t ticket, int64_t rank)
+{
+    return &p->bodies[(size_t)ticket_wavelength(ticket) * p->ranks + (size_t)rank];
+}
+
+static inline double spectra_light(const spectra *p, int64_t ticket, int lamp)
+{
+    return p->lights[(size_t)ticket_wavelength(ticket) * p->light_count + (size_t)lamp];
+}
+
+/* Radiance of the sky. */
+double spectra_sky(const spectral_row *row, const background *sky, vec3 direction);
 
 #endif

@@ -3,19 +3,13 @@
 
 #include "render/film.h"
 
-static double lambda_of(const tracer *t, int64_t ticket)
-{
-    return spectra_lambda(&t->target.scene->render, ticket);
-}
-
 void spectral_indices(tracer *t, const int *list)
 {
     group *g = &t->gathered;
-    const index_law *laws = t->target.scene->laws;
+    const spectra *s = t->target.scene->spectral;
     for (int k = 0; k < g->count; k++) {
-        const double lambda_nm = lambda_of(t, g->ticket[k]);
-        g->n_from[k] = index_law_at(&laws[t->hits.before[list[k]]], lambda_nm);
-        g->n_to[k] = index_law_at(&laws[t->hits.after[list[k]]], lambda_nm);
+        g->n_from[k] = spectra_body(s, g->ticket[k], t->hits.before[list[k]])->index;
+        g->n_to[k] = spectra_body(s, g->ticket[k], t->hits.after[list[k]])->index;
     }
     for (int k = g->count; k < g->padded; k++)
         g->n_from[k] = g->n_from[g->count - 1], g->n_to[k] = g->n_to[g->count - 1];
@@ -25,10 +19,9 @@ void spectral_indices(tracer *t, const int *list)
 void spectral_colors(tracer *t, int rank)
 {
     group *g = &t->gathered;
-    const spectra *s = t->target.scene->spectral;
     for (int k = 0; k < g->count; k++) {
-        const lifted *color = g->cr[k] > 0.5 ? &s->color[rank] : &s->checker_color[rank];
-        g->cr[k] = g->cg[k] = g->cb[k] = lifted_reflectance(color, lambda_of(t, g->ticket[k]));
+        const body_spectrum *here = spectra_body(t->target.scene->spectral, g->ticket[k], rank);
+        g->cr[k] = g->cg[k] = g->cb[k] = g->cr[k] > 0.5 ? here->color : here->checker_color;
     }
 }
 
@@ -39,7 +32,7 @@ void spectral_light(tracer *t, int lamp)
     lit_group *l = &t->lit;
     const double least = 0.5 / FILM_ONE;
     for (int k = 0; k < g->count; k++) {
-        const double radiance = lifted_emission(&t->target.scene->spectral->light[lamp], lambda_of(t, g->ticket[k]));
+        const double radiance = spectra_light(t->target.scene->spectral, g->ticket[k], lamp);
         l->r[k] *= radiance, l->g[k] *= radiance, l->b[k] *= radiance;
         l->shows[k] = -(int64_t)!(l->r[k] < least);
     }
