@@ -43,16 +43,18 @@ void film_destroy(film *f)
     free(f);
 }
 
-void film_add_layers(film *f, double *variance)
+bool film_add_layers(film *f, double *variance)
 {
     const size_t count = values_of(f), layers = (size_t)f->layers;
+    int64_t signs = 0;
     if (layers == 1)
-        return;
+        return true;
     for (size_t i = 0; i < count; i++) {
         double total = 0.0, squares = 0.0;
         int64_t sum = 0;
         for (size_t k = 0; k < layers; k++) {
             sum = (int64_t)((uint64_t)sum + (uint64_t)f->sum[k * count + i]);
+            signs |= sum; /* as its sign tells: no layer's sum is negative */
             total += (double)f->sum[k * count + i] / FILM_ONE;
         }
         for (size_t k = 0; k < layers; k++) {
@@ -64,6 +66,7 @@ void film_add_layers(film *f, double *variance)
         f->sum[i] = sum;
     }
     f->layers = 1;
+    return signs >= 0;
 }
 
 /* The pixel's colour, linear sRGB. */

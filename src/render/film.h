@@ -9,6 +9,7 @@
 
 #include "base/status.h"
 #include "image/image.h"
+#include <stdbool.h>
 #include <stdint.h>
 
 #define FILM_ONE 17592186044416.0 /* 2^44 */
@@ -27,8 +28,9 @@ typedef struct film {
 status film_create(int width, int height, int layers, film_space space, film **out, diagnostic *why);
 
 /* Puts the sum of all layers into the first, after which the film can be read; the square of the standard error of each
- * value goes to variance unless that is NULL. Nothing to do for one layer. variance: [(y*width + x)*3 + channel], in the film's own space. */
-void film_add_layers(film *f, double *variance);
+ * value goes to variance unless that is NULL. Nothing to do for one layer. variance: [(y*width + x)*3 + channel], in the film's own
+ * space. False when a sum leaves the film's range. */
+bool film_add_layers(film *f, double *variance);
 void film_destroy(film *f);
 
 /* Radiance of one channel, linear sRGB: of a spectral film that can be negative, where a colour lies outside its gamut. */

@@ -200,7 +200,7 @@ static void count_tests(const plan *p, ray_counters *c)
 }
 
 /* Sums up what the workers left on their desks. */
-static status collect(frame *f, render_result *result, diagnostic *why)
+static status collect(frame *f, bool in_range, render_result *result, diagnostic *why)
 {
     const int count = (int)f->s->render.threads;
     bool out_of_memory = false, misplaced = false;
@@ -211,7 +211,7 @@ static status collect(frame *f, render_result *result, diagnostic *why)
         out_of_memory |= d->out_of_memory;
         misplaced |= d->misplaced;
     }
-    const bool overflow = tracer_set_collect(f->owner->tracers, &result->counters);
+    const bool overflow = tracer_set_collect(f->owner->tracers, &result->counters) || !in_range;
     count_tests(f->scene, &result->counters);
     if (f->options && f->options->timeline)
         out_of_memory |= !join_events(f->desks, count, result);
@@ -235,11 +235,12 @@ static double *make_map(size_t pixels)
     return map;
 }
 
-/* As many equal shares of a pixel's paths as there can be, to tell how they differ. */
+/* As many equal shares of a pixel's paths as there can be, to tell how they differ. Each has all of the pixel's points. */
 static int layers_of(const scene *s)
 {
-    int layers = s->render.integrator == INTEGRATOR_PATH ? FILM_LAYERS_MAX : 1;
-    while (s->render.paths % layers != 0)
+    const render_settings *r = &s->render;
+    int layers = r->integrator == INTEGRATOR_PATH && r->paths % r->samples == 0 ? FILM_LAYERS_MAX : 1;
+    while (r->paths / r->samples % layers != 0)
         layers--;
     return layers;
 }
@@ -303,8 +304,8 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
         if (code == STATUS_OK) {
-            film_add_layers(result->picture, result->variance);
-            code = collect(f, result, why);
+            const bool in_range = film_add_layers(result->picture, result->variance);
+            code = collect(f, in_range, result, why);
         }
         for (int i = 0; i < count; i++)
             free(desks[i].events.event);

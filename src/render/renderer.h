@@ -53,7 +53,9 @@ typedef struct render_result {
     double *pixel_rays;          /* NULL unless wanted; width * height */
     double *pixel_ns;
     double *variance;            /* of random paths: square of the standard error of each value of the film, [(y*width + x)*3 + channel]
-                                  * in the film's own space; NULL where it is not known */
+                                  * in the film's own space, from how 8 equal shares of the paths differ, or as many fewer as divide paths /
+                                  * samples. NULL where it is not known. Of a spectral film too large rather than too small: the
+                                  * shares have wavelengths of their own, which differ by more than chance */
     tile_event *events;          /* in order of begin_s; NULL unless wanted */
     size_t event_count;
 } render_result;

@@ -36,7 +36,7 @@ static __attribute__((noinline)) void expose_by_ticket(tracer *t, int64_t ticket
 {
     const plan *p = t->target.scene;
     const film *f = t->target.picture;
-    const int64_t layer = f->layers == 1 ? 0 : ticket_sample(ticket) % f->layers;
+    const int64_t layer = f->layers == 1 ? 0 : ticket_sample(ticket) / p->render.samples % f->layers;
     const int64_t place = ticket_pixel(ticket) + layer * f->width * f->height;
     if (p->spectral) {
         const double *eye = spectra_row(p->spectral, ticket)->eye;
