@@ -1,0 +1,60 @@
+/* Pictures of random paths against what they should be: within the interval that the renderer reports. Eight layers give a
+ * standard error of seven degrees of freedom; Student's t, two-sided (Abramowitz and Stegun, table 26.10). Each call
+ * asserts that it worked. */
+#ifndef CUVETTE_TESTS_PATH_FIXTURE_H
+#define CUVETTE_TESTS_PATH_FIXTURE_H
+
+#include "render_fixture.h"
+#include <math.h>
+
+#define T7_95 2.365     /* 95% */
+#define T7_9999 7.885   /* 99.99% */
+#define ROUNDINGS 1e-10 /* of the film's units and of weights of 1 / paths */
+
+typedef struct estimate { double value, standard_error; } estimate;
+
+static inline estimate estimate_at(const render_result *r, int x, int y, int channel)
+{
+    const size_t at = ((size_t)y * (size_t)r->picture->width + (size_t)x) * 3 + (size_t)channel;
+    const estimate e = {(double)r->picture->sum[at] / FILM_ONE, sqrt(r->variance[at])};
+    return e;
+}
+
+/* The middle of a picture of one pixel, one channel. */
+static inline estimate look_by_chance(const scene *s, int channel)
+{
+    render_result *r = render(s);
+    assert_non_null(r->variance);
+    const estimate e = estimate_at(r, 0, 0, channel);
+    render_result_destroy(r);
+    return e;
+}
+
+static inline void expect_estimate(estimate e, double wanted)
+{
+    if (!(fabs(e.value - wanted) <= T7_9999 * e.standard_error + ROUNDINGS))
+        fail_msg("%.9g +- %.2g instead of %.9g", e.value, e.standard_error, wanted);
+}
+
+/* Over many values: how many lie in their own interval of 95%, and how far the mean of all lies off in its standard errors. */
+typedef struct agreement { int count, inside; double off, variance; } agreement;
+
+/* unseen: how far off a value may be that shows no spread: ROUNDINGS where nothing is left to chance, else what rare events weigh
+ * of which none was seen, about 10 / paths. */
+static inline void agreement_add(agreement *a, estimate e, double wanted, double unseen)
+{
+    if (e.standard_error < 1e-9) {
+        if (!(fabs(e.value - wanted) <= unseen))
+            fail_msg("%.9g for certain instead of %.9g", e.value, wanted);
+        return;
+    }
+    a->count++;
+    a->inside += fabs(e.value - wanted) <= T7_95 * e.standard_error;
+    a->off += e.value - wanted;
+    a->variance += e.standard_error * e.standard_error;
+}
+
+static inline double agreement_share(const agreement *a) { return (double)a->inside / a->count; }
+static inline double agreement_off(const agreement *a) { return a->off / sqrt(a->variance); }
+
+#endif

@@ -1,0 +1,481 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "path_fixture.h"
+
+/* Random paths against Whitted's trees where both see the same light, and against closed forms where only they do. */
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+
+/* --- the whole tree, by chance --- */
+
+static const char clear_scene[] =
+    "render: {width: 32, height: 24, depth: 6, shadows: off}\n"
+    "camera: {position: [0.3, 2.5, -5], target: [0, 1, 0], fov_deg: 40}\n"
+    "background: {kind: gradient, color: [1, 0.2, 0.5], horizon: [0.1, 0.9, 0.4]}\n"
+    "materials: {clear: {transparency: 1}}\n"
+    "solids:\n"
+    "  vessel: {shape: cup, material: clear, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: 2}\n"
+    "  liquid: {shape: cylinder, material: clear, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.95, priority: 1}\n"
+    "  ball: {shape: sphere, material: clear, ior: 2.4, position: [0.2, 1.2, 0.1], radius: 0.5, priority: 3}\n"
+    "  block: {shape: box, material: clear, ior: 1.6, transparency: 0.8, position: [-1.5, 0.5, -1], size: [0.8, 1, 0.8], "
+    "rotation: [10, 20, 30], priority: 5}\n"
+    "  mirror: {shape: sphere, reflectivity: 0.9, position: [1.7, 0.5, -1], radius: 0.4, priority: 6}\n";
+
+static agreement agree(scene *s, const char *settings, double unseen)
+{
+    set_all(s, settings);
+    set(s, "render.integrator=whitted");
+    render_result *tree = render(s);
+    set(s, "render.integrator=path");
+    render_result *chance = render(s);
+    assert_non_null(chance->variance);
+    agreement a = {0};
+    for (int y = 0; y < tree->picture->height; y++)
+        for (int x = 0; x < tree->picture->width; x++)
+            for (int c = 0; c < 3; c++)
+                agreement_add(&a, estimate_at(chance, x, y, c), film_value(tree->picture, x, y, c), unseen);
+    render_result_destroy(tree);
+    render_result_destroy(chance);
+    return a;
+}
+
+/* A coin that falls rarely has an interval that holds less often than it says; hence 90 of 100, not 95. */
+static void paths_through_clear_solids_have_the_trees_mean(void **state)
+{
+    (void)state;
+    scene *s = scene_from(clear_scene);
+    static const char *const settings[] = {"render.paths=512 render.depth=6", "render.paths=512 render.depth=2",
+                                           "render.paths=512 render.depth=12 render.beyond=black render.roulette=on",
+                                           "render.paths=512 render.depth=6 render.samples=4 render.beyond=sky"};
+    for (size_t k = 0; k < COUNT(settings); k++) {
+        const agreement a = agree(s, settings[k], 10.0 / 512.0);
+        print_message("%s: %d values, %.1f%% in their 95%% interval, mean off by %.2f standard errors\n", settings[k], a.count,
+                      100.0 * agreement_share(&a), agreement_off(&a));
+        assert_true(a.count > 500);
+        assert_true(agreement_share(&a) > 0.90 && agreement_share(&a) < 0.985);
+        assert_true(fabs(agreement_off(&a)) < 4.0);
+    }
+    scene_destroy(s);
+}
+
+/* Under a black sky a matte floor has no light but the lamp's, and a mirror leaves nothing to chance. */
+static const char certain_scene[] =
+    "render: {width: 32, height: 24, depth: 5, integrator: path, paths: 16}\n"
+    "camera: {position: [0.3, 2.5, -5], target: [0, 1, 0], fov_deg: 50}\n"
+    "background: {color: [0, 0, 0]}\n"
+    "lights: {lamp: {position: [3, 7, -4], intensity: 0.8, color: [1, 0.7, 0.4]}}\n"
+    "solids:\n"
+    "  floor: {shape: plane, color: [0.8, 0.5, 0.3], checker: 0.7, checker_color: [0.1, 0.2, 0.9], diffuse: 0.7, specular: 0.3}\n";
+
+static void what_is_not_left_to_chance_is_exact(void **state)
+{
+    (void)state;
+    scene *s = scene_from(certain_scene);
+    assert_int_equal(agree(s, "lamp.reach=0", ROUNDINGS).count, 0);
+    assert_int_equal(agree(s, "lamp.reach=5", ROUNDINGS).count, 0);
+    set_all(s, "floor.diffuse=0 floor.reflectivity=0.7 background.kind=gradient background.color=1,0.5,0.2");
+    assert_int_equal(agree(s, "render.depth=0", ROUNDINGS).count, 0);
+    assert_int_equal(agree(s, "render.depth=3", ROUNDINGS).count, 0);
+    scene_destroy(s);
+}
+
+/* --- a sphere's light --- */
+
+/* The eye is far away, and sees the middle of a floor past the lamp. */
+static const char lamp_scene[] = "render: {width: 1, height: 1, depth: 0, integrator: path, paths: 1024, beyond: black}\n"
+                                 "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.01}\n"
+                                 "background: {color: [0, 0, 0]}\n"
+                                 "lights: {lamp: {position: [0, 4, 0], intensity: 3, reach: 2, radius: 1}}\n"
+                                 "solids: {floor: {shape: plane, color: [0.9, 0.6, 0.3], diffuse: 0.7}}\n";
+
+/* E = pi L (r / d)^2 cos theta for a sphere that is wholly above the horizon, however large: Lambert's law of spheres (Howell,
+ * Siegel and Menguc, Thermal Radiation Heat Transfer, configuration B-24). L = intensity (reach / r)^2; a matte surface
+ * sends k_d C E / pi. */
+static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
+{
+    (void)state;
+    static const double shares[] = {0.001, 0.1, 0.4, 0.7}, cosines[] = {1.0, 0.9, 0.75, 0.45, 0.11}, distances[] = {0.5, 4.0, 11.0};
+    scene *s = scene_from(lamp_scene);
+    agreement a = {0};
+    for (size_t i = 0; i < COUNT(shares); i++)
+        for (size_t j = 0; j < COUNT(cosines); j++)
+            for (size_t k = 0; k < COUNT(distances); k++) {
+                const double d = distances[k];
+                if (cosines[j] <= shares[i])
+                    continue; /* the horizon cuts it */
+                s->lights[0].radius = shares[i] * d;
+                s->lights[0].position = vec3_make(d * sqrt(1.0 - cosines[j] * cosines[j]), d * cosines[j], 0.0);
+                const double wanted = 0.7 * 0.9 * 3.0 * 4.0 / (d * d) * cosines[j];
+                const estimate e = look_by_chance(s, 0);
+                expect_estimate(e, wanted);
+                assert_true(e.standard_error < 0.03 * wanted);
+                agreement_add(&a, e, wanted, 1e-8); /* of the smallest ones */
+                s->render.seed++;
+            }
+    print_message("%d lamps: %.0f%% in their 95%% interval\n", a.count, 100.0 * agreement_share(&a));
+    assert_true(a.count > 30 && agreement_share(&a) > 0.85);
+    assert_true(fabs(agreement_off(&a)) < 4.0);
+    scene_destroy(s);
+}
+
+/* Of a lamp whose middle is on the horizon the upper half is left. B-24's other case, theta = 90 degrees:
+ * E / (pi L) = (asin(s) - s sqrt(1 - s^2)) / pi with s = r / d. */
+static void the_horizon_cuts_a_lamp(void **state)
+{
+    (void)state;
+    scene *s = scene_from(lamp_scene);
+    set_all(s, "render.paths=16384 lamp.position=2,0,0 lamp.radius=1.2");
+    const double share = 0.6, factor = (asin(share) - share * sqrt(1.0 - share * share)) / acos(-1.0);
+    expect_estimate(look_by_chance(s, 1), 0.7 * 0.6 * 3.0 * 4.0 / (1.2 * 1.2) * factor);
+    scene_destroy(s);
+}
+
+/* A thin screen over x < 0 at height 1, the lamp over its edge at height 5: the planes through the edge that touch the lamp meet
+ * the floor at x = -+1 r / sqrt(4^2 - r^2), by similar triangles. Between them is the half-shadow. */
+static void a_half_shadow_is_as_wide_as_similar_triangles_say(void **state)
+{
+    (void)state;
+    const double r = 1.5, edge = r / sqrt(16.0 - r * r);
+    diagnostic why = {0};
+    scene *shaded = scene_from("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 4096, beyond: black}\n"
+                               "camera: {position: [0, 0.4, -6], target: [0, 0, 0], fov_deg: 0.01}\n"
+                               "background: {color: [0, 0, 0]}\n"
+                               "lights: {lamp: {position: [0, 5, 0], intensity: 3, reach: 2, radius: 1.5}}\n"
+                               "solids:\n"
+                               "  floor: {shape: plane, color: [0.9, 0.6, 0.3], diffuse: 0.7}\n"
+                               "  screen: {shape: box, position: [-50, 1, 0], size: [100, 1e-6, 100]}\n");
+    static const double places[] = {-1.5, -1.02, -0.97, -0.5, 0.0, 0.5, 0.97, 1.02, 1.5};
+    double before = -1.0;
+    for (size_t k = 0; k < COUNT(places); k++) {
+        const double x = places[k] * edge, d = sqrt(25.0 + x * x), open = 0.7 * 0.9 * 3.0 * 4.0 * 5.0 / (d * d * d);
+        char text[64];
+        snprintf(text, sizeof text, "%.17g,0,0", x);
+        worked(scene_set(shaded, "camera.target", text, &why), &why);
+        const estimate e = look_by_chance(shaded, 0);
+        if (places[k] < -1.0)
+            assert_true(e.value == 0.0);
+        else if (places[k] > 1.0)
+            expect_estimate(e, open);
+        else if (places[k] == 0.0)
+            expect_estimate(e, 0.5 * open); /* left and right halves are alike */
+        else
+            assert_true(e.value > 0.0 && e.value < open - T7_95 * e.standard_error && e.value > before);
+        before = e.value;
+    }
+    scene_destroy(shaded);
+}
+
+/* --- caustics: the lamp is found through clear surfaces by rays that run into it --- */
+
+static const char slab_scene[] = "render: {width: 1, height: 1, depth: 24, integrator: path, paths: 262144, beyond: black}\n"
+                                 "camera: {position: [0, 0.5, -6], target: [0, 0, 0], fov_deg: 0.01}\n"
+                                 "background: {color: [0, 0, 0]}\n"
+                                 "lights: {lamp: {position: [0, 5, 0], intensity: 3, reach: 2, radius: 1.5}}\n"
+                                 "solids:\n"
+                                 "  floor: {shape: plane, diffuse: 0.01}\n"
+                                 "  slab: {shape: box, position: [0, 1, 0], size: [100, 0.01, 100], transparency: 1, ior: 1.5}\n";
+
+/* All of a slab's inner reflections together let (1 - R) / (1 + R) pass (Born and Wolf, 7.6.1, without interference); up to 17.5
+ * degrees that changes by 2e-4. The slab lifts the lamp by t (1 - 1 / n). */
+static void a_slab_takes_its_reflections_from_the_lamps_light(void **state)
+{
+    (void)state;
+    scene *s = scene_from(slab_scene);
+    for (int k = 0; k < 2; k++) {
+        set(s, k == 0 ? "slab.ior=1.5" : "slab.ior=2.4");
+        const double n = s->solids[1].surface.ior, R = (n - 1.0) * (n - 1.0) / ((n + 1.0) * (n + 1.0));
+        const double d = 5.0 - 0.01 * (1.0 - 1.0 / n), E = 0.01 * 3.0 * 4.0 / (d * d);
+        s->render.depth = 24;
+        const estimate e = look_by_chance(s, 0);
+        print_message("index %g: %.5f +- %.5f of the open light, wanted %.5f\n", n, e.value / E, e.standard_error / E,
+                      (1.0 - R) / (1.0 + R));
+        assert_true(e.standard_error < 0.01 * E);
+        expect_estimate(e, E * (1.0 - R) / (1.0 + R));
+        s->render.depth = 3; /* straight through alone */
+        expect_estimate(look_by_chance(s, 0), E * (1.0 - R) * (1.0 - R));
+        s->render.depth = 2;
+        assert_true(look_by_chance(s, 0).value < 1e-4 * E); /* what comes in beside the slab */
+    }
+    set(s, "slab.visible=off"); /* nothing bends: the floor looks for the lamp itself, and finds it once */
+    expect_estimate(look_by_chance(s, 0), 0.01 * 3.0 * 4.0 / 25.0);
+    scene_destroy(s);
+}
+
+/* L (1 - R) / (1 + R) along the axis of a ball; nothing but the lamp shines. */
+static void a_lamp_behind_a_ball_of_glass_is_as_bright_as_the_ball_lets_through(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 30, integrator: path, paths: 16384, beyond: black}\n"
+                          "camera: {position: [0, 0, -6], target: [0, 0, 0], fov_deg: 0.001}\n"
+                          "background: {color: [0, 0, 0]}\n"
+                          "lights: {lamp: {position: [0, 0, 9], color: [1, 0.5, 0.25], intensity: 3, reach: 2, radius: 1}}\n"
+                          "solids: {ball: {shape: sphere, transparency: 1, ior: 2}}\n");
+    const double L = 3.0 * 4.0, R = 1.0 / 9.0;
+    for (int c = 0; c < 3; c++)
+        expect_estimate(look_by_chance(s, c), L / (1 << c) * (1.0 - R) / (1.0 + R));
+    set(s, "render.depth=2");
+    expect_estimate(look_by_chance(s, 0), L * (1.0 - R) * (1.0 - R));
+    set(s, "ball.visible=off");
+    expect_estimate(look_by_chance(s, 0), L);
+    set(s, "lamp.position=0,0,-9"); /* behind the eye */
+    expect_estimate(look_by_chance(s, 0), 0.0);
+    scene_destroy(s);
+}
+
+/* --- energy --- */
+
+/* In a white sky everything that takes no light is white: convex or not, matte, mirror, both, clear. */
+static void every_pixel_of_a_white_furnace_is_white(void **state)
+{
+    (void)state;
+    scene *s = scene_from(clear_scene);
+    set_all(s, "background.kind=uniform background.color=1,1,1 block.transparency=0 block.diffuse=1 mirror.reflectivity=0.5 "
+               "mirror.diffuse=0.5 render.integrator=path render.paths=16");
+    for (int depth = 0; depth <= 20; depth += 5) {
+        s->render.depth = depth;
+        s->render.roulette = depth % 2;
+        render_result *r = render(s);
+        for (int i = 0; i < 32 * 24; i++)
+            for (int c = 0; c < 3; c++)
+                expect_estimate(estimate_at(r, i % 32, i / 32, c), 1.0);
+        render_result_destroy(r);
+    }
+    scene_destroy(s);
+}
+
+/* A ball that is hollow: in it everything looks alike everywhere, so that light is a geometric series of the reflectance. */
+static const char hollow_scene[] =
+    "render: {width: 8, height: 6, depth: 60, integrator: path, paths: 64, beyond: black, shadows: opaque}\n"
+    "camera: {position: [0.5, 0.4, -0.3], target: [0, 0, 5], fov_deg: 90}\n"
+    "background: {color: [7, 7, 7]}\n"
+    "lights: {lamp: {position: [0, 0, 0], intensity: 3, reach: 1, radius: 0}}\n"
+    "solids:\n"
+    "  stone: {shape: sphere, radius: 4, color: [1, 0.5, 0.25], diffuse: 0.8}\n"
+    "  hollow: {shape: sphere, radius: 2, transparency: 1, ior: 1, priority: 1}\n";
+
+static void light_in_a_hollow_ball_is_a_geometric_series(void **state)
+{
+    (void)state;
+    scene *s = scene_from(hollow_scene);
+    for (int depth = 0; depth <= 60; depth += depth < 3 ? 1 : 19) {
+        s->render.depth = depth;
+        render_result *r = render(s);
+        for (int c = 0; c < 3; c++) {
+            const double rho = 0.8 / (1 << c), wanted = rho * 3.0 / 4.0 * (1.0 - pow(rho, depth + 1)) / (1.0 - rho);
+            for (int i = 0; i < 48; i++)
+                assert_true(fabs(film_value(r->picture, i % 8, i / 8, c) - wanted) < 1e-9);
+        }
+        render_result_destroy(r);
+    }
+    scene_destroy(s);
+}
+
+/* The same with a lamp that is a sphere in the middle, and with faint paths ended by chance. */
+static agreement hollow_ball(scene *s)
+{
+    agreement a = {0};
+    render_result *r = render(s);
+    for (int i = 0; i < 48; i++)
+        for (int c = 0; c < 3; c++) {
+            const double rho = 0.8 / (1 << c);
+            agreement_add(&a, estimate_at(r, i % 8, i / 8, c), rho * 3.0 / 4.0 * (1.0 - pow(rho, 61.0)) / (1.0 - rho), 0.0);
+        }
+    render_result_destroy(r);
+    return a;
+}
+
+static uint64_t rays_of(const scene *s)
+{
+    render_result *r = render(s);
+    const uint64_t rays = ray_counters_total(&r->counters);
+    render_result_destroy(r);
+    return rays;
+}
+
+static void roulette_keeps_the_mean_and_saves_rays(void **state)
+{
+    (void)state;
+    scene *s = scene_from(hollow_scene);
+    const uint64_t all = rays_of(s);
+    set_all(s, "render.roulette=on render.paths=512");
+    const agreement a = hollow_ball(s);
+    print_message("roulette: %.1f%% in their 95%% interval, mean off by %.2f standard errors\n", 100.0 * agreement_share(&a),
+                  agreement_off(&a));
+    assert_int_equal(a.count, 144);
+    assert_true(agreement_share(&a) > 0.90 && fabs(agreement_off(&a)) < 4.0);
+    set(s, "render.paths=64");
+    assert_true(!CUVETTE_COUNTERS || rays_of(s) < all / 3);
+    scene_destroy(s);
+}
+
+static void a_sphere_in_a_hollow_ball_is_the_same_light(void **state)
+{
+    (void)state;
+    scene *s = scene_from(hollow_scene);
+    set_all(s, "lamp.radius=0.05 camera.position=0,0,-1 camera.target=0.9,0,-2");
+    const agreement a = hollow_ball(s);
+    print_message("sphere: %.1f%% of %d in their 95%% interval, mean off by %.2f standard errors\n", 100.0 * agreement_share(&a),
+                  a.count, agreement_off(&a));
+    assert_true(agreement_share(&a) > 0.90 && fabs(agreement_off(&a)) < 4.0);
+    scene_destroy(s);
+}
+
+/* --- how sure the picture is --- */
+
+enum { SEEDS = 40, PIXELS = 8 * 6 };
+
+/* Half-shadow, glass and matte floor under a sky. */
+static const char unsure_scene[] =
+    "render: {width: 8, height: 6, depth: 6, integrator: path, paths: 64}\n"
+    "camera: {position: [0, 2, -5], target: [0, 0.7, 0], fov_deg: 40}\n"
+    "background: {kind: gradient, color: [1, 0.4, 0.2], horizon: [0.3, 0.5, 0.8]}\n"
+    "lights: {lamp: {position: [3, 5, -2], intensity: 1, reach: 5, radius: 1}}\n"
+    "solids:\n"
+    "  floor: {shape: plane, color: [0.9, 0.6, 0.3], diffuse: 0.7}\n"
+    "  ball: {shape: sphere, position: [-0.8, 0.8, 0], radius: 0.7, transparency: 1, ior: 1.5}\n"
+    "  stone: {shape: sphere, position: [0.8, 0.7, 0], radius: 0.7, diffuse: 0.8}\n";
+
+/* Over many seeds: each value's own variance, and the mean of the variances that were reported. */
+typedef struct spread { double own[3 * PIXELS], reported[3 * PIXELS]; } spread;
+
+static void spread_over_seeds(scene *s, spread *out)
+{
+    double sum[3 * PIXELS] = {0}, squares[3 * PIXELS] = {0};
+    *out = (spread){{0}, {0}};
+    for (int seed = 0; seed < SEEDS; seed++) {
+        s->render.seed = seed;
+        render_result *r = render(s);
+        for (int i = 0; i < 3 * PIXELS; i++) {
+            const double v = (double)r->picture->sum[i] / FILM_ONE;
+            sum[i] += v, squares[i] += v * v;
+            out->reported[i] += r->variance[i] / SEEDS;
+        }
+        render_result_destroy(r);
+    }
+    for (int i = 0; i < 3 * PIXELS; i++)
+        out->own[i] = (squares[i] - sum[i] * sum[i] / SEEDS) / (SEEDS - 1);
+}
+
+/* 39 s^2 / sigma^2 is between 16.3 and 76.1 in 99.95 of 100 cases (chi-square, two-sided), were the values normal and sigma
+ * known; a few heavier tails are allowed for. */
+static void check_spread(const char *settings)
+{
+    scene *s = scene_from(unsure_scene);
+    set_all(s, settings);
+    spread d;
+    spread_over_seeds(s, &d);
+    int count = 0, outside = 0;
+    double mean = 0.0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        if (d.reported[i] < 1e-12)
+            continue;
+        const double chi_square = (SEEDS - 1) * d.own[i] / d.reported[i];
+        count++;
+        outside += chi_square < 16.3 || chi_square > 76.1;
+        mean += d.own[i] / d.reported[i];
+    }
+    mean /= count;
+    print_message("%s: %d values over %d seeds: variance is %.3f of what was reported; %d outside\n", settings, count, SEEDS, mean,
+                  outside);
+    assert_true(count > 100);
+    assert_true(outside <= count / 50);
+    assert_true(fabs(mean - 1.0) < 0.1);
+    scene_destroy(s);
+}
+
+static void the_reported_standard_error_is_what_seeds_differ_by(void **state)
+{
+    (void)state;
+    check_spread("render.paths=64");
+    check_spread("render.paths=64 render.samples=4");
+    check_spread("render.paths=64 render.roulette=on");
+}
+
+/* Layers with wavelengths of their own differ by more than chance: then it is a bound from above. */
+static void the_reported_standard_error_of_a_spectral_film_is_a_bound(void **state)
+{
+    (void)state;
+    scene *s = scene_from(unsure_scene);
+    set(s, "render.spectrum=spectral");
+    spread d;
+    spread_over_seeds(s, &d);
+    double own = 0.0, reported = 0.0;
+    for (int i = 0; i < 3 * PIXELS; i++)
+        own += d.own[i], reported += d.reported[i];
+    print_message("spectral: variance is %.3f of what was reported\n", own / reported);
+    assert_true(own > 0.3 * reported && own < 1.05 * reported);
+    scene_destroy(s);
+}
+
+/* As many layers as divide the paths, eight at most; none, no error. */
+static void any_number_of_paths_will_do(void **state)
+{
+    (void)state;
+    static const struct { int paths; bool known; } cases[] = {{1, false}, {2, true}, {7, true}, {12, true}, {17, false}, {22, true}};
+    scene *s = scene_from(clear_scene);
+    set_all(s, "background.kind=uniform background.color=1,1,1 block.transparency=1 mirror.reflectivity=1 render.integrator=path");
+    for (size_t k = 0; k < COUNT(cases); k++) {
+        s->render.paths = cases[k].paths;
+        render_result *r = render(s);
+        assert_true((r->variance != NULL) == cases[k].known);
+        assert_int_equal(r->picture->layers, 1);
+        for (int i = 0; i < 32 * 24; i++)
+            assert_true(fabs(film_value(r->picture, i % 32, i / 32, 1) - 1.0) < ROUNDINGS);
+        render_result_destroy(r);
+    }
+    set_all(s, "render.paths=18 render.samples=4"); /* the pixel's points have unequal shares */
+    render_result *r = render(s);
+    assert_null(r->variance);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
+/* Layers are n values of a sum; worked out by hand: 1, 2 and 6 add up to 9, their variance is 7, and that of the sum 3 x 7. */
+static void layers_add_up(void **state)
+{
+    (void)state;
+    film *f = NULL;
+    double variance[3];
+    assert_int_equal(film_create(1, 1, 3, FILM_RGB, &f, NULL), STATUS_OK);
+    static const int values[] = {1, 2, 6};
+    for (int k = 0; k < 3; k++)
+        f->sum[3 * k] = (int64_t)values[k] << 44;
+    assert_true(film_add_layers(f, variance));
+    assert_true(film_value(f, 0, 0, 0) == 9.0 && film_value(f, 0, 0, 1) == 0.0);
+    assert_true(fabs(variance[0] - 21.0) < 1e-12 && variance[1] == 0.0);
+    film_destroy(f);
+    for (int layers = 2; layers <= FILM_LAYERS_MAX; layers++) { /* each in range, the sum is not */
+        assert_int_equal(film_create(1, 1, layers, FILM_RGB, &f, NULL), STATUS_OK);
+        for (int k = 0; k < layers; k++)
+            f->sum[3 * k + 1] = INT64_MAX / layers + 1;
+        assert_false(film_add_layers(f, NULL));
+        film_destroy(f);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(paths_through_clear_solids_have_the_trees_mean),
+        cmocka_unit_test(what_is_not_left_to_chance_is_exact),
+        cmocka_unit_test(a_sphere_lights_a_floor_by_lamberts_law),
+        cmocka_unit_test(the_horizon_cuts_a_lamp),
+        cmocka_unit_test(a_half_shadow_is_as_wide_as_similar_triangles_say),
+        cmocka_unit_test(a_slab_takes_its_reflections_from_the_lamps_light),
+        cmocka_unit_test(a_lamp_behind_a_ball_of_glass_is_as_bright_as_the_ball_lets_through),
+        cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
+        cmocka_unit_test(light_in_a_hollow_ball_is_a_geometric_series),
+        cmocka_unit_test(roulette_keeps_the_mean_and_saves_rays),
+        cmocka_unit_test(a_sphere_in_a_hollow_ball_is_the_same_light),
+        cmocka_unit_test(the_reported_standard_error_is_what_seeds_differ_by),
+        cmocka_unit_test(the_reported_standard_error_of_a_spectral_film_is_a_bound),
+        cmocka_unit_test(any_number_of_paths_will_do),
+        cmocka_unit_test(layers_add_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
