@@ -122,8 +122,9 @@ double spectra_lambda(int64_t number)
 int64_t spectra_choose(const render_settings *render, int64_t ticket)
 {
     const int64_t count = render->integrator == INTEGRATOR_PATH ? render->paths : render->wavelengths;
-    const double within = random_unit(draw(render->seed, ticket, 0, DRAW_WAVELENGTH).word[0]);
-    const double place = ((double)(ticket_sample(ticket) % count) + within) / (double)count;
+    const int64_t sample = ticket_sample(ticket), all_of = ticket_make(ticket_pixel(ticket), sample / count);
+    const double offset = random_unit(draw(render->seed, all_of, 0, DRAW_WAVELENGTH).word[0]);
+    const double place = ((double)(sample % count) + offset) / (double)count;
     return ticket_with_wavelength(ticket, (int64_t)(place * SPECTRA_COUNT));
 }
 

@@ -37,7 +37,9 @@ void spectra_destroy(spectra *p);
 /* The wavelength of that number, in the middle of its 0.1 nm. */
 double spectra_lambda(int64_t number);
 
-/* A ticket with its wavelength: of its sample's stretch of 380..780 nm a place that is hashed from seed, pixel and sample. */
+/* A ticket with its wavelength. Those of one point of a pixel lie evenly over 380..780 nm, from an offset that is hashed from seed,
+ * pixel and point (Cranley and Patterson, "Randomization of Number Theoretic Methods for Multiple Integration", SIAM J. Numer. Anal.
+ * 13(6), 1976): the observer's curves are smooth and end at 0, where such sums err least. */
 int64_t spectra_choose(const render_settings *render, int64_t ticket);
 
 static inline const spectral_row *spectra_row(const spectra *p, int64_t ticket)
