@@ -1,0 +1,355 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "color_difference.h"
+#include "render_fixture.h"
+
+/* Films traced wavelength by wavelength: the colours of white skies, matte patches, absorbers and picture skies, by how
+ * different they look from what they should (CIEDE2000), and a prism's edges by Snell's law at each wavelength. */
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+static void xyz_at(const film *f, int x, int y, double xyz[3])
+{
+    const double rgb[3] = {film_value(f, x, y, 0), film_value(f, x, y, 1), film_value(f, x, y, 2)};
+    linear_srgb_to_xyz(rgb, xyz);
+}
+
+static double difference_of(const double xyz[3], const double wanted_xyz[3])
+{
+    double lab[3], wanted_lab[3];
+    lab_from_xyz(xyz, lab);
+    lab_from_xyz(wanted_xyz, wanted_lab);
+    return color_difference_2000(lab, wanted_lab);
+}
+
+/* Of all pixels: how different each looks from its counterpart, at most and for the picture's mean. */
+typedef struct looks { double largest, of_mean; } looks;
+
+static looks compare(const film *f, const film *wanted)
+{
+    double mean[3] = {0}, wanted_mean[3] = {0};
+    looks l = {0.0, 0.0};
+    for (int y = 0; y < f->height; y++)
+        for (int x = 0; x < f->width; x++) {
+            double xyz[3], target[3];
+            xyz_at(f, x, y, xyz);
+            xyz_at(wanted, x, y, target);
+            l.largest = fmax(l.largest, difference_of(xyz, target));
+            for (int i = 0; i < 3; i++)
+                mean[i] += xyz[i], wanted_mean[i] += target[i];
+        }
+    for (int i = 0; i < 3; i++)
+        mean[i] /= f->width * f->height, wanted_mean[i] /= f->width * f->height;
+    l.of_mean = difference_of(mean, wanted_mean);
+    return l;
+}
+
+static looks spectral_against_rgb(scene *s, int wavelengths)
+{
+    s->render.spectrum = SPECTRUM_RGB;
+    render_result *rgb = render(s);
+    s->render.spectrum = SPECTRUM_SPECTRAL;
+    s->render.wavelengths = wavelengths;
+    render_result *spectral = render(s);
+    assert_int_equal(spectral->picture->space, FILM_XYZ);
+    const looks l = compare(spectral->picture, rgb->picture);
+    render_result_destroy(rgb);
+    render_result_destroy(spectral);
+    return l;
+}
+
+static const int wavelength_counts[] = {32, 256, 2048};
+
+static void a_white_sky_is_white(void **state)
+{
+    (void)state;
+    static const double largest[] = {1.0, 0.05, 0.005};
+    scene *s = scene_from("render: {width: 32, height: 32}\nbackground: {color: [1, 1, 1]}\n");
+    for (size_t k = 0; k < COUNT(wavelength_counts); k++) {
+        const looks l = spectral_against_rgb(s, wavelength_counts[k]);
+        print_message("white, %d wavelengths: CIEDE2000 at most %.3g, of the mean %.2g\n", wavelength_counts[k], l.largest, l.of_mean);
+        assert_true(l.largest < largest[k] && l.of_mean < largest[k] / 10.0);
+    }
+    scene_destroy(s);
+}
+
+/* ColorChecker Classic, sRGB under D65 (X-Rite; Pascale, "RGB coordinates of the Macbeth ColorChecker", 2006). */
+static const unsigned char patches[24][3] = {
+    {115, 82, 68},   {194, 150, 130}, {98, 122, 157},  {87, 108, 67},   {133, 128, 177}, {103, 189, 170},
+    {214, 126, 44},  {80, 91, 166},   {193, 90, 99},   {94, 60, 108},   {157, 188, 64},  {224, 163, 46},
+    {56, 61, 150},   {70, 148, 73},   {175, 54, 60},   {231, 199, 31},  {187, 86, 149},  {8, 133, 161},
+    {243, 243, 242}, {200, 200, 200}, {160, 160, 160}, {122, 122, 121}, {85, 85, 85},    {52, 52, 52}};
+
+static vec3 patch_color(size_t k)
+{
+    return vec3_make(srgb_decode(patches[k][0] / 255.0), srgb_decode(patches[k][1] / 255.0), srgb_decode(patches[k][2] / 255.0));
+}
+
+/* Lit by ambient light alone; then by a white lamp. */
+static void check_color_checker(const char *lit_by, int wavelengths, double limit)
+{
+    scene *s = scene_from("render: {width: 12, height: 12, depth: 0}\n"
+                          "camera: {position: [0, 5, 0], pitch_deg: -90, fov_deg: 1}\n"
+                          "background: {color: [0, 0, 0]}\n"
+                          "lights: {lamp: {position: [0, 10, 0]}}\n"
+                          "solids: {patch: {shape: plane}}\n");
+    set_all(s, lit_by);
+    looks worst = {0.0, 0.0};
+    for (size_t k = 0; k < COUNT(patches); k++) {
+        s->solids[0].surface.color = patch_color(k);
+        const looks l = spectral_against_rgb(s, wavelengths);
+        worst.largest = fmax(worst.largest, l.largest);
+        worst.of_mean = fmax(worst.of_mean, l.of_mean);
+    }
+    print_message("ColorChecker, %s, %d wavelengths: CIEDE2000 at most %.3g, of a patch's mean %.2g\n", lit_by, wavelengths, worst.largest,
+                  worst.of_mean);
+    assert_true(worst.largest < limit && worst.of_mean < limit / 5.0);
+    scene_destroy(s);
+}
+
+static void the_color_checker_looks_as_in_rgb(void **state)
+{
+    (void)state;
+    check_color_checker("patch.ambient=1", 32, 1.0);
+    check_color_checker("patch.ambient=1", 256, 0.05);
+    check_color_checker("patch.diffuse=0.8 lamp.intensity=0.7", 256, 0.05);
+}
+
+/* A checker's second colour is its own. */
+static void both_colours_of_a_checker_look_as_in_rgb(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 16, height: 16, depth: 0}\n"
+                          "camera: {position: [0.1, 5, 0.2], pitch_deg: -90, fov_deg: 40}\n"
+                          "solids: {patch: {shape: plane, ambient: 1, checker: 0.5, color: [0.8, 0.2, 0.1], checker_color: [0.1, 0.3, 0.7]}}\n");
+    const looks l = spectral_against_rgb(s, 1024);
+    print_message("checker: CIEDE2000 at most %.3g\n", l.largest);
+    assert_true(l.largest < 0.01);
+    scene_destroy(s);
+}
+
+/* --- skies --- */
+
+static void gradient_and_coloured_skies_look_as_in_rgb(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 24, height: 24}\n"
+                          "camera: {position: [0, 1, 0], pitch_deg: 40, fov_deg: 100}\n"
+                          "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [3, 2.5, 1.5]}\n");
+    looks l = spectral_against_rgb(s, 1024);
+    print_message("gradient: CIEDE2000 at most %.3g\n", l.largest);
+    assert_true(l.largest < 0.01);
+    set(s, "background.kind=uniform");
+    l = spectral_against_rgb(s, 1024);
+    assert_true(l.largest < 0.01);
+    scene_destroy(s);
+}
+
+/* White, grey, each primary and secondary, and two mixtures (a sum of spectra is seen as the sum of what each is seen as), side by
+ * side around the horizon, each 3 texels wide. */
+static void a_picture_sky_looks_as_in_rgb(void **state)
+{
+    (void)state;
+    static const float texels[][3] = {{1, 1, 1}, {0.3F, 0.3F, 0.3F}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0},
+                                      {0.7F, 0.4F, 0.1F}, {0.2F, 0.5F, 2.0F}};
+    enum { TEXELS = sizeof texels / sizeof texels[0] };
+    scene *s = scene_from("render: {width: 8, height: 8}\ncamera: {position: [0, 0, 0], fov_deg: 2}\n");
+    s->background.kind = BACKGROUND_PICTURE;
+    free(s->background.picture_path);
+    s->background.picture_path = strdup("in-memory.pfm");
+    assert_int_equal(image_create(3 * TEXELS, 5, &s->background.picture, NULL), STATUS_OK);
+    for (int i = 0; i < 3 * TEXELS * 5; i++)
+        memcpy(s->background.picture->pixel + 3 * i, texels[i % (3 * TEXELS) / 3], sizeof texels[0]);
+    double largest = 0.0;
+    for (int k = 0; k < TEXELS; k++) {
+        s->camera.aimed = 0;
+        s->camera.yaw_deg = ((3 * k + 1.5) / (3.0 * TEXELS) - 0.5) * 360.0;
+        const looks l = spectral_against_rgb(s, 1024);
+        if (l.largest > 0.01)
+            fail_msg("texel %d: CIEDE2000 %g", k, l.largest);
+        largest = fmax(largest, l.largest);
+    }
+    print_message("picture: CIEDE2000 at most %.3g\n", largest);
+    scene_destroy(s);
+}
+
+/* --- glass --- */
+
+/* Under grey light and grey walls each wavelength sees what rgb sees. */
+static void glass_of_one_index_is_as_bright_as_in_rgb(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=40 render.height=30 background.kind=gradient background.color=0.2,0.2,0.2 plastic.color=0.5,0.5,0.5 "
+                         "tiles.color=0.8,0.8,0.8 tiles.checker_color=0.3,0.3,0.3");
+    const looks l = spectral_against_rgb(s, 1024);
+    print_message("glass: CIEDE2000 at most %.3g, of the mean %.2g\n", l.largest, l.of_mean);
+    assert_true(l.largest < 0.01 && l.of_mean < 0.001);
+    scene_destroy(s);
+}
+
+/* Schott's Sellmeier law of N-BK7 (2017), L in um; relative to air, which surrounds the prism here. */
+static double index_of_bk7(double lambda_nm)
+{
+    const double L2 = lambda_nm * lambda_nm * 1e-6;
+    return sqrt(1.0 + 1.03961212 * L2 / (L2 - 0.00600069867) + 0.231792344 * L2 / (L2 - 0.0200179144) + 1.01046945 * L2 / (L2 - 103.560653));
+}
+
+/* A block whose back is cut off by air at 30 degrees, thicker above, is a prism; far away it is black up to some height. */
+static const char prism_scene[] =
+    "render: {width: 1, height: 240, depth: 2, beyond: black}\n"
+    "camera: {position: [0, 0, -3], target: [0, 0, 0], fov_deg: 3}\n"
+    "background: {color: [1, 1, 1], medium: air}\n"
+    "solids:\n"
+    "  prism: {shape: box, size: [4, 4, 2], position: [0, 0, 0.5], transparency: 1, medium: bk7}\n"
+    "  cut: {shape: box, size: [8, 8, 4], position: [0, -1, 2.2320508075688772], rotation: [30, 0, 0], transparency: 1, medium: air, priority: 1}\n"
+    "  black: {shape: box, size: [1000000, 1000000, 1000], position: [0, -500000, 1000000]}\n"
+    "  behind: {shape: box, size: [10, 10, 1], position: [0, 0, -10]}\n"; /* else the first face mirrors the sky */
+
+enum { ROWS = 240 };
+
+/* Elevation behind the prism of an eye ray of that elevation: Snell's law at both faces. */
+static double elevation_behind(double elevation_deg, double n, double tilt_deg)
+{
+    const double degree = acos(-1.0) / 180.0, inside = asin(sin(elevation_deg * degree) / n);
+    const double incidence = inside - tilt_deg * degree;
+    return tilt_deg + asin(n * sin(incidence)) / degree;
+}
+
+/* The row of the picture in which the elevation behind the prism is the black edge's. */
+static double edge_row(double n, double tilt_deg, double edge_deg)
+{
+    double low = -1.5, high = 1.5;
+    for (int k = 0; k < 60; k++) {
+        const double middle = 0.5 * (low + high);
+        *(elevation_behind(middle, n, tilt_deg) < edge_deg ? &low : &high) = middle;
+    }
+    const double degree = acos(-1.0) / 180.0;
+    return ROWS * 0.5 * (1.0 - tan(low * degree) / tan(1.5 * degree));
+}
+
+/* Rows from the top: the first in which less than half of the top row's light is left. */
+static double seen_edge(const film *f, int channel)
+{
+    for (int y = 0; y < ROWS; y++)
+        if ((double)f->sum[3 * y + channel] < 0.5 * (double)f->sum[channel])
+            return y;
+    return ROWS;
+}
+
+static void a_prism_shows_red_and_blue_apart(void **state)
+{
+    (void)state;
+    scene *s = scene_from(prism_scene);
+    const double tilt_deg = -30.0; /* elevation of the second face's normal */
+    const double n_between = index_of_bk7(550.0), edge_deg = elevation_behind(0.0, n_between, tilt_deg);
+    s->solids[2].shape.position.y = 1e6 * tan(edge_deg * acos(-1.0) / 180.0) - 5e5;
+    s->solids[2].shape.position.z = 1e6 + 500.0;
+    /* one narrow band at a time: all else is absorbed */
+    static const struct { double nm; const char *law; } bands[] = {
+        {450.0, "prism.absorb_spectrum=[444.9,1e6,445,0,455,0,455.1,1e6]"}, {650.0, "prism.absorb_spectrum=[644.9,1e6,645,0,655,0,655.1,1e6]"}};
+    double rows[2];
+    set_all(s, "render.spectrum=spectral render.wavelengths=512");
+    for (int k = 0; k < 2; k++) {
+        set(s, bands[k].law);
+        render_result *r = render(s);
+        rows[k] = seen_edge(r->picture, k == 0 ? 2 : 0);
+        const double wanted = edge_row(index_of_bk7(bands[k].nm), tilt_deg, edge_deg);
+        print_message("edge at %g nm: row %g, by Snell's law %.2f\n", bands[k].nm, rows[k], wanted);
+        assert_near(rows[k], wanted, 1.5);
+        render_result_destroy(r);
+    }
+    assert_true(fabs(rows[0] - rows[1]) > 20.0);
+    /* all wavelengths: colour between the edges, none beside them; one index: no colour anywhere */
+    set(s, "prism.absorb_spectrum=[]");
+    render_result *all = render(s);
+    const int between = (int)(0.5 * (rows[0] + rows[1]));
+    const double *white = (const double[3]){film_value(all->picture, 0, 0, 0), film_value(all->picture, 0, 0, 1), film_value(all->picture, 0, 0, 2)};
+    assert_true(fabs(white[0] - white[2]) < 0.01 && white[0] > 0.8);
+    assert_true(fabs(film_value(all->picture, 0, between, 0) - film_value(all->picture, 0, between, 2)) > 0.2);
+    assert_true(fabs(film_value(all->picture, 0, ROWS - 1, 1)) < 1e-12);
+    render_result_destroy(all);
+    set_all(s, "render.spectrum=rgb render.lambda_nm=450");
+    render_result *rgb = render(s);
+    assert_near(seen_edge(rgb->picture, 0), edge_row(index_of_bk7(450.0), tilt_deg, edge_deg), 1.0);
+    for (int y = 0; y < ROWS; y++)
+        assert_true(film_value(rgb->picture, 0, y, 0) == film_value(rgb->picture, 0, y, 2));
+    render_result_destroy(rgb);
+    scene_destroy(s);
+}
+
+/* A pane of index 1 in white light, 0.1 m thick, that absorbs 500 to 600 nm: the light outside the band is left, as the
+ * observer's weights and daylight say, summed by the midpoint rule at every 0.05 nm. */
+static void a_band_that_is_absorbed_is_missing(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 16, height: 16, spectrum: spectral, wavelengths: 1024}\n"
+                          "camera: {position: [0, 0, -3], target: [0, 0, 0], fov_deg: 1}\n"
+                          "background: {color: [1, 1, 1]}\n"
+                          "solids:\n"
+                          "  pane: {shape: box, size: [4, 4, 0.1], transparency: 1, ior: 1,\n"
+                          "         absorb_spectrum: [499.999, 0, 500, 1e5, 600, 1e5, 600.001, 0]}\n");
+    double wanted[3] = {0.0, 0.0, 0.0}, mean[3] = {0.0, 0.0, 0.0}, xyz[3];
+    for (int k = 0; k < 8000; k++) {
+        const double lambda_nm = 380.0 + 0.05 * (k + 0.5);
+        observer_weights(lambda_nm, xyz);
+        for (int i = 0; i < 3; i++)
+            wanted[i] += lambda_nm < 500.0 || lambda_nm > 600.0 ? xyz[i] * observer_d65(lambda_nm) / 8000.0 : 0.0;
+    }
+    render_result *r = render(s);
+    for (int i = 0; i < 256; i++) {
+        xyz_at(r->picture, i % 16, i / 16, xyz);
+        for (int c = 0; c < 3; c++)
+            mean[c] += xyz[c] / 256.0;
+    }
+    print_message("band: CIEDE2000 %.3g, luminance %.4f of white\n", difference_of(mean, wanted), mean[1]);
+    assert_true(difference_of(mean, wanted) < 0.05 && mean[1] < 0.35);
+    /* unit_m scales lengths: a tenth of a thousandth absorbs but little */
+    set_all(s, "render.unit_m=1e-6 pane.absorb_spectrum=[499.999,0,500,1e6,600,1e6,600.001,0]"); /* optical depth 0.1 */
+    render_result_destroy(r);
+    r = render(s);
+    double seen = 0.0, rest = wanted[1];
+    for (int i = 0; i < 256; i++) {
+        xyz_at(r->picture, i % 16, i / 16, xyz);
+        seen += xyz[1] / 256.0;
+    }
+    assert_near(seen, rest + (1.0 - rest) * exp(-0.1), 2e-4);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
+/* Random paths draw wavelengths too: the same colours, within what their own number leaves. */
+static void random_paths_have_the_same_colours(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 12, height: 12, integrator: path, paths: 1024}\n"
+                          "camera: {position: [0, 0, -5], target: [0, 0, 0], fov_deg: 30}\n"
+                          "background: {color: [1, 1, 1]}\n"
+                          "solids: {ball: {shape: sphere, color: [0.8, 0.3, 0.1], diffuse: 1}}\n");
+    const looks l = spectral_against_rgb(s, 32);
+    print_message("paths: CIEDE2000 at most %.3g, of the mean %.2g\n", l.largest, l.of_mean);
+    assert_true(l.largest < 0.01 && l.of_mean < 0.001);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_white_sky_is_white),
+        cmocka_unit_test(the_color_checker_looks_as_in_rgb),
+        cmocka_unit_test(both_colours_of_a_checker_look_as_in_rgb),
+        cmocka_unit_test(gradient_and_coloured_skies_look_as_in_rgb),
+        cmocka_unit_test(a_picture_sky_looks_as_in_rgb),
+        cmocka_unit_test(glass_of_one_index_is_as_bright_as_in_rgb),
+        cmocka_unit_test(a_prism_shows_red_and_blue_apart),
+        cmocka_unit_test(a_band_that_is_absorbed_is_missing),
+        cmocka_unit_test(random_paths_have_the_same_colours),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
