@@ -5,8 +5,9 @@
  *                    Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 15(1), 1996), and sends the
  *                    path on by the cosine law, or like a mirror by its reflectivity.
  * A sphere that shines is met by rays from the eye and from clear or mirror-like surfaces alone: matte ones have looked for it
- * already. That is how light through a vessel makes caustics. A light's radiance is intensity (reach / radius)^2, so that a matte
- * surface at its reach is as bright as in Phong's sum. Ambient light is left out: here it is what the sky and the other surfaces send. */
+ * already. That is how light through a vessel makes caustics. Beside a sphere, points of light too are blocked by clear solids.
+ * A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as bright as in Phong's sum.
+ * Ambient light is left out: here it is what the sky and the other surfaces send. */
 #include "render/tracer_private.h"
 
 #include "base/elementary.h"

@@ -1,7 +1,7 @@
 /* The spectra of a scene, for films that are traced wavelength by wavelength. Light is told apart in SPECTRA_COUNT wavelengths,
- * 0.1 nm from one to the next; what a scene does at each of them (its colours lifted by optics/lift.h, its indices of refraction,
- * its absorption, and how the eye sees it) is worked out once a frame, in tables. Ownership: spectra_create gives, spectra_destroy releases; the scene is borrowed during the
- * call only. Lookups are pure. */
+ * 0.1 nm from one to the next; what a scene does at each of them (its colours lifted by optics/lift.h, its indices of
+ * refraction, its absorption, and how the eye sees it) is worked out once a frame, in tables. Ownership: spectra_create
+ * gives, spectra_destroy releases; the scene is borrowed during the call only. Lookups are pure. */
 #ifndef CUVETTE_RENDER_SPECTRA_H
 #define CUVETTE_RENDER_SPECTRA_H
 
