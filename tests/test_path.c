@@ -258,10 +258,10 @@ static const char hollow_scene[] =
     "  stone: {shape: sphere, radius: 4, color: [1, 0.5, 0.25], diffuse: 0.8}\n"
     "  hollow: {shape: sphere, radius: 2, transparency: 1, ior: 1, priority: 1}\n";
 
-static void light_in_a_hollow_ball_is_a_geometric_series(void **state)
+static void check_hollow_series(const char *settings)
 {
-    (void)state;
     scene *s = scene_from(hollow_scene);
+    set_all(s, settings);
     for (int depth = 0; depth <= 60; depth += depth < 3 ? 1 : 19) {
         s->render.depth = depth;
         render_result *r = render(s);
@@ -273,6 +273,14 @@ static void light_in_a_hollow_ball_is_a_geometric_series(void **state)
         render_result_destroy(r);
     }
     scene_destroy(s);
+}
+
+static void light_in_a_hollow_ball_is_a_geometric_series(void **state)
+{
+    (void)state;
+    check_hollow_series("");
+    check_hollow_series("hollow.ior=1.5"); /* full of glass: nothing stands between the lamp and the wall then either */
+    check_hollow_series("hollow.ior=1.5 render.shadows=attenuated");
 }
 
 /* The same with a lamp that is a sphere in the middle, and with faint paths ended by chance. */
@@ -322,6 +330,29 @@ static void a_sphere_in_a_hollow_ball_is_the_same_light(void **state)
     print_message("sphere: %.1f%% of %d in their 95%% interval, mean off by %.2f standard errors\n", 100.0 * agreement_share(&a),
                   a.count, agreement_off(&a));
     assert_true(agreement_share(&a) > 0.90 && fabs(agreement_off(&a)) < 4.0);
+    scene_destroy(s);
+}
+
+/* What a ray goes through before it meets a lamp dims it by exp(-a d), and what is behind the lamp does not. */
+static void a_lamp_in_an_absorbing_medium_is_dimmed_up_to_itself(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 1, integrator: path, paths: 16, beyond: black}\n"
+                          "camera: {position: [0, 0, -3.5], target: [0, 0, 0], fov_deg: 0.001}\n"
+                          "lights: {lamp: {position: [0, 0, 0], intensity: 3, reach: 1, radius: 0.5}}\n"
+                          "solids:\n"
+                          "  stone: {shape: sphere, radius: 7}\n"
+                          "  hollow: {shape: sphere, radius: 6, transparency: 1, ior: 1, priority: 1}\n"
+                          "  liquid: {shape: sphere, radius: 1.5, transparency: 1, ior: 1, absorb_per_m: [0.3, 0.6, 0], priority: 2}\n"
+                          "  gap: {shape: box, size: [0.2, 0.2, 0.4], position: [0, 0, -1], transparency: 1, ior: 1, priority: 3, visible: off}\n");
+    expect_estimate(look_by_chance(s, 0), 12.0 * exp(-0.3 * 1.0));
+    expect_estimate(look_by_chance(s, 1), 12.0 * exp(-0.6 * 1.0));
+    expect_estimate(look_by_chance(s, 2), 12.0);
+    set(s, "gap.visible=on");
+    expect_estimate(look_by_chance(s, 0), 12.0 * exp(-0.3 * 0.6));
+    set(s, "camera.position=0,0,-1"); /* from within the gap */
+    s->camera.aimed = 1;
+    expect_estimate(look_by_chance(s, 0), 12.0 * exp(-0.3 * 0.3));
     scene_destroy(s);
 }
 
@@ -472,6 +503,7 @@ int main(void)
         cmocka_unit_test(light_in_a_hollow_ball_is_a_geometric_series),
         cmocka_unit_test(roulette_keeps_the_mean_and_saves_rays),
         cmocka_unit_test(a_sphere_in_a_hollow_ball_is_the_same_light),
+        cmocka_unit_test(a_lamp_in_an_absorbing_medium_is_dimmed_up_to_itself),
         cmocka_unit_test(the_reported_standard_error_is_what_seeds_differ_by),
         cmocka_unit_test(the_reported_standard_error_of_a_spectral_film_is_a_bound),
         cmocka_unit_test(any_number_of_paths_will_do),

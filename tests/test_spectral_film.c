@@ -338,6 +338,24 @@ static void random_paths_have_the_same_colours(void **state)
     scene_destroy(s);
 }
 
+/* A lamp of an orange light is orange itself, and lights a floor so: the first for certain, the second by chance. */
+static void lamps_that_are_spheres_have_their_colour(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 6, height: 6, integrator: path, paths: 2048, depth: 0, beyond: black}\n"
+                          "camera: {position: [0, 5, -5], target: [0, 5, 0], fov_deg: 5}\n"
+                          "lights: {lamp: {position: [0, 5, 0], color: [1, 0.6, 0.2], intensity: 0.1, reach: 4, radius: 1}}\n"
+                          "solids: {floor: {shape: plane, diffuse: 0.9}}\n");
+    looks l = spectral_against_rgb(s, 32);
+    print_message("lamp: CIEDE2000 at most %.3g\n", l.largest);
+    assert_true(l.largest < 0.01);
+    set(s, "camera.target=0,0,0");
+    l = spectral_against_rgb(s, 32);
+    print_message("its light: CIEDE2000 at most %.3g, of the mean %.2g\n", l.largest, l.of_mean);
+    assert_true(l.largest < 1.5 && l.of_mean < 0.2);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -350,6 +368,7 @@ int main(void)
         cmocka_unit_test(a_prism_shows_red_and_blue_apart),
         cmocka_unit_test(a_band_that_is_absorbed_is_missing),
         cmocka_unit_test(random_paths_have_the_same_colours),
+        cmocka_unit_test(lamps_that_are_spheres_have_their_colour),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
