@@ -1,0 +1,223 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "probe_fixture.h"
+
+/* Beer and Lambert: what is left behind a length d of a medium is exp(-a d) (Hecht, 4.8.1, eq. 4.79), at every place where light goes
+ * through one: slabs with their reflections, bodies that bend nothing, and the straight way to a light. */
+
+static const vec3 askew = {17.0, -33.0, 71.0};
+static const double a_per_m[3] = {0.7, 0.0, 2.5};
+
+/* A slab of thickness d across y = 0. */
+static stage slab(double n, double thickness, int depth, const char *assignments)
+{
+    char more[128];
+    scene_text text = scene_begin(1.0, depth);
+    snprintf(more, sizeof more, "absorb_per_m: [0.7, 0, 2.5], shape: box, size: [50, %.17g, 50]", thickness);
+    add_clear(&text, "slab", n, 0, vec3_make(0.0, 0.0, 0.0), askew, more);
+    return stage_of(text.at, assignments);
+}
+
+/* Sum of what leaves on one side. */
+static double leaving(const ray_tree *tree, vec3 side, int channel)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < tree->count; i++)
+        if (tree->node[i].end == RAY_END_SKY && vec3_dot(tree->node[i].direction, side) > 0.0)
+            sum += tree->node[i].throughput[channel];
+    return sum;
+}
+
+/* Through: (1 - R)^2 e^-ad (1 + q + q^2 + ...) with q = R^2 e^-2ad, which is (1 - R)^2 e^-ad / (1 - q); back: R + (1 - R)^2 R e^-2ad
+ * (1 + q + ...) (Born and Wolf, 7.6.1, and 14.4.1, with intensities). A depth limit of D keeps the rays of D and less: the term of
+ * q^k leaves as a ray of depth 2 k + 2, or 2 k + 3. */
+static void a_slab_transmits_the_series_cut_at_the_depth(void **state)
+{
+    (void)state;
+    const double d = 0.4, n = 1.5;
+    const vec3 down = turned(vec3_make(0.0, -1.0, 0.0), askew);
+    for (int depth = 0; depth <= 41; depth++) {
+        for (double angle = 0.0; angle < 1.3; angle += 0.4) {
+            stage g = slab(n, d, depth, "render.beyond=black");
+            const double R = reflectance_of_angles(angle, 1.0, n).mean, way = d / sqrt(1.0 - pow(sin(angle) / n, 2.0));
+            const vec3 to = turned(vec3_make(sin(angle), -cos(angle), 0.0), askew);
+            const ray_tree *tree = stage_ray(&g, vec3_scale(to, -2.0), to);
+            for (int c = 0; c < 3; c++) {
+                const double kept = exp(-a_per_m[c] * way), q = R * R * kept * kept;
+                double through = 0.0, back = depth >= 1 ? R : 0.0;
+                for (int k = 0; 2 * k + 2 <= depth; k++)
+                    through += (1.0 - R) * (1.0 - R) * kept * pow(q, k);
+                for (int k = 0; 2 * k + 3 <= depth; k++)
+                    back += (1.0 - R) * (1.0 - R) * R * kept * kept * pow(q, k);
+                assert_true(fabs(leaving(tree, down, c) - through) <= 1e-13);
+                assert_true(fabs(leaving(tree, vec3_scale(down, -1.0), c) - back) <= 1e-13);
+                assert_true(fabs(tree->radiance[c] - through - back) <= 1e-12); /* the sky is 1 */
+                if (depth >= 40)
+                    assert_true(fabs(through - (1.0 - R) * (1.0 - R) * kept / (1.0 - q)) <= 1e-13);
+            }
+            stage_close(&g);
+        }
+    }
+}
+
+/* The same as a picture, and in other units: a of 70 per metre and 1 unit = 1 cm is a of 0.7 and 1 unit = 1 m. */
+static void a_unit_is_as_long_as_the_scene_says(void **state)
+{
+    (void)state;
+    static const char *const alike[] = {"", "render.unit_m=0.01 slab.absorb_per_m=70,0,250", "render.unit_m=1000 slab.absorb_per_m=0.0007,0,0.0025"};
+    for (size_t k = 0; k < COUNT(alike); k++) {
+        stage g = slab(1.5, 0.4, 40, alike[k]);
+        set_all(g.setting, "camera.position=0,3,0 camera.target=0,0,0 slab.rotation=0,0,0");
+        const vec3 seen = look(g.setting);
+        const double seen_by[3] = {seen.x, seen.y, seen.z}, R = 0.04;
+        for (int c = 0; c < 3; c++) {
+            const double kept = exp(-a_per_m[c] * 0.4), q = R * R * kept * kept, T2 = (1.0 - R) * (1.0 - R);
+            assert_true(fabs(seen_by[c] - (R + T2 * (kept + R * kept * kept) / (1.0 - q))) <= 1e-12);
+        }
+        stage_close(&g);
+    }
+}
+
+/* A ball in a block of liquid, both of index 1.33: no interface, but its own coefficient over its chord 2 sqrt(r^2 - h^2); the
+ * liquid's over the rest. The path in metres and the transmittance are the hit's. */
+static void a_body_that_bends_nothing_absorbs_all_the_same(void **state)
+{
+    (void)state;
+    scene_text text = scene_begin(1.0, 8);
+    add_clear(&text, "liquid", 1.33, 0, vec3_make(0.0, 0.0, 0.0), askew, "shape: box, size: [4, 2, 4], absorb_per_m: [0.3, 0, 0.1]");
+    add_clear(&text, "ball", 1.33, 1, vec3_make(0.0, 0.0, 0.0), askew, "shape: sphere, radius: 0.8, absorb_per_m: [2, 0.5, 0]");
+    stage g = stage_of(text.at, "render.unit_m=0.5");
+    const double R = reflectance_of_angles(0.0, 1.0, 1.33).mean, T2 = (1.0 - R) * (1.0 - R);
+    static const double liquid[3] = {0.15, 0.0, 0.05}, ball[3] = {1.0, 0.25, 0.0}; /* a scene unit */
+    for (double h = -1.0; h <= 1.0; h += 0.053) {
+        const ray_tree *tree = stage_way(&g, turned(vec3_make(h, 3.0, 0.0), askew), turned(vec3_make(0.0, -1.0, 0.0), askew), -1);
+        const double chord = fabs(h) < 0.8 ? 2.0 * sqrt(0.64 - h * h) : 0.0;
+        assert_int_equal((int)tree->count, 3);
+        assert_true(fabs(tree->node[1].hit.path_length_m - 1.0) <= 1e-12);
+        for (int c = 0; c < 3; c++) {
+            const double kept = exp(-liquid[c] * (2.0 - chord) - ball[c] * chord);
+            assert_true(fabs(tree->node[1].hit.transmittance[c] - kept) <= 1e-12);
+            assert_true(fabs(tree->node[2].throughput[c] - T2 * kept) <= 1e-12);
+        }
+    }
+    stage_close(&g);
+}
+
+/* In the open, of the surroundings' index, and seen against the sky: no hit, and yet it dims; from inside, from there on. */
+static void a_cloud_dims_the_sky_behind_it(void **state)
+{
+    (void)state;
+    scene_text text = scene_begin(1.0, 4);
+    add_clear(&text, "cloud", 1.0, 0, vec3_make(0.0, 0.0, 0.0), askew, "shape: sphere, radius: 1, absorb_per_m: [0.5, 1, 2]");
+    stage g = stage_of(text.at, "");
+    static const double a[3] = {0.5, 1.0, 2.0};
+    for (double h = -0.99; h < 1.2; h += 0.06) {
+        const double half = fabs(h) < 1.0 ? sqrt(1.0 - h * h) : 0.0;
+        for (int inside = 0; inside < 2; inside++) {
+            const ray_tree *tree = stage_ray(&g, vec3_make(h, 0.0, inside ? 0.0 : -5.0), vec3_make(0.0, 0.0, 1.0));
+            assert_int_equal((int)tree->count, 1);
+            assert_true(tree->node[0].end == RAY_END_SKY);
+            for (int c = 0; c < 3; c++)
+                assert_true(fabs(tree->radiance[c] - exp(-a[c] * half * (inside ? 1.0 : 2.0))) <= 1e-12);
+        }
+    }
+    stage_close(&g);
+}
+
+/* A white ground under a lamp with a coloured pane between them: shadow rays go straight through, so that the ground shows
+ * k_d (N.L) exp(-a d / cos) and, by the pane's clearness, 0.9 at each of its two faces. Phong, CACM 18(6), 1975, for N.L. */
+static const char lit_ground[] =
+    "background: {color: [0, 0, 0]}\n"
+    "render: {width: 1, height: 1}\n"
+    "lights: {lamp: {position: [0, 4, 0]}}\n"
+    "solids:\n"
+    "  ground: {shape: plane, diffuse: 1}\n"
+    "  pane: {shape: box, transparency: 0.9, ior: 1.5, position: [0, 2, 0], size: [50, 0.5, 50], absorb_per_m: [0.7, 0, 2.5]}\n";
+
+/* The pane's thickness that lies on the light's way, its faces there, and the length of the eye's way through it. */
+static void check_lit_ground(const char *assignments, double on_the_way, double faces, double eye_way)
+{
+    stage g = stage_of(lit_ground, assignments);
+    for (double x = 0.0; x < 8.0; x += 0.5) {
+        const vec3 to_lamp = vec3_sub(g.setting->lights[0].position, vec3_make(x, 0.0, 0.0));
+        const double n_l = to_lamp.y / vec3_length(to_lamp);
+        const vec3 at = vec3_make(x, 1.0, 1.0); /* under the pane, looking at the ground */
+        const ray_tree *tree = stage_ray(&g, at, vec3_make(0.0, -1.0, -1.0));
+        assert_int_equal((int)tree->count, 2);
+        assert_int_equal(tree->node[1].kind, RAY_SHADOW);
+        for (int c = 0; c < 3; c++) {
+            const double wanted = n_l * exp(-a_per_m[c] * (on_the_way / n_l + eye_way)) * pow(0.9, faces);
+            assert_true(fabs(tree->radiance[c] - wanted) <= 1e-12);
+            assert_true(fabs(tree->node[1].brought[c] - wanted) <= 1e-12);
+        }
+        g.setting->camera.aimed = 1;
+        g.setting->camera.position = at, g.setting->camera.target = vec3_make(x, 0.0, 0.0);
+        const vec3 seen = look(g.setting);
+        assert_true(fabs(seen.x - n_l * exp(-a_per_m[0] * (on_the_way / n_l + eye_way)) * pow(0.9, faces)) <= 1e-12);
+    }
+    stage_close(&g);
+}
+
+static void light_is_dimmed_along_its_straight_way(void **state)
+{
+    (void)state;
+    check_lit_ground("", 0.5, 2.0, 0.0);
+    check_lit_ground("pane.transparency=1", 0.5, 0.0, 0.0);
+    check_lit_ground("pane.transparency=1 pane.ior=1", 0.5, 0.0, 0.0); /* absorbs and bends nothing */
+    check_lit_ground("pane.ior=1", 0.5, 0.0, 0.0);                     /* there is no interface */
+    check_lit_ground("lamp.position=0,2.1,0", 0.35, 1.0, 0.0);         /* a lamp in the pane */
+    check_lit_ground("lamp.position=0,1.5,0", 0.0, 0.0, 0.0);          /* and one under it */
+    check_lit_ground("render.unit_m=0.1 pane.absorb_per_m=7,0,25", 0.5, 2.0, 0.0);
+    /* eye and ground within it, which reaches into the ground and loses to it there; and light that leaves by it */
+    check_lit_ground("pane.position=0,1,0 pane.size=50,4,50 ground.priority=1", 3.0, 1.0, sqrt(2.0));
+    check_lit_ground("pane.position=0,1,0 pane.size=50,8,50 ground.priority=1", 4.0, 0.0, sqrt(2.0));
+}
+
+/* Solids that cast shadows let nothing pass, clear or not; without shadows light comes undimmed. */
+static void other_rules_of_shadows_know_no_absorption(void **state)
+{
+    (void)state;
+    stage g = stage_of(lit_ground, "render.shadows=opaque");
+    assert_true(stage_ray(&g, vec3_make(0.0, 1.0, 1.0), vec3_make(0.0, -1.0, -1.0))->radiance[0] == 0.0);
+    set(g.setting, "render.shadows=off");
+    stage_look(&g);
+    assert_true(stage_ray(&g, vec3_make(0.0, 1.0, 1.0), vec3_make(0.0, -1.0, -1.0))->radiance[0] == 1.0);
+    stage_close(&g);
+}
+
+/* A table of wavelengths takes the place of the three: linear between, constant beyond, at the channels' wavelengths
+ * (CHANNEL_LAMBDA_NM, the dominant wavelengths of the primaries of sRGB: 611.4, 549.1 and 464.3 nm). */
+static void a_spectrum_of_absorption_is_read_at_the_channels_wavelengths(void **state)
+{
+    (void)state;
+    stage g = slab(1.0, 1.0, 4, "slab.absorb_spectrum=[400,1,500,3,600,5]");
+    const ray_tree *tree = stage_ray(&g, turned(vec3_make(0.0, 2.0, 0.0), askew), turned(vec3_make(0.0, -1.0, 0.0), askew));
+    const double a[3] = {5.0, 3.0 + 2.0 * 0.491, 1.0 + 2.0 * 0.643};
+    for (int c = 0; c < 3; c++)
+        assert_true(fabs(tree->radiance[c] - exp(-a[c])) <= 1e-12);
+    set(g.setting, "render.unit_m=0.1");
+    stage_look(&g);
+    tree = stage_ray(&g, turned(vec3_make(0.0, 2.0, 0.0), askew), turned(vec3_make(0.0, -1.0, 0.0), askew));
+    for (int c = 0; c < 3; c++)
+        assert_true(fabs(tree->radiance[c] - exp(-0.1 * a[c])) <= 1e-12);
+    stage_close(&g);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_slab_transmits_the_series_cut_at_the_depth),
+        cmocka_unit_test(a_unit_is_as_long_as_the_scene_says),
+        cmocka_unit_test(a_body_that_bends_nothing_absorbs_all_the_same),
+        cmocka_unit_test(a_cloud_dims_the_sky_behind_it),
+        cmocka_unit_test(light_is_dimmed_along_its_straight_way),
+        cmocka_unit_test(other_rules_of_shadows_know_no_absorption),
+        cmocka_unit_test(a_spectrum_of_absorption_is_read_at_the_channels_wavelengths),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
