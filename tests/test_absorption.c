@@ -129,6 +129,22 @@ static void a_cloud_dims_the_sky_behind_it(void **state)
     stage_close(&g);
 }
 
+/* Nothing comes back from a medium without an end but by a channel that it lets through: R, and R + T = 1. */
+static void a_bottomless_medium_is_black(void **state)
+{
+    (void)state;
+    scene_text text = scene_begin(1.0, 4);
+    add_clear(&text, "deep", 1.5, 0, vec3_make(0.0, 0.0, 0.0), askew, "shape: plane, absorb_per_m: [1e-6, 0, 1e9]");
+    stage g = stage_of(text.at, "");
+    for (double angle = 0.0; angle < 1.5; angle += 0.3) {
+        const vec3 d = turned(vec3_make(sin(angle), -cos(angle), 0.0), askew);
+        const double R = reflectance_of_angles(angle, 1.0, 1.5).mean;
+        const ray_tree *tree = stage_ray(&g, vec3_scale(d, -2.0), d);
+        assert_true(fabs(tree->radiance[0] - R) <= 1e-12 && fabs(tree->radiance[1] - 1.0) <= 1e-12 && fabs(tree->radiance[2] - R) <= 1e-12);
+    }
+    stage_close(&g);
+}
+
 /* A white ground under a lamp with a coloured pane between them: shadow rays go straight through, so that the ground shows
  * k_d (N.L) exp(-a d / cos) and, by the pane's clearness, 0.9 at each of its two faces. Phong, CACM 18(6), 1975, for N.L. */
 static const char lit_ground[] =
@@ -215,6 +231,7 @@ int main(void)
         cmocka_unit_test(a_unit_is_as_long_as_the_scene_says),
         cmocka_unit_test(a_body_that_bends_nothing_absorbs_all_the_same),
         cmocka_unit_test(a_cloud_dims_the_sky_behind_it),
+        cmocka_unit_test(a_bottomless_medium_is_black),
         cmocka_unit_test(light_is_dimmed_along_its_straight_way),
         cmocka_unit_test(other_rules_of_shadows_know_no_absorption),
         cmocka_unit_test(a_spectrum_of_absorption_is_read_at_the_channels_wavelengths),

@@ -22,7 +22,8 @@ static const char furnace[] =
     "  vessel: {shape: cup, transparency: 1, ior: 1.5, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1, priority: 3}\n"
     "  liquid: {shape: cylinder, transparency: 1, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.4, priority: 2}\n"
     "  block: {shape: box, transparency: 1, ior: 1.7, position: [0.3, 0.9, 0.1], rotation: [20, 30, 10], size: [0.8, 1.1, 0.7], priority: 4}\n"
-    "  core: {shape: cylinder, transparency: 1, ior: 1.2, position: [0.3, 0.4, 0.1], rotation: [0, 0, 15], radius: 0.3, height: 0.9, m: 1.4, priority: 5}\n"
+    "  core: {shape: cylinder, transparency: 1, ior: 1.2, position: [0.3, 0.4, 0.1], rotation: [0, 0, 15], radius: 0.3, height: 0.9, m: 1.4,\n"
+    "    priority: 5}\n"
     "  bead: {shape: sphere, transparency: 1, ior: 2.42, position: [0.2, 0.9, 0], radius: 0.2, priority: 6}\n"
     "  bubble: {shape: sphere, transparency: 1, ior: 1, position: [-0.4, 0.8, -0.5], radius: 0.45, priority: 3}\n"
     "  slab: {shape: box, transparency: 1, ior: 1.45, position: [-0.2, 1.3, 0.4], rotation: [0, 45, 80], size: [1.5, 0.3, 1], priority: 1}\n";
