@@ -75,11 +75,11 @@ static const char *fault_of(const ray_tree *tree, const ray_node *node)
 }
 
 /* Which medium is a little along a direction from a point: by the solids' own shapes. false where another boundary lies within
- * the step, so that a near and a far step do not agree. */
+ * the step, so that a near and a far step do not agree, and so far out that the nearest step is lost in rounding. */
 static bool medium_along(const probe *p, vec3 point, vec3 direction, int *medium)
 {
     *medium = probe_medium_at(p, vec3_add(point, vec3_scale(direction, 1e-8)));
-    return *medium == probe_medium_at(p, vec3_add(point, vec3_scale(direction, 1e-6))) &&
+    return vec3_length(point) < 1000.0 && *medium == probe_medium_at(p, vec3_add(point, vec3_scale(direction, 1e-6))) &&
            *medium == probe_medium_at(p, vec3_add(point, vec3_scale(direction, 1e-10)));
 }
 
