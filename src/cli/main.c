@@ -11,6 +11,7 @@ static const command commands[] = {
     {"media", "print the catalogue of media: refractive indices, dispersion, sources", command_media},
     {"study", "run, list, merge and sum up studies", command_study},
     {"compare", "say how far two pictures lie apart", command_compare},
+    {"realism", "measure how far what is traced lies from textbook optics", command_realism},
     {"machine", "print what this machine is, and what could disturb a measurement", command_machine},
     {"help", "explain a command", command_help},
 };

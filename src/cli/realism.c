@@ -1,0 +1,241 @@
+#include "cli/cli.h"
+#include "cli/json.h"
+#include "cli/options.h"
+#include "realism/realism.h"
+#include "scene/params.h"
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct realism_request {
+    const char *scene_path;
+    char **assignments; /* of --set, in order; as many as argv has places */
+    size_t assignment_count;
+    bool json, csv;
+    int curve; /* realism_curve, or -1 */
+} realism_request;
+
+enum { KEY_JSON = 0x100, KEY_CSV, KEY_CURVE };
+
+static const struct argp_option options[] = {
+    {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'liquid.ior=1.47'; may be given many times", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object", 0},
+    {"csv", KEY_CSV, NULL, 0, "print the table as CSV, with all digits", 0},
+    {"curve", KEY_CURVE, "NAME", 0,
+     "print a curve as CSV instead, x, measured, theory: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption or edges", 0},
+    {0},
+};
+
+static error_t take_curve(const char *value, realism_request *request, diagnostic *why)
+{
+    const char *names[REALISM_CURVE_COUNT];
+    for (int i = 0; i < REALISM_CURVE_COUNT; i++) {
+        names[i] = realism_curve_name((realism_curve)i);
+        if (strcmp(value, names[i]) == 0) {
+            request->curve = i;
+            return 0;
+        }
+    }
+    options_unknown_word("curve", value, names, REALISM_CURVE_COUNT, why);
+    diagnostic_locate(why, "--curve", 0, 0);
+    return EINVAL;
+}
+
+static error_t take_argument(const char *argument, realism_request *request, diagnostic *why)
+{
+    if (!request->scene_path) {
+        request->scene_path = argument;
+        return 0;
+    }
+    diagnose(why, STATUS_BAD_INPUT, "realism takes one scene; a parameter is set by --set PATH=VALUE", "'%.128s' is one too many", argument);
+    diagnostic_locate(why, "realism", 0, 0);
+    return EINVAL;
+}
+
+static error_t take_option(int key, char *value, struct argp_state *state)
+{
+    options_input *input = state->input;
+    realism_request *request = input->request;
+    switch (key) {
+    case 's': request->assignments[request->assignment_count++] = value; return 0;
+    case KEY_JSON: request->json = true; return 0;
+    case KEY_CSV: request->csv = true; return 0;
+    case KEY_CURVE: return take_curve(value, request, input->why);
+    case ARGP_KEY_ARG: return take_argument(value, request, input->why);
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp parser = {
+    .options = options,
+    .parser = take_option,
+    .args_doc = "SCENE",
+    .doc = "Measure how far what is traced lies from textbook optics, in the scene file SCENE: a vessel (a cup), a liquid in it (a "
+           "cylinder) and a rod (a box). It succeeds whether the metrics pass or not.\vFor example:\n"
+           "  cuvette realism experiments/scenes/rod.yaml\n"
+           "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set clear.reflectivity=0.1",
+};
+
+static status check_request(const realism_request *request, diagnostic *why)
+{
+    const char *remedy = NULL, *what = NULL;
+    if (!request->scene_path)
+        what = "no scene is named", remedy = "name a scene file, as experiments/scenes/rod.yaml";
+    else if (request->json && (request->csv || request->curve >= 0))
+        what = "JSON and CSV do not go together", remedy = "leave one of them out";
+    if (!what)
+        return STATUS_OK;
+    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+    diagnostic_locate(why, "realism", 0, 0);
+    return STATUS_BAD_INPUT;
+}
+
+/* The scene as the command line changes it, checked. No ray of it sees its sky, so that no picture is loaded. */
+static status load_scene(const realism_request *request, scene **out, diagnostic *why)
+{
+    status result = scene_read(request->scene_path, out, why);
+    for (size_t i = 0; i < request->assignment_count && result == STATUS_OK; i++) {
+        result = scene_set_assignment(*out, request->assignments[i], why);
+        if (result != STATUS_OK) {
+            char where[512];
+            snprintf(where, sizeof where, "--set %s", request->assignments[i]);
+            diagnostic_locate(why, where, 0, 0);
+        }
+    }
+    if (result == STATUS_OK) {
+        diagnostic_locate(why, request->scene_path, 0, 0); /* for checks that have no line to name */
+        result = scene_check(*out, why);
+    }
+    if (result == STATUS_OK)
+        result = scene_load_pictures(*out, why);
+    return result;
+}
+
+static const char *verdict(const realism_value *v)
+{
+    return !realism_is_defined(v) ? "none" : realism_passes(v) ? "pass" : "FAIL";
+}
+
+static void print_text(const realism_report *r)
+{
+    int defined = 0, passed = 0;
+    printf("%-4s  %-24s %18s %18s %9s %9s  %-12s %s\n", "", "metric", "measured", "theory", "error", "tolerance", "unit", "what");
+    for (int i = 0; i < r->count; i++) {
+        const realism_value *v = &r->value[i];
+        defined += realism_is_defined(v);
+        passed += realism_passes(v);
+        if (realism_is_defined(v))
+            printf("%-4s  %-24s %18.12g %18.12g %9.1e %9.1e  %-12s %s\n", verdict(v), v->metric, v->measured, v->theory, realism_error(v),
+                   v->tolerance, v->unit, v->what);
+        else
+            printf("%-4s  %-24s %18s %18s %9s %9s  %-12s %s\n", verdict(v), v->metric, "-", "-", "-", "-", v->unit, v->what);
+    }
+    printf("%d of %d pass", passed, defined);
+    if (defined < r->count)
+        printf("; %d are not defined for this scene", r->count - defined);
+    putchar('\n');
+}
+
+static void print_real(double value, const char *after)
+{
+    if (isnan(value))
+        printf("%s%s", "NA", after);
+    else
+        printf("%.17g%s", value, after);
+}
+
+static void print_csv(const realism_report *r)
+{
+    puts("metric,verdict,measured,theory,error,tolerance,unit,what");
+    for (int i = 0; i < r->count; i++) {
+        const realism_value *v = &r->value[i];
+        const bool defined = realism_is_defined(v);
+        printf("%s,%s,", v->metric, verdict(v));
+        print_real(defined ? v->measured : NAN, ",");
+        print_real(v->theory, ",");
+        print_real(realism_error(v), ",");
+        print_real(v->tolerance, ",");
+        printf("%s,\"%s\"\n", v->unit, v->what);
+    }
+}
+
+static json_t *value_object(const realism_value *v)
+{
+    return json_pack("{s:s,s:s,s:o,s:o,s:o,s:o,s:s,s:s}", "metric", v->metric, "verdict", verdict(v), "measured",
+                     json_of_real(realism_is_defined(v) ? v->measured : NAN), "theory", json_of_real(v->theory), "error",
+                     json_of_real(realism_error(v)), "tolerance", json_of_real(v->tolerance), "unit", v->unit, "what", v->what);
+}
+
+static status print_json(const realism_request *request, const realism_report *r, diagnostic *why)
+{
+    json_t *values = json_array(), *o = json_object();
+    int passed = 0, defined = 0, bad = 0;
+    for (int i = 0; i < r->count; i++) {
+        bad |= json_array_append_new(values, value_object(&r->value[i]));
+        passed += realism_passes(&r->value[i]);
+        defined += realism_is_defined(&r->value[i]);
+    }
+    bad |= json_object_set_new(o, "schema", json_integer(1));
+    bad |= json_object_set_new(o, "scene", json_of_text(request->scene_path));
+    bad |= json_object_set_new(o, "defined", json_integer(defined));
+    bad |= json_object_set_new(o, "passed", json_integer(passed));
+    bad |= json_object_set_new(o, "values", values);
+    const status result = json_write(stdout, bad ? NULL : o, why);
+    json_decref(o);
+    return result;
+}
+
+static status print_curve(const scene *s, isa level, realism_curve which, diagnostic *why)
+{
+    realism_points points;
+    const status result = realism_trace_curve(s, level, which, &points, why);
+    if (result != STATUS_OK)
+        return result;
+    printf("\"%s\",\"%s: measured\",\"theory\"\n", realism_curve_x(which), realism_curve_y(which));
+    for (int i = 0; i < points.count; i++) {
+        print_real(points.at[i].x, ",");
+        print_real(points.at[i].measured, ",");
+        print_real(points.at[i].theory, "\n");
+    }
+    return STATUS_OK;
+}
+
+static status measure_and_print(const realism_request *request, const scene *s, isa level, diagnostic *why)
+{
+    if (request->curve >= 0)
+        return print_curve(s, level, (realism_curve)request->curve, why);
+    realism_report report;
+    const status result = realism_measure(s, level, &report, why);
+    if (result != STATUS_OK)
+        return result;
+    if (request->json)
+        return print_json(request, &report, why);
+    if (request->csv)
+        print_csv(&report);
+    else
+        print_text(&report);
+    return STATUS_OK;
+}
+
+status command_realism(int argc, char **argv, diagnostic *why)
+{
+    realism_request request = {.curve = -1, .assignments = calloc((size_t)argc + 1, sizeof(char *))};
+    if (!request.assignments)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    scene *s = NULL;
+    isa level = ISA_SSE2;
+    status result = options_parse(&parser, 0, argc, argv, &request, why);
+    if (result == STATUS_OK)
+        result = check_request(&request, why);
+    if (result == STATUS_OK && (result = isa_choose(&level, why)) != STATUS_OK)
+        diagnostic_locate(why, "environment", 0, 0);
+    if (result == STATUS_OK)
+        result = load_scene(&request, &s, why);
+    if (result == STATUS_OK)
+        result = measure_and_print(&request, s, level, why);
+    scene_destroy(s);
+    free(request.assignments);
+    return result;
+}

@@ -1,0 +1,107 @@
+/* Beer and Lambert: in the liquid alone, rays from within run to its side over known lengths; -ln(transmittance) over length is a
+ * line, whose slope is the coefficient (Hecht, Optics, 5th ed., eq. 4.78 with the power's coefficient). A liquid that
+ * absorbs nothing is given coefficients for it.
+ *
+ * Tolerance: 2.2e-16 in a transmittance, over the optical depth that the longest way has. */
+#include "realism/metrics.h"
+
+#include "scene/medium.h"
+#include <math.h>
+
+#define ABSORPTION_TOLERANCE 1e-10 /* relative, at an optical depth of 1e-4 and more */
+enum { LENGTHS = 9 };
+
+scene *attenuation_scene(const scene *s, const setup *at)
+{
+    scene *copy = arrange_empty(s);
+    if (!copy)
+        return NULL;
+    solid *liquid = &copy->solids[at->liquid];
+    liquid->visible = 1;
+    liquid->shape.position = vec3_make(0.0, 0.0, 0.0); /* lengths then carry no rounding of the place */
+    if (!material_absorbs(&liquid->surface)) {
+        const double one = 1.0 / (liquid->shape.radius * s->render.unit_m);
+        liquid->surface.absorb_per_m = vec3_make(one, one / 2.0, one / 4.0);
+    }
+    return copy;
+}
+
+/* Along x to the side, half way up. */
+status attenuation_point(trial *t, const setup *at, double length, double transmittance[3], diagnostic *why)
+{
+    const solid_shape *liquid = &t->s->solids[at->liquid].shape;
+    const vec3 from = vec3_make(liquid->radius - length, liquid->height / 2.0, 0.0);
+    const status code = probe_way(t->p, from, vec3_make(1.0, 0.0, 0.0), -1, &t->tree, why);
+    const ray_node *first = &t->tree.node[0];
+    for (int c = 0; c < 3 && code == STATUS_OK; c++)
+        transmittance[c] = first->end == RAY_END_HIT ? first->hit.transmittance[c] : NAN;
+    return code;
+}
+
+double attenuation_reach(const trial *t, const setup *at)
+{
+    const vec3 a = material_absorption(&t->s->solids[at->liquid].surface);
+    const double most = fmax(a.x, fmax(a.y, a.z)) * t->s->render.unit_m;
+    return fmin(1.8 * t->s->solids[at->liquid].shape.radius, 20.0 / most); /* no further than light goes */
+}
+
+/* Slopes of the lines of least squares through the points (length, -ln transmittance). */
+static status fit_slopes(const metrics *m, trial *t, double reach, double slope[3], diagnostic *why)
+{
+    double mean_x = 0.0, xx = 0.0, x[LENGTHS], y[3][LENGTHS];
+    status code = STATUS_OK;
+    for (int i = 0; i < LENGTHS && code == STATUS_OK; i++) {
+        double kept[3] = {NAN, NAN, NAN};
+        x[i] = reach * (i + 1) / LENGTHS;
+        code = attenuation_point(t, &m->at, x[i], kept, why);
+        x[i] *= t->s->render.unit_m;
+        mean_x += x[i] / LENGTHS;
+        for (int c = 0; c < 3; c++)
+            y[c][i] = -log(kept[c]);
+    }
+    if (code != STATUS_OK)
+        return code;
+    slope[0] = slope[1] = slope[2] = 0.0;
+    for (int i = 0; i < LENGTHS; i++) {
+        xx += (x[i] - mean_x) * (x[i] - mean_x);
+        for (int c = 0; c < 3; c++)
+            slope[c] += (x[i] - mean_x) * y[c][i];
+    }
+    for (int c = 0; c < 3; c++)
+        slope[c] /= xx;
+    return STATUS_OK;
+}
+
+static status compare_slopes(const metrics *m, worst_pair *worst, double *tolerance, diagnostic *why)
+{
+    scene *supposed = attenuation_scene(m->supposed, &m->theory_at);
+    if (!supposed)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    const vec3 a = material_absorption(&supposed->solids[m->theory_at.liquid].surface);
+    scene_destroy(supposed);
+    const double theory[3] = {a.x, a.y, a.z};
+    double slope[3] = {NAN, NAN, NAN};
+    trial t;
+    status code = trial_start(&t, attenuation_scene(m->traced, &m->at), m->level, why);
+    if (code == STATUS_OK) {
+        const double reach = attenuation_reach(&t, &m->at);
+        code = fit_slopes(m, &t, reach, slope, why);
+        for (int c = 0; c < 3; c++)
+            worst_take(worst, slope[c], theory[c]);
+        *tolerance = ABSORPTION_TOLERANCE * worst->theory + 1e-14 / (reach * t.s->render.unit_m);
+    }
+    trial_end(&t);
+    return code;
+}
+
+status realism_absorption(const metrics *m, diagnostic *why)
+{
+    worst_pair worst = {NAN, NAN, false};
+    double tolerance = ABSORPTION_TOLERANCE;
+    const bool exists = m->theory_at.liquid >= 0 && m->at.liquid >= 0;
+    const status code = exists ? compare_slopes(m, &worst, &tolerance, why) : STATUS_OK;
+    metrics_add(m, (realism_value){"absorption.slope",
+                                   exists ? "of -ln(transmittance) over length in the liquid; of three channels the worst" : "there is no liquid",
+                                   "1/m", worst.measured, worst.theory, tolerance});
+    return code;
+}

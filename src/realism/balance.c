@@ -1,0 +1,54 @@
+/* The white furnace: under a sky of radiance 1, clear media that absorb nothing are invisible; a ray sees 1, whatever its tree, or 1
+ * less what the depth limit cut off. A material that keeps light (transparency below 1) or makes some does not pass.
+ *
+ * Tolerance: half a unit of the film, 2.9e-14, for each of the up to 512 rays of a tree that end in the sky. */
+#include "realism/metrics.h"
+
+#include <math.h>
+
+#define BALANCE_TOLERANCE 1e-10
+enum { COLUMNS = 20, ROWS = 15, DEPTH_MAX = 8 };
+
+static scene *furnace(const scene *s, const setup *at)
+{
+    scene *copy = arrange_vessel(s, at);
+    if (!copy)
+        return NULL;
+    copy->background.kind = BACKGROUND_UNIFORM;
+    copy->background.color = vec3_make(1.0, 1.0, 1.0);
+    copy->background.ambient = vec3_make(0.0, 0.0, 0.0);
+    copy->render.beyond = BEYOND_BLACK;
+    copy->render.depth = s->render.depth < DEPTH_MAX ? s->render.depth : DEPTH_MAX;
+    for (size_t i = 0; i < copy->solid_count; i++) {
+        copy->solids[i].surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
+        copy->solids[i].surface.absorb_spectrum.count = 0;
+    }
+    return copy;
+}
+
+static double seen_and_cut(const ray_tree *tree, int channel)
+{
+    double sum = tree->radiance[channel];
+    for (size_t i = 0; i < tree->count; i++)
+        if (tree->node[i].end == RAY_END_CUT_DEPTH)
+            sum += tree->node[i].throughput[channel];
+    return sum;
+}
+
+status realism_balance(const metrics *m, diagnostic *why)
+{
+    trial t;
+    worst_pair worst = {NAN, NAN, false};
+    scene *s = furnace(m->traced, &m->at);
+    status code = trial_start(&t, s, m->level, why);
+    for (int i = 0; i < COLUMNS * ROWS && code == STATUS_OK; i++) {
+        const double x = (i % COLUMNS + 0.5) * (double)s->render.width / COLUMNS, y = (i / COLUMNS + 0.5) * (double)s->render.height / ROWS;
+        code = probe_ray(t.p, s->camera.position, probe_camera_direction(t.p, x, y), &t.tree, why);
+        for (int c = 0; c < 3 && code == STATUS_OK; c++)
+            worst_take(&worst, seen_and_cut(&t.tree, c), 1.0);
+    }
+    trial_end(&t);
+    metrics_add(m, (realism_value){"balance.furnace", "radiance and what the depth cut off, in a sky of 1; of 300 rays the worst", "",
+                                   worst.measured, worst.theory, BALANCE_TOLERANCE});
+    return code;
+}

@@ -1,0 +1,145 @@
+#include "realism/metrics.h"
+
+#include "scene/medium.h"
+#include <math.h>
+
+#define DEGREE (M_PI / 180.0)
+
+typedef struct curve_words { const char *name, *x, *y; } curve_words;
+static const curve_words words[REALISM_CURVE_COUNT] = {
+    [REALISM_CURVE_FRESNEL_S] = {"fresnel-s", "angle of incidence, deg", "reflectance across the plane of incidence"},
+    [REALISM_CURVE_FRESNEL_P] = {"fresnel-p", "angle of incidence, deg", "reflectance in the plane of incidence"},
+    [REALISM_CURVE_FRESNEL] = {"fresnel", "angle of incidence, deg", "reflectance of unpolarised light"},
+    [REALISM_CURVE_DEVIATION] = {"deviation", "offset from the axis, scene units", "deviation, deg"},
+    [REALISM_CURVE_DEPTH] = {"depth", "depth of recursion", "transmittance of a slab at 40 deg"},
+    [REALISM_CURVE_ABSORPTION] = {"absorption", "length, m", "transmittance of the liquid, red"},
+    [REALISM_CURVE_EDGES] = {"edges", "index of the liquid", "displacement of the rod's left edge, px"},
+};
+
+const char *realism_curve_name(realism_curve which)
+{
+    return words[which].name;
+}
+
+const char *realism_curve_x(realism_curve which)
+{
+    return words[which].x;
+}
+
+const char *realism_curve_y(realism_curve which)
+{
+    return words[which].y;
+}
+
+static void add_point(realism_points *out, double x, double measured, double theory)
+{
+    if (out->count < REALISM_POINTS_MAX)
+        out->at[out->count++] = (realism_point){x, measured, theory};
+}
+
+static status trace_fresnel(const metrics *m, realism_curve which, realism_points *out, diagnostic *why)
+{
+    static double (*const theory[])(double, double, double) = {theory_fresnel_s, theory_fresnel_p, theory_fresnel};
+    const double *n = m->at.n;
+    double start_y = 0.0;
+    trial t;
+    scene *s = arrange_interface(m->traced, &m->at, SETUP_OUTSIDE, SETUP_VESSEL, &start_y);
+    status code = trial_start(&t, s, m->level, why);
+    for (int i = 0; i < 180 && code == STATUS_OK; i++) {
+        interface_shares seen;
+        code = interface_look(t.p, &t.tree, start_y, 0.5 * i * DEGREE, &seen, why);
+        const double measured[] = {seen.R_s, seen.R_p, seen.R};
+        const int at = (int)which - (int)REALISM_CURVE_FRESNEL_S;
+        add_point(out, 0.5 * i, measured[at], theory[at](0.5 * i * DEGREE, n[SETUP_OUTSIDE], n[SETUP_VESSEL]));
+    }
+    trial_end(&t);
+    return code;
+}
+
+static status trace_deviation(const metrics *m, realism_points *out, diagnostic *why)
+{
+    const theory_shells c = setup_shells(&m->theory_at);
+    const double reach = 0.98 * theory_shells_reach(&c);
+    trial t;
+    status code = trial_start(&t, arrange_vessel(m->traced, &m->at), m->level, why);
+    for (int i = 0; i <= 200 && code == STATUS_OK; i++) {
+        const double offset = reach * i / 200.0;
+        double measured = NAN;
+        code = lens_deviation(t.p, &t.tree, &m->at, offset, &measured, why);
+        add_point(out, offset, measured / DEGREE, theory_shells_deviation(&c, offset) / DEGREE);
+    }
+    trial_end(&t);
+    return code;
+}
+
+static status trace_depth(const metrics *m, realism_points *out, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (int depth = 0; depth <= 16 && code == STATUS_OK; depth++) {
+        double measured = NAN;
+        code = slab_measure(m, depth, false, &measured, why);
+        add_point(out, depth, measured, slab_theory(m, depth, false));
+    }
+    return code;
+}
+
+static status trace_absorption(const metrics *m, realism_points *out, diagnostic *why)
+{
+    trial t;
+    status code = trial_start(&t, attenuation_scene(m->traced, &m->at), m->level, why);
+    if (code == STATUS_OK) {
+        const double a = material_absorption(&t.s->solids[m->at.liquid].surface).x, reach = attenuation_reach(&t, &m->at);
+        for (int i = 1; i <= 100 && code == STATUS_OK; i++) {
+            const double length = reach * i / 100.0, length_m = length * t.s->render.unit_m;
+            double kept[3] = {NAN, NAN, NAN};
+            code = attenuation_point(&t, &m->at, length, kept, why);
+            add_point(out, length_m, kept[0], exp(-a * length_m));
+        }
+    }
+    trial_end(&t);
+    return code;
+}
+
+static status trace_edges(const metrics *m, realism_points *out, diagnostic *why)
+{
+    scene *s = scene_clone(m->traced);
+    status code = s ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    metrics turned = *m;
+    turned.traced = turned.supposed = s;
+    for (int i = 0; i <= 60 && code == STATUS_OK; i++) {
+        material *liquid = &s->solids[m->at.liquid].surface;
+        double measured[2], theory[2];
+        liquid->medium = MEDIUM_IOR;
+        liquid->ior = 1.0 + 0.01 * i;
+        turned.at.n[SETUP_LIQUID] = turned.theory_at.n[SETUP_LIQUID] = liquid->ior;
+        code = edges_displacement(&turned, measured, theory, why);
+        add_point(out, liquid->ior, measured[0], theory[0]);
+    }
+    scene_destroy(s);
+    return code;
+}
+
+status realism_trace_curve(const scene *s, isa level, realism_curve which, realism_points *out, diagnostic *why)
+{
+    metrics m = {.traced = s, .supposed = s, .level = level};
+    out->count = 0;
+    status code = setup_read(s, &m.at, why);
+    m.theory_at = m.at;
+    if (code != STATUS_OK)
+        return code;
+    const bool of_liquid = which == REALISM_CURVE_ABSORPTION || which == REALISM_CURVE_EDGES;
+    if (of_liquid && m.at.liquid < 0)
+        return diagnose(why, STATUS_BAD_INPUT, "add a cylinder named 'liquid'", "the curve '%s' is of the liquid, and there is none",
+                        words[which].name);
+    switch (which) {
+    case REALISM_CURVE_FRESNEL_S:
+    case REALISM_CURVE_FRESNEL_P:
+    case REALISM_CURVE_FRESNEL: return trace_fresnel(&m, which, out, why);
+    case REALISM_CURVE_DEVIATION: return trace_deviation(&m, out, why);
+    case REALISM_CURVE_DEPTH: return trace_depth(&m, out, why);
+    case REALISM_CURVE_ABSORPTION: return trace_absorption(&m, out, why);
+    case REALISM_CURVE_EDGES: return trace_edges(&m, out, why);
+    case REALISM_CURVE_COUNT: break;
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,50 @@
+#include "realism/metrics.h"
+
+#include <math.h>
+
+void metrics_add(const metrics *m, realism_value value)
+{
+    if (m->report->count < REALISM_MAX)
+        m->report->value[m->report->count++] = value;
+}
+
+void worst_take(worst_pair *w, double measured, double theory)
+{
+    /* Written so that a measurement that is no number counts as the worst. */
+    if (!w->any || !(fabs(measured - theory) <= fabs(w->measured - w->theory)))
+        *w = (worst_pair){measured, theory, true};
+}
+
+double realism_error(const realism_value *v)
+{
+    return fabs(v->measured - v->theory);
+}
+
+bool realism_is_defined(const realism_value *v)
+{
+    return !isnan(v->theory);
+}
+
+bool realism_passes(const realism_value *v)
+{
+    return realism_error(v) <= v->tolerance;
+}
+
+status realism_measure(const scene *s, isa level, realism_report *out, diagnostic *why)
+{
+    return realism_measure_against(s, s, level, out, why);
+}
+
+status realism_measure_against(const scene *traced, const scene *supposed, isa level, realism_report *out, diagnostic *why)
+{
+    static status (*const all[])(const metrics *, diagnostic *) = {realism_edges, realism_water_line, realism_lens, realism_interfaces,
+                                                                   realism_balance, realism_slab, realism_absorption, realism_reversal};
+    metrics m = {.traced = traced, .supposed = supposed, .level = level, .report = out};
+    out->count = 0;
+    status code = setup_read(traced, &m.at, why);
+    if (code == STATUS_OK)
+        code = setup_read(supposed, &m.theory_at, why);
+    for (size_t i = 0; i < sizeof all / sizeof all[0] && code == STATUS_OK; i++)
+        code = all[i](&m, why);
+    return code;
+}

@@ -1,0 +1,60 @@
+/* The room's inside: what all metrics share. A metric is a function that adds its values to the report; it adds the same names
+ * for every scene, with theory NaN and the reason where the scene has no such thing.
+ * Ownership: trial_start takes the scene over, trial_end releases all of it. */
+#ifndef CUVETTE_REALISM_METRICS_H
+#define CUVETTE_REALISM_METRICS_H
+
+#include "realism/realism.h"
+#include "realism/setup.h"
+#include "render/probe.h"
+
+typedef struct metrics {
+    const scene *traced, *supposed; /* measured in; theory's */
+    setup at, theory_at;            /* of these */
+    isa level;
+    realism_report *report;
+} metrics;
+
+status realism_edges(const metrics *m, diagnostic *why);        /* edges.c: the rod's edges in the picture, magnification */
+status realism_water_line(const metrics *m, diagnostic *why);   /* water_line.c: the leaning rod's break */
+status realism_lens(const metrics *m, diagnostic *why);         /* lens.c: deviation, power, dispersion */
+status realism_interfaces(const metrics *m, diagnostic *why);   /* interfaces.c: critical angles, Fresnel */
+status realism_balance(const metrics *m, diagnostic *why);      /* balance.c: white furnace */
+status realism_slab(const metrics *m, diagnostic *why);         /* slab.c: convergence with depth */
+status realism_absorption(const metrics *m, diagnostic *why);   /* attenuation.c: Beer and Lambert */
+status realism_reversal(const metrics *m, diagnostic *why);     /* reversal.c: ways backwards */
+
+void metrics_add(const metrics *m, realism_value value);
+
+/* Remembers the pair that lies furthest apart. */
+typedef struct worst_pair { double measured, theory; bool any; } worst_pair;
+void worst_take(worst_pair *w, double measured, double theory);
+
+/* Points of curves, shared with curve.c. */
+status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, double *radians, diagnostic *why);
+typedef struct interface_shares { double R_s, R_p, R; } interface_shares;
+status interface_look(probe *p, ray_tree *tree, double start_y, double angle, interface_shares *out, diagnostic *why);
+scene *slab_scene(const scene *s, const setup *at, int depth, bool polarised);
+status slab_measure(const metrics *m, int depth, bool polarised, double *transmitted, diagnostic *why);
+double slab_theory(const metrics *m, int depth, bool polarised);
+scene *attenuation_scene(const scene *s, const setup *at);
+status edges_displacement(const metrics *m, double measured[2], double theory[2], diagnostic *why);
+
+/* A scene and the means to send rays through it. */
+typedef struct trial { scene *s; probe *p; ray_tree tree; } trial;
+status trial_start(trial *t, scene *taken, isa level, diagnostic *why);
+void trial_end(trial *t);
+
+/* Shares of light left after a length of the liquid, in a trial of attenuation_scene; and how far it is good to go. */
+status attenuation_point(trial *t, const setup *at, double length, double transmittance[3], diagnostic *why);
+double attenuation_reach(const trial *t, const setup *at);
+
+/* Does the way from there, refracted where it can be, end on that solid without a reflection; through upright surfaces only? A
+ * failure of the tracer goes to *code. */
+bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why);
+
+/* First and last place between `from` and `to` where something is seen, each to 1e-12, the change looked for in `steps` steps. */
+typedef bool seen_at(void *context, double x);
+bool find_edges(seen_at *seen, void *context, double from, double to, int steps, double edge[2]);
+
+#endif

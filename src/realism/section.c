@@ -1,0 +1,99 @@
+#include "realism/section.h"
+
+#include <math.h>
+
+const char *section_read(const scene *s, const setup *at, section *out)
+{
+    const solid_shape *rod = &s->solids[at->rod].shape;
+    if (rod->rotation_deg.x != 0.0 || rod->rotation_deg.z != 0.0)
+        return "the rod leans: this wants an upright one";
+    *out = (section){.eye = view_of(s), .shells = setup_shells(at), .x = at->x, .z = at->z};
+    const double turn = rod->rotation_deg.y * M_PI / 180.0;
+    for (int i = 0; i < 4; i++) {
+        const double x = (i & 1 ? 0.5 : -0.5) * rod->size.x, z = (i & 2 ? 0.5 : -0.5) * rod->size.z;
+        out->corner_x[i] = rod->position.x - at->x + x * cos(turn) + z * sin(turn);
+        out->corner_z[i] = rod->position.z - at->z - x * sin(turn) + z * cos(turn);
+        if (hypot(out->corner_x[i], out->corner_z[i]) >= at->inner)
+            return "the rod reaches into the vessel's wall";
+    }
+    if (hypot(out->eye.x - at->x, out->eye.z - at->z) <= at->outer)
+        return "the camera stands within the vessel's circle";
+    return NULL;
+}
+
+section section_bare(const section *c)
+{
+    section bare = *c;
+    bare.shells.n_wall = bare.shells.n_core = bare.shells.n_around;
+    return bare;
+}
+
+/* A ray from above: where it passes the axis, which way it goes, and the shells' indices for it. */
+typedef struct flat_ray { double heading, offset, steepness; theory_shells shells; } flat_ray;
+
+static double flat_index(double n, double steepness)
+{
+    return sqrt(n * n - steepness * steepness);
+}
+
+static flat_ray flatten(const section *c, double px, double py)
+{
+    const sight d = view_through(&c->eye, px, py);
+    flat_ray r = {.heading = atan2(d.z, d.x), .steepness = c->shells.n_around * d.y, .shells = c->shells};
+    r.offset = (c->eye.z - c->z) * cos(r.heading) - (c->eye.x - c->x) * sin(r.heading);
+    r.shells.n_around = flat_index(c->shells.n_around, r.steepness);
+    r.shells.n_wall = flat_index(c->shells.n_wall, r.steepness);
+    r.shells.n_core = flat_index(c->shells.n_core, r.steepness);
+    return r;
+}
+
+bool section_sees_rod(const section *c, double px, double py)
+{
+    const flat_ray r = flatten(c, px, py);
+    if (!(fabs(r.offset) < theory_shells_reach(&r.shells)))
+        return false;
+    /* An offset to the left of the ray has the axis on its right, where it turns to: the heading falls. */
+    const double heading = r.heading - theory_shells_turn(&r.shells, r.offset);
+    const double offset = r.offset * r.shells.n_around / r.shells.n_core;
+    double least = INFINITY, most = -INFINITY;
+    for (int i = 0; i < 4; i++) {
+        const double side = c->corner_z[i] * cos(heading) - c->corner_x[i] * sin(heading) - offset;
+        least = fmin(least, side);
+        most = fmax(most, side);
+    }
+    return least <= 0.0 && most >= 0.0; /* corners on both sides */
+}
+
+void section_range(const section *c, double px, double py, double range[2])
+{
+    for (int i = 0; i < 2; i++) {
+        double inside = px, outside = px + (i ? 8.0 : -8.0) * c->eye.focal_px;
+        for (int k = 0; k < 100; k++) {
+            const double middle = (inside + outside) / 2.0;
+            if (fabs(flatten(c, middle, py).offset) < c->shells.outer)
+                inside = middle;
+            else
+                outside = middle;
+        }
+        range[i] = inside;
+    }
+}
+
+bool section_stays(const section *c, double px, double py, double low, double high)
+{
+    const flat_ray r = flatten(c, px, py);
+    const theory_shells *n = &r.shells;
+    const double b[3] = {r.offset, r.offset * n->n_around / n->n_wall, r.offset * n->n_around / n->n_core};
+    const double distance = hypot(c->eye.x - c->x, c->eye.z - c->z);
+    const double way[3] = {sqrt(distance * distance - b[0] * b[0]) - sqrt(n->outer * n->outer - b[0] * b[0]),
+                           sqrt(n->outer * n->outer - b[1] * b[1]) - sqrt(n->inner * n->inner - b[1] * b[1]),
+                           sqrt(n->inner * n->inner - b[2] * b[2]) + hypot(c->corner_x[0], c->corner_z[0])};
+    const double index[3] = {n->n_around, n->n_wall, n->n_core};
+    double y = c->eye.y;
+    for (int i = 0; i < 3; i++) {
+        y += way[i] * r.steepness / index[i];
+        if (!(y > low && y < high))
+            return false;
+    }
+    return true;
+}

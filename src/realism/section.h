@@ -1,0 +1,32 @@
+/* Theory of the rod in the picture: whether the camera's ray through a point of the picture meets the rod behind the wall of a
+ * filled vessel. Upright surfaces leave n d_y of a ray as it is, d_y the upward part of its unit direction. Seen from above, a
+ * ray therefore bends at the circles as a flat one whose indices are sqrt(n^2 - (n d_y)^2): Snell's law with the part along y
+ * taken off both sides. Exact. Pure; scalars only. */
+#ifndef CUVETTE_REALISM_SECTION_H
+#define CUVETTE_REALISM_SECTION_H
+
+#include "realism/setup.h"
+#include "realism/view.h"
+
+typedef struct section {
+    view eye;
+    theory_shells shells;
+    double x, z;                      /* of the axis */
+    double corner_x[4], corner_z[4];  /* of the rod, from the axis */
+} section;
+
+/* NULL, or why theory has no answer for this scene. */
+const char *section_read(const scene *s, const setup *at, section *out);
+
+/* The same without vessel and liquid. */
+section section_bare(const section *c);
+
+bool section_sees_rod(const section *c, double px, double py);
+
+/* Where in the picture's line py the vessel begins and ends, around the axis at px. */
+void section_range(const section *c, double px, double py, double range[2]);
+
+/* Does the ray stay between the two heights up to the rod's far side? */
+bool section_stays(const section *c, double px, double py, double low, double high);
+
+#endif

@@ -1,0 +1,157 @@
+#include "realism/setup.h"
+
+#include "scene/medium.h"
+#include <math.h>
+
+static status wrong(const scene *s, diagnostic *why, const char *remedy, const char *what)
+{
+    diagnostic_locate(why, s->path, 0, 0);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+}
+
+static bool is_turned(const solid *of)
+{
+    const vec3 r = of->shape.rotation_deg;
+    return r.x != 0.0 || r.y != 0.0 || r.z != 0.0;
+}
+
+static int find_visible(const scene *s, const char *name)
+{
+    const int i = scene_find_solid(s, name);
+    return i >= 0 && s->solids[i].visible ? i : -1;
+}
+
+static status index_of(const scene *s, int which, double *n, diagnostic *why)
+{
+    index_law law;
+    const status code = material_index_law(&s->solids[which].surface, s->solids[which].name, &law, why);
+    if (code == STATUS_OK)
+        *n = index_law_at(&law, s->render.lambda_nm);
+    return code;
+}
+
+static status read_vessel(const scene *s, setup *out, diagnostic *why)
+{
+    const char *const example = "take the names and shapes of experiments/scenes/rod.yaml";
+    out->vessel = find_visible(s, "vessel");
+    out->rod = find_visible(s, "rod");
+    if (out->vessel < 0 || s->solids[out->vessel].shape.kind != SHAPE_CUP)
+        return wrong(s, why, example, "there is no cup named 'vessel'");
+    if (out->rod < 0 || s->solids[out->rod].shape.kind != SHAPE_BOX)
+        return wrong(s, why, example, "there is no box named 'rod'");
+    const solid *vessel = &s->solids[out->vessel], *rod = &s->solids[out->rod];
+    if (is_turned(vessel) || vessel->surface.transparency == 0.0)
+        return wrong(s, why, "let it stand upright, and set its transparency above 0", "the vessel is turned or opaque");
+    if (rod->surface.transparency != 0.0 || rod->priority <= vessel->priority)
+        return wrong(s, why, "set its transparency to 0 and its priority above the vessel's", "the rod is not opaque, or is displaced");
+    out->x = vessel->shape.position.x, out->z = vessel->shape.position.z;
+    out->outer = vessel->shape.radius, out->inner = vessel->shape.inner_radius;
+    out->low = vessel->shape.position.y + vessel->shape.floor;
+    out->high = vessel->shape.position.y + vessel->shape.height;
+    return STATUS_OK;
+}
+
+/* Does the vessel's glass win where both are? */
+static bool glass_wins(const scene *s, const setup *at)
+{
+    const int64_t vessel = s->solids[at->vessel].priority, liquid = s->solids[at->liquid].priority;
+    return vessel > liquid || (vessel == liquid && at->vessel < at->liquid);
+}
+
+static status read_liquid(const scene *s, setup *out, diagnostic *why)
+{
+    const solid *liquid = &s->solids[out->liquid];
+    const solid_shape *shape = &liquid->shape;
+    if (shape->kind != SHAPE_CYLINDER || shape->m != 1.0 || is_turned(liquid) || liquid->surface.transparency == 0.0)
+        return wrong(s, why, "make it an upright round cylinder with a transparency above 0", "the liquid is no clear round cylinder");
+    if (shape->position.x != out->x || shape->position.z != out->z || shape->radius < out->inner || shape->radius >= out->outer)
+        return wrong(s, why, "give both one axis, and the liquid a radius between the vessel's inner_radius and radius",
+                     "the liquid does not reach into the vessel's wall all around");
+    if (s->solids[out->rod].priority <= liquid->priority)
+        return wrong(s, why, "set the rod's priority above the liquid's", "the liquid displaces the rod");
+    if (!glass_wins(s, out)) {
+        out->inner = shape->radius;
+        out->low = fmax(s->solids[out->vessel].shape.position.y, shape->position.y);
+    }
+    if (shape->position.y > out->low || shape->position.y + shape->height <= out->low)
+        return wrong(s, why, "let the liquid begin within the vessel's floor and end above it", "the liquid does not stand on the floor");
+    out->high = fmin(out->high, shape->position.y + shape->height);
+    return STATUS_OK;
+}
+
+status setup_read(const scene *s, setup *out, diagnostic *why)
+{
+    status code = read_vessel(s, out, why);
+    const index_law around = surrounding_index_law(&s->background);
+    out->n[SETUP_OUTSIDE] = out->n[SETUP_LIQUID] = index_law_at(&around, s->render.lambda_nm);
+    out->liquid = find_visible(s, "liquid");
+    if (code == STATUS_OK)
+        code = index_of(s, out->vessel, &out->n[SETUP_VESSEL], why);
+    if (code == STATUS_OK && out->liquid >= 0) {
+        code = read_liquid(s, out, why);
+        if (code == STATUS_OK)
+            code = index_of(s, out->liquid, &out->n[SETUP_LIQUID], why);
+    }
+    return code;
+}
+
+theory_shells setup_shells(const setup *at)
+{
+    const theory_shells c = {.n_around = at->n[SETUP_OUTSIDE], .n_wall = at->n[SETUP_VESSEL], .n_core = at->n[SETUP_LIQUID],
+                             .outer = at->outer, .inner = at->inner};
+    return c;
+}
+
+scene *arrange_empty(const scene *s)
+{
+    scene *copy = scene_clone(s);
+    if (!copy)
+        return NULL;
+    for (size_t i = 0; i < copy->solid_count; i++)
+        copy->solids[i].visible = 0;
+    for (size_t i = 0; i < copy->light_count; i++)
+        copy->lights[i].intensity = 0.0;
+    render_settings *r = &copy->render;
+    r->integrator = INTEGRATOR_WHITTED;
+    r->lighting = LIGHTING_WHITTED;
+    r->polarisation = 0;
+    r->samples = 1;
+    r->min_weight = 0.0;
+    r->depth = 16;
+    return copy;
+}
+
+scene *arrange_vessel(const scene *s, const setup *at)
+{
+    scene *copy = arrange_empty(s);
+    if (!copy)
+        return NULL;
+    copy->solids[at->vessel].visible = 1;
+    if (at->liquid >= 0)
+        copy->solids[at->liquid].visible = 1;
+    return copy;
+}
+
+static void lay(scene *s, int which, double top, int priority)
+{
+    if (which < 0)
+        return;
+    solid *one = &s->solids[which];
+    one->shape = (solid_shape){.kind = SHAPE_PLANE, .position = {0.0, top, 0.0}};
+    one->priority = priority;
+    one->visible = 1;
+}
+
+scene *arrange_interface(const scene *s, const setup *at, setup_medium from, setup_medium to, double *start_y)
+{
+    const int solids[SETUP_MEDIA] = {-1, at->vessel, at->liquid};
+    scene *copy = arrange_empty(s);
+    if (!copy)
+        return NULL;
+    const bool below = from != SETUP_OUTSIDE;
+    lay(copy, solids[below ? from : to], 0.0, 2);
+    if (below)
+        lay(copy, solids[to], 10.0, 1);
+    *start_y = below ? -1.0 : 1.0;
+    return copy;
+}

@@ -1,0 +1,96 @@
+#include "realism/theory.h"
+
+#include <math.h>
+
+double theory_snell(double angle, double n_from, double n_to)
+{
+    const double sine = n_from * sin(angle) / n_to;
+    return fabs(sine) < 1.0 ? asin(sine) : NAN;
+}
+
+double theory_critical_angle(double n_from, double n_to)
+{
+    return n_to < n_from ? asin(n_to / n_from) : NAN;
+}
+
+double theory_fresnel_s(double angle, double n_from, double n_to)
+{
+    const double t = theory_snell(angle, n_from, n_to);
+    if (isnan(t))
+        return 1.0;
+    if (angle == 0.0) /* 0 / 0 in the form below */
+        return pow((n_from - n_to) / (n_from + n_to), 2);
+    return pow(sin(angle - t) / sin(angle + t), 2);
+}
+
+double theory_fresnel_p(double angle, double n_from, double n_to)
+{
+    const double t = theory_snell(angle, n_from, n_to);
+    if (isnan(t))
+        return 1.0;
+    if (angle == 0.0)
+        return pow((n_from - n_to) / (n_from + n_to), 2);
+    return pow(tan(angle - t) / tan(angle + t), 2);
+}
+
+double theory_fresnel(double angle, double n_from, double n_to)
+{
+    return (theory_fresnel_s(angle, n_from, n_to) + theory_fresnel_p(angle, n_from, n_to)) / 2.0;
+}
+
+double theory_slab(double R, int passes)
+{
+    /* The sum of a geometric series of ratio R^2; where R is 1 nothing gets in. */
+    return passes <= 0 || R >= 1.0 ? 0.0 : pow(1.0 - R, 2) * (1.0 - pow(R, 2.0 * passes)) / (1.0 - R * R);
+}
+
+double theory_slab_whole(double R)
+{
+    return (1.0 - R) / (1.0 + R);
+}
+
+double theory_shells_reach(const theory_shells *c)
+{
+    const double in_wall = c->inner * c->n_wall / c->n_around, in_core = c->inner * c->n_core / c->n_around;
+    return fmin(c->outer, fmin(in_wall, in_core));
+}
+
+double theory_shells_turn(const theory_shells *c, double offset)
+{
+    const double invariant = c->n_around * offset;
+    return asin(offset / c->outer) - asin(invariant / (c->n_wall * c->outer))
+         + asin(invariant / (c->n_wall * c->inner)) - asin(invariant / (c->n_core * c->inner));
+}
+
+double theory_shells_deviation(const theory_shells *c, double offset)
+{
+    return 2.0 * theory_shells_turn(c, offset);
+}
+
+double theory_shells_power(const theory_shells *c)
+{
+    return 2.0 * ((1.0 - c->n_around / c->n_wall) / c->outer + (c->n_around / c->n_wall - c->n_around / c->n_core) / c->inner);
+}
+
+/* Horizontal reach of the ray with n sin(angle) = p. */
+static double reach(double p, double height, double depth, double n_above, double n_below)
+{
+    return height * p / sqrt(n_above * n_above - p * p) + depth * p / sqrt(n_below * n_below - p * p);
+}
+
+double theory_apparent_tangent(double height, double depth, double distance, double n_above, double n_below)
+{
+    double low = 0.0, high = fmin(n_above, n_below); /* reach grows from 0 to infinity, or to the end of the smaller medium's */
+    if (!(height > 0.0 && depth >= 0.0))
+        return NAN;
+    for (int i = 0; i < 200; i++) {
+        const double p = low + (high - low) / 2.0;
+        if (p <= low || p >= high)
+            break;
+        if (reach(p, height, depth, n_above, n_below) < distance)
+            low = p;
+        else
+            high = p;
+    }
+    return low / sqrt(n_above * n_above - low * low);
+}

@@ -1,0 +1,66 @@
+#include "realism/metrics.h"
+
+#include <math.h>
+
+status trial_start(trial *t, scene *taken, isa level, diagnostic *why)
+{
+    *t = (trial){.s = taken};
+    if (!taken)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return probe_create(taken, level, &t->p, why);
+}
+
+void trial_end(trial *t)
+{
+    ray_tree_release(&t->tree);
+    probe_destroy(t->p);
+    scene_destroy(t->s);
+    *t = (trial){0};
+}
+
+bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why)
+{
+    if (*code == STATUS_OK)
+        *code = probe_way(t->p, origin, direction, -1, &t->tree, why);
+    if (*code != STATUS_OK)
+        return false;
+    for (size_t i = 0; i < t->tree.count; i++) {
+        const ray_node *n = &t->tree.node[i];
+        if (n->kind == RAY_REFLECT || n->end != RAY_END_HIT || (upright && fabs(n->hit.normal.y) > 0.5))
+            return false;
+        if (n->hit.opaque)
+            return n->hit.solid == which;
+    }
+    return false;
+}
+
+/* Between a place where the answer is `before` and one where it is not. */
+static double bisect(seen_at *seen, void *context, double from, double to, bool before)
+{
+    while (to - from > 1e-12) {
+        const double middle = from + (to - from) / 2.0;
+        if (middle <= from || middle >= to)
+            break;
+        if (seen(context, middle) == before)
+            from = middle;
+        else
+            to = middle;
+    }
+    return from + (to - from) / 2.0;
+}
+
+bool find_edges(seen_at *seen, void *context, double from, double to, int steps, double edge[2])
+{
+    const double step = (to - from) / steps;
+    int first = -1, last = -1;
+    for (int i = 0; i <= steps; i++)
+        if (seen(context, from + i * step)) {
+            first = first < 0 ? i : first;
+            last = i;
+        }
+    if (first < 1 || last >= steps) /* nowhere, or not all of it */
+        return false;
+    edge[0] = bisect(seen, context, from + (first - 1) * step, from + first * step, false);
+    edge[1] = bisect(seen, context, from + last * step, from + (last + 1) * step, true);
+    return true;
+}

@@ -1,0 +1,142 @@
+/* The straw in the glass: a thin rod leans through a wide flat surface, and its left edge in the picture breaks there. The eye stands
+ * above, not far away, so that every point below has its own angle: all of it counts, not only small angles. The break is the angle
+ * between two secants of the edge, above and below. In a line of the picture the edge is the leftmost of the images of the
+ * rod's four long edges, since what is seen of it is bounded by them.
+ *
+ * Tolerance: edges are good to 1e-11 px; over a secant of 50 px that is 1e-11 degrees. */
+#include "realism/metrics.h"
+#include "realism/view.h"
+
+#include <math.h>
+
+#define LEAN_DEG 20.0
+#define ROD_WIDTH 0.05
+#define ROD_LENGTH 3.0
+#define BREAK_TOLERANCE_DEG 1e-9
+
+enum { LINES = 4 };
+/* From the picture's middle, where the rod enters: px. */
+static const double line_at[LINES] = {-80.0, -30.0, 30.0, 80.0};
+
+static scene *leaning_rod(const scene *s, const setup *at)
+{
+    scene *copy = arrange_empty(s);
+    if (!copy)
+        return NULL;
+    solid *rod = &copy->solids[at->rod];
+    rod->visible = 1;
+    rod->priority = 2;
+    rod->shape = (solid_shape){.kind = SHAPE_BOX, .rotation_deg = {0.0, 0.0, -LEAN_DEG}, .size = {ROD_WIDTH, ROD_LENGTH, ROD_WIDTH}};
+    if (at->liquid >= 0) {
+        solid *water = &copy->solids[at->liquid];
+        water->visible = 1;
+        water->priority = 1;
+        water->shape = (solid_shape){.kind = SHAPE_PLANE};
+    }
+    copy->camera = (struct camera){.position = {0.0, 3.0, -2.5}, .target = {0.0, 0.0, 0.0}, .aimed = 1, .fov_deg = 30.0};
+    copy->render.width = 800;
+    copy->render.height = 600;
+    return copy;
+}
+
+typedef struct water { view eye; double n_above, n_below; } water;
+
+/* Where a place on a long edge of the rod appears in the picture; the edge by its place in the rod's section, the place by
+ * its distance along it from the middle. */
+static bool edge_image(const water *w, int edge, double along, double *px, double *py)
+{
+    const double lean = -LEAN_DEG * M_PI / 180.0;
+    const double across = (edge & 1 ? 0.5 : -0.5) * ROD_WIDTH, z = (edge & 2 ? 0.5 : -0.5) * ROD_WIDTH;
+    const double x = across * cos(lean) - along * sin(lean), y = across * sin(lean) + along * cos(lean);
+    if (y >= 0.0)
+        return view_place(&w->eye, x, y, z, px, py);
+    const double dx = x - w->eye.x, dz = z - w->eye.z, distance = hypot(dx, dz);
+    const double tangent = theory_apparent_tangent(w->eye.y, -y, distance, w->n_above, w->n_below);
+    return view_place(&w->eye, w->eye.x + tangent * dx / distance, w->eye.y - 1.0, w->eye.z + tangent * dz / distance, px, py);
+}
+
+/* Where that edge crosses a line of the picture; NaN if it does not. Its image falls from the top of the rod to its bottom. */
+static double crossing(const water *w, int edge, double line)
+{
+    double low = -ROD_LENGTH / 2.0, high = ROD_LENGTH / 2.0, px = NAN, py = NAN;
+    if (!edge_image(w, edge, low, &px, &py) || py < line || !edge_image(w, edge, high, &px, &py) || py > line)
+        return NAN;
+    for (int i = 0; i < 200; i++) {
+        const double middle = (low + high) / 2.0;
+        if (middle <= low || middle >= high)
+            break;
+        edge_image(w, edge, middle, &px, &py);
+        if (py > line)
+            low = middle;
+        else
+            high = middle;
+    }
+    edge_image(w, edge, high, &px, &py);
+    return px;
+}
+
+static double break_deg(const double x[LINES])
+{
+    const double above = atan((x[0] - x[1]) / (line_at[1] - line_at[0])), below = atan((x[2] - x[3]) / (line_at[3] - line_at[2]));
+    return (above - below) * 180.0 / M_PI;
+}
+
+static double theory_break(const scene *arranged, const setup *at)
+{
+    const water w = {view_of(arranged), at->n[SETUP_OUTSIDE], at->n[SETUP_LIQUID]};
+    double x[LINES];
+    for (int i = 0; i < LINES; i++) {
+        x[i] = INFINITY;
+        for (int edge = 0; edge < 4; edge++) {
+            const double at_line = crossing(&w, edge, w.eye.height / 2.0 + line_at[i]);
+            if (isnan(at_line))
+                return NAN;
+            x[i] = fmin(x[i], at_line);
+        }
+    }
+    return break_deg(x);
+}
+
+typedef struct line { trial *t; int rod; double py; status code; diagnostic *why; } line;
+
+static bool traced_sees(void *context, double x)
+{
+    line *l = context;
+    return trial_meets(l->t, l->t->s->camera.position, probe_camera_direction(l->t->p, x, l->py), l->rod, false, &l->code, l->why);
+}
+
+static status measure_break(const metrics *m, scene *arranged, double *degrees, diagnostic *why)
+{
+    trial t;
+    status code = trial_start(&t, arranged, m->level, why);
+    double x[LINES] = {NAN, NAN, NAN, NAN};
+    for (int i = 0; i < LINES && code == STATUS_OK; i++) {
+        line l = {&t, m->at.rod, 300.0 + line_at[i], STATUS_OK, why};
+        double edge[2];
+        if (find_edges(traced_sees, &l, 200.0, 600.0, 256, edge))
+            x[i] = edge[0];
+        code = l.code;
+    }
+    *degrees = break_deg(x);
+    trial_end(&t);
+    return code;
+}
+
+status realism_water_line(const metrics *m, diagnostic *why)
+{
+    const char *what = "the leaning rod's left edge in the picture breaks at the liquid's surface by";
+    double measured = NAN, theory = NAN;
+    status code = STATUS_OK;
+    scene *supposed = leaning_rod(m->supposed, &m->theory_at);
+    if (!supposed)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (m->theory_at.liquid < 0)
+        what = "there is no liquid";
+    else if (isnan(theory = theory_break(supposed, &m->theory_at)))
+        what = "the rod below the surface is not in sight there";
+    else
+        code = measure_break(m, leaning_rod(m->traced, &m->at), &measured, why);
+    scene_destroy(supposed);
+    metrics_add(m, (realism_value){"water_line.break", what, "deg", measured, theory, BREAK_TOLERANCE_DEG});
+    return code;
+}
