@@ -64,6 +64,8 @@ plant scene/a.c '"params.h"' 'not written from src/'
 plant scene/a.c '"../base/status.h"' 'not written from src/'
 plant scene/a.c '"scene/../render/film.h"' 'not written from src/'
 plant scene/a.c '"attic/old.h"' 'no floor'
+plant realism/a.c '"study/study.h"' climbs
+plant study/a.c '"realism/realism.h"' ''
 plant cuvette.c '"cli/cli.h"' climbs
 plant cuvette.c '"study/study.h"' ''
 plant cli/a.c '"cuvette.h"' ''

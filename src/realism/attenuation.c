@@ -1,4 +1,4 @@
-/* Beer and Lambert: in the liquid alone, rays from within run to its side over known lengths; -ln(transmittance) over length is a
+/* Beer and Lambert: in the liquid alone, rays run from within to the rod over known lengths; -ln(transmittance) over length is a
  * line, whose slope is the coefficient (Hecht, Optics, 5th ed., eq. 4.78 with the power's coefficient). A liquid that
  * absorbs nothing is given coefficients for it.
  *
@@ -18,7 +18,13 @@ scene *attenuation_scene(const scene *s, const setup *at)
         return NULL;
     solid *liquid = &copy->solids[at->liquid];
     liquid->visible = 1;
-    liquid->shape.position = vec3_make(0.0, 0.0, 0.0); /* lengths then carry no rounding of the place */
+    liquid->shape.position = vec3_make(0.0, 0.0, 0.0);
+    /* The rod's face stands at x = 0 exactly, so that lengths carry no rounding of the place. */
+    const double width = 0.1 * liquid->shape.radius;
+    solid *rod = &copy->solids[at->rod];
+    rod->visible = 1;
+    rod->shape = (solid_shape){.kind = SHAPE_BOX, .position = {width / 2.0, liquid->shape.height / 2.0, 0.0},
+                               .size = {width, liquid->shape.height / 2.0, width}};
     if (!material_absorbs(&liquid->surface)) {
         const double one = 1.0 / (liquid->shape.radius * s->render.unit_m);
         liquid->surface.absorb_per_m = vec3_make(one, one / 2.0, one / 4.0);
@@ -26,15 +32,15 @@ scene *attenuation_scene(const scene *s, const setup *at)
     return copy;
 }
 
-/* Along x to the side, half way up. */
+/* Along x to the rod, half way up. */
 status attenuation_point(trial *t, const setup *at, double length, double transmittance[3], diagnostic *why)
 {
     const solid_shape *liquid = &t->s->solids[at->liquid].shape;
-    const vec3 from = vec3_make(liquid->radius - length, liquid->height / 2.0, 0.0);
+    const vec3 from = vec3_make(-length, liquid->height / 2.0, 0.0);
     const status code = probe_way(t->p, from, vec3_make(1.0, 0.0, 0.0), -1, &t->tree, why);
     const ray_node *first = &t->tree.node[0];
     for (int c = 0; c < 3 && code == STATUS_OK; c++)
-        transmittance[c] = first->end == RAY_END_HIT ? first->hit.transmittance[c] : NAN;
+        transmittance[c] = first->end == RAY_END_HIT && first->hit.solid == at->rod ? first->hit.transmittance[c] : NAN;
     return code;
 }
 
@@ -42,7 +48,7 @@ double attenuation_reach(const trial *t, const setup *at)
 {
     const vec3 a = material_absorption(&t->s->solids[at->liquid].surface);
     const double most = fmax(a.x, fmax(a.y, a.z)) * t->s->render.unit_m;
-    return fmin(1.8 * t->s->solids[at->liquid].shape.radius, 20.0 / most); /* no further than light goes */
+    return fmin(0.95 * t->s->solids[at->liquid].shape.radius, 20.0 / most); /* no further than light goes */
 }
 
 /* Slopes of the lines of least squares through the points (length, -ln transmittance). */

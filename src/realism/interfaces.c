@@ -15,12 +15,14 @@ status interface_look(probe *p, ray_tree *tree, double start_y, double angle, in
 {
     const vec3 down = vec3_make(sin(angle), start_y > 0.0 ? -cos(angle) : cos(angle), 0.0);
     const status code = probe_way(p, vec3_make(0.0, start_y, 0.0), down, 0, tree, why);
-    *out = (interface_shares){NAN, NAN, NAN};
-    if (code != STATUS_OK || tree->node[0].end != RAY_END_HIT)
-        return code;
     const ray_hit *hit = &tree->node[0].hit;
+    *out = (interface_shares){0.0, 0.0, 0.0};
+    /* Between media that refract alike there is no interface: the ray goes on to what lies further off. */
+    if (code != STATUS_OK || tree->node[0].end != RAY_END_HIT || fabs(hit->point.y) > 0.5)
+        return code;
     const bool reflected = tree->count > 1 && tree->node[1].kind == RAY_REFLECT;
-    *out = (interface_shares){hit->R_s, hit->R_p, reflected ? tree->node[1].throughput[0] / (tree->node[0].throughput[0] * hit->transmittance[0]) : 0.0};
+    const double arrived = tree->node[0].throughput[0] * hit->transmittance[0];
+    *out = (interface_shares){hit->R_s, hit->R_p, reflected ? tree->node[1].throughput[0] / arrived : 0.0};
     return STATUS_OK;
 }
 

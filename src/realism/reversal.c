@@ -28,16 +28,16 @@ static way random_way(const setup *at, uint32_t number)
     return w;
 }
 
-/* The way's number of surfaces; 0 when it does not leave or grazes one. */
+/* The way's number of surfaces; -1 when it does not leave or grazes one. Media that refract alike have none between them. */
 static int surfaces(const ray_tree *tree)
 {
     const int hits = (int)tree->count - 1;
-    if (hits < 1 || hits > HITS_MAX || tree->node[hits].end != RAY_END_SKY)
-        return 0;
+    if (hits > HITS_MAX || tree->node[hits].end != RAY_END_SKY)
+        return -1;
     for (int i = 0; i < hits; i++) {
         const ray_hit *h = &tree->node[i].hit;
         if (h->cos_i < LEAST_COSINE || (!h->tir && h->cos_t < LEAST_COSINE))
-            return 0;
+            return -1;
     }
     return hits;
 }
@@ -56,8 +56,8 @@ static status trace_back(trial *forth, trial *back, const setup *at, uint32_t nu
     const way w = random_way(at, number);
     *out = (round_trip){NAN, NAN, NAN, false};
     status code = probe_way(forth->p, w.from, w.along, w.reflect_at, &forth->tree, why);
-    const int hits = code == STATUS_OK ? surfaces(&forth->tree) : 0;
-    if (hits == 0)
+    const int hits = code == STATUS_OK ? surfaces(&forth->tree) : -1;
+    if (hits < 0)
         return code;
     const ray_node *last = &forth->tree.node[hits];
     const int asked = reflected_at(&forth->tree, w.reflect_at);

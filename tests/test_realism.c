@@ -1,0 +1,305 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "realism/realism.h"
+#include "realism/theory.h"
+#include "realism/view.h"
+#include "render/probe.h"
+#include "render_fixture.h"
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+#define DEGREE (M_PI / 180.0)
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+/* --- theory at textbook numbers */
+
+static void critical_angles_of_water_glass_and_diamond(void **state)
+{
+    (void)state;
+    /* Hecht, Optics, 5th ed., table 4.2: 48.6 (n = 1.333), 41.8 (1.50), and 24.4 degrees for diamond (2.417). */
+    assert_near(theory_critical_angle(1.333, 1.0) / DEGREE, 48.6, 0.05);
+    assert_near(theory_critical_angle(1.50, 1.0) / DEGREE, 41.8, 0.05);
+    assert_near(theory_critical_angle(2.417, 1.0) / DEGREE, 24.4, 0.05);
+    assert_true(isnan(theory_critical_angle(1.0, 1.5)));
+    assert_true(isnan(theory_critical_angle(1.5, 1.5)));
+}
+
+static void reflectances_at_known_angles(void **state)
+{
+    (void)state;
+    assert_near(theory_fresnel(0.0, 1.0, 1.5), 0.04, 1e-15); /* 4% of glass at normal incidence */
+    assert_near(theory_fresnel_p(atan(1.5), 1.0, 1.5), 0.0, 1e-30); /* Brewster, 56.3 degrees */
+    assert_near(theory_fresnel_s(atan(1.5), 1.0, 1.5), pow(1.25 / 3.25, 2), 1e-15); /* cos(2 Brewster)^2 */
+    assert_near(theory_fresnel(45.0 * DEGREE, 1.5, 1.0), 1.0, 0.0); /* total */
+    /* At 45 degrees R_p = R_s^2, whatever the indices. */
+    assert_near(theory_fresnel_p(45.0 * DEGREE, 1.0, 1.33), pow(theory_fresnel_s(45.0 * DEGREE, 1.0, 1.33), 2), 1e-16);
+}
+
+static void a_slab_lets_through_a_geometric_series(void **state)
+{
+    (void)state;
+    assert_near(theory_slab(0.04, 1), 0.9216, 1e-15); /* the two surfaces alone */
+    assert_near(theory_slab(0.04, 2), 0.9216 * 1.0016, 1e-15);
+    assert_near(theory_slab(0.04, 100), 0.96 / 1.04, 1e-15);
+    assert_near(theory_slab_whole(0.04), 0.96 / 1.04, 1e-15);
+    assert_near(theory_slab(0.04, 0), 0.0, 0.0);
+    assert_near(theory_slab(1.0, 5), 0.0, 0.0);
+}
+
+static void one_medium_focuses_like_a_ball_lens(void **state)
+{
+    (void)state;
+    /* f = n R / (2 (n - 1)): 1.5 radii for glass, 2 for n = 4/3, and its own rim for n = 2. */
+    const double n[] = {1.5, 4.0 / 3.0, 2.0}, focal[] = {1.5, 2.0, 1.0};
+    for (size_t i = 0; i < COUNT(n); i++) {
+        const theory_shells c = {.n_around = 1.0, .n_wall = n[i], .n_core = n[i], .outer = 3.0, .inner = 2.9};
+        assert_near(1.0 / theory_shells_power(&c), 3.0 * focal[i], 1e-14);
+        assert_near(theory_shells_deviation(&c, 1e-5) / 1e-5, theory_shells_power(&c), 1e-9);
+    }
+}
+
+static void an_empty_vessel_spreads_light(void **state)
+{
+    (void)state;
+    const theory_shells c = {.n_around = 1.0, .n_wall = 1.5, .n_core = 1.0, .outer = 1.0, .inner = 0.9};
+    assert_near(theory_shells_power(&c), 2.0 / 3.0 * (1.0 - 1.0 / 0.9), 1e-15);
+    assert_near(theory_shells_reach(&c), 0.9, 0.0);
+}
+
+static void a_pond_looks_shallower_by_its_index(void **state)
+{
+    (void)state;
+    /* Straight down: depth / n. At 45 degrees in air, water at 4/3 has sin t = 0.5303. */
+    assert_near(1e-4 / theory_apparent_tangent(1.0, 1.0, 1e-4, 1.0, 4.0 / 3.0), 1.0 + 0.75, 1e-8);
+    const double t = asin(0.75 * sin(45.0 * DEGREE));
+    assert_near(theory_apparent_tangent(2.0, 3.0, 2.0 + 3.0 * tan(t), 1.0, 4.0 / 3.0), 1.0, 1e-12);
+    assert_true(isnan(theory_apparent_tangent(-1.0, 1.0, 1.0, 1.0, 1.33)));
+}
+
+static void the_view_is_that_of_the_tracer(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("camera.position=2,3,-5 camera.target=-0.3,1,0.4");
+    probe *p = NULL;
+    diagnostic why = {0};
+    worked(probe_create(s, isa_best(), &p, &why), &why);
+    const view v = view_of(s);
+    for (int i = 0; i <= 20; i++) {
+        const double x = 40.0 * i, y = 30.0 * (i * 7 % 21);
+        const vec3 d = probe_camera_direction(p, x, y);
+        const sight own = view_through(&v, x, y);
+        assert_near(own.x, d.x, 1e-15), assert_near(own.y, d.y, 1e-15), assert_near(own.z, d.z, 1e-15);
+        double px, py;
+        assert_true(view_place(&v, v.x + 3.0 * d.x, v.y + 3.0 * d.y, v.z + 3.0 * d.z, &px, &py));
+        assert_near(px, x, 1e-10), assert_near(py, y, 1e-10);
+    }
+    double px, py;
+    assert_false(view_place(&v, 5.0, 5.0, -20.0, &px, &py));
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
+/* --- metrics */
+
+static realism_report measured_against(const scene *traced, const scene *supposed)
+{
+    realism_report r;
+    diagnostic why = {0};
+    worked(realism_measure_against(traced, supposed, isa_best(), &r, &why), &why);
+    return r;
+}
+
+static const realism_value *value(const realism_report *r, const char *metric)
+{
+    for (int i = 0; i < r->count; i++)
+        if (strcmp(r->value[i].metric, metric) == 0)
+            return &r->value[i];
+    fail_msg("there is no metric %s", metric);
+    return NULL;
+}
+
+static bool starts_with(const char *text, const char *words)
+{
+    return strncmp(text, words, strlen(words)) == 0;
+}
+
+static const char *const settings[] = {
+    "vessel.ior=1.5 liquid.ior=1.33",
+    "vessel.ior=1.3 liquid.ior=1.5",
+    "vessel.ior=2.4 liquid.visible=off",
+    "vessel.ior=2.4 liquid.ior=1",
+    "vessel.ior=1 liquid.ior=1",
+    "vessel.ior=1.5 liquid.ior=1.5",
+    "background.ior=1.4",
+    "vessel.medium=bk7 liquid.medium=water background.medium=air render.lambda_nm=450",
+    "camera.position=3,0.5,-4 rod.rotation=0,30,0 rod.position=-0.2,2.1,0.3 vessel.inner_radius=0.7",
+    "liquid.priority=3 vessel.position=0.5,0.001,0.25 liquid.position=0.5,0.051,0.25 rod.position=0.4,2.1,0.2 rod.priority=4",
+    "liquid.absorb_per_m=0.7,0.2,0 render.unit_m=0.05 render.depth=0 render.samples=4",
+};
+
+static void everything_passes_whatever_the_indices(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT(settings); i++) {
+        scene *s = rod_scene(settings[i]);
+        const realism_report r = measured_against(s, s);
+        assert_int_equal(r.count, 30);
+        for (int k = 0; k < r.count; k++)
+            if (realism_is_defined(&r.value[k]) && !realism_passes(&r.value[k]))
+                fail_msg("%s: %s is %.17g, not %.17g", settings[i], r.value[k].metric, r.value[k].measured, r.value[k].theory);
+        assert_true(realism_is_defined(value(&r, "edges.left")));
+        scene_destroy(s);
+    }
+}
+
+static void metrics_without_meaning_are_named_as_such(void **state)
+{
+    (void)state;
+    scene *usual = rod_scene(""), *empty = rod_scene("liquid.visible=off"), *leaning = rod_scene("rod.rotation.z=10");
+    realism_report r = measured_against(usual, usual);
+    for (int i = 0; i < r.count; i++)
+        assert_true(realism_is_defined(&r.value[i]));
+    r = measured_against(empty, empty);
+    const char *const none[] = {"water_line.break", "critical.liquid", "fresnel.wall", "absorption.slope"};
+    for (size_t i = 0; i < COUNT(none); i++) {
+        assert_false(realism_is_defined(value(&r, none[i])));
+        assert_false(realism_passes(value(&r, none[i])));
+        assert_string_equal(value(&r, none[i])->what, "there is no liquid");
+    }
+    r = measured_against(leaning, leaning);
+    assert_false(realism_is_defined(value(&r, "edges.left")));
+    assert_true(realism_passes(value(&r, "edges.round_magnification")));
+    scene_destroy(usual), scene_destroy(empty), scene_destroy(leaning);
+}
+
+/* Measures in the scene as `changed` makes it, and asks theory about the one without. All of these must fail, and no others. */
+static void expect_failures(const char *base, const char *changed, const char *const *words, size_t count)
+{
+    scene *s = rod_scene(base), *other = rod_scene(base);
+    set_all(other, changed);
+    const realism_report r = measured_against(other, s);
+    for (int i = 0; i < r.count; i++) {
+        const realism_value *v = &r.value[i];
+        bool wanted = false;
+        for (size_t k = 0; k < count; k++)
+            wanted |= starts_with(v->metric, words[k]);
+        if (realism_is_defined(v) && realism_passes(v) == wanted)
+            fail_msg("%s, then %s: %s %s at %.17g for %.17g", base, changed, v->metric, wanted ? "passes" : "fails", v->measured, v->theory);
+    }
+    scene_destroy(s), scene_destroy(other);
+}
+
+static void an_index_that_is_off_by_a_millionth_fails(void **state)
+{
+    (void)state;
+    const char *const of_air[] = {"edges", "water_line", "lens", "dispersion", "critical.vessel", "critical.liquid", "fresnel.vessel",
+                                  "fresnel.liquid", "slab", "reversal"};
+    expect_failures("", "background.ior=1.000001", of_air, COUNT(of_air));
+    expect_failures("vessel.ior=1.3 liquid.ior=1.5", "background.ior=1.000001", of_air, COUNT(of_air));
+    const char *const of_glass[] = {"edges.left", "edges.right", "edges.magnification", "lens", "critical.vessel", "critical.wall", "fresnel.vessel",
+                                    "fresnel.wall", "slab", "reversal"};
+    expect_failures("", "vessel.ior=1.500001", of_glass, COUNT(of_glass));
+    const char *const of_water[] = {"edges", "water_line", "lens", "critical.liquid", "critical.wall", "fresnel.liquid", "fresnel.wall", "reversal"};
+    expect_failures("", "liquid.ior=1.330001", of_water, COUNT(of_water));
+    const char *const of_empty[] = {"edges.left", "edges.right", "edges.magnification", "lens", "critical", "fresnel", "slab", "reversal"};
+    expect_failures("vessel.ior=2.4 liquid.visible=off", "vessel.ior=2.400001", of_empty, COUNT(of_empty));
+}
+
+static void light_that_is_kept_or_swallowed_fails(void **state)
+{
+    (void)state;
+    const char *const balance[] = {"balance", "slab", "reversal.throughput"};
+    expect_failures("", "clear.transparency=0.999999", balance, COUNT(balance));
+    const char *const absorption[] = {"absorption", "reversal.throughput"};
+    expect_failures("liquid.absorb_per_m=0.7,0,0", "liquid.absorb_per_m=0.7000007,0,0", absorption, COUNT(absorption));
+    scene *s = rod_scene("clear.transparency=0.9 clear.reflectivity=0.1 render.weights=constant");
+    const realism_report r = measured_against(s, s);
+    assert_false(realism_passes(value(&r, "fresnel.vessel")));
+    assert_false(realism_passes(value(&r, "slab.depth")));
+    assert_true(realism_passes(value(&r, "balance.furnace"))); /* its shares add up to 1 */
+    scene_destroy(s);
+}
+
+static void water_in_glass_disperses_as_published(void **state)
+{
+    (void)state;
+    /* n_F and n_C of N-BK7 by Schott's data sheet, and of water at 20 C to the digits that handbooks agree on. */
+    const double glass[] = {1.52238, 1.51432}, water[] = {1.3371, 1.3311};
+    scene *s = rod_scene("background.medium=air");
+    const realism_report r = measured_against(s, s);
+    double deviation[2];
+    for (int i = 0; i < 2; i++) {
+        const theory_shells c = {1.0, glass[i], water[i], 1.0, 0.9};
+        deviation[i] = theory_shells_deviation(&c, 0.45);
+    }
+    assert_near(value(&r, "dispersion.F-C")->measured, deviation[0] - deviation[1], 5e-5);
+    scene_destroy(s);
+}
+
+static void refuses_scenes_without_a_vessel_a_rod_or_a_common_axis(void **state)
+{
+    (void)state;
+    static const struct { const char *change, *what; } wrong[] = {
+        {"vessel.visible=off", "'vessel'"},     {"rod.visible=off", "'rod'"},         {"liquid.radius=0.5", "wall"},
+        {"liquid.position.x=0.01", "wall"},     {"liquid.m=1.1", "round"},            {"vessel.rotation.x=5", "turned"},
+        {"vessel.transparency=0", "opaque"},    {"rod.transparency=1", "not opaque"}, {"rod.priority=1", "displaced"},
+        {"liquid.position.y=0.5", "floor"},     {"liquid.priority=9", "displaces"},
+    };
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        scene *s = rod_scene(wrong[i].change);
+        realism_report r;
+        diagnostic why = {0};
+        assert_int_equal(realism_measure(s, isa_best(), &r, &why), STATUS_BAD_INPUT);
+        if (!strstr(why.what, wrong[i].what))
+            fail_msg("%s: %s", wrong[i].change, why.what);
+        assert_true(why.remedy[0] != '\0');
+        scene_destroy(s);
+    }
+}
+
+static void curves_lie_on_theory(void **state)
+{
+    (void)state;
+    static const int counts[REALISM_CURVE_COUNT] = {180, 180, 180, 201, 17, 100, 61};
+    scene *s = rod_scene("");
+    realism_points p;
+    diagnostic why = {0};
+    for (int which = 0; which < REALISM_CURVE_COUNT; which++) {
+        worked(realism_trace_curve(s, isa_best(), (realism_curve)which, &p, &why), &why);
+        assert_int_equal(p.count, counts[which]);
+        for (int i = 0; i < p.count; i++) {
+            assert_near(p.at[i].measured, p.at[i].theory, 1e-9);
+            assert_true(i == 0 || p.at[i].x > p.at[i - 1].x);
+        }
+    }
+    /* The last one: without refraction nothing moves, but the glass alone does. */
+    assert_true(p.at[0].measured != p.at[60].measured);
+    set(s, "liquid.visible=off");
+    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_EDGES, &p, &why), STATUS_BAD_INPUT);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(critical_angles_of_water_glass_and_diamond),
+        cmocka_unit_test(reflectances_at_known_angles),
+        cmocka_unit_test(a_slab_lets_through_a_geometric_series),
+        cmocka_unit_test(one_medium_focuses_like_a_ball_lens),
+        cmocka_unit_test(an_empty_vessel_spreads_light),
+        cmocka_unit_test(a_pond_looks_shallower_by_its_index),
+        cmocka_unit_test(the_view_is_that_of_the_tracer),
+        cmocka_unit_test(everything_passes_whatever_the_indices),
+        cmocka_unit_test(metrics_without_meaning_are_named_as_such),
+        cmocka_unit_test(an_index_that_is_off_by_a_millionth_fails),
+        cmocka_unit_test(light_that_is_kept_or_swallowed_fails),
+        cmocka_unit_test(water_in_glass_disperses_as_published),
+        cmocka_unit_test(refuses_scenes_without_a_vessel_a_rod_or_a_common_axis),
+        cmocka_unit_test(curves_lie_on_theory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
