@@ -53,10 +53,10 @@ run --version
 check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render params media study compare machine help; do
+for command in render params media study compare realism machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render params media study compare machine "study run" "study list" "study status" "study merge" "study summary"; do
+for command in render params media study compare realism machine "study run" "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -268,6 +268,30 @@ check "media --json --at is null where it was not measured" is "$(json 'media[na
     "$(lines null '["n_d","n_F"]')"
 check "media --json: room temperature and no Abbe's number are null" \
     is "$(json 'media[name=diamond].temperature_c' 'media[name=olive-oil].V_d')" "$(lines null null)"
+
+# --- realism
+run realism "$scene"
+check "realism succeeds" silent_success
+check "realism passes on the rod scene" is "$(tail -1 out)" "30 of 30 pass"
+run realism "$scene" --set liquid.visible=off --csv
+check "realism --csv has a line a metric" is "$(wc -l <out)" 31
+check "what is not defined is NA, with its reason" grep -q '^absorption.slope,none,NA,NA,NA,.*"there is no liquid"$' out
+run realism "$scene" --set render.weights=constant --set clear.reflectivity=0.1 --set clear.transparency=0.9
+check "constant shares fail, and that is no error" silent_success
+check "and are named" grep -q '^FAIL  fresnel.vessel ' out
+run realism "$scene" --json
+check "realism --json" is "$(json schema defined passed)" "$(lines 1 30 30)"
+run realism "$scene" --curve depth
+check "a curve is CSV of three columns" is "$(awk -F'","|,' 'END {print NR, NF}' out)" "18 3"
+run realism "$scene" --curve dept
+check "an unknown curve is refused with the nearest" matches "$code $(<err)" "^2 cuvette: --curve: .*depth"
+run realism "$root/experiments/scenes/solids.yaml"
+check "a scene without a vessel is refused" matches "$code $(<err)" "^2 cuvette: .*solids.yaml: there is no cup named 'vessel'; "
+run realism
+check "realism wants a scene" matches "$code $(<err)" "^2 cuvette: realism: no scene is named; "
+for option in $("$program" realism --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
+    check "cuvette.1 explains realism $option" grep -qF -- "${option/--/\\-\\-}" "$page"
+done
 
 # --- machine
 run machine

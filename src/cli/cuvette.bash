@@ -34,6 +34,8 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
     --timeline) _cuvette_files 'json' ;;
     --bits) _cuvette_words 8 16 ;;
     --repeat | --shard | --at) COMPREPLY=() ;;
+    --curve) _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges ;;
+    --repeat | --shard) COMPREPLY=() ;;
     -r | --results)
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$current")
@@ -61,7 +63,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render params media study compare machine help --help --usage --version
+        _cuvette_words render params media study compare realism machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -101,12 +103,19 @@ _cuvette()
             _cuvette_files 'png|jpg|jpeg|pfm'
         fi
         ;;
+    realism)
+        if [[ $current == -* ]]; then
+            _cuvette_words --set --json --csv --curve --help --usage --version
+        else
+            _cuvette_files 'yaml|yml'
+        fi
+        ;;
     machine) _cuvette_words --json --help --usage --version ;;
     help)
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render params media study compare machine
+            _cuvette_words render params media study compare realism machine
         fi
         ;;
     esac
