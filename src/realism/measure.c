@@ -35,16 +35,25 @@ status realism_measure(const scene *s, isa level, realism_report *out, diagnosti
     return realism_measure_against(s, s, level, out, why);
 }
 
+/* Other than the vessel: known by the names of their solids. */
+static const struct arrangement_kind {
+    bool (*is_there)(const scene *s);
+    status (*measure)(const metrics *m, diagnostic *why);
+} arrangements[] = {{prism_is_there, realism_prism}, {drop_is_there, realism_drop}, {stack_is_there, realism_stack}};
+
 status realism_measure_against(const scene *traced, const scene *supposed, isa level, realism_report *out, diagnostic *why)
 {
-    static status (*const all[])(const metrics *, diagnostic *) = {realism_edges, realism_water_line, realism_lens, realism_interfaces,
+    static status (*const of_vessel[])(const metrics *, diagnostic *) = {realism_edges, realism_water_line, realism_lens, realism_interfaces,
                                                                    realism_balance, realism_slab, realism_absorption, realism_reversal};
     metrics m = {.traced = traced, .supposed = supposed, .level = level, .report = out};
     out->count = 0;
+    for (size_t i = 0; i < sizeof arrangements / sizeof arrangements[0]; i++)
+        if (arrangements[i].is_there(traced) && arrangements[i].is_there(supposed))
+            return arrangements[i].measure(&m, why);
     status code = setup_read(traced, &m.at, why);
     if (code == STATUS_OK)
         code = setup_read(supposed, &m.theory_at, why);
-    for (size_t i = 0; i < sizeof all / sizeof all[0] && code == STATUS_OK; i++)
-        code = all[i](&m, why);
+    for (size_t i = 0; i < sizeof of_vessel / sizeof of_vessel[0] && code == STATUS_OK; i++)
+        code = of_vessel[i](&m, why);
     return code;
 }

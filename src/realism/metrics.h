@@ -24,6 +24,14 @@ status realism_slab(const metrics *m, diagnostic *why);         /* slab.c: conve
 status realism_absorption(const metrics *m, diagnostic *why);   /* attenuation.c: Beer and Lambert */
 status realism_reversal(const metrics *m, diagnostic *why);     /* reversal.c: ways backwards */
 
+/* Arrangements of their own: what they are made of, and whether a scene has it. Of m only the scenes, the level and the report count. */
+bool prism_is_there(const scene *s);
+status realism_prism(const metrics *m, diagnostic *why);        /* prism.c: least deviation */
+bool drop_is_there(const scene *s);
+status realism_drop(const metrics *m, diagnostic *why);         /* drop.c: the first rainbow */
+bool stack_is_there(const scene *s);
+status realism_stack(const metrics *m, diagnostic *why);        /* stack.c: a pile of two plates */
+
 void metrics_add(const metrics *m, realism_value value);
 
 /* Remembers the pair that lies furthest apart. */

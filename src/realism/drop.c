@@ -1,0 +1,121 @@
+/* The first rainbow of a drop: a sphere, the first solid whose name begins with drop (experiments/scenes/rainbow.yaml). The rainbow stands
+ * where rays that were reflected once inside are turned least, at the angle from the point opposite the light. */
+#include "realism/metrics.h"
+
+#include "optics/media.h"
+#include "scene/medium.h"
+#include <math.h>
+#include <string.h>
+
+#define ANGLE_TOLERANCE 1e-12 /* rad; the angle is flat in the ray's offset, as a prism's least deviation */
+
+static int drop_of(const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (strncmp(s->solids[i].name, "drop", 4) == 0 && s->solids[i].shape.kind == SHAPE_SPHERE)
+            return (int)i;
+    return -1;
+}
+
+bool drop_is_there(const scene *s)
+{
+    return drop_of(s) >= 0;
+}
+
+/* A copy in which the drop is alone. */
+static scene *drop_alone(const scene *s, double lambda_nm)
+{
+    scene *copy = scene_clone(s);
+    const int drop = drop_of(s);
+    for (size_t i = 0; copy && i < copy->solid_count; i++)
+        copy->solids[i].visible = (int)i == drop;
+    if (copy) {
+        copy->render.lambda_nm = lambda_nm;
+        copy->render.depth = 8;
+        copy->render.min_weight = 0.0;
+    }
+    return copy;
+}
+
+typedef struct search { trial *t; status code; diagnostic *why; vec3 center; double radius; } search;
+
+/* Angle between the way back and the way there, for a ray that is aimed past the centre at `offset` radii. */
+static double turned_back(search *s, double offset)
+{
+    const vec3 in = vec3_make(0.0, 0.0, 1.0);
+    const vec3 from = vec3_add(s->center, vec3_make(offset * s->radius, 0.0, -4.0 * s->radius));
+    if (s->code == STATUS_OK)
+        s->code = probe_way(s->t->p, from, in, 1, &s->t->tree, s->why);
+    if (s->code != STATUS_OK || s->t->tree.count != 4)
+        return NAN;
+    const vec3 out = s->t->tree.node[3].direction;
+    return atan2(vec3_length(vec3_cross(in, out)), -vec3_dot(in, out));
+}
+
+/* The largest angle: golden section between the middle of the drop and its edge, where there is one maximum. */
+static double rainbow_angle(search *s)
+{
+    const double golden = 0.5 * (sqrt(5.0) - 1.0);
+    double low = 0.4, high = 0.9999;
+    double a = high - golden * (high - low), b = low + golden * (high - low);
+    double at_a = turned_back(s, a), at_b = turned_back(s, b);
+    for (int i = 0; i < 80; i++) {
+        if (at_a > at_b) {
+            high = b, b = a, at_b = at_a;
+            a = high - golden * (high - low), at_a = turned_back(s, a);
+        } else {
+            low = a, a = b, at_a = at_b;
+            b = low + golden * (high - low), at_b = turned_back(s, b);
+        }
+    }
+    return fmax(at_a, at_b);
+}
+
+/* cos i = sqrt((n^2 - 1) / 3), angle 4 r - 2 i: Born and Wolf, Principles of Optics, 7th ed., 4.7 exercises; Nussenzveig, "The theory of
+ * the rainbow", Scientific American 236(4), 1977. NaN for n outside 1 .. 2, where there is no such ray. */
+static double theory_rainbow(double n)
+{
+    if (!(n > 1.0 && n < 2.0))
+        return NAN;
+    const double i = acos(sqrt((n * n - 1.0) / 3.0)), r = asin(sin(i) / n);
+    return 4.0 * r - 2.0 * i;
+}
+
+static double index_of(const scene *s, double lambda_nm)
+{
+    index_law law, around = surrounding_index_law(&s->background);
+    const solid *drop = &s->solids[drop_of(s)];
+    if (material_index_law(&drop->surface, drop->name, &law, NULL) != STATUS_OK)
+        return NAN;
+    return index_law_at(&law, lambda_nm) / index_law_at(&around, lambda_nm);
+}
+
+static status at_line(const metrics *m, double lambda_nm, double *measured, double *theory, diagnostic *why)
+{
+    trial t;
+    const solid *drop = &m->traced->solids[drop_of(m->traced)];
+    search look = {.t = &t, .why = why, .center = drop->shape.position, .radius = drop->shape.radius};
+    *theory = theory_rainbow(index_of(m->supposed, lambda_nm));
+    look.code = trial_start(&t, drop_alone(m->traced, lambda_nm), m->level, why);
+    *measured = look.code == STATUS_OK && !isnan(*theory) ? rainbow_angle(&look) : NAN;
+    trial_end(&t);
+    return look.code;
+}
+
+status realism_drop(const metrics *m, diagnostic *why)
+{
+    static const struct line { const char *metric, *what; double lambda_nm; } lines[] = {
+        {"rainbow.F", "angle of the first rainbow at the F line, 486.1 nm", LINE_HYDROGEN_F_NM},
+        {"rainbow.d", "angle of the first rainbow at the d line, 587.6 nm", LINE_HELIUM_D_NM},
+        {"rainbow.C", "angle of the first rainbow at the C line, 656.3 nm", LINE_HYDROGEN_C_NM},
+        {"rainbow.own", "angle of the first rainbow at render.lambda_nm", 0.0},
+    };
+    status code = STATUS_OK;
+    for (int i = 0; i < 4 && code == STATUS_OK; i++) {
+        double measured, theory;
+        code = at_line(m, i < 3 ? lines[i].lambda_nm : m->traced->render.lambda_nm, &measured, &theory, why);
+        metrics_add(m, (realism_value){lines[i].metric, isnan(theory) ? "an index outside 1..2 makes no rainbow" : lines[i].what, "rad",
+                                       measured, theory, ANGLE_TOLERANCE});
+    }
+    return code;
+}
