@@ -26,8 +26,10 @@ ALWAYS_INLINE local_point cylinder_point(const primitive *p, bool round, local_r
     double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, p->m2), inverse_y = inverse_of_component(r.dy);
     quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, on_side);
     slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, on_bottom, on_top);
-    int64_t is_side = blend_int(leaving, mask_less(side.out, caps.out), mask_less(caps.in, side.in));
-    int64_t is_top = leaving ^ mask_less(r.dy, 0.0); /* in from above or out upwards */
+    /* A ray that is in it by its set and misses it by a rounding, past an edge, leaves at once (store_interval), and by the side: the top
+     * of a hollow is nowhere. Its roots are no numbers then. */
+    int64_t is_side = blend_int(leaving, ~mask_less_equal(caps.out, side.out), mask_less(caps.in, side.in));
+    int64_t is_top = leaving ^ mask_less(inverse_y, 0.0); /* in from above or out upwards; -0.0 is downwards, as for the roots */
     double inverse = 1.0 / sqrt(q.x * q.x + p->m2 * q.z * q.z);
     double ux = q.x * inverse, uz = q.z * inverse, x = p->radius * ux, z = p->radius * uz;
     double slope = p->m2 * uz, norm = round ? 1.0 : 1.0 / sqrt(ux * ux + slope * slope);
@@ -42,14 +44,16 @@ ALWAYS_INLINE local_point cylinder_point(const primitive *p, bool round, local_r
 ALWAYS_INLINE local_point box_point(const primitive *p, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
     const vec3 h = p->half;
-    slab_roots x = slab_cross(r.x, inverse_of_component(r.dx), -h.x, h.x, mask_same(at, 0), mask_same(at, 1));
-    slab_roots y = slab_cross(r.y, inverse_of_component(r.dy), -h.y, h.y, mask_same(at, 2), mask_same(at, 3));
-    slab_roots z = slab_cross(r.z, inverse_of_component(r.dz), -h.z, h.z, mask_same(at, 4), mask_same(at, 5));
+    const double inverse_x = inverse_of_component(r.dx), inverse_y = inverse_of_component(r.dy), inverse_z = inverse_of_component(r.dz);
+    slab_roots x = slab_cross(r.x, inverse_x, -h.x, h.x, mask_same(at, 0), mask_same(at, 1));
+    slab_roots y = slab_cross(r.y, inverse_y, -h.y, h.y, mask_same(at, 2), mask_same(at, 3));
+    slab_roots z = slab_cross(r.z, inverse_z, -h.z, h.z, mask_same(at, 4), mask_same(at, 5));
     int64_t is_x = blend_int(leaving, mask_less(x.out, y.out) & mask_less(x.out, z.out), mask_less(y.in, x.in) & mask_less(z.in, x.in));
     int64_t is_y = ~is_x & blend_int(leaving, mask_less(y.out, z.out), mask_less(z.in, y.in));
     int64_t is_z = ~is_x & ~is_y;
-    /* The face on the positive side: left when the direction is positive there, entered when it is negative. */
-    double along = blend(is_x, r.dx, blend(is_y, r.dy, r.dz));
+    /* The face on the positive side: left when the direction is positive there, entered when it is negative. By the inverses, for which
+     * -0.0 is negative: the roots were taken with them. */
+    double along = blend(is_x, inverse_x, blend(is_y, inverse_y, inverse_z));
     int64_t positive = leaving ^ mask_less(along, 0.0);
     double sign = blend(positive, 1.0, -1.0);
     local_point l;
