@@ -9,10 +9,12 @@
 
 status probe_check_ray(vec3 origin, vec3 direction, diagnostic *why)
 {
-    const double far = 1e6, length = vec3_length(direction);
+    const double far = 1e6;
     if (!(fabs(origin.x) <= far && fabs(origin.y) <= far && fabs(origin.z) <= far))
         return diagnose(why, STATUS_BAD_INPUT, "start within 1e6 scene units of the middle", "the ray starts too far away");
-    if (!(isfinite(length) && length > 0.0))
+    if (!(isfinite(direction.x) && isfinite(direction.y) && isfinite(direction.z)))
+        return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "the ray's direction is not finite");
+    if (direction.x == 0.0 && direction.y == 0.0 && direction.z == 0.0)
         return diagnose(why, STATUS_BAD_INPUT, "give a direction that is not 0,0,0", "the ray has no direction");
     return STATUS_OK;
 }
@@ -20,11 +22,13 @@ status probe_check_ray(vec3 origin, vec3 direction, diagnostic *why)
 ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction)
 {
     const double largest = fmax(fabs(direction.x), fmax(fabs(direction.y), fabs(direction.z)));
-    const vec3 scaled = vec3_scale(direction, 1.0 / largest); /* so that no square over- or underflows */
+    /* So that no square over- or underflows; the quotient of a subnormal number would. */
+    const vec3 scaled = vec3_make(direction.x / largest, direction.y / largest, direction.z / largest);
     const double length2 = vec3_dot(scaled, scaled);
     ray_record r = {.origin = origin, .weight = {1.0, 1.0, 1.0}, .start = FACE_NONE, .depth = 0};
-    /* A unit vector stays as it is, to the bit, so that a ray of one tree can be traced again. */
-    r.direction = vec3_dot(direction, direction) == 1.0 ? direction : direction_tidy(vec3_scale(scaled, 1.0 / sqrt(length2)));
+    /* A unit vector but for rounding stays as it is, to the bit, so that a ray of one tree can be traced again. */
+    const bool is_unit = fabs(vec3_dot(direction, direction) - 1.0) <= 0x1p-50;
+    r.direction = is_unit ? direction : direction_tidy(vec3_scale(scaled, 1.0 / sqrt(length2)));
     r.inside = arrangement_inside(p->scene->solids, origin);
     r.medium_rank = arrangement_rank(p->scene->solids, r.inside);
     return r;
@@ -152,6 +156,12 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
                       .weight = {g->wr[0] * share, g->wg[0] * share, g->wb[0] * share}, .start = g->points.face[0],
                       .inside = reflected ? g->inside_before[0] : g->inside_after[0], .depth = depth + 1,
                       .medium_rank = (int)(reflected ? t->hits.before[0] : t->hits.after[0])};
+    if (p->scene->render.polarisation) {
+        const polar_group *v = &t->polar;
+        r->stokes[0] = reflected ? v->rq[0] : v->tq[0];
+        r->stokes[1] = reflected ? v->ru[0] : v->tu[0];
+        r->stokes[2] = reflected ? v->rv[0] : v->tv[0];
+    }
     out->kind[i] = reflected ? RAY_REFLECT : RAY_REFRACT;
     out->end[i] = RAY_END_CUT_DEPTH;
     if (depth == t->depth_limit)
