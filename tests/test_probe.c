@@ -1,0 +1,253 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "render/probe.h"
+#include "render_fixture.h"
+
+/* One ray taken apart: what the tree says is what the film holds, to the bit, and what it says of a hit is what the laws say. */
+
+static probe *probe_of(const scene *s)
+{
+    probe *p = NULL;
+    diagnostic why = {0};
+    worked(probe_create(s, isa_best(), &p, &why), &why);
+    return p;
+}
+
+/* 50 pixels, spread over the picture. */
+static void compare_pixels(scene *s)
+{
+    render_result *frame = render(s);
+    probe *p = probe_of(s);
+    ray_tree tree = {0};
+    diagnostic why = {0};
+    const int width = (int)s->render.width, height = (int)s->render.height;
+    for (int k = 0; k < 50; k++) {
+        const int at = (int)((int64_t)k * 7919 % (width * height)), x = at % width, y = at / width;
+        worked(probe_pixel(p, x, y, &tree, &why), &why);
+        double brought[3] = {0};
+        for (size_t i = 0; i < tree.count; i++)
+            for (int c = 0; c < 3; c++)
+                brought[c] += tree.node[i].brought[c]; /* multiples of the film's step: exact */
+        for (int c = 0; c < 3; c++) {
+            assert_true(tree.radiance[c] == film_value(frame->picture, x, y, c));
+            assert_true(brought[c] == tree.radiance[c]);
+        }
+    }
+    ray_tree_release(&tree);
+    probe_destroy(p);
+    render_result_destroy(frame);
+}
+
+static void compare_settings(const char *const *settings, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        scene *s = rod_scene("render.width=96 render.height=72");
+        set_all(s, settings[i]);
+        compare_pixels(s);
+        scene_destroy(s);
+    }
+}
+
+static void a_tree_is_its_pixel_at_every_depth(void **state)
+{
+    (void)state;
+    static const char *const settings[] = {"render.depth=0", "render.depth=1", "render.depth=4", "render.depth=9",
+                                           "render.depth=5 render.beyond=black"};
+    compare_settings(settings, sizeof settings / sizeof *settings);
+}
+
+static void a_tree_is_its_pixel_under_every_rule(void **state)
+{
+    (void)state;
+    static const char *const settings[] = {
+        "render.weights=constant clear.reflectivity=0.1 clear.transparency=0.9", "render.samples=4",
+        "render.polarisation=on", "render.polarisation=on render.samples=4 render.depth=7",
+        "liquid.absorb_per_m=1.5,0.4,0.1 vessel.absorb_per_m=0.2,0.1,0.3", "render.min_weight=0.02 render.depth=12",
+        "render.shadows=off", "render.shadows=opaque", "render.lighting=lambert", "render.integrator=raycast",
+        "background.kind=gradient liquid.ior=1", "vessel.medium=bk7 liquid.medium=water render.lambda_nm=450",
+        "render.polarisation=on liquid.absorb_per_m=0.5,0.4,0.1 plastic.reflectivity=0.4 render.samples=4"};
+    compare_settings(settings, sizeof settings / sizeof *settings);
+}
+
+/* Of the rod's pixels: parents and children fit together. */
+static void check_node(const ray_tree *tree, int at)
+{
+    const ray_node *node = &tree->node[at];
+    const ray_hit *hit = &node->hit;
+    assert_true(fabs(vec3_length(node->direction) - 1.0) < 1e-15);
+    assert_true((node->first_child != RAY_NONE) <= (node->end == RAY_END_HIT));
+    if (node->end != RAY_END_HIT)
+        return;
+    assert_true(hit->t > 0.0 && vec3_dot(hit->normal, node->direction) < 0.0);
+    assert_true(vec3_length(vec3_sub(hit->point, vec3_add(node->origin, vec3_scale(node->direction, hit->t)))) < 1e-12);
+    const double eta = hit->n_from / hit->n_to, sin2_t = eta * eta * (1.0 - hit->cos_i * hit->cos_i);
+    if (!hit->opaque)
+        assert_true(hit->tir ? sin2_t >= 1.0 && hit->R == 1.0 : fabs(hit->cos_t * hit->cos_t + sin2_t - 1.0) < 1e-13);
+    for (int i = node->first_child; i != RAY_NONE; i = tree->node[i].next) {
+        const ray_node *child = &tree->node[i];
+        assert_int_equal(child->parent, at);
+        assert_int_equal(child->depth, node->depth + (child->kind != RAY_SHADOW));
+        assert_true(vec3_length(vec3_sub(child->origin, hit->point)) == 0.0);
+        if (child->kind == RAY_SHADOW) {
+            assert_true(child->end == RAY_END_LIT || child->end == RAY_END_BLOCKED);
+            continue;
+        }
+        const double share = (child->kind == RAY_REFLECT ? hit->R : 1.0 - hit->R) * node->throughput[0];
+        assert_true(fabs(child->throughput[0] - share) < 1e-14);
+        assert_int_equal(child->medium, child->kind == RAY_REFLECT ? hit->from : hit->to);
+        assert_true(child->depth <= tree->depth_limit || child->end == RAY_END_CUT_DEPTH);
+    }
+}
+
+static void rays_fit_their_parents_and_the_laws(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=96 render.height=72 render.depth=6");
+    probe *p = probe_of(s);
+    ray_tree tree = {0};
+    size_t seen = 0;
+    for (int k = 0; k < 50; k++) {
+        worked(probe_pixel(p, 20 + k, 30 + k % 7, &tree, NULL), NULL);
+        for (size_t i = 0; i < tree.count; i++)
+            check_node(&tree, (int)i);
+        seen += tree.count;
+    }
+    assert_true(seen > 800);
+    ray_tree_release(&tree);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
+static const char slab_text[] = "render: {depth: 3, shadows: off}\n"
+                                "solids: {slab: {shape: box, transparency: 1, ior: 1.5, size: [9, 2, 9], absorb_per_m: [0.5, 0.1, 0]}}\n";
+
+/* R = ((n - 1) / (n + 1))^2 at normal incidence: Hecht 4.67; light falls by exp(-a d). */
+static void a_slab_met_head_on(void **state)
+{
+    (void)state;
+    scene *s = scene_from(slab_text);
+    probe *p = probe_of(s);
+    ray_tree tree = {0};
+    worked(probe_ray(p, vec3_make(0.1, 5, 0.2), vec3_make(0, -3, 0), &tree, NULL), NULL);
+    const ray_node *root = &tree.node[0], *inner = &tree.node[root->first_child];
+    assert_string_equal(probe_medium_name(p, root->medium), "air");
+    assert_string_equal(probe_face_name(p, &root->hit), "top");
+    assert_true(root->hit.t == 4.0 && root->hit.cos_i == 1.0 && fabs(root->hit.R - 0.04) < 1e-15);
+    assert_int_equal(inner->kind, RAY_REFLECT);
+    assert_int_equal(inner->end, RAY_END_SKY);
+    inner = &tree.node[inner->next];
+    assert_int_equal(inner->kind, RAY_REFRACT);
+    assert_true(inner->n == 1.5 && inner->hit.path_length_m == 2.0);
+    assert_string_equal(probe_face_name(p, &inner->hit), "bottom");
+    const double absorb[3] = {0.5, 0.1, 0.0};
+    for (int c = 0; c < 3; c++)
+        assert_true(fabs(inner->hit.transmittance[c] - exp(-absorb[c] * 2.0)) < 1e-15);
+    ray_tree_release(&tree);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
+/* Unpolarised light off glass under Brewster's angle is all of one polarisation: Hecht 8.6. A cut ray says so too. */
+static void a_cut_ray_keeps_its_polarisation(void **state)
+{
+    (void)state;
+    for (int depth = 0; depth < 2; depth++) {
+        scene *s = scene_from(slab_text);
+        set(s, "render.polarisation=on");
+        set(s, depth ? "render.depth=1" : "render.depth=0");
+        probe *p = probe_of(s);
+        ray_tree tree = {0};
+        worked(probe_ray(p, vec3_make(-1.5, 2, 0), vec3_make(1.5, -1, 0), &tree, NULL), NULL);
+        const ray_node *mirrored = &tree.node[tree.node[0].first_child];
+        assert_int_equal(mirrored->end, depth ? RAY_END_SKY : RAY_END_CUT_DEPTH);
+        const double *v = mirrored->stokes;
+        assert_true(fabs(v[1] * v[1] + v[2] * v[2] + v[3] * v[3] - 1.0) < 1e-12);
+        ray_tree_release(&tree);
+        probe_destroy(p);
+        scene_destroy(s);
+    }
+}
+
+static void any_length_of_direction_will_do(void **state)
+{
+    (void)state;
+    scene *s = scene_from(slab_text);
+    probe *p = probe_of(s);
+    ray_tree tree = {0};
+    const double lengths[] = {1e-200, 1e-3, 1e200};
+    for (int i = 0; i < 3; i++) {
+        worked(probe_ray(p, vec3_make(0, 5, 0), vec3_make(0, -lengths[i], 0), &tree, NULL), NULL);
+        assert_true(tree.node[0].hit.t == 4.0);
+    }
+    const vec3 bad[] = {{0, 0, 0}, {NAN, 0, 1}, {0, INFINITY, 0}};
+    for (int i = 0; i < 3; i++) {
+        diagnostic why = {0};
+        assert_int_equal(probe_ray(p, vec3_make(0, 5, 0), bad[i], &tree, &why), STATUS_BAD_INPUT);
+        assert_true(why.what[0] && why.remedy[0]);
+    }
+    assert_int_equal(probe_ray(p, vec3_make(NAN, 5, 0), vec3_make(0, 1, 0), &tree, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(probe_pixel(p, -1, 0, &tree, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(probe_pixel(p, 0, (int)s->render.height, &tree, NULL), STATUS_BAD_INPUT);
+    ray_tree_release(&tree);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
+/* A direction read off one tree starts the same tree again. */
+static void a_ray_can_be_traced_again(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=96 render.height=72");
+    probe *p = probe_of(s);
+    ray_tree tree = {0}, again = {0};
+    for (int k = 0; k < 50; k++) {
+        worked(probe_pixel(p, 20 + k, 20 + k % 40, &tree, NULL), NULL);
+        worked(probe_ray(p, tree.node[0].origin, tree.node[0].direction, &again, NULL), NULL);
+        assert_int_equal(tree.count, again.count);
+        assert_memory_equal(&tree.node[0].direction, &again.node[0].direction, sizeof(vec3));
+        for (int c = 0; c < 3; c++)
+            assert_true(tree.radiance[c] == again.radiance[c]);
+    }
+    ray_tree_release(&tree);
+    ray_tree_release(&again);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
+static void a_way_goes_straight_on_or_turns_back_where_told(void **state)
+{
+    (void)state;
+    scene *s = scene_from(slab_text);
+    probe *p = probe_of(s);
+    ray_tree tree = {0};
+    worked(probe_way(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), -1, &tree, NULL), NULL);
+    assert_int_equal(tree.count, 3);
+    assert_true(tree.node[2].kind == RAY_REFRACT && tree.node[2].end == RAY_END_SKY && tree.node[2].direction.y == -1.0);
+    worked(probe_way(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), 1, &tree, NULL), NULL);
+    assert_int_equal(tree.count, 4);
+    assert_true(tree.node[2].kind == RAY_REFLECT && tree.node[3].kind == RAY_REFRACT && tree.node[3].direction.y == 1.0);
+    assert_true(fabs(tree.node[3].throughput[2] - 0.96 * 0.04 * 0.96) < 1e-15);
+    ray_tree_release(&tree);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_tree_is_its_pixel_at_every_depth),
+        cmocka_unit_test(a_tree_is_its_pixel_under_every_rule),
+        cmocka_unit_test(rays_fit_their_parents_and_the_laws),
+        cmocka_unit_test(a_slab_met_head_on),
+        cmocka_unit_test(a_cut_ray_keeps_its_polarisation),
+        cmocka_unit_test(any_length_of_direction_will_do),
+        cmocka_unit_test(a_ray_can_be_traced_again),
+        cmocka_unit_test(a_way_goes_straight_on_or_turns_back_where_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
