@@ -152,6 +152,42 @@ status options_integer(const char *option, const char *value, int64_t lowest, in
     return STATUS_OK;
 }
 
+static status wrong_value(const char *option, const char *value, const char *form, const char *what, diagnostic *why)
+{
+    char remedy[96], where[512];
+    snprintf(remedy, sizeof remedy, "give %s", form);
+    snprintf(where, sizeof where, "%s %s", option, value);
+    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+    diagnostic_locate(why, where, 0, 0);
+    return STATUS_BAD_INPUT;
+}
+
+status options_reals(const char *option, const char *value, const char *form, size_t count, double *out, diagnostic *why)
+{
+    char what[128];
+    const char *at = value;
+    for (size_t i = 0; i < count; i++) {
+        char word[64];
+        at += strspn(at, " ");
+        const size_t length = strcspn(at, ",");
+        const bool fits = length < sizeof word;
+        snprintf(word, sizeof word, "%.*s", fits ? (int)length : 0, at);
+        for (size_t end = strlen(word); end > 0 && word[end - 1] == ' ';)
+            word[--end] = '\0';
+        if (!number_parse_real(word, &out[i])) {
+            snprintf(what, sizeof what, "'%.*s' is not a number", length < 64 ? (int)length : 64, at);
+            return wrong_value(option, value, form, what, why);
+        }
+        at += length;
+        if ((*at == ',') != (i + 1 < count)) {
+            snprintf(what, sizeof what, "there are %s than %zu numbers", *at ? "more" : "fewer", count);
+            return wrong_value(option, value, form, what, why);
+        }
+        at += *at == ',';
+    }
+    return STATUS_OK;
+}
+
 status options_unknown_word(const char *what, const char *wrong, const char *const *words, size_t count,
                             diagnostic *why)
 {

@@ -4,19 +4,16 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
+#include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "measure/statistics.h"
 #include "scene/hints.h"
-#include "scene/params.h"
 #include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 typedef struct render_request {
-    const char *scene_path;
+    scene_input input;
     outputs files;
-    char **assignments; /* of --set, in order; as many as argv has places */
-    size_t assignment_count;
     bool json, repeated;
     int64_t repeat;
 } render_request;
@@ -52,25 +49,13 @@ static error_t take_bits(const char *value, render_request *request, diagnostic 
     return 0;
 }
 
-static error_t take_argument(const char *argument, render_request *request, diagnostic *why)
-{
-    if (!request->scene_path) {
-        request->scene_path = argument;
-        return 0;
-    }
-    diagnose(why, STATUS_BAD_INPUT, "render takes one scene; a parameter is set by --set PATH=VALUE",
-             "'%.128s' is one too many", argument);
-    diagnostic_locate(why, "render", 0, 0);
-    return EINVAL;
-}
-
 static error_t take_option(int key, char *value, struct argp_state *state)
 {
     options_input *input = state->input;
     render_request *request = input->request;
     switch (key) {
     case 'o': request->files.picture = value; return 0;
-    case 's': request->assignments[request->assignment_count++] = value; return 0;
+    case 's': scene_input_change(&request->input, "--set", NULL, value); return 0;
     case KEY_JSON: request->json = true; return 0;
     case KEY_BITS: return take_bits(value, request, input->why);
     case KEY_RAYS: request->files.rays = value; return 0;
@@ -80,7 +65,7 @@ static error_t take_option(int key, char *value, struct argp_state *state)
     case KEY_REPEAT:
         request->repeated = true;
         return options_integer("--repeat", value, 1, 1000000, &request->repeat, input->why) == STATUS_OK ? 0 : EINVAL;
-    case ARGP_KEY_ARG: return take_argument(value, request, input->why);
+    case ARGP_KEY_ARG: return scene_input_name(&request->input, value, input->why) == STATUS_OK ? 0 : EINVAL;
     default: return ARGP_ERR_UNKNOWN;
     }
 }
@@ -97,14 +82,10 @@ static const struct argp parser = {
 static status check_request(const render_request *request, diagnostic *why)
 {
     const outputs *files = &request->files;
-    const char *remedy = NULL, *what = NULL;
-    if (!request->scene_path)
-        what = "no scene is named", remedy = "name a scene file, as experiments/scenes/rod.yaml";
-    else if (!files->picture && !files->rays && !files->time && !files->noise && !files->timeline && !request->json)
-        what = "nothing is asked for", remedy = "add -o FILE for the picture or --json for the counts";
-    if (!what)
-        return STATUS_OK;
-    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+    status result = scene_input_check(&request->input, why);
+    if (result != STATUS_OK || files->picture || files->rays || files->time || files->noise || files->timeline || request->json)
+        return result;
+    diagnose(why, STATUS_BAD_INPUT, "add -o FILE for the picture or --json for the counts", "nothing is asked for");
     diagnostic_locate(why, "render", 0, 0);
     return STATUS_BAD_INPUT;
 }
@@ -112,19 +93,7 @@ static status check_request(const render_request *request, diagnostic *why)
 /* The scene as the command line changes it, its sky loaded, checked. */
 static status load_scene(const render_request *request, scene **out, diagnostic *why)
 {
-    status result = scene_read(request->scene_path, out, why);
-    for (size_t i = 0; i < request->assignment_count && result == STATUS_OK; i++) {
-        result = scene_set_assignment(*out, request->assignments[i], why);
-        if (result != STATUS_OK) {
-            char where[512];
-            snprintf(where, sizeof where, "--set %s", request->assignments[i]);
-            diagnostic_locate(why, where, 0, 0);
-        }
-    }
-    if (result == STATUS_OK) {
-        diagnostic_locate(why, request->scene_path, 0, 0); /* for checks that have no line to name */
-        result = scene_check(*out, why);
-    }
+    status result = scene_input_read(&request->input, out, why);
     if (result == STATUS_OK)
         result = outputs_check(&request->files, *out, why);
     if (result == STATUS_OK)
@@ -136,14 +105,6 @@ static void print_note(void *context, const char *text)
 {
     (void)context;
     terminal_note(text);
-}
-
-static status choose_isa(isa *level, diagnostic *why)
-{
-    status result = isa_choose(level, why);
-    if (result != STATUS_OK)
-        diagnostic_locate(why, "environment", 0, 0);
-    return result;
 }
 
 /* One line for people; programs take --json. */
@@ -213,16 +174,16 @@ static status render_and_write(const render_request *request, const scene *s, is
 
 status command_render(int argc, char **argv, diagnostic *why)
 {
-    render_request request = {.repeat = 1, .assignments = calloc((size_t)argc + 1, sizeof(char *))};
-    if (!request.assignments)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    render_request request = {.repeat = 1};
     scene *s = NULL;
     isa level = ISA_SSE2;
-    status result = options_parse(&parser, 0, argc, argv, &request, why);
+    status result = scene_input_prepare(&request.input, "render", argc, why);
+    if (result == STATUS_OK)
+        result = options_parse(&parser, 0, argc, argv, &request, why);
     if (result == STATUS_OK)
         result = check_request(&request, why);
     if (result == STATUS_OK)
-        result = choose_isa(&level, why);
+        result = scene_input_isa(&level, why);
     if (result == STATUS_OK)
         result = load_scene(&request, &s, why);
     if (result == STATUS_OK && !request.json)
@@ -230,6 +191,6 @@ status command_render(int argc, char **argv, diagnostic *why)
     if (result == STATUS_OK)
         result = render_and_write(&request, s, level, why);
     scene_destroy(s);
-    free(request.assignments);
+    scene_input_release(&request.input);
     return result;
 }

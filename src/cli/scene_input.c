@@ -1,0 +1,70 @@
+#include "cli/scene_input.h"
+#include "scene/params.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+status scene_input_prepare(scene_input *input, const char *command, int argc, diagnostic *why)
+{
+    *input = (scene_input){.command = command, .changes = calloc((size_t)argc + 1, sizeof *input->changes)};
+    return input->changes ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+void scene_input_release(scene_input *input)
+{
+    free(input->changes);
+    *input = (scene_input){0};
+}
+
+status scene_input_name(scene_input *input, const char *argument, diagnostic *why)
+{
+    if (!input->path) {
+        input->path = argument;
+        return STATUS_OK;
+    }
+    char remedy[128];
+    snprintf(remedy, sizeof remedy, "%s takes one scene; a parameter is set by --set PATH=VALUE", input->command);
+    diagnose(why, STATUS_BAD_INPUT, remedy, "'%.128s' is one too many", argument);
+    diagnostic_locate(why, input->command, 0, 0);
+    return STATUS_BAD_INPUT;
+}
+
+void scene_input_change(scene_input *input, const char *option, const char *path, const char *text)
+{
+    input->changes[input->count++] = (scene_change){option, path, text};
+}
+
+status scene_input_check(const scene_input *input, diagnostic *why)
+{
+    if (input->path)
+        return STATUS_OK;
+    diagnose(why, STATUS_BAD_INPUT, "name a scene file, as experiments/scenes/rod.yaml", "no scene is named");
+    diagnostic_locate(why, input->command, 0, 0);
+    return STATUS_BAD_INPUT;
+}
+
+status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
+{
+    status result = scene_read(input->path, out, why);
+    for (size_t i = 0; i < input->count && result == STATUS_OK; i++) {
+        const scene_change *one = &input->changes[i];
+        result = one->path ? scene_set(*out, one->path, one->text, why) : scene_set_assignment(*out, one->text, why);
+        if (result != STATUS_OK) {
+            char where[512];
+            snprintf(where, sizeof where, "%s %s", one->option, one->text);
+            diagnostic_locate(why, where, 0, 0);
+        }
+    }
+    if (result == STATUS_OK) {
+        diagnostic_locate(why, input->path, 0, 0); /* for checks that have no line to name */
+        result = scene_check(*out, why);
+    }
+    return result;
+}
+
+status scene_input_isa(isa *level, diagnostic *why)
+{
+    status result = isa_choose(level, why);
+    if (result != STATUS_OK)
+        diagnostic_locate(why, "environment", 0, 0);
+    return result;
+}

@@ -1,0 +1,42 @@
+/* What commands that work on a scene share: SCENE, --set and its short forms, the instruction set. Mistakes are located at the
+ * option that made them. Ownership: scene_input_prepare gives memory, scene_input_release takes it; words of the command line are
+ * borrowed. */
+#ifndef CUVETTE_CLI_SCENE_INPUT_H
+#define CUVETTE_CLI_SCENE_INPUT_H
+
+#include "base/isa.h"
+#include "scene/scene.h"
+
+typedef struct scene_change {
+    const char *option;  /* "--set" */
+    const char *path;    /* "render.depth"; NULL where the text is PATH=VALUE */
+    const char *text;
+} scene_change;
+
+typedef struct scene_input {
+    const char *command; /* "render" */
+    const char *path;    /* NULL until it is named */
+    scene_change *changes;
+    size_t count;
+} scene_input;
+
+/* Room for as many changes as the command line has words. */
+status scene_input_prepare(scene_input *input, const char *command, int argc, diagnostic *why);
+void scene_input_release(scene_input *input);
+
+/* Takes the argument SCENE; STATUS_BAD_INPUT when there is one already. */
+status scene_input_name(scene_input *input, const char *argument, diagnostic *why);
+
+/* Takes --set PATH=VALUE (path NULL), or an option that stands for one. */
+void scene_input_change(scene_input *input, const char *option, const char *path, const char *text);
+
+/* STATUS_BAD_INPUT when no scene was named. */
+status scene_input_check(const scene_input *input, diagnostic *why);
+
+/* The scene as the command line changes it, checked; its pictures are not loaded. */
+status scene_input_read(const scene_input *input, scene **out, diagnostic *why);
+
+/* isa_choose, located. */
+status scene_input_isa(isa *level, diagnostic *why);
+
+#endif
