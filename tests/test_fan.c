@@ -1,0 +1,164 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "render/fan.h"
+#include "render_fixture.h"
+
+/* Pencils and fans against geometrical optics. */
+
+static fan follow(const scene *s, const fan_rule *rule)
+{
+    probe *p = NULL;
+    fan f = {0};
+    diagnostic why = {0};
+    worked(probe_create(s, isa_best(), &p, &why), &why);
+    worked(fan_follow(p, rule, &f, &why), &why);
+    probe_destroy(p);
+    return f;
+}
+
+static const char ball_text[] = "render: {depth: 6}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, radius: 1}}\n";
+
+/* A ball lens: f = n R / (2 (n - 1)) from its centre (Hecht 6.2, thick lens with R_1 = -R_2 = R and d = 2 R); 1.5 for glass. */
+static void a_thin_pencil_meets_in_a_balls_focus(void **state)
+{
+    (void)state;
+    scene *s = scene_from(ball_text);
+    const fan_rule rule = {.from = {-5, 0, 0}, .to = {5, 0, 0}, .rays = 11, .width = 1e-3};
+    fan f = follow(s, &rule);
+    assert_int_equal(f.count, 11);
+    assert_true(f.has_focus && !f.is_virtual && f.focus_rms < 1e-9);
+    assert_true(fabs(f.focus.x - 1.5) < 1e-5 && fabs(f.focus.y) < 1e-9 && fabs(f.focus.z) < 1e-9);
+    assert_int_equal(f.crossing_count, 10);
+    for (int i = 0; i < f.crossing_count; i++)
+        assert_true(fabs(f.crossing[i].at.x - 1.5) < 1e-5);
+    for (int i = 0; i < f.count; i++) {
+        const fan_ray *ray = &f.ray[i];
+        assert_true(fabs(ray->offset - 1e-3 * (i / 10.0 - 0.5)) < 1e-18);
+        assert_true(ray->leaves && ray->count == 3 && fabs(ray->weight - 0.96 * 0.96) < 1e-6);
+        if (i != 5)
+            assert_true(ray->meets_axis && fabs(ray->axis_at - 6.5) < 1e-5);
+    }
+    fan_release(&f);
+    scene_destroy(s);
+}
+
+/* Through a sphere a ray that falls in under angle i is turned by 2 (i - t), and sin i = h / R (Hecht 4.4, twice). */
+static void a_wide_pencil_is_turned_as_snell_says(void **state)
+{
+    (void)state;
+    scene *s = scene_from(ball_text);
+    const fan_rule rule = {.from = {-5, 0, 0}, .to = {5, 0, 0}, .rays = 19, .width = 1.4};
+    fan f = follow(s, &rule);
+    for (int k = 0; k < f.count; k++) {
+        const fan_ray *ray = &f.ray[k];
+        const double i = asin(fabs(ray->offset)), t = asin(fabs(ray->offset) / 1.5);
+        assert_true(fabs(ray->deviation_deg - 2.0 * (i - t) * 180.0 / 3.14159265358979323846) < 1e-9);
+        /* Spherical aberration: the exit ray, at distance R sin i from the centre, meets the axis at R sin i / sin(2 (i - t)). */
+        if (k != 9)
+            assert_true(fabs(ray->axis_at - 5.0 - sin(i) / sin(2.0 * (i - t))) < 1e-9);
+    }
+    /* The caustic is symmetrical, and nowhere behind the paraxial focus. */
+    assert_int_equal(f.crossing_count, 18);
+    for (int k = 0; k < 18; k++) {
+        assert_true(fabs(f.crossing[k].at.x - f.crossing[17 - k].at.x) < 1e-12);
+        assert_true(f.crossing[k].at.x < 1.5);
+    }
+    assert_true(f.focus_rms > 1e-3);
+    fan_release(&f);
+    scene_destroy(s);
+}
+
+/* From the focus in front of a ball, light leaves it parallel: there is then no focus, and nothing crosses. */
+static void light_from_the_focus_leaves_parallel(void **state)
+{
+    (void)state;
+    scene *s = scene_from(ball_text);
+    const fan_rule rule = {.from = {-1.5, 0, 0}, .to = {0, 0, 0}, .rays = 5, .spreads = true, .spread_deg = 0.02};
+    fan f = follow(s, &rule);
+    for (int i = 0; i < f.count; i++)
+        assert_true(fabs(f.ray[i].offset - 0.02 * (i / 4.0 - 0.5)) < 1e-15 && f.ray[i].exit_direction.x > 1.0 - 1e-12);
+    fan_release(&f);
+    scene_destroy(s);
+}
+
+/* A plane slab shows a point nearer: by d (1 - 1/n) for a slab of thickness d (Hecht 4.4, paraxial). Its image is virtual. */
+static void a_slab_shifts_a_point(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {depth: 6}\nsolids: {slab: {shape: box, transparency: 1, ior: 1.5, size: [3, 50, 50]}}\n");
+    const fan_rule rule = {.from = {-5, 1, 0}, .to = {5, 1, 0}, .rays = 7, .spreads = true, .spread_deg = 0.1};
+    fan f = follow(s, &rule);
+    assert_true(f.has_focus && f.is_virtual && fabs(f.focus.x - (-5.0 + 1.0)) < 1e-5);
+    assert_int_equal(f.crossing_count, 0);
+    assert_true(f.ray[6].exit_point.x == 1.5 && !f.ray[6].meets_axis && f.ray[6].deviation_deg < 1e-9);
+    fan_release(&f);
+    scene_destroy(s);
+}
+
+static void planes_are_level_or_upright_or_as_told(void **state)
+{
+    (void)state;
+    scene *s = scene_from(ball_text);
+    fan_rule rule = {.from = {-5, 0.5, 0}, .to = {5, 0.5, 0}, .rays = 3, .width = 1};
+    fan f = follow(s, &rule);
+    assert_true(fabs(f.normal.y) == 1.0 && f.across.z == 1.0);
+    fan_release(&f);
+    rule.to.y = 0.6;
+    f = follow(s, &rule);
+    assert_true(fabs(f.normal.z) > 1.0 - 1e-12 && f.across.y > 0.99);
+    fan_release(&f);
+    rule.to = vec3_make(-5, -3, 0); /* straight down */
+    f = follow(s, &rule);
+    assert_true(fabs(f.normal.z) == 1.0);
+    fan_release(&f);
+    rule.to = vec3_make(5, 0.5, 0), rule.has_normal = true, rule.normal = vec3_make(7, 0, 2);
+    f = follow(s, &rule);
+    assert_true(fabs(f.normal.z) == 1.0 && f.across.y == 1.0 && f.ray[2].offset == 0.5);
+    fan_release(&f);
+    scene_destroy(s);
+}
+
+static void bad_rules_are_refused(void **state)
+{
+    (void)state;
+    scene *s = scene_from(ball_text);
+    probe *p = NULL;
+    worked(probe_create(s, isa_best(), &p, NULL), NULL);
+    const fan_rule good = {.from = {-5, 0, 0}, .to = {5, 0, 0}, .rays = 3, .width = 1};
+    fan_rule bad[6];
+    for (int i = 0; i < 6; i++)
+        bad[i] = good;
+    bad[0].to = bad[0].from;
+    bad[1].has_normal = true, bad[1].normal = vec3_make(-2, 0, 0);
+    bad[2].rays = 0;
+    bad[3].width = NAN;
+    bad[4].spreads = true, bad[4].spread_deg = 180.0;
+    bad[5].rays = FAN_RAYS_MAX + 1;
+    fan f = {0};
+    for (int i = 0; i < 6; i++) {
+        diagnostic why = {0};
+        assert_int_equal(fan_follow(p, &bad[i], &f, &why), STATUS_BAD_INPUT);
+        assert_true(why.what[0] && why.remedy[0]);
+        fan_release(&f);
+    }
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_thin_pencil_meets_in_a_balls_focus),
+        cmocka_unit_test(a_wide_pencil_is_turned_as_snell_says),
+        cmocka_unit_test(light_from_the_focus_leaves_parallel),
+        cmocka_unit_test(a_slab_shifts_a_point),
+        cmocka_unit_test(planes_are_level_or_upright_or_as_told),
+        cmocka_unit_test(bad_rules_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
