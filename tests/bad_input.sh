@@ -196,6 +196,56 @@ refused "--diff onto a folder" "is a folder" compare good.png good.jpg --diff fo
 refused "--diff over a picture" "is read from it" compare good.png good.jpg --diff ./good.jpg
 refused "--diff is checked before the pictures" "x.gif" compare nowhere.png nowhere.png --diff x.gif
 
+# --- one ray, and many
+printf '%s\n' 'render: {shadows: off}' 'solids:' '  outer: {shape: box, transparency: 1, ior: 1.2, size: [4, 4, 4], priority: 0}' \
+    '  inner: {shape: box, transparency: 1, ior: 1.3, size: [1, 2, 3], rotation: [10, 20, 30], priority: 1}' >glass.yaml
+refused "trace of nothing" "no scene is named" trace
+refused "trace without a ray" "give --pixel" trace "$scene"
+refused "trace of a pixel and a ray" "exclude each other" trace "$scene" --pixel 1,1 --ray 0,0,0,1,0,0
+refused "trace of two scenes" "one too many" trace "$scene" "$scene" --pixel 1,1
+refused "trace of a pixel outside" "--pixel: .*800 x 600" trace "$scene" --pixel 800,0
+refused "trace of a negative pixel" "--pixel: .*outside" trace "$scene" --pixel=-1,0
+refused "trace of half a pixel" "no such pixel.*integers" trace "$scene" --pixel 1.5,2
+refused "trace of one number" "fewer than 2" trace "$scene" --pixel 7
+refused "trace of a pixel of words" "'x' is not a number" trace "$scene" --pixel 1,x
+refused "trace of a ray with five numbers" "fewer than 6" trace "$scene" --ray 0,0,0,1,0
+refused "trace of a ray with seven numbers" "more than 6" trace "$scene" --ray 0,0,0,1,0,0,0
+refused "trace of a ray with NaN" "'nan' is not a number" trace "$scene" --ray 0,0,0,nan,0,1
+refused "trace of a ray with an overflow" "'1e999' is not a number" trace "$scene" --ray 0,0,0,1e999,0,1
+refused "trace of a ray without direction" "--ray: .*no direction" trace "$scene" --ray 0,1,0,0,0,0
+refused "trace of a ray from far away" "--ray: .*too far" trace "$scene" --ray 1e7,1,0,1,0,0
+refused "trace of a wrong depth" "--depth 65: " trace "$scene" --pixel 1,1 --depth 65
+refused "trace at a wrong wavelength" "--lambda nan: " trace "$scene" --pixel 1,1 --lambda nan
+refused "trace with a wrong --set" "--set" trace "$scene" --pixel 1,1 --set render.dpth=3
+refused "trace in two formats" "more than one format" trace "$scene" --pixel 1,1 --json --svg
+refused "trace into an unknown ending" "x.gif: .*\.svg" trace "$scene" --pixel 1,1 -o x.gif
+refused "trace into a folder that is not there" "folder is not there" trace "$scene" --pixel 1,1 -o nowhere/x.svg
+refused "trace onto a folder" "is a folder" trace "$scene" --pixel 1,1 --json -o folder.png
+refused "trace over the scene" "the scene is read from it" trace same.yaml --pixel 1,1 --text -o same.yaml
+# Two million rays: seconds, and a minute with sanitizers.
+[[ ${CONFIG:-release} != release ]] ||
+    refused "a tree too large" "--ray: .*more than .* rays.*render.depth" trace glass.yaml --ray 0.1,0.2,0.3,1,0.7,0.4 --depth 64
+refused "misspelt option of trace" "did you mean '--pixel'" trace "$scene" --pixle 1,1
+refused "fan of nothing" "no scene is named" fan
+refused "fan without an axis" "no axis" fan "$scene" -o x.svg
+refused "fan without a file" "nothing is asked for" fan "$scene" --from 0,0,0 --to 1,0,0
+fan() # WHAT PATTERN ARGUMENT...
+{
+    refused "$1" "$2" fan "$scene" --from -3,1,0 -o x.svg "${@:3}"
+}
+fan "fan to its own start" "same point" --to -3,1,0
+fan "fan with NaN" "'nan' is not a number" --to 3,nan,0
+fan "fan of no rays" "integer from 1" --to 3,1,0 --rays 0
+fan "fan of too many rays" "integer from 1" --to 3,1,0 --rays 100001
+fan "fan with width and spread" "exclude each other" --to 3,1,0 --width 1 --spread 10
+fan "fan of a negative width" "out of range" --to 3,1,0 --width=-1
+fan "fan of a half circle" "out of range" --to 3,1,0 --spread 180
+fan "fan in a plane across its axis" "does not hold the axis" --to 3,1,0 --plane 1,0,0
+fan "fan in no plane" "does not hold the axis" --to 3,1,0 --plane 0,0,0
+fan "fan into an unknown ending" "x.png: .*\.csv" --to 3,1,0 -o x.png
+fan "fan to standard output" "-o -: " --to 3,1,0 -o -
+fan "fan of a wrong depth" "--depth deep: " --to 3,1,0 --depth deep
+
 # --- scenes and studies; the modules' own tests go deeper
 bad_scene() # WHAT PATTERN TEXT
 {

@@ -53,10 +53,10 @@ run --version
 check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render params media study compare realism machine help; do
+for command in render trace fan params media study compare realism machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render params media study compare realism machine "study run" "study list" "study status" "study merge" "study summary"; do
+for command in render trace fan params media study compare realism machine "study run" "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -291,6 +291,80 @@ run realism
 check "realism wants a scene" matches "$code $(<err)" "^2 cuvette: realism: no scene is named; "
 for option in $("$program" realism --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
     check "cuvette.1 explains realism $option" grep -qF -- "${option/--/\\-\\-}" "$page"
+
+# --- one ray, and many
+pixel() # FILE X Y: the three floats of a pixel of an 80 x 60 PFM, whose rows go upwards
+{
+    tail -c $((80 * 60 * 12)) "$1" | od -An -v -tf4 -w12 -j$((((59 - $3) * 80 + $2) * 12)) -N12
+}
+same_floats() # a radiance of a.pfm and one printed with 17 digits
+{
+    paste <(printf '%s\n' $1) <(printf '%s\n' $2) | awk '{d = $1 - $2; if (d < 0) d = -d; if (d > 2e-7 * ($2 + 1e-30)) bad = 1} END {exit bad || NR != 3}'
+}
+for at in 40,30 37,41 5,3 44,22; do
+    run trace "$scene" --pixel $at --json "${small[@]}"
+    check "trace --json of pixel $at" silent_success
+    check "its radiance is the picture's" same_floats "$(pixel a.pfm ${at/,/ })" "$(json 'radiance[]')"
+done
+run trace "$scene" --pixel 40,30 --depth 3 --json "${small[@]}"
+check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth lambda_nm radiance root "
+check "schema, scene and depth" is "$(json schema scene depth)" "$(lines 1 "$scene" 3)"
+check "keys of a ray, in order" is "$(json root@keys | tr '\n' ' ')" \
+    "kind depth origin direction throughput medium n hit children end brought "
+check "keys of a hit, in order" is "$(json root.hit@keys | tr '\n' ' ')" \
+    "solid surface t point normal from to cos_i cos_t R_s R_p R tir path_length transmittance error_bound opaque "
+check "the first ray" is "$(json root.kind root.depth root.medium root.n root.end root.hit.solid root.hit.surface root.hit.tir)" \
+    "$(lines camera 0 air 1 hit vessel "outer side" false)"
+check "media on both sides" is "$(json root.hit.from.medium root.hit.to.medium root.hit.to.n)" "$(lines air vessel 1.5)"
+check "its children" is "$(json 'root.children[].kind')" "$(lines reflect refract)"
+check "shares: reflectance and the rest" \
+    holds "($(json 'root.children[kind=reflect].throughput[0]') - $(json root.hit.R)) ^ 2 < 1e-30"
+check "numbers have 17 significant digits" grep -qE '"cos_i":0\.[0-9]{16,18},' out
+check "a ray beyond the depth is said to be cut" grep -q '"depth":4,.*"hit":null,"children":\[\],"end":"cut_depth"' out
+check "a shadow ray has its light" grep -q '"kind":"shadow".*"end":"\(lit\|blocked\)".*"light":"lamp","light_distance":' out
+count=$(grep -c '"kind"' out)
+run trace "$scene" --pixel 40,30 --depth 3 "${small[@]}"
+check "trace prints a line a ray, and the radiance" is "$(wc -l <out)" $((count + 1))
+check "kinds and ends in the text" matches "$(<out)" '^camera .*hit.*refract .*R_s .*cut_depth.*radiance '
+run trace "$scene" --ray=0,1.6,-0.5,0,0.6,1 --depth 2 --set rod.visible=off
+check "trace of a ray under water: total internal reflection" matches "$(head -1 out)" '^camera  depth 0  in liquid n 1\.33 .* none, TIR '
+run trace "$scene" --pixel 40,30 --json "${small[@]}" --set render.samples=4
+check "four samples are four roots" is "$(json roots@length 'roots[0].throughput[]')" "$(lines 4 0.25 0.25 0.25)"
+run trace "$scene" --pixel 40,30 --json "${small[@]}" --set render.polarisation=on
+check "polarised rays have their Stokes vectors" is "$(json root.stokes@length 'root.stokes[0]')" "$(lines 4 1)"
+run trace "$scene" --pixel 40,30 --set render.spectrum=spectral --lambda 486.1
+check "a spectral scene is noted: one wavelength" matches "$(<err)" '^cuvette: note: .*spectral.*486\.1$'
+check "but traced" is "$code" 0
+run trace "$scene" --pixel 40,30 --set render.integrator=path
+check "random paths are noted" matches "$(<err)" '^cuvette: note: .*random paths'
+run trace "$scene" --pixel 40,30 -o tree.json "${small[@]}"
+check "-o tree.json writes JSON, and nothing else" is "$(./json_get tree.json schema) $(cat out err)" "1 "
+run trace "$scene" --pixel 40,30 -o tree.svg "${small[@]}"
+check "-o tree.svg draws" matches "$(head -2 tree.svg | tail -1)" '^<svg xmlns="http://www.w3.org/2000/svg" version="1.1"'
+run trace "$scene" --pixel 40,30 --svg "${small[@]}"
+check "--svg: the same bytes" cmp out tree.svg
+check "total reflection, media and axes are in it" is "$(grep -c 'total internal\|liquid, n = 1.33\|from above' tree.svg)" 3
+(sleep 0.3; "$program" trace "$scene" --pixel 400,300 --depth 9 --json 2>err; echo $? >code) | true
+check "a tree into a closed pipe exits 1 without words" is "$(cat code err)" 1
+pencil=(--from -3,1.5,0 --to 3,1.5,0 --width 1.6 --set rod.visible=off)
+run fan "$scene" "${pencil[@]}" --rays 41 -o fan.svg
+check "fan draws" silent_success
+check "and says where the focus is" matches "$(<out)" '^41 rays, 41 followed to their end, 40 crossings of neighbours, mean focus 1\.7[0-9]*,1\.5,0 '
+cp fan.svg first.svg
+run fan "$scene" "${pencil[@]}" --rays 41 -o fan.svg
+check "the same bytes again" cmp fan.svg first.svg
+run fan "$scene" "${pencil[@]}" --rays 41 --tree -o tree.svg
+check "--tree draws more" holds "$(wc -l <tree.svg) > $(wc -l <fan.svg) + 40"
+run fan "$scene" "${pencil[@]}" --rays 5 -o fan.csv
+check "a row a ray" is "$(cut -d, -f1-4 fan.csv | tr '\n' ' ')" \
+    "ray,offset,interfaces,end 0,-0.8,4,sky 1,-0.4,4,sky 2,0,4,sky 3,0.4,4,sky 4,0.8,4,sky "
+check "the middle ray goes straight on, and is the axis" is "$(sed -n 4p fan.csv | cut -d, -f11,13-)" 0,NA,NA,NA,NA
+run fan "$scene" --from -3,1.5,0 --to 3,1.5,0 --spread 10 --rays 3 -o fan.csv
+check "a fan has angles, and ends on what is opaque" is "$(cut -d, -f2,4 fan.csv | tr '\n' ' ')" "offset_deg,end -5,sky 0,rod 5,sky "
+for command in trace fan; do
+    for option in $("$program" $command --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
+        check "cuvette.1 explains $command $option" grep -qF -- "${option/--/\\-\\-}" "$page"
+    done
 done
 
 # --- machine
@@ -418,6 +492,8 @@ check "completion offers parameters of the scene" \
     is "$(complete_line "$program" render "$scene" --set liquid.io)" "liquid.ior="
 check "completion offers options of compare" is "$(complete_line cuvette compare --d)" --diff
 check "completion offers media" is "$(complete_line "$program" media fused)" fused-silica
+check "completion offers options of trace" is "$(complete_line cuvette trace --p)" --pixel
+check "completion offers options of fan" is "$(complete_line cuvette fan --sp)" --spread
 check "completion offers study verbs" is "$(complete_line cuvette study mer)" merge
 
 echo "$passed passed, $failed failed"

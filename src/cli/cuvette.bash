@@ -36,6 +36,19 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
     --repeat | --shard | --at) COMPREPLY=() ;;
     --curve) _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges ;;
     --repeat | --shard) COMPREPLY=() ;;
+    -o | --output | --diff)
+        case ${COMP_WORDS[1]-} in
+        trace) _cuvette_files 'txt|json|svg' ;;
+        fan) _cuvette_files 'svg|csv' ;;
+        *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
+        esac
+        ;;
+    --rays | --time)
+        [[ ${COMP_WORDS[1]-} == fan ]] || _cuvette_files 'png|pfm'
+        ;;
+    --timeline) _cuvette_files 'json' ;;
+    --bits) _cuvette_words 8 16 ;;
+    --repeat | --shard | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
     -r | --results)
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$current")
@@ -63,7 +76,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render params media study compare realism machine help --help --usage --version
+        _cuvette_words render trace fan params media study compare realism machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -71,6 +84,20 @@ _cuvette()
     render)
         if [[ $current == -* ]]; then
             _cuvette_words --output --set --json --bits --rays --time --noise --timeline --repeat --help --usage --version
+        else
+            _cuvette_files 'yaml|yml'
+        fi
+        ;;
+    trace)
+        if [[ $current == -* ]]; then
+            _cuvette_words --pixel --ray --depth --lambda --set --text --json --svg --output --help --usage --version
+        else
+            _cuvette_files 'yaml|yml'
+        fi
+        ;;
+    fan)
+        if [[ $current == -* ]]; then
+            _cuvette_words --from --to --rays --width --spread --plane --depth --lambda --set --tree --output --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
@@ -115,7 +142,7 @@ _cuvette()
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render params media study compare realism machine
+            _cuvette_words render trace fan params media study compare realism machine
         fi
         ;;
     esac

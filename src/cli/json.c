@@ -1,7 +1,6 @@
 #include "cli/json.h"
 #include "base/number.h"
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,6 +47,20 @@ static bool write_text(FILE *stream, const char *text)
         fputs(quoted, stream);
     free(quoted);
     return quoted != NULL;
+}
+
+bool json_write_text(FILE *stream, const char *text)
+{
+    json_t *value = json_of_text(text);
+    bool good = value && write_text(stream, json_string_value(value));
+    json_decref(value);
+    return good;
+}
+
+void json_write_real(FILE *stream, double value)
+{
+    char text[NUMBER_TEXT_MAX];
+    fputs(isfinite(value) ? number_format_digits(value, 17, text) : "null", stream);
 }
 
 static bool is_flat(const json_t *list)

@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include <jansson.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -14,6 +15,11 @@ json_t *json_of_real(double value);
 json_t *json_of_count(int64_t value);
 /* Text that is not UTF-8, such as a file's name, gets '?' for its odd bytes. */
 json_t *json_of_text(const char *text);
+
+/* For what is too large to build first: a text in quotes (as json_of_text), and a real with 17 significant digits, printf's %.17g;
+ * null for what is not finite. */
+bool json_write_text(FILE *stream, const char *text);
+void json_write_real(FILE *stream, double value);
 
 /* Writes the value and a newline. Errors of the stream are left in the stream. */
 status json_write(FILE *stream, const json_t *value, diagnostic *why);

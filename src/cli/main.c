@@ -7,6 +7,8 @@ static status command_help(int argc, char **argv, diagnostic *why);
 
 static const command commands[] = {
     {"render", "render a scene; write the picture, the counts, the times", command_render},
+    {"trace", "take one ray apart: the whole tree that it grows into", command_trace},
+    {"fan", "send many rays through the scene: their focus, their caustic", command_fan},
     {"params", "print the table of parameters", command_params},
     {"media", "print the catalogue of media: refractive indices, dispersion, sources", command_media},
     {"study", "run, list, merge and sum up studies", command_study},

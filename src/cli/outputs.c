@@ -100,6 +100,13 @@ static status check_picture(const outputs *o, const named_file *file, bool is_ma
     return STATUS_OK;
 }
 
+static status check_not_read(const named_file *file, const scene *s, diagnostic *why)
+{
+    if ((s->path && same_file(file->path, s->path)) || is_sky_of(file->path, s))
+        return wrong(file, why, "name another file", "the scene is read from it");
+    return STATUS_OK;
+}
+
 static status check_file(const outputs *o, const named_file *files, size_t at, const scene *s, diagnostic *why)
 {
     enum { TIMELINE = 4 };
@@ -111,8 +118,8 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
         result = wrong(file, why, "end it in .json", "a timeline is a JSON file");
     if (result == STATUS_OK)
         result = check_folder(file, why);
-    if (result == STATUS_OK && ((s->path && same_file(file->path, s->path)) || is_sky_of(file->path, s)))
-        result = wrong(file, why, "name another file", "the scene is read from it");
+    if (result == STATUS_OK)
+        result = check_not_read(file, s, why);
     for (size_t i = 0; i < at && result == STATUS_OK; i++)
         if (files[i].path && same_file(file->path, files[i].path))
             result = wrong(file, why, "name another file", "two results cannot go into one file");
@@ -144,6 +151,27 @@ status outputs_check_picture(const char *option, const char *path, const char *c
         if (same_file(path, read[i]))
             result = wrong(&file, why, "name another file", "one of the pictures is read from it");
     return result;
+}
+
+status outputs_ending(const char *option, const char *path, const char *const *endings, size_t count, const char *remedy, size_t *which,
+                      diagnostic *why)
+{
+    const named_file file = {option, path};
+    for (size_t i = 0; i < count; i++)
+        if (ends_with(path, endings[i])) {
+            *which = i;
+            return STATUS_OK;
+        }
+    return wrong(&file, why, remedy, "the ending names no format");
+}
+
+status outputs_check_place(const char *option, const char *path, const scene *s, diagnostic *why)
+{
+    const named_file file = {option, path};
+    if (strcmp(path, "-") == 0)
+        return STATUS_OK;
+    status result = check_folder(&file, why);
+    return result == STATUS_OK ? check_not_read(&file, s, why) : result;
 }
 
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why)

@@ -19,6 +19,12 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why);
 status outputs_check_picture(const char *option, const char *path, const char *const *read, size_t count,
                              diagnostic *why);
 
+/* Of a text file: which of the endings its name has, by index. remedy says what to do when it has none of them. */
+status outputs_ending(const char *option, const char *path, const char *const *endings, size_t count, const char *remedy, size_t *which,
+                      diagnostic *why);
+/* Its folder, and that nothing is read from it: the scene and its sky. "-" is always right. */
+status outputs_check_place(const char *option, const char *path, const scene *s, diagnostic *why);
+
 /* Writes them all; result has what was wanted, or a part of it. */
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why);
 

@@ -74,7 +74,7 @@ void probe_destroy(probe *p);
 
 /* The tree of a pixel; with four samples a pixel it has four roots, linked by next. STATUS_BAD_INPUT outside the picture, and
  * for a tree of more than PROBE_NODES_MAX rays. */
-enum { PROBE_NODES_MAX = 4000000 };
+enum { PROBE_NODES_MAX = 2000000 };
 status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why);
 
 /* The tree of any ray; the direction need not be a unit vector. It sets out in the medium at its origin. */

@@ -1,0 +1,153 @@
+#include "cli/diagram_parts.h"
+#include <stdlib.h>
+
+void diagram_include(diagram_box *box, const section_plane *plane, vec3 p)
+{
+    const section_point at = section_project(plane, p);
+    box->u0 = fmin(box->u0, at.u), box->u1 = fmax(box->u1, at.u);
+    box->v0 = fmin(box->v0, at.v), box->v1 = fmax(box->v1, at.v);
+}
+
+bool diagram_box_is_empty(const diagram_box *box)
+{
+    return box->u0 > box->u1;
+}
+
+void diagram_include_solid(diagram_box *box, const section_plane *plane, const solid *one)
+{
+    const solid_shape *shape = &one->shape;
+    vec3 half = vec3_make(shape->radius, shape->radius, shape->radius), middle = vec3_make(0, 0, 0);
+    switch (shape->kind) {
+    case SHAPE_CYLINDER: half.z /= shape->m; /* fallthrough */
+    case SHAPE_CUP: half.y = middle.y = 0.5 * shape->height; break;
+    case SHAPE_BOX: half = vec3_scale(shape->size, 0.5); break;
+    case SHAPE_SPHERE: break;
+    case SHAPE_PLANE:
+    case SHAPE_COUNT: return;
+    }
+    const mat3 rotation = rotation_from_deg(shape->rotation_deg);
+    for (int k = 0; k < 8; k++) {
+        const vec3 corner = vec3_make(middle.x + (k & 1 ? half.x : -half.x), middle.y + (k & 2 ? half.y : -half.y),
+                                      middle.z + (k & 4 ? half.z : -half.z));
+        diagram_include(box, plane, vec3_add(shape->position, mat3_apply(rotation, corner)));
+    }
+}
+
+section_plane diagram_plane(vec3 point, vec3 e_u, vec3 e_v)
+{
+    const vec3 n = vec3_cross(e_u, e_v);
+    return (section_plane){.origin = vec3_scale(n, vec3_dot(n, point)), .e_u = e_u, .e_v = e_v};
+}
+
+/* The window: the box and some room around it, widened to the frame's shape. */
+static void fit(diagram *d, const diagram_box *box)
+{
+    const double room = 0.04 * fmax(box->u1 - box->u0, box->v1 - box->v0) + 1e-9;
+    const double width = box->u1 - box->u0 + 2.0 * room, height = box->v1 - box->v0 + 2.0 * room;
+    d->scale = fmin(d->frame.width / width, d->frame.height / height);
+    const double u = 0.5 * (box->u0 + box->u1), v = 0.5 * (box->v0 + box->v1);
+    d->plane.u0 = u - 0.5 * d->frame.width / d->scale, d->plane.u1 = u + 0.5 * d->frame.width / d->scale;
+    d->plane.v0 = v - 0.5 * d->frame.height / d->scale, d->plane.v1 = v + 0.5 * d->frame.height / d->scale;
+}
+
+status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, const section_plane *plane, const diagram_box *box,
+                     const diagram_frame *frame, const char *caption, diagnostic *why)
+{
+    *d = (diagram){.out = out, .p = p, .s = s, .plane = *plane, .frame = *frame};
+    fit(d, box);
+    const double longer = frame->width > frame->height ? frame->width : frame->height;
+    status result = section_cut(p, &d->plane, (int)(longer / 1.5), &d->cut, why);
+    if (result == STATUS_OK)
+        result = diagram_media(d, why);
+    if (result == STATUS_OK)
+        diagram_axes(d, caption);
+    return result;
+}
+
+void diagram_end(diagram *d)
+{
+    section_release(&d->cut);
+    free(d->kept);
+}
+
+/* Cuts a piece to the window: Liang and Barsky 1984. False when nothing is left. */
+static bool clip(const section_plane *w, section_point *a, section_point *b)
+{
+    const double du = b->u - a->u, dv = b->v - a->v;
+    const double along[4] = {-du, du, -dv, dv}, room[4] = {a->u - w->u0, w->u1 - a->u, a->v - w->v0, w->v1 - a->v};
+    double first = 0.0, last = 1.0;
+    for (int k = 0; k < 4; k++) {
+        if (along[k] == 0.0 && room[k] < 0.0)
+            return false;
+        if (along[k] < 0.0)
+            first = fmax(first, room[k] / along[k]);
+        if (along[k] > 0.0)
+            last = fmin(last, room[k] / along[k]);
+    }
+    if (first > last)
+        return false;
+    const section_point from = *a;
+    *a = (section_point){from.u + first * du, from.v + first * dv};
+    *b = (section_point){from.u + last * du, from.v + last * dv};
+    return true;
+}
+
+double diagram_ray_width(double weight)
+{
+    return 0.6 + 1.2 * sqrt(weight);
+}
+
+double diagram_ray_opacity(double weight)
+{
+    return 0.25 + 0.7 * sqrt(weight);
+}
+
+void diagram_ray(const diagram *d, vec3 from, vec3 to, const char *color, double weight, const char *dashes)
+{
+    section_point a = section_project(&d->plane, from), b = section_project(&d->plane, to);
+    if (!clip(&d->plane, &a, &b) || hypot(b.u - a.u, b.v - a.v) * d->scale < 0.02)
+        return;
+    char stroke[192], dashed[64] = "";
+    if (dashes)
+        snprintf(dashed, sizeof dashed, " stroke-dasharray=\"%s\"", dashes);
+    snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"%.2f\" stroke-opacity=\"%.2f\"%s", color, diagram_ray_width(weight),
+             diagram_ray_opacity(weight), dashed);
+    svg_line(d->out, diagram_x(d, a.u), diagram_y(d, a.v), diagram_x(d, b.u), diagram_y(d, b.v), stroke);
+}
+
+bool diagram_shows(const diagram *d, vec3 at)
+{
+    const section_point p = section_project(&d->plane, at);
+    return p.u >= d->plane.u0 && p.u <= d->plane.u1 && p.v >= d->plane.v0 && p.v <= d->plane.v1;
+}
+
+void diagram_arrow(const diagram *d, vec3 from, vec3 to, const char *color, double weight)
+{
+    const section_point a = section_project(&d->plane, from), b = section_project(&d->plane, to);
+    const double length = hypot(b.u - a.u, b.v - a.v);
+    if (!diagram_shows(d, to) || length * d->scale < 1.0)
+        return;
+    const double long_px = 4.0 + 3.0 * sqrt(weight), half_px = 0.36 * long_px;
+    const double along_x = (b.u - a.u) / length, along_y = -(b.v - a.v) / length;
+    const double x = diagram_x(d, b.u), y = diagram_y(d, b.v);
+    fprintf(d->out, "<path d=\"M%.2f %.2fL%.2f %.2fL%.2f %.2fZ\" fill=\"%s\" fill-opacity=\"%.2f\"/>\n", x + long_px * along_x,
+            y + long_px * along_y, x - half_px * along_y, y + half_px * along_x, x + half_px * along_y, y - half_px * along_x, color,
+            diagram_ray_opacity(weight));
+}
+
+void diagram_dot(const diagram *d, vec3 at, double radius_px, const char *fill, const char *stroke)
+{
+    const section_point p = section_project(&d->plane, at);
+    if (diagram_shows(d, at))
+        fprintf(d->out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" fill=\"%s\" stroke=\"%s\" stroke-width=\"1.2\"/>\n",
+                diagram_x(d, p.u), diagram_y(d, p.v), radius_px, fill, stroke);
+}
+
+void diagram_cross(const diagram *d, vec3 at, double radius_px, const char *stroke)
+{
+    const section_point p = section_project(&d->plane, at);
+    const double x = diagram_x(d, p.u), y = diagram_y(d, p.v), r = radius_px;
+    if (diagram_shows(d, at))
+        fprintf(d->out, "<path d=\"M%.2f %.2fL%.2f %.2fM%.2f %.2fL%.2f %.2f\" stroke=\"%s\" stroke-width=\"1.8\"/>\n", x - r, y - r, x + r,
+                y + r, x - r, y + r, x + r, y - r, stroke);
+}

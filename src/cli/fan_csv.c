@@ -1,0 +1,44 @@
+#include "cli/fan_writers.h"
+#include "study/csv.h"
+
+static void add_vector(csv_line *line, bool there, vec3 v)
+{
+    csv_real(line, there ? v.x : (double)NAN);
+    csv_real(line, there ? v.y : (double)NAN);
+    csv_real(line, there ? v.z : (double)NAN);
+}
+
+/* How a way ended: "sky", "cut", or the opaque solid that it met. */
+static const char *end_words(const fanned *t, const fan_ray *ray)
+{
+    const ray_node *last = &t->f->node[ray->first + ray->count - 1];
+    if (last->end == RAY_END_HIT)
+        return t->s->solids[last->hit.solid].name;
+    return last->end == RAY_END_SKY ? "sky" : "cut";
+}
+
+status fan_write_csv(const fanned *t, FILE *out, diagnostic *why)
+{
+    csv_line line = {0};
+    fprintf(out, "ray,%s,interfaces,end,exit_x,exit_y,exit_z,direction_x,direction_y,direction_z,deviation_deg,weight,axis_at,axis_x,"
+                 "axis_y,axis_z\n", t->rule->spreads ? "offset_deg" : "offset");
+    for (int i = 0; i < t->f->count; i++) {
+        const fan_ray *ray = &t->f->ray[i];
+        csv_count(&line, i);
+        csv_real(&line, ray->offset);
+        csv_count(&line, (int64_t)ray->count - 1);
+        csv_text(&line, end_words(t, ray));
+        add_vector(&line, ray->leaves, ray->exit_point);
+        add_vector(&line, ray->leaves, ray->exit_direction);
+        csv_real(&line, ray->leaves ? ray->deviation_deg : (double)NAN);
+        csv_real(&line, ray->leaves ? ray->weight : (double)NAN);
+        csv_real(&line, ray->meets_axis ? ray->axis_at : (double)NAN);
+        add_vector(&line, ray->meets_axis, ray->axis_point);
+        csv_end(&line);
+    }
+    const bool failed = line.failed;
+    if (!failed)
+        fwrite(line.text, 1, line.size, out);
+    csv_line_free(&line);
+    return failed ? diagnose(why, STATUS_FAILURE, "", "out of memory") : STATUS_OK;
+}

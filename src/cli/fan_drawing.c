@@ -1,0 +1,206 @@
+/* A fan of rays in its own plane: the section of the solids, the rays' ways, the caustic and the mean focus. */
+#include "cli/diagram.h"
+#include "cli/fan_writers.h"
+#include "cli/svg.h"
+
+/* Branches lighter than this are not drawn with whole trees; nor is a wider picture made for a caustic farther off than this share of
+ * the rest. */
+#define LIGHTEST 0.004
+#define FAR_OFF 0.6
+
+static const double outer_width = 960.0, least_height = 260.0, most_height = 760.0;
+
+/* A level plane with the axis to the right; others with what is up in them upwards, and the rays' way to the right. */
+static section_plane plane_of(const fan *f)
+{
+    const vec3 up = vec3_sub(vec3_make(0, 1, 0), vec3_scale(f->normal, f->normal.y));
+    if (vec3_length(up) < 1e-6)
+        return diagram_plane(f->from, f->axis, f->across);
+    const vec3 e_v = vec3_normalize(up), e_u = vec3_cross(e_v, f->normal);
+    return diagram_plane(f->from, vec3_dot(e_u, f->axis) < 0.0 ? vec3_scale(e_u, -1.0) : e_u, e_v);
+}
+
+static void include_near(diagram_box *box, const section_plane *plane, vec3 p)
+{
+    const double reach = FAR_OFF * hypot(box->u1 - box->u0, box->v1 - box->v0);
+    const section_point at = section_project(plane, p);
+    if (at.u > box->u0 - reach && at.u < box->u1 + reach && at.v > box->v0 - reach && at.v < box->v1 + reach)
+        diagram_include(box, plane, p);
+}
+
+static diagram_box box_of(const fanned *t, const section_plane *plane)
+{
+    const fan *f = t->f;
+    diagram_box box = DIAGRAM_BOX_EMPTY;
+    diagram_include(&box, plane, t->rule->from);
+    diagram_include(&box, plane, t->rule->to);
+    for (int i = 0; i < f->count; i++) {
+        const ray_node *node = &f->node[f->ray[i].first];
+        diagram_include(&box, plane, node->origin);
+        for (size_t k = 1; k < f->ray[i].count; k++)
+            include_near(&box, plane, node[k].origin);
+        for (size_t k = 0; k < f->ray[i].count; k++)
+            if (node[k].medium >= 0 && t->s->solids[node[k].medium].visible)
+                diagram_include_solid(&box, plane, &t->s->solids[node[k].medium]);
+    }
+    const diagram_box rest = box;
+    for (int i = 0; i < f->crossing_count; i++) {
+        diagram_box grown = rest;
+        include_near(&grown, plane, f->crossing[i].at);
+        box.u0 = fmin(box.u0, grown.u0), box.u1 = fmax(box.u1, grown.u1);
+        box.v0 = fmin(box.v0, grown.v0), box.v1 = fmax(box.v1, grown.v1);
+    }
+    if (f->has_focus)
+        include_near(&box, plane, f->focus);
+    return box;
+}
+
+/* The end of a node's piece; one into the sky leads out of the window. */
+static vec3 end_of(const diagram *d, const ray_node *node)
+{
+    const double across = hypot(d->plane.u1 - d->plane.u0, d->plane.v1 - d->plane.v0);
+    vec3 from = node->origin;
+    if (node->end == RAY_END_HIT)
+        return node->hit.point;
+    if (node->end == RAY_END_CUT_DEPTH || node->end == RAY_END_CUT_WEIGHT)
+        return vec3_add(from, vec3_scale(node->direction, 0.04 * across));
+    const section_point at = section_project(&d->plane, from);
+    const double off = hypot(at.u - d->plane.u0, at.v - d->plane.v0);
+    return vec3_add(from, vec3_scale(node->direction, 2.0 * (across + off)));
+}
+
+static bool is_cut(const ray_node *node)
+{
+    return node->end == RAY_END_CUT_DEPTH || node->end == RAY_END_CUT_WEIGHT;
+}
+
+/* Many rays side by side are drawn thinner. */
+static double crowding(const fan *f)
+{
+    return f->count > 20 ? sqrt(20.0 / f->count) : 1.0;
+}
+
+static void draw_way(const diagram *d, const fan *f, const fan_ray *ray)
+{
+    static const char *const colors[] = {[RAY_CAMERA] = SVG_INK, [RAY_REFLECT] = SVG_VERMILLION, [RAY_REFRACT] = SVG_BLUE,
+                                         [RAY_SHADOW] = SVG_GREY};
+    for (size_t k = 0; k < ray->count; k++) {
+        const ray_node *node = &f->node[ray->first + k];
+        const double weight = (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
+        diagram_ray(d, node->origin, end_of(d, node), colors[node->kind], crowding(f) * weight, is_cut(node) ? "0.5,3" : NULL);
+    }
+}
+
+static status draw_tree(const diagram *d, const fanned *t, const fan_ray *ray, diagnostic *why)
+{
+    static const char *const colors[] = {SVG_INK, SVG_VERMILLION, SVG_BLUE, SVG_GREY};
+    const ray_node *first = &t->f->node[ray->first];
+    ray_tree tree = {0};
+    status result = probe_ray(t->p, first->origin, first->direction, &tree, why);
+    for (size_t i = 0; i < tree.count && result == STATUS_OK; i++) {
+        const ray_node *node = &tree.node[i];
+        const double weight = (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
+        if (node->kind != RAY_SHADOW && weight >= LIGHTEST)
+            diagram_ray(d, node->origin, end_of(d, node), colors[node->kind], crowding(t->f) * weight, is_cut(node) ? "0.5,3" : NULL);
+    }
+    ray_tree_release(&tree);
+    return result;
+}
+
+static status draw_rays(const diagram *d, const fanned *t, diagnostic *why)
+{
+    status result = STATUS_OK;
+    for (int i = 0; i < t->f->count && result == STATUS_OK; i++) {
+        if (t->whole_trees)
+            result = draw_tree(d, t, &t->f->ray[i], why);
+        else
+            draw_way(d, t->f, &t->f->ray[i]);
+    }
+    for (int i = 0; i < t->f->count; i++) {
+        const fan_ray *ray = &t->f->ray[i];
+        for (size_t k = 0; k < ray->count; k++) {
+            const ray_node *node = &t->f->node[ray->first + k];
+            if (node->end == RAY_END_HIT && node->hit.tir)
+                diagram_dot(d, node->hit.point, 3.0, "none", SVG_PURPLE);
+        }
+    }
+    return result;
+}
+
+/* Crossings of neighbours, and where they are neighbours themselves the line between them: the envelope of the rays. */
+static void draw_caustic(const diagram *d, const fan *f)
+{
+    for (int i = 0; i + 1 < f->crossing_count; i++) {
+        const fan_crossing *a = &f->crossing[i], *b = &f->crossing[i + 1];
+        if (b->ray == a->ray + 1 && diagram_shows(d, a->at) && diagram_shows(d, b->at))
+            diagram_ray(d, a->at, b->at, SVG_ORANGE, 0.5, NULL);
+    }
+    for (int i = 0; i < f->crossing_count; i++)
+        diagram_dot(d, f->crossing[i].at, 1.9, SVG_ORANGE, "none");
+    if (f->has_focus)
+        diagram_cross(d, f->focus, 5.0, SVG_VERMILLION);
+}
+
+static double key_line(FILE *out, double x, double y, const char *color, const char *words, double width)
+{
+    char stroke[96];
+    snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"1.6\"", color);
+    svg_line(out, x, y - 4.0, x + 22.0, y - 4.0, stroke);
+    svg_label(out, x + 28.0, y, "start", SVG_INK, words);
+    return x + width;
+}
+
+static void draw_key(const fanned *t, FILE *out, double left, double y)
+{
+    const fan *f = t->f;
+    char text[200];
+    double x = key_line(out, left, y, SVG_INK, "incoming", 104.0);
+    x = key_line(out, x, y, SVG_BLUE, "refracted", 106.0);
+    x = key_line(out, x, y, SVG_VERMILLION, "reflected", 106.0);
+    fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"2\" fill=\"" SVG_ORANGE "\"/>\n", x + 4.0, y - 4.0);
+    svg_label(out, x + 12.0, y, "start", SVG_INK, "neighbours cross (caustic)");
+    x += 196.0;
+    fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" stroke=\"" SVG_PURPLE "\" stroke-width=\"1.2\"/>\n", x + 4.0, y - 4.0);
+    svg_label(out, x + 13.0, y, "start", SVG_INK, "total internal reflection");
+    if (!f->has_focus)
+        return;
+    fprintf(out, "<path d=\"M%.2f %.2fl8 8m0 -8l-8 8\" stroke=\"" SVG_VERMILLION "\" stroke-width=\"1.8\"/>\n", left + 4.0,
+            y + DIAGRAM_ROW - 8.0);
+    snprintf(text, sizeof text, "mean focus%s: %.4g, %.4g, %.4g; rms distance %.3g", f->is_virtual ? " (virtual)" : "", fan_shown(f->focus.x),
+             fan_shown(f->focus.y), fan_shown(f->focus.z), f->focus_rms);
+    svg_label(out, left + 21.0, y + DIAGRAM_ROW, "start", SVG_INK, text);
+}
+
+static void write_caption(const fanned *t, char *text, size_t size)
+{
+    const fan_rule *r = t->rule;
+    char shape[64];
+    snprintf(shape, sizeof shape, r->spreads ? "a fan of %.6g degrees" : "a pencil %.6g wide", r->spreads ? r->spread_deg : r->width);
+    snprintf(text, size, "%d rays, %s, from (%.4g, %.4g, %.4g) towards (%.4g, %.4g, %.4g); %.6g nm", r->rays, shape, r->from.x, r->from.y,
+             r->from.z, r->to.x, r->to.y, r->to.z, t->s->render.lambda_nm);
+}
+
+status fan_write_drawing(const fanned *t, FILE *out, diagnostic *why)
+{
+    const section_plane plane = plane_of(t->f);
+    const diagram_box box = box_of(t, &plane);
+    const double width = outer_width - DIAGRAM_BEFORE - DIAGRAM_BEHIND, shape = (box.v1 - box.v0) / fmax(box.u1 - box.u0, 1e-9);
+    const double height = fmin(fmax(width * (shape + 0.04), least_height), most_height), foot = DIAGRAM_ABOVE + height + DIAGRAM_BELOW;
+    const double key = foot + 14.0, first = key + DIAGRAM_ROW * (t->f->has_focus ? 2.0 : 1.0);
+    const double media = diagram_media_key(NULL, t->p, t->s, DIAGRAM_BEFORE, outer_width, first);
+    const diagram_frame frame = {DIAGRAM_BEFORE, DIAGRAM_ABOVE, width, height};
+    diagram d;
+    char caption[256];
+    svg_begin(out, outer_width, media + 14.0, t->s->title && t->s->title[0] ? t->s->title : NULL);
+    write_caption(t, caption, sizeof caption);
+    status result = diagram_begin(&d, out, t->p, t->s, &plane, &box, &frame, caption, why);
+    if (result == STATUS_OK)
+        result = draw_rays(&d, t, why);
+    if (result == STATUS_OK)
+        draw_caustic(&d, t->f);
+    diagram_end(&d);
+    draw_key(t, out, DIAGRAM_BEFORE, key);
+    diagram_media_key(out, t->p, t->s, DIAGRAM_BEFORE, outer_width, first);
+    svg_end(out);
+    return result;
+}

@@ -1,0 +1,131 @@
+#include "cli/json.h"
+#include "cli/trace_writers.h"
+
+static void write_list(FILE *out, const char *key, const double *values, int count)
+{
+    fprintf(out, ",\"%s\":[", key);
+    for (int k = 0; k < count; k++) {
+        fputs(k ? "," : "", out);
+        json_write_real(out, values[k]);
+    }
+    fputc(']', out);
+}
+
+static void write_vector(FILE *out, const char *key, vec3 v)
+{
+    write_list(out, key, (const double[]){v.x, v.y, v.z}, 3);
+}
+
+static void write_number(FILE *out, const char *key, double value)
+{
+    fprintf(out, ",\"%s\":", key);
+    json_write_real(out, value);
+}
+
+static bool write_word(FILE *out, const char *key, const char *text)
+{
+    fprintf(out, "\"%s\":", key);
+    return json_write_text(out, text);
+}
+
+static bool write_medium(const traced *t, FILE *out, const char *key, int medium, double n)
+{
+    fprintf(out, ",\"%s\":{", key);
+    bool good = write_word(out, "medium", probe_medium_name(t->p, medium));
+    write_number(out, "n", n);
+    fputc('}', out);
+    return good;
+}
+
+static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
+{
+    fputc('{', out);
+    bool good = write_word(out, "solid", t->s->solids[h->solid].name);
+    fputc(',', out);
+    good = write_word(out, "surface", probe_face_name(t->p, h)) && good;
+    write_number(out, "t", h->t);
+    write_vector(out, "point", h->point);
+    write_vector(out, "normal", h->normal);
+    good = write_medium(t, out, "from", h->from, h->n_from) && good;
+    good = write_medium(t, out, "to", h->to, h->n_to) && good;
+    write_number(out, "cos_i", h->cos_i);
+    write_number(out, "cos_t", h->cos_t);
+    write_number(out, "R_s", h->R_s);
+    write_number(out, "R_p", h->R_p);
+    write_number(out, "R", h->R);
+    fprintf(out, ",\"tir\":%s", h->tir ? "true" : "false");
+    write_number(out, "path_length", h->path_length_m);
+    write_list(out, "transmittance", h->transmittance, 3);
+    write_number(out, "error_bound", h->error_bound);
+    fprintf(out, ",\"opaque\":%s", h->opaque ? "true" : "false");
+    if (h->face_solid != h->solid) {
+        fputc(',', out);
+        good = write_word(out, "surface_of", t->s->solids[h->face_solid].name) && good;
+    }
+    fputc('}', out);
+    return good;
+}
+
+/* What the specification leaves free, behind its keys. */
+static bool write_extras(const traced *t, FILE *out, const ray_node *node)
+{
+    bool good = true;
+    if (t->s->render.polarisation)
+        write_list(out, "stokes", node->stokes, 4);
+    if (node->kind == RAY_SHADOW && node->light >= 0) {
+        fputc(',', out);
+        good = write_word(out, "light", t->s->lights[node->light].name);
+        write_number(out, "light_distance", node->light_distance);
+    }
+    write_list(out, "brought", node->brought, 3);
+    return good;
+}
+
+/* As deep as the tree: 65 levels at most. */
+static bool write_ray(const traced *t, FILE *out, int at)
+{
+    const ray_node *node = &t->tree->node[at];
+    fprintf(out, "\n{\"kind\":\"%s\",\"depth\":%d", trace_kind_words[node->kind], node->depth);
+    write_vector(out, "origin", node->origin);
+    write_vector(out, "direction", node->direction);
+    write_list(out, "throughput", node->throughput, 3);
+    fputc(',', out);
+    bool good = write_word(out, "medium", probe_medium_name(t->p, node->medium));
+    write_number(out, "n", node->n);
+    fputs(",\"hit\":", out);
+    if (node->end == RAY_END_HIT)
+        good = write_hit(t, out, &node->hit) && good;
+    else
+        fputs("null", out);
+    fputs(",\"children\":[", out);
+    for (int i = node->first_child; i != RAY_NONE; i = t->tree->node[i].next) {
+        good = write_ray(t, out, i) && good;
+        fputs(t->tree->node[i].next == RAY_NONE ? "" : ",", out);
+    }
+    fprintf(out, "],\"end\":\"%s\"", trace_end_words[node->end]);
+    good = write_extras(t, out, node) && good;
+    fputc('}', out);
+    return good;
+}
+
+status trace_write_json(const traced *t, FILE *out, diagnostic *why)
+{
+    const ray_tree *tree = t->tree;
+    fputs("{\"schema\":1,", out);
+    bool good = write_word(out, "scene", t->scene_path);
+    fprintf(out, ",\"depth\":%d", tree->depth_limit);
+    write_number(out, "lambda_nm", tree->lambda_nm);
+    write_list(out, "radiance", tree->radiance, 3);
+    fputs(",\"root\":", out);
+    good = write_ray(t, out, 0) && good;
+    if (tree->node[0].next != RAY_NONE) {
+        fputs(",\"roots\":[", out);
+        for (int i = 0; i != RAY_NONE; i = tree->node[i].next) {
+            fputs(i ? "," : "", out);
+            good = write_ray(t, out, i) && good;
+        }
+        fputc(']', out);
+    }
+    fputs("}\n", out);
+    return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
+}

@@ -1,0 +1,66 @@
+#include "cli/trace_writers.h"
+#include "base/elementary.h"
+#include <math.h>
+
+const char *const trace_kind_words[] = {"camera", "reflect", "refract", "shadow"};
+const char *const trace_end_words[] = {"hit", "sky", "cut_depth", "cut_weight", "lit", "blocked"};
+
+/* One number where the channels are equal, else three. */
+static void write_channels(FILE *out, const double c[3])
+{
+    if (c[0] == c[1] && c[1] == c[2])
+        fprintf(out, "%.6g", c[0]);
+    else
+        fprintf(out, "%.6g,%.6g,%.6g", c[0], c[1], c[2]);
+}
+
+static double angle_deg(double cosine)
+{
+    return elementary_atan2_deg(sqrt(fmax(0.0, 1.0 - cosine * cosine)), cosine);
+}
+
+static void write_hit(const traced *t, FILE *out, const ray_hit *h)
+{
+    fprintf(out, "  %s %s  t %.9g", t->s->solids[h->solid].name, probe_face_name(t->p, h), h->t);
+    if (h->face_solid != h->solid)
+        fprintf(out, " (a face of %s)", t->s->solids[h->face_solid].name);
+    if (h->opaque) {
+        fprintf(out, "  %.4f deg, opaque, reflects %.6g", angle_deg(h->cos_i), h->R);
+    } else {
+        fprintf(out, "  n %.6g to %.6g  %.4f deg to ", h->n_from, h->n_to, angle_deg(h->cos_i));
+        if (h->tir)
+            fputs("none, TIR", out);
+        else
+            fprintf(out, "%.4f deg", angle_deg(h->cos_t));
+        fprintf(out, "  R_s %.6g R_p %.6g R %.6g", h->R_s, h->R_p, h->R);
+    }
+    fputs("  transmits ", out);
+    write_channels(out, h->transmittance);
+}
+
+static void write_line(const traced *t, FILE *out, const ray_node *node, int indent)
+{
+    fprintf(out, "%*s%s  depth %d  in %s n %.6g  weight ", 2 * indent, "", trace_kind_words[node->kind], node->depth,
+            probe_medium_name(t->p, node->medium), node->n);
+    write_channels(out, node->throughput);
+    if (node->light >= 0)
+        fprintf(out, "  to %s at %.9g", t->s->lights[node->light].name, node->light_distance);
+    fprintf(out, "  %s", trace_end_words[node->end]);
+    if (node->end == RAY_END_HIT)
+        write_hit(t, out, &node->hit);
+    fputc('\n', out);
+}
+
+/* A node's children stand right behind it in the tree: its order is that of reading. */
+status trace_write_text(const traced *t, FILE *out, diagnostic *why)
+{
+    (void)why;
+    const ray_tree *tree = t->tree;
+    for (size_t i = 0; i < tree->count; i++) {
+        const ray_node *node = &tree->node[i];
+        write_line(t, out, node, node->kind == RAY_SHADOW ? node->depth + 1 : node->depth);
+    }
+    fprintf(out, "radiance %.9g %.9g %.9g  %zu rays, depth limit %d, %.6g nm\n", tree->radiance[0], tree->radiance[1], tree->radiance[2],
+            tree->count, tree->depth_limit, tree->lambda_nm);
+    return STATUS_OK;
+}

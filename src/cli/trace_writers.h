@@ -1,0 +1,24 @@
+/* A tree of rays as text, as JSON, as a drawing. Each writes all of it to a stream, whose errors are left in the stream.
+ * Ownership: everything is borrowed. */
+#ifndef CUVETTE_CLI_TRACE_WRITERS_H
+#define CUVETTE_CLI_TRACE_WRITERS_H
+
+#include "render/probe.h"
+#include <stdio.h>
+
+typedef struct traced {
+    const scene *s;
+    const probe *p;
+    const ray_tree *tree;
+    const char *scene_path;
+} traced;
+
+extern const char *const trace_kind_words[];  /* by ray_kind */
+extern const char *const trace_end_words[];   /* by ray_end */
+
+status trace_write_text(const traced *t, FILE *out, diagnostic *why);
+/* The schema is fixed: see THE JSON TREE in the manual page. */
+status trace_write_json(const traced *t, FILE *out, diagnostic *why);
+status trace_write_drawing(const traced *t, FILE *out, diagnostic *why);
+
+#endif
