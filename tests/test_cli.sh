@@ -291,6 +291,7 @@ run realism
 check "realism wants a scene" matches "$code $(<err)" "^2 cuvette: realism: no scene is named; "
 for option in $("$program" realism --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
     check "cuvette.1 explains realism $option" grep -qF -- "${option/--/\\-\\-}" "$page"
+done
 
 # --- one ray, and many
 pixel() # FILE X Y: the three floats of a pixel of an 80 x 60 PFM, whose rows go upwards

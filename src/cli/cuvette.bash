@@ -29,13 +29,7 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
 {
     case $1 in
     -s | --set) _cuvette_parameters ;;
-    -o | --output | --diff) _cuvette_files 'png|jpg|jpeg|pfm' ;;
-    --rays | --time | --noise) _cuvette_files 'png|pfm' ;;
-    --timeline) _cuvette_files 'json' ;;
-    --bits) _cuvette_words 8 16 ;;
-    --repeat | --shard | --at) COMPREPLY=() ;;
     --curve) _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges ;;
-    --repeat | --shard) COMPREPLY=() ;;
     -o | --output | --diff)
         case ${COMP_WORDS[1]-} in
         trace) _cuvette_files 'txt|json|svg' ;;
@@ -43,12 +37,12 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
         esac
         ;;
-    --rays | --time)
+    --rays | --time | --noise)
         [[ ${COMP_WORDS[1]-} == fan ]] || _cuvette_files 'png|pfm'
         ;;
     --timeline) _cuvette_files 'json' ;;
     --bits) _cuvette_words 8 16 ;;
-    --repeat | --shard | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
+    --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
     -r | --results)
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$current")
