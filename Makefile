@@ -189,7 +189,8 @@ experiments: $(build)/cuvette ## run the studies (goes on where it stopped), mak
 studies := $(patsubst experiments/%.study,%,$(wildcard experiments/*.study))
 measured := $(foreach s,$(studies),$(if $(wildcard $(RESULTS)/$(s)/rows.csv),$(s)))
 tables: $(measured:%=$(RESULTS)/tables/%.tsv) ## summarise the rows that are there
-$(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv experiments/%.study | $(build)/cuvette
+.SECONDEXPANSION:
+$(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv experiments/%.study $$(wildcard $(RESULTS)/$$*/compare.csv) | $(build)/cuvette
 	@mkdir -p $(@D)
 	$(build)/cuvette study summary --results $(RESULTS) experiments/$*.study >$@
 

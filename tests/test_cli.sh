@@ -422,6 +422,14 @@ check "--quiet says nothing" is "$(cat out err)" ""
 run study run studies/tiny.study --results parts --shard 1/2
 run study merge studies/tiny.study --results parts
 check "study merge joins the shards" is "$(wc -l <parts/tiny/rows.csv)" "$lines"
+sed -e 's/^study: .*/study: against/' -e '$a reference: {render.depth: 2}' studies/tiny.study >studies/against.study
+run study run --quiet studies/against.study --results res
+check "a study with a reference compares each cell" is "$(awk -F, 'NR > 1 && $8 == 0' res/against/compare.csv | wc -l)" 1
+run study summary studies/against.study --results res
+check "study summary has error beside time" is "$(awk -F'\t' 'NR == 4 {print $(NF - 7), $(NF - 6)}' out)" "0 NA"
+sed -i 's/^reference: .*/reference: {render.depht: 2}/' studies/against.study
+run study run studies/against.study --results res
+check "a slip in the reference is located" matches "$(<err)" 'against\.study:10:13: .*depht'
 
 # --- broken pipes, full disks, closed descriptors, signals
 "$program" params --json 2>err | head -1 >/dev/null

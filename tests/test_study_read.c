@@ -235,7 +235,8 @@ static void the_studies_of_the_house(void **state)
         const char *name;
         size_t cells;
     } known[] = {{"depth", 9}, {"threads", 44}, {"ior", 4}, {"ior-grid", 25}, {"profile", 12}, {"pool", 10},
-                 {"maps", 1},  {"portrait", 1}};
+                 {"maps", 1},  {"portrait", 1}, {"convergence", 30}, {"methods", 7}, {"lighting", 3},  {"absorption", 5},
+                 {"absorber", 11}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         char path[400], said[DIAGNOSTIC_TEXT_MAX];
         diagnostic why = {0};

@@ -1,4 +1,5 @@
 #include "study_fixture.h"
+#include "study/compare_rows.h"
 #include "study/rows.h"
 #include "study/row_files.h"
 
@@ -203,8 +204,11 @@ static void the_dictionary_is_whole(void **state)
     char *text = calloc(1, 1 << 18);
     assert_true(fread(text, 1, (1 << 18) - 1, file) > 0);
     fclose(file);
-    char *second = strstr(text, "\n## workers.csv");
+    char *second = strstr(text, "\n## workers.csv"), *third = strstr(text, "\n## compare.csv");
     assert_non_null(second);
+    assert_non_null(third);
+    check_dictionary(third, compare_columns, compare_column_count);
+    *third = 0;
     check_dictionary(second, worker_columns, worker_column_count);
     *second = 0;
     check_dictionary(text, row_columns, row_column_count);

@@ -27,6 +27,7 @@ void study_destroy(study *s)
     }
     free(s->axes);
     study_point_free(&s->fixed);
+    study_point_free(&s->reference);
     free(s->path);
     free(s->name);
     free(s->title);
@@ -83,7 +84,7 @@ void axis_find_films(study_axis *axis)
             axis->points[i].film++;
 }
 
-static status set_point(scene *to, const study_point *point, diagnostic *why)
+status grid_set_point(scene *to, const study_point *point, diagnostic *why)
 {
     for (size_t i = 0; i < point->count; i++) {
         status code = scene_set(to, point->paths[i], point->values[i], why);
@@ -101,7 +102,7 @@ status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *wh
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     for (size_t axis = 0; axis < s->axis_count; axis++) {
         const study_point *point = &s->axes[axis].points[study_cell_point(s, cell, axis)];
-        status code = set_point(setting, point, why);
+        status code = grid_set_point(setting, point, why);
         if (code != STATUS_OK) {
             diagnostic_locate(why, s->path, point->line, point->column);
             scene_destroy(setting);
@@ -112,8 +113,7 @@ status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *wh
     return STATUS_OK;
 }
 
-/* Has one of a cell's parameters been overwritten by another, which its row would then not tell? */
-static status check_kept(const study *s, const study_point *point, const scene *setting, diagnostic *why)
+status grid_check_kept(const study *s, const study_point *point, const scene *setting, diagnostic *why)
 {
     for (size_t i = 0; i < point->count; i++) {
         char *value;
@@ -135,9 +135,9 @@ static status check_kept(const study *s, const study_point *point, const scene *
 
 static status check_all_kept(const study *s, size_t cell, const scene *setting, diagnostic *why)
 {
-    status code = check_kept(s, &s->fixed, setting, why);
+    status code = grid_check_kept(s, &s->fixed, setting, why);
     for (size_t axis = 0; code == STATUS_OK && axis < s->axis_count; axis++)
-        code = check_kept(s, &s->axes[axis].points[study_cell_point(s, cell, axis)], setting, why);
+        code = grid_check_kept(s, &s->axes[axis].points[study_cell_point(s, cell, axis)], setting, why);
     return code;
 }
 
@@ -176,12 +176,46 @@ static void hash_integer(uint64_t *hash, int64_t value)
     *hash = hash_words(*hash, &value, 1);
 }
 
+typedef struct param_hash {
+    uint64_t value;
+    bool without_how;
+} param_hash;
+
 static status hash_param(void *context, const char *path, const param *row, const char *value)
 {
-    (void)row;
-    hash_text(context, path);
-    hash_text(context, value);
+    param_hash *hash = context;
+    if (hash->without_how && row->is_how)
+        return STATUS_OK;
+    hash_text(&hash->value, path);
+    hash_text(&hash->value, value);
     return STATUS_OK;
+}
+
+status grid_hash_scene(uint64_t *hash, const scene *of, bool without_how)
+{
+    param_hash params = {*hash, without_how};
+    status code = scene_each_param(of, hash_param, &params);
+    if (code != STATUS_OK)
+        return code;
+    *hash = params.value;
+    /* What the parameters do not say. */
+    hash_integer(hash, of->camera.aimed);
+    for (size_t i = 0; i < of->solid_count; i++) {
+        hash_integer(hash, of->solids[i].shape.kind);
+        hash_integer(hash, of->solids[i].material_index);
+    }
+    const image *sky = of->background.picture;
+    if (sky)
+        *hash = hash_bytes(*hash, sky->pixel, (size_t)sky->width * (size_t)sky->height * 3 * sizeof *sky->pixel);
+    return STATUS_OK;
+}
+
+void grid_hash_point(uint64_t *hash, const study_point *point)
+{
+    for (size_t i = 0; i < point->count; i++) {
+        hash_text(hash, point->paths[i]);
+        hash_text(hash, point->values[i]);
+    }
 }
 
 status grid_definition(const study *s, uint64_t *hash, diagnostic *why)
@@ -191,27 +225,13 @@ status grid_definition(const study *s, uint64_t *hash, diagnostic *why)
         return code;
     *hash = HASH_START;
     hash_text(hash, s->name);
-    code = scene_each_param(s->base, hash_param, hash);
+    code = grid_hash_scene(hash, s->base, false);
     if (code != STATUS_OK)
         return code;
-    /* What the parameters do not say. */
-    hash_integer(hash, s->base->camera.aimed);
-    for (size_t i = 0; i < s->base->solid_count; i++) {
-        hash_integer(hash, s->base->solids[i].shape.kind);
-        hash_integer(hash, s->base->solids[i].material_index);
-    }
-    const image *sky = s->base->background.picture;
-    if (sky)
-        *hash = hash_bytes(*hash, sky->pixel, (size_t)sky->width * (size_t)sky->height * 3 * sizeof *sky->pixel);
     for (size_t axis = 0; axis < s->axis_count; axis++) {
         hash_integer(hash, (int64_t)s->axes[axis].count);
-        for (size_t i = 0; i < s->axes[axis].count; i++) {
-            const study_point *point = &s->axes[axis].points[i];
-            for (size_t k = 0; k < point->count; k++) {
-                hash_text(hash, point->paths[k]);
-                hash_text(hash, point->values[k]);
-            }
-        }
+        for (size_t i = 0; i < s->axes[axis].count; i++)
+            grid_hash_point(hash, &s->axes[axis].points[i]);
     }
     *hash = hash_finish(*hash);
     return STATUS_OK;

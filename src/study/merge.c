@@ -9,7 +9,7 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
-/* All rows of one kind into rows.csv or workers.csv, line by line as they are. */
+/* All rows of one kind into rows.csv, workers.csv or compare.csv, line by line as they are. */
 static status write_joined(const row_files *files, const char *path, const char *header, diagnostic *why)
 {
     file_writer writer;
@@ -69,6 +69,8 @@ status study_merge(const study *s, const char *results, size_t *rows, diagnostic
     size_t joined = 0;
     /* Worker rows first: they may be there without their row, but not the other way round. */
     status code = join(s, results, WORKER_ROWS, &joined, why);
+    if (code == STATUS_OK)
+        code = join(s, results, COMPARE_ROWS, &joined, why);
     if (code == STATUS_OK)
         code = join(s, results, ROWS, &joined, why);
     if (rows)

@@ -9,6 +9,7 @@
  *     - {liquid.ior: {from: 1.0, to: 2.0, steps: 5}}   evenly spaced, both ends included
  *     - name: pair                   or several together
  *       points: [{vessel.ior: 1.0, liquid.ior: 1.5}, {vessel.ior: 1.3, liquid.ior: 1.0}]
+ *   reference: {render.depth: 40}    each cell's picture is compared with the one that these make of it
  *   repetitions: 10                  or {min: 6, max: 20, relative_width: 0.02}
  *   warmups: 1
  *   order: {shuffle: on, seed: 1}
@@ -20,6 +21,7 @@
 #include "scene/document.h"
 #include "study/grid.h"
 #include "study/read_grid.h"
+#include "study/reference.h"
 #include <libgen.h>
 #include <stdlib.h>
 #include <string.h>
@@ -222,8 +224,8 @@ static status read_scene(study *s, const document *d, const node *root, diagnost
 
 static status read_root(study *s, const document *d, diagnostic *why)
 {
-    static const char *const keys[] = {"study",       "title",   "scene", "set", "grid",
-                                       "repetitions", "warmups", "order", "keep"};
+    static const char *const keys[] = {"study",     "title",       "scene",   "set",   "grid",
+                                       "reference", "repetitions", "warmups", "order", "keep"};
     const node *root = document_root(d);
     if (!root || root->kind != NODE_MAP) {
         if (root)
@@ -245,8 +247,16 @@ static status read_root(study *s, const document *d, diagnostic *why)
     if (code == STATUS_OK)
         code = read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why);
     if (code == STATUS_OK)
+        code = read_reference(s, d, node_get(root, "reference"), why);
+    if (code == STATUS_OK)
         code = grid_check_cells(s, why);
-    return code == STATUS_OK ? grid_definition(s, &s->definition_hash, why) : code;
+    if (code == STATUS_OK)
+        code = reference_check(s, why);
+    if (code == STATUS_OK)
+        code = grid_definition(s, &s->definition_hash, why);
+    if (code == STATUS_OK)
+        s->compare_hash = reference_definition(s);
+    return code;
 }
 
 status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why)

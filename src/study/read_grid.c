@@ -292,3 +292,15 @@ status read_grid(study *s, const document *d, const node *set, const node *grid,
     scene_destroy(on);
     return code;
 }
+
+status read_reference(study *s, const document *d, const node *reference, diagnostic *why)
+{
+    if (!reference)
+        return STATUS_OK;
+    scene *on = scene_clone(s->base);
+    if (!on)
+        return no_memory(why);
+    status code = read_point(&s->reference, on, d, reference, why);
+    scene_destroy(on);
+    return code;
+}

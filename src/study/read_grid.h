@@ -9,6 +9,9 @@
  * may be NULL. */
 status read_grid(study *s, const document *d, const node *set, const node *grid, diagnostic *why);
 
+/* Tries the reference's paths and values, on a copy of s->base, and fills s->reference. reference may be NULL. */
+status read_reference(study *s, const document *d, const node *reference, diagnostic *why);
+
 /* Has the text no control characters? A row is one line. */
 bool read_grid_plain(const char *text);
 

@@ -1,6 +1,7 @@
 #include "study/row_files.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "study/compare_rows.h"
 #include "study/row_check.h"
 #include "study/rows.h"
 #include <dirent.h>
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const stems[] = {"rows", "workers"};
+static const char *const stems[] = {"rows", "workers", "compare"};
 
 char *study_folder(const study *s, const char *results)
 {
@@ -24,8 +25,9 @@ char *row_file_path(const char *folder, row_kind kind, long shard, long shards)
 
 char *row_file_header(const study *s, row_kind kind)
 {
+    static void (*const headers[])(csv_line *, const study *) = {row_header, worker_header, compare_header};
     csv_line line = {0};
-    (kind == ROWS ? row_header : worker_header)(&line, s);
+    headers[kind](&line, s);
     if (!line.failed)
         return line.text;
     csv_line_free(&line);
@@ -122,11 +124,14 @@ static status open_files(row_files *files, const char *folder, row_kind kind, di
     return code;
 }
 
-static status another_definition(const char *path, long line, const char *what, diagnostic *why)
+static status another_definition(const char *path, long line, row_kind kind, const char *what, diagnostic *why)
 {
     diagnostic_locate(why, path, line, 1);
     return diagnose(why, STATUS_BAD_INPUT,
-                    "move this folder away, choose another with --results, or give the study another name", "%s", what);
+                    kind == COMPARE_ROWS
+                        ? "move this file away: pictures are compared anew, and nothing is measured again"
+                        : "move this folder away, choose another with --results, or give the study another name",
+                    "%s", what);
 }
 
 /* A whole number from 0 to highest in the column of that name. */
@@ -138,16 +143,20 @@ static bool field_integer(const csv *table, size_t row, const char *name, int64_
 static status read_row(const study *s, row_ref *ref, const char *path, row_kind kind, diagnostic *why)
 {
     char definition[NUMBER_TEXT_MAX];
-    snprintf(definition, sizeof definition, "%016" PRIx64, s->definition_hash);
+    snprintf(definition, sizeof definition, "%016" PRIx64, kind == COMPARE_ROWS ? s->compare_hash : s->definition_hash);
     long line = (long)ref->row + 2;
     if (strcmp(csv_field(ref->table, ref->row, csv_column(ref->table, "definition")), definition) != 0 ||
         strcmp(csv_field(ref->table, ref->row, csv_column(ref->table, "study")), s->name) != 0)
         return another_definition(
-            path, line, "these rows are of another definition: the study or its scene has changed since", why);
-    int64_t cell, repetition, warmup, worker = 0;
+            path, line, kind,
+            kind == COMPARE_ROWS
+                ? "these rows are of another definition: the study, its scene or its reference has changed since"
+                : "these rows are of another definition: the study or its scene has changed since",
+            why);
+    int64_t cell, repetition = 0, warmup = 0, worker = 0;
     if (!field_integer(ref->table, ref->row, "cell", (int64_t)study_cell_count(s) - 1, &cell) ||
-        !field_integer(ref->table, ref->row, "repetition", INT32_MAX, &repetition) ||
-        !field_integer(ref->table, ref->row, "warmup", 1, &warmup) ||
+        (kind != COMPARE_ROWS && (!field_integer(ref->table, ref->row, "repetition", INT32_MAX, &repetition) ||
+                                  !field_integer(ref->table, ref->row, "warmup", 1, &warmup))) ||
         (kind == WORKER_ROWS && !field_integer(ref->table, ref->row, "worker", INT32_MAX, &worker))) {
         diagnostic_locate(why, path, line, 1);
         return diagnose(why, STATUS_BAD_INPUT, "move the file away, or take this line out of a copy",
@@ -174,7 +183,7 @@ static status read_rows(row_files *files, const study *s, row_kind kind, diagnos
             continue;
         size_t length = strlen(header);
         if (table->whole < length || memcmp(table->raw, header, length) != 0)
-            code = another_definition(files->paths[i], 1,
+            code = another_definition(files->paths[i], 1, kind,
                                       "these columns are not the study's: it or the program has changed since", why);
         for (size_t row = 0; code == STATUS_OK && row < table->row_count; row++) {
             row_ref *ref = &files->rows[files->row_count++];

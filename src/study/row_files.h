@@ -1,5 +1,5 @@
-/* All the rows of a study that are on disk: rows.csv and the shards' files, or the same of workers.csv, read and
- * checked. Rows that several files hold alike (after a merge) count once. Ownership: row_files_read gives,
+/* All the rows of a study that are on disk: rows.csv and the shards' files, or the same of workers.csv or compare.csv,
+ * read and checked. Rows that several files hold alike (after a merge) count once. Ownership: row_files_read gives,
  * row_files_destroy releases; what it gives points into it. */
 #ifndef CUVETTE_STUDY_ROW_FILES_H
 #define CUVETTE_STUDY_ROW_FILES_H
@@ -7,13 +7,13 @@
 #include "study/csv.h"
 #include "study/study.h"
 
-typedef enum row_kind { ROWS, WORKER_ROWS } row_kind;
+typedef enum row_kind { ROWS, WORKER_ROWS, COMPARE_ROWS } row_kind;
 
 typedef struct row_ref {
     const csv *table;
     size_t row;
     size_t cell;
-    long repetition, worker; /* worker: 0 in rows.csv */
+    long repetition, worker; /* worker: 0 in rows.csv; compare.csv has neither, nor warm-ups */
     bool warmup;
 } row_ref;
 

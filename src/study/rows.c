@@ -64,12 +64,23 @@ const char *row_build_config(char text[ROW_TIME_MAX])
     return text;
 }
 
-static void put_axes(csv_line *line, const study_row *r)
+double row_noise_rms(const render_result *frame)
+{
+    if (!frame->variance)
+        return NAN;
+    size_t count = (size_t)frame->picture->width * (size_t)frame->picture->height * 3;
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += frame->variance[i];
+    return sqrt(sum / (double)count);
+}
+
+void row_put_axes(csv_line *line, const study *s, const scene *setting)
 {
     const char *path;
-    for (size_t i = 0; (path = study_grid_path(r->of, i)); i++) {
+    for (size_t i = 0; (path = study_grid_path(s, i)); i++) {
         char *value = NULL;
-        csv_text(line, scene_get(r->setting, path, &value, NULL) == STATUS_OK ? value : NULL);
+        csv_text(line, scene_get(setting, path, &value, NULL) == STATUS_OK ? value : NULL);
         free(value);
     }
 }
@@ -124,7 +135,7 @@ static void put_time(csv_line *line, const study_row *r)
 #define ROW_COLUMNS(X) WHOSE(X) \
     X("order", "", "running number of the row in the file that it was first written to", csv_count(line, (int64_t)r->order)) \
     X("time_utc", "", "when the frame had ended, ISO 8601", put_time(line, r)) \
-    X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", put_axes(line, r)) \
+    X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", row_put_axes(line, r->of, r->setting)) \
     X("film_hash", "", "fingerprint of the film, 16 hex digits", csv_hash(line, r->film_hash)) \
     X("film_expected", "", "film_hash of the first row of all cells that must have one film: they differ only in threads, pool, schedule, tile or pin", csv_hash(line, r->film_expected)) \
     X("marked", "", "1: film_hash is not film_expected, do not trust this row", csv_count(line, r->film_hash != r->film_expected)) \
@@ -143,6 +154,7 @@ static void put_time(csv_line *line, const study_row *r)
     X("cut_weight_throughput", "rays", "their throughput, mean of RGB, summed", put_cut(line, c->cut_weight_throughput)) \
     X("first_hits.<solid>", "rays", "camera rays whose first interface is on that solid", put_solids(line, r, c->first_hits)) \
     X("hits.<solid>", "rays", "interfaces met on that solid by rays of all kinds but shadow rays", put_solids(line, r, c->hits)) \
+    X("noise_rms", "radiance", "of random paths: root of the mean square of the film's standard error, over all its values, 1 is white; else NA", csv_real(line, row_noise_rms(r->frame))) \
     X("workers", "", "threads of the frame", csv_count(line, r->frame->worker_count)) \
     X("workers_with_tiles", "", "those that had a piece of the picture", csv_count(line, w.with_tiles)) \
     X("busy_s_mean", "s", "from a worker's first piece to its last ray, 0 without a piece; mean over all workers", csv_real(line, w.busy_mean)) \
@@ -163,7 +175,7 @@ static void put_time(csv_line *line, const study_row *r)
 
 /* k: the worker's report. */
 #define WORKER_COLUMNS(X) WHOSE(X) \
-    X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", put_axes(line, r)) \
+    X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", row_put_axes(line, r->of, r->setting)) \
     X("worker", "", "number of the worker, from 0", csv_count(line, worker)) \
     X("pu", "", "processing unit that it ended on (the system's number)", csv_count(line, k->pu)) \
     X("tiles", "", "pieces of the picture that it took", csv_count(line, (int64_t)k->tiles)) \
@@ -187,7 +199,7 @@ const size_t row_column_count = sizeof row_columns / sizeof row_columns[0];
 const row_column worker_columns[] = {WORKER_COLUMNS(DESCRIBE)};
 const size_t worker_column_count = sizeof worker_columns / sizeof worker_columns[0];
 
-static void header(csv_line *line, const study *s, const row_column *columns, size_t count)
+void row_columns_header(csv_line *line, const study *s, const row_column *columns, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         const char *name = columns[i].name, *bracket = strchr(name, '<');
@@ -211,12 +223,12 @@ static void header(csv_line *line, const study *s, const row_column *columns, si
 
 void row_header(csv_line *line, const study *s)
 {
-    header(line, s, row_columns, row_column_count);
+    row_columns_header(line, s, row_columns, row_column_count);
 }
 
 void worker_header(csv_line *line, const study *s)
 {
-    header(line, s, worker_columns, worker_column_count);
+    row_columns_header(line, s, worker_columns, worker_column_count);
 }
 
 void row_write(csv_line *line, const study_row *r)

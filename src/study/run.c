@@ -18,21 +18,21 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
-static status interrupted(diagnostic *why)
+status run_interrupted(diagnostic *why)
 {
     return diagnose(why, STATUS_INTERRUPTED, "run it again: it goes on from here", "stopped; all rows so far are kept");
 }
 
-static bool should_stop(const run *r)
+bool run_should_stop(const run *r)
 {
     return r->options->stop && r->options->stop();
 }
 
-static bool frame_progress(void *context, double share_done)
+bool run_frame_progress(void *of, double share_done)
 {
-    run *r = context;
+    run *r = of;
     progress_show(r->line, share_done);
-    return !should_stop(r);
+    return !run_should_stop(r);
 }
 
 static void choose_cells(run *r)
@@ -46,15 +46,6 @@ static void choose_cells(run *r)
         order_shuffle(r->s->seed, ORDER_STREAM_SHARDS, r->order, total);
     for (size_t i = shard; i < total; i += shards)
         r->cells[r->cell_count++] = r->order[i];
-}
-
-/* Is there a row or a picture to make? */
-static bool complete(const run *r)
-{
-    for (size_t i = 0; i < r->cell_count; i++)
-        if (!ledger_cell_done(r->done, r->cells[i]) || keep_missing(r->s, r->folder, r->cells[i]))
-            return false;
-    return true;
 }
 
 /* Linux forgets the highest resident memory so far when 5 is written there (proc(5)); elsewhere it stays as it is. */
@@ -90,21 +81,21 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
     return ledger_add(r->done, &entry, why);
 }
 
-static status cell_setting(const run *r, size_t cell, scene **out, diagnostic *why)
+status run_prepare_scene(run *r, scene *setting, diagnostic *why)
 {
-    status code = study_cell_scene(r->s, cell, out, why);
-    if (code == STATUS_OK)
-        code = scene_load_pictures(*out, why);
-    return code == STATUS_OK ? renderer_prepare(r->tracer, *out, why) : code;
+    status code = scene_load_pictures(setting, why);
+    return code == STATUS_OK ? renderer_prepare(r->tracer, setting, why) : code;
 }
 
 /* One frame, one row. */
 static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
 {
-    if (should_stop(r))
-        return interrupted(why);
+    if (run_should_stop(r))
+        return run_interrupted(why);
     scene *setting = NULL;
-    status code = cell_setting(r, cell, &setting, why);
+    status code = study_cell_scene(r->s, cell, &setting, why);
+    if (code == STATUS_OK)
+        code = run_prepare_scene(r, setting, why);
     if (code != STATUS_OK) {
         scene_destroy(setting);
         return code;
@@ -117,7 +108,7 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
                      .warmup = warmup,
                      .order = r->row_number,
                      .level = r->level};
-    render_options options = {.progress = frame_progress, .context = r};
+    render_options options = {.progress = run_frame_progress, .context = r};
     render_result *frame = NULL;
     reset_peak_memory();
     hardware_counts counted = hardware_counter_read(r->hardware);
@@ -134,7 +125,7 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
         row.film_expected = ledger_film(r->done, cell, row.film_hash);
         code = append_row(r, &row, why);
     } else if (code == STATUS_INTERRUPTED) {
-        code = interrupted(why);
+        code = run_interrupted(why);
     }
     render_result_destroy(frame);
     scene_destroy(setting);
@@ -172,42 +163,6 @@ static status run_rounds(run *r, diagnostic *why)
     return STATUS_OK;
 }
 
-/* A frame of its own for what is kept of a cell. */
-static status keep_cell(run *r, size_t cell, diagnostic *why)
-{
-    scene *setting = NULL;
-    render_result *frame = NULL;
-    render_options options = keep_options(r->s);
-    options.progress = frame_progress;
-    options.context = r;
-    status code = should_stop(r) ? interrupted(why) : cell_setting(r, cell, &setting, why);
-    if (code == STATUS_OK && (code = renderer_render(r->tracer, setting, &options, &frame, why)) == STATUS_INTERRUPTED)
-        interrupted(why);
-    uint64_t seen = code == STATUS_OK ? film_hash(frame->picture) : 0;
-    if (code == STATUS_OK && seen != ledger_film(r->done, cell, seen))
-        code = diagnose(why, STATUS_FAILURE, "look for marked rows; the image must depend on the scene alone",
-                        "the picture of cell %zu is not the one that its rows saw", cell);
-    if (code == STATUS_OK)
-        code = keep_write(r->s, r->folder, cell, frame, why);
-    render_result_destroy(frame);
-    scene_destroy(setting);
-    return code;
-}
-
-static status keep_all(run *r, diagnostic *why)
-{
-    status code = STATUS_OK;
-    size_t pictures = 0, picture = 0;
-    for (size_t i = 0; i < r->cell_count; i++)
-        pictures += keep_missing(r->s, r->folder, r->cells[i]);
-    for (size_t i = 0; code == STATUS_OK && i < r->cell_count; i++)
-        if (keep_missing(r->s, r->folder, r->cells[i])) {
-            progress_pictures(r->line, ++picture, pictures);
-            code = keep_cell(r, r->cells[i], why);
-        }
-    return code;
-}
-
 status study_run(const study *s, const study_options *options, size_t *ran, diagnostic *why)
 {
     if (ran)
@@ -222,18 +177,21 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
              .cells = calloc(total, sizeof *r.cells),
              .warm = calloc(total, sizeof *r.warm),
              .order = calloc(total, sizeof *r.order),
+             .compared = calloc(total, sizeof *r.compared),
              .line = progress_begin(options->progress, s)};
-    status code = r.folder && r.cells && r.warm && r.order && r.line ? ledger_read(s, options->results, &r.done, why)
-                                                                     : no_memory(why);
+    bool has_memory = r.folder && r.cells && r.warm && r.order && r.compared && r.line;
+    status code = has_memory ? ledger_read(s, options->results, &r.done, why) : no_memory(why);
+    if (code == STATUS_OK)
+        code = run_find_compared(&r, why);
     if (code == STATUS_OK) {
         choose_cells(&r);
-        bool idle = complete(&r);
+        bool idle = run_complete(&r);
         if (!idle) {
             code = run_prepare(&r, why);
             if (code == STATUS_OK)
                 code = run_rounds(&r, why);
             if (code == STATUS_OK)
-                code = keep_all(&r, why);
+                code = run_keep_all(&r, why);
         }
         if (code == STATUS_OK)
             code = keep_index(s, r.folder, !idle, why);

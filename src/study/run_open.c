@@ -46,7 +46,7 @@ static status open_table(const run *r, row_kind kind, table **out, char **path, 
 
 static status open_tables(run *r, diagnostic *why)
 {
-    char *path = NULL, *workers_path = NULL;
+    char *path = NULL, *workers_path = NULL, *compare_path = NULL;
     csv *rows = NULL;
     status code = open_table(r, ROWS, &r->rows, &path, why);
     if (code == STATUS_OK && (code = csv_read(path, &rows, why)) == STATUS_OK && rows)
@@ -55,9 +55,12 @@ static status open_tables(run *r, diagnostic *why)
         code = open_table(r, WORKER_ROWS, &r->workers, &workers_path, why);
     if (code == STATUS_OK && r->workers)
         code = set_orphans_aside(r, rows, workers_path, why);
+    if (code == STATUS_OK && r->s->reference.count)
+        code = open_table(r, COMPARE_ROWS, &r->compares, &compare_path, why);
     csv_destroy(rows);
     free(path);
     free(workers_path);
+    free(compare_path);
     return code;
 }
 
@@ -74,6 +77,8 @@ status run_prepare(run *r, diagnostic *why)
     ledger_destroy(r->done);
     code = ledger_read(r->s, r->options->results, &r->done, why);
     if (code == STATUS_OK)
+        code = run_find_compared(r, why);
+    if (code == STATUS_OK)
         code = topology_create(&r->machine, why);
     if (code == STATUS_OK)
         code = manifest_write(r->s, r->folder, r->machine, r->level, r->options->shard, r->options->shards, why);
@@ -89,9 +94,12 @@ void run_release(run *r)
     if (r->hardware)
         hardware_counter_destroy(r->hardware);
     topology_destroy(r->machine);
+    reference_release(&r->held);
+    table_close(r->compares);
     table_close(r->workers);
     table_close(r->rows);
     ledger_destroy(r->done);
+    free(r->compared);
     free(r->order);
     free(r->warm);
     free(r->cells);

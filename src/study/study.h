@@ -1,7 +1,8 @@
 /* A study: a scene, fixed parameters, a grid over any parameters, repetitions, and what to keep; run so that raw
  * rows are sacred (design, decision 7). results/<study>/ holds rows.csv (one row a repetition, appended and flushed
- * at once, never rewritten), manifest.json, images/ (one a cell). Ownership: study_read gives, study_destroy
- * releases. Errors in the file are located there: file, line, column. */
+ * at once, never rewritten), manifest.json, images/ (one a cell); with a reference compare.csv (one row a cell) and
+ * references/. Ownership: study_read gives, study_destroy releases. Errors in the file are located there: file, line,
+ * column. */
 #ifndef CUVETTE_STUDY_STUDY_H
 #define CUVETTE_STUDY_STUDY_H
 
@@ -33,6 +34,8 @@ typedef struct study {
     char *scene_path;                 /* resolved against the study file's folder */
     study_point fixed;                /* parameters set for all cells */
     study_axis *axes; size_t axis_count;
+    study_point reference;            /* set on top of a cell's parameters, these give the picture that the cell's is
+                                         compared with; count 0: nothing is compared */
     long repetitions_min, repetitions_max; /* counted, without warm-ups */
     double relative_width;            /* stop after min once the 95% interval of the mean wall time is narrower than
                                          this share of it; 0: always max */
@@ -44,6 +47,7 @@ typedef struct study {
     /* Of what a row means: name, scene, fixed parameters, grid; rows of another definition are not mixed in.
      * Repetitions, order, title and what is kept may change, and the study goes on. */
     uint64_t definition_hash;
+    uint64_t compare_hash;            /* of what a row of compare.csv means: the definition, and the reference */
 } study;
 
 /* Does it keep files of its cells, beside rows? */

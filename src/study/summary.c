@@ -2,6 +2,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "measure/statistics.h"
+#include "study/compare_rows.h"
 #include "study/row_files.h"
 #include "study/rows.h"
 #include <inttypes.h>
@@ -13,7 +14,7 @@ static const char *const timed[] = {"wall_s", "cpu_s"};
 static const char *const before_hash[] = {"rays_total",  "rays_camera",          "rays_reflect",  "rays_refract",
                                           "rays_shadow", "cut_depth_throughput", "total_internal"};
 static const char *const after_marked[] = {"busy_s_mean",  "busy_s_max",       "waiting_s_mean", "imbalance",
-                                           "others_share", "worker_cpu_s_sum", "peak_rss_bytes"};
+                                           "others_share", "worker_cpu_s_sum", "peak_rss_bytes", "noise_rms"};
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
@@ -21,6 +22,7 @@ typedef struct cell_rows {
     const row_ref **rows;
     size_t count, marked;
     double *values;
+    const row_ref *compared; /* the cell's row of compare.csv, or NULL */
     FILE *out;
 } cell_rows;
 
@@ -80,6 +82,13 @@ static status put_solids(const study *s, const cell_rows *cell, bool header, dia
     return STATUS_OK;
 }
 
+/* A picture has one comparison, so its values are as they stand. */
+static void put_compared(const study *s, const cell_rows *cell)
+{
+    for (size_t i = 0; s->reference.count && i < compare_shown_count; i++)
+        fprintf(cell->out, "\t%s", cell->compared ? field(cell->compared, compare_shown[i]) : "NA");
+}
+
 static status put_header(const study *s, FILE *out, diagnostic *why)
 {
     static const char *const parts[] = {"median", "low", "high", "mean", "min", "max"};
@@ -97,6 +106,8 @@ static status put_header(const study *s, FILE *out, diagnostic *why)
     for (size_t i = 0; i < COUNT(after_marked); i++)
         fprintf(out, "\t%s", after_marked[i]);
     status code = put_solids(s, &(cell_rows){.out = out}, true, why);
+    for (size_t i = 0; s->reference.count && i < compare_shown_count; i++)
+        fprintf(out, "\t%s", compare_shown[i]);
     fputc('\n', out);
     return code;
 }
@@ -118,12 +129,13 @@ static status put_cell(const study *s, size_t number, const char *film_expected,
     for (size_t i = 0; i < COUNT(after_marked); i++)
         put_median(cell, after_marked[i]);
     status code = put_solids(s, cell, false, why);
+    put_compared(s, cell);
     fputc('\n', cell->out);
     return code;
 }
 
 /* Rows lie in the order of time; those of one cell are gathered for its line. */
-static status put_cells(const study *s, const row_files *files, FILE *out, diagnostic *why)
+static status put_cells(const study *s, const row_files *files, const row_files *compared, FILE *out, diagnostic *why)
 {
     size_t room = files->row_count + 1;
     cell_rows cell = {
@@ -142,6 +154,10 @@ static status put_cells(const study *s, const row_files *files, FILE *out, diagn
             if (!marked && !ref->warmup)
                 cell.rows[cell.count++] = ref;
         }
+        cell.compared = NULL;
+        for (size_t i = 0; compared && i < compared->row_count && !cell.compared; i++)
+            if (compared->rows[i].cell == number)
+                cell.compared = &compared->rows[i];
         code = put_cell(s, number, film_expected, &cell, why);
     }
     free(cell.rows);
@@ -151,7 +167,7 @@ static status put_cells(const study *s, const row_files *files, FILE *out, diagn
 
 status study_summary(const study *s, const char *results, FILE *out, diagnostic *why)
 {
-    row_files *files;
+    row_files *files, *compared = NULL;
     status code = row_files_read(s, results, ROWS, &files, why);
     if (code == STATUS_OK && files->row_count == 0) {
         char remedy[256];
@@ -159,10 +175,13 @@ status study_summary(const study *s, const char *results, FILE *out, diagnostic 
         code = diagnose(why, STATUS_FAILURE, remedy, "no rows in %s/%s", results, s->name);
         diagnostic_locate(why, s->path, 0, 0);
     }
+    if (code == STATUS_OK && s->reference.count)
+        code = row_files_read(s, results, COMPARE_ROWS, &compared, why);
     if (code == STATUS_OK)
         code = put_header(s, out, why);
     if (code == STATUS_OK)
-        code = put_cells(s, files, out, why);
+        code = put_cells(s, files, compared, out, why);
+    row_files_destroy(compared);
     row_files_destroy(files);
     return code;
 }

@@ -1,0 +1,47 @@
+# Error against the reference, the light that is cut, and time, by recursion depth. The rule for where more depth stops paying:
+# the first depth whose mean FLIP error is under 0.01.
+# needs: tables/convergence.tsv
+width = 1000; height = 480
+load "plots/style.gp"
+
+rows = table("convergence")
+of(beyond, columns) = select(rows, "render.beyond=".beyond, "render.depth ".columns)
+enough(beyond) = number(system(of(beyond, "flip")[3:*]." | awk '$2 < 0.01 { print $1; exit }'"))
+words_of = "sky black"
+set multiplot layout 1,2 margins 0.08,0.985,0.125,0.92 spacing 0.105
+set xlabel "recursion depth"
+set xrange [-0.5:24.5]
+set xtics 0,4,24
+set mxtics 4
+set logscale y
+set format y "10^{%T}"
+
+# Depths that are enough, in both panels.
+do for [i=1:2] {
+    depth = enough(word(words_of, i))
+    if (depth == depth) {
+        set arrow i from depth, graph 0 to depth, graph 1 nohead dt (2,3) lc rgb grey back
+        set label i sprintf("%s: %d ", word(words_of, i), depth) at depth, graph 0.03 right font ",8" textcolor rgb grey
+    }
+}
+set title "Error, and light cut at the depth limit"
+set ylabel "error, or share of light cut / camera ray"
+set yrange [1e-3:1]
+set arrow 3 from graph 0, first 0.01 to graph 1, first 0.01 nohead dt (2,3) lc rgb grey back
+set label 3 "FLIP 0.01: enough" at graph 0.99, first 0.0113 right font ",8" textcolor rgb grey
+set key top right Right noreverse samplen 2.6
+plot of("black", "error_rms") using 1:2 with linespoints lt 1 pt 6 dt (6,3) title "rms, black beyond the depth", \
+     of("sky", "error_rms") using 1:2 with linespoints lt 1 title "rms, sky beyond it", \
+     of("black", "flip") using 1:2 with linespoints lt 2 pt 4 dt (6,3) title "FLIP, black", \
+     of("sky", "flip") using 1:2 with linespoints lt 2 title "FLIP, sky", \
+     of("sky", "cut_depth_throughput rays_camera") using 1:($2/$3) with linespoints lt 3 title "light cut"
+
+unset arrow 3
+unset label 3
+set title "Time of a frame"
+set ylabel "wall time (median, least and most) / s"
+set yrange [1e-3:10]
+set key top left Left reverse
+plot of("sky", "wall_s_median wall_s_min wall_s_max") using 1:2:3:4 with yerrorlines lt 1 title "sky beyond the depth", \
+     of("black", "wall_s_median wall_s_min wall_s_max") using 1:2:3:4 with yerrorlines lt 1 pt 6 dt (6,3) title "black"
+unset multiplot

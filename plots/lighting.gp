@@ -1,0 +1,24 @@
+# One scene under three models of light and by random paths; under each picture its time and its distance from the last.
+# needs: tables/lighting.tsv lighting/images/*.png lighting/references/*.png
+width = 1000; height = 880
+load "plots/style.gp"
+
+load "plots/picture.gp"
+rows = table("lighting")
+names = "'Lambert: diffuse light' 'Phong: highlights too' 'Whitted: reflection and refraction too' 'random paths: the reference'"
+set title offset 0,-0.7
+about(i) = sprintf("%.3f s a frame, FLIP %.3f, PSNR %.1f dB", cell_value(rows, i, "wall_s_median"), \
+    cell_value(rows, i, "flip"), cell_value(rows, i, "psnr_db"))
+set multiplot layout 2,2 margins 0.01,0.99,0.045,0.965 spacing 0.015,0.085
+do for [i=0:3] {
+    file = i < 3 ? image("lighting", i) : results."/lighting/references/".text(rows, "cell=0", "reference").".png"
+    set title word(names, i + 1)
+    set label 1 (i < 3 ? about(i) : sprintf("noise %.2g rms, linear", first(rows, "cell=0", "reference_noise_rms"))) \
+        at graph 0.5, -0.04 center textcolor rgb ink
+    if (readable(file)) {
+        plot file binary filetype=png with rgbimage notitle
+    } else {
+        @empty
+    }
+}
+unset multiplot
