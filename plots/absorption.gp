@@ -22,8 +22,7 @@ measured = "< awk -f plots/select.awk -v columns='cell liquid.size.z' '".slab."'
 # Power that a face reflects at normal incidence (Fresnel); the slab with all that goes to and fro inside, intensities.
 R = (0.33/2.33)**2
 through(a, d) = (1 - R)**2*exp(-a*d*1e-3)/(1 - R**2*exp(-2*a*d*1e-3))
-worst = number(system(measured[3:*]." | awk -v R=".sprintf("%.17g", R)." '{ split(\"200 60 10\", a, \" \"); for (i = 1; i <= 3; i++) " \
-    ."{ e = exp(-a[i]*$1/1000); off = $(i + 1) - (1 - R)^2*e/(1 - R^2*e^2); if (off < 0) off = -off; if (off > most) most = off } } END { print most }'"))
+worst = number(system(measured[3:*].sprintf(" | awk -f plots/slab.awk -v R=%.17g -v absorb='200 60 10'", R)))
 set label 1 sprintf("largest deviation from the\nslab's law: %.0e", worst) at screen 0.77,0.125 left font ",9" textcolor rgb ink
 plot through(200, x) with lines lt 2 notitle, through(60, x) with lines lt 3 notitle, through(10, x) with lines lt 1 notitle, \
      exp(-0.2*x) with lines lt 7 title "exp(-ad) alone", exp(-0.06*x) with lines lt 7 notitle, exp(-0.01*x) with lines lt 7 notitle, \

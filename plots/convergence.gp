@@ -8,6 +8,7 @@ rows = table("convergence")
 of(beyond, columns) = select(rows, "render.beyond=".beyond, "render.depth ".columns)
 enough(beyond) = number(system(of(beyond, "flip")[3:*]." | awk '$2 < 0.01 { print $1; exit }'"))
 words_of = "sky black"
+set label 100 disturbed("convergence") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.08,0.985,0.125,0.92 spacing 0.105
 set xlabel "recursion depth"
 set xrange [-0.5:24.5]
@@ -20,7 +21,7 @@ set format y "10^{%T}"
 do for [i=1:2] {
     depth = enough(word(words_of, i))
     if (depth == depth) {
-        set arrow i from depth, graph 0 to depth, graph 1 nohead dt (2,3) lc rgb grey back
+        set arrow i from depth, graph 0 to depth, graph 0.66 nohead dt (2,3) lc rgb grey back
         set label i sprintf("%s: %d ", word(words_of, i), depth) at depth, graph 0.03 right font ",8" textcolor rgb grey
     }
 }
@@ -36,6 +37,7 @@ plot of("black", "error_rms") using 1:2 with linespoints lt 1 pt 6 dt (6,3) titl
      of("sky", "flip") using 1:2 with linespoints lt 2 title "FLIP, sky", \
      of("sky", "cut_depth_throughput rays_camera") using 1:($2/$3) with linespoints lt 3 title "light cut"
 
+unset label 100
 unset arrow 3
 unset label 3
 set title "Time of a frame"

@@ -23,6 +23,7 @@ set yrange [1e-3:0.5]
 set key top right
 
 set arrow 1 from graph 0, first noise to graph 1, first noise nohead dt (2,3) lc rgb grey
+set label 100 disturbed("methods") at screen 0.015,0.022 left font ",8" textcolor rgb grey
 set label 1 sprintf("noise of the reference, %.2g", noise) at graph 0.015, first noise*1.13 left font ",8" textcolor rgb grey
 plot [1e-3:20] law(x) with lines lt 8 lw 1.2 title "1 / √N", \
      times("path") using 1:4:2:3 with xerrorlines lt 1 title "random paths, N a pixel", \
