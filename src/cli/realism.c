@@ -1,8 +1,8 @@
 #include "cli/cli.h"
 #include "cli/json.h"
 #include "cli/options.h"
+#include "cli/scene_input.h"
 #include "realism/realism.h"
-#include "scene/params.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,9 +10,7 @@
 #include <string.h>
 
 typedef struct realism_request {
-    const char *scene_path;
-    char **assignments; /* of --set, in order; as many as argv has places */
-    size_t assignment_count;
+    scene_input input;
     bool json, csv;
     int curve; /* realism_curve, or -1 */
 } realism_request;
@@ -43,27 +41,16 @@ static error_t take_curve(const char *value, realism_request *request, diagnosti
     return EINVAL;
 }
 
-static error_t take_argument(const char *argument, realism_request *request, diagnostic *why)
-{
-    if (!request->scene_path) {
-        request->scene_path = argument;
-        return 0;
-    }
-    diagnose(why, STATUS_BAD_INPUT, "realism takes one scene; a parameter is set by --set PATH=VALUE", "'%.128s' is one too many", argument);
-    diagnostic_locate(why, "realism", 0, 0);
-    return EINVAL;
-}
-
 static error_t take_option(int key, char *value, struct argp_state *state)
 {
     options_input *input = state->input;
     realism_request *request = input->request;
     switch (key) {
-    case 's': request->assignments[request->assignment_count++] = value; return 0;
+    case 's': scene_input_change(&request->input, "--set", NULL, value); return 0;
     case KEY_JSON: request->json = true; return 0;
     case KEY_CSV: request->csv = true; return 0;
     case KEY_CURVE: return take_curve(value, request, input->why);
-    case ARGP_KEY_ARG: return take_argument(value, request, input->why);
+    case ARGP_KEY_ARG: return scene_input_name(&request->input, value, input->why) == STATUS_OK ? 0 : EINVAL;
     default: return ARGP_ERR_UNKNOWN;
     }
 }
@@ -80,37 +67,12 @@ static const struct argp parser = {
 
 static status check_request(const realism_request *request, diagnostic *why)
 {
-    const char *remedy = NULL, *what = NULL;
-    if (!request->scene_path)
-        what = "no scene is named", remedy = "name a scene file, as experiments/scenes/rod.yaml";
-    else if (request->json && (request->csv || request->curve >= 0))
-        what = "JSON and CSV do not go together", remedy = "leave one of them out";
-    if (!what)
-        return STATUS_OK;
-    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+    status result = scene_input_check(&request->input, why);
+    if (result != STATUS_OK || !request->json || (!request->csv && request->curve < 0))
+        return result;
+    diagnose(why, STATUS_BAD_INPUT, "leave one of them out", "JSON and CSV do not go together");
     diagnostic_locate(why, "realism", 0, 0);
     return STATUS_BAD_INPUT;
-}
-
-/* The scene as the command line changes it, checked. No ray of it sees its sky, so that no picture is loaded. */
-static status load_scene(const realism_request *request, scene **out, diagnostic *why)
-{
-    status result = scene_read(request->scene_path, out, why);
-    for (size_t i = 0; i < request->assignment_count && result == STATUS_OK; i++) {
-        result = scene_set_assignment(*out, request->assignments[i], why);
-        if (result != STATUS_OK) {
-            char where[512];
-            snprintf(where, sizeof where, "--set %s", request->assignments[i]);
-            diagnostic_locate(why, where, 0, 0);
-        }
-    }
-    if (result == STATUS_OK) {
-        diagnostic_locate(why, request->scene_path, 0, 0); /* for checks that have no line to name */
-        result = scene_check(*out, why);
-    }
-    if (result == STATUS_OK)
-        result = scene_load_pictures(*out, why);
-    return result;
 }
 
 static const char *verdict(const realism_value *v)
@@ -178,7 +140,7 @@ static status print_json(const realism_request *request, const realism_report *r
         defined += realism_is_defined(&r->value[i]);
     }
     bad |= json_object_set_new(o, "schema", json_integer(1));
-    bad |= json_object_set_new(o, "scene", json_of_text(request->scene_path));
+    bad |= json_object_set_new(o, "scene", json_of_text(request->input.path));
     bad |= json_object_set_new(o, "defined", json_integer(defined));
     bad |= json_object_set_new(o, "passed", json_integer(passed));
     bad |= json_object_set_new(o, "values", values);
@@ -221,21 +183,23 @@ static status measure_and_print(const realism_request *request, const scene *s, 
 
 status command_realism(int argc, char **argv, diagnostic *why)
 {
-    realism_request request = {.curve = -1, .assignments = calloc((size_t)argc + 1, sizeof(char *))};
-    if (!request.assignments)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    realism_request request = {.curve = -1};
     scene *s = NULL;
     isa level = ISA_SSE2;
-    status result = options_parse(&parser, 0, argc, argv, &request, why);
+    status result = scene_input_prepare(&request.input, "realism", argc, why);
+    if (result == STATUS_OK)
+        result = options_parse(&parser, 0, argc, argv, &request, why);
     if (result == STATUS_OK)
         result = check_request(&request, why);
-    if (result == STATUS_OK && (result = isa_choose(&level, why)) != STATUS_OK)
-        diagnostic_locate(why, "environment", 0, 0);
     if (result == STATUS_OK)
-        result = load_scene(&request, &s, why);
+        result = scene_input_isa(&level, why);
+    if (result == STATUS_OK)
+        result = scene_input_read(&request.input, &s, why);
+    if (result == STATUS_OK)
+        result = scene_load_pictures(s, why);
     if (result == STATUS_OK)
         result = measure_and_print(&request, s, level, why);
     scene_destroy(s);
-    free(request.assignments);
+    scene_input_release(&request.input);
     return result;
 }
