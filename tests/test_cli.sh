@@ -347,6 +347,8 @@ check "--svg: the same bytes" cmp out tree.svg
 check "total reflection, media and axes are in it" is "$(grep -c 'total internal\|liquid, n = 1.33\|from above' tree.svg)" 3
 (sleep 0.3; "$program" trace "$scene" --pixel 400,300 --depth 9 --json 2>err; echo $? >code) | true
 check "a tree into a closed pipe exits 1 without words" is "$(cat code err)" 1
+run fan "$scene" --from -3,1,0 --to 3,1,0 -o fan.csv --set render.spectrum=spectral
+check "and so is fan" matches "$(<err)" '^cuvette: note: .*spectral'
 pencil=(--from -3,1.5,0 --to 3,1.5,0 --width 1.6 --set rod.visible=off)
 run fan "$scene" "${pencil[@]}" --rays 41 -o fan.svg
 check "fan draws" silent_success

@@ -191,8 +191,10 @@ status command_fan(int argc, char **argv, diagnostic *why)
         result = load_scene(&request, &s, why);
     if (result == STATUS_OK)
         result = probe_create(s, level, &p, why);
-    if (result == STATUS_OK)
+    if (result == STATUS_OK) {
+        scene_input_note_tree(s);
         result = run(&request, s, p, why);
+    }
     probe_destroy(p);
     scene_destroy(s);
     scene_input_release(&request.input);

@@ -1,4 +1,5 @@
 #include "cli/scene_input.h"
+#include "cli/terminal.h"
 #include "scene/params.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,4 +68,15 @@ status scene_input_isa(isa *level, diagnostic *why)
     if (result != STATUS_OK)
         diagnostic_locate(why, "environment", 0, 0);
     return result;
+}
+
+void scene_input_note_tree(const scene *s)
+{
+    const bool path = s->render.integrator == INTEGRATOR_PATH, spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
+    char text[160];
+    if (!path && !spectral)
+        return;
+    snprintf(text, sizeof text, "the scene's picture is %s%s%s; rays are here traced as Whitted did, at render.lambda_nm = %.6g",
+             path ? "made of random paths" : "", path && spectral ? " and " : "", spectral ? "spectral" : "", s->render.lambda_nm);
+    terminal_note(text);
 }

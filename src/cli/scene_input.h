@@ -36,6 +36,9 @@ status scene_input_check(const scene_input *input, diagnostic *why);
 /* The scene as the command line changes it, checked; its pictures are not loaded. */
 status scene_input_read(const scene_input *input, scene **out, diagnostic *why);
 
+/* A note where the scene's picture is made of random paths or is spectral: a tree of rays has all branches and one wavelength. */
+void scene_input_note_tree(const scene *s);
+
 /* isa_choose, located. */
 status scene_input_isa(isa *level, diagnostic *why);
 

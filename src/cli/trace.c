@@ -2,7 +2,6 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
-#include "cli/terminal.h"
 #include "cli/trace_writers.h"
 #include "base/file.h"
 #include <errno.h>
@@ -122,18 +121,6 @@ static status load_scene(const trace_request *request, scene **out, diagnostic *
     return result;
 }
 
-/* A tree has all branches and one wavelength, whatever the scene's picture has. */
-static void note_what_differs(const scene *s)
-{
-    const bool path = s->render.integrator == INTEGRATOR_PATH, spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
-    char text[160];
-    if (!path && !spectral)
-        return;
-    snprintf(text, sizeof text, "the scene's picture is %s%s%s; the tree is Whitted's at render.lambda_nm = %.6g",
-             path ? "made of random paths" : "", path && spectral ? " and " : "", spectral ? "spectral" : "", s->render.lambda_nm);
-    terminal_note(text);
-}
-
 static status grow(const trace_request *request, probe *p, ray_tree *tree, diagnostic *why)
 {
     const double *r = request->ray;
@@ -193,7 +180,7 @@ status command_trace(int argc, char **argv, diagnostic *why)
         result = grow(&request, p, &tree, why);
     if (result == STATUS_OK) {
         const traced t = {s, p, &tree, request.input.path};
-        note_what_differs(s);
+        scene_input_note_tree(s);
         result = write_tree(&request, &t, why);
     }
     ray_tree_release(&tree);

@@ -252,7 +252,7 @@ status trace_write_drawing(const traced *t, FILE *out, diagnostic *why)
         result = draw_view(&a, out, &other, &second, caption, why);
     draw_key(out, DIAGRAM_BEFORE, foot + 14.0);
     diagram_media_key(out, t->p, t->s, DIAGRAM_BEFORE, 2.0 * full, foot + 36.0);
-    snprintf(caption, sizeof caption, "%zu rays, depth limit %d, %.6g nm; fainter lines weigh less, %zu below %g of the first are left out",
+    snprintf(caption, sizeof caption, "rays: %zu, depth limit %d, %.6g nm; fainter lines weigh less, %zu below %g of the first are left out",
              t->tree->count, t->tree->depth_limit, t->tree->lambda_nm, t->tree->count - count_drawn(t->tree), LIGHTEST);
     svg_label(out, DIAGRAM_BEFORE, media + 22.0, "start", SVG_GREY, caption);
     svg_end(out);
