@@ -22,7 +22,7 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
     if (code == STATUS_OK) {
         row->error_rms = difference_rms(picture, row->against->picture);
         row->film_hash = film_hash(frame->picture);
-        row->noise_rms = row_noise_rms(frame);
+        row->noise_rms = render_noise_rms(frame);
     }
     image_destroy(picture);
     return code;

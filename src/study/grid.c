@@ -236,3 +236,12 @@ status grid_definition(const study *s, uint64_t *hash, diagnostic *why)
     *hash = hash_finish(*hash);
     return STATUS_OK;
 }
+
+void grid_put_values(const study *s, size_t cell, FILE *out)
+{
+    for (size_t axis = 0; axis < s->axis_count; axis++) {
+        const study_point *point = &s->axes[axis].points[study_cell_point(s, cell, axis)];
+        for (size_t i = 0; i < point->count; i++)
+            fprintf(out, "\t%s", point->values[i]);
+    }
+}

@@ -28,4 +28,7 @@ status grid_definition(const study *s, uint64_t *hash, diagnostic *why);
 status grid_hash_scene(uint64_t *hash, const scene *of, bool without_how);
 void grid_hash_point(uint64_t *hash, const study_point *point);
 
+/* The cell's values of the grid, each behind a tab, as the study file gives them. */
+void grid_put_values(const study *s, size_t cell, FILE *out);
+
 #endif

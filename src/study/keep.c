@@ -2,6 +2,8 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "render/record.h"
+#include "study/grid.h"
+#include "study/metric_table.h"
 #include "study/rows.h"
 #include <fcntl.h>
 #include <stdlib.h>
@@ -17,6 +19,8 @@ typedef enum kept {
     KEPT_NS_PNG,
     KEPT_NS_PFM,
     KEPT_TIMELINE,
+    KEPT_METRICS,
+    KEPT_CURVES,
     KEPT_COUNT
 } kept;
 
@@ -30,6 +34,8 @@ static bool wanted(const study *s, kept what)
     case KEPT_NS_PNG:
     case KEPT_NS_PFM: return s->keep_pixel_time;
     case KEPT_TIMELINE: return s->keep_timeline;
+    case KEPT_METRICS: return s->keep_metrics;
+    case KEPT_CURVES: return s->keep_curves;
     case KEPT_COUNT: break;
     }
     return false;
@@ -45,8 +51,8 @@ bool study_keeps_files(const study *s)
 
 static char *kept_path(const char *folder, size_t cell, kept what)
 {
-    static const char *const endings[KEPT_COUNT] = {".png",    ".pfm",    "-rays.png",     "-rays.pfm",
-                                                    "-ns.png", "-ns.pfm", "-timeline.json"};
+    static const char *const endings[KEPT_COUNT] = {".png",    ".pfm",    "-rays.png",      "-rays.pfm",   "-ns.png",
+                                                    "-ns.pfm", "-timeline.json", "-metrics.tsv", "-curves.tsv"};
     return text_format("%s/images/%04zu%s", folder, cell, endings[what]);
 }
 
@@ -68,8 +74,9 @@ render_options keep_options(const study *s)
         .pixel_rays = s->keep_pixel_rays, .pixel_time = s->keep_pixel_time, .timeline = s->keep_timeline};
 }
 
-static status write_kept(const render_result *frame, kept what, const char *path, diagnostic *why)
+static status write_kept(const study *s, const kept_cell *c, kept what, const char *path, diagnostic *why)
 {
+    const render_result *frame = c->frame;
     switch (what) {
     case KEPT_PNG:
     case KEPT_PFM: return record_picture(frame->picture, path, 8, why);
@@ -78,12 +85,14 @@ static status write_kept(const render_result *frame, kept what, const char *path
     case KEPT_NS_PNG:
     case KEPT_NS_PFM: return record_map(frame->pixel_ns, frame->picture, "nanoseconds per pixel", path, why);
     case KEPT_TIMELINE: return record_timeline(frame, path, why);
+    case KEPT_METRICS: return metric_table_write(s, c->cell, c->setting, c->level, path, why);
+    case KEPT_CURVES: return curve_table_write(s, c->cell, c->setting, c->level, path, why);
     case KEPT_COUNT: break;
     }
     return STATUS_OK;
 }
 
-status keep_write(const study *s, const char *folder, size_t cell, const render_result *frame, diagnostic *why)
+status keep_write(const study *s, const char *folder, const kept_cell *c, diagnostic *why)
 {
     char *images = text_format("%s/images", folder);
     status code = images ? file_make_directory(images, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
@@ -91,8 +100,8 @@ status keep_write(const study *s, const char *folder, size_t cell, const render_
     for (kept what = 0; code == STATUS_OK && what < KEPT_COUNT; what++) {
         if (!wanted(s, what))
             continue;
-        char *path = kept_path(folder, cell, what);
-        code = path ? write_kept(frame, what, path, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+        char *path = kept_path(folder, c->cell, what);
+        code = path ? write_kept(s, c, what, path, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
         free(path);
     }
     return code;
@@ -110,11 +119,7 @@ static void index_header(const study *s, FILE *out)
 static void index_line(const study *s, const char *path, size_t cell, FILE *out)
 {
     fprintf(out, "%s\t%zu", strrchr(path, '/') + 1, cell);
-    for (size_t axis = 0; axis < s->axis_count; axis++) {
-        const study_point *point = &s->axes[axis].points[study_cell_point(s, cell, axis)];
-        for (size_t i = 0; i < point->count; i++)
-            fprintf(out, "\t%s", point->values[i]);
-    }
+    grid_put_values(s, cell, out);
     fputc('\n', out);
 }
 

@@ -1,4 +1,4 @@
-/* What a study keeps of each cell beside its rows: pictures, ray and time maps, timeline, in
+/* What a study keeps of each cell beside its rows: pictures, ray and time maps, timeline, realism metrics and curves, in
  * results/<study>/images/. They come from a frame of their own after the rows, so that looking disturbs nothing
  * that is measured; its film must be that of the rows. Every file appears whole or not at all. */
 #ifndef CUVETTE_STUDY_KEEP_H
@@ -13,8 +13,16 @@ bool keep_missing(const study *s, const char *folder, size_t cell);
 /* The frame's options for what is kept; progress and context are left NULL. */
 render_options keep_options(const study *s);
 
-/* Writes the cell's files from a frame rendered with those options. */
-status keep_write(const study *s, const char *folder, size_t cell, const render_result *frame, diagnostic *why);
+/* A cell, its scene, and its frame rendered with those options. Borrowed. */
+typedef struct kept_cell {
+    size_t cell;
+    const scene *setting;
+    const render_result *frame;
+    isa level;
+} kept_cell;
+
+/* Writes the cell's files. */
+status keep_write(const study *s, const char *folder, const kept_cell *c, diagnostic *why);
 
 /* Writes images/index.tsv: file, cell and axis values of every kept file that is there, all shards' together. Unless
  * renew, only when it is missing. Nothing for a study that keeps nothing. */

@@ -64,17 +64,6 @@ const char *row_build_config(char text[ROW_TIME_MAX])
     return text;
 }
 
-double row_noise_rms(const render_result *frame)
-{
-    if (!frame->variance)
-        return NAN;
-    size_t count = (size_t)frame->picture->width * (size_t)frame->picture->height * 3;
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += frame->variance[i];
-    return sqrt(sum / (double)count);
-}
-
 void row_put_axes(csv_line *line, const study *s, const scene *setting)
 {
     const char *path;
@@ -154,7 +143,7 @@ static void put_time(csv_line *line, const study_row *r)
     X("cut_weight_throughput", "rays", "their throughput, mean of RGB, summed", put_cut(line, c->cut_weight_throughput)) \
     X("first_hits.<solid>", "rays", "camera rays whose first interface is on that solid", put_solids(line, r, c->first_hits)) \
     X("hits.<solid>", "rays", "interfaces met on that solid by rays of all kinds but shadow rays", put_solids(line, r, c->hits)) \
-    X("noise_rms", "radiance", "of random paths: root of the mean square of the film's standard error, over all its values, 1 is white; else NA", csv_real(line, row_noise_rms(r->frame))) \
+    X("noise_rms", "radiance", "of random paths: root of the mean square of the film's standard error, over all its values, 1 is white; else NA", csv_real(line, render_noise_rms(r->frame))) \
     X("workers", "", "threads of the frame", csv_count(line, r->frame->worker_count)) \
     X("workers_with_tiles", "", "those that had a piece of the picture", csv_count(line, w.with_tiles)) \
     X("busy_s_mean", "s", "from a worker's first piece to its last ray, 0 without a piece; mean over all workers", csv_real(line, w.busy_mean)) \

@@ -42,9 +42,6 @@ void worker_header(csv_line *line, const study *s);
 void row_write(csv_line *line, const study_row *r);
 void worker_rows_write(csv_line *line, const study_row *r);
 
-/* Root of the mean variance over the values of the frame's film, linear; NaN where no variance is known. */
-double row_noise_rms(const render_result *frame);
-
 /* A header line of these columns. The values of the grid's parameters, one field each. */
 void row_columns_header(csv_line *line, const study *s, const row_column *columns, size_t count);
 void row_put_axes(csv_line *line, const study *s, const scene *setting);

@@ -53,7 +53,7 @@ static status render_reference(run *r, const scene *setting, reference *out, dia
         code = film_image(frame->picture, &out->picture, why);
     if (code == STATUS_OK) {
         out->film_hash = film_hash(frame->picture);
-        out->noise_rms = row_noise_rms(frame);
+        out->noise_rms = render_noise_rms(frame);
         code = reference_save(r->s, r->folder, out, setting, why);
     }
     render_result_destroy(frame);
@@ -114,7 +114,7 @@ static status keep_cell(run *r, size_t cell, diagnostic *why)
         code = diagnose(why, STATUS_FAILURE, "look for marked rows; the image must depend on the scene alone",
                         "the picture of cell %zu is not the one that its rows saw", cell);
     if (code == STATUS_OK && keeps)
-        code = keep_write(r->s, r->folder, cell, frame, why);
+        code = keep_write(r->s, r->folder, &(kept_cell){cell, setting, frame, r->level}, why);
     if (code == STATUS_OK && compares)
         code = compare_cell(r, cell, setting, frame, why);
     render_result_destroy(frame);
