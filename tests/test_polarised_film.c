@@ -178,7 +178,8 @@ static const char solids_scene[] = "render: {depth: 12, polarisation: on}\n"
                                    "  block: {shape: box, material: clear, ior: 1.5, size: [2, 2, 2]}\n"
                                    "  ball: {shape: sphere, material: clear, ior: 2.2, radius: 0.6, position: [0.1, -0.2, 0.3], priority: 1}\n"
                                    "  bubble: {shape: cylinder, material: clear, ior: 1, radius: 0.3, height: 0.8, position: [0.2, -0.3, 0.2], "
-                                   "rotation: [20, 0, 30], priority: 2}\n";
+                                   "rotation: [20, 0, 30], priority: 2}\n"
+                                   "  mirror: {shape: sphere, reflectivity: 0.8, radius: 0.3, position: [-0.5, 0.4, -0.3], priority: 3}\n";
 
 /* Unpolarised light from the last ray's far end to the eye: half the powers of two fields across each other. */
 static double share_by_fields(const ray_tree *tree, size_t last)
@@ -191,9 +192,10 @@ static double share_by_fields(const ray_tree *tree, size_t last)
         for (size_t i = last; i-- > 0;) {
             const ray_node *ray = &tree->node[i];
             const bool reflected = tree->node[i + 1].kind == RAY_REFLECT;
-            const chain_step step = {reflected ? CHAIN_REFLECT : CHAIN_REFRACT, ray->direction, ray->hit.normal,
-                                     tree->node[i + 1].direction, ray->hit.cos_i, ray->hit.n_from, ray->hit.n_to};
-            e = chain_field(&step, e);
+            const enum chain_kind kind = ray->hit.opaque ? CHAIN_MIRROR : reflected ? CHAIN_REFLECT : CHAIN_REFRACT;
+            const chain_step step = {kind, ray->direction, ray->hit.normal, tree->node[i + 1].direction, ray->hit.cos_i, ray->hit.n_from,
+                                     ray->hit.n_to};
+            e = field_scale(chain_field(&step, e), ray->hit.opaque ? sqrt(0.8) : 1.0);
         }
         sum += 0.5 * field_power(e);
     }
@@ -209,7 +211,7 @@ static void the_weight_of_any_way_is_that_of_its_fields(void **state)
     diagnostic why = {0};
     worked(probe_create(s, isa_best(), &p, &why), &why);
     uint64_t seed = 5;
-    int totals = 0, compared = 0, circular = 0;
+    int totals = 0, compared = 0, circular = 0, mirrored = 0;
     for (int trial = 0; trial < 3000; trial++) {
         const vec3 o = vec3_scale(random_direction(&seed), trial % 2 ? 0.9 : 6.0);
         const vec3 to = vec3_sub(vec3_scale(random_direction(&seed), 0.8), o);
@@ -219,13 +221,14 @@ static void the_weight_of_any_way_is_that_of_its_fields(void **state)
             if (n->end == RAY_END_CUT_DEPTH)
                 continue;
             assert_near(n->throughput[0], share_by_fields(&tree, i), 1e-9);
+            mirrored += i > 2 && tree.node[i - 1].hit.opaque;
             totals += n->end == RAY_END_HIT && n->hit.tir;
             circular += fabs(n->stokes[3]) > 0.01;
             compared++;
         }
     }
-    print_message("%d rays, %d total reflections, %d elliptic\n", compared, totals, circular);
-    assert_true(compared > 10000 && totals > 1000 && circular > 100);
+    print_message("%d rays, %d total reflections, %d elliptic, %d from the mirror\n", compared, totals, circular, mirrored);
+    assert_true(compared > 10000 && totals > 1000 && circular > 100 && mirrored > 100);
     ray_tree_release(&tree);
     probe_destroy(p);
     scene_destroy(s);
