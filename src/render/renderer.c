@@ -339,11 +339,13 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
 
 double render_noise_rms(const render_result *result)
 {
+    if (!result->variance)
+        return (double)NAN;
     const size_t count = 3 * (size_t)result->picture->width * (size_t)result->picture->height;
     double sum = 0.0;
-    for (size_t i = 0; result->variance && i < count; i++)
+    for (size_t i = 0; i < count; i++)
         sum += result->variance[i];
-    return result->variance ? sqrt(sum / (double)count) : (double)NAN;
+    return sqrt(sum / (double)count);
 }
 
 void render_result_destroy(render_result *result)
