@@ -41,6 +41,15 @@ static const struct arrangement_kind {
     status (*measure)(const metrics *m, diagnostic *why);
 } arrangements[] = {{prism_is_there, realism_prism}, {drop_is_there, realism_drop}, {stack_is_there, realism_stack}};
 
+status realism_check(const scene *s, bool curves, diagnostic *why)
+{
+    setup unused;
+    for (size_t i = 0; i < sizeof arrangements / sizeof arrangements[0] && !curves; i++)
+        if (arrangements[i].is_there(s))
+            return STATUS_OK;
+    return setup_read(s, &unused, why);
+}
+
 status realism_measure_against(const scene *traced, const scene *supposed, isa level, realism_report *out, diagnostic *why)
 {
     static status (*const of_vessel[])(const metrics *, diagnostic *) = {realism_edges, realism_water_line, realism_lens, realism_interfaces,

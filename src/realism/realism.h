@@ -31,6 +31,9 @@ typedef struct realism_value {
 enum { REALISM_MAX = 64 };
 typedef struct realism_report { realism_value value[REALISM_MAX]; int count; } realism_report;
 
+/* Is it a scene that the metrics know; one with curves? STATUS_BAD_INPUT says what it lacks. Quick. */
+status realism_check(const scene *s, bool curves, diagnostic *why);
+
 /* All metrics, in a fixed order: the same names for every scene. */
 status realism_measure(const scene *s, isa level, realism_report *out, diagnostic *why);
 

@@ -7,6 +7,27 @@
 #include "study/rows.h"
 #include <math.h>
 
+static status check_cell(const study *s, size_t cell, diagnostic *why)
+{
+    scene *setting = NULL;
+    diagnostic bad = {.what = ""};
+    status code = study_cell_scene(s, cell, &setting, why);
+    if (code == STATUS_OK && (code = realism_check(setting, s->keep_curves, &bad)) != STATUS_OK) {
+        diagnostic_locate(why, s->path, 0, 0);
+        diagnose(why, code, bad.remedy, "%s cannot be kept of cell %zu: %s", s->keep_curves ? "curves" : "metrics", cell, bad.what);
+    }
+    scene_destroy(setting);
+    return code;
+}
+
+status metric_table_check(const study *s, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (size_t cell = 0; (s->keep_metrics || s->keep_curves) && code == STATUS_OK && cell < study_cell_count(s); cell++)
+        code = check_cell(s, cell, why);
+    return code;
+}
+
 static void put_header(const study *s, FILE *out, const char *rest)
 {
     const char *path;

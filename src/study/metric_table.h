@@ -7,6 +7,9 @@
 #include "base/isa.h"
 #include "study/study.h"
 
+/* Can the metrics and curves that the study keeps be measured in every cell? Errors are located in the study file. */
+status metric_table_check(const study *s, diagnostic *why);
+
 /* setting: the cell's scene. STATUS_BAD_INPUT when it is none that the metrics know. */
 status metric_table_write(const study *s, size_t cell, const scene *setting, isa level, const char *path, diagnostic *why);
 status curve_table_write(const study *s, size_t cell, const scene *setting, isa level, const char *path, diagnostic *why);

@@ -21,6 +21,7 @@
 #include "scene/document.h"
 #include "study/grid.h"
 #include "study/read_grid.h"
+#include "study/metric_table.h"
 #include "study/reference.h"
 #include <libgen.h>
 #include <stdlib.h>
@@ -252,6 +253,8 @@ static status read_root(study *s, const document *d, diagnostic *why)
         code = grid_check_cells(s, why);
     if (code == STATUS_OK)
         code = reference_check(s, why);
+    if (code == STATUS_OK)
+        code = metric_table_check(s, why);
     if (code == STATUS_OK)
         code = grid_definition(s, &s->definition_hash, why);
     if (code == STATUS_OK)

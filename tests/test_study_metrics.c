@@ -1,0 +1,76 @@
+#include "study_fixture.h"
+
+#include "realism/realism.h"
+#include "scene/params.h"
+#include "study/csv.h"
+
+static const char vessel_text[] = "study: test\n"
+                                  "scene: vessel.yaml\n"
+                                  "grid:\n"
+                                  "  - {liquid.ior: [1.2, 1.33]}\n"
+                                  "repetitions: 1\n"
+                                  "warmups: 0\n"
+                                  "keep: {metrics: on, curves: on}\n";
+
+static const char vessel_scene[] =
+    "render: {width: 24, height: 18, depth: 2}\n"
+    "camera: {position: [0, 2.75, -6], target: [0, 1.5, 0]}\n"
+    "solids:\n"
+    "  vessel: {shape: cup, transparency: 1, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: 2}\n"
+    "  liquid: {shape: cylinder, transparency: 1, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.95, priority: 1}\n"
+    "  rod: {shape: box, diffuse: 1, position: [0.2, 2.1, 0], size: [0.25, 3, 0.25], priority: 3}\n";
+
+static size_t lines_of(const char *text)
+{
+    return fixture_count(text, "\n");
+}
+
+/* One line a metric with the cell's values in front, the same names whatever the cell; no frame of it changes when it is kept. */
+static void metrics_and_curves_lie_beside_the_pictures(void **state)
+{
+    const fixture *f = *state;
+    fixture_write(f, "vessel.yaml", vessel_scene);
+    study *s = fixture_study(f, vessel_text);
+    assert_int_equal(fixture_run(f, s), 2);
+    char *first = fixture_text(f, "results/test/images/0000-metrics.tsv"), *second = fixture_text(f, "results/test/images/0001-metrics.tsv");
+    char *curves = fixture_text(f, "results/test/images/0001-curves.tsv"), *index = fixture_text(f, "results/test/images/index.tsv");
+    assert_ptr_equal(strstr(first, "study\tcell\tliquid.ior\tmetric\tunit\tmeasured\ttheory\terror\ttolerance\tpasses\twhat\n"), first);
+    assert_ptr_equal(strstr(curves, "study\tcell\tliquid.ior\tcurve\tx\tmeasured\ttheory\n"), curves);
+    realism_report report;
+    assert_int_equal(realism_measure(s->base, isa_best(), &report, NULL), STATUS_OK);
+    assert_int_equal(lines_of(first), report.count + 1);
+    assert_int_equal(lines_of(second), report.count + 1);
+    assert_int_equal(fixture_count(first, "test\t0\t1.2\t"), report.count);
+    assert_int_equal(fixture_count(second, "test\t1\t1.33\t"), report.count);
+    assert_int_equal(fixture_count(second, "\tedges.round_magnification\t"), 1);
+    assert_true(fixture_count(curves, "test\t1\t1.33\tfresnel-s\t") > 10);
+    assert_int_equal(fixture_count(index, "-metrics.tsv\t"), 2);
+    assert_int_equal(fixture_run(f, s), 0);
+    free(first), free(second), free(curves), free(index);
+    study_destroy(s);
+}
+
+/* The scene of the fixture has no vessel: that is said before anything is measured. */
+static void a_scene_without_metrics_is_refused(void **state)
+{
+    const fixture *f = *state;
+    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    diagnostic why = {0};
+    study *s = NULL;
+    fixture_write(f, "bad.study", "study: bad\nscene: scene.yaml\nkeep: {metrics: on}\n");
+    fixture_path(f, "bad.study", path);
+    assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
+    diagnostic_text(&why, said, sizeof said);
+    assert_non_null(strstr(said, "bad.study: metrics cannot be kept of cell 0: "));
+    assert_non_null(strstr(said, "vessel"));
+    assert_false(fixture_has(f, "results"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(metrics_and_curves_lie_beside_the_pictures, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_scene_without_metrics_is_refused, fixture_setup, fixture_teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
