@@ -202,9 +202,17 @@ $(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv experiments/%.study $$(wildcard $
 	@mkdir -p $(@D)
 	$(build)/cuvette study summary --results $(RESULTS) experiments/$*.study >$@
 
-figures: tables ## draw the figures whose rows or scripts are newer
+figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg ## draw the figures whose rows or scripts are newer
 	@mkdir -p $(RESULTS)
 	plots/draw.sh --results $(RESULTS)
+
+# Light through the filled vessel, its focus and its caustic; and one ray of it, taken apart.
+$(RESULTS)/figures/fan.svg: experiments/scenes/rod.yaml | $(build)/cuvette
+	@mkdir -p $(@D)
+	$(build)/cuvette fan $< --from -3,1.5,0 --to 3,1.5,0 --width 1.9 --rays 41 --set rod.visible=off -o $@
+$(RESULTS)/figures/trace.svg: experiments/scenes/rod.yaml | $(build)/cuvette
+	@mkdir -p $(@D)
+	$(build)/cuvette trace $< --ray=-3,1.5,0.6,1,0,0 --depth 5 --set rod.visible=off -o $@
 
 paper: ## rebuild the report from the rows that are there; measures nothing
 	$(MAKE) -C paper
