@@ -35,7 +35,15 @@ typedef struct stretch { int ray, rank; double length; } stretch;
 
 enum { STRETCHES_MAX = BATCH * (2 * PRIMITIVES_MAX + 2) };
 
-/* Intervals [in, out] by primitive and ray, and what is derived from them. Contents but the stretches mean nothing between calls. */
+/* The media that each ray of a batch went through, up to its hit or its light; those of one ray in order. Kept apart from the
+ * scratch, whose rows lie in the cache as they were measured to be fastest. */
+typedef struct ray_ways {
+    int count;
+    double passed[ROW], unit[ROW]; /* how far a column has been followed; length of a step of 1 */
+    stretch stretches[STRETCHES_MAX];
+} ray_ways;
+
+/* Intervals [in, out] by primitive and ray, and what is derived from them. Contents but ways mean nothing between calls. */
 typedef struct ray_scratch {
     double in[PRIMITIVES_MAX][ROW], out[PRIMITIVES_MAX][ROW];
     double inverse_y[ROW], inverse_x[ROW], inverse_z[ROW];
@@ -45,10 +53,7 @@ typedef struct ray_scratch {
     hit_batch again;           /* of rays that are looked at another time */
     int64_t attention[ROW], undecided[ROW], blocked[ROW];
     int ray[ROW];            /* which ray of the batch a column belongs to */
-    double passed[ROW], unit[ROW]; /* how far a column has been followed; length of a step of 1 */
-    /* Of an arrangement that absorbs: the media that each ray went through, up to its hit or its light; those of one ray in order. */
-    int stretch_count;
-    stretch stretches[STRETCHES_MAX];
+    ray_ways *ways;          /* the caller's; NULL: what rays go through is not noted */
 } ray_scratch;
 
 /* Points on one primitive's surface. normal is a unit vector against the ray; cos_i = -d.n, in (0, 1] for a unit vector d. error is a bound

@@ -207,16 +207,19 @@ static void pass_on(const arrangement *a, int k, int m, ray_scratch *s, const hi
     s->inside[m] = set;
     s->slack[m] = s->slack[k];
     s->ray[m] = s->ray[k];
-    s->passed[m] = t;
-    s->unit[m] = s->unit[k];
+    if (s->ways) {
+        s->ways->passed[m] = t;
+        s->ways->unit[m] = s->ways->unit[k];
+    }
 }
 
 /* Column k was followed on through one medium to its crossing, or to `end`. */
 static void note_stretch(int k, double end, ray_scratch *s, const hit_batch *c)
 {
-    const double length = (lesser(c->t[k], end) - s->passed[k]) * s->unit[k];
-    if (s->stretch_count < STRETCHES_MAX) /* always: a ray crosses a convex primitive's surface twice at most */
-        s->stretches[s->stretch_count++] = (stretch){s->ray[k], (int)c->before[k], length};
+    ray_ways *w = s->ways;
+    const double length = (lesser(c->t[k], end) - w->passed[k]) * w->unit[k];
+    if (w->count < STRETCHES_MAX) /* always: a ray crosses a convex primitive's surface twice at most */
+        w->stretches[w->count++] = (stretch){s->ray[k], (int)c->before[k], length};
 }
 
 static void begin(const ray_batch *rays, ray_scratch *s)
@@ -225,15 +228,16 @@ static void begin(const ray_batch *rays, ray_scratch *s)
         s->inside[i] = rays->inside[i];
         s->ray[i] = i;
     }
-    s->stretch_count = 0;
+    if (s->ways)
+        s->ways->count = 0;
 }
 
 /* The media up to each ray's first crossing. */
 static void note_first_stretches(int n, ray_scratch *s, const hit_batch *hits)
 {
     for (int i = 0; i < n; i++) {
-        s->passed[i] = 0.0;
-        s->unit[i] = 1.0;
+        s->ways->passed[i] = 0.0;
+        s->ways->unit[i] = 1.0;
         note_stretch(i, HUGE_VAL, s, hits);
     }
 }
@@ -256,7 +260,7 @@ static void nearest(const arrangement *a, const ray_batch *rays, ray_scratch *s,
     for (int i = 0; i < rays->count; i++)
         s->slack[i] = a->extent;
     next_changes(a, rays->count, s, hits);
-    if (a->absorbs)
+    if (s->ways)
         note_first_stretches(rays->count, s, hits);
     int left = 0;
     for (int i = 0; i < rays->count; i++)
@@ -267,7 +271,7 @@ static void nearest(const arrangement *a, const ray_batch *rays, ray_scratch *s,
         next_changes(a, n, s, &s->again);
         left = 0;
         for (int k = 0; k < n; k++) {
-            if (a->absorbs)
+            if (s->ways)
                 note_stretch(k, HUGE_VAL, s, &s->again);
             if (s->attention[k] && !is_interface(a, rays, k, s, &s->again))
                 pass_on(a, k, left++, s, &s->again);
@@ -351,8 +355,10 @@ static int keep_undecided(const arrangement *a, const ray_batch *rays, ray_scrat
         s->slack[n] = a->extent / length;
         s->inside[n] = rays->inside[i];
         s->ray[n] = i;
-        s->passed[n] = 0.0;
-        s->unit[n] = length;
+        if (s->ways) {
+            s->ways->passed[n] = 0.0;
+            s->ways->unit[n] = length;
+        }
         for (int p = 0; p < a->primitive_count; p++) {
             s->in[p][n] = s->in[p][i];
             s->out[p][n] = s->out[p][i];
@@ -365,7 +371,8 @@ static int keep_undecided(const arrangement *a, const ray_batch *rays, ray_scrat
 static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadows, ray_scratch *s, double *transmitted)
 {
     const uint64_t wanted = first_sight_primitives(a, solid_shadows);
-    s->stretch_count = 0;
+    if (s->ways)
+        s->ways->count = 0;
     KERNEL(intervals_of)(a, rays, wanted, s);
     first_sight(a, solid_shadows, rays->count, s);
     for (int i = 0; i < rays->count; i++)
@@ -379,7 +386,7 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
         next_changes(a, n, s, c);
         left = 0;
         for (int k = 0; k < n; k++) {
-            if (a->absorbs)
+            if (s->ways)
                 note_stretch(k, 1.0, s, c);
             if (c->crossed[k] < 0 || c->t[k] >= 1.0)
                 continue;

@@ -24,8 +24,8 @@ void absorption_shares(tracer *t, const int64_t *tickets, int count)
     const plan *p = t->target.scene;
     for (int i = 0; i < count; i++)
         t->kept[0][i] = t->kept[1][i] = t->kept[2][i] = 0.0; /* optical depths first */
-    for (int k = 0; k < t->scratch.stretch_count; k++) {
-        const stretch *s = &t->scratch.stretches[k];
+    for (int k = 0; k < t->scratch.ways->count; k++) {
+        const stretch *s = &t->scratch.ways->stretches[k];
         if (!p->solids->bodies[s->rank].absorbs)
             continue;
         const vec3 a = coefficients(p, s->rank, tickets[s->ray]);

@@ -47,11 +47,11 @@ static double distance_to_light(const light *l, vec3 origin, vec3 direction)
 }
 
 /* What a ray went through ends at the light. */
-static void clip_stretches(ray_scratch *s, int ray, double end)
+static void clip_stretches(ray_ways *w, int ray, double end)
 {
     double start = 0.0;
-    for (int k = 0; k < s->stretch_count; k++) {
-        stretch *one = &s->stretches[k];
+    for (int k = 0; w && k < w->count; k++) {
+        stretch *one = &w->stretches[k];
         if (one->ray != ray)
             continue;
         const double length = one->length;
@@ -80,7 +80,7 @@ void path_meet_lights(tracer *t, const ray_queue *q, int first, int count)
         if (t->met_light[i] < 0)
             continue;
         t->hits.crossed[i] = -1;
-        clip_stretches(&t->scratch, i, nearest);
+        clip_stretches(t->scratch.ways, i, nearest);
     }
 }
 

@@ -12,13 +12,14 @@ bool queue_create(ray_queue *q, int capacity)
     char *memory = aligned_alloc(LINE, FIELDS * length * sizeof(double));
     if (!memory)
         return false;
-    double **reals[] = {&q->ox, &q->oy, &q->oz, &q->dx, &q->dy, &q->dz, &q->wr, &q->wg, &q->wb, &q->sq, &q->su, &q->sv};
+    double **reals[] = {&q->ox, &q->oy, &q->oz, &q->dx, &q->dy, &q->dz, &q->wr, &q->wg, &q->wb};
     double *at = (double *)(void *)memory;
     for (size_t i = 0; i < sizeof reals / sizeof *reals; i++, at += length)
         *reals[i] = at;
     q->start = (int64_t *)(void *)at;
     q->ticket = (int64_t *)(void *)(at + length);
     q->inside = (uint64_t *)(void *)(at + 2 * length);
+    q->sq = at + 3 * length, q->su = at + 4 * length, q->sv = at + 5 * length;
     q->memory = memory;
     q->capacity = capacity;
     return true;

@@ -11,6 +11,7 @@ tracer *tracer_create(isa level)
     if (!t)
         return NULL;
     memset(t, 0, offsetof(tracer, scratch));
+    t->ways = NULL;
     t->geometry = level == ISA_AVX512 ? &geometry_kernels_avx512 : level == ISA_AVX2 ? &geometry_kernels_avx2 : &geometry_kernels_sse2;
     t->shade = level == ISA_AVX512 ? &shade_kernels_avx512 : level == ISA_AVX2 ? &shade_kernels_avx2 : &shade_kernels_sse2;
     return t;
@@ -23,6 +24,7 @@ void tracer_destroy(tracer *t)
     for (int d = 0; d < t->queue_count; d++)
         queue_destroy(&t->waiting[d]);
     free(t->waiting);
+    free(t->ways);
     queue_destroy(&t->shadows);
     free(t);
 }
@@ -64,6 +66,10 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     }
     if (!make_queues(t, t->depth_limit + 1))
         return false;
+    const bool absorbs = target->scene->solids->absorbs;
+    if (absorbs && !t->ways && !(t->ways = malloc(sizeof *t->ways)))
+        return false;
+    t->scratch.ways = absorbs ? t->ways : NULL;
     drop_all(t);
     memset(&t->counters, 0, sizeof t->counters);
     t->overflow = 0;

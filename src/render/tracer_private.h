@@ -27,10 +27,11 @@ struct tracer {
     _Alignas(64) lit_group lit;
     _Alignas(64) branch_group branches;
     _Alignas(64) double transmitted[ROW];
+    int list[PRIMITIVES_MAX + 2][ROW], listed[PRIMITIVES_MAX + 2]; /* see sort_by_primitive */
+    ray_ways *ways;          /* once a scene that absorbs has been traced */
     double kept[3][ROW];     /* of an arrangement that absorbs: share of light that the way to the hit left, by channel */
     polar_group polar;
     int met_light[ROW];      /* of random paths: the light that a ray ran into, or -1 */
-    int list[PRIMITIVES_MAX + 2][ROW], listed[PRIMITIVES_MAX + 2]; /* see sort_by_primitive */
 };
 
 /* A build without counters compiles the statement and throws it away. */
