@@ -1,5 +1,5 @@
 #!/bin/sh
-# Luminance of one PFM less that of another, a line a pixel: x, y from the bottom, difference.
+# Luminance of one PFM less that of another, a line a pixel: x, y from the bottom, difference; then that of red, green and blue.
 #   plots/difference.sh PICTURE FROM
 # Luminance: Y = 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), of linear light as PFM holds it.
 export LC_ALL=C
@@ -16,6 +16,7 @@ mkfifo -m 600 "$pipe"
 trap 'rm -f "$pipe"' EXIT
 numbers "$2" >"$pipe" &
 numbers "$1" | paste - "$pipe" | awk -v width="${size% *}" '{
-    printf "%d %d %.6g\n", (NR - 1) % width, int((NR - 1) / width),
-        0.2126 * ($1 - $4) + 0.7152 * ($2 - $5) + 0.0722 * ($3 - $6)
+    red = $1 - $4; green = $2 - $5; blue = $3 - $6
+    printf "%d %d %.6g %.6g %.6g %.6g\n", (NR - 1) % width, int((NR - 1) / width),
+        0.2126 * red + 0.7152 * green + 0.0722 * blue, red, green, blue
 }'
