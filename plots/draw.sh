@@ -31,16 +31,16 @@ named=${#figures[@]}
 command -v gnuplot >/dev/null || fail "gnuplot is missing; apt-get install --no-install-recommends gnuplot-nox"
 gnuplot -e 'set terminal pngcairo' 2>/dev/null || fail "this gnuplot has no pngcairo; apt-get install --no-install-recommends gnuplot-nox"
 
-# Does a table hold a measured cell?
+# Does a table hold a measured cell? One without counts, of metrics or curves, needs a line.
 has_rows() {
-    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "n") n = i } NR > 1 && $n > 0 { found = 1 } END { exit !found }' "$1"
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "n") n = i } NR > 1 && (!n || $n > 0) { found = 1 } END { exit !found }' "$1"
 }
 
 # Sets `missing` to the first thing that a figure lacks, or to nothing, and `inputs` to the files that it is drawn from.
 look_for_inputs() {
     local pattern found needs
     missing=
-    inputs=("plots/$1.gp" plots/{style,rows,picture,laws}.gp plots/*.awk plots/*.sh experiments/published/*.csv)
+    inputs=("plots/$1.gp" plots/{style,rows,picture,laws,media}.gp plots/*.awk plots/*.sh experiments/published/*.csv)
     read -r -a needs <<<"$(sed -n 's/^# needs: *//p' "plots/$1.gp")"
     for pattern in "${needs[@]}"; do
         mapfile -t found < <(compgen -G "$results/$pattern")

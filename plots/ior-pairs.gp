@@ -1,14 +1,42 @@
-# The pictures of the four pairs of refractive indices.
-# needs: tables/ior.tsv ior/images/*.png
-width = 1000; height = 800
+# The pictures of the four pairs of refractive indices, and under each what optics measures in it.
+# Rows from before studies kept metrics give the pictures alone.
+# needs: tables/ior.tsv tables/ior[.-]*tsv ior/images/*.png
+width = 1000; height = 940
 load "plots/style.gp"
 
 load "plots/picture.gp"
 rows = table("ior")
-set multiplot layout 2,2 margins 0.01,0.99,0.01,0.96 spacing 0.015,0.045
+metric(cell, name) = first(table("ior-metrics"), sprintf("cell=%d metric=%s", cell, name), "measured")
+# Zeros without a sign, and a minus as long as a plus.
+signed_number(value) = abs(value) < 5e-3 ? "0" : (value < 0 ? "−" : "+").sprintf("%.2f", abs(value))
+plain(value) = value < 0.05 ? "0" : sprintf("%.1f", value)
+degrees(cell, name) = metric(cell, name)*180/pi
+edges(cell) = sprintf("Rod's edges moved by %s px and %s px, rod %.3f times as wide\nA leaning rod breaks by %s° at the liquid's surface", \
+    signed_number(metric(cell, "edges.left_shift")), signed_number(metric(cell, "edges.right_shift")), \
+    metric(cell, "edges.magnification"), plain(abs(metric(cell, "water_line.break"))))
+# A scene without a lens has no focal length: NaN, which is not itself.
+focal(cell) = metric(cell, "lens.focal_length")
+lens(cell) = focal(cell) == focal(cell) ? \
+    sprintf("As a lens: focal length %s scene units, deviation up to %.1f°", \
+        signed_number(focal(cell)), abs(degrees(cell, "lens.deviation"))) : "No lens: light goes straight on"
+# Of light that falls in at right angles, by Fresnel, in percent.
+normal(n_1, n_2) = 100*((n_1 - n_2)/(n_1 + n_2))**2
+reflected(vessel, liquid) = sprintf("Reflected at normal incidence: vessel %.1f %%, liquid %.1f %%, wall to liquid %.1f %%", \
+    normal(1, vessel), normal(1, liquid), normal(vessel, liquid))
+
+set multiplot
 do for [i=0:3] {
     file = image("ior", i)
-    set title sprintf("pair %d: vessel %.2f, liquid %.2f", i + 1, cell_value(rows, i, "vessel.ior"), cell_value(rows, i, "liquid.ior"))
+    vessel = cell_value(rows, i, "vessel.ior"); liquid = cell_value(rows, i, "liquid.ior")
+    left = i % 2 ? 0.505 : 0.005
+    top = i < 2 ? 0.972 : 0.472
+    set lmargin at screen left
+    set rmargin at screen left + 0.49
+    set tmargin at screen top
+    set bmargin at screen top - 0.391
+    set title sprintf("pair %d: vessel %.2f, liquid %.2f", i + 1, vessel, liquid)
+    numbers = readable(table("ior-metrics")) ? edges(i)."\n".lens(i)."\n".reflected(vessel, liquid) : ""
+    set label 1 numbers at screen left + 0.002, top - 0.409 left font ",9" textcolor rgb ink
     if (readable(file)) {
         plot file binary filetype=png with rgbimage notitle
     } else {
