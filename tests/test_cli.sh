@@ -286,7 +286,7 @@ check "a curve is CSV of three columns" is "$(awk -F'","|,' 'END {print NR, NF}'
 run realism "$scene" --curve dept
 check "an unknown curve is refused with the nearest" matches "$code $(<err)" "^2 cuvette: --curve: .*depth"
 run realism "$root/experiments/scenes/solids.yaml"
-check "a scene without a vessel is refused" matches "$code $(<err)" "^2 cuvette: .*solids.yaml: there is no cup named 'vessel'; "
+check "a scene without a vessel is refused" matches "$code $(<err)" "^2 cuvette: .*solids.yaml: there is no visible cup named 'vessel'; "
 run realism
 check "realism wants a scene" matches "$code $(<err)" "^2 cuvette: realism: no scene is named; "
 for option in $("$program" realism --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do

@@ -64,6 +64,23 @@ static void a_law_beyond_its_measurements_is_hinted_at(void **state)
                  "drop is transparent with the index of what is around it: it is invisible; set its ior\n");
 }
 
+static void what_has_no_effect_is_hinted_at(void **state)
+{
+    (void)state;
+    expect_hints("render: {lambda_nm: 700}\nsolids: {drop: {shape: sphere, transparency: 1, medium: table, coefficients: [450, 1.34, 650, 1.33]}}",
+                 "drop: its table of indices reaches from 450 to 650 nm only, and keeps its ends' indices beyond\n");
+    expect_hints("solids: {drop: {shape: sphere, transparency: 1, ior: 1.3, coefficients: [1.5, 0.004]}}",
+                 "drop has coefficients but no law for them; set its medium to cauchy, sellmeier or table\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, diffuse: 1, absorb_per_m: [1, 0, 0]}}",
+                 "ball absorbs but is opaque; set its transparency\n");
+    static const char lit[] = "lights: {lamp: {radius: 1, reach: 5}}\nsolids: {ball: {shape: sphere, diffuse: 1}}";
+    expect_hints(lit, "lamp is lit as a point: its radius shows with render.integrator=path\n");
+    expect_hints("render: {integrator: path}\nlights: {lamp: {radius: 1, reach: 5}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
+    expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5}}",
+                 "lamp is a point, which random paths cannot find through clear solids: no caustics; give it a radius and a reach\n");
+    expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
+}
+
 static void what_is_hidden_is_hinted_at(void **state)
 {
     (void)state;
@@ -111,7 +128,7 @@ static void what_is_meant_is_not(void **state)
 static void the_projects_scenes_lack_nothing(void **state)
 {
     (void)state;
-    static const char *const names[] = {"rod", "rod-leaning", "rod-from-inside", "solids"};
+    static const char *const names[] = {"rod", "rod-leaning", "rod-from-inside", "solids", "rainbow", "plates"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char path[100], all[1000] = "";
         scene *s;
@@ -128,6 +145,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_forgotten_is_hinted_at),
         cmocka_unit_test(a_law_beyond_its_measurements_is_hinted_at),
+        cmocka_unit_test(what_has_no_effect_is_hinted_at),
         cmocka_unit_test(what_is_hidden_is_hinted_at),
         cmocka_unit_test(what_is_meant_is_not),
         cmocka_unit_test(the_projects_scenes_lack_nothing),

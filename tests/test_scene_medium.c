@@ -110,8 +110,8 @@ static void what_makes_no_medium_is_refused_where_it_stands(void **state)
     expect_error("background: {medium: water, ior: 1.5}\n",
                  "test.yaml:1:34: there is an ior and a medium too; keep the ior, or the medium");
     expect_error("solids:\n  a: {shape: sphere, medium: cauchy}\n",
-                 "test.yaml:2:3: a: medium cauchy has no coefficients; give the law's coefficients too, as "
-                 "'coefficients: [1.5046, 0.0042]' for cauchy");
+                 "test.yaml:2:3: a: medium cauchy has no coefficients; give A, B in um^2, .., as 'coefficients: "
+                 "[1.5046, 0.0042]'");
     expect_error("solids:\n  a: {shape: sphere, medium: wather}\n",
                  "test.yaml:2:30: a.medium: no choice 'wather'; did you mean 'water'? It is one of: ior, sellmeier, cauchy, table, air, "
                  "water, ethanol, glycerol, toluene, olive-oil, bk7-liquid, fused-silica, bk7, sf11, n-sf11, soda-lime, pmma, "

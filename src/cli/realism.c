@@ -60,9 +60,10 @@ static const struct argp parser = {
     .parser = take_option,
     .args_doc = "SCENE",
     .doc = "Measure how far what is traced lies from textbook optics, in the scene file SCENE: a vessel (a cup), a liquid in it (a "
-           "cylinder) and a rod (a box). It succeeds whether the metrics pass or not.\vFor example:\n"
+           "cylinder) and a rod (a box); or a prism, a drop, or two plates. It succeeds whether the metrics pass or not.\vFor example:\n"
            "  cuvette realism experiments/scenes/rod.yaml\n"
-           "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set clear.reflectivity=0.1",
+           "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set clear.reflectivity=0.1 --set clear.transparency=0.9\n"
+           "  cuvette realism experiments/scenes/prism.yaml",
 };
 
 static status check_request(const realism_request *request, diagnostic *why)
@@ -197,6 +198,8 @@ status command_realism(int argc, char **argv, diagnostic *why)
         result = scene_input_read(&request.input, &s, why);
     if (result == STATUS_OK)
         result = scene_load_pictures(s, why);
+    if (result == STATUS_OK && !request.json && !request.csv && request.curve < 0)
+        scene_input_note_hints(s);
     if (result == STATUS_OK)
         result = measure_and_print(&request, s, level, why);
     scene_destroy(s);

@@ -7,7 +7,6 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "measure/statistics.h"
-#include "scene/hints.h"
 #include <errno.h>
 #include <stdio.h>
 
@@ -101,12 +100,6 @@ static status load_scene(const render_request *request, scene **out, diagnostic 
     return result;
 }
 
-static void print_note(void *context, const char *text)
-{
-    (void)context;
-    terminal_note(text);
-}
-
 /* One line for people; programs take --json. */
 static void print_summary(const scene *s, const frames *f, const outputs *files)
 {
@@ -117,6 +110,8 @@ static void print_summary(const scene *s, const frames *f, const outputs *files)
            f->whole ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height, (long long)s->render.depth,
            (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
            (unsigned long long)film_hash(f->result->picture));
+    if (f->result->variance)
+        printf(", noise %.4f rms", render_noise_rms(f->result));
     const char *before = " -> ";
     for (size_t i = 0; i < sizeof written / sizeof written[0]; i++)
         if (written[i]) {
@@ -187,7 +182,7 @@ status command_render(int argc, char **argv, diagnostic *why)
     if (result == STATUS_OK)
         result = load_scene(&request, &s, why);
     if (result == STATUS_OK && !request.json)
-        scene_hints(s, print_note, NULL);
+        scene_input_note_hints(s);
     if (result == STATUS_OK)
         result = render_and_write(&request, s, level, why);
     scene_destroy(s);

@@ -1,5 +1,6 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
+#include "scene/hints.h"
 #include "scene/params.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -68,6 +69,17 @@ status scene_input_isa(isa *level, diagnostic *why)
     if (result != STATUS_OK)
         diagnostic_locate(why, "environment", 0, 0);
     return result;
+}
+
+static void print_note(void *context, const char *text)
+{
+    (void)context;
+    terminal_note(text);
+}
+
+void scene_input_note_hints(const scene *s)
+{
+    scene_hints(s, print_note, NULL);
 }
 
 void scene_input_note_tree(const scene *s)

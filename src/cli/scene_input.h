@@ -39,6 +39,9 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why);
 /* A note where the scene's picture is made of random paths or is spectral: a tree of rays has all branches and one wavelength. */
 void scene_input_note_tree(const scene *s);
 
+/* Notes on what looks wrong in the scene (scene/hints.h), on standard error. */
+void scene_input_note_hints(const scene *s);
+
 /* isa_choose, located. */
 status scene_input_isa(isa *level, diagnostic *why);
 

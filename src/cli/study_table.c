@@ -51,7 +51,13 @@ static const char *rounded(const fields *f, size_t row, const char *name, char t
     return text;
 }
 
-/* The columns from the cell to n as they are, then wall_s, cpu_s, rays and marked. Fresh memory. */
+static bool has_column(const fields *f, const char *name)
+{
+    return strcmp(f->field[column_of(f, name)], name) == 0;
+}
+
+/* The columns from the cell to n as they are, then wall_s, cpu_s, rays and marked, and of a study with a reference how far the pictures lie
+ * from it. Fresh memory. */
 static char *shown(const fields *f, size_t row, size_t column)
 {
     size_t plain = column_of(f, "n") + 1;
@@ -65,7 +71,9 @@ static char *shown(const fields *f, size_t row, size_t column)
                                       rounded(f, row, "wall_s_low", low), rounded(f, row, "wall_s_high", high));
     case 1: return strdup(row == 0 ? "cpu_s" : rounded(f, row, "cpu_s_median", median));
     case 2: return strdup(row == 0 ? "rays" : f->field[row * f->columns + column_of(f, "rays_total")]);
-    default: return strdup(f->field[row * f->columns + column_of(f, "marked")]);
+    case 3: return strdup(f->field[row * f->columns + column_of(f, "marked")]);
+    case 4: return strdup(row == 0 ? "flip" : rounded(f, row, "flip", median));
+    default: return strdup(row == 0 ? "error_rms" : rounded(f, row, "error_rms", median));
     }
 }
 
@@ -83,7 +91,7 @@ status study_table_print(FILE *out, char *tsv, diagnostic *why)
 {
     fields f = {0};
     bool good = split(tsv, &f);
-    size_t columns = good ? column_of(&f, "n") + 1 + 4 : 0, cells = f.rows * columns;
+    size_t columns = good ? column_of(&f, "n") + 1 + (has_column(&f, "flip") ? 6 : 4) : 0, cells = f.rows * columns;
     char **text = calloc(cells + 1, sizeof *text);
     int *width = calloc(columns + 1, sizeof *width);
     good = good && text && width;

@@ -48,6 +48,10 @@ static void write_line(const traced *t, FILE *out, const ray_node *node, int ind
     fprintf(out, "  %s", trace_end_words[node->end]);
     if (node->end == RAY_END_HIT)
         write_hit(t, out, &node->hit);
+    if (node->brought[0] > 0.0 || node->brought[1] > 0.0 || node->brought[2] > 0.0) {
+        fputs("  brings ", out);
+        write_channels(out, node->brought);
+    }
     fputc('\n', out);
 }
 

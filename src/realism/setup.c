@@ -32,13 +32,13 @@ static status index_of(const scene *s, int which, double *n, diagnostic *why)
 
 static status read_vessel(const scene *s, setup *out, diagnostic *why)
 {
-    const char *const example = "take the names and shapes of experiments/scenes/rod.yaml";
+    const char *const example = "take the names and shapes of experiments/scenes/rod.yaml, prism.yaml, rainbow.yaml or plates.yaml";
     out->vessel = find_visible(s, "vessel");
     out->rod = find_visible(s, "rod");
     if (out->vessel < 0 || s->solids[out->vessel].shape.kind != SHAPE_CUP)
-        return wrong(s, why, example, "there is no cup named 'vessel'");
+        return wrong(s, why, example, "there is no visible cup named 'vessel'");
     if (out->rod < 0 || s->solids[out->rod].shape.kind != SHAPE_BOX)
-        return wrong(s, why, example, "there is no box named 'rod'");
+        return wrong(s, why, example, "there is no visible box named 'rod'");
     const solid *vessel = &s->solids[out->vessel], *rod = &s->solids[out->rod];
     if (is_turned(vessel) || vessel->surface.transparency == 0.0)
         return wrong(s, why, "let it stand upright, and set its transparency above 0", "the vessel is turned or opaque");

@@ -48,13 +48,13 @@ static double of_both(const stack *s, double (*through)(double R))
     return s->polarised ? 0.5 * (through(R_s) + through(R_p)) : through(0.5 * (R_s + R_p));
 }
 
-/* Sums up what ends in the sky and goes on as the eye looks: parallel faces turn nothing; and what the depth limit cut off. */
+/* Sums up what ends in the sky or on a board and goes on as the eye looks: parallel faces turn nothing; and what the depth limit cut off. */
 static void add_up(const ray_tree *tree, vec3 forward, double *through, double *cut)
 {
     *through = *cut = 0.0;
     for (size_t i = 0; i < tree->count; i++) {
         const ray_node *n = &tree->node[i];
-        if (n->end == RAY_END_SKY && vec3_dot(n->direction, forward) > 1.0 - 1e-9)
+        if ((n->end == RAY_END_SKY || (n->end == RAY_END_HIT && n->hit.opaque)) && vec3_dot(n->direction, forward) > 1.0 - 1e-9)
             *through += n->throughput[0];
         else if (n->end == RAY_END_CUT_DEPTH)
             *cut += n->throughput[0];
@@ -75,7 +75,7 @@ static status look_through(const metrics *m, double *straight, double *whole, do
         code = probe_way(t.p, eye, forward, -1, &t.tree, why);
     if (code == STATUS_OK) {
         const ray_node *last = &t.tree.node[t.tree.count - 1];
-        *straight = t.tree.count == INTERFACES + 1 && last->end == RAY_END_SKY ? last->throughput[0] : NAN;
+        *straight = t.tree.count == INTERFACES + 1 && (last->end == RAY_END_SKY || last->hit.opaque) ? last->throughput[0] : NAN;
         code = probe_ray(t.p, eye, forward, &t.tree, why);
     }
     if (code == STATUS_OK)

@@ -127,9 +127,50 @@ static void hint_at_range(const scene *s, const solid *owner, void (*note)(void 
         return;
     }
     char text[HINT_MAX];
-    snprintf(text, HINT_MAX, "%s: %s was measured from %g to %g nm only, and is extrapolated beyond", owner->name,
-             medium_words[owner->surface.medium], law.law.low_nm, law.law.high_nm);
+    if (law.law.kind == DISPERSION_TABLE) {
+        snprintf(text, HINT_MAX, "%s: its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond", owner->name,
+                 law.law.coefficient[0], law.law.coefficient[law.law.count - 2]);
+    } else {
+        snprintf(text, HINT_MAX, "%s: %s was measured from %g to %g nm only, and is extrapolated beyond", owner->name,
+                 medium_words[owner->surface.medium], law.law.low_nm, law.law.high_nm);
+    }
     note(context, text);
+}
+
+/* What is set and does nothing. */
+static void hint_at_idle(const solid *owner, void (*note)(void *context, const char *text), void *context)
+{
+    const material *m = &owner->surface;
+    char text[HINT_MAX];
+    if (m->transparency == 0.0 && material_absorbs(m)) {
+        snprintf(text, HINT_MAX, "%s absorbs but is opaque; set its transparency", owner->name);
+        note(context, text);
+    }
+    if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE)) {
+        snprintf(text, HINT_MAX, "%s has coefficients but no law for them; set its medium to cauchy, sellmeier or table", owner->name);
+        note(context, text);
+    }
+}
+
+static void hint_at_lights(const scene *s, void (*note)(void *context, const char *text), void *context)
+{
+    const bool path = s->render.integrator == INTEGRATOR_PATH;
+    bool clear = false;
+    char text[HINT_MAX];
+    for (size_t i = 0; i < s->solid_count; i++) {
+        clear |= s->solids[i].visible && s->solids[i].surface.transparency > 0.0;
+    }
+    for (size_t i = 0; i < s->light_count; i++) {
+        const light *lamp = &s->lights[i];
+        if (lamp->radius > 0.0 && !path) {
+            snprintf(text, HINT_MAX, "%s is lit as a point: its radius shows with render.integrator=path", lamp->name);
+            note(context, text);
+        } else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0) {
+            snprintf(text, HINT_MAX, "%s is a point, which random paths cannot find through clear solids: no caustics; give it a radius "
+                                     "and a reach", lamp->name);
+            note(context, text);
+        }
+    }
 }
 
 void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context)
@@ -145,6 +186,7 @@ void scene_hints(const scene *s, void (*note)(void *context, const char *text), 
     if (lit > 0 && s->light_count == 0) {
         note(context, "no lights: opaque surfaces are dark but for their ambient light; add lights:");
     }
+    hint_at_lights(s, note, context);
     for (size_t i = 0; i < s->solid_count; i++) {
         char text[HINT_MAX];
         const char *hint = s->solids[i].visible ? solid_hint(s, &s->solids[i], text) : NULL;
@@ -152,6 +194,7 @@ void scene_hints(const scene *s, void (*note)(void *context, const char *text), 
             note(context, hint);
         }
         if (s->solids[i].visible) {
+            hint_at_idle(&s->solids[i], note, context);
             hint_at_range(s, &s->solids[i], note, context);
             hint_at_cover(s, &s->solids[i], note, context);
         }

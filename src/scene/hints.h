@@ -6,7 +6,7 @@
 
 /* Calls note with one line of text, without a full stop, for each: no visible solid; no light where something would
  * be lit; a visible solid that is black, that is transparent and bends no light, that is opaque and has a refractive
- * index, or that lies wholly inside another one that wins there. The text lasts for the call. A scene may be meant so: these are hints, not errors. */
+ * index, or that lies wholly inside another one that wins there; a law of dispersion used beyond its measurements; what is set and has no effect. The text lasts for the call. A scene may be meant so: these are hints, not errors. */
 void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context);
 
 #endif

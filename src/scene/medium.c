@@ -29,8 +29,10 @@ status material_index_law(const material *m, const char *label, index_law *out, 
     memcpy(out->law.coefficient, m->coefficients.value, (size_t)m->coefficients.count * sizeof(double));
     diagnostic bad = {.what = ""};
     if (m->coefficients.count == 0) {
-        return diagnose(why, STATUS_BAD_INPUT, "give the law's coefficients too, as 'coefficients: [1.5046, 0.0042]' for cauchy",
-                        "%.80s: medium %s has no coefficients", label, medium_words[m->medium]);
+        static const char *const examples[] = {[MEDIUM_SELLMEIER] = "give pairs B, C in um^2, as 'coefficients: [1.1, 0.012]'",
+                                               [MEDIUM_CAUCHY] = "give A, B in um^2, .., as 'coefficients: [1.5046, 0.0042]'",
+                                               [MEDIUM_TABLE] = "give pairs of nm and index, as 'coefficients: [450, 1.34, 650, 1.33]'"};
+        return diagnose(why, STATUS_BAD_INPUT, examples[m->medium], "%.80s: medium %s has no coefficients", label, medium_words[m->medium]);
     }
     status code = dispersion_check(&out->law, &bad);
     return code == STATUS_OK ? code : diagnose(why, code, bad.remedy, "%.80s: %s", label, bad.what);
