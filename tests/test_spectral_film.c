@@ -243,6 +243,25 @@ static double seen_edge(const film *f, int channel)
     return ROWS;
 }
 
+/* Glass of one index grows the same tree at each wavelength, so that as many branches are too faint at each. 64: a power of two
+ * divides weights and threshold without rounding. */
+static void what_is_too_faint_does_not_depend_on_the_number_of_wavelengths(void **state)
+{
+    (void)state;
+    need_counters();
+    scene *s = scene_from("render: {width: 12, height: 9, depth: 8, min_weight: 0.02, wavelengths: 64}\n"
+                          "background: {color: [1, 1, 1]}\ncamera: {position: [0, 0, -4], target: [0, 0, 0]}\n"
+                          "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5}}\n");
+    render_result *rgb = render(s);
+    s->render.spectrum = SPECTRUM_SPECTRAL;
+    render_result *spectral = render(s);
+    assert_true(rgb->counters.cut_weight > 0);
+    assert_int_equal(spectral->counters.cut_weight, 64 * rgb->counters.cut_weight);
+    render_result_destroy(rgb);
+    render_result_destroy(spectral);
+    scene_destroy(s);
+}
+
 static void a_prism_shows_red_and_blue_apart(void **state)
 {
     (void)state;
@@ -365,6 +384,7 @@ int main(void)
         cmocka_unit_test(gradient_and_coloured_skies_look_as_in_rgb),
         cmocka_unit_test(a_picture_sky_looks_as_in_rgb),
         cmocka_unit_test(glass_of_one_index_is_as_bright_as_in_rgb),
+        cmocka_unit_test(what_is_too_faint_does_not_depend_on_the_number_of_wavelengths),
         cmocka_unit_test(a_prism_shows_red_and_blue_apart),
         cmocka_unit_test(a_band_that_is_absorbed_is_missing),
         cmocka_unit_test(random_paths_have_the_same_colours),

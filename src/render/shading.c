@@ -211,7 +211,7 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
                                 const uint64_t *inside)
 {
     ray_queue *q = &t->waiting[depth];
-    const double least = t->target.scene->render.min_weight;
+    const double least = t->least_weight;
     const int first = q->count;
     t->shade->append(&t->gathered, dx, dy, dz, weight, inside, q);
     if (t->target.scene->render.polarisation)

@@ -58,6 +58,8 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     t->depth_limit = (int)r->depth;
     t->branching = r->integrator == INTEGRATOR_WHITTED && r->lighting == LIGHTING_WHITTED;
     t->by_ticket = r->integrator == INTEGRATOR_PATH || r->spectrum == SPECTRUM_SPECTRAL;
+    /* Of a spectral film a camera ray is one for each wavelength, each with its part of the weight. */
+    t->least_weight = r->spectrum == SPECTRUM_SPECTRAL ? r->min_weight / (double)r->wavelengths : r->min_weight;
     int shadows_at_once = BATCH * (target->scene->light_count + 1);
     if (t->shadows.capacity < shadows_at_once) {
         queue_destroy(&t->shadows);

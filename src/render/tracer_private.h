@@ -17,6 +17,7 @@ struct tracer {
     ray_queue *waiting;      /* by depth, 0 .. depth_limit */
     ray_queue shadows;
     bool branching;          /* reflected and refracted rays are followed */
+    double least_weight;     /* a branch that weighs less is not followed: render.min_weight, for its share of the camera ray */
     bool by_ticket;          /* the film wants more of a ticket than its pixel */
     ray_counters counters;
     uint64_t frame;          /* of its tracer_set, in which it was last begun; 0 before */
