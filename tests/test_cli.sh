@@ -308,7 +308,7 @@ for at in 40,30 37,41 5,3 44,22; do
     check "its radiance is the picture's" same_floats "$(pixel a.pfm ${at/,/ })" "$(json 'radiance[]')"
 done
 run trace "$scene" --pixel 40,30 --depth 3 --json "${small[@]}"
-check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth lambda_nm radiance root "
+check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth radiance root lambda_nm "
 check "schema, scene and depth" is "$(json schema scene depth)" "$(lines 1 "$scene" 3)"
 check "keys of a ray, in order" is "$(json root@keys | tr '\n' ' ')" \
     "kind depth origin direction throughput medium n hit children end brought "

@@ -114,7 +114,6 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
     fputs("{\"schema\":1,", out);
     bool good = write_word(out, "scene", t->scene_path);
     fprintf(out, ",\"depth\":%d", tree->depth_limit);
-    write_number(out, "lambda_nm", tree->lambda_nm);
     write_list(out, "radiance", tree->radiance, 3);
     fputs(",\"root\":", out);
     good = write_ray(t, out, 0) && good;
@@ -126,6 +125,7 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
         }
         fputc(']', out);
     }
+    write_number(out, "lambda_nm", tree->lambda_nm);
     fputs("}\n", out);
     return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
 }
