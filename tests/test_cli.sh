@@ -338,6 +338,8 @@ check "a spectral scene is noted: one wavelength" matches "$(<err)" '^cuvette: n
 check "but traced" is "$code" 0
 run trace "$scene" --pixel 40,30 --set render.integrator=path
 check "random paths are noted" matches "$(<err)" '^cuvette: note: .*random paths'
+run trace "$scene" --pixel 40,30 --lambda 1200 --set liquid.medium=water "${small[@]}"
+check "a medium that was not measured there is noted" matches "$(<err)" '^cuvette: note: liquid: water was measured from 182 to 1129 nm only'
 run trace "$scene" --pixel 40,30 -o tree.json "${small[@]}"
 check "-o tree.json writes JSON, and nothing else" is "$(./json_get tree.json schema) $(cat out err)" "1 "
 run trace "$scene" --pixel 40,30 -o tree.svg "${small[@]}"

@@ -60,6 +60,8 @@ static void a_law_beyond_its_measurements_is_hinted_at(void **state)
     expect_hints("render: {spectrum: spectral}\nsolids: {drop: {shape: sphere, transparency: 1, medium: water}}", "");
     expect_hints("render: {spectrum: spectral}\nsolids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}",
                  "drop: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond\n");
+    expect_hints("render: {lambda_nm: 450}\nbackground: {medium: ethanol}\nsolids: {drop: {shape: sphere, transparency: 1, ior: 1.5}}",
+                 "background: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond\n");
     expect_hints("background: {medium: water}\nsolids: {drop: {shape: sphere, transparency: 1, medium: water}}",
                  "drop is transparent with the index of what is around it: it is invisible; set its ior\n");
 }

@@ -193,7 +193,6 @@ status command_fan(int argc, char **argv, diagnostic *why)
         result = probe_create(s, level, &p, why);
     if (result == STATUS_OK) {
         scene_input_note_tree(s);
-        scene_input_note_hints(s);
         result = run(&request, s, p, why);
     }
     probe_destroy(p);

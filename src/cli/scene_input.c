@@ -85,6 +85,9 @@ void scene_input_note_hints(const scene *s)
 void scene_input_note_tree(const scene *s)
 {
     const bool path = s->render.integrator == INTEGRATOR_PATH, spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
+    scene one_lambda = *s; /* borrows what s owns */
+    one_lambda.render.spectrum = SPECTRUM_RGB;
+    scene_range_hints(&one_lambda, print_note, NULL);
     char text[160];
     if (!path && !spectral)
         return;

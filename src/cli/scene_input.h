@@ -36,7 +36,8 @@ status scene_input_check(const scene_input *input, diagnostic *why);
 /* The scene as the command line changes it, checked; its pictures are not loaded. */
 status scene_input_read(const scene_input *input, scene **out, diagnostic *why);
 
-/* A note where the scene's picture is made of random paths or is spectral: a tree of rays has all branches and one wavelength. */
+/* Notes where the scene's picture is made of random paths or is spectral, since a tree of rays has all branches and one wavelength; and
+ * where a medium was not measured at that. */
 void scene_input_note_tree(const scene *s);
 
 /* Notes on what looks wrong in the scene (scene/hints.h), on standard error. */

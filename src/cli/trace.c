@@ -181,7 +181,6 @@ status command_trace(int argc, char **argv, diagnostic *why)
     if (result == STATUS_OK) {
         const traced t = {s, p, &tree, request.input.path};
         scene_input_note_tree(s);
-        scene_input_note_hints(s);
         result = write_tree(&request, &t, why);
     }
     ray_tree_release(&tree);

@@ -117,22 +117,21 @@ static void hint_at_cover(const scene *s, const solid *hidden, void (*note)(void
 }
 
 /* A law that is used outside the wavelengths where its medium was measured. */
-static void hint_at_range(const scene *s, const solid *owner, void (*note)(void *context, const char *text), void *context)
+static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law,
+                          void (*note)(void *context, const char *text), void *context)
 {
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
     const double low_nm = spectral ? VISIBLE_LOW_NM : s->render.lambda_nm, high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
-    index_law law;
-    if (owner->surface.transparency == 0.0 || material_index_law(&owner->surface, "", &law, NULL) != STATUS_OK ||
-        dispersion_covers(&law.law, low_nm, high_nm)) {
+    if (dispersion_covers(&law->law, low_nm, high_nm)) {
         return;
     }
     char text[HINT_MAX];
-    if (law.law.kind == DISPERSION_TABLE) {
-        snprintf(text, HINT_MAX, "%s: its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond", owner->name,
-                 law.law.coefficient[0], law.law.coefficient[law.law.count - 2]);
+    if (law->law.kind == DISPERSION_TABLE) {
+        snprintf(text, HINT_MAX, "%s: its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond", where,
+                 law->law.coefficient[0], law->law.coefficient[law->law.count - 2]);
     } else {
-        snprintf(text, HINT_MAX, "%s: %s was measured from %g to %g nm only, and is extrapolated beyond", owner->name,
-                 medium_words[owner->surface.medium], law.law.low_nm, law.law.high_nm);
+        snprintf(text, HINT_MAX, "%s: %s was measured from %g to %g nm only, and is extrapolated beyond", where, name, law->law.low_nm,
+                 law->law.high_nm);
     }
     note(context, text);
 }
@@ -173,6 +172,18 @@ static void hint_at_lights(const scene *s, void (*note)(void *context, const cha
     }
 }
 
+void scene_range_hints(const scene *s, void (*note)(void *context, const char *text), void *context)
+{
+    index_law law = surrounding_index_law(&s->background);
+    hint_at_range(s, "background", surrounding_words[s->background.medium], &law, note, context);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && one->surface.transparency > 0.0 && material_index_law(&one->surface, "", &law, NULL) == STATUS_OK) {
+            hint_at_range(s, one->name, medium_words[one->surface.medium], &law, note, context);
+        }
+    }
+}
+
 void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context)
 {
     size_t visible = 0, lit = 0;
@@ -195,8 +206,8 @@ void scene_hints(const scene *s, void (*note)(void *context, const char *text), 
         }
         if (s->solids[i].visible) {
             hint_at_idle(&s->solids[i], note, context);
-            hint_at_range(s, &s->solids[i], note, context);
             hint_at_cover(s, &s->solids[i], note, context);
         }
     }
+    scene_range_hints(s, note, context);
 }

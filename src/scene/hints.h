@@ -6,7 +6,11 @@
 
 /* Calls note with one line of text, without a full stop, for each: no visible solid; no light where something would
  * be lit; a visible solid that is black, that is transparent and bends no light, that is opaque and has a refractive
- * index, or that lies wholly inside another one that wins there; a law of dispersion used beyond its measurements; what is set and has no effect. The text lasts for the call. A scene may be meant so: these are hints, not errors. */
+ * index, or that lies wholly inside another one that wins there; what is set and has no effect; then those of scene_range_hints. The
+ * text lasts for the call. A scene may be meant so: these are hints, not errors. */
 void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context);
+
+/* The same for each medium, the surroundings' too, whose index is extrapolated beyond the wavelengths where it was measured. */
+void scene_range_hints(const scene *s, void (*note)(void *context, const char *text), void *context);
 
 #endif
