@@ -237,6 +237,29 @@ static void a_way_goes_straight_on_or_turns_back_where_told(void **state)
     scene_destroy(s);
 }
 
+/* At one wavelength absorption by wavelength is that wavelength's for all channels; at 450 nm half way between the table's points. */
+static void absorption_of_a_spectral_scene_is_that_of_its_wavelength(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        scene *s = scene_from("render: {depth: 1, lambda_nm: 450}\nsolids: {slab: {shape: box, transparency: 1, ior: 1.5, size: [9, 9, 2],\n"
+                              "  absorb_spectrum: [400, 0.5, 500, 1.5]}}\n");
+        set_all(s, i ? "render.spectrum=spectral" : "render.spectrum=rgb");
+        diagnostic why = {0};
+        probe *p = NULL;
+        ray_tree tree = {0};
+        worked(probe_create(s, isa_best(), &p, &why), &why);
+        if (!i)
+            probe_one_wavelength(p);
+        worked(probe_way(p, vec3_make(0.0, 0.0, -5.0), vec3_make(0.0, 0.0, 1.0), -1, &tree, &why), &why);
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs(tree.node[1].hit.transmittance[c] - exp(-2.0)) < 1e-14);
+        ray_tree_release(&tree);
+        probe_destroy(p);
+        scene_destroy(s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -248,6 +271,7 @@ int main(void)
         cmocka_unit_test(any_length_of_direction_will_do),
         cmocka_unit_test(a_ray_can_be_traced_again),
         cmocka_unit_test(a_way_goes_straight_on_or_turns_back_where_told),
+        cmocka_unit_test(absorption_of_a_spectral_scene_is_that_of_its_wavelength),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

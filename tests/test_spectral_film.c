@@ -262,6 +262,30 @@ static void what_is_too_faint_does_not_depend_on_the_number_of_wavelengths(void 
     scene_destroy(s);
 }
 
+/* A white furnace is white at every pixel: what comes in is what goes out, and no pixel gets more. Dispersing glass in dispersing water,
+ * for as many wavelengths as divide the table evenly and not, and for random paths. */
+static void a_spectral_furnace_is_white_in_every_pixel(void **state)
+{
+    (void)state;
+    static const char *const settings[] = {"render.wavelengths=8", "render.wavelengths=32", "render.wavelengths=48",
+                                           "render.integrator=path render.paths=24"};
+    for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) {
+        scene *s = scene_from("render: {width: 12, height: 9, depth: 5, spectrum: spectral}\n"
+                              "background: {color: [1, 1, 1]}\ncamera: {position: [0, 0, -4], target: [0, 0, 0]}\n"
+                              "solids: {ball: {shape: sphere, transparency: 1, medium: sf11, priority: 1},\n"
+                              "  pond: {shape: box, transparency: 1, medium: water, size: [3, 1, 3]}}\n");
+        set_all(s, settings[i]);
+        render_result *result = render(s);
+        for (int y = 0; y < 9; y++)
+            for (int x = 0; x < 12; x++)
+                for (int c = 0; c < 3; c++)
+                    if (!(fabs(film_value(result->picture, x, y, c) - 1.0) <= 1e-9))
+                        fail_msg("%s: %.12f at %d,%d", settings[i], film_value(result->picture, x, y, c), x, y);
+        render_result_destroy(result);
+        scene_destroy(s);
+    }
+}
+
 static void a_prism_shows_red_and_blue_apart(void **state)
 {
     (void)state;
@@ -385,6 +409,7 @@ int main(void)
         cmocka_unit_test(a_picture_sky_looks_as_in_rgb),
         cmocka_unit_test(glass_of_one_index_is_as_bright_as_in_rgb),
         cmocka_unit_test(what_is_too_faint_does_not_depend_on_the_number_of_wavelengths),
+        cmocka_unit_test(a_spectral_furnace_is_white_in_every_pixel),
         cmocka_unit_test(a_prism_shows_red_and_blue_apart),
         cmocka_unit_test(a_band_that_is_absorbed_is_missing),
         cmocka_unit_test(random_paths_have_the_same_colours),

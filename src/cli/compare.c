@@ -99,7 +99,7 @@ static void print_text(const pair *p)
     printf("size        %d x %d pixels\n", p->pictures[0]->width, p->pictures[0]->height);
     printf("mse         %.6g\n", c->mse);
     if (c->mse > 0)
-        printf("psnr        %.2f dB\n", c->psnr_db);
+        printf("psnr        %.2f dB\n", c->psnr_db + 0.0); /* not -0 */
     else
         printf("psnr        identical\n");
     printf("ssim        %.6f\n", c->ssim);

@@ -12,7 +12,7 @@ typedef struct fan_request {
     const char *output;
     size_t format;      /* index of the ending */
     fan_rule rule;
-    bool has_from, has_to, has_width, whole_trees;
+    bool has_from, has_to, has_width, whole_trees, one_wavelength;
 } fan_request;
 
 enum { KEY_FROM = 0x100, KEY_TO, KEY_RAYS, KEY_WIDTH, KEY_SPREAD, KEY_PLANE, KEY_DEPTH, KEY_LAMBDA, KEY_TREE };
@@ -26,7 +26,7 @@ static const struct argp_option options[] = {
     {"spread", KEY_SPREAD, "DEG", 0, "a fan from one point, of this angle", 0},
     {"plane", KEY_PLANE, "NX,NY,NZ", 0, "the normal of the rays' plane", 0},
     {"depth", KEY_DEPTH, "N", 0, "the same as --set render.depth=N", 0},
-    {"lambda", KEY_LAMBDA, "NM", 0, "the same as --set render.lambda_nm=NM", 0},
+    {"lambda", KEY_LAMBDA, "NM", 0, "one wavelength for indices and for absorption by wavelength; sets render.lambda_nm", 0},
     {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'rod.visible=off'; may be given many times", 0},
     {"tree", KEY_TREE, NULL, 0, "draw each ray's whole tree, not its refracted way alone", 0},
     {"output", 'o', "FILE", 0, "write there: .svg, a drawing, or .csv, a row a ray", 0},
@@ -79,7 +79,10 @@ static error_t take_option(int key, char *value, struct argp_state *state)
     case 's': scene_input_change(&request->input, "--set", NULL, value); return 0;
     case 'o': request->output = value; return 0;
     case KEY_DEPTH: scene_input_change(&request->input, "--depth", "render.depth", value); return 0;
-    case KEY_LAMBDA: scene_input_change(&request->input, "--lambda", "render.lambda_nm", value); return 0;
+    case KEY_LAMBDA:
+        request->one_wavelength = true;
+        scene_input_change(&request->input, "--lambda", "render.lambda_nm", value);
+        return 0;
     case KEY_FROM: request->has_from = true; return take_vector("--from", value, &request->rule.from, input->why);
     case KEY_TO: request->has_to = true; return take_vector("--to", value, &request->rule.to, input->why);
     case KEY_PLANE: request->rule.has_normal = true; return take_vector("--plane", value, &request->rule.normal, input->why);
@@ -191,6 +194,8 @@ status command_fan(int argc, char **argv, diagnostic *why)
         result = load_scene(&request, &s, why);
     if (result == STATUS_OK)
         result = probe_create(s, level, &p, why);
+    if (result == STATUS_OK && request.one_wavelength)
+        probe_one_wavelength(p);
     if (result == STATUS_OK) {
         scene_input_note_tree(s);
         result = run(&request, s, p, why);

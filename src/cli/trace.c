@@ -15,7 +15,7 @@ typedef struct trace_request {
     scene_input input;
     const char *output;   /* NULL: standard output */
     trace_format format;
-    bool by_pixel, by_ray;
+    bool by_pixel, by_ray, one_wavelength;
     double pixel[2], ray[6];
 } trace_request;
 
@@ -25,7 +25,7 @@ static const struct argp_option options[] = {
     {"pixel", KEY_PIXEL, "X,Y", 0, "trace the camera rays of a pixel; 0,0 is at the top left", 0},
     {"ray", KEY_RAY, "OX,OY,OZ,DX,DY,DZ", 0, "trace the ray from a point in a direction of any length", 0},
     {"depth", KEY_DEPTH, "N", 0, "the same as --set render.depth=N", 0},
-    {"lambda", KEY_LAMBDA, "NM", 0, "the same as --set render.lambda_nm=NM", 0},
+    {"lambda", KEY_LAMBDA, "NM", 0, "one wavelength for indices and for absorption by wavelength; sets render.lambda_nm", 0},
     {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'liquid.ior=1.4'; may be given many times", 0},
     {"text", KEY_TEXT, NULL, 0, "print an indented tree, a line a ray (the default)", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object", 0},
@@ -69,7 +69,10 @@ static error_t take_option(int key, char *value, struct argp_state *state)
     case 's': scene_input_change(&request->input, "--set", NULL, value); return 0;
     case 'o': request->output = value; return 0;
     case KEY_DEPTH: scene_input_change(&request->input, "--depth", "render.depth", value); return 0;
-    case KEY_LAMBDA: scene_input_change(&request->input, "--lambda", "render.lambda_nm", value); return 0;
+    case KEY_LAMBDA:
+        request->one_wavelength = true;
+        scene_input_change(&request->input, "--lambda", "render.lambda_nm", value);
+        return 0;
     case KEY_PIXEL: return take_pixel(request, value, input->why);
     case KEY_RAY:
         request->by_ray = true;
@@ -176,6 +179,8 @@ status command_trace(int argc, char **argv, diagnostic *why)
         result = load_scene(&request, &s, why);
     if (result == STATUS_OK)
         result = probe_create(s, level, &p, why);
+    if (result == STATUS_OK && request.one_wavelength)
+        probe_one_wavelength(p);
     if (result == STATUS_OK)
         result = grow(&request, p, &tree, why);
     if (result == STATUS_OK) {

@@ -116,9 +116,10 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
     const random_words drawn = draw(p->render.seed, g->ticket[k], depth, DRAW_LIGHT + lamp);
     const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
     const vec3 to = direction_about(vec3_scale(way, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
-    const double n_l = vec3_dot(n, to), reach = distance_to_light(l, point, to);
-    if (!(n_l > 0.0) || !(reach < (double)HUGE_VAL))
+    const double n_l = vec3_dot(n, to), within = l->radius * l->radius - distance2 * sine * sine;
+    if (!(n_l > 0.0))
         return;
+    const double reach = sqrt(distance2) * cosine - sqrt(within > 0.0 ? within : 0.0);
     /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)); Phong's highlight by the same light. */
     const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
     const double r_v = 2.0 * n_l * g->points.cos_i[k] + vec3_dot(d, to);

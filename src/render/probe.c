@@ -15,6 +15,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
     status code = p->setting && p->rays ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK) {
         render_settings *r = &p->setting->render;
+        p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
         r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
         if (r->integrator == INTEGRATOR_PATH)
             r->integrator = INTEGRATOR_WHITTED; /* all branches, not one by chance */
@@ -28,8 +29,22 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         probe_destroy(p);
         return code;
     }
+    if (p->spectral)
+        probe_one_wavelength(p);
     *out = p;
     return STATUS_OK;
+}
+
+void probe_one_wavelength(probe *p)
+{
+    const render_settings *r = &p->scene->render;
+    for (int rank = 1; rank <= p->scene->solids->body_count; rank++) {
+        const material *m = p->scene->materials[rank];
+        if (m->absorb_spectrum.count == 0 && !p->spectral)
+            continue;
+        const double a = material_absorption_at(m, r->lambda_nm) * r->unit_m;
+        p->scene->absorption[rank] = vec3_make(a, a, a);
+    }
 }
 
 void probe_destroy(probe *p)

@@ -72,6 +72,10 @@ typedef struct probe probe;
 status probe_create(const scene *s, isa level, probe **out, diagnostic *why);
 void probe_destroy(probe *p);
 
+/* From now on absorption by wavelength is taken at render.lambda_nm for all channels, as indices are; of a scene whose picture is
+ * spectral that is so from the start. Its pixels are then not those of an rgb film. */
+void probe_one_wavelength(probe *p);
+
 /* The tree of a pixel; with four samples a pixel it has four roots, linked by next. STATUS_BAD_INPUT outside the picture, and
  * for a tree of more than PROBE_NODES_MAX rays. */
 enum { PROBE_NODES_MAX = 2000000 };

@@ -10,6 +10,7 @@ struct probe {
     plan *scene;
     tracer *rays;
     film *picture;   /* one pixel */
+    bool spectral;   /* its picture would be */
 };
 
 /* A record of a queue, by itself. */

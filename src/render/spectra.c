@@ -70,12 +70,39 @@ static body_spectrum body_at(const lifted_scene *l, size_t rank, double lambda_n
     return b;
 }
 
+/* How many wavelengths share one offset. */
+static int64_t wavelengths_together(const render_settings *render)
+{
+    return render->integrator == INTEGRATOR_PATH ? render->paths : render->wavelengths;
+}
+
+/* Number `i` of `count` wavelengths. */
+static int64_t wavelength_of(int64_t i, int64_t count, int offset)
+{
+    return (int64_t)(((double)i + (offset + 0.5) / SPECTRA_OFFSETS) / (double)count * SPECTRA_COUNT);
+}
+
+static void whiten(spectra *p, const render_settings *render, int offset)
+{
+    const int64_t count = wavelengths_together(render);
+    double white[3], sum[3] = {0.0, 0.0, 0.0};
+    linear_srgb_to_xyz((const double[3]){1.0, 1.0, 1.0}, white);
+    for (int64_t i = 0; i < count; i++) {
+        const spectral_row *row = &p->rows[wavelength_of(i, count, offset)];
+        for (int c = 0; c < 3; c++)
+            sum[c] += row->eye[c] * row->basis[0] / (double)count;
+    }
+    for (int c = 0; c < 3; c++)
+        p->white[offset][c] = count < SPECTRA_WHITE_FROM ? 1.0 : white[c] / sum[c];
+}
+
 static bool fill_tables(const lifted_scene *l, spectra *p)
 {
     p->rows = calloc(SPECTRA_COUNT, sizeof *p->rows);
     p->bodies = calloc(SPECTRA_COUNT * p->ranks, sizeof *p->bodies);
     p->lights = calloc(SPECTRA_COUNT * (p->light_count + 1), sizeof *p->lights);
-    if (!p->rows || !p->bodies || !p->lights)
+    p->white = calloc(SPECTRA_OFFSETS, sizeof *p->white);
+    if (!p->rows || !p->bodies || !p->lights || !p->white)
         return false;
     for (size_t i = 0; i < SPECTRA_COUNT; i++) {
         const double lambda_nm = spectra_lambda((int64_t)i);
@@ -85,6 +112,8 @@ static bool fill_tables(const lifted_scene *l, spectra *p)
         for (size_t k = 0; k < p->light_count; k++)
             p->lights[i * p->light_count + k] = lifted_emission(&l->light[k], lambda_nm);
     }
+    for (int i = 0; i < SPECTRA_OFFSETS; i++)
+        whiten(p, &l->s->render, i);
     return true;
 }
 
@@ -111,6 +140,7 @@ void spectra_destroy(spectra *p)
     free(p->rows);
     free(p->bodies);
     free(p->lights);
+    free(p->white);
     free(p);
 }
 
@@ -119,13 +149,13 @@ double spectra_lambda(int64_t number)
     return OBSERVER_LOW_NM + ((double)number + 0.5) * ((double)(OBSERVER_HIGH_NM - OBSERVER_LOW_NM) / SPECTRA_COUNT);
 }
 
-int64_t spectra_choose(const render_settings *render, int64_t ticket)
+int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t ticket, const double **white)
 {
-    const int64_t count = render->integrator == INTEGRATOR_PATH ? render->paths : render->wavelengths;
+    const int64_t count = wavelengths_together(render);
     const int64_t sample = ticket_sample(ticket), all_of = ticket_make(ticket_pixel(ticket), sample / count);
-    const double offset = random_unit(draw(render->seed, all_of, 0, DRAW_WAVELENGTH).word[0]);
-    const double place = ((double)(sample % count) + offset) / (double)count;
-    return ticket_with_wavelength(ticket, (int64_t)(place * SPECTRA_COUNT));
+    const int offset = (int)(draw(render->seed, all_of, 0, DRAW_WAVELENGTH).word[0] % SPECTRA_OFFSETS);
+    *white = p->white[offset];
+    return ticket_with_wavelength(ticket, wavelength_of(sample % count, count, offset));
 }
 
 /* A texel as white, the best fitting secondary and the best fitting primary: Smits, "An RGB to Spectrum Conversion for Reflectances",

@@ -13,6 +13,9 @@
 /* A number of wavelengths that puts each of the observer's 5 nm into 50 of them. */
 enum { SPECTRA_COUNT = 10 * (OBSERVER_HIGH_NM - OBSERVER_LOW_NM), SKY_BASIS_COUNT = 7 };
 
+/* Offsets that the wavelengths of a pixel can have, and from how many wavelengths on their sum is made good. */
+enum { SPECTRA_OFFSETS = 256, SPECTRA_WHITE_FROM = 8 };
+
 /* What all share at one wavelength. */
 typedef struct spectral_row {
     double eye[3]; /* observer_weights */
@@ -27,6 +30,7 @@ typedef struct spectra {
     spectral_row *rows;    /* by wavelength */
     body_spectrum *bodies; /* by wavelength, then rank */
     double *lights;        /* by wavelength, then light: radiance of its colour times its intensity */
+    double (*white)[3];    /* by offset: what makes the wavelengths of a pixel, seen under D65, white */
     size_t ranks, light_count;
 } spectra;
 
@@ -39,8 +43,10 @@ double spectra_lambda(int64_t number);
 
 /* A ticket with its wavelength. Those of one point of a pixel lie evenly over 380..780 nm, from an offset that is hashed from seed,
  * pixel and point (Cranley and Patterson, "Randomization of Number Theoretic Methods for Multiple Integration", SIAM J. Numer. Anal.
- * 13(6), 1976): the observer's curves are smooth and end at 0, where such sums err least. */
-int64_t spectra_choose(const render_settings *render, int64_t ticket);
+ * 13(6), 1976): the observer's curves are smooth and end at 0, where such sums err least. What is left of the error for white is
+ * taken out by weights for X, Y and Z (*white), so that a white furnace is white whatever the offset; below SPECTRA_WHITE_FROM
+ * wavelengths, where that would be no small change, they are 1. */
+int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t ticket, const double **white);
 
 static inline const spectral_row *spectra_row(const spectra *p, int64_t ticket)
 {

@@ -252,8 +252,11 @@ static void put_camera_rays_in_line(tracer *t, int y, int x0, int64_t first, int
         q->wr[i] = q->wg[i] = q->wb[i] = 1.0 / (double)each;
         q->start[i] = FACE_NONE;
         q->ticket[i] = ticket_make((int64_t)y * r->width + x, t->by_ticket ? ray : 0);
-        if (p->spectral)
-            q->ticket[i] = spectra_choose(r, q->ticket[i]);
+        if (p->spectral) {
+            const double *white;
+            q->ticket[i] = spectra_choose(p->spectral, r, q->ticket[i], &white);
+            q->wr[i] *= white[0], q->wg[i] *= white[1], q->wb[i] *= white[2];
+        }
         q->ticket[i] |= flag;
         q->inside[i] = p->eye_inside;
         q->sq[i] = q->su[i] = q->sv[i] = 0.0;
