@@ -123,6 +123,26 @@ static void branches_that_weigh_too_little_are_cut(void **state)
     scene_destroy(s);
 }
 
+/* In a slab that lets one channel pass alone: a branch goes on for as long as that one weighs enough, whichever it is. R comes
+ * back, and T^2 and T^2 R of the clear channel; its next branch weighs 0.96 R^2. */
+static void a_branch_weighs_what_its_heaviest_channel_does(void **state)
+{
+    (void)state;
+    static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9", "slab.absorb_per_m=9,9,0"};
+    for (int clear = 0; clear < 3; clear++) {
+        scene *s = scene_from(slab_scene);
+        set_all(s, "render.depth=8 render.min_weight=0.01 background.kind=uniform background.color=1,1,1");
+        set(s, clear_for[clear]);
+        const vec3 seen = look(s);
+        const double by_channel[3] = {seen.x, seen.y, seen.z};
+        for (int c = 0; c < 3; c++) {
+            const double kept = c == clear ? 1.0 : exp(-9.0), R = 0.04, T = 0.96;
+            assert_near(by_channel[c], R + T * T * kept + T * T * R * kept * kept, 1e-12);
+        }
+        scene_destroy(s);
+    }
+}
+
 /* Clear solids in one another, a mirror, and the camera among them. */
 static const char furnace_scene[] =
     "render: {width: 24, height: 18, shadows: off}\n"
@@ -292,6 +312,7 @@ int main(void)
         cmocka_unit_test(slab_under_fresnel_weights),
         cmocka_unit_test(slab_under_constant_weights),
         cmocka_unit_test(branches_that_weigh_too_little_are_cut),
+        cmocka_unit_test(a_branch_weighs_what_its_heaviest_channel_does),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(a_furnace_under_constant_weights_is_white),
         cmocka_unit_test(light_that_is_cut_off_is_accounted_for),
