@@ -264,6 +264,29 @@ static void who_has_left_by_a_face_does_not_come_back(void **state)
     on_all_faces(stays_outside);
 }
 
+static void is_on_one_side_or_the_other(const arrangement *a, const one_hit *h, vec3 along, vec3 outward, double lean)
+{
+    (void)lean;
+    const uint64_t inside = arrangement_inside(a, h->point);
+    const one_hit in = nearest_interface(a, (one_ray){h->point, vec3_normalize(vec3_sub(along, outward)), FACE_NONE, inside});
+    const one_hit out = nearest_interface(a, (one_ray){h->point, vec3_normalize(vec3_add(along, outward)), FACE_NONE, inside});
+    if (inside) {
+        assert_true(in.before == 1 && in.t > 0.0 && (in.crossed == 0 || a->primitives[0].kind == PRIMITIVE_HALFSPACE));
+        assert_true(out.crossed == 0 && out.before == 1 && out.t <= 1e-13);
+    } else {
+        assert_true(in.crossed == 0 && in.before == 0 && in.after == 1 && in.t <= 1e-13);
+        assert_int_equal(out.crossed, -1);
+    }
+}
+
+/* A ray that starts in the open, on a surface but for rounding, as from an eye that was placed there: by its set it is
+ * inside or outside, and inwards it enters there and then or has entered. It cannot slip through. */
+static void a_start_at_the_edge_is_on_one_side_or_the_other(void **state)
+{
+    (void)state;
+    on_all_faces(is_on_one_side_or_the_other);
+}
+
 /* A mirrored ray on the wall of a cup's hollow crosses it to the other side, and leaves it by the open top. */
 static void a_cup_is_met_again_through_its_hollow(void **state)
 {
@@ -303,6 +326,7 @@ int main(void)
         cmocka_unit_test(convex_solids_are_met_twice_and_no_more),
         cmocka_unit_test(the_root_of_the_starting_face_is_zero),
         cmocka_unit_test(who_has_left_by_a_face_does_not_come_back),
+        cmocka_unit_test(a_start_at_the_edge_is_on_one_side_or_the_other),
         cmocka_unit_test(a_cup_is_met_again_through_its_hollow),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
