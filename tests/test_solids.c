@@ -189,19 +189,25 @@ static void aim(const solid_shape *s, const arrangement *a, vec3 from, vec3 dire
 
 typedef void ray_maker(const solid_shape *s, const arrangement *a, uint64_t *seed);
 
-static void for_all_shapes(ray_maker *make, int rays)
+static void for_all_shapes_at(vec3 away, ray_maker *make, int rays)
 {
     uint64_t seed = 11;
     for (size_t i = 0; i < COUNT(shapes); i++) {
         for (size_t k = 0; k < COUNT(turns); k++) {
             solid_shape s = shapes[i];
             s.rotation_deg = turns[k];
+            s.position = vec3_add(s.position, away);
             arrangement *a = arrange_one(&s);
             for (int n = 0; n < rays; n++)
                 make(&s, a, &seed);
             arrangement_destroy(a);
         }
     }
+}
+
+static void for_all_shapes(ray_maker *make, int rays)
+{
+    for_all_shapes_at(vec3_make(0.0, 0.0, 0.0), make, rays);
 }
 
 /* A place of the shape that matters: its middle, a rim, an edge, a corner, or anywhere about it; in the world. */
@@ -244,6 +250,20 @@ static void rays_from_far_away(void **state)
 {
     (void)state;
     for_all_shapes(from_far, 400);
+}
+
+static void from_beside(const solid_shape *s, const arrangement *a, uint64_t *seed)
+{
+    vec3 from = vec3_add(s->position, random_point(seed, 3.0));
+    aim(s, a, from, vec3_sub(place_on(s, seed), from));
+}
+
+/* Ray and solid are near one another and both far from the origin: the world's coordinates are coarse there, and the error
+ * bound has to know it. */
+static void solids_far_from_the_origin(void **state)
+{
+    (void)state;
+    for_all_shapes_at(vec3_make(3000.1, -7000.7, 5000.3), from_beside, 400);
 }
 
 /* Along a local axis but for a component that is 0, -0 or next to nothing. */
@@ -298,6 +318,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_ray_agrees_with_quadruple_precision),
         cmocka_unit_test(rays_from_far_away),
+        cmocka_unit_test(solids_far_from_the_origin),
         cmocka_unit_test(rays_along_the_axes),
         cmocka_unit_test(grazing_rays),
     };
