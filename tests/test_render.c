@@ -143,6 +143,30 @@ static void a_branch_weighs_what_its_heaviest_channel_does(void **state)
     }
 }
 
+/* In a slab of unit thickness that lets exp(-a) of each channel pass. The first branches weigh R and T; the one inside
+ * makes T exp(-a) (R + T) of itself at the other side, all of which depth 1 cuts off, and a least weight of 0.5 the smaller of
+ * each pair. */
+static void what_is_cut_off_is_counted_by_channel(void **state)
+{
+    (void)state;
+    need_counters();
+    const double a_per_m[3] = {0.3, 0.0, 0.1}, R = 0.04, T = 0.96;
+    scene *s = scene_from(slab_scene);
+    set_all(s, "slab.absorb_per_m=0.3,0,0.1 render.depth=1");
+    render_result *shallow = render(s);
+    set_all(s, "render.depth=8 render.min_weight=0.5");
+    render_result *pruned = render(s);
+    assert_int_equal(pruned->counters.cut_weight, 2);
+    for (int c = 0; c < 3; c++) {
+        const double kept = exp(-a_per_m[c]);
+        assert_near((double)shallow->counters.cut_depth_throughput[c] / COUNTERS_CUT_ONE, T * kept, 1e-10);
+        assert_near((double)pruned->counters.cut_weight_throughput[c] / COUNTERS_CUT_ONE, R + T * R * kept, 1e-10);
+    }
+    render_result_destroy(shallow);
+    render_result_destroy(pruned);
+    scene_destroy(s);
+}
+
 /* Clear solids in one another, a mirror, and the camera among them. */
 static const char furnace_scene[] =
     "render: {width: 24, height: 18, shadows: off}\n"
@@ -313,6 +337,7 @@ int main(void)
         cmocka_unit_test(slab_under_constant_weights),
         cmocka_unit_test(branches_that_weigh_too_little_are_cut),
         cmocka_unit_test(a_branch_weighs_what_its_heaviest_channel_does),
+        cmocka_unit_test(what_is_cut_off_is_counted_by_channel),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(a_furnace_under_constant_weights_is_white),
         cmocka_unit_test(light_that_is_cut_off_is_accounted_for),
