@@ -84,6 +84,58 @@ static void what_is_not_left_to_chance_is_exact(void **state)
     scene_destroy(s);
 }
 
+/* The rule of lighting is the tree's alone: paths are lit alike under each, highlights of points of light included. */
+static void paths_have_highlights_under_every_lighting(void **state)
+{
+    (void)state;
+    static const char *const rules[] = {"render.lighting=lambert", "render.lighting=phong"};
+    scene *s = scene_from(certain_scene);
+    render_result *wanted = render(s);
+    for (size_t k = 0; k < COUNT(rules); k++) {
+        set(s, rules[k]);
+        render_result *r = render(s);
+        assert_true(film_hash(r->picture) == film_hash(wanted->picture));
+        render_result_destroy(r);
+    }
+    render_result_destroy(wanted);
+    /* Head-on R.V is 1: k_s I C of the lamp behind the eye, and nothing else without k_d. */
+    set_all(s, "floor.diffuse=0 camera.position=0,2,0 camera.target=0,0,0 lamp.position=0,7,0 render.width=1 render.height=1");
+    for (size_t k = 0; k < COUNT(rules); k++) {
+        set(s, rules[k]);
+        const vec3 seen = look(s);
+        assert_true(fabs(seen.x - 0.24) < ROUNDINGS && fabs(seen.y - 0.168) < ROUNDINGS && fabs(seen.z - 0.096) < ROUNDINGS);
+    }
+    scene_destroy(s);
+}
+
+/* --- matte and mirror in one --- */
+
+static const char glossy_scene[] = "render: {width: 1, height: 1, depth: 1, integrator: path, paths: 65536}\n"
+                                   "camera: {position: [0, 3, -3], target: [0, 0, 0], fov_deg: 0.01}\n"
+                                   "background: {kind: gradient, color: [1, 0.2, 0.5], horizon: [0, 0.8, 0.1]}\n"
+                                   "solids: {floor: {shape: plane, color: [0.9, 0.6, 0.3], diffuse: 0.5}}\n";
+
+/* A sky of h + (s - h) cos theta lights a floor like h + 2/3 (s - h), the mean of cos theta by the cosine law; at 45 degrees
+ * the mirror sees it at cos theta = 1 / sqrt 2. Which of the two a path takes tells nothing of where it goes. */
+static void a_matte_mirror_has_both_shares_of_the_sky(void **state)
+{
+    (void)state;
+    static const double high[3] = {1.0, 0.2, 0.5}, low[3] = {0.0, 0.8, 0.1}, color[3] = {0.9, 0.6, 0.3};
+    scene *s = scene_from(glossy_scene);
+    for (double mirror = 0.0; mirror < 0.6; mirror += 0.25) {
+        char assignment[64];
+        snprintf(assignment, sizeof assignment, "floor.reflectivity=%g", mirror);
+        set(s, assignment);
+        for (int c = 0; c < 3; c++) {
+            const double matte = low[c] + 2.0 / 3.0 * (high[c] - low[c]), mirrored = low[c] + sqrt(0.5) * (high[c] - low[c]);
+            const estimate e = look_by_chance(s, c);
+            expect_estimate(e, 0.5 * color[c] * matte + mirror * mirrored);
+            assert_true(e.standard_error < 0.004);
+        }
+    }
+    scene_destroy(s);
+}
+
 /* --- a sphere's light --- */
 
 /* The eye is far away, and sees the middle of a floor past the lamp. */
@@ -120,6 +172,97 @@ static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
     print_message("%d lamps: %.0f%% in their 95%% interval\n", a.count, 100.0 * agreement_share(&a));
     assert_true(a.count > 30 && agreement_share(&a) > 0.85);
     assert_true(fabs(agreement_off(&a)) < 4.0);
+    scene_destroy(s);
+}
+
+/* Lamps in the direction (0, 0.6, 0.8), where the eye's ray is mirrored to: R.V is the cosine of the angle from the lamp's middle, so that
+ * Phong's highlight is k_s times the light, 2 L times the integral of cos^n over the cosines of the cone, from sqrt(1 - s^2) to 1. */
+static void a_sphere_has_a_highlight(void **state)
+{
+    (void)state;
+    static const double shares[] = {0.05, 0.3, 0.55}, shininess[] = {1.0, 2.5, 40.0};
+    scene *s = scene_from(lamp_scene);
+    set_all(s, "floor.diffuse=0 floor.specular=0.4");
+    s->lights[0].position = vec3_make(0.0, 3.0, 4.0);
+    for (size_t i = 0; i < COUNT(shares); i++)
+        for (size_t j = 0; j < COUNT(shininess); j++) {
+            const double r = 5.0 * shares[i], n = shininess[j], least_cos = sqrt(1.0 - shares[i] * shares[i]);
+            char assignment[64];
+            snprintf(assignment, sizeof assignment, "floor.shininess=%g", n);
+            set(s, assignment);
+            s->lights[0].radius = r;
+            const double wanted = 0.4 * 2.0 * 3.0 * 4.0 / (r * r) * (1.0 - pow(least_cos, n + 1.0)) / (n + 1.0);
+            const estimate e = look_by_chance(s, 0);
+            expect_estimate(e, wanted);
+            assert_true(e.standard_error < 0.05 * wanted);
+        }
+    scene_destroy(s);
+}
+
+/* In the same place, of a floor that is a mirror too: the lamp itself, of radiance L, by the mirror's share; and by the matte
+ * one what Lambert's law of spheres says, once, for the path that goes on by chance does not count the lamp again. */
+static void a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once(void **state)
+{
+    (void)state;
+    scene *s = scene_from(lamp_scene);
+    set_all(s, "lamp.position=0,3,4 lamp.radius=2 floor.reflectivity=0.25 render.depth=1 render.paths=4096");
+    const double lamp = 3.0 * 4.0 / 4.0, lit = 0.7 * 0.9 * 3.0 * 4.0 / 25.0 * 0.6;
+    estimate e = look_by_chance(s, 0);
+    expect_estimate(e, 0.25 * lamp + lit);
+    assert_true(e.standard_error < 0.03);
+    set(s, "floor.reflectivity=0");
+    e = look_by_chance(s, 0);
+    expect_estimate(e, lit);
+    assert_true(e.standard_error < 0.01 * lit);
+    set_all(s, "floor.reflectivity=0.25 floor.diffuse=0");
+    expect_estimate(look_by_chance(s, 0), 0.25 * lamp);
+    scene_destroy(s);
+}
+
+/* Beside a sphere, whichever stands first, a clear pane takes a point's light; alone the point shines through by the clearness of
+ * its two faces. */
+static void beside_a_sphere_clear_solids_block_points_of_light(void **state)
+{
+    (void)state;
+    static const char *const radii[] = {"one.radius=0 two.radius=0", "one.radius=0.5 two.radius=0", "one.radius=0 two.radius=0.5"};
+    for (size_t k = 0; k < COUNT(radii); k++) {
+        scene *s = scene_from("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 8, beyond: black}\n"
+                              "camera: {position: [0, 1, 0], target: [0, 0, 0]}\n"
+                              "background: {color: [0, 0, 0]}\n"
+                              "lights: {one: {position: [0, 4, 0], reach: 4}, two: {position: [0, 4, 0], reach: 4}}\n"
+                              "solids:\n"
+                              "  floor: {shape: plane, diffuse: 0.5}\n"
+                              "  pane: {shape: box, transparency: 0.9, ior: 1.5, position: [0, 2, 0], size: [9, 0.5, 9]}\n");
+        set_all(s, radii[k]);
+        const vec3 seen = look(s);
+        assert_true(fabs(seen.x - (k == 0 ? 2.0 * 0.5 * 0.81 : 0.0)) < ROUNDINGS);
+        scene_destroy(s);
+    }
+}
+
+/* A red and a green lamp in one place: had both drawn the same points, red and green would be one number. Drawn apart, the
+ * variance of their difference is the sum of their variances; over 64 seeds it is between 0.5 and 1.5 of it. */
+static void lamps_are_looked_for_apart(void **state)
+{
+    (void)state;
+    enum { DRAWS = 64 };
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 64, beyond: black}\n"
+                          "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.01}\n"
+                          "background: {color: [0, 0, 0]}\n"
+                          "lights:\n"
+                          "  red: {position: [0, 4, 0], color: [1, 0, 0], reach: 2, radius: 2}\n"
+                          "  green: {position: [0, 4, 0], color: [0, 1, 0], reach: 2, radius: 2}\n"
+                          "solids: {floor: {shape: plane, diffuse: 1}}\n");
+    const double wanted = 0.25; /* intensity (reach / d)^2, as above */
+    double own = 0.0, difference = 0.0;
+    for (int seed = 0; seed < DRAWS; seed++) {
+        s->render.seed = seed;
+        const vec3 seen = look(s);
+        own += (seen.x - wanted) * (seen.x - wanted) + (seen.y - wanted) * (seen.y - wanted);
+        difference += (seen.x - seen.y) * (seen.x - seen.y);
+    }
+    assert_true(own > 0.0 && own / (2 * DRAWS) < 1e-4); /* a hundredth */
+    assert_true(difference > 0.5 * own && difference < 1.5 * own);
     scene_destroy(s);
 }
 
@@ -303,6 +446,28 @@ static uint64_t rays_of(const scene *s)
     const uint64_t rays = ray_counters_total(&r->counters);
     render_result_destroy(r);
     return rays;
+}
+
+/* The wall is a mirror too, which the light from the middle does not show: of each channel goes on k_d C, and by the mirror k_r.
+ * Whether a path ends does not hang on which of the two it takes. */
+static void roulette_does_not_choose_between_matte_and_mirror(void **state)
+{
+    (void)state;
+    scene *s = scene_from(hollow_scene);
+    set_all(s, "stone.diffuse=0.5 stone.reflectivity=0.3 render.roulette=on render.paths=1024");
+    agreement a = {0};
+    render_result *r = render(s);
+    for (int i = 0; i < 48; i++)
+        for (int c = 0; c < 3; c++) {
+            const double matte = 0.5 / (1 << c), on = matte + 0.3;
+            agreement_add(&a, estimate_at(r, i % 8, i / 8, c), matte * 3.0 / 4.0 * (1.0 - pow(on, 61.0)) / (1.0 - on), 0.0);
+        }
+    print_message("matte mirror: %.1f%% in their 95%% interval, mean off by %.2f standard errors\n", 100.0 * agreement_share(&a),
+                  agreement_off(&a));
+    assert_int_equal(a.count, 144);
+    assert_true(agreement_share(&a) > 0.90 && fabs(agreement_off(&a)) < 4.0);
+    render_result_destroy(r);
+    scene_destroy(s);
 }
 
 static void roulette_keeps_the_mean_and_saves_rays(void **state)
@@ -494,7 +659,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paths_through_clear_solids_have_the_trees_mean),
         cmocka_unit_test(what_is_not_left_to_chance_is_exact),
+        cmocka_unit_test(paths_have_highlights_under_every_lighting),
+        cmocka_unit_test(a_matte_mirror_has_both_shares_of_the_sky),
         cmocka_unit_test(a_sphere_lights_a_floor_by_lamberts_law),
+        cmocka_unit_test(a_sphere_has_a_highlight),
+        cmocka_unit_test(a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once),
+        cmocka_unit_test(beside_a_sphere_clear_solids_block_points_of_light),
+        cmocka_unit_test(lamps_are_looked_for_apart),
         cmocka_unit_test(the_horizon_cuts_a_lamp),
         cmocka_unit_test(a_half_shadow_is_as_wide_as_similar_triangles_say),
         cmocka_unit_test(a_slab_takes_its_reflections_from_the_lamps_light),
@@ -502,6 +673,7 @@ int main(void)
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(light_in_a_hollow_ball_is_a_geometric_series),
         cmocka_unit_test(roulette_keeps_the_mean_and_saves_rays),
+        cmocka_unit_test(roulette_does_not_choose_between_matte_and_mirror),
         cmocka_unit_test(a_sphere_in_a_hollow_ball_is_the_same_light),
         cmocka_unit_test(a_lamp_in_an_absorbing_medium_is_dimmed_up_to_itself),
         cmocka_unit_test(the_reported_standard_error_is_what_seeds_differ_by),

@@ -219,6 +219,31 @@ static void a_ray_can_be_traced_again(void **state)
     scene_destroy(s);
 }
 
+/* Shadow rays to two lamps in one place are one line, but each is one lamp's own, in their order. */
+static void lamps_in_one_place_are_told_apart(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1}\n"
+                          "lights: {far: {position: [0, 9, 0]}, red: {position: [0, 4, 0], color: [1, 0, 0]}, "
+                          "green: {position: [0, 4, 0], color: [0, 1, 0]}}\n"
+                          "solids: {floor: {shape: plane, diffuse: 1}}\n");
+    probe *p = probe_of(s);
+    ray_tree tree = {0};
+    worked(probe_ray(p, vec3_make(1, 1, 0), vec3_make(0, -1, 0), &tree, NULL), NULL);
+    int lamp = 0;
+    for (int i = tree.node[0].first_child; i != RAY_NONE; i = tree.node[i].next) {
+        if (tree.node[i].kind != RAY_SHADOW)
+            continue;
+        assert_int_equal(tree.node[i].light, lamp);
+        assert_true((tree.node[i].brought[0] > 0.0) == (lamp != 2) && (tree.node[i].brought[1] > 0.0) == (lamp != 1));
+        lamp++;
+    }
+    assert_int_equal(lamp, 3);
+    ray_tree_release(&tree);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
 static void a_way_goes_straight_on_or_turns_back_where_told(void **state)
 {
     (void)state;
@@ -270,6 +295,7 @@ int main(void)
         cmocka_unit_test(a_cut_ray_keeps_its_polarisation),
         cmocka_unit_test(any_length_of_direction_will_do),
         cmocka_unit_test(a_ray_can_be_traced_again),
+        cmocka_unit_test(lamps_in_one_place_are_told_apart),
         cmocka_unit_test(a_way_goes_straight_on_or_turns_back_where_told),
         cmocka_unit_test(absorption_of_a_spectral_scene_is_that_of_its_wavelength),
     };
