@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "render/probe.h"
+#include "geometry/arrangement.h"
 #include "render_fixture.h"
 
 /* One ray taken apart: what the tree says is what the film holds, to the bit, and what it says of a hit is what the laws say. */
@@ -219,6 +220,46 @@ static void a_ray_can_be_traced_again(void **state)
     scene_destroy(s);
 }
 
+/* R, and T^2 and T^2 R of a channel that the slab lets pass: it alone is worth a ray, whichever it is. */
+static void a_ray_weighs_what_its_heaviest_channel_does(void **state)
+{
+    (void)state;
+    static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9", "slab.absorb_per_m=9,9,0"};
+    for (int clear = 0; clear < 3; clear++) {
+        scene *s = scene_from(slab_text);
+        set_all(s, "render.depth=8 render.min_weight=0.01 background.kind=uniform background.color=1,1,1");
+        set(s, clear_for[clear]);
+        probe *p = probe_of(s);
+        ray_tree tree = {0};
+        worked(probe_ray(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), &tree, NULL), NULL);
+        for (int c = 0; c < 3; c++) {
+            const double kept = c == clear ? 1.0 : exp(-18.0), R = 0.04, T = 0.96;
+            assert_true(fabs(tree.radiance[c] - (R + T * T * kept + T * T * R * kept * kept)) < 1e-12);
+        }
+        ray_tree_release(&tree);
+        probe_destroy(p);
+        scene_destroy(s);
+    }
+}
+
+/* A cup's hollow has a side and a floor of its own, numbered after those of its outside. */
+static void faces_of_a_cups_hollow_are_told_apart(void **state)
+{
+    (void)state;
+    static const struct { vec3 from, to; int face; } ways[] = {
+        {{5, 1, 0}, {0, 1, 0}, 0}, {{0, -5, 0}, {0, 0, 0}, 1}, {{0, 1, 0}, {1, 1, 0}, FACES_MAX}, {{0, 5, 0}, {0, 0, 0}, FACES_MAX + 1}};
+    scene *s = scene_from("solids: {cup: {shape: cup, transparency: 1, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1}}\n");
+    probe *p = probe_of(s);
+    ray_tree tree = {0};
+    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+        worked(probe_ray(p, ways[i].from, vec3_sub(ways[i].to, ways[i].from), &tree, NULL), NULL);
+        assert_int_equal(tree.node[0].hit.face, ways[i].face);
+    }
+    ray_tree_release(&tree);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
 /* Shadow rays to two lamps in one place are one line, but each is one lamp's own, in their order. */
 static void lamps_in_one_place_are_told_apart(void **state)
 {
@@ -295,6 +336,8 @@ int main(void)
         cmocka_unit_test(a_cut_ray_keeps_its_polarisation),
         cmocka_unit_test(any_length_of_direction_will_do),
         cmocka_unit_test(a_ray_can_be_traced_again),
+        cmocka_unit_test(a_ray_weighs_what_its_heaviest_channel_does),
+        cmocka_unit_test(faces_of_a_cups_hollow_are_told_apart),
         cmocka_unit_test(lamps_in_one_place_are_told_apart),
         cmocka_unit_test(a_way_goes_straight_on_or_turns_back_where_told),
         cmocka_unit_test(absorption_of_a_spectral_scene_is_that_of_its_wavelength),

@@ -270,6 +270,30 @@ static void four_samples_are_the_mean_of_four_pixels(void **state)
     scene_destroy(fine);
 }
 
+/* Yaw turns the camera from z towards x, so that right is (cos yaw, 0, -sin yaw); pitch lifts it. A ball there is in the
+ * middle of the right one of two pixels, at tan 30 degrees. */
+static void what_is_to_the_right_is_seen_to_the_right(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 2, height: 1, shadows: off}\n"
+                          "camera: {position: [0.5, 0.2, -0.3], yaw_deg: 0, fov_deg: 60}\n"
+                          "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\n"
+                          "solids: {ball: {shape: sphere, ambient: 1, color: [1, 1, 1], radius: 1}}\n");
+    for (int k = 0; k < 24; k++) {
+        const double yaw_deg = 15.0 * k, pitch_deg = 20.0 * (k % 7 - 3), radian = acos(-1.0) / 180.0;
+        const double yaw = yaw_deg * radian, pitch = pitch_deg * radian;
+        const vec3 forward = vec3_make(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw)), right = vec3_make(cos(yaw), 0.0, -sin(yaw));
+        s->camera.yaw_deg = yaw_deg, s->camera.pitch_deg = pitch_deg;
+        s->solids[0].shape.position =
+            vec3_add(s->camera.position, vec3_scale(vec3_add(forward, vec3_scale(right, tan(30.0 * radian))), 10.0));
+        render_result *result = render(s);
+        assert_true(film_value(result->picture, 0, 0, 0) == 0.0);
+        assert_near(film_value(result->picture, 1, 0, 0), 1.0, 1e-12);
+        render_result_destroy(result);
+    }
+    scene_destroy(s);
+}
+
 /* A crossing between equal indices is no interface: no highlight, no depth, no ray. */
 static void solids_of_index_one_are_not_there(void **state)
 {
@@ -342,6 +366,7 @@ int main(void)
         cmocka_unit_test(a_furnace_under_constant_weights_is_white),
         cmocka_unit_test(light_that_is_cut_off_is_accounted_for),
         cmocka_unit_test(four_samples_are_the_mean_of_four_pixels),
+        cmocka_unit_test(what_is_to_the_right_is_seen_to_the_right),
         cmocka_unit_test(solids_of_index_one_are_not_there),
         cmocka_unit_test(first_hits_of_the_rod_scene),
         cmocka_unit_test(neighbours_may_meet_different_bodies_on_one_face),

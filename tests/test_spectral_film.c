@@ -399,6 +399,23 @@ static void lamps_that_are_spheres_have_their_colour(void **state)
     scene_destroy(s);
 }
 
+/* A slab whose index is the surroundings' at render.lambda_nm, 1.4375 + 0.015625 um^2 / 0.25 um^2 = 1.5, and lower at longer
+ * wavelengths, is one medium with them for no other. At 85 degrees it reflects all beyond 525 nm, where sin 85 > n / 1.5: red sees the
+ * sky, sin 5 of its brightness up there, and blue the black below. */
+static void media_alike_at_one_wavelength_are_two(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, spectrum: spectral, wavelengths: 64, lambda_nm: 500, depth: 3}\n"
+                          "camera: {position: [0, 1, 0], pitch_deg: -5, fov_deg: 0.01}\n"
+                          "background: {kind: gradient, color: [1, 1, 1], horizon: [0, 0, 0], ior: 1.5}\n"
+                          "solids: {slab: {shape: box, position: [0, -500, 0], size: [1000, 1000, 1000], transparency: 1, medium: cauchy, "
+                          "coefficients: [1.4375, 0.015625]}}\n");
+    const vec3 seen = look(s);
+    const double sky = sin(acos(-1.0) / 36.0);
+    assert_true(seen.x > 0.9 * sky && seen.z < 0.2 * sky);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -414,6 +431,7 @@ int main(void)
         cmocka_unit_test(a_band_that_is_absorbed_is_missing),
         cmocka_unit_test(random_paths_have_the_same_colours),
         cmocka_unit_test(lamps_that_are_spheres_have_their_colour),
+        cmocka_unit_test(media_alike_at_one_wavelength_are_two),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
