@@ -100,6 +100,49 @@ static void a_slab_shifts_a_point(void **state)
     scene_destroy(s);
 }
 
+/* Outer rays that miss the ball are not of its focus. A ray that meets the axis at a = sin i / sin d, turned by d = 2 (i - t), is
+ * |x - a| sin d away from x there; the sum of the squares is least at sum a sin^2 d / sum sin^2 d. */
+static void the_focus_is_that_of_the_rays_that_were_bent(void **state)
+{
+    (void)state;
+    scene *s = scene_from(ball_text);
+    const fan_rule rule = {.from = {-5, 0, 0}, .to = {5, 0, 0}, .rays = 9, .width = 3.6};
+    fan f = follow(s, &rule);
+    double weights = 0.0, moment = 0.0, squares = 0.0;
+    for (int k = 1; k <= 2; k++) { /* of each side; the middle one weighs nothing */
+        const double i = asin(0.45 * k), d = 2.0 * (i - asin(0.3 * k)), weight = 2.0 * sin(d) * sin(d), at = sin(i) / sin(d);
+        weights += weight, moment += weight * at, squares += weight * at * at;
+    }
+    const double x = moment / weights, rms = sqrt((squares - x * moment) / 5.0);
+    assert_true(f.has_focus && fabs(f.focus.x - x) < 1e-12 && fabs(f.focus_rms - rms) < 1e-12);
+    fan_release(&f);
+    scene_destroy(s);
+}
+
+/* i = asin 0.9: the two rays meet at 0.9 / sin(2 (i - t)) = 1.104 on the axis, 0.204 behind the ball. A stone beside the axis stands in
+ * the way of the second from 0.177 to 0.061 before that point, and in the first one's 0.020 behind it. */
+static void rays_cross_where_both_get_to(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {depth: 6}\n"
+                          "solids:\n"
+                          "  ball: {shape: sphere, transparency: 1, ior: 1.5, radius: 1}\n"
+                          "  stone: {shape: sphere, position: [1.25, 0, 0.25], radius: 0.27}\n");
+    const fan_rule rule = {.from = {-5, 0, 0}, .to = {5, 0, 0}, .rays = 2, .width = 1.8};
+    fan f = follow(s, &rule);
+    const double i = asin(0.9), at = 0.9 / sin(2.0 * (i - asin(0.6)));
+    assert_true(f.ray[0].leaves && fabs(f.ray[0].reach - 0.204 - 0.020) < 1e-3 && fabs(f.ray[1].reach - 0.204 + 0.177) < 1e-3);
+    assert_true(f.ray[0].meets_axis && fabs(f.ray[0].axis_at - 5.0 - at) < 1e-12 && !f.ray[1].meets_axis);
+    assert_int_equal(f.crossing_count, 0);
+    fan_release(&f);
+    set(s, "stone.visible=off");
+    f = follow(s, &rule);
+    assert_true(f.ray[0].meets_axis && f.ray[1].meets_axis);
+    assert_true(f.crossing_count == 1 && fabs(f.crossing[0].at.x - at) < 1e-12);
+    fan_release(&f);
+    scene_destroy(s);
+}
+
 static void planes_are_level_or_upright_or_as_told(void **state)
 {
     (void)state;
@@ -157,6 +200,8 @@ int main(void)
         cmocka_unit_test(a_wide_pencil_is_turned_as_snell_says),
         cmocka_unit_test(light_from_the_focus_leaves_parallel),
         cmocka_unit_test(a_slab_shifts_a_point),
+        cmocka_unit_test(the_focus_is_that_of_the_rays_that_were_bent),
+        cmocka_unit_test(rays_cross_where_both_get_to),
         cmocka_unit_test(planes_are_level_or_upright_or_as_told),
         cmocka_unit_test(bad_rules_are_refused),
     };
