@@ -1,6 +1,7 @@
 # Every value of a study's table as a TeX number, \setval{study/axis values/column}{text}, formatted by what it is:
 # times in ms, rays in millions, shares in percent; and the numbers derived from them. awk -v study=NAME -f numbers.awk TABLE.tsv
 # NA makes no number: the paper then prints n/a.
+# Of a study whose axes all follow from one of them, that one is the key: alias().
 function set(key, text) { if (text != "") printf "\\setval{%s}{%s}\n", key, text }
 
 # About four digits, without an exponent.
@@ -16,14 +17,30 @@ function scientific(v,   exponent) {
     while (v >= 10) { v /= 10; exponent++ }
     return sprintf("\\ensuremath{%.2f\\cdot 10^{%d}}", v, exponent)
 }
+# Three digits.
+function significant(v,   places) {
+    if (v == 0) return "0"
+    if (v < 1e-4) return scientific(v)
+    for (places = 2; v < 1 && places < 6; v *= 10) places++
+    return sprintf("%." places "f", v / 10 ^ (places - 2))
+}
 function formatted(column, v) {
     if (v == "NA" || v == "") return ""
     if (column ~ /_s(_[a-z]+)?$/) return digits(v * 1e3)
     if (column ~ /^rays_/) return sprintf("%.3f", v / 1e6)
     if (column ~ /^(imbalance|others_share)$/) return sprintf("%.1f", v * 100)
     if (column == "peak_rss_bytes") return sprintf("%.1f", v / 1048576)
+    if (column == "psnr_db") return sprintf("%.1f", v)
+    if (column == "ssim") return sprintf("%.4f", v)
+    if (column == "differing_share") return sprintf("%.1f", v * 100)
+    if (column ~ /^(flip|mse|largest|error_rms|noise_rms|reference_noise_rms)$/) return significant(v)
     if (column ~ /^(first_hits|total_internal|n$|marked)/) return sprintf("%d", v)
     return v
+}
+function alias() {
+    if (study == "methods") return $2 == "path" ? study "/path/" $3 : study "/" $2
+    if (study == "lighting") return study "/" $2
+    return ""
 }
 function value(column) { return (column in at) && $at[column] != "NA" ? $at[column] + 0 : "" }
 
@@ -38,7 +55,8 @@ NR == 1 {
 }
 value("n") > 0 {
     key = study
-    for (i = 2; i <= axes + 1; i++) key = key "/" ($i ~ /^[-+0-9.]+$/ ? $i + 0 : $i)
+    if (alias() != "") key = alias()
+    else for (i = 2; i <= axes + 1; i++) key = key "/" ($i ~ /^[-+0-9.]+$/ ? $i + 0 : $i)
     for (i = at["n"]; i <= NF; i++) set(key "/" name[i], formatted(name[i], $i))
     rays = value("rays_total")
     cpu = value("cpu_s_median")
@@ -63,6 +81,27 @@ value("n") > 0 {
         if (!($2 in best) || wall < best[$2]) { best[$2] = wall; best_count[$2] = $3 }
         if ($3 == 1024) most[$2] = wall
     }
+    # How deep is deep enough: the rule of plots/convergence.gp.
+    if (study == "convergence" && value("flip") != "" && value("flip") < 0.01 && !($2 in enough)) {
+        enough[$2] = $3
+        set(study "/" $2 "/enough", $3)
+    }
+    if (study == "methods") {
+        if ($2 == "path" && value("error_rms") > 0) {
+            x = log($3); y = log(value("error_rms"))
+            n_xy++; sum_x += x; sum_y += y; sum_xx += x * x; sum_xy += x * y
+            if (rms_whitted != "" && !rms_first && value("error_rms") < rms_whitted) set(study "/rms-first", rms_first = $3)
+            if (flip_whitted != "" && !flip_first && value("flip") < flip_whitted) set(study "/flip-first", flip_first = $3)
+        }
+        if ($2 == "whitted") { rms_whitted = value("error_rms"); flip_whitted = value("flip"); rays_whitted = rays }
+        if (rays_whitted) set(key "/rays-ratio", digits(rays / rays_whitted))
+    }
+    # Against the first cell.
+    if (study ~ /^(spectral|polarised)$/) {
+        if (!first_cpu) { first_cpu = cpu; first_rays = rays }
+        set(key "/cpu-ratio", digits(cpu / first_cpu))
+        set(key "/rays-ratio", digits(rays / first_rays))
+    }
     if (study == "pool") wall_of[$2, $3] = wall
 }
 END {
@@ -70,6 +109,8 @@ END {
     set(study "/rows", rows)
     set(study "/marked", marked + 0)
     if (told) set(study "/others", sprintf("%.0f", others / told * 100))
+    # Least squares of log error on log N.
+    if (n_xy > 1) set("methods/slope", digits((n_xy * sum_xy - sum_x * sum_y) / (n_xy * sum_xx - sum_x * sum_x)))
     for (s in best) {
         set("threads/" s "/best", best_count[s])
         if (s in most) set("threads/" s "/loss", sprintf("%.1f", (most[s] / best[s] - 1) * 100))

@@ -46,14 +46,49 @@ published() {
         END { printf "\\setval{published/threads/best}{%s}\n", count }' "$published/threads.csv"
 }
 
+# Light through a slab: the middle pixel of each thickness, what the slab's law says, and how far they lie apart at most.
+# Index and coefficients are those of experiments/scenes/absorber.yaml, in 1/m; the law's R is Fresnel's at normal incidence.
+slab() {
+    [ -r "$results/tables/absorber.tsv" ] || return 0
+    lines=$(awk -f "$here/../plots/select.awk" -v columns='cell liquid.size.z' "$results/tables/absorber.tsv" |
+        while read -r cell thickness; do
+            picture=$(printf '%s/absorber/images/%04d.pfm' "$results" "$cell")
+            [ ! -r "$picture" ] || printf '%s\t%s\n' "$thickness" "$("$here/../plots/pixel.sh" "$picture")"
+        done)
+    [ -n "$lines" ] || return 0
+    printf '%s\n' "$lines" | awk -v R="$(awk 'BEGIN { printf "%.17g", (0.33 / 2.33) ^ 2 }')" -v absorb='200 60 10' '
+        BEGIN { split(absorb, a, " "); split("red green blue", name, " ") }
+        {
+            for (i = 1; i <= 3; i++) {
+                e = exp(-a[i] * $1 / 1000)
+                printf "\\setval{absorber/%s/%s}{%.5f}\n", $1, name[i], $(i + 1)
+                printf "\\setval{absorber/%s/%s-alone}{%.5f}\n", $1, name[i], e
+                off = $(i + 1) - (1 - R) ^ 2 * e / (1 - R ^ 2 * e ^ 2)
+                if (off < 0) off = -off
+                if (off > worst) worst = off
+            }
+        }
+        END {
+            while (worst && worst < 1) { worst *= 10; exponent-- }
+            printf "\\setval{absorber/worst}{\\ensuremath{%.1f\\cdot 10^{%d}}}\n", worst, exponent
+            printf "\\setval{absorber/points}{%d}\n", 3 * NR
+        }'
+}
+
 mkdir -p "$out"
 {
     echo "% made by paper/numbers.sh; change rows or scripts, not this"
     published
     for table in "$results"/tables/*.tsv; do
         [ -r "$table" ] || continue
-        awk -v study="$(basename "$table" .tsv)" -f "$here/numbers.awk" "$table"
+        study=$(basename "$table" .tsv)
+        case $study in
+        *-metrics) awk -v study="${study%-metrics}" -f "$here/metrics.awk" "$table" ;;
+        *-curves) awk -v study="${study%-curves}" -f "$here/curves.awk" "$table" ;;
+        *) awk -v study="$study" -f "$here/numbers.awk" "$table" ;;
+        esac
     done | sort
+    slab
     machine
     laws
     # Rays by pixel are the same for every schedule.

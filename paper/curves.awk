@@ -1,0 +1,22 @@
+# By curve how many points there are and how far they lie from theory at most: awk -v study=NAME -f curves.awk TABLE-curves.tsv
+function scientific(v,   exponent) {
+    if (v == 0) return "0"
+    exponent = 0
+    while (v < 1) { v *= 10; exponent-- }
+    while (v >= 9.95) { v /= 10; exponent++ }
+    return sprintf("\\ensuremath{%.1f\\cdot 10^{%d}}", v, exponent)
+}
+BEGIN { FS = "\t" }
+NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+$at["measured"] != "NA" && $at["theory"] != "NA" {
+    curve = $at["curve"]
+    off = $at["measured"] - $at["theory"]
+    if (off < 0) off = -off
+    if (off > worst[curve] + 0) worst[curve] = off
+    points[curve]++
+    all++
+}
+END {
+    for (c in points) printf "\\setval{%s/curve/%s/points}{%d}\n\\setval{%s/curve/%s/worst}{%s}\n", study, c, points[c], study, c, scientific(worst[c] + 0)
+    if (all) printf "\\setval{%s/curves/points}{%d}\n", study, all
+}
