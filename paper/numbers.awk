@@ -94,7 +94,7 @@ value("n") > 0 {
             if (flip_whitted != "" && !flip_first && value("flip") < flip_whitted) set(study "/flip-first", flip_first = $3)
         }
         if ($2 == "whitted") { rms_whitted = value("error_rms"); flip_whitted = value("flip"); rays_whitted = rays }
-        if (rays_whitted) set(key "/rays-ratio", digits(rays / rays_whitted))
+        rays_of[key] = rays
     }
     # Against the first cell.
     if (study ~ /^(spectral|polarised)$/) {
@@ -109,6 +109,7 @@ END {
     set(study "/rows", rows)
     set(study "/marked", marked + 0)
     if (told) set(study "/others", sprintf("%.0f", others / told * 100))
+    for (k in rays_of) if (rays_whitted) set(k "/rays-ratio", digits(rays_of[k] / rays_whitted))
     # Least squares of log error on log N.
     if (n_xy > 1) set("methods/slope", digits((n_xy * sum_xy - sum_x * sum_y) / (n_xy * sum_xx - sum_x * sum_x)))
     for (s in best) {

@@ -10,15 +10,13 @@ metric(cell, name) = first(table("ior-metrics"), sprintf("cell=%d metric=%s", ce
 # Zeros without a sign, and a minus as long as a plus.
 signed_number(value) = abs(value) < 5e-3 ? "0" : (value < 0 ? "−" : "+").sprintf("%.2f", abs(value))
 plain(value) = value < 0.05 ? "0" : sprintf("%.1f", value)
-degrees(cell, name) = metric(cell, name)*180/pi
 edges(cell) = sprintf("Rod's edges moved by %s px and %s px, rod %.3f times as wide\nA leaning rod breaks by %s° at the liquid's surface", \
     signed_number(metric(cell, "edges.left_shift")), signed_number(metric(cell, "edges.right_shift")), \
     metric(cell, "edges.magnification"), plain(abs(metric(cell, "water_line.break"))))
 # A scene without a lens has no focal length: NaN, which is not itself.
 focal(cell) = metric(cell, "lens.focal_length")
 lens(cell) = focal(cell) == focal(cell) ? \
-    sprintf("As a lens: focal length %s scene units, deviation up to %.1f°", \
-        signed_number(focal(cell)), abs(degrees(cell, "lens.deviation"))) : "No lens: light goes straight on"
+    sprintf("As a lens: focal length %s scene units", signed_number(focal(cell))) : "No lens: light goes straight on"
 # Of light that falls in at right angles, by Fresnel, in percent.
 normal(n_1, n_2) = 100*((n_1 - n_2)/(n_1 + n_2))**2
 reflected(vessel, liquid) = sprintf("Reflected at normal incidence: vessel %.1f %%, liquid %.1f %%, wall to liquid %.1f %%", \
