@@ -17,6 +17,9 @@ $at["measured"] != "NA" && $at["theory"] != "NA" {
     all++
 }
 END {
-    for (c in points) printf "\\setval{%s/curve/%s/points}{%d}\n\\setval{%s/curve/%s/worst}{%s}\n", study, c, points[c], study, c, scientific(worst[c] + 0)
+    for (c in points) {
+        printf "\\setval{%s/curve/%s/points}{%d}\n", study, c, points[c]
+        printf "\\setval{%s/curve/%s/worst}{%s}\n", study, c, scientific(worst[c] + 0)
+    }
     if (all) printf "\\setval{%s/curves/points}{%d}\n", study, all
 }
