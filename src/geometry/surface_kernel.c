@@ -21,7 +21,8 @@ ALWAYS_INLINE local_point halfspace_point(vec3 q, int64_t first)
 }
 
 /* The same comparisons of the same roots as in the first pass: the face is the one that bounded the interval there. */
-ALWAYS_INLINE local_point cylinder_point(const primitive *p, bool round, local_ray r, vec3 q, int64_t on_side, int64_t on_bottom, int64_t on_top, int64_t leaving)
+ALWAYS_INLINE local_point cylinder_point(const primitive *p, bool round, local_ray r, vec3 q, int64_t on_side, int64_t on_bottom,
+                                         int64_t on_top, int64_t leaving)
 {
     double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, p->m2), inverse_y = inverse_of_component(r.dy);
     quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, on_side);

@@ -66,7 +66,8 @@ static status read_value(const scene_reader *r, const char *path, const param *r
     }
     char *text = node_value_text(value);
     if (!text) { /* a list that holds more than numbers; or no memory, which shows again soon */
-        return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers", "%.150s holds more than plain numbers", path);
+        return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",
+                          "%.150s holds more than plain numbers", path);
     }
     code = read_located(r, value, scene_set(r->scene, path, text, r->why));
     free(text);
