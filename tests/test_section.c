@@ -188,6 +188,36 @@ static void a_window_without_extent_is_refused(void **state)
     scene_destroy(s);
 }
 
+/* A coat far thinner than a cell: all four sides are drawn along the same face of it, not two along the one and two along the other. */
+static void a_thin_coat_is_drawn_along_one_face(void **state)
+{
+    (void)state;
+    scene *s = scene_from("solids:\n"
+                          "  core: {shape: box, transparency: 1, ior: 1.5, position: [0.01, 0.02, 0], size: [2, 2, 2], priority: 1}\n"
+                          "  coat: {shape: box, transparency: 1, ior: 1.3, position: [0.01, 0.02, 0], size: [2.000002, 2.000002, 2]}\n");
+    probe *p = probe_of(s);
+    section out = cut(p, &upright, 60);
+    double least = HUGE_VAL, largest = 0.0;
+    int sides[4] = {0};
+    for (size_t k = 0; k < out.line_count; k++) {
+        const section_line *line = &out.line[k];
+        for (size_t i = 0; i < line->count && line->a != SECTION_EDGE && line->b != SECTION_EDGE; i++) {
+            const section_point at = out.point[line->first + i];
+            const double u = at.u - 0.01, v = at.v - 0.02, away = fmax(fabs(u), fabs(v));
+            if (fmin(fabs(u), fabs(v)) > 0.8)
+                continue; /* at a corner */
+            sides[fabs(u) > fabs(v) ? u > 0.0 : 2 + (v > 0.0)]++;
+            least = fmin(least, away), largest = fmax(largest, away);
+        }
+    }
+    for (int k = 0; k < 4; k++)
+        assert_true(sides[k] > 0);
+    assert_true(largest - least < 1e-9 && (fabs(least - 1.0) < 1e-9 || fabs(least - 1.000001) < 1e-9));
+    section_release(&out);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -196,6 +226,7 @@ int main(void)
         cmocka_unit_test(a_vessels_section_shows_wall_and_floor),
         cmocka_unit_test(equal_solids_have_a_boundary),
         cmocka_unit_test(a_window_without_extent_is_refused),
+        cmocka_unit_test(a_thin_coat_is_drawn_along_one_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
