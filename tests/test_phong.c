@@ -219,6 +219,38 @@ static void checkers_on_turned_faces_are_whole(void **state)
     scene_destroy(s);
 }
 
+/* Each flat face lies on a border between cells of 0.5 and shows those behind it: of a box 0 under the upper faces and -1 over the lower
+ * ones; of a cylinder 0 over its bottom and 1 under its top at 1. */
+static void flat_faces_show_the_cells_behind_them(void **state)
+{
+    (void)state;
+    static const struct { vec3 outward; double at; int cell; } faces[] = {
+        {{1, 0, 0}, 0.5, 0},  {{0, 1, 0}, 0.5, 0},  {{0, 0, 1}, 0.5, 0},  {{-1, 0, 0}, 0.5, -1}, {{0, -1, 0}, 0.5, -1},
+        {{0, 0, -1}, 0.5, -1}, {{0, -1, 0}, 0.0, 0}, {{0, 1, 0}, 1.0, 1}}; /* the last two are the cylinder's */
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
+                          "background: {ambient: [1, 1, 1]}\n"
+                          "materials: {board: {ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n"
+                          "solids:\n"
+                          "  block: {shape: box, material: board, size: [1, 1, 1]}\n"
+                          "  drum: {shape: cylinder, material: board, radius: 1, height: 1, visible: off}\n");
+    for (size_t k = 0; k < sizeof faces / sizeof faces[0]; k++) {
+        const vec3 n = faces[k].outward;
+        if (k == 6)
+            set_all(s, "block.visible=off drum.visible=on");
+        for (int i = -1; i <= 0; i++)
+            for (int j = -1; j <= 0; j++) { /* across the face, and the cell's indices there */
+                const double a = i * 0.5 + 0.2, b = j * 0.5 + 0.3;
+                const vec3 in_face = n.x != 0.0 ? vec3_make(0.0, a, b) : n.y != 0.0 ? vec3_make(a, 0.0, b) : vec3_make(a, b, 0.0);
+                s->camera.target = vec3_add(in_face, vec3_scale(n, faces[k].at));
+                s->camera.position = vec3_add(s->camera.target, n);
+                s->camera.aimed = 1;
+                const int even = (i + j + faces[k].cell) % 2 == 0;
+                expect_color(look(s), even, !even, 0.0);
+            }
+    }
+    scene_destroy(s);
+}
+
 /* Yaw turns the picture when the camera looks straight down, too. */
 static void yaw_counts_looking_down(void **state)
 {
@@ -273,6 +305,7 @@ int main(void)
         cmocka_unit_test(checkers_of_a_plane),
         cmocka_unit_test(checkers_move_with_their_solid),
         cmocka_unit_test(checkers_on_turned_faces_are_whole),
+        cmocka_unit_test(flat_faces_show_the_cells_behind_them),
         cmocka_unit_test(yaw_counts_looking_down),
         cmocka_unit_test(mirrors_multiply),
     };
