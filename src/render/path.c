@@ -222,7 +222,7 @@ static void continue_one(tracer *t, const material *m, bool opaque, int k, int d
 {
     const random_words drawn = draw(t->target.scene->render.seed, t->gathered.ticket[k], depth, DRAW_BRANCH);
     const double chance = random_unit(drawn.word[0]);
-    continuation c;
+    continuation c = {.refracted = false};
     if (!(opaque ? draw_matte(t, m, k, depth, chance, &c) : draw_clear(t, k, chance, &c)))
         return;
     if (depth == t->depth_limit)
