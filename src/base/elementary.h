@@ -5,7 +5,7 @@
 #ifndef CUVETTE_BASE_ELEMENTARY_H
 #define CUVETTE_BASE_ELEMENTARY_H
 
-/* x^y for 0 <= x; 0^0 = 1. Relative error below 3e-16 (2 + |y log2 x|), so 3e-14 at x^y = 1e-30; results under
+/* x^y for 0 <= x; 0^0 = 1. Relative error below 4e-16 (2 + |y log2 x|), so 4e-14 at x^y = 1e-30; results under
  * 2^-1000 are 0, over 2^1000 they are 2^1000. Branch-free in base/elementary_inline.h, for kernels (the one for
  * Phong's highlights raises whole exponents by squaring instead: render/shade_kernel.c states its error). */
 double elementary_pow(double x, double y);
