@@ -109,27 +109,34 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
     return finish(p, tree, code, why);
 }
 
-status probe_ray(probe *p, vec3 origin, vec3 direction, ray_tree *tree, diagnostic *why)
+/* Begins a tree with a ray of the caller's. */
+static status begin_free(probe *p, vec3 origin, vec3 direction, ray_tree *tree, ray_record *root, diagnostic *why)
 {
     status code = probe_check_ray(origin, direction, why);
     if (code == STATUS_OK)
         code = begin(p, tree, why);
+    if (code == STATUS_OK)
+        *root = probe_free_ray(p, origin, direction);
+    return code;
+}
+
+status probe_ray(probe *p, vec3 origin, vec3 direction, ray_tree *tree, diagnostic *why)
+{
+    ray_record root;
+    size_t unused;
+    status code = begin_free(p, origin, direction, tree, &root, why);
     if (code != STATUS_OK)
         return code;
-    const ray_record root = probe_free_ray(p, origin, direction);
-    size_t unused;
     code = probe_grow(p, tree, &root, RAY_CAMERA, RAY_NONE, &unused, why);
     return finish(p, tree, code, why);
 }
 
 status probe_way(probe *p, vec3 origin, vec3 direction, int reflect_at, ray_tree *tree, diagnostic *why)
 {
-    status code = probe_check_ray(origin, direction, why);
-    if (code == STATUS_OK)
-        code = begin(p, tree, why);
+    ray_record root;
+    status code = begin_free(p, origin, direction, tree, &root, why);
     if (code != STATUS_OK)
         return code;
-    const ray_record root = probe_free_ray(p, origin, direction);
     code = probe_follow(p, tree, &root, reflect_at, why);
     return finish(p, tree, code, why);
 }
