@@ -3,7 +3,6 @@
 #include "realism/metrics.h"
 
 #include "optics/media.h"
-#include "scene/medium.h"
 #include <math.h>
 #include <string.h>
 
@@ -39,9 +38,10 @@ static scene *drop_alone(const scene *s, double lambda_nm)
 
 typedef struct search { trial *t; status code; diagnostic *why; vec3 center; double radius; } search;
 
-/* Angle between the way back and the way there, for a ray that is aimed past the centre at `offset` radii. */
-static double turned_back(search *s, double offset)
+/* Angle between the way back and the way there, turned round in sign, for a ray that is aimed past the centre at `offset` radii. */
+static double minus_turned_back(void *context, double offset)
 {
+    search *s = context;
     const vec3 in = vec3_make(0.0, 0.0, 1.0);
     const vec3 from = vec3_add(s->center, vec3_make(offset * s->radius, 0.0, -4.0 * s->radius));
     if (s->code == STATUS_OK)
@@ -49,26 +49,13 @@ static double turned_back(search *s, double offset)
     if (s->code != STATUS_OK || s->t->tree.count != 4)
         return NAN;
     const vec3 out = s->t->tree.node[3].direction;
-    return atan2(vec3_length(vec3_cross(in, out)), -vec3_dot(in, out));
+    return -atan2(vec3_length(vec3_cross(in, out)), -vec3_dot(in, out));
 }
 
-/* The largest angle: golden section between the middle of the drop and its edge, where there is one maximum. */
+/* The largest angle back is the least turn; between the middle of the drop and its edge there is one. */
 static double rainbow_angle(search *s)
 {
-    const double golden = 0.5 * (sqrt(5.0) - 1.0);
-    double low = 0.4, high = 0.9999;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double at_a = turned_back(s, a), at_b = turned_back(s, b);
-    for (int i = 0; i < 80; i++) {
-        if (at_a > at_b) {
-            high = b, b = a, at_b = at_a;
-            a = high - golden * (high - low), at_a = turned_back(s, a);
-        } else {
-            low = a, a = b, at_a = at_b;
-            b = low + golden * (high - low), at_b = turned_back(s, b);
-        }
-    }
-    return fmax(at_a, at_b);
+    return -least_value(minus_turned_back, s, 0.4, 0.9999);
 }
 
 /* cos i = sqrt((n^2 - 1) / 3), angle 4 r - 2 i: Born and Wolf, Principles of Optics, 7th ed., 4.7 exercises; Nussenzveig, "The theory of
@@ -81,21 +68,12 @@ static double theory_rainbow(double n)
     return 4.0 * r - 2.0 * i;
 }
 
-static double index_of(const scene *s, double lambda_nm)
-{
-    index_law law, around = surrounding_index_law(&s->background);
-    const solid *drop = &s->solids[drop_of(s)];
-    if (material_index_law(&drop->surface, drop->name, &law, NULL) != STATUS_OK)
-        return NAN;
-    return index_law_at(&law, lambda_nm) / index_law_at(&around, lambda_nm);
-}
-
 static status at_line(const metrics *m, double lambda_nm, double *measured, double *theory, diagnostic *why)
 {
     trial t;
     const solid *drop = &m->traced->solids[drop_of(m->traced)];
     search look = {.t = &t, .why = why, .center = drop->shape.position, .radius = drop->shape.radius};
-    *theory = theory_rainbow(index_of(m->supposed, lambda_nm));
+    *theory = theory_rainbow(relative_index(m->supposed, drop_of(m->supposed), lambda_nm));
     look.code = trial_start(&t, drop_alone(m->traced, lambda_nm), m->level, why);
     *measured = look.code == STATUS_OK && !isnan(*theory) ? rainbow_angle(&look) : NAN;
     trial_end(&t);

@@ -60,6 +60,13 @@ double attenuation_reach(const trial *t, const setup *at);
  * failure of the tracer goes to *code. */
 bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why);
 
+/* Index of a solid's medium relative to what surrounds all; NaN when its coefficients make no law. */
+double relative_index(const scene *s, int at, double lambda_nm);
+
+/* The least value between low and high of a function that has one minimum there: golden section (Kiefer, "Sequential minimax search for a
+ * maximum", Proc. AMS 4, 1953). Flat at its minimum, the function's value is good to rounding. */
+double least_value(double (*f)(void *context, double x), void *context, double low, double high);
+
 /* First and last place between `from` and `to` where something is seen, each to 1e-12, the change looked for in `steps` steps. */
 typedef bool seen_at(void *context, double x);
 bool find_edges(seen_at *seen, void *context, double from, double to, int steps, double edge[2]);

@@ -5,7 +5,6 @@
 #include "realism/metrics.h"
 
 #include "optics/media.h"
-#include "scene/medium.h"
 #include <math.h>
 
 #define ANGLE_TOLERANCE 1e-12 /* rad */
@@ -35,8 +34,9 @@ static prism_faces faces_of(const scene *s)
 typedef struct search { trial *t; prism_faces at; status code; diagnostic *why; } search;
 
 /* Deviation of a ray that meets the middle of the left face at an angle of incidence; NaN if it does not come through both. */
-static double deviation(search *s, double incidence)
+static double deviation(void *context, double incidence)
 {
+    search *s = context;
     const vec3 in = vec3_sub(vec3_scale(s->at.up, sin(incidence)), vec3_scale(s->at.left, cos(incidence)));
     if (s->code == STATUS_OK)
         s->code = probe_way(s->t->p, vec3_sub(s->at.point, vec3_scale(in, 3.0)), in, -1, &s->t->tree, s->why);
@@ -50,10 +50,9 @@ static double deviation(search *s, double incidence)
     return atan2(vec3_length(across), vec3_dot(in, out));
 }
 
-/* Golden section (Kiefer, "Sequential minimax search for a maximum", Proc. AMS 4, 1953) between angles where a way leads through. */
+/* Between the first and the last angle where a way leads through. */
 static double least_deviation(search *s)
 {
-    const double golden = 0.5 * (sqrt(5.0) - 1.0);
     double low = NAN, high = NAN;
     for (int i = 1; i < 900; i++) {
         const double incidence = i * 1e-1 * M_PI / 180.0;
@@ -62,35 +61,13 @@ static double least_deviation(search *s)
         low = isnan(low) ? incidence : low;
         high = incidence;
     }
-    if (isnan(low))
-        return NAN;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double at_a = deviation(s, a), at_b = deviation(s, b);
-    for (int i = 0; i < 80; i++) {
-        if (at_a < at_b) {
-            high = b, b = a, at_b = at_a;
-            a = high - golden * (high - low), at_a = deviation(s, a);
-        } else {
-            low = a, a = b, at_a = at_b;
-            b = low + golden * (high - low), at_b = deviation(s, b);
-        }
-    }
-    return fmin(at_a, at_b);
+    return isnan(low) ? NAN : least_value(deviation, s, low, high);
 }
 
 /* n = sin((A + D) / 2) / sin(A / 2) solved for D: Hecht, Optics, 5th ed., 5.5.1. */
 static double theory_least_deviation(double apex, double n)
 {
     return 2.0 * asin(n * sin(apex / 2.0)) - apex;
-}
-
-static double index_of(const scene *s, double lambda_nm)
-{
-    index_law law, around = surrounding_index_law(&s->background);
-    const solid *body = &s->solids[scene_find_solid(s, "prism")];
-    if (material_index_law(&body->surface, body->name, &law, NULL) != STATUS_OK)
-        return NAN;
-    return index_law_at(&law, lambda_nm) / index_law_at(&around, lambda_nm);
 }
 
 static status at_line(const metrics *m, double lambda_nm, double *measured, double *theory, diagnostic *why)
@@ -103,7 +80,7 @@ static status at_line(const metrics *m, double lambda_nm, double *measured, doub
     }
     const prism_faces supposed = faces_of(m->supposed);
     const double apex = M_PI - acos(vec3_dot(supposed.left, supposed.right));
-    *theory = theory_least_deviation(apex, index_of(m->supposed, lambda_nm));
+    *theory = theory_least_deviation(apex, relative_index(m->supposed, supposed.body, lambda_nm));
     trial t;
     search look = {.t = &t, .at = faces_of(m->traced), .why = why};
     look.code = trial_start(&t, s, m->level, why);

@@ -4,7 +4,6 @@
 #include "realism/metrics.h"
 
 #include "realism/theory.h"
-#include "scene/medium.h"
 #include <math.h>
 
 #define WEIGHT_TOLERANCE 1e-13
@@ -22,11 +21,9 @@ static bool stack_read(const scene *s, stack *out)
 {
     const solid *plate = &s->solids[scene_find_solid(s, "plate1")];
     const vec3 normal = mat3_apply(rotation_from_deg(plate->shape.rotation_deg), vec3_make(0.0, 0.0, 1.0));
-    index_law law, around = surrounding_index_law(&s->background);
-    const status code = material_index_law(&plate->surface, plate->name, &law, NULL);
     *out = (stack){.angle = acos(fmin(fabs(normal.z), 1.0)), .polarised = s->render.polarisation != 0,
-                   .n = index_law_at(&law, s->render.lambda_nm) / index_law_at(&around, s->render.lambda_nm)};
-    return code == STATUS_OK && s->solids[scene_find_solid(s, "plate2")].surface.transparency == 1.0 && plate->surface.transparency == 1.0;
+                   .n = relative_index(s, scene_find_solid(s, "plate1"), s->render.lambda_nm)};
+    return !isnan(out->n) && s->solids[scene_find_solid(s, "plate2")].surface.transparency == 1.0 && plate->surface.transparency == 1.0;
 }
 
 /* A plate of reflectance R at each face lets (1 - R) / (1 + R) through and sends the rest back; a second one behind it, with all that goes to and

@@ -1,5 +1,6 @@
 #include "realism/metrics.h"
 
+#include "scene/medium.h"
 #include <math.h>
 
 status trial_start(trial *t, scene *taken, isa level, diagnostic *why)
@@ -47,6 +48,33 @@ static double bisect(seen_at *seen, void *context, double from, double to, bool 
             to = middle;
     }
     return from + (to - from) / 2.0;
+}
+
+double relative_index(const scene *s, int at, double lambda_nm)
+{
+    index_law law;
+    const index_law around = surrounding_index_law(&s->background);
+    if (material_index_law(&s->solids[at].surface, s->solids[at].name, &law, NULL) != STATUS_OK)
+        return NAN;
+    return index_law_at(&law, lambda_nm) / index_law_at(&around, lambda_nm);
+}
+
+double least_value(double (*f)(void *context, double x), void *context, double low, double high)
+{
+    enum { STEPS = 80 }; /* the golden ratio's 80th power is 2e-17 */
+    const double golden = 0.5 * (sqrt(5.0) - 1.0);
+    double a = high - golden * (high - low), b = low + golden * (high - low);
+    double at_a = f(context, a), at_b = f(context, b);
+    for (int i = 0; i < STEPS; i++) {
+        if (at_a < at_b) {
+            high = b, b = a, at_b = at_a;
+            a = high - golden * (high - low), at_a = f(context, a);
+        } else {
+            low = a, a = b, at_a = at_b;
+            b = low + golden * (high - low), at_b = f(context, b);
+        }
+    }
+    return fmin(at_a, at_b);
 }
 
 bool find_edges(seen_at *seen, void *context, double from, double to, int steps, double edge[2])
