@@ -1,11 +1,4 @@
-# By curve how many points there are and how far they lie from theory at most: awk -v study=NAME -f curves.awk TABLE-curves.tsv
-function scientific(v,   exponent) {
-    if (v == 0) return "0"
-    exponent = 0
-    while (v < 1) { v *= 10; exponent-- }
-    while (v >= 9.95) { v /= 10; exponent++ }
-    return sprintf("\\ensuremath{%.1f\\cdot 10^{%d}}", v, exponent)
-}
+# By curve how many points there are and how far they lie from theory at most: awk -v study=NAME -f scientific.awk -f curves.awk TABLE-curves.tsv
 BEGIN { FS = "\t" }
 NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
 $at["measured"] != "NA" && $at["theory"] != "NA" {

@@ -1,15 +1,8 @@
 # Every metric of a study as TeX numbers, \setval{study/axis values/metric/measured}{text} and theory and error, and by metric and by
 # its first word how many values there are, how many are within tolerance, and the largest error.
-#   awk -v study=NAME -f metrics.awk TABLE-metrics.tsv
+#   awk -v study=NAME -f scientific.awk -f metrics.awk TABLE-metrics.tsv
 # Angles in radians become degrees, but an error stays what it was. NA makes no number: the paper then prints n/a.
 function set(key, text) { if (text != "") printf "\\setval{%s}{%s}\n", key, text }
-function scientific(v,   exponent) {
-    if (v == 0) return "0"
-    exponent = 0
-    while (v < 1) { v *= 10; exponent-- }
-    while (v >= 9.95) { v /= 10; exponent++ }
-    return sprintf("\\ensuremath{%.1f\\cdot 10^{%d}}", v, exponent)
-}
 # A zero has no sign, and a minus is TeX's.
 function places(v, count,   text) {
     text = sprintf("%." count "f", v)

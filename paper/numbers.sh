@@ -83,8 +83,8 @@ mkdir -p "$out"
         [ -r "$table" ] || continue
         study=$(basename "$table" .tsv)
         case $study in
-        *-metrics) awk -v study="${study%-metrics}" -f "$here/metrics.awk" "$table" ;;
-        *-curves) awk -v study="${study%-curves}" -f "$here/curves.awk" "$table" ;;
+        *-metrics) awk -v study="${study%-metrics}" -f "$here/scientific.awk" -f "$here/metrics.awk" "$table" ;;
+        *-curves) awk -v study="${study%-curves}" -f "$here/scientific.awk" -f "$here/curves.awk" "$table" ;;
         *) awk -v study="$study" -f "$here/numbers.awk" "$table" ;;
         esac
     done | sort
