@@ -1,0 +1,36 @@
+/* Meshes that are computed: the three triangle sets of the speed studies, and parametric bodies. All are in a frame of
+ * their own about the origin, y up. Ownership: the caller becomes the mesh's one owner. STATUS_BAD_INPUT for numbers
+ * out of range (the remedy says which are right). Only + - * / and sqrt, and elementary.h: the same bits everywhere. */
+#ifndef CUVETTE_GEOMETRY_BODIES_H
+#define CUVETTE_GEOMETRY_BODIES_H
+
+#include "geometry/mesh.h"
+
+/* Random triangles in the cube [-1, 1]^3: sparse ones whose size falls with their number (edge a quarter of the spacing), dense ones
+ * of a fixed size. Random numbers are splitmix64's from the seed 20240101; every coordinate is a float. 1..MESH_TRIANGLES_MAX. */
+status body_sparse(size_t count, mesh **out, diagnostic *why);
+status body_dense(size_t count, mesh **out, diagnostic *why);
+
+/* An icosahedron whose faces are split into f x f, on the unit sphere; 20 f f triangles, f = round(sqrt(count / 20)), at least 1.
+ * Single precision. Vertices on edges are shared (welded), normals are the positions, texture coordinates longitude and latitude. */
+status body_sphere(size_t count, mesh **out, diagnostic *why);
+
+/* Icosahedron refined by bisection of its edges `level` times (0..12), 20 * 4^level triangles, on the unit sphere; doubles. */
+status body_icosphere(int level, mesh **out, diagnostic *why);
+
+/* Torus about y: distance of the tube's middle from the axis, its radius; segments around the axis and around the tube, at least 3. */
+status body_torus(double major, double minor, int around, int tube, mesh **out, diagnostic *why);
+
+/* A profile of points (radius >= 0, height) turned about the y axis in `around` >= 3 segments. Closed if the profile begins and ends on the axis
+ * (radius 0), or ends where it began. Edges of the profile are kept sharp (normals of their own) where it turns by more than crease_deg. */
+typedef struct profile_point { double radius, height; } profile_point;
+status body_lathe(const profile_point *profile, size_t count, int around, double crease_deg, mesh **out, diagnostic *why);
+
+/* A height field: heights[row * columns + column], columns along x and rows along z from -size/2 to size/2, y = height; with a depth > 0 it
+ * is closed by sides and a flat bottom at y = -depth. At least 2 x 2. */
+status body_height_field(const double *heights, int columns, int rows, double size_x, double size_z, double depth, mesh **out, diagnostic *why);
+
+/* A box of edges size about the origin: 12 triangles, flat normals, each face the whole texture. */
+status body_box(vec3 size, mesh **out, diagnostic *why);
+
+#endif
