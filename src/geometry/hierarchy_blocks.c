@@ -1,0 +1,57 @@
+#include "geometry/hierarchy_private.h"
+
+#include <stdlib.h>
+
+static size_t block_bytes(const hierarchy *h)
+{
+    return h->single ? sizeof(block_single) : sizeof(block_double);
+}
+
+bool hierarchy_make_blocks(hierarchy *h, size_t count)
+{
+    size_t bytes = (count * block_bytes(h) + 63) / 64 * 64;
+    h->blocks = aligned_alloc(64, bytes ? bytes : 64);
+    h->block_count = h->blocks ? count : 0;
+    return h->blocks;
+}
+
+static void fill_single(const mesh *m, const uint32_t *order, size_t last, block_single *b)
+{
+    for (size_t lane = 0; lane < BLOCK; lane++) {
+        uint32_t triangle = order[lane < last ? lane : last];
+        b->triangle[lane] = triangle;
+        for (int corner = 0; corner < 3; corner++) {
+            const vec3 *v = &m->vertices[m->triangles[triangle].corner[corner]];
+            b->corner[corner][0][lane] = (float)v->x;
+            b->corner[corner][1][lane] = (float)v->y;
+            b->corner[corner][2][lane] = (float)v->z;
+        }
+    }
+}
+
+static void fill_double(const mesh *m, const uint32_t *order, size_t last, block_double *b)
+{
+    for (size_t lane = 0; lane < BLOCK; lane++) {
+        uint32_t triangle = order[lane < last ? lane : last];
+        b->triangle[lane] = triangle;
+        for (int corner = 0; corner < 3; corner++) {
+            const vec3 *v = &m->vertices[m->triangles[triangle].corner[corner]];
+            b->corner[corner][0][lane] = v->x;
+            b->corner[corner][1][lane] = v->y;
+            b->corner[corner][2][lane] = v->z;
+        }
+    }
+}
+
+size_t hierarchy_fill_blocks(hierarchy *h, const uint32_t *order, size_t count, size_t first)
+{
+    size_t blocks = (count + BLOCK - 1) / BLOCK;
+    for (size_t i = 0; i < blocks; i++) {
+        size_t left = count - i * BLOCK, last = (left < BLOCK ? left : BLOCK) - 1;
+        if (h->single)
+            fill_single(h->of, order + i * BLOCK, last, (block_single *)h->blocks + first + i);
+        else
+            fill_double(h->of, order + i * BLOCK, last, (block_double *)h->blocks + first + i);
+    }
+    return blocks;
+}

@@ -1,0 +1,98 @@
+/* The parts of the builder of the hierarchy `bvh`; for src/geometry/hierarchy_bvh*.c alone.
+ *
+ * Triangles become references, boxes of single precision, and are split in two again and again by the binned surface-area
+ * heuristic (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007): a tree of branches. Which of them become
+ * leaves and how they are gathered into nodes of eight is then chosen at the least expected cost (Ylitie, Karras and Laine, "Efficient
+ * incoherent ray traversal on GPUs through compressed wide BVHs", 2017, section 3.1).
+ *
+ * The tree depends on the set of references alone, never on their order: boxes and counts of bins do not, halves are those
+ * of a complete order, and a leaf's triangles are sorted. So it is the same for any number of threads. */
+#ifndef CUVETTE_GEOMETRY_HIERARCHY_BVH_H
+#define CUVETTE_GEOMETRY_HIERARCHY_BVH_H
+
+#include "geometry/hierarchy_private.h"
+
+#include <string.h>
+
+/* Binary levels: SAH may use them up to where halving alone stays within. */
+enum { BRANCH_DEPTH_MAX = BVH_DEPTH_MAX - 1, LEAF_TRIANGLES_MAX = LEAF_BLOCKS_MAX * BLOCK };
+
+/* A box of four lanes, of which the first three are axes; the fourth is kept free of slow (denormal) numbers. */
+typedef struct bvh_box { _Alignas(16) float low[4], high[4]; } bvh_box;
+
+/* A triangle's box; the fourth lane of low holds its number, see bvh_triangle. */
+typedef bvh_box bvh_ref;
+
+/* A run of references with its bounds. */
+typedef struct bvh_range {
+    bvh_box box;
+    bvh_box centers; /* of the boxes' centres, doubled: low + high */
+    uint32_t first, count;
+} bvh_range;
+
+/* A node of the binary tree. */
+typedef struct bvh_branch {
+    float low[3], high[3];
+    uint32_t first, count;
+    struct bvh_branch *half[2]; /* NULL where it is not split */
+    float cost[WIDTH];    /* [i], i = 1..7: least cost as at most i subtrees */
+    uint8_t share[WIDTH + 1]; /* [i], i = 2..8: of i subtrees, the first half's; 0: as for i - 1 */
+    bool leaf;            /* as one subtree */
+    uint32_t depth;       /* of the nodes below and at it; with the next two found when the tree is gathered */
+    size_t nodes, blocks, leaves;
+} bvh_branch;
+
+/* A number that is no denormal as a float. */
+static inline float bvh_lane_of(uint32_t triangle)
+{
+    uint32_t bits = triangle | 0x40000000u;
+    float lane;
+    memcpy(&lane, &bits, sizeof lane);
+    return lane;
+}
+
+static inline uint32_t bvh_triangle(const bvh_ref *r)
+{
+    uint32_t bits;
+    memcpy(&bits, &r->low[3], sizeof bits);
+    return bits & 0x3fffffffu;
+}
+
+static inline bvh_box bvh_box_empty(void)
+{
+    return (bvh_box){{INFINITY, INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY, -INFINITY}};
+}
+
+static inline void bvh_box_add(bvh_box *restrict b, const float *restrict low, const float *restrict high)
+{
+    for (int k = 0; k < 4; k++)
+        b->low[k] = low[k] < b->low[k] ? low[k] : b->low[k];
+    for (int k = 0; k < 4; k++)
+        b->high[k] = high[k] > b->high[k] ? high[k] : b->high[k];
+}
+
+static inline void bvh_range_add(bvh_range *restrict range, const bvh_ref *restrict r)
+{
+    float center[4];
+    for (int k = 0; k < 4; k++)
+        center[k] = r->low[k] + r->high[k];
+    bvh_box_add(&range->box, r->low, r->high);
+    bvh_box_add(&range->centers, center, center);
+}
+
+static inline float bvh_half_area(const float *low, const float *high)
+{
+    float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+    return x * y + y * z + z * x;
+}
+
+/* Splits a range of at least two: reorders its references and describes the halves. depth: of the range's branch, from 0. */
+void bvh_split(bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2]);
+
+/* Cost and shares of a branch from its halves', when those are known. */
+void bvh_choose(bvh_branch *b);
+
+/* Counts what becomes of a tree, and writes it to h; root NULL: no triangles. STATUS_FAILURE when memory is out or the tree too large. */
+status bvh_gather(hierarchy *h, bvh_branch *root, const bvh_ref *refs, int threads, diagnostic *why);
+
+#endif

@@ -1,0 +1,194 @@
+#include "geometry/hierarchy_bvh.h"
+
+enum { BINS_MAX = 16 };
+#define FLAT 1e-30f /* centres that are no farther apart are in one place: the width of a bin could not be inverted */
+
+typedef struct bin_set {
+    int count;
+    float base[4], scale[4]; /* bin = (center - base) scale */
+    bvh_box box[3][BINS_MAX];
+    uint32_t members[3][BINS_MAX];
+} bin_set;
+
+typedef struct split { int axis, bin; float cost; } split; /* the first half: bins below `bin` */
+
+static bvh_range empty_range(uint32_t first)
+{
+    bvh_range r = {.box = bvh_box_empty(), .centers = bvh_box_empty(), .first = first};
+    return r;
+}
+
+/* More bins than references tell nothing. */
+static void bins_begin(bin_set *s, const bvh_range *range)
+{
+    uint32_t wanted = 4 + range->count / 8;
+    s->count = wanted < BINS_MAX ? (int)wanted : BINS_MAX;
+    for (int axis = 0; axis < 3; axis++) {
+        float extent = range->centers.high[axis] - range->centers.low[axis];
+        s->base[axis] = range->centers.low[axis];
+        s->scale[axis] = extent > FLAT ? 0.99999f * (float)s->count / extent : 0.0f;
+        for (int i = 0; i < s->count; i++) {
+            s->box[axis][i] = bvh_box_empty();
+            s->members[axis][i] = 0;
+        }
+    }
+    s->base[3] = s->scale[3] = 0.0f;
+}
+
+static void bins_of(const bin_set *s, const bvh_ref *r, int32_t bin[4])
+{
+    for (int k = 0; k < 4; k++)
+        bin[k] = (int32_t)((r->low[k] + r->high[k] - s->base[k]) * s->scale[k]);
+}
+
+static void bins_fill(bin_set *s, const bvh_ref *refs, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        int32_t bin[4];
+        bins_of(s, &refs[i], bin);
+        for (int axis = 0; axis < 3; axis++) {
+            bvh_box_add(&s->box[axis][bin[axis]], refs[i].low, refs[i].high);
+            s->members[axis][bin[axis]]++;
+        }
+    }
+}
+
+static float blocks_of(uint32_t triangles)
+{
+    return (float)((triangles + BLOCK - 1) / BLOCK);
+}
+
+/* The cheapest split along one axis: sum over the halves of area times blocks (MacDonald and Booth 1990). */
+static void best_of_axis(const bin_set *s, int axis, split *best)
+{
+    float above[BINS_MAX];
+    bvh_box box = bvh_box_empty();
+    uint32_t members = 0;
+    for (int i = s->count - 1; i > 0; i--) {
+        bvh_box_add(&box, s->box[axis][i].low, s->box[axis][i].high);
+        members += s->members[axis][i];
+        above[i] = members ? bvh_half_area(box.low, box.high) * blocks_of(members) : INFINITY;
+    }
+    box = bvh_box_empty();
+    members = 0;
+    for (int i = 1; i < s->count; i++) {
+        bvh_box_add(&box, s->box[axis][i - 1].low, s->box[axis][i - 1].high);
+        members += s->members[axis][i - 1];
+        float cost = members ? bvh_half_area(box.low, box.high) * blocks_of(members) + above[i] : INFINITY;
+        if (cost < best->cost)
+            *best = (split){axis, i, cost};
+    }
+}
+
+static void exchange(bvh_ref *a, bvh_ref *b)
+{
+    bvh_ref t = *a;
+    *a = *b;
+    *b = t;
+}
+
+static void part(bvh_ref *refs, const bvh_range *range, const bin_set *s, split chosen, bvh_range half[2])
+{
+    int axis = chosen.axis;
+    float base = s->base[axis], scale = s->scale[axis];
+    bvh_range lower = empty_range(range->first), upper = empty_range(0);
+    bvh_ref *left = refs + range->first, *right = left + range->count;
+    for (;;) {
+        while (left < right && (int32_t)((left->low[axis] + left->high[axis] - base) * scale) < chosen.bin)
+            bvh_range_add(&lower, left++);
+        while (left < right && (int32_t)((right[-1].low[axis] + right[-1].high[axis] - base) * scale) >= chosen.bin)
+            bvh_range_add(&upper, --right);
+        if (left >= right)
+            break;
+        exchange(left, right - 1);
+    }
+    lower.count = (uint32_t)(left - refs) - range->first;
+    upper.first = range->first + lower.count;
+    upper.count = range->count - lower.count;
+    half[0] = lower;
+    half[1] = upper;
+}
+
+/* A complete order: by centre, then by number. */
+static bool before(const bvh_ref *a, const bvh_ref *b, int axis)
+{
+    float x = a->low[axis] + a->high[axis], y = b->low[axis] + b->high[axis];
+    return x < y || (x == y && bvh_triangle(a) < bvh_triangle(b));
+}
+
+/* Hoare's selection: afterwards refs[0 .. middle-1] come before the others. */
+static void select_lower(bvh_ref *refs, size_t count, size_t middle, int axis)
+{
+    size_t low = 0, high = count - 1;
+    while (low < high) {
+        size_t center = low + (high - low) / 2;
+        if (before(&refs[center], &refs[low], axis))
+            exchange(&refs[center], &refs[low]);
+        if (before(&refs[high], &refs[low], axis))
+            exchange(&refs[high], &refs[low]);
+        if (before(&refs[high], &refs[center], axis))
+            exchange(&refs[high], &refs[center]);
+        bvh_ref pivot = refs[center];
+        size_t i = low, j = high;
+        for (;;) {
+            while (before(&refs[i], &pivot, axis))
+                i++;
+            while (before(&pivot, &refs[j], axis))
+                j--;
+            if (i >= j)
+                break;
+            exchange(&refs[i++], &refs[j--]);
+        }
+        if (middle <= j)
+            high = j;
+        else
+            low = j + 1;
+    }
+}
+
+/* Halves of equal counts: where all is in one place, or the tree would become too deep. */
+static void halve(bvh_ref *refs, const bvh_range *range, bvh_range half[2])
+{
+    int axis = 0;
+    float widest = -1.0f;
+    for (int k = 0; k < 3; k++) {
+        float extent = range->centers.high[k] - range->centers.low[k];
+        if (extent > widest) {
+            widest = extent;
+            axis = k;
+        }
+    }
+    uint32_t lower = range->count / 2;
+    bvh_ref *own = refs + range->first;
+    select_lower(own, range->count, lower, axis);
+    half[0] = empty_range(range->first);
+    half[1] = empty_range(range->first + lower);
+    half[0].count = lower;
+    half[1].count = range->count - lower;
+    for (uint32_t i = 0; i < range->count; i++)
+        bvh_range_add(&half[i >= lower], &own[i]);
+}
+
+/* Levels that halving down to single triangles takes. */
+static int halvings(uint32_t count)
+{
+    return count > 1 ? 32 - __builtin_clz(count - 1) : 0;
+}
+
+void bvh_split(bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2])
+{
+    split best = {-1, 0, INFINITY};
+    if (depth + halvings(range->count) < BRANCH_DEPTH_MAX) {
+        bin_set s;
+        bins_begin(&s, range);
+        bins_fill(&s, refs + range->first, range->count);
+        for (int axis = 0; axis < 3; axis++)
+            if (s.scale[axis] > 0.0f)
+                best_of_axis(&s, axis, &best);
+        if (best.axis >= 0 && best.cost > 0.0f) { /* of boxes without area none is better than another */
+            part(refs, range, &s, best, half);
+            return;
+        }
+    }
+    halve(refs, range, half);
+}
