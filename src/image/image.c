@@ -136,8 +136,11 @@ status image_read(const char *path, image **out, int *file_bits, diagnostic *why
     free(bytes);
     if (code != STATUS_OK) {
         diagnostic_locate(why, path, 0, 0);
-    } else if (file_bits) {
+        return code;
+    }
+    (*out)->coded_bits = bits == 32 ? 0 : bits;
+    if (file_bits) {
         *file_bits = bits;
     }
-    return code;
+    return STATUS_OK;
 }

@@ -6,8 +6,9 @@
 
 #include "base/status.h"
 
-/* RGB, linear light, rows from the top, pixel[(y * width + x) * 3 + channel]; 1.0 is white. */
-typedef struct image { int width, height; float *pixel; } image;
+/* RGB, linear light, rows from the top, pixel[(y * width + x) * 3 + channel]; 1.0 is white. coded_bits is 8 or 16 when
+ * image_read decoded the pixels from sRGB numbers of so many bits, else 0. */
+typedef struct image { int width, height; float *pixel; int coded_bits; } image;
 
 enum { IMAGE_SIDE_MAX = 65536 };
 

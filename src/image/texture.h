@@ -40,12 +40,12 @@ status texture_read(const char *path, texture_space space, texture_wrap wrap_u, 
 void texture_retain(const texture *t);
 void texture_release(const texture *t); /* NULL is allowed */
 
-/* The texture at (u, v). footprint is how far a pixel reaches in u or v, whichever is more; it matters to TEXTURE_TRILINEAR alone,
- * whose level is log2(footprint * larger side in texels), from 0 (bilinear in the picture itself: one pixel covers at most a
+/* The texture at (u, v). footprint is how far a pixel reaches in u or in v, whichever is more; it matters to TEXTURE_TRILINEAR
+ * alone, whose level is log2(footprint * larger side in texels), from 0 (bilinear in the picture itself: a pixel covers at most a
  * texel) to the last (one texel, the picture's mean). The result is finite, within the range of the texels but for rounding, and
- * continuous in all three (not for TEXTURE_NEAREST; not across the picture's border with TEXTURE_REPEAT in smaller levels alone).
+ * continuous in all three except where TEXTURE_NEAREST goes from texel to texel.
  * Never fails: a coordinate that is not a number, or is infinite where the picture repeats or mirrors, counts as 0, and so does a
- * footprint that is negative or not a number. Beyond 2^52 all coordinates are whole numbers. */
+ * footprint that is negative or not a number. */
 vec3 texture_sample(const texture *t, double u, double v, double footprint);
 
 /* The pyramid: number of levels (1 unless TEXTURE_TRILINEAR), size of one (level k has floor(w / 2^k) x floor(h / 2^k) texels, at least

@@ -1,0 +1,143 @@
+#include "image/texture_parts.h"
+
+#include "image/codec.h"
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+static status check(const image *picture, diagnostic *why)
+{
+    if (picture->width < 1 || picture->height < 1 || picture->width > IMAGE_SIDE_MAX || picture->height > IMAGE_SIDE_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536", "a texture of %d x %d texels is not possible",
+                        picture->width, picture->height);
+    }
+    const size_t width = (size_t)picture->width, count = width * (size_t)picture->height;
+    for (size_t i = 0; i < 3 * count; i++) {
+        if (!isfinite(picture->pixel[i])) {
+            return diagnose(why, STATUS_BAD_INPUT, NULL, "the pixel in column %zu, row %zu from the top is not a finite number",
+                            i / 3 % width, i / 3 / width);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The sizes of all levels, and memory for them. */
+static bool allocate(texture *t, int width, int height)
+{
+    size_t count = 0, start[TEXTURE_LEVELS_MAX];
+    do {
+        t->level[t->levels] = (texture_level){.width = width, .height = height};
+        start[t->levels++] = count;
+        count += (size_t)width * (size_t)height;
+        if (width == 1 && height == 1) {
+            break;
+        }
+        width = width > 1 ? width / 2 : 1;
+        height = height > 1 ? height / 2 : 1;
+    } while (t->filter == TEXTURE_TRILINEAR);
+    t->block_bytes = (count * sizeof(texel) + 63) / 64 * 64;
+    t->block = aligned_alloc(64, t->block_bytes);
+    for (int level = 0; t->block && level < t->levels; level++) {
+        t->level[level].texels = t->block + start[level];
+    }
+    return t->block;
+}
+
+/* Level 0, upside down. */
+static void copy_pixels(texture *t, const image *picture, int coded_bits)
+{
+    codec_bytes bytes;
+    codec_bytes_prepare(&bytes);
+    const texture_level *to = &t->level[0];
+    for (int y = 0; y < to->height; y++) {
+        const float *from = picture->pixel + (size_t)(to->height - 1 - y) * (size_t)to->width * 3;
+        texel *row = to->texels + (size_t)y * (size_t)to->width;
+        for (int x = 0; x < to->width; x++, from += 3) {
+            float value[3];
+            for (int channel = 0; channel < 3; channel++) {
+                value[channel] = coded_bits == 8    ? (float)(codec_byte(&bytes, from[channel]) / 255.0)
+                                 : coded_bits == 16 ? (float)(codec_quantize(from[channel], 65535) / 65535.0)
+                                                    : from[channel];
+            }
+            row[x] = (texel){.r = value[0], .g = value[1], .b = value[2]};
+        }
+    }
+}
+
+status texture_create(const image *picture, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter,
+                      texture **out, diagnostic *why)
+{
+    *out = NULL;
+    status code = check(picture, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    texture *t = calloc(1, sizeof *t);
+    if (t) {
+        t->wrap_u = wrap_u;
+        t->wrap_v = wrap_v;
+        t->filter = filter;
+        t->owners = 1;
+    }
+    if (!t || !allocate(t, picture->width, picture->height)) {
+        free(t);
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a texture of %d x %d texels", picture->width, picture->height);
+    }
+    copy_pixels(t, picture, space == TEXTURE_LINEAR ? picture->coded_bits : 0);
+    texture_build_pyramid(t);
+    *out = t;
+    return STATUS_OK;
+}
+
+status texture_read(const char *path, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter,
+                    texture **out, diagnostic *why)
+{
+    image *picture;
+    *out = NULL;
+    status code = image_read(path, &picture, NULL, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = texture_create(picture, space, wrap_u, wrap_v, filter, out, why);
+    if (code != STATUS_OK) {
+        diagnostic_locate(why, path, 0, 0);
+    }
+    image_destroy(picture);
+    return code;
+}
+
+void texture_retain(const texture *t)
+{
+    __atomic_add_fetch(&((texture *)t)->owners, 1, __ATOMIC_RELAXED);
+}
+
+void texture_release(const texture *t)
+{
+    if (t && __atomic_sub_fetch(&((texture *)t)->owners, 1, __ATOMIC_ACQ_REL) == 0) {
+        free(t->block);
+        free((texture *)t);
+    }
+}
+
+int texture_levels(const texture *t)
+{
+    return t->levels;
+}
+
+void texture_size(const texture *t, int level, int *width, int *height)
+{
+    *width = t->level[level].width;
+    *height = t->level[level].height;
+}
+
+vec3 texture_texel(const texture *t, int level, int x, int y)
+{
+    const texture_level *from = &t->level[level];
+    const texel *c = &from->texels[(size_t)y * (size_t)from->width + (size_t)x];
+    return vec3_make((double)c->r, (double)c->g, (double)c->b);
+}
+
+size_t texture_bytes(const texture *t)
+{
+    return sizeof *t + t->block_bytes;
+}
