@@ -293,7 +293,7 @@ static void a_sky_is_neither_negative_nor_endless(void **state)
         assert_int_equal(image_write(sky, path, 8, NULL), STATUS_OK);
         image_destroy(sky);
         assert_int_equal(scene_read_text("s.yaml", text, strlen(text), &s, NULL), STATUS_OK);
-        assert_int_equal(scene_load_pictures(s, &why), is_bad ? STATUS_BAD_INPUT : STATUS_OK);
+        assert_int_equal(scene_load(s, &why), is_bad ? STATUS_BAD_INPUT : STATUS_OK);
         assert_true(is_bad == !s->background.picture);
         if (is_bad) {
             diagnostic_text(&why, said, sizeof said);
@@ -324,29 +324,29 @@ static void a_sky_picture_is_found_beside_its_scene(void **state)
     scene *s = read_file(scene_path);
     assert_int_equal(s->background.kind, BACKGROUND_PICTURE);
     assert_null(s->background.picture);
-    assert_int_equal(scene_load_pictures(s, NULL), STATUS_OK);
+    assert_int_equal(scene_load(s, NULL), STATUS_OK);
     const image *loaded = s->background.picture;
     assert_true(loaded && loaded->width == 4 && loaded->height == 2 && loaded->pixel[3] == 0.5f);
-    assert_int_equal(scene_load_pictures(s, NULL), STATUS_OK);
+    assert_int_equal(scene_load(s, NULL), STATUS_OK);
     assert_ptr_equal(s->background.picture, loaded); /* once */
     assert_int_equal(scene_set(s, "background.picture", "other.pfm", NULL), STATUS_OK);
     assert_null(s->background.picture); /* another path, another picture */
     diagnostic why = {.what = ""};
-    assert_int_equal(scene_load_pictures(s, &why), STATUS_BAD_INPUT);
+    assert_int_equal(scene_load(s, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.file, "other.pfm"));
     assert_int_equal(scene_set(s, "background.picture", picture_path, NULL), STATUS_OK); /* absolute */
-    assert_int_equal(scene_load_pictures(s, NULL), STATUS_OK);
+    assert_int_equal(scene_load(s, NULL), STATUS_OK);
     assert_non_null(s->background.picture);
     assert_int_equal(scene_set(s, "background.picture", "none.png", NULL), STATUS_OK);
     assert_int_equal(scene_set(s, "background.kind", "uniform", NULL), STATUS_OK);
-    assert_int_equal(scene_load_pictures(s, NULL), STATUS_OK); /* not wanted, not read */
+    assert_int_equal(scene_load(s, NULL), STATUS_OK); /* not wanted, not read */
     scene_destroy(s);
     unlink(picture_path);
     s = read_file(scene_path); /* which names a picture that is no more */
     scene *c = scene_clone(s);
     char where[200], text[DIAGNOSTIC_TEXT_MAX];
     snprintf(where, sizeof where, "%s:1:23: background.picture: %s: ", scene_path, picture_path);
-    assert_int_equal(scene_load_pictures(c, &why), STATUS_BAD_INPUT);
+    assert_int_equal(scene_load(c, &why), STATUS_BAD_INPUT);
     assert_int_equal(strncmp(diagnostic_text(&why, text, sizeof text), where, strlen(where)), 0);
     scene_destroy(c);
     scene_destroy(s);

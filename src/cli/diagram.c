@@ -23,6 +23,7 @@ void diagram_include_solid(diagram_box *box, const section_plane *plane, const s
     case SHAPE_BOX: half = vec3_scale(shape->size, 0.5); break;
     case SHAPE_SPHERE: break;
     case SHAPE_PLANE:
+    case SHAPE_MESH:
     case SHAPE_COUNT: return;
     }
     const mat3 rotation = rotation_from_deg(shape->rotation_deg);

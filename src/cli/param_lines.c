@@ -8,6 +8,8 @@
 static const char *group_prefix(param_group group)
 {
     switch (group) {
+    case PARAM_MESH: return "MESH";
+    case PARAM_TEXTURE: return "TEXTURE";
     case PARAM_LIGHT: return "LIGHT";
     case PARAM_MATERIAL: return "MATERIAL";
     case PARAM_SOLID: return "SOLID";

@@ -93,6 +93,7 @@ static const char *type_name(param_type type)
     case PARAM_COLOR: return "color";
     case PARAM_LIST: return "list";
     case PARAM_PATH: return "path";
+    case PARAM_WORD: return "name";
     }
     return "";
 }
@@ -107,7 +108,7 @@ static json_t *choices(const param *row)
 
 static json_t *shapes(const param *row)
 {
-    static const char *const names[SHAPE_COUNT] = {"plane", "cylinder", "cup", "box", "sphere"};
+    static const char *const names[SHAPE_COUNT] = {"plane", "cylinder", "cup", "box", "sphere", "mesh"};
     json_t *list = json_array();
     for (int i = 0; list && i < SHAPE_COUNT; i++)
         if (row->shapes == 0 || (row->shapes & 1u << i))
@@ -118,7 +119,7 @@ static json_t *shapes(const param *row)
 static json_t *line_json(const param_line *l, bool has_value)
 {
     const param *row = l->row;
-    bool bounded = row->type != PARAM_CHOICE && row->type != PARAM_PATH;
+    bool bounded = row->type != PARAM_CHOICE && row->type != PARAM_PATH && row->type != PARAM_WORD;
     char range[PARAM_PATH_MAX];
     json_t *o = json_object();
     int bad = json_object_set_new(o, "path", json_of_text(l->path));
@@ -180,6 +181,8 @@ static const char *group_title(param_group group)
     case PARAM_RENDER: return "How it is rendered";
     case PARAM_CAMERA: return "Camera";
     case PARAM_BACKGROUND: return "Background";
+    case PARAM_MESH: return "A mesh, by its name";
+    case PARAM_TEXTURE: return "A texture, by its name";
     case PARAM_LIGHT: return "A light, by its name";
     case PARAM_MATERIAL: return "A material, by its name, or that of one solid, by the solid's";
     case PARAM_SOLID: return "A solid, by its name";

@@ -46,7 +46,8 @@ json_t *report_value(const param *row, const char *text)
         break;
     }
     case PARAM_CHOICE:
-    case PARAM_PATH: break;
+    case PARAM_PATH:
+    case PARAM_WORD: break;
     }
     return json_of_text(text);
 }

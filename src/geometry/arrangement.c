@@ -1,4 +1,5 @@
 #include "geometry/arrangement.h"
+#include "geometry/forest.h"
 
 #include <stdlib.h>
 
@@ -30,6 +31,17 @@ static primitive cylinder_placed(const solid_shape *shape, double radius, double
     return p;
 }
 
+/* How far a mesh's copies reach from its position. */
+static double mesh_extent(const solid_shape *shape)
+{
+    const bounds3 b = shape->mesh->bounds;
+    const vec3 low = b.low, high = b.high, scale = shape->scale, n = shape->copies, step = shape->spacing;
+    const double x = largest3(fabs(low.x), fabs(high.x), 0.0) * scale.x + (n.x - 1.0) * fabs(step.x);
+    const double y = largest3(fabs(low.y), fabs(high.y), 0.0) * scale.y + (n.y - 1.0) * fabs(step.y);
+    const double z = largest3(fabs(low.z), fabs(high.z), 0.0) * scale.z + (n.z - 1.0) * fabs(step.z);
+    return shape->mesh->triangle_count > 0 ? x + y + z : 0.0;
+}
+
 /* Writes the one or two primitives of a shape; returns how many. */
 static int primitives_of(const solid_shape *shape, primitive out[2])
 {
@@ -51,6 +63,9 @@ static int primitives_of(const solid_shape *shape, primitive out[2])
     case SHAPE_SPHERE:
         out[0] = primitive_placed(shape, PRIMITIVE_SPHERE, shape->radius);
         out[0].radius = shape->radius;
+        return 1;
+    case SHAPE_MESH:
+        out[0] = primitive_placed(shape, PRIMITIVE_MESH, mesh_extent(shape));
         return 1;
     case SHAPE_COUNT:
         break;
@@ -99,6 +114,19 @@ static bool media_are_distinct(const arrangement *a)
     return true;
 }
 
+/* order: the sources by rank. */
+static status plant_meshes(arrangement *a, const body_source *sources, const int *order, diagnostic *why)
+{
+    forest_source planted[PRIMITIVES_MAX];
+    int count = 0;
+    for (int r = 1; r <= a->body_count; r++) {
+        const body_source *source = &sources[order[r - 1]];
+        if (source->shape->kind == SHAPE_MESH)
+            planted[count++] = (forest_source){source->shape, source->tree, a->bodies[r].outside, r};
+    }
+    return count > 0 ? forest_build(planted, count, &a->meshes, why) : STATUS_OK;
+}
+
 status arrangement_build(const body_source *sources, int count, int64_t outside_medium, arrangement **out, diagnostic *why)
 {
     int primitives = 0;
@@ -123,7 +151,12 @@ status arrangement_build(const body_source *sources, int count, int64_t outside_
     order_by_priority(sources, count, order);
     for (int r = 0; r < count; r++)
         add_body(a, r + 1, &sources[order[r]]);
+    status code = plant_meshes(a, sources, order, why);
     free(order);
+    if (code != STATUS_OK) {
+        arrangement_destroy(a);
+        return code;
+    }
     a->distinct = media_are_distinct(a);
     *out = a;
     return STATUS_OK;
@@ -133,6 +166,7 @@ void arrangement_destroy(arrangement *a)
 {
     if (!a)
         return;
+    forest_destroy(a->meshes);
     free(a->primitives);
     free(a->bodies);
     free(a);
@@ -147,13 +181,14 @@ static bool primitive_contains(const primitive *p, vec3 point)
         return q.x * q.x + p->m2 * q.z * q.z <= p->radius * p->radius && q.y >= p->bottom && q.y <= p->top;
     case PRIMITIVE_BOX: return fabs(q.x) <= p->half.x && fabs(q.y) <= p->half.y && fabs(q.z) <= p->half.z;
     case PRIMITIVE_SPHERE: return vec3_dot(q, q) <= p->radius * p->radius;
+    case PRIMITIVE_MESH: break; /* see forest_inside */
     }
     return false;
 }
 
 uint64_t arrangement_inside(const arrangement *a, vec3 point)
 {
-    uint64_t inside = 0;
+    uint64_t inside = a->meshes ? forest_inside(a->meshes, point) : 0;
     for (int i = 0; i < a->primitive_count; i++)
         inside |= (uint64_t)primitive_contains(&a->primitives[i], point) << i;
     return inside;

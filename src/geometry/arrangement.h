@@ -2,7 +2,7 @@
  * or one less another (a cup: its outside less its hollow), so that every solid is at most two intervals on a ray.
  *
  * The medium at a point is the body of the highest rank that contains it (rank 0: none, the surrounding medium). A ray carries
- * one bit for each primitive that it is in. An interface is a point of the ray where the medium changes:
+ * one bit for each primitive that it is in. A closed mesh is a primitive too, though not convex; an open one is a skin, in which no ray ever is. An interface is a point of the ray where the medium changes:
  * crossings that a higher body hides, or that lead into an equal medium, are none (Schmidt and Budge,
  * "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2), 2002).
  *
@@ -22,9 +22,9 @@ enum {
     FACE_NONE = -1
 };
 
-typedef enum primitive_kind { PRIMITIVE_HALFSPACE, PRIMITIVE_CYLINDER, PRIMITIVE_BOX, PRIMITIVE_SPHERE } primitive_kind;
+typedef enum primitive_kind { PRIMITIVE_HALFSPACE, PRIMITIVE_CYLINDER, PRIMITIVE_BOX, PRIMITIVE_SPHERE, PRIMITIVE_MESH } primitive_kind;
 
-/* Faces: half-space 0. Cylinder 0 side, 1 bottom, 2 top. Box 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. Sphere 0. */
+/* Faces: half-space 0. Cylinder 0 side, 1 bottom, 2 top. Box 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. Sphere 0. Meshes number theirs otherwise: see forest.h. */
 typedef struct primitive {
     primitive_kind kind;
     bool turned;         /* rotation is not the identity */
@@ -56,6 +56,7 @@ typedef struct arrangement {
     uint64_t opaque_ranks; /* bit r - 1: the body of rank r is opaque */
     bool distinct;       /* no two bodies are of one medium, nor is any of the surrounding one */
     bool absorbs;        /* one of the bodies does */
+    struct forest *meshes; /* all of them; NULL when there is none */
 } arrangement;
 
 /* Can a body take light away from a shadow ray by itself? With solid_shadows every body does. */
@@ -67,6 +68,7 @@ static inline bool body_casts_shadow(const body *b, bool solid_shadows)
 /* What arrangement_build wants to know of a solid. */
 typedef struct body_source {
     const solid_shape *shape;
+    const struct hierarchy *tree; /* over the triangles of a mesh; borrowed, like the mesh */
     int64_t priority;    /* higher wins; of equals the one that comes first */
     int64_t medium;
     bool opaque;

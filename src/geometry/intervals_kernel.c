@@ -88,6 +88,17 @@ ALWAYS_INLINE void spheres(const primitive *p, int bit, const ray_batch *rays, r
     }
 }
 
+/* Of a mesh the set says all that is known before its triangles are asked: in it from ever to ever, or never. */
+static void membership(int bit, const ray_batch *rays, ray_scratch *s)
+{
+    double *restrict in = s->in[bit], *restrict out = s->out[bit];
+    for (int i = 0; i < rays->count; i++) {
+        const int64_t inside = inside_mask(rays->inside[i], bit);
+        in[i] = blend(inside, -HUGE_VAL, HUGE_VAL);
+        out[i] = blend(inside, HUGE_VAL, -HUGE_VAL);
+    }
+}
+
 /* What the primitives that are not turned share: inverse components, and the leading coefficient of round cylinders. */
 static void shared_terms(const ray_batch *rays, ray_scratch *restrict s)
 {
@@ -134,6 +145,7 @@ void KERNEL(intervals_of)(const arrangement *a, const ray_batch *rays, uint64_t 
                 boxes(&p, false, k, rays, s);
             break;
         case PRIMITIVE_SPHERE: spheres(&p, k, rays, s); break;
+        case PRIMITIVE_MESH: membership(k, rays, s); break;
         }
     }
 }

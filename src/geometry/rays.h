@@ -33,6 +33,21 @@ typedef struct hit_batch {
 /* A piece of a ray within one medium, and how long it is (scene units; for ever on a ray that meets nothing: 1e120). */
 typedef struct stretch { int ray, rank; double length; } stretch;
 
+/* Where a ray meets a mesh. */
+typedef struct forest_hit {
+    double t, u, v;          /* as a mesh_hit's (geometry/hierarchy.h); t infinite for a miss */
+    int64_t face;            /* mesh_face_number (geometry/forest.h); FACE_NONE for a miss */
+    int facing;
+} forest_hit;
+
+/* What a batch needs where there are meshes: the meshes' hits by ray, and of rays that are looked at another time. */
+typedef struct mesh_scratch {
+    forest_hit hit[ROW], again[ROW];
+    double from[ROW];        /* how far a column has been followed */
+    int64_t last[ROW];       /* the mesh face where that was, or where the ray starts */
+    bool near[ROW];          /* another boundary lies close to the column's hit */
+} mesh_scratch;
+
 enum { STRETCHES_MAX = BATCH * (2 * PRIMITIVES_MAX + 2) };
 
 /* The media that each ray of a batch went through, up to its hit or its light; those of one ray in order. Kept apart from the
@@ -54,6 +69,7 @@ typedef struct ray_scratch {
     int64_t attention[ROW], undecided[ROW], blocked[ROW];
     int ray[ROW];            /* which ray of the batch a column belongs to */
     ray_ways *ways;          /* the caller's; NULL: what rays go through is not noted */
+    mesh_scratch *meshes;    /* the caller's; may be NULL where there are no meshes */
 } ray_scratch;
 
 /* Points on one primitive's surface. normal is a unit vector against the ray; cos_i = -d.n, in (0, 1] for a unit vector d. error is a bound

@@ -11,15 +11,12 @@
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"
+#include "geometry/forest.h"
 #include <float.h>
 #include <math.h>
 
 /* Beyond this a crossing is never: see roots.h. */
 #define NEVER 1e120
-/* Share of the distance and of the arrangement's extent within which a second boundary is looked at closely. It changes no
- * result: it only must be wider than the error bounds, which it is unless a ray grazes within 2e-7 rad. */
-#define CLOSE 0x1p-24
-
 ALWAYS_INLINE int64_t set_mask(uint64_t set, int bit)
 {
     return -(int64_t)((set & (uint64_t)1 << bit) != 0);
@@ -98,7 +95,7 @@ static void all_sets_around(const arrangement *a, int n, ray_scratch *s, hit_bat
 {
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
-        double close = CLOSE * (c->t[i] + s->slack[i]);
+        double close = BOUNDARY_CLOSE * (c->t[i] + s->slack[i]);
         s->low[i] = c->t[i] - close;
         s->high[i] = c->t[i] + close;
     }
@@ -141,8 +138,13 @@ static void mark_attention(const arrangement *a, int n, const hit_batch *restric
     }
 }
 
+static bool is_mesh(const arrangement *a, int bit)
+{
+    return a->meshes && (a->meshes->primitives >> bit & 1);
+}
+
 /* The next change of medium of the first n columns. */
-static void next_changes(const arrangement *a, int n, ray_scratch *s, hit_batch *c)
+static void next_changes(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, forest_hit *mesh_hits)
 {
     ranks_of(a, n, s->inside, c->before);
     for (int i = 0; i < n; i++) {
@@ -151,33 +153,49 @@ static void next_changes(const arrangement *a, int n, ray_scratch *s, hit_batch 
     }
     for (int r = 1; r <= a->body_count; r++) {
         const int o = a->bodies[r].outside, h = a->bodies[r].hollow;
+        if (is_mesh(a, o))
+            continue;
         if (h < 0)
             next_of_plain(n, r, o, s->in[o], s->out[o], s, c);
         else
             next_of_hollow(n, r, o, h, s->in[o], s->out[o], s->in[h], s->out[h], s, c);
     }
+    if (a->meshes)
+        KERNEL(mesh_changes)(a, rays, n, s, c, mesh_hits);
     all_sets_around(a, n, s, c);
+    if (a->meshes)
+        KERNEL(mesh_sets)(a, rays, n, s, c, mesh_hits);
     ranks_of(a, n, c->inside_after, c->after);
     surfaces(a->opaque_ranks, n, c->before, c->after, c->surface);
     mark_attention(a, n, c, s->attention);
+    for (int k = 0; a->meshes && k < n; k++)
+        s->attention[k] |= -(int64_t)s->meshes->near[k];
 }
 
 /* The sets around column k's crossing again, at the distance of its error bound: other boundaries within it are
  * part of the same crossing. */
-static void look_closely(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c)
+static void look_closely(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, const forest_hit *mesh_hits)
 {
     const int i = s->ray[k], crossed = (int)c->crossed[k];
     const ray_batch one = {1,           &rays->ox[i], &rays->oy[i], &rays->oz[i],    &rays->dx[i],
                            &rays->dy[i], &rays->dz[i], &rays->start[i], &s->inside[k]};
     surface_batch point;
-    KERNEL(surface_points)(&a->primitives[crossed], &one, &c->t[k], crossed, &point);
-    double reach = 2.0 * point.error[0] / point.cos_i[0], widest = CLOSE * (c->t[k] + s->slack[k]);
+    if (is_mesh(a, crossed))
+        forest_surface(a->meshes, &one, &mesh_hits[k], false, &point, NULL);
+    else
+        KERNEL(surface_points)(&a->primitives[crossed], &one, &c->t[k], crossed, &point);
+    double reach = 2.0 * point.error[0] / point.cos_i[0], widest = BOUNDARY_CLOSE * (c->t[k] + s->slack[k]);
     reach = lesser(reach, widest);
     double low = c->t[k] - reach, high = c->t[k] + reach;
     uint64_t before = 0, after = 0;
     for (int p = 0; p < a->primitive_count; p++) {
         before |= (uint64_t)(s->in[p][k] <= low && low < s->out[p][k]) << p;
         after |= (uint64_t)(s->in[p][k] <= high && high < s->out[p][k]) << p;
+    }
+    if (a->meshes) {
+        const uint64_t meshes = a->meshes->primitives;
+        before = (before & ~meshes) | (c->inside_before[k] & meshes);
+        after = (after & ~meshes) | (KERNEL(mesh_set_behind)(a, rays, k, s, before, low, high) & meshes);
     }
     c->inside_before[k] = before;
     c->inside_after[k] = after;
@@ -186,23 +204,31 @@ static void look_closely(const arrangement *a, const ray_batch *rays, int k, con
 }
 
 /* Is column k an interface? Looks closely where another boundary is near. */
-static bool is_interface(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c)
+static bool is_interface(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, const forest_hit *mesh_hits)
 {
-    if ((c->inside_before[k] ^ c->inside_after[k]) != (uint64_t)1 << c->crossed[k])
-        look_closely(a, rays, k, s, c);
+    const bool near = a->meshes && s->meshes->near[k];
+    if (near || (c->inside_before[k] ^ c->inside_after[k]) != (uint64_t)1 << c->crossed[k])
+        look_closely(a, rays, k, s, c, mesh_hits);
     return a->bodies[c->before[k]].medium != a->bodies[c->after[k]].medium;
 }
 
 /* Column k crosses without effect: what lies behind the crossing becomes column m, to be looked at again. */
-static void pass_on(const arrangement *a, int k, int m, ray_scratch *s, const hit_batch *c)
+static void pass_on(const arrangement *a, int k, int m, ray_scratch *s, const hit_batch *c, const forest_hit *mesh_hits)
 {
-    const uint64_t set = c->inside_after[k];
+    const uint64_t set = c->inside_after[k] & ~(a->meshes ? a->meshes->skins : 0);
     const double t = c->t[k];
     for (int p = 0; p < a->primitive_count; p++) {
         double in = s->in[p][k], out = s->out[p][k];
+        const bool endless = is_mesh(a, p);
         bool inside = set >> p & 1, spent = !inside && in <= t;
         s->in[p][m] = inside ? -HUGE_VAL : spent ? HUGE_VAL : in;
         s->out[p][m] = spent ? -HUGE_VAL : inside && out < t ? t : out;
+        if (endless)
+            s->in[p][m] = inside ? -HUGE_VAL : HUGE_VAL, s->out[p][m] = -s->in[p][m];
+    }
+    if (a->meshes) {
+        s->meshes->from[m] = t;
+        s->meshes->last[m] = is_mesh(a, (int)c->crossed[k]) ? mesh_hits[k].face : s->meshes->last[k];
     }
     s->inside[m] = set;
     s->slack[m] = s->slack[k];
@@ -222,11 +248,15 @@ static void note_stretch(int k, double end, ray_scratch *s, const hit_batch *c)
         w->stretches[w->count++] = (stretch){s->ray[k], (int)c->before[k], length};
 }
 
-static void begin(const ray_batch *rays, ray_scratch *s)
+static void begin(const arrangement *a, const ray_batch *rays, ray_scratch *s)
 {
     for (int i = 0; i < rays->count; i++) {
         s->inside[i] = rays->inside[i];
         s->ray[i] = i;
+    }
+    for (int i = 0; a->meshes && i < rays->count; i++) {
+        s->meshes->from[i] = 0.0;
+        s->meshes->last[i] = rays->start[i];
     }
     if (s->ways)
         s->ways->count = 0;
@@ -256,29 +286,35 @@ static void copy_hit(const hit_batch *from, int k, hit_batch *to, int i)
 static void nearest(const arrangement *a, const ray_batch *rays, ray_scratch *s, hit_batch *hits)
 {
     KERNEL(intervals_of)(a, rays, UINT64_MAX, s);
-    begin(rays, s);
+    forest_hit *mesh_hits = a->meshes ? s->meshes->hit : NULL, *again = a->meshes ? s->meshes->again : NULL;
+    begin(a, rays, s);
     for (int i = 0; i < rays->count; i++)
         s->slack[i] = a->extent;
-    next_changes(a, rays->count, s, hits);
+    next_changes(a, rays, rays->count, s, hits, mesh_hits);
     if (s->ways)
         note_first_stretches(rays->count, s, hits);
     int left = 0;
     for (int i = 0; i < rays->count; i++)
-        if (s->attention[i] && !is_interface(a, rays, i, s, hits))
-            pass_on(a, i, left++, s, hits);
+        if (s->attention[i] && !is_interface(a, rays, i, s, hits, mesh_hits))
+            pass_on(a, i, left++, s, hits, mesh_hits);
     while (left > 0) {
         const int n = left;
-        next_changes(a, n, s, &s->again);
+        next_changes(a, rays, n, s, &s->again, again);
         left = 0;
         for (int k = 0; k < n; k++) {
             if (s->ways)
                 note_stretch(k, HUGE_VAL, s, &s->again);
-            if (s->attention[k] && !is_interface(a, rays, k, s, &s->again))
-                pass_on(a, k, left++, s, &s->again);
-            else
-                copy_hit(&s->again, k, hits, s->ray[k]);
+            if (s->attention[k] && !is_interface(a, rays, k, s, &s->again, again)) {
+                pass_on(a, k, left++, s, &s->again, again);
+                continue;
+            }
+            copy_hit(&s->again, k, hits, s->ray[k]);
+            if (again)
+                mesh_hits[s->ray[k]] = again[k];
         }
     }
+    for (int i = 0; a->meshes && i < rays->count; i++)
+        hits->inside_after[i] &= ~a->meshes->skins; /* nothing is ever in a skin */
 }
 
 /* Does the way from 0 to 1 touch the body's matter? For shadow rays, whatever hides it. */
@@ -322,17 +358,26 @@ static bool any_undecided(int n, const ray_scratch *s)
 }
 
 /* First sight: blocked for certain by an opaque body that nothing clear can hide; undecided where order or attenuation matters. */
-static void first_sight(const arrangement *a, int solid_shadows, int n, ray_scratch *s)
+static void first_sight(const arrangement *a, const ray_batch *rays, int solid_shadows, ray_scratch *s)
 {
+    const int n = rays->count;
     for (int i = 0; i < n; i++)
         s->blocked[i] = s->undecided[i] = 0;
+    uint64_t sure = 0, unsure = 0; /* meshes */
     bool hidden = false; /* can a clear body of a higher rank hide this one? */
     for (int r = a->body_count; r >= 1; r--) {
         const body *b = &a->bodies[r];
-        if (body_casts_shadow(b, solid_shadows))
-            touching(b, n, s, hidden || !b->opaque ? s->undecided : s->blocked);
+        const bool doubtful = hidden || !b->opaque, casts = body_casts_shadow(b, solid_shadows);
+        if (casts && is_mesh(a, b->outside))
+            *(doubtful ? &unsure : &sure) |= (uint64_t)1 << b->outside;
+        else if (casts)
+            touching(b, n, s, doubtful ? s->undecided : s->blocked);
         hidden |= !b->opaque;
     }
+    if (sure)
+        KERNEL(mesh_shadows)(a, rays, sure, s->blocked, s->blocked);
+    if (unsure)
+        KERNEL(mesh_shadows)(a, rays, unsure, s->undecided, s->blocked);
 }
 
 /* One interface on the way of the shadow ray in column k: what of the light it lets through. */
@@ -355,6 +400,10 @@ static int keep_undecided(const arrangement *a, const ray_batch *rays, ray_scrat
         s->slack[n] = a->extent / length;
         s->inside[n] = rays->inside[i];
         s->ray[n] = i;
+        if (a->meshes) {
+            s->meshes->from[n] = 0.0;
+            s->meshes->last[n] = rays->start[i];
+        }
         if (s->ways) {
             s->ways->passed[n] = 0.0;
             s->ways->unit[n] = length;
@@ -374,7 +423,7 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
     if (s->ways)
         s->ways->count = 0;
     KERNEL(intervals_of)(a, rays, wanted, s);
-    first_sight(a, solid_shadows, rays->count, s);
+    first_sight(a, rays, solid_shadows, s);
     for (int i = 0; i < rays->count; i++)
         transmitted[i] = s->blocked[i] ? 0.0 : 1.0;
     if (!any_undecided(rays->count, s))
@@ -383,17 +432,18 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
     for (int left = keep_undecided(a, rays, s); left > 0;) {
         const int n = left;
         hit_batch *c = &s->again;
-        next_changes(a, n, s, c);
+        forest_hit *again = a->meshes ? s->meshes->again : NULL;
+        next_changes(a, rays, n, s, c, again);
         left = 0;
         for (int k = 0; k < n; k++) {
             if (s->ways)
                 note_stretch(k, 1.0, s, c);
             if (c->crossed[k] < 0 || c->t[k] >= 1.0)
                 continue;
-            if (!s->attention[k] || is_interface(a, rays, k, s, c))
+            if (!s->attention[k] || is_interface(a, rays, k, s, c, again))
                 transmitted[s->ray[k]] *= let_through(a, solid_shadows, c, k);
             if (transmitted[s->ray[k]] > 0.0)
-                pass_on(a, k, left++, s, c);
+                pass_on(a, k, left++, s, c, again);
         }
     }
 }

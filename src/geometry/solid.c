@@ -62,6 +62,24 @@ static status check_box(const solid_shape *shape, diagnostic *why)
     return code == STATUS_OK ? check_length(shape->size.z, "size.z", why) : code;
 }
 
+static bool is_whole(double value)
+{
+    return value >= 1.0 && value <= SHAPE_COPIES_MAX && value == floor(value);
+}
+
+static status check_copies(const solid_shape *shape, diagnostic *why)
+{
+    const vec3 n = shape->copies, s = shape->scale;
+    if (!is_whole(n.x) || !is_whole(n.y) || !is_whole(n.z) || n.x * n.y * n.z > SHAPE_COPIES_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "give three whole numbers from 1, at most 4194304 copies in all",
+                        "copies is %g, %g, %g", n.x, n.y, n.z);
+    }
+    if (!(s.x > 0.0 && s.y > 0.0 && s.z > 0.0) || !is_finite_vector(s) || !is_finite_vector(shape->spacing)) {
+        return diagnose(why, STATUS_BAD_INPUT, "give numbers above 0", "scale is %g, %g, %g", s.x, s.y, s.z);
+    }
+    return STATUS_OK;
+}
+
 status solid_shape_check(const solid_shape *shape, diagnostic *why)
 {
     if (!is_finite_vector(shape->position) || !is_finite_vector(shape->rotation_deg)) {
@@ -73,6 +91,7 @@ status solid_shape_check(const solid_shape *shape, diagnostic *why)
     case SHAPE_CUP:
     case SHAPE_SPHERE: return check_round(shape, why);
     case SHAPE_BOX: return check_box(shape, why);
+    case SHAPE_MESH: return check_copies(shape, why);
     case SHAPE_COUNT: break;
     }
     return diagnose(why, STATUS_BAD_INPUT, "", "no such shape");
@@ -100,6 +119,7 @@ bool solid_shape_contains(const solid_shape *shape, vec3 point)
     case SHAPE_BOX:
         return fabs(p.x) <= shape->size.x / 2 && fabs(p.y) <= shape->size.y / 2 && fabs(p.z) <= shape->size.z / 2;
     case SHAPE_SPHERE: return vec3_dot(p, p) <= shape->radius * shape->radius;
+    case SHAPE_MESH: /* asked of an arrangement, which has its triangles in order */
     case SHAPE_COUNT: break;
     }
     return false;

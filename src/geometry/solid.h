@@ -8,16 +8,19 @@
  *             and is open at the top (position is the centre of its base)
  *   box       |x| <= size.x/2 and so on (position is its centre)
  *   sphere    x^2 + y^2 + z^2 <= radius^2
+ *   mesh      a triangle mesh, each axis times scale, as often as copies says, spacing apart. A closed mesh is solid; an open
+ *             one is a skin, which contains nothing
  *
- * Pure; ownership: values. */
+ * Pure; ownership: values; a shape borrows its mesh. */
 #ifndef CUVETTE_GEOMETRY_SOLID_H
 #define CUVETTE_GEOMETRY_SOLID_H
 
 #include "base/status.h"
 #include "base/vec3.h"
+#include "geometry/mesh.h"
 #include <stdbool.h>
 
-typedef enum shape_kind { SHAPE_PLANE, SHAPE_CYLINDER, SHAPE_CUP, SHAPE_BOX, SHAPE_SPHERE, SHAPE_COUNT } shape_kind;
+typedef enum shape_kind { SHAPE_PLANE, SHAPE_CYLINDER, SHAPE_CUP, SHAPE_BOX, SHAPE_SPHERE, SHAPE_MESH, SHAPE_COUNT } shape_kind;
 
 typedef struct solid_shape {
     shape_kind kind;
@@ -25,12 +28,19 @@ typedef struct solid_shape {
     vec3 rotation_deg; /* about x, then y, then z */
     double radius, height, m, inner_radius, floor; /* those that kind has; the others are ignored */
     vec3 size;
+    const mesh *mesh;  /* NULL until it is there */
+    vec3 scale;        /* above 0 */
+    vec3 copies;       /* whole numbers from 1, along the axes of the solid's frame */
+    vec3 spacing;      /* from copy to copy, in that frame */
 } solid_shape;
+
+/* Of all copies together, and of shapes of all kinds at most. */
+enum { SHAPE_COPIES_MAX = 1 << 22 };
 
 /* Checks what single ranges cannot: inner_radius < radius, floor < height. */
 status solid_shape_check(const solid_shape *shape, diagnostic *why);
 
-/* Does the closed solid contain the point? By its definition above; for tests and for the camera. */
+/* Does the closed solid contain the point? By its definition above; for tests and for hints. Of a mesh it is not known here, and false. */
 bool solid_shape_contains(const solid_shape *shape, vec3 point);
 
 /* The rotation of rotation_deg: local to world. */

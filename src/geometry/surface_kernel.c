@@ -131,5 +131,6 @@ void KERNEL(surface_points)(const primitive *primitive_met, const ray_batch *ray
             points_on(&p, PRIMITIVE_BOX, false, true, rays, t, bit, points);
         break;
     case PRIMITIVE_SPHERE: points_on(&p, PRIMITIVE_SPHERE, false, true, rays, t, bit, points); break;
+    case PRIMITIVE_MESH: break; /* see forest_surface */
     }
 }

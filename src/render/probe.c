@@ -184,6 +184,7 @@ const char *probe_face_name(const probe *p, const ray_hit *hit)
     case SHAPE_BOX: return box[hit->face % FACES_MAX];
     case SHAPE_PLANE:
     case SHAPE_SPHERE:
+    case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }
     return "surface";

@@ -321,7 +321,7 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
     plan *p = NULL;
     render_result *result = NULL;
     if (code == STATUS_OK && s->background.kind == BACKGROUND_PICTURE && !s->background.picture)
-        code = diagnose(why, STATUS_FAILURE, "call scene_load_pictures before", "the sky's picture is not loaded");
+        code = diagnose(why, STATUS_FAILURE, "call scene_load before", "the sky's picture is not loaded");
     if (code == STATUS_OK)
         code = plan_build(s, &p, why);
     if (code == STATUS_OK)

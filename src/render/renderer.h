@@ -64,7 +64,7 @@ typedef struct render_result {
  * drawn by chance, or too few paths tell. */
 double render_noise_rms(const render_result *result);
 
-/* scene_load_pictures must have been called. STATUS_INTERRUPTED when progress returned false: *out then holds what was done. */
+/* scene_load must have been called. STATUS_INTERRUPTED when progress returned false: *out then holds what was done. */
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out, diagnostic *why);
 void render_result_destroy(render_result *result);
 

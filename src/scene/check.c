@@ -10,7 +10,7 @@ _Static_assert((int)SCENE_PRIMITIVES_MAX <= (int)COUNTERS_SOLID_MAX, "a counter 
 
 static bool is_reserved(const char *name)
 {
-    static const char *const sections[] = {"title", "materials", "lights", "solids"};
+    static const char *const sections[] = {"title", "meshes", "textures", "materials", "lights", "solids"};
     for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
         if (strcmp(name, sections[i]) == 0) {
             return true;
@@ -50,6 +50,12 @@ status check_name(const char *name, diagnostic *why)
 static size_t count_name(const scene *s, const char *name)
 {
     size_t count = 0;
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        count += strcmp(s->meshes[i].name, name) == 0;
+    }
+    for (size_t i = 0; i < s->texture_count; i++) {
+        count += strcmp(s->textures[i].name, name) == 0;
+    }
     for (size_t i = 0; i < s->light_count; i++) {
         count += strcmp(s->lights[i].name, name) == 0;
     }
@@ -64,7 +70,7 @@ static size_t count_name(const scene *s, const char *name)
 
 static status name_taken(const char *name, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "lights, materials and solids need different names, because paths use them",
+    return diagnose(why, STATUS_BAD_INPUT, "meshes, textures, lights, materials and solids need different names, because paths use them",
                     "the name '%s' is taken", name);
 }
 
@@ -125,12 +131,72 @@ status check_background(const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
+status check_mesh(const mesh_entry *m, diagnostic *why)
+{
+    if (m->source == MESH_FILE && !m->path[0]) {
+        return diagnose(why, STATUS_BAD_INPUT, "give it a file, as 'file: teapot.obj', or 'generate: icosphere' and the like",
+                        "%.80s: where the mesh comes from is not said", m->name);
+    }
+    if (m->source == MESH_LATHE && m->profile.count % 2 != 0) {
+        return diagnose(why, STATUS_BAD_INPUT, "give radius, height, radius, height ..", "%.80s: the profile has an odd number of numbers",
+                        m->name);
+    }
+    return STATUS_OK;
+}
+
+status check_texture(const texture_entry *t, diagnostic *why)
+{
+    if (!t->path[0] && !t->data) {
+        return diagnose(why, STATUS_BAD_INPUT, "give it a file, as 'file: wood.png'", "%.80s: the texture has no picture", t->name);
+    }
+    return STATUS_OK;
+}
+
+static status unknown(const char *owner, const char *what, const char *name, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, "", "%.80s: there is no %s '%.80s'", owner, what, name);
+}
+
+/* A clear solid bends light by what is inside it: an open mesh has no inside. */
+static status check_closed(const solid *owner, const mesh_entry *m, diagnostic *why)
+{
+    const mesh *data = m->data;
+    if (!data || data->closed || owner->surface.transparency == 0.0) {
+        return STATUS_OK;
+    }
+    const vec3 a = data->vertices[data->hole.from], b = data->vertices[data->hole.to];
+    return diagnose(why, STATUS_BAD_INPUT, "close the mesh, or make the solid opaque (transparency 0)",
+                    "%.80s is clear, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, %g) of triangle %zu joins %d "
+                    "triangles, and not 2",
+                    owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, data->hole.sharing);
+}
+
+/* What the solid names is there. */
+static status check_references(const scene *s, const solid *owner, diagnostic *why)
+{
+    const mesh_entry *m = scene_find_mesh(s, owner->mesh);
+    if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture)) {
+        return unknown(owner->name, "texture", owner->surface.texture, why);
+    }
+    if (owner->shape.kind != SHAPE_MESH) {
+        return STATUS_OK;
+    }
+    if (!owner->mesh[0]) {
+        return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', of one in meshes", "%.80s: which mesh it is is not said", owner->name);
+    }
+    return m ? check_closed(owner, m, why) : unknown(owner->name, "mesh", owner->mesh, why);
+}
+
 status check_solid(const scene *s, const solid *owner, diagnostic *why)
 {
     diagnostic shape = {.what = ""};
     status code = solid_shape_check(&owner->shape, &shape);
     if (code != STATUS_OK) {
         return diagnose(why, code, shape.remedy, "%.80s: %s", owner->name, shape.what);
+    }
+    code = check_references(s, owner, why);
+    if (code != STATUS_OK) {
+        return code;
     }
     index_law unused;
     code = material_index_law(&owner->surface, owner->name, &unused, why);
@@ -172,6 +238,12 @@ status check_limits(const scene *s, diagnostic *why)
 static status check_names(const scene *s, diagnostic *why)
 {
     status code = STATUS_OK;
+    for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
+        code = check_own_name(s, s->meshes[i].name, why);
+    }
+    for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++) {
+        code = check_own_name(s, s->textures[i].name, why);
+    }
     for (size_t i = 0; i < s->light_count && code == STATUS_OK; i++) {
         code = check_own_name(s, s->lights[i].name, why);
     }
@@ -190,6 +262,18 @@ status scene_check(const scene *s, diagnostic *why)
                                                              check_background};
     for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
         status code = checks[i](s, why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        status code = check_mesh(&s->meshes[i], why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    for (size_t i = 0; i < s->texture_count; i++) {
+        status code = check_texture(&s->textures[i], why);
         if (code != STATUS_OK) {
             return code;
         }

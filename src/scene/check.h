@@ -8,13 +8,15 @@
  * files use. */
 status check_name(const char *name, diagnostic *why);
 
-/* Is the name free among the scene's lights, materials and solids? */
+/* Is the name free among the scene's meshes, textures, lights, materials and solids? */
 status check_name_is_free(const scene *s, const char *name, diagnostic *why);
 
 status check_render(const scene *s, diagnostic *why);
 status check_light(const scene *s, const light *lamp, diagnostic *why);
 status check_camera(const scene *s, diagnostic *why);
 status check_background(const scene *s, diagnostic *why);
+status check_mesh(const mesh_entry *m, diagnostic *why);
+status check_texture(const texture_entry *t, diagnostic *why);
 status check_solid(const scene *s, const solid *owner, diagnostic *why);
 
 /* Numbers of lights, materials and primitives. */

@@ -62,6 +62,7 @@ static double reach(const solid_shape *shape)
     case SHAPE_CUP: return hypot(shape->radius, shape->height);
     case SHAPE_BOX: return 0.5 * vec3_length(shape->size);
     case SHAPE_SPHERE: return shape->radius;
+    case SHAPE_MESH:
     case SHAPE_PLANE:
     case SHAPE_COUNT: break;
     }

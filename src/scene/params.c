@@ -15,6 +15,8 @@ static void *place_base(scene *s, const place *at)
     case PARAM_RENDER: return &s->render;
     case PARAM_CAMERA: return &s->camera;
     case PARAM_BACKGROUND: return &s->background;
+    case PARAM_MESH: return &s->meshes[at->index];
+    case PARAM_TEXTURE: return &s->textures[at->index];
     case PARAM_LIGHT: return &s->lights[at->index];
     case PARAM_MATERIAL: return &s->materials[at->index].value;
     case PARAM_SOLID: {
@@ -78,6 +80,27 @@ static void forget_medium(scene *s, const place *at)
     }
 }
 
+/* What was loaded under the old value; a file that is named is also used. */
+static void forget_loaded(scene *s, const place *at, param_value value)
+{
+    const bool names_file = at->row->type == PARAM_PATH, some = names_file && value.path[0];
+    if (at->group == PARAM_MESH) {
+        mesh_entry *m = &s->meshes[at->index];
+        mesh_entry_unload(m);
+        m->source = some ? MESH_FILE : m->source;
+        m->path_line = names_file ? 0 : m->path_line;
+    } else if (at->group == PARAM_TEXTURE) {
+        texture_entry *t = &s->textures[at->index];
+        texture_entry_unload(t);
+        t->path_line = names_file ? 0 : t->path_line;
+    } else if (names_file) {
+        image_destroy(s->background.picture);
+        s->background.picture = NULL;
+        s->background.picture_line = s->background.picture_column = 0;
+        s->background.kind = some ? BACKGROUND_PICTURE : s->background.kind;
+    }
+}
+
 static void store(scene *s, const place *at, param_value value)
 {
     forget_medium(s, at);
@@ -89,14 +112,7 @@ static void store(scene *s, const place *at, param_value value)
             s->camera.aimed = aimed;
         }
     }
-    if (row->type == PARAM_PATH) {
-        image_destroy(s->background.picture);
-        s->background.picture = NULL;
-        s->background.picture_line = s->background.picture_column = 0;
-        if (value.path[0]) {
-            s->background.kind = BACKGROUND_PICTURE;
-        }
-    }
+    forget_loaded(s, at, value);
     param_value_store(row, at->element, (char *)place_base(s, at) + row->offset, value);
     for (size_t i = 0; at->group == PARAM_MATERIAL && i < s->solid_count; i++) {
         if (s->solids[i].material_index == (int)at->index) {
@@ -169,7 +185,7 @@ static status visit_one(const scene *s, const place *at, param_visit *visit, voi
 /* Setting the camera's direction, or the sky's picture, that is not in use would put it in use. */
 static bool is_in_use(const scene *s, const param *row)
 {
-    if (row->type == PARAM_PATH && s->background.kind != BACKGROUND_PICTURE) {
+    if (row->type == PARAM_PATH && row->group == PARAM_BACKGROUND && s->background.kind != BACKGROUND_PICTURE) {
         return !s->background.picture_path[0];
     }
     return s->camera.aimed ? !is_angle(row) : !is_target(row);

@@ -1,8 +1,8 @@
 /* The parameter table: every quantity that a person may turn is declared once, in params_table.c, and scene
  * files, --set, sweep axes, CSV headers and the manual's reference are all read from it.
  *
- * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a light, a solid
- * or a material the group is its name in the scene: `lamp.intensity`, `vessel.ior`, `glass.ior`. One element of
+ * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a mesh, a texture, a light, a solid
+ * or a material the group is its name in the scene: `soup.count`, `lamp.intensity`, `vessel.ior`, `glass.ior`. One element of
  * a vector is `lamp.position.x` (.x .y .z, for colours .r .g .b). Setting a material's field sets it for all the
  * solids that refer to it; setting it by a solid's name sets it for that solid alone; the last one set wins.
  * Ownership: the table is constant. */
@@ -15,12 +15,14 @@ typedef enum param_group {
     PARAM_RENDER,
     PARAM_CAMERA,
     PARAM_BACKGROUND,
+    PARAM_MESH,
+    PARAM_TEXTURE,
     PARAM_LIGHT,
     PARAM_MATERIAL,
     PARAM_SOLID,
     PARAM_GROUP_COUNT
 } param_group;
-typedef enum param_type { PARAM_INT, PARAM_REAL, PARAM_CHOICE, PARAM_VECTOR, PARAM_COLOR, PARAM_LIST, PARAM_PATH } param_type;
+typedef enum param_type { PARAM_INT, PARAM_REAL, PARAM_CHOICE, PARAM_VECTOR, PARAM_COLOR, PARAM_LIST, PARAM_PATH, PARAM_WORD } param_type;
 
 typedef struct param {
     param_group group;
@@ -41,7 +43,7 @@ typedef struct param {
 
 size_t param_count(void);
 const param *param_at(size_t index);
-/* "render", "camera", "background", "light", "material", "solid" */
+/* "render", "camera", "background", "mesh", "texture", "light", "material", "solid" */
 const char *param_group_name(param_group group);
 /* The row of a group with that name, or NULL. PARAM_SOLID finds the material rows too, which a solid has by its
  * surface. */
@@ -54,6 +56,8 @@ char *param_range_text(const param *row, char *text, size_t size);
  * other as it was.
  *
  * Setting background.picture to a file makes background.kind picture; a kind that is set later wins.
+ *
+ * Setting a mesh's file makes its source file; a source (generate) that is set later wins.
  *
  * Setting a refractive index by ior makes medium `ior`; a medium that is set later wins. */
 

@@ -15,7 +15,7 @@ typedef struct path_words {
 
 const char *shape_name(shape_kind kind)
 {
-    static const char *const names[] = {"plane", "cylinder", "cup", "box", "sphere"};
+    static const char *const names[] = {"plane", "cylinder", "cup", "box", "sphere", "mesh"};
     return (size_t)kind < SHAPE_COUNT ? names[kind] : "";
 }
 
@@ -27,6 +27,8 @@ bool solid_has(const solid *owner, const param *row)
 size_t place_group_size(const scene *s, param_group group)
 {
     switch (group) {
+    case PARAM_MESH: return s->mesh_count;
+    case PARAM_TEXTURE: return s->texture_count;
     case PARAM_LIGHT: return s->light_count;
     case PARAM_MATERIAL: return s->material_count;
     case PARAM_SOLID: return s->solid_count;
@@ -41,6 +43,8 @@ size_t place_group_size(const scene *s, param_group group)
 const char *place_group_name(const scene *s, param_group group, size_t index)
 {
     switch (group) {
+    case PARAM_MESH: return s->meshes[index].name;
+    case PARAM_TEXTURE: return s->textures[index].name;
     case PARAM_LIGHT: return s->lights[index].name;
     case PARAM_MATERIAL: return s->materials[index].name;
     case PARAM_SOLID: return s->solids[index].name;
@@ -119,7 +123,7 @@ static size_t row_words(const scene *s, const place *at, param_group rows, const
 /* `depth` or `depht` alone: the group was forgotten. The nearest row of the groups without names, or NULL. */
 static const param *nearest_setting(const scene *s, const char *word)
 {
-    for (int g = 0; g < PARAM_LIGHT; g++) {
+    for (int g = 0; g <= PARAM_BACKGROUND; g++) {
         const place at = {.row = NULL, .group = (param_group)g, .index = 0, .element = -1};
         const char *words[WORDS_MAX];
         size_t count = row_words(s, &at, at.group, words, 0);
@@ -140,7 +144,7 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
     }
     const char *nearest = suggest_word(path->group, words, count);
     char remedy[300] =
-        "a path is render.NAME, camera.NAME, background.NAME, or the name of a light, material or solid, a dot "
+        "a path is render.NAME, camera.NAME, background.NAME, or the name of a mesh, texture, light, material or solid, a dot "
         "and a parameter";
     const param *setting = nearest || path->name ? NULL : nearest_setting(s, path->group);
     if (nearest) {

@@ -13,9 +13,17 @@ static const char *const beyond_words[] = {"sky", "black", NULL};
 static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
 static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynamic", NULL};
 static const char *const pin_words[] = {"none", "compact", "scatter", NULL};
-static const char *const integrator_words[] = {"raycast", "whitted", "path", NULL};
+static const char *const integrator_words[] = {"raycast", "whitted", "path", "zbuffer", NULL};
 static const char *const lighting_words[] = {"lambert", "phong", "whitted", NULL};
 static const char *const spectrum_words[] = {"rgb", "spectral", NULL};
+static const char *const accel_words[] = {"none", "sphere", "octant", "bvh", "embree", NULL};
+static const char *const texturing_words[] = {"perspective", "affine", NULL};
+static const char *const shading_words[] = {"flat", "smooth", "gouraud", NULL};
+/* arrays: what a program gave, which no file can say */
+static const char *const source_words[] = {"file", "sparse", "dense", "sphere", "icosphere", "torus", "lathe", "terrain", "box", "arrays", NULL};
+static const char *const filter_words[] = {"nearest", "bilinear", "trilinear", NULL};
+static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
+static const char *const space_words[] = {"srgb", "linear", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "picture", NULL};
 
 enum {
@@ -24,6 +32,7 @@ enum {
     ON_CUP = 1 << SHAPE_CUP,
     ON_BOX = 1 << SHAPE_BOX,
     ON_SPHERE = 1 << SHAPE_SPHERE,
+    ON_MESH = 1 << SHAPE_MESH,
     ON_ALL = 0
 };
 
@@ -92,7 +101,7 @@ static const param table[] = {
     {PARAM_RENDER, "samples", PARAM_INT, "", 1, 4, false, "1", "camera rays a pixel", sample_counts, ON_ALL,
      .offset = offsetof(render_settings, samples)},
     CHOICE(PARAM_RENDER, render_settings, integrator, integrator_words, "whitted",
-           "how light is followed: to the first surface, through reflections and refractions, or along random paths"),
+           "how light is followed: to the first surface, through reflections and refractions, along random paths, or not: a depth buffer"),
     CHOICE(PARAM_RENDER, render_settings, lighting, lighting_words, "whitted",
            "diffuse light alone, specular light too, or reflected and refracted light as well; not of the path integrator"),
     CHOICE(PARAM_RENDER, render_settings, weights, weights_words, "fresnel",
@@ -122,6 +131,12 @@ static const param table[] = {
     HOW_INTEGER(tile, "px", 1, 65536, "32", "edge of a tile"),
     HOW_CHOICE(pin, pin_words, "none",
            "workers bound to processing units: not, next to each other, or far from each other"),
+    HOW_CHOICE(accel, accel_words, "bvh",
+               "hierarchy over a mesh's triangles: none, one sphere, the report's tree of spheres, boxes, or Embree's (a yardstick: not the same film)"),
+    HOW_INTEGER(build_threads, "", 0, 1024, "0", "threads that build hierarchies; 0 is one a processing unit"),
+    HOW_CHOICE(keep, off_on, "on", "meshes keep their hierarchies; off builds them anew for every frame"),
+    CHOICE(PARAM_RENDER, render_settings, texturing, texturing_words, "perspective",
+           "how the depth buffer runs through textures: right, or straight across the picture"),
 
     VECTOR(PARAM_CAMERA, camera, position, "0,1,-6", "where the eye stands"),
     VECTOR(PARAM_CAMERA, camera, target, "0,1,0", "point in the middle of the picture; takes the place of the angles"),
@@ -143,6 +158,31 @@ static const param table[] = {
 
     REAL(PARAM_BACKGROUND, background, ior, "", 0.1, 100, "1", "refractive index of what surrounds all solids, relative to vacuum"),
     CHOICE(PARAM_BACKGROUND, background, medium, surrounding_words, "ior", "what surrounds all solids: as ior says, or from the catalogue"),
+
+    {PARAM_MESH, "generate", PARAM_CHOICE, "", 0, 0, false, "file", "which body is computed; file: it is read", source_words, ON_ALL,
+     .offset = offsetof(mesh_entry, source)},
+    {PARAM_MESH, "file", PARAM_PATH, "", 0, 0, false, "", "OBJ, PLY, STL or glTF file, from the scene file's folder", NULL, ON_ALL,
+     .offset = offsetof(mesh_entry, path)},
+    INTEGER(PARAM_MESH, mesh_entry, count, "", 1, 100000000, "10000", "triangles of sparse and dense; of sphere, the nearest 20 f^2"),
+    INTEGER(PARAM_MESH, mesh_entry, level, "", 0, 11, "4", "bisections of an icosphere: 20 * 4^level triangles"),
+    POSITIVE(PARAM_MESH, mesh_entry, major, "scene units", FAR, "1", "of a torus: from the axis to the middle of the tube"),
+    POSITIVE(PARAM_MESH, mesh_entry, minor, "scene units", FAR, "0.4", "of a torus: radius of the tube"),
+    INTEGER(PARAM_MESH, mesh_entry, around, "", 3, 16384, "64", "segments around the axis of a torus or lathe; cells of terrain along x"),
+    INTEGER(PARAM_MESH, mesh_entry, tube, "", 3, 16384, "32", "segments around a torus's tube; cells of terrain along z"),
+    LIST(PARAM_MESH, mesh_entry, profile, "scene units", FAR, "[0,0,1,0,1,1,0,1]", "of a lathe: radius, height, radius, height .."),
+    REAL(PARAM_MESH, mesh_entry, crease_deg, "deg", 0, 180, "30", "a lathe's profile keeps an edge where it turns by more"),
+    {PARAM_MESH, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges of a box; of terrain, with the height of its hills as y", NULL,
+     ON_ALL, .offset = offsetof(mesh_entry, size)},
+    REAL(PARAM_MESH, mesh_entry, depth, "scene units", 0, FAR, "0", "of terrain: its flat bottom lies so far below y = 0; 0 leaves it open"),
+    INTEGER(PARAM_MESH, mesh_entry, seed, "", 0, 2147483647, "1", "of terrain: which hills"),
+
+    {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "", "PNG, JPEG or PFM file, from the scene file's folder", NULL, ON_ALL,
+     .offset = offsetof(texture_entry, path)},
+    CHOICE(PARAM_TEXTURE, texture_entry, filter, filter_words, "trilinear",
+           "one texel, the four around the point, or these of two of a pyramid of smaller pictures"),
+    CHOICE(PARAM_TEXTURE, texture_entry, wrap_u, wrap_words, "repeat", "what lies to the left and right of the picture"),
+    CHOICE(PARAM_TEXTURE, texture_entry, wrap_v, wrap_words, "repeat", "what lies above and below it"),
+    CHOICE(PARAM_TEXTURE, texture_entry, space, space_words, "srgb", "what a PNG or JPEG file's numbers are: coded light, or light"),
 
     VECTOR(PARAM_LIGHT, light, position, "0,10,0", "where the point light stands"),
     COLOR(PARAM_LIGHT, light, color, BRIGHT, "1,1,1", "linear colour, times intensity"),
@@ -169,12 +209,16 @@ static const param table[] = {
     COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "absorption coefficient of Beer and Lambert by channel, 1/m"),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
          "the same by wavelength, as nm,1/m,nm,1/m..; takes the place of absorb_per_m"),
+    {PARAM_MATERIAL, "texture", PARAM_WORD, "", 0, 0, false, "", "name of a texture, whose colour multiplies color", NULL, ON_ALL,
+     .offset = offsetof(material, texture)},
+    POSITIVE(PARAM_MATERIAL, material, texture_size, "scene units", FAR, "1",
+             "edge of one picture of the texture on solids that are no meshes, in the solid's frame"),
     REAL(PARAM_MATERIAL, material, checker, "scene units", 0, FAR, "0",
          "edge of checker cells in the solid's frame; 0 for none"),
     COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of every second checker cell"),
 
     {PARAM_SOLID, "position", PARAM_VECTOR, "scene units", -FAR, FAR, false, "0,0,0",
-     "centre of a box or sphere, of the base of a cylinder or cup, a point of a plane", NULL, ON_ALL,
+     "centre of a box or sphere, of the base of a cylinder or cup, a point of a plane, a mesh's origin", NULL, ON_ALL,
      .offset = offsetof(solid, shape.position)},
     {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0", "turn about x, then y, then z", NULL,
      ON_ALL, .offset = offsetof(solid, shape.rotation_deg)},
@@ -186,6 +230,15 @@ static const param table[] = {
     LENGTH(floor, ON_CUP, "0.1", "thickness of the bottom"),
     {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges along x, y and z", NULL, ON_BOX,
      .offset = offsetof(solid, shape.size)},
+    {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, ON_MESH, .offset = offsetof(solid, mesh)},
+    {PARAM_SOLID, "scale", PARAM_VECTOR, "", 0, FAR, true, "1,1,1", "of a mesh, along its own axes", NULL, ON_MESH,
+     .offset = offsetof(solid, shape.scale)},
+    {PARAM_SOLID, "copies", PARAM_VECTOR, "", 1, 100000, false, "1,1,1", "how often a mesh stands along each of its own axes", NULL, ON_MESH,
+     .offset = offsetof(solid, shape.copies)},
+    {PARAM_SOLID, "spacing", PARAM_VECTOR, "scene units", -FAR, FAR, false, "1,1,1", "from copy to copy along its own axes, after scale", NULL, ON_MESH,
+     .offset = offsetof(solid, shape.spacing)},
+    {PARAM_SOLID, "shading", PARAM_CHOICE, "", 0, 0, false, "smooth", "of a mesh: by its triangles, by normals between its vertices, or light between them",
+     shading_words, ON_MESH, .offset = offsetof(solid, shading)},
     INTEGER(PARAM_SOLID, solid, priority, "", -1000000, 1000000, "0",
             "where solids overlap the highest one is there; of equal ones the first listed"),
     CHOICE(PARAM_SOLID, solid, visible, off_on, "on", "off leaves the solid out of the picture altogether"),
@@ -205,7 +258,7 @@ const param *param_at(size_t index)
 
 const char *param_group_name(param_group group)
 {
-    static const char *const names[] = {"render", "camera", "background", "light", "material", "solid"};
+    static const char *const names[] = {"render", "camera", "background", "mesh", "texture", "light", "material", "solid"};
     return (size_t)group < PARAM_GROUP_COUNT ? names[group] : "";
 }
 

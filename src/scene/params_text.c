@@ -37,6 +37,8 @@ static char *element_range_text(const param *row, bool one_element, char *text, 
         choice_text(row, text, size);
     } else if (row->type == PARAM_PATH) {
         snprintf(text, size, "path of a file");
+    } else if (row->type == PARAM_WORD) {
+        snprintf(text, size, "name of a %s", row->name);
     } else if (row->type == PARAM_LIST && !one_element) {
         snprintf(text, size, "a list of at most %d numbers, each %s", (int)NUMBER_LIST_MAX, interval);
     } else if (is_vector(row) && !one_element) {
@@ -101,6 +103,7 @@ char *param_value_text(const param *row, int element, const void *field)
     }
     case PARAM_LIST: return list_text(field);
     case PARAM_PATH: return strdup(*(char *const *)field ? *(char *const *)field : "");
+    case PARAM_WORD: return strdup(field);
     }
     return NULL;
 }

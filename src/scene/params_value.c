@@ -1,6 +1,7 @@
 #include "scene/params_value.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "scene/check.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -220,11 +221,27 @@ static status parse_path(const param *row, const char *label, char *text, char *
     return *out ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "memory is out");
 }
 
+/* The name of another object, or nothing. */
+static status parse_word(const param *row, const char *label, const char *text, char word[SCENE_NAME_MAX + 1], diagnostic *why)
+{
+    if (strlen(text) > SCENE_NAME_MAX) {
+        return wrong(row, false, why, "%s: the name is longer than %d bytes", label, (int)SCENE_NAME_MAX);
+    }
+    if (*text) {
+        const status code = check_name(text, why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    strcpy(word, text);
+    return STATUS_OK;
+}
+
 /* text is a copy without blanks around it, which the parsers may cut up. */
 static status parse_trimmed(const param *row, int element, const char *label, char *text, param_value *out,
                             diagnostic *why)
 {
-    if (!*text && row->type != PARAM_PATH && row->type != PARAM_LIST) {
+    if (!*text && row->type != PARAM_PATH && row->type != PARAM_LIST && row->type != PARAM_WORD) {
         return wrong(row, element >= 0, why, "%s has no value", label);
     }
     if (element >= 0) {
@@ -238,6 +255,7 @@ static status parse_trimmed(const param *row, int element, const char *label, ch
     case PARAM_COLOR: return parse_vector(row, label, text, &out->vector, why);
     case PARAM_LIST: return parse_list(row, label, text, &out->list, why);
     case PARAM_PATH: return parse_path(row, label, text, &out->path, why);
+    case PARAM_WORD: return parse_word(row, label, text, out->word, why);
     }
     return STATUS_FAILURE;
 }
@@ -281,6 +299,7 @@ void param_value_store(const param *row, int element, void *field, param_value v
         }
         break;
     case PARAM_LIST: *(number_list *)field = value.list; break;
+    case PARAM_WORD: strcpy(field, value.word); break;
     case PARAM_PATH:
         free(*(char **)field);
         *(char **)field = value.path;

@@ -11,6 +11,7 @@ typedef union param_value {
     vec3 vector;
     number_list list;
     char *path;
+    char word[SCENE_NAME_MAX + 1];
 } param_value;
 
 /* Parses and checks text; label names the parameter in messages. element -1 for the whole value, 0..2 for one

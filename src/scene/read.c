@@ -4,13 +4,15 @@
  *   render: {PARAMETER: VALUE, ...}
  *   camera: {PARAMETER: VALUE, ...}             either a target, or yaw_deg and pitch_deg (0 when left out)
  *   background: {PARAMETER: VALUE, ...}
+ *   meshes: {NAME: {PARAMETER: VALUE, ...}, ...}
+ *   textures: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   materials: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   lights: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
  *
  * A background with a picture is of the kind picture, which need not be said. Switches are on or off, also written
  * yes or no, true or false.
- * SHAPE is plane, cylinder, cup, box or sphere. The parameters are the rows of the table (scene/params.h); a
+ * SHAPE is plane, cylinder, cup, box, sphere or mesh. The parameters are the rows of the table (scene/params.h); a
  * solid also takes those of a material, for itself alone. Vectors and colours are lists: [0, 1, 2]. The file's
  * order is kept. Sections and objects may be empty. */
 #include "scene/check.h"
@@ -94,8 +96,8 @@ static status read_sections(const scene_reader *r)
         status (*read)(const scene_reader *, const char *, const node *);
     } sections[] = {
         {"title", read_title},           {"render", read_render},       {"camera", read_camera},
-        {"background", read_background}, {"materials", read_materials}, {"lights", read_lights},
-        {"solids", read_solids},
+        {"background", read_background}, {"meshes", read_meshes},       {"textures", read_textures},
+        {"materials", read_materials},   {"lights", read_lights},       {"solids", read_solids},
     };
     enum { COUNT = sizeof sections / sizeof sections[0] };
     const node *root = document_root(r->file);

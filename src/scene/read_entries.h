@@ -31,7 +31,13 @@ status read_check_keys(const scene_reader *r, param_group group, const node *map
  * caller. */
 status read_entries(const scene_reader *r, const char *name, param_group group, const node *map);
 
-/* The sections of named objects. Materials come first: solids refer to them. */
+/* A section of named objects: key and map of each go to read_object. */
+typedef status read_object_call(const scene_reader *r, const node *key, const node *map);
+status read_objects(const scene_reader *r, const char *name, const node *map, read_object_call *read_object);
+
+/* The sections of named objects. Materials come before solids, which refer to them. */
+status read_meshes(const scene_reader *r, const char *name, const node *map);
+status read_textures(const scene_reader *r, const char *name, const node *map);
 status read_materials(const scene_reader *r, const char *name, const node *map);
 status read_lights(const scene_reader *r, const char *name, const node *map);
 status read_solids(const scene_reader *r, const char *name, const node *map);

@@ -90,7 +90,7 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
 {
     const node *shape = node_get(map, "shape");
     if (!shape) {
-        return node_error(r->file, key, r->why, "add shape: plane, cylinder, cup, box or sphere", "%s has no shape",
+        return node_error(r->file, key, r->why, "add shape: plane, cylinder, cup, box, sphere or mesh", "%s has no shape",
                           key->text);
     }
     status code = read_expect_word(r, shape, "shape");
@@ -108,7 +108,7 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
     const char *nearest = text_nearest(shape->text, words, SHAPE_COUNT);
     char remedy[100];
     snprintf(remedy, sizeof remedy,
-             nearest ? "did you mean '%s'?" : "the shapes are plane, cylinder, cup, box and sphere", nearest);
+             nearest ? "did you mean '%s'?" : "the shapes are plane, cylinder, cup, box, sphere and mesh", nearest);
     return node_error(r->file, shape, r->why, remedy, "no shape '%.60s'", shape->text);
 }
 
@@ -179,9 +179,7 @@ static status read_solid(const scene_reader *r, const node *key, const node *map
     return code == STATUS_OK ? read_located(r, key, check_solid(r->scene, owner, r->why)) : code;
 }
 
-/* A section of named objects. */
-static status read_objects(const scene_reader *r, const char *name, const node *map,
-                           status (*read_object)(const scene_reader *, const node *, const node *))
+status read_objects(const scene_reader *r, const char *name, const node *map, read_object_call *read_object)
 {
     status code = read_expect_map(r, map, name);
     for (size_t i = 0; i < map->count && code == STATUS_OK; i++) {

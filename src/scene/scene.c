@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 #include "base/text.h"
+#include "scene/looks.h"
 #include "scene/params_value.h"
 
 #include <stdlib.h>
@@ -37,6 +38,18 @@ void scene_destroy(scene *s)
     for (size_t i = 0; i < s->solid_count; i++) {
         free(s->solids[i].name);
     }
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        mesh_entry_unload(&s->meshes[i]);
+        free(s->meshes[i].name);
+        free(s->meshes[i].path);
+    }
+    for (size_t i = 0; i < s->texture_count; i++) {
+        texture_entry_unload(&s->textures[i]);
+        free(s->textures[i].name);
+        free(s->textures[i].path);
+    }
+    free(s->meshes);
+    free(s->textures);
     free(s->materials);
     free(s->lights);
     free(s->solids);
@@ -57,9 +70,35 @@ static void *copy_array(const void *from, size_t count, size_t size)
     return to;
 }
 
-static bool clone_objects(scene *s, const scene *original)
+/* Copies share what was loaded. */
+static bool clone_assets(scene *s, const scene *original)
 {
     bool whole = true;
+    s->meshes = copy_array(original->meshes, original->mesh_count, sizeof *s->meshes);
+    for (size_t i = 0; s->meshes && i < original->mesh_count; i++, s->mesh_count++) {
+        mesh_entry *m = &s->meshes[i];
+        whole &= (m->name = strdup(m->name)) != NULL;
+        whole &= (m->path = strdup(m->path)) != NULL;
+        looks_retain(m->looks);
+        if (m->data) {
+            mesh_retain(m->data);
+        }
+    }
+    s->textures = copy_array(original->textures, original->texture_count, sizeof *s->textures);
+    for (size_t i = 0; s->textures && i < original->texture_count; i++, s->texture_count++) {
+        texture_entry *t = &s->textures[i];
+        whole &= (t->name = strdup(t->name)) != NULL;
+        whole &= (t->path = strdup(t->path)) != NULL;
+        if (t->data) {
+            texture_retain(t->data);
+        }
+    }
+    return whole && s->mesh_count == original->mesh_count && s->texture_count == original->texture_count;
+}
+
+static bool clone_objects(scene *s, const scene *original)
+{
+    bool whole = clone_assets(s, original);
     s->materials = copy_array(original->materials, original->material_count, sizeof *s->materials);
     for (size_t i = 0; s->materials && i < original->material_count; i++, s->material_count++) {
         whole &= (s->materials[i].name = strdup(original->materials[i].name)) != NULL;
@@ -122,56 +161,4 @@ int scene_find_solid(const scene *s, const char *name)
         }
     }
     return -1;
-}
-
-/* A picture that the scene file names is wrong there. */
-static status picture_error(const scene *s, const diagnostic *bad, status code, diagnostic *why)
-{
-    if (s->background.picture_line == 0) {
-        diagnostic_locate(why, bad->file, bad->line, bad->column);
-        return diagnose(why, code, bad->remedy, "background.picture: %s", bad->what);
-    }
-    diagnostic_locate(why, s->path, s->background.picture_line, s->background.picture_column);
-    return diagnose(why, code, bad->remedy, "background.picture: %s%s%s", bad->file, bad->file[0] ? ": " : "", bad->what);
-}
-
-/* Light is not negative, and the film must hold it. */
-static status check_sky(const image *sky, const char *path, diagnostic *bad)
-{
-    for (int y = 0; y < sky->height; y++) {
-        for (int x = 0; x < sky->width; x++) {
-            const float *pixel = &sky->pixel[((size_t)y * (size_t)sky->width + (size_t)x) * 3];
-            for (int channel = 0; channel < 3; channel++) {
-                if (!(pixel[channel] >= 0.0F && pixel[channel] <= SCENE_SKY_MAX)) {
-                    diagnostic_locate(bad, path, 0, 0);
-                    return diagnose(bad, STATUS_BAD_INPUT, "scale the picture to 0..65536",
-                                    "pixel %d,%d is %g in channel %d, and a sky's light is from 0 to 65536", x, y,
-                                    (double)pixel[channel], channel);
-                }
-            }
-        }
-    }
-    return STATUS_OK;
-}
-
-status scene_load_pictures(scene *s, diagnostic *why)
-{
-    background *sky = &s->background;
-    if (sky->kind != BACKGROUND_PICTURE || sky->picture || !sky->picture_path[0]) {
-        return STATUS_OK;
-    }
-    const char *slash = strrchr(s->path, '/');
-    int folder = sky->picture_path[0] != '/' && slash ? (int)(slash - s->path) + 1 : 0;
-    char *path = text_format("%.*s%s", folder, s->path, sky->picture_path);
-    if (!path) {
-        return diagnose(why, STATUS_FAILURE, "", "memory is out");
-    }
-    diagnostic bad = {.what = ""};
-    status code = image_read(path, &sky->picture, NULL, &bad);
-    if (code == STATUS_OK && (code = check_sky(sky->picture, path, &bad)) != STATUS_OK) {
-        image_destroy(sky->picture);
-        sky->picture = NULL;
-    }
-    free(path);
-    return code == STATUS_OK ? code : picture_error(s, &bad, code, why);
 }

@@ -9,6 +9,7 @@
 #include "base/vec3.h"
 #include "geometry/solid.h"
 #include "image/image.h"
+#include "image/texture.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -18,14 +19,18 @@ typedef enum beyond_rule { BEYOND_SKY, BEYOND_BLACK } beyond_rule;
 typedef enum shadow_rule { SHADOWS_OFF, SHADOWS_OPAQUE, SHADOWS_ATTENUATED } shadow_rule;
 typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SCHEDULE_DYNAMIC } schedule_rule;
 typedef enum pin_rule { PIN_RULE_NONE, PIN_RULE_COMPACT, PIN_RULE_SCATTER } pin_rule;
-typedef enum integrator_rule { INTEGRATOR_RAYCAST, INTEGRATOR_WHITTED, INTEGRATOR_PATH } integrator_rule;
+typedef enum integrator_rule { INTEGRATOR_RAYCAST, INTEGRATOR_WHITTED, INTEGRATOR_PATH, INTEGRATOR_ZBUFFER } integrator_rule;
 typedef enum lighting_rule { LIGHTING_LAMBERT, LIGHTING_PHONG, LIGHTING_WHITTED } lighting_rule;
 typedef enum spectrum_rule { SPECTRUM_RGB, SPECTRUM_SPECTRAL } spectrum_rule;
+typedef enum texturing_rule { TEXTURING_PERSPECTIVE, TEXTURING_AFFINE } texturing_rule;
+typedef enum shading_rule { SHADING_FLAT, SHADING_SMOOTH, SHADING_GOURAUD } shading_rule;
 typedef enum background_kind { BACKGROUND_UNIFORM, BACKGROUND_GRADIENT, BACKGROUND_PICTURE } background_kind;
 
 /* Numbers, as many as one gives. */
 enum { NUMBER_LIST_MAX = 32 };
 typedef struct number_list { int64_t count; double value[NUMBER_LIST_MAX]; } number_list;
+
+enum { SCENE_NAME_MAX = 63 };
 
 /* Integer and enum parameters are int64_t, switches (on/off) too: one type a kind of parameter. */
 typedef struct render_settings {
@@ -51,6 +56,10 @@ typedef struct render_settings {
     int64_t schedule;       /* schedule_rule */
     int64_t tile;           /* tile edge, pixels */
     int64_t pin;            /* pin_rule */
+    int64_t accel;          /* hierarchy_kind */
+    int64_t build_threads;  /* that build hierarchies; 0: one a processing unit */
+    int64_t keep;           /* 1: a mesh keeps its hierarchy; 0: every frame builds them anew */
+    int64_t texturing;      /* texturing_rule, of the rasteriser */
 } render_settings;
 
 /* y is up; yaw 0 looks along +z, positive yaw turns towards +x, positive pitch looks up; x is to the right at yaw 0. */
@@ -68,7 +77,7 @@ typedef struct background {
     vec3 horizon;           /* gradient: colour at and below the horizon */
     char *picture_path;     /* equirectangular sky; "" for none; relative to the scene file */
     long picture_line, picture_column; /* where the scene file names it; 0 when it was set otherwise */
-    image *picture;         /* owned; NULL until loaded by scene_load_pictures */
+    image *picture;         /* owned; NULL until loaded by scene_load */
     vec3 ambient;           /* I_a of Phong's sum, linear RGB */
     double ior;             /* of what surrounds all solids, where medium is MEDIUM_IOR */
     int64_t medium;         /* see scene/medium.h */
@@ -86,9 +95,44 @@ typedef struct material {
     number_list coefficients; /* of the medium's own law of dispersion */
     vec3 absorb_per_m;      /* Beer and Lambert's coefficient by channel */
     number_list absorb_spectrum; /* the same by wavelength: nm, 1/m, nm, 1/m ...; takes the place of absorb_per_m unless empty */
+    char texture[SCENE_NAME_MAX + 1]; /* its colour is times color; "" for none */
+    double texture_size;    /* scene units of one repetition on analytic solids */
     double checker;         /* edge of the checker cells in the solid's own frame; 0 = none */
     vec3 checker_color;     /* colour of the other cells */
 } material;
+
+/* Where a mesh comes from: its file, or a body that is computed (geometry/bodies.h). */
+typedef enum mesh_maker {
+    MESH_FILE, MESH_SPARSE, MESH_DENSE, MESH_SPHERE, MESH_ICOSPHERE, MESH_TORUS, MESH_LATHE, MESH_TERRAIN, MESH_BOX, MESH_ARRAYS
+} mesh_maker;
+
+typedef struct face_looks face_looks; /* how the faces of a file's materials look: scene/looks.h */
+
+typedef struct mesh_entry {
+    char *name;
+    int64_t source;         /* mesh_maker */
+    char *path;             /* relative to the scene file; "" for none */
+    long path_line, path_column; /* where the scene file names it; 0 when it was set otherwise */
+    int64_t count;          /* triangles, of sparse, dense and sphere */
+    int64_t level;          /* of an icosphere */
+    double major, minor;    /* of a torus */
+    int64_t around, tube;   /* segments of torus and lathe; edges of terrain along x and z */
+    number_list profile;    /* of a lathe: radius, height, radius, height .. */
+    double crease_deg;
+    vec3 size;              /* of a box; of a terrain, with the height of its hills */
+    double depth;           /* of a terrain, below y = 0; 0 is open */
+    int64_t seed;           /* of a terrain */
+    const mesh *data;       /* one owner of it; NULL until scene_load */
+    const face_looks *looks; /* one owner of them; NULL for none */
+} mesh_entry;
+
+typedef struct texture_entry {
+    char *name;
+    char *path;             /* relative to the scene file */
+    long path_line, path_column;
+    int64_t filter, wrap_u, wrap_v, space; /* texture_filter, texture_wrap, texture_space */
+    const texture *data;    /* one owner of it; NULL until scene_load */
+} texture_entry;
 
 typedef struct named_material { char *name; material value; } named_material;
 typedef struct light {
@@ -103,6 +147,8 @@ typedef struct solid {
     solid_shape shape;
     int64_t priority;       /* the higher one wins where solids overlap; of equals the one listed first */
     int64_t visible;        /* 0: left out of the picture altogether */
+    char mesh[SCENE_NAME_MAX + 1]; /* of a mesh: which one */
+    int64_t shading;        /* shading_rule, of a mesh */
     int material_index;     /* into scene.materials; -1 when it has none */
     material surface;       /* its own copy, with its own changes */
 } solid;
@@ -113,13 +159,15 @@ typedef struct scene {
     render_settings render;
     struct camera camera;
     struct background background;
+    mesh_entry *meshes; size_t mesh_count;
+    texture_entry *textures; size_t texture_count;
     named_material *materials; size_t material_count;
     light *lights; size_t light_count;
     solid *solids; size_t solid_count;
 } scene;
 
 /* Limits of a scene. Primitives are the convex pieces that solids are made of: a cup is two, the others are one. */
-enum { SCENE_LIGHTS_MAX = 64, SCENE_MATERIALS_MAX = 256, SCENE_PRIMITIVES_MAX = 64, SCENE_NAME_MAX = 63 };
+enum { SCENE_LIGHTS_MAX = 64, SCENE_MATERIALS_MAX = 256, SCENE_PRIMITIVES_MAX = 64, SCENE_MESHES_MAX = 64, SCENE_TEXTURES_MAX = 64 };
 #define SCENE_SKY_MAX 65536.0F         /* of a sky picture's values: under the film's limit, and all that a half float holds */
 #define SCENE_PIXELS_MAX 268435456 /* 2^28 */
 
@@ -128,14 +176,14 @@ scene *scene_create(void);
 scene *scene_clone(const scene *original);
 void scene_destroy(scene *s);
 
-/* Reads a scene file (YAML; grammar in scene/read.c's head and the manual). Pictures are not loaded yet. */
+/* Reads a scene file (YAML; grammar in scene/read.c's head and the manual). Pictures, textures and meshes are not loaded yet. */
 status scene_read(const char *path, scene **out, diagnostic *why);
 /* The same from memory; name stands for the file in diagnostics, and its folder is where relative paths start. */
 status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why);
 
-/* Loads the sky picture if the background wants one that is not loaded. A diagnostic about a picture that the scene
- * file names is located there. Its values must be from 0 to SCENE_SKY_MAX. */
-status scene_load_pictures(scene *s, diagnostic *why);
+/* Loads what the scene names and does not have yet: the sky picture, textures, and meshes, from files or computed. A diagnostic about a
+ * file that the scene file names is located there. A sky's values must be from 0 to SCENE_SKY_MAX. */
+status scene_load(scene *s, diagnostic *why);
 
 /* Checks what single ranges cannot: shapes, energy (under constant weights: reflectivity + transparency <= 1),
  * names, limits, camera not at its own target, a picture sky that names its picture. Run by scene_read and
@@ -144,5 +192,17 @@ status scene_check(const scene *s, diagnostic *why);
 
 /* Index of the solid of that name, or -1. */
 int scene_find_solid(const scene *s, const char *name);
+
+/* A new mesh or texture at the end, with every parameter at its default; the name is checked. */
+status scene_add_mesh(scene *s, const char *name, size_t *index, diagnostic *why);
+status scene_add_texture(scene *s, const char *name, size_t *index, diagnostic *why);
+
+/* The mesh or texture of that name; NULL if there is none. */
+const mesh_entry *scene_find_mesh(const scene *s, const char *name);
+const texture_entry *scene_find_texture(const scene *s, const char *name);
+
+/* Lets go of what was loaded for an entry whose parameters change. */
+void mesh_entry_unload(mesh_entry *m);
+void texture_entry_unload(texture_entry *t);
 
 #endif

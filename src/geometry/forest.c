@@ -1,0 +1,173 @@
+#include "geometry/forest.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+vec3 forest_origin(const forest_part *p, uint32_t copy)
+{
+    if (copy == 0)
+        return p->origin;
+    const uint32_t nx = p->copies[0], ny = p->copies[1];
+    const vec3 steps = vec3_make((double)(copy % nx), (double)(copy / nx % ny), (double)(copy / nx / ny));
+    const vec3 offset = vec3_make(steps.x * p->spacing.x, steps.y * p->spacing.y, steps.z * p->spacing.z);
+    return vec3_add(p->origin, mat3_apply(p->rotation, offset));
+}
+
+vec3 forest_vertex_point(const forest_part *p, uint32_t copy, uint32_t vertex)
+{
+    const vec3 v = p->triangles->vertices[vertex];
+    const vec3 scaled = vec3_make(v.x * p->scale.x, v.y * p->scale.y, v.z * p->scale.z);
+    return vec3_add(forest_origin(p, copy), p->turned ? mat3_apply(p->rotation, scaled) : scaled);
+}
+
+/* Normals go over by the inverse transposed matrix: R S^-1. */
+vec3 forest_vertex_normal(const forest_part *p, uint32_t vertex)
+{
+    if (!p->triangles->normals)
+        return vec3_make(0.0, 0.0, 0.0);
+    const vec3 n = p->triangles->normals[vertex];
+    if (!p->scaled)
+        return p->turned ? mat3_apply(p->rotation, n) : n;
+    return vec3_normalize(mat3_apply(p->rotation, vec3_make(n.x / p->scale.x, n.y / p->scale.y, n.z / p->scale.z)));
+}
+
+static double largest_coordinate(const mesh *m, vec3 scale)
+{
+    if (m->triangle_count == 0)
+        return 0.0;
+    const double x = fmax(fabs(m->bounds.low.x), fabs(m->bounds.high.x)) * scale.x;
+    const double y = fmax(fabs(m->bounds.low.y), fabs(m->bounds.high.y)) * scale.y;
+    const double z = fmax(fabs(m->bounds.low.z), fabs(m->bounds.high.z)) * scale.z;
+    return fmax(x, fmax(y, z));
+}
+
+static forest_part part_of(const forest_source *source, size_t first_instance)
+{
+    const solid_shape *shape = source->shape;
+    const vec3 turn = shape->rotation_deg, scale = shape->scale, copies = shape->copies;
+    return (forest_part){.triangles = shape->mesh, .tree = source->tree, .primitive = source->primitive, .rank = source->rank,
+                         .closed = shape->mesh->closed, .turned = turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0,
+                         .scaled = scale.x != 1.0 || scale.y != 1.0 || scale.z != 1.0, .rotation = rotation_from_deg(turn), .scale = scale,
+                         .origin = shape->position, .spacing = shape->spacing,
+                         .copies = {(uint32_t)copies.x, (uint32_t)copies.y, (uint32_t)copies.z}, .first_instance = first_instance,
+                         .reach = largest_coordinate(shape->mesh, scale)};
+}
+
+static size_t instances_of(const forest_part *p)
+{
+    return (size_t)p->copies[0] * p->copies[1] * p->copies[2];
+}
+
+/* Bounds in the world of a box in a part's frame, about its origin; a little wider than rounding needs. */
+static bounds3 bounds_in_world(const forest_part *p)
+{
+    const bounds3 b = p->triangles->bounds;
+    bounds3 world = {vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL), vec3_make(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL)};
+    const double slack = p->reach * 0x1p-48;
+    for (int k = 0; k < 8; k++) {
+        const vec3 corner = vec3_make((k & 1 ? b.high.x : b.low.x) * p->scale.x, (k & 2 ? b.high.y : b.low.y) * p->scale.y,
+                                      (k & 4 ? b.high.z : b.low.z) * p->scale.z);
+        const vec3 v = mat3_apply(p->rotation, corner);
+        world.low = vec3_make(fmin(world.low.x, v.x - slack), fmin(world.low.y, v.y - slack), fmin(world.low.z, v.z - slack));
+        world.high = vec3_make(fmax(world.high.x, v.x + slack), fmax(world.high.y, v.y + slack), fmax(world.high.z, v.z + slack));
+    }
+    return world;
+}
+
+/* A triangle that spans the bounds stands for each instance. */
+static status make_top(forest *f, diagnostic *why)
+{
+    status code = mesh_create(3 * f->instance_count, f->instance_count, false, false, false, &f->proxies, why);
+    for (int i = 0; i < f->part_count && code == STATUS_OK; i++) {
+        const forest_part *p = &f->parts[i];
+        const bounds3 box = bounds_in_world(p);
+        for (size_t copy = 0; copy < instances_of(p); copy++) {
+            const vec3 o = forest_origin(p, (uint32_t)copy);
+            const double slack = (fabs(o.x) + fabs(o.y) + fabs(o.z)) * 0x1p-48;
+            const vec3 wider = vec3_make(slack, slack, slack);
+            const vec3 low = vec3_sub(vec3_add(box.low, o), wider), high = vec3_add(vec3_add(box.high, o), wider);
+            const size_t at = p->first_instance + copy;
+            vec3 *corner = &f->proxies->vertices[3 * at];
+            corner[0] = low;
+            corner[1] = high;
+            corner[2] = vec3_make(low.x, high.y, low.z);
+            f->proxies->triangles[at] = (mesh_triangle){{(uint32_t)(3 * at), (uint32_t)(3 * at + 1), (uint32_t)(3 * at + 2)}};
+        }
+    }
+    if (code == STATUS_OK)
+        code = mesh_finish(f->proxies, why);
+    return code == STATUS_OK ? hierarchy_build(f->proxies, HIERARCHY_BVH, 1, &f->top, why) : code;
+}
+
+status forest_build(const forest_source *sources, int count, forest **out, diagnostic *why)
+{
+    forest *f = calloc(1, sizeof *f);
+    forest_part *parts = calloc((size_t)count, sizeof *parts);
+    if (!f || !parts) {
+        free(f);
+        free(parts);
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    }
+    f->parts = parts;
+    f->part_count = count;
+    f->lowest_closed = INT_MAX;
+    memset(f->by_primitive, -1, sizeof f->by_primitive);
+    for (int i = 0; i < count; i++) {
+        forest_part *p = &f->parts[i];
+        *p = part_of(&sources[i], f->instance_count);
+        f->instance_count += instances_of(p);
+        const uint64_t bit = (uint64_t)1 << p->primitive;
+        f->primitives |= bit;
+        *(p->closed ? &f->closed : &f->skins) |= bit;
+        f->by_primitive[p->primitive] = i;
+        if (p->closed && p->rank < f->lowest_closed)
+            f->lowest_closed = p->rank;
+    }
+    for (int rank = 0; rank <= PRIMITIVES_MAX; rank++)
+        for (int i = 0; i < count; i++)
+            if (parts[i].closed && parts[i].rank < rank)
+                f->closed_under[rank] |= (uint64_t)1 << parts[i].primitive;
+    status code = STATUS_OK;
+    if (f->instance_count > SHAPE_COPIES_MAX)
+        code = diagnose(why, STATUS_BAD_INPUT, "use fewer copies", "the meshes have %zu copies together, more than 4194304", f->instance_count);
+    if (code == STATUS_OK && f->instance_count > 1)
+        code = make_top(f, why);
+    if (code != STATUS_OK) {
+        forest_destroy(f);
+        return code;
+    }
+    *out = f;
+    return STATUS_OK;
+}
+
+void forest_destroy(forest *f)
+{
+    if (!f)
+        return;
+    hierarchy_destroy(f->top);
+    mesh_release(f->proxies);
+    free(f->parts);
+    free(f);
+}
+
+/* A direction along no axis and no diagonal. */
+uint64_t forest_inside(const forest *f, vec3 point)
+{
+    const vec3 direction = vec3_make(0.5396, 0.6180, 0.5716);
+    uint64_t inside = 0;
+    for (int i = 0; i < f->part_count; i++) {
+        const forest_part *p = &f->parts[i];
+        if (!p->closed)
+            continue;
+        /* As if it were inside: whether a back or a front comes first. */
+        const uint64_t bit = (uint64_t)1 << p->primitive;
+        forest_ray ray = {.origin = point, .direction = direction, .t_max = HUGE_VAL, .start = FACE_NONE, .before = 0, .inside = bit, .wanted = bit};
+        forest_hit back, front;
+        forest_kernels_sse2.nearest(f, &ray, 1, &back);
+        ray.inside = 0;
+        forest_kernels_sse2.nearest(f, &ray, 1, &front);
+        inside |= back.t < front.t || (back.t == front.t && back.face != FACE_NONE) ? bit : 0;
+    }
+    return inside;
+}

@@ -1,0 +1,112 @@
+/* What meshes add to the second pass over a batch (resolve_kernel.c): their crossings among those of the convex primitives, and the
+ * bits of a ray's set that stand for them. Between two changes of medium only meshes of a lower rank can be crossed, unseen; their bits are
+ * set right where the next change is. */
+#include "geometry/kernels.h"
+
+#include "base/lanes.h"
+#include "geometry/forest.h"
+#include <math.h>
+
+#define FOREST KERNEL(forest_kernels)
+
+static forest_ray ray_of_column(const ray_batch *rays, int k, const ray_scratch *s)
+{
+    const int i = s->ray[k];
+    const mesh_scratch *m = s->meshes;
+    return (forest_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]), .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]),
+                        .t_min = m->from[k], .t_max = HUGE_VAL, .start = m->last[k], .before = 0, .inside = s->inside[k]};
+}
+
+static double close_to(const ray_scratch *s, int k, double t)
+{
+    return BOUNDARY_CLOSE * (t + s->slack[k]);
+}
+
+void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, forest_hit *hits)
+{
+    const forest *f = a->meshes;
+    forest_ray asked[BATCH];
+    for (int k = 0; k < n; k++) {
+        asked[k] = ray_of_column(rays, k, s);
+        asked[k].t_max = c->t[k] + close_to(s, k, c->t[k]);
+        asked[k].before = c->before[k];
+        asked[k].wanted = f->primitives;
+    }
+    if (n == 0)
+        return;
+    FOREST.nearest(f, asked, n, hits);
+    for (int k = 0; k < n; k++) {
+        const bool met = hits[k].face != FACE_NONE;
+        s->meshes->near[k] = met && c->crossed[k] >= 0 && fabs(c->t[k] - hits[k].t) <= close_to(s, k, hits[k].t);
+        if (met && hits[k].t < c->t[k]) {
+            c->t[k] = hits[k].t;
+            c->crossed[k] = mesh_face_primitive(hits[k].face);
+        }
+    }
+}
+
+/* Does another mesh have a boundary next to column k's hit? */
+static bool others_are_near(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, const hit_batch *c)
+{
+    const double close = close_to(s, k, c->t[k]);
+    forest_ray ray = ray_of_column(rays, k, s);
+    ray.t_min = c->t[k] - close;
+    ray.t_max = c->t[k] + close;
+    ray.inside = c->inside_before[k];
+    ray.wanted = f->primitives & ~((uint64_t)1 << c->crossed[k]);
+    return FOREST.cross(f, &ray) != ray.inside;
+}
+
+void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, const forest_hit *hits)
+{
+    const forest *f = a->meshes;
+    for (int k = 0; k < n; k++) {
+        if (c->crossed[k] < 0)
+            continue;
+        if (f->lowest_closed < c->before[k]) {
+            forest_ray ray = ray_of_column(rays, k, s);
+            ray.t_max = c->t[k];
+            ray.wanted = f->closed_under[c->before[k]];
+            const uint64_t set = FOREST.cross(f, &ray) & ray.wanted;
+            c->inside_before[k] = (c->inside_before[k] & ~ray.wanted) | set;
+            c->inside_after[k] = (c->inside_after[k] & ~ray.wanted) | set;
+        }
+        const uint64_t bit = (uint64_t)1 << c->crossed[k];
+        if (f->primitives & bit) {
+            const bool leaves = (f->closed & bit) && hits[k].facing == FACING_BACK;
+            c->inside_after[k] = leaves ? c->inside_after[k] & ~bit : c->inside_after[k] | bit;
+        }
+        s->meshes->near[k] |= f->part_count > 1 && others_are_near(f, rays, k, s, c);
+    }
+}
+
+uint64_t KERNEL(mesh_set_behind)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, uint64_t before, double low, double high)
+{
+    forest_ray ray = ray_of_column(rays, k, s);
+    ray.t_min = low;
+    ray.t_max = high;
+    ray.inside = before;
+    ray.wanted = a->meshes->primitives;
+    return FOREST.cross(a->meshes, &ray);
+}
+
+/* Rays that a mesh of the set is in the way of, between 0 and 1. */
+void KERNEL(mesh_shadows)(const arrangement *a, const ray_batch *rays, uint64_t wanted, int64_t *marked, const int64_t *settled)
+{
+    forest_ray asked[BATCH];
+    bool found[BATCH];
+    int ray[BATCH], count = 0;
+    for (int i = 0; i < rays->count; i++) {
+        if (settled[i])
+            continue;
+        asked[count] = (forest_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
+                                    .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]), .t_min = 0.0, .t_max = 1.0,
+                                    .start = rays->start[i], .inside = rays->inside[i], .wanted = wanted};
+        ray[count++] = i;
+    }
+    if (count == 0)
+        return;
+    FOREST.any(a->meshes, asked, count, found);
+    for (int k = 0; k < count; k++)
+        marked[ray[k]] |= -(int64_t)found[k];
+}

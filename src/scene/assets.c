@@ -1,0 +1,205 @@
+/* What a scene names and does not hold in itself: meshes, textures and the sky's picture. */
+#include "base/text.h"
+#include "scene/check.h"
+#include "scene/looks.h"
+#include "scene/mesh_make.h"
+#include "scene/params_value.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void mesh_entry_unload(mesh_entry *m)
+{
+    mesh_release(m->data);
+    looks_release(m->looks);
+    m->data = NULL;
+    m->looks = NULL;
+}
+
+void texture_entry_unload(texture_entry *t)
+{
+    texture_release(t->data);
+    t->data = NULL;
+}
+
+const mesh_entry *scene_find_mesh(const scene *s, const char *name)
+{
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        if (strcmp(s->meshes[i].name, name) == 0) {
+            return &s->meshes[i];
+        }
+    }
+    return NULL;
+}
+
+const texture_entry *scene_find_texture(const scene *s, const char *name)
+{
+    for (size_t i = 0; i < s->texture_count; i++) {
+        if (strcmp(s->textures[i].name, name) == 0) {
+            return &s->textures[i];
+        }
+    }
+    return NULL;
+}
+
+/* A file that the scene file names is wrong there. */
+static status file_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code, diagnostic *why)
+{
+    if (line == 0) {
+        diagnostic_locate(why, bad->file, bad->line, bad->column);
+        return diagnose(why, code, bad->remedy, "%s: %s", what, bad->what);
+    }
+    diagnostic_locate(why, s->path, line, column);
+    return diagnose(why, code, bad->remedy, "%s: %s%s%s", what, bad->file, bad->file[0] ? ": " : "", bad->what);
+}
+
+/* A path from the scene file's folder; fresh memory. */
+static char *path_from_scene(const scene *s, const char *path)
+{
+    const char *slash = strrchr(s->path, '/');
+    int folder = path[0] != '/' && slash ? (int)(slash - s->path) + 1 : 0;
+    return text_format("%.*s%s", folder, s->path, path);
+}
+
+/* Light is not negative, and the film must hold it. */
+static status check_sky(const image *sky, const char *path, diagnostic *bad)
+{
+    for (int y = 0; y < sky->height; y++) {
+        for (int x = 0; x < sky->width; x++) {
+            const float *pixel = &sky->pixel[((size_t)y * (size_t)sky->width + (size_t)x) * 3];
+            for (int channel = 0; channel < 3; channel++) {
+                if (!(pixel[channel] >= 0.0F && pixel[channel] <= SCENE_SKY_MAX)) {
+                    diagnostic_locate(bad, path, 0, 0);
+                    return diagnose(bad, STATUS_BAD_INPUT, "scale the picture to 0..65536",
+                                    "pixel %d,%d is %g in channel %d, and a sky's light is from 0 to 65536", x, y,
+                                    (double)pixel[channel], channel);
+                }
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+static status load_sky(scene *s, diagnostic *why)
+{
+    background *sky = &s->background;
+    if (sky->kind != BACKGROUND_PICTURE || sky->picture || !sky->picture_path[0]) {
+        return STATUS_OK;
+    }
+    char *path = path_from_scene(s, sky->picture_path);
+    if (!path) {
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    diagnostic bad = {.what = ""};
+    status code = image_read(path, &sky->picture, NULL, &bad);
+    if (code == STATUS_OK && (code = check_sky(sky->picture, path, &bad)) != STATUS_OK) {
+        image_destroy(sky->picture);
+        sky->picture = NULL;
+    }
+    free(path);
+    return code == STATUS_OK ? code : file_error(s, "background.picture", sky->picture_line, sky->picture_column, &bad, code, why);
+}
+
+static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
+{
+    char *path = path_from_scene(s, t->path);
+    if (!path) {
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    diagnostic bad = {.what = ""};
+    texture *data = NULL;
+    const status code = texture_read(path, (texture_space)t->space, (texture_wrap)t->wrap_u, (texture_wrap)t->wrap_v,
+                                     (texture_filter)t->filter, &data, &bad);
+    free(path);
+    t->data = data;
+    return code == STATUS_OK ? code : file_error(s, t->name, t->path_line, t->path_column, &bad, code, why);
+}
+
+static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
+{
+    if (m->source != MESH_FILE) {
+        return mesh_make(m, why);
+    }
+    char *path = path_from_scene(s, m->path);
+    if (!path) {
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    diagnostic bad = {.what = ""};
+    const status code = mesh_make_from_file(m, path, &bad);
+    free(path);
+    return code == STATUS_OK ? code : file_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
+}
+
+status scene_load(scene *s, diagnostic *why)
+{
+    status code = load_sky(s, why);
+    for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++) {
+        if (!s->textures[i].data) {
+            code = load_texture(s, &s->textures[i], why);
+        }
+    }
+    for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
+        if (!s->meshes[i].data) {
+            code = load_mesh(s, &s->meshes[i], why);
+        }
+    }
+    return code;
+}
+
+/* Room for one more element of an array, all zero; NULL when memory is out. */
+static void *grow(void *array, size_t count, size_t size)
+{
+    char *grown = realloc(array, (count + 1) * size);
+    if (grown) {
+        memset(grown + count * size, 0, size);
+    }
+    return grown;
+}
+
+static status check_new_name(const scene *s, const char *name, size_t count, size_t most, const char *what, diagnostic *why)
+{
+    status code = check_name(name, why);
+    if (code == STATUS_OK) {
+        code = check_name_is_free(s, name, why);
+    }
+    if (code == STATUS_OK && count >= most) {
+        code = diagnose(why, STATUS_BAD_INPUT, "a scene holds 64", "more than 64 %s", what);
+    }
+    return code;
+}
+
+status scene_add_mesh(scene *s, const char *name, size_t *index, diagnostic *why)
+{
+    status code = check_new_name(s, name, s->mesh_count, SCENE_MESHES_MAX, "meshes", why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    mesh_entry *grown = grow(s->meshes, s->mesh_count, sizeof *grown);
+    char *copy = strdup(name);
+    s->meshes = grown ? grown : s->meshes;
+    if (!grown || !copy || param_set_defaults(PARAM_MESH, &grown[s->mesh_count], why) != STATUS_OK) {
+        free(copy);
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    grown[s->mesh_count].name = copy;
+    *index = s->mesh_count++;
+    return STATUS_OK;
+}
+
+status scene_add_texture(scene *s, const char *name, size_t *index, diagnostic *why)
+{
+    status code = check_new_name(s, name, s->texture_count, SCENE_TEXTURES_MAX, "textures", why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    texture_entry *grown = grow(s->textures, s->texture_count, sizeof *grown);
+    char *copy = strdup(name);
+    s->textures = grown ? grown : s->textures;
+    if (!grown || !copy || param_set_defaults(PARAM_TEXTURE, &grown[s->texture_count], why) != STATUS_OK) {
+        free(copy);
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    grown[s->texture_count].name = copy;
+    *index = s->texture_count++;
+    return STATUS_OK;
+}
