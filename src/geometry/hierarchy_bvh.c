@@ -2,62 +2,7 @@
 
 #include <stdlib.h>
 
-/* Ranges of so few triangles are not split: they fill one block. */
-enum { UNSPLIT = BLOCK, BRANCHES_AT_ONCE = 1024 };
-
-/* Branches, many at a time. */
-typedef struct store {
-    struct store *before;
-    size_t used;
-    bvh_branch branches[BRANCHES_AT_ONCE];
-} store;
-
-typedef struct worker { store *branches; } worker;
-
-static bvh_branch *new_branch(worker *w)
-{
-    if (!w->branches || w->branches->used == BRANCHES_AT_ONCE) {
-        store *fresh = malloc(sizeof *fresh);
-        if (!fresh)
-            return NULL;
-        fresh->before = w->branches;
-        fresh->used = 0;
-        w->branches = fresh;
-    }
-    return &w->branches->branches[w->branches->used++];
-}
-
-static void release_branches(worker *w)
-{
-    while (w->branches) {
-        store *s = w->branches;
-        w->branches = s->before;
-        free(s);
-    }
-}
-
-static bvh_branch *grow(worker *w, bvh_ref *refs, const bvh_range *range, int depth)
-{
-    bvh_branch *b = new_branch(w);
-    if (!b)
-        return NULL;
-    memcpy(b->low, range->box.low, sizeof b->low);
-    memcpy(b->high, range->box.high, sizeof b->high);
-    b->first = range->first;
-    b->count = range->count;
-    b->half[0] = b->half[1] = NULL;
-    if (range->count > UNSPLIT) {
-        bvh_range half[2];
-        bvh_split(refs, range, depth, half);
-        for (int i = 0; i < 2; i++) {
-            b->half[i] = grow(w, refs, &half[i], depth + 1);
-            if (!b->half[i])
-                return NULL;
-        }
-    }
-    bvh_choose(b);
-    return b;
-}
+enum { PIECE = 16384 }; /* triangles that are referred to at a time */
 
 static float float_below(double v)
 {
@@ -106,29 +51,75 @@ static bool refer(const mesh *m, uint32_t triangle, bvh_ref *r)
     return true;
 }
 
-static void refer_all(const mesh *m, bvh_ref *refs, bvh_range *all)
+typedef struct reading {
+    const mesh *m;
+    bvh_ref *refs;
+    bvh_range *pieces; /* what became of each PIECE triangles; first is where they stand */
+} reading;
+
+static void read_piece(void *context, size_t index, int member)
 {
+    (void)member;
+    const reading *r = context;
+    size_t first = index * PIECE, end = first + PIECE < r->m->triangle_count ? first + PIECE : r->m->triangle_count;
+    bvh_range piece = {.box = bvh_box_empty(), .centers = bvh_box_empty(), .first = (uint32_t)first};
+    for (size_t i = first; i < end; i++)
+        if (refer(r->m, (uint32_t)i, &r->refs[first + piece.count]))
+            bvh_range_add(&piece, &r->refs[first + piece.count++]);
+    r->pieces[index] = piece;
+}
+
+static status read_triangles(const mesh *m, team *t, bvh_ref *refs, bvh_range *all, diagnostic *why)
+{
+    size_t count = (m->triangle_count + PIECE - 1) / PIECE;
+    reading r = {m, refs, aligned_alloc(64, (count + 1) * 64 * ((sizeof(bvh_range) + 63) / 64))};
+    if (!r.pieces)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    team_run(t, read_piece, &r, count);
     *all = (bvh_range){.box = bvh_box_empty(), .centers = bvh_box_empty()};
-    for (size_t i = 0; i < m->triangle_count; i++)
-        if (refer(m, (uint32_t)i, &refs[all->count]))
-            bvh_range_add(all, &refs[all->count++]);
+    for (size_t i = 0; i < count; i++) {
+        const bvh_range *piece = &r.pieces[i];
+        if (all->count != piece->first)
+            memmove(&refs[all->count], &refs[piece->first], piece->count * sizeof *refs);
+        all->count += piece->count;
+        bvh_box_add(&all->box, piece->box.low, piece->box.high);
+        bvh_box_add(&all->centers, piece->centers.low, piece->centers.high);
+    }
+    free(r.pieces);
+    return STATUS_OK;
+}
+
+static status build(hierarchy *h, team *t, bvh_ref *refs, diagnostic *why)
+{
+    bvh_range all;
+    status code = read_triangles(h->of, t, refs, &all, why);
+    if (code != STATUS_OK)
+        return code;
+    bvh_tree tree;
+    code = bvh_grow(&tree, t, refs, &all, why);
+    if (code == STATUS_OK)
+        code = bvh_gather(h, tree.root, refs, t, why);
+    bvh_fell(&tree);
+    return code;
+}
+
+/* More threads than tasks would only be waited for. */
+static int useful(int threads, size_t triangles)
+{
+    size_t most = triangles / TASK_TRIANGLES + 1;
+    return (size_t)threads < most ? threads : (int)most;
 }
 
 status hierarchy_build_bvh(hierarchy *h, int threads, diagnostic *why)
 {
     const mesh *m = h->of;
-    bvh_ref *refs = aligned_alloc(64, (m->triangle_count * sizeof *refs + 63) / 64 * 64 + 64);
-    if (!refs)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
     h->single = m->single;
-    bvh_range all;
-    refer_all(m, refs, &all);
-    worker w = {0};
-    bvh_branch *root = all.count ? grow(&w, refs, &all, 0) : NULL;
-    status code = all.count && !root ? diagnose(why, STATUS_FAILURE, "", "out of memory") : bvh_gather(h, root, refs, threads, why);
+    bvh_ref *refs = aligned_alloc(64, (m->triangle_count + 2) / 2 * 2 * sizeof *refs);
+    team *t = team_start(useful(threads, m->triangle_count));
+    status code = refs && t ? build(h, t, refs, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    team_stop(t);
+    free(refs);
     size_t block = h->single ? sizeof(block_single) : sizeof(block_double);
     h->report.bytes = sizeof *h + h->node_count * sizeof *h->nodes + h->block_count * block;
-    release_branches(&w);
-    free(refs);
     return code;
 }

@@ -11,6 +11,7 @@
 #define CUVETTE_GEOMETRY_HIERARCHY_BVH_H
 
 #include "geometry/hierarchy_private.h"
+#include "geometry/hierarchy_team.h"
 
 #include <string.h>
 
@@ -86,13 +87,57 @@ static inline float bvh_half_area(const float *low, const float *high)
     return x * y + y * z + z * x;
 }
 
+enum { BINS_MAX = 16 };
+
+/* A range's references by where their centres lie, along each axis. */
+typedef struct bvh_bins {
+    int count;
+    float base[4], scale[4]; /* bin = (doubled centre - base) scale; scale 0 where all centres are in one place */
+    bvh_box box[3][BINS_MAX];
+    uint32_t members[3][BINS_MAX];
+} bvh_bins;
+
+/* Bins below `bin` are the first half. cost: sum over the halves of area times blocks. */
+typedef struct bvh_cut {
+    int axis, bin;
+    float cost;
+} bvh_cut;
+
 /* Splits a range of at least two: reorders its references and describes the halves. depth: of the range's branch, from 0. */
 void bvh_split(bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2]);
+/* The same by a team; for ranges so large that it pays. STATUS_FAILURE when memory is out. */
+status bvh_split_together(team *t, bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2], diagnostic *why);
+
+/* The steps of a split. */
+bool bvh_may_bin(const bvh_range *range, int depth); /* false where the tree would become too deep */
+void bvh_bins_begin(bvh_bins *s, const bvh_range *range);
+void bvh_bins_fill(bvh_bins *s, const bvh_ref *refs, size_t count);
+bool bvh_cheapest(const bvh_bins *s, bvh_cut *cut); /* false where no cut is better than another */
+/* Moves the references of the first half to the front and returns their number; centers: bounds of the halves' doubled centres. */
+uint32_t bvh_part(bvh_ref *refs, size_t count, const bvh_bins *s, bvh_cut cut, bvh_box centers[2]);
+void bvh_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2], bvh_range half[2]);
+/* Halves of equal counts, for where bins do not help. */
+void bvh_halve(bvh_ref *refs, const bvh_range *range, bvh_range half[2]);
 
 /* Cost and shares of a branch from its halves', when those are known. */
 void bvh_choose(bvh_branch *b);
 
+/* A binary tree, and the memory of its branches, of each member of a team its own. */
+typedef struct bvh_store bvh_store;
+typedef struct bvh_tree {
+    bvh_branch *root; /* NULL: no triangles */
+    bvh_store **stores;
+    int store_count;
+} bvh_tree;
+
+/* Ranges and subtrees of at most so many triangles are one member's work. */
+enum { TASK_TRIANGLES = 8192 };
+
+/* Grows a tree over refs, which it reorders. bvh_fell releases it, also after STATUS_FAILURE (memory is out). */
+status bvh_grow(bvh_tree *tree, team *t, bvh_ref *refs, const bvh_range *all, diagnostic *why);
+void bvh_fell(bvh_tree *tree);
+
 /* Counts what becomes of a tree, and writes it to h; root NULL: no triangles. STATUS_FAILURE when memory is out or the tree too large. */
-status bvh_gather(hierarchy *h, bvh_branch *root, const bvh_ref *refs, int threads, diagnostic *why);
+status bvh_gather(hierarchy *h, bvh_branch *root, const bvh_ref *refs, team *t, diagnostic *why);
 
 #endif

@@ -74,7 +74,47 @@ static int children_of(bvh_branch *b, bool root, bvh_branch **out)
     return forest(b, WIDTH, out);
 }
 
-static void count_tree(bvh_branch *b, bool root)
+/* Subtrees that are counted or written by one member each, and where they go. */
+typedef struct place { bvh_branch *b; size_t node, block; } place;
+typedef struct gathering {
+    hierarchy *h;
+    const bvh_ref *refs;
+    place *places;
+    size_t count, room;
+} gathering;
+
+static bool add_place(gathering *g, bvh_branch *b, size_t node, size_t block)
+{
+    if (g->count == g->room) {
+        size_t room = g->room ? 2 * g->room : 64;
+        place *grown = realloc(g->places, room * sizeof *grown);
+        if (!grown)
+            return false;
+        g->places = grown;
+        g->room = room;
+    }
+    g->places[g->count++] = (place){b, node, block};
+    return true;
+}
+
+static bool small(const bvh_branch *b)
+{
+    return b->leaf || b->count <= TASK_TRIANGLES;
+}
+
+/* The subtrees below b, itself not one, that are small. */
+static bool find_small(gathering *g, bvh_branch *b, bool root)
+{
+    bvh_branch *children[WIDTH];
+    int count = children_of(b, root, children);
+    for (int i = 0; i < count; i++)
+        if (!(small(children[i]) ? add_place(g, children[i], 0, 0) : find_small(g, children[i], false)))
+            return false;
+    return true;
+}
+
+/* What becomes of b. small_known: what becomes of small subtrees below it is known already. */
+static void count_tree(bvh_branch *b, bool root, bool small_known)
 {
     b->nodes = b->blocks = b->leaves = b->depth = 0;
     if (b->leaf && !root) {
@@ -84,19 +124,24 @@ static void count_tree(bvh_branch *b, bool root)
     }
     bvh_branch *children[WIDTH];
     int count = children_of(b, root, children);
-    size_t nodes = 1, blocks = 0, leaves = 0;
-    uint32_t depth = 0;
+    b->nodes = 1;
     for (int i = 0; i < count; i++) {
-        count_tree(children[i], false);
-        nodes += children[i]->nodes;
-        blocks += children[i]->blocks;
-        leaves += children[i]->leaves;
-        depth = children[i]->depth > depth ? children[i]->depth : depth;
+        const bvh_branch *c = children[i];
+        if (!small_known || !small(c))
+            count_tree(children[i], false, small_known);
+        b->nodes += c->nodes;
+        b->blocks += c->blocks;
+        b->leaves += c->leaves;
+        b->depth = c->depth > b->depth ? c->depth : b->depth;
     }
-    b->nodes = nodes;
-    b->blocks = blocks;
-    b->leaves = leaves;
-    b->depth = depth + 1;
+    b->depth++;
+}
+
+static void count_place(void *context, size_t index, int member)
+{
+    (void)member;
+    gathering *g = context;
+    count_tree(g->places[index].b, false, false);
 }
 
 static void write_leaf(hierarchy *h, const bvh_branch *b, const bvh_ref *refs, size_t first_block)
@@ -121,25 +166,34 @@ static void write_boxes(bvh_node *n, bvh_branch *const *children, int count)
     n->child_count = (uint32_t)count;
 }
 
-/* Depth first: a node, then each child's subtree; blocks in the order of their leaves. */
-static void write_tree(hierarchy *h, bvh_branch *b, const bvh_ref *refs, bool root, size_t node, size_t block)
+/* Depth first: a node, then each child's subtree; blocks in the order of their leaves. With later: small subtrees are only noted there.
+ * false when there is no memory for that. */
+static bool write_tree(gathering *g, bvh_branch *b, bool root, size_t node, size_t block, gathering *later)
 {
     bvh_branch *children[WIDTH];
     int count = children_of(b, root, children);
-    bvh_node *n = &h->nodes[node++];
+    bvh_node *n = &g->h->nodes[node++];
     memset(n, 0, sizeof *n);
     write_boxes(n, children, count);
     for (int i = 0; i < count; i++) {
-        bool leaf = children[i]->leaf;
-        size_t blocks = leaf ? blocks_of(children[i]->count) : children[i]->blocks;
-        n->child[i] = leaf ? child_leaf((uint32_t)block, (uint32_t)blocks) : (uint32_t)node;
-        if (leaf)
-            write_leaf(h, children[i], refs, block);
-        else
-            write_tree(h, children[i], refs, false, node, block);
-        node += leaf ? 0 : children[i]->nodes;
-        block += blocks;
+        bvh_branch *c = children[i];
+        n->child[i] = c->leaf ? child_leaf((uint32_t)block, blocks_of(c->count)) : (uint32_t)node;
+        if (c->leaf)
+            write_leaf(g->h, c, g->refs, block);
+        else if (!(later && small(c) ? add_place(later, c, node, block) : write_tree(g, c, false, node, block, later)))
+            return false;
+        node += c->leaf ? 0 : c->nodes;
+        block += c->leaf ? blocks_of(c->count) : c->blocks;
     }
+    return true;
+}
+
+static void write_place(void *context, size_t index, int member)
+{
+    (void)member;
+    gathering *g = context;
+    const place *p = &g->places[index];
+    write_tree(g, p->b, false, p->node, p->block, NULL);
 }
 
 static status make_room(hierarchy *h, size_t nodes, size_t blocks, diagnostic *why)
@@ -153,26 +207,43 @@ static status make_room(hierarchy *h, size_t nodes, size_t blocks, diagnostic *w
     return STATUS_OK;
 }
 
-status bvh_gather(hierarchy *h, bvh_branch *root, const bvh_ref *refs, int threads, diagnostic *why)
+static status no_triangles(hierarchy *h, diagnostic *why)
 {
-    (void)threads;
-    if (!root) {
-        status code = make_room(h, 1, 0, why);
-        if (code == STATUS_OK) {
-            memset(h->nodes, 0, sizeof *h->nodes);
-            write_boxes(h->nodes, NULL, 0);
-            h->report.nodes = 1;
-            h->report.depth = 1;
-        }
-        return code;
-    }
-    count_tree(root, true);
-    status code = make_room(h, root->nodes, root->blocks, why);
+    status code = make_room(h, 1, 0, why);
     if (code != STATUS_OK)
         return code;
-    h->report.nodes = root->nodes;
-    h->report.leaves = root->leaves;
-    h->report.depth = (int)root->depth;
-    write_tree(h, root, refs, true, 0, 0);
+    memset(h->nodes, 0, sizeof *h->nodes);
+    write_boxes(h->nodes, NULL, 0);
+    h->report.nodes = 1;
+    h->report.depth = 1;
     return STATUS_OK;
+}
+
+static status gather(gathering *g, bvh_branch *root, team *t, diagnostic *why)
+{
+    if (!find_small(g, root, true))
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    team_run(t, count_place, g, g->count);
+    count_tree(root, true, true);
+    status code = make_room(g->h, root->nodes, root->blocks, why);
+    if (code != STATUS_OK)
+        return code;
+    g->count = 0;
+    if (!write_tree(g, root, true, 0, 0, g))
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    team_run(t, write_place, g, g->count);
+    g->h->report.nodes = root->nodes;
+    g->h->report.leaves = root->leaves;
+    g->h->report.depth = (int)root->depth;
+    return STATUS_OK;
+}
+
+status bvh_gather(hierarchy *h, bvh_branch *root, const bvh_ref *refs, team *t, diagnostic *why)
+{
+    if (!root)
+        return no_triangles(h, why);
+    gathering g = {.h = h, .refs = refs};
+    status code = gather(&g, root, t, why);
+    free(g.places);
+    return code;
 }

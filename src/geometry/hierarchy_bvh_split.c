@@ -1,16 +1,6 @@
 #include "geometry/hierarchy_bvh.h"
 
-enum { BINS_MAX = 16 };
 #define FLAT 1e-30f /* centres that are no farther apart are in one place: the width of a bin could not be inverted */
-
-typedef struct bin_set {
-    int count;
-    float base[4], scale[4]; /* bin = (center - base) scale */
-    bvh_box box[3][BINS_MAX];
-    uint32_t members[3][BINS_MAX];
-} bin_set;
-
-typedef struct split { int axis, bin; float cost; } split; /* the first half: bins below `bin` */
 
 static bvh_range empty_range(uint32_t first)
 {
@@ -19,7 +9,7 @@ static bvh_range empty_range(uint32_t first)
 }
 
 /* More bins than references tell nothing. */
-static void bins_begin(bin_set *s, const bvh_range *range)
+void bvh_bins_begin(bvh_bins *s, const bvh_range *range)
 {
     uint32_t wanted = 4 + range->count / 8;
     s->count = wanted < BINS_MAX ? (int)wanted : BINS_MAX;
@@ -35,13 +25,13 @@ static void bins_begin(bin_set *s, const bvh_range *range)
     s->base[3] = s->scale[3] = 0.0f;
 }
 
-static void bins_of(const bin_set *s, const bvh_ref *r, int32_t bin[4])
+static void bins_of(const bvh_bins *s, const bvh_ref *r, int32_t bin[4])
 {
     for (int k = 0; k < 4; k++)
         bin[k] = (int32_t)((r->low[k] + r->high[k] - s->base[k]) * s->scale[k]);
 }
 
-static void bins_fill(bin_set *s, const bvh_ref *refs, size_t count)
+void bvh_bins_fill(bvh_bins *s, const bvh_ref *refs, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         int32_t bin[4];
@@ -59,7 +49,7 @@ static float blocks_of(uint32_t triangles)
 }
 
 /* The cheapest split along one axis: sum over the halves of area times blocks (MacDonald and Booth 1990). */
-static void best_of_axis(const bin_set *s, int axis, split *best)
+static void best_of_axis(const bvh_bins *s, int axis, bvh_cut *best)
 {
     float above[BINS_MAX];
     bvh_box box = bvh_box_empty();
@@ -76,7 +66,7 @@ static void best_of_axis(const bin_set *s, int axis, split *best)
         members += s->members[axis][i - 1];
         float cost = members ? bvh_half_area(box.low, box.high) * blocks_of(members) + above[i] : INFINITY;
         if (cost < best->cost)
-            *best = (split){axis, i, cost};
+            *best = (bvh_cut){axis, i, cost};
     }
 }
 
@@ -87,26 +77,35 @@ static void exchange(bvh_ref *a, bvh_ref *b)
     *b = t;
 }
 
-static void part(bvh_ref *refs, const bvh_range *range, const bin_set *s, split chosen, bvh_range half[2])
+/* Lomuto's partition, because it needs no branch that a processor would guess wrongly half of the time. */
+uint32_t bvh_part(bvh_ref *refs, size_t count, const bvh_bins *s, bvh_cut cut, bvh_box centers[2])
 {
-    int axis = chosen.axis;
+    int axis = cut.axis;
     float base = s->base[axis], scale = s->scale[axis];
-    bvh_range lower = empty_range(range->first), upper = empty_range(0);
-    bvh_ref *left = refs + range->first, *right = left + range->count;
-    for (;;) {
-        while (left < right && (int32_t)((left->low[axis] + left->high[axis] - base) * scale) < chosen.bin)
-            bvh_range_add(&lower, left++);
-        while (left < right && (int32_t)((right[-1].low[axis] + right[-1].high[axis] - base) * scale) >= chosen.bin)
-            bvh_range_add(&upper, --right);
-        if (left >= right)
-            break;
-        exchange(left, right - 1);
+    bvh_box bounds[2] = {bvh_box_empty(), bvh_box_empty()};
+    uint32_t lower = 0;
+    for (size_t i = 0; i < count; i++) {
+        bvh_ref r = refs[i];
+        float center[4];
+        for (int k = 0; k < 4; k++)
+            center[k] = r.low[k] + r.high[k];
+        int32_t upper = (int32_t)((center[axis] - base) * scale) >= cut.bin;
+        bvh_box_add(&bounds[upper], center, center);
+        refs[i] = refs[lower];
+        refs[lower] = r;
+        lower += 1u - (uint32_t)upper;
     }
-    lower.count = (uint32_t)(left - refs) - range->first;
-    upper.first = range->first + lower.count;
-    upper.count = range->count - lower.count;
-    half[0] = lower;
-    half[1] = upper;
+    centers[0] = bounds[0];
+    centers[1] = bounds[1];
+    return lower;
+}
+
+void bvh_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2], bvh_range half[2])
+{
+    half[0] = (bvh_range){bvh_box_empty(), centers[0], range->first, lower};
+    half[1] = (bvh_range){bvh_box_empty(), centers[1], range->first + lower, range->count - lower};
+    for (int i = 0; i < s->count; i++)
+        bvh_box_add(&half[i >= cut.bin].box, s->box[cut.axis][i].low, s->box[cut.axis][i].high);
 }
 
 /* A complete order: by centre, then by number. */
@@ -146,8 +145,7 @@ static void select_lower(bvh_ref *refs, size_t count, size_t middle, int axis)
     }
 }
 
-/* Halves of equal counts: where all is in one place, or the tree would become too deep. */
-static void halve(bvh_ref *refs, const bvh_range *range, bvh_range half[2])
+void bvh_halve(bvh_ref *refs, const bvh_range *range, bvh_range half[2])
 {
     int axis = 0;
     float widest = -1.0f;
@@ -175,20 +173,33 @@ static int halvings(uint32_t count)
     return count > 1 ? 32 - __builtin_clz(count - 1) : 0;
 }
 
+bool bvh_may_bin(const bvh_range *range, int depth)
+{
+    return depth + halvings(range->count) < BRANCH_DEPTH_MAX;
+}
+
+bool bvh_cheapest(const bvh_bins *s, bvh_cut *cut)
+{
+    *cut = (bvh_cut){-1, 0, INFINITY};
+    for (int axis = 0; axis < 3; axis++)
+        if (s->scale[axis] > 0.0f)
+            best_of_axis(s, axis, cut);
+    return cut->axis >= 0 && cut->cost > 0.0f; /* of boxes without area none is better than another */
+}
+
 void bvh_split(bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2])
 {
-    split best = {-1, 0, INFINITY};
-    if (depth + halvings(range->count) < BRANCH_DEPTH_MAX) {
-        bin_set s;
-        bins_begin(&s, range);
-        bins_fill(&s, refs + range->first, range->count);
-        for (int axis = 0; axis < 3; axis++)
-            if (s.scale[axis] > 0.0f)
-                best_of_axis(&s, axis, &best);
-        if (best.axis >= 0 && best.cost > 0.0f) { /* of boxes without area none is better than another */
-            part(refs, range, &s, best, half);
+    if (bvh_may_bin(range, depth)) {
+        bvh_bins s;
+        bvh_cut cut;
+        bvh_bins_begin(&s, range);
+        bvh_bins_fill(&s, refs + range->first, range->count);
+        if (bvh_cheapest(&s, &cut)) {
+            bvh_box centers[2];
+            uint32_t lower = bvh_part(refs + range->first, range->count, &s, cut, centers);
+            bvh_halves(range, &s, cut, lower, centers, half);
             return;
         }
     }
-    halve(refs, range, half);
+    bvh_halve(refs, range, half);
 }
