@@ -6,16 +6,19 @@
 
 #include "geometry/mesh.h"
 
-/* Random triangles in the cube [-1, 1]^3: sparse ones whose size falls with their number (edge a quarter of the spacing), dense ones
- * of a fixed size. Random numbers are splitmix64's from the seed 20240101; every coordinate is a float. 1..MESH_TRIANGLES_MAX. */
+/* Random triangles in the cube [-1, 1]^3: sparse ones whose size falls with their number (edge a quarter of the spacing
+ * 2 / cbrt(count)), dense ones of the fixed size 1/2. A triangle's centre c = 2 u - 1 is drawn first, then its corners c + size (u - 1/2),
+ * each coordinate rounded once to a float; u = the upper 24 bits of splitmix64 by 2^-24, from the seed 20240101. 1..MESH_TRIANGLES_MAX. */
 status body_sparse(size_t count, mesh **out, diagnostic *why);
 status body_dense(size_t count, mesh **out, diagnostic *why);
 
 /* An icosahedron whose faces are split into f x f, on the unit sphere; 20 f f triangles, f = round(sqrt(count / 20)), at least 1.
- * Single precision. Vertices on edges are shared (welded), normals are the positions, texture coordinates longitude and latitude. */
+ * Single precision. Each of the 20 faces has vertices of its own, so that texture coordinates (longitude and latitude) need not meet; on an edge
+ * they lie at equal positions. Normals are the positions. */
 status body_sphere(size_t count, mesh **out, diagnostic *why);
 
-/* Icosahedron refined by bisection of its edges `level` times (0..12), 20 * 4^level triangles, on the unit sphere; doubles. */
+/* Icosahedron refined by bisection of its edges `level` times, 20 * 4^level triangles, on the unit sphere; doubles. Vertices as above. */
+enum { BODY_LEVEL_MAX = 11 };
 status body_icosphere(int level, mesh **out, diagnostic *why);
 
 /* Torus about y: distance of the tube's middle from the axis, its radius; segments around the axis and around the tube, at least 3. */

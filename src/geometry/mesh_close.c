@@ -1,0 +1,175 @@
+/* Is a mesh closed? Half-edges (a triangle's, from one corner to the next) are put in order by the lower and the higher of their two
+ * positions: counted into a list for each lower one, and each list, which is short, sorted. Linear in practice. */
+#include "geometry/mesh_parts.h"
+
+#include <stdlib.h>
+
+typedef struct half_edge { uint32_t higher, half; } half_edge;
+
+/* edges[start[v]] .. edges[start[v + 1] - 1] are those whose lower position is v. */
+typedef struct edge_lists {
+    uint32_t *same, *start;
+    half_edge *edges;
+} edge_lists;
+
+static void edge_lists_free(edge_lists *lists)
+{
+    free(lists->same);
+    free(lists->start);
+    free(lists->edges);
+}
+
+static bool joins(const uint32_t *same, const uint32_t *corner)
+{
+    const uint32_t a = same[corner[0]], b = same[corner[1]], c = same[corner[2]];
+    return a != b && b != c && c != a;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const half_edge *x = a, *y = b;
+    if (x->higher != y->higher)
+        return x->higher < y->higher ? -1 : 1;
+    return x->half < y->half ? -1 : x->half > y->half;
+}
+
+static void sort(half_edge *edges, size_t count)
+{
+    enum { SHORT = 24 };
+    if (count > SHORT) {
+        qsort(edges, count, sizeof *edges, compare);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        const half_edge edge = edges[i];
+        size_t j = i;
+        for (; j > 0 && compare(&edge, &edges[j - 1]) < 0; j--)
+            edges[j] = edges[j - 1];
+        edges[j] = edge;
+    }
+}
+
+static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
+{
+    status result = mesh_weld(m, &lists->same, why);
+    if (result != STATUS_OK)
+        return result;
+    uint32_t *start = lists->start = calloc(m->vertex_count + 2, sizeof *start);
+    half_edge *edges = lists->edges = malloc((3 * m->triangle_count + 1) * sizeof *edges);
+    if (!start || !edges)
+        return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
+    /* twice over the half-edges: count them two places on, and put them where the one before ends */
+    for (int writing = 0; writing < 2; writing++) {
+        for (size_t t = 0; t < m->triangle_count; t++) {
+            const uint32_t *corner = m->triangles[t].corner;
+            for (int k = 0; k < 3 && joins(lists->same, corner); k++) {
+                const uint32_t a = lists->same[corner[k]], b = lists->same[corner[k == 2 ? 0 : k + 1]];
+                const uint32_t lower = a < b ? a : b, higher = a < b ? b : a;
+                if (writing)
+                    edges[start[lower + 1]++] = (half_edge){higher, (uint32_t)(3 * t) + (uint32_t)k};
+                else
+                    start[lower + 2]++;
+            }
+        }
+        for (size_t v = 2; !writing && v < m->vertex_count + 2; v++)
+            start[v] += start[v - 1];
+    }
+    for (size_t v = 0; v < m->vertex_count; v++)
+        sort(edges + start[v], start[v + 1] - start[v]);
+    return STATUS_OK;
+}
+
+/* Position where a half-edge begins. */
+static uint32_t begins(const mesh *m, const uint32_t *same, uint32_t half)
+{
+    return same[m->triangles[half / 3].corner[half % 3]];
+}
+
+typedef struct edge_findings {
+    size_t odd;     /* lowest half-edge that is not shared by two; SIZE_MAX: none */
+    int sharing;    /* triangles that share its edge */
+    size_t edges;   /* shared by two */
+    size_t against; /* of these, edges that both triangles run in one direction */
+} edge_findings;
+
+/* Looks at each edge; mates may be NULL. */
+static edge_findings find_pairs(const mesh *m, const edge_lists *lists, uint32_t *mates)
+{
+    edge_findings found = {.odd = SIZE_MAX};
+    const size_t count = lists->start[m->vertex_count];
+    const half_edge *edges = lists->edges;
+    size_t end = 0, lower = 0;
+    for (size_t i = 0; i < count; i = end) {
+        while (lists->start[lower + 1] <= i)
+            lower++;
+        const size_t list_end = lists->start[lower + 1];
+        for (end = i + 1; end < list_end && edges[end].higher == edges[i].higher;)
+            end++;
+        const uint32_t first = edges[i].half, second = edges[end - 1].half;
+        if (end - i != 2) {
+            if (first < found.odd) {
+                found.odd = first;
+                found.sharing = (int)(end - i);
+            }
+            continue;
+        }
+        found.edges++;
+        found.against += begins(m, lists->same, first) == begins(m, lists->same, second);
+        if (mates) {
+            mates[first] = second;
+            mates[second] = first;
+        }
+    }
+    return found;
+}
+
+static void name_hole(mesh *m, size_t half, int sharing)
+{
+    const uint32_t *corner = m->triangles[half / 3].corner;
+    const size_t k = half % 3;
+    m->closed = false;
+    m->hole = (mesh_hole){corner[k], corner[k == 2 ? 0 : k + 1], half / 3, sharing};
+}
+
+static status orient(mesh *m, const edge_lists *lists, diagnostic *why)
+{
+    uint32_t *mates = malloc(3 * m->triangle_count * sizeof *mates);
+    mesh_neighbours n = {lists->same, mates, malloc(m->triangle_count * sizeof *n.queue), malloc(m->triangle_count)};
+    status result = STATUS_OK;
+    if (mates && n.queue && n.turned) {
+        for (size_t h = 0; h < 3 * m->triangle_count; h++)
+            mates[h] = UINT32_MAX;
+        find_pairs(m, lists, mates);
+        size_t at = 0;
+        if (!mesh_orient(m, &n, &at))
+            name_hole(m, at, 2);
+    } else {
+        result = diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the neighbours of a mesh's triangles");
+    }
+    free(mates);
+    free(n.queue);
+    free(n.turned);
+    return result;
+}
+
+status mesh_close(mesh *m, diagnostic *why)
+{
+    edge_lists lists = {0};
+    m->closed = false;
+    m->hole = (mesh_hole){0};
+    status result = edge_lists_make(m, &lists, why);
+    if (result == STATUS_OK) {
+        const edge_findings found = find_pairs(m, &lists, NULL);
+        m->closed = found.odd == SIZE_MAX && found.edges > 0;
+        if (found.odd != SIZE_MAX)
+            name_hole(m, found.odd, found.sharing);
+        else if (found.against)
+            result = orient(m, &lists, why);
+    }
+    edge_lists_free(&lists);
+    if (result != STATUS_OK || !m->closed || !(mesh_volume(m) < 0.0))
+        return result;
+    for (size_t t = 0; t < m->triangle_count; t++)
+        mesh_turn(m, t);
+    return STATUS_OK;
+}

@@ -1,0 +1,115 @@
+#include "base/single.h"
+#include "geometry/mesh.h"
+#include "geometry/mesh_parts.h"
+
+#include <stdlib.h>
+
+static bool within(vec3 v, double limit)
+{
+    return fabs(v.x) <= limit && fabs(v.y) <= limit && fabs(v.z) <= limit; /* false for NaN */
+}
+
+static status check_vertices(const mesh *m, diagnostic *why)
+{
+    for (size_t v = 0; v < m->vertex_count; v++) {
+        const vec3 p = m->vertices[v];
+        if (!within(p, MESH_FAR))
+            return diagnose(why, STATUS_BAD_INPUT, "coordinates are finite and at most 1e9", "vertex %zu lies at %g, %g, %g", v, p.x, p.y, p.z);
+        if (m->normals && !within(m->normals[v], 0x1.fffffffffffffp1023))
+            return diagnose(why, STATUS_BAD_INPUT, "normals are finite", "vertex %zu has a normal that is no number", v);
+        if (m->uvs && !(fabs(m->uvs[v].u) <= MESH_FAR && fabs(m->uvs[v].v) <= MESH_FAR))
+            return diagnose(why, STATUS_BAD_INPUT, "texture coordinates are finite and at most 1e9", "vertex %zu has texture coordinates %g, %g",
+                            v, m->uvs[v].u, m->uvs[v].v);
+    }
+    return STATUS_OK;
+}
+
+status mesh_check(const mesh *m, diagnostic *why)
+{
+    if (m->slot_count < 1 || m->slot_count > MESH_SLOTS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 256", "%d material slots", m->slot_count);
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        for (int k = 0; k < 3; k++) {
+            if (m->triangles[t].corner[k] >= m->vertex_count)
+                return diagnose(why, STATUS_BAD_INPUT, "vertices are counted from 0", "triangle %zu names vertex %lu of %zu", t,
+                                (unsigned long)m->triangles[t].corner[k], m->vertex_count);
+        }
+        if (m->slots && m->slots[t] >= m->slot_count)
+            return diagnose(why, STATUS_BAD_INPUT, "slots are counted from 0", "triangle %zu names material slot %d of %d", t, m->slots[t],
+                            m->slot_count);
+    }
+    return check_vertices(m, why);
+}
+
+static double largest(vec3 v)
+{
+    return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
+}
+
+/* Its direction as a unit vector, whatever its length; false for the zero vector. */
+static bool direction_of(vec3 v, vec3 *unit)
+{
+    const double scale = largest(v);
+    *unit = vec3_make(0.0, 0.0, 0.0);
+    if (!(scale > 0.0))
+        return false;
+    *unit = vec3_normalize(vec3_make(v.x / scale, v.y / scale, v.z / scale));
+    return true;
+}
+
+bool mesh_triangle_normal(const mesh *m, size_t triangle, vec3 *normal)
+{
+    const uint32_t *corner = m->triangles[triangle].corner;
+    const vec3 a = m->vertices[corner[0]];
+    vec3 b, c;
+    *normal = vec3_make(0.0, 0.0, 0.0);
+    /* the edges as unit vectors: the product of small ones would vanish */
+    return direction_of(vec3_sub(m->vertices[corner[1]], a), &b) && direction_of(vec3_sub(m->vertices[corner[2]], a), &c) &&
+           direction_of(vec3_cross(b, c), normal);
+}
+
+void mesh_normalize(mesh *m)
+{
+    bool missing = false;
+    for (size_t v = 0; v < m->vertex_count; v++)
+        missing |= !direction_of(m->normals[v], &m->normals[v]);
+    for (size_t t = 0; missing && t < m->triangle_count; t++) {
+        for (int k = 0; k < 3; k++) {
+            vec3 *normal = &m->normals[m->triangles[t].corner[k]];
+            if (largest(*normal) == 0.0)
+                mesh_triangle_normal(m, t, normal);
+        }
+    }
+    for (size_t v = 0; missing && v < m->vertex_count; v++) {
+        if (largest(m->normals[v]) == 0.0)
+            m->normals[v] = vec3_make(0.0, 1.0, 0.0); /* no triangle with an area is there */
+    }
+}
+
+static void find_bounds(mesh *m)
+{
+    bounds3 b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    bool single = true;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        for (int k = 0; k < 3; k++) {
+            const vec3 p = m->vertices[m->triangles[t].corner[k]];
+            b.low = vec3_make(fmin(b.low.x, p.x), fmin(b.low.y, p.y), fmin(b.low.z, p.z));
+            b.high = vec3_make(fmax(b.high.x, p.x), fmax(b.high.y, p.y), fmax(b.high.z, p.z));
+            single &= single_round(p.x) == p.x && single_round(p.y) == p.y && single_round(p.z) == p.z;
+        }
+    }
+    m->bounds = b;
+    m->single = single;
+}
+
+status mesh_finish(mesh *m, diagnostic *why)
+{
+    status result = mesh_check(m, why);
+    if (result != STATUS_OK)
+        return result;
+    find_bounds(m);
+    result = mesh_close(m, why);
+    if (result == STATUS_OK && m->normals)
+        mesh_normalize(m);
+    return result;
+}
