@@ -49,6 +49,7 @@ version := 0.1.0
 # pkg-config is asked at its first use, not when this file is read: `make setup all` installs the libraries first.
 pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
 pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
+import_libs = $(eval import_libs := $$(shell pkg-config --libs assimp jansson))$(import_libs)
 CFLAGS ?= -g
 # What may change a result; the rest is about warnings and paths.
 code_flags = -std=gnu17 -D_GNU_SOURCE $(arithmetic) $(optimize) $(CFLAGS) -Isrc -pthread
@@ -64,17 +65,19 @@ isas := sse2 avx2 avx512
 
 sources := $(wildcard src/*.c src/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
-library := $(filter-out src/cli/% $(kernels),$(sources))
+library := $(filter-out src/cli/% src/import/% $(kernels),$(sources))
 program := $(wildcard src/cli/*.c)
+importer := $(wildcard src/import/*.c)
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
 library_objects := $(library:src/%.c=$(build)/obj/%.o) $(kernel_objects)
 program_objects := $(program:src/%.c=$(build)/obj/%.o)
+importer_objects := $(importer:src/%.c=$(build)/obj/%.o)
 tests := $(wildcard tests/test_*.c)
 test_programs := $(tests:tests/%.c=$(build)/tests/%)
 fuzzers := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/fuzz_*.c))
 
 .PHONY: all
-all: $(build)/cuvette ## build build/cuvette (the default)
+all: $(build)/cuvette $(build)/cuvette-import ## build build/cuvette (the default)
 
 # A half-written file would look newer than its sources.
 .DELETE_ON_ERROR:
@@ -82,6 +85,14 @@ all: $(build)/cuvette ## build build/cuvette (the default)
 $(build)/cuvette: $(program_objects) $(build)/libcuvette.a
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(all_libs)
+
+# The one program that assimp is linked to: it reads mesh files for the other.
+$(build)/cuvette-import: $(importer_objects) $(build)/libcuvette.a
+	$(call say,link $@)
+	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(import_libs) -lm -pthread
+
+# Where it looks last; not part of the flags, which a PREFIX for `make install` alone must not change.
+$(build)/obj/scene/mesh_program.o: private all_cflags += -DCUVETTE_LIBEXEC='"$(PREFIX)/libexec/cuvette"'
 
 $(build)/libcuvette.a: $(library_objects)
 	@rm -f $@
@@ -117,7 +128,7 @@ $(build)/flags: always $(if $(filter setup,$(MAKECMDGOALS)),| setup)
 	@mkdir -p $(@D)
 	@echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512))' | cmp -s - $@ || echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512))' >$@
 
--include $(library_objects:.o=.d) $(program_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d)
+-include $(library_objects:.o=.d) $(program_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d)
 
 .PHONY: setup
 setup: ## install what is needed (Debian 12); does nothing when it is there
@@ -138,8 +149,8 @@ selected_scripts := $(if $(only),,$(scripts))
 kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
 .PHONY: test
-test: $(selected) $(if $(only),,$(build)/cuvette) ## build and run every test; only=NAME for tests/test_NAME.c alone
-	@CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' $(kernel_environment) \
+test: $(selected) $(build)/cuvette-import $(if $(only),,$(build)/cuvette) ## build and run every test; only=NAME for tests/test_NAME.c alone
+	@CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
 .PHONY: layers headers vectorise
@@ -227,8 +238,10 @@ bench: all ## frame times, what counters cost; PEERS=DIR (rod.pov, listing_basel
 man := $(DESTDIR)$(PREFIX)/share/man/man1/cuvette.1
 completion := $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cuvette
 shared := $(DESTDIR)$(PREFIX)/share/cuvette
-install: $(build)/cuvette ## install under PREFIX (/usr/local), below DESTDIR
+libexec := $(DESTDIR)$(PREFIX)/libexec/cuvette
+install: $(build)/cuvette $(build)/cuvette-import ## install under PREFIX (/usr/local), below DESTDIR
 	install -D -m 755 $(build)/cuvette $(DESTDIR)$(PREFIX)/bin/cuvette
+	install -D -m 755 $(build)/cuvette-import $(libexec)/cuvette-import
 	install -D -m 644 src/cli/cuvette.1 $(man)
 	install -D -m 644 src/cli/cuvette.bash $(completion)
 	install -D -m 644 LICENSE $(DESTDIR)$(PREFIX)/share/doc/cuvette/LICENSE
@@ -237,7 +250,7 @@ install: $(build)/cuvette ## install under PREFIX (/usr/local), below DESTDIR
 	  install -D -m $$mode "$$f" "$(shared)/$$f"; done' sh {} +
 uninstall: ## remove what install put there
 	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(man) $(completion)
-	rm -rf $(shared) $(DESTDIR)$(PREFIX)/share/doc/cuvette
+	rm -rf $(shared) $(libexec) $(DESTDIR)$(PREFIX)/share/doc/cuvette
 
 .PHONY: format clean distclean help
 format: ## lay out the sources with clang-format

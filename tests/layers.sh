@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 check() {
     (cd "$1" && find . -name '*.[ch]' -printf '%P\n' | sort | xargs awk '
         BEGIN {
-            split("base 0 optics 1 geometry 1 measure 1 softbody 2 image 2 scene 3 render 4 realism 4.5 study 5 engine 6 cli 7 web 7 mpi 7", word)
+            split("base 0 optics 1 geometry 1 measure 1 softbody 2 image 2 scene 3 render 4 realism 4.5 study 5 engine 6 cli 7 web 7 mpi 7 import 7", word)
             for (i = 1; i in word; i += 2) floor[word[i]] = word[i + 1]
         }
         function room(path) { return path ~ /\// ? substr(path, 1, index(path, "/") - 1) : "engine" }
@@ -70,4 +70,7 @@ plant cuvette.c '"cli/cli.h"' climbs
 plant cuvette.c '"study/study.h"' ''
 plant cli/a.c '"cuvette.h"' ''
 plant scene/a.c '"scene/scene.h"' ''
+plant scene/a.c '"import/import.h"' climbs
+plant cli/a.c '"import/import.h"' sideways
+plant import/a.c '"scene/mesh_wire.h"' ''
 exit $failed

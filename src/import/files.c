@@ -1,0 +1,113 @@
+#include "import/import.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* A regular file as a stream, or NULL and the reason. Does not wait for a FIFO's writer. */
+static FILE *open_regular(const char *path, const char **reason)
+{
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    struct stat about;
+    FILE *stream = NULL;
+    if (fd < 0 || fstat(fd, &about) != 0) {
+        *reason = strerrordesc_np(errno);
+    } else if (!S_ISREG(about.st_mode)) {
+        *reason = S_ISDIR(about.st_mode) ? "is a folder" : "is not a regular file";
+    } else {
+        stream = fdopen(fd, "rb");
+        *reason = stream ? NULL : strerrordesc_np(errno);
+    }
+    if (fd >= 0 && !stream) {
+        close(fd);
+    }
+    return stream;
+}
+
+status files_check(const char *path, diagnostic *why)
+{
+    const char *reason = NULL;
+    diagnostic_locate(why, path, 0, 0);
+    FILE *stream = open_regular(path, &reason);
+    if (!stream) {
+        return diagnose(why, STATUS_BAD_INPUT, "name a mesh file that can be read", "cannot open: %s", reason ? reason : "unknown error");
+    }
+    int first = fgetc(stream);
+    fclose(stream);
+    return first == EOF ? diagnose(why, STATUS_BAD_INPUT, "name a mesh file", "the file is empty") : STATUS_OK;
+}
+
+/* ---- what assimp calls ---- */
+
+static FILE *stream_of(struct aiFile *file)
+{
+    return (FILE *)(void *)file->UserData;
+}
+
+static size_t on_read(struct aiFile *file, char *to, size_t size, size_t count)
+{
+    return fread(to, size, count, stream_of(file));
+}
+
+static size_t on_write(struct aiFile *file, const char *from, size_t size, size_t count)
+{
+    (void)file; (void)from; (void)size; (void)count;
+    return 0;
+}
+
+static size_t on_tell(struct aiFile *file)
+{
+    long at = ftell(stream_of(file));
+    return at < 0 ? 0 : (size_t)at;
+}
+
+static size_t on_size(struct aiFile *file)
+{
+    struct stat about;
+    return fstat(fileno(stream_of(file)), &about) == 0 && about.st_size > 0 ? (size_t)about.st_size : 0;
+}
+
+static enum aiReturn on_seek(struct aiFile *file, size_t offset, enum aiOrigin origin)
+{
+    int whence = origin == aiOrigin_SET ? SEEK_SET : origin == aiOrigin_CUR ? SEEK_CUR : SEEK_END;
+    return fseek(stream_of(file), (long)offset, whence) == 0 ? aiReturn_SUCCESS : aiReturn_FAILURE;
+}
+
+static void on_flush(struct aiFile *file)
+{
+    (void)file;
+}
+
+static struct aiFile *on_open(struct aiFileIO *io, const char *path, const char *mode)
+{
+    file_access *access = (file_access *)(void *)io->UserData;
+    const char *reason = "is not for writing";
+    struct aiFile *file = NULL;
+    FILE *stream = strpbrk(mode, "wa+") ? NULL : open_regular(path, &reason);
+    if (stream && (file = calloc(1, sizeof *file))) {
+        *file = (struct aiFile){on_read, on_write, on_tell, on_size, on_seek, on_flush, (char *)(void *)stream};
+    } else if (stream) {
+        fclose(stream);
+    } else if (!access->missing[0]) {
+        snprintf(access->missing, sizeof access->missing, "%s", *path ? path : "(no name)");
+        access->reason = reason;
+    }
+    return file;
+}
+
+static void on_close(struct aiFileIO *io, struct aiFile *file)
+{
+    (void)io;
+    if (file) {
+        fclose(stream_of(file));
+        free(file);
+    }
+}
+
+void files_prepare(file_access *access)
+{
+    *access = (file_access){.io = {on_open, on_close, (char *)(void *)access}};
+}

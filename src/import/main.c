@@ -1,0 +1,128 @@
+/* cuvette-import FILE: see import.h. Exit codes 0, 1 (the machine failed) and 2 (the file is wrong), one line on standard error. */
+#include "import/import.h"
+
+#include "base/number.h"
+#include <argp.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+/* Sanitizers reserve terabytes of addresses for themselves. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define SANITIZED 1
+#endif
+#endif
+#ifndef SANITIZED
+#define SANITIZED 0
+#endif
+
+static file_kind kind_of(const char *path)
+{
+    static const char *const endings[] = {[FILE_OBJ] = ".obj", [FILE_PLY] = ".ply", [FILE_STL] = ".stl",
+                                          [FILE_GLTF] = ".gltf", [FILE_GLB] = ".glb"};
+    const char *ending = strrchr(path, '.');
+    for (int kind = 0; ending && kind < FILE_UNKNOWN; kind++) {
+        if (strcasecmp(ending, endings[kind]) == 0) {
+            return (file_kind)kind;
+        }
+    }
+    return FILE_UNKNOWN;
+}
+
+static error_t parse_option(int key, char *value, struct argp_state *state)
+{
+    request *asked = state->input;
+    uint64_t *number = key == 'm' ? &asked->memory_mib : key == 's' ? &asked->seconds : key == 't' ? &asked->triangles : &asked->vertices;
+    int64_t got;
+    switch (key) {
+    case 'm': case 's': case 't': case 'v':
+        if (!number_parse_int(value, &got) || got < 1) {
+            argp_error(state, "'%s' is not a number from 1", value);
+        }
+        *number = (uint64_t)got;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (asked->path) {
+            argp_error(state, "'%s' is one file too many", value);
+        }
+        asked->path = value;
+        return 0;
+    case ARGP_KEY_NO_ARGS:
+        argp_error(state, "no file is named");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_option options[] = {
+    {.name = "memory", .key = 'm', .arg = "MIB", .doc = "Address space of this process (4096)"},
+    {.name = "seconds", .key = 's', .arg = "N", .doc = "Processor time (60)"},
+    {.name = "triangles", .key = 't', .arg = "N", .doc = "Most triangles (33554432)"},
+    {.name = "vertices", .key = 'v', .arg = "N", .doc = "Most vertices (67108864)"},
+    {0},
+};
+
+/* A limit that the system already sets lower stays. */
+static void limit(__rlimit_resource_t what, rlim_t value)
+{
+    struct rlimit now;
+    if (getrlimit(what, &now) == 0) {
+        now.rlim_max = value < now.rlim_max ? value : now.rlim_max;
+        now.rlim_cur = value < now.rlim_cur ? value : now.rlim_cur;
+        setrlimit(what, &now);
+    }
+}
+
+/* Nothing below can create or change a file, dump its memory, open many files, or outlive who asked. */
+static void limit_all(const request *asked)
+{
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    prctl(PR_SET_DUMPABLE, 0);
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_FSIZE, 0);
+    limit(RLIMIT_NOFILE, 16);
+    limit(RLIMIT_CPU, (rlim_t)asked->seconds);
+    if (!SANITIZED) {
+        limit(RLIMIT_AS, (rlim_t)asked->memory_mib << 20);
+    }
+}
+
+static status convert(const request *asked, diagnostic *why)
+{
+    const struct aiScene *scene;
+    flat_mesh flat = {0};
+    status code = read_scene(asked, &scene, why);
+    if (code == STATUS_OK) {
+        code = flatten(asked, scene, &flat, why);
+    }
+    return code == STATUS_OK ? write_mesh(asked, scene, &flat, stdout, why) : code;
+}
+
+int main(int count, char **arguments)
+{
+    static const struct argp parser = {
+        .options = options, .parser = parse_option, .args_doc = "FILE",
+        .doc = "Reads a triangle mesh (OBJ, PLY, STL, glTF, glb) and writes it to standard output, a pipe, in the form that the "
+               "program cuvette, which starts this one, reads.",
+    };
+    request asked = {.memory_mib = 4096, .seconds = 60, .triangles = (uint64_t)1 << 25, .vertices = (uint64_t)1 << 26};
+    argp_err_exit_status = STATUS_BAD_INPUT;
+    argp_parse(&parser, count, arguments, 0, NULL, &asked);
+    asked.kind = kind_of(asked.path);
+    limit_all(&asked);
+    diagnostic why = {0};
+    status code = convert(&asked, &why);
+    if (code != STATUS_OK) {
+        char text[DIAGNOSTIC_TEXT_MAX];
+        fprintf(stderr, "cuvette-import: %s\n", diagnostic_text(&why, text, sizeof text));
+    }
+    _exit((int)code); /* destructors of a scene that may be anything are not run */
+}

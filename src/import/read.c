@@ -1,0 +1,70 @@
+#include "import/import.h"
+
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <jansson.h>
+#include <string.h>
+
+status no_memory(const request *asked, diagnostic *why)
+{
+    diagnostic_locate(why, asked->path, 0, 0);
+    return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
+                    "the file asks for more memory than the limit of %llu MiB", (unsigned long long)asked->memory_mib);
+}
+
+/* Where a text of JSON is wrong: assimp only says that it is. True when it is. */
+static bool locate_json(const request *asked, diagnostic *why)
+{
+    json_error_t error;
+    json_t *root = json_load_file(asked->path, JSON_REJECT_DUPLICATES, &error);
+    if (!root) {
+        diagnostic_locate(why, asked->path, error.line, error.column);
+        diagnose(why, STATUS_BAD_INPUT, "a .gltf file is a JSON text, a binary one ends in .glb", "%s", error.text);
+    }
+    return !root;
+}
+
+/* What assimp says when it gives up, in words that stand alone. */
+static status explain(const request *asked, const file_access *access, const char *said, diagnostic *why)
+{
+    static const char *const names[] = {"OBJ", "PLY", "STL", "glTF 2.0", "binary glTF 2.0 (glb)"};
+    diagnostic_locate(why, asked->path, 0, 0);
+    if (access->missing[0]) {
+        return diagnose(why, STATUS_BAD_INPUT, "put it where the mesh file says, or take the line that names it out",
+                        "needs the file '%s': %s", access->missing, access->reason ? access->reason : "cannot be opened");
+    }
+    if (strstr(said, "bad_alloc") || strstr(said, "length_error") || strstr(said, "bad_array_new_length")
+        || strstr(said, "_M_") || strstr(said, "max_size")) {
+        return no_memory(asked, why);
+    }
+    if (asked->kind == FILE_GLTF && locate_json(asked, why)) {
+        return STATUS_BAD_INPUT;
+    }
+    if (!*said || strstr(said, "No suitable reader")) {
+        return diagnose(why, STATUS_BAD_INPUT, "check that it is whole and what its name says", "this is not a file of the kind %s",
+                        names[asked->kind]);
+    }
+    return diagnose(why, STATUS_BAD_INPUT, "repair the file or export it again", "cannot read: %.300s", said);
+}
+
+status read_scene(const request *asked, const struct aiScene **out, diagnostic *why)
+{
+    file_access access;
+    diagnostic_locate(why, asked->path, 0, 0);
+    status code = files_check(asked->path, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (asked->kind == FILE_UNKNOWN) {
+        return diagnose(why, STATUS_BAD_INPUT, "name a file that ends in .obj, .ply, .stl, .gltf or .glb", "unknown kind of mesh");
+    }
+    files_prepare(&access);
+    /* Equal vertices are joined in join.c: assimp's own step moves those together that lie within 1e-5. */
+    const struct aiScene *scene = aiImportFileEx(asked->path, aiProcess_ValidateDataStructure | aiProcess_Triangulate, &access.io);
+    if (!scene || access.missing[0]) {
+        const char *said = scene ? "" : aiGetErrorString();
+        return explain(asked, &access, said ? said : "", why);
+    }
+    *out = scene;
+    return STATUS_OK;
+}
