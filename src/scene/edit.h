@@ -1,0 +1,38 @@
+/* Changes to a scene that are more than the value of one parameter: objects come and go, move, turn, change their names.
+ * What is added has the defaults that a file gives it; scene_set then turns it into what is wanted. Between edits a scene
+ * may be wrong as a whole (a cup whose hollow is too wide, say): scene_check says so at the end.
+ * Ownership: the scene stays the caller's; names are copied. An index holds until something is removed; pointers to objects
+ * hold until something is added. Errors: STATUS_BAD_INPUT with the reason, the scene is then as it was. */
+#ifndef CUVETTE_SCENE_EDIT_H
+#define CUVETTE_SCENE_EDIT_H
+
+#include "scene/scene.h"
+
+/* One more object at the end of its section. The name must be right and free (scene/check.h), the limits of a scene hold.
+ * index may be NULL. */
+status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why);
+status scene_add_light(scene *s, const char *name, size_t *index, diagnostic *why);
+status scene_add_material(scene *s, const char *name, size_t *index, diagnostic *why);
+
+/* The solid refers to that material from now on, and has its values; what the solid had for itself alone is gone. NULL or ""
+ * takes the material away and leaves the defaults. */
+status scene_give_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why);
+
+/* Removes an object by its name. A material that solids refer to is refused, and one of them named. */
+status scene_remove(scene *s, const char *name, diagnostic *why);
+
+/* Gives an object another name; what refers to it goes on doing so. */
+status scene_rename(scene *s, const char *name, const char *new_name, diagnostic *why);
+
+/* Moves a solid, a light, or "camera", by delta in scene units. An aimed camera's target moves with it: its direction holds. */
+status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why);
+
+/* Turns a solid, or "camera", in place: about the world's x axis, then y, then z, right-hand rule, on top of how it stands
+ * already. Of the camera the direction is turned; its picture stays upright, and what it was aimed by (target or angles)
+ * it is aimed by still. */
+status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why);
+
+/* Aims the camera at a point. */
+status scene_look_at(scene *s, vec3 target, diagnostic *why);
+
+#endif
