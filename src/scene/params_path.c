@@ -233,3 +233,23 @@ status place_find(const scene *s, const char *path, place *out, diagnostic *why)
     }
     return find_element(&words, out, why);
 }
+
+status place_find_object(const scene *s, const char *name, place *out, diagnostic *why)
+{
+    *out = (place){.element = -1};
+    if (find_group(s, name, out)) {
+        return STATUS_OK;
+    }
+    size_t count;
+    const char **words = group_words(s, &count);
+    if (!words) {
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    const char *nearest = suggest_word(name, words, count);
+    char remedy[SCENE_NAME_MAX + 80] = "give the name of a light, material or solid";
+    if (nearest) {
+        snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
+    }
+    free(words);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "nothing in the scene is named '%.80s'", name);
+}

@@ -1,0 +1,262 @@
+/* Objects come, go and change their names. How they move is in edit_place.c. */
+#include "scene/edit.h"
+#include "scene/check.h"
+#include "scene/params_path.h"
+#include "scene/params_value.h"
+#include "scene/suggest.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static status out_of_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "memory is out");
+}
+
+/* One section of named objects: its array, its elements, and the size of one. */
+typedef struct section {
+    void **array;
+    size_t *count, size;
+} section;
+
+/* Room for one more element at the end of the section, all zero, not counted yet; NULL when memory is out. */
+static void *grow(section objects)
+{
+    char *grown = realloc(*objects.array, (*objects.count + 1) * objects.size);
+    if (!grown) {
+        return NULL;
+    }
+    *objects.array = grown;
+    return memset(grown + *objects.count * objects.size, 0, objects.size);
+}
+
+/* The name of an object to come, checked; fresh memory. */
+static status take_name(const scene *s, const char *name, char **copy, diagnostic *why)
+{
+    status code = check_name(name, why);
+    if (code == STATUS_OK) {
+        code = check_name_is_free(s, name, why);
+    }
+    if (code != STATUS_OK) {
+        return code;
+    }
+    *copy = strdup(name);
+    return *copy ? STATUS_OK : out_of_memory(why);
+}
+
+/* Counts the new object at the end of an array, which owns its name already, or lets it go again when it is one too many
+ * or could not be made. */
+static status settle(scene *s, size_t *count, char *name, status code, size_t *index, diagnostic *why)
+{
+    ++*count;
+    if (code == STATUS_OK) {
+        code = check_limits(s, why);
+    }
+    if (code != STATUS_OK) {
+        --*count;
+        free(name);
+    } else if (index) {
+        *index = *count - 1;
+    }
+    return code;
+}
+
+status scene_add_material(scene *s, const char *name, size_t *index, diagnostic *why)
+{
+    char *copy = NULL;
+    status code = take_name(s, name, &copy, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    void *array = s->materials;
+    named_material *m = grow((section){&array, &s->material_count, sizeof *m});
+    s->materials = array;
+    if (!m) {
+        free(copy);
+        return out_of_memory(why);
+    }
+    m->name = copy;
+    code = param_set_defaults(PARAM_MATERIAL, &m->value, why);
+    return settle(s, &s->material_count, copy, code, index, why);
+}
+
+status scene_add_light(scene *s, const char *name, size_t *index, diagnostic *why)
+{
+    char *copy = NULL;
+    status code = take_name(s, name, &copy, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    void *array = s->lights;
+    light *l = grow((section){&array, &s->light_count, sizeof *l});
+    s->lights = array;
+    if (!l) {
+        free(copy);
+        return out_of_memory(why);
+    }
+    l->name = copy;
+    code = param_set_defaults(PARAM_LIGHT, l, why);
+    return settle(s, &s->light_count, copy, code, index, why);
+}
+
+status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why)
+{
+    char *copy = NULL;
+    status code = take_name(s, name, &copy, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    void *array = s->solids;
+    solid *owner = grow((section){&array, &s->solid_count, sizeof *owner});
+    s->solids = array;
+    if (!owner) {
+        free(copy);
+        return out_of_memory(why);
+    }
+    owner->name = copy;
+    owner->shape.kind = shape;
+    owner->material_index = -1;
+    code = param_set_defaults(PARAM_SOLID, owner, why);
+    if (code == STATUS_OK) {
+        code = param_set_defaults(PARAM_MATERIAL, &owner->surface, why);
+    }
+    return settle(s, &s->solid_count, copy, code, index, why);
+}
+
+static status no_material(const scene *s, const char *name, diagnostic *why)
+{
+    const char *words[SCENE_MATERIALS_MAX];
+    size_t count = 0;
+    for (; count < s->material_count && count < SCENE_MATERIALS_MAX; count++) {
+        words[count] = s->materials[count].name;
+    }
+    const char *nearest = suggest_word(name, words, count);
+    char remedy[SCENE_NAME_MAX + 80] = "add it to materials";
+    if (nearest) {
+        snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
+    }
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "no material '%.80s'", name);
+}
+
+status scene_give_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why)
+{
+    place at;
+    status code = place_find_object(s, solid_name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (at.group != PARAM_SOLID) {
+        return diagnose(why, STATUS_BAD_INPUT, "name a solid", "%.80s is a %s, which has no material", solid_name,
+                        param_group_name(at.group));
+    }
+    solid *owner = &s->solids[at.index];
+    if (!material_name || !material_name[0]) {
+        owner->material_index = -1;
+        return param_set_defaults(PARAM_MATERIAL, &owner->surface, why);
+    }
+    for (size_t i = 0; i < s->material_count; i++) {
+        if (strcmp(s->materials[i].name, material_name) == 0) {
+            owner->material_index = (int)i;
+            owner->surface = s->materials[i].value;
+            return STATUS_OK;
+        }
+    }
+    return no_material(s, material_name, why);
+}
+
+/* Takes one element out of an array, whose name was released. */
+static void close_gap(void *array, size_t *count, size_t size, size_t index)
+{
+    char *gap = (char *)array + index * size;
+    memmove(gap, gap + size, (*count - index - 1) * size);
+    --*count;
+}
+
+static status remove_material(scene *s, size_t index, diagnostic *why)
+{
+    const char *user = NULL;
+    size_t users = 0;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (s->solids[i].material_index == (int)index) {
+            user = user ? user : s->solids[i].name;
+            users++;
+        }
+    }
+    if (user) {
+        char others[48] = "";
+        if (users > 1) {
+            snprintf(others, sizeof others, " and %zu more", users - 1);
+        }
+        return diagnose(why, STATUS_BAD_INPUT, "give those another material first, or remove them", "%.80s is the material of %.80s%s",
+                        s->materials[index].name, user, others);
+    }
+    free(s->materials[index].name);
+    close_gap(s->materials, &s->material_count, sizeof *s->materials, index);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        s->solids[i].material_index -= s->solids[i].material_index > (int)index;
+    }
+    return STATUS_OK;
+}
+
+status scene_remove(scene *s, const char *name, diagnostic *why)
+{
+    place at;
+    status code = place_find_object(s, name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    switch (at.group) {
+    case PARAM_MATERIAL: return remove_material(s, at.index, why);
+    case PARAM_LIGHT:
+        free(s->lights[at.index].name);
+        close_gap(s->lights, &s->light_count, sizeof *s->lights, at.index);
+        return STATUS_OK;
+    case PARAM_SOLID:
+        free(s->solids[at.index].name);
+        close_gap(s->solids, &s->solid_count, sizeof *s->solids, at.index);
+        return STATUS_OK;
+    case PARAM_RENDER:
+    case PARAM_CAMERA:
+    case PARAM_BACKGROUND:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return diagnose(why, STATUS_BAD_INPUT, "name a light, a material or a solid", "a scene always has its %s", name);
+}
+
+/* Where an object keeps its name; NULL for what has none of its own. */
+static char **name_field(scene *s, const place *at)
+{
+    switch (at->group) {
+    case PARAM_LIGHT: return &s->lights[at->index].name;
+    case PARAM_MATERIAL: return &s->materials[at->index].name;
+    case PARAM_SOLID: return &s->solids[at->index].name;
+    case PARAM_RENDER:
+    case PARAM_CAMERA:
+    case PARAM_BACKGROUND:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return NULL;
+}
+
+status scene_rename(scene *s, const char *name, const char *new_name, diagnostic *why)
+{
+    place at;
+    status code = place_find_object(s, name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    char **field = name_field(s, &at), *copy = NULL;
+    if (!field) {
+        return diagnose(why, STATUS_BAD_INPUT, "name a light, a material or a solid", "the %s has no name of its own", name);
+    }
+    if (strcmp(name, new_name) == 0) {
+        return STATUS_OK;
+    }
+    code = take_name(s, new_name, &copy, why);
+    if (code == STATUS_OK) {
+        free(*field);
+        *field = copy;
+    }
+    return code;
+}

@@ -1,0 +1,180 @@
+/* Objects and the camera move and turn. */
+#include "scene/edit.h"
+#include "base/elementary.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "scene/params_path.h"
+
+#include <stdlib.h>
+
+typedef enum axis { AXIS_X, AXIS_Y, AXIS_Z } axis;
+
+/* Sets a vector by its path, so that its range is checked as a person's would be. */
+static status set_vector(scene *s, const char *name, const char *row, vec3 v, diagnostic *why)
+{
+    char x[NUMBER_TEXT_MAX], y[NUMBER_TEXT_MAX], z[NUMBER_TEXT_MAX];
+    char *path = text_format("%s.%s", name, row);
+    char *value = text_format("%s,%s,%s", number_format(v.x, x), number_format(v.y, y), number_format(v.z, z));
+    status code = path && value ? scene_set(s, path, value, why) : diagnose(why, STATUS_FAILURE, "", "memory is out");
+    free(path);
+    free(value);
+    return code;
+}
+
+static status move_camera(scene *s, vec3 delta, diagnostic *why)
+{
+    const camera before = s->camera;
+    status code = set_vector(s, "camera", "position", vec3_add(before.position, delta), why);
+    if (code == STATUS_OK && before.aimed) {
+        code = set_vector(s, "camera", "target", vec3_add(before.target, delta), why);
+    }
+    if (code != STATUS_OK) {
+        s->camera = before;
+    }
+    return code;
+}
+
+static status has_no(const char *name, param_group group, const char *what, const char *remedy, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s is %s %s, which has no %s", name, group < PARAM_LIGHT ? "the" : "a",
+                    param_group_name(group), what);
+}
+
+status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
+{
+    place at;
+    status code = place_find_object(s, name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    switch (at.group) {
+    case PARAM_CAMERA: return move_camera(s, delta, why);
+    case PARAM_LIGHT: return set_vector(s, name, "position", vec3_add(s->lights[at.index].position, delta), why);
+    case PARAM_SOLID: return set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
+    case PARAM_RENDER:
+    case PARAM_BACKGROUND:
+    case PARAM_MATERIAL:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return has_no(name, at.group, "place", "move a solid, a light or the camera", why);
+}
+
+/* -180 < degrees <= 180 */
+static double wrap(double degrees)
+{
+    if (degrees > -180.0 && degrees <= 180.0) {
+        return degrees;
+    }
+    double rest = degrees - 360.0 * floor(degrees / 360.0);
+    return rest > 180.0 ? rest - 360.0 : rest;
+}
+
+/* An angle that came out of an arc tangent, whose error is under 1e-12 degrees: a round one is what was meant. */
+static double settle(double degrees)
+{
+    double round = floor(degrees * 1e6 + 0.5) / 1e6;
+    return fabs(round - degrees) < 1e-12 ? round : degrees;
+}
+
+static mat3 product(mat3 a, mat3 b)
+{
+    mat3 c;
+    for (int i = 0; i < 3; i++) {
+        c.row[i] = mat3_apply_transposed(b, a.row[i]);
+    }
+    return c;
+}
+
+/* Angles whose rotation_from_deg is r = R_z R_y R_x. The x angle is read from R_z^-1 r rather than from r's last row, so that
+ * it makes up for whatever z was taken to be when the local x axis stands upright and x and z turn about one line: Herter and
+ * Lott, Algorithms for decomposing 3-D orthogonal matrices into primitive rotations, Computers & Graphics 17 (1993). */
+static vec3 angles_of(mat3 r)
+{
+    const double cos_y = sqrt(r.row[0].x * r.row[0].x + r.row[1].x * r.row[1].x);
+    const double z = elementary_atan2_deg(r.row[1].x, r.row[0].x);
+    double sz, cz;
+    elementary_sincos_deg(z, &sz, &cz);
+    const double cos_x = cz * r.row[1].y - sz * r.row[0].y, minus_sin_x = cz * r.row[1].z - sz * r.row[0].z;
+    return vec3_make(settle(elementary_atan2_deg(-minus_sin_x, cos_x)), settle(elementary_atan2_deg(-r.row[2].x, cos_y)), settle(z));
+}
+
+static vec3 about(axis which, double degrees)
+{
+    return vec3_make(which == AXIS_X ? degrees : 0.0, which == AXIS_Y ? degrees : 0.0, which == AXIS_Z ? degrees : 0.0);
+}
+
+/* The angles after one more turn about an axis of the world. z is turned last, so a turn about z only adds to it; one about y
+ * or x does where the angles after it are 0. Sums keep a person's numbers as they are. */
+static vec3 turned(vec3 angles, axis which, double degrees)
+{
+    if (degrees == 0.0) {
+        return angles;
+    }
+    if (which == AXIS_Z) {
+        return vec3_make(angles.x, angles.y, wrap(angles.z + degrees));
+    }
+    if (which == AXIS_Y && angles.z == 0.0) {
+        return vec3_make(angles.x, wrap(angles.y + degrees), 0.0);
+    }
+    if (which == AXIS_X && angles.y == 0.0 && angles.z == 0.0) {
+        return vec3_make(wrap(angles.x + degrees), 0.0, 0.0);
+    }
+    return angles_of(product(rotation_from_deg(about(which, degrees)), rotation_from_deg(angles)));
+}
+
+static vec3 turned_by(vec3 angles, vec3 degrees)
+{
+    return turned(turned(turned(angles, AXIS_X, degrees.x), AXIS_Y, degrees.y), AXIS_Z, degrees.z);
+}
+
+static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
+{
+    const mat3 turn = rotation_from_deg(degrees);
+    camera *c = &s->camera;
+    if (c->aimed) {
+        return set_vector(s, "camera", "target", vec3_add(c->position, mat3_apply(turn, vec3_sub(c->target, c->position))), why);
+    }
+    if (degrees.x == 0.0 && degrees.z == 0.0) { /* yaw turns as y does, z towards x */
+        c->yaw_deg = wrap(c->yaw_deg + degrees.y);
+        return STATUS_OK;
+    }
+    double sin_yaw, cos_yaw, sin_pitch, cos_pitch;
+    elementary_sincos_deg(c->yaw_deg, &sin_yaw, &cos_yaw);
+    elementary_sincos_deg(c->pitch_deg, &sin_pitch, &cos_pitch);
+    const vec3 d = mat3_apply(turn, vec3_make(cos_pitch * sin_yaw, sin_pitch, cos_pitch * cos_yaw));
+    c->yaw_deg = settle(elementary_atan2_deg(d.x, d.z));
+    c->pitch_deg = settle(elementary_atan2_deg(d.y, sqrt(d.x * d.x + d.z * d.z)));
+    return STATUS_OK;
+}
+
+static bool is_angle(double degrees)
+{
+    return fabs(degrees) <= 1e6; /* where elementary_sincos_deg still keeps its error; false for NaN */
+}
+
+status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
+{
+    place at;
+    status code = place_find_object(s, name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (!is_angle(degrees.x) || !is_angle(degrees.y) || !is_angle(degrees.z)) {
+        return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees", "%.80s cannot be turned so far", name);
+    }
+    switch (at.group) {
+    case PARAM_CAMERA: return turn_camera(s, degrees, why);
+    case PARAM_SOLID: return set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
+    case PARAM_RENDER:
+    case PARAM_BACKGROUND:
+    case PARAM_LIGHT:
+    case PARAM_MATERIAL:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return has_no(name, at.group, "direction", "turn a solid or the camera", why);
+}
+
+status scene_look_at(scene *s, vec3 target, diagnostic *why)
+{
+    return set_vector(s, "camera", "target", target, why);
+}
