@@ -1,0 +1,266 @@
+/* Goes through the scene's parameters in the order of the table and of the scene, and writes those that a reader would not
+ * find by itself. How a text is quoted is in write_text.c, how paths follow the file in write_paths.c. */
+#include "scene/write.h"
+#include "base/file.h"
+#include "scene/params_path.h"
+#include "scene/params_value.h"
+#include "scene/medium.h"
+#include "scene/write_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* While the scene is gone through: what is being written, and where in the file that is. */
+typedef struct scene_writer {
+    const scene *s;
+    const char *path; /* of the file to be */
+    bool all;
+    FILE *out;
+    bool begun;           /* something stands in the file */
+    param_group group;    /* whose turn it is */
+    bool in_section;      /* its heading stands there */
+    char object[SCENE_NAME_MAX + 1]; /* the one whose heading stands there last */
+    bool empty;           /* and that has no line below it yet */
+    diagnostic *why;
+} scene_writer;
+
+static bool is_section_of_objects(param_group group)
+{
+    return group >= PARAM_LIGHT;
+}
+
+/* "materials" */
+static void put_section(scene_writer *w)
+{
+    if (!w->in_section) {
+        fprintf(w->out, "%s%s%s:\n", w->begun ? "\n" : "", param_group_name(w->group), is_section_of_objects(w->group) ? "s" : "");
+        w->begun = w->in_section = true;
+    }
+}
+
+/* An object without lines is an empty map. */
+static void end_object(scene_writer *w)
+{
+    if (w->object[0] && w->empty) {
+        fputs(" {}\n", w->out);
+    }
+    w->object[0] = 0;
+}
+
+static void begin_line(scene_writer *w, const char *key)
+{
+    if (w->object[0] && w->empty) {
+        fputc('\n', w->out);
+        w->empty = false;
+    }
+    fprintf(w->out, "%s%s: ", is_section_of_objects(w->group) ? "    " : "  ", key);
+}
+
+/* The heading of an object, and of a solid what is no row of the table. */
+static void begin_object(scene_writer *w, const place *at)
+{
+    const char *name = place_group_name(w->s, at->group, at->index);
+    end_object(w);
+    put_section(w);
+    fputs("  ", w->out);
+    write_word(w->out, name);
+    fputc(':', w->out);
+    strcpy(w->object, name);
+    w->empty = true;
+    if (at->group != PARAM_SOLID) {
+        return;
+    }
+    const solid *owner = &w->s->solids[at->index];
+    begin_line(w, "shape");
+    fprintf(w->out, "%s\n", shape_name(owner->shape.kind));
+    if (owner->material_index >= 0) {
+        begin_line(w, "material");
+        write_word(w->out, w->s->materials[owner->material_index].name);
+        fputc('\n', w->out);
+    }
+}
+
+/* The text of a row's default, as param_value_text gives it; fresh memory, NULL when that is out. */
+static char *default_text(const param *row)
+{
+    param_value value;
+    if (param_value_parse(row, -1, row->name, row->fallback, &value, NULL) != STATUS_OK) {
+        return NULL;
+    }
+    char *text = param_value_text(row, -1, &value);
+    if (row->type == PARAM_PATH) {
+        free(value.path);
+    }
+    return text;
+}
+
+static bool is_material_row(const param *row, size_t offset)
+{
+    return row->group == PARAM_MATERIAL && row->offset == offset;
+}
+
+static bool is_background_row(const param *row, size_t offset)
+{
+    return row->group == PARAM_BACKGROUND && row->offset == offset;
+}
+
+/* The index of a material whose medium is another's has no effect, and its file would set that medium aside. */
+static bool is_without_effect(const scene *s, const place *at)
+{
+    if (is_background_row(at->row, offsetof(background, ior))) {
+        return s->background.medium != MEDIUM_IOR;
+    }
+    if (!is_material_row(at->row, offsetof(material, ior))) {
+        return false;
+    }
+    const material *m = at->group == PARAM_SOLID ? &s->solids[at->index].surface : &s->materials[at->index].value;
+    return m->medium != MEDIUM_IOR;
+}
+
+/* The text that a reader would have for a row without its line: the material's of a solid that has one, or the default. */
+static char *implied_text(const scene *s, const place *at)
+{
+    const int index = at->group == PARAM_SOLID && at->row->group == PARAM_MATERIAL ? s->solids[at->index].material_index : -1;
+    if (index < 0) {
+        return default_text(at->row);
+    }
+    const place there = {.row = at->row, .group = PARAM_MATERIAL, .index = (size_t)index, .element = -1};
+    const material *m = &s->materials[index].value;
+    return is_without_effect(s, &there) ? default_text(at->row) : param_value_text(at->row, -1, (const char *)m + at->row->offset);
+}
+
+/* A camera is known to look along its angles by there being one. */
+static bool is_needed(const param *row)
+{
+    return row->group == PARAM_CAMERA && row->offset == offsetof(camera, yaw_deg);
+}
+
+static void put_value(scene_writer *w, const param *row, const char *value)
+{
+    switch (row->type) {
+    case PARAM_VECTOR:
+    case PARAM_COLOR:
+    case PARAM_LIST: write_list(w->out, value); break;
+    case PARAM_PATH: write_word(w->out, value); break;
+    case PARAM_INT:
+    case PARAM_REAL:
+    case PARAM_CHOICE: fputs(value, w->out); break;
+    }
+    fputc('\n', w->out);
+}
+
+static status put_path(scene_writer *w, const char *label, const param *row, const char *value)
+{
+    char *there = NULL;
+    status code = write_moved_path(value, w->s->path, w->path, &there, w->why);
+    if (code == STATUS_OK) {
+        code = write_check_text(label, there, w->why);
+    }
+    if (code == STATUS_OK) {
+        put_value(w, row, there);
+    }
+    free(there);
+    return code;
+}
+
+static status visit(void *context, const char *path, const param *row, const char *value)
+{
+    scene_writer *w = context;
+    place at;
+    status code = place_find(w->s, path, &at, w->why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (at.group != w->group) {
+        return STATUS_OK;
+    }
+    if (is_section_of_objects(at.group) && strcmp(w->object, place_group_name(w->s, at.group, at.index)) != 0) {
+        begin_object(w, &at);
+    }
+    if (is_without_effect(w->s, &at)) {
+        return STATUS_OK;
+    }
+    char *implied = implied_text(w->s, &at);
+    if (!implied) {
+        return diagnose(w->why, STATUS_FAILURE, "", "memory is out");
+    }
+    const bool wanted = w->all || is_needed(row) || strcmp(implied, value) != 0;
+    free(implied);
+    if (!wanted) {
+        return STATUS_OK;
+    }
+    put_section(w);
+    begin_line(w, row->name);
+    if (row->type == PARAM_PATH && value[0]) {
+        return put_path(w, path, row, value);
+    }
+    put_value(w, row, value);
+    return STATUS_OK;
+}
+
+static status put_scene(scene_writer *w)
+{
+    /* What is referred to stands first, as a person would have it. */
+    static const param_group order[] = {PARAM_RENDER, PARAM_CAMERA, PARAM_BACKGROUND, PARAM_MATERIAL, PARAM_LIGHT, PARAM_SOLID};
+    _Static_assert(sizeof order / sizeof *order == PARAM_GROUP_COUNT, "every group has its section");
+    if (w->s->title[0]) {
+        status code = write_check_text("title", w->s->title, w->why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        fputs("title: ", w->out);
+        write_word(w->out, w->s->title);
+        fputc('\n', w->out);
+        w->begun = true;
+    }
+    status code = STATUS_OK;
+    for (size_t i = 0; i < PARAM_GROUP_COUNT && code == STATUS_OK; i++) {
+        w->group = order[i];
+        w->in_section = false;
+        code = scene_each_param(w->s, visit, w);
+        end_object(w);
+    }
+    if (!w->begun) {
+        fputs("solids: {}\n", w->out); /* an empty file is no scene */
+    }
+    return code;
+}
+
+status scene_write_text(const scene *s, const char *path, bool all, char **text, diagnostic *why)
+{
+    *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(text, &size);
+    if (!out) {
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    scene_writer w = {.s = s, .path = path ? path : "", .all = all, .out = out, .why = why};
+    status code = put_scene(&w);
+    bool whole = !ferror(out);
+    whole = fclose(out) == 0 && whole;
+    if (code == STATUS_OK && !whole) {
+        code = diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    if (code != STATUS_OK) {
+        free(*text);
+        *text = NULL;
+    }
+    return code;
+}
+
+status scene_write(const scene *s, const char *path, bool all, diagnostic *why)
+{
+    char *text;
+    status code = scene_write_text(s, strcmp(path, "-") == 0 ? "" : path, all, &text, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    file_writer writer;
+    code = file_writer_open(&writer, path, why);
+    if (code == STATUS_OK) {
+        fputs(text, writer.stream);
+        code = file_writer_commit(&writer, why);
+    }
+    free(text);
+    return code;
+}
