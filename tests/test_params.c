@@ -329,7 +329,7 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
          "and the parameters of a material"},
         {"lens.n=1.5", "lens has no parameter 'n'; did you mean 'lens.ior'?"},
         {"lens.opacity=0.5", "lens has no parameter 'opacity'; did you mean 'lens.transparency'?"},
-        {"lens.material=glass", "lens has no parameter 'material'; shape and material are set in the scene file only; "
+        {"lens.material=glass", "lens has no parameter 'material'; shape and material are set in the scene file or by cuvette scene; "
                                 "for glass set lens.transparency=1 and lens.ior=1.5"},
         {"lens.radius=75cm", "lens.radius: '75cm' is not a finite number; write the number alone, in scene units"},
         {"lens.ior=1,5", "lens.ior: '1,5' is not a finite number; a decimal comma? write 1.5"},

@@ -1,9 +1,8 @@
-/* Objects come, go and change their names. How they move is in edit_place.c. */
+/* Objects come, go and change their names. What a solid is made of is in edit_solid.c, how things move in edit_place.c. */
 #include "scene/edit.h"
 #include "scene/check.h"
 #include "scene/params_path.h"
 #include "scene/params_value.h"
-#include "scene/suggest.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -124,47 +123,6 @@ status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *ind
     return settle(s, &s->solid_count, copy, code, index, why);
 }
 
-static status no_material(const scene *s, const char *name, diagnostic *why)
-{
-    const char *words[SCENE_MATERIALS_MAX];
-    size_t count = 0;
-    for (; count < s->material_count && count < SCENE_MATERIALS_MAX; count++) {
-        words[count] = s->materials[count].name;
-    }
-    const char *nearest = suggest_word(name, words, count);
-    char remedy[SCENE_NAME_MAX + 80] = "add it to materials";
-    if (nearest) {
-        snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
-    }
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "no material '%.80s'", name);
-}
-
-status scene_give_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why)
-{
-    place at;
-    status code = place_find_object(s, solid_name, &at, why);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    if (at.group != PARAM_SOLID) {
-        return diagnose(why, STATUS_BAD_INPUT, "name a solid", "%.80s is a %s, which has no material", solid_name,
-                        param_group_name(at.group));
-    }
-    solid *owner = &s->solids[at.index];
-    if (!material_name || !material_name[0]) {
-        owner->material_index = -1;
-        return param_set_defaults(PARAM_MATERIAL, &owner->surface, why);
-    }
-    for (size_t i = 0; i < s->material_count; i++) {
-        if (strcmp(s->materials[i].name, material_name) == 0) {
-            owner->material_index = (int)i;
-            owner->surface = s->materials[i].value;
-            return STATUS_OK;
-        }
-    }
-    return no_material(s, material_name, why);
-}
-
 /* Takes one element out of an array, whose name was released. */
 static void close_gap(void *array, size_t *count, size_t size, size_t index)
 {
@@ -216,12 +174,18 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
         free(s->solids[at.index].name);
         close_gap(s->solids, &s->solid_count, sizeof *s->solids, at.index);
         return STATUS_OK;
-    case PARAM_RENDER:
+    case PARAM_RENDER: return param_set_defaults(PARAM_RENDER, &s->render, why);
     case PARAM_CAMERA:
+        s->camera.aimed = 1;
+        return param_set_defaults(PARAM_CAMERA, &s->camera, why);
     case PARAM_BACKGROUND:
+        image_destroy(s->background.picture);
+        s->background.picture = NULL;
+        s->background.picture_line = s->background.picture_column = 0;
+        return param_set_defaults(PARAM_BACKGROUND, &s->background, why);
     case PARAM_GROUP_COUNT: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "name a light, a material or a solid", "a scene always has its %s", name);
+    return STATUS_FAILURE;
 }
 
 /* Where an object keeps its name; NULL for what has none of its own. */
@@ -259,4 +223,15 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
         *field = copy;
     }
     return code;
+}
+
+status scene_set_title(scene *s, const char *title, diagnostic *why)
+{
+    char *copy = strdup(title);
+    if (!copy) {
+        return out_of_memory(why);
+    }
+    free(s->title);
+    s->title = copy;
+    return STATUS_OK;
 }

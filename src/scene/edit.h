@@ -18,7 +18,17 @@ status scene_add_material(scene *s, const char *name, size_t *index, diagnostic 
  * takes the material away and leaves the defaults. */
 status scene_give_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why);
 
-/* Removes an object by its name. A material that solids refer to is refused, and one of them named. */
+/* Sets a parameter as scene_set does, and also what a file says of a solid beside its parameters: NAME.material (as
+ * scene_give_material) and NAME.shape. */
+status scene_put(scene *s, const char *path, const char *value, diagnostic *why);
+
+/* The shape of that name. */
+status scene_shape_named(const char *word, shape_kind *out, diagnostic *why);
+
+status scene_set_title(scene *s, const char *title, diagnostic *why);
+
+/* Removes an object by its name. A material that solids refer to is refused, and one of them named. A scene is never without
+ * "camera", "background" and "render", which go back to their defaults. */
 status scene_remove(scene *s, const char *name, diagnostic *why);
 
 /* Gives an object another name; what refers to it goes on doing so. */

@@ -185,7 +185,7 @@ static status unknown_name(const scene *s, const place *at, const path_words *pa
     const char *nearest = suggest_word(path->name, words, count);
     if (at->group == PARAM_SOLID && (strcmp(path->name, "material") == 0 || strcmp(path->name, "shape") == 0)) {
         snprintf(remedy, sizeof remedy,
-                 "shape and material are set in the scene file only; for glass set %s.transparency=1 and %s.ior=1.5",
+                 "shape and material are set in the scene file or by cuvette scene; for glass set %s.transparency=1 and %s.ior=1.5",
                  path->group, path->group);
     } else if (nearest) {
         snprintf(remedy, sizeof remedy, "did you mean '%s.%s'?", path->group, nearest);

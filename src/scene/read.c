@@ -16,6 +16,7 @@
  * solid also takes those of a material, for itself alone. Vectors and colours are lists: [0, 1, 2]. The file's
  * order is kept. Sections and objects may be empty. */
 #include "scene/check.h"
+#include "scene/edit.h"
 #include "scene/read_entries.h"
 
 #include <stdlib.h>
@@ -76,16 +77,7 @@ static status read_background(const scene_reader *r, const char *name, const nod
 static status read_title(const scene_reader *r, const char *name, const node *value)
 {
     status code = read_expect_word(r, value, name);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    char *title = strdup(value->text);
-    if (!title) {
-        return read_out_of_memory(r);
-    }
-    free(r->scene->title);
-    r->scene->title = title;
-    return STATUS_OK;
+    return code == STATUS_OK ? scene_set_title(r->scene, value->text, r->why) : code;
 }
 
 static status read_sections(const scene_reader *r)

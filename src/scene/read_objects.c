@@ -1,12 +1,7 @@
 /* Materials, lights and solids of a scene file. */
-#include "base/text.h"
 #include "scene/check.h"
 #include "scene/edit.h"
-#include "scene/params_path.h"
 #include "scene/read_entries.h"
-
-#include <stdio.h>
-#include <string.h>
 
 static status read_material(const scene_reader *r, const node *key, const node *map)
 {
@@ -41,22 +36,7 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
                           key->text);
     }
     status code = read_expect_word(r, shape, "shape");
-    if (code != STATUS_OK) {
-        return code;
-    }
-    const char *words[SHAPE_COUNT];
-    for (int k = 0; k < SHAPE_COUNT; k++) {
-        words[k] = shape_name((shape_kind)k);
-        if (strcmp(words[k], shape->text) == 0) {
-            *out = (shape_kind)k;
-            return STATUS_OK;
-        }
-    }
-    const char *nearest = text_nearest(shape->text, words, SHAPE_COUNT);
-    char remedy[100];
-    snprintf(remedy, sizeof remedy,
-             nearest ? "did you mean '%s'?" : "the shapes are plane, cylinder, cup, box, sphere and mesh", nearest);
-    return node_error(r->file, shape, r->why, remedy, "no shape '%.60s'", shape->text);
+    return code == STATUS_OK ? read_located(r, shape, scene_shape_named(shape->text, out, r->why)) : code;
 }
 
 /* Gives the solid the material that its entry names, if any. */
