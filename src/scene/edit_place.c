@@ -36,7 +36,7 @@ static status move_camera(scene *s, vec3 delta, diagnostic *why)
 
 static status has_no(const char *name, param_group group, const char *what, const char *remedy, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s is %s %s, which has no %s", name, group < PARAM_LIGHT ? "the" : "a",
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s is %s %s, which has no %s", name, group <= PARAM_BACKGROUND ? "the" : "a",
                     param_group_name(group), what);
 }
 

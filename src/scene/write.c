@@ -26,7 +26,7 @@ typedef struct scene_writer {
 
 static bool is_section_of_objects(param_group group)
 {
-    return group >= PARAM_LIGHT;
+    return group > PARAM_BACKGROUND;
 }
 
 /* "materials" */

@@ -1,0 +1,25 @@
+/* The edits of `cuvette scene`, in the order in which the command line has them. Mistakes are located at the option that made
+ * them. Ownership: words of the command line are borrowed. */
+#ifndef CUVETTE_CLI_SCENE_EDITS_H
+#define CUVETTE_CLI_SCENE_EDITS_H
+
+#include "scene/scene.h"
+
+typedef struct scene_edit scene_edit;
+
+/* One option that changes a scene: its name, the form of its value, what it is for, and how it is done. */
+struct scene_edit {
+    const char *option; /* "--move" */
+    int key;            /* argp's */
+    const char *form;   /* "NAME=DX,DY,DZ" */
+    const char *purpose;
+    status (*apply)(scene *s, const scene_edit *edit, const char *text, diagnostic *why);
+};
+
+extern const scene_edit scene_edits[];
+extern const size_t scene_edit_count;
+
+/* Does one edit, and locates what is wrong with it. */
+status scene_edit_apply(scene *s, const scene_edit *edit, const char *text, diagnostic *why);
+
+#endif
