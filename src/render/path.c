@@ -234,7 +234,7 @@ static void continue_one(tracer *t, const material *m, bool opaque, int k, int d
 void path_group(tracer *t, int depth, int rank)
 {
     const plan *p = t->target.scene;
-    const material *m = p->materials[rank];
+    const material *m = &t->look->surface;
     const bool opaque = p->solids->bodies[rank].opaque, lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
     local_light(t, rank); /* of points; spheres follow */
     for (int k = 0; lit && k < t->gathered.count; k++)

@@ -2,6 +2,8 @@
 
 #include "base/elementary.h"
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 static void aim_at_target(const struct camera *c, camera_frame *f)
 {
@@ -59,21 +61,88 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
     return solid_index + 1;
 }
 
-static status arrange(const scene *s, const index_law *laws, arrangement **out, diagnostic *why)
+static int build_threads(const scene *s)
+{
+    return s->render.build_threads > 0 ? (int)s->render.build_threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+}
+
+/* The hierarchy of the solid's mesh: the mesh's own, or one for this frame, of which solids of one mesh share the first's. */
+static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
+{
+    const hierarchy_kind kind = (hierarchy_kind)s->render.accel;
+    if (s->render.keep)
+        return hierarchy_of_mesh(m, kind, build_threads(s), out, why);
+    for (size_t k = 0; k < i; k++) {
+        const mesh_entry *other = s->solids[k].shape.kind == SHAPE_MESH ? scene_find_mesh(s, s->solids[k].mesh) : NULL;
+        if (p->own_trees[k] && other && other->data == m) {
+            *out = p->own_trees[k];
+            return STATUS_OK;
+        }
+    }
+    const status code = hierarchy_build(m, kind, build_threads(s), &p->own_trees[i], why);
+    *out = p->own_trees[i];
+    return code;
+}
+
+static void report_mesh(plan *p, const solid_shape *shape, const hierarchy *tree, bool first)
+{
+    const double copies = shape->copies.x * shape->copies.y * shape->copies.z;
+    p->meshes.instances += (uint64_t)copies;
+    p->meshes.triangles += (uint64_t)copies * shape->mesh->triangle_count;
+    if (first) {
+        const hierarchy_report r = hierarchy_describe(tree);
+        p->meshes.bytes += r.bytes;
+        p->meshes.build_s += r.build_s;
+    }
+}
+
+/* The shape of a mesh solid with its triangles, and the hierarchy over them. */
+static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, body_source *source, diagnostic *why)
+{
+    const solid *one = &s->solids[i];
+    const mesh_entry *m = scene_find_mesh(s, one->mesh);
+    if (!m || !m->data)
+        return diagnose(why, STATUS_FAILURE, "call scene_load before", "%.80s: the mesh is not loaded", one->name);
+    *shape = one->shape;
+    shape->mesh = m->data;
+    source->shape = shape;
+    const status code = tree_of(s, i, p, m->data, &source->tree, why);
+    bool first = true;
+    for (size_t k = 0; k < i; k++)
+        first &= !(s->solids[k].visible && s->solids[k].shape.kind == SHAPE_MESH && strcmp(s->solids[k].mesh, one->mesh) == 0);
+    if (code == STATUS_OK)
+        report_mesh(p, shape, source->tree, first);
+    return code;
+}
+
+static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
     body_source *sources = calloc(s->solid_count + 1, sizeof *sources);
-    if (!sources)
+    solid_shape *shapes = calloc(s->solid_count + 1, sizeof *shapes);
+    p->own_trees = calloc(s->solid_count + 1, sizeof(hierarchy *));
+    p->own_tree_count = s->solid_count;
+    if (!sources || !shapes || !p->own_trees) {
+        free(sources);
+        free(shapes);
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    }
+    status code = STATUS_OK;
     int count = 0;
-    for (int i = 0; i < (int)s->solid_count; i++) {
+    for (int i = 0; i < (int)s->solid_count && code == STATUS_OK; i++) {
         const solid *one = &s->solids[i];
-        if (one->visible)
-            sources[count++] = (body_source){.shape = &one->shape, .priority = one->priority, .medium = medium_of(s, laws, i),
+        if (!one->visible)
+            continue;
+        sources[count] = (body_source){.shape = &one->shape, .priority = one->priority, .medium = medium_of(s, laws, i),
                                              .opaque = one->surface.transparency == 0.0,
                                              .clearness = one->surface.transparency,
                                              .absorbs = material_absorbs(&one->surface), .solid = i};
+        if (one->shape.kind == SHAPE_MESH)
+            code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
+        count++;
     }
-    status code = arrangement_build(sources, count, 0, out, why);
+    if (code == STATUS_OK)
+        code = arrangement_build(sources, count, 0, &p->solids, why);
+    free(shapes);
     free(sources);
     return code;
 }
@@ -96,7 +165,8 @@ static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnos
     p->ior = calloc(ranks, sizeof *p->ior);
     p->laws = calloc(ranks, sizeof *p->laws);
     p->absorption = calloc(ranks, sizeof *p->absorption);
-    if (!p->materials || !p->ior || !p->laws || !p->absorption)
+    p->looks = calloc(ranks, sizeof *p->looks);
+    if (!p->materials || !p->ior || !p->laws || !p->absorption || !p->looks)
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     for (size_t r = 0; r < ranks; r++) {
         const int solid_index = p->solids->bodies[r].solid;
@@ -105,6 +175,8 @@ static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnos
         if (solid_index < 0)
             continue;
         p->materials[r] = &s->solids[solid_index].surface;
+        if (!body_look_make(s, &s->solids[solid_index], &p->looks[r]))
+            return diagnose(why, STATUS_FAILURE, "", "out of memory");
         p->absorption[r] = vec3_scale(material_absorption(p->materials[r]), s->render.unit_m);
     }
     if (s->render.spectrum == SPECTRUM_SPECTRAL && !(p->spectral = spectra_create(s, p->materials, p->laws, ranks)))
@@ -118,7 +190,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     index_law *laws = calloc(s->solid_count + 1, sizeof *laws);
     status code = p && laws ? laws_of(s, laws, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK)
-        code = arrange(s, laws, &p->solids, why);
+        code = arrange(s, laws, p, why);
     if (code == STATUS_OK)
         code = fill_ranks(s, laws, p, why);
     free(laws);
@@ -143,7 +215,13 @@ void plan_destroy(plan *p)
 {
     if (!p)
         return;
+    for (int r = 0; p->looks && r <= p->solids->body_count; r++)
+        free(p->looks[r].look);
+    free(p->looks);
     arrangement_destroy(p->solids);
+    for (size_t i = 0; p->own_trees && i < p->own_tree_count; i++)
+        hierarchy_destroy(p->own_trees[i]);
+    free(p->own_trees);
     free(p->materials);
     free(p->ior);
     free(p->laws);

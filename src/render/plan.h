@@ -4,6 +4,8 @@
 #define CUVETTE_RENDER_PLAN_H
 
 #include "geometry/arrangement.h"
+#include "geometry/hierarchy.h"
+#include "render/mesh_report.h"
 #include "render/spectra.h"
 #include "scene/medium.h"
 #include "scene/scene.h"
@@ -14,9 +16,23 @@ typedef struct camera_frame {
     double half_width, half_height;
 } camera_frame;
 
+/* What one kind of face of a body looks like. */
+typedef struct surface_look { material surface; const texture *picture; } surface_look;
+
+/* By a mesh's slots, or one for all. */
+typedef struct body_look {
+    int count;
+    surface_look *look;
+    shading_rule shading;
+} body_look;
+
 typedef struct plan {
     arrangement *solids;
     const material **materials; /* by rank; [0] is NULL */
+    body_look *looks;           /* by rank; [0] is empty */
+    hierarchy **own_trees;      /* of a plan that does not keep them with the meshes; by solid */
+    size_t own_tree_count;
+    mesh_report meshes;
     double *ior;                /* by rank; [0] is the surrounding medium's; at render.lambda_nm */
     index_law *laws;            /* by rank: what ior was taken from */
     vec3 *absorption;           /* by rank: Beer and Lambert's coefficients by channel, in 1 / scene unit */
@@ -30,7 +46,11 @@ typedef struct plan {
     int light_count;
 } plan;
 
+/* scene_load must have been called. */
 status plan_build(const scene *s, plan **out, diagnostic *why);
 void plan_destroy(plan *p);
+
+/* Fills *out for a body of that solid; false when memory is out. For plan.c. */
+bool body_look_make(const scene *s, const solid *owner, body_look *out);
 
 #endif

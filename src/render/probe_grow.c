@@ -120,9 +120,10 @@ static bool read_hit(const probe *p, ray_node *node)
                    .from = a->bodies[t->hits.before[0]].solid, .to = a->bodies[t->hits.after[0]].solid,
                    .n_from = g->n_from[0], .n_to = g->n_to[0], .cos_i = s->cos_i[0], .cos_t = f.cos_t,
                    .R_s = f.R_s, .R_p = f.R_p, .R = f.R, .tir = f.total != 0, .error_bound = s->error[0]};
-    h->face = (int)(s->face[0] % FACES_MAX) + (crossed == bounded->hollow ? FACES_MAX : 0);
+    h->face = is_mesh_face(s->face[0]) ? (int)mesh_face_triangle(s->face[0])
+                                       : (int)(s->face[0] % FACES_MAX) + (crossed == bounded->hollow ? FACES_MAX : 0);
     if (owner->opaque) {
-        h->R_s = h->R_p = h->R = p->scene->materials[rank]->reflectivity;
+        h->R_s = h->R_p = h->R = t->look->surface.reflectivity;
         h->cos_t = 0.0;
         h->tir = false;
     }
@@ -181,7 +182,7 @@ static void read_branches(const probe *p, int depth, branches *out)
     const bool opaque = p->scene->solids->bodies[rank].opaque;
     int queued = 0;
     out->count = 0;
-    if (!t->branching || (opaque && p->scene->materials[rank]->reflectivity == 0.0))
+    if (!t->branching || (opaque && t->look->surface.reflectivity == 0.0))
         return;
     add_branch(p, depth, true, &queued, out);
     add_branch(p, depth, false, &queued, out);

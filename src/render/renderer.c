@@ -328,6 +328,8 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
         code = make_result(s, options, &result, why);
     if (code == STATUS_OK)
         code = run_frame(r, s, options, p, result, why);
+    if (result && p)
+        result->meshes = p->meshes;
     plan_destroy(p);
     if (code != STATUS_OK && code != STATUS_INTERRUPTED) {
         render_result_destroy(result);

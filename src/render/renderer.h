@@ -10,6 +10,7 @@
 #include "base/status.h"
 #include "measure/topology.h"
 #include "render/film.h"
+#include "render/mesh_report.h"
 #include "scene/scene.h"
 #include <stdbool.h>
 
@@ -58,6 +59,7 @@ typedef struct render_result {
                                   * shares have wavelengths of their own, which differ by more than chance */
     tile_event *events;          /* in order of begin_s; NULL unless wanted */
     size_t event_count;
+    mesh_report meshes;
 } render_result;
 
 /* Root of the mean variance over pixels and channels: how far off a value of the film typically is by chance. NaN where nothing is

@@ -117,13 +117,18 @@ static void put_shadow_rays_in_line(tracer *t)
 }
 
 /* One light on the gathered group, with the light's own spectrum where there is one. */
-static void direct_light(tracer *t, const material *m, int lamp)
+static void direct_light(tracer *t, const material *m, int lamp, int rank)
 {
     const plan *p = t->target.scene;
     light l = p->lights[lamp];
     if (p->spectral)
         l.color = vec3_make(1.0, 1.0, 1.0), l.intensity = 1.0;
-    t->shade->direct(m, &l, &t->gathered, &t->lit);
+    if (mesh_has_corner_light(t, rank))
+        mesh_corner_light(t, m, &l, rank);
+    else
+        t->shade->direct(m, &l, &t->gathered, &t->lit);
+    if (t->on_mesh)
+        mesh_bound_light(t);
     if (p->spectral)
         spectral_light(t, lamp);
 }
@@ -131,7 +136,7 @@ static void direct_light(tracer *t, const material *m, int lamp)
 void local_light(tracer *t, int rank)
 {
     const plan *p = t->target.scene;
-    const material *m = p->materials[rank];
+    const material *m = &t->look->surface;
     material dull;
     if (p->render.lighting == LIGHTING_LAMBERT && p->render.integrator != INTEGRATOR_PATH) {
         dull = *m;
@@ -145,7 +150,7 @@ void local_light(tracer *t, int rank)
     for (int k = 0; k < p->light_count; k++) {
         if (p->render.integrator == INTEGRATOR_PATH && p->lights[k].radius > 0.0)
             continue;
-        direct_light(t, m, k);
+        direct_light(t, m, k, rank);
         if (p->render.shadows != SHADOWS_OFF) {
             put_shadow_rays_in_line(t);
             continue;
@@ -225,18 +230,20 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
 void shading_branches(tracer *t, int rank, bool opaque)
 {
     const plan *p = t->target.scene;
-    const material *m = p->materials[rank];
+    const material *m = &t->look->surface;
     if (opaque || p->render.weights == WEIGHTS_CONSTANT)
         t->shade->constant_branches(m, opaque, &t->gathered, &t->branches);
     else
         t->shade->fresnel_branches(m, &t->gathered, &t->branches);
     if (p->render.polarisation)
         polarised_branches(t, m, opaque);
+    if (t->on_mesh)
+        mesh_bound_branches(t);
 }
 
 static void branch(tracer *t, int depth, int rank, bool opaque)
 {
-    const material *m = t->target.scene->materials[rank];
+    const material *m = &t->look->surface;
     group *g = &t->gathered;
     branch_group *b = &t->branches;
     if (opaque && m->reflectivity == 0.0)
@@ -258,18 +265,20 @@ static void color(tracer *t, int rank, const primitive *surface)
 {
     const plan *p = t->target.scene;
     if (!p->spectral) {
-        t->shade->color(p->materials[rank], surface, &t->gathered);
+        t->shade->color(&t->look->surface, surface, &t->gathered);
+        if (t->look->picture)
+            texture_colors(t, surface);
         return;
     }
     /* Which of the two colours, and then its spectrum. */
-    material marked = *p->materials[rank];
+    material marked = t->look->surface;
     marked.color = vec3_make(1.0, 0.0, 0.0);
     marked.checker_color = vec3_make(0.0, 1.0, 0.0);
     t->shade->color(&marked, surface, &t->gathered);
     spectral_colors(t, rank);
 }
 
-void shading_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
+static void shade_alike(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
 {
     const plan *p = t->target.scene;
     const primitive *surface = &p->solids->primitives[met];
@@ -280,7 +289,11 @@ void shading_group(tracer *t, int depth, int first, int met, int rank, const int
     if (p->render.polarisation)
         polarised_gather(t, &t->waiting[depth], first, list);
     const ray_batch rays = {g->padded, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
-    t->geometry->surface(surface, &rays, g->t, met, &g->points);
+    t->on_mesh = surface->kind == PRIMITIVE_MESH;
+    if (t->on_mesh)
+        mesh_surface(t, met, rank, list);
+    else
+        t->geometry->surface(surface, &rays, g->t, met, &g->points);
     const int owner = p->solids->bodies[rank].solid;
     COUNT(t->counters.hits[owner] += (uint64_t)count);
     if (depth == 0)
@@ -293,4 +306,23 @@ void shading_group(tracer *t, int depth, int first, int met, int rank, const int
     local_light(t, rank);
     if (t->branching)
         branch(t, depth, rank, p->solids->bodies[rank].opaque);
+}
+
+void shading_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
+{
+    const body_look *looks = &t->target.scene->looks[rank];
+    t->look = looks->look;
+    if (looks->count == 1) {
+        shade_alike(t, depth, first, met, rank, list, count);
+        return;
+    }
+    int left[BATCH];
+    memcpy(left, list, (size_t)count * sizeof left[0]);
+    for (int begin = 0; begin < count;) {
+        int slot;
+        const int alike = mesh_next_look(t, left + begin, count - begin, &slot);
+        t->look = &looks->look[slot < looks->count ? slot : 0];
+        shade_alike(t, depth, first, met, rank, left + begin, alike);
+        begin += alike;
+    }
 }

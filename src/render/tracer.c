@@ -12,6 +12,8 @@ tracer *tracer_create(isa level)
         return NULL;
     memset(t, 0, offsetof(tracer, scratch));
     t->ways = NULL;
+    t->meshes = NULL;
+    t->scratch.meshes = NULL;
     t->geometry = level == ISA_AVX512 ? &geometry_kernels_avx512 : level == ISA_AVX2 ? &geometry_kernels_avx2 : &geometry_kernels_sse2;
     t->shade = level == ISA_AVX512 ? &shade_kernels_avx512 : level == ISA_AVX2 ? &shade_kernels_avx2 : &shade_kernels_sse2;
     return t;
@@ -25,6 +27,7 @@ void tracer_destroy(tracer *t)
         queue_destroy(&t->waiting[d]);
     free(t->waiting);
     free(t->ways);
+    free(t->meshes);
     queue_destroy(&t->shadows);
     free(t);
 }
@@ -68,6 +71,9 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     }
     if (!make_queues(t, t->depth_limit + 1))
         return false;
+    if (target->scene->solids->meshes && !t->meshes && !(t->meshes = malloc(sizeof *t->meshes)))
+        return false;
+    t->scratch.meshes = t->meshes ? &t->meshes->scratch : NULL;
     const bool absorbs = target->scene->solids->absorbs;
     if (absorbs && !t->ways && !(t->ways = malloc(sizeof *t->ways)))
         return false;

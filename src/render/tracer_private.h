@@ -2,12 +2,23 @@
 #ifndef CUVETTE_RENDER_TRACER_PRIVATE_H
 #define CUVETTE_RENDER_TRACER_PRIVATE_H
 
+#include "geometry/forest.h"
 #include "render/shade.h"
 #include "render/ticket.h"
 #include "render/tracer.h"
 
 /* Stokes vectors relative to their first element, of a group and of its two branches. */
 typedef struct polar_group { double q[ROW], u[ROW], v[ROW], rq[ROW], ru[ROW], rv[ROW], tq[ROW], tu[ROW], tv[ROW]; } polar_group;
+
+/* What meshes need, once a scene with meshes has been traced. */
+typedef struct mesh_work {
+    mesh_scratch scratch;
+    forest_hit hits[ROW];    /* of the gathered group */
+    mesh_points points;
+    group corner;            /* Gouraud's: the group with a corner of each triangle in place of the point */
+    lit_group corner_light;
+    double sum[3][ROW];
+} mesh_work;
 
 struct tracer {
     const geometry_kernels *geometry;
@@ -32,6 +43,9 @@ struct tracer {
     ray_ways *ways;          /* once a scene that absorbs has been traced */
     double kept[3][ROW];     /* of an arrangement that absorbs: share of light that the way to the hit left, by channel */
     polar_group polar;
+    mesh_work *meshes;       /* see mesh_work; NULL before */
+    const surface_look *look; /* of the gathered group */
+    bool on_mesh;            /* the gathered group met one */
     int met_light[ROW];      /* of random paths: the light that a ray ran into, or -1 */
 };
 
@@ -43,6 +57,18 @@ void tracer_run_batch(tracer *t, int depth);
 
 /* Puts the camera rays of one pixel of an rgb film in line; returns how many. */
 int tracer_camera_rays(tracer *t, int x, int y);
+
+/* mesh_shading.c: points of the gathered group on a mesh; the light and the branches that its triangles do not let through; Gouraud's light;
+ * and how the group's list falls into faces that look alike. */
+void mesh_surface(tracer *t, int met, int rank, const int *list);
+void mesh_bound_light(tracer *t);
+void mesh_bound_branches(tracer *t);
+bool mesh_has_corner_light(const tracer *t, int rank);
+void mesh_corner_light(tracer *t, const material *m, const light *lamp, int rank);
+int mesh_next_look(const tracer *t, int *list, int count, int *slot);
+
+/* texture_shading.c: the look's picture times the gathered group's colours. */
+void texture_colors(tracer *t, const primitive *surface);
 
 /* Adds radiance to a ticket's pixel. Of a spectral film the three channels are one: radiance at the ticket's wavelength. */
 void shading_expose(tracer *t, int64_t ticket, double r, double g, double b);

@@ -96,7 +96,7 @@ typedef struct material {
     vec3 absorb_per_m;      /* Beer and Lambert's coefficient by channel */
     number_list absorb_spectrum; /* the same by wavelength: nm, 1/m, nm, 1/m ...; takes the place of absorb_per_m unless empty */
     char texture[SCENE_NAME_MAX + 1]; /* its colour is times color; "" for none */
-    double texture_size;    /* scene units of one repetition on analytic solids */
+    double texture_size;    /* scene units of one repetition on solids that are no meshes; 0: one a face */
     double checker;         /* edge of the checker cells in the solid's own frame; 0 = none */
     vec3 checker_color;     /* colour of the other cells */
 } material;

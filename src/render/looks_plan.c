@@ -1,0 +1,64 @@
+/* How each body's surface looks: its own material, or those that its mesh's file gives to its faces. */
+#include "render/plan.h"
+
+#include "scene/looks.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* The material of that name in the scene, which goes before the file's. */
+static const material *named_material_of(const scene *s, const char *name)
+{
+    for (size_t i = 0; name[0] && i < s->material_count; i++)
+        if (strcmp(s->materials[i].name, name) == 0)
+            return &s->materials[i].value;
+    return NULL;
+}
+
+static const texture *picture_of(const scene *s, const material *m)
+{
+    const texture_entry *t = m->texture[0] ? scene_find_texture(s, m->texture) : NULL;
+    return t ? t->data : NULL;
+}
+
+/* A face's look changes what an opaque surface sends back; what the body is made of is the solid's own. */
+static surface_look face_look_of(const scene *s, const solid *owner, const char *name, const face_look *given)
+{
+    const material *named = named_material_of(s, name);
+    surface_look l = {.surface = owner->surface, .picture = picture_of(s, &owner->surface)};
+    if (named) {
+        l.surface = *named;
+        l.picture = picture_of(s, named);
+    } else if (given && given->given) {
+        l.surface.color = given->color;
+        l.surface.diffuse = given->diffuse;
+        l.surface.ambient = owner->surface.ambient > 0.0 ? owner->surface.ambient : 0.1;
+        l.surface.specular = given->specular;
+        l.surface.shininess = given->shininess;
+        l.picture = given->picture;
+    }
+    l.surface.transparency = owner->surface.transparency;
+    return l;
+}
+
+static bool has_face_looks(const solid *owner, const mesh_entry *m)
+{
+    return owner->shape.kind == SHAPE_MESH && owner->material_index < 0 && m && m->data && m->data->slot_count > 1 + (m->looks ? -1 : 0);
+}
+
+bool body_look_make(const scene *s, const solid *owner, body_look *out)
+{
+    const mesh_entry *m = owner->shape.kind == SHAPE_MESH ? scene_find_mesh(s, owner->mesh) : NULL;
+    const bool by_face = has_face_looks(owner, m);
+    out->shading = (shading_rule)owner->shading;
+    out->count = by_face ? m->data->slot_count : 1;
+    out->look = calloc((size_t)out->count, sizeof *out->look);
+    if (!out->look)
+        return false;
+    if (!by_face)
+        out->look[0] = (surface_look){owner->surface, picture_of(s, &owner->surface)};
+    for (int slot = 0; by_face && slot < out->count; slot++) {
+        const char *name = m->data->slot_names[slot];
+        out->look[slot] = face_look_of(s, owner, name ? name : "", slot < looks_count(m->looks) ? looks_at(m->looks, slot) : NULL);
+    }
+    return true;
+}

@@ -1,0 +1,14 @@
+/* What the meshes of a frame are, and what their hierarchies took. A plain value. */
+#ifndef CUVETTE_RENDER_MESH_REPORT_H
+#define CUVETTE_RENDER_MESH_REPORT_H
+
+#include <stdint.h>
+
+/* Hierarchies count once a mesh, however often it stands there. */
+typedef struct mesh_report {
+    uint64_t triangles, instances;  /* instances: copies of meshes; triangles: of all of them as they stand there */
+    uint64_t bytes;                 /* of hierarchies */
+    double build_s;                 /* wall time of their builds, whether for this frame or before */
+} mesh_report;
+
+#endif
