@@ -116,25 +116,29 @@ static bool find_small(gathering *g, bvh_branch *b, bool root)
 /* What becomes of b. small_known: what becomes of small subtrees below it is known already. */
 static void count_tree(bvh_branch *b, bool root, bool small_known)
 {
-    b->nodes = b->blocks = b->leaves = b->depth = 0;
     if (b->leaf && !root) {
+        b->nodes = b->depth = 0;
         b->blocks = blocks_of(b->count);
         b->leaves = 1;
         return;
     }
     bvh_branch *children[WIDTH];
     int count = children_of(b, root, children);
-    b->nodes = 1;
+    size_t nodes = 1, blocks = 0, leaves = 0;
+    uint32_t depth = 0;
     for (int i = 0; i < count; i++) {
-        const bvh_branch *c = children[i];
+        const bvh_branch *c = children[i]; /* b itself where the root is a leaf */
         if (!small_known || !small(c))
             count_tree(children[i], false, small_known);
-        b->nodes += c->nodes;
-        b->blocks += c->blocks;
-        b->leaves += c->leaves;
-        b->depth = c->depth > b->depth ? c->depth : b->depth;
+        nodes += c->nodes;
+        blocks += c->blocks;
+        leaves += c->leaves;
+        depth = c->depth > depth ? c->depth : depth;
     }
-    b->depth++;
+    b->nodes = nodes;
+    b->blocks = blocks;
+    b->leaves = leaves;
+    b->depth = depth + 1;
 }
 
 static void count_place(void *context, size_t index, int member)
