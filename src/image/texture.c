@@ -43,23 +43,29 @@ static bool allocate(texture *t, int width, int height)
     return t->block;
 }
 
+/* The number that was decoded to a linear value; bytes is filled when coded_bits is 8. */
+static float restore(const codec_bytes *bytes, int coded_bits, float linear)
+{
+    return coded_bits == 8    ? (float)(codec_byte(bytes, linear) / 255.0)
+           : coded_bits == 16 ? (float)(codec_quantize(linear, 65535) / 65535.0)
+                              : linear;
+}
+
 /* Level 0, upside down. */
 static void copy_pixels(texture *t, const image *picture, int coded_bits)
 {
     codec_bytes bytes;
-    codec_bytes_prepare(&bytes);
+    if (coded_bits == 8) {
+        codec_bytes_prepare(&bytes);
+    }
     const texture_level *to = &t->level[0];
     for (int y = 0; y < to->height; y++) {
         const float *from = picture->pixel + (size_t)(to->height - 1 - y) * (size_t)to->width * 3;
         texel *row = to->texels + (size_t)y * (size_t)to->width;
         for (int x = 0; x < to->width; x++, from += 3) {
-            float value[3];
-            for (int channel = 0; channel < 3; channel++) {
-                value[channel] = coded_bits == 8    ? (float)(codec_byte(&bytes, from[channel]) / 255.0)
-                                 : coded_bits == 16 ? (float)(codec_quantize(from[channel], 65535) / 65535.0)
-                                                    : from[channel];
-            }
-            row[x] = (texel){.r = value[0], .g = value[1], .b = value[2]};
+            row[x] = (texel){.r = restore(&bytes, coded_bits, from[0]),
+                             .g = restore(&bytes, coded_bits, from[1]),
+                             .b = restore(&bytes, coded_bits, from[2])};
         }
     }
 }

@@ -1,4 +1,4 @@
-/* What the files of image/texture.h share: how a texture lies in memory. Nobody else includes it but its test.
+/* What the files of image/texture.h share: how a texture lies in memory. Nobody else includes it.
  * Ownership: all texels of all levels are one block, which belongs to the texture. */
 #ifndef CUVETTE_IMAGE_TEXTURE_PARTS_H
 #define CUVETTE_IMAGE_TEXTURE_PARTS_H
