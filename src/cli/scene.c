@@ -127,7 +127,7 @@ static status print_list(const scene *s)
 
 static status check_files(const scene_request *request, scene *s, diagnostic *why)
 {
-    status result = scene_load_pictures(s, why);
+    status result = scene_load(s, why);
     if (result != STATUS_OK)
         return result;
     scene_input_note_hints(s);

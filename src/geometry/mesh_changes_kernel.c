@@ -32,7 +32,7 @@ void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ra
         asked[k].before = c->before[k];
         asked[k].wanted = f->primitives;
     }
-    if (n == 0)
+    if (n <= 0)
         return;
     FOREST.nearest(f, asked, n, hits);
     for (int k = 0; k < n; k++) {

@@ -241,7 +241,7 @@ void path_group(tracer *t, int depth, int rank)
         for (int lamp = 0; lamp < p->light_count; lamp++)
             if (p->lights[lamp].radius > 0.0)
                 look_for_light(t, k, m, opaque, lamp, depth);
-    shading_branches(t, rank, opaque);
+    shading_branches(t, opaque);
     if (!opaque)
         COUNT(t->counters.total_internal += (uint64_t)t->branches.total);
     for (int k = 0; k < t->gathered.count; k++)

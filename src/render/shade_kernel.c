@@ -62,6 +62,7 @@ static flat_faces flat_faces_of(const primitive *p, double cell)
             f.at[k] = k % 2 ? half[k / 2] - 0.5 * cell : 0.5 * cell - half[k / 2];
         }
         break;
+    case PRIMITIVE_MESH:
     case PRIMITIVE_SPHERE: break;
     }
     return f;

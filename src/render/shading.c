@@ -227,7 +227,7 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
     return q->count - first;
 }
 
-void shading_branches(tracer *t, int rank, bool opaque)
+void shading_branches(tracer *t, bool opaque)
 {
     const plan *p = t->target.scene;
     const material *m = &t->look->surface;
@@ -241,14 +241,14 @@ void shading_branches(tracer *t, int rank, bool opaque)
         mesh_bound_branches(t);
 }
 
-static void branch(tracer *t, int depth, int rank, bool opaque)
+static void branch(tracer *t, int depth, bool opaque)
 {
     const material *m = &t->look->surface;
     group *g = &t->gathered;
     branch_group *b = &t->branches;
     if (opaque && m->reflectivity == 0.0)
         return;
-    shading_branches(t, rank, opaque);
+    shading_branches(t, opaque);
     if (!opaque)
         COUNT(t->counters.total_internal += (uint64_t)b->total);
     if (depth == t->depth_limit) {
@@ -305,7 +305,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
     }
     local_light(t, rank);
     if (t->branching)
-        branch(t, depth, rank, p->solids->bodies[rank].opaque);
+        branch(t, depth, p->solids->bodies[rank].opaque);
 }
 
 void shading_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)

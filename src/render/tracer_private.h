@@ -80,7 +80,7 @@ void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, do
 void local_light(tracer *t, int rank);
 
 /* Branches of the gathered group at a surface: directions, weights. */
-void shading_branches(tracer *t, int rank, bool opaque);
+void shading_branches(tracer *t, bool opaque);
 
 /* Puts a kind of children in line, with tickets as the gathered ones'. Returns how many there are. */
 int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,

@@ -1,9 +1,7 @@
 /* What a scene names and does not hold in itself: meshes, textures and the sky's picture. */
 #include "base/text.h"
-#include "scene/check.h"
 #include "scene/looks.h"
 #include "scene/mesh_make.h"
-#include "scene/params_value.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -144,62 +142,4 @@ status scene_load(scene *s, diagnostic *why)
         }
     }
     return code;
-}
-
-/* Room for one more element of an array, all zero; NULL when memory is out. */
-static void *grow(void *array, size_t count, size_t size)
-{
-    char *grown = realloc(array, (count + 1) * size);
-    if (grown) {
-        memset(grown + count * size, 0, size);
-    }
-    return grown;
-}
-
-static status check_new_name(const scene *s, const char *name, size_t count, size_t most, const char *what, diagnostic *why)
-{
-    status code = check_name(name, why);
-    if (code == STATUS_OK) {
-        code = check_name_is_free(s, name, why);
-    }
-    if (code == STATUS_OK && count >= most) {
-        code = diagnose(why, STATUS_BAD_INPUT, "a scene holds 64", "more than 64 %s", what);
-    }
-    return code;
-}
-
-status scene_add_mesh(scene *s, const char *name, size_t *index, diagnostic *why)
-{
-    status code = check_new_name(s, name, s->mesh_count, SCENE_MESHES_MAX, "meshes", why);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    mesh_entry *grown = grow(s->meshes, s->mesh_count, sizeof *grown);
-    char *copy = strdup(name);
-    s->meshes = grown ? grown : s->meshes;
-    if (!grown || !copy || param_set_defaults(PARAM_MESH, &grown[s->mesh_count], why) != STATUS_OK) {
-        free(copy);
-        return diagnose(why, STATUS_FAILURE, "", "memory is out");
-    }
-    grown[s->mesh_count].name = copy;
-    *index = s->mesh_count++;
-    return STATUS_OK;
-}
-
-status scene_add_texture(scene *s, const char *name, size_t *index, diagnostic *why)
-{
-    status code = check_new_name(s, name, s->texture_count, SCENE_TEXTURES_MAX, "textures", why);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    texture_entry *grown = grow(s->textures, s->texture_count, sizeof *grown);
-    char *copy = strdup(name);
-    s->textures = grown ? grown : s->textures;
-    if (!grown || !copy || param_set_defaults(PARAM_TEXTURE, &grown[s->texture_count], why) != STATUS_OK) {
-        free(copy);
-        return diagnose(why, STATUS_FAILURE, "", "memory is out");
-    }
-    grown[s->texture_count].name = copy;
-    *index = s->texture_count++;
-    return STATUS_OK;
 }

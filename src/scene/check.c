@@ -3,6 +3,7 @@
 #include "scene/medium.h"
 #include "scene/params.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* A solid is at least one primitive, so the counters' room for solids follows. */
@@ -154,7 +155,9 @@ status check_texture(const texture_entry *t, diagnostic *why)
 
 static status unknown(const char *owner, const char *what, const char *name, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "", "%.80s: there is no %s '%.80s'", owner, what, name);
+    char remedy[SCENE_NAME_MAX + 80];
+    snprintf(remedy, sizeof remedy, "add it to %s%s", what, what[0] == 'm' ? "es" : "s");
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: there is no %s '%.80s'", owner, what, name);
 }
 
 /* A clear solid bends light by what is inside it: an open mesh has no inside. */
@@ -228,6 +231,10 @@ status check_limits(const scene *s, diagnostic *why)
     }
     if (s->light_count > SCENE_LIGHTS_MAX) {
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64", "more than 64 lights");
+    }
+    if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64 of each", "more than 64 %s",
+                        s->mesh_count > SCENE_MESHES_MAX ? "meshes" : "textures");
     }
     if (s->material_count > SCENE_MATERIALS_MAX) {
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 256", "more than 256 materials");

@@ -99,6 +99,44 @@ status scene_add_light(scene *s, const char *name, size_t *index, diagnostic *wh
     return settle(s, &s->light_count, copy, code, index, why);
 }
 
+status scene_add_mesh(scene *s, const char *name, size_t *index, diagnostic *why)
+{
+    char *copy = NULL;
+    status code = take_name(s, name, &copy, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    void *array = s->meshes;
+    mesh_entry *m = grow((section){&array, &s->mesh_count, sizeof *m});
+    s->meshes = array;
+    if (!m) {
+        free(copy);
+        return out_of_memory(why);
+    }
+    m->name = copy;
+    code = param_set_defaults(PARAM_MESH, m, why);
+    return settle(s, &s->mesh_count, copy, code, index, why);
+}
+
+status scene_add_texture(scene *s, const char *name, size_t *index, diagnostic *why)
+{
+    char *copy = NULL;
+    status code = take_name(s, name, &copy, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    void *array = s->textures;
+    texture_entry *t = grow((section){&array, &s->texture_count, sizeof *t});
+    s->textures = array;
+    if (!t) {
+        free(copy);
+        return out_of_memory(why);
+    }
+    t->name = copy;
+    code = param_set_defaults(PARAM_TEXTURE, t, why);
+    return settle(s, &s->texture_count, copy, code, index, why);
+}
+
 status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why)
 {
     char *copy = NULL;
@@ -157,6 +195,46 @@ static status remove_material(scene *s, size_t index, diagnostic *why)
     return STATUS_OK;
 }
 
+static status in_use(const char *what, const char *name, const char *user, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, "give that another one first, or remove it", "%.80s is the %s of %.80s", name, what, user);
+}
+
+static status remove_mesh(scene *s, size_t index, diagnostic *why)
+{
+    mesh_entry *m = &s->meshes[index];
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (s->solids[i].shape.kind == SHAPE_MESH && strcmp(s->solids[i].mesh, m->name) == 0) {
+            return in_use("mesh", m->name, s->solids[i].name, why);
+        }
+    }
+    mesh_entry_unload(m);
+    free(m->name);
+    free(m->path);
+    close_gap(s->meshes, &s->mesh_count, sizeof *s->meshes, index);
+    return STATUS_OK;
+}
+
+static status remove_texture(scene *s, size_t index, diagnostic *why)
+{
+    texture_entry *t = &s->textures[index];
+    for (size_t i = 0; i < s->material_count; i++) {
+        if (strcmp(s->materials[i].value.texture, t->name) == 0) {
+            return in_use("texture", t->name, s->materials[i].name, why);
+        }
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (strcmp(s->solids[i].surface.texture, t->name) == 0) {
+            return in_use("texture", t->name, s->solids[i].name, why);
+        }
+    }
+    texture_entry_unload(t);
+    free(t->name);
+    free(t->path);
+    close_gap(s->textures, &s->texture_count, sizeof *s->textures, index);
+    return STATUS_OK;
+}
+
 status scene_remove(scene *s, const char *name, diagnostic *why)
 {
     place at;
@@ -165,6 +243,8 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
         return code;
     }
     switch (at.group) {
+    case PARAM_MESH: return remove_mesh(s, at.index, why);
+    case PARAM_TEXTURE: return remove_texture(s, at.index, why);
     case PARAM_MATERIAL: return remove_material(s, at.index, why);
     case PARAM_LIGHT:
         free(s->lights[at.index].name);
@@ -192,6 +272,8 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
 static char **name_field(scene *s, const place *at)
 {
     switch (at->group) {
+    case PARAM_MESH: return &s->meshes[at->index].name;
+    case PARAM_TEXTURE: return &s->textures[at->index].name;
     case PARAM_LIGHT: return &s->lights[at->index].name;
     case PARAM_MATERIAL: return &s->materials[at->index].name;
     case PARAM_SOLID: return &s->solids[at->index].name;
@@ -203,6 +285,25 @@ static char **name_field(scene *s, const place *at)
     return NULL;
 }
 
+/* Solids and materials refer to meshes and textures by name. */
+static void follow_name(scene *s, const place *at, const char *from, const char *to)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        solid *owner = &s->solids[i];
+        if (at->group == PARAM_MESH && strcmp(owner->mesh, from) == 0) {
+            strcpy(owner->mesh, to);
+        }
+        if (at->group == PARAM_TEXTURE && strcmp(owner->surface.texture, from) == 0) {
+            strcpy(owner->surface.texture, to);
+        }
+    }
+    for (size_t i = 0; at->group == PARAM_TEXTURE && i < s->material_count; i++) {
+        if (strcmp(s->materials[i].value.texture, from) == 0) {
+            strcpy(s->materials[i].value.texture, to);
+        }
+    }
+}
+
 status scene_rename(scene *s, const char *name, const char *new_name, diagnostic *why)
 {
     place at;
@@ -212,13 +313,14 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     }
     char **field = name_field(s, &at), *copy = NULL;
     if (!field) {
-        return diagnose(why, STATUS_BAD_INPUT, "name a light, a material or a solid", "the %s has no name of its own", name);
+        return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid", "the %s has no name of its own", name);
     }
     if (strcmp(name, new_name) == 0) {
         return STATUS_OK;
     }
     code = take_name(s, new_name, &copy, why);
     if (code == STATUS_OK) {
+        follow_name(s, &at, name, copy);
         free(*field);
         *field = copy;
     }

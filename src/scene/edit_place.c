@@ -53,6 +53,8 @@ status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
     case PARAM_SOLID: return set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
     case PARAM_RENDER:
     case PARAM_BACKGROUND:
+    case PARAM_MESH:
+    case PARAM_TEXTURE:
     case PARAM_MATERIAL:
     case PARAM_GROUP_COUNT: break;
     }
@@ -167,6 +169,8 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
     case PARAM_SOLID: return set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
     case PARAM_RENDER:
     case PARAM_BACKGROUND:
+    case PARAM_MESH:
+    case PARAM_TEXTURE:
     case PARAM_LIGHT:
     case PARAM_MATERIAL:
     case PARAM_GROUP_COUNT: break;

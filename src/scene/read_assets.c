@@ -1,5 +1,6 @@
 /* Meshes and textures of a scene file. */
 #include "scene/check.h"
+#include "scene/edit.h"
 #include "scene/read_entries.h"
 
 static status no_name(const scene_reader *r, const node *key, status code)

@@ -193,10 +193,6 @@ status scene_check(const scene *s, diagnostic *why);
 /* Index of the solid of that name, or -1. */
 int scene_find_solid(const scene *s, const char *name);
 
-/* A new mesh or texture at the end, with every parameter at its default; the name is checked. */
-status scene_add_mesh(scene *s, const char *name, size_t *index, diagnostic *why);
-status scene_add_texture(scene *s, const char *name, size_t *index, diagnostic *why);
-
 /* The mesh or texture of that name; NULL if there is none. */
 const mesh_entry *scene_find_mesh(const scene *s, const char *name);
 const texture_entry *scene_find_texture(const scene *s, const char *name);

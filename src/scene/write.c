@@ -33,7 +33,7 @@ static bool is_section_of_objects(param_group group)
 static void put_section(scene_writer *w)
 {
     if (!w->in_section) {
-        fprintf(w->out, "%s%s%s:\n", w->begun ? "\n" : "", param_group_name(w->group), is_section_of_objects(w->group) ? "s" : "");
+        fprintf(w->out, "%s%s%s:\n", w->begun ? "\n" : "", param_group_name(w->group), w->group == PARAM_MESH ? "es" : is_section_of_objects(w->group) ? "s" : "");
         w->begun = w->in_section = true;
     }
 }
@@ -141,7 +141,8 @@ static void put_value(scene_writer *w, const param *row, const char *value)
     case PARAM_VECTOR:
     case PARAM_COLOR:
     case PARAM_LIST: write_list(w->out, value); break;
-    case PARAM_PATH: write_word(w->out, value); break;
+    case PARAM_PATH:
+    case PARAM_WORD: write_word(w->out, value); break;
     case PARAM_INT:
     case PARAM_REAL:
     case PARAM_CHOICE: fputs(value, w->out); break;
@@ -201,7 +202,7 @@ static status visit(void *context, const char *path, const param *row, const cha
 static status put_scene(scene_writer *w)
 {
     /* What is referred to stands first, as a person would have it. */
-    static const param_group order[] = {PARAM_RENDER, PARAM_CAMERA, PARAM_BACKGROUND, PARAM_MATERIAL, PARAM_LIGHT, PARAM_SOLID};
+    static const param_group order[] = {PARAM_RENDER, PARAM_CAMERA, PARAM_BACKGROUND, PARAM_MESH, PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT, PARAM_SOLID};
     _Static_assert(sizeof order / sizeof *order == PARAM_GROUP_COUNT, "every group has its section");
     if (w->s->title[0]) {
         status code = write_check_text("title", w->s->title, w->why);
