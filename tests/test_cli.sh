@@ -53,10 +53,10 @@ run --version
 check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render trace fan params media study compare realism machine help; do
+for command in render trace fan params media mesh study compare realism machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render trace fan params media study compare realism machine "study run" "study list" "study status" "study merge" "study summary"; do
+for command in render trace fan params media mesh study compare realism machine "study run" "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -269,6 +269,41 @@ check "media --json --at is null where it was not measured" is "$(json 'media[na
 check "media --json: room temperature and no Abbe's number are null" \
     is "$(json 'media[name=diamond].temperature_c' 'media[name=olive-oil].V_d')" "$(lines null null)"
 
+# --- mesh
+run mesh --generate box --size 1,2,3
+check "mesh describes a box" is "$code $(grep -E '^(triangles|area|closed|volume)' out | tr -s ' ' | tr '\n' ' ')" \
+    "0 triangles 12 area 22 closed yes volume 6 "
+run mesh --generate lathe --profile 1,0,1,1 --around 4
+check "mesh names a hole" grep -qE '^closed +no: the edge from vertex [0-9]+ to [0-9]+ of triangle [0-9]+ is shared by 1, not 2$' out
+run mesh --generate sphere --count 20 --json
+check "mesh --json" is "$(json schema triangles vertices closed hole single)" "$(lines 1 20 60 true null true)"
+run mesh --generate sparse --count 3 --json
+check "mesh --json: no volume, but the hole" is "$(json closed volume hole.triangle hole.sharing)" "$(lines false null 0 1)"
+run mesh --generate sparse --count 100 -f bin
+check "mesh -f bin: 36 bytes a triangle" is "$(wc -c <out) $(od -An -tf4 -N12 out | wc -w)" "3600 3"
+run mesh --generate torus --around 5 --tube 4 -f obj -o torus.obj
+check "mesh -o writes a file and no word" is "$code $(cat out err | wc -c) $(grep -c ^v torus.obj) $(grep -c ^f torus.obj)" "0 0 30 40"
+run mesh --generate box -f ply
+check "mesh -f ply: header and bytes" is "$(head -c 36 out | tr '\n' ' ') $(($(wc -c <out) - $(grep -am1 -bo end_header out | cut -d: -f1) - 11))" \
+    "ply format binary_little_endian 1.0 $((24 * 32 + 12 * 13))"
+run mesh --generate box -f pov
+check "mesh -f pov" is "$(grep -c '^,\|{[0-9]*,<' out) $(tail -1 out)" "36 pigment{rgb 0.8} finish{ambient 0.1 diffuse 0.9}}"
+run mesh --generate box -f tachyon
+check "mesh -f tachyon" is "$(grep -c '^TRI V0 ' out)" 12
+run mesh --generate toru
+check "an unknown body is refused with the nearest" matches "$code $(<err)" "^2 cuvette: --generate: .*'toru'; did you mean 'torus'"
+run mesh --generate torus --minor 2
+check "wrong radii are refused with the remedy" matches "$code $(<err)" "^2 cuvette: --generate torus: a torus of radii 1 and 2; use radii"
+run mesh --generate lathe --profile 0,0,1
+check "a profile wants pairs" matches "$code $(<err)" "^2 cuvette: --profile 0,0,1: there are fewer than 4 numbers; "
+run mesh --generate box -f obj -o nowhere/box.obj
+check "a folder that is not there is refused" matches "$code $(<err)" "^[12] cuvette: .*nowhere/box.obj"
+run mesh
+check "mesh wants a body" matches "$code $(<err)" "^2 cuvette: mesh: no mesh is named; "
+for option in $("$program" mesh --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
+    check "cuvette.1 explains mesh $option" grep -qF -- "${option/--/\\-\\-}" "$page"
+done
+
 # --- realism
 run realism "$scene"
 check "realism succeeds" silent_success
@@ -442,7 +477,7 @@ check "a reader who leaves is no drama" is "$(<err)" ""
 (sleep 0.3; "$program" render "$scene" --json "${small[@]}" 2>err; echo $? >code) | true
 check "a closed pipe exits 1 without words" is "$(cat code err)" 1
 if [[ -w /dev/full ]]; then
-    for words in params "params --json" media "media --json" machine --help "render --help" "render $scene --json --set render.width=8"; do
+    for words in params "params --json" media "media --json" "mesh --generate box" machine --help "render --help" "render $scene --json --set render.width=8"; do
         # shellcheck disable=SC2086
         "$program" $words >/dev/full 2>err
         check "a full disk is exit 1 and one line: ${words%% /*}" is "$? $(wc -l <err)" "1 1"
@@ -504,6 +539,8 @@ check "completion offers options" matches "$(complete_line cuvette render --t)" 
 check "completion offers parameters of the scene" \
     is "$(complete_line "$program" render "$scene" --set liquid.io)" "liquid.ior="
 check "completion offers options of compare" is "$(complete_line cuvette compare --d)" --diff
+check "completion offers mesh's options and bodies" is "$(complete_line "$program" mesh --gen; complete_line "$program" mesh --generate to)" \
+    "$(lines --generate torus)"
 check "completion offers media" is "$(complete_line "$program" media fused)" fused-silica
 check "completion offers options of trace" is "$(complete_line cuvette trace --p)" --pixel
 check "completion offers options of fan" is "$(complete_line cuvette fan --sp)" --spread

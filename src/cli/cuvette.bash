@@ -29,11 +29,14 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
 {
     case $1 in
     -s | --set) _cuvette_parameters ;;
+    --generate) _cuvette_words sparse dense sphere icosphere torus lathe box ;;
+    -f | --format) _cuvette_words obj bin pov tachyon ply ;;
     --curve) _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges ;;
     -o | --output | --diff)
         case ${COMP_WORDS[1]-} in
         trace) _cuvette_files 'txt|json|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
+        mesh) _cuvette_files 'obj|bin|pov|dat|ply' ;;
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
         esac
         ;;
@@ -42,7 +45,7 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
         ;;
     --timeline) _cuvette_files 'json' ;;
     --bits) _cuvette_words 8 16 ;;
-    --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
+    --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane | --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size) COMPREPLY=() ;;
     -r | --results)
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$current")
@@ -70,7 +73,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render trace fan params media study compare realism machine help --help --usage --version
+        _cuvette_words render trace fan params media mesh study compare realism machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -110,6 +113,10 @@ _cuvette()
             _cuvette_words "$("${COMP_WORDS[0]}" media 2>/dev/null | awk 'NR > 1 { print $1 }')"
         fi
         ;;
+    mesh)
+        _cuvette_words --generate --count --level --major --minor --around --tube --profile --crease --size --format --output --json \
+            --help --usage --version
+        ;;
     study)
         if ((COMP_CWORD == 2)); then
             _cuvette_words "$verbs" --help
@@ -136,7 +143,7 @@ _cuvette()
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render trace fan params media study compare realism machine
+            _cuvette_words render trace fan params media mesh study compare realism machine
         fi
         ;;
     esac

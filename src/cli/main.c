@@ -12,6 +12,7 @@ static const command commands[] = {
     {"fan", "send many rays through the scene: their focus, their caustic", command_fan},
     {"params", "print the table of parameters", command_params},
     {"media", "print the catalogue of media: refractive indices, dispersion, sources", command_media},
+    {"mesh", "make a mesh of triangles, describe it, write it for other programs", command_mesh},
     {"study", "run, list, merge and sum up studies", command_study},
     {"compare", "say how far two pictures lie apart", command_compare},
     {"realism", "measure how far what is traced lies from textbook optics", command_realism},
