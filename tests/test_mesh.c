@@ -1,0 +1,358 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "geometry/mesh_share.h"
+#include "mesh_fixture.h"
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+static void a_cube_is_closed_and_has_its_volume_and_area(void **state)
+{
+    (void)state;
+    mesh *m = cubes(1);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->closed && m->single);
+    assert_near(mesh_volume(m), 8.0, 1e-14);
+    assert_near(mesh_area(m), 24.0, 1e-14);
+    assert_true(m->bounds.low.x == -1.0 && m->bounds.low.y == -1.0 && m->bounds.low.z == -1.0);
+    assert_true(m->bounds.high.x == 1.0 && m->bounds.high.y == 1.0 && m->bounds.high.z == 1.0);
+    mesh_release(m);
+}
+
+static void bounds_are_of_vertices_that_triangles_use(void **state)
+{
+    (void)state;
+    const vec3 at[4] = {{1, 2, 3}, {4, 2, 3}, {1, 2.1, 3}, {100, 100, 100}};
+    mesh *m = mesh_of(at, 4, &(mesh_triangle){{0, 1, 2}}, 1);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->bounds.low.x == 1.0 && m->bounds.high.x == 4.0 && m->bounds.high.y == 2.1 && m->bounds.high.z == 3.0);
+    assert_false(m->single); /* 2.1 is no float */
+    mesh_release(m);
+    m = mesh_of(at, 4, NULL, 0);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->bounds.low.x > m->bounds.high.x);
+    assert_false(m->closed);
+    assert_int_equal(m->hole.sharing, 0);
+    mesh_release(m);
+}
+
+static void a_missing_triangle_is_a_hole_named_by_an_edge_of_its_neighbour(void **state)
+{
+    (void)state;
+    mesh *m = cubes(1);
+    m->triangle_count = 11; /* 1, 7, 5 is missing; of its neighbours the first is 4, 5, 7 */
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_false(m->closed);
+    assert_int_equal(m->hole.triangle, 2);
+    assert_int_equal(m->hole.from, 5);
+    assert_int_equal(m->hole.to, 7);
+    assert_int_equal(m->hole.sharing, 1);
+    mesh_release(m);
+}
+
+static void an_edge_of_three_triangles_is_named(void **state)
+{
+    (void)state;
+    mesh *m = NULL;
+    assert_int_equal(mesh_create(9, 13, false, false, false, &m, NULL), STATUS_OK);
+    put_cube(m, 0, vec3_make(0, 0, 0), 1.0);
+    m->vertices[8] = vec3_make(0, -3, -1);
+    m->triangles[12] = (mesh_triangle){{0, 1, 8}}; /* a fin on the edge 0-1 */
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_false(m->closed);
+    assert_int_equal(m->hole.sharing, 3);
+    assert_int_equal(m->hole.triangle, 1); /* 0, 3, 1 */
+    assert_true(m->hole.from == 1 && m->hole.to == 0);
+    mesh_release(m);
+}
+
+static void vertices_at_equal_positions_are_one_and_so_are_the_zeros(void **state)
+{
+    (void)state;
+    mesh *m = NULL, *cube = cubes(1);
+    for (size_t v = 0; v < 8; v++)
+        cube->vertices[v] = vec3_add(cube->vertices[v], vec3_make(1, 1, 1)); /* 0..2 */
+    assert_int_equal(mesh_create(36, 12, false, false, false, &m, NULL), STATUS_OK);
+    for (size_t k = 0; k < 36; k++) {
+        m->vertices[k] = cube->vertices[cube->triangles[k / 3].corner[k % 3]];
+        if (k % 2 && m->vertices[k].x == 0.0)
+            m->vertices[k].x = -0.0;
+        m->triangles[k / 3].corner[k % 3] = (uint32_t)k;
+    }
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->closed);
+    m->vertices[7].y = nextafter(m->vertices[7].y, 3.0);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_false(m->closed);
+    assert_true(m->hole.triangle == 2 && m->hole.from == 6 && m->hole.to == 7);
+    mesh_release(cube);
+    mesh_release(m);
+}
+
+static void triangles_with_two_equal_corners_join_nothing(void **state)
+{
+    (void)state;
+    mesh *m = NULL;
+    assert_int_equal(mesh_create(8, 14, false, false, false, &m, NULL), STATUS_OK);
+    put_cube(m, 0, vec3_make(0, 0, 0), 1.0);
+    m->triangles[12] = (mesh_triangle){{0, 0, 1}};
+    m->triangles[13] = (mesh_triangle){{5, 2, 5}};
+    turn_triangle(m, 3); /* so that neighbours are looked at too */
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->closed);
+    assert_near(mesh_volume(m), 8.0, 1e-14);
+    mesh_release(m);
+}
+
+static void each_wrong_triangle_is_turned_round(void **state)
+{
+    (void)state;
+    for (size_t wrong = 0; wrong < 12; wrong++) {
+        mesh *m = cubes(1), *right = cubes(1);
+        turn_triangle(m, wrong);
+        assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+        assert_true(m->closed);
+        assert_memory_equal(m->triangles, right->triangles, 12 * sizeof *m->triangles);
+        mesh_release(right);
+        mesh_release(m);
+    }
+}
+
+static void an_inside_out_cube_is_turned(void **state)
+{
+    (void)state;
+    mesh *m = cubes(1);
+    for (size_t t = 0; t < 12; t++)
+        turn_triangle(m, t);
+    assert_near(mesh_volume(m), -8.0, 1e-14);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->closed);
+    assert_near(mesh_volume(m), 8.0, 1e-14);
+    mesh_release(m);
+}
+
+/* A cube of edge 2 with a hollow of edge 1, whose fronts look into it. */
+static mesh *hollow_cube(void)
+{
+    mesh *m = cubes(2);
+    put_cube(m, 1, vec3_make(0.1, 0.2, 0.0), 0.5);
+    for (size_t t = 12; t < 24; t++)
+        turn_triangle(m, t);
+    return m;
+}
+
+static void a_hollow_keeps_its_direction(void **state)
+{
+    (void)state;
+    mesh *m = hollow_cube();
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->closed);
+    assert_near(mesh_volume(m), 8.0 - 1.0, 1e-14);
+    mesh_release(m);
+    m = hollow_cube();
+    turn_triangle(m, 14); /* one slip in the hollow, one outside */
+    turn_triangle(m, 5);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_near(mesh_volume(m), 8.0 - 1.0, 1e-14);
+    mesh_release(m);
+    m = hollow_cube();
+    for (size_t t = 0; t < 24; t++)
+        turn_triangle(m, t);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_near(mesh_volume(m), 8.0 - 1.0, 1e-14);
+    mesh_release(m);
+}
+
+static void parts_of_no_direction_come_to_look_outwards(void **state)
+{
+    (void)state;
+    mesh *m = cubes(3);
+    for (size_t t = 0; t < 36; t++) {
+        if (t % 12 < 6 + t / 12) /* half of the first, more than half of the others */
+            turn_triangle(m, t);
+    }
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->closed);
+    assert_near(mesh_volume(m), 24.0, 1e-13);
+    mesh_release(m);
+}
+
+/* The projective plane of six vertices: each edge joins two triangles, but there is no inside. */
+static void a_one_sided_surface_is_not_closed(void **state)
+{
+    (void)state;
+    const mesh_triangle plane[10] = {{{0, 1, 4}}, {{0, 1, 5}}, {{0, 2, 3}}, {{0, 2, 5}}, {{0, 3, 4}},
+                                     {{1, 2, 3}}, {{1, 2, 4}}, {{1, 3, 5}}, {{2, 4, 5}}, {{3, 4, 5}}};
+    const vec3 at[6] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}};
+    mesh *m = mesh_of(at, 6, plane, 10);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_false(m->closed);
+    assert_int_equal(m->hole.sharing, 2);
+    assert_memory_equal(m->triangles, plane, sizeof plane);
+    mesh_release(m);
+}
+
+/* Two cones over a polygon of many corners: an apex where thousands of edges meet. */
+static void many_triangles_around_one_vertex(void **state)
+{
+    (void)state;
+    enum { CORNERS = 5000 };
+    mesh *m = NULL;
+    assert_int_equal(mesh_create(CORNERS + 2, 2 * CORNERS, false, false, false, &m, NULL), STATUS_OK);
+    m->vertices[CORNERS] = vec3_make(0, 1, 0);
+    m->vertices[CORNERS + 1] = vec3_make(0, -1, 0);
+    for (uint32_t k = 0; k < CORNERS; k++) {
+        const uint32_t next = (k + 1) % CORNERS;
+        m->vertices[k] = vec3_make(cos(k * 2e-3 * 3.14159265358979 / 5.0), 0, sin(k * 2e-3 * 3.14159265358979 / 5.0));
+        m->triangles[2 * k] = (mesh_triangle){{CORNERS, next, k}};
+        m->triangles[2 * k + 1] = (mesh_triangle){{CORNERS + 1, k, next}};
+    }
+    turn_triangle(m, 1234);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->closed);
+    const double polygon = 0.5 * CORNERS * sin(2.0 * 3.14159265358979323846 / CORNERS);
+    assert_near(mesh_volume(m), 2.0 * polygon / 3.0, 1e-9);
+    mesh_release(m);
+}
+
+static void wrong_numbers_are_refused_by_name(void **state)
+{
+    (void)state;
+    diagnostic why = {0};
+    mesh *m = cubes(1);
+    m->triangles[7].corner[1] = 8;
+    assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
+    assert_string_equal(why.what, "triangle 7 names vertex 8 of 8");
+    mesh_release(m);
+    const double wrong[] = {(double)NAN, (double)INFINITY, -1.001e9};
+    for (size_t k = 0; k < 3; k++) {
+        m = cubes(1);
+        m->vertices[3].z = wrong[k];
+        assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
+        assert_non_null(strstr(why.what, "vertex 3 "));
+        assert_int_equal(mesh_smooth(m, &why), STATUS_BAD_INPUT);
+        mesh_release(m);
+    }
+    assert_int_equal(mesh_create(3, 1, true, true, true, &m, NULL), STATUS_OK);
+    m->normals[1].x = (double)NAN;
+    assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
+    assert_string_equal(why.what, "vertex 1 has a normal that is no number");
+    m->normals[1].x = 0.0;
+    m->uvs[2].v = (double)INFINITY;
+    assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
+    m->uvs[2].v = 0.0;
+    m->slots[0] = 1;
+    assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
+    assert_string_equal(why.what, "triangle 0 names material slot 1 of 1");
+    m->slot_count = 2;
+    assert_int_equal(mesh_finish(m, &why), STATUS_OK);
+    mesh_release(m);
+}
+
+static void too_large_meshes_are_refused(void **state)
+{
+    (void)state;
+    mesh *m = NULL;
+    diagnostic why = {0};
+    assert_int_equal(mesh_create(3, (size_t)MESH_TRIANGLES_MAX + 1, false, false, false, &m, &why), STATUS_BAD_INPUT);
+    assert_int_equal(mesh_create((size_t)MESH_VERTICES_MAX + 1, 1, false, false, false, &m, &why), STATUS_BAD_INPUT);
+    assert_null(m);
+}
+
+static void normals_become_unit_vectors_and_missing_ones_the_triangles(void **state)
+{
+    (void)state;
+    const vec3 at[4] = {{0, 0, 0}, {1e-200, 0, 0}, {0, 1e-200, 0}, {5, 5, 5}};
+    mesh *m = NULL;
+    assert_int_equal(mesh_create(4, 1, true, false, false, &m, NULL), STATUS_OK);
+    memcpy(m->vertices, at, sizeof at);
+    m->triangles[0] = (mesh_triangle){{0, 1, 2}};
+    m->normals[0] = vec3_make(3e300, 0, 4e300);
+    m->normals[1] = vec3_make(0, 5e-324, 0);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_near(m->normals[0].x, 0.6, 1e-15);
+    assert_near(m->normals[0].z, 0.8, 1e-15);
+    assert_true(m->normals[1].y == 1.0);
+    assert_true(m->normals[2].x == 0.0 && m->normals[2].y == 0.0 && m->normals[2].z == 1.0); /* x cross y is z */
+    assert_near(vec3_length(m->normals[3]), 1.0, 1e-15);
+    mesh_release(m);
+}
+
+/* Weighted by angle, a cube's corner looks along the diagonal however its faces are cut into triangles; by area or by number it does not. */
+static void smooth_normals_do_not_depend_on_the_cut(void **state)
+{
+    (void)state;
+    mesh *m = cubes(1);
+    assert_int_equal(mesh_smooth(m, NULL), STATUS_OK);
+    for (size_t v = 0; v < 8; v++) {
+        const vec3 n = m->normals[v], p = m->vertices[v];
+        assert_near(vec3_length(vec3_sub(n, vec3_scale(p, 1.0 / sqrt(3.0)))), 0.0, 1e-14);
+    }
+    mesh_release(m);
+}
+
+static void *own_and_let_go(void *shared)
+{
+    for (int k = 0; k < 20000; k++) {
+        mesh_retain(shared);
+        mesh_release(shared);
+    }
+    mesh_release(shared);
+    return NULL;
+}
+
+static int destroyed;
+static void destroy(hierarchy *h)
+{
+    assert_true(h == (hierarchy *)&destroyed);
+    destroyed++;
+}
+
+static void the_last_of_many_owners_takes_the_hierarchies_along(void **state)
+{
+    (void)state;
+    mesh *m = cubes(1);
+    m->share->destroy = destroy;
+    m->share->hierarchies[HIERARCHY_BVH] = (hierarchy *)&destroyed;
+    destroyed = 0;
+    pthread_t threads[2];
+    for (int k = 0; k < 2; k++) {
+        mesh_retain(m);
+        assert_int_equal(pthread_create(&threads[k], NULL, own_and_let_go, m), 0);
+    }
+    for (int k = 0; k < 2; k++)
+        pthread_join(threads[k], NULL);
+    assert_int_equal(m->share->owners, 1);
+    assert_int_equal(destroyed, 0);
+    mesh_release(m);
+    assert_int_equal(destroyed, 1);
+    mesh_release(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_cube_is_closed_and_has_its_volume_and_area),
+        cmocka_unit_test(bounds_are_of_vertices_that_triangles_use),
+        cmocka_unit_test(a_missing_triangle_is_a_hole_named_by_an_edge_of_its_neighbour),
+        cmocka_unit_test(an_edge_of_three_triangles_is_named),
+        cmocka_unit_test(vertices_at_equal_positions_are_one_and_so_are_the_zeros),
+        cmocka_unit_test(triangles_with_two_equal_corners_join_nothing),
+        cmocka_unit_test(each_wrong_triangle_is_turned_round),
+        cmocka_unit_test(an_inside_out_cube_is_turned),
+        cmocka_unit_test(a_hollow_keeps_its_direction),
+        cmocka_unit_test(parts_of_no_direction_come_to_look_outwards),
+        cmocka_unit_test(a_one_sided_surface_is_not_closed),
+        cmocka_unit_test(many_triangles_around_one_vertex),
+        cmocka_unit_test(wrong_numbers_are_refused_by_name),
+        cmocka_unit_test(too_large_meshes_are_refused),
+        cmocka_unit_test(normals_become_unit_vectors_and_missing_ones_the_triangles),
+        cmocka_unit_test(smooth_normals_do_not_depend_on_the_cut),
+        cmocka_unit_test(the_last_of_many_owners_takes_the_hierarchies_along),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
