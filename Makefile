@@ -29,7 +29,7 @@ build := build/$(config)$(clang:%=-%)
 endif
 
 PACKAGES := libpng libjpeg hwloc yaml-0.1 jansson
-warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
+warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wno-psabi -Werror
 # Instrumented code hides from gcc which values a number can take; its guess about printf's output is then wrong.
 ifneq ($(filter sanitize tsan,$(config)),)
 warnings += $(if $(clang),,-Wno-format-truncation)
@@ -74,6 +74,7 @@ program_objects := $(program:src/%.c=$(build)/obj/%.o)
 importer_objects := $(importer:src/%.c=$(build)/obj/%.o)
 tests := $(wildcard tests/test_*.c)
 test_programs := $(tests:tests/%.c=$(build)/tests/%)
+benches := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/bench_*.c))
 fuzzers := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/fuzz_*.c))
 
 .PHONY: all
@@ -121,6 +122,11 @@ $(build)/tests/fuzz_%: tests/fuzz_%.c $(build)/libcuvette.a $(build)/flags
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -fsanitize=fuzzer -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
 
+$(build)/tests/bench_%: tests/bench_%.c $(build)/libcuvette.a $(build)/flags
+	$(call say,$(CC) $<)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
+
 # Rebuilds everything when the compiler or its flags change. Everything that is compiled depends on it, so that it is
 # also the place to wait for setup when both are asked for.
 .PHONY: always
@@ -128,7 +134,7 @@ $(build)/flags: always $(if $(filter setup,$(MAKECMDGOALS)),| setup)
 	@mkdir -p $(@D)
 	@echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512))' | cmp -s - $@ || echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512))' >$@
 
--include $(library_objects:.o=.d) $(program_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d)
+-include $(library_objects:.o=.d) $(program_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
 
 .PHONY: setup
 setup: ## install what is needed (Debian 12); does nothing when it is there

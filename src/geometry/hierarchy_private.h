@@ -7,7 +7,7 @@
 
 #include "geometry/hierarchy.h"
 
-enum { BLOCK = 4, WIDTH = 8, LEAF_BLOCKS_MAX = 16, BVH_DEPTH_MAX = 64 };
+enum { BLOCK = 4, WIDTH = 8, LEAF_BLOCKS_MAX = 16, BVH_DEPTH_MAX = 64, SPHERES_DEPTH_MAX = 64 };
 
 typedef struct block_single { float corner[3][3][BLOCK]; uint32_t triangle[BLOCK]; } block_single;   /* [corner][axis][lane] */
 typedef struct block_double { double corner[3][3][BLOCK]; uint32_t triangle[BLOCK]; } block_double;
@@ -20,10 +20,11 @@ static inline uint32_t child_blocks(uint32_t child) { return (child >> 27 & 15) 
 
 /* Boxes by axis and child, rounded outwards; of a child that does not exist low is +inf and high -inf. */
 typedef struct bvh_node {
-    _Alignas(64) float low[3][WIDTH], high[3][WIDTH];
+    _Alignas(64) float low[3][WIDTH];
+    float high[3][WIDTH]; /* right behind low: a ray counts through both */
     uint32_t child[WIDTH];
     uint32_t child_count, unused[7];
-} bvh_node;
+} bvh_node; /* 256 bytes */
 
 /* A node of a tree of spheres. Its own blocks are tested when its sphere is met; then its children. */
 typedef struct sphere_node {
@@ -49,6 +50,13 @@ struct hierarchy {
 status hierarchy_build_bvh(hierarchy *h, int threads, diagnostic *why);
 status hierarchy_build_spheres(hierarchy *h, diagnostic *why); /* HIERARCHY_SPHERE and HIERARCHY_OCTANT */
 status hierarchy_build_embree(hierarchy *h, int threads, diagnostic *why);
+
+/* Embree's part: hierarchy_embree.c. Where it was not there at build time it is not there, its builder says so, and nothing is ever hit. */
+bool hierarchy_embree_there(void);
+void hierarchy_embree_destroy(hierarchy *h);
+void hierarchy_embree_nearest(const hierarchy *h, const mesh_ray *ray, mesh_hit *hit);
+bool hierarchy_embree_any(const hierarchy *h, const mesh_ray *ray);
+void hierarchy_embree_all(const hierarchy *h, const mesh_ray *ray, mesh_visit *visit, void *context);
 
 /* Writes triangles order[0 .. count-1] as blocks from block number `first` on, the last one filled up by repetition; returns how many blocks. */
 size_t hierarchy_fill_blocks(hierarchy *h, const uint32_t *order, size_t count, size_t first);

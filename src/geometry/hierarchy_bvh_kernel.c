@@ -1,0 +1,141 @@
+/* The way down the hierarchy `bvh`; see hierarchy_query.h for the triangle test.
+ *
+ * Boxes are met in single precision, eight at a time, and never missed where a triangle in them is hit: planes are single numbers rounded outwards,
+ * the ray's origin is rounded to both sides by more than it needs, and distances to near planes are made smaller, to far ones larger, by
+ * more than the rounding of the three operations (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is left out only if it begins beyond the best
+ * hit, not at it, so that the lower number of two triangles at one distance is found whichever comes first. */
+#include "geometry/hierarchy_query.h"
+
+/* The ray for boxes. Planes of a node stand in a row, low ones before high ones; near and far say which is which for this ray. */
+typedef struct box_ray {
+    float near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
+    int near[3], far[3];
+    float t_min;
+} box_ray;
+
+enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH };
+#define BOX_SLACK 0x1p-21f /* of 2^-24 a rounding, of which there are three */
+#define FLOAT_STEP 0x1p-22f /* more than from one float to the next but one */
+#define FLOAT_TINY 1e-37f
+
+ALWAYS_INLINE float float_above(double v) { const float f = (float)v; return f + ((f < 0.0f ? -f : f) * FLOAT_STEP + FLOAT_TINY); }
+ALWAYS_INLINE float float_below(double v) { const float f = (float)v; return f - ((f < 0.0f ? -f : f) * FLOAT_STEP + FLOAT_TINY); }
+
+ALWAYS_INLINE void box_ray_start(box_ray *b, const ray_query *q)
+{
+    for (int k = 0; k < 3; k++) {
+        const bool parallel = magnitude(q->direction[k]) < PARALLEL, down = q->direction[k] < 0.0;
+        const double margin = parallel ? 2.0 * PARALLEL_MARGIN : 0.0;
+        const float above = float_above(q->origin[k] + margin), below = float_below(q->origin[k] - margin);
+        const float inverse = parallel ? (down ? -1e38f : 1e38f) : (float)q->inverse[k];
+        b->near_origin[k] = down ? below : above;
+        b->far_origin[k] = down ? above : below;
+        b->near_inverse[k] = inverse * (1.0f - BOX_SLACK);
+        b->far_inverse[k] = inverse * (1.0f + BOX_SLACK);
+        b->near[k] = WIDTH * (k + (down ? 3 : 0));
+        b->far[k] = WIDTH * (k + (down ? 0 : 3));
+    }
+    const float t_min = float_below(q->t_min);
+    b->t_min = t_min > 0.0f ? t_min : 0.0f;
+}
+
+/* A child on the stack: its distance, which is not negative and so sorts by its bits, above its number. */
+ALWAYS_INLINE uint64_t pending(float near, uint32_t child)
+{
+    uint32_t bits;
+    memcpy(&bits, &near, sizeof bits);
+    return (uint64_t)bits << 32 | child;
+}
+
+ALWAYS_INLINE float pending_near(uint64_t p)
+{
+    const uint32_t bits = (uint32_t)(p >> 32);
+    float near;
+    memcpy(&near, &bits, sizeof near);
+    return near;
+}
+
+ALWAYS_INLINE float8 planes_at(const bvh_node *node, int first)
+{
+    float8 v;
+    memcpy(&v, __builtin_assume_aligned((const char *)node + (size_t)first * sizeof(float), 32), sizeof v);
+    return v;
+}
+
+ALWAYS_INLINE void walk_bvh(const hierarchy *h, ray_query *q, enum query_mode mode, bool single)
+{
+    box_ray b;
+    box_ray_start(&b, q);
+    const float8 near_x = float8_all(b.near_origin[0]), near_y = float8_all(b.near_origin[1]), near_z = float8_all(b.near_origin[2]);
+    const float8 far_x = float8_all(b.far_origin[0]), far_y = float8_all(b.far_origin[1]), far_z = float8_all(b.far_origin[2]);
+    const float8 near_ix = float8_all(b.near_inverse[0]), near_iy = float8_all(b.near_inverse[1]), near_iz = float8_all(b.near_inverse[2]);
+    const float8 far_ix = float8_all(b.far_inverse[0]), far_iy = float8_all(b.far_inverse[1]), far_iz = float8_all(b.far_inverse[2]);
+    const float8 t_min = float8_all(b.t_min);
+    float t_best = float_above(q->t_best);
+    float8 t_max = float8_all(t_best);
+    uint64_t stack[STACK];
+    int top = 0;
+    uint32_t at = 0;
+    for (;;) {
+        while (!(at & CHILD_LEAF)) {
+            const bvh_node *node = &h->nodes[at];
+            float8 near = float8_greater((planes_at(node, b.near[0]) - near_x) * near_ix, (planes_at(node, b.near[1]) - near_y) * near_iy);
+            float8 far = float8_lesser((planes_at(node, b.far[0]) - far_x) * far_ix, (planes_at(node, b.far[1]) - far_y) * far_iy);
+            near = float8_greater(float8_greater(near, (planes_at(node, b.near[2]) - near_z) * near_iz), t_min);
+            far = float8_lesser(float8_lesser(far, (planes_at(node, b.far[2]) - far_z) * far_iz), t_max);
+            uint64_t set = lanes_of8(near <= far);
+            if (!set)
+                goto pop;
+            const unsigned one = lane_first(set);
+            set = LANES_LESS_FIRST(set);
+            if (!set) {
+                at = node->child[one];
+                continue;
+            }
+            _Alignas(32) float nears[WIDTH];
+            memcpy(nears, &near, sizeof nears);
+            const unsigned two = lane_first(set);
+            if (!LANES_LESS_FIRST(set)) {
+                const bool first = nears[one] <= nears[two];
+                const unsigned nearer = first ? one : two, farther = first ? two : one;
+                stack[top++] = pending(nears[farther], node->child[farther]);
+                at = node->child[nearer];
+                continue;
+            }
+            stack[top] = pending(nears[one], node->child[one]);
+            const int bottom = top++;
+            for (; set; set = LANES_LESS_FIRST(set)) {
+                const unsigned lane = lane_first(set);
+                const uint64_t next = pending(nears[lane], node->child[lane]);
+                int place = top++;
+                for (; place > bottom && stack[place - 1] < next; place--)
+                    stack[place] = stack[place - 1];
+                stack[place] = next;
+            }
+            at = (uint32_t)stack[--top];
+        }
+        if (query_blocks(q, h, mode, single, child_first_block(at), child_blocks(at)))
+            return;
+        if (mode == QUERY_NEAREST) {
+            t_best = float_above(q->t_best);
+            t_max = float8_all(t_best);
+        }
+    pop:
+        do {
+            if (top == 0)
+                return;
+            top--;
+        } while (pending_near(stack[top]) > t_best);
+        at = (uint32_t)stack[top];
+    }
+}
+
+void KERNEL(walk_bvh)(const hierarchy *h, ray_query *q, enum query_mode mode)
+{
+    if (mode == QUERY_NEAREST)
+        h->single ? walk_bvh(h, q, QUERY_NEAREST, true) : walk_bvh(h, q, QUERY_NEAREST, false);
+    else if (mode == QUERY_ANY)
+        h->single ? walk_bvh(h, q, QUERY_ANY, true) : walk_bvh(h, q, QUERY_ANY, false);
+    else
+        h->single ? walk_bvh(h, q, QUERY_ALL, true) : walk_bvh(h, q, QUERY_ALL, false);
+}

@@ -1,0 +1,78 @@
+/* The kernels' one set of entries: what a query is and which way down it goes. */
+#include "geometry/hierarchy_query.h"
+
+/* All triangles, one after another. */
+static void walk_blocks(const hierarchy *h, ray_query *q, enum query_mode mode)
+{
+    if (h->single)
+        query_blocks(q, h, mode, true, 0, h->block_count);
+    else
+        query_blocks(q, h, mode, false, 0, h->block_count);
+}
+
+static void walk(const hierarchy *h, ray_query *q, enum query_mode mode)
+{
+    switch (h->kind) {
+    case HIERARCHY_BVH:
+        KERNEL(walk_bvh)(h, q, mode);
+        break;
+    case HIERARCHY_SPHERE:
+    case HIERARCHY_OCTANT:
+        KERNEL(walk_spheres)(h, q, mode);
+        break;
+    case HIERARCHY_NONE:
+        walk_blocks(h, q, mode);
+        break;
+    case HIERARCHY_EMBREE:
+    case HIERARCHY_KIND_COUNT:
+        break;
+    }
+}
+
+static void nearest(const hierarchy *h, const mesh_ray *ray, mesh_hit *hit)
+{
+    ray_query q;
+    if (h->kind == HIERARCHY_EMBREE) {
+        hierarchy_embree_nearest(h, ray, hit);
+    } else {
+        if (query_start(&q, ray) && h->block_count)
+            walk(h, &q, QUERY_NEAREST);
+        query_finish(&q, hit);
+    }
+}
+
+static bool any(const hierarchy *h, const mesh_ray *ray)
+{
+    ray_query q;
+    if (h->kind == HIERARCHY_EMBREE)
+        return hierarchy_embree_any(h, ray);
+    if (query_start(&q, ray) && h->block_count)
+        walk(h, &q, QUERY_ANY);
+    return q.best != TRIANGLE_NONE;
+}
+
+static void all(const hierarchy *h, const mesh_ray *ray, mesh_visit *visit, void *context)
+{
+    ray_query q;
+    if (h->kind == HIERARCHY_EMBREE) {
+        hierarchy_embree_all(h, ray, visit, context);
+    } else if (query_start(&q, ray) && h->block_count) {
+        q.visit = visit;
+        q.context = context;
+        walk(h, &q, QUERY_ALL);
+    }
+}
+
+static void nearest_batch(const hierarchy *h, const mesh_ray *rays, int count, mesh_hit *hits)
+{
+    for (int i = 0; i < count; i++)
+        nearest(h, &rays[i], &hits[i]);
+}
+
+static void any_batch(const hierarchy *h, const mesh_ray *rays, int count, bool *hit)
+{
+    for (int i = 0; i < count; i++)
+        hit[i] = any(h, &rays[i]);
+}
+
+const hierarchy_kernels KERNEL(hierarchy_kernels) = {nearest, any, all, nearest_batch, any_batch};

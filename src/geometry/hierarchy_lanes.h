@@ -1,0 +1,71 @@
+/* Vectors of eight floats and four doubles for the hierarchy kernels, in the vector extensions that gcc and clang share. Pure; cannot fail. */
+#ifndef CUVETTE_GEOMETRY_HIERARCHY_LANES_H
+#define CUVETTE_GEOMETRY_HIERARCHY_LANES_H
+
+#include "base/kernel.h"
+#include <stdint.h>
+#include <string.h>
+
+typedef float float4 __attribute__((vector_size(16)));
+typedef float float8 __attribute__((vector_size(32)));
+typedef int32_t int8x32 __attribute__((vector_size(32)));
+typedef double double4 __attribute__((vector_size(32)));
+typedef int64_t int4x64 __attribute__((vector_size(32)));
+typedef int8_t int8x8 __attribute__((vector_size(8)));
+typedef int8_t int4x8 __attribute__((vector_size(4)));
+
+/* Written as loops because C has no selection between vectors; both compilers make one instruction of them. */
+ALWAYS_INLINE float8 float8_greater(float8 a, float8 b)
+{
+    float8 r;
+    for (int i = 0; i < 8; i++)
+        r[i] = a[i] > b[i] ? a[i] : b[i];
+    return r;
+}
+
+ALWAYS_INLINE float8 float8_lesser(float8 a, float8 b)
+{
+    float8 r;
+    for (int i = 0; i < 8; i++)
+        r[i] = a[i] < b[i] ? a[i] : b[i];
+    return r;
+}
+
+ALWAYS_INLINE float8 float8_all(float v) { return (float8){v, v, v, v, v, v, v, v}; }
+ALWAYS_INLINE double4 double4_all(double v) { return (double4){v, v, v, v}; }
+
+/* The set of lanes whose mask is -1, one bit a lane; lane_first is the lowest of a set that is not empty. AVX-512 narrows a vector in one
+ * instruction, which makes bytes the quicker form there. */
+#ifdef __AVX512VL__
+ALWAYS_INLINE uint64_t lanes_of8(int8x32 mask)
+{
+    int8x8 bytes = __builtin_convertvector(mask, int8x8);
+    uint64_t set;
+    memcpy(&set, &bytes, sizeof set);
+    return set & 0x0101010101010101u;
+}
+ALWAYS_INLINE unsigned lanes_of4(int4x64 mask)
+{
+    int4x8 bytes = __builtin_convertvector(mask, int4x8);
+    uint32_t set;
+    memcpy(&set, &bytes, sizeof set);
+    return set & 0x01010101u;
+}
+ALWAYS_INLINE unsigned lane_first(uint64_t set) { return (unsigned)__builtin_ctzll(set) >> 3; }
+#else
+ALWAYS_INLINE uint64_t lanes_of8(int8x32 mask)
+{
+    int4x64 half = (int4x64)(mask & (int8x32){1, 2, 4, 8, 16, 32, 64, 128});
+    uint64_t both = (uint64_t)((half[0] | half[2]) | (half[1] | half[3]));
+    return (both | both >> 32) & 0xff;
+}
+ALWAYS_INLINE unsigned lanes_of4(int4x64 mask)
+{
+    mask &= (int4x64){1, 2, 4, 8};
+    return (unsigned)((mask[0] | mask[2]) | (mask[1] | mask[3]));
+}
+ALWAYS_INLINE unsigned lane_first(uint64_t set) { return (unsigned)__builtin_ctzll(set); }
+#endif
+#define LANES_LESS_FIRST(set) ((set) & ((set) - 1))
+
+#endif

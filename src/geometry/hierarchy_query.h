@@ -1,0 +1,202 @@
+/* A ray made ready for a mesh's hierarchy, and the one triangle test that all hierarchies share.
+ *
+ * Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, in double precision: corners are moved so that the ray
+ * starts at the origin and sheared so that it runs along an axis; signs of three edge functions then say whether it passes inside. An edge
+ * function changes its sign exactly when its corners change places, and zero counts as inside, so that no ray slips between two
+ * triangles that share an edge. Four triangles at a time; what is left is looked at one by one.
+ *
+ * A hit's t always lies where the ray is within the triangle's own box (by a margin of 2^-40): whatever a triangle seen edge-on makes of it,
+ * no hierarchy that culls by boxes with a wider margin loses it. */
+#ifndef CUVETTE_GEOMETRY_HIERARCHY_QUERY_H
+#define CUVETTE_GEOMETRY_HIERARCHY_QUERY_H
+
+#include "base/lanes.h"
+#include "geometry/hierarchy_lanes.h"
+#include "geometry/hierarchy_private.h"
+
+enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL };
+
+/* Components of a direction whose largest is 1..2 that are smaller than this are parallel to their plane: within reach such a ray
+ * does not leave it by more than PARALLEL_MARGIN. */
+#define PARALLEL 1e-30
+#define PARALLEL_MARGIN 1e-20
+#define ORIGIN_FAR 1e18
+#define BOX_MARGIN 0x1p-40
+
+/* t is measured along a direction whose largest component was brought into 1..2 by a power of two: exact, and far from overflow. */
+typedef struct ray_query {
+    double origin[3], direction[3], inverse[3];
+    double shear_x, shear_y, shear_z;
+    int x, y, z; /* axes: z is the direction's largest; x and y such that windings stay as they are */
+    double t_min, t_best, unscale;
+    double weight_u, weight_v, det; /* of the best hit */
+    uint32_t skip, best;
+    int wanted, best_facing;
+    mesh_visit *visit; /* QUERY_ALL */
+    void *context;
+} ray_query;
+
+/* False for a ray that hits nothing: of no direction, or from beyond all reach. */
+ALWAYS_INLINE bool query_start(ray_query *q, const mesh_ray *ray)
+{
+    const double o[3] = {ray->origin.x, ray->origin.y, ray->origin.z};
+    const double d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
+    const double mx = magnitude(d[0]), my = magnitude(d[1]), mz = magnitude(d[2]);
+    const int z = mx > my ? (mx > mz ? 0 : 2) : (my > mz ? 1 : 2);
+    const int64_t exponent = lanes_bits(d[z]) >> 52 & 0x7ff;
+    const double sum = o[0] + o[1] + o[2] + d[0] + d[1] + d[2], reach = greater(greater(magnitude(o[0]), magnitude(o[1])), magnitude(o[2]));
+    q->best = TRIANGLE_NONE;
+    if (exponent < 1 || exponent > 2045 || !(sum - sum == 0.0) || reach > ORIGIN_FAR || !(ray->t_min <= ray->t_max))
+        return false;
+    const double scale = lanes_double((2046 - exponent) << 52), unscale = lanes_double(exponent << 52);
+    for (int k = 0; k < 3; k++) {
+        q->origin[k] = o[k];
+        q->direction[k] = d[k] * scale;
+        q->inverse[k] = 1.0 / q->direction[k];
+    }
+    const int x = z == 2 ? 0 : z + 1, y = x == 2 ? 0 : x + 1, turned = d[z] < 0.0;
+    q->x = turned ? y : x;
+    q->y = turned ? x : y;
+    q->z = z;
+    q->shear_z = q->inverse[z];
+    q->shear_x = q->direction[q->x] * q->shear_z;
+    q->shear_y = q->direction[q->y] * q->shear_z;
+    q->t_min = greater(ray->t_min, 0.0) * unscale;
+    q->t_best = ray->t_max * unscale;
+    q->unscale = scale;
+    q->skip = ray->skip;
+    q->wanted = ray->facing;
+    return q->t_min < (double)INFINITY;
+}
+
+ALWAYS_INLINE void query_hit(const ray_query *q, double t, double v, double w, double det, uint32_t triangle, int facing, mesh_hit *hit)
+{
+    hit->t = t * q->unscale;
+    hit->u = v / det;
+    hit->v = w / det;
+    hit->triangle = triangle;
+    hit->facing = facing;
+}
+
+ALWAYS_INLINE void query_finish(const ray_query *q, mesh_hit *hit)
+{
+    if (q->best == TRIANGLE_NONE)
+        *hit = (mesh_hit){.triangle = TRIANGLE_NONE};
+    else
+        query_hit(q, q->t_best, q->weight_u, q->weight_v, q->det, q->best, q->best_facing, hit);
+}
+
+ALWAYS_INLINE double least_of(const double *p) { return lesser(lesser(p[0], p[1]), p[2]); }
+ALWAYS_INLINE double most_of(const double *p) { return greater(greater(p[0], p[1]), p[2]); }
+
+/* Brings t to where the ray is in the box around the corners; false if it never is. corner[axis][corner], from the ray's origin. */
+ALWAYS_INLINE bool query_clamp(const ray_query *q, const double (*corner)[3], double *t)
+{
+    double near = -(double)INFINITY, far = (double)INFINITY;
+    for (int k = 0; k < 3; k++) {
+        const double low = least_of(corner[k]), high = most_of(corner[k]);
+        if (magnitude(q->direction[k]) < PARALLEL) {
+            if (low > PARALLEL_MARGIN || high < -PARALLEL_MARGIN)
+                return false;
+            continue;
+        }
+        const double one = low * q->inverse[k], two = high * q->inverse[k];
+        const double in = lesser(one, two), out = greater(one, two);
+        near = greater(near, in - magnitude(in) * BOX_MARGIN);
+        far = lesser(far, out + magnitude(out) * BOX_MARGIN);
+    }
+    *t = lesser(greater(*t, near), far);
+    return near <= far;
+}
+
+/* One triangle that the edge functions let through, U, V, W being the weights of its corners. True if the search is over. */
+static inline bool query_consider(ray_query *q, enum query_mode mode, const double (*corner)[3], uint32_t triangle)
+{
+    double x[3], y[3], z[3];
+    for (int j = 0; j < 3; j++) {
+        x[j] = corner[q->x][j] - q->shear_x * corner[q->z][j];
+        y[j] = corner[q->y][j] - q->shear_y * corner[q->z][j];
+        z[j] = q->shear_z * corner[q->z][j];
+    }
+    const double u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0], det = u + v + w;
+    const int facing = det > 0.0 ? FACING_FRONT : FACING_BACK;
+    if (!(det > 0.0 || det < 0.0) || !(facing & q->wanted) || triangle == q->skip)
+        return false;
+    /* A sliver seen edge-on: all three are rounding noise, and only its extent tells whether it is met. */
+    if (!(least_of(x) <= 0.0 && most_of(x) >= 0.0 && least_of(y) <= 0.0 && most_of(y) >= 0.0))
+        return false;
+    double t = (u * z[0] + v * z[1] + w * z[2]) / det;
+    if (!query_clamp(q, corner, &t) || !(t >= q->t_min && t <= q->t_best))
+        return false;
+    if (mode == QUERY_ALL) {
+        mesh_hit hit;
+        query_hit(q, t, v, w, det, triangle, facing, &hit);
+        q->visit(q->context, &hit);
+        return false;
+    }
+    if (mode == QUERY_ANY) {
+        q->best = triangle;
+        return true;
+    }
+    if (t < q->t_best || triangle < q->best) {
+        q->t_best = t;
+        q->weight_u = v;
+        q->weight_v = w;
+        q->det = det;
+        q->best = triangle;
+        q->best_facing = facing;
+    }
+    return false;
+}
+
+ALWAYS_INLINE double4 block_load(const void *block, bool single, int corner, int axis)
+{
+    if (single) {
+        float4 v;
+        memcpy(&v, ((const block_single *)block)->corner[corner][axis], sizeof v);
+        return __builtin_convertvector(v, double4);
+    }
+    double4 v;
+    memcpy(&v, ((const block_double *)block)->corner[corner][axis], sizeof v);
+    return v;
+}
+
+/* Tests the triangles of blocks first .. first + count - 1. True if the search is over. */
+ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mode mode, bool single, size_t first, size_t count)
+{
+    const size_t stride = single ? sizeof(block_single) : sizeof(block_double);
+    const char *block = (const char *)h->blocks + first * stride, *end = block + count * stride;
+    const double4 ox = double4_all(q->origin[q->x]), oy = double4_all(q->origin[q->y]), oz = double4_all(q->origin[q->z]);
+    const double4 sx = double4_all(q->shear_x), sy = double4_all(q->shear_y), zero = double4_all(0.0);
+    const int kx = q->x, ky = q->y, kz = q->z;
+    for (; block < end; block += stride) {
+        double4 x[3], y[3];
+        for (int j = 0; j < 3; j++) {
+            const double4 z = block_load(block, single, j, kz) - oz;
+            x[j] = (block_load(block, single, j, kx) - ox) - sx * z;
+            y[j] = (block_load(block, single, j, ky) - oy) - sy * z;
+        }
+        const double4 u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0];
+        unsigned set = lanes_of4(((u >= zero) & (v >= zero) & (w >= zero)) | ((u <= zero) & (v <= zero) & (w <= zero)));
+        for (; set; set = LANES_LESS_FIRST(set)) {
+            const unsigned lane = lane_first(set);
+            const uint32_t *numbers = single ? ((const block_single *)block)->triangle : ((const block_double *)block)->triangle;
+            if (mode == QUERY_ALL && ((lane > 0 && numbers[lane] == numbers[lane - 1])))
+                continue; /* a block is filled up by repeating its last triangle */
+            double corner[3][3];
+            for (int k = 0; k < 3; k++)
+                for (int j = 0; j < 3; j++)
+                    corner[k][j] = (single ? (double)((const block_single *)block)->corner[j][k][lane]
+                                           : ((const block_double *)block)->corner[j][k][lane]) - q->origin[k];
+            if (query_consider(q, mode, (const double (*)[3])corner, numbers[lane]))
+                return true;
+        }
+    }
+    return false;
+}
+
+/* The ways down, by instruction set. What was found is in *q. */
+void KERNEL(walk_bvh)(const hierarchy *h, ray_query *q, enum query_mode mode);
+void KERNEL(walk_spheres)(const hierarchy *h, ray_query *q, enum query_mode mode);
+
+#endif

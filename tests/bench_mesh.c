@@ -1,0 +1,160 @@
+/* bench_mesh - rays a second through the mesh hierarchies, for the rays that the head of peers/embree_bench.c describes: a camera of 800 x 600
+ * and, from each point it sees, a ray to a point light.
+ *   bench_mesh [-m sparse|dense|sphere|all] [-n N,...] [-a none|sphere|octant|bvh|embree] [-k 1|128 (rays at a time), ...] [-r REPEATS] [-t BUILD_THREADS]
+ * Prints a row for each set and k; sum is over the triangles hit and the bits of t, so that equal sums are equal hits. */
+#include "base/isa.h"
+#include "geometry/bodies.h"
+#include "geometry/hierarchy.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { COLUMNS = 800, ROWS = 600, TILE_COLUMNS = 16, TILE_ROWS = 8, TILE = TILE_COLUMNS * TILE_ROWS };
+
+static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2, &hierarchy_kernels_avx512};
+
+typedef struct tally { uint64_t hits, occluded, sum; double total_t; } tally;
+
+/* CPU time: what others do on the machine does not count. */
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static mesh_ray camera_ray(int x, int y)
+{
+    const float s = (float)0.41421356237309503, aspect = (float)COLUMNS / (float)ROWS;
+    const float px = (((float)x + 0.5f) / (float)COLUMNS * 2.0f - 1.0f) * s * aspect, py = (1.0f - ((float)y + 0.5f) / (float)ROWS * 2.0f) * s;
+    const float scale = 1.0f / sqrtf(px * px + py * py + 1.0f);
+    return (mesh_ray){{0.0, 0.0, -3.0}, {(double)(px * scale), (double)(py * scale), (double)scale}, 0.0, (double)INFINITY, TRIANGLE_NONE, FACING_ANY};
+}
+
+static mesh_ray shadow_ray(const mesh_ray *from, double t)
+{
+    const vec3 p = vec3_add(from->origin, vec3_scale(from->direction, t));
+    return (mesh_ray){p, vec3_sub(vec3_make(2.0, 3.0, -4.0), p), 1e-3, 1.0, TRIANGLE_NONE, FACING_ANY};
+}
+
+static void count_hit(tally *a, const mesh_hit *hit)
+{
+    uint64_t bits;
+    memcpy(&bits, &hit->t, sizeof bits);
+    a->hits++;
+    a->total_t += hit->t;
+    a->sum += (bits ^ (uint64_t)hit->triangle << 32) * 0x9e3779b97f4a7c15u;
+}
+
+static void tile_of_batches(const hierarchy_kernels *kernel, const hierarchy *h, int x0, int y0, tally *a)
+{
+    mesh_ray rays[TILE], shadows[TILE];
+    mesh_hit hits[TILE];
+    bool occluded[TILE];
+    int lit = 0;
+    for (int i = 0; i < TILE; i++)
+        rays[i] = camera_ray(x0 + i % TILE_COLUMNS, y0 + i / TILE_COLUMNS);
+    kernel->nearest_batch(h, rays, TILE, hits);
+    for (int i = 0; i < TILE; i++)
+        if (hits[i].triangle != TRIANGLE_NONE) {
+            count_hit(a, &hits[i]);
+            shadows[lit++] = shadow_ray(&rays[i], hits[i].t);
+        }
+    kernel->any_batch(h, shadows, lit, occluded);
+    for (int i = 0; i < lit; i++)
+        a->occluded += occluded[i];
+}
+
+static void tile_of_rays(const hierarchy_kernels *kernel, const hierarchy *h, int x0, int y0, tally *a)
+{
+    for (int i = 0; i < TILE; i++) {
+        const mesh_ray ray = camera_ray(x0 + i % TILE_COLUMNS, y0 + i / TILE_COLUMNS);
+        mesh_hit hit;
+        kernel->nearest(h, &ray, &hit);
+        if (hit.triangle == TRIANGLE_NONE)
+            continue;
+        count_hit(a, &hit);
+        const mesh_ray shadow = shadow_ray(&ray, hit.t);
+        a->occluded += kernel->any(h, &shadow);
+    }
+}
+
+static tally frame(const hierarchy_kernels *kernel, const hierarchy *h, int k)
+{
+    tally a = {0};
+    for (int y = 0; y < ROWS; y += TILE_ROWS)
+        for (int x = 0; x < COLUMNS; x += TILE_COLUMNS)
+            (k == 1 ? tile_of_rays : tile_of_batches)(kernel, h, x, y, &a);
+    return a;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static bool bench(const char *mode, size_t count, hierarchy_kind kind, const char *sizes, int repeats, int threads)
+{
+    mesh *m = NULL;
+    hierarchy *h = NULL;
+    diagnostic why = {0};
+    isa level = ISA_SSE2;
+    char text[DIAGNOSTIC_TEXT_MAX];
+    status s = isa_choose(&level, &why);
+    if (s == STATUS_OK)
+        s = !strcmp(mode, "sparse") ? body_sparse(count, &m, &why) : !strcmp(mode, "dense") ? body_dense(count, &m, &why) : body_sphere(count, &m, &why);
+    if (s == STATUS_OK)
+        s = hierarchy_build(m, kind, threads, &h, &why);
+    if (s != STATUS_OK)
+        fprintf(stderr, "bench_mesh: %s\n", diagnostic_text(&why, text, sizeof text));
+    for (const char *k = sizes; s == STATUS_OK && k; k = strchr(k, ',') ? strchr(k, ',') + 1 : NULL) {
+        double seconds[99];
+        tally a = {0};
+        for (int i = 0; i < repeats; i++) {
+            const double begun = now_s();
+            a = frame(kernels[level], h, atoi(k));
+            seconds[i] = now_s() - begun;
+        }
+        qsort(seconds, (size_t)repeats, sizeof *seconds, by_value);
+        const double median = seconds[repeats / 2];
+        const hierarchy_report r = hierarchy_describe(h);
+        printf("%s\t%zu\t%.2f\t%d\t%d\t%.1f\t%llu\t%llu\t%.2f\t%.3f\t%016llx\t%.6f\n", mode, m->triangle_count, 1e3 * r.build_s, r.threads, atoi(k),
+               (double)r.bytes / (double)m->triangle_count, (unsigned long long)a.hits, (unsigned long long)a.occluded, 1e3 * median,
+               ((double)COLUMNS * ROWS + (double)a.hits) / median / 1e6, (unsigned long long)a.sum, a.hits ? a.total_t / (double)a.hits : 0.0);
+        fflush(stdout);
+    }
+    hierarchy_destroy(h);
+    mesh_release(m);
+    return s == STATUS_OK;
+}
+
+int main(int count, char **words)
+{
+    static const char *const kind_names[] = {"none", "sphere", "octant", "bvh", "embree"}, *const modes[] = {"sparse", "dense", "sphere"};
+    const char *mode = "all", *numbers = "10000,50000,1000000", *kind = "bvh", *sizes = "1,128";
+    int repeats = 7, threads = 1, chosen = 0;
+    for (int i = 1; i + 1 < count; i += 2)
+        switch (words[i][1]) {
+        case 'm': mode = words[i + 1]; break;
+        case 'n': numbers = words[i + 1]; break;
+        case 'a': kind = words[i + 1]; break;
+        case 'k': sizes = words[i + 1]; break;
+        case 'r': repeats = atoi(words[i + 1]); break;
+        case 't': threads = atoi(words[i + 1]); break;
+        default: fprintf(stderr, "bench_mesh: no option %s; see the head of tests/bench_mesh.c\n", words[i]); return 2;
+        }
+    while (chosen < HIERARCHY_KIND_COUNT && strcmp(kind, kind_names[chosen]) != 0)
+        chosen++;
+    if (chosen == HIERARCHY_KIND_COUNT || repeats < 1 || repeats > 99)
+        return 2;
+    printf("mode\ttris\tbuild_ms\tthreads\tk\tbytes/tri\thits\toccl\tcpu_ms\tMrays/s\tsum\tmean_t\n");
+    for (int i = 0; i < 3; i++)
+        if (!strcmp(mode, "all") || !strcmp(mode, modes[i]))
+            for (const char *n = numbers; n; n = strchr(n, ',') ? strchr(n, ',') + 1 : NULL)
+                if (!bench(modes[i], strtoul(n, NULL, 10), (hierarchy_kind)chosen, sizes, repeats, threads))
+                    return 1;
+    return 0;
+}
