@@ -39,6 +39,11 @@ void files_prepare(file_access *access);
 /* That path is a regular file with something in it, or why not. */
 status files_check(const char *path, diagnostic *why);
 
+/* ---- whole.c ---- */
+
+/* That a PLY or STL file is as long as it says it is. */
+status check_whole(const request *asked, diagnostic *why);
+
 /* ---- read.c ---- */
 
 /* The scene of the file, triangulated; every file that it needs was there. */

@@ -58,6 +58,10 @@ status read_scene(const request *asked, const struct aiScene **out, diagnostic *
     if (asked->kind == FILE_UNKNOWN) {
         return diagnose(why, STATUS_BAD_INPUT, "name a file that ends in .obj, .ply, .stl, .gltf or .glb", "unknown kind of mesh");
     }
+    code = check_whole(asked, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
     files_prepare(&access);
     /* Equal vertices are joined in join.c: assimp's own step moves those together that lie within 1e-5. */
     const struct aiScene *scene = aiImportFileEx(asked->path, aiProcess_ValidateDataStructure | aiProcess_Triangulate, &access.io);

@@ -89,6 +89,11 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
             return code;
         }
     }
+    for (size_t i = 0; m->uvs && i < m->vertex_count; i++) {
+        if (!isfinite(m->uvs[i].u) || !isfinite(m->uvs[i].v)) {
+            return diagnose(why, STATUS_BAD_INPUT, "texture coordinates are finite", "vertex %zu has a texture coordinate that is no number", i);
+        }
+    }
     for (size_t t = 0; t < m->triangle_count; t++) {
         if (m->slots[t] >= m->slot_count) {
             return damaged(why, "a triangle's material is out of range");
