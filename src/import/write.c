@@ -21,14 +21,18 @@ static void get_number(const struct aiMaterial *material, const char *key, doubl
     }
 }
 
-/* assimp gives triangles without a material one of this name, and in a PLY file one without a name. */
-static bool is_given(const request *asked, const struct aiString *name)
+/* assimp gives triangles without a material one of this name; in a PLY file one without a name; in a glTF file the one that it puts
+ * after all others. */
+static bool is_given(const request *asked, const struct aiScene *scene, unsigned index, const struct aiString *name)
 {
-    return strcmp(name->data, AI_DEFAULT_MATERIAL_NAME) != 0 && (name->length > 0 || asked->kind != FILE_PLY);
+    bool gltf = asked->kind == FILE_GLTF || asked->kind == FILE_GLB;
+    return !(gltf && index + 1 == scene->mNumMaterials) && strcmp(name->data, AI_DEFAULT_MATERIAL_NAME) != 0 && (name->length > 0 || asked->kind != FILE_PLY);
 }
 
-static mesh_wire_material describe(const request *asked, const struct aiMaterial *material, struct aiString *name, struct aiString *texture)
+static mesh_wire_material describe(const request *asked, const struct aiScene *scene, unsigned index, struct aiString *name,
+                                   struct aiString *texture)
 {
+    const struct aiMaterial *material = scene->mMaterials[index];
     mesh_wire_material m = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1};
     float alpha = 1, unused;
     *name = *texture = (struct aiString){0};
@@ -45,7 +49,7 @@ static mesh_wire_material describe(const request *asked, const struct aiMaterial
     if (aiGetMaterialTexture(material, aiTextureType_DIFFUSE, 0, texture, NULL, NULL, NULL, NULL, NULL, NULL) != aiReturn_SUCCESS) {
         *texture = (struct aiString){0};
     }
-    m.flags = is_given(asked, name) ? MESH_WIRE_GIVEN : 0;
+    m.flags = is_given(asked, scene, index, name) ? MESH_WIRE_GIVEN : 0;
     if (texture->data[0] == '*') { /* the index of a picture inside the file */
         m.flags |= MESH_WIRE_TEXTURE_INSIDE;
         *texture = (struct aiString){0};
@@ -62,7 +66,7 @@ static void write_materials(const request *asked, const struct aiScene *scene, c
 {
     for (unsigned i = 0; i < flat->material_count; i++) {
         struct aiString name, texture;
-        mesh_wire_material record = describe(asked, scene->mMaterials[flat->materials[i]], &name, &texture);
+        mesh_wire_material record = describe(asked, scene, flat->materials[i], &name, &texture);
         fwrite(&record, sizeof record, 1, to);
         fwrite(name.data, 1, record.name_length, to);
         fwrite(texture.data, 1, record.texture_length, to);

@@ -1,0 +1,278 @@
+/* Mesh files that are as they should be: the numbers that come back are the file's own. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "mesh_files.h"
+#include "scene/mesh_file.h"
+
+static mesh_import *read_mesh(const char *name)
+{
+    char *path = in_folder(name), text[DIAGNOSTIC_TEXT_MAX];
+    mesh_import *got;
+    diagnostic why = {.what = ""};
+    if (mesh_read_file(path, NULL, &got, &why) != STATUS_OK) {
+        fail_msg("%s", diagnostic_text(&why, text, sizeof text));
+    }
+    free(path);
+    return got;
+}
+
+static mesh_import *read_text(const char *name, const char *text)
+{
+    put_text(name, text);
+    return read_mesh(name);
+}
+
+static mesh_import *read_bytes(const char *name, bytes b)
+{
+    put(name, b.at, b.size);
+    free(b.at);
+    return read_mesh(name);
+}
+
+static void assert_vec3(vec3 got, double x, double y, double z)
+{
+    if (!(got.x == x && got.y == y && got.z == z)) { /* exactly */
+        fail_msg("%.17g %.17g %.17g is not %.17g %.17g %.17g", got.x, got.y, got.z, x, y, z);
+    }
+}
+
+static vec3 corner(const mesh *m, size_t triangle, int k)
+{
+    return m->vertices[m->triangles[triangle].corner[k]];
+}
+
+/* The tetrahedron of mesh_files.h, every corner bit for bit, moved by x. */
+static void assert_tetrahedron(const mesh_import *got, double x)
+{
+    const mesh *m = got->mesh;
+    assert_int_equal(m->vertex_count, 4);
+    assert_int_equal(m->triangle_count, 4);
+    for (size_t f = 0; f < 4; f++) {
+        for (int k = 0; k < 3; k++) {
+            const float *expected = corners[faces[f][k]];
+            assert_vec3(corner(m, f, k), (double)expected[0] + x, (double)expected[1], (double)expected[2]);
+        }
+    }
+    assert_true(m->closed);
+    assert_null(m->normals);
+    assert_null(m->uvs);
+}
+
+static void obj_with_two_materials(void **state)
+{
+    (void)state;
+    put_text("paint.png", "a picture");
+    put_text("two.mtl", "newmtl red\nKa 0.125 0 0\nKd 1 0.25 0.5\nKs 0.75 0.75 0.75\nNs 40\nmap_Kd paint.png\n"
+                        "newmtl glass\nKd 0.5 0.5 0.5\nd 0.25\nNi 1.5\nnewmtl unused\nKd 0 0 0\n");
+    mesh_import *got = read_text("two.obj", "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 1 2.5 0\nv 0 2.5 -0.125\nv 7 7 7\n"
+                                            "vt 0 0\nvt 1 0\nvt 1 0.75\nvt 0.0625 1\n"
+                                            "usemtl red\nf 1/1 2/2 3/3\nusemtl glass\nf 1/1 3/3 4/4\n");
+    const mesh *m = got->mesh;
+    assert_int_equal(m->triangle_count, 2);
+    assert_int_equal(m->vertex_count, 4); /* shared across the materials; the fifth is of no face */
+    assert_vec3(corner(m, 0, 2), 1, 2.5, 0);
+    assert_vec3(corner(m, 1, 2), 0, 2.5, -0.125);
+    mesh_uv uv = m->uvs[m->triangles[0].corner[2]];
+    assert_true(uv.u == 1 && uv.v == 0.75); /* v upwards, as in the file */
+    assert_true(m->single);
+    assert_false(m->closed);
+    assert_int_equal(got->material_count, 2);
+    assert_int_equal(m->slot_count, 2);
+    const imported_material *red = &got->materials[m->slots[0]], *glass = &got->materials[m->slots[1]];
+    assert_string_equal(red->name, "red");
+    assert_string_equal(m->slot_names[m->slots[1]], "glass");
+    assert_true(red->given && glass->given);
+    assert_true(red->color[0] == 1 && red->color[1] == 0.25 && red->color[2] == 0.5);
+    assert_true(red->ambient[0] == 0.125 && red->specular[2] == 0.75 && red->shininess == 40 && red->opacity == 1);
+    assert_true(glass->opacity == 0.25 && glass->ior == 1.5);
+    assert_null(glass->texture);
+    char *picture = in_folder("paint.png");
+    assert_string_equal(red->texture, picture);
+    free(picture);
+    mesh_import_destroy(got);
+}
+
+static void textures_of_other_spellings_are_found(void **state)
+{
+    (void)state;
+    put_text("my paint.png", "a picture");
+    char *picture = in_folder("my paint.png");
+    static const char *const spellings[] = {"my paint.png", ".\\my paint.png", "my%20paint.png"};
+    for (size_t i = 0; i < sizeof spellings / sizeof *spellings; i++) {
+        char *library = text_format("newmtl a\nmap_Kd %s\n", spellings[i]);
+        put_text("spelling.mtl", library);
+        free(library);
+        mesh_import *got = read_text("spelling.obj", "mtllib spelling.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+        assert_non_null(got->materials[0].texture);
+        assert_int_equal(access(got->materials[0].texture, R_OK), 0);
+        mesh_import_destroy(got);
+    }
+    free(picture);
+}
+
+static void obj_polygons_are_triangulated(void **state)
+{
+    (void)state;
+    mesh_import *got = read_text("square.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nvn 0 0 2\nf 1//1 2//1 3//1 4//1\nl 1 2\n");
+    assert_int_equal(got->mesh->triangle_count, 2);
+    assert_int_equal(got->mesh->vertex_count, 4);
+    assert_true(mesh_area(got->mesh) == 4);
+    assert_vec3(got->mesh->normals[0], 0, 0, 1); /* of unit length now */
+    assert_int_equal(got->material_count, 1);
+    assert_false(got->materials[0].given);
+    assert_null(got->materials[0].name);
+    mesh_import_destroy(got);
+}
+
+/* assimp's own joining takes vertices for equal that lie within 1e-5. */
+static void vertices_that_nearly_coincide_stay_apart(void **state)
+{
+    (void)state;
+    mesh_import *got = read_text("tiny.obj", "v 0 0 0\nv 1e-7 0 0\nv 0 1e-7 0\nf 1 2 3\n");
+    assert_int_equal(got->mesh->vertex_count, 3);
+    assert_vec3(corner(got->mesh, 0, 1), (double)1e-7f, 0, 0);
+    mesh_import_destroy(got);
+}
+
+static void ply_text(void **state)
+{
+    (void)state;
+    mesh_import *got = read_text("a.ply", "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty float y\n"
+                                          "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                                          "0 0 0\n1.5 0 0\n1.5 0.25 0\n0 0.25 -8\n4 0 1 2 3\n");
+    assert_int_equal(got->mesh->triangle_count, 2);
+    assert_int_equal(got->mesh->vertex_count, 4);
+    assert_vec3(got->mesh->vertices[3], 0, 0.25, -8);
+    assert_false(got->materials[0].given);
+    mesh_import_destroy(got);
+}
+
+static void ply_binary(void **state)
+{
+    (void)state;
+    mesh_import *got = read_bytes("b.ply", binary_ply());
+    assert_tetrahedron(got, 0);
+    assert_true(got->mesh->single);
+    mesh_import_destroy(got);
+}
+
+static void stl_text(void **state)
+{
+    (void)state;
+    mesh_import *got = read_text("a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1.25 0 0\nvertex 0 -1e3 0.5\nendloop\n"
+                                          "endfacet\nendsolid a\n");
+    assert_int_equal(got->mesh->triangle_count, 1);
+    assert_vec3(corner(got->mesh, 0, 1), 1.25, 0, 0);
+    assert_vec3(corner(got->mesh, 0, 2), 0, -1000, 0.5);
+    assert_null(got->mesh->normals);
+    mesh_import_destroy(got);
+}
+
+/* Facets share their corners again, although each has a normal of its own in the file. */
+static void stl_binary(void **state)
+{
+    (void)state;
+    mesh_import *got = read_bytes("b.stl", binary_stl());
+    assert_tetrahedron(got, 0);
+    assert_true(got->mesh->single);
+    mesh_import_destroy(got);
+}
+
+static void glb_keeps_every_bit(void **state)
+{
+    (void)state;
+    mesh_import *got = read_bytes("a.glb", tetrahedron_glb("{\"mesh\":0}"));
+    assert_tetrahedron(got, 0);
+    assert_int_equal(got->material_count, 1);
+    const imported_material *glass = &got->materials[0];
+    assert_string_equal(glass->name, "glass");
+    assert_true(glass->color[0] == 0.25 && glass->color[1] == 0.5 && glass->color[2] == 0.75 && glass->opacity == 0.5);
+    mesh_import_destroy(got);
+}
+
+/* Moved in double precision: the sum is that of doubles, and not rounded to a float. */
+static void nodes_move_their_meshes(void **state)
+{
+    (void)state;
+    mesh_import *got = read_bytes("moved.glb", tetrahedron_glb("{\"mesh\":0,\"translation\":[1000,0,0]}"));
+    assert_tetrahedron(got, 1000);
+    assert_false(got->mesh->single);
+    mesh_import_destroy(got);
+    got = read_bytes("nested.glb", tetrahedron_glb("{\"children\":[1],\"translation\":[600,0,0]},{\"mesh\":0,\"translation\":[400,0,0]}"));
+    assert_tetrahedron(got, 1000);
+    mesh_import_destroy(got);
+    got = read_bytes("twice.glb", tetrahedron_glb("{\"children\":[1,2]},{\"mesh\":0},{\"mesh\":0,\"translation\":[10,0,0]}"));
+    assert_int_equal(got->mesh->triangle_count, 8);
+    assert_int_equal(got->mesh->vertex_count, 8);
+    mesh_import_destroy(got);
+}
+
+/* A mirror turns fronts into backs, unless corners are listed the other way round with it. A quarter turn, column by column. */
+static void mirrored_and_turned_nodes_keep_their_fronts(void **state)
+{
+    (void)state;
+    mesh_import *plain = read_bytes("plain.glb", tetrahedron_glb("{\"mesh\":0}"));
+    mesh_import *mirrored = read_bytes("mirror.glb", tetrahedron_glb("{\"mesh\":0,\"scale\":[-2,1,1]}"));
+    assert_true(mesh_volume(plain->mesh) > 0);
+    assert_true(fabs(mesh_volume(mirrored->mesh) - 2 * mesh_volume(plain->mesh)) < 1e-14);
+    assert_vec3(corner(mirrored->mesh, 0, 0), -2 * (double)corners[0][0], (double)corners[0][1], (double)corners[0][2]);
+    assert_vec3(corner(mirrored->mesh, 0, 1), -2 * (double)corners[1][0], (double)corners[1][1], (double)corners[1][2]);
+    mesh_import_destroy(mirrored);
+    mesh_import_destroy(plain);
+    mesh_import *turned = read_bytes("turn.glb", tetrahedron_glb("{\"mesh\":0,\"matrix\":[0,1,0,0,-1,0,0,0,0,0,1,0,5,0,0,1]}"));
+    assert_vec3(corner(turned->mesh, 0, 0), 5 - (double)corners[0][1], (double)corners[0][0], (double)corners[0][2]);
+    mesh_import_destroy(turned);
+}
+
+static void gltf_with_its_buffer_inside(void **state)
+{
+    (void)state;
+    /* (0 0 0) (1 0 0) (0 1 0) as floats, then 0 1 2 as uint16. */
+    mesh_import *got = read_text("inside.gltf",
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"translation\":[0,0,0.5]}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+        "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":6}],"
+        "\"buffers\":[{\"byteLength\":42,\"uri\":\"data:application/octet-stream;base64,"
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA\"}]}");
+    assert_int_equal(got->mesh->triangle_count, 1);
+    assert_vec3(corner(got->mesh, 0, 0), 0, 0, 0.5);
+    assert_vec3(corner(got->mesh, 0, 1), 1, 0, 0.5);
+    assert_vec3(corner(got->mesh, 0, 2), 0, 1, 0.5);
+    assert_false(got->materials[0].given);
+    mesh_import_destroy(got);
+}
+
+static void awkward_names_are_only_names(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"-o.obj", "a b;c: d.obj", "$(touch x).obj", "LOUD.OBJ"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        mesh_import_destroy(read_text(names[i], "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(obj_with_two_materials),
+        cmocka_unit_test(textures_of_other_spellings_are_found),
+        cmocka_unit_test(obj_polygons_are_triangulated),
+        cmocka_unit_test(vertices_that_nearly_coincide_stay_apart),
+        cmocka_unit_test(ply_text),
+        cmocka_unit_test(ply_binary),
+        cmocka_unit_test(stl_text),
+        cmocka_unit_test(stl_binary),
+        cmocka_unit_test(glb_keeps_every_bit),
+        cmocka_unit_test(nodes_move_their_meshes),
+        cmocka_unit_test(mirrored_and_turned_nodes_keep_their_fronts),
+        cmocka_unit_test(gltf_with_its_buffer_inside),
+        cmocka_unit_test(awkward_names_are_only_names),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
