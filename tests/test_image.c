@@ -570,6 +570,57 @@ static void huge_png_is_refused(void **state)
     }
 }
 
+/* A file of kilobytes that asks for gigabytes. */
+static void write_bomb(const char *path, png_uint_32 side, int bits, int color, int interlaced)
+{
+    FILE *file = fopen(path, "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    assert_true(file && info); /* an error of libpng aborts the test */
+    png_init_io(png, file);
+    png_set_IHDR(png, info, side, side, bits, color, interlaced, 0, 0);
+    png_set_filter(png, 0, PNG_FILTER_NONE);
+    png_write_info(png, info);
+    int passes = png_set_interlace_handling(png);
+    unsigned char *row = calloc(png_get_rowbytes(png, info), 1);
+    assert_non_null(row);
+    for (png_uint_32 y = 0; y < side * (png_uint_32)passes; y++) {
+        png_write_row(png, row);
+    }
+    png_write_end(png, info);
+    free(row);
+    png_destroy_write_struct(&png, &info);
+    fclose(file);
+}
+
+static void bombs_are_refused(void **state)
+{
+    (void)state;
+    static const struct { png_uint_32 side; int bits, color, interlaced; } bombs[] = {
+        {16384, 1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE},
+        {8192, 1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_ADAM7},
+        {4200, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE},
+    };
+    struct rusage before, after;
+    char *path = in_folder("bomb.png");
+    for (size_t i = 0; i < sizeof bombs / sizeof *bombs; i++) {
+        write_bomb(path, bombs[i].side, bombs[i].bits, bombs[i].color, bombs[i].interlaced);
+        image *picture;
+        diagnostic why = {0};
+        getrusage(RUSAGE_SELF, &before);
+        assert_int_equal(image_read(path, &picture, NULL, &why), STATUS_BAD_INPUT);
+        getrusage(RUSAGE_SELF, &after);
+        assert_null(picture);
+        assert_non_null(strstr(why.what, "claims"));
+        assert_true(after.ru_maxrss - before.ru_maxrss < 64 << 10);
+    }
+    write_bomb(path, 4000, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE); /* sixteen million pixels of one colour are still a picture */
+    image *picture;
+    assert_int_equal(image_read(path, &picture, NULL, NULL), STATUS_OK);
+    image_destroy(picture);
+    free(path);
+}
+
 /* ---- JPEG of other kinds ---- */
 
 static void write_jpeg_kind(const char *path, J_COLOR_SPACE space, int channels, bool progressive, int subsampling)
@@ -625,6 +676,36 @@ static void jpeg_of_other_kinds_is_read(void **state)
         image_destroy(picture);
         free(path);
     }
+}
+
+/* A good file whose frame header then claims another size (SOF, ITU-T T.81, B.2.2): height and width follow the precision. */
+static void jpeg_that_claims_another_size_is_refused(void **state)
+{
+    (void)state;
+    static const unsigned char sizes[][4] = {{0xff, 0xdc, 0xff, 0xdc}, {0x0f, 0xff, 0xff, 0xdc}, {0xff, 0xdc, 0, 40}, {0, 0, 0, 40}, {0, 30, 0, 0}};
+    char *path = in_folder("size.jpg");
+    for (int progressive = 0; progressive < 2; progressive++) {
+        for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+            write_jpeg_kind(path, JCS_RGB, 3, progressive, 1);
+            blob b = get(path);
+            size_t at = 0;
+            while (at + 9 < b.size && !((unsigned char)b.bytes[at] == 0xff && (unsigned char)b.bytes[at + 1] == (progressive ? 0xc2 : 0xc0))) {
+                at++;
+            }
+            assert_true(at + 9 < b.size);
+            memcpy(b.bytes + at + 5, sizes[i], 4);
+            put(path, b.bytes, b.size);
+            free(b.bytes);
+            struct rusage before, after;
+            image *picture;
+            getrusage(RUSAGE_SELF, &before);
+            assert_int_equal(image_read(path, &picture, NULL, NULL), STATUS_BAD_INPUT);
+            getrusage(RUSAGE_SELF, &after);
+            assert_null(picture);
+            assert_true(after.ru_maxrss - before.ru_maxrss < 64 << 10);
+        }
+    }
+    free(path);
 }
 
 static void cmyk_jpeg_is_refused(void **state)
@@ -833,6 +914,8 @@ int main(void)
         file_test(bad_pfm_is_refused),
         file_test(png_of_every_kind_is_read),
         file_test(huge_png_is_refused),
+        file_test(bombs_are_refused),
+        file_test(jpeg_that_claims_another_size_is_refused),
         file_test(jpeg_of_other_kinds_is_read),
         file_test(cmyk_jpeg_is_refused),
         file_test(truncated_files_are_refused),

@@ -11,8 +11,13 @@
 /* As many pixels as a picture from disk may have, 2^28. */
 #define CODEC_PIXELS_MAX 268435456LL
 
-/* STATUS_BAD_INPUT unless a file may have this size. */
-status codec_check_size(long long width, long long height, diagnostic *why);
+/* So many pixels for each byte of its file may a picture have that is larger than CODEC_PIXELS_FREE. Deflate can reach 8256 (1032 to 1,
+ * RFC 1951, eight pixels in a byte), which makes gigabytes of a file of kilobytes; photographs and renderings stay far below 64. */
+#define CODEC_PIXELS_FREE 16777216LL
+#define CODEC_PIXELS_A_BYTE 64LL
+
+/* STATUS_BAD_INPUT unless a file of so many bytes may have this size. */
+status codec_check_size(long long width, long long height, size_t file_bytes, diagnostic *why);
 
 /* sRGB-encoded and correctly rounded to 0..maximum; NaN is 0. */
 unsigned codec_quantize(float linear, unsigned maximum);

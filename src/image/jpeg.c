@@ -140,9 +140,9 @@ static bool choose_colors(jpeg_job *job, j_decompress_ptr cinfo)
     }
 }
 
-static bool allocate(jpeg_job *job, long long width, long long height)
+static bool allocate(jpeg_job *job, long long width, long long height, size_t file_bytes)
 {
-    job->code = codec_check_size(width, height, job->why);
+    job->code = codec_check_size(width, height, file_bytes, job->why);
     if (job->code == STATUS_OK) {
         job->code = image_create((int)width, (int)height, &job->picture, job->why);
     }
@@ -166,7 +166,7 @@ static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progres
     cinfo->progress = progress;
     jpeg_mem_src(cinfo, bytes, size);
     jpeg_read_header(cinfo, TRUE);
-    if (!choose_colors(job, cinfo) || !allocate(job, cinfo->image_width, cinfo->image_height)) {
+    if (!choose_colors(job, cinfo) || !allocate(job, cinfo->image_width, cinfo->image_height, size)) {
         return false;
     }
     cinfo->dct_method = JDCT_ISLOW;

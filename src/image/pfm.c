@@ -98,7 +98,7 @@ status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diag
                         "the header of the PFM file is damaged");
     }
     c.at++;
-    status code = codec_check_size(width, height, why);
+    status code = codec_check_size(width, height, size, why);
     if (code != STATUS_OK) {
         return code;
     }

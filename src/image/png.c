@@ -136,7 +136,7 @@ static void store_row(png_job *job, const unsigned char *row, int y, size_t chan
 
 static bool allocate(png_job *job, long long width, long long height, bool interlaced)
 {
-    job->code = codec_check_size(width, height, job->why);
+    job->code = codec_check_size(width, height, job->size, job->why);
     if (job->code == STATUS_OK) {
         job->code = image_create((int)width, (int)height, &job->picture, job->why);
     }
