@@ -77,6 +77,7 @@ static inline int reference_crossings(const solid_shape *s, const reference_line
         n += reference_side(&l, s->m, s->radius, t);
         n += reference_level(l.o.y, l.d.y, 0, t + n);
         return n + reference_level(l.o.y, l.d.y, s->height, t + n);
+    case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }
     return 0;
@@ -118,6 +119,7 @@ static inline quad reference_distance(const solid_shape *s, quad3 point)
         return quad_max(reference_from_cylinder(p, 1, s->radius, 0, s->height), -hollow);
     }
     case SHAPE_CYLINDER: return reference_from_cylinder(p, s->m, s->radius, 0, s->height);
+    case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }
     return 1;

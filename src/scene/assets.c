@@ -1,6 +1,7 @@
 /* What a scene names and does not hold in itself: meshes, textures and the sky's picture. */
 #include "base/text.h"
 #include "scene/looks.h"
+#include "scene/params_value.h"
 #include "scene/mesh_make.h"
 
 #include <stdlib.h>
@@ -111,6 +112,42 @@ static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
     free(path);
     t->data = data;
     return code == STATUS_OK ? code : file_error(s, t->name, t->path_line, t->path_column, &bad, code, why);
+}
+
+static bool same_value(const param *row, const char *a, const char *b)
+{
+    char *x = param_value_text(row, -1, a + row->offset), *y = param_value_text(row, -1, b + row->offset);
+    const bool same = x && y && strcmp(x, y) == 0;
+    free(x);
+    free(y);
+    return same;
+}
+
+static bool same_mesh(const mesh_entry *a, const mesh_entry *b)
+{
+    bool same = true;
+    for (size_t i = 0; i < param_count() && same; i++) {
+        const param *row = param_at(i);
+        same = row->group != PARAM_MESH || same_value(row, (const char *)a, (const char *)b);
+    }
+    return same;
+}
+
+void scene_borrow_meshes(scene *s, const scene *from)
+{
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        mesh_entry *m = &s->meshes[i];
+        for (size_t k = 0; k < from->mesh_count && !m->data; k++) {
+            const mesh_entry *other = &from->meshes[k];
+            if (!other->data || !same_mesh(m, other)) {
+                continue;
+            }
+            m->data = other->data;
+            m->looks = other->looks;
+            mesh_retain(m->data);
+            looks_retain(m->looks);
+        }
+    }
 }
 
 static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)

@@ -197,6 +197,9 @@ int scene_find_solid(const scene *s, const char *name);
 const mesh_entry *scene_find_mesh(const scene *s, const char *name);
 const texture_entry *scene_find_texture(const scene *s, const char *name);
 
+/* Gives each mesh of s that is not loaded the triangles of a mesh with the same parameters in another scene, where there is one. */
+void scene_borrow_meshes(scene *s, const scene *from);
+
 /* Lets go of what was loaded for an entry whose parameters change. */
 void mesh_entry_unload(mesh_entry *m);
 void texture_entry_unload(texture_entry *t);

@@ -126,7 +126,7 @@ static void put_time(csv_line *line, const study_row *r)
     X("time_utc", "", "when the frame had ended, ISO 8601", put_time(line, r)) \
     X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", row_put_axes(line, r->of, r->setting)) \
     X("film_hash", "", "fingerprint of the film, 16 hex digits", csv_hash(line, r->film_hash)) \
-    X("film_expected", "", "film_hash of the first row of all cells that must have one film: they differ only in threads, pool, schedule, tile or pin", csv_hash(line, r->film_expected)) \
+    X("film_expected", "", "film_hash of the first row of all cells that must have one film: they differ only in how it is made (threads, pool, schedule, tile, pin, hierarchies)", csv_hash(line, r->film_expected)) \
     X("marked", "", "1: film_hash is not film_expected, do not trust this row", csv_count(line, r->film_hash != r->film_expected)) \
     X("wall_s", "s", "wall time of the frame; with render.pool off, making and joining threads too", csv_real(line, r->frame->wall_s)) \
     X("cpu_s", "s", "CPU time of the process over the same stretch", csv_real(line, r->frame->cpu_s)) \
@@ -144,6 +144,10 @@ static void put_time(csv_line *line, const study_row *r)
     X("first_hits.<solid>", "rays", "camera rays whose first interface is on that solid", put_solids(line, r, c->first_hits)) \
     X("hits.<solid>", "rays", "interfaces met on that solid by rays of all kinds but shadow rays", put_solids(line, r, c->hits)) \
     X("noise_rms", "radiance", "of random paths: root of the mean square of the film's standard error, over all its values, 1 is white; else NA", csv_real(line, render_noise_rms(r->frame))) \
+    X("triangles", "", "of all meshes as they stand there, copies counted; 0 without meshes", csv_count(line, (int64_t)r->frame->meshes.triangles)) \
+    X("instances", "", "copies of meshes", csv_count(line, (int64_t)r->frame->meshes.instances)) \
+    X("accel_bytes", "B", "memory of the hierarchies over their triangles, each mesh once", csv_count(line, (int64_t)r->frame->meshes.bytes)) \
+    X("build_s", "s", "wall time of building these, for this frame (render.keep off) or before it; not in wall_s", csv_real(line, r->frame->meshes.build_s)) \
     X("workers", "", "threads of the frame", csv_count(line, r->frame->worker_count)) \
     X("workers_with_tiles", "", "those that had a piece of the picture", csv_count(line, w.with_tiles)) \
     X("busy_s_mean", "s", "from a worker's first piece to its last ray, 0 without a piece; mean over all workers", csv_real(line, w.busy_mean)) \

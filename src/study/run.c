@@ -83,7 +83,7 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
 
 status run_prepare_scene(run *r, scene *setting, diagnostic *why)
 {
-    status code = scene_load(setting, why);
+    status code = shelf_load(&r->meshes, setting, why);
     return code == STATUS_OK ? renderer_prepare(r->tracer, setting, why) : code;
 }
 

@@ -90,6 +90,7 @@ status run_prepare(run *r, diagnostic *why)
 void run_release(run *r)
 {
     progress_end(r->line);
+    shelf_clear(&r->meshes);
     renderer_destroy(r->tracer);
     if (r->hardware)
         hardware_counter_destroy(r->hardware);

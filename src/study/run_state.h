@@ -8,6 +8,7 @@
 #include "study/ledger.h"
 #include "study/progress.h"
 #include "study/reference.h"
+#include "study/shelf.h"
 #include "study/table.h"
 
 typedef struct run {
@@ -28,6 +29,7 @@ typedef struct run {
     hardware_counter *hardware;
     renderer *tracer;
     progress_line *line;
+    shelf meshes;
 } run;
 
 /* Folder, locks, the rows so far (read again under the lock), manifest, machine, renderer. What was opened when it
@@ -46,7 +48,7 @@ bool run_should_stop(const run *r);
 bool run_frame_progress(void *of, double share_done);
 status run_interrupted(diagnostic *why);
 
-/* Loads the scene's pictures and makes the renderer ready for it. */
+/* Loads what the scene names and makes the renderer ready for it. */
 status run_prepare_scene(run *r, scene *setting, diagnostic *why);
 
 /* Makes what is kept of each cell and compares it with its reference, outside of all that is measured. */
