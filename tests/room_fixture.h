@@ -119,7 +119,7 @@ static inline int changes_of(const room *m, const reference_line *line, change *
 
 static inline solid_shape random_shape(uint64_t *seed)
 {
-    solid_shape s = {.kind = (shape_kind)random_below(seed, SHAPE_COUNT), .position = random_point(seed, 0.8)};
+    solid_shape s = {.kind = (shape_kind)random_below(seed, SHAPE_MESH), .position = random_point(seed, 0.8)};
     if (random_below(seed, 3))
         s.rotation_deg = random_point(seed, 180.0);
     s.radius = random_real(seed, 0.3, 1.2);

@@ -132,7 +132,7 @@ static void expect_wrong(solid_shape s, const char *word)
 static void check_refuses_what_is_no_solid(void **state)
 {
     (void)state;
-    for (int k = 0; k < SHAPE_COUNT; k++) {
+    for (int k = 0; k < SHAPE_MESH; k++) {
         solid_shape s = make((shape_kind)k);
         assert_int_equal(solid_shape_check(&s, NULL), STATUS_OK);
         s.position.z = (double)NAN;

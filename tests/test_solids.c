@@ -109,6 +109,7 @@ static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
     case SHAPE_CYLINDER:
         return own == 0 ? quad_abs(reference_from_side(p, s->m, s->radius))
                         : quad_abs(p.y - (own == 1 ? 0.0 : s->height));
+    case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }
     return 1;

@@ -169,7 +169,7 @@ static const param table[] = {
     POSITIVE(PARAM_MESH, mesh_entry, minor, "scene units", FAR, "0.4", "of a torus: radius of the tube"),
     INTEGER(PARAM_MESH, mesh_entry, around, "", 3, 16384, "64", "segments around the axis of a torus or lathe; cells of terrain along x"),
     INTEGER(PARAM_MESH, mesh_entry, tube, "", 3, 16384, "32", "segments around a torus's tube; cells of terrain along z"),
-    LIST(PARAM_MESH, mesh_entry, profile, "scene units", FAR, "[0,0,1,0,1,1,0,1]", "of a lathe: radius, height, radius, height .."),
+    LIST(PARAM_MESH, mesh_entry, profile, "scene units", FAR, "[0,0,1,0,1,1,0,1]", "of a lathe: radius, height, radius, height and so on"),
     REAL(PARAM_MESH, mesh_entry, crease_deg, "deg", 0, 180, "30", "a lathe's profile keeps an edge where it turns by more"),
     {PARAM_MESH, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges of a box; of terrain, with the height of its hills as y", NULL,
      ON_ALL, .offset = offsetof(mesh_entry, size)},
