@@ -74,13 +74,10 @@ static int euler(const mesh *m)
     return (int)positions(m) - (int)m->triangle_count / 2;
 }
 
-/* Closed; normals on the side of the fronts, so that it was made with its fronts outwards; and a texture that is not mirrored, which in a
- * left-handed frame runs the other way round than the vector product. */
-static void assert_sound(const mesh *m, int characteristic)
+/* Normals on the side of the fronts; and a texture that is not mirrored, which in a left-handed frame runs the other way round than the
+ * vector product. */
+static void assert_fronts(const mesh *m)
 {
-    assert_true(m->closed);
-    assert_int_equal(euler(m), characteristic);
-    assert_true(mesh_volume(m) > 0.0);
     for (size_t t = 0; t < m->triangle_count; t++) {
         const uint32_t *k = m->triangles[t].corner;
         const vec3 a = m->vertices[k[0]], normal = vec3_cross(vec3_sub(m->vertices[k[1]], a), vec3_sub(m->vertices[k[2]], a));
@@ -91,6 +88,14 @@ static void assert_sound(const mesh *m, int characteristic)
         }
         assert_true((q.u - p.u) * (r.v - p.v) - (r.u - p.u) * (q.v - p.v) < 0.0);
     }
+}
+
+static void assert_sound(const mesh *m, int characteristic)
+{
+    assert_true(m->closed);
+    assert_int_equal(euler(m), characteristic);
+    assert_true(mesh_volume(m) > 0.0);
+    assert_fronts(m);
 }
 
 /* Of an icosahedron in the unit sphere: edge 4 / sqrt(10 + 2 sqrt 5), area 5 sqrt 3 a^2, volume 5 (3 + sqrt 5) a^3 / 12 (Coxeter). */
@@ -154,6 +159,17 @@ static void a_sphere_has_longitude_and_latitude(void **state)
         assert_near(cos((at.v - 0.5) * pi) * sin((at.u - 0.5) * 2.0 * pi), p.x, 1e-7);
         assert_near(cos((at.v - 0.5) * pi) * cos((at.u - 0.5) * 2.0 * pi), -p.z, 1e-7);
     }
+    /* a pole's longitude is that of its triangle's middle, a quarter of a turn from each corner at most */
+    size_t poles = 0;
+    for (size_t k = 0; k < 3 * m->triangle_count; k++) {
+        const uint32_t *corner = m->triangles[k / 3].corner;
+        if (fabs(m->vertices[corner[k % 3]].y) != 1.0)
+            continue;
+        poles++;
+        for (size_t other = 0; other < 3; other++)
+            assert_near(m->uvs[corner[other]].u, m->uvs[corner[k % 3]].u, 0.25 + 1e-12);
+    }
+    assert_int_equal(poles, 12);
     mesh_release(m);
 }
 
@@ -257,7 +273,24 @@ static void creases_keep_their_edges_and_others_are_round(void **state)
     m = turned((profile_point[]){{1, 0}, {1, 1}}, 2, 8, 30.0); /* a tube of no thickness */
     assert_false(m->closed);
     assert_int_equal(m->hole.sharing, 1);
+    assert_fronts(m);
     mesh_release(m);
+}
+
+/* A lens's apex turns by 2 atan 0.1 = 11.4 degrees across the axis. */
+static void an_apex_is_round_below_the_crease(void **state)
+{
+    (void)state;
+    const profile_point lens[] = {{0, -0.1}, {1, 0}, {0, 0.1}};
+    for (int sharp = 0; sharp < 2; sharp++) {
+        mesh *m = turned(lens, 3, 12, sharp ? 11.0 : 12.0);
+        assert_sound(m, 2);
+        for (size_t v = 0; v < m->vertex_count; v++) {
+            if (m->vertices[v].y > 0.0)
+                assert_near(m->normals[v].y, sharp ? 1.0 / sqrt(1.01) : 1.0, 1e-15);
+        }
+        mesh_release(m);
+    }
 }
 
 static void seams_meet_and_texture_coordinates_run_through(void **state)
@@ -309,6 +342,7 @@ static void a_plane_height_field_has_its_exact_volume(void **state)
     assert_int_equal(body_height_field(heights, 3, 4, 4.0, 6.0, 0.0, &m, NULL), STATUS_OK);
     assert_false(m->closed);
     assert_int_equal(m->triangle_count, 12);
+    assert_fronts(m);
     assert_near(mesh_area(m), 4.0 * 6.0 * slope, 1e-13);
     mesh_release(m);
 }
@@ -365,6 +399,7 @@ int main(void)
         cmocka_unit_test(turned_cylinders_and_cones_are_prisms_and_pyramids),
         cmocka_unit_test(a_turned_ring_is_a_torus),
         cmocka_unit_test(creases_keep_their_edges_and_others_are_round),
+        cmocka_unit_test(an_apex_is_round_below_the_crease),
         cmocka_unit_test(seams_meet_and_texture_coordinates_run_through),
         cmocka_unit_test(a_box_has_its_volume_and_whole_textures),
         cmocka_unit_test(a_plane_height_field_has_its_exact_volume),
