@@ -12,7 +12,8 @@ static inline mesh *mesh_of(const vec3 *vertices, size_t vertex_count, const mes
     if (mesh_create(vertex_count, triangle_count, false, false, false, &m, NULL) != STATUS_OK)
         return NULL;
     memcpy(m->vertices, vertices, vertex_count * sizeof *vertices);
-    memcpy(m->triangles, triangles, triangle_count * sizeof *triangles);
+    if (triangle_count)
+        memcpy(m->triangles, triangles, triangle_count * sizeof *triangles);
     return m;
 }
 

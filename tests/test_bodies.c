@@ -359,9 +359,9 @@ static void bad_numbers_are_refused_with_a_remedy(void **state)
         body_icosphere(-1, &m, &why[3]), body_icosphere(BODY_LEVEL_MAX + 1, &m, &why[4]), body_torus(1.0, 1.0, 8, 8, &m, &why[5]),
         body_torus((double)NAN, 0.5, 8, 8, &m, &why[6]), body_torus(1.0, 0.5, 2, 8, &m, &why[7]), body_torus(1.0, 1e-300, 8, 8, &m, &why[8]),
         body_lathe(fine, 3, 2, 0.0, &m, &why[9]), body_lathe(fine, 3, 8, -1.0, &m, &why[10]), body_lathe(twice, 3, 8, 0.0, &m, &why[11]),
-        body_lathe(axis, 2, 8, 0.0, &m, &why[12]), body_lathe(minus, 2, 8, 0.0, &m, &why[13]), body_height_field(heights, 1, 4, 1, 1, 1, &m, &why[14]),
-        body_height_field(heights, 2, 2, 1, 1, 2.0, &m, &why[15]), body_box(vec3_make(1, 0, 1), &m, &why[16]),
-        body_box(vec3_make(1, (double)INFINITY, 1), &m, &why[17])};
+        body_lathe(axis, 2, 8, 0.0, &m, &why[12]), body_lathe(minus, 2, 8, 0.0, &m, &why[13]),
+        body_height_field(heights, 1, 4, 1, 1, 1, &m, &why[14]), body_height_field(heights, 2, 2, 1, 1, 2.0, &m, &why[15]),
+        body_box(vec3_make(1, 0, 1), &m, &why[16]), body_box(vec3_make(1, (double)INFINITY, 1), &m, &why[17])};
     for (size_t k = 0; k < COUNT(got); k++) {
         assert_int_equal(got[k], STATUS_BAD_INPUT);
         assert_true(why[k].what[0] && why[k].remedy[0]);

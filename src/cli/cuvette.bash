@@ -45,7 +45,8 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
         ;;
     --timeline) _cuvette_files 'json' ;;
     --bits) _cuvette_words 8 16 ;;
-    --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane | --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size) COMPREPLY=() ;;
+    --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
+    --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size) COMPREPLY=() ;;
     -r | --results)
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$current")

@@ -49,13 +49,15 @@ status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals
 /* Checks that indices are in range and numbers finite and within MESH_FAR, normalises normals (a zero one becomes the
  * triangle's), finds bounds and whether the mesh is closed: vertices at equal positions are one here (-0 equals 0). Triangles that run the wrong
  * way round in an otherwise closed mesh are turned round, and so is a closed mesh that is inside out (negative volume). A triangle with two
- * equal corners joins nothing and is skipped in this. STATUS_BAD_INPUT names the triangle or vertex. */
+ * equal corners joins nothing and is skipped in this. A connected part of which three quarters agree keeps their direction, so that a
+ * hollow stays one; one more mixed comes to look outwards. Normals that were given stay as they are. Of a surface with one side only the hole is an
+ * edge shared by 2. STATUS_BAD_INPUT names the triangle or vertex. */
 status mesh_finish(mesh *m, diagnostic *why);
 
 void mesh_retain(const mesh *m);
 void mesh_release(const mesh *m); /* NULL is allowed */
 
-/* Normals by vertex where a mesh has none: the sum of the triangles' around each position, weighted by the angle of each corner (Thurmer and
+/* Normals by vertex where a mesh has none (one that has is left alone): the sum of the triangles' around each position, weighted by the angle of each corner (Thurmer and
  * Wuthrich, "Computing vertex normals from polygonal facets", JGT 3(1), 1998). Before mesh_finish or after it, before others see the mesh. */
 status mesh_smooth(mesh *m, diagnostic *why);
 
