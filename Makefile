@@ -67,11 +67,11 @@ sources := $(wildcard src/*.c src/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
 library := $(filter-out src/cli/% src/import/% $(kernels),$(sources))
 program := $(wildcard src/cli/*.c)
-importer := $(wildcard src/import/*.c)
+importer := $(wildcard src/import/*.c) src/base/status.c src/base/number.c
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
 library_objects := $(library:src/%.c=$(build)/obj/%.o) $(kernel_objects)
 program_objects := $(program:src/%.c=$(build)/obj/%.o)
-importer_objects := $(importer:src/%.c=$(build)/obj/%.o)
+importer_objects := $(importer:src/%.c=$(build)/plain/%.o)
 tests := $(wildcard tests/test_*.c)
 test_programs := $(tests:tests/%.c=$(build)/tests/%)
 benches := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/bench_*.c))
@@ -87,10 +87,16 @@ $(build)/cuvette: $(program_objects) $(build)/libcuvette.a
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(all_libs)
 
-# The one program that assimp is linked to: it reads mesh files for the other.
-$(build)/cuvette-import: $(importer_objects) $(build)/libcuvette.a
+# The one program that assimp is linked to: it reads mesh files for the other. Never with sanitizers, which need more addresses than
+# the limit that it sets itself.
+plain_cflags = $(filter-out -fsanitize% -fno-sanitize%,$(all_cflags))
+$(build)/cuvette-import: $(importer_objects)
 	$(call say,link $@)
-	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(import_libs) -lm -pthread
+	$(quiet)$(CC) $(plain_cflags) -o $@ $^ $(filter-out -fsanitize%,$(LDFLAGS)) $(import_libs)
+$(build)/plain/%.o: src/%.c $(build)/flags
+	$(call say,$(CC) $<)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(plain_cflags) -MMD -MP -c -o $@ $<
 
 # Where it looks last; not part of the flags, which a PREFIX for `make install` alone must not change.
 $(build)/obj/scene/mesh_program.o: private all_cflags += -DCUVETTE_LIBEXEC='"$(PREFIX)/libexec/cuvette"'

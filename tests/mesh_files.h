@@ -60,12 +60,15 @@ static void put_text(const char *name, const char *text)
 }
 
 /* Bytes that grow. */
-typedef struct bytes { unsigned char *at; size_t size; } bytes;
+typedef struct bytes { unsigned char *at; size_t size, room; } bytes;
 
 static inline void add(bytes *b, const void *more, size_t size)
 {
-    b->at = realloc(b->at, b->size + size);
-    assert_non_null(b->at);
+    if (b->size + size > b->room) {
+        b->room = (b->size + size) * 2;
+        b->at = realloc(b->at, b->room);
+        assert_non_null(b->at);
+    }
     memcpy(b->at + b->size, more, size);
     b->size += size;
 }

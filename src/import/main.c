@@ -11,18 +11,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-/* Sanitizers reserve terabytes of addresses for themselves. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
-#ifndef SANITIZED
-#define SANITIZED 0
-#endif
-
 static file_kind kind_of(const char *path)
 {
     static const char *const endings[] = {[FILE_OBJ] = ".obj", [FILE_PLY] = ".ply", [FILE_STL] = ".stl",
@@ -90,9 +78,7 @@ static void limit_all(const request *asked)
     limit(RLIMIT_FSIZE, 0);
     limit(RLIMIT_NOFILE, 16);
     limit(RLIMIT_CPU, (rlim_t)asked->seconds);
-    if (!SANITIZED) {
-        limit(RLIMIT_AS, (rlim_t)asked->memory_mib << 20);
-    }
+    limit(RLIMIT_AS, (rlim_t)asked->memory_mib << 20);
 }
 
 static status convert(const request *asked, diagnostic *why)

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/pidfd.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -103,12 +104,13 @@ static int spawn_with_pipes(mesh_child *child, const char *program, char *const 
     }
     child->out = out[0];
     child->err = err[0];
+    child->handle = pidfd_open(child->pid, 0);
     return 0;
 }
 
 status mesh_child_open(mesh_child *child, const char *path, const mesh_limits *limits, diagnostic *why)
 {
-    *child = (mesh_child){.pid = -1, .out = -1, .err = -1};
+    *child = (mesh_child){.pid = -1, .handle = -1, .out = -1, .err = -1};
     char *program = mesh_child_program();
     char memory[32], seconds[32], triangles[32], vertices[32];
     uint64_t mib = limits->memory_bytes >> 20, whole = limits->wall_s < 1e6 ? (uint64_t)limits->wall_s + 1 : 1000000;
@@ -240,7 +242,12 @@ static int reap(mesh_child *child, bool still_wanted)
         }
     }
     /* One that ends just now keeps its own exit status: a process that is exiting takes no more signals. */
-    kill(child->pid, SIGKILL);
+    if (child->handle >= 0) {
+        pidfd_send_signal(child->handle, SIGKILL, NULL, 0);
+    } else {
+        kill(child->pid, SIGKILL);
+    }
+    hang_up(&child->handle);
     hang_up(&child->out);
     hang_up(&child->err);
     int state = -1;
@@ -294,7 +301,7 @@ status mesh_child_close(mesh_child *child, const char *path, const mesh_limits *
                         "reading it took longer than the limit of %g s", limits->wall_s);
     }
     if (state == -1) {
-        return code;
+        return code != STATUS_OK && repeat(child, path, why) ? STATUS_BAD_INPUT : code;
     }
     if (WIFSIGNALED(state)) {
         int signal = WTERMSIG(state);

@@ -10,6 +10,7 @@
 
 typedef struct mesh_child {
     pid_t pid;
+    int handle;          /* of the process, whose number may come to stand for another; -1 where the kernel has none */
     int out, err;        /* our ends of its standard output and error; -1 when at their end */
     double deadline_s;   /* of the monotonic clock */
     char said[2048];     /* the beginning of what it wrote on standard error */
