@@ -109,18 +109,23 @@ ALWAYS_INLINE bool query_clamp(const ray_query *q, const double (*corner)[3], do
     return near <= far;
 }
 
-/* One triangle that the edge functions let through, U, V, W being the weights of its corners. True if the search is over. */
-static inline bool query_consider(ray_query *q, enum query_mode mode, const double (*corner)[3], uint32_t triangle)
+/* One triangle that the edge functions let through. True if the search is over. */
+static __attribute__((noinline)) bool query_consider(ray_query *q, enum query_mode mode, const double (*corner)[3], uint32_t triangle)
 {
     double x[3], y[3], z[3];
+    for (int j = 0; j < 3; j++)
+        z[j] = q->shear_z * corner[q->z][j];
+    /* Wholly behind, or beyond what was found: t lies between the corners', but for the margin. */
+    if (most_of(z) * (1.0 + 2.0 * BOX_MARGIN) < q->t_min || least_of(z) * (1.0 - 2.0 * BOX_MARGIN) > q->t_best || triangle == q->skip)
+        return false;
     for (int j = 0; j < 3; j++) {
         x[j] = corner[q->x][j] - q->shear_x * corner[q->z][j];
         y[j] = corner[q->y][j] - q->shear_y * corner[q->z][j];
-        z[j] = q->shear_z * corner[q->z][j];
     }
+    /* weights of the corners */
     const double u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0], det = u + v + w;
     const int facing = det > 0.0 ? FACING_FRONT : FACING_BACK;
-    if (!(det > 0.0 || det < 0.0) || !(facing & q->wanted) || triangle == q->skip)
+    if (!(det > 0.0 || det < 0.0) || !(facing & q->wanted))
         return false;
     /* A sliver seen edge-on: all three are rounding noise, and only its extent tells whether it is met. */
     if (!(least_of(x) <= 0.0 && most_of(x) >= 0.0 && least_of(y) <= 0.0 && most_of(y) >= 0.0))
@@ -132,13 +137,7 @@ static inline bool query_consider(ray_query *q, enum query_mode mode, const doub
         mesh_hit hit;
         query_hit(q, t, v, w, det, triangle, facing, &hit);
         q->visit(q->context, &hit);
-        return false;
-    }
-    if (mode == QUERY_ANY) {
-        q->best = triangle;
-        return true;
-    }
-    if (t < q->t_best || triangle < q->best) {
+    } else if (t < q->t_best || triangle < q->best) {
         q->t_best = t;
         q->weight_u = v;
         q->weight_v = w;
@@ -146,7 +145,7 @@ static inline bool query_consider(ray_query *q, enum query_mode mode, const doub
         q->best = triangle;
         q->best_facing = facing;
     }
-    return false;
+    return mode == QUERY_ANY;
 }
 
 ALWAYS_INLINE double4 block_load(const void *block, bool single, int corner, int axis)

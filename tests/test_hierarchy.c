@@ -1,0 +1,401 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/isa.h"
+#include "hierarchy_scenes.h"
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+enum { BATCH = 128 };
+
+static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2, &hierarchy_kernels_avx512};
+static const hierarchy_kind own_kinds[] = {HIERARCHY_NONE, HIERARCHY_SPHERE, HIERARCHY_OCTANT, HIERARCHY_BVH};
+
+/* Work is cut where the program was built to be looked at, not to run. */
+static int effort(int full)
+{
+#ifdef __OPTIMIZE__
+    return full;
+#else
+    return full / 20 + 1;
+#endif
+}
+
+static void same_hit(const mesh_hit *a, const mesh_hit *b)
+{
+    assert_int_equal(a->triangle, b->triangle);
+    assert_memory_equal(&a->t, &b->t, sizeof a->t);
+    assert_memory_equal(&a->u, &b->u, sizeof a->u);
+    assert_memory_equal(&a->v, &b->v, sizeof a->v);
+    assert_int_equal(a->facing, b->facing);
+}
+
+/* All hits of a ray in a form that does not depend on their order. */
+typedef struct gathered { uint64_t sum; long count; mesh_hit nearest; } gathered;
+
+static void gather(void *context, const mesh_hit *hit)
+{
+    gathered *g = context;
+    uint64_t bits;
+    memcpy(&bits, &hit->t, sizeof bits);
+    g->sum += (bits ^ (uint64_t)hit->triangle << 32) * 0x9e3779b97f4a7c15u;
+    g->count++;
+    if (g->nearest.triangle == TRIANGLE_NONE || hit->t < g->nearest.t || (hit->t == g->nearest.t && hit->triangle < g->nearest.triangle))
+        g->nearest = *hit;
+}
+
+static void one_scene(uint64_t *seed, int rays)
+{
+    mesh *m = random_mesh(seed, 1 + random_below(seed, random_below(seed, 4) ? 60 : 500));
+    assert_non_null(m);
+    hierarchy *h[COUNT(own_kinds)];
+    for (size_t k = 0; k < COUNT(own_kinds); k++)
+        assert_int_equal(hierarchy_build(m, own_kinds[k], 1, &h[k], NULL), STATUS_OK);
+    for (int first = 0; first < rays; first += BATCH) {
+        mesh_ray r[BATCH];
+        mesh_hit expected[BATCH], hits[BATCH];
+        bool shadowed[BATCH];
+        for (int i = 0; i < BATCH; i++)
+            r[i] = random_ray(m, seed);
+        kernels[isa_best()]->nearest_batch(h[0], r, BATCH, expected);
+        const gathered nothing = {.nearest = {.triangle = TRIANGLE_NONE}};
+        gathered all[2] = {nothing, nothing};
+        kernels[isa_best()]->all(h[0], &r[0], gather, &all[0]);
+        same_hit(&all[0].nearest, &expected[0]);
+        for (size_t k = 1; k < COUNT(own_kinds); k++) {
+            const hierarchy_kernels *kernel = kernels[(unsigned)(first / BATCH) % (unsigned)(isa_best() + 1)];
+            for (int i = 0; i < BATCH; i++) {
+                kernel->nearest(h[k], &r[i], &hits[i]);
+                same_hit(&hits[i], &expected[i]);
+                assert_int_equal(kernel->any(h[k], &r[i]), expected[i].triangle != TRIANGLE_NONE);
+            }
+            kernel->nearest_batch(h[k], r, BATCH, hits);
+            kernel->any_batch(h[k], r, BATCH, shadowed);
+            for (int i = 0; i < BATCH; i++) {
+                same_hit(&hits[i], &expected[i]);
+                assert_int_equal(shadowed[i], expected[i].triangle != TRIANGLE_NONE);
+            }
+            all[1] = nothing;
+            kernel->all(h[k], &r[0], gather, &all[1]);
+            assert_int_equal(all[1].count, all[0].count);
+            assert_true(all[1].sum == all[0].sum);
+        }
+    }
+    for (size_t k = 0; k < COUNT(own_kinds); k++)
+        hierarchy_destroy(h[k]);
+    mesh_release(m);
+}
+
+static void every_hierarchy_gives_the_same_hits(void **state)
+{
+    (void)state;
+    uint64_t seed = 4;
+    for (int scene = 0; scene < effort(200); scene++)
+        one_scene(&seed, 5000);
+}
+
+static void instruction_sets_give_the_same_hits(void **state)
+{
+    (void)state;
+    uint64_t seed = 5;
+    for (int scene = 0; scene < 10; scene++) {
+        mesh *m = random_mesh(&seed, 200);
+        assert_non_null(m);
+        for (size_t k = 0; k < COUNT(own_kinds); k++) {
+            hierarchy *h = NULL;
+            assert_int_equal(hierarchy_build(m, own_kinds[k], 1, &h, NULL), STATUS_OK);
+            for (int i = 0; i < effort(2000); i++) {
+                const mesh_ray r = random_ray(m, &seed);
+                mesh_hit one, other;
+                kernels[ISA_SSE2]->nearest(h, &r, &one);
+                for (int level = ISA_AVX2; level <= (int)isa_best(); level++) {
+                    kernels[level]->nearest(h, &r, &other);
+                    same_hit(&one, &other);
+                }
+            }
+            hierarchy_destroy(h);
+        }
+        mesh_release(m);
+    }
+}
+
+/* From inside, at corners, at points of edges and anywhere: a ray that got out would be a hole. */
+static void no_ray_slips_out_of(mesh *m, int rays)
+{
+    uint64_t seed = 6;
+    hierarchy *h = NULL;
+    assert_true(m->closed);
+    assert_int_equal(hierarchy_build(m, HIERARCHY_BVH, 1, &h, NULL), STATUS_OK);
+    for (int first = 0; first < rays; first += BATCH) {
+        mesh_ray r[BATCH];
+        bool hit[BATCH];
+        for (int i = 0; i < BATCH; i++) {
+            const vec3 from = random_point(&seed, 0.3);
+            r[i] = (mesh_ray){from, random_below(&seed, 4) ? vec3_sub(random_target(m, &seed), from) : random_direction(&seed), 0.0, (double)INFINITY,
+                              TRIANGLE_NONE, FACING_BACK};
+        }
+        kernels[isa_best()]->any_batch(h, r, BATCH, hit);
+        for (int i = 0; i < BATCH; i++)
+            assert_true(hit[i]);
+    }
+    hierarchy_destroy(h);
+    mesh_release(m);
+}
+
+/* The icosphere with every corner moved in or out by up to `bumps`, in doubles or as floats. */
+static mesh *bumpy_sphere(int level, double bumps, bool single)
+{
+    uint64_t seed = 7;
+    mesh *m = NULL, *round = NULL;
+    assert_int_equal(body_icosphere(level, &round, NULL), STATUS_OK);
+    assert_int_equal(mesh_create(round->vertex_count, round->triangle_count, false, false, false, &m, NULL), STATUS_OK);
+    for (size_t i = 0; i < m->vertex_count; i++) {
+        const vec3 v = vec3_scale(round->vertices[i], random_real(&seed, 1.0 - bumps, 1.0 + bumps));
+        m->vertices[i] = single ? vec3_make((double)(float)v.x, (double)(float)v.y, (double)(float)v.z) : v;
+    }
+    memcpy(m->triangles, round->triangles, m->triangle_count * sizeof *m->triangles);
+    mesh_release(round);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_int_equal(m->single, single);
+    return m;
+}
+
+static void no_ray_slips_through_a_closed_mesh(void **state)
+{
+    (void)state;
+    no_ray_slips_out_of(bumpy_sphere(3, 0.0, false), effort(4000000));
+    no_ray_slips_out_of(bumpy_sphere(3, 0.0, true), effort(3000000));
+    no_ray_slips_out_of(bumpy_sphere(4, 0.1, false), effort(3000000));
+}
+
+/* A triangle whose hits are known: in the plane z = 0, its front towards +z; from (0.25, 0.5, 2) downwards it is met at t = 2 with
+ * weights 0.25 and 0.5 of the second and third corner. */
+static const vec3 known_corners[3] = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+static const mesh_ray known_ray = {{0.25, 0.5, 2.0}, {0.0, 0.0, -1.0}, 0.0, (double)INFINITY, TRIANGLE_NONE, FACING_ANY};
+
+static void with_known_triangle(void (*check)(const hierarchy *h, const hierarchy_kernels *kernel))
+{
+    mesh *m = mesh_of_corners(known_corners, 1);
+    assert_non_null(m);
+    for (size_t k = 0; k < COUNT(own_kinds); k++) {
+        hierarchy *h = NULL;
+        assert_int_equal(hierarchy_build(m, own_kinds[k], 1, &h, NULL), STATUS_OK);
+        for (int level = 0; level <= (int)isa_best(); level++)
+            check(h, kernels[level]);
+        hierarchy_destroy(h);
+    }
+    mesh_release(m);
+}
+
+static void check_known_hit(const hierarchy *h, const hierarchy_kernels *kernel)
+{
+    mesh_hit hit;
+    mesh_ray r = known_ray;
+    kernel->nearest(h, &r, &hit);
+    assert_int_equal(hit.triangle, 0);
+    assert_true(hit.t == 2.0 && hit.u == 0.25 && hit.v == 0.5);
+    assert_int_equal(hit.facing, FACING_FRONT);
+    r.direction = vec3_make(0.0, 0.0, -0.125); /* t is in units of the direction */
+    kernel->nearest(h, &r, &hit);
+    assert_true(hit.t == 16.0 && hit.u == 0.25 && hit.v == 0.5);
+    r.origin.z = -2.0; /* from behind */
+    r.direction = vec3_make(0.0, 0.0, 4.0);
+    kernel->nearest(h, &r, &hit);
+    assert_true(hit.t == 0.5 && hit.u == 0.25 && hit.v == 0.5);
+    assert_int_equal(hit.facing, FACING_BACK);
+    r = (mesh_ray){{1.25, 1.5, 2.0}, {-0.5, -0.5, -1.0}, 0.0, (double)INFINITY, TRIANGLE_NONE, FACING_ANY}; /* aslant */
+    kernel->nearest(h, &r, &hit);
+    assert_true(hit.t == 2.0 && hit.u == 0.25 && hit.v == 0.5);
+}
+
+static void a_known_triangle_is_hit_where_it_is(void **state)
+{
+    (void)state;
+    with_known_triangle(check_known_hit);
+}
+
+static bool known_is_hit(const hierarchy *h, const hierarchy_kernels *kernel, mesh_ray r)
+{
+    mesh_hit hit;
+    kernel->nearest(h, &r, &hit);
+    assert_int_equal(kernel->any(h, &r), hit.triangle == 0);
+    return hit.triangle == 0;
+}
+
+static void check_limits(const hierarchy *h, const hierarchy_kernels *kernel)
+{
+    mesh_ray r = known_ray;
+    r.t_max = 2.0;
+    assert_true(known_is_hit(h, kernel, r)); /* both ends belong to it */
+    r.t_min = 2.0;
+    assert_true(known_is_hit(h, kernel, r));
+    r.t_max = 3.0;
+    assert_true(known_is_hit(h, kernel, r));
+    r.t_min = nextafter(2.0, 3.0);
+    assert_false(known_is_hit(h, kernel, r));
+    r.t_min = 0.0;
+    r.t_max = nextafter(2.0, 1.0);
+    assert_false(known_is_hit(h, kernel, r));
+    r = known_ray;
+    r.direction.z = 1.0; /* away */
+    assert_false(known_is_hit(h, kernel, r));
+    r = known_ray;
+    r.origin.z = 0.0; /* from its plane */
+    assert_true(known_is_hit(h, kernel, r));
+}
+
+static void both_limits_belong_to_the_interval(void **state)
+{
+    (void)state;
+    with_known_triangle(check_limits);
+}
+
+static void check_wishes(const hierarchy *h, const hierarchy_kernels *kernel)
+{
+    mesh_ray r = known_ray;
+    r.skip = 0;
+    assert_false(known_is_hit(h, kernel, r));
+    r.skip = 1;
+    assert_true(known_is_hit(h, kernel, r));
+    r.facing = FACING_FRONT;
+    assert_true(known_is_hit(h, kernel, r));
+    r.facing = FACING_BACK;
+    assert_false(known_is_hit(h, kernel, r));
+    r.origin.z = -2.0;
+    r.direction.z = 1.0;
+    assert_true(known_is_hit(h, kernel, r));
+    r.facing = FACING_FRONT;
+    assert_false(known_is_hit(h, kernel, r));
+}
+
+static void a_triangle_can_be_skipped_and_a_side_be_chosen(void **state)
+{
+    (void)state;
+    with_known_triangle(check_wishes);
+}
+
+static void check_edges(const hierarchy *h, const hierarchy_kernels *kernel)
+{
+    static const struct { double x, y; bool in; } places[] = {{0.0, 0.0, true}, {1.0, 0.0, true}, {0.0, 1.0, true}, {0.5, 0.0, true}, {0.0, 0.5, true},
+        {0.5, 0.5, true}, {-1e-16, 0.5, false}, {0.5, -1e-16, false}, {0.5, 0.5000000000000001, false}, {1.0000000000000002, 0.0, false}};
+    for (size_t i = 0; i < COUNT(places); i++) {
+        mesh_ray r = known_ray;
+        r.origin.x = places[i].x;
+        r.origin.y = places[i].y;
+        assert_int_equal(known_is_hit(h, kernel, r), places[i].in);
+    }
+}
+
+static void edges_and_corners_belong_to_a_triangle(void **state)
+{
+    (void)state;
+    with_known_triangle(check_edges);
+}
+
+static void check_nonsense(const hierarchy *h, const hierarchy_kernels *kernel)
+{
+    const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1e300};
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        mesh_ray r = known_ray;
+        r.origin.x = bad[i];
+        assert_false(known_is_hit(h, kernel, r));
+        r = known_ray;
+        r.direction.z = bad[i];
+        assert_true(i == 3 || !known_is_hit(h, kernel, r));
+    }
+    mesh_ray r = known_ray;
+    r.t_max = (double)NAN;
+    assert_false(known_is_hit(h, kernel, r));
+    r = known_ray;
+    r.direction.z = 0.0;
+    assert_false(known_is_hit(h, kernel, r));
+    r = known_ray;
+    r.direction.z = -1e-200; /* tiny, but a direction */
+    assert_true(known_is_hit(h, kernel, r));
+}
+
+static void no_ray_of_nonsense_hits(void **state)
+{
+    (void)state;
+    with_known_triangle(check_nonsense);
+}
+
+static void of_equally_near_triangles_the_lower_number_is_hit(void **state)
+{
+    (void)state;
+    enum { COPIES = 100 };
+    vec3 corners[3 * COPIES];
+    for (int i = 0; i < COPIES; i++)
+        memcpy(&corners[3 * i], known_corners, sizeof known_corners);
+    mesh *m = mesh_of_corners(corners, COPIES);
+    assert_non_null(m);
+    for (size_t k = 0; k < COUNT(own_kinds); k++) {
+        hierarchy *h = NULL;
+        assert_int_equal(hierarchy_build(m, own_kinds[k], 1, &h, NULL), STATUS_OK);
+        mesh_ray r = known_ray;
+        mesh_hit hit;
+        kernels[isa_best()]->nearest(h, &r, &hit);
+        assert_int_equal(hit.triangle, 0);
+        r.skip = 0;
+        kernels[isa_best()]->nearest(h, &r, &hit);
+        assert_int_equal(hit.triangle, 1);
+        gathered all = {.nearest = {.triangle = TRIANGLE_NONE}};
+        kernels[isa_best()]->all(h, &known_ray, gather, &all);
+        assert_int_equal(all.count, COPIES); /* each once */
+        hierarchy_destroy(h);
+    }
+    mesh_release(m);
+}
+
+static void a_mesh_of_no_triangles_is_never_hit(void **state)
+{
+    (void)state;
+    mesh *m = mesh_of_corners(known_corners, 0);
+    assert_non_null(m);
+    for (size_t k = 0; k < COUNT(own_kinds); k++) {
+        hierarchy *h = NULL;
+        assert_int_equal(hierarchy_build(m, own_kinds[k], 1, &h, NULL), STATUS_OK);
+        assert_false(known_is_hit(h, kernels[isa_best()], known_ray));
+        hierarchy_destroy(h);
+    }
+    mesh_release(m);
+}
+
+static void a_mesh_keeps_its_hierarchies(void **state)
+{
+    (void)state;
+    mesh *m = mesh_of_corners(known_corners, 1);
+    assert_non_null(m);
+    for (size_t k = 0; k < COUNT(own_kinds); k++) {
+        const hierarchy *one = NULL, *other = NULL;
+        assert_int_equal(hierarchy_of_mesh(m, own_kinds[k], 1, &one, NULL), STATUS_OK);
+        assert_int_equal(hierarchy_of_mesh(m, own_kinds[k], 1, &other, NULL), STATUS_OK);
+        assert_non_null(one);
+        assert_ptr_equal(one, other);
+        assert_true(hierarchy_describe(one).bytes > 0);
+    }
+    assert_int_equal(hierarchy_of_mesh(m, HIERARCHY_KIND_COUNT, 1, &(const hierarchy *){NULL}, NULL), STATUS_BAD_INPUT);
+    mesh_release(m); /* and ends them: the sanitizer would find them */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_known_triangle_is_hit_where_it_is),
+        cmocka_unit_test(both_limits_belong_to_the_interval),
+        cmocka_unit_test(a_triangle_can_be_skipped_and_a_side_be_chosen),
+        cmocka_unit_test(edges_and_corners_belong_to_a_triangle),
+        cmocka_unit_test(no_ray_of_nonsense_hits),
+        cmocka_unit_test(of_equally_near_triangles_the_lower_number_is_hit),
+        cmocka_unit_test(a_mesh_of_no_triangles_is_never_hit),
+        cmocka_unit_test(a_mesh_keeps_its_hierarchies),
+        cmocka_unit_test(instruction_sets_give_the_same_hits),
+        cmocka_unit_test(every_hierarchy_gives_the_same_hits),
+        cmocka_unit_test(no_ray_slips_through_a_closed_mesh),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
