@@ -2,6 +2,7 @@
 #ifndef CUVETTE_TESTS_HIERARCHY_SCENES_H
 #define CUVETTE_TESTS_HIERARCHY_SCENES_H
 
+#include "base/single.h"
 #include "geometry/bodies.h"
 #include "geometry/hierarchy.h"
 #include "random_stream.h"
@@ -27,7 +28,7 @@ static inline mesh *mesh_of_corners(const vec3 *corners, size_t triangles)
 static inline double random_coordinate(uint64_t *seed, int style, double reach)
 {
     const double v = random_real(seed, -reach, reach);
-    return style == 0 ? floor(4.0 * v / reach) * 0.25 * reach : style == 1 ? (double)(float)v : v;
+    return style == 0 ? floor(4.0 * v / reach) * 0.25 * reach : style == 1 ? single_round(v) : v;
 }
 
 /* Triangles of all sorts: small and large, slivers, of no area, twice the same, in planes across an axis. */

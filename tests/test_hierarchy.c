@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "base/isa.h"
+#include "base/single.h"
 #include "hierarchy_scenes.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
@@ -155,7 +156,7 @@ static mesh *bumpy_sphere(int level, double bumps, bool single)
     assert_int_equal(mesh_create(round->vertex_count, round->triangle_count, false, false, false, &m, NULL), STATUS_OK);
     for (size_t i = 0; i < m->vertex_count; i++) {
         const vec3 v = vec3_scale(round->vertices[i], random_real(&seed, 1.0 - bumps, 1.0 + bumps));
-        m->vertices[i] = single ? vec3_make((double)(float)v.x, (double)(float)v.y, (double)(float)v.z) : v;
+        m->vertices[i] = single ? vec3_make(single_round(v.x), single_round(v.y), single_round(v.z)) : v;
     }
     memcpy(m->triangles, round->triangles, m->triangle_count * sizeof *m->triangles);
     mesh_release(round);

@@ -2,6 +2,7 @@
  * divides them among eight octants by their own centres, but those larger than a quarter of the shell's radius stay with it. */
 #include "geometry/hierarchy_private.h"
 
+#include "base/single.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,14 +56,17 @@ static void shell_of(const spheres_build *b, size_t first, size_t count, sphere_
             all.high[k] = fmax(all.high[k], one.high[k]);
         }
     }
-    for (int k = 0; k < 3; k++)
-        s->center[k] = (float)(0.5 * (all.low[k] + all.high[k]));
+    double center[3];
+    for (int k = 0; k < 3; k++) {
+        center[k] = single_round(0.5 * (all.low[k] + all.high[k]));
+        s->center[k] = (float)center[k];
+    }
     double most = 0.0;
     for (size_t i = first; i < first + count; i++) {
         box_of_triangle(b->h->of, b->order[i], &one);
         double square = 0.0;
         for (int k = 0; k < 3; k++) {
-            const double reach = fmax(one.high[k] - (double)s->center[k], (double)s->center[k] - one.low[k]);
+            const double reach = fmax(one.high[k] - center[k], center[k] - one.low[k]);
             square += reach * reach;
         }
         most = fmax(most, square);
