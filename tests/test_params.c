@@ -97,7 +97,7 @@ static void ranges_read_like_a_manual(void **state)
     } cases[] = {
         {PARAM_RENDER, "width", "integer 1..65536"},
         {PARAM_RENDER, "beyond", "one of: sky, black"},
-        {PARAM_RENDER, "samples", "one of: 1, 4"},
+        {PARAM_RENDER, "samples", "one of: 1, 4, 9, 16, 25, 36, 49, 64"},
         {PARAM_RENDER, "min_weight", "number 0..1"},
         {PARAM_CAMERA, "fov_deg", "number > 0, at most 179"},
         {PARAM_MATERIAL, "color", "3 numbers, each 0..1"},
@@ -351,7 +351,7 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
         {"render.depth=", "render.depth has no value; give an integer 0..64"},
         {"render.depth=65", "render.depth: 65 is out of range; give an integer 0..64"},
         {"render.depth=4.0", "render.depth: '4.0' is not an integer; give an integer 0..64"},
-        {"render.samples=3", "render.samples: 3 is out of range; give one of: 1, 4"},
+        {"render.samples=3", "render.samples: 3 is out of range; give one of: 1, 4, 9, 16, 25, 36, 49, 64"},
         {"render.schedule=dinamic",
          "render.schedule: no choice 'dinamic'; did you mean 'dynamic'? It is one of: columns, "
          "rows, tiles, dynamic"},

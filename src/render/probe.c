@@ -93,7 +93,7 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
     status code = begin(p, tree, why);
     if (code != STATUS_OK)
         return code;
-    ray_record roots[4];
+    ray_record roots[SCENE_SAMPLES_MAX];
     const int count = tracer_camera_rays(p->rays, x, y);
     for (int i = 0; i < count; i++)
         probe_take(p, 0, i, &roots[i]);

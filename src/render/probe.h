@@ -76,7 +76,7 @@ void probe_destroy(probe *p);
  * spectral that is so from the start. Its pixels are then not those of an rgb film. */
 void probe_one_wavelength(probe *p);
 
-/* The tree of a pixel; with four samples a pixel it has four roots, linked by next. STATUS_BAD_INPUT outside the picture, and
+/* The tree of a pixel; with more samples a pixel it has as many roots, linked by next. STATUS_BAD_INPUT outside the picture, and
  * for a tree of more than PROBE_NODES_MAX rays. */
 enum { PROBE_NODES_MAX = 2000000 };
 status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why);

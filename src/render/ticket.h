@@ -1,8 +1,8 @@
 /* What a ray knows of where it belongs, in one number: the pixel, and for films of more than one sample a pixel (spectral ones,
  * those of random paths) the sample too, and of spectral ones the wavelength. An rgb film of Whitted's rays has the pixel alone.
  *     bits 0..27 the pixel, fewer than SCENE_PIXELS_MAX
- *          28..47 the sample: at most 1048576 paths, 4 x 65536 wavelengths
- *          48..59 the wavelength's number (render/spectra.h)
+ *          28..49 the sample: at most 1048576 paths, 64 x 65536 wavelengths
+ *          50..61 the wavelength's number (render/spectra.h)
  *          62     see TICKET_SEES_LIGHTS */
 #ifndef CUVETTE_RENDER_TICKET_H
 #define CUVETTE_RENDER_TICKET_H
@@ -19,7 +19,7 @@ static inline int64_t ticket_make(int64_t pixel, int64_t sample)
 
 static inline int64_t ticket_with_wavelength(int64_t ticket, int64_t number)
 {
-    return ticket | number << 48;
+    return ticket | number << 50;
 }
 
 static inline int64_t ticket_pixel(int64_t ticket)
@@ -29,12 +29,12 @@ static inline int64_t ticket_pixel(int64_t ticket)
 
 static inline int64_t ticket_sample(int64_t ticket)
 {
-    return ticket >> 28 & 0xfffff;
+    return ticket >> 28 & 0x3fffff;
 }
 
 static inline int64_t ticket_wavelength(int64_t ticket)
 {
-    return ticket >> 48 & 0xfff;
+    return ticket >> 50 & 0xfff;
 }
 
 #endif

@@ -231,11 +231,22 @@ static int64_t rays_a_pixel(const render_settings *r)
     return r->spectrum == SPECTRUM_SPECTRAL ? r->samples * r->wavelengths : r->samples;
 }
 
-/* The point of a pixel that a ray goes through: its centre, or one of (+-1/4, +-1/4) from it. */
-static int64_t point_of(const render_settings *r, int64_t ray)
+/* The point of a pixel that a ray goes through: the middle of one of its k x k cells, line by line. */
+static int64_t point_of(const render_settings *r, int64_t cells, int64_t ray)
 {
     const bool wavelengths_inside = r->integrator != INTEGRATOR_PATH && r->spectrum == SPECTRUM_SPECTRAL;
-    return wavelengths_inside ? ray / r->wavelengths : ray % r->samples;
+    return wavelengths_inside ? ray / r->wavelengths : ray % (cells * cells);
+}
+
+/* k: how many cells a pixel has across. Fewer where there are fewer paths than samples: the first lines of cells alone would move
+ * the picture. */
+static int64_t cells_across(const render_settings *r)
+{
+    const int64_t most = r->integrator == INTEGRATOR_PATH && r->paths < r->samples ? r->paths : r->samples;
+    int64_t k = 1;
+    while ((k + 1) * (k + 1) <= most)
+        k++;
+    return k;
 }
 
 /* Rays first .. first + count - 1 of a row of pixels from x0 on. */
@@ -247,10 +258,11 @@ static void put_camera_rays_in_line(tracer *t, int y, int x0, int64_t first, int
     double u[ROW], v[ROW];
     const double across = 2.0 * p->view.half_width / (double)r->width, down = 2.0 * p->view.half_height / (double)r->height;
     const int64_t each = rays_a_pixel(r), flag = r->integrator == INTEGRATOR_PATH ? TICKET_SEES_LIGHTS : 0;
+    const int64_t cells = cells_across(r);
     const int at = q->count;
     for (int k = 0; k < count; k++) {
-        const int64_t x = x0 + (first + k) / each, ray = (first + k) % each, s = point_of(r, ray);
-        double sx = r->samples == 1 ? 0.5 : s % 2 ? 0.75 : 0.25, sy = r->samples == 1 ? 0.5 : s / 2 ? 0.75 : 0.25;
+        const int64_t x = x0 + (first + k) / each, ray = (first + k) % each, s = point_of(r, cells, ray);
+        const double sx = ((double)(s % cells) + 0.5) / (double)cells, sy = ((double)(s / cells) + 0.5) / (double)cells;
         u[k] = ((double)x + sx) * across - p->view.half_width;
         v[k] = p->view.half_height - (y + sy) * down;
         const int i = at + k;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const char *const off_on[] = {"off", "on", NULL};
-static const char *const sample_counts[] = {"1", "4", NULL};
+static const char *const sample_counts[] = {"1", "4", "9", "16", "25", "36", "49", "64", NULL};
 static const char *const weights_words[] = {"fresnel", "constant", NULL};
 static const char *const beyond_words[] = {"sky", "black", NULL};
 static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
@@ -98,7 +98,8 @@ static const param table[] = {
     INTEGER(PARAM_RENDER, render_settings, width, "px", 1, 65536, "800", "width of the picture"),
     INTEGER(PARAM_RENDER, render_settings, height, "px", 1, 65536, "600", "height of the picture"),
     INTEGER(PARAM_RENDER, render_settings, depth, "", 0, 64, "4", "recursion depth: 0 follows camera rays only"),
-    {PARAM_RENDER, "samples", PARAM_INT, "", 1, 4, false, "1", "camera rays a pixel", sample_counts, ON_ALL,
+    {PARAM_RENDER, "samples", PARAM_INT, "", 1, SCENE_SAMPLES_MAX, false, "1",
+     "camera rays a pixel, through the middles of as many equal cells; 1 for no antialiasing", sample_counts, ON_ALL,
      .offset = offsetof(render_settings, samples)},
     CHOICE(PARAM_RENDER, render_settings, integrator, integrator_words, "whitted",
            "how light is followed: to the first surface, through reflections and refractions, along random paths, or not: a depth buffer"),

@@ -36,7 +36,7 @@ enum { SCENE_NAME_MAX = 63 };
 typedef struct render_settings {
     int64_t width, height;  /* pixels */
     int64_t depth;          /* recursion depth; 0 = camera rays only */
-    int64_t samples;        /* 1 or 4 a pixel */
+    int64_t samples;        /* a pixel: a whole square, at most SCENE_SAMPLES_MAX */
     int64_t integrator;     /* integrator_rule */
     int64_t lighting;       /* lighting_rule */
     int64_t weights;        /* weights_rule */
@@ -168,6 +168,7 @@ typedef struct scene {
 
 /* Limits of a scene. Primitives are the convex pieces that solids are made of: a cup is two, the others are one. */
 enum { SCENE_LIGHTS_MAX = 64, SCENE_MATERIALS_MAX = 256, SCENE_PRIMITIVES_MAX = 64, SCENE_MESHES_MAX = 64, SCENE_TEXTURES_MAX = 64 };
+enum { SCENE_SAMPLES_MAX = 64 };
 #define SCENE_SKY_MAX 65536.0F         /* of a sky picture's values: under the film's limit, and all that a half float holds */
 #define SCENE_PIXELS_MAX 268435456 /* 2^28 */
 

@@ -1,0 +1,98 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "render/ticket.h"
+#include "render_fixture.h"
+
+/* Samples of a pixel: the middles of k x k cells. One pixel sees, at z = 1, the square from -1 to 1, and in it a white wall that
+ * ends at an edge: its share is that of the cells whose middle it covers. */
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+static const char wall[] = "render: {width: 1, height: 1, depth: 0}\n"
+                           "camera: {position: [0, 0, 0], yaw_deg: 0, fov_deg: 90}\n"
+                           "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\n"
+                           "solids: {wall: {shape: box, size: [20, 20, 1e-6], ambient: 1}}\n";
+
+/* Of k cells from -1 to 1, those whose middle lies below the edge. */
+static int covered(int k, double edge)
+{
+    int count = 0;
+    for (int i = 0; i < k; i++)
+        count += (2.0 * i + 1.0) / k - 1.0 < edge;
+    return count;
+}
+
+static void an_edge_covers_the_cells_whose_middle_it_covers(void **state)
+{
+    (void)state;
+    static const double edges[] = {-0.95, -0.6, -0.3, 0.05, 0.31, 0.55, 0.9, 1.1};
+    scene *s = scene_from(wall);
+    for (int k = 1; k <= 8; k++) {
+        s->render.samples = (int64_t)k * k;
+        for (size_t i = 0; i < sizeof edges / sizeof *edges; i++) {
+            const double wanted = (double)covered(k, edges[i]) / k, rounding = k * k * 0x1p-44;
+            s->solids[0].shape.position = vec3_make(edges[i] - 10.0, 0.0, 1.0);
+            assert_near(look(s).x, wanted, rounding);
+            s->solids[0].shape.position = vec3_make(0.0, edges[i] - 10.0, 1.0);
+            assert_near(look(s).y, wanted, rounding);
+        }
+    }
+    scene_destroy(s);
+}
+
+/* A corner: the cells are told apart in both directions at once. */
+static void a_corner_covers_a_rectangle_of_cells(void **state)
+{
+    (void)state;
+    scene *s = scene_from(wall);
+    s->solids[0].shape.position = vec3_make(-0.45 - 10.0, 0.2 - 10.0, 1.0);
+    for (int k = 1; k <= 8; k++) {
+        s->render.samples = (int64_t)k * k;
+        assert_near(look(s).x, (double)(covered(k, -0.45) * covered(k, 0.2)) / (k * k), k * k * 0x1p-44);
+    }
+    scene_destroy(s);
+}
+
+/* Wavelengths and random paths go through the same points; sixteen paths are too few for 64 points, and take 16. */
+static void other_films_take_the_same_points(void **state)
+{
+    (void)state;
+    scene *s = scene_from(wall);
+    set_all(s, "render.samples=64 render.spectrum=spectral render.wavelengths=8");
+    s->solids[0].shape.position = vec3_make(0.05 - 10.0, 0.0, 1.0);
+    assert_near(look(s).y, 4.0 / 8.0, 1e-9);
+    s->solids[0].shape.position = vec3_make(0.2 - 10.0, 0.0, 1.0); /* the fifth column's middle is 0.125 */
+    assert_near(look(s).y, 5.0 / 8.0, 1e-9);
+    /* here the wall is black before a white sky */
+    set_all(s, "render.spectrum=rgb render.integrator=path render.paths=64 background.color=1,1,1");
+    assert_near(look(s).y, 3.0 / 8.0, 1e-9);
+    s->render.paths = 16; /* middles -0.75, -0.25, 0.25, 0.75 */
+    assert_near(look(s).y, 2.0 / 4.0, 1e-9);
+    scene_destroy(s);
+}
+
+/* The most samples with the most wavelengths fit beside the largest pixel and wavelength. */
+static void a_ticket_holds_the_last_sample_of_the_last_pixel(void **state)
+{
+    (void)state;
+    const int64_t pixel = SCENE_PIXELS_MAX - 1, sample = (int64_t)SCENE_SAMPLES_MAX * 65536 - 1, number = 3999;
+    const int64_t ticket = ticket_with_wavelength(ticket_make(pixel, sample), number) | TICKET_SEES_LIGHTS;
+    assert_true(ticket > 0);
+    assert_true(ticket_pixel(ticket) == pixel && ticket_sample(ticket) == sample && ticket_wavelength(ticket) == number);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_edge_covers_the_cells_whose_middle_it_covers),
+        cmocka_unit_test(a_corner_covers_a_rectangle_of_cells),
+        cmocka_unit_test(other_films_take_the_same_points),
+        cmocka_unit_test(a_ticket_holds_the_last_sample_of_the_last_pixel),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
