@@ -18,10 +18,12 @@
 /* Below this depth every path goes on; after it faint ones end by chance. */
 enum { ROULETTE_DEPTH = 3 };
 
-/* Radiance of a light's sphere for a colour of 1. */
-static double sphere_radiance(const light *l)
+/* Radiance that a ray along a unit vector meets on a light's sphere, for a colour of 1. Of a cone each point of the sphere shines
+ * into the cone alone, so that far away it is the cone of a point. */
+static double radiance_along(const plan *p, int lamp, vec3 direction)
 {
-    return l->reach * l->reach / (l->radius * l->radius);
+    const light *l = &p->lights[lamp];
+    return l->reach * l->reach / (l->radius * l->radius) * light_share(l, &p->cones[lamp], vec3_scale(direction, -1.0));
 }
 
 static vec3 light_color(const tracer *t, int lamp, int64_t ticket)
@@ -84,9 +86,9 @@ void path_meet_lights(tracer *t, const ray_queue *q, int first, int count)
     }
 }
 
-void path_expose_light(tracer *t, int64_t ticket, int lamp, double wr, double wg, double wb)
+void path_expose_light(tracer *t, int64_t ticket, int lamp, vec3 direction, double wr, double wg, double wb)
 {
-    const vec3 l = vec3_scale(light_color(t, lamp, ticket), sphere_radiance(&t->target.scene->lights[lamp]));
+    const vec3 l = vec3_scale(light_color(t, lamp, ticket), radiance_along(t->target.scene, lamp, direction));
     shading_expose(t, ticket, wr * l.x, wg * l.y, wb * l.z);
 }
 
@@ -116,15 +118,15 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
     const random_words drawn = draw(p->render.seed, g->ticket[k], depth, DRAW_LIGHT + lamp);
     const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
     const vec3 to = direction_about(vec3_scale(way, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
-    const double n_l = vec3_dot(n, to), within = l->radius * l->radius - distance2 * sine * sine;
-    if (!(n_l > 0.0))
+    const double n_l = vec3_dot(n, to), radiance = radiance_along(p, lamp, to), within = l->radius * l->radius - distance2 * sine * sine;
+    if (!(n_l > 0.0) || radiance == 0.0)
         return;
     const double reach = sqrt(distance2) * cosine - sqrt(within > 0.0 ? within : 0.0);
     /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)); Phong's highlight by the same light. */
     const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
     const double r_v = 2.0 * n_l * g->points.cos_i[k] + vec3_dot(d, to);
     const double shine = opaque && m->specular > 0.0 && r_v > 0.0 ? m->specular * elementary_pow(r_v < 1.0 ? r_v : 1.0, m->shininess) : 0.0;
-    const double seen = 2.0 * cap * sphere_radiance(l), diffuse = m->diffuse * n_l;
+    const double seen = 2.0 * cap * radiance, diffuse = m->diffuse * n_l;
     const vec3 color = vec3_scale(light_color(t, lamp, g->ticket[k]), seen);
     ray_queue *q = &t->shadows;
     const int at = q->count++;

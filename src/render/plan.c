@@ -147,6 +147,17 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
     return code;
 }
 
+static status aim_cones(const scene *s, plan *p, diagnostic *why)
+{
+    p->cones = calloc(s->light_count + 1, sizeof *p->cones);
+    if (!p->cones)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    for (size_t i = 0; i < s->light_count; i++)
+        if (s->lights[i].kind != LIGHT_POINT)
+            p->cones[i] = light_cone_of(&s->lights[i]);
+    return STATUS_OK;
+}
+
 /* By solid; the last one is that of the surroundings. */
 static status laws_of(const scene *s, index_law *laws, diagnostic *why)
 {
@@ -193,6 +204,8 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         code = arrange(s, laws, p, why);
     if (code == STATUS_OK)
         code = fill_ranks(s, laws, p, why);
+    if (code == STATUS_OK)
+        code = aim_cones(s, p, why);
     free(laws);
     if (code != STATUS_OK) {
         plan_destroy(p);
@@ -226,6 +239,7 @@ void plan_destroy(plan *p)
     free(p->ior);
     free(p->laws);
     free(p->absorption);
+    free(p->cones);
     spectra_destroy(p->spectral);
     free(p);
 }

@@ -6,6 +6,7 @@
 #include "geometry/arrangement.h"
 #include "geometry/hierarchy.h"
 #include "render/mesh_report.h"
+#include "render/light_cone.h"
 #include "render/spectra.h"
 #include "scene/medium.h"
 #include "scene/scene.h"
@@ -43,6 +44,7 @@ typedef struct plan {
     bool solid_shadows;         /* every solid blocks a light: it is asked for, or what comes through is found by random paths */
     const background *sky;
     const light *lights;
+    light_cone *cones;          /* by light; of a point light it means nothing */
     int light_count;
 } plan;
 

@@ -188,11 +188,13 @@ static void read_branches(const probe *p, int depth, branches *out)
     add_branch(p, depth, false, &queued, out);
 }
 
-/* The light that a shadow ray goes to: the first from `from` on that lies exactly at its end. */
+/* The light that a shadow ray goes to: the first from `from` on that lies exactly at its end and shines that way. */
 static int light_of(const plan *of, const ray_record *r, int from)
 {
     for (int k = from; k < of->light_count; k++) {
         const vec3 way = vec3_sub(of->lights[k].position, r->origin);
+        if (light_share(&of->lights[k], &of->cones[k], vec3_scale(way, -1.0 / vec3_length(way))) == 0.0)
+            continue;
         if (way.x == r->direction.x && way.y == r->direction.y && way.z == r->direction.z)
             return k;
     }

@@ -46,6 +46,8 @@ typedef struct shade_kernels {
     void (*color)(const material *m, const primitive *p, group *g);
     /* Phong's direct light of one light at every point, weighted by the throughput. */
     void (*direct)(const material *m, const light *lamp, const group *g, lit_group *lit);
+    /* What a cone leaves of that light. */
+    void (*spot)(const light_cone *c, bool soft, const group *g, lit_group *lit);
     /* Reflected and refracted directions with Fresnel's weights at a clear surface. */
     void (*fresnel_branches)(const material *m, const group *g, branch_group *b);
     /* The same with the material's constant weights; opaque surfaces too. */

@@ -151,6 +151,31 @@ static void direct(const material *m, const light *lamp, const group *g, lit_gro
         fall_off(lamp->reach, count, lit);
 }
 
+ALWAYS_INLINE void within_cone(const light_cone *cone, bool soft, const group *g, lit_group *restrict lit)
+{
+    const light_cone c = *cone;
+    const double least = 0.5 / FILM_ONE;
+    const int count = g->padded;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        const vec3 l = vec3_make(lit->lx[i], lit->ly[i], lit->lz[i]);
+        const double share = light_cone_share(&c, soft, vec3_scale(l, -1.0 / vec3_length(l)));
+        lit->r[i] *= share;
+        lit->g[i] *= share;
+        lit->b[i] *= share;
+        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+    }
+}
+
+/* Two loops without a choice in them. */
+static void spot(const light_cone *c, bool soft, const group *g, lit_group *restrict lit)
+{
+    if (soft)
+        within_cone(c, true, g, lit);
+    else
+        within_cone(c, false, g, lit);
+}
+
 ALWAYS_INLINE fresnel branch_directions(const group *g, int i, branch_group *b)
 {
     const surface_batch *p = &g->points;
@@ -251,4 +276,4 @@ static void camera_directions(const camera_frame *view, int count, const double 
     }
 }
 
-const shade_kernels KERNEL(shade_kernels) = {color, direct, fresnel_branches, constant_branches, cut, append, camera_directions};
+const shade_kernels KERNEL(shade_kernels) = {color, direct, spot, fresnel_branches, constant_branches, cut, append, camera_directions};

@@ -127,6 +127,8 @@ static void direct_light(tracer *t, const material *m, int lamp, int rank)
         mesh_corner_light(t, m, &l, rank);
     else
         t->shade->direct(m, &l, &t->gathered, &t->lit);
+    if (l.kind != LIGHT_POINT)
+        t->shade->spot(&p->cones[lamp], l.kind == LIGHT_SOFT_CONE, &t->gathered, &t->lit);
     if (t->on_mesh)
         mesh_bound_light(t);
     if (p->spectral)

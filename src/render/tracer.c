@@ -152,7 +152,7 @@ static void trace_batch(tracer *t, int depth)
     for (int k = 0; k < t->listed[none]; k++) {
         const int i = t->list[none][k], at = first + i;
         if (random_paths && t->met_light[i] >= 0)
-            path_expose_light(t, q->ticket[at], t->met_light[i], q->wr[at], q->wg[at], q->wb[at]);
+            path_expose_light(t, q->ticket[at], t->met_light[i], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
         else
             shading_expose_sky(t, q->ticket[at], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
     }

@@ -104,7 +104,7 @@ void polarised_branches(tracer *t, const material *m, bool opaque);
  * lights that rays of a batch run into before they hit anything. */
 void path_group(tracer *t, int depth, int rank);
 void path_meet_lights(tracer *t, const ray_queue *q, int first, int count);
-void path_expose_light(tracer *t, int64_t ticket, int lamp, double wr, double wg, double wb);
+void path_expose_light(tracer *t, int64_t ticket, int lamp, vec3 direction, double wr, double wg, double wb);
 
 /* Shades rays list[0 .. count-1] of the batch at `first` in the queue of a depth, all of which met primitive `met` as the surface of the
  * body of that rank: local light, shadow rays and children put in line. */

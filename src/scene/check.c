@@ -110,6 +110,10 @@ status check_light(const scene *s, const light *lamp, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "give the distance at which it has its intensity, as 'reach: 8', or radius 0",
                         "%.80s: a sphere's light falls off with distance, and no reach says from where", lamp->name);
     }
+    const vec3 axis = vec3_sub(lamp->target, lamp->position);
+    if (lamp->kind != LIGHT_POINT && !(vec3_dot(axis, axis) > 0.0)) {
+        return diagnose(why, STATUS_BAD_INPUT, "move its position or its target", "%.80s: the light stands at its own target", lamp->name);
+    }
     return STATUS_OK;
 }
 

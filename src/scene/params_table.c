@@ -24,6 +24,7 @@ static const char *const source_words[] = {"file", "sparse", "dense", "sphere", 
 static const char *const filter_words[] = {"nearest", "bilinear", "trilinear", NULL};
 static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
 static const char *const space_words[] = {"srgb", "linear", NULL};
+static const char *const light_words[] = {"point", "cone", "soft_cone", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "picture", NULL};
 
 enum {
@@ -185,7 +186,11 @@ static const param table[] = {
     CHOICE(PARAM_TEXTURE, texture_entry, wrap_v, wrap_words, "repeat", "what lies above and below it"),
     CHOICE(PARAM_TEXTURE, texture_entry, space, space_words, "srgb", "what a PNG or JPEG file's numbers are: coded light, or light"),
 
-    VECTOR(PARAM_LIGHT, light, position, "0,10,0", "where the point light stands"),
+    CHOICE(PARAM_LIGHT, light, kind, light_words, "point",
+           "shines all around, within a cone, or in a cone from full on its axis to nothing at its edge, linear in the angle's cosine"),
+    VECTOR(PARAM_LIGHT, light, position, "0,10,0", "where the light stands"),
+    VECTOR(PARAM_LIGHT, light, target, "0,0,0", "point that a cone is aimed at"),
+    REAL(PARAM_LIGHT, light, half_angle_deg, "deg", 0.001, 180, "30", "of a cone, from its axis to its edge"),
     COLOR(PARAM_LIGHT, light, color, BRIGHT, "1,1,1", "linear colour, times intensity"),
     REAL(PARAM_LIGHT, light, intensity, "", 0, BRIGHT, "1", "factor of the colour; at every distance, or at reach"),
     REAL(PARAM_LIGHT, light, radius, "scene units", 0, FAR, "0", "of the sphere that shines, which the path integrator sees; 0 is a point"),

@@ -24,6 +24,7 @@ typedef enum lighting_rule { LIGHTING_LAMBERT, LIGHTING_PHONG, LIGHTING_WHITTED 
 typedef enum spectrum_rule { SPECTRUM_RGB, SPECTRUM_SPECTRAL } spectrum_rule;
 typedef enum texturing_rule { TEXTURING_PERSPECTIVE, TEXTURING_AFFINE } texturing_rule;
 typedef enum shading_rule { SHADING_FLAT, SHADING_SMOOTH, SHADING_GOURAUD } shading_rule;
+typedef enum light_kind { LIGHT_POINT, LIGHT_CONE, LIGHT_SOFT_CONE } light_kind;
 typedef enum background_kind { BACKGROUND_UNIFORM, BACKGROUND_GRADIENT, BACKGROUND_PICTURE } background_kind;
 
 /* Numbers, as many as one gives. */
@@ -137,7 +138,10 @@ typedef struct texture_entry {
 typedef struct named_material { char *name; material value; } named_material;
 typedef struct light {
     char *name;
-    vec3 position, color;
+    int64_t kind;           /* light_kind */
+    vec3 position, target;  /* target: the point that a cone is aimed at */
+    double half_angle_deg;  /* of a cone, from its axis */
+    vec3 color;
     double intensity;
     double radius;          /* of the sphere that shines, for the path tracer; 0 = a point */
     double reach;           /* distance at which intensity holds, falling off with the square; 0 = the same everywhere */
