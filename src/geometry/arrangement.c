@@ -172,6 +172,11 @@ void arrangement_destroy(arrangement *a)
     free(a);
 }
 
+void arrangement_surroundings_absorb(arrangement *a)
+{
+    a->bodies[0].absorbs = a->absorbs = true;
+}
+
 static bool primitive_contains(const primitive *p, vec3 point)
 {
     vec3 q = mat3_apply_transposed(p->rotation, vec3_sub(point, p->origin));

@@ -55,7 +55,7 @@ typedef struct arrangement {
     double extent;       /* largest of the primitives' */
     uint64_t opaque_ranks; /* bit r - 1: the body of rank r is opaque */
     bool distinct;       /* no two bodies are of one medium, nor is any of the surrounding one */
-    bool absorbs;        /* one of the bodies does */
+    bool absorbs;        /* one of the bodies does, or the surrounding medium */
     struct forest *meshes; /* all of them; NULL when there is none */
 } arrangement;
 
@@ -80,6 +80,9 @@ typedef struct body_source {
 /* outside_medium is the medium of rank 0. STATUS_BAD_INPUT for more than PRIMITIVES_MAX primitives. */
 status arrangement_build(const body_source *sources, int count, int64_t outside_medium, arrangement **out, diagnostic *why);
 void arrangement_destroy(arrangement *a);
+
+/* The surrounding medium takes light away with length: then what every shadow ray goes through is noted. */
+void arrangement_surroundings_absorb(arrangement *a);
 
 /* The set of primitives that contain a point, bit by bit, by the primitives' own definitions (surfaces included). */
 uint64_t arrangement_inside(const arrangement *a, vec3 point);

@@ -357,12 +357,14 @@ static bool any_undecided(int n, const ray_scratch *s)
     return any != 0;
 }
 
-/* First sight: blocked for certain by an opaque body that nothing clear can hide; undecided where order or attenuation matters. */
+/* First sight: blocked for certain by an opaque body that nothing clear can hide; undecided where order or attenuation matters, which
+ * is everywhere if the surroundings absorb. */
 static void first_sight(const arrangement *a, const ray_batch *rays, int solid_shadows, ray_scratch *s)
 {
     const int n = rays->count;
+    const int64_t everywhere = mask_of(a->bodies[0].absorbs);
     for (int i = 0; i < n; i++)
-        s->blocked[i] = s->undecided[i] = 0;
+        s->blocked[i] = 0, s->undecided[i] = everywhere;
     uint64_t sure = 0, unsure = 0; /* meshes */
     bool hidden = false; /* can a clear body of a higher rank hide this one? */
     for (int r = a->body_count; r >= 1; r--) {

@@ -118,6 +118,7 @@ scene *arrange_empty(const scene *s)
     r->samples = 1;
     r->min_weight = 0.0;
     r->depth = 16;
+    copy->background.absorb_per_m = vec3_make(0.0, 0.0, 0.0); /* the closed forms know no way to the vessel */
     return copy;
 }
 

@@ -38,6 +38,19 @@ void absorption_shares(tracer *t, const int64_t *tickets, int count)
             t->kept[c][i] = t->kept[c][i] > 0.0 ? share_left(t->kept[c][i]) : 1.0;
 }
 
+/* A way to the sky has no length to be dimmed over: its light is given where it arrives, at the surface that it goes on from. */
+void absorption_spare_sky(tracer *t)
+{
+    const plan *p = t->target.scene;
+    const bool random_paths = p->render.integrator == INTEGRATOR_PATH;
+    for (int k = 0; p->solids->bodies[0].absorbs && k < t->scratch.ways->count; k++) {
+        stretch *s = &t->scratch.ways->stretches[k];
+        const bool to_light = random_paths && t->met_light[s->ray] >= 0;
+        if (s->rank == 0 && t->hits.crossed[s->ray] < 0 && !to_light)
+            s->length = 0.0;
+    }
+}
+
 void absorption_dim(tracer *t, ray_queue *q, int first, int count)
 {
     absorption_shares(t, q->ticket + first, count);

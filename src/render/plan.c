@@ -142,6 +142,8 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
     }
     if (code == STATUS_OK)
         code = arrangement_build(sources, count, 0, &p->solids, why);
+    if (code == STATUS_OK && surroundings_absorb(&s->background))
+        arrangement_surroundings_absorb(p->solids);
     free(shapes);
     free(sources);
     return code;
@@ -190,6 +192,7 @@ static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnos
             return diagnose(why, STATUS_FAILURE, "", "out of memory");
         p->absorption[r] = vec3_scale(material_absorption(p->materials[r]), s->render.unit_m);
     }
+    p->absorption[0] = vec3_scale(s->background.absorb_per_m, s->render.unit_m);
     if (s->render.spectrum == SPECTRUM_SPECTRAL && !(p->spectral = spectra_create(s, p->materials, p->laws, ranks)))
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     return STATUS_OK;

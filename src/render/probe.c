@@ -38,6 +38,10 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
 void probe_one_wavelength(probe *p)
 {
     const render_settings *r = &p->scene->render;
+    if (p->spectral) {
+        const double a = surrounding_absorption_at(&p->setting->background, r->lambda_nm) * r->unit_m;
+        p->scene->absorption[0] = vec3_make(a, a, a);
+    }
     for (int rank = 1; rank <= p->scene->solids->body_count; rank++) {
         const material *m = p->scene->materials[rank];
         if (m->absorb_spectrum.count == 0 && !p->spectral)

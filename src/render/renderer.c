@@ -195,7 +195,7 @@ static void count_tests(const plan *p, ray_counters *c)
     const uint64_t nearest = c->camera + c->reflect + c->refract;
     for (int r = 1; r <= p->solids->body_count; r++) {
         const body *b = &p->solids->bodies[r];
-        c->tests[b->solid] = nearest + (body_casts_shadow(b, p->solid_shadows) ? c->shadow : 0);
+        c->tests[b->solid] = nearest + (body_casts_shadow(b, p->solid_shadows) || p->solids->bodies[0].absorbs ? c->shadow : 0);
     }
 }
 

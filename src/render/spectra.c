@@ -62,8 +62,10 @@ static spectral_row row_at(const lifted_scene *l, double lambda_nm)
 static body_spectrum body_at(const lifted_scene *l, size_t rank, double lambda_nm)
 {
     body_spectrum b = {.index = index_law_at(&l->laws[rank], lambda_nm)};
-    if (!l->materials[rank])
+    if (!l->materials[rank]) {
+        b.absorption = surrounding_absorption_at(&l->s->background, lambda_nm) * l->s->render.unit_m;
         return b;
+    }
     b.color = lifted_reflectance(&l->color[rank], lambda_nm);
     b.checker_color = lifted_reflectance(&l->checker_color[rank], lambda_nm);
     b.absorption = material_absorption_at(l->materials[rank], lambda_nm) * l->s->render.unit_m;

@@ -145,8 +145,10 @@ static void trace_batch(tracer *t, int depth)
     const bool random_paths = p->render.integrator == INTEGRATOR_PATH;
     if (random_paths)
         path_meet_lights(t, q, first, rays.count);
-    if (p->solids->absorbs)
+    if (p->solids->absorbs) {
+        absorption_spare_sky(t);
         absorption_dim(t, q, first, rays.count);
+    }
     sort_by_primitive(t, rays.count);
     const int primitives = p->solids->primitive_count, none = primitives + 1;
     for (int k = 0; k < t->listed[none]; k++) {

@@ -87,7 +87,8 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
                          const uint64_t *inside);
 
 /* absorption.c: what the media on the way leave, from the stretches of the batch just looked at; and a batch of rays
- * dimmed by it. */
+ * dimmed by it. Of a batch that looked for its nearest interfaces, the surroundings are to be spared first on ways to the sky. */
+void absorption_spare_sky(tracer *t);
 void absorption_shares(tracer *t, const int64_t *tickets, int count);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
 

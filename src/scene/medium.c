@@ -87,15 +87,24 @@ static double interpolate(const double *points, int64_t count, double x)
     return points[count - 1];
 }
 
-double material_absorption_at(const material *m, double lambda_nm)
+static double between_channels(vec3 a, double lambda_nm)
 {
     const double channel_nm[] = CHANNEL_LAMBDA_NM;
+    const double points[] = {channel_nm[2], a.z, channel_nm[1], a.y, channel_nm[0], a.x};
+    return interpolate(points, 6, lambda_nm);
+}
+
+double material_absorption_at(const material *m, double lambda_nm)
+{
     if (m->absorb_spectrum.count > 0) {
         return interpolate(m->absorb_spectrum.value, m->absorb_spectrum.count, lambda_nm);
     }
-    const vec3 a = m->absorb_per_m;
-    const double points[] = {channel_nm[2], a.z, channel_nm[1], a.y, channel_nm[0], a.x};
-    return interpolate(points, 6, lambda_nm);
+    return between_channels(m->absorb_per_m, lambda_nm);
+}
+
+double surrounding_absorption_at(const background *b, double lambda_nm)
+{
+    return between_channels(b->absorb_per_m, lambda_nm);
 }
 
 vec3 material_absorption(const material *m)
@@ -108,6 +117,16 @@ vec3 material_absorption(const material *m)
                      material_absorption_at(m, channel_nm[2]));
 }
 
+static bool absorbs(vec3 a)
+{
+    return a.x > 0.0 || a.y > 0.0 || a.z > 0.0;
+}
+
+bool surroundings_absorb(const background *b)
+{
+    return absorbs(b->absorb_per_m);
+}
+
 bool material_absorbs(const material *m)
 {
     for (int64_t i = 1; i < m->absorb_spectrum.count; i += 2) {
@@ -115,8 +134,7 @@ bool material_absorbs(const material *m)
             return true;
         }
     }
-    const vec3 a = m->absorb_per_m;
-    return m->absorb_spectrum.count == 0 && (a.x > 0.0 || a.y > 0.0 || a.z > 0.0);
+    return m->absorb_spectrum.count == 0 && absorbs(m->absorb_per_m);
 }
 
 status material_absorption_check(const material *m, const char *label, diagnostic *why)

@@ -39,6 +39,8 @@ const char *surrounding_medium_name(const background *b);
 vec3 material_absorption(const material *m);
 double material_absorption_at(const material *m, double lambda_nm);
 bool material_absorbs(const material *m);
+double surrounding_absorption_at(const background *b, double lambda_nm);
+bool surroundings_absorb(const background *b);
 
 /* Pairs of numbers, wavelengths ascending, coefficients not negative. */
 status material_absorption_check(const material *m, const char *label, diagnostic *why);

@@ -160,6 +160,8 @@ static const param table[] = {
 
     REAL(PARAM_BACKGROUND, background, ior, "", 0.1, 100, "1", "refractive index of what surrounds all solids, relative to vacuum"),
     CHOICE(PARAM_BACKGROUND, background, medium, surrounding_words, "ior", "what surrounds all solids: as ior says, or from the catalogue"),
+    COLOR(PARAM_BACKGROUND, background, absorb_per_m, 1e9, "0,0,0",
+          "its absorption by channel, 1/m, on ways that end at a surface or a light; the sky's light is as given where it arrives"),
 
     {PARAM_MESH, "generate", PARAM_CHOICE, "", 0, 0, false, "file", "which body is computed; file: it is read", source_words, ON_ALL,
      .offset = offsetof(mesh_entry, source)},

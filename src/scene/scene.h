@@ -82,6 +82,7 @@ typedef struct background {
     vec3 ambient;           /* I_a of Phong's sum, linear RGB */
     double ior;             /* of what surrounds all solids, where medium is MEDIUM_IOR */
     int64_t medium;         /* see scene/medium.h */
+    vec3 absorb_per_m;      /* of what surrounds all solids, by channel, along ways that end at a surface or a light */
 } background;
 
 /* Fields mean what Phong's sum I = k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n and the weights

@@ -1,0 +1,201 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "probe_fixture.h"
+
+/* Surroundings that absorb (Beer and Lambert: Hecht, 4.8.1, eq. 4.79): exp(-a d) over the whole way from the eye, by mirrors, to what
+ * sends the light, as long as it lies outside all solids; and nothing on a way to the sky. */
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+/* The eye is 5 units from the origin of a matte floor, and so is the lamp; N.L = 0.8. What hangs over the floor is on either way. */
+static const char floor_scene[] = "render: {width: 1, height: 1, depth: 4}\n"
+                                  "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
+                                  "background: {color: [0, 0, 0], ambient: [0, 0, 0], absorb_per_m: [0.1, 0, 0.3]}\n"
+                                  "lights: {lamp: {position: [3, 4, 0]}}\n"
+                                  "solids:\n"
+                                  "  floor: {shape: plane, diffuse: 1}\n"
+                                  "  slab: {shape: box, size: [90, 0.6, 90], position: [0, 1.2, 0], transparency: 1, visible: off}\n";
+static const double a_per_m[3] = {0.1, 0.0, 0.3};
+
+static void expect(vec3 seen, double full, double way)
+{
+    assert_near(seen.x, full * exp(-a_per_m[0] * way), 1e-12);
+    assert_near(seen.y, full * exp(-a_per_m[1] * way), 1e-12);
+    assert_near(seen.z, full * exp(-a_per_m[2] * way), 1e-12);
+}
+
+static void the_way_to_the_eye_and_the_way_to_the_light_both_count(void **state)
+{
+    (void)state;
+    static const double distances[] = {0.5, 1.0, 5.0, 20.0, 100.0};
+    scene *s = scene_from(floor_scene);
+    for (size_t i = 0; i < COUNT(distances); i++)
+        for (size_t k = 0; k < COUNT(distances); k++) {
+            const double eye = distances[i], lamp = distances[k];
+            s->camera.position = vec3_make(0.0, 0.6 * eye, -0.8 * eye);
+            s->lights[0].position = vec3_make(0.6 * lamp, 0.8 * lamp, 0.0);
+            for (int path = 0; path <= 1; path++) {
+                s->render.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
+                expect(look(s), 0.8, eye + lamp);
+            }
+            s->render.integrator = INTEGRATOR_WHITTED;
+        }
+    scene_destroy(s);
+}
+
+static void a_unit_is_as_long_as_the_scene_says(void **state)
+{
+    (void)state;
+    scene *s = scene_from(floor_scene);
+    set(s, "render.unit_m=0.02");
+    expect(look(s), 0.8, 0.2);
+    scene_destroy(s);
+}
+
+/* Other rules of shadows: no shadow ray, no way to the light; solid shadows, all of it. */
+static void without_shadow_rays_the_way_to_the_light_is_free(void **state)
+{
+    (void)state;
+    scene *s = scene_from(floor_scene);
+    set(s, "render.shadows=off");
+    expect(look(s), 0.8, 5.0);
+    set(s, "render.shadows=opaque");
+    expect(look(s), 0.8, 10.0);
+    scene_destroy(s);
+}
+
+/* A clear slab, 0.6 thick, is not of the surroundings: 0.6 / 0.6 = 1 unit of the eye's way, 0.6 / 0.8 = 0.75 of the lamp's. Of index 1
+ * it bends nothing, and what it absorbs itself is its own. */
+static void what_lies_in_solids_is_not_of_the_surroundings(void **state)
+{
+    (void)state;
+    scene *s = scene_from(floor_scene);
+    set(s, "slab.visible=on");
+    expect(look(s), 0.8, 10.0 - 1.0 - 0.75);
+    set(s, "render.spectrum=spectral");
+    set(s, "background.absorb_per_m=0.1,0.1,0.1");
+    const double dimmed = look(s).y;
+    set(s, "background.absorb_per_m=0,0,0");
+    assert_near(dimmed, look(s).y * exp(-0.1 * 8.25), 1e-11); /* the same at every wavelength */
+    set_all(s, "render.spectrum=rgb background.absorb_per_m=0.1,0,0.3 slab.absorb_per_m=0,2,0");
+    assert_near(look(s).x, 0.8 * exp(-0.1 * 8.25), 1e-12);
+    assert_near(look(s).y, 0.8 * exp(-2.0 * 1.75), 1e-12);
+    set(s, "slab.transparency=0"); /* opaque: seen itself, and black */
+    assert_true(look(s).x == 0.0);
+    set_all(s, "slab.size=2,0.6,90 slab.position=2,1.2,0"); /* in the lamp's way alone */
+    assert_true(look(s).x == 0.0);
+    scene_destroy(s);
+}
+
+/* Between the channels' wavelengths (611.4, 549.1 and 464.3 nm) the coefficient is linear, as of absorb_per_m of a material: a slab of
+ * matter around everything gives the same film. */
+static void a_spectral_film_sees_the_coefficient_by_wavelength(void **state)
+{
+    (void)state;
+    scene *s = scene_from(floor_scene);
+    set(s, "render.spectrum=spectral");
+    const vec3 seen = look(s);
+    set_all(s, "background.absorb_per_m=0,0,0 slab.visible=on slab.size=90,90,90 slab.position=0,44,0 slab.absorb_per_m=0.1,0,0.3 floor.priority=1");
+    const vec3 wanted = look(s);
+    assert_true(seen.x > 0.05);
+    assert_near(seen.x, wanted.x, 1e-11);
+    assert_near(seen.y, wanted.y, 1e-11);
+    assert_near(seen.z, wanted.z, 1e-11);
+    scene_destroy(s);
+}
+
+static void the_sky_is_as_bright_as_given(void **state)
+{
+    (void)state;
+    scene *s = scene_from(floor_scene);
+    set_all(s, "background.color=1,1,1 floor.diffuse=0 floor.visible=off");
+    expect(look(s), 1.0, 0.0);
+    set_all(s, "floor.visible=on floor.reflectivity=0.5"); /* the way to the mirror counts, that from it to the sky does not */
+    expect(look(s), 0.5, 5.0);
+    set(s, "render.depth=0"); /* nor beyond the last depth */
+    expect(look(s), 0.5, 5.0);
+    set_all(s, "render.depth=4 slab.visible=on"); /* the slab of index 1 is left twice: no interface, no light lost to it */
+    expect(look(s), 0.5, 4.0);
+    scene_destroy(s);
+}
+
+/* From the eye by the floor, a mirror, to a matte wall and to the lamp: exp(-a R) along the reflected way. */
+static void the_reflected_way_is_dimmed_too(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 1}\n"
+                          "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
+                          "background: {color: [0, 0, 0], ambient: [0, 0, 0], absorb_per_m: [0.1, 0, 0.3]}\n"
+                          "lights: {lamp: {position: [0, 6, 2]}}\n"
+                          "solids:\n  floor: {shape: plane, reflectivity: 0.5}\n"
+                          "  wall: {shape: plane, position: [0, 0, 8], rotation: [-90, 0, 0], diffuse: 1}\n");
+    expect(look(s), 0.5, 5.0 + 10.0 + 6.0); /* the wall is met at (0, 6, 8), straight before the lamp */
+    set(s, "wall.diffuse=0");
+    set(s, "wall.ambient=1");
+    set(s, "background.ambient=1,1,1");
+    expect(look(s), 0.5, 15.0);
+    scene_destroy(s);
+}
+
+/* Through a clear slab across the way: before it, and behind it to a glowing wall. */
+static void the_refracted_way_is_dimmed_too(void **state)
+{
+    (void)state;
+    stage g = stage_of("render: {width: 1, height: 1, depth: 2, beyond: black}\n"
+                       "background: {color: [0, 0, 0], ambient: [1, 1, 1], absorb_per_m: [0.1, 0, 0.3]}\n"
+                       "solids:\n  pane: {shape: box, size: [9, 9, 2], transparency: 1, ior: 1.5}\n"
+                       "  wall: {shape: plane, position: [0, 0, 8], rotation: [-90, 0, 0], ambient: 1}\n", "");
+    const ray_tree *tree = stage_way(&g, vec3_make(0.0, 0.0, -4.0), vec3_make(0.0, 0.0, 1.0), -1);
+    const double T2 = 0.96 * 0.96;
+    assert_int_equal(tree->count, 3);
+    expect(vec3_make(tree->radiance[0], tree->radiance[1], tree->radiance[2]), T2, 3.0 + 7.0);
+    for (int c = 0; c < 3; c++) {
+        assert_near(tree->node[0].hit.transmittance[c], exp(-3.0 * a_per_m[c]), 1e-12);
+        assert_true(tree->node[1].hit.transmittance[c] == 1.0);
+        assert_near(tree->node[2].hit.transmittance[c], exp(-7.0 * a_per_m[c]), 1e-12);
+    }
+    stage_close(&g);
+}
+
+/* A sphere that shines, seen by random paths: 5 units away less its radius. */
+static void the_way_to_a_light_that_is_seen_is_dimmed(void **state)
+{
+    (void)state;
+    scene *s = scene_from(floor_scene);
+    set_all(s, "render.integrator=path camera.position=0,0.1,0 camera.target=3,4.1,0 lamp.position=3,4.1,0 lamp.radius=0.5 lamp.reach=1");
+    expect(look(s), 4.0, 4.5);
+    scene_destroy(s);
+}
+
+/* The probe at one wavelength: that of the surroundings' coefficient there. */
+static void the_probe_takes_the_coefficient_at_its_wavelength(void **state)
+{
+    (void)state;
+    stage g = stage_of(floor_scene, "render.spectrum=spectral render.lambda_nm=580.25"); /* half way from 549.1 to 611.4 */
+    const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 3.0, -4.0), vec3_make(0.0, -0.6, 0.8));
+    for (int c = 0; c < 3; c++)
+        assert_near(tree->radiance[c], 0.8 * exp(-0.05 * 10.0), 1e-12);
+    stage_close(&g);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_way_to_the_eye_and_the_way_to_the_light_both_count),
+        cmocka_unit_test(a_unit_is_as_long_as_the_scene_says),
+        cmocka_unit_test(without_shadow_rays_the_way_to_the_light_is_free),
+        cmocka_unit_test(what_lies_in_solids_is_not_of_the_surroundings),
+        cmocka_unit_test(a_spectral_film_sees_the_coefficient_by_wavelength),
+        cmocka_unit_test(the_sky_is_as_bright_as_given),
+        cmocka_unit_test(the_reflected_way_is_dimmed_too),
+        cmocka_unit_test(the_refracted_way_is_dimmed_too),
+        cmocka_unit_test(the_way_to_a_light_that_is_seen_is_dimmed),
+        cmocka_unit_test(the_probe_takes_the_coefficient_at_its_wavelength),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
