@@ -61,14 +61,14 @@ status realism_slab(const metrics *m, diagnostic *why)
                                        "the same with render.polarisation on"};
     status code = STATUS_OK;
     for (int polarised = 0; polarised < 2 && code == STATUS_OK; polarised++) {
-        const bool exists = !polarised || m->traced->render.weights == WEIGHTS_FRESNEL;
+        const bool exists = !polarised || !scene_has_constant_shares(&m->traced->render);
         worst_pair worst = {NAN, NAN, false};
         for (int depth = 0; depth <= DEPTH_MAX && code == STATUS_OK && exists; depth++) {
             double measured = NAN;
             code = slab_measure(m, depth, polarised, &measured, why);
             worst_take(&worst, measured, slab_theory(m, depth, polarised));
         }
-        metrics_add(m, (realism_value){names[polarised], exists ? what[polarised] : "constant weights know no polarisation", "", worst.measured,
+        metrics_add(m, (realism_value){names[polarised], exists ? what[polarised] : "constant shares know no polarisation", "", worst.measured,
                                        worst.theory, SLAB_TOLERANCE});
     }
     return code;

@@ -44,12 +44,12 @@ static bool laws_match(const scene *s, const index_law *a, const index_law *b)
     return s->render.spectrum == SPECTRUM_SPECTRAL ? index_laws_equal(a, b) : index_law_at(a, lambda_nm) == index_law_at(b, lambda_nm);
 }
 
-/* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface; under constant weights, as
+/* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface; with constant shares, as
  * in the report, every surface reflects whatever its index. laws: by solid, [solid_count] the surroundings'. */
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
-    if (m->transparency == 0.0 || s->render.weights == WEIGHTS_CONSTANT)
+    if (m->transparency == 0.0 || scene_has_constant_shares(&s->render))
         return solid_index + 1;
     if (laws_match(s, &laws[solid_index], &laws[s->solid_count]))
         return 0;

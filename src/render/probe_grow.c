@@ -127,6 +127,11 @@ static bool read_hit(const probe *p, ray_node *node)
         h->cos_t = 0.0;
         h->tir = false;
     }
+    if (!owner->opaque && p->scene->render.transmission == TRANSMISSION_SIMPLE) {
+        h->R_s = h->R_p = h->R = p->scene->materials[rank]->reflectivity;
+        h->cos_t = h->cos_i;
+        h->tir = false;
+    }
     h->path_length_m = h->t * p->scene->render.unit_m;
     for (int c = 0; c < 3; c++)
         h->transmittance[c] = a->absorbs ? t->kept[c][0] : 1.0;

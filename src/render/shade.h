@@ -52,6 +52,8 @@ typedef struct shade_kernels {
     void (*fresnel_branches)(const material *m, const group *g, branch_group *b);
     /* The same with the material's constant weights; opaque surfaces too. */
     void (*constant_branches)(const material *m, bool opaque, const group *g, branch_group *b);
+    /* At a clear surface straight on, with the material's constant weights. */
+    void (*straight_branches)(const material *m, const group *g, branch_group *b);
     /* Adds up branches that are not to be traced: their number, and their throughput in units of 1/COUNTERS_CUT_ONE. */
     void (*cut)(const group *g, const branch_group *b, cut_sum *sum);
     /* Appends all of g to q as rays along (dx, dy, dz) with throughput times weight; rays with weight 0 are then to be taken out. */

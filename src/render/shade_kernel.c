@@ -226,6 +226,23 @@ static void constant_branches(const material *m, bool opaque, const group *g, br
     b->total = without_padding(g, total);
 }
 
+static void straight_branches(const material *m, const group *g, branch_group *restrict b)
+{
+    const double reflectivity = m->reflectivity, transparency = m->transparency;
+    const surface_batch *p = &g->points;
+    const int count = g->padded;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        const vec3 d = vec3_make(g->dx[i], g->dy[i], g->dz[i]), n = vec3_make(p->nx[i], p->ny[i], p->nz[i]);
+        const vec3 r = direction_reflect(d, n, p->cos_i[i]);
+        b->rx[i] = r.x, b->ry[i] = r.y, b->rz[i] = r.z;
+        b->tx[i] = d.x, b->ty[i] = d.y, b->tz[i] = d.z;
+        b->reflect[i] = reflectivity;
+        b->refract[i] = transparency;
+    }
+    b->total = 0;
+}
+
 static void cut(const group *g, const branch_group *b, cut_sum *sum)
 {
     const int count = g->count;
@@ -276,4 +293,4 @@ static void camera_directions(const camera_frame *view, int count, const double 
     }
 }
 
-const shade_kernels KERNEL(shade_kernels) = {color, direct, spot, fresnel_branches, constant_branches, cut, append, camera_directions};
+const shade_kernels KERNEL(shade_kernels) = {color, direct, spot, fresnel_branches, constant_branches, straight_branches, cut, append, camera_directions};

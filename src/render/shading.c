@@ -233,7 +233,9 @@ void shading_branches(tracer *t, bool opaque)
 {
     const plan *p = t->target.scene;
     const material *m = &t->look->surface;
-    if (opaque || p->render.weights == WEIGHTS_CONSTANT)
+    if (!opaque && p->render.transmission == TRANSMISSION_SIMPLE)
+        t->shade->straight_branches(m, &t->gathered, &t->branches);
+    else if (opaque || p->render.weights == WEIGHTS_CONSTANT)
         t->shade->constant_branches(m, opaque, &t->gathered, &t->branches);
     else
         t->shade->fresnel_branches(m, &t->gathered, &t->branches);

@@ -101,6 +101,10 @@ status check_render(const scene *s, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "set render.weights to fresnel",
                         "constant weights know no polarisation, which Fresnel's equations give");
     }
+    if (s->render.polarisation && s->render.transmission == TRANSMISSION_SIMPLE) {
+        return diagnose(why, STATUS_BAD_INPUT, "set render.transmission to refract",
+                        "simple transmission knows no polarisation, which Fresnel's equations give");
+    }
     return STATUS_OK;
 }
 
@@ -216,10 +220,12 @@ status check_solid(const scene *s, const solid *owner, diagnostic *why)
     /* What a surface hands on is at most what it gets; the slack is for sums like 0.7 + 0.2 + 0.1. Under Fresnel
      * weights R + T = 1 by themselves, and reflectivity counts for opaque surfaces alone. */
     double sum = owner->surface.reflectivity + owner->surface.transparency;
-    if (s->render.weights == WEIGHTS_CONSTANT && sum > 1.0 + 1e-12) {
-        return diagnose(why, STATUS_BAD_INPUT, "lower one of them, or set render.weights to fresnel",
-                        "%.80s: under constant weights reflectivity %g + transparency %g is more than 1", owner->name,
-                        owner->surface.reflectivity, owner->surface.transparency);
+    if (scene_has_constant_shares(&s->render) && sum > 1.0 + 1e-12) {
+        const bool simple = s->render.transmission == TRANSMISSION_SIMPLE;
+        return diagnose(why, STATUS_BAD_INPUT,
+                        simple ? "lower one of them, or set render.transmission to refract" : "lower one of them, or set render.weights to fresnel",
+                        "%.80s: under %s reflectivity %g + transparency %g is more than 1", owner->name,
+                        simple ? "simple transmission" : "constant weights", owner->surface.reflectivity, owner->surface.transparency);
     }
     return STATUS_OK;
 }

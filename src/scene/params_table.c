@@ -9,6 +9,7 @@
 static const char *const off_on[] = {"off", "on", NULL};
 static const char *const sample_counts[] = {"1", "4", "9", "16", "25", "36", "49", "64", NULL};
 static const char *const weights_words[] = {"fresnel", "constant", NULL};
+static const char *const transmission_words[] = {"refract", "simple", NULL};
 static const char *const beyond_words[] = {"sky", "black", NULL};
 static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
 static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynamic", NULL};
@@ -108,6 +109,8 @@ static const param table[] = {
            "diffuse light alone, specular light too, or reflected and refracted light as well; not of the path integrator"),
     CHOICE(PARAM_RENDER, render_settings, weights, weights_words, "fresnel",
            "share of the reflected and refracted branch: Fresnel's equations, or each material's constants"),
+    CHOICE(PARAM_RENDER, render_settings, transmission, transmission_words, "refract",
+           "at clear surfaces light is bent by Snell's law; or it goes straight on, with each material's constants as weights"),
     CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky", "what a ray beyond the last depth brings back"),
     CHOICE(PARAM_RENDER, render_settings, shadows, shadows_words, "attenuated",
            "what stands in a light's way: nothing, every solid, or each by what it lets straight through; no caustics"),
@@ -206,7 +209,7 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, shininess, "", 0, 100000, "80",
          "n of Phong's sum: the larger, the smaller the highlight"),
     REAL(PARAM_MATERIAL, material, reflectivity, "", 0, 1, "0",
-         "share reflected by an opaque surface, and by every surface under constant weights"),
+         "share reflected by an opaque surface; by every surface under constant weights or simple transmission"),
     REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0",
          "share of the refracted light that passes; 0 is opaque"),
     REAL(PARAM_MATERIAL, material, ior, "", 0.1, 100, "1", "refractive index, relative to vacuum"),

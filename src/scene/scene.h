@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 typedef enum weights_rule { WEIGHTS_FRESNEL, WEIGHTS_CONSTANT } weights_rule;
+typedef enum transmission_rule { TRANSMISSION_REFRACT, TRANSMISSION_SIMPLE } transmission_rule;
 typedef enum beyond_rule { BEYOND_SKY, BEYOND_BLACK } beyond_rule;
 typedef enum shadow_rule { SHADOWS_OFF, SHADOWS_OPAQUE, SHADOWS_ATTENUATED } shadow_rule;
 typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SCHEDULE_DYNAMIC } schedule_rule;
@@ -41,6 +42,7 @@ typedef struct render_settings {
     int64_t integrator;     /* integrator_rule */
     int64_t lighting;       /* lighting_rule */
     int64_t weights;        /* weights_rule */
+    int64_t transmission;   /* transmission_rule */
     int64_t beyond;         /* beyond_rule */
     int64_t shadows;        /* shadow_rule */
     double min_weight;      /* children with a lower throughput in every channel are not traced; 0: all are */
@@ -90,7 +92,7 @@ typedef struct background {
 typedef struct material {
     vec3 color;             /* C, linear RGB */
     double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
-    double reflectivity;    /* constant weights, and opaque materials under fresnel weights */
+    double reflectivity;    /* constant weights, simple transmission, and opaque materials under fresnel weights */
     double transparency;    /* 0 = opaque; else share of the refracted light that passes an interface */
     double ior;             /* relative to vacuum, where medium is MEDIUM_IOR */
     int64_t medium;         /* see scene/medium.h */
@@ -191,10 +193,16 @@ status scene_read_text(const char *name, const char *text, size_t size, scene **
  * file that the scene file names is located there. A sky's values must be from 0 to SCENE_SKY_MAX. */
 status scene_load(scene *s, diagnostic *why);
 
-/* Checks what single ranges cannot: shapes, energy (under constant weights: reflectivity + transparency <= 1),
+/* Checks what single ranges cannot: shapes, energy (under constant weights or simple transmission: reflectivity + transparency <= 1),
  * names, limits, camera not at its own target, a picture sky that names its picture. Run by scene_read and
  * before every render. */
 status scene_check(const scene *s, diagnostic *why);
+
+/* Are the shares of a clear surface the material's own constants, whatever its index? */
+static inline bool scene_has_constant_shares(const render_settings *r)
+{
+    return r->weights == WEIGHTS_CONSTANT || r->transmission == TRANSMISSION_SIMPLE;
+}
 
 /* Index of the solid of that name, or -1. */
 int scene_find_solid(const scene *s, const char *name);
