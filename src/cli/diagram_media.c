@@ -16,7 +16,7 @@ static double index_of(const scene *s, int i)
 
 static bool is_opaque(const scene *s, int i)
 {
-    return s->solids[i].surface.transparency == 0.0;
+    return material_is_opaque(&s->solids[i].surface);
 }
 
 /* Opaque solids in a pale tone of their colour, clear ones the bluer the more they refract. */

@@ -21,22 +21,22 @@ static const texture *picture_of(const scene *s, const material *m)
 }
 
 /* A face's look changes what an opaque surface sends back; what the body is made of is the solid's own. */
-static surface_look face_look_of(const scene *s, const solid *owner, const char *name, const face_look *given)
+static surface_look face_look_of(const scene *s, const material *own, const char *name, const face_look *given)
 {
     const material *named = named_material_of(s, name);
-    surface_look l = {.surface = owner->surface, .picture = picture_of(s, &owner->surface)};
+    surface_look l = {.surface = *own, .picture = picture_of(s, own)};
     if (named) {
         l.surface = *named;
         l.picture = picture_of(s, named);
     } else if (given && given->given) {
         l.surface.color = given->color;
         l.surface.diffuse = given->diffuse;
-        l.surface.ambient = owner->surface.ambient > 0.0 ? owner->surface.ambient : 0.1;
+        l.surface.ambient = own->ambient > 0.0 ? own->ambient : 0.1;
         l.surface.specular = given->specular;
         l.surface.shininess = given->shininess;
         l.picture = given->picture;
     }
-    l.surface.transparency = owner->surface.transparency;
+    l.surface.transparency = own->transparency;
     return l;
 }
 
@@ -45,7 +45,7 @@ static bool has_face_looks(const solid *owner, const mesh_entry *m)
     return owner->shape.kind == SHAPE_MESH && owner->material_index < 0 && m && m->data && m->data->slot_count > 1 + (m->looks ? -1 : 0);
 }
 
-bool body_look_make(const scene *s, const solid *owner, body_look *out)
+bool body_look_make(const scene *s, const solid *owner, const material *surface, body_look *out)
 {
     const mesh_entry *m = owner->shape.kind == SHAPE_MESH ? scene_find_mesh(s, owner->mesh) : NULL;
     const bool by_face = has_face_looks(owner, m);
@@ -55,10 +55,10 @@ bool body_look_make(const scene *s, const solid *owner, body_look *out)
     if (!out->look)
         return false;
     if (!by_face)
-        out->look[0] = (surface_look){owner->surface, picture_of(s, &owner->surface)};
+        out->look[0] = (surface_look){*surface, picture_of(s, surface)};
     for (int slot = 0; by_face && slot < out->count; slot++) {
         const char *name = m->data->slot_names[slot];
-        out->look[slot] = face_look_of(s, owner, name ? name : "", slot < looks_count(m->looks) ? looks_at(m->looks, slot) : NULL);
+        out->look[slot] = face_look_of(s, surface, name ? name : "", slot < looks_count(m->looks) ? looks_at(m->looks, slot) : NULL);
     }
     return true;
 }

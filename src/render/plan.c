@@ -49,13 +49,13 @@ static bool laws_match(const scene *s, const index_law *a, const index_law *b)
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
-    if (m->transparency == 0.0 || scene_has_constant_shares(&s->render))
+    if (material_is_opaque(m) || scene_has_constant_shares(&s->render))
         return solid_index + 1;
     if (laws_match(s, &laws[solid_index], &laws[s->solid_count]))
         return 0;
     for (int i = 0; i < solid_index; i++) {
         const solid *other = &s->solids[i];
-        if (other->visible && other->surface.transparency > 0.0 && laws_match(s, &laws[i], &laws[solid_index]))
+        if (other->visible && !material_is_opaque(&other->surface) && laws_match(s, &laws[i], &laws[solid_index]))
             return i + 1;
     }
     return solid_index + 1;
@@ -133,7 +133,7 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
         if (!one->visible)
             continue;
         sources[count] = (body_source){.shape = &one->shape, .priority = one->priority, .medium = medium_of(s, laws, i),
-                                             .opaque = one->surface.transparency == 0.0,
+                                             .opaque = material_is_opaque(&one->surface),
                                              .clearness = one->surface.transparency,
                                              .absorbs = material_absorbs(&one->surface), .solid = i};
         if (one->shape.kind == SHAPE_MESH)
@@ -170,6 +170,20 @@ static status laws_of(const scene *s, index_law *laws, diagnostic *why)
     return code;
 }
 
+/* A solid's material as it is traced. */
+static const material *material_of(const scene *s, plan *p, int solid_index)
+{
+    const material *m = &s->solids[solid_index].surface;
+    if (!material_is_mirror(m))
+        return m;
+    material *mirror = &p->mirrors[solid_index];
+    *mirror = *m;
+    const double both = m->reflectivity + m->transparency;
+    mirror->reflectivity = scene_has_constant_shares(&s->render) && both < 1.0 ? both : 1.0;
+    mirror->transparency = 0.0;
+    return mirror;
+}
+
 /* What each rank's body is made of. */
 static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
@@ -179,7 +193,8 @@ static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnos
     p->laws = calloc(ranks, sizeof *p->laws);
     p->absorption = calloc(ranks, sizeof *p->absorption);
     p->looks = calloc(ranks, sizeof *p->looks);
-    if (!p->materials || !p->ior || !p->laws || !p->absorption || !p->looks)
+    p->mirrors = calloc(s->solid_count + 1, sizeof *p->mirrors);
+    if (!p->mirrors || !p->materials || !p->ior || !p->laws || !p->absorption || !p->looks)
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     for (size_t r = 0; r < ranks; r++) {
         const int solid_index = p->solids->bodies[r].solid;
@@ -187,8 +202,8 @@ static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnos
         p->ior[r] = index_law_at(&p->laws[r], s->render.lambda_nm);
         if (solid_index < 0)
             continue;
-        p->materials[r] = &s->solids[solid_index].surface;
-        if (!body_look_make(s, &s->solids[solid_index], &p->looks[r]))
+        p->materials[r] = material_of(s, p, solid_index);
+        if (!body_look_make(s, &s->solids[solid_index], p->materials[r], &p->looks[r]))
             return diagnose(why, STATUS_FAILURE, "", "out of memory");
         p->absorption[r] = vec3_scale(material_absorption(p->materials[r]), s->render.unit_m);
     }
@@ -239,6 +254,7 @@ void plan_destroy(plan *p)
         hierarchy_destroy(p->own_trees[i]);
     free(p->own_trees);
     free(p->materials);
+    free(p->mirrors);
     free(p->ior);
     free(p->laws);
     free(p->absorption);

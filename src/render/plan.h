@@ -34,6 +34,7 @@ typedef struct plan {
     hierarchy **own_trees;      /* of a plan that does not keep them with the meshes; by solid */
     size_t own_tree_count;
     mesh_report meshes;
+    material *mirrors;          /* by solid: clear materials whose index makes them mirrors, as opaque ones */
     double *ior;                /* by rank; [0] is the surrounding medium's; at render.lambda_nm */
     index_law *laws;            /* by rank: what ior was taken from */
     vec3 *absorption;           /* by rank: Beer and Lambert's coefficients by channel, in 1 / scene unit */
@@ -52,7 +53,7 @@ typedef struct plan {
 status plan_build(const scene *s, plan **out, diagnostic *why);
 void plan_destroy(plan *p);
 
-/* Fills *out for a body of that solid; false when memory is out. For plan.c. */
-bool body_look_make(const scene *s, const solid *owner, body_look *out);
+/* Fills *out for a body of that solid, whose own surface is that material; false when memory is out. For plan.c. */
+bool body_look_make(const scene *s, const solid *owner, const material *surface, body_look *out);
 
 #endif

@@ -169,10 +169,10 @@ static status unknown(const char *owner, const char *what, const char *name, dia
 }
 
 /* A clear solid bends light by what is inside it: an open mesh has no inside. */
-static status check_closed(const solid *owner, const mesh_entry *m, diagnostic *why)
+static status check_closed(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
 {
     const mesh *data = m->data;
-    if (!data || data->closed || owner->surface.transparency == 0.0) {
+    if (!data || data->closed || material_is_opaque(&owner->surface) || s->render.transmission == TRANSMISSION_SIMPLE) {
         return STATUS_OK;
     }
     const vec3 a = data->vertices[data->hole.from], b = data->vertices[data->hole.to];
@@ -195,7 +195,7 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     if (!owner->mesh[0]) {
         return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', of one in meshes", "%.80s: which mesh it is is not said", owner->name);
     }
-    return m ? check_closed(owner, m, why) : unknown(owner->name, "mesh", owner->mesh, why);
+    return m ? check_closed(s, owner, m, why) : unknown(owner->name, "mesh", owner->mesh, why);
 }
 
 status check_solid(const scene *s, const solid *owner, diagnostic *why)

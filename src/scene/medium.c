@@ -62,6 +62,16 @@ bool index_laws_equal(const index_law *a, const index_law *b)
     return true;
 }
 
+bool material_is_mirror(const material *m)
+{
+    return m->transparency > 0.0 && m->medium == MEDIUM_IOR && m->ior > MIRROR_IOR; /* no law or catalogue reaches that */
+}
+
+bool material_is_opaque(const material *m)
+{
+    return m->transparency == 0.0 || material_is_mirror(m);
+}
+
 const char *material_medium_name(const material *m)
 {
     return m->medium >= MEDIUM_CATALOGUE ? medium_words[m->medium] : NULL;

@@ -27,6 +27,13 @@ index_law surrounding_index_law(const background *b);
 double index_law_at(const index_law *law, double lambda_nm);
 bool index_laws_equal(const index_law *a, const index_law *b);
 
+/* Above this index a clear material is a mirror that nothing passes: all light is reflected under Fresnel's weights (of which that is
+ * the limit), with constant shares what would have been reflected and what would have passed. */
+#define MIRROR_IOR 1e4
+bool material_is_mirror(const material *m);
+/* Neither light nor a ray passes its surface. */
+bool material_is_opaque(const material *m);
+
 /* "water", or NULL when the medium is not one of the catalogue. */
 const char *material_medium_name(const material *m);
 const char *surrounding_medium_name(const background *b);
