@@ -22,7 +22,8 @@ static const char pane_scene[] = "render: {width: 1, height: 1, depth: 1, weight
                                  "solids:\n"
                                  "  pane: {shape: plane, ior: 1, color: [0.9, 0.6, 0.3], ambient: 0.1, diffuse: 0.2, specular: 0.15, shininess: 3,\n"
                                  "    reflectivity: 0.25, transparency: 0.3}\n"
-                                 "  mirror: {shape: plane, position: [0, -6, 0], priority: 1, color: [0.4, 0.4, 0.4], ambient: 1, reflectivity: 0.5}\n";
+                                 "  mirror: {shape: plane, position: [0, -6, 0], priority: 1, color: [0.4, 0.4, 0.4], ambient: 1,\n"
+                                 "    reflectivity: 0.5}\n";
 static const double sky[3] = {0.1, 0.2, 0.3}, around[3] = {0.5, 1.0, 2.0}, lamp[3] = {2.0, 1.0, 0.5}, color[3] = {0.9, 0.6, 0.3};
 
 /* eye, way and behind: what is left over the ways from the eye, to the lamp, and through the pane's medium. */
@@ -170,7 +171,8 @@ static void shares_above_one_and_polarisation_are_refused(void **state)
 static const char mirror_scene[] = "render: {width: 1, height: 1, depth: 2, beyond: black}\n"
                                    "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
                                    "background: {color: [1, 1, 1], ambient: [0, 0, 0]}\n"
-                                   "solids: {pane: {shape: box, size: [9, 2, 9], position: [0, -1, 0], transparency: 0.5, reflectivity: 0.3, ior: 10001}}\n";
+                                   "solids: {pane: {shape: box, size: [9, 2, 9], position: [0, -1, 0],\n"
+                                   "  transparency: 0.5, reflectivity: 0.3, ior: 10001}}\n";
 
 static void an_index_above_ten_thousand_is_a_mirror(void **state)
 {

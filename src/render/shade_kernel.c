@@ -293,4 +293,5 @@ static void camera_directions(const camera_frame *view, int count, const double 
     }
 }
 
-const shade_kernels KERNEL(shade_kernels) = {color, direct, spot, fresnel_branches, constant_branches, straight_branches, cut, append, camera_directions};
+const shade_kernels KERNEL(shade_kernels) = {color, direct, spot, fresnel_branches, constant_branches, straight_branches,
+                                                   cut,   append, camera_directions};
