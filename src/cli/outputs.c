@@ -165,6 +165,11 @@ status outputs_ending(const char *option, const char *path, const char *const *e
     return wrong(&file, why, remedy, "the ending names no format");
 }
 
+status outputs_check_folder(const char *option, const char *path, diagnostic *why)
+{
+    return strcmp(path, "-") == 0 ? STATUS_OK : check_folder(&(named_file){option, path}, why);
+}
+
 status outputs_check_place(const char *option, const char *path, const scene *s, diagnostic *why)
 {
     const named_file file = {option, path};

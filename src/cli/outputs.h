@@ -22,6 +22,8 @@ status outputs_check_picture(const char *option, const char *path, const char *c
 /* Of a text file: which of the endings its name has, by index. remedy says what to do when it has none of them. */
 status outputs_ending(const char *option, const char *path, const char *const *endings, size_t count, const char *remedy, size_t *which,
                       diagnostic *why);
+/* Its folder alone: for what may be written in place of what was read. "-" is always right. */
+status outputs_check_folder(const char *option, const char *path, diagnostic *why);
 /* Its folder, and that nothing is read from it: the scene and its sky. "-" is always right. */
 status outputs_check_place(const char *option, const char *path, const scene *s, diagnostic *why);
 

@@ -91,7 +91,8 @@ static status check_request(const scene_request *request, diagnostic *why)
         return misused(why, "leave out -o FILE", "--check and --list write no scene");
     if (!request->output || strcmp(request->output, "-") == 0)
         return STATUS_OK;
-    return outputs_ending("-o", request->output, endings, 2, "end it in .yaml or .yml", &unused, why);
+    status result = outputs_ending("-o", request->output, endings, 2, "end it in .yaml or .yml", &unused, why);
+    return result == STATUS_OK ? outputs_check_folder("-o", request->output, why) : result;
 }
 
 static status make_scene(const scene_request *request, scene **out, diagnostic *why)

@@ -185,14 +185,15 @@ static status visit(void *context, const char *path, const param *row, const cha
     if (!implied) {
         return diagnose(w->why, STATUS_FAILURE, "", "memory is out");
     }
-    const bool wanted = w->all || is_needed(row) || strcmp(implied, value) != 0;
+    /* An empty path says nothing, and none is visited where a file is named that is not in use. */
+    const bool wanted = (w->all && value[0]) || is_needed(row) || strcmp(implied, value) != 0;
     free(implied);
     if (!wanted) {
         return STATUS_OK;
     }
     put_section(w);
     begin_line(w, row->name);
-    if (row->type == PARAM_PATH && value[0]) {
+    if (row->type == PARAM_PATH) {
         return put_path(w, path, row, value);
     }
     put_value(w, row, value);

@@ -1,0 +1,458 @@
+/* Scenes as text: what is written reads back as the same scene, and is written again in the same bytes. Run from the repository
+ * root. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "render_fixture.h"
+#include "scene/edit.h"
+#include "scene/params_path.h"
+#include "scene/write.h"
+#include <dirent.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define SCENES "experiments/scenes/"
+
+static char *written(const scene *s, const char *path, bool all)
+{
+    char *text = NULL;
+    diagnostic why = {0};
+    worked(scene_write_text(s, path, all, &text, &why), &why);
+    return text;
+}
+
+static status add_line(void *context, const char *path, const param *row, const char *value)
+{
+    if (strcmp(row->name, "ior") != 0 && row->type != PARAM_PATH)
+        fprintf(context, "%s=%s\n", path, value);
+    return STATUS_OK;
+}
+
+/* Every parameter in use but those that another may set aside, every shape, every material. */
+static char *account(const scene *s)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    fprintf(out, "%s\n", s->title);
+    assert_int_equal(scene_each_param(s, add_line, out), STATUS_OK);
+    for (size_t i = 0; i < s->solid_count; i++)
+        fprintf(out, "%s %d %d\n", s->solids[i].name, (int)s->solids[i].shape.kind, s->solids[i].material_index);
+    fclose(out);
+    return text;
+}
+
+/* Writes, reads, compares, writes again; gives what was read. */
+static scene *there_and_back(const scene *s, bool all)
+{
+    char *first = written(s, "", all);
+    scene *again = scene_from(first);
+    char *second = written(again, "", all);
+    assert_string_equal(first, second);
+    free(first);
+    free(second);
+    return again;
+}
+
+static void assert_same_scene(const scene *a, const scene *b)
+{
+    char *first = account(a), *second = account(b);
+    assert_string_equal(first, second);
+    free(first);
+    free(second);
+}
+
+/* Both ways of writing keep the scene. */
+static void assert_survives(const scene *s)
+{
+    for (int all = 0; all < 2; all++) {
+        scene *again = there_and_back(s, all);
+        assert_same_scene(s, again);
+        scene_destroy(again);
+    }
+}
+
+static uint64_t hash_of(const scene *s)
+{
+    render_result *result = render(s);
+    uint64_t hash = film_hash(result->picture);
+    render_result_destroy(result);
+    return hash;
+}
+
+static scene *committed_scene(const char *name)
+{
+    char path[300];
+    scene *s = NULL;
+    diagnostic why = {0};
+    snprintf(path, sizeof path, SCENES "%s", name);
+    worked(scene_read(path, &s, &why), &why);
+    return s;
+}
+
+static void every_scene_of_the_project_survives_and_makes_the_same_film(void **state)
+{
+    (void)state;
+    DIR *folder = opendir(SCENES);
+    assert_non_null(folder);
+    size_t count = 0;
+    for (struct dirent *entry = readdir(folder); entry; entry = readdir(folder)) {
+        if (!strstr(entry->d_name, ".yaml"))
+            continue;
+        scene *s = committed_scene(entry->d_name);
+        assert_survives(s);
+        for (int all = 0; all < 2; all++) {
+            scene *again = there_and_back(s, all), *small = scene_clone(s);
+            set_all(small, "render.width=48 render.height=36 render.samples=1");
+            set_all(again, "render.width=48 render.height=36 render.samples=1");
+            assert_true(hash_of(small) == hash_of(again));
+            scene_destroy(again);
+            scene_destroy(small);
+        }
+        scene_destroy(s);
+        count++;
+    }
+    closedir(folder);
+    assert_true(count >= 8);
+}
+
+static const char one_of_each[] = "materials: {paint: {}}\n"
+                                  "lights: {lamp: {}}\n"
+                                  "solids: {plane1: {shape: plane}, cylinder1: {shape: cylinder}, cup1: {shape: cup}, box1: {shape: box},\n"
+                                  "  sphere1: {shape: sphere}, painted: {shape: box, material: paint}}\n";
+
+/* Values to try, some of which are right for a row; NULL at the end. */
+static size_t candidates(const param *row, char text[][100], size_t room)
+{
+    size_t count = 0;
+    for (; row->choices && row->choices[count] && count < room; count++)
+        snprintf(text[count], 100, "%s", row->choices[count]);
+    if (count)
+        return count;
+    double fallback = strtod(row->fallback, NULL), low = row->lowest, high = row->highest;
+    switch (row->type) {
+    case PARAM_INT:
+        snprintf(text[0], 100, "%.0f", low + 1);
+        snprintf(text[1], 100, "%.0f", high);
+        return 2;
+    case PARAM_REAL:
+        snprintf(text[0], 100, "%.17g", fallback * 0.7310585786300049 + low / 3);
+        snprintf(text[1], 100, "%.17g", low + (high - low) * 0.1234567890123456789);
+        return 2;
+    case PARAM_VECTOR:
+    case PARAM_COLOR:
+        snprintf(text[0], 100, "%.17g,%.17g,%.17g", low + (high - low) / 3, low + (high - low) / 7, high);
+        return 1;
+    case PARAM_LIST:
+        snprintf(text[0], 100, "[400,0.1,500,%.17g]", 1.0 / 3.0);
+        return 1;
+    case PARAM_PATH:
+        snprintf(text[0], 100, "pictures/it's: a sky #1.png");
+        return 1;
+    case PARAM_CHOICE: break;
+    }
+    return 0;
+}
+
+static bool is_right(const scene *s, const char *path, const char *value)
+{
+    scene *trial = scene_clone(s);
+    bool right = scene_set(trial, path, value, NULL) == STATUS_OK && scene_check(trial, NULL) == STATUS_OK;
+    scene_destroy(trial);
+    return right;
+}
+
+/* How many values of the row that are not its own were carried there and back. */
+static size_t carry_row(const scene *s, const char *owner, const param *row)
+{
+    char text[64][100], path[200];
+    snprintf(path, sizeof path, "%s.%s", owner, row->name);
+    size_t count = candidates(row, text, 64), carried = 0;
+    for (size_t i = 0; i < count; i++) {
+        char *before = NULL, *after = NULL;
+        if (!is_right(s, path, text[i]))
+            continue;
+        scene *changed = scene_clone(s);
+        assert_int_equal(scene_get(changed, path, &before, NULL), STATUS_OK);
+        assert_int_equal(scene_set(changed, path, text[i], NULL), STATUS_OK);
+        assert_int_equal(scene_get(changed, path, &after, NULL), STATUS_OK);
+        carried += strcmp(before, after) != 0;
+        assert_survives(changed);
+        for (int all = 0; all < 2; all++) {
+            scene *again = there_and_back(changed, all);
+            char *read = NULL;
+            assert_int_equal(scene_get(again, path, &read, NULL), STATUS_OK);
+            assert_string_equal(read, after);
+            free(read);
+            scene_destroy(again);
+        }
+        scene_destroy(changed);
+        free(before);
+        free(after);
+    }
+    return carried;
+}
+
+static void every_parameter_survives_away_from_its_default(void **state)
+{
+    (void)state;
+    static const char *const owners[] = {"render", "camera", "background", "lamp", "paint",   "plane1",
+                                         "cylinder1", "cup1", "box1",      "sphere1", "painted"};
+    scene *s = scene_from(one_of_each);
+    bool seen[512] = {false};
+    for (size_t o = 0; o < sizeof owners / sizeof *owners; o++) {
+        for (size_t i = 0; i < param_count(); i++) {
+            place at;
+            char path[200];
+            snprintf(path, sizeof path, "%s.%s", owners[o], param_at(i)->name);
+            if (place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
+                continue;
+            if (carry_row(s, owners[o], param_at(i)) == 0)
+                fail_msg("%s was not changed", path);
+            seen[i] = true;
+        }
+    }
+    for (size_t i = 0; i < param_count(); i++)
+        assert_true(seen[i]);
+    scene_destroy(s);
+}
+
+static void random_scenes_survive(void **state)
+{
+    (void)state;
+    for (unsigned seed = 1; seed <= 60; seed++) {
+        scene *s = scene_from(one_of_each);
+        unsigned x = seed;
+        for (size_t i = 0; i < param_count(); i++) {
+            static const char *const owners[] = {"lamp", "paint", "painted", "cup1", "sphere1", "render", "camera", "background"};
+            x = x * 1664525u + 1013904223u;
+            char path[200], text[64][100];
+            snprintf(path, sizeof path, "%s.%s", owners[(x >> 16) % 8], param_at(i)->name);
+            size_t count = candidates(param_at(i), text, 64);
+            place at;
+            if (place_find(s, path, &at, NULL) == STATUS_OK && at.row == param_at(i) && is_right(s, path, text[(x >> 20) % count]))
+                assert_int_equal(scene_set(s, path, text[(x >> 20) % count], NULL), STATUS_OK);
+        }
+        assert_survives(s);
+        scene_destroy(s);
+    }
+}
+
+static void assert_written(scene *s, const char *expected)
+{
+    char *text = written(s, "", false);
+    assert_string_equal(text, expected);
+    free(text);
+    scene_destroy(there_and_back(s, false));
+    scene_destroy(there_and_back(s, true));
+}
+
+static void only_what_differs_is_written_and_a_material_is_a_reference(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {depth: 4, width: 640}\n"
+                          "lights: {lamp: {position: [0, 10, 0]}}\n"
+                          "materials: {glass: {ior: 1.5, transparency: 1}, dull: {}}\n"
+                          "solids: {a: {shape: box, material: glass, ior: 1.5, transparency: 0.1}, b: {shape: sphere, ior: 1.25}}\n");
+    assert_written(s, "render:\n  width: 640\n\n"
+                      "materials:\n  glass:\n    transparency: 1\n    ior: 1.5\n  dull: {}\n\n"
+                      "lights:\n  lamp: {}\n\n"
+                      "solids:\n  a:\n    shape: box\n    material: glass\n    transparency: 0.1\n  b:\n    shape: sphere\n    ior: 1.25\n");
+    scene_destroy(s);
+}
+
+static void a_scene_of_nothing_is_a_scene(void **state)
+{
+    (void)state;
+    scene *s = scene_create();
+    assert_written(s, "solids: {}\n");
+    scene_destroy(s);
+}
+
+static void numbers_are_short_and_read_back_the_same(void **state)
+{
+    (void)state;
+    scene *s = scene_from("{}");
+    set_all(s, "camera.position=0.1,1e-9,-123456.78901234567 camera.fov_deg=30.000000000000004");
+    assert_written(s, "camera:\n  position: [0.1, 1e-09, -123456.78901234567]\n  fov_deg: 30.000000000000004\n");
+    scene_destroy(s);
+}
+
+static void a_camera_along_its_angles_stays_so_even_at_zero(void **state)
+{
+    (void)state;
+    scene *s = scene_from("camera: {yaw_deg: 0}\n");
+    assert_int_equal(s->camera.aimed, 0);
+    assert_written(s, "camera:\n  yaw_deg: 0\n");
+    set(s, "camera.pitch_deg=-12.5");
+    assert_written(s, "camera:\n  yaw_deg: 0\n  pitch_deg: -12.5\n");
+    scene_destroy(s);
+}
+
+static void one_medium_is_written_where_an_index_was_set_aside(void **state)
+{
+    (void)state;
+    scene *s = scene_from("background: {medium: air}\n"
+                          "materials: {wet: {ior: 1.7}, plain: {ior: 1.5}}\n"
+                          "solids: {a: {shape: box, material: wet}, b: {shape: box, material: wet, ior: 1.25},\n"
+                          "  c: {shape: box, material: plain, medium: water}}\n");
+    set(s, "wet.medium=water"); /* of a, and of b too */
+    set(s, "a.ior=1.7");        /* as was the material's, which has no effect any more */
+    assert_written(s, "background:\n  medium: air\n\n"
+                      "materials:\n  wet:\n    medium: water\n  plain:\n    ior: 1.5\n\n"
+                      "solids:\n  a:\n    shape: box\n    material: wet\n    ior: 1.7\n    medium: ior\n"
+                      "  b:\n    shape: box\n    material: wet\n"
+                      "  c:\n    shape: box\n    material: plain\n    medium: water\n");
+    scene_destroy(s);
+}
+
+static void a_sky_that_is_not_shown_is_not_written(void **state)
+{
+    (void)state;
+    scene *s = scene_from("background: {picture: sky.png}\n");
+    assert_written(s, "background:\n  kind: picture\n  picture: sky.png\n");
+    set(s, "background.kind=uniform");
+    assert_written(s, "solids: {}\n");
+    scene_destroy(s);
+}
+
+static void texts_are_quoted_where_yaml_needs_it(void **state)
+{
+    (void)state;
+    static const char *const titles[][2] = {
+        {"Rod in a vessel", "Rod in a vessel"}, {"it's, and (so) on; 50%", "it's, and (so) on; 50%"},
+        {"yes", "\"yes\""}, {"Null", "\"Null\""}, {"2 rods", "\"2 rods\""}, {"1e3", "\"1e3\""}, {"~", "\"~\""},
+        {"rod: leaning", "\"rod: leaning\""}, {"rod #2", "\"rod #2\""}, {"rod:", "\"rod:\""}, {"- rod", "\"- rod\""},
+        {"[rod]", "\"[rod]\""}, {"say \"rod\"", "\"say \\\"rod\\\"\""}, {"back\\slash", "\"back\\\\slash\""},
+        {" before and after ", "\" before and after \""}, {"two\nlines", "\"two\\nlines\""}, {"a\ttab", "\"a\\x09tab\""},
+        {"Brechzahl f\xc3\xbcr Gl\xc3\xa4ser", "Brechzahl f\xc3\xbcr Gl\xc3\xa4ser"},
+        {"\xe2\x80\xa8separator", "\"\\u2028separator\""}, {"next\xc2\x85line", "\"next\\x85line\""},
+        {"\xf0\x9f\x94\xac", "\xf0\x9f\x94\xac"}, {"&anchor", "\"&anchor\""}, {"!tag", "\"!tag\""}, {"%directive", "\"%directive\""},
+        {"a\x01z\x7f", "\"a\\x01z\\x7F\""}, {"\xef\xbb\xbfmark", "\"\\uFEFFmark\""},
+    };
+    for (size_t i = 0; i < sizeof titles / sizeof *titles; i++) {
+        scene *s = scene_create();
+        char expected[200];
+        assert_int_equal(scene_set_title(s, titles[i][0], NULL), STATUS_OK);
+        snprintf(expected, sizeof expected, "title: %s\n", titles[i][1]);
+        assert_written(s, expected);
+        scene_destroy(s);
+    }
+}
+
+static void names_that_are_words_of_yaml_are_quoted(void **state)
+{
+    (void)state;
+    scene *s = scene_from("materials: {no: {ambient: 1}}\nsolids: {On: {shape: sphere, material: no}}\n");
+    assert_written(s, "materials:\n  \"no\":\n    ambient: 1\n\nsolids:\n  \"On\":\n    shape: sphere\n    material: \"no\"\n");
+    scene_destroy(s);
+}
+
+static void text_that_is_not_utf8_is_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {"\xff", "half \xc3", "\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x28\xa1"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        scene *s = scene_create();
+        char *text;
+        diagnostic why = {0};
+        assert_int_equal(scene_set_title(s, wrong[i], NULL), STATUS_OK);
+        assert_int_equal(scene_write_text(s, "", false, &text, &why), STATUS_BAD_INPUT);
+        assert_null(text);
+        assert_string_equal(why.what, "title is not UTF-8, and a scene file is");
+        scene_destroy(s);
+    }
+}
+
+/* What picture becomes when a scene of from is written to to. */
+static void assert_moved(const char *from, const char *picture, const char *to, const char *expected)
+{
+    scene *s = NULL;
+    char text[700], *there, *value = NULL;
+    diagnostic why = {0};
+    snprintf(text, sizeof text, "background: {picture: \"%s\"}\n", picture);
+    worked(scene_read_text(from, text, strlen(text), &s, &why), &why);
+    there = written(s, to, false);
+    scene_destroy(s);
+    worked(scene_read_text(to, there, strlen(there), &s, &why), &why);
+    worked(scene_get(s, "background.picture", &value, &why), &why);
+    assert_string_equal(value, expected);
+    char *again = written(s, to, false);
+    assert_string_equal(there, again);
+    free(again);
+    free(value);
+    free(there);
+    scene_destroy(s);
+}
+
+static void paths_follow_the_file_into_another_folder(void **state)
+{
+    (void)state;
+    char root[] = "/tmp/cuvette-write-XXXXXX", here[4096];
+    assert_non_null(mkdtemp(root));
+    assert_non_null(getcwd(here, sizeof here));
+    assert_int_equal(chdir(root), 0);
+    assert_int_equal(mkdir("a", 0777) | mkdir("a/b", 0777) | mkdir("c", 0777) | mkdir("ab", 0777) | symlink("a/b", "link"), 0);
+    char absolute[300];
+    snprintf(absolute, sizeof absolute, "%s/c/sky.png", root);
+    assert_moved("a/s.yaml", "sky.png", "a/t.yaml", "sky.png");
+    assert_moved("a/s.yaml", "./x/../sky.png", "a/t.yaml", "./x/../sky.png");
+    assert_moved("a/s.yaml", "sky.png", "./a/t.yaml", "sky.png");
+    assert_moved("s.yaml", "c/sky.png", "a/t.yaml", "../c/sky.png");
+    assert_moved("a/b/s.yaml", "../../c/sky.png", "c/t.yaml", "sky.png");
+    assert_moved("a/b/s.yaml", "../../c/sky.png", "", "c/sky.png");
+    assert_moved("a/s.yaml", "sky.png", "ab/t.yaml", "../a/sky.png");
+    assert_moved("a/b/s.yaml", "sky.png", "a/t.yaml", "b/sky.png");
+    assert_moved("link/s.yaml", "../sky.png", "t.yaml", "a/sky.png"); /* a link's .. is where it leads */
+    assert_moved("s.yaml", "sky.png", "link/t.yaml", "../../sky.png");
+    assert_moved("s.yaml", absolute, "a/t.yaml", absolute);
+    assert_moved("c/s.yaml", "sky.png", "/dev/t.yaml", absolute); /* nothing is shared */
+    assert_moved("", "c/sky.png", "a/t.yaml", "../c/sky.png");
+    assert_moved("none/s.yaml", "sky.png", "a/t.yaml", "../none/sky.png");
+    assert_int_equal(unlink("link") | rmdir("a/b") | rmdir("a") | rmdir("ab") | rmdir("c"), 0);
+    assert_int_equal(chdir(here), 0);
+    rmdir(root);
+}
+
+static void a_file_appears_whole(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/cuvette-write-XXXXXX.yaml";
+    int fd = mkstemps(path, 5);
+    assert_true(fd >= 0);
+    close(fd);
+    scene *s = rod_scene(""), *again = NULL;
+    diagnostic why = {0};
+    worked(scene_write(s, path, false, &why), &why);
+    worked(scene_read(path, &again, &why), &why);
+    assert_same_scene(s, again);
+    scene_destroy(again);
+    assert_int_equal(scene_write(s, "/nowhere/at/all.yaml", false, &why), STATUS_FAILURE);
+    scene_destroy(s);
+    unlink(path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_scene_of_the_project_survives_and_makes_the_same_film),
+        cmocka_unit_test(every_parameter_survives_away_from_its_default),
+        cmocka_unit_test(random_scenes_survive),
+        cmocka_unit_test(only_what_differs_is_written_and_a_material_is_a_reference),
+        cmocka_unit_test(a_scene_of_nothing_is_a_scene),
+        cmocka_unit_test(numbers_are_short_and_read_back_the_same),
+        cmocka_unit_test(a_camera_along_its_angles_stays_so_even_at_zero),
+        cmocka_unit_test(one_medium_is_written_where_an_index_was_set_aside),
+        cmocka_unit_test(a_sky_that_is_not_shown_is_not_written),
+        cmocka_unit_test(texts_are_quoted_where_yaml_needs_it),
+        cmocka_unit_test(names_that_are_words_of_yaml_are_quoted),
+        cmocka_unit_test(text_that_is_not_utf8_is_refused),
+        cmocka_unit_test(paths_follow_the_file_into_another_folder),
+        cmocka_unit_test(a_file_appears_whole),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
