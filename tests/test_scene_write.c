@@ -172,7 +172,7 @@ static size_t carry_row(const scene *s, const char *owner, const param *row)
     char text[64][100], path[200];
     snprintf(path, sizeof path, "%s.%s", owner, row->name);
     size_t count = candidates(row, text, 64), carried = 0;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count && carried < 2; i++) {
         char *before = NULL, *after = NULL;
         if (!is_right(s, path, text[i]))
             continue;
@@ -181,10 +181,10 @@ static size_t carry_row(const scene *s, const char *owner, const param *row)
         assert_int_equal(scene_set(changed, path, text[i], NULL), STATUS_OK);
         assert_int_equal(scene_get(changed, path, &after, NULL), STATUS_OK);
         carried += strcmp(before, after) != 0;
-        assert_survives(changed);
         for (int all = 0; all < 2; all++) {
             scene *again = there_and_back(changed, all);
             char *read = NULL;
+            assert_same_scene(changed, again);
             assert_int_equal(scene_get(again, path, &read, NULL), STATUS_OK);
             assert_string_equal(read, after);
             free(read);
@@ -211,6 +211,8 @@ static void every_parameter_survives_away_from_its_default(void **state)
             snprintf(path, sizeof path, "%s.%s", owners[o], param_at(i)->name);
             if (place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
                 continue;
+            if (at.group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
+                continue; /* one solid's will do */
             if (carry_row(s, owners[o], param_at(i)) == 0)
                 fail_msg("%s was not changed", path);
             seen[i] = true;
@@ -224,7 +226,7 @@ static void every_parameter_survives_away_from_its_default(void **state)
 static void random_scenes_survive(void **state)
 {
     (void)state;
-    for (unsigned seed = 1; seed <= 60; seed++) {
+    for (unsigned seed = 1; seed <= 40; seed++) {
         scene *s = scene_from(one_of_each);
         unsigned x = seed;
         for (size_t i = 0; i < param_count(); i++) {

@@ -167,6 +167,9 @@ static status put_path(scene_writer *w, const char *label, const param *row, con
 static status visit(void *context, const char *path, const param *row, const char *value)
 {
     scene_writer *w = context;
+    if (row->group != w->group && !(w->group == PARAM_SOLID && row->group == PARAM_MATERIAL)) {
+        return STATUS_OK;
+    }
     place at;
     status code = place_find(w->s, path, &at, w->why);
     if (code != STATUS_OK) {
