@@ -105,13 +105,12 @@ static void every_scene_of_the_project_survives_and_makes_the_same_film(void **s
             continue;
         scene *s = committed_scene(entry->d_name);
         assert_survives(s);
+        set_all(s, "render.width=32 render.height=24 render.samples=1 render.wavelengths=4");
+        const uint64_t hash = hash_of(s);
         for (int all = 0; all < 2; all++) {
-            scene *again = there_and_back(s, all), *small = scene_clone(s);
-            set_all(small, "render.width=48 render.height=36 render.samples=1");
-            set_all(again, "render.width=48 render.height=36 render.samples=1");
-            assert_true(hash_of(small) == hash_of(again));
+            scene *again = there_and_back(s, all);
+            assert_true(hash_of(again) == hash);
             scene_destroy(again);
-            scene_destroy(small);
         }
         scene_destroy(s);
         count++;
