@@ -53,10 +53,10 @@ run --version
 check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render trace fan params media mesh study compare realism machine help; do
+for command in render scene trace fan params media mesh study compare realism machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render trace fan params media mesh study compare realism machine "study run" "study list" "study status" "study merge" "study summary"; do
+for command in render scene trace fan params media mesh study compare realism machine "study run" "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -532,6 +532,68 @@ if command -v script >/dev/null; then
     check "progress has a share and the time left" grep -q 'rendering: .*%, .* left' tty.txt
 fi
 
+# --- scene
+run scene "$scene"
+check "scene writes to standard output" silent_success
+cp out first.yaml
+run scene first.yaml
+check "write, read, write gives the same bytes" cmp out first.yaml
+run scene "$scene" --all -o all.yaml
+check "-o prints nothing" is "$code $(cat out err | wc -c)" "0 0"
+check "--all writes what is left out" grep -q '^  polarisation: off' all.yaml
+for file in first.yaml all.yaml; do
+    run render "$file" -o b.png "${small[@]}"
+    check "$file makes the same film" matches "$(<out)" "film $hash"
+done
+run scene --new --title "Rod in a vessel" --set camera.position=0,2.75,-6 --set camera.target=0,1.5,0 \
+    --add material:clear,transparency=1,specular=0.6,shininess=80 \
+    --add material:tiles,color=0.85,0.85,0.85,checker_color=0.25,0.30,0.35,checker=0.5,ambient=0.1,diffuse=0.7 \
+    --add material:plastic,color=0.85,0.15,0.10,ambient=0.1,diffuse=0.7,specular=0.5,shininess=40 \
+    --add light:lamp --move lamp=4,-3,-5 --add solid:ground=plane,material=tiles \
+    --add solid:vessel=cup,ior=1.5,material=clear,position=0,0.001,0,height=3,priority=2 \
+    --add solid:liquid=sphere --set liquid.shape=cylinder --set liquid.material=clear --set liquid.ior=1.33 --set liquid.priority=1 \
+    --set liquid.position=0,0.051,0 --set liquid.radius=0.95 --set liquid.height=1.95 --add solid:wrong=box --delete wrong \
+    --add solid:stick=box,material=plastic,size=0.25,3,0.25,priority=3 --rename stick=rod --turn rod=0,0,45 --turn rod=0,0,-45 \
+    --move rod=0.2,2.101,0 -o built.yaml
+check "a scene is built by options alone" silent_success
+check "and is the same scene, byte for byte" cmp built.yaml first.yaml
+run scene built.yaml --list
+check "--list has a line an object" is "$(head -1 out) $(wc -l <out) $(tail -1 out)" "material clear 8 solid rod box plastic"
+run scene built.yaml --check
+check "--check says that it is right" is "$code $(<out)" "0 built.yaml: right; meshes 0, textures 0, materials 3, lights 1, solids 4"
+run scene built.yaml --move rod=0,0.5,0 -o built.yaml
+check "a scene is changed in its place" matches "$(grep -A3 '  rod:' built.yaml | tail -1)" 'position: \[0.2, 2.601, 0\]'
+mkdir -p pictures/scenes
+cp a.png pictures/sky.png
+run scene built.yaml --set background.picture=pictures/sky.png -o pictures/scenes/moved.yaml
+check "paths follow the file" grep -q '  picture: ../sky.png' pictures/scenes/moved.yaml
+run scene pictures/scenes/moved.yaml --check
+check "and lead to the picture" silent_success
+refused() # WHAT ERROR ARGUMENT...: one line, 2, nothing written
+{
+    local what=$1 error=$2
+    shift 2
+    run scene "$@" -o refused.yaml
+    check "scene refuses $what" is "$code $(wc -l <err) $(cat out refused.yaml 2>/dev/null | wc -c) $(<err)" "2 1 0 cuvette: $error"
+}
+refused "to delete a material in use" \
+    "--delete clear: clear is the material of vessel and 1 more; give those another material first, or remove them" built.yaml --delete clear
+refused "a name that is not there" "--move rood=1,2,3: nothing in the scene is named 'rood'; did you mean 'rod'?" built.yaml --move rood=1,2,3
+refused "two numbers" "--move rod=1,2: there are fewer than 3 numbers; give NAME=DX,DY,DZ" built.yaml --move rod=1,2
+refused "a shape that is none" "--add solid:x=bax: no shape 'bax'; did you mean 'box'?" built.yaml --add solid:x=bax
+refused "a solid without a shape" "--add solid:x: x has no shape; write solid:NAME=SHAPE, as solid:rod=box" built.yaml --add solid:x
+refused "a kind that is none" "--add ball:x: there is no kind of object 'ball'; give one of: solid, light, material, mesh, texture" \
+    built.yaml --add ball:x
+refused "what is wrong as a whole" \
+    "built.yaml: vessel: inner_radius 2 is not smaller than radius 1; make inner_radius smaller than radius, or the cup has no wall" \
+    built.yaml --set vessel.inner_radius=2
+refused "a file and --new" "scene: a scene file and --new exclude each other; give one of them" built.yaml --new
+run scene built.yaml -o rod.png
+check "scene writes no picture" is "$code $(wc -l <err)" "2 1"
+run scene
+check "scene wants a file or --new" is "$code $(<err)" \
+    "2 cuvette: scene: no scene is named; name a scene file, as experiments/scenes/rod.yaml, or begin with --new"
+
 # --- completion
 check "the completion is sound bash" bash -n "$root/src/cli/cuvette.bash"
 complete_line() # WORD...: what is offered for the last one
@@ -549,6 +611,8 @@ check "completion offers mesh's options and bodies" is "$(complete_line "$progra
 check "completion offers media" is "$(complete_line "$program" media fused)" fused-silica
 check "completion offers options of trace" is "$(complete_line cuvette trace --p)" --pixel
 check "completion offers options of fan" is "$(complete_line cuvette fan --sp)" --spread
+check "completion offers objects of the scene" is "$(complete_line "$program" scene "$scene" --delete ve; complete_line "$program" scene "$scene" --move ro)" \
+    "$(lines vessel rod=)"
 check "completion offers study verbs" is "$(complete_line cuvette study mer)" merge
 
 echo "$passed passed, $failed failed"

@@ -38,10 +38,12 @@ static void assert_vector(vec3 v, double x, double y, double z)
 static void what_is_added_is_as_a_file_has_it(void **state)
 {
     (void)state;
-    static const char *const shapes[] = {"plane", "cylinder", "cup", "box", "sphere"};
+    static const char *const shapes[] = {"plane", "cylinder", "cup", "box", "sphere", "mesh"};
+    assert_int_equal(sizeof shapes / sizeof *shapes, SHAPE_COUNT);
     for (int k = 0; k < SHAPE_COUNT; k++) {
-        char file[200];
-        snprintf(file, sizeof file, "materials: {stuff: {}}\nlights: {lamp: {}}\nsolids: {thing: {shape: %s}}\n", shapes[k]);
+        char file[300];
+        snprintf(file, sizeof file, "meshes: {body: {generate: box}}\ntextures: {wood: {file: wood.png}}\nmaterials: {stuff: {}}\n"
+                 "lights: {lamp: {}}\nsolids: {thing: {shape: %s%s}}\n", shapes[k], k == SHAPE_MESH ? ", mesh: body" : "");
         scene *read = scene_from(file), *made = scene_create();
         size_t stuff = 9, lamp = 9, thing = 9;
         shape_kind kind;
@@ -49,6 +51,11 @@ static void what_is_added_is_as_a_file_has_it(void **state)
         assert_int_equal(scene_add_solid(made, "thing", kind, &thing, NULL), STATUS_OK);
         assert_int_equal(scene_add_light(made, "lamp", &lamp, NULL), STATUS_OK);
         assert_int_equal(scene_add_material(made, "stuff", &stuff, NULL), STATUS_OK);
+        assert_int_equal(scene_add_mesh(made, "body", NULL, NULL), STATUS_OK);
+        assert_int_equal(scene_add_texture(made, "wood", NULL, NULL), STATUS_OK);
+        set_all(made, "body.generate=box wood.file=wood.png");
+        if (k == SHAPE_MESH)
+            set(made, "thing.mesh=body");
         assert_true(stuff == 0 && lamp == 0 && thing == 0);
         char *from_file = text_of(read), *from_calls = text_of(made);
         assert_string_equal(from_file, from_calls);
@@ -111,6 +118,28 @@ static void a_material_in_use_is_not_removed(void **state)
     assert_string_equal(s->lights[0].name, "other");
     set(s, "clay.diffuse=0.75"); /* still reaches its solids */
     assert_true(s->solids[0].surface.diffuse == 0.75);
+    scene_destroy(s);
+}
+
+static void a_mesh_or_texture_in_use_is_not_removed(void **state)
+{
+    (void)state;
+    scene *s = scene_from("meshes: {body: {generate: box}, spare: {generate: torus}}\n"
+                          "textures: {wood: {file: wood.png}, bark: {file: bark.png}}\nmaterials: {stuff: {texture: wood}}\n"
+                          "solids: {thing: {shape: mesh, mesh: body, texture: bark}, other: {shape: box, material: stuff}}\n");
+    assert_refused(s, scene_remove(s, "body", &why), "body is the mesh of thing");
+    assert_refused(s, scene_remove(s, "wood", &why), "wood is the texture of stuff");
+    assert_refused(s, scene_remove(s, "bark", &why), "bark is the texture of thing");
+    assert_int_equal(scene_rename(s, "body", "corpus", NULL), STATUS_OK);
+    assert_int_equal(scene_rename(s, "wood", "oak", NULL), STATUS_OK);
+    assert_string_equal(s->solids[0].mesh, "corpus");
+    assert_string_equal(s->materials[0].value.texture, "oak");
+    assert_string_equal(s->solids[1].surface.texture, "oak");
+    assert_int_equal(scene_check(s, NULL), STATUS_OK);
+    assert_int_equal(scene_remove(s, "thing", NULL), STATUS_OK);
+    assert_int_equal(scene_remove(s, "corpus", NULL), STATUS_OK);
+    assert_int_equal(scene_remove(s, "bark", NULL), STATUS_OK);
+    assert_true(s->mesh_count == 1 && s->texture_count == 1);
     scene_destroy(s);
 }
 
@@ -357,6 +386,7 @@ int main(void)
         cmocka_unit_test(what_is_added_is_as_a_file_has_it),
         cmocka_unit_test(wrong_names_are_refused),
         cmocka_unit_test(a_material_in_use_is_not_removed),
+        cmocka_unit_test(a_mesh_or_texture_in_use_is_not_removed),
         cmocka_unit_test(what_every_scene_has_goes_back_to_its_defaults),
         cmocka_unit_test(what_refers_to_a_name_follows_it),
         cmocka_unit_test(a_material_is_given_whole),

@@ -119,10 +119,12 @@ static void every_scene_of_the_project_survives_and_makes_the_same_film(void **s
     assert_true(count >= 8);
 }
 
-static const char one_of_each[] = "materials: {paint: {}}\n"
+static const char one_of_each[] = "meshes: {body: {generate: box}, model: {file: model.obj}}\n"
+                                  "textures: {wood: {file: wood.png}, bark: {file: bark.png}}\n"
+                                  "materials: {paint: {}}\n"
                                   "lights: {lamp: {}}\n"
                                   "solids: {plane1: {shape: plane}, cylinder1: {shape: cylinder}, cup1: {shape: cup}, box1: {shape: box},\n"
-                                  "  sphere1: {shape: sphere}, painted: {shape: box, material: paint}}\n";
+                                  "  sphere1: {shape: sphere}, mesh1: {shape: mesh, mesh: model}, painted: {shape: box, material: paint}}\n";
 
 /* Values to try, some of which are right for a row; NULL at the end. */
 static size_t candidates(const param *row, char text[][100], size_t room)
@@ -145,12 +147,16 @@ static size_t candidates(const param *row, char text[][100], size_t room)
     case PARAM_VECTOR:
     case PARAM_COLOR:
         snprintf(text[0], 100, "%.17g,%.17g,%.17g", low + (high - low) / 3, low + (high - low) / 7, high);
-        return 1;
+        snprintf(text[1], 100, "2,3,1"); /* where only whole numbers are right */
+        return 2;
     case PARAM_LIST:
         snprintf(text[0], 100, "[400,0.1,500,%.17g]", 1.0 / 3.0);
         return 1;
     case PARAM_PATH:
         snprintf(text[0], 100, "pictures/it's: a sky #1.png");
+        return 1;
+    case PARAM_WORD:
+        snprintf(text[0], 100, row->group == PARAM_MATERIAL ? "bark" : "body");
         return 1;
     case PARAM_CHOICE: break;
     }
@@ -199,8 +205,8 @@ static size_t carry_row(const scene *s, const char *owner, const param *row)
 static void every_parameter_survives_away_from_its_default(void **state)
 {
     (void)state;
-    static const char *const owners[] = {"render", "camera", "background", "lamp", "paint",   "plane1",
-                                         "cylinder1", "cup1", "box1",      "sphere1", "painted"};
+    static const char *const owners[] = {"render", "camera", "background", "body",    "model", "wood",   "lamp",
+                                         "paint",  "plane1", "cylinder1",  "cup1",    "box1",  "sphere1", "mesh1", "painted"};
     scene *s = scene_from(one_of_each);
     bool seen[512] = {false};
     for (size_t o = 0; o < sizeof owners / sizeof *owners; o++) {
@@ -210,6 +216,8 @@ static void every_parameter_survives_away_from_its_default(void **state)
             snprintf(path, sizeof path, "%s.%s", owners[o], param_at(i)->name);
             if (place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
                 continue;
+            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->type == PARAM_PATH ? "body" : "model") == 0)
+                continue; /* a file takes the place of what is generated, which a mesh that has a file is not */
             if (at.group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
                 continue; /* one solid's will do */
             if (carry_row(s, owners[o], param_at(i)) == 0)
@@ -308,6 +316,22 @@ static void one_medium_is_written_where_an_index_was_set_aside(void **state)
                       "solids:\n  a:\n    shape: box\n    material: wet\n    ior: 1.7\n    medium: ior\n"
                       "  b:\n    shape: box\n    material: wet\n"
                       "  c:\n    shape: box\n    material: plain\n    medium: water\n");
+    scene_destroy(s);
+}
+
+static void a_mesh_has_one_source(void **state)
+{
+    (void)state;
+    scene *s = scene_from("meshes: {body: {file: a.obj}}\nsolids: {thing: {shape: mesh, mesh: body, scale: [1, 2, 1]}}\n");
+    assert_written(s, "meshes:\n  body:\n    file: a.obj\n\nsolids:\n  thing:\n    shape: mesh\n    mesh: body\n    scale: [1, 2, 1]\n");
+    set_all(s, "body.generate=sparse body.count=50");
+    assert_written(s, "meshes:\n  body:\n    generate: sparse\n    count: 50\n\n"
+                      "solids:\n  thing:\n    shape: mesh\n    mesh: body\n    scale: [1, 2, 1]\n");
+    s->meshes[0].source = MESH_ARRAYS;
+    char *text;
+    diagnostic why = {0};
+    assert_int_equal(scene_write_text(s, "", false, &text, &why), STATUS_BAD_INPUT);
+    assert_string_equal(why.what, "the mesh body was given as arrays, which a scene file does not hold");
     scene_destroy(s);
 }
 
@@ -448,6 +472,7 @@ int main(void)
         cmocka_unit_test(numbers_are_short_and_read_back_the_same),
         cmocka_unit_test(a_camera_along_its_angles_stays_so_even_at_zero),
         cmocka_unit_test(one_medium_is_written_where_an_index_was_set_aside),
+        cmocka_unit_test(a_mesh_has_one_source),
         cmocka_unit_test(a_sky_that_is_not_shown_is_not_written),
         cmocka_unit_test(texts_are_quoted_where_yaml_needs_it),
         cmocka_unit_test(names_that_are_words_of_yaml_are_quoted),

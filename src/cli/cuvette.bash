@@ -25,6 +25,16 @@ _cuvette_parameters()
         awk 'NR > 1 && $1 !~ /^(LIGHT|MATERIAL|SOLID)\./ { print $1 "=" }')"
 }
 
+_cuvette_objects() # SUFFIX: what the scene on the line holds, and the camera
+{
+    local word scene=
+    for word in "${COMP_WORDS[@]}"; do
+        [[ $word == *.@(yaml|yml) && -r $word ]] && scene=$word
+    done
+    [[ -z $1 ]] || compopt -o nospace
+    _cuvette_words "$({ echo x camera; [[ $scene ]] && "${COMP_WORDS[0]}" scene "$scene" --list 2>/dev/null; } | awk -v s="$1" '{ print $2 s }')"
+}
+
 _cuvette_value() # OPTION: completes what follows it; false when it takes nothing
 {
     case $1 in
@@ -36,6 +46,7 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
         case ${COMP_WORDS[1]-} in
         trace) _cuvette_files 'txt|json|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
+        scene) _cuvette_files 'yaml|yml' ;;
         mesh) _cuvette_files 'obj|bin|pov|dat|ply' ;;
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
         esac
@@ -44,6 +55,13 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
         [[ ${COMP_WORDS[1]-} == fan ]] || _cuvette_files 'png|pfm'
         ;;
     --timeline) _cuvette_files 'json' ;;
+    --move | --turn | --rename) _cuvette_objects = ;;
+    --delete) _cuvette_objects '' ;;
+    --add)
+        compopt -o nospace
+        _cuvette_words solid: light: material: mesh: texture:
+        ;;
+    --title) COMPREPLY=() ;;
     --bits) _cuvette_words 8 16 ;;
     --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
     --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size) COMPREPLY=() ;;
@@ -74,7 +92,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render trace fan params media mesh study compare realism machine help --help --usage --version
+        _cuvette_words render scene trace fan params media mesh study compare realism machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -82,6 +100,13 @@ _cuvette()
     render)
         if [[ $current == -* ]]; then
             _cuvette_words --output --set --json --bits --rays --time --noise --timeline --repeat --help --usage --version
+        else
+            _cuvette_files 'yaml|yml'
+        fi
+        ;;
+    scene)
+        if [[ $current == -* ]]; then
+            _cuvette_words --add --set --move --turn --rename --delete --title --new --check --list --all --output --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
@@ -144,7 +169,7 @@ _cuvette()
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render trace fan params media mesh study compare realism machine
+            _cuvette_words render scene trace fan params media mesh study compare realism machine
         fi
         ;;
     esac

@@ -113,7 +113,7 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
 
 static status print_list(const scene *s)
 {
-    static const param_group groups[] = {PARAM_MATERIAL, PARAM_LIGHT, PARAM_SOLID};
+    static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT, PARAM_SOLID};
     for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
         for (size_t i = 0; i < place_group_size(s, groups[g]); i++) {
             printf("%s %s", param_group_name(groups[g]), place_group_name(s, groups[g], i));
@@ -132,8 +132,8 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
     if (result != STATUS_OK)
         return result;
     scene_input_note_hints(s);
-    printf("%s: right; materials %zu, lights %zu, solids %zu\n", request->path ? request->path : "--new", s->material_count,
-           s->light_count, s->solid_count);
+    printf("%s: right; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n", request->path ? request->path : "--new",
+           s->mesh_count, s->texture_count, s->material_count, s->light_count, s->solid_count);
     return STATUS_OK;
 }
 

@@ -129,7 +129,7 @@ static status add_solid(scene *s, const char *name, const char *shape, diagnosti
 
 static status add_object(scene *s, const char *kind, const char *name, const char *shape, diagnostic *why)
 {
-    static const char *const kinds[] = {"solid", "light", "material"};
+    static const char *const kinds[] = {"solid", "light", "material", "mesh", "texture"};
     const bool is_solid = strcmp(kind, "solid") == 0;
     if (is_solid && !shape)
         return diagnose(why, STATUS_BAD_INPUT, "write solid:NAME=SHAPE, as solid:rod=box", "%.80s has no shape", name);
@@ -137,10 +137,11 @@ static status add_object(scene *s, const char *kind, const char *name, const cha
         return add_solid(s, name, shape, why);
     if (shape)
         return diagnose(why, STATUS_BAD_INPUT, "leave it out", "a %.20s has no shape", kind);
-    if (strcmp(kind, "light") == 0)
-        return scene_add_light(s, name, NULL, why);
-    if (strcmp(kind, "material") == 0)
-        return scene_add_material(s, name, NULL, why);
+    status (*const adders[])(scene *, const char *, size_t *, diagnostic *) = {NULL, scene_add_light, scene_add_material, scene_add_mesh,
+                                                                               scene_add_texture};
+    for (size_t i = 1; i < sizeof kinds / sizeof *kinds; i++)
+        if (strcmp(kind, kinds[i]) == 0)
+            return adders[i](s, name, NULL, why);
     return options_unknown_word("kind of object", kind, kinds, sizeof kinds / sizeof *kinds, why);
 }
 
@@ -170,7 +171,7 @@ static status apply_add(scene *s, const scene_edit *edit, const char *text, diag
 }
 
 const scene_edit scene_edits[] = {
-    {"--add", 0x200, "KIND:NAME[=SHAPE][,PARAM=VALUE]...", "add a solid, a light or a material, as solid:rod=box,size=0.25,3,0.25", apply_add},
+    {"--add", 0x200, "KIND:NAME[=SHAPE][,PARAM=VALUE]...", "add a solid, light, material, mesh or texture, as solid:rod=box,size=0.25,3,0.25", apply_add},
     {"--set", 's', "PATH=VALUE", "set a parameter, or NAME.material and NAME.shape of a solid", apply_set},
     {"--move", 0x201, "NAME=DX,DY,DZ", "move a solid, a light or the camera", apply_move},
     {"--turn", 0x202, "NAME=RX,RY,RZ", "turn a solid or the camera about the world's x, then y, then z axis, in degrees", apply_turn},

@@ -1,4 +1,4 @@
-/* Objects come, go and change their names. What a solid is made of is in edit_solid.c, how things move in edit_place.c. */
+/* Objects go and change their names. How they come is in edit_add.c, what a solid is made of is in edit_solid.c, how things move in edit_place.c. */
 #include "scene/edit.h"
 #include "scene/check.h"
 #include "scene/params_path.h"
@@ -7,159 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static status out_of_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "memory is out");
-}
-
-/* One section of named objects: its array, its elements, and the size of one. */
-typedef struct section {
-    void **array;
-    size_t *count, size;
-} section;
-
-/* Room for one more element at the end of the section, all zero, not counted yet; NULL when memory is out. */
-static void *grow(section objects)
-{
-    char *grown = realloc(*objects.array, (*objects.count + 1) * objects.size);
-    if (!grown) {
-        return NULL;
-    }
-    *objects.array = grown;
-    return memset(grown + *objects.count * objects.size, 0, objects.size);
-}
-
-/* The name of an object to come, checked; fresh memory. */
-static status take_name(const scene *s, const char *name, char **copy, diagnostic *why)
-{
-    status code = check_name(name, why);
-    if (code == STATUS_OK) {
-        code = check_name_is_free(s, name, why);
-    }
-    if (code != STATUS_OK) {
-        return code;
-    }
-    *copy = strdup(name);
-    return *copy ? STATUS_OK : out_of_memory(why);
-}
-
-/* Counts the new object at the end of an array, which owns its name already, or lets it go again when it is one too many
- * or could not be made. */
-static status settle(scene *s, size_t *count, char *name, status code, size_t *index, diagnostic *why)
-{
-    ++*count;
-    if (code == STATUS_OK) {
-        code = check_limits(s, why);
-    }
-    if (code != STATUS_OK) {
-        --*count;
-        free(name);
-    } else if (index) {
-        *index = *count - 1;
-    }
-    return code;
-}
-
-status scene_add_material(scene *s, const char *name, size_t *index, diagnostic *why)
-{
-    char *copy = NULL;
-    status code = take_name(s, name, &copy, why);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    void *array = s->materials;
-    named_material *m = grow((section){&array, &s->material_count, sizeof *m});
-    s->materials = array;
-    if (!m) {
-        free(copy);
-        return out_of_memory(why);
-    }
-    m->name = copy;
-    code = param_set_defaults(PARAM_MATERIAL, &m->value, why);
-    return settle(s, &s->material_count, copy, code, index, why);
-}
-
-status scene_add_light(scene *s, const char *name, size_t *index, diagnostic *why)
-{
-    char *copy = NULL;
-    status code = take_name(s, name, &copy, why);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    void *array = s->lights;
-    light *l = grow((section){&array, &s->light_count, sizeof *l});
-    s->lights = array;
-    if (!l) {
-        free(copy);
-        return out_of_memory(why);
-    }
-    l->name = copy;
-    code = param_set_defaults(PARAM_LIGHT, l, why);
-    return settle(s, &s->light_count, copy, code, index, why);
-}
-
-status scene_add_mesh(scene *s, const char *name, size_t *index, diagnostic *why)
-{
-    char *copy = NULL;
-    status code = take_name(s, name, &copy, why);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    void *array = s->meshes;
-    mesh_entry *m = grow((section){&array, &s->mesh_count, sizeof *m});
-    s->meshes = array;
-    if (!m) {
-        free(copy);
-        return out_of_memory(why);
-    }
-    m->name = copy;
-    code = param_set_defaults(PARAM_MESH, m, why);
-    return settle(s, &s->mesh_count, copy, code, index, why);
-}
-
-status scene_add_texture(scene *s, const char *name, size_t *index, diagnostic *why)
-{
-    char *copy = NULL;
-    status code = take_name(s, name, &copy, why);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    void *array = s->textures;
-    texture_entry *t = grow((section){&array, &s->texture_count, sizeof *t});
-    s->textures = array;
-    if (!t) {
-        free(copy);
-        return out_of_memory(why);
-    }
-    t->name = copy;
-    code = param_set_defaults(PARAM_TEXTURE, t, why);
-    return settle(s, &s->texture_count, copy, code, index, why);
-}
-
-status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why)
-{
-    char *copy = NULL;
-    status code = take_name(s, name, &copy, why);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    void *array = s->solids;
-    solid *owner = grow((section){&array, &s->solid_count, sizeof *owner});
-    s->solids = array;
-    if (!owner) {
-        free(copy);
-        return out_of_memory(why);
-    }
-    owner->name = copy;
-    owner->shape.kind = shape;
-    owner->material_index = -1;
-    code = param_set_defaults(PARAM_SOLID, owner, why);
-    if (code == STATUS_OK) {
-        code = param_set_defaults(PARAM_MATERIAL, &owner->surface, why);
-    }
-    return settle(s, &s->solid_count, copy, code, index, why);
-}
 
 /* Takes one element out of an array, whose name was released. */
 static void close_gap(void *array, size_t *count, size_t size, size_t index)
@@ -318,7 +165,13 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     if (strcmp(name, new_name) == 0) {
         return STATUS_OK;
     }
-    code = take_name(s, new_name, &copy, why);
+    code = check_name(new_name, why);
+    if (code == STATUS_OK) {
+        code = check_name_is_free(s, new_name, why);
+    }
+    if (code == STATUS_OK && !(copy = strdup(new_name))) {
+        code = diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
     if (code == STATUS_OK) {
         follow_name(s, &at, name, copy);
         free(*field);
@@ -331,7 +184,7 @@ status scene_set_title(scene *s, const char *title, diagnostic *why)
 {
     char *copy = strdup(title);
     if (!copy) {
-        return out_of_memory(why);
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
     }
     free(s->title);
     s->title = copy;

@@ -29,7 +29,7 @@ status scene_shape_named(const char *word, shape_kind *out, diagnostic *why);
 
 status scene_set_title(scene *s, const char *title, diagnostic *why);
 
-/* Removes an object by its name. A material that solids refer to is refused, and one of them named. A scene is never without
+/* Removes an object by its name. A material, mesh or texture in use is refused, and by whom is said. A scene is never without
  * "camera", "background" and "render", which go back to their defaults. */
 status scene_remove(scene *s, const char *name, diagnostic *why);
 

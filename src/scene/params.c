@@ -182,9 +182,13 @@ static status visit_one(const scene *s, const place *at, param_visit *visit, voi
     return code;
 }
 
-/* Setting the camera's direction, or the sky's picture, that is not in use would put it in use. */
-static bool is_in_use(const scene *s, const param *row)
+/* Setting the camera's direction, the sky's picture or a mesh's file that is not in use would put it in use. */
+static bool is_in_use(const scene *s, const place *at)
 {
+    const param *row = at->row;
+    if (row->type == PARAM_PATH && row->group == PARAM_MESH) {
+        return s->meshes[at->index].source == MESH_FILE;
+    }
     if (row->type == PARAM_PATH && row->group == PARAM_BACKGROUND && s->background.kind != BACKGROUND_PICTURE) {
         return !s->background.picture_path[0];
     }
@@ -197,7 +201,7 @@ static status visit_rows(const scene *s, place at, param_group rows, param_visit
     status code = STATUS_OK;
     for (size_t i = 0; i < param_count() && code == STATUS_OK; i++) {
         at.row = param_at(i);
-        if (at.row->group == rows && is_in_use(s, at.row) &&
+        if (at.row->group == rows && is_in_use(s, &at) &&
             (at.group != PARAM_SOLID || solid_has(&s->solids[at.index], at.row))) {
             code = visit_one(s, &at, visit, context);
         }

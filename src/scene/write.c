@@ -1,11 +1,11 @@
 /* Goes through the scene's parameters in the order of the table and of the scene, and writes those that a reader would not
- * find by itself. How a text is quoted is in write_text.c, how paths follow the file in write_paths.c. */
+ * find by itself: which those are is in write_wanted.c. How a text is quoted is in write_text.c, how paths follow the file in
+ * write_paths.c. */
 #include "scene/write.h"
 #include "base/file.h"
 #include "scene/params_path.h"
-#include "scene/params_value.h"
-#include "scene/medium.h"
 #include "scene/write_parts.h"
+#include "scene/write_wanted.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -33,7 +33,8 @@ static bool is_section_of_objects(param_group group)
 static void put_section(scene_writer *w)
 {
     if (!w->in_section) {
-        fprintf(w->out, "%s%s%s:\n", w->begun ? "\n" : "", param_group_name(w->group), w->group == PARAM_MESH ? "es" : is_section_of_objects(w->group) ? "s" : "");
+        const char *plural = w->group == PARAM_MESH ? "es" : is_section_of_objects(w->group) ? "s" : "";
+        fprintf(w->out, "%s%s%s:\n", w->begun ? "\n" : "", param_group_name(w->group), plural);
         w->begun = w->in_section = true;
     }
 }
@@ -78,61 +79,6 @@ static void begin_object(scene_writer *w, const place *at)
         write_word(w->out, w->s->materials[owner->material_index].name);
         fputc('\n', w->out);
     }
-}
-
-/* The text of a row's default, as param_value_text gives it; fresh memory, NULL when that is out. */
-static char *default_text(const param *row)
-{
-    param_value value;
-    if (param_value_parse(row, -1, row->name, row->fallback, &value, NULL) != STATUS_OK) {
-        return NULL;
-    }
-    char *text = param_value_text(row, -1, &value);
-    if (row->type == PARAM_PATH) {
-        free(value.path);
-    }
-    return text;
-}
-
-static bool is_material_row(const param *row, size_t offset)
-{
-    return row->group == PARAM_MATERIAL && row->offset == offset;
-}
-
-static bool is_background_row(const param *row, size_t offset)
-{
-    return row->group == PARAM_BACKGROUND && row->offset == offset;
-}
-
-/* The index of a material whose medium is another's has no effect, and its file would set that medium aside. */
-static bool is_without_effect(const scene *s, const place *at)
-{
-    if (is_background_row(at->row, offsetof(background, ior))) {
-        return s->background.medium != MEDIUM_IOR;
-    }
-    if (!is_material_row(at->row, offsetof(material, ior))) {
-        return false;
-    }
-    const material *m = at->group == PARAM_SOLID ? &s->solids[at->index].surface : &s->materials[at->index].value;
-    return m->medium != MEDIUM_IOR;
-}
-
-/* The text that a reader would have for a row without its line: the material's of a solid that has one, or the default. */
-static char *implied_text(const scene *s, const place *at)
-{
-    const int index = at->group == PARAM_SOLID && at->row->group == PARAM_MATERIAL ? s->solids[at->index].material_index : -1;
-    if (index < 0) {
-        return default_text(at->row);
-    }
-    const place there = {.row = at->row, .group = PARAM_MATERIAL, .index = (size_t)index, .element = -1};
-    const material *m = &s->materials[index].value;
-    return is_without_effect(s, &there) ? default_text(at->row) : param_value_text(at->row, -1, (const char *)m + at->row->offset);
-}
-
-/* A camera is known to look along its angles by there being one. */
-static bool is_needed(const param *row)
-{
-    return row->group == PARAM_CAMERA && row->offset == offsetof(camera, yaw_deg);
 }
 
 static void put_value(scene_writer *w, const param *row, const char *value)
@@ -181,18 +127,10 @@ static status visit(void *context, const char *path, const param *row, const cha
     if (is_section_of_objects(at.group) && strcmp(w->object, place_group_name(w->s, at.group, at.index)) != 0) {
         begin_object(w, &at);
     }
-    if (is_without_effect(w->s, &at)) {
-        return STATUS_OK;
-    }
-    char *implied = implied_text(w->s, &at);
-    if (!implied) {
-        return diagnose(w->why, STATUS_FAILURE, "", "memory is out");
-    }
-    /* An empty path says nothing, and none is visited where a file is named that is not in use. */
-    const bool wanted = (w->all && value[0]) || is_needed(row) || strcmp(implied, value) != 0;
-    free(implied);
-    if (!wanted) {
-        return STATUS_OK;
+    bool wanted = false;
+    code = write_is_wanted(w->s, &at, value, w->all, &wanted, w->why);
+    if (code != STATUS_OK || !wanted) {
+        return code;
     }
     put_section(w);
     begin_line(w, row->name);
@@ -203,10 +141,23 @@ static status visit(void *context, const char *path, const param *row, const cha
     return STATUS_OK;
 }
 
+/* What a program gave as arrays stands in no file. */
+static status check_sources(const scene *s, diagnostic *why)
+{
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        if (s->meshes[i].source == MESH_ARRAYS) {
+            return diagnose(why, STATUS_BAD_INPUT, "write the mesh to a file of its own, and name that",
+                            "the mesh %.80s was given as arrays, which a scene file does not hold", s->meshes[i].name);
+        }
+    }
+    return STATUS_OK;
+}
+
 static status put_scene(scene_writer *w)
 {
     /* What is referred to stands first, as a person would have it. */
-    static const param_group order[] = {PARAM_RENDER, PARAM_CAMERA, PARAM_BACKGROUND, PARAM_MESH, PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT, PARAM_SOLID};
+    static const param_group order[] = {PARAM_RENDER, PARAM_CAMERA, PARAM_BACKGROUND, PARAM_MESH,
+                                        PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT, PARAM_SOLID};
     _Static_assert(sizeof order / sizeof *order == PARAM_GROUP_COUNT, "every group has its section");
     if (w->s->title[0]) {
         status code = write_check_text("title", w->s->title, w->why);
@@ -218,7 +169,7 @@ static status put_scene(scene_writer *w)
         fputc('\n', w->out);
         w->begun = true;
     }
-    status code = STATUS_OK;
+    status code = check_sources(w->s, w->why);
     for (size_t i = 0; i < PARAM_GROUP_COUNT && code == STATUS_OK; i++) {
         w->group = order[i];
         w->in_section = false;
