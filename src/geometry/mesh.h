@@ -57,8 +57,9 @@ status mesh_finish(mesh *m, diagnostic *why);
 void mesh_retain(const mesh *m);
 void mesh_release(const mesh *m); /* NULL is allowed */
 
-/* Normals by vertex where a mesh has none (one that has is left alone): the sum of the triangles' around each position, weighted by the angle of each corner (Thurmer and
- * Wuthrich, "Computing vertex normals from polygonal facets", JGT 3(1), 1998). Before mesh_finish or after it, before others see the mesh. */
+/* Normals by vertex where a mesh has none (one that has is left alone): the sum of the triangles' around each position, weighted by the
+ * angle of each corner (Thurmer and Wuthrich, "Computing vertex normals from polygonal facets", JGT 3(1), 1998). Before mesh_finish or
+ * after it, before others see the mesh. */
 status mesh_smooth(mesh *m, diagnostic *why);
 
 /* Volume enclosed by a closed mesh (negative when inside out), and surface area. */
