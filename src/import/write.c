@@ -26,7 +26,8 @@ static void get_number(const struct aiMaterial *material, const char *key, doubl
 static bool is_given(const request *asked, const struct aiScene *scene, unsigned index, const struct aiString *name)
 {
     bool gltf = asked->kind == FILE_GLTF || asked->kind == FILE_GLB;
-    return !(gltf && index + 1 == scene->mNumMaterials) && strcmp(name->data, AI_DEFAULT_MATERIAL_NAME) != 0 && (name->length > 0 || asked->kind != FILE_PLY);
+    return !(gltf && index + 1 == scene->mNumMaterials)
+           && strcmp(name->data, AI_DEFAULT_MATERIAL_NAME) != 0 && (name->length > 0 || asked->kind != FILE_PLY);
 }
 
 static mesh_wire_material describe(const request *asked, const struct aiScene *scene, unsigned index, struct aiString *name,

@@ -25,6 +25,9 @@ char *mesh_child_program(void);
 /* Starts the importer on path. STATUS_BAD_INPUT when it is not installed, STATUS_FAILURE when the machine cannot. */
 status mesh_child_open(mesh_child *child, const char *path, const mesh_limits *limits, diagnostic *why);
 
+/* The monotonic clock. */
+double mesh_child_now_s(void);
+
 /* For a mesh_source whose context is the child. When it says no more, the diagnostic is left to mesh_child_close. */
 status mesh_child_read(void *context, void *bytes, size_t size, diagnostic *why);
 status mesh_child_end(void *context, diagnostic *why);

@@ -36,7 +36,7 @@ typedef struct imported_material {
 } imported_material;
 
 typedef struct mesh_import {
-    mesh *mesh;                   /* finished; triangle t has the material materials[slots[t]] */
+    struct mesh *mesh;            /* finished; triangle t has the material materials[slots[t]] */
     int material_count;           /* = mesh->slot_count; the mesh's slots have the materials' names */
     imported_material *materials;
 } mesh_import;
