@@ -228,23 +228,36 @@ static void mirrored_and_turned_nodes_keep_their_fronts(void **state)
     mesh_import_destroy(turned);
 }
 
-static void gltf_with_its_buffer_inside(void **state)
+/* (0 0 0) (1 0 0) (0 1 0) as floats, then 0 1 2 as uint16. */
+static mesh_import *one_triangle(const char *node)
 {
-    (void)state;
-    /* (0 0 0) (1 0 0) (0 1 0) as floats, then 0 1 2 as uint16. */
-    mesh_import *got = read_text("inside.gltf",
-        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"translation\":[0,0,0.5]}],"
+    char *text = text_format(
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[%s],"
         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
         "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
         "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}],"
         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":6}],"
         "\"buffers\":[{\"byteLength\":42,\"uri\":\"data:application/octet-stream;base64,"
-        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA\"}]}");
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA\"}]}", node);
+    assert_non_null(text);
+    mesh_import *got = read_text("inside.gltf", text);
+    free(text);
+    return got;
+}
+
+static void gltf_with_its_buffer_inside(void **state)
+{
+    (void)state;
+    mesh_import *got = one_triangle("{\"mesh\":0,\"translation\":[0,0,0.5]}");
     assert_int_equal(got->mesh->triangle_count, 1);
     assert_vec3(corner(got->mesh, 0, 0), 0, 0, 0.5);
     assert_vec3(corner(got->mesh, 0, 1), 1, 0, 0.5);
     assert_vec3(corner(got->mesh, 0, 2), 0, 1, 0.5);
     assert_false(got->materials[0].given);
+    mesh_import_destroy(got);
+    got = one_triangle("{\"mesh\":0,\"scale\":[-1,1,1]}"); /* open: nobody else turns it round */
+    assert_vec3(corner(got->mesh, 0, 1), 0, 1, 0);
+    assert_vec3(corner(got->mesh, 0, 2), -1, 0, 0);
     mesh_import_destroy(got);
 }
 
