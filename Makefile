@@ -55,7 +55,12 @@ CFLAGS ?= -g
 code_flags = -std=gnu17 -D_GNU_SOURCE $(arithmetic) $(optimize) $(CFLAGS) -Isrc -pthread
 all_cflags = $(code_flags) -DCUVETTE_VERSION='"$(version)"' \
   -DCUVETTE_COMPILER_FLAGS='"$(config): $(optimize) $(arithmetic)"' $(warnings)
-all_libs = $(pkg_libs) -lm -pthread
+all_libs = $(pkg_libs) $(embree_libs) -lm -pthread
+
+# Embree 3 is a yardstick, used where it is there: one file knows it. Asked for at its first use, as above.
+embree = $(eval embree := $$(shell echo '\#include <embree3/rtcore.h>' | $$(CC) -E -x c - >/dev/null 2>&1 && echo yes))$(embree)
+embree_cflags = $(if $(embree),-DCUVETTE_EMBREE=1)
+embree_libs = $(if $(embree),-lembree3)
 
 # One source, three instruction sets: *_kernel.c is compiled once for each level.
 isa_flags_sse2   := -msse2
@@ -109,6 +114,7 @@ $(build)/obj/%.o: src/%.c $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -MMD -MP -c -o $@ $<
+$(build)/obj/geometry/hierarchy_embree.o: pkg_cflags += $(embree_cflags)
 
 define kernel_rule
 $(build)/obj/%_kernel.$(1).o: src/%_kernel.c $(build)/flags
@@ -138,7 +144,7 @@ $(build)/tests/bench_%: tests/bench_%.c $(build)/libcuvette.a $(build)/flags
 .PHONY: always
 $(build)/flags: always $(if $(filter setup,$(MAKECMDGOALS)),| setup)
 	@mkdir -p $(@D)
-	@echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512))' | cmp -s - $@ || echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512))' >$@
+	@echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512) $(embree_cflags))' | cmp -s - $@ || echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512) $(embree_cflags))' >$@
 
 -include $(library_objects:.o=.d) $(program_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
 

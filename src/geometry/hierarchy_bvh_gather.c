@@ -2,9 +2,9 @@
 
 #include <stdlib.h>
 
-/* Times of a step, in those of the test of one block: a visit to a node (eight boxes), and to a leaf whatever is in it. */
+/* The time of a visit to a node (eight boxes), in those of the test of one block. Measured on sets of 50000 triangles: between half and
+ * twice this, or with a constant for each leaf, frames take as long or longer. */
 #define COST_NODE 1.0f
-#define COST_LEAF 0.5f
 
 static uint32_t blocks_of(uint32_t triangles)
 {
@@ -29,7 +29,7 @@ static float best_share(const bvh_branch *b, int subtrees, uint8_t *share)
 void bvh_choose(bvh_branch *b)
 {
     float area = bvh_half_area(b->low, b->high);
-    float as_leaf = b->count <= LEAF_TRIANGLES_MAX ? area * (COST_LEAF + (float)blocks_of(b->count)) : INFINITY;
+    float as_leaf = b->count <= LEAF_TRIANGLES_MAX ? area * (float)blocks_of(b->count) : INFINITY;
     b->cost[1] = as_leaf;
     b->leaf = true;
     if (!b->half[0]) {
