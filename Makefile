@@ -45,14 +45,19 @@ optimize_fuzz       := -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sani
 optimize := $(optimize_$(config))
 $(if $(optimize),,$(error config=$(config) is not one of debug, release, sanitize, tsan, fuzz, nocounters))
 
-version := 0.1.0
+# The library says which version it is in its header.
+version := $(shell awk '/^.define CUVETTE_VERSION_/ {printf "%s%s", dot, $$3; dot = "."}' src/cuvette.h)
+soname := libcuvette.so.$(firstword $(subst ., ,$(version)))
 # pkg-config is asked at its first use, not when this file is read: `make setup all` installs the libraries first.
 pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
 pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
 import_libs = $(eval import_libs := $$(shell pkg-config --libs assimp jansson))$(import_libs)
 CFLAGS ?= -g
+# One set of objects for the program and both libraries: on the machines that run it, position-independent code whose names are hidden
+# is as fast. Of a shared library only what cuvette.h marks is seen.
+linkage := -fPIC -fvisibility=hidden
 # What may change a result; the rest is about warnings and paths.
-code_flags = -std=gnu17 -D_GNU_SOURCE $(arithmetic) $(optimize) $(CFLAGS) -Isrc -pthread
+code_flags = -std=gnu17 -D_GNU_SOURCE $(linkage) $(arithmetic) $(optimize) $(CFLAGS) -Isrc -pthread
 all_cflags = $(code_flags) -DCUVETTE_VERSION='"$(version)"' \
   -DCUVETTE_COMPILER_FLAGS='"$(config): $(optimize) $(arithmetic)"' $(warnings)
 all_libs = $(pkg_libs) $(embree_libs) -lm -pthread
@@ -83,7 +88,7 @@ benches := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/bench_*.c))
 fuzzers := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/fuzz_*.c))
 
 .PHONY: all
-all: $(build)/cuvette $(build)/cuvette-import ## build build/cuvette (the default)
+all: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) ## build build/cuvette and the library (the default)
 
 # A half-written file would look newer than its sources.
 .DELETE_ON_ERROR:
@@ -109,6 +114,18 @@ $(build)/obj/scene/mesh_program.o: private all_cflags += -DCUVETTE_LIBEXEC='"$(P
 $(build)/libcuvette.a: $(library_objects)
 	@rm -f $@
 	$(quiet)ar rcs $@ $^
+
+# For other programs: as above without the library's own names, which are the kind that others use too (a static library hides none by itself).
+$(build)/engine/libcuvette.a: $(library_objects)
+	$(call say,link $@)
+	@mkdir -p $(@D) && rm -f $@
+	$(quiet)$(CC) -r -nostdlib -o $(@D)/cuvette.o $^ && objcopy --localize-hidden $(@D)/cuvette.o && ar rcs $@ $(@D)/cuvette.o
+	@rm $(@D)/cuvette.o
+
+# Instrumented code leaves the instruments' names to the program.
+$(build)/$(soname): $(library_objects)
+	$(call say,link $@)
+	$(quiet)$(CC) $(all_cflags) -shared -Wl,-soname,$(soname) $(if $(filter sanitize tsan fuzz,$(config)),,-Wl,-z,defs) -o $@ $^ $(LDFLAGS) $(all_libs)
 
 $(build)/obj/%.o: src/%.c $(build)/flags
 	$(call say,$(CC) $<)
@@ -167,7 +184,7 @@ selected_scripts := $(if $(only),,$(scripts))
 kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
 .PHONY: test
-test: $(selected) $(build)/cuvette-import $(if $(only),,$(build)/cuvette) ## build and run every test; only=NAME for tests/test_NAME.c alone
+test: $(selected) $(build)/cuvette-import $(if $(only),,$(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a) ## build and run every test; only=NAME for tests/test_NAME.c alone
 	@CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
@@ -257,9 +274,18 @@ man := $(DESTDIR)$(PREFIX)/share/man/man1/cuvette.1
 completion := $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cuvette
 shared := $(DESTDIR)$(PREFIX)/share/cuvette
 libexec := $(DESTDIR)$(PREFIX)/libexec/cuvette
-install: $(build)/cuvette $(build)/cuvette-import ## install under PREFIX (/usr/local), below DESTDIR
+libraries := $(DESTDIR)$(PREFIX)/lib
+description := $(libraries)/pkgconfig/cuvette.pc
+install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/engine/libcuvette.a ## install under PREFIX (/usr/local), below DESTDIR
 	install -D -m 755 $(build)/cuvette $(DESTDIR)$(PREFIX)/bin/cuvette
 	install -D -m 755 $(build)/cuvette-import $(libexec)/cuvette-import
+	install -D -m 644 src/cuvette.h $(DESTDIR)$(PREFIX)/include/cuvette.h
+	install -D -m 644 $(build)/engine/libcuvette.a $(libraries)/libcuvette.a
+	install -D -m 644 $(build)/$(soname) $(libraries)/libcuvette.so.$(version)
+	ln -sf libcuvette.so.$(version) $(libraries)/$(soname)
+	ln -sf $(soname) $(libraries)/libcuvette.so
+	@mkdir -p $(libraries)/pkgconfig
+	sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(description)
 	install -D -m 644 src/cli/cuvette.1 $(man)
 	install -D -m 644 src/cli/cuvette.bash $(completion)
 	install -D -m 644 LICENSE $(DESTDIR)$(PREFIX)/share/doc/cuvette/LICENSE
@@ -267,7 +293,8 @@ install: $(build)/cuvette $(build)/cuvette-import ## install under PREFIX (/usr/
 	find experiments plots -type f -exec sh -c 'for f; do test -x "$$f" && mode=755 || mode=644; \
 	  install -D -m $$mode "$$f" "$(shared)/$$f"; done' sh {} +
 uninstall: ## remove what install put there
-	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(man) $(completion)
+	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(DESTDIR)$(PREFIX)/include/cuvette.h $(man) $(completion)
+	rm -f $(libraries)/libcuvette.a $(libraries)/libcuvette.so $(libraries)/$(soname) $(libraries)/libcuvette.so.$(version) $(description)
 	rm -rf $(shared) $(libexec) $(DESTDIR)$(PREFIX)/share/doc/cuvette
 
 .PHONY: format clean distclean help

@@ -72,9 +72,14 @@ bool film_add_layers(film *f, double *variance)
 /* The pixel's colour, linear sRGB. */
 static void pixel_rgb(const film *f, size_t pixel, double rgb[3])
 {
+    const size_t layers = (size_t)f->layers, layer = values_of(f);
     double value[3];
-    for (size_t c = 0; c < 3; c++)
-        value[c] = (double)f->sum[pixel * 3 + c] / FILM_ONE;
+    for (size_t c = 0; c < 3; c++) {
+        uint64_t sum = 0;
+        for (size_t k = 0; k < layers; k++)
+            sum += (uint64_t)f->sum[k * layer + pixel * 3 + c];
+        value[c] = (double)(int64_t)sum / FILM_ONE;
+    }
     if (f->space == FILM_XYZ)
         xyz_to_linear_srgb(value, rgb);
     else
@@ -86,6 +91,19 @@ double film_value(const film *f, int x, int y, int channel)
     double rgb[3];
     pixel_rgb(f, (size_t)y * (size_t)f->width + (size_t)x, rgb);
     return rgb[channel];
+}
+
+void film_read(const film *f, int x0, int y0, int x1, int y1, float *rgb, size_t stride)
+{
+    for (int y = y0; y < y1; y++) {
+        float *row = rgb + (size_t)(y - y0) * stride;
+        for (int x = x0; x < x1; x++, row += 3) {
+            double value[3];
+            pixel_rgb(f, (size_t)y * (size_t)f->width + (size_t)x, value);
+            for (size_t c = 0; c < 3; c++)
+                row[c] = (float)value[c];
+        }
+    }
 }
 
 uint64_t film_hash(const film *f)
@@ -100,12 +118,6 @@ status film_image(const film *f, image **out, diagnostic *why)
     status code = image_create(f->width, f->height, out, why);
     if (code != STATUS_OK)
         return code;
-    const size_t pixels = (size_t)f->width * (size_t)f->height;
-    for (size_t i = 0; i < pixels; i++) {
-        double rgb[3];
-        pixel_rgb(f, i, rgb);
-        for (size_t c = 0; c < 3; c++)
-            (*out)->pixel[3 * i + c] = (float)rgb[c];
-    }
+    film_read(f, 0, 0, f->width, f->height, (*out)->pixel, 3 * (size_t)f->width);
     return STATUS_OK;
 }

@@ -10,6 +10,7 @@
 #include "base/status.h"
 #include "image/image.h"
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define FILM_ONE 17592186044416.0 /* 2^44 */
@@ -35,6 +36,10 @@ void film_destroy(film *f);
 
 /* Radiance of one channel, linear sRGB: of a spectral film that can be negative, where a colour lies outside its gamut. */
 double film_value(const film *f, int x, int y, int channel);
+
+/* Linear RGB of the rectangle x0 <= x < x1, y0 <= y < y1 as floats, all layers together; stride: floats from one row to the next. Others may
+ * write the film elsewhere meanwhile. */
+void film_read(const film *f, int x0, int y0, int x1, int y1, float *rgb, size_t stride);
 
 /* The fingerprint of the film's size and every sum: equal films, equal hashes. */
 uint64_t film_hash(const film *f);

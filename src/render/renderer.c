@@ -30,6 +30,7 @@ typedef struct frame {
     const scene *s;
     const render_options *options;
     const plan *scene;
+    const film *picture;
     schedule pieces;
     desk *desks;
     double began_s;
@@ -115,7 +116,7 @@ static void note_tile(const frame *f, desk *d, int worker, const span *piece, do
 /* Pieces one after another; rays that do not fill a batch at the end of one piece go on with the next. */
 static void trace_pieces(frame *f, int worker, desk *d, span piece)
 {
-    const bool timeline = f->options && f->options->timeline;
+    const bool timeline = f->options && f->options->timeline, by_piece = f->options && f->options->piece_done;
     const double began_s = since(f);
     tracer *t = tracer_set_take(f->owner->tracers);
     if (!t) {
@@ -127,6 +128,11 @@ static void trace_pieces(frame *f, int worker, desk *d, span piece)
     do {
         double tile_began_s = timeline ? since(f) : 0.0;
         tracer_span(t, &piece, &d->pixels, &f->stop);
+        if (by_piece) {
+            tracer_finish(t, &f->stop);
+            if (!atomic_load_explicit(&f->stop, memory_order_relaxed))
+                f->options->piece_done(f->options->context, f->picture, piece.x0, piece.y0, piece.x1, piece.y1);
+        }
         d->report.tiles++;
         if (timeline)
             note_tile(f, d, worker, &piece, tile_began_s);
@@ -296,6 +302,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->s = s;
         f->options = options;
         f->scene = p;
+        f->picture = result->picture;
         f->desks = desks;
         schedule_start(&f->pieces, &s->render);
         const double cpu_s = clock_process_cpu_s();

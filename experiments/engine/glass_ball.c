@@ -1,0 +1,95 @@
+/* A glass ball on a chequered ground, by the engine alone: the scene from calls, the picture as it comes, into a PPM on standard output,
+ * and what was traced on standard error.
+ *
+ *   cc -o glass_ball glass_ball.c $(pkg-config --cflags --libs cuvette) && ./glass_ball >ball.ppm */
+#include <cuvette.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { WIDTH = 320, HEIGHT = 240 };
+
+typedef struct setting { const char *path, *value; } setting;
+
+static const setting settings[] = {
+    {"render.width", "320"},        {"render.height", "240"},   {"render.depth", "6"},         {"render.threads", "2"},
+    {"camera.position", "0,2,-6"},  {"camera.target", "0,1,0"}, {"background.color", "0.5,0.7,0.9"},
+    {"lamp.position", "4,7,-5"},    {"ground.color", "0.85,0.85,0.85"},                        {"ground.checker_color", "0.25,0.3,0.35"},
+    {"ground.checker", "0.5"},      {"ground.ambient", "0.1"},  {"ground.diffuse", "0.7"},     {"glass.transparency", "1"},
+    {"glass.medium", "bk7"},        {"glass.specular", "0.6"},  {"glass.shininess", "80"},     {"ball.position", "0,1.01,0"},
+};
+
+/* Ends the program with the library's own words. */
+static void need(cuvette_status status, const cuvette_diagnostic *why)
+{
+    char text[CUVETTE_DIAGNOSTIC_TEXT_MAX];
+    if (status == CUVETTE_OK)
+        return;
+    fprintf(stderr, "glass_ball: %s\n", cuvette_diagnostic_text(why, text, sizeof text));
+    exit(1);
+}
+
+static cuvette_scene *make_scene(void)
+{
+    cuvette_diagnostic why;
+    cuvette_scene *scene;
+    need(cuvette_scene_create(&scene, &why), &why);
+    need(cuvette_scene_add_light(scene, "lamp", &why), &why);
+    need(cuvette_scene_add_material(scene, "glass", &why), &why);
+    need(cuvette_scene_add_solid(scene, "ground", "plane", NULL, &why), &why);
+    need(cuvette_scene_add_solid(scene, "ball", "sphere", "glass", &why), &why);
+    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
+        need(cuvette_scene_set(scene, settings[i].path, settings[i].value, &why), &why);
+    need(cuvette_scene_set_double(scene, "ball.radius", 1.0, &why), &why);
+    return scene;
+}
+
+/* A program with a window would draw the rectangle now. */
+static void show(void *context, const cuvette_piece *piece)
+{
+    size_t *pieces = (size_t *)context;
+    pieces[piece->coarse > 1]++;
+}
+
+static bool report(void *context, double share)
+{
+    (void)context;
+    fprintf(stderr, "%3.0f%%\n", 100.0 * share);
+    return true; /* false would stop it */
+}
+
+int main(void)
+{
+    static unsigned char picture[3 * WIDTH * HEIGHT];
+    size_t pieces[2] = {0, 0};
+    cuvette_diagnostic why;
+    cuvette_engine *engine;
+    cuvette_frame *frame;
+    cuvette_scene *scene = make_scene();
+    need(cuvette_engine_create(NULL, &engine, &why), &why);
+
+    cuvette_request request = CUVETTE_REQUEST;
+    request.width = WIDTH, request.height = HEIGHT;
+    request.srgb = picture;
+    request.preview = 8;
+    request.progress = report;
+    request.piece = show;
+    request.context = pieces;
+    need(cuvette_engine_render(engine, scene, &request, &frame, &why), &why);
+
+    cuvette_counters rays;
+    cuvette_statistics times;
+    rays.size = sizeof rays;
+    times.size = sizeof times;
+    need(cuvette_frame_counters(frame, &rays, &why), &why);
+    need(cuvette_frame_statistics(frame, &times, &why), &why);
+    fprintf(stderr, "film %016llx, %zu preview, %zu pieces, %.3f s; rays: camera %llu, reflect %llu, refract %llu, shadow %llu\n",
+            (unsigned long long)cuvette_frame_hash(frame), pieces[1], pieces[0], times.wall_s, (unsigned long long)rays.camera,
+            (unsigned long long)rays.reflect, (unsigned long long)rays.refract, (unsigned long long)rays.shadow);
+
+    printf("P6\n%d %d\n255\n", WIDTH, HEIGHT);
+    fwrite(picture, 1, sizeof picture, stdout);
+    cuvette_frame_destroy(frame);
+    cuvette_engine_destroy(engine);
+    cuvette_scene_destroy(scene);
+    return 0;
+}

@@ -1,0 +1,116 @@
+#include "engine/canvas.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHUNK = 256 /* pixels that are converted at once */ };
+
+static int lesser(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+status canvas_open(const cuvette_request *request, canvas *c, diagnostic *why)
+{
+    *c = (canvas){.request = request};
+    if (request->srgb)
+        c->bytes = malloc(sizeof *c->bytes);
+    if ((request->srgb && !c->bytes) || pthread_mutex_init(&c->lock, NULL) != 0) {
+        free(c->bytes);
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    }
+    if (c->bytes)
+        codec_bytes_prepare(c->bytes);
+    return STATUS_OK;
+}
+
+void canvas_close(canvas *c)
+{
+    pthread_mutex_destroy(&c->lock);
+    free(c->bytes);
+    free(c->noted);
+}
+
+/* One value of the film for width x height pixels of the buffers. */
+static void fill_square(const canvas *c, const float *rgb, int x, int y, int width, int height)
+{
+    const cuvette_request *r = c->request;
+    for (int j = y; j < y + height; j++)
+        for (int i = x; i < x + width; i++)
+            for (int k = 0; k < 3; k++) {
+                if (r->rgb)
+                    r->rgb[(size_t)j * r->rgb_stride + 3 * (size_t)i + (size_t)k] = rgb[k];
+                if (r->srgb)
+                    r->srgb[(size_t)j * r->srgb_stride + 3 * (size_t)i + (size_t)k] = codec_byte(c->bytes, rgb[k]);
+            }
+}
+
+static void fill_coarse(const canvas *c, const film *f, int x0, int y0, int x1, int y1, int coarse)
+{
+    const cuvette_request *r = c->request;
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) {
+            float rgb[3];
+            film_read(f, x, y, x + 1, y + 1, rgb, 3);
+            const int left = x * coarse, top = y * coarse;
+            fill_square(c, rgb, left, top, lesser(coarse, r->width - left), lesser(coarse, r->height - top));
+        }
+}
+
+void canvas_bytes(const film *f, const codec_bytes *bytes, int x0, int y0, int x1, int y1, unsigned char *srgb, size_t stride)
+{
+    float rgb[3 * CHUNK];
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x += CHUNK) {
+            const int end = lesser(x + CHUNK, x1);
+            unsigned char *row = srgb + (size_t)(y - y0) * stride + 3 * (size_t)(x - x0);
+            film_read(f, x, y, end, y + 1, rgb, sizeof rgb / sizeof *rgb);
+            for (int k = 0; k < 3 * (end - x); k++)
+                row[k] = codec_byte(bytes, rgb[k]);
+        }
+}
+
+void canvas_fill(const canvas *c, const film *f, int x0, int y0, int x1, int y1, int coarse)
+{
+    const cuvette_request *r = c->request;
+    if (coarse > 1) {
+        fill_coarse(c, f, x0, y0, x1, y1, coarse);
+        return;
+    }
+    if (r->rgb)
+        film_read(f, x0, y0, x1, y1, r->rgb + (size_t)y0 * r->rgb_stride + 3 * (size_t)x0, r->rgb_stride);
+    if (r->srgb)
+        canvas_bytes(f, c->bytes, x0, y0, x1, y1, r->srgb + (size_t)y0 * r->srgb_stride + 3 * (size_t)x0, r->srgb_stride);
+}
+
+void canvas_note(canvas *c, cuvette_piece piece)
+{
+    pthread_mutex_lock(&c->lock);
+    if (c->count == c->capacity) {
+        const size_t capacity = c->capacity ? 2 * c->capacity : 256;
+        cuvette_piece *grown = realloc(c->noted, capacity * sizeof *grown);
+        c->out_of_memory |= !grown;
+        if (grown) {
+            c->noted = grown;
+            c->capacity = capacity;
+        }
+    }
+    if (c->count < c->capacity)
+        c->noted[c->count++] = piece;
+    pthread_mutex_unlock(&c->lock);
+}
+
+status canvas_hand_out(canvas *c, diagnostic *why)
+{
+    pthread_mutex_lock(&c->lock);
+    cuvette_piece *pieces = c->noted;
+    const size_t count = c->count;
+    const bool out_of_memory = c->out_of_memory;
+    c->noted = NULL; /* the callback may take its time, and the workers go on */
+    c->count = c->capacity = 0;
+    pthread_mutex_unlock(&c->lock);
+    for (size_t i = 0; i < count; i++)
+        c->request->piece(c->request->context, &pieces[i]);
+    free(pieces);
+    return out_of_memory ? diagnose(why, STATUS_FAILURE, "", "out of memory for the list of finished pieces") : STATUS_OK;
+}

@@ -1,0 +1,240 @@
+/* Engines, and how a request becomes a frame: checks, a preview, the film, the caller's buffers and callbacks. */
+#include "engine/canvas.h"
+#include "engine/engine_private.h"
+
+#include "measure/clock.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PREVIEW_MAX = 64 };
+
+status engine_isa(const char *name, isa *out, diagnostic *why)
+{
+    if (!name)
+        return isa_choose(out, why);
+    for (int level = 0; level < ISA_COUNT; level++) {
+        if (strcmp(isa_name((isa)level), name) != 0)
+            continue;
+        if ((isa)level > isa_best())
+            return diagnose(why, STATUS_BAD_INPUT, "take NULL for the best that there is", "this processor has no %s", name);
+        *out = (isa)level;
+        return STATUS_OK;
+    }
+    return diagnose(why, STATUS_BAD_INPUT, "take sse2, avx2, avx512, or NULL", "no instruction set is called '%.64s'", name);
+}
+
+cuvette_status cuvette_engine_create(const char *instructions, cuvette_engine **out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(out, why);
+    *out = NULL;
+    diagnostic inner = {.line = 0};
+    cuvette_engine *e = calloc(1, sizeof *e);
+    status code = e ? engine_isa(instructions, &e->level, &inner) : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK)
+        code = renderer_create(e->level, NULL, &e->workers, &inner);
+    if (code != STATUS_OK) {
+        free(e);
+        return engine_report(code, &inner, why);
+    }
+    *out = e;
+    return CUVETTE_OK;
+}
+
+void cuvette_engine_destroy(cuvette_engine *engine)
+{
+    if (!engine)
+        return;
+    renderer_destroy(engine->workers);
+    topology_destroy(engine->machine);
+    free(engine);
+}
+
+void cuvette_engine_cancel(cuvette_engine *engine)
+{
+    if (engine)
+        atomic_store(&engine->cancelled, true);
+}
+
+/* One render under way. */
+typedef struct stage {
+    cuvette_engine *engine;
+    const cuvette_request *request;
+    canvas buffers;
+    double share;      /* reported so far */
+    bool is_preview;
+    status noted;      /* of handing out pieces */
+} stage;
+
+static bool report_share(stage *now, double share)
+{
+    if (share > now->share)
+        now->share = share;
+    if (now->request->progress && !now->request->progress(now->request->context, now->share))
+        atomic_store(&now->engine->cancelled, true);
+    return !atomic_load(&now->engine->cancelled);
+}
+
+static bool watch(void *context, double share)
+{
+    stage *now = context;
+    if (now->request->piece && now->noted == STATUS_OK)
+        now->noted = canvas_hand_out(&now->buffers, NULL);
+    return report_share(now, now->is_preview ? 0.0 : share);
+}
+
+static void take_piece(void *context, const film *picture, int x0, int y0, int x1, int y1)
+{
+    stage *now = context;
+    canvas_fill(&now->buffers, picture, x0, y0, x1, y1, 1);
+    canvas_note(&now->buffers, (cuvette_piece){x0, y0, x1, y1, 1});
+}
+
+/* The request as this library knows it: one of an earlier version has fewer fields. */
+static status read_request(const cuvette_request *given, const scene *s, cuvette_request *out, diagnostic *why)
+{
+    *out = CUVETTE_REQUEST;
+    if (!given)
+        return STATUS_OK;
+    if (given->size < sizeof *out) /* there is no earlier version yet */
+        return diagnose(why, STATUS_BAD_INPUT, "begin with CUVETTE_REQUEST", "a request's size is %zu", given->size);
+    memcpy(out, given, sizeof *out);
+    if (out->preview != 0 && (out->preview < 2 || out->preview > PREVIEW_MAX))
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or from 2 to 64", "a request's preview is %d", out->preview);
+    if (!out->rgb && !out->srgb)
+        return STATUS_OK;
+    if (out->width != s->render.width || out->height != s->render.height)
+        return diagnose(why, STATUS_BAD_INPUT, "make the buffers as large as the picture, or set render.width and render.height",
+                        "the buffers are %d x %d, and the picture is %lld x %lld", out->width, out->height, (long long)s->render.width,
+                        (long long)s->render.height);
+    const size_t row = 3 * (size_t)out->width;
+    if (out->rgb_stride == 0)
+        out->rgb_stride = row;
+    if (out->srgb_stride == 0)
+        out->srgb_stride = row;
+    if (out->rgb_stride < row || out->srgb_stride < row)
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width", "a request's stride is shorter than a row");
+    return STATUS_OK;
+}
+
+/* Threads are placed only where a scene asks for it: reading the machine takes longer than many a frame. */
+static status know_machine(cuvette_engine *e, const scene *s, diagnostic *why)
+{
+    if (e->machine || s->render.pin == PIN_RULE_NONE)
+        return STATUS_OK;
+    renderer *aware = NULL;
+    status code = topology_create(&e->machine, why);
+    if (code == STATUS_OK)
+        code = renderer_create(e->level, e->machine, &aware, why);
+    if (code != STATUS_OK) {
+        topology_destroy(e->machine);
+        e->machine = NULL;
+        return code;
+    }
+    renderer_destroy(e->workers);
+    e->workers = aware;
+    return STATUS_OK;
+}
+
+/* The whole picture at a part of its size. */
+static status render_preview(stage *now, const scene *s, diagnostic *why)
+{
+    const int coarse = now->request->preview;
+    scene small = *s; /* borrows what s owns */
+    small.render.width = (s->render.width + coarse - 1) / coarse;
+    small.render.height = (s->render.height + coarse - 1) / coarse;
+    const render_options options = {.progress = watch, .context = now};
+    render_result *result = NULL;
+    now->is_preview = true;
+    const status code = renderer_render(now->engine->workers, &small, &options, &result, why);
+    now->is_preview = false;
+    if (code == STATUS_OK) {
+        canvas_fill(&now->buffers, result->picture, 0, 0, (int)small.render.width, (int)small.render.height, coarse);
+        if (now->request->piece)
+            now->request->piece(now->request->context, &(cuvette_piece){0, 0, (int)s->render.width, (int)s->render.height, coarse});
+    }
+    render_result_destroy(result);
+    return code;
+}
+
+static status render_frame(stage *now, const scene *s, cuvette_frame *frame, diagnostic *why)
+{
+    const cuvette_request *r = now->request;
+    const render_options options = {.progress = watch, .piece_done = r->piece ? take_piece : NULL, .context = now};
+    status code = renderer_render(now->engine->workers, s, &options, &frame->result, why);
+    const bool kept = code == STATUS_OK || code == STATUS_INTERRUPTED;
+    if (kept && r->piece && now->noted == STATUS_OK)
+        now->noted = canvas_hand_out(&now->buffers, why);
+    else if (kept && !r->piece)
+        canvas_fill(&now->buffers, frame->result->picture, 0, 0, frame->result->picture->width, frame->result->picture->height, 1);
+    if (code == STATUS_OK && now->noted != STATUS_OK)
+        code = diagnose(why, now->noted, "", "out of memory for the list of finished pieces");
+    if (code == STATUS_OK)
+        report_share(now, 1.0);
+    return code;
+}
+
+static status render(stage *now, const scene *s, cuvette_frame *frame, diagnostic *why)
+{
+    if (!report_share(now, 0.0))
+        return diagnose(why, STATUS_INTERRUPTED, "", "cancelled before the first ray");
+    status code = STATUS_OK;
+    if (now->request->preview && (now->request->rgb || now->request->srgb)) {
+        const double began_s = clock_wall_s();
+        code = render_preview(now, s, why);
+        frame->preview_s = clock_wall_s() - began_s;
+    }
+    if (code == STATUS_OK)
+        code = render_frame(now, s, frame, why);
+    if (code == STATUS_INTERRUPTED)
+        diagnose(why, code, "", "cancelled");
+    return code;
+}
+
+/* The engine and the scene are held; request is the caller's. */
+static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvette_request *given, cuvette_frame *frame, diagnostic *why)
+{
+    cuvette_request request;
+    stage now = {.engine = engine, .request = &request};
+    status code = scene_check(s->model, why);
+    if (code == STATUS_OK)
+        code = engine_load(s, why);
+    if (code == STATUS_OK)
+        code = read_request(given, s->model, &request, why);
+    if (code == STATUS_OK)
+        code = know_machine(engine, s->model, why);
+    if (code == STATUS_OK)
+        code = canvas_open(&request, &now.buffers, why);
+    if (code != STATUS_OK)
+        return code;
+    frame->solid_count = s->model->solid_count;
+    code = render(&now, s->model, frame, why);
+    canvas_close(&now.buffers);
+    return code;
+}
+
+cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene *s, const cuvette_request *request, cuvette_frame **out,
+                                     cuvette_diagnostic *why)
+{
+    if (out)
+        *out = NULL;
+    ENGINE_NEED(engine, why);
+    ENGINE_NEED_SCENE(s, why);
+    diagnostic inner = {.line = 0};
+    if (atomic_exchange(&engine->busy, true)) {
+        engine_report(diagnose(&inner, STATUS_BAD_INPUT, "wait for it to end, or make a second engine", "the engine is rendering"), &inner, why);
+        return CUVETTE_BUSY;
+    }
+    cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* every handle was made by us, none is constant */
+    atomic_fetch_add(&held->renders, 1);
+    atomic_store(&engine->cancelled, false);
+    cuvette_frame *frame = calloc(1, sizeof *frame);
+    const status code = frame ? render_held(engine, held, request, frame, &inner) : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
+    atomic_fetch_sub(&held->renders, 1);
+    atomic_store(&engine->busy, false);
+    if (out && frame && frame->result)
+        *out = frame;
+    else
+        cuvette_frame_destroy(frame);
+    return engine_report(code, &inner, why);
+}

@@ -1,0 +1,72 @@
+/* What the engine's handles hold, and how its files turn the library's errors into those of cuvette.h. Not seen from outside.
+ * Ownership as cuvette.h says. */
+#ifndef CUVETTE_ENGINE_ENGINE_PRIVATE_H
+#define CUVETTE_ENGINE_ENGINE_PRIVATE_H
+
+#include "base/isa.h"
+#include "cuvette.h"
+#include "render/renderer.h"
+#include "scene/scene.h"
+#include <pthread.h>
+#include <stdatomic.h>
+
+struct cuvette_scene {
+    scene *model;
+    pthread_mutex_t loading; /* held while pictures are read; afterwards they are only looked at */
+    atomic_int renders;      /* under way */
+};
+
+struct cuvette_engine {
+    isa level;
+    topology *machine;       /* NULL until a scene wants its threads pinned */
+    renderer *workers;
+    atomic_bool busy, cancelled;
+};
+
+struct cuvette_frame {
+    render_result *result;
+    size_t solid_count;
+    double preview_s;
+};
+
+/* The library's status and diagnostic as the caller's; why is written only when code is not STATUS_OK. */
+cuvette_status engine_report(status code, const diagnostic *inner, cuvette_diagnostic *why);
+
+/* CUVETTE_BAD_INPUT: `name` must not be NULL. */
+cuvette_status engine_missing(const char *name, cuvette_diagnostic *why);
+
+/* The instruction set of that name, or the one to use when it is NULL. */
+status engine_isa(const char *name, isa *out, diagnostic *why);
+
+/* CUVETTE_OK when the scene may be changed now. */
+cuvette_status engine_may_change(const cuvette_scene *s, cuvette_diagnostic *why);
+
+/* Reads the files that the scene names, once. */
+status engine_load(cuvette_scene *s, diagnostic *why);
+
+/* Takes over the model; destroys it when memory is out. */
+cuvette_status engine_wrap_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why);
+
+/* Copies text, which it frees, into the caller's memory. */
+cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why);
+
+/* Shorthand for the beginning of a function: leaves with CUVETTE_BAD_INPUT when an argument is NULL. Where cuvette.h's name of it
+ * is a type of the library, the definition has another one. */
+#define ENGINE_NEED_NAMED(argument, name, why) \
+    do { \
+        if (!(argument)) \
+            return engine_missing(name, why); \
+    } while (0)
+#define ENGINE_NEED(argument, why) ENGINE_NEED_NAMED(argument, #argument, why)
+#define ENGINE_NEED_SCENE(s, why) ENGINE_NEED_NAMED(s, "scene", why)
+
+/* The same for a function that changes the scene: also when it is being rendered. */
+#define ENGINE_CHANGE(s, why) \
+    do { \
+        ENGINE_NEED_SCENE(s, why); \
+        const cuvette_status may_change = engine_may_change(s, why); \
+        if (may_change != CUVETTE_OK) \
+            return may_change; \
+    } while (0)
+
+#endif

@@ -1,0 +1,134 @@
+/* What a frame tells: pixels, hash, counts, times. */
+#include "engine/canvas.h"
+#include "engine/engine_private.h"
+
+#include "render/record.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void cuvette_frame_destroy(cuvette_frame *frame)
+{
+    if (!frame)
+        return;
+    render_result_destroy(frame->result);
+    free(frame);
+}
+
+int cuvette_frame_width(const cuvette_frame *frame)
+{
+    return frame ? frame->result->picture->width : 0;
+}
+
+int cuvette_frame_height(const cuvette_frame *frame)
+{
+    return frame ? frame->result->picture->height : 0;
+}
+
+uint64_t cuvette_frame_hash(const cuvette_frame *frame)
+{
+    return frame ? film_hash(frame->result->picture) : 0;
+}
+
+static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, size_t stride, diagnostic *why)
+{
+    if (x0 < 0 || y0 < 0 || x1 > f->width || y1 > f->height || x0 >= x1 || y0 >= y1)
+        return diagnose(why, STATUS_BAD_INPUT, "keep 0 <= x0 < x1 <= width, and y likewise",
+                        "no part of a picture of %d x %d lies from %d,%d to %d,%d", f->width, f->height, x0, y0, x1, y1);
+    if (stride < 3 * (size_t)(x1 - x0))
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width", "a stride of %zu is shorter than a row", stride);
+    return STATUS_OK;
+}
+
+cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, float *rgb, size_t stride, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(frame, why);
+    ENGINE_NEED(rgb, why);
+    diagnostic inner = {.line = 0};
+    const size_t row = stride ? stride : 3 * (size_t)(x1 - x0);
+    const status code = check_rectangle(frame->result->picture, x0, y0, x1, y1, row, &inner);
+    if (code == STATUS_OK)
+        film_read(frame->result->picture, x0, y0, x1, y1, rgb, row);
+    return engine_report(code, &inner, why);
+}
+
+cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, unsigned char *srgb, size_t stride,
+                                  cuvette_diagnostic *why)
+{
+    ENGINE_NEED(frame, why);
+    ENGINE_NEED(srgb, why);
+    diagnostic inner = {.line = 0};
+    const size_t row = stride ? stride : 3 * (size_t)(x1 - x0);
+    const status code = check_rectangle(frame->result->picture, x0, y0, x1, y1, row, &inner);
+    if (code == STATUS_OK) {
+        codec_bytes bytes;
+        codec_bytes_prepare(&bytes);
+        canvas_bytes(frame->result->picture, &bytes, x0, y0, x1, y1, srgb, row);
+    }
+    return engine_report(code, &inner, why);
+}
+
+cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path, int bits, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(frame, why);
+    ENGINE_NEED(path, why);
+    diagnostic inner = {.line = 0};
+    status code = bits == 8 || bits == 16 ? STATUS_OK : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "a picture cannot have %d bits", bits);
+    if (code == STATUS_OK)
+        code = record_picture(frame->result->picture, path, bits, &inner);
+    return engine_report(code, &inner, why);
+}
+
+/* Copies as much as the caller's struct, an older or a newer one, has room for; its own size stays. */
+static cuvette_status give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why)
+{
+    diagnostic inner = {.line = 0};
+    size_t size;
+    memcpy(&size, out, sizeof size);
+    if (size <= sizeof size || size > 65536)
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "set its size to the sizeof of its type before the call",
+                                      "the struct to be filled in says that it has %zu bytes", size), &inner, why);
+    memset((char *)out + sizeof size, 0, size - sizeof size);
+    memcpy((char *)out + sizeof size, (const char *)content + sizeof size, (size < known ? size : known) - sizeof size);
+    return CUVETTE_OK;
+}
+
+_Static_assert(sizeof(((cuvette_counters *)0)->by_depth) == sizeof(((ray_counters *)0)->by_depth), "as many depths");
+
+cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counters *out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(frame, why);
+    ENGINE_NEED(out, why);
+    const ray_counters *c = &frame->result->counters;
+    cuvette_counters told = {.camera = c->camera, .reflect = c->reflect, .refract = c->refract, .shadow = c->shadow,
+                             .total_internal = c->total_internal, .cut_depth = c->cut_depth, .cut_weight = c->cut_weight};
+    for (int i = 0; i < 3; i++) {
+        told.cut_depth_throughput[i] = (double)c->cut_depth_throughput[i] / COUNTERS_CUT_ONE;
+        told.cut_weight_throughput[i] = (double)c->cut_weight_throughput[i] / COUNTERS_CUT_ONE;
+    }
+    memcpy(told.by_depth, c->by_depth, sizeof told.by_depth);
+    return give_struct(&told, sizeof told, out, why);
+}
+
+cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t index, cuvette_solid_counters *out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(frame, why);
+    ENGINE_NEED(out, why);
+    diagnostic inner = {.line = 0};
+    if (index >= frame->solid_count)
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "count them from 0", "there is no solid %zu among the scene's %zu", index,
+                                      frame->solid_count), &inner, why);
+    const ray_counters *c = &frame->result->counters;
+    const cuvette_solid_counters told = {.tests = c->tests[index], .hits = c->hits[index], .first_hits = c->first_hits[index]};
+    return give_struct(&told, sizeof told, out, why);
+}
+
+cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_statistics *out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(frame, why);
+    ENGINE_NEED(out, why);
+    const render_result *r = frame->result;
+    const cuvette_statistics told = {.wall_s = r->wall_s, .cpu_s = r->cpu_s, .preview_s = frame->preview_s, .threads = r->worker_count,
+                                     .noise_rms = render_noise_rms(r)};
+    return give_struct(&told, sizeof told, out, why);
+}

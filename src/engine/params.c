@@ -1,0 +1,179 @@
+/* Parameters by name: everything goes through the one table's own text, so that a value set by number is the value set by its digits. */
+#include "engine/engine_private.h"
+
+#include "base/number.h"
+#include "scene/params.h"
+#include "scene/params_path.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+cuvette_status cuvette_scene_set(cuvette_scene *s, const char *path, const char *value, cuvette_diagnostic *why)
+{
+    ENGINE_CHANGE(s, why);
+    ENGINE_NEED(path, why);
+    ENGINE_NEED(value, why);
+    diagnostic inner = {.line = 0};
+    return engine_report(scene_set(s->model, path, value, &inner), &inner, why);
+}
+
+cuvette_status cuvette_scene_set_double(cuvette_scene *s, const char *path, double value, cuvette_diagnostic *why)
+{
+    char text[NUMBER_TEXT_MAX];
+    return cuvette_scene_set(s, path, number_format(value, text), why);
+}
+
+static bool is_switch(const param *row)
+{
+    return row->type == PARAM_CHOICE && strcmp(row->choices[0], "off") == 0 && strcmp(row->choices[1], "on") == 0 && !row->choices[2];
+}
+
+cuvette_status cuvette_scene_set_int(cuvette_scene *s, const char *path, int64_t value, cuvette_diagnostic *why)
+{
+    ENGINE_NEED_SCENE(s, why);
+    ENGINE_NEED(path, why);
+    place at;
+    char text[NUMBER_TEXT_MAX];
+    snprintf(text, sizeof text, "%lld", (long long)value);
+    const bool as_word = (value == 0 || value == 1) && place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row);
+    return cuvette_scene_set(s, path, as_word ? at.row->choices[value] : text, why);
+}
+
+cuvette_status cuvette_scene_set_vector(cuvette_scene *s, const char *path, const double *values, size_t count, cuvette_diagnostic *why)
+{
+    enum { EACH = NUMBER_TEXT_MAX + 1, MOST = NUMBER_LIST_MAX + 1 };
+    char text[MOST * EACH + 3] = "[", number[NUMBER_TEXT_MAX];
+    size_t length = 1;
+    if (count > 0)
+        ENGINE_NEED(values, why);
+    if (count > MOST) /* one too many is refused by the table, in its own words */
+        count = MOST;
+    for (size_t i = 0; i < count; i++)
+        length += (size_t)snprintf(text + length, sizeof text - length, "%s%s", i ? "," : "", number_format(values[i], number));
+    snprintf(text + length, sizeof text - length, "]");
+    return cuvette_scene_set(s, path, text, why);
+}
+
+static cuvette_status get(const cuvette_scene *s, const char *path, char **value, cuvette_diagnostic *why)
+{
+    ENGINE_NEED_SCENE(s, why);
+    ENGINE_NEED(path, why);
+    diagnostic inner = {.line = 0};
+    return engine_report(scene_get(s->model, path, value, &inner), &inner, why);
+}
+
+cuvette_status cuvette_scene_get(const cuvette_scene *s, const char *path, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
+{
+    char *value;
+    if (size > 0)
+        ENGINE_NEED(text, why);
+    const cuvette_status code = get(s, path, &value, why);
+    return code == CUVETTE_OK ? engine_give_text(value, text, size, length, why) : code;
+}
+
+static cuvette_status is_no_number(const char *path, const char *value, const char *kind, cuvette_diagnostic *why)
+{
+    diagnostic inner = {.line = 0};
+    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "use cuvette_scene_get, which gives text", "%.128s is '%.128s', which is no %s", path,
+                                  value, kind), &inner, why);
+}
+
+cuvette_status cuvette_scene_get_double(const cuvette_scene *s, const char *path, double *value, cuvette_diagnostic *why)
+{
+    char *text;
+    double number = 0.0;
+    ENGINE_NEED(value, why);
+    cuvette_status code = get(s, path, &text, why);
+    if (code != CUVETTE_OK)
+        return code;
+    if (number_parse_real(text, &number))
+        *value = number;
+    else
+        code = is_no_number(path, text, "number", why);
+    free(text);
+    return code;
+}
+
+cuvette_status cuvette_scene_get_int(const cuvette_scene *s, const char *path, int64_t *value, cuvette_diagnostic *why)
+{
+    char *text;
+    int64_t number = 0;
+    ENGINE_NEED(value, why);
+    cuvette_status code = get(s, path, &text, why);
+    if (code != CUVETTE_OK)
+        return code;
+    place at;
+    if (place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row))
+        *value = strcmp(text, "on") == 0;
+    else if (number_parse_int(text, &number))
+        *value = number;
+    else
+        code = is_no_number(path, text, "integer", why);
+    free(text);
+    return code;
+}
+
+/* "[1, 2, 3]", "1,2,3", or one number alone; how many there are, or -1. text is cut up. */
+static int parse_numbers(char *text, double numbers[NUMBER_LIST_MAX])
+{
+    int count = 0;
+    char *rest = text;
+    for (char *word; (word = strtok_r(rest, "[], ", &rest));) {
+        if (count == NUMBER_LIST_MAX || !number_parse_real(word, &numbers[count]))
+            return -1;
+        count++;
+    }
+    return count;
+}
+
+cuvette_status cuvette_scene_get_vector(const cuvette_scene *s, const char *path, double *values, size_t room, size_t *count,
+                                        cuvette_diagnostic *why)
+{
+    char *text;
+    double numbers[NUMBER_LIST_MAX];
+    ENGINE_NEED(count, why);
+    if (room > 0)
+        ENGINE_NEED(values, why);
+    cuvette_status code = get(s, path, &text, why);
+    if (code != CUVETTE_OK)
+        return code;
+    const int found = parse_numbers(text, numbers);
+    free(text);
+    if (found < 0)
+        return is_no_number(path, "a word", "vector", why);
+    *count = (size_t)found;
+    if ((size_t)found > room) {
+        diagnostic inner = {.line = 0};
+        diagnose(&inner, STATUS_BAD_INPUT, "make room for as many as are reported", "%.128s has %d numbers", path, found);
+        return engine_report(STATUS_BAD_INPUT, &inner, why);
+    }
+    memcpy(values, numbers, (size_t)found * sizeof *numbers);
+    return CUVETTE_OK;
+}
+
+typedef struct visitor {
+    bool (*visit)(void *context, const cuvette_parameter *one);
+    void *context;
+} visitor;
+
+static status visit_one(void *context, const char *path, const param *row, const char *value)
+{
+    const visitor *v = context;
+    char range[1024];
+    const cuvette_parameter one = {.path = path, .value = value, .unit = row->unit, .range = param_range_text(row, range, sizeof range),
+                                   .initial = row->fallback, .meaning = row->meaning};
+    return v->visit(v->context, &one) ? STATUS_OK : STATUS_INTERRUPTED;
+}
+
+cuvette_status cuvette_scene_each_parameter(const cuvette_scene *s, bool (*visit)(void *context, const cuvette_parameter *one), void *context,
+                                            cuvette_diagnostic *why)
+{
+    ENGINE_NEED_SCENE(s, why);
+    ENGINE_NEED(visit, why);
+    visitor v = {visit, context};
+    diagnostic inner = {.line = 0};
+    const status code = scene_each_param(s->model, visit_one, &v);
+    if (code == STATUS_OK || code == STATUS_INTERRUPTED)
+        return CUVETTE_OK;
+    return engine_report(diagnose(&inner, code, "", "out of memory"), &inner, why);
+}

@@ -1,0 +1,114 @@
+/* A scene made ready for rays of the caller's. A query is not changed once it is made; what a call works on (a bench) is taken from
+ * a shelf and put back, so that any number of threads may ask, and a single ray costs no allocation. */
+#include "engine/query_private.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void cuvette_query_destroy(cuvette_query *query)
+{
+    if (!query)
+        return;
+    while (query->shelf) {
+        bench *b = query->shelf;
+        query->shelf = b->next;
+        free(b);
+    }
+    plan_destroy(query->ready);
+    scene_destroy(query->model);
+    pthread_mutex_destroy(&query->lock);
+    free(query);
+}
+
+static const geometry_kernels *kernels_of(isa level)
+{
+    return level == ISA_AVX512 ? &geometry_kernels_avx512 : level == ISA_AVX2 ? &geometry_kernels_avx2 : &geometry_kernels_sse2;
+}
+
+static status prepare(cuvette_query *q, const scene *s, const char *instructions, diagnostic *why)
+{
+    isa level = ISA_SSE2;
+    scene without_sky = *s; /* no ray of a query looks at it */
+    without_sky.background.picture = NULL;
+    status code = engine_isa(instructions, &level, why);
+    if (code == STATUS_OK)
+        code = scene_check(s, why);
+    if (code != STATUS_OK)
+        return code;
+    q->kernels = kernels_of(level);
+    q->model = scene_clone(&without_sky);
+    return q->model ? plan_build(q->model, &q->ready, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instructions, cuvette_query **out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(out, why);
+    *out = NULL;
+    ENGINE_NEED_SCENE(s, why);
+    diagnostic inner = {.line = 0};
+    cuvette_query *q = calloc(1, sizeof *q);
+    if (!q || pthread_mutex_init(&q->lock, NULL) != 0) {
+        free(q);
+        return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
+    }
+    const status code = prepare(q, s->model, instructions, &inner);
+    if (code != STATUS_OK) {
+        cuvette_query_destroy(q);
+        return engine_report(code, &inner, why);
+    }
+    *out = q;
+    return CUVETTE_OK;
+}
+
+bench *query_take_bench(const cuvette_query *query)
+{
+    cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* every handle was made by us, none is constant */
+    pthread_mutex_lock(&q->lock);
+    bench *b = q->shelf;
+    if (b)
+        q->shelf = b->next;
+    pthread_mutex_unlock(&q->lock);
+    if (!b && (b = aligned_alloc(64, (sizeof *b + 63) / 64 * 64)))
+        b->scratch.ways = NULL;
+    return b;
+}
+
+void query_give_bench(const cuvette_query *query, bench *b)
+{
+    cuvette_query *q = (cuvette_query *)(uintptr_t)query;
+    pthread_mutex_lock(&q->lock);
+    b->next = q->shelf;
+    q->shelf = b;
+    pthread_mutex_unlock(&q->lock);
+}
+
+cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, double y, cuvette_ray *out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(query, why);
+    ENGINE_NEED(out, why);
+    diagnostic inner = {.line = 0};
+    if (!isfinite(x) || !isfinite(y))
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point of the picture is not finite"), &inner, why);
+    const camera_frame *f = &query->ready->view;
+    const double u = (2.0 * x / (double)query->ready->render.width - 1.0) * f->half_width;
+    const double v = (1.0 - 2.0 * y / (double)query->ready->render.height) * f->half_height;
+    const vec3 d = vec3_normalize(vec3_add(f->forward, vec3_add(vec3_scale(f->right, u), vec3_scale(f->up, v))));
+    memset(out, 0, sizeof *out);
+    out->origin[0] = f->eye.x, out->origin[1] = f->eye.y, out->origin[2] = f->eye.z;
+    out->direction[0] = d.x, out->direction[1] = d.y, out->direction[2] = d.z;
+    return CUVETTE_OK;
+}
+
+cuvette_status cuvette_query_medium(const cuvette_query *query, const double *point, int32_t *at, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(query, why);
+    ENGINE_NEED(point, why);
+    ENGINE_NEED_NAMED(at, "solid", why);
+    diagnostic inner = {.line = 0};
+    if (!(isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2])))
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point is not finite"), &inner, why);
+    const arrangement *a = query->ready->solids;
+    *at = a->bodies[arrangement_rank(a, arrangement_inside(a, vec3_make(point[0], point[1], point[2])))].solid;
+    return CUVETTE_OK;
+}

@@ -1,0 +1,213 @@
+/* Rays of the caller's, through the tracer's own kernels: batches are filled, asked, and their hits told in the scene's terms. */
+#include "engine/query_private.h"
+
+#include <math.h>
+#include <string.h>
+
+#define FAR_ORIGIN 1e6
+
+/* A cuvette_start: word 0 is 1 for one that a hit filled in; then the face and the set of primitives. */
+static cuvette_start start_at(int64_t face, uint64_t inside)
+{
+    return (cuvette_start){{1, (uint64_t)face, inside, 0}};
+}
+
+static status wrong_ray(size_t i, const char *remedy, const char *what, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "ray %zu %s", i, what);
+}
+
+static bool is_finite_vector(const double *v)
+{
+    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+}
+
+static status check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnostic *why)
+{
+    const double *o = ray->origin, *d = ray->direction;
+    if (!(fabs(o[0]) <= FAR_ORIGIN && fabs(o[1]) <= FAR_ORIGIN && fabs(o[2]) <= FAR_ORIGIN))
+        return wrong_ray(i, "start within 1e6 scene units of the middle", "starts too far away", why);
+    if (!is_finite_vector(d) || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0))
+        return wrong_ray(i, "give a finite direction that is not 0,0,0", "has no direction", why);
+    if (!(ray->reach >= 0.0))
+        return wrong_ray(i, "give a distance, or 0 for any", "has a negative reach", why);
+    if (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && ray->start.word[1] >= (uint64_t)p->solids->primitive_count * FACES_MAX))
+        return wrong_ray(i, "copy it from a hit of this query, or zero it", "has a start that no hit told", why);
+    return STATUS_OK;
+}
+
+/* d / |d|, without over- or underflow on the way; a unit vector but for rounding stays as it is, to the bit. */
+static vec3 unit_of(const double *d)
+{
+    const vec3 v = vec3_make(d[0], d[1], d[2]);
+    if (fabs(vec3_dot(v, v) - 1.0) <= 0x1p-50)
+        return v;
+    const double largest = fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
+    return vec3_normalize(vec3_make(v.x / largest, v.y / largest, v.z / largest));
+}
+
+static void put_ray(const cuvette_query *q, bench *b, int column, const cuvette_ray *ray, double length)
+{
+    const vec3 origin = vec3_make(ray->origin[0], ray->origin[1], ray->origin[2]), d = vec3_scale(unit_of(ray->direction), length);
+    b->ox[column] = origin.x, b->oy[column] = origin.y, b->oz[column] = origin.z;
+    b->dx[column] = d.x, b->dy[column] = d.y, b->dz[column] = d.z;
+    b->start[column] = ray->start.word[0] ? (int64_t)ray->start.word[1] : FACE_NONE;
+    b->inside[column] = ray->start.word[0] ? ray->start.word[2] : arrangement_inside(q->ready->solids, origin);
+}
+
+static ray_batch view_of(const bench *b, int count)
+{
+    return (ray_batch){count, b->ox, b->oy, b->oz, b->dx, b->dy, b->dz, b->start, b->inside};
+}
+
+/* A miss, as far as it can be told. */
+static cuvette_hit nothing_met(const cuvette_query *q, int rank)
+{
+    cuvette_hit h;
+    memset(&h, 0, sizeof h);
+    h.distance = (double)INFINITY;
+    h.solid = h.after = CUVETTE_OUTSIDE;
+    h.triangle = -1;
+    h.before = q->ready->solids->bodies[rank].solid;
+    h.n_before = q->ready->ior[rank];
+    return h;
+}
+
+static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int k, int met)
+{
+    const plan *p = q->ready;
+    const hit_batch *hits = &b->hits;
+    const surface_batch *s = &b->points;
+    cuvette_hit h = nothing_met(q, (int)hits->before[column]);
+    const body *bounded = &p->solids->bodies[p->solids->primitives[met].rank];
+    h.distance = hits->t[column];
+    h.point[0] = s->px[k], h.point[1] = s->py[k], h.point[2] = s->pz[k];
+    h.normal[0] = s->nx[k], h.normal[1] = s->ny[k], h.normal[2] = s->nz[k];
+    h.error = s->error[k];
+    h.solid = p->solids->bodies[hits->surface[column]].solid;
+    h.after = p->solids->bodies[hits->after[column]].solid;
+    h.n_after = p->ior[hits->after[column]];
+    h.face = (int32_t)(s->face[k] % FACES_MAX) + (met == bounded->hollow ? FACES_MAX : 0);
+    h.reflected = start_at(s->face[k], hits->inside_before[column]);
+    h.transmitted = start_at(s->face[k], hits->inside_after[column]);
+    return h;
+}
+
+/* Hits on one primitive: their points all at once. */
+static void tell_group(const cuvette_query *q, bench *b, int met, int count, cuvette_hit *out)
+{
+    for (int k = 0; k < count; k++) {
+        const int i = b->list[k];
+        b->gox[k] = b->ox[i], b->goy[k] = b->oy[i], b->goz[k] = b->oz[i];
+        b->gdx[k] = b->dx[i], b->gdy[k] = b->dy[i], b->gdz[k] = b->dz[i];
+        b->gstart[k] = b->start[i], b->ginside[k] = b->hits.inside_before[i], b->t[k] = b->hits.t[i];
+    }
+    const ray_batch rays = {count, b->gox, b->goy, b->goz, b->gdx, b->gdy, b->gdz, b->gstart, b->ginside};
+    q->kernels->surface(&q->ready->solids->primitives[met], &rays, b->t, met, &b->points);
+    for (int k = 0; k < count; k++)
+        out[b->list[k]] = told(q, b, b->list[k], k, met);
+}
+
+static bool within(double distance, double reach)
+{
+    return reach == 0.0 || distance <= reach;
+}
+
+static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *rays, int count, cuvette_hit *hits)
+{
+    const arrangement *a = q->ready->solids;
+    for (int i = 0; i < count; i++)
+        put_ray(q, b, i, &rays[i], 1.0);
+    const ray_batch view = view_of(b, count);
+    q->kernels->nearest(a, &view, &b->scratch, &b->hits);
+    for (int i = 0; i < count; i++)
+        if (b->hits.crossed[i] < 0 || !within(b->hits.t[i], rays[i].reach)) {
+            hits[i] = nothing_met(q, arrangement_rank(a, b->inside[i]));
+            b->hits.crossed[i] = -1;
+        }
+    for (int met = 0; met < a->primitive_count; met++) {
+        int listed = 0;
+        for (int i = 0; i < count; i++)
+            if (b->hits.crossed[i] == met)
+                b->list[listed++] = i;
+        if (listed > 0)
+            tell_group(q, b, met, listed, hits);
+    }
+}
+
+static status begin(const cuvette_query *q, const cuvette_ray *rays, size_t count, bench **out, diagnostic *why)
+{
+    for (size_t i = 0; i < count; i++) {
+        const status code = check_ray(q->ready, &rays[i], i, why);
+        if (code != STATUS_OK)
+            return code;
+    }
+    *out = query_take_bench(q);
+    return *out ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_ray *rays, size_t count, cuvette_hit *hits, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(query, why);
+    if (count == 0)
+        return CUVETTE_OK;
+    ENGINE_NEED(rays, why);
+    ENGINE_NEED(hits, why);
+    diagnostic inner = {.line = 0};
+    bench *b = NULL;
+    const status code = begin(query, rays, count, &b, &inner);
+    if (code != STATUS_OK)
+        return engine_report(code, &inner, why);
+    for (size_t i = 0; i < count; i += BATCH)
+        nearest_batch(query, b, rays + i, count - i < BATCH ? (int)(count - i) : BATCH, hits + i);
+    query_give_bench(query, b);
+    return CUVETTE_OK;
+}
+
+/* Rays of one kind that were put in line: with a reach they end there, as shadow rays do at their light. */
+static void occluded_batch(const cuvette_query *q, bench *b, int count, bool ends, unsigned char *blocked)
+{
+    const ray_batch view = view_of(b, count);
+    if (ends)
+        q->kernels->shadow(q->ready->solids, &view, 1, &b->scratch, b->transmitted);
+    else
+        q->kernels->nearest(q->ready->solids, &view, &b->scratch, &b->hits);
+    for (int i = 0; i < count; i++)
+        blocked[b->asked[i]] = ends ? b->transmitted[i] == 0.0 : b->hits.crossed[i] >= 0;
+}
+
+static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, size_t count, bool ends, unsigned char *blocked)
+{
+    int waiting = 0;
+    for (size_t i = 0; i < count; i++) {
+        if ((rays[i].reach > 0.0 && isfinite(rays[i].reach)) != ends)
+            continue;
+        put_ray(q, b, waiting, &rays[i], ends ? rays[i].reach : 1.0);
+        b->asked[waiting++] = i;
+        if (waiting == BATCH) {
+            occluded_batch(q, b, waiting, ends, blocked);
+            waiting = 0;
+        }
+    }
+    if (waiting > 0)
+        occluded_batch(q, b, waiting, ends, blocked);
+}
+
+cuvette_status cuvette_query_occluded(const cuvette_query *query, const cuvette_ray *rays, size_t count, unsigned char *blocked,
+                                      cuvette_diagnostic *why)
+{
+    ENGINE_NEED(query, why);
+    if (count == 0)
+        return CUVETTE_OK;
+    ENGINE_NEED(rays, why);
+    ENGINE_NEED(blocked, why);
+    diagnostic inner = {.line = 0};
+    bench *b = NULL;
+    const status code = begin(query, rays, count, &b, &inner);
+    if (code != STATUS_OK)
+        return engine_report(code, &inner, why);
+    occluded(query, b, rays, count, true, blocked);
+    occluded(query, b, rays, count, false, blocked);
+    query_give_bench(query, b);
+    return CUVETTE_OK;
+}

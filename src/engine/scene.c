@@ -1,0 +1,141 @@
+/* Scenes as handles: made, read, copied, checked, written. */
+#include "engine/engine_private.h"
+
+#include "scene/hints.h"
+#include "scene/write.h"
+#include <stdlib.h>
+#include <string.h>
+
+cuvette_status engine_wrap_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why)
+{
+    diagnostic inner = {.line = 0};
+    cuvette_scene *s = model ? calloc(1, sizeof *s) : NULL;
+    if (!s || pthread_mutex_init(&s->loading, NULL) != 0) {
+        free(s);
+        scene_destroy(model);
+        return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
+    }
+    s->model = model;
+    *out = s;
+    return CUVETTE_OK;
+}
+
+cuvette_status cuvette_scene_create(cuvette_scene **out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(out, why);
+    *out = NULL;
+    return engine_wrap_scene(scene_create(), out, why);
+}
+
+cuvette_status cuvette_scene_read(const char *path, cuvette_scene **out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(out, why);
+    *out = NULL;
+    ENGINE_NEED(path, why);
+    diagnostic inner = {.line = 0};
+    scene *model = NULL;
+    const status code = scene_read(path, &model, &inner);
+    return code == STATUS_OK ? engine_wrap_scene(model, out, why) : engine_report(code, &inner, why);
+}
+
+cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_t size, cuvette_scene **out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(out, why);
+    *out = NULL;
+    ENGINE_NEED(name, why);
+    ENGINE_NEED(text, why);
+    diagnostic inner = {.line = 0};
+    scene *model = NULL;
+    const status code = scene_read_text(name, text, size, &model, &inner);
+    return code == STATUS_OK ? engine_wrap_scene(model, out, why) : engine_report(code, &inner, why);
+}
+
+cuvette_status cuvette_scene_clone(const cuvette_scene *s, cuvette_scene **out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(out, why);
+    *out = NULL;
+    ENGINE_NEED_SCENE(s, why);
+    cuvette_scene *source = (cuvette_scene *)(uintptr_t)s; /* every handle was made by us, none is constant */
+    pthread_mutex_lock(&source->loading);
+    scene *model = scene_clone(source->model);
+    pthread_mutex_unlock(&source->loading);
+    return engine_wrap_scene(model, out, why);
+}
+
+void cuvette_scene_destroy(cuvette_scene *s)
+{
+    if (!s)
+        return;
+    pthread_mutex_destroy(&s->loading);
+    scene_destroy(s->model);
+    free(s);
+}
+
+cuvette_status engine_may_change(const cuvette_scene *s, cuvette_diagnostic *why)
+{
+    if (atomic_load(&s->renders) == 0)
+        return CUVETTE_OK;
+    diagnostic inner = {.line = 0};
+    engine_report(diagnose(&inner, STATUS_BAD_INPUT, "wait for the render to end, cancel it, or change a clone", "the scene is being rendered"),
+                  &inner, why);
+    return CUVETTE_BUSY;
+}
+
+status engine_load(cuvette_scene *s, diagnostic *why)
+{
+    pthread_mutex_lock(&s->loading);
+    const status code = scene_load(s->model, why);
+    pthread_mutex_unlock(&s->loading);
+    return code;
+}
+
+cuvette_status cuvette_scene_check(const cuvette_scene *s, cuvette_diagnostic *why)
+{
+    ENGINE_NEED_SCENE(s, why);
+    diagnostic inner = {.line = 0};
+    return engine_report(scene_check(s->model, &inner), &inner, why);
+}
+
+cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *context, const char *text), void *context,
+                                   cuvette_diagnostic *why)
+{
+    ENGINE_NEED_SCENE(s, why);
+    ENGINE_NEED(note, why);
+    scene_hints(s->model, note, context);
+    return CUVETTE_OK;
+}
+
+cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
+{
+    const size_t needed = strlen(content);
+    if (length)
+        *length = needed;
+    const bool fits = needed < size;
+    if (fits)
+        memcpy(text, content, needed + 1);
+    free(content);
+    if (fits)
+        return CUVETTE_OK;
+    diagnostic inner = {.line = 0};
+    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "make room for the length that is reported, and one more",
+                                  "the text has %zu characters, and there is room for %zu bytes", needed, size), &inner, why);
+}
+
+cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuvette_diagnostic *why)
+{
+    ENGINE_NEED_SCENE(s, why);
+    ENGINE_NEED(path, why);
+    diagnostic inner = {.line = 0};
+    return engine_report(scene_write(s->model, path, false, &inner), &inner, why);
+}
+
+cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
+{
+    ENGINE_NEED_SCENE(s, why);
+    if (size > 0)
+        ENGINE_NEED(text, why);
+    diagnostic inner = {.line = 0};
+    char *content = NULL;
+    const status code = scene_write_text(s->model, NULL, false, &content, &inner);
+    return code == STATUS_OK ? engine_give_text(content, text, size, length, why) : engine_report(code, &inner, why);
+}

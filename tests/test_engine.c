@@ -1,0 +1,605 @@
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "cuvette.h"
+#include "probe_fixture.h"
+#include <stdatomic.h>
+#include <unistd.h>
+
+/* The engine as cuvette.h promises it. What it renders is compared with the renderer behind it, with film hashes that are pinned elsewhere,
+ * and with closed forms; how it is installed and linked is the business of tests/engine.sh. */
+
+static void fine(cuvette_status code, const cuvette_diagnostic *why)
+{
+    char text[CUVETTE_DIAGNOSTIC_TEXT_MAX];
+    if (code != CUVETTE_OK)
+        fail_msg("%d: %s", (int)code, cuvette_diagnostic_text(why, text, sizeof text));
+}
+
+static cuvette_engine *make_engine(void)
+{
+    cuvette_diagnostic why;
+    cuvette_engine *engine;
+    fine(cuvette_engine_create(NULL, &engine, &why), &why);
+    return engine;
+}
+
+static void turn(cuvette_scene *s, const char *path, const char *value)
+{
+    cuvette_diagnostic why;
+    fine(cuvette_scene_set(s, path, value, &why), &why);
+}
+
+/* The rod, width pixels wide. */
+static cuvette_scene *rod(int width, int depth, int threads)
+{
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    fine(cuvette_scene_read(ROD_SCENE, &s, &why), &why);
+    fine(cuvette_scene_set_int(s, "render.width", width, &why), &why);
+    fine(cuvette_scene_set_int(s, "render.height", width * 3 / 4, &why), &why);
+    fine(cuvette_scene_set_int(s, "render.depth", depth, &why), &why);
+    fine(cuvette_scene_set_int(s, "render.threads", threads, &why), &why);
+    return s;
+}
+
+static uint64_t hash_of(cuvette_engine *engine, const cuvette_scene *s)
+{
+    cuvette_diagnostic why;
+    cuvette_frame *frame;
+    fine(cuvette_engine_render(engine, s, NULL, &frame, &why), &why);
+    const uint64_t hash = cuvette_frame_hash(frame);
+    cuvette_frame_destroy(frame);
+    return hash;
+}
+
+static void the_library_says_the_headers_version(void **state)
+{
+    (void)state;
+    char text[32];
+    snprintf(text, sizeof text, "%d.%d.%d", CUVETTE_VERSION_MAJOR, CUVETTE_VERSION_MINOR, CUVETTE_VERSION_PATCH);
+    assert_string_equal(cuvette_version(), text);
+}
+
+static void what_is_missing_or_wrong_is_said_and_changes_nothing(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why = {.what = ""};
+    cuvette_scene *s = NULL, *none = NULL;
+    cuvette_engine *engine = NULL;
+    cuvette_query *query = NULL;
+    assert_int_equal(cuvette_scene_create(NULL, &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.what, "'out' is NULL"));
+    assert_int_equal(cuvette_scene_read(NULL, &none, NULL), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_read("no/such/file.yaml", &none, &why), CUVETTE_BAD_INPUT);
+    assert_string_equal(why.file, "no/such/file.yaml");
+    const char *slip = "solids:\n  ball: {shape: sphere, raduis: 1}\n";
+    assert_int_equal(cuvette_scene_read_text("mine.yaml", slip, strlen(slip), &none, &why), CUVETTE_BAD_INPUT);
+    assert_true(why.line == 2 && why.column > 0 && strstr(why.remedy, "radius") && !none);
+    assert_int_equal(cuvette_engine_create("mmx", &engine, &why), CUVETTE_BAD_INPUT);
+    assert_null(engine);
+    assert_int_equal(cuvette_engine_render(NULL, NULL, NULL, NULL, &why), CUVETTE_BAD_INPUT);
+    fine(cuvette_scene_create(&s, &why), &why);
+    assert_int_equal(cuvette_scene_set(s, NULL, "1", &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_set(NULL, "render.depth", "1", &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.what, "'scene' is NULL"));
+    assert_int_equal(cuvette_scene_set(s, "render.deph", "1", &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.remedy, "render.depth"));
+    assert_int_equal(cuvette_scene_add_solid(s, "ball", "spere", NULL, &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.remedy, "sphere"));
+    assert_int_equal(cuvette_scene_add_solid(s, "ball", "sphere", "glass", &why), CUVETTE_BAD_INPUT); /* no such material: no ball either */
+    assert_int_equal((int)cuvette_scene_count(s, CUVETTE_SOLID), 0);
+    assert_int_equal(cuvette_query_create(NULL, NULL, &query, &why), CUVETTE_BAD_INPUT);
+    cuvette_scene_destroy(s);
+    cuvette_scene_destroy(NULL);
+    cuvette_engine_destroy(NULL);
+    cuvette_frame_destroy(NULL);
+    cuvette_query_destroy(NULL);
+    cuvette_engine_cancel(NULL);
+}
+
+static void parameters_are_set_and_read_by_name(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_scene *s = rod(80, 4, 1);
+    char text[64];
+    double number, three[3];
+    int64_t integer;
+    size_t length, count;
+    fine(cuvette_scene_set_double(s, "liquid.ior", 1.0 / 3.0 + 1.0, &why), &why);
+    fine(cuvette_scene_get_double(s, "liquid.ior", &number, &why), &why);
+    assert_true(number == 1.0 / 3.0 + 1.0); /* all digits */
+    fine(cuvette_scene_set_int(s, "render.polarisation", 1, &why), &why);
+    fine(cuvette_scene_get(s, "render.polarisation", text, sizeof text, &length, &why), &why);
+    assert_string_equal(text, "on");
+    assert_int_equal((int)length, 2);
+    fine(cuvette_scene_get_int(s, "render.polarisation", &integer, &why), &why);
+    assert_int_equal((int)integer, 1);
+    fine(cuvette_scene_set_vector(s, "lamp.position", (const double[]){1.5, -2.0, 1e-9}, 3, &why), &why);
+    fine(cuvette_scene_get_vector(s, "lamp.position", three, 3, &count, &why), &why);
+    assert_true(count == 3 && three[0] == 1.5 && three[1] == -2.0 && three[2] == 1e-9);
+    fine(cuvette_scene_get_double(s, "lamp.position.y", &number, &why), &why);
+    assert_true(number == -2.0);
+    const double spectrum[] = {400, 0.1, 500, 0.2, 600, 0.5};
+    fine(cuvette_scene_set_vector(s, "liquid.absorb_spectrum", spectrum, 6, &why), &why);
+    assert_int_equal(cuvette_scene_get_vector(s, "liquid.absorb_spectrum", three, 3, &count, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal((int)count, 6);
+
+    assert_int_equal(cuvette_scene_set_double(s, "liquid.ior", (double)NAN, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_set_int(s, "render.depth", 65, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_set_double(s, "render.depth", 2.5, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_set_vector(s, "lamp.position", three, 2, &why), CUVETTE_BAD_INPUT);
+    fine(cuvette_scene_get_int(s, "render.depth", &integer, &why), &why);
+    assert_int_equal((int)integer, 4);
+    assert_int_equal(cuvette_scene_get_int(s, "render.integrator", &integer, &why), CUVETTE_BAD_INPUT); /* a word */
+    assert_int_equal(cuvette_scene_get(s, "render.integrator", text, 7, &length, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal((int)length, 7); /* whitted, and there is its 0 */
+    fine(cuvette_scene_get(s, "render.integrator", text, 8, NULL, &why), &why);
+    assert_string_equal(text, "whitted");
+    assert_int_equal(cuvette_scene_get(s, "render.integrator", NULL, 0, &length, &why), CUVETTE_BAD_INPUT);
+    cuvette_scene_destroy(s);
+}
+
+static bool set_on_other(void *context, const cuvette_parameter *one)
+{
+    assert_true(one->range[0] && one->meaning[0] && one->initial);
+    turn(context, one->path, one->value);
+    return true;
+}
+
+static bool stop_after_three(void *context, const cuvette_parameter *one)
+{
+    (void)one;
+    return ++*(int *)context < 3;
+}
+
+static void all_parameters_together_make_the_scene(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *changed = rod(80, 3, 1), *other = rod(40, 1, 1);
+    int visited = 0;
+    turn(changed, "liquid.medium", "water");
+    turn(changed, "rod.rotation", "0,10,20");
+    fine(cuvette_scene_each_parameter(changed, set_on_other, other, &why), &why);
+    assert_true(hash_of(engine, changed) == hash_of(engine, other));
+    fine(cuvette_scene_each_parameter(changed, stop_after_three, &visited, &why), &why);
+    assert_int_equal(visited, 3);
+    cuvette_scene_destroy(changed);
+    cuvette_scene_destroy(other);
+    cuvette_engine_destroy(engine);
+}
+
+/* experiments/scenes/rod.yaml, line by line. */
+static cuvette_scene *rod_by_calls(void)
+{
+    static const char *const set[][2] = {
+        {"render.width", "80"}, {"render.height", "60"}, {"render.depth", "4"},
+        {"camera.position", "0,2.75,-6"}, {"camera.target", "0,1.5,0"}, {"camera.fov_deg", "45"}, {"background.color", "0.53,0.75,0.92"},
+        {"clear.transparency", "1"}, {"clear.specular", "0.6"}, {"clear.shininess", "80"},
+        {"tiles.color", "0.85,0.85,0.85"}, {"tiles.checker_color", "0.25,0.3,0.35"}, {"tiles.checker", "0.5"}, {"tiles.ambient", "0.1"},
+        {"tiles.diffuse", "0.7"}, {"plastic.color", "0.85,0.15,0.1"}, {"plastic.ambient", "0.1"}, {"plastic.diffuse", "0.7"},
+        {"plastic.specular", "0.5"}, {"plastic.shininess", "40"}, {"lamp.position", "4,7,-5"}, {"lamp.color", "1,1,1"}, {"lamp.intensity", "1"},
+        {"ground.priority", "0"}, {"vessel.ior", "1.5"}, {"vessel.position", "0,0.001,0"}, {"vessel.radius", "1"}, {"vessel.inner_radius", "0.9"},
+        {"vessel.height", "3"}, {"vessel.floor", "0.1"}, {"vessel.priority", "2"}, {"liquid.ior", "1.33"}, {"liquid.position", "0,0.051,0"},
+        {"liquid.radius", "0.95"}, {"liquid.height", "1.95"}, {"liquid.priority", "1"}, {"rod.position", "0.2,2.101,0"},
+        {"rod.size", "0.25,3,0.25"}, {"rod.priority", "3"},
+    };
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    fine(cuvette_scene_create(&s, &why), &why);
+    for (size_t i = 0; i < 3; i++)
+        fine(cuvette_scene_add_material(s, (const char *const[]){"clear", "tiles", "plastic"}[i], &why), &why);
+    fine(cuvette_scene_add_light(s, "lamp", &why), &why);
+    fine(cuvette_scene_add_solid(s, "ground", "plane", "tiles", &why), &why);
+    fine(cuvette_scene_add_solid(s, "vessel", "cup", "clear", &why), &why);
+    fine(cuvette_scene_add_solid(s, "liquid", "cylinder", "clear", &why), &why);
+    fine(cuvette_scene_add_solid(s, "rod", "box", "plastic", &why), &why);
+    for (size_t i = 0; i < COUNT(set); i++)
+        turn(s, set[i][0], set[i][1]);
+    return s;
+}
+
+static void a_scene_from_calls_is_the_scene_from_its_file(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *called = rod_by_calls(), *filed = rod(80, 4, 1), *again, *clone;
+    const uint64_t hash = hash_of(engine, filed);
+    assert_true(hash_of(engine, called) == hash);
+    char text[8192];
+    size_t length;
+    fine(cuvette_scene_write_text(called, text, sizeof text, &length, &why), &why);
+    fine(cuvette_scene_read_text("again.yaml", text, length, &again, &why), &why);
+    fine(cuvette_scene_clone(again, &clone, &why), &why);
+    cuvette_scene_destroy(again);
+    assert_true(hash_of(engine, clone) == hash);
+    cuvette_scene_destroy(clone);
+    cuvette_scene_destroy(called);
+    cuvette_scene_destroy(filed);
+    cuvette_engine_destroy(engine);
+}
+
+static void objects_come_move_turn_and_go(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *s = rod(80, 2, 1), *set = rod(80, 2, 1);
+    const uint64_t as_it_was = hash_of(engine, s);
+    fine(cuvette_scene_move(s, "rod", (const double[]){0.5, 0.25, -0.125}, &why), &why);
+    fine(cuvette_scene_turn(s, "rod", (const double[]){0.0, 30.0, 0.0}, &why), &why);
+    turn(set, "rod.position", "0.7,2.351,-0.125");
+    turn(set, "rod.rotation", "0,30,0");
+    const uint64_t moved = hash_of(engine, s);
+    assert_true(moved == hash_of(engine, set) && moved != as_it_was);
+    fine(cuvette_scene_add_solid(s, "ball", "sphere", "clear", &why), &why);
+    assert_int_equal((int)cuvette_scene_count(s, CUVETTE_SOLID), 5);
+    assert_string_equal(cuvette_scene_name(s, CUVETTE_SOLID, 4), "ball");
+    assert_null(cuvette_scene_name(s, CUVETTE_SOLID, 5));
+    assert_int_equal(cuvette_scene_add_light(s, "ball", &why), CUVETTE_BAD_INPUT); /* the name is taken */
+    fine(cuvette_scene_rename(s, "ball", "globe", &why), &why);
+    turn(s, "globe.radius", "0.5");
+    turn(s, "globe.position", "2,1,0");
+    turn(s, "globe.ior", "1.5");
+    assert_true(hash_of(engine, s) != moved);
+    fine(cuvette_scene_remove(s, "globe", &why), &why);
+    assert_int_equal(cuvette_scene_remove(s, "globe", &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_remove(s, "clear", &why), CUVETTE_BAD_INPUT); /* two solids have it */
+    assert_true(hash_of(engine, s) == moved);
+    fine(cuvette_scene_look_at(s, (const double[]){0.0, 1.0, 0.0}, &why), &why);
+    turn(set, "camera.target", "0,1,0");
+    assert_true(hash_of(engine, s) == hash_of(engine, set));
+    cuvette_scene_destroy(s);
+    cuvette_scene_destroy(set);
+    cuvette_engine_destroy(engine);
+}
+
+/* Pinned by the program: cuvette render experiments/scenes/rod.yaml --set render.depth=8. */
+static void the_film_is_the_programs(void **state)
+{
+    (void)state;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *s = rod(800, 8, 2);
+    assert_true(hash_of(engine, s) == 0x804d2c54dfedd082);
+    turn(s, "render.depth", "4");
+    assert_true(hash_of(engine, s) == 0xb92bb012fd9c5f71);
+    cuvette_scene_destroy(s);
+    cuvette_engine_destroy(engine);
+}
+
+static void counters_and_pixels_are_the_renderers(void **state)
+{
+    (void)state;
+    enum { W = 80, H = 60, WIDE = 300 };
+    static float rgb[H * WIDE], again[3 * W * H];
+    static unsigned char srgb[H * WIDE], bytes[3 * W * H];
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *s = rod(W, 4, 2);
+    scene *model = rod_scene("render.width=80 render.height=60 render.depth=4 render.threads=1");
+    render_result *result = render(model);
+    const ray_counters *c = &result->counters;
+
+    for (size_t i = 0; i < COUNT(rgb); i++)
+        rgb[i] = -7.0F, srgb[i] = 77;
+    cuvette_request request = CUVETTE_REQUEST;
+    request.width = W, request.height = H, request.rgb = rgb, request.rgb_stride = WIDE, request.srgb = srgb, request.srgb_stride = WIDE;
+    cuvette_frame *frame;
+    fine(cuvette_engine_render(engine, s, &request, &frame, &why), &why);
+    assert_true(cuvette_frame_width(frame) == W && cuvette_frame_height(frame) == H);
+    fine(cuvette_frame_rgb(frame, 0, 0, W, H, again, 0, &why), &why);
+    fine(cuvette_frame_srgb(frame, 0, 0, W, H, bytes, 0, &why), &why);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < WIDE; x++) {
+            const float value = rgb[y * WIDE + x];
+            const int byte = srgb[y * WIDE + x];
+            if (x >= 3 * W) {
+                assert_true(value == -7.0F && byte == 77); /* beyond the row is not ours */
+                continue;
+            }
+            const double truth = film_value(result->picture, x / 3, y, x % 3);
+            assert_true(value == (float)truth && again[y * 3 * W + x] == value && bytes[y * 3 * W + x] == byte);
+            assert_true(fabs(255.0 * srgb_encode((double)value) - byte) <= 0.5000001);
+        }
+    cuvette_counters counters = {.size = sizeof counters};
+    fine(cuvette_frame_counters(frame, &counters, &why), &why);
+    assert_true(counters.camera == c->camera && counters.reflect == c->reflect && counters.refract == c->refract && counters.shadow == c->shadow);
+    assert_true(counters.total_internal == c->total_internal && counters.cut_depth == c->cut_depth);
+    assert_memory_equal(counters.by_depth, c->by_depth, sizeof counters.by_depth);
+    assert_true(counters.cut_depth_throughput[1] == (double)c->cut_depth_throughput[1] / COUNTERS_CUT_ONE);
+    assert_true(!CUVETTE_COUNTERS || (counters.camera == W * H && counters.cut_depth_throughput[1] > 0.0));
+    for (size_t i = 0; i < 4; i++) {
+        cuvette_solid_counters one = {.size = sizeof one};
+        fine(cuvette_frame_solid_counters(frame, i, &one, &why), &why);
+        assert_true(one.tests == c->tests[i] && one.hits == c->hits[i] && one.first_hits == c->first_hits[i]);
+    }
+    cuvette_statistics statistics = {.size = sizeof statistics};
+    fine(cuvette_frame_statistics(frame, &statistics, &why), &why);
+    assert_true(statistics.wall_s > 0.0 && statistics.cpu_s > 0.0 && statistics.preview_s == 0.0 && statistics.threads == 2);
+    assert_true(isnan(statistics.noise_rms));
+    cuvette_frame_destroy(frame);
+    render_result_destroy(result);
+    scene_destroy(model);
+    cuvette_scene_destroy(s);
+    cuvette_engine_destroy(engine);
+}
+
+/* A program that was compiled when the struct ended earlier. */
+static void an_older_struct_is_filled_as_far_as_it_goes(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *s = rod(40, 1, 1);
+    cuvette_frame *frame;
+    fine(cuvette_engine_render(engine, s, NULL, &frame, &why), &why);
+    cuvette_counters counters = {.size = offsetof(cuvette_counters, refract), .refract = 4711};
+    fine(cuvette_frame_counters(frame, &counters, &why), &why);
+    assert_true(!CUVETTE_COUNTERS || (counters.camera == 40 * 30 && counters.reflect > 0));
+    assert_true(counters.refract == 4711);
+    counters.size = 0;
+    assert_int_equal(cuvette_frame_counters(frame, &counters, &why), CUVETTE_BAD_INPUT);
+    cuvette_solid_counters one = {.size = sizeof one};
+    assert_int_equal(cuvette_frame_solid_counters(frame, 4, &one, &why), CUVETTE_BAD_INPUT);
+    float rgb[3];
+    assert_int_equal(cuvette_frame_rgb(frame, 39, 29, 41, 30, rgb, 0, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_frame_rgb(frame, 3, 3, 3, 4, rgb, 0, &why), CUVETTE_BAD_INPUT);
+    fine(cuvette_frame_rgb(frame, 39, 29, 40, 30, rgb, 0, &why), &why);
+    cuvette_request request = CUVETTE_REQUEST;
+    request.rgb = rgb, request.width = 1, request.height = 1;
+    assert_int_equal(cuvette_engine_render(engine, s, &request, NULL, &why), CUVETTE_BAD_INPUT); /* the picture is larger */
+    request = CUVETTE_REQUEST;
+    request.preview = 1;
+    assert_int_equal(cuvette_engine_render(engine, s, &request, NULL, &why), CUVETTE_BAD_INPUT);
+    cuvette_frame_destroy(frame);
+    cuvette_scene_destroy(s);
+    cuvette_engine_destroy(engine);
+}
+
+enum { WIDTH = 162, HEIGHT = 121 }; /* no multiples of tiles and previews */
+
+typedef struct audience {
+    pthread_t thread;
+    cuvette_engine *engine;
+    cuvette_scene *scene;
+    int previews, pieces, calls, covered[WIDTH * HEIGHT];
+    double share, first;
+    double stop_at;   /* share at which progress says no */
+    float rgb[3 * WIDTH * HEIGHT], seen[3 * WIDTH * HEIGHT];
+} audience;
+
+static bool watch_progress(void *context, double share)
+{
+    audience *a = context;
+    assert_true(pthread_equal(pthread_self(), a->thread));
+    assert_true(share >= a->share && share <= 1.0);
+    if (a->calls++ == 0)
+        a->first = share;
+    a->share = share;
+    return share < a->stop_at;
+}
+
+static void watch_pieces(void *context, const cuvette_piece *piece)
+{
+    audience *a = context;
+    assert_true(pthread_equal(pthread_self(), a->thread));
+    assert_true(piece->x0 >= 0 && piece->x0 < piece->x1 && piece->x1 <= WIDTH && piece->y0 >= 0 && piece->y0 < piece->y1 && piece->y1 <= HEIGHT);
+    *(piece->coarse == 1 ? &a->pieces : &a->previews) += 1;
+    assert_true(piece->coarse == 1 || (piece->coarse == 8 && a->pieces == 0));
+    for (int y = piece->y0; y < piece->y1; y++)
+        for (int x = piece->x0; x < piece->x1; x++) {
+            a->covered[y * WIDTH + x] += piece->coarse == 1;
+            for (int k = 0; k < 3; k++)
+                a->seen[3 * (y * WIDTH + x) + k] = a->rgb[3 * (y * WIDTH + x) + k];
+        }
+}
+
+static cuvette_request request_for(audience *a)
+{
+    cuvette_request request = CUVETTE_REQUEST;
+    request.width = WIDTH, request.height = HEIGHT, request.rgb = a->rgb;
+    request.preview = 8;
+    request.progress = watch_progress, request.piece = watch_pieces, request.context = a;
+    a->thread = pthread_self();
+    return request;
+}
+
+/* Whatever the schedule, and with the layers of random paths and of a spectrum too. */
+static void pieces_come_once_and_are_final(void **state)
+{
+    (void)state;
+    static const char *const how[] = {"dynamic", "tiles", "rows", "columns", "path", "spectral"};
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    for (size_t i = 0; i < COUNT(how); i++) {
+        cuvette_scene *s = rod(WIDTH, i < 4 ? 3 : 1, 3);
+        turn(s, "render.height", "121");
+        if (i < 4)
+            turn(s, "render.schedule", how[i]);
+        else
+            turn(s, i == 4 ? "render.integrator" : "render.spectrum", how[i]);
+        if (i == 4)
+            turn(s, "render.paths", "16");
+        audience *a = calloc(1, sizeof *a);
+        a->stop_at = 2.0;
+        const cuvette_request request = request_for(a);
+        cuvette_frame *frame;
+        fine(cuvette_engine_render(engine, s, &request, &frame, &why), &why);
+        assert_true(a->first == 0.0 && a->share == 1.0 && a->calls >= 2 && a->previews == 1 && a->pieces >= 3);
+        for (int k = 0; k < WIDTH * HEIGHT; k++)
+            assert_int_equal(a->covered[k], 1);
+        float *whole = calloc(3 * WIDTH * HEIGHT, sizeof *whole);
+        fine(cuvette_frame_rgb(frame, 0, 0, WIDTH, HEIGHT, whole, 0, &why), &why);
+        assert_memory_equal(a->seen, whole, sizeof a->seen);
+        assert_true(cuvette_frame_hash(frame) == hash_of(engine, s));
+        cuvette_statistics statistics = {.size = sizeof statistics};
+        fine(cuvette_frame_statistics(frame, &statistics, &why), &why);
+        assert_true(statistics.preview_s > 0.0 && isnan(statistics.noise_rms) == (i != 4));
+        free(whole);
+        free(a);
+        cuvette_frame_destroy(frame);
+        cuvette_scene_destroy(s);
+    }
+    cuvette_engine_destroy(engine);
+}
+
+static void progress_can_say_no_before_the_first_ray(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *s = rod(WIDTH, 3, 1);
+    turn(s, "render.height", "121");
+    audience *a = calloc(1, sizeof *a); /* stops at 0 */
+    const cuvette_request request = request_for(a);
+    cuvette_frame *frame = (cuvette_frame *)a;
+    assert_int_equal(cuvette_engine_render(engine, s, &request, &frame, &why), CUVETTE_CANCELLED);
+    assert_true(!frame && a->calls == 1 && a->pieces == 0 && a->previews == 0);
+    free(a);
+    cuvette_scene_destroy(s);
+    cuvette_engine_destroy(engine);
+}
+
+typedef struct other_thread { cuvette_engine *engine; atomic_bool begun; } other_thread;
+
+static void *cancel_soon(void *context)
+{
+    other_thread *o = context;
+    while (!atomic_load(&o->begun))
+        usleep(1000);
+    cuvette_engine_cancel(o->engine);
+    return NULL;
+}
+
+static bool say_begun(void *context, double share)
+{
+    (void)share;
+    atomic_store(&((other_thread *)context)->begun, true);
+    return true;
+}
+
+static void another_thread_cancels_and_the_next_frame_is_whole(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *large = rod(4000, 8, 2), *small = rod(80, 4, 2);
+    const uint64_t hash = hash_of(engine, small);
+    other_thread other = {.engine = engine};
+    pthread_t thread;
+    cuvette_frame *frame;
+    cuvette_request request = CUVETTE_REQUEST;
+    request.progress = say_begun, request.context = &other;
+    assert_int_equal(pthread_create(&thread, NULL, cancel_soon, &other), 0);
+    assert_int_equal(cuvette_engine_render(engine, large, &request, &frame, &why), CUVETTE_CANCELLED);
+    pthread_join(thread, NULL);
+    cuvette_counters counters = {.size = sizeof counters};
+    fine(cuvette_frame_counters(frame, &counters, &why), &why);
+    assert_true(counters.camera < 4000 * 3000);
+    cuvette_frame_destroy(frame);
+    cuvette_engine_cancel(engine); /* of nothing: forgotten */
+    assert_true(hash_of(engine, small) == hash);
+    cuvette_scene_destroy(large);
+    cuvette_scene_destroy(small);
+    cuvette_engine_destroy(engine);
+}
+
+static bool try_while_busy(void *context, double share)
+{
+    audience *a = context;
+    cuvette_diagnostic why;
+    int64_t depth;
+    if (share == 0.0) {
+        assert_int_equal(cuvette_engine_render(a->engine, a->scene, NULL, NULL, &why), CUVETTE_BUSY);
+        assert_int_equal(cuvette_scene_set(a->scene, "render.depth", "1", &why), CUVETTE_BUSY);
+        assert_int_equal(cuvette_scene_remove(a->scene, "rod", &why), CUVETTE_BUSY);
+        fine(cuvette_scene_get_int(a->scene, "render.depth", &depth, &why), &why);
+        cuvette_engine *second = make_engine(); /* another one may render the same scene meanwhile */
+        a->share = (double)(hash_of(second, a->scene) % 1000000);
+        cuvette_engine_destroy(second);
+        a->calls++;
+    }
+    return true;
+}
+
+static void what_is_in_use_is_busy(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    audience *a = calloc(1, sizeof *a);
+    a->engine = make_engine();
+    a->scene = rod(80, 3, 1);
+    cuvette_request request = CUVETTE_REQUEST;
+    request.progress = try_while_busy, request.context = a;
+    cuvette_frame *frame;
+    fine(cuvette_engine_render(a->engine, a->scene, &request, &frame, &why), &why);
+    assert_true(a->calls >= 1 && a->share == (double)(cuvette_frame_hash(frame) % 1000000));
+    turn(a->scene, "render.depth", "1");
+    cuvette_frame_destroy(frame);
+    cuvette_scene_destroy(a->scene);
+    cuvette_engine_destroy(a->engine);
+    free(a);
+}
+
+typedef struct worker { int depth; uint64_t hash; } worker;
+
+static void *render_ten(void *context)
+{
+    worker *w = context;
+    cuvette_engine *engine = make_engine();
+    for (int i = 0; i < 10; i++) {
+        cuvette_scene *s = rod(120, w->depth, 2);
+        const uint64_t hash = hash_of(engine, s);
+        w->hash = i == 0 || hash == w->hash ? hash : 0;
+        cuvette_scene_destroy(s);
+    }
+    cuvette_engine_destroy(engine);
+    return NULL;
+}
+
+static void two_engines_at_once_are_as_each_alone(void **state)
+{
+    (void)state;
+    worker both[2] = {{2, 0}, {5, 0}};
+    pthread_t threads[2];
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, render_ten, &both[i]), 0);
+    for (int i = 0; i < 2; i++)
+        pthread_join(threads[i], NULL);
+    for (int i = 0; i < 2; i++) {
+        worker alone = {both[i].depth, 0};
+        render_ten(&alone);
+        assert_true(alone.hash != 0 && alone.hash == both[i].hash);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_library_says_the_headers_version),
+        cmocka_unit_test(what_is_missing_or_wrong_is_said_and_changes_nothing),
+        cmocka_unit_test(parameters_are_set_and_read_by_name),
+        cmocka_unit_test(all_parameters_together_make_the_scene),
+        cmocka_unit_test(a_scene_from_calls_is_the_scene_from_its_file),
+        cmocka_unit_test(objects_come_move_turn_and_go),
+        cmocka_unit_test(the_film_is_the_programs),
+        cmocka_unit_test(counters_and_pixels_are_the_renderers),
+        cmocka_unit_test(an_older_struct_is_filled_as_far_as_it_goes),
+        cmocka_unit_test(pieces_come_once_and_are_final),
+        cmocka_unit_test(progress_can_say_no_before_the_first_ray),
+        cmocka_unit_test(another_thread_cancels_and_the_next_frame_is_whole),
+        cmocka_unit_test(what_is_in_use_is_busy),
+        cmocka_unit_test(two_engines_at_once_are_as_each_alone),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

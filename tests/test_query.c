@@ -1,0 +1,286 @@
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "cuvette.h"
+#include "probe_fixture.h"
+#include "random_stream.h"
+
+/* Rays of the caller's through the engine: against closed forms of a sphere, against the trees of the probe, and alone against together. */
+
+static void fine(cuvette_status code, const cuvette_diagnostic *why)
+{
+    char text[CUVETTE_DIAGNOSTIC_TEXT_MAX];
+    if (code != CUVETTE_OK)
+        fail_msg("%d: %s", (int)code, cuvette_diagnostic_text(why, text, sizeof text));
+}
+
+static cuvette_query *query_of_text(const char *text, const char *instructions)
+{
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    cuvette_query *q;
+    fine(cuvette_scene_read_text("test.yaml", text, strlen(text), &s, &why), &why);
+    fine(cuvette_query_create(s, instructions, &q, &why), &why);
+    cuvette_scene_destroy(s); /* the query does not need it */
+    return q;
+}
+
+static cuvette_query *query_of_rod(const char *instructions)
+{
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    cuvette_query *q;
+    fine(cuvette_scene_read(ROD_SCENE, &s, &why), &why);
+    fine(cuvette_query_create(s, instructions, &q, &why), &why);
+    cuvette_scene_destroy(s);
+    return q;
+}
+
+static cuvette_hit nearest(const cuvette_query *q, const cuvette_ray *ray)
+{
+    cuvette_diagnostic why;
+    cuvette_hit hit;
+    fine(cuvette_query_nearest(q, ray, 1, &hit, &why), &why);
+    return hit;
+}
+
+static double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+#define BALL "render: {width: 4, height: 4}\ncamera: {position: [0, 0, -9], target: [0, 0, 0]}\nsolids:\n" \
+             "  ball: {shape: sphere, radius: 2, position: [1, 2, 3], transparency: 1, ior: 1.5}\n"
+
+/* A ray that passes a sphere's centre at distance b meets it sqrt(r^2 - b^2) before and behind its nearest point. */
+static void a_sphere_is_met_where_its_equation_says(void **state)
+{
+    (void)state;
+    const double centre[3] = {1.0, 2.0, 3.0}, r = 2.0;
+    cuvette_query *q = query_of_text(BALL, NULL);
+    uint64_t random = 7;
+    int met = 0;
+    for (int i = 0; i < 2000; i++) {
+        cuvette_ray ray = {.reach = 0.0};
+        double towards[3];
+        for (int k = 0; k < 3; k++) {
+            ray.origin[k] = centre[k] + random_real(&random, -20.0, 20.0);
+            towards[k] = centre[k] + random_real(&random, -2.2, 2.2);
+            ray.direction[k] = 3.0 * (towards[k] - ray.origin[k]); /* no unit vector */
+        }
+        const double away[3] = {ray.origin[0] - centre[0], ray.origin[1] - centre[1], ray.origin[2] - centre[2]};
+        const double length = sqrt(dot(ray.direction, ray.direction)), along = -dot(away, ray.direction) / length;
+        const double b2 = dot(away, away) - along * along, gap = r * r - b2;
+        if (dot(away, away) < 1.01 * r * r || fabs(gap) < 1e-6)
+            continue;
+        const cuvette_hit hit = nearest(q, &ray);
+        if (gap < 0.0) {
+            assert_true(isinf(hit.distance) && hit.solid == CUVETTE_OUTSIDE && hit.before == CUVETTE_OUTSIDE);
+            continue;
+        }
+        met++;
+        const double half = sqrt(gap), slack = 1e-12 / half;
+        assert_true(fabs(hit.distance - (along - half)) <= 30.0 * slack);
+        double outward[3];
+        for (int k = 0; k < 3; k++)
+            outward[k] = (hit.point[k] - centre[k]) / r;
+        assert_true(fabs(dot(outward, outward) - 1.0) <= 1e-13 && fabs(dot(outward, hit.normal) - 1.0) <= 1e-13);
+        assert_true(hit.solid == 0 && hit.before == CUVETTE_OUTSIDE && hit.after == 0 && hit.n_before == 1.0 && hit.n_after == 1.5);
+        assert_true(hit.triangle == -1 && hit.face == 0 && hit.error >= 0.0 && hit.error < 1e-12);
+
+        /* On through the ball: the chord is 2 half; its end looks back, and behind it is the outside again. */
+        cuvette_ray on = {.start = hit.transmitted};
+        memcpy(on.origin, hit.point, sizeof on.origin);
+        memcpy(on.direction, ray.direction, sizeof on.direction);
+        const cuvette_hit end = nearest(q, &on);
+        assert_true(fabs(end.distance - 2.0 * half) <= 30.0 * slack && end.before == 0 && end.after == CUVETTE_OUTSIDE);
+        assert_true(dot(end.normal, ray.direction) < 0.0);
+
+        /* Straight back along the normal there is nothing, not even at distance 0. */
+        cuvette_ray back = {.start = hit.reflected};
+        memcpy(back.origin, hit.point, sizeof back.origin);
+        memcpy(back.direction, hit.normal, sizeof back.direction);
+        assert_true(isinf(nearest(q, &back).distance));
+
+        ray.reach = hit.distance * (1.0 - 1e-9);
+        assert_true(isinf(nearest(q, &ray).distance));
+        ray.reach = hit.distance * (1.0 + 1e-9);
+        assert_true(nearest(q, &ray).distance == hit.distance);
+    }
+    assert_true(met > 500);
+    cuvette_query_destroy(q);
+}
+
+/* Rays into the rod's scene from all around, some inside its media. */
+static void make_rays(cuvette_ray *rays, size_t count)
+{
+    uint64_t random = 99;
+    for (size_t i = 0; i < count; i++) {
+        rays[i] = (cuvette_ray){.reach = i % 3 == 0 ? random_real(&random, 0.1, 8.0) : i % 3 == 1 ? 0.0 : (double)INFINITY};
+        for (int k = 0; k < 3; k++) {
+            rays[i].origin[k] = random_real(&random, -4.0, 4.0);
+            rays[i].direction[k] = random_real(&random, -1.0, 1.0);
+        }
+        rays[i].origin[1] += 4.2;
+        rays[i].direction[1] -= 0.5;
+    }
+}
+
+enum { MANY = 5000 };
+
+static void rays_together_are_rays_alone_on_every_instruction_set(void **state)
+{
+    (void)state;
+    static cuvette_ray rays[MANY];
+    static cuvette_hit together[MANY], again[MANY];
+    static unsigned char blocked[MANY];
+    cuvette_diagnostic why;
+    cuvette_query *q = query_of_rod(NULL);
+    int hits = 0;
+    make_rays(rays, MANY);
+    memset(together, 0, sizeof together);
+    fine(cuvette_query_nearest(q, rays, MANY, together, &why), &why);
+    fine(cuvette_query_occluded(q, rays, MANY, blocked, &why), &why);
+    for (int i = 0; i < MANY; i++) {
+        const cuvette_hit alone = nearest(q, &rays[i]);
+        assert_memory_equal(&alone, &together[i], sizeof alone);
+        unsigned char one = 7;
+        fine(cuvette_query_occluded(q, &rays[i], 1, &one, &why), &why);
+        assert_int_equal(one, blocked[i]);
+        assert_int_equal(one, isfinite(together[i].distance));
+        hits += one;
+    }
+    assert_true(hits > MANY / 4 && hits < MANY);
+    for (int level = 0; level <= (int)isa_best(); level++) {
+        cuvette_query *other = query_of_rod(isa_name((isa)level));
+        fine(cuvette_query_nearest(other, rays, MANY, again, &why), &why);
+        assert_memory_equal(again, together, sizeof again);
+        cuvette_query_destroy(other);
+    }
+    cuvette_query_destroy(q);
+}
+
+static void camera_rays_meet_what_the_probe_meets(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_query *q = query_of_rod(NULL);
+    scene *model = rod_scene("");
+    stage g = {.setting = model};
+    stage_look(&g);
+    int met = 0;
+    for (int y = 5; y < 600; y += 17)
+        for (int x = 5; x < 800; x += 17) {
+            cuvette_ray ray;
+            fine(cuvette_query_camera_ray(q, x + 0.5, y + 0.5, &ray, &why), &why);
+            const vec3 d = vec3_make(ray.direction[0], ray.direction[1], ray.direction[2]);
+            const vec3 o = vec3_make(ray.origin[0], ray.origin[1], ray.origin[2]);
+            diagnostic inner = {0};
+            worked(probe_way(g.probe, o, d, -1, &g.tree, &inner), &inner);
+            const ray_node *root = &g.tree.node[0];
+            const cuvette_hit hit = nearest(q, &ray);
+            assert_true((root->end == RAY_END_HIT) == (bool)isfinite(hit.distance));
+            if (root->end != RAY_END_HIT)
+                continue;
+            met++;
+            assert_true(hit.distance == root->hit.t && hit.point[0] == root->hit.point.x && hit.normal[1] == root->hit.normal.y);
+            assert_true(hit.solid == root->hit.solid && hit.before == root->hit.from && hit.after == root->hit.to && hit.face == root->hit.face);
+            assert_true(hit.n_before == root->hit.n_from && hit.n_after == root->hit.n_to && hit.error == root->hit.error_bound);
+        }
+    assert_true(met > 500);
+    stage_close(&g);
+    cuvette_query_destroy(q);
+}
+
+static void a_points_medium_is_the_winners(void **state)
+{
+    (void)state;
+    static const struct { double at[3]; int32_t solid; } known[] = { /* ground, vessel, liquid, rod: the scene file's order */
+        {{0.0, -1.0, 0.0}, 0}, {{0.95, 1.0, 0.0}, 1}, {{0.0, 0.075, 0.0}, 1}, {{-0.5, 1.0, 0.0}, 2}, {{0.2, 1.0, 0.0}, 3}, {{0.0, 4.0, 0.0}, -1},
+    };
+    cuvette_diagnostic why;
+    cuvette_query *q = query_of_rod(NULL);
+    for (size_t i = 0; i < COUNT(known); i++) {
+        int32_t found = -7;
+        fine(cuvette_query_medium(q, known[i].at, &found, &why), &why);
+        assert_int_equal(found, known[i].solid);
+    }
+    cuvette_query_destroy(q);
+}
+
+static void wrong_rays_are_named(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_query *q = query_of_text(BALL, NULL);
+    const cuvette_ray right = {.direction = {1, 0, 0}};
+    cuvette_ray rays[3] = {right, right, right};
+    cuvette_hit hits[3];
+    fine(cuvette_query_nearest(q, rays, 0, NULL, &why), &why);
+    fine(cuvette_query_nearest(q, rays, 3, hits, &why), &why);
+    const cuvette_ray wrong[] = {{.direction = {0, 0, 0}}, {.direction = {(double)NAN, 0, 0}}, {.direction = {1, 0, 0}, .origin = {2e6, 0, 0}},
+                                 {.direction = {1, 0, 0}, .reach = -1.0}, {.direction = {1, 0, 0}, .reach = (double)NAN},
+                                 {.direction = {1, 0, 0}, .start = {{1, 800, 0, 0}}}, {.direction = {1, 0, 0}, .start = {{5, 0, 0, 0}}}};
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        unsigned char blocked[3];
+        rays[2] = wrong[i];
+        assert_int_equal(cuvette_query_nearest(q, rays, 3, hits, &why), CUVETTE_BAD_INPUT);
+        assert_non_null(strstr(why.what, "ray 2"));
+        assert_int_equal(cuvette_query_occluded(q, rays, 3, blocked, &why), CUVETTE_BAD_INPUT);
+    }
+    cuvette_ray ray;
+    assert_int_equal(cuvette_query_camera_ray(q, (double)NAN, 0.0, &ray, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_query_medium(q, (const double[]){0, (double)INFINITY, 0}, &(int32_t){0}, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_query_nearest(q, NULL, 1, hits, &why), CUVETTE_BAD_INPUT);
+    cuvette_query_destroy(q);
+}
+
+typedef struct asker { const cuvette_query *query; const cuvette_ray *rays; cuvette_hit hits[MANY]; } asker;
+
+static void *ask(void *context)
+{
+    asker *a = context;
+    cuvette_diagnostic why;
+    for (int i = 0; i < MANY; i += 50)
+        fine(cuvette_query_nearest(a->query, a->rays + i, 50, a->hits + i, &why), &why);
+    return NULL;
+}
+
+static void threads_may_share_a_query(void **state)
+{
+    (void)state;
+    static cuvette_ray rays[MANY];
+    asker *askers = calloc(4, sizeof *askers);
+    pthread_t threads[4];
+    cuvette_query *q = query_of_rod(NULL);
+    make_rays(rays, MANY);
+    for (int i = 0; i < 4; i++) {
+        askers[i].query = q, askers[i].rays = rays;
+        assert_int_equal(pthread_create(&threads[i], NULL, ask, &askers[i]), 0);
+    }
+    for (int i = 0; i < 4; i++)
+        pthread_join(threads[i], NULL);
+    for (int i = 1; i < 4; i++)
+        assert_memory_equal(askers[i].hits, askers[0].hits, sizeof askers[0].hits);
+    free(askers);
+    cuvette_query_destroy(q);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sphere_is_met_where_its_equation_says),
+        cmocka_unit_test(rays_together_are_rays_alone_on_every_instruction_set),
+        cmocka_unit_test(camera_rays_meet_what_the_probe_meets),
+        cmocka_unit_test(a_points_medium_is_the_winners),
+        cmocka_unit_test(wrong_rays_are_named),
+        cmocka_unit_test(threads_may_share_a_query),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
