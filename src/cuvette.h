@@ -13,7 +13,7 @@
  * Errors. A function that can fail returns a cuvette_status; results come back by pointer and are set only on success (handles
  * to NULL otherwise). `why`, which may be NULL, then says what is wrong and what would be right. A NULL where a handle,
  * a name or a result is needed is CUVETTE_BAD_INPUT like any wrong value. The library never prints, never exits, raises no signal, and reads of
- * the environment only CUVETTE_ISA (cuvette_engine_create).
+ * the environment only CUVETTE_ISA (cuvette_engine_create) and CUVETTE_IMPORT (the program that reads mesh files).
  *
  * Threads. There is no global state: what belongs to different handles may be used by different threads at the same time. Of one
  * scene any number of functions that take it as const may run at the same time, also renders by several engines, but none
@@ -148,18 +148,48 @@ CUVETTE_API cuvette_status cuvette_scene_each_parameter(const cuvette_scene *sce
 
 /* --- objects ---
  *
- * Lights, materials and solids have names: letters, digits, _ and -, a letter or _ first, at most 63 of them; no two objects share one. A
- * scene holds 64 lights, 256 materials, and 64 solids (a cup counts as two). Where solids overlap, the one with the highest `priority` is
- * there, of equal ones the one added first. */
+ * Lights, materials, solids, meshes and textures have names: letters, digits, _ and -, a letter or _ first, at most 63 of them; no two
+ * objects share one. A scene holds 64 lights, 256 materials, 64 meshes, 64 textures, and 64 solids (a cup counts as two). Where solids
+ * overlap, the one with the highest `priority` is there, of equal ones the one added first. */
 
-typedef enum cuvette_object { CUVETTE_LIGHT, CUVETTE_MATERIAL, CUVETTE_SOLID } cuvette_object;
+typedef enum cuvette_object { CUVETTE_LIGHT, CUVETTE_MATERIAL, CUVETTE_SOLID, CUVETTE_MESH, CUVETTE_TEXTURE } cuvette_object;
 
 CUVETTE_API cuvette_status cuvette_scene_add_light(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_scene_add_material(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
-/* shape: "plane", "cylinder", "cup", "box", "sphere" (cuvette(1) says what stands where in each). material: the name of one, or NULL for a
+/* shape: "plane", "cylinder", "cup", "box", "sphere", "mesh" (cuvette(1) says what stands where in each). material: the name of one, or NULL for a
  * surface of the solid's own. Everything else is at its default, and is turned by its path. */
 CUVETTE_API cuvette_status cuvette_scene_add_solid(cuvette_scene *scene, const char *name, const char *shape, const char *material,
                                                    cuvette_diagnostic *why);
+
+/* A mesh that is read or computed at its first use: set NAME.file to an OBJ, PLY, STL or glTF file, or NAME.generate to "icosphere",
+ * "torus" and so on. It is seen as a solid of the shape "mesh" whose parameter `mesh` is its name. */
+CUVETTE_API cuvette_status cuvette_scene_add_mesh(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
+
+/* Triangles of the caller's, which are copied. Of each pair of arrays one is NULL, or both where the mesh has none. A front is where vertices run
+ * counterclockwise. Coordinates are finite, at most 1e9. Set size before the call; later versions add fields at the end. */
+typedef struct cuvette_triangles {
+    size_t size;                  /* sizeof(cuvette_triangles) */
+    size_t vertex_count;          /* at most 2^29 */
+    size_t triangle_count;        /* at most 2^28 */
+    const double *vertices;       /* x, y, z of each */
+    const float *vertices_float;
+    const uint32_t *corners;      /* three vertices of each triangle, counted from 0 */
+    const double *normals;        /* x, y, z of each vertex, any length */
+    const float *normals_float;
+    const double *uvs;            /* u to the right, v upwards, of each vertex; 0, 0 is the texture's lower left corner */
+    const float *uvs_float;
+    const unsigned char *slots;   /* material slot of each triangle; NULL: all 0 */
+} cuvette_triangles;
+CUVETTE_API cuvette_status cuvette_scene_add_triangles(cuvette_scene *scene, const char *name, const cuvette_triangles *triangles,
+                                                       cuvette_diagnostic *why);
+
+/* A texture: of a PNG, JPEG or PFM file, NAME.file; or of linear RGB floats of the caller's, which are copied, row by row from the top
+ * (repeated, trilinear). A material's or a solid's parameter `texture` names it. What was handed over as arrays is in the scene's
+ * clones, but in no file that is written; setting a parameter of it lets go of it. */
+CUVETTE_API cuvette_status cuvette_scene_add_texture(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
+CUVETTE_API cuvette_status cuvette_scene_add_pixels(cuvette_scene *scene, const char *name, int width, int height, const float *rgb,
+                                                    cuvette_diagnostic *why);
+
 /* A material goes only when no solid has it. */
 CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 
@@ -308,7 +338,7 @@ typedef struct cuvette_ray {
 typedef struct cuvette_hit {
     double distance;     /* from the origin, scene units; infinite: nothing was met, and what follows but before means nothing */
     double point[3];
-    double normal[3];    /* unit vector, towards the ray */
+    double normal[3];    /* unit vector, towards the ray; of a mesh that of its triangle */
     double error;        /* bound on the point's distance from the exact surface, scene units */
     int32_t solid;       /* whose surface it is; CUVETTE_OUTSIDE for a miss */
     int32_t before;      /* the medium that the ray comes from ... */

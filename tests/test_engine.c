@@ -264,6 +264,35 @@ static void objects_come_move_turn_and_go(void **state)
     cuvette_engine_destroy(engine);
 }
 
+/* Seen by ambient light alone, a white wall with a texture of one texel has that texel's light; a clone has it too. */
+static void a_texture_from_memory_is_seen(void **state)
+{
+    (void)state;
+    static const char *const set[][2] = {{"render.width", "1"}, {"render.height", "1"}, {"render.depth", "0"}, {"camera.position", "0,0,-5"},
+                                         {"camera.target", "0,0,0"}, {"background.ambient", "1,1,1"}, {"wall.color", "1,1,1"},
+                                         {"wall.ambient", "1"}, {"wall.diffuse", "0"}, {"wall.specular", "0"}, {"wall.texture", "paint"}};
+    const float texel[3] = {0.25F, 0.5F, 0.75F};
+    float seen[3];
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *s, *clone;
+    fine(cuvette_scene_create(&s, &why), &why);
+    fine(cuvette_scene_add_pixels(s, "paint", 1, 1, texel, &why), &why);
+    assert_string_equal(cuvette_scene_name(s, CUVETTE_TEXTURE, 0), "paint");
+    fine(cuvette_scene_add_solid(s, "wall", "box", NULL, &why), &why);
+    for (size_t i = 0; i < COUNT(set); i++)
+        turn(s, set[i][0], set[i][1]);
+    fine(cuvette_scene_clone(s, &clone, &why), &why);
+    cuvette_scene_destroy(s);
+    cuvette_request request = CUVETTE_REQUEST;
+    request.width = request.height = 1, request.rgb = seen;
+    fine(cuvette_engine_render(engine, clone, &request, NULL, &why), &why);
+    for (int k = 0; k < 3; k++)
+        assert_true(fabsf(seen[k] - texel[k]) < 1e-6F);
+    cuvette_scene_destroy(clone);
+    cuvette_engine_destroy(engine);
+}
+
 /* Pinned by the program: cuvette render experiments/scenes/rod.yaml --set render.depth=8. */
 static void the_film_is_the_programs(void **state)
 {
@@ -592,6 +621,7 @@ int main(void)
         cmocka_unit_test(all_parameters_together_make_the_scene),
         cmocka_unit_test(a_scene_from_calls_is_the_scene_from_its_file),
         cmocka_unit_test(objects_come_move_turn_and_go),
+        cmocka_unit_test(a_texture_from_memory_is_seen),
         cmocka_unit_test(the_film_is_the_programs),
         cmocka_unit_test(counters_and_pixels_are_the_renderers),
         cmocka_unit_test(an_older_struct_is_filled_as_far_as_it_goes),

@@ -214,6 +214,93 @@ static void a_points_medium_is_the_winners(void **state)
     cuvette_query_destroy(q);
 }
 
+/* The cube about 0,0,0 of edge 2: corner i at the signs of its bits. Two triangles a side, counterclockwise from outside. */
+static const float cube_vertices[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1};
+static const uint32_t cube_corners[] = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+static const unsigned char cube_slots[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
+
+static cuvette_query *query_of_cube(bool as_mesh)
+{
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    cuvette_query *q;
+    fine(cuvette_scene_create(&s, &why), &why);
+    if (as_mesh) {
+        cuvette_triangles t = {.size = sizeof t, .vertex_count = 8, .triangle_count = 12, .vertices_float = cube_vertices,
+                               .corners = cube_corners, .slots = cube_slots};
+        fine(cuvette_scene_add_triangles(s, "cube", &t, &why), &why);
+        assert_int_equal((int)cuvette_scene_count(s, CUVETTE_MESH), 1);
+        fine(cuvette_scene_add_solid(s, "block", "mesh", NULL, &why), &why);
+        fine(cuvette_scene_set(s, "block.mesh", "cube", &why), &why);
+    } else {
+        fine(cuvette_scene_add_solid(s, "block", "box", NULL, &why), &why);
+        fine(cuvette_scene_set(s, "block.size", "2,2,2", &why), &why);
+    }
+    fine(cuvette_scene_set(s, "block.transparency", "1", &why), &why);
+    fine(cuvette_scene_set(s, "block.ior", "1.5", &why), &why);
+    fine(cuvette_query_create(s, NULL, &q, &why), &why);
+    cuvette_scene_destroy(s);
+    return q;
+}
+
+/* Positions agree to the errors that both tell, media and sides exactly; and so on behind the surface. */
+static void a_cube_of_triangles_is_met_as_a_box_is(void **state)
+{
+    (void)state;
+    cuvette_query *cube = query_of_cube(true), *box = query_of_cube(false);
+    uint64_t random = 5;
+    int met = 0;
+    for (int i = 0; i < 3000; i++) {
+        cuvette_ray ray = {.reach = 0.0};
+        for (int k = 0; k < 3; k++) {
+            ray.origin[k] = random_real(&random, -3.0, 3.0);
+            ray.direction[k] = random_real(&random, -1.2, 1.2) - ray.origin[k];
+        }
+        const cuvette_hit a = nearest(cube, &ray), b = nearest(box, &ray);
+        assert_true(isfinite(a.distance) == isfinite(b.distance) && a.before == b.before && a.after == b.after && a.solid == b.solid);
+        if (!isfinite(a.distance))
+            continue;
+        met++;
+        const double slope = fabs(dot(a.normal, ray.direction)) / sqrt(dot(ray.direction, ray.direction));
+        assert_true(fabs(a.distance - b.distance) * slope < 1e-14 * (1.0 + a.distance) && dot(a.normal, b.normal) > 1.0 - 1e-14);
+        assert_true(a.triangle >= 0 && a.triangle / 2 == b.face && a.slot == b.face && a.copy == 0 && b.triangle == -1);
+        assert_true(a.u >= 0.0 && a.v >= 0.0 && a.u + a.v <= 1.0 + 1e-15);
+        cuvette_ray on = {.start = a.transmitted}, on_box = {.start = b.transmitted};
+        memcpy(on.origin, a.point, sizeof on.origin);
+        memcpy(on_box.origin, b.point, sizeof on.origin);
+        memcpy(on.direction, ray.direction, sizeof on.direction);
+        memcpy(on_box.direction, ray.direction, sizeof on.direction);
+        const cuvette_hit c = nearest(cube, &on), d = nearest(box, &on_box);
+        assert_true(isfinite(c.distance) == isfinite(d.distance) && c.before == d.before && c.after == d.after);
+        assert_true(!isfinite(c.distance) || fabs(c.distance - d.distance) < 1e-11);
+    }
+    assert_true(met > 2000);
+    cuvette_query_destroy(cube);
+    cuvette_query_destroy(box);
+}
+
+static void wrong_triangles_are_refused_and_add_nothing(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    fine(cuvette_scene_create(&s, &why), &why);
+    const uint32_t beyond[] = {0, 1, 8};
+    const cuvette_triangles right = {.size = sizeof right, .vertex_count = 8, .triangle_count = 1, .vertices_float = cube_vertices,
+                                     .corners = cube_corners};
+    cuvette_triangles wrong[] = {right, right, right, right};
+    wrong[0].size = 0;
+    wrong[1].corners = beyond;
+    wrong[2].vertices_float = NULL;
+    wrong[3].corners = NULL;
+    for (size_t i = 0; i < COUNT(wrong); i++)
+        assert_int_equal(cuvette_scene_add_triangles(s, "piece", &wrong[i], &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_add_triangles(s, "no name", &right, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_add_pixels(s, "picture", 0, 5, cube_vertices, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal((int)(cuvette_scene_count(s, CUVETTE_MESH) + cuvette_scene_count(s, CUVETTE_TEXTURE)), 0);
+    cuvette_scene_destroy(s);
+}
+
 static void wrong_rays_are_named(void **state)
 {
     (void)state;
@@ -279,6 +366,8 @@ int main(void)
         cmocka_unit_test(rays_together_are_rays_alone_on_every_instruction_set),
         cmocka_unit_test(camera_rays_meet_what_the_probe_meets),
         cmocka_unit_test(a_points_medium_is_the_winners),
+        cmocka_unit_test(a_cube_of_triangles_is_met_as_a_box_is),
+        cmocka_unit_test(wrong_triangles_are_refused_and_add_nothing),
         cmocka_unit_test(wrong_rays_are_named),
         cmocka_unit_test(threads_may_share_a_query),
     };

@@ -96,6 +96,8 @@ size_t cuvette_scene_count(const cuvette_scene *s, cuvette_object kind)
     case CUVETTE_LIGHT: return s->model->light_count;
     case CUVETTE_MATERIAL: return s->model->material_count;
     case CUVETTE_SOLID: return s->model->solid_count;
+    case CUVETTE_MESH: return s->model->mesh_count;
+    case CUVETTE_TEXTURE: return s->model->texture_count;
     }
     return 0;
 }
@@ -108,6 +110,8 @@ const char *cuvette_scene_name(const cuvette_scene *s, cuvette_object kind, size
     case CUVETTE_LIGHT: return s->model->lights[index].name;
     case CUVETTE_MATERIAL: return s->model->materials[index].name;
     case CUVETTE_SOLID: return s->model->solids[index].name;
+    case CUVETTE_MESH: return s->model->meshes[index].name;
+    case CUVETTE_TEXTURE: return s->model->textures[index].name;
     }
     return NULL;
 }

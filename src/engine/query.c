@@ -52,7 +52,9 @@ cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instruct
         free(q);
         return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
     }
-    const status code = prepare(q, s->model, instructions, &inner);
+    status code = engine_load((cuvette_scene *)(uintptr_t)s, &inner); /* every handle was made by us, none is constant */
+    if (code == STATUS_OK)
+        code = prepare(q, s->model, instructions, &inner);
     if (code != STATUS_OK) {
         cuvette_query_destroy(q);
         return engine_report(code, &inner, why);
@@ -69,8 +71,10 @@ bench *query_take_bench(const cuvette_query *query)
     if (b)
         q->shelf = b->next;
     pthread_mutex_unlock(&q->lock);
-    if (!b && (b = aligned_alloc(64, (sizeof *b + 63) / 64 * 64)))
+    if (!b && (b = aligned_alloc(64, (sizeof *b + 63) / 64 * 64))) {
         b->scratch.ways = NULL;
+        b->scratch.meshes = &b->meshes;
+    }
     return b;
 }
 

@@ -3,6 +3,7 @@
 #define CUVETTE_ENGINE_QUERY_PRIVATE_H
 
 #include "engine/engine_private.h"
+#include "geometry/forest.h"
 #include "geometry/rays.h"
 #include "render/plan.h"
 
@@ -18,6 +19,9 @@ typedef struct bench {
     uint64_t ginside[ROW];
     int list[ROW];
     surface_batch points;
+    mesh_scratch meshes;
+    forest_hit mesh_hits[ROW];
+    mesh_points on_mesh;
     double transmitted[ROW];
     size_t asked[ROW]; /* which of the caller's rays a column is */
     struct bench *next;

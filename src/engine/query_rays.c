@@ -22,6 +22,20 @@ static bool is_finite_vector(const double *v)
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
 
+/* Is it the number of a face that there is? */
+static bool is_face(const arrangement *a, uint64_t word)
+{
+    const int64_t face = (int64_t)word;
+    if (!is_mesh_face(face))
+        return word < (uint64_t)a->primitive_count * FACES_MAX;
+    const int bit = mesh_face_primitive(face);
+    const int part = a->meshes && bit < a->primitive_count ? a->meshes->by_primitive[bit] : -1;
+    if (part < 0)
+        return false;
+    const forest_part *p = &a->meshes->parts[part];
+    return mesh_face_triangle(face) < p->triangles->triangle_count && mesh_face_copy(face) < p->copies[0] * p->copies[1] * p->copies[2];
+}
+
 static status check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnostic *why)
 {
     const double *o = ray->origin, *d = ray->direction;
@@ -31,7 +45,7 @@ static status check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnos
         return wrong_ray(i, "give a finite direction that is not 0,0,0", "has no direction", why);
     if (!(ray->reach >= 0.0))
         return wrong_ray(i, "give a distance, or 0 for any", "has a negative reach", why);
-    if (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && ray->start.word[1] >= (uint64_t)p->solids->primitive_count * FACES_MAX))
+    if (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !is_face(p->solids, ray->start.word[1])))
         return wrong_ray(i, "copy it from a hit of this query, or zero it", "has a start that no hit told", why);
     return STATUS_OK;
 }
@@ -87,7 +101,14 @@ static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int 
     h.solid = p->solids->bodies[hits->surface[column]].solid;
     h.after = p->solids->bodies[hits->after[column]].solid;
     h.n_after = p->ior[hits->after[column]];
-    h.face = (int32_t)(s->face[k] % FACES_MAX) + (met == bounded->hollow ? FACES_MAX : 0);
+    if (is_mesh_face(s->face[k])) {
+        h.triangle = mesh_face_triangle(s->face[k]);
+        h.copy = (int32_t)mesh_face_copy(s->face[k]);
+        h.slot = (int32_t)b->on_mesh.slot[k];
+        h.u = b->on_mesh.weight[1][k], h.v = b->on_mesh.weight[2][k];
+    } else {
+        h.face = (int32_t)(s->face[k] % FACES_MAX) + (met == bounded->hollow ? FACES_MAX : 0);
+    }
     h.reflected = start_at(s->face[k], hits->inside_before[column]);
     h.transmitted = start_at(s->face[k], hits->inside_after[column]);
     return h;
@@ -103,7 +124,14 @@ static void tell_group(const cuvette_query *q, bench *b, int met, int count, cuv
         b->gstart[k] = b->start[i], b->ginside[k] = b->hits.inside_before[i], b->t[k] = b->hits.t[i];
     }
     const ray_batch rays = {count, b->gox, b->goy, b->goz, b->gdx, b->gdy, b->gdz, b->gstart, b->ginside};
-    q->kernels->surface(&q->ready->solids->primitives[met], &rays, b->t, met, &b->points);
+    const arrangement *a = q->ready->solids;
+    if (a->primitives[met].kind == PRIMITIVE_MESH) {
+        for (int k = 0; k < count; k++)
+            b->mesh_hits[k] = b->meshes.hit[b->list[k]];
+        forest_surface(a->meshes, &rays, b->mesh_hits, false, &b->points, &b->on_mesh);
+    } else {
+        q->kernels->surface(&a->primitives[met], &rays, b->t, met, &b->points);
+    }
     for (int k = 0; k < count; k++)
         out[b->list[k]] = told(q, b, b->list[k], k, met);
 }
