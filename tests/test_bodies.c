@@ -369,23 +369,6 @@ static void bad_numbers_are_refused_with_a_remedy(void **state)
     assert_null(m);
 }
 
-static void recipes_make_the_bodies_that_they_name(void **state)
-{
-    (void)state;
-    const double heights[4] = {0.0, 0.5, 0.25, 1.0};
-    for (int kind = 0; kind < BODY_KIND_COUNT; kind++) {
-        body_recipe recipe = body_recipe_default((body_kind)kind);
-        recipe.heights = heights;
-        recipe.columns = recipe.rows = 2;
-        recipe.depth = 1.0;
-        mesh *m;
-        assert_int_equal(body_make(&recipe, &m, NULL), STATUS_OK);
-        assert_int_equal(m->closed, kind != BODY_SPARSE && kind != BODY_DENSE);
-        assert_true(strlen(body_name((body_kind)kind)) >= 3);
-        mesh_release(m);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -404,7 +387,6 @@ int main(void)
         cmocka_unit_test(a_box_has_its_volume_and_whole_textures),
         cmocka_unit_test(a_plane_height_field_has_its_exact_volume),
         cmocka_unit_test(bad_numbers_are_refused_with_a_remedy),
-        cmocka_unit_test(recipes_make_the_bodies_that_they_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

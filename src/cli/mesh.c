@@ -1,154 +1,98 @@
+/* cuvette mesh: what a file or a computed body is made of, and its triangles for other programs. The body's numbers are the parameters of a
+ * scene's mesh, set by the parameter table. */
 #include "cli/cli.h"
 #include "cli/json.h"
 #include "cli/mesh_rows.h"
 #include "cli/options.h"
 #include "base/file.h"
-#include "geometry/bodies.h"
+#include "scene/edit.h"
 #include "scene/mesh_write.h"
+#include "scene/params.h"
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct mesh_request {
-    body_recipe recipe;
+    scene *around;          /* holds the one mesh */
+    const char *file;
     bool generate;
-    profile_point *profile; /* of --profile, owned; NULL: the recipe's own */
     mesh_format format;     /* MESH_FORMAT_COUNT: describe it */
     const char *output;     /* NULL: standard output */
     bool json;
 } mesh_request;
 
-enum { KEY_JSON = 0x100, KEY_GENERATE, KEY_COUNT, KEY_LEVEL, KEY_MAJOR, KEY_MINOR, KEY_AROUND, KEY_TUBE, KEY_PROFILE, KEY_CREASE, KEY_SIZE };
+enum { KEY_JSON = 0x100, KEY_FIRST_PARAMETER };
+
+/* Options that are parameters of the mesh, in the order of their keys. */
+static const struct { const char *option, *parameter; } turned[] = {
+    {"generate", "generate"}, {"count", "count"}, {"level", "level"}, {"major", "major"}, {"minor", "minor"}, {"around", "around"},
+    {"tube", "tube"}, {"profile", "profile"}, {"crease", "crease_deg"}, {"size", "size"}, {"depth", "depth"}, {"seed", "seed"},
+};
+enum { TURNED = sizeof turned / sizeof turned[0] };
 
 static const struct argp_option options[] = {
-    {"generate", KEY_GENERATE, "BODY", 0, "make sparse, dense, sphere, icosphere, torus, lathe or box", 0},
-    {"count", KEY_COUNT, "N", 0, "triangles of sparse and dense, and about as many of sphere; 10000", 0},
-    {"level", KEY_LEVEL, "N", 0, "bisections of the icosphere, 0 to 11; 3", 0},
-    {"major", KEY_MAJOR, "R", 0, "distance of the torus's tube from its axis; 1", 0},
-    {"minor", KEY_MINOR, "R", 0, "radius of the torus's tube; 0.25", 0},
-    {"around", KEY_AROUND, "N", 0, "segments around the axis of torus and lathe; 64", 0},
-    {"tube", KEY_TUBE, "N", 0, "segments around the torus's tube; 32", 0},
-    {"profile", KEY_PROFILE, "R,Y,R,Y,...", 0, "radius and height of the points that lathe turns; a cone", 0},
-    {"crease", KEY_CREASE, "DEG", 0, "lathe: a profile that turns by more keeps its edge; 30", 0},
-    {"size", KEY_SIZE, "X,Y,Z", 0, "edges of the box; 1,1,1", 0},
+    {"generate", KEY_FIRST_PARAMETER, "BODY", 0, "make sparse, dense, sphere, icosphere, torus, lathe, terrain or box", 0},
+    {"count", KEY_FIRST_PARAMETER + 1, "N", 0, "triangles of sparse and dense, and about as many of sphere; 10000", 0},
+    {"level", KEY_FIRST_PARAMETER + 2, "N", 0, "bisections of the icosphere, 0 to 11; 4", 0},
+    {"major", KEY_FIRST_PARAMETER + 3, "R", 0, "distance of the torus's tube from its axis; 1", 0},
+    {"minor", KEY_FIRST_PARAMETER + 4, "R", 0, "radius of the torus's tube; 0.4", 0},
+    {"around", KEY_FIRST_PARAMETER + 5, "N", 0, "segments around the axis of torus and lathe, cells of terrain along x; 64", 0},
+    {"tube", KEY_FIRST_PARAMETER + 6, "N", 0, "segments around the torus's tube, cells of terrain along z; 32", 0},
+    {"profile", KEY_FIRST_PARAMETER + 7, "R,Y,R,Y,...", 0, "radius and height of the points that lathe turns; a cylinder", 0},
+    {"crease", KEY_FIRST_PARAMETER + 8, "DEG", 0, "lathe: a profile that turns by more keeps its edge; 30", 0},
+    {"size", KEY_FIRST_PARAMETER + 9, "X,Y,Z", 0, "edges of the box; of terrain, with the height of its hills as Y; 1,1,1", 0},
+    {"depth", KEY_FIRST_PARAMETER + 10, "D", 0, "terrain: how deep its flat bottom lies; 0 leaves it open", 0},
+    {"seed", KEY_FIRST_PARAMETER + 11, "N", 0, "terrain: which hills; 1", 0},
     {"format", 'f', "FORMAT", 0, "write the triangles as obj, bin, pov, tachyon or ply", 0},
     {"output", 'o', "FILE", 0, "write there instead of to standard output", 0},
     {"json", KEY_JSON, NULL, 0, "print the description as JSON", 0},
     {0},
 };
 
-static error_t take_int(const char *option, const char *value, int *out, diagnostic *why)
-{
-    int64_t number = 0;
-    if (options_integer(option, value, 0, INT32_MAX, &number, why) != STATUS_OK)
-        return EINVAL;
-    *out = (int)number;
-    return 0;
-}
-
-static error_t take_count(const char *value, size_t *out, diagnostic *why)
-{
-    int64_t number = 0;
-    if (options_integer("--count", value, 1, MESH_TRIANGLES_MAX, &number, why) != STATUS_OK)
-        return EINVAL;
-    *out = (size_t)number;
-    return 0;
-}
-
-static error_t take_reals(const char *option, const char *value, const char *form, size_t count, double *out, diagnostic *why)
-{
-    return options_reals(option, value, form, count, out, why) == STATUS_OK ? 0 : EINVAL;
-}
-
-static error_t take_size(const char *value, vec3 *out, diagnostic *why)
-{
-    double size[3];
-    const error_t error = take_reals("--size", value, "X,Y,Z", 3, size, why);
-    if (!error)
-        *out = vec3_make(size[0], size[1], size[2]);
-    return error;
-}
-
-static error_t take_profile(mesh_request *request, const char *value, diagnostic *why)
-{
-    size_t numbers = 1;
-    for (const char *at = value; *at; at++)
-        numbers += *at == ',';
-    numbers += numbers % 2; /* an odd one is found missing */
-    free(request->profile);
-    request->profile = calloc(numbers / 2, sizeof *request->profile);
-    double *reals = calloc(numbers, sizeof *reals);
-    error_t error = ENOMEM;
-    if (request->profile && reals)
-        error = take_reals("--profile", value, "R,Y for each point, as 0,0,1,0,0,2", numbers, reals, why);
-    for (size_t k = 0; !error && k < numbers / 2; k++)
-        request->profile[k] = (profile_point){reals[2 * k], reals[2 * k + 1]};
-    request->recipe.profile = request->profile;
-    request->recipe.profile_count = numbers / 2;
-    free(reals);
-    return error;
-}
-
-static error_t take_word(const char *option, const char *value, const char *const *words, size_t count, size_t *which, diagnostic *why)
-{
-    for (*which = 0; *which < count; ++*which)
-        if (strcmp(value, words[*which]) == 0)
-            return 0;
-    options_unknown_word(option[2] == 'g' ? "body" : "format", value, words, count, why);
-    diagnostic_locate(why, option, 0, 0);
-    return EINVAL;
-}
-
-static error_t take_body(mesh_request *request, const char *value, diagnostic *why)
-{
-    const char *names[BODY_KIND_COUNT];
-    body_kind kinds[BODY_KIND_COUNT];
-    size_t count = 0, which;
-    for (int kind = 0; kind < BODY_KIND_COUNT; kind++) {
-        if (kind == BODY_TERRAIN) /* its heights come from elsewhere */
-            continue;
-        kinds[count] = (body_kind)kind;
-        names[count++] = body_name((body_kind)kind);
-    }
-    const error_t error = take_word("--generate", value, names, count, &which, why);
-    if (!error)
-        request->recipe.kind = kinds[which];
-    request->generate = true;
-    return error;
-}
-
 static error_t take_format(mesh_request *request, const char *value, diagnostic *why)
 {
     const char *names[MESH_FORMAT_COUNT];
-    size_t which;
-    for (int format = 0; format < MESH_FORMAT_COUNT; format++)
+    for (int format = 0; format < MESH_FORMAT_COUNT; format++) {
         names[format] = mesh_format_name((mesh_format)format);
-    const error_t error = take_word("--format", value, names, MESH_FORMAT_COUNT, &which, why);
-    if (!error)
-        request->format = (mesh_format)which;
-    return error;
+        if (strcmp(value, names[format]) == 0) {
+            request->format = (mesh_format)format;
+            return 0;
+        }
+    }
+    options_unknown_word("format", value, names, MESH_FORMAT_COUNT, why);
+    diagnostic_locate(why, "--format", 0, 0);
+    return EINVAL;
+}
+
+static error_t take_parameter(mesh_request *request, int which, const char *value, diagnostic *why)
+{
+    char path[64], option[64];
+    snprintf(path, sizeof path, "body.%s", turned[which].parameter);
+    snprintf(option, sizeof option, "--%s", turned[which].option);
+    request->generate |= which == 0;
+    if (scene_set(request->around, path, value, why) == STATUS_OK)
+        return 0;
+    diagnostic_locate(why, option, 0, 0);
+    return EINVAL;
 }
 
 static error_t take_option(int key, char *value, struct argp_state *state)
 {
     options_input *input = state->input;
     mesh_request *request = input->request;
-    body_recipe *recipe = &request->recipe;
     diagnostic *why = input->why;
+    if (key >= KEY_FIRST_PARAMETER && key < KEY_FIRST_PARAMETER + TURNED)
+        return take_parameter(request, key - KEY_FIRST_PARAMETER, value, why);
     switch (key) {
     case 'o': request->output = value; return 0;
     case 'f': return take_format(request, value, why);
     case KEY_JSON: request->json = true; return 0;
-    case KEY_GENERATE: return take_body(request, value, why);
-    case KEY_COUNT: return take_count(value, &recipe->count, why);
-    case KEY_LEVEL: return take_int("--level", value, &recipe->level, why);
-    case KEY_MAJOR: return take_reals("--major", value, "a radius", 1, &recipe->major, why);
-    case KEY_MINOR: return take_reals("--minor", value, "a radius", 1, &recipe->minor, why);
-    case KEY_AROUND: return take_int("--around", value, &recipe->around, why);
-    case KEY_TUBE: return take_int("--tube", value, &recipe->tube, why);
-    case KEY_PROFILE: return take_profile(request, value, why);
-    case KEY_CREASE: return take_reals("--crease", value, "degrees from 0 to 180", 1, &recipe->crease_deg, why);
-    case KEY_SIZE: return take_size(value, &recipe->size, why);
+    case ARGP_KEY_ARG:
+        if (request->file)
+            return ARGP_ERR_UNKNOWN;
+        request->file = value;
+        return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
 }
@@ -156,9 +100,10 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 static const struct argp parser = {
     .options = options,
     .parser = take_option,
-    .args_doc = "--generate BODY",
-    .doc = "Make a mesh of triangles and say what it is: its numbers, bounds, area, whether it is closed, its volume or its first hole. "
-           "With --format, write its triangles instead.\vFor example:\n"
+    .args_doc = "FILE\n--generate BODY",
+    .doc = "Read a mesh of triangles (OBJ, PLY, STL, glTF), or make one, and say what it is: its numbers, bounds, area, whether it is closed, its "
+           "volume or its first hole. With --format, write its triangles instead.\vFor example:\n"
+           "  cuvette mesh teapot.obj\n"
            "  cuvette mesh --generate torus --minor 0.4 --around 256 --tube 128\n"
            "  cuvette mesh --generate sparse --count 50000 -f pov -o sparse.pov\n"
            "Sparse, dense and sphere are the triangle sets of the speed study, the same to the bit everywhere.",
@@ -167,8 +112,10 @@ static const struct argp parser = {
 static status check_request(const mesh_request *request, diagnostic *why)
 {
     status result = STATUS_OK;
-    if (!request->generate)
-        result = diagnose(why, STATUS_BAD_INPUT, "give --generate with a body, as --generate torus", "no mesh is named");
+    if (!request->generate && !request->file)
+        result = diagnose(why, STATUS_BAD_INPUT, "give a file, or --generate with a body, as --generate torus", "no mesh is named");
+    else if (request->generate && request->file)
+        result = diagnose(why, STATUS_BAD_INPUT, "give one of them", "a file and --generate exclude each other");
     else if (request->json && request->format != MESH_FORMAT_COUNT)
         result = diagnose(why, STATUS_BAD_INPUT, "give one of them", "--json and --format exclude each other");
     if (result != STATUS_OK)
@@ -176,14 +123,15 @@ static status check_request(const mesh_request *request, diagnostic *why)
     return result;
 }
 
-/* The mesh that is asked for. */
-static status obtain(const mesh_request *request, mesh **out, diagnostic *why)
+/* The mesh that is asked for; the scene keeps it. */
+static status obtain(const mesh_request *request, const mesh **out, diagnostic *why)
 {
-    char where[64];
-    status result = body_make(&request->recipe, out, why);
-    snprintf(where, sizeof where, "--generate %s", body_name(request->recipe.kind));
-    if (result == STATUS_BAD_INPUT)
-        diagnostic_locate(why, where, 0, 0);
+    status result = request->file ? scene_set(request->around, "body.file", request->file, why) : STATUS_OK;
+    if (result == STATUS_OK)
+        result = scene_load(request->around, why);
+    if (result == STATUS_BAD_INPUT && request->generate)
+        diagnostic_locate(why, "--generate", 0, 0);
+    *out = request->around->meshes[0].data;
     return result;
 }
 
@@ -220,16 +168,17 @@ static status write_mesh(const mesh_request *request, const mesh *m, diagnostic 
 
 status command_mesh(int argc, char **argv, diagnostic *why)
 {
-    mesh_request request = {.recipe = body_recipe_default(BODY_SPARSE), .format = MESH_FORMAT_COUNT};
-    mesh *m = NULL;
-    status result = options_parse(&parser, 0, argc, argv, &request, why);
+    mesh_request request = {.around = scene_create(), .format = MESH_FORMAT_COUNT};
+    const mesh *m = NULL;
+    status result = request.around ? scene_add_mesh(request.around, "body", NULL, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (result == STATUS_OK)
+        result = options_parse(&parser, 0, argc, argv, &request, why);
     if (result == STATUS_OK)
         result = check_request(&request, why);
     if (result == STATUS_OK)
         result = obtain(&request, &m, why);
     if (result == STATUS_OK)
         result = write_mesh(&request, m, why);
-    mesh_release(m);
-    free(request.profile);
+    scene_destroy(request.around);
     return result;
 }

@@ -36,29 +36,4 @@ status body_height_field(const double *heights, int columns, int rows, double si
 /* A box of edges size about the origin: 12 triangles, flat normals, each face the whole texture. */
 status body_box(vec3 size, mesh **out, diagnostic *why);
 
-/* The bodies by name, for who reads which one to make. Profile and heights are borrowed. */
-typedef enum body_kind {
-    BODY_SPARSE, BODY_DENSE, BODY_SPHERE, BODY_ICOSPHERE, BODY_TORUS, BODY_LATHE, BODY_TERRAIN, BODY_BOX, BODY_KIND_COUNT
-} body_kind;
-
-typedef struct body_recipe {
-    body_kind kind;
-    size_t count;                                     /* sparse, dense, sphere */
-    int level;                                        /* icosphere */
-    double major, minor;                              /* torus */
-    int around, tube;                                 /* around: torus, lathe */
-    const profile_point *profile;                     /* lathe */
-    size_t profile_count;
-    double crease_deg;
-    const double *heights;                            /* terrain: columns x rows; size.x by size.z */
-    int columns, rows;
-    double depth;
-    vec3 size;                                        /* terrain, box */
-} body_recipe;
-
-/* Of nothing in particular: 10000 triangles, level 3, radii 1 and 0.25, 64 and 32 segments, a cone, crease 30 degrees, edges of 1. */
-body_recipe body_recipe_default(body_kind kind);
-status body_make(const body_recipe *recipe, mesh **out, diagnostic *why);
-const char *body_name(body_kind kind); /* "sparse" */
-
 #endif
