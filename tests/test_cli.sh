@@ -298,11 +298,15 @@ check "mesh -f tachyon" is "$(grep -c '^TRI V0 ' out)" 12
 run mesh --generate toru
 check "an unknown body is refused with the nearest" matches "$code $(<err)" "^2 cuvette: --generate: .*'toru'; did you mean 'torus'"
 run mesh --generate torus --minor 2
-check "wrong radii are refused with the remedy" matches "$code $(<err)" "^2 cuvette: --generate torus: a torus of radii 1 and 2; use radii"
+check "wrong radii are refused with the remedy" matches "$code $(<err)" "^2 cuvette: --generate: a torus of radii 1 and 2; use radii"
 run mesh --generate lathe --profile 0,0,1
-check "a profile wants pairs" matches "$code $(<err)" "^2 cuvette: --profile 0,0,1: there are fewer than 4 numbers; "
+check "a profile wants pairs" matches "$code $(<err)" "^2 cuvette: --generate: body: the profile has an odd number of numbers; "
 run mesh --generate box -f obj -o nowhere/box.obj
 check "a folder that is not there is refused" matches "$code $(<err)" "^[12] cuvette: .*nowhere/box.obj"
+run mesh torus.obj
+check "mesh reads a file" is "$code $(grep -E "^(triangles|closed)" out | tr -s " " | tr "\n" " ")" "0 triangles 40 closed yes "
+run mesh nothing.obj
+check "a mesh file that is not there" matches "$code $(<err)" "^2 cuvette: .*nothing.obj.*cannot open"
 run mesh
 check "mesh wants a body" matches "$code $(<err)" "^2 cuvette: mesh: no mesh is named; "
 for option in $("$program" mesh --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do

@@ -128,6 +128,8 @@ static status obtain(const mesh_request *request, const mesh **out, diagnostic *
 {
     status result = request->file ? scene_set(request->around, "body.file", request->file, why) : STATUS_OK;
     if (result == STATUS_OK)
+        result = scene_check(request->around, why);
+    if (result == STATUS_OK)
         result = scene_load(request->around, why);
     if (result == STATUS_BAD_INPUT && request->generate)
         diagnostic_locate(why, "--generate", 0, 0);
