@@ -5,8 +5,9 @@
  * function changes its sign exactly when its corners change places, and zero counts as inside, so that no ray slips between two
  * triangles that share an edge. Four triangles at a time; what is left is looked at one by one.
  *
- * A hit's t always lies where the ray is within the triangle's own box (by a margin of 2^-40): whatever a triangle seen edge-on makes of it,
- * no hierarchy that culls by boxes with a wider margin loses it. */
+ * A hit's t is never less than where the ray comes into the triangle's own box (by a margin of 2^-40): whatever a triangle seen edge-on makes of
+ * it, no hierarchy that culls by boxes with a wider margin loses it. As t is only ever made larger by this, what lies beyond the best hit before lies
+ * beyond it after, and need not be looked at. */
 #ifndef CUVETTE_GEOMETRY_HIERARCHY_QUERY_H
 #define CUVETTE_GEOMETRY_HIERARCHY_QUERY_H
 
@@ -89,7 +90,8 @@ ALWAYS_INLINE void query_finish(const ray_query *q, mesh_hit *hit)
 ALWAYS_INLINE double least_of(const double *p) { return lesser(lesser(p[0], p[1]), p[2]); }
 ALWAYS_INLINE double most_of(const double *p) { return greater(greater(p[0], p[1]), p[2]); }
 
-/* Brings t to where the ray is in the box around the corners; false if it never is. corner[axis][corner], from the ray's origin. */
+/* Brings t up to where the ray comes into the box around the corners; false if it never is in there, or not after t_min.
+ * corner[axis][corner], from the ray's origin. */
 ALWAYS_INLINE bool query_clamp(const ray_query *q, const double (*corner)[3], double *t)
 {
     double near = -(double)INFINITY, far = (double)INFINITY;
@@ -105,8 +107,8 @@ ALWAYS_INLINE bool query_clamp(const ray_query *q, const double (*corner)[3], do
         near = greater(near, in - magnitude(in) * BOX_MARGIN);
         far = lesser(far, out + magnitude(out) * BOX_MARGIN);
     }
-    *t = lesser(greater(*t, near), far);
-    return near <= far;
+    *t = greater(*t, near);
+    return near <= far && far >= q->t_min;
 }
 
 /* One triangle that the edge functions let through. True if the search is over. */
@@ -166,17 +168,24 @@ ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mod
     const size_t stride = single ? sizeof(block_single) : sizeof(block_double);
     const char *block = (const char *)h->blocks + first * stride, *end = block + count * stride;
     const double4 ox = double4_all(q->origin[q->x]), oy = double4_all(q->origin[q->y]), oz = double4_all(q->origin[q->z]);
-    const double4 sx = double4_all(q->shear_x), sy = double4_all(q->shear_y), zero = double4_all(0.0);
+    const double4 sx = double4_all(q->shear_x), sy = double4_all(q->shear_y), sz = double4_all(q->shear_z), zero = double4_all(0.0);
     const int kx = q->x, ky = q->y, kz = q->z;
     for (; block < end; block += stride) {
-        double4 x[3], y[3];
+        double4 x[3], y[3], z[3];
         for (int j = 0; j < 3; j++) {
-            const double4 z = block_load(block, single, j, kz) - oz;
-            x[j] = (block_load(block, single, j, kx) - ox) - sx * z;
-            y[j] = (block_load(block, single, j, ky) - oy) - sy * z;
+            z[j] = block_load(block, single, j, kz) - oz;
+            x[j] = (block_load(block, single, j, kx) - ox) - sx * z[j];
+            y[j] = (block_load(block, single, j, ky) - oy) - sy * z[j];
         }
         const double4 u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0];
-        unsigned set = lanes_of4(((u >= zero) & (v >= zero) & (w >= zero)) | ((u <= zero) & (v <= zero) & (w <= zero)));
+        /* Sign bits: is any below zero, and any above? Adding zero makes +0 of -0. */
+        const int4x64 below = (int4x64)(u + zero) | (int4x64)(v + zero) | (int4x64)(w + zero);
+        const int4x64 above = (int4x64)(zero - u) | (int4x64)(zero - v) | (int4x64)(zero - w);
+        unsigned set = lanes_of4((below & above) >= 0);
+        if (!set)
+            continue;
+        const double4 t = (u * (sz * z[0]) + v * (sz * z[1]) + w * (sz * z[2])) / (u + v + w);
+        set = lanes_of4(((below & above) >= 0) & (t <= double4_all(q->t_best)));
         for (; set; set = LANES_LESS_FIRST(set)) {
             const unsigned lane = lane_first(set);
             const uint32_t *numbers = single ? ((const block_single *)block)->triangle : ((const block_double *)block)->triangle;
