@@ -18,8 +18,8 @@ enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH };
 #define FLOAT_STEP 0x1p-22f /* more than from one float to the next but one */
 #define FLOAT_TINY 1e-37f
 
-ALWAYS_INLINE float float_above(double v) { const float f = (float)v; return f + ((f < 0.0f ? -f : f) * FLOAT_STEP + FLOAT_TINY); }
-ALWAYS_INLINE float float_below(double v) { const float f = (float)v; return f - ((f < 0.0f ? -f : f) * FLOAT_STEP + FLOAT_TINY); }
+ALWAYS_INLINE float float_above(double v) { const float f = (float)v; return f + (__builtin_fabsf(f) * FLOAT_STEP + FLOAT_TINY); }
+ALWAYS_INLINE float float_below(double v) { const float f = (float)v; return f - (__builtin_fabsf(f) * FLOAT_STEP + FLOAT_TINY); }
 
 ALWAYS_INLINE void box_ray_start(box_ray *b, const ray_query *q)
 {
@@ -39,10 +39,11 @@ ALWAYS_INLINE void box_ray_start(box_ray *b, const ray_query *q)
     b->t_min = t_min > 0.0f ? t_min : 0.0f;
 }
 
-/* A child on the stack: its distance, which is not negative and so sorts by its bits, above its number. */
+/* A child on the stack: its distance above its number; where that is not negative it sorts by its bits. */
 ALWAYS_INLINE uint64_t pending(float near, uint32_t child)
 {
     uint32_t bits;
+    near = near > 0.0f ? near : 0.0f;
     memcpy(&bits, &near, sizeof bits);
     return (uint64_t)bits << 32 | child;
 }
@@ -81,9 +82,9 @@ ALWAYS_INLINE void walk_bvh(const hierarchy *h, ray_query *q, enum query_mode mo
             const bvh_node *node = &h->nodes[at];
             float8 near = float8_greater((planes_at(node, b.near[0]) - near_x) * near_ix, (planes_at(node, b.near[1]) - near_y) * near_iy);
             float8 far = float8_lesser((planes_at(node, b.far[0]) - far_x) * far_ix, (planes_at(node, b.far[1]) - far_y) * far_iy);
-            near = float8_greater(float8_greater(near, (planes_at(node, b.near[2]) - near_z) * near_iz), t_min);
-            far = float8_lesser(float8_lesser(far, (planes_at(node, b.far[2]) - far_z) * far_iz), t_max);
-            uint64_t set = lanes_of8(near <= far);
+            near = float8_greater(near, (planes_at(node, b.near[2]) - near_z) * near_iz);
+            far = float8_lesser(far, (planes_at(node, b.far[2]) - far_z) * far_iz);
+            uint64_t set = lanes_of8((near <= far) & (near <= t_max) & (far >= t_min));
             if (!set)
                 goto pop;
             const unsigned one = lane_first(set);
