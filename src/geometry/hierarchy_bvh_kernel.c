@@ -63,14 +63,27 @@ ALWAYS_INLINE float8 planes_at(const bvh_node *node, int first)
     return v;
 }
 
+ALWAYS_INLINE void slabs(const bvh_node *node, const box_ray *b, float *restrict near, float *restrict far)
+{
+    const float *p = (const float *)(const void *)node;
+    const float *restrict nx = p + b->near[0], *restrict ny = p + b->near[1], *restrict nz = p + b->near[2];
+    const float *restrict fx = p + b->far[0], *restrict fy = p + b->far[1], *restrict fz = p + b->far[2];
+    /* VECTORISE */
+    for (int i = 0; i < WIDTH; i++) {
+        const float x = (nx[i] - b->near_origin[0]) * b->near_inverse[0], y = (ny[i] - b->near_origin[1]) * b->near_inverse[1],
+                    z = (nz[i] - b->near_origin[2]) * b->near_inverse[2];
+        const float u = (fx[i] - b->far_origin[0]) * b->far_inverse[0], v = (fy[i] - b->far_origin[1]) * b->far_inverse[1],
+                    w = (fz[i] - b->far_origin[2]) * b->far_inverse[2];
+        const float xy = x > y ? x : y, uv = u < v ? u : v;
+        near[i] = xy > z ? xy : z;
+        far[i] = uv < w ? uv : w;
+    }
+}
+
 ALWAYS_INLINE void walk_bvh(const hierarchy *h, ray_query *q, enum query_mode mode, bool single)
 {
     box_ray b;
     box_ray_start(&b, q);
-    const float8 near_x = float8_all(b.near_origin[0]), near_y = float8_all(b.near_origin[1]), near_z = float8_all(b.near_origin[2]);
-    const float8 far_x = float8_all(b.far_origin[0]), far_y = float8_all(b.far_origin[1]), far_z = float8_all(b.far_origin[2]);
-    const float8 near_ix = float8_all(b.near_inverse[0]), near_iy = float8_all(b.near_inverse[1]), near_iz = float8_all(b.near_inverse[2]);
-    const float8 far_ix = float8_all(b.far_inverse[0]), far_iy = float8_all(b.far_inverse[1]), far_iz = float8_all(b.far_inverse[2]);
     const float8 t_min = float8_all(b.t_min);
     float t_best = float_above(q->t_best);
     float8 t_max = float8_all(t_best);
@@ -80,10 +93,11 @@ ALWAYS_INLINE void walk_bvh(const hierarchy *h, ray_query *q, enum query_mode mo
     for (;;) {
         while (!(at & CHILD_LEAF)) {
             const bvh_node *node = &h->nodes[at];
-            float8 near = float8_greater((planes_at(node, b.near[0]) - near_x) * near_ix, (planes_at(node, b.near[1]) - near_y) * near_iy);
-            float8 far = float8_lesser((planes_at(node, b.far[0]) - far_x) * far_ix, (planes_at(node, b.far[1]) - far_y) * far_iy);
-            near = float8_greater(near, (planes_at(node, b.near[2]) - near_z) * near_iz);
-            far = float8_lesser(far, (planes_at(node, b.far[2]) - far_z) * far_iz);
+            _Alignas(32) float nears[WIDTH], fars[WIDTH];
+            slabs(node, &b, nears, fars);
+            float8 near, far;
+            memcpy(&near, nears, sizeof near);
+            memcpy(&far, fars, sizeof far);
             uint64_t set = lanes_of8((near <= far) & (near <= t_max) & (far >= t_min));
             if (!set)
                 goto pop;
@@ -93,8 +107,6 @@ ALWAYS_INLINE void walk_bvh(const hierarchy *h, ray_query *q, enum query_mode mo
                 at = node->child[one];
                 continue;
             }
-            _Alignas(32) float nears[WIDTH];
-            memcpy(nears, &near, sizeof nears);
             const unsigned two = lane_first(set);
             if (!LANES_LESS_FIRST(set)) {
                 const bool first = nears[one] <= nears[two];
