@@ -29,7 +29,7 @@ build := build/$(config)$(clang:%=-%)
 endif
 
 PACKAGES := libpng libjpeg hwloc yaml-0.1 jansson
-warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wno-psabi -Werror
+warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
 # Instrumented code hides from gcc which values a number can take; its guess about printf's output is then wrong.
 ifneq ($(filter sanitize tsan,$(config)),)
 warnings += $(if $(clang),,-Wno-format-truncation)
@@ -68,7 +68,7 @@ embree_cflags = $(if $(embree),-DCUVETTE_EMBREE=1)
 embree_libs = $(if $(embree),-lembree3)
 
 # One source, three instruction sets: *_kernel.c is compiled once for each level.
-isa_flags_sse2   := -msse2
+isa_flags_sse2   := -msse2 -Wno-psabi
 isa_flags_avx2   := -mavx2
 isa_flags_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
 isas := sse2 avx2 avx512

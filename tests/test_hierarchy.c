@@ -283,7 +283,8 @@ static void a_triangle_can_be_skipped_and_a_side_be_chosen(void **state)
 static void check_edges(const hierarchy *h, const hierarchy_kernels *kernel)
 {
     static const struct { double x, y; bool in; } places[] = {{0.0, 0.0, true}, {1.0, 0.0, true}, {0.0, 1.0, true}, {0.5, 0.0, true}, {0.0, 0.5, true},
-        {0.5, 0.5, true}, {-1e-16, 0.5, false}, {0.5, -1e-16, false}, {0.5, 0.5000000000000001, false}, {1.0000000000000002, 0.0, false}};
+        {0.5, 0.5, true},
+        {-1e-16, 0.5, false}, {0.5, -1e-16, false}, {0.5, 0.5000000000000001, false}, {1.0000000000000002, 0.0, false}};
     for (size_t i = 0; i < COUNT(places); i++) {
         mesh_ray r = known_ray;
         r.origin.x = places[i].x;

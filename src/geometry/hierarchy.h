@@ -42,7 +42,7 @@ enum { FACING_FRONT = 1, FACING_BACK = 2, FACING_ANY = 3 };
 /* A ray in the mesh's frame. The direction is not zero and need not be a unit vector; t is in its units. */
 typedef struct mesh_ray {
     vec3 origin, direction;
-    double t_min, t_max;  /* hits lie in t_min <= t <= t_max; t_min below 0 counts as 0, t_max may be infinite */
+    double t_min, t_max;  /* hits lie in t_min <= t <= t_max; t_min below 0 counts as 0 */
     uint32_t skip;        /* a triangle that is not looked at (the ray starts on it), or TRIANGLE_NONE */
     int facing;           /* of the triangles wanted */
 } mesh_ray;

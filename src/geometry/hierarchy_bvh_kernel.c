@@ -1,9 +1,9 @@
 /* The way down the hierarchy `bvh`; see hierarchy_query.h for the triangle test.
  *
- * Boxes are met in single precision, eight at a time, and never missed where a triangle in them is hit: planes are single numbers rounded outwards,
- * the ray's origin is rounded to both sides by more than it needs, and distances to near planes are made smaller, to far ones larger, by
- * more than the rounding of the three operations (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is left out only if it begins beyond the best
- * hit, not at it, so that the lower number of two triangles at one distance is found whichever comes first. */
+ * Boxes are met in single precision, eight at a time, and never missed where a triangle in them is hit: planes are single numbers rounded
+ * outwards, the ray's origin is rounded to both sides by more than it needs, and distances to near planes are made smaller, to far ones
+ * larger, by more than the rounding of the three operations (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is left out only if it
+ * begins beyond the best hit, not at it, so that the lower number of two triangles at one distance is found whichever comes first. */
 #include "geometry/hierarchy_query.h"
 
 /* The ray for boxes. Planes of a node stand in a row, low ones before high ones; near and far say which is which for this ray. */
@@ -56,13 +56,7 @@ ALWAYS_INLINE float pending_near(uint64_t p)
     return near;
 }
 
-ALWAYS_INLINE float8 planes_at(const bvh_node *node, int first)
-{
-    float8 v;
-    memcpy(&v, __builtin_assume_aligned((const char *)node + (size_t)first * sizeof(float), 32), sizeof v);
-    return v;
-}
-
+/* Where the ray meets the planes of a node's boxes. */
 ALWAYS_INLINE void slabs(const bvh_node *node, const box_ray *b, float *restrict near, float *restrict far)
 {
     const float *p = (const float *)(const void *)node;

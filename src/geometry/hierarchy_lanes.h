@@ -14,10 +14,6 @@ typedef int64_t int4x64 __attribute__((vector_size(32)));
 typedef int8_t int8x8 __attribute__((vector_size(8)));
 typedef int8_t int4x8 __attribute__((vector_size(4)));
 
-/* C has no selection between vectors; both compilers make comparison and blend of this. */
-ALWAYS_INLINE float8 float8_blend(int8x32 mask, float8 a, float8 b) { return (float8)((mask & (int8x32)a) | (~mask & (int8x32)b)); }
-ALWAYS_INLINE float8 float8_greater(float8 a, float8 b) { return float8_blend(a > b, a, b); }
-ALWAYS_INLINE float8 float8_lesser(float8 a, float8 b) { return float8_blend(a < b, a, b); }
 ALWAYS_INLINE float8 float8_all(float v) { return (float8){v, v, v, v, v, v, v, v}; }
 ALWAYS_INLINE double4 double4_all(double v) { return (double4){v, v, v, v}; }
 
