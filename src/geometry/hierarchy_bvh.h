@@ -19,7 +19,7 @@
 enum { BRANCH_DEPTH_MAX = BVH_DEPTH_MAX - 1, LEAF_TRIANGLES_MAX = LEAF_BLOCKS_MAX * BLOCK };
 
 /* A box of four lanes, of which the first three are axes; the fourth is kept free of slow (denormal) numbers. */
-typedef struct bvh_box { _Alignas(16) float low[4], high[4]; } bvh_box;
+typedef struct bvh_box { float low[4] __attribute__((aligned(16))), high[4] __attribute__((aligned(16))); } bvh_box;
 
 /* A triangle's box; the fourth lane of low holds its number, see bvh_triangle. */
 typedef bvh_box bvh_ref;
@@ -64,7 +64,7 @@ static inline bvh_box bvh_box_empty(void)
     return (bvh_box){{INFINITY, INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY, -INFINITY}};
 }
 
-static inline void bvh_box_add(bvh_box *restrict b, const float *restrict low, const float *restrict high)
+static inline void bvh_box_add(bvh_box *__restrict b, const float *__restrict low, const float *__restrict high)
 {
     for (int k = 0; k < 4; k++)
         b->low[k] = low[k] < b->low[k] ? low[k] : b->low[k];
@@ -72,7 +72,7 @@ static inline void bvh_box_add(bvh_box *restrict b, const float *restrict low, c
         b->high[k] = high[k] > b->high[k] ? high[k] : b->high[k];
 }
 
-static inline void bvh_range_add(bvh_range *restrict range, const bvh_ref *restrict r)
+static inline void bvh_range_add(bvh_range *__restrict range, const bvh_ref *__restrict r)
 {
     float center[4];
     for (int k = 0; k < 4; k++)

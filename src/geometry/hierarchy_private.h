@@ -20,7 +20,7 @@ static inline uint32_t child_blocks(uint32_t child) { return (child >> 27 & 15) 
 
 /* Boxes by axis and child, rounded outwards; of a child that does not exist low is +inf and high -inf. */
 typedef struct bvh_node {
-    _Alignas(64) float low[3][WIDTH];
+    float low[3][WIDTH] __attribute__((aligned(64)));
     float high[3][WIDTH]; /* right behind low: a ray counts through both */
     uint32_t child[WIDTH];
     uint32_t child_count, unused[7];

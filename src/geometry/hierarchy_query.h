@@ -81,10 +81,12 @@ ALWAYS_INLINE void query_hit(const ray_query *q, double t, double v, double w, d
 
 ALWAYS_INLINE void query_finish(const ray_query *q, mesh_hit *hit)
 {
-    if (q->best == TRIANGLE_NONE)
-        *hit = (mesh_hit){.triangle = TRIANGLE_NONE};
-    else
+    if (q->best == TRIANGLE_NONE) {
+        memset(hit, 0, sizeof *hit);
+        hit->triangle = TRIANGLE_NONE;
+    } else {
         query_hit(q, q->t_best, q->weight_u, q->weight_v, q->det, q->best, q->best_facing, hit);
+    }
 }
 
 ALWAYS_INLINE double least_of(const double *p) { return lesser(lesser(p[0], p[1]), p[2]); }
