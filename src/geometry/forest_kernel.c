@@ -3,18 +3,20 @@
 #include "base/kernel.h"
 #include "base/lanes.h"
 #include "geometry/forest.h"
-#include "geometry/hierarchy_private.h"
-#include <string.h>
 
 #define TREES KERNEL(hierarchy_kernels)
+
+struct last_crossing;
 
 /* What one way down asks each copy that it comes by. */
 typedef struct quest {
     const forest *f;
     const forest_ray *ray;
-    bool any, blocked;       /* any: whatever is first met; nothing is hidden */
+    enum quest_kind { NEXT, ANY, LAST } kind; /* the next crossing that matters; anything at all; the last crossing of each mesh */
+    bool blocked;
     double t_max;
-    forest_hit *best;
+    forest_hit *best;        /* NEXT */
+    struct last_crossing *last; /* LAST: by part */
 } quest;
 
 static vec3 direction_in(const forest_part *p, vec3 d)
@@ -43,11 +45,11 @@ static bool ray_in(const quest *q, const forest_part *p, uint32_t copy, mesh_ray
     const forest_ray *ray = q->ray;
     const uint64_t bit = (uint64_t)1 << p->primitive;
     const bool within = (ray->inside & bit) != 0;
-    if (!(ray->wanted & bit) || (!q->any && (p->closed && within ? p->rank < ray->before : p->rank <= ray->before)))
+    if (!(ray->wanted & bit) || (q->kind == NEXT && (p->closed && within ? p->rank < ray->before : p->rank <= ray->before)))
         return false;
     const vec3 moved = vec3_sub(ray->origin, forest_origin(p, copy));
     *local = (mesh_ray){.origin = direction_in(p, moved), .direction = direction_in(p, ray->direction), .t_min = ray->t_min, .t_max = q->t_max,
-                        .skip = TRIANGLE_NONE, .facing = !p->closed ? FACING_ANY : within ? FACING_BACK : FACING_FRONT};
+                        .skip = TRIANGLE_NONE, .facing = !p->closed || q->kind == LAST ? FACING_ANY : within ? FACING_BACK : FACING_FRONT};
     if (is_mesh_face(ray->start) && mesh_face_primitive(ray->start) == p->primitive && mesh_face_copy(ray->start) == copy) {
         local->skip = mesh_face_triangle(ray->start);
         if (!p->closed)
@@ -69,6 +71,21 @@ static void take(quest *q, const forest_part *p, uint32_t copy, const mesh_hit *
     q->t_max = hit->t;
 }
 
+/* The last crossing of each mesh on the way, whichever triangle: its side says whether the ray is inside behind it. */
+typedef struct last_crossing { double t; bool inside; double t_min; bool met; } last_crossing;
+
+static void note_crossing(void *context, const mesh_hit *hit)
+{
+    last_crossing *last = context;
+    if (hit->t <= last->t_min || (last->met && hit->t < last->t))
+        return;
+    /* At one distance, a silhouette's front and back: outside. */
+    const bool inside = hit->facing == FACING_FRONT;
+    last->inside = last->met && hit->t == last->t ? last->inside && inside : inside;
+    last->t = hit->t;
+    last->met = true;
+}
+
 static void ask_copy(quest *q, size_t instance)
 {
     const forest_part *p = q->f->parts;
@@ -78,8 +95,12 @@ static void ask_copy(quest *q, size_t instance)
     mesh_ray local;
     if (!ray_in(q, p, copy, &local))
         return;
-    if (q->any) {
+    if (q->kind == ANY) {
         q->blocked |= TREES.any(p->tree, &local);
+        return;
+    }
+    if (q->kind == LAST) {
+        TREES.all(p->tree, &local, note_crossing, &q->last[p - q->f->parts]);
         return;
     }
     mesh_hit hit;
@@ -87,69 +108,18 @@ static void ask_copy(quest *q, size_t instance)
     take(q, p, copy, &hit);
 }
 
-/* Nearest distances of a node's boxes, NaN-free; infinite for boxes that are missed. */
-static void box_distances(const bvh_node *node, const double *origin, const double *inverse, double t_min, double t_max, double *restrict near)
+static double come_by(void *context, uint32_t instance, double t_max)
 {
-    double far[WIDTH];
-    for (int k = 0; k < WIDTH; k++) {
-        near[k] = t_min;
-        far[k] = t_max;
-    }
-    for (int axis = 0; axis < 3; axis++) {
-        const double o = origin[axis], i = inverse[axis];
-        for (int k = 0; k < WIDTH; k++) {
-            const double a = ((double)node->low[axis][k] - o) * i, b = ((double)node->high[axis][k] - o) * i;
-            near[k] = greater(near[k], lesser(a, b));
-            far[k] = lesser(far[k], greater(a, b));
-        }
-    }
-    /* The proxies' bounds are wider than rounding by far more than these few operations' errors, but for their relative part. */
-    for (int k = 0; k < WIDTH; k++)
-        near[k] = near[k] * (1.0 - 0x1p-49) <= far[k] * (1.0 + 0x1p-49) && node->low[0][k] <= node->high[0][k] ? near[k] : HUGE_VAL;
-}
-
-static double inverse_of(double d)
-{
-    return 1.0 / (fabs(d) < 1e-300 ? copysign(1e-300, d) : d);
+    quest *q = context;
+    (void)t_max;
+    ask_copy(q, instance);
+    return q->blocked ? -1.0 : q->t_max;
 }
 
 static void walk(quest *q)
 {
-    const hierarchy *top = q->f->top;
-    const vec3 o = q->ray->origin, d = q->ray->direction;
-    const double origin[3] = {o.x, o.y, o.z}, inverse[3] = {inverse_of(d.x), inverse_of(d.y), inverse_of(d.z)};
-    struct { double near; uint32_t child; } stack[BVH_DEPTH_MAX * WIDTH];
-    int height = 0;
-    stack[height].near = q->ray->t_min;
-    stack[height++].child = 0;
-    while (height > 0 && !q->blocked) {
-        height--;
-        const uint32_t at = stack[height].child;
-        if (stack[height].near > q->t_max)
-            continue;
-        if (at & CHILD_LEAF) {
-            for (uint32_t k = 0; k < child_blocks(at); k++) {
-                const uint32_t block = child_first_block(at) + k;
-                const uint32_t *instance = top->single ? ((const block_single *)top->blocks)[block].triangle : ((const block_double *)top->blocks)[block].triangle;
-                for (int lane = 0; lane < BLOCK && !(lane > 0 && instance[lane] == instance[lane - 1]); lane++)
-                    ask_copy(q, instance[lane]);
-            }
-            continue;
-        }
-        const bvh_node *node = &top->nodes[at];
-        double near[WIDTH];
-        box_distances(node, origin, inverse, q->ray->t_min, q->t_max, near);
-        const int bottom = height;
-        for (int k = 0; k < WIDTH; k++) {
-            if (!(near[k] < HUGE_VAL))
-                continue;
-            int place = height++;
-            for (; place > bottom && stack[place - 1].near < near[k]; place--)
-                stack[place] = stack[place - 1];
-            stack[place].near = near[k];
-            stack[place].child = node->child[k];
-        }
-    }
+    const mesh_ray ray = {.origin = q->ray->origin, .direction = q->ray->direction, .t_min = q->ray->t_min, .t_max = q->t_max};
+    TREES.boxes(q->f->top, &ray, come_by, q);
 }
 
 static void ask(quest *q)
@@ -200,7 +170,7 @@ static void any_of_one(const forest *f, const forest_ray *rays, int count, bool 
     bool found[BATCH];
     int ray[BATCH], asked = 0;
     for (int i = 0; i < count; i++) {
-        quest q = {.f = f, .ray = &rays[i], .any = true, .t_max = rays[i].t_max};
+        quest q = {.f = f, .ray = &rays[i], .kind = ANY, .t_max = rays[i].t_max};
         blocked[i] = false;
         if (ray_in(&q, f->parts, 0, &local[asked]))
             ray[asked++] = i;
@@ -219,45 +189,24 @@ static void any(const forest *f, const forest_ray *rays, int count, bool *blocke
         return;
     }
     for (int i = 0; i < count; i++) {
-        quest q = {.f = f, .ray = &rays[i], .any = true, .t_max = rays[i].t_max};
+        quest q = {.f = f, .ray = &rays[i], .kind = ANY, .t_max = rays[i].t_max};
         ask(&q);
         blocked[i] = q.blocked;
     }
 }
 
-/* The last crossing of each mesh on the way, whichever triangle: its side says whether the ray is inside behind it. */
-typedef struct last_crossing { double t; bool inside; double t_min; bool met; } last_crossing;
-
-static void note_crossing(void *context, const mesh_hit *hit)
-{
-    last_crossing *last = context;
-    if (hit->t <= last->t_min || (last->met && hit->t < last->t))
-        return;
-    /* At one distance, a silhouette's front and back: outside. */
-    const bool inside = hit->facing == FACING_FRONT;
-    last->inside = last->met && hit->t == last->t ? last->inside && inside : inside;
-    last->t = hit->t;
-    last->met = true;
-}
-
 static uint64_t cross(const forest *f, const forest_ray *ray)
 {
+    last_crossing last[PRIMITIVES_MAX];
+    for (int i = 0; i < f->part_count; i++)
+        last[i] = (last_crossing){.t_min = ray->t_min};
+    quest q = {.f = f, .ray = ray, .kind = LAST, .t_max = ray->t_max, .last = last};
+    ask(&q);
     uint64_t set = ray->inside;
     for (int i = 0; i < f->part_count; i++) {
-        const forest_part *p = &f->parts[i];
-        const uint64_t bit = (uint64_t)1 << p->primitive;
-        last_crossing last = {.t_min = ray->t_min};
-        for (uint32_t copy = 0; (ray->wanted & bit) && copy < p->copies[0] * p->copies[1] * p->copies[2]; copy++) {
-            quest q = {.f = f, .ray = ray, .any = true, .t_max = ray->t_max};
-            mesh_ray local;
-            if (!ray_in(&q, p, copy, &local))
-                continue;
-            local.facing = FACING_ANY;
-            TREES.all(p->tree, &local, note_crossing, &last);
-        }
-        if (!last.met)
-            continue;
-        set = !p->closed || last.inside ? set | bit : set & ~bit;
+        const uint64_t bit = (uint64_t)1 << f->parts[i].primitive;
+        if (last[i].met)
+            set = !f->parts[i].closed || last[i].inside ? set | bit : set & ~bit;
     }
     return set;
 }

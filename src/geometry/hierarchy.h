@@ -57,6 +57,9 @@ typedef struct mesh_hit {
 /* Called with each hit of hierarchy_all, in no order. */
 typedef void mesh_visit(void *context, const mesh_hit *hit);
 
+/* Called with each triangle whose own box the ray may meet before t_max; returns t_max, or less. Less than the ray's t_min ends it all. */
+typedef double box_visit(void *context, uint32_t triangle, double t_max);
+
 /* The kernels, one set for each instruction set; the same bits from all. */
 typedef struct hierarchy_kernels {
     /* The nearest hit. hit->triangle is TRIANGLE_NONE where there is none. */
@@ -65,6 +68,8 @@ typedef struct hierarchy_kernels {
     bool (*any)(const hierarchy *h, const mesh_ray *ray);
     /* All hits. */
     void (*all)(const hierarchy *h, const mesh_ray *ray, mesh_visit *visit, void *context);
+    /* Of a bvh: the triangles in boxes that the ray meets, about nearest first, for who keeps other things in them. */
+    void (*boxes)(const hierarchy *h, const mesh_ray *ray, box_visit *visit, void *context);
     /* nearest and any for up to 128 rays at a time, which may share the way down where they are alike. */
     void (*nearest_batch)(const hierarchy *h, const mesh_ray *rays, int count, mesh_hit *hits);
     void (*any_batch)(const hierarchy *h, const mesh_ray *rays, int count, bool *hit);

@@ -123,7 +123,7 @@ ALWAYS_INLINE void walk_bvh(const hierarchy *h, ray_query *q, enum query_mode mo
         }
         if (query_blocks(q, h, mode, single, child_first_block(at), child_blocks(at)))
             return;
-        if (mode == QUERY_NEAREST) {
+        if (mode == QUERY_NEAREST || mode == QUERY_BOXES) {
             t_best = float_above(q->t_best);
             t_max = float8_all(t_best);
         }
@@ -143,6 +143,8 @@ void KERNEL(walk_bvh)(const hierarchy *h, ray_query *q, enum query_mode mode)
         h->single ? walk_bvh(h, q, QUERY_NEAREST, true) : walk_bvh(h, q, QUERY_NEAREST, false);
     else if (mode == QUERY_ANY)
         h->single ? walk_bvh(h, q, QUERY_ANY, true) : walk_bvh(h, q, QUERY_ANY, false);
+    else if (mode == QUERY_BOXES)
+        walk_bvh(h, q, QUERY_BOXES, true);
     else
         h->single ? walk_bvh(h, q, QUERY_ALL, true) : walk_bvh(h, q, QUERY_ALL, false);
 }

@@ -63,6 +63,16 @@ static void all(const hierarchy *h, const mesh_ray *ray, mesh_visit *visit, void
     }
 }
 
+static void boxes(const hierarchy *h, const mesh_ray *ray, box_visit *visit, void *context)
+{
+    ray_query q;
+    if (query_start(&q, ray) && h->kind == HIERARCHY_BVH && h->block_count) {
+        q.visit_box = visit;
+        q.context = context;
+        walk(h, &q, QUERY_BOXES);
+    }
+}
+
 static void nearest_batch(const hierarchy *h, const mesh_ray *rays, int count, mesh_hit *hits)
 {
     for (int i = 0; i < count; i++)
@@ -75,4 +85,4 @@ static void any_batch(const hierarchy *h, const mesh_ray *rays, int count, bool 
         hit[i] = any(h, &rays[i]);
 }
 
-const hierarchy_kernels KERNEL(hierarchy_kernels) = {nearest, any, all, nearest_batch, any_batch};
+const hierarchy_kernels KERNEL(hierarchy_kernels) = {nearest, any, all, boxes, nearest_batch, any_batch};

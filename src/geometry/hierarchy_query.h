@@ -15,7 +15,7 @@
 #include "geometry/hierarchy_lanes.h"
 #include "geometry/hierarchy_private.h"
 
-enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL };
+enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL, QUERY_BOXES };
 
 /* Components of a direction whose largest is 1..2 that are smaller than this are parallel to their plane: within reach such a ray
  * does not leave it by more than PARALLEL_MARGIN. */
@@ -34,6 +34,8 @@ typedef struct ray_query {
     uint32_t skip, best;
     int wanted, best_facing;
     mesh_visit *visit; /* QUERY_ALL */
+    box_visit *visit_box; /* QUERY_BOXES */
+    double t_start;    /* t_min as the caller has it */
     void *context;
 } ray_query;
 
@@ -63,6 +65,7 @@ ALWAYS_INLINE bool query_start(ray_query *q, const mesh_ray *ray)
     q->shear_x = q->direction[q->x] * q->shear_z;
     q->shear_y = q->direction[q->y] * q->shear_z;
     q->t_min = greater(ray->t_min, 0.0) * unscale;
+    q->t_start = greater(ray->t_min, 0.0);
     q->t_best = ray->t_max * unscale;
     q->unscale = scale;
     q->skip = ray->skip;
@@ -164,9 +167,28 @@ ALWAYS_INLINE double4 block_load(const void *block, bool single, int corner, int
     return v;
 }
 
+/* Shows the triangles of blocks to who asked for boxes. True if the search is over. */
+static __attribute__((noinline)) bool query_show(ray_query *q, const hierarchy *h, size_t first, size_t count)
+{
+    for (size_t i = first; i < first + count; i++) {
+        const uint32_t *numbers = h->single ? ((const block_single *)h->blocks)[i].triangle : ((const block_double *)h->blocks)[i].triangle;
+        for (int lane = 0; lane < BLOCK; lane++) {
+            if (lane > 0 && numbers[lane] == numbers[lane - 1])
+                continue; /* a block is filled up by repeating its last triangle */
+            const double t_max = q->visit_box(q->context, numbers[lane], q->t_best * q->unscale);
+            if (t_max < q->t_start)
+                return true;
+            q->t_best = t_max / q->unscale;
+        }
+    }
+    return false;
+}
+
 /* Tests the triangles of blocks first .. first + count - 1. True if the search is over. */
 ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mode mode, bool single, size_t first, size_t count)
 {
+    if (mode == QUERY_BOXES)
+        return query_show(q, h, first, count);
     const size_t stride = single ? sizeof(block_single) : sizeof(block_double);
     const char *block = (const char *)h->blocks + first * stride, *end = block + count * stride;
     const double4 ox = double4_all(q->origin[q->x]), oy = double4_all(q->origin[q->y]), oz = double4_all(q->origin[q->z]);
