@@ -231,4 +231,8 @@ ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mod
 void KERNEL(walk_bvh)(const hierarchy *h, ray_query *q, enum query_mode mode);
 void KERNEL(walk_spheres)(const hierarchy *h, ray_query *q, enum query_mode mode);
 
+/* Rays down the hierarchy `bvh` together, as far as they are alike; each has been started. Nearest or any. */
+enum { TOGETHER = 128 };
+void KERNEL(walk_bvh_together)(const hierarchy *h, ray_query *const *rays, int count, enum query_mode mode);
+
 #endif

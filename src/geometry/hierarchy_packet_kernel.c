@@ -1,0 +1,301 @@
+/* Rays that are alike go down the hierarchy `bvh` together: whole nodes are left out for all of them by one test (of a ray that stands for
+ * the least and the most of every ray's numbers: Boulos et al., "Packet-based Whitted and distribution ray tracing", GI 2007), boxes are
+ * met by eight rays at a time when their turn comes, and so are triangles. Where few are left of the many, each goes on by itself.
+ *
+ * A ray sees every box and triangle that it would see alone, or more; what counts as a hit is decided by the one triangle test. So the
+ * hits are the same to the bit. */
+#include "geometry/hierarchy_boxes.h"
+
+enum { LANES = 8, GROUPS = TOGETHER / LANES, ALONE = 6 };
+
+typedef double double8 __attribute__((vector_size(64)));
+typedef int64_t int8x64 __attribute__((vector_size(64)));
+typedef int32_t int8x4 __attribute__((vector_size(32)));
+
+/* Which rays: a byte a group of eight. */
+typedef struct ray_set { uint8_t bits[GROUPS]; } ray_set;
+
+typedef struct packet {
+    _Alignas(64) float near_origin[3][TOGETHER], far_origin[3][TOGETHER], near_inverse[3][TOGETHER], far_inverse[3][TOGETHER];
+    _Alignas(64) float t_min[TOGETHER], t_best[TOGETHER];
+    _Alignas(64) double origin[3][TOGETHER], shear[2][TOGETHER]; /* along the query's axes x, y, z */
+    ray_query *ray[TOGETHER];
+    int count, groups;
+    int near[3], far[3], axis[3];
+    box_ray all;             /* stands for all of them */
+    float t_farthest;        /* the largest t_best */
+    ray_set alive;
+} packet;
+
+typedef struct waiting { uint32_t child, node, slot; float near; ray_set rays; } waiting;
+
+static void widen(packet *p, const box_ray *b, bool first)
+{
+    box_ray *all = &p->all;
+    if (first) {
+        *all = *b;
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        const bool down = b->near[k] >= WIDTH * 3;
+#define LESS(a, c) ((c) < (a) ? (c) : (a))
+#define MORE(a, c) ((c) > (a) ? (c) : (a))
+        all->near_origin[k] = down ? LESS(all->near_origin[k], b->near_origin[k]) : MORE(all->near_origin[k], b->near_origin[k]);
+        all->far_origin[k] = down ? MORE(all->far_origin[k], b->far_origin[k]) : LESS(all->far_origin[k], b->far_origin[k]);
+        all->near_inverse[k] = down ? MORE(all->near_inverse[k], b->near_inverse[k]) : LESS(all->near_inverse[k], b->near_inverse[k]);
+        all->far_inverse[k] = down ? LESS(all->far_inverse[k], b->far_inverse[k]) : MORE(all->far_inverse[k], b->far_inverse[k]);
+    }
+    all->t_min = LESS(all->t_min, b->t_min);
+}
+
+/* Lanes beyond count repeat the last ray, and are in no set. */
+static void packet_start(packet *p, ray_query *const *rays, int count)
+{
+    p->count = count;
+    p->groups = (count + LANES - 1) / LANES;
+    memset(&p->alive, 0, sizeof p->alive);
+    p->t_farthest = 0.0f;
+    for (int i = 0; i < p->groups * LANES; i++) {
+        ray_query *q = rays[i < count ? i : count - 1];
+        box_ray b;
+        box_ray_start(&b, q);
+        p->ray[i] = q;
+        for (int k = 0; k < 3; k++) {
+            p->near_origin[k][i] = b.near_origin[k], p->far_origin[k][i] = b.far_origin[k];
+            p->near_inverse[k][i] = b.near_inverse[k], p->far_inverse[k][i] = b.far_inverse[k];
+        }
+        p->t_min[i] = b.t_min;
+        p->t_best[i] = float_above(q->t_best);
+        p->t_farthest = MORE(p->t_farthest, p->t_best[i]);
+        p->origin[0][i] = q->origin[q->x], p->origin[1][i] = q->origin[q->y], p->origin[2][i] = q->origin[q->z];
+        p->shear[0][i] = q->shear_x, p->shear[1][i] = q->shear_y;
+        p->alive.bits[i / LANES] |= (uint8_t)((i < count) << i % LANES);
+        widen(p, &b, i == 0);
+    }
+    for (int k = 0; k < 3; k++)
+        p->near[k] = p->all.near[k], p->far[k] = p->all.far[k];
+    p->axis[0] = rays[0]->x, p->axis[1] = rays[0]->y, p->axis[2] = rays[0]->z;
+}
+
+#ifdef __AVX512VL__
+ALWAYS_INLINE uint8_t bits_of8(int8x32 mask) { return (uint8_t)(lanes_of8(mask) * 0x0102040810204080u >> 56); }
+#else
+ALWAYS_INLINE uint8_t bits_of8(int8x32 mask) { return (uint8_t)lanes_of8(mask); }
+#endif
+
+ALWAYS_INLINE float8 floats_at(const float *p)
+{
+    float8 v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+/* The rays of a set that meet one box of a node before their best hits. Returns how many. */
+static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, const ray_set *of, ray_set *in)
+{
+    const float *plane = (const float *)(const void *)node + slot;
+    float near_plane[3], far_plane[3];
+    for (int k = 0; k < 3; k++)
+        near_plane[k] = plane[p->near[k]], far_plane[k] = plane[p->far[k]];
+    int count = 0;
+    for (int g = 0; g < p->groups; g++) {
+        const uint8_t wanted = of->bits[g] & p->alive.bits[g];
+        if (!wanted) {
+            in->bits[g] = 0;
+            continue;
+        }
+        const int i = g * LANES;
+        float near[LANES], far[LANES];
+        /* VECTORISE */
+        for (int k = 0; k < LANES; k++) {
+            const float x = (near_plane[0] - p->near_origin[0][i + k]) * p->near_inverse[0][i + k],
+                        y = (near_plane[1] - p->near_origin[1][i + k]) * p->near_inverse[1][i + k],
+                        z = (near_plane[2] - p->near_origin[2][i + k]) * p->near_inverse[2][i + k];
+            const float u = (far_plane[0] - p->far_origin[0][i + k]) * p->far_inverse[0][i + k],
+                        v = (far_plane[1] - p->far_origin[1][i + k]) * p->far_inverse[1][i + k],
+                        w = (far_plane[2] - p->far_origin[2][i + k]) * p->far_inverse[2][i + k];
+            const float xy = x > y ? x : y, uv = u < v ? u : v;
+            near[k] = xy > z ? xy : z;
+            far[k] = uv < w ? uv : w;
+        }
+        const float8 n = floats_at(near), f = floats_at(far);
+        in->bits[g] = wanted & bits_of8((n <= f) & (n <= floats_at(&p->t_best[i])) & (f >= floats_at(&p->t_min[i])));
+        count += __builtin_popcount(in->bits[g]);
+    }
+    return count;
+}
+
+/* The farthest that any ray still looks: it only falls. */
+static void note_farthest(packet *p)
+{
+    float farthest = 0.0f;
+    for (int i = 0; i < p->groups * LANES; i++)
+        farthest = p->alive.bits[i / LANES] >> i % LANES & 1 ? MORE(farthest, p->t_best[i]) : farthest;
+    p->t_farthest = farthest;
+}
+
+/* The one test, of the rays in `set` of a group. Returns those that are done. */
+static uint8_t consider(packet *p, int group, uint8_t set, enum query_mode mode, const double (*corner)[3], uint32_t triangle)
+{
+    uint8_t done = 0;
+    for (; set; set = (uint8_t)LANES_LESS_FIRST(set)) {
+        const int lane = __builtin_ctz(set), i = group * LANES + lane;
+        ray_query *q = p->ray[i];
+        double moved[3][3];
+        for (int k = 0; k < 3; k++)
+            for (int j = 0; j < 3; j++)
+                moved[k][j] = corner[k][j] - q->origin[k];
+        if (query_consider(q, mode, (const double (*)[3])moved, triangle))
+            done |= (uint8_t)(1u << lane);
+        p->t_best[i] = float_above(q->t_best);
+    }
+    return done;
+}
+
+ALWAYS_INLINE double8 double8_all(double v) { return (double8){v, v, v, v, v, v, v, v}; }
+ALWAYS_INLINE double8 doubles_at(const double *p)
+{
+    double8 v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+/* One triangle, eight rays at a time. corner[axis][corner], axes the scene's. */
+static void triangle_together(packet *p, const ray_set *set, enum query_mode mode, const double (*corner)[3], uint32_t triangle)
+{
+    const double *cx = corner[p->axis[0]], *cy = corner[p->axis[1]], *cz = corner[p->axis[2]];
+    const double8 zero = double8_all(0.0);
+    for (int g = 0; g < p->groups; g++) {
+        const uint8_t wanted = set->bits[g] & p->alive.bits[g];
+        if (!wanted)
+            continue;
+        const int i = g * LANES;
+        const double8 ox = doubles_at(&p->origin[0][i]), oy = doubles_at(&p->origin[1][i]), oz = doubles_at(&p->origin[2][i]),
+                      sx = doubles_at(&p->shear[0][i]), sy = doubles_at(&p->shear[1][i]);
+        double8 x[3], y[3];
+        for (int j = 0; j < 3; j++) {
+            const double8 z = double8_all(cz[j]) - oz;
+            x[j] = (double8_all(cx[j]) - ox) - sx * z;
+            y[j] = (double8_all(cy[j]) - oy) - sy * z;
+        }
+        const double8 u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0];
+        const int8x64 below = (int8x64)(u + zero) | (int8x64)(v + zero) | (int8x64)(w + zero);
+        const int8x64 above = (int8x64)(zero - u) | (int8x64)(zero - v) | (int8x64)(zero - w);
+        const int8x64 met = (below & above) >= 0;
+        const uint8_t hit = wanted & bits_of8(__builtin_convertvector(met, int8x4));
+        if (hit)
+            p->alive.bits[g] &= (uint8_t)~consider(p, g, hit, mode, corner, triangle);
+    }
+}
+
+static void leaf_together(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, uint32_t leaf)
+{
+    for (uint32_t b = child_first_block(leaf); b < child_first_block(leaf) + child_blocks(leaf); b++) {
+        const block_single *single = &((const block_single *)h->blocks)[b];
+        const block_double *exact = &((const block_double *)h->blocks)[b];
+        const uint32_t *numbers = h->single ? single->triangle : exact->triangle;
+        for (int lane = 0; lane < BLOCK && !(lane > 0 && numbers[lane] == numbers[lane - 1]); lane++) {
+            double corner[3][3];
+            for (int k = 0; k < 3; k++)
+                for (int j = 0; j < 3; j++)
+                    corner[k][j] = h->single ? (double)single->corner[j][k][lane] : exact->corner[j][k][lane];
+            triangle_together(p, set, mode, (const double (*)[3])corner, numbers[lane]);
+        }
+    }
+    note_farthest(p);
+}
+
+/* The few rays of a set, each by itself from a child on. */
+static void go_alone(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, uint32_t child)
+{
+    for (int g = 0; g < p->groups; g++) {
+        for (uint8_t bits = set->bits[g]; bits; bits = (uint8_t)LANES_LESS_FIRST(bits)) {
+            const int lane = __builtin_ctz(bits), i = g * LANES + lane;
+            box_ray b = p->all;
+            for (int k = 0; k < 3; k++) {
+                b.near_origin[k] = p->near_origin[k][i], b.far_origin[k] = p->far_origin[k][i];
+                b.near_inverse[k] = p->near_inverse[k][i], b.far_inverse[k] = p->far_inverse[k][i];
+            }
+            b.t_min = p->t_min[i];
+            KERNEL(walk_bvh_from)(h, p->ray[i], &b, mode, child);
+            p->t_best[i] = float_above(p->ray[i]->t_best);
+            if (mode == QUERY_ANY && p->ray[i]->best != TRIANGLE_NONE)
+                p->alive.bits[g] &= (uint8_t)~(1u << lane);
+        }
+    }
+    note_farthest(p);
+}
+
+/* A node's children that any ray may meet, the nearest on top. */
+static int push_children(const packet *p, const bvh_node *nodes, uint32_t at, const ray_set *set, waiting *stack, int top)
+{
+    _Alignas(32) float near[WIDTH], far[WIDTH];
+    slabs(&nodes[at], &p->all, near, far);
+    const float8 n = floats_at(near), f = floats_at(far);
+    const int bottom = top;
+    for (uint64_t met = lanes_of8((n <= f) & (n <= float8_all(p->t_farthest)) & (f >= float8_all(p->all.t_min))); met; met = LANES_LESS_FIRST(met)) {
+        const unsigned slot = lane_first(met);
+        int place = top++;
+        for (; place > bottom && stack[place - 1].near < near[slot]; place--)
+            stack[place] = stack[place - 1];
+        stack[place] = (waiting){nodes[at].child[slot], at, slot, near[slot], *set};
+    }
+    return top;
+}
+
+static void packet_walk(const hierarchy *h, packet *p, enum query_mode mode)
+{
+    waiting stack[STACK];
+    int top = 0;
+    if (h->nodes[0].child_count == 0)
+        return;
+    top = push_children(p, h->nodes, 0, &p->alive, stack, top);
+    while (top > 0) {
+        const waiting next = stack[--top];
+        ray_set rays;
+        if (next.near > p->t_farthest)
+            continue;
+        const int count = rays_in_box(p, &h->nodes[next.node], next.slot, &next.rays, &rays);
+        if (count == 0)
+            continue;
+        if (count <= ALONE)
+            go_alone(h, p, &rays, mode, next.child);
+        else if (next.child & CHILD_LEAF)
+            leaf_together(h, p, &rays, mode, next.child);
+        else
+            top = push_children(p, h->nodes, next.child, &rays, stack, top);
+    }
+}
+
+/* Rays of one packet run the same way along each axis, and mostly along the same one. */
+static int kind_of(const ray_query *q)
+{
+    return (q->direction[0] < 0.0) | (q->direction[1] < 0.0) << 1 | (q->direction[2] < 0.0) << 2 | q->z << 3;
+}
+
+void KERNEL(walk_bvh_together)(const hierarchy *h, ray_query *const *rays, int count, enum query_mode mode)
+{
+    enum { KINDS = 24, FEW = 12 };
+    packet p;
+    ray_query *alike[TOGETHER];
+    bool taken[TOGETHER] = {false};
+    for (int first = 0; first < count; first++) {
+        if (taken[first])
+            continue;
+        const int kind = kind_of(rays[first]);
+        int n = 0;
+        for (int i = first; i < count; i++) {
+            if (taken[i] || kind_of(rays[i]) != kind)
+                continue;
+            taken[i] = true;
+            alike[n++] = rays[i];
+        }
+        if (n < FEW) {
+            for (int i = 0; i < n; i++)
+                KERNEL(walk_bvh)(h, alike[i], mode);
+            continue;
+        }
+        packet_start(&p, alike, n);
+        packet_walk(h, &p, mode);
+    }
+}
