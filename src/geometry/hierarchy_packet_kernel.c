@@ -10,7 +10,6 @@ enum { LANES = 8, GROUPS = TOGETHER / LANES, ALONE = 6 };
 
 typedef double double8 __attribute__((vector_size(64)));
 typedef int64_t int8x64 __attribute__((vector_size(64)));
-typedef int32_t int8x4 __attribute__((vector_size(32)));
 
 /* Which rays: a byte a group of eight. */
 typedef struct ray_set { uint8_t bits[GROUPS]; } ray_set;
@@ -18,12 +17,14 @@ typedef struct ray_set { uint8_t bits[GROUPS]; } ray_set;
 typedef struct packet {
     _Alignas(64) float near_origin[3][TOGETHER], far_origin[3][TOGETHER], near_inverse[3][TOGETHER], far_inverse[3][TOGETHER];
     _Alignas(64) float t_min[TOGETHER], t_best[TOGETHER];
-    _Alignas(64) double origin[3][TOGETHER], shear[2][TOGETHER]; /* along the query's axes x, y, z */
+    _Alignas(64) double origin[3][TOGETHER], shear[3][TOGETHER]; /* along the query's axes x, y, z */
+    _Alignas(64) double t_limit[TOGETHER]; /* each query's t_best */
     ray_query *ray[TOGETHER];
     int count, groups;
     int near[3], far[3], axis[3];
     box_ray all;             /* stands for all of them */
     float t_farthest;        /* the largest t_best */
+    bool changed;            /* some t_best is less than it was when t_farthest was found */
     ray_set alive;
 } packet;
 
@@ -54,6 +55,7 @@ static void packet_start(packet *p, ray_query *const *rays, int count)
     p->count = count;
     p->groups = (count + LANES - 1) / LANES;
     memset(&p->alive, 0, sizeof p->alive);
+    p->changed = false;
     p->t_farthest = 0.0f;
     for (int i = 0; i < p->groups * LANES; i++) {
         ray_query *q = rays[i < count ? i : count - 1];
@@ -68,7 +70,8 @@ static void packet_start(packet *p, ray_query *const *rays, int count)
         p->t_best[i] = float_above(q->t_best);
         p->t_farthest = MORE(p->t_farthest, p->t_best[i]);
         p->origin[0][i] = q->origin[q->x], p->origin[1][i] = q->origin[q->y], p->origin[2][i] = q->origin[q->z];
-        p->shear[0][i] = q->shear_x, p->shear[1][i] = q->shear_y;
+        p->shear[0][i] = q->shear_x, p->shear[1][i] = q->shear_y, p->shear[2][i] = q->shear_z;
+        p->t_limit[i] = q->t_best;
         p->alive.bits[i / LANES] |= (uint8_t)((i < count) << i % LANES);
         widen(p, &b, i == 0);
     }
@@ -90,6 +93,25 @@ ALWAYS_INLINE float8 floats_at(const float *p)
     return v;
 }
 
+/* Where eight rays from number i on meet the planes of one box. */
+ALWAYS_INLINE void slabs_of_rays(const packet *p, int i, const float *restrict near_plane, const float *restrict far_plane, float *restrict near,
+                                 float *restrict far)
+{
+    const float *restrict nox = &p->near_origin[0][i], *restrict noy = &p->near_origin[1][i], *restrict noz = &p->near_origin[2][i];
+    const float *restrict nix = &p->near_inverse[0][i], *restrict niy = &p->near_inverse[1][i], *restrict niz = &p->near_inverse[2][i];
+    const float *restrict fox = &p->far_origin[0][i], *restrict foy = &p->far_origin[1][i], *restrict foz = &p->far_origin[2][i];
+    const float *restrict fix = &p->far_inverse[0][i], *restrict fiy = &p->far_inverse[1][i], *restrict fiz = &p->far_inverse[2][i];
+    const float nx = near_plane[0], ny = near_plane[1], nz = near_plane[2], fx = far_plane[0], fy = far_plane[1], fz = far_plane[2];
+    /* VECTORISE */
+    for (int k = 0; k < LANES; k++) {
+        const float x = (nx - nox[k]) * nix[k], y = (ny - noy[k]) * niy[k], z = (nz - noz[k]) * niz[k];
+        const float u = (fx - fox[k]) * fix[k], v = (fy - foy[k]) * fiy[k], w = (fz - foz[k]) * fiz[k];
+        const float xy = x > y ? x : y, uv = u < v ? u : v;
+        near[k] = xy > z ? xy : z;
+        far[k] = uv < w ? uv : w;
+    }
+}
+
 /* The rays of a set that meet one box of a node before their best hits. Returns how many. */
 static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, const ray_set *of, ray_set *in)
 {
@@ -100,24 +122,12 @@ static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, con
     int count = 0;
     for (int g = 0; g < p->groups; g++) {
         const uint8_t wanted = of->bits[g] & p->alive.bits[g];
-        if (!wanted) {
-            in->bits[g] = 0;
+        in->bits[g] = 0;
+        if (!wanted)
             continue;
-        }
         const int i = g * LANES;
-        float near[LANES], far[LANES];
-        /* VECTORISE */
-        for (int k = 0; k < LANES; k++) {
-            const float x = (near_plane[0] - p->near_origin[0][i + k]) * p->near_inverse[0][i + k],
-                        y = (near_plane[1] - p->near_origin[1][i + k]) * p->near_inverse[1][i + k],
-                        z = (near_plane[2] - p->near_origin[2][i + k]) * p->near_inverse[2][i + k];
-            const float u = (far_plane[0] - p->far_origin[0][i + k]) * p->far_inverse[0][i + k],
-                        v = (far_plane[1] - p->far_origin[1][i + k]) * p->far_inverse[1][i + k],
-                        w = (far_plane[2] - p->far_origin[2][i + k]) * p->far_inverse[2][i + k];
-            const float xy = x > y ? x : y, uv = u < v ? u : v;
-            near[k] = xy > z ? xy : z;
-            far[k] = uv < w ? uv : w;
-        }
+        _Alignas(32) float near[LANES], far[LANES];
+        slabs_of_rays(p, i, near_plane, far_plane, near, far);
         const float8 n = floats_at(near), f = floats_at(far);
         in->bits[g] = wanted & bits_of8((n <= f) & (n <= floats_at(&p->t_best[i])) & (f >= floats_at(&p->t_min[i])));
         count += __builtin_popcount(in->bits[g]);
@@ -125,13 +135,26 @@ static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, con
     return count;
 }
 
-/* The farthest that any ray still looks: it only falls. */
+/* The farthest that any ray still looks: it only falls. Floats that are not negative are in the order of their bits, and whole numbers have
+ * a largest whatever the order in which they are gone through. */
 static void note_farthest(packet *p)
 {
-    float farthest = 0.0f;
-    for (int i = 0; i < p->groups * LANES; i++)
-        farthest = p->alive.bits[i / LANES] >> i % LANES & 1 ? MORE(farthest, p->t_best[i]) : farthest;
-    p->t_farthest = farthest;
+    int32_t bits[TOGETHER], farthest = 0;
+    memcpy(bits, p->t_best, sizeof bits);
+    const int n = p->groups * LANES;
+    /* VECTORISE */
+    for (int i = 0; i < n; i++)
+        farthest = bits[i] > farthest ? bits[i] : farthest;
+    memcpy(&p->t_farthest, &farthest, sizeof farthest);
+    p->changed = false;
+}
+
+/* What ray i has found is noted; one that is done looks no farther than nowhere. */
+static void settle(packet *p, int i, bool over)
+{
+    p->t_limit[i] = p->ray[i]->t_best;
+    p->t_best[i] = over ? 0.0f : float_above(p->t_limit[i]);
+    p->changed = true;
 }
 
 /* The one test, of the rays in `set` of a group. Returns those that are done. */
@@ -145,9 +168,10 @@ static uint8_t consider(packet *p, int group, uint8_t set, enum query_mode mode,
         for (int k = 0; k < 3; k++)
             for (int j = 0; j < 3; j++)
                 moved[k][j] = corner[k][j] - q->origin[k];
-        if (query_consider(q, mode, (const double (*)[3])moved, triangle))
-            done |= (uint8_t)(1u << lane);
-        p->t_best[i] = float_above(q->t_best);
+        const bool over = query_consider(q, mode, (const double (*)[3])moved, triangle);
+        done |= (uint8_t)(over << lane);
+        if (over || q->t_best < p->t_limit[i])
+            settle(p, i, over);
     }
     return done;
 }
@@ -172,17 +196,23 @@ static void triangle_together(packet *p, const ray_set *set, enum query_mode mod
         const int i = g * LANES;
         const double8 ox = doubles_at(&p->origin[0][i]), oy = doubles_at(&p->origin[1][i]), oz = doubles_at(&p->origin[2][i]),
                       sx = doubles_at(&p->shear[0][i]), sy = doubles_at(&p->shear[1][i]);
-        double8 x[3], y[3];
+        double8 x[3], y[3], z[3];
         for (int j = 0; j < 3; j++) {
-            const double8 z = double8_all(cz[j]) - oz;
-            x[j] = (double8_all(cx[j]) - ox) - sx * z;
-            y[j] = (double8_all(cy[j]) - oy) - sy * z;
+            z[j] = double8_all(cz[j]) - oz;
+            x[j] = (double8_all(cx[j]) - ox) - sx * z[j];
+            y[j] = (double8_all(cy[j]) - oy) - sy * z[j];
         }
         const double8 u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0];
         const int8x64 below = (int8x64)(u + zero) | (int8x64)(v + zero) | (int8x64)(w + zero);
         const int8x64 above = (int8x64)(zero - u) | (int8x64)(zero - v) | (int8x64)(zero - w);
         const int8x64 met = (below & above) >= 0;
-        const uint8_t hit = wanted & bits_of8(__builtin_convertvector(met, int8x4));
+        uint8_t hit = wanted & bits_of8(__builtin_convertvector(met, int8x32));
+        if (!hit)
+            continue;
+        /* As in query_blocks: what lies beyond the best hit without doubt. */
+        const double8 sz = doubles_at(&p->shear[2][i]), t = (u * (sz * z[0]) + v * (sz * z[1]) + w * (sz * z[2])) / (u + v + w);
+        const int8x64 near = t <= doubles_at(&p->t_limit[i]);
+        hit &= bits_of8(__builtin_convertvector(near, int8x32));
         if (hit)
             p->alive.bits[g] &= (uint8_t)~consider(p, g, hit, mode, corner, triangle);
     }
@@ -202,7 +232,8 @@ static void leaf_together(const hierarchy *h, packet *p, const ray_set *set, enu
             triangle_together(p, set, mode, (const double (*)[3])corner, numbers[lane]);
         }
     }
-    note_farthest(p);
+    if (p->changed)
+        note_farthest(p);
 }
 
 /* The few rays of a set, each by itself from a child on. */
@@ -218,9 +249,9 @@ static void go_alone(const hierarchy *h, packet *p, const ray_set *set, enum que
             }
             b.t_min = p->t_min[i];
             KERNEL(walk_bvh_from)(h, p->ray[i], &b, mode, child);
-            p->t_best[i] = float_above(p->ray[i]->t_best);
-            if (mode == QUERY_ANY && p->ray[i]->best != TRIANGLE_NONE)
-                p->alive.bits[g] &= (uint8_t)~(1u << lane);
+            const bool over = mode == QUERY_ANY && p->ray[i]->best != TRIANGLE_NONE;
+            settle(p, i, over);
+            p->alive.bits[g] &= (uint8_t)~(over << lane);
         }
     }
     note_farthest(p);
