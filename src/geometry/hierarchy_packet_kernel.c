@@ -18,7 +18,10 @@ typedef struct packet {
     _Alignas(64) float near_origin[3][TOGETHER], far_origin[3][TOGETHER], near_inverse[3][TOGETHER], far_inverse[3][TOGETHER];
     _Alignas(64) float t_min[TOGETHER], t_best[TOGETHER];
     _Alignas(64) double origin[3][TOGETHER], shear[3][TOGETHER]; /* along the query's axes x, y, z */
-    _Alignas(64) double t_limit[TOGETHER]; /* each query's t_best */
+    _Alignas(64) double t_limit[TOGETHER], t_start[TOGETHER];    /* each query's t_best and t_min */
+    _Alignas(64) double place[3][TOGETHER], inverse[3][TOGETHER]; /* origin and inverse direction along the scene's axes */
+    _Alignas(64) int64_t parallel[3][TOGETHER], skip[TOGETHER], wanted[TOGETHER], best[TOGETHER], facing[TOGETHER];
+    _Alignas(64) double weight_u[TOGETHER], weight_v[TOGETHER], det[TOGETHER]; /* of the best hits */
     ray_query *ray[TOGETHER];
     int count, groups;
     int near[3], far[3], axis[3];
@@ -71,7 +74,13 @@ static void packet_start(packet *p, ray_query *const *rays, int count)
         p->t_farthest = MORE(p->t_farthest, p->t_best[i]);
         p->origin[0][i] = q->origin[q->x], p->origin[1][i] = q->origin[q->y], p->origin[2][i] = q->origin[q->z];
         p->shear[0][i] = q->shear_x, p->shear[1][i] = q->shear_y, p->shear[2][i] = q->shear_z;
-        p->t_limit[i] = q->t_best;
+        p->t_limit[i] = q->t_best, p->t_start[i] = q->t_min;
+        p->weight_u[i] = p->weight_v[i] = p->det[i] = 0.0, p->facing[i] = 0;
+        p->skip[i] = q->skip, p->wanted[i] = q->wanted, p->best[i] = q->best;
+        for (int k = 0; k < 3; k++) {
+            p->place[k][i] = q->origin[k], p->inverse[k][i] = q->inverse[k];
+            p->parallel[k][i] = mask_less(magnitude(q->direction[k]), PARALLEL);
+        }
         p->alive.bits[i / LANES] |= (uint8_t)((i < count) << i % LANES);
         widen(p, &b, i == 0);
     }
@@ -149,33 +158,6 @@ static void note_farthest(packet *p)
     p->changed = false;
 }
 
-/* What ray i has found is noted; one that is done looks no farther than nowhere. */
-static void settle(packet *p, int i, bool over)
-{
-    p->t_limit[i] = p->ray[i]->t_best;
-    p->t_best[i] = over ? 0.0f : float_above(p->t_limit[i]);
-    p->changed = true;
-}
-
-/* The one test, of the rays in `set` of a group. Returns those that are done. */
-static uint8_t consider(packet *p, int group, uint8_t set, enum query_mode mode, const double (*corner)[3], uint32_t triangle)
-{
-    uint8_t done = 0;
-    for (; set; set = (uint8_t)LANES_LESS_FIRST(set)) {
-        const int lane = __builtin_ctz(set), i = group * LANES + lane;
-        ray_query *q = p->ray[i];
-        double moved[3][3];
-        for (int k = 0; k < 3; k++)
-            for (int j = 0; j < 3; j++)
-                moved[k][j] = corner[k][j] - q->origin[k];
-        const bool over = query_consider(q, mode, (const double (*)[3])moved, triangle);
-        done |= (uint8_t)(over << lane);
-        if (over || q->t_best < p->t_limit[i])
-            settle(p, i, over);
-    }
-    return done;
-}
-
 ALWAYS_INLINE double8 double8_all(double v) { return (double8){v, v, v, v, v, v, v, v}; }
 ALWAYS_INLINE double8 doubles_at(const double *p)
 {
@@ -184,11 +166,91 @@ ALWAYS_INLINE double8 doubles_at(const double *p)
     return v;
 }
 
+ALWAYS_INLINE int8x64 ints_at(const int64_t *p)
+{
+    int8x64 v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+ALWAYS_INLINE double8 double8_blend(int8x64 mask, double8 a, double8 b) { return (double8)((mask & (int8x64)a) | (~mask & (int8x64)b)); }
+ALWAYS_INLINE double8 double8_greater(double8 a, double8 b) { return double8_blend(a > b, a, b); }
+ALWAYS_INLINE double8 double8_lesser(double8 a, double8 b) { return double8_blend(a < b, a, b); }
+ALWAYS_INLINE double8 double8_magnitude(double8 a) { return (double8)((int8x64)a & INT64_MAX); }
+ALWAYS_INLINE int8x64 any_bits(double8 a) { return (int8x64)a; }
+
+/* Eight rays that the edge functions let through one triangle: weights and corners as seen by each. */
+typedef struct passed { double8 u, v, w, x[3], y[3], z[3], t; } passed;
+
+/* query_clamp for eight rays. */
+ALWAYS_INLINE int8x64 clamp_together(const packet *p, int i, const double (*corner)[3], double8 *t)
+{
+    const double8 zero = double8_all(0.0);
+    double8 near = double8_all(-(double)INFINITY), far = double8_all((double)INFINITY);
+    int8x64 met = {-1, -1, -1, -1, -1, -1, -1, -1};
+    for (int k = 0; k < 3; k++) {
+        const double8 o = doubles_at(&p->place[k][i]), inverse = doubles_at(&p->inverse[k][i]);
+        const double8 low = double8_all(least_of(corner[k])) - o, high = double8_all(most_of(corner[k])) - o;
+        const int8x64 parallel = ints_at(&p->parallel[k][i]);
+        const int8x64 aside = (low > zero + PARALLEL_MARGIN) | (high < zero - PARALLEL_MARGIN);
+        const double8 one = low * inverse, two = high * inverse, in = double8_lesser(one, two), out = double8_greater(one, two);
+        const double8 first = double8_greater(near, in - double8_magnitude(in) * BOX_MARGIN);
+        const double8 last = double8_lesser(far, out + double8_magnitude(out) * BOX_MARGIN);
+        near = double8_blend(parallel, near, first);
+        far = double8_blend(parallel, far, last);
+        met &= ~(parallel & aside);
+    }
+    *t = double8_lesser(double8_greater(*t, near), far);
+    return met & (near <= far);
+}
+
+/* query_consider for the rays of `mask` among eight. Returns those that it accepts. */
+ALWAYS_INLINE int8x64 consider_together(packet *p, int i, int8x64 mask, const passed *h, const double (*corner)[3], uint32_t triangle)
+{
+    const double8 zero = double8_all(0.0), limit = doubles_at(&p->t_limit[i]), start = doubles_at(&p->t_start[i]), sz = doubles_at(&p->shear[2][i]);
+    const double8 z0 = sz * h->z[0], z1 = sz * h->z[1], z2 = sz * h->z[2];
+    const double8 farthest = double8_greater(double8_greater(z0, z1), z2), nearest = double8_lesser(double8_lesser(z0, z1), z2);
+    mask &= ~((farthest * (1.0 + 2.0 * BOX_MARGIN) < start) | (nearest * (1.0 - 2.0 * BOX_MARGIN) > limit));
+    mask &= ints_at(&p->skip[i]) != (int64_t)triangle;
+    const double8 det = h->u + h->v + h->w;
+    const int8x64 front = det > zero, facing = (front & FACING_FRONT) | (~front & FACING_BACK);
+    mask &= (front | (det < zero)) & ((facing & ints_at(&p->wanted[i])) != 0);
+    const double8 least_x = double8_lesser(double8_lesser(h->x[0], h->x[1]), h->x[2]), most_x = double8_greater(double8_greater(h->x[0], h->x[1]), h->x[2]);
+    const double8 least_y = double8_lesser(double8_lesser(h->y[0], h->y[1]), h->y[2]), most_y = double8_greater(double8_greater(h->y[0], h->y[1]), h->y[2]);
+    mask &= (least_x <= zero) & (most_x >= zero) & (least_y <= zero) & (most_y >= zero);
+    double8 t = h->t;
+    mask &= clamp_together(p, i, corner, &t);
+    mask &= (t >= start) & (t <= limit);
+    const int8x64 best = ints_at(&p->best[i]), better = mask & ((t < limit) | (best > (int64_t)triangle));
+    const double8 new_limit = double8_blend(better, t, limit), u = double8_blend(better, h->v, doubles_at(&p->weight_u[i])),
+                  v = double8_blend(better, h->w, doubles_at(&p->weight_v[i])), d = double8_blend(better, det, doubles_at(&p->det[i]));
+    const int8x64 number = (better & (int64_t)triangle) | (~better & best), side = (better & facing) | (~better & ints_at(&p->facing[i]));
+    memcpy(&p->t_limit[i], &new_limit, sizeof new_limit);
+    memcpy(&p->weight_u[i], &u, sizeof u);
+    memcpy(&p->weight_v[i], &v, sizeof v);
+    memcpy(&p->det[i], &d, sizeof d);
+    memcpy(&p->best[i], &number, sizeof number);
+    memcpy(&p->facing[i], &side, sizeof side);
+    return better;
+}
+
+/* The float limits of eight rays follow the exact ones; a ray that is done looks no farther than nowhere. */
+ALWAYS_INLINE void note_limits(packet *p, int group)
+{
+    for (int k = 0; k < LANES; k++) {
+        const int i = group * LANES + k;
+        const bool over = !(p->alive.bits[group] >> k & 1);
+        p->t_best[i] = over ? 0.0f : float_above(p->t_limit[i]);
+    }
+    p->changed = true;
+}
+
 /* One triangle, eight rays at a time. corner[axis][corner], axes the scene's. */
 static void triangle_together(packet *p, const ray_set *set, enum query_mode mode, const double (*corner)[3], uint32_t triangle)
 {
     const double *cx = corner[p->axis[0]], *cy = corner[p->axis[1]], *cz = corner[p->axis[2]];
     const double8 zero = double8_all(0.0);
+    const int8x64 lane_bit = {1, 2, 4, 8, 16, 32, 64, 128};
     for (int g = 0; g < p->groups; g++) {
         const uint8_t wanted = set->bits[g] & p->alive.bits[g];
         if (!wanted)
@@ -196,25 +258,30 @@ static void triangle_together(packet *p, const ray_set *set, enum query_mode mod
         const int i = g * LANES;
         const double8 ox = doubles_at(&p->origin[0][i]), oy = doubles_at(&p->origin[1][i]), oz = doubles_at(&p->origin[2][i]),
                       sx = doubles_at(&p->shear[0][i]), sy = doubles_at(&p->shear[1][i]);
-        double8 x[3], y[3], z[3];
+        passed h;
         for (int j = 0; j < 3; j++) {
-            z[j] = double8_all(cz[j]) - oz;
-            x[j] = (double8_all(cx[j]) - ox) - sx * z[j];
-            y[j] = (double8_all(cy[j]) - oy) - sy * z[j];
+            h.z[j] = double8_all(cz[j]) - oz;
+            h.x[j] = (double8_all(cx[j]) - ox) - sx * h.z[j];
+            h.y[j] = (double8_all(cy[j]) - oy) - sy * h.z[j];
         }
-        const double8 u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0];
-        const int8x64 below = (int8x64)(u + zero) | (int8x64)(v + zero) | (int8x64)(w + zero);
-        const int8x64 above = (int8x64)(zero - u) | (int8x64)(zero - v) | (int8x64)(zero - w);
-        const int8x64 met = (below & above) >= 0;
-        uint8_t hit = wanted & bits_of8(__builtin_convertvector(met, int8x32));
-        if (!hit)
+        h.u = h.x[2] * h.y[1] - h.y[2] * h.x[1], h.v = h.x[0] * h.y[2] - h.y[0] * h.x[2], h.w = h.x[1] * h.y[0] - h.y[1] * h.x[0];
+        const int8x64 below = any_bits(h.u + zero) | any_bits(h.v + zero) | any_bits(h.w + zero);
+        const int8x64 above = any_bits(zero - h.u) | any_bits(zero - h.v) | any_bits(zero - h.w);
+        const int8x64 inside = ((below & above) >= 0) & (((int8x64){wanted, wanted, wanted, wanted, wanted, wanted, wanted, wanted} & lane_bit) != 0);
+        if (!bits_of8(__builtin_convertvector(inside, int8x32)))
             continue;
         /* As in query_blocks: what lies beyond the best hit without doubt. */
-        const double8 sz = doubles_at(&p->shear[2][i]), t = (u * (sz * z[0]) + v * (sz * z[1]) + w * (sz * z[2])) / (u + v + w);
-        const int8x64 near = t <= doubles_at(&p->t_limit[i]);
-        hit &= bits_of8(__builtin_convertvector(near, int8x32));
-        if (hit)
-            p->alive.bits[g] &= (uint8_t)~consider(p, g, hit, mode, corner, triangle);
+        const double8 sz = doubles_at(&p->shear[2][i]);
+        h.t = (h.u * (sz * h.z[0]) + h.v * (sz * h.z[1]) + h.w * (sz * h.z[2])) / (h.u + h.v + h.w);
+        const int8x64 near = inside & (h.t <= doubles_at(&p->t_limit[i]));
+        if (!bits_of8(__builtin_convertvector(near, int8x32)))
+            continue;
+        const int8x64 found = consider_together(p, i, near, &h, corner, triangle);
+        const uint8_t bits = bits_of8(__builtin_convertvector(found, int8x32));
+        if (!bits)
+            continue;
+        p->alive.bits[g] &= (uint8_t)(mode == QUERY_ANY ? ~bits : 255);
+        note_limits(p, g);
     }
 }
 
@@ -236,6 +303,25 @@ static void leaf_together(const hierarchy *h, packet *p, const ray_set *set, enu
         note_farthest(p);
 }
 
+/* What the packet knows of a ray's best hit, back to the ray, and the other way. */
+static void give_back(const packet *p, int i)
+{
+    ray_query *q = p->ray[i];
+    q->t_best = p->t_limit[i];
+    q->weight_u = p->weight_u[i], q->weight_v = p->weight_v[i], q->det = p->det[i];
+    q->best = (uint32_t)p->best[i];
+    q->best_facing = (int)p->facing[i];
+}
+
+static void take_over(packet *p, int i)
+{
+    const ray_query *q = p->ray[i];
+    p->t_limit[i] = q->t_best;
+    p->weight_u[i] = q->weight_u, p->weight_v[i] = q->weight_v, p->det[i] = q->det;
+    p->best[i] = q->best;
+    p->facing[i] = q->best_facing;
+}
+
 /* The few rays of a set, each by itself from a child on. */
 static void go_alone(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, uint32_t child)
 {
@@ -248,10 +334,12 @@ static void go_alone(const hierarchy *h, packet *p, const ray_set *set, enum que
                 b.near_inverse[k] = p->near_inverse[k][i], b.far_inverse[k] = p->far_inverse[k][i];
             }
             b.t_min = p->t_min[i];
+            const uint32_t before = p->ray[i]->best;
+            give_back(p, i);
             KERNEL(walk_bvh_from)(h, p->ray[i], &b, mode, child);
-            const bool over = mode == QUERY_ANY && p->ray[i]->best != TRIANGLE_NONE;
-            settle(p, i, over);
-            p->alive.bits[g] &= (uint8_t)~(over << lane);
+            take_over(p, i);
+            p->alive.bits[g] &= (uint8_t)~((mode == QUERY_ANY && p->ray[i]->best != before) << lane);
+            p->t_best[i] = p->alive.bits[g] >> lane & 1 ? float_above(p->t_limit[i]) : 0.0f;
         }
     }
     note_farthest(p);
@@ -328,5 +416,7 @@ void KERNEL(walk_bvh_together)(const hierarchy *h, ray_query *const *rays, int c
         }
         packet_start(&p, alike, n);
         packet_walk(h, &p, mode);
+        for (int i = 0; i < n; i++)
+            give_back(&p, i);
     }
 }
