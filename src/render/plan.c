@@ -70,6 +70,8 @@ static int build_threads(const scene *s)
 static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
 {
     const hierarchy_kind kind = (hierarchy_kind)s->render.accel;
+    if (s->render.integrator == INTEGRATOR_ZBUFFER)
+        return STATUS_OK; /* what is drawn needs none */
     if (s->render.keep)
         return hierarchy_of_mesh(m, kind, build_threads(s), out, why);
     for (size_t k = 0; k < i; k++) {
@@ -89,7 +91,7 @@ static void report_mesh(plan *p, const solid_shape *shape, const hierarchy *tree
     const double copies = shape->copies.x * shape->copies.y * shape->copies.z;
     p->meshes.instances += (uint64_t)copies;
     p->meshes.triangles += (uint64_t)copies * shape->mesh->triangle_count;
-    if (first) {
+    if (first && tree) {
         const hierarchy_report r = hierarchy_describe(tree);
         p->meshes.bytes += r.bytes;
         p->meshes.build_s += r.build_s;
@@ -230,8 +232,11 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         return code;
     }
     p->view = frame_of(&s->camera, (double)s->render.width / (double)s->render.height);
-    p->eye_inside = arrangement_inside(p->solids, p->view.eye);
     p->render = s->render;
+    if (s->render.integrator == INTEGRATOR_ZBUFFER)
+        p->render.shadows = SHADOWS_OFF;
+    else
+        p->eye_inside = arrangement_inside(p->solids, p->view.eye);
     p->sky = &s->background;
     p->lights = s->lights;
     p->light_count = (int)s->light_count;

@@ -17,8 +17,8 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         render_settings *r = &p->setting->render;
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
         r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
-        if (r->integrator == INTEGRATOR_PATH)
-            r->integrator = INTEGRATOR_WHITTED; /* all branches, not one by chance */
+        if (r->integrator == INTEGRATOR_PATH || r->integrator == INTEGRATOR_ZBUFFER)
+            r->integrator = INTEGRATOR_WHITTED; /* all branches, not one by chance or none */
         code = scene_check(p->setting, why);
     }
     if (code == STATUS_OK)
@@ -70,7 +70,7 @@ void ray_tree_release(ray_tree *tree)
 
 static status begin(probe *p, ray_tree *tree, diagnostic *why)
 {
-    const tracer_target target = {p->scene, p->picture, NULL, NULL};
+    const tracer_target target = {p->scene, p->picture, NULL, NULL, NULL};
     memset(p->picture->sum, 0, 3 * sizeof *p->picture->sum);
     tree->count = 0;
     tree->depth_limit = (int)p->scene->render.depth;

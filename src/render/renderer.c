@@ -5,6 +5,7 @@
 #include "render/pool.h"
 #include "render/schedule.h"
 #include "render/tracer_set.h"
+#include "render/zbuffer.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +32,7 @@ typedef struct frame {
     const render_options *options;
     const plan *scene;
     const film *picture;
+    zbuffer *depths;  /* of a frame that is drawn, else NULL */
     schedule pieces;
     desk *desks;
     double began_s;
@@ -218,7 +220,8 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
         misplaced |= d->misplaced;
     }
     const bool overflow = tracer_set_collect(f->owner->tracers, &result->counters) || !in_range;
-    count_tests(f->scene, &result->counters);
+    if (!f->depths)
+        count_tests(f->scene, &result->counters);
     if (f->options && f->options->timeline)
         out_of_memory |= !join_events(f->desks, count, result);
     if (out_of_memory)
@@ -288,12 +291,29 @@ static desk *make_desks(int count)
     return desks;
 }
 
-static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, render_result *result, diagnostic *why)
+static void project(void *context, int worker)
+{
+    const frame *f = context;
+    (void)worker;
+    zbuffer_project(f->depths);
+}
+
+/* Of a frame that is drawn, the triangles must be sorted before any piece of the picture can be made. */
+static status prepare_drawing(frame *f, int count, diagnostic *why)
+{
+    if (!f->depths)
+        return STATUS_OK;
+    const status code = pool_run(f->owner->threads, count, f->s->render.pool, project, NULL, f, why);
+    return code == STATUS_OK ? zbuffer_sort(f->depths, why) : code;
+}
+
+static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, zbuffer *depths, render_result *result,
+                        diagnostic *why)
 {
     const int count = (int)s->render.threads;
     frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
     desk *desks = make_desks(count);
-    const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns};
+    const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns, depths};
     bool has_memory = f && desks && tracer_set_begin(r->tracers, count, &target);
     status code = has_memory ? renderer_prepare(r, s, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK) {
@@ -303,11 +323,14 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->options = options;
         f->scene = p;
         f->picture = result->picture;
+        f->depths = depths;
         f->desks = desks;
         schedule_start(&f->pieces, &s->render);
         const double cpu_s = clock_process_cpu_s();
         f->began_s = clock_wall_s();
-        code = pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL, f, why);
+        code = prepare_drawing(f, count, why);
+        if (code == STATUS_OK)
+            code = pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL, f, why);
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
         if (code == STATUS_OK) {
@@ -326,17 +349,21 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
 {
     status code = scene_check(s, why);
     plan *p = NULL;
+    zbuffer *depths = NULL;
     render_result *result = NULL;
     if (code == STATUS_OK && s->background.kind == BACKGROUND_PICTURE && !s->background.picture)
         code = diagnose(why, STATUS_FAILURE, "call scene_load before", "the sky's picture is not loaded");
     if (code == STATUS_OK)
         code = plan_build(s, &p, why);
+    if (code == STATUS_OK && s->render.integrator == INTEGRATOR_ZBUFFER)
+        code = zbuffer_create(p, &depths, why);
     if (code == STATUS_OK)
         code = make_result(s, options, &result, why);
     if (code == STATUS_OK)
-        code = run_frame(r, s, options, p, result, why);
+        code = run_frame(r, s, options, p, depths, result, why);
     if (result && p)
         result->meshes = p->meshes;
+    zbuffer_destroy(depths);
     plan_destroy(p);
     if (code != STATUS_OK && code != STATUS_INTERRUPTED) {
         render_result_destroy(result);

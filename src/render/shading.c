@@ -302,6 +302,8 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
     COUNT(t->counters.hits[owner] += (uint64_t)count);
     if (depth == 0)
         COUNT(t->counters.first_hits[owner] += (uint64_t)count);
+    if (t->straight && t->look->picture)
+        drawn_straighten(t, list);
     color(t, rank, surface);
     if (p->render.integrator == INTEGRATOR_PATH) {
         path_group(t, depth, rank);

@@ -69,7 +69,7 @@ void texture_colors(tracer *t, const primitive *surface)
     for (int k = 0; k < g->count; k++) {
         const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
         const mapped m = t->on_mesh ? (mapped){t->meshes->points.tu[k], t->meshes->points.tv[k], t->meshes->points.uv_per_length[k]}
-                                    : on_primitive(surface, g->points.face[k], point, size);
+                                    : on_primitive(surface, g->points.face[k], t->straight ? t->drawn->at[k] : point, size);
         const double cosine = g->points.cos_i[k] > 0.05 ? g->points.cos_i[k] : 0.05;
         const vec3 c = texture_sample(t->look->picture, m.u, m.v, pixel_width(p, point) / cosine * m.per_length);
         g->cr[k] *= c.x, g->cg[k] *= c.y, g->cb[k] *= c.z;

@@ -13,6 +13,7 @@ tracer *tracer_create(isa level)
     memset(t, 0, offsetof(tracer, scratch));
     t->ways = NULL;
     t->meshes = NULL;
+    t->drawn = NULL;
     t->scratch.meshes = NULL;
     t->geometry = level == ISA_AVX512 ? &geometry_kernels_avx512 : level == ISA_AVX2 ? &geometry_kernels_avx2 : &geometry_kernels_sse2;
     t->shade = level == ISA_AVX512 ? &shade_kernels_avx512 : level == ISA_AVX2 ? &shade_kernels_avx2 : &shade_kernels_sse2;
@@ -28,6 +29,7 @@ void tracer_destroy(tracer *t)
     free(t->waiting);
     free(t->ways);
     free(t->meshes);
+    free(t->drawn);
     queue_destroy(&t->shadows);
     free(t);
 }
@@ -60,7 +62,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     const render_settings *r = &target->scene->render;
     t->depth_limit = (int)r->depth;
     t->branching = r->integrator == INTEGRATOR_WHITTED && r->lighting == LIGHTING_WHITTED;
-    t->by_ticket = r->integrator == INTEGRATOR_PATH || r->spectrum == SPECTRUM_SPECTRAL;
+    t->by_ticket = r->integrator == INTEGRATOR_PATH || r->spectrum == SPECTRUM_SPECTRAL || target->depths;
     /* Of a spectral film a camera ray is one for each wavelength, each with its part of the weight. */
     t->least_weight = r->spectrum == SPECTRUM_SPECTRAL ? r->min_weight / (double)r->wavelengths : r->min_weight;
     int shadows_at_once = BATCH * (target->scene->light_count + 1);
@@ -74,7 +76,10 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     if (target->scene->solids->meshes && !t->meshes && !(t->meshes = malloc(sizeof *t->meshes)))
         return false;
     t->scratch.meshes = t->meshes ? &t->meshes->scratch : NULL;
-    const bool absorbs = target->scene->solids->absorbs;
+    if (target->depths && !t->drawn && !(t->drawn = malloc(sizeof *t->drawn)))
+        return false;
+    t->straight = target->depths && r->texturing == TEXTURING_AFFINE;
+    const bool absorbs = target->scene->solids->absorbs && !target->depths;
     if (absorbs && !t->ways && !(t->ways = malloc(sizeof *t->ways)))
         return false;
     t->scratch.ways = absorbs ? t->ways : NULL;
@@ -141,11 +146,14 @@ static void trace_batch(tracer *t, int depth)
     COUNT(t->counters.by_depth[depth] += (uint64_t)rays.count);
     if (depth == 0)
         COUNT(t->counters.camera += (uint64_t)rays.count);
-    t->geometry->nearest(p->solids, &rays, &t->scratch, &t->hits);
+    if (t->target.depths)
+        drawn_hits(t, q, first, &rays);
+    else
+        t->geometry->nearest(p->solids, &rays, &t->scratch, &t->hits);
     const bool random_paths = p->render.integrator == INTEGRATOR_PATH;
     if (random_paths)
         path_meet_lights(t, q, first, rays.count);
-    if (p->solids->absorbs) {
+    if (t->scratch.ways) {
         absorption_spare_sky(t);
         absorption_dim(t, q, first, rays.count);
     }
@@ -300,6 +308,8 @@ int tracer_camera_rays(tracer *t, int x, int y)
 
 void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop)
 {
+    if (t->target.depths)
+        zbuffer_draw(t->target.depths, piece, &t->drawn->square);
     const int64_t each = rays_a_pixel(&t->target.scene->render), all = each * (piece->x1 - piece->x0);
     const int at_once = rays_at_once(each);
     for (int y = piece->y0; y < piece->y1; y++) {

@@ -6,6 +6,7 @@
 #include "render/shade.h"
 #include "render/ticket.h"
 #include "render/tracer.h"
+#include "render/zbuffer.h"
 
 /* Stokes vectors relative to their first element, of a group and of its two branches. */
 typedef struct polar_group { double q[ROW], u[ROW], v[ROW], rq[ROW], ru[ROW], rv[ROW], tq[ROW], tu[ROW], tv[ROW]; } polar_group;
@@ -19,6 +20,14 @@ typedef struct mesh_work {
     lit_group corner_light;
     double sum[3][ROW];
 } mesh_work;
+
+/* What a drawn frame needs: a square of the depth buffer, and of each ray of the batch the point of the grid and the triangle there. */
+typedef struct drawn_work {
+    zbuffer_square square;
+    int x[ROW], y[ROW];
+    uint32_t number[ROW];
+    vec3 at[ROW];            /* of the gathered group: where a texture is looked up that runs straight across the picture */
+} drawn_work;
 
 struct tracer {
     const geometry_kernels *geometry;
@@ -47,6 +56,8 @@ struct tracer {
     const surface_look *look; /* of the gathered group */
     bool on_mesh;            /* the gathered group met one */
     int met_light[ROW];      /* of random paths: the light that a ray ran into, or -1 */
+    drawn_work *drawn;       /* once a frame has been drawn; NULL before */
+    bool straight;           /* the frame is drawn, its textures straight across the picture */
 };
 
 /* A build without counters compiles the statement and throws it away. */
@@ -69,6 +80,10 @@ int mesh_next_look(const tracer *t, int *list, int count, int *slot);
 
 /* texture_shading.c: the look's picture times the gathered group's colours. */
 void texture_colors(tracer *t, const primitive *surface);
+
+/* zbuffer_shading.c: t->hits of a batch of camera rays, as drawn; texture points or coordinates of the gathered group straight across the picture. */
+void drawn_hits(tracer *t, const ray_queue *q, int first, const ray_batch *rays);
+void drawn_straighten(tracer *t, const int *list);
 
 /* Adds radiance to a ticket's pixel. Of a spectral film the three channels are one: radiance at the ticket's wavelength. */
 void shading_expose(tracer *t, int64_t ticket, double r, double g, double b);

@@ -97,6 +97,10 @@ status check_render(const scene *s, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
                         "the path integrator does not follow polarisation");
     }
+    if (s->render.integrator == INTEGRATOR_ZBUFFER && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL)) {
+        return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
+                        "the depth buffer draws red, green and blue: it knows no %s", s->render.polarisation ? "polarisation" : "spectrum");
+    }
     if (s->render.polarisation && s->render.weights == WEIGHTS_CONSTANT) {
         return diagnose(why, STATUS_BAD_INPUT, "set render.weights to fresnel",
                         "constant weights know no polarisation, which Fresnel's equations give");

@@ -1,0 +1,146 @@
+/* What the depth buffer shows at the tracer's camera rays, as if they had been traced there. */
+#include "render/tracer_private.h"
+#include "render/zbuffer_private.h"
+
+#include "base/lanes.h"
+
+/* The point of the grid that a ray goes through. */
+static size_t point_of(const zbuffer *z, int64_t ticket, int *x, int *y)
+{
+    const int64_t pixel = ticket_pixel(ticket), sample = ticket_sample(ticket), width = z->width / z->points;
+    *x = (int)(pixel % width * z->points + sample % z->points);
+    *y = (int)(pixel / width * z->points + sample / z->points);
+    return (size_t)*y * (size_t)z->width + (size_t)*x;
+}
+
+typedef struct met { double t, u, v; bool leaving; } met;
+
+static met met_plane(const primitive *p, const camera_frame *view, vec3 d)
+{
+    const vec3 n = vec3_make(p->rotation.row[0].y, p->rotation.row[1].y, p->rotation.row[2].y);
+    const double along = vec3_dot(n, d);
+    return (met){.t = vec3_dot(n, vec3_sub(p->origin, view->eye)) / along, .leaving = along > 0.0};
+}
+
+/* Weights of the corners under the ray: what interpolating u / w, v / w and 1 / w across the picture comes to (Heckbert and Moreton,
+ * "Interpolation for polygon texture mapping and shading", 1991), by the ray instead of the picture because corners may be behind the eye (Moller and
+ * Trumbore, JGT 2(1), 1997). A ray that misses by what corners were rounded takes the nearest edge. */
+static met met_triangle(const drawn_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
+{
+    const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
+    const vec3 o = vec3_sub(forest_origin(&p->at, s->copy), view->eye);
+    const vec3 a = zbuffer_vertex(&p->at, o, tri.corner[0]);
+    const vec3 ab = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[1]), a), ac = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[2]), a);
+    const vec3 h = vec3_cross(d, ac), q = vec3_cross(ab, a);
+    const double size = vec3_dot(ab, h);
+    double u = -vec3_dot(a, h) / size, v = vec3_dot(d, q) / size;
+    if (!(fabs(u) < 1e6 && fabs(v) < 1e6)) /* seen from its edge */
+        u = v = 1.0 / 3.0;
+    if (u < 0.0 || v < 0.0 || u + v > 1.0) {
+        const double w = greater(1.0 - u - v, 0.0);
+        u = greater(u, 0.0), v = greater(v, 0.0);
+        const double sum = w + u + v;
+        u /= sum, v /= sum;
+    }
+    const vec3 at = vec3_add(a, vec3_add(vec3_scale(ab, u), vec3_scale(ac, v)));
+    return (met){vec3_dot(at, d), u, v, size < 0.0};
+}
+
+static void note_nothing(tracer *t, int i)
+{
+    t->hits.t[i] = HUGE_VAL;
+    t->hits.crossed[i] = -1;
+    t->hits.surface[i] = 0;
+}
+
+static void note_hit(tracer *t, int i, const screen_triangle *s, vec3 d)
+{
+    const zbuffer *z = t->target.depths;
+    const drawn_part *p = &z->parts[s->part];
+    const primitive *surface = &z->scene->solids->primitives[p->met];
+    const met m = p->plane ? met_plane(surface, &z->scene->view, d) : met_triangle(p, s, &z->scene->view, d);
+    hit_batch *h = &t->hits;
+    h->t[i] = m.t;
+    h->crossed[i] = p->met;
+    h->surface[i] = h->after[i] = surface->rank;
+    h->inside_before[i] = m.leaving ? (uint64_t)1 << p->met : 0;
+    if (surface->kind == PRIMITIVE_MESH)
+        t->meshes->scratch.hit[i] = (forest_hit){m.t, m.u, m.v, mesh_face_number(p->met, s->copy, s->triangle), m.leaving ? FACING_BACK : FACING_FRONT};
+}
+
+void drawn_hits(tracer *t, const ray_queue *q, int first, const ray_batch *rays)
+{
+    const zbuffer *z = t->target.depths;
+    drawn_work *w = t->drawn;
+    for (int i = 0; i < rays->count; i++) {
+        const uint32_t seen = z->seen[point_of(z, q->ticket[first + i], &w->x[i], &w->y[i])];
+        t->hits.before[i] = t->hits.after[i] = 0;
+        t->hits.inside_before[i] = t->hits.inside_after[i] = 0;
+        if (t->meshes)
+            t->meshes->scratch.hit[i].face = FACE_NONE;
+        w->number[i] = seen - 1;
+        if (seen)
+            note_hit(t, i, &z->triangles[seen - 1], vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]));
+        else
+            note_nothing(t, i);
+    }
+}
+
+/* Weights straight across the picture, of the polygon that the planes left: not what they are in space, unless all corners are equally far. */
+static void straight_weights(const zbuffer *z, const screen_triangle *s, double x, double y, double weight[3])
+{
+    clip_corner polygon[POLYGON_MAX];
+    zbuffer_corners(z, &z->parts[s->part], s->copy, s->triangle, polygon);
+    zbuffer_clip(z, polygon);
+    const clip_corner *corner[3] = {&polygon[0], &polygon[s->piece], &polygon[s->piece + 1]};
+    double cx[3], cy[3], area[3];
+    for (int k = 0; k < 3; k++)
+        zbuffer_place(z, corner[k], &cx[k], &cy[k]);
+    for (int k = 0; k < 3; k++) {
+        const int b = (k + 1) % 3, c = (k + 2) % 3;
+        area[k] = (cx[b] - x) * (cy[c] - y) - (cy[b] - y) * (cx[c] - x);
+    }
+    const double whole = area[0] + area[1] + area[2];
+    for (int j = 0; j < 3; j++) {
+        weight[j] = 0.0;
+        for (int k = 0; k < 3; k++)
+            weight[j] += (whole != 0.0 ? area[k] / whole : 1.0 / 3.0) * corner[k]->weight[j];
+    }
+}
+
+static void straighten_uv(tracer *t, const drawn_part *p, const screen_triangle *s, const double weight[3], int k)
+{
+    const mesh *m = p->at.triangles;
+    const mesh_triangle tri = m->triangles[s->triangle];
+    double u = 0.0, v = 0.0;
+    for (int j = 0; m->uvs && j < 3; j++)
+        u += weight[j] * m->uvs[tri.corner[j]].u, v += weight[j] * m->uvs[tri.corner[j]].v;
+    t->meshes->points.tu[k] = u, t->meshes->points.tv[k] = v;
+}
+
+/* A plane's corners are infinitely far, where no straight way leads to. */
+void drawn_straighten(tracer *t, const int *list)
+{
+    const zbuffer *z = t->target.depths;
+    const surface_batch *points = &t->gathered.points;
+    drawn_work *w = t->drawn;
+    for (int k = 0; k < t->gathered.count; k++) {
+        const int i = list[k];
+        const screen_triangle *s = &z->triangles[w->number[i]];
+        const drawn_part *p = &z->parts[s->part];
+        w->at[k] = vec3_make(points->px[k], points->py[k], points->pz[k]);
+        if (p->plane)
+            continue;
+        double weight[3];
+        straight_weights(z, s, w->x[i] + 0.5, w->y[i] + 0.5, weight);
+        if (t->on_mesh) {
+            straighten_uv(t, p, s, weight, k);
+            continue;
+        }
+        const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
+        vec3 at = vec3_make(0.0, 0.0, 0.0);
+        for (int j = 0; j < 3; j++)
+            at = vec3_add(at, vec3_scale(forest_vertex_point(&p->at, s->copy, tri.corner[j]), weight[j]));
+        w->at[k] = at;
+    }
+}
