@@ -382,6 +382,12 @@ check "a spectral scene is noted: one wavelength" matches "$(<err)" '^cuvette: n
 check "but traced" is "$code" 0
 run trace "$scene" --pixel 40,30 --set render.integrator=path
 check "random paths are noted" matches "$(<err)" '^cuvette: note: .*random paths'
+run trace "$scene" --pixel 40,30 --set render.integrator=zbuffer
+check "a drawn picture is noted" matches "$(<err)" '^cuvette: note: .*drawn into a depth buffer'
+run render "$scene" -o drawn.png --json "${small[@]}" --set render.integrator=zbuffer
+check "a depth buffer draws the scene: no shadow rays" is "$code $(json counters.shadow)" "0 0"
+run render "$scene" -o drawn.png "${small[@]}" --set render.integrator=zbuffer --set render.spectrum=spectral
+check "but not a spectral one" matches "$code $(<err)" '^2 cuvette: .*depth buffer.*; set render.integrator'
 run trace "$scene" --pixel 40,30 --lambda 1200 --set liquid.medium=water "${small[@]}"
 check "a medium that was not measured there is noted" matches "$(<err)" '^cuvette: note: liquid: water was measured from 182 to 1129 nm only'
 run trace "$scene" --pixel 40,30 -o tree.json "${small[@]}"

@@ -83,6 +83,15 @@ static void what_has_no_effect_is_hinted_at(void **state)
     expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
 }
 
+static void what_a_depth_buffer_cannot_show_is_hinted_at(void **state)
+{
+    (void)state;
+    expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, specular: 1}}",
+                 "ball is transparent, and the depth buffer draws its surface: black but for highlights; set its diffuse\n");
+    expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, diffuse: 0.2}}", "");
+    expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
+}
+
 static void what_is_hidden_is_hinted_at(void **state)
 {
     (void)state;
@@ -148,6 +157,7 @@ int main(void)
         cmocka_unit_test(what_is_forgotten_is_hinted_at),
         cmocka_unit_test(a_law_beyond_its_measurements_is_hinted_at),
         cmocka_unit_test(what_has_no_effect_is_hinted_at),
+        cmocka_unit_test(what_a_depth_buffer_cannot_show_is_hinted_at),
         cmocka_unit_test(what_is_hidden_is_hinted_at),
         cmocka_unit_test(what_is_meant_is_not),
         cmocka_unit_test(the_projects_scenes_lack_nothing),

@@ -84,14 +84,16 @@ void scene_input_note_hints(const scene *s)
 
 void scene_input_note_tree(const scene *s)
 {
-    const bool path = s->render.integrator == INTEGRATOR_PATH, spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
+    const bool path = s->render.integrator == INTEGRATOR_PATH, drawn = s->render.integrator == INTEGRATOR_ZBUFFER;
+    const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
     scene one_lambda = *s; /* borrows what s owns */
     one_lambda.render.spectrum = SPECTRUM_RGB;
     scene_range_hints(&one_lambda, print_note, NULL);
     char text[160];
-    if (!path && !spectral)
+    if (!path && !drawn && !spectral)
         return;
     snprintf(text, sizeof text, "the scene's picture is %s%s%s; rays are here traced as Whitted did, at render.lambda_nm = %.6g",
-             path ? "made of random paths" : "", path && spectral ? " and " : "", spectral ? "spectral" : "", s->render.lambda_nm);
+             path ? "made of random paths" : drawn ? "drawn into a depth buffer" : "",
+             path && spectral ? " and " : "", spectral ? "spectral" : "", s->render.lambda_nm);
     terminal_note(text);
 }

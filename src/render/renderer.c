@@ -363,6 +363,10 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
         code = run_frame(r, s, options, p, depths, result, why);
     if (result && p)
         result->meshes = p->meshes;
+    if (code == STATUS_OK && depths) {
+        result->meshes.drawn = zbuffer_triangles(depths);
+        result->meshes.drawn_bytes = zbuffer_bytes(depths);
+    }
     zbuffer_destroy(depths);
     plan_destroy(p);
     if (code != STATUS_OK && code != STATUS_INTERRUPTED) {

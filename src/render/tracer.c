@@ -306,10 +306,23 @@ int tracer_camera_rays(tracer *t, int x, int y)
     return count;
 }
 
+/* Its pixels have equal shares of the time. */
+static void draw(tracer *t, const span *piece)
+{
+    const int64_t began = t->target.pixel_ns ? clock_wall_ns() : 0;
+    zbuffer_draw(t->target.depths, piece, &t->drawn->square);
+    if (!t->target.pixel_ns)
+        return;
+    const double pixels = (double)(piece->x1 - piece->x0) * (double)(piece->y1 - piece->y0), share = (double)(clock_wall_ns() - began) / pixels;
+    for (int y = piece->y0; y < piece->y1; y++)
+        for (int x = piece->x0; x < piece->x1; x++)
+            t->target.pixel_ns[(int64_t)y * t->target.scene->render.width + x] += share;
+}
+
 void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop)
 {
     if (t->target.depths)
-        zbuffer_draw(t->target.depths, piece, &t->drawn->square);
+        draw(t, piece);
     const int64_t each = rays_a_pixel(&t->target.scene->render), all = each * (piece->x1 - piece->x0);
     const int at_once = rays_at_once(each);
     for (int y = piece->y0; y < piece->y1; y++) {

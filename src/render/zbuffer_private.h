@@ -1,9 +1,9 @@
 /* The depth buffer's inside, for src/render/zbuffer*.c.
  *
- * Points where the picture is looked at form a grid: one a pixel, or two by two; its unit is the way from one to the next, its origin the
- * picture's upper left corner, so that point i stands at i + 1/2. Corners of triangles are rounded to 2^-12 of that unit. From there on all that decides
- * which points a triangle covers is whole numbers; two triangles that share an edge share its rounded ends, and by the rule of top and left edges no
- * point on it is drawn twice or left out. */
+ * Points where the picture is looked at form a grid: one a pixel, or two by two; its unit is the way from one to the next, its origin
+ * the picture's upper left corner, so that point i stands at i + 1/2. Corners of triangles are rounded to 2^-12 of that unit. From
+ * there on all that decides which points a triangle covers is whole numbers; two triangles that share an edge share its rounded ends,
+ * and by the rule of top and left edges no point on it is drawn twice or left out. */
 #ifndef CUVETTE_RENDER_ZBUFFER_PRIVATE_H
 #define CUVETTE_RENDER_ZBUFFER_PRIVATE_H
 

@@ -23,8 +23,8 @@ static met met_plane(const primitive *p, const camera_frame *view, vec3 d)
 }
 
 /* Weights of the corners under the ray: what interpolating u / w, v / w and 1 / w across the picture comes to (Heckbert and Moreton,
- * "Interpolation for polygon texture mapping and shading", 1991), by the ray instead of the picture because corners may be behind the eye (Moller and
- * Trumbore, JGT 2(1), 1997). A ray that misses by what corners were rounded takes the nearest edge. */
+ * "Interpolation for polygon texture mapping and shading", 1991), by the ray instead of the picture because corners may be behind the
+ * eye (Moller and Trumbore, JGT 2(1), 1997). A ray that misses by what corners were rounded takes the nearest edge. */
 static met met_triangle(const drawn_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
 {
     const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
@@ -64,8 +64,10 @@ static void note_hit(tracer *t, int i, const screen_triangle *s, vec3 d)
     h->crossed[i] = p->met;
     h->surface[i] = h->after[i] = surface->rank;
     h->inside_before[i] = m.leaving ? (uint64_t)1 << p->met : 0;
-    if (surface->kind == PRIMITIVE_MESH)
-        t->meshes->scratch.hit[i] = (forest_hit){m.t, m.u, m.v, mesh_face_number(p->met, s->copy, s->triangle), m.leaving ? FACING_BACK : FACING_FRONT};
+    if (surface->kind != PRIMITIVE_MESH)
+        return;
+    const int64_t face = mesh_face_number(p->met, s->copy, s->triangle);
+    t->meshes->scratch.hit[i] = (forest_hit){m.t, m.u, m.v, face, m.leaving ? FACING_BACK : FACING_FRONT};
 }
 
 void drawn_hits(tracer *t, const ray_queue *q, int first, const ray_batch *rays)

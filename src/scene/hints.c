@@ -37,7 +37,11 @@ static const char *solid_hint(const scene *s, const solid *owner, char text[HINT
 {
     const material *m = &owner->surface;
     const char *problem = NULL;
-    if (m->transparency > 0.0) {
+    if (m->transparency > 0.0 && s->render.integrator == INTEGRATOR_ZBUFFER) {
+        if (m->ambient == 0.0 && m->diffuse == 0.0) {
+            problem = "is transparent, and the depth buffer draws its surface: black but for highlights; set its diffuse";
+        }
+    } else if (m->transparency > 0.0) {
         if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !is_inside_medium(s, owner)) {
             problem = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m)
                           ? "is transparent with the index of what is around it: it bends no light; set its ior"
