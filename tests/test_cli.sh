@@ -385,7 +385,7 @@ check "random paths are noted" matches "$(<err)" '^cuvette: note: .*random paths
 run trace "$scene" --pixel 40,30 --set render.integrator=zbuffer
 check "a drawn picture is noted" matches "$(<err)" '^cuvette: note: .*drawn into a depth buffer'
 run render "$scene" -o drawn.png --json "${small[@]}" --set render.integrator=zbuffer
-check "a depth buffer draws the scene: no shadow rays" is "$code $(json counters.shadow)" "0 0"
+check "a depth buffer draws the scene: no shadow rays" is "$code $(json rays.shadow)" "0 0"
 run render "$scene" -o drawn.png "${small[@]}" --set render.integrator=zbuffer --set render.spectrum=spectral
 check "but not a spectral one" matches "$code $(<err)" '^2 cuvette: .*depth buffer.*; set render.integrator'
 run trace "$scene" --pixel 40,30 --lambda 1200 --set liquid.medium=water "${small[@]}"

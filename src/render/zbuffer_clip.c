@@ -88,9 +88,11 @@ int zbuffer_clip(const zbuffer *z, clip_corner polygon[POLYGON_MAX])
     int count = 3;
     for (int plane = 0; plane < 5 && count >= 3; plane++)
         count = clip_at(z, plane, polygon, count);
-    for (int k = 0; k < count; k++) /* a direction across the view, and an eye on a corner */
-        if (!(polygon[k].z > 0.0))
+    for (int k = 0; k < count; k++) { /* a direction across the view, an eye on a corner, what is no number */
+        const clip_corner *c = &polygon[k];
+        if (!(c->z > 0.0 && fabs(c->x) <= 1.001 * z->reach_x * c->z && fabs(c->y) <= 1.001 * z->reach_y * c->z))
             return 0;
+    }
     return count >= 3 ? count : 0;
 }
 

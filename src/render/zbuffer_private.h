@@ -13,7 +13,8 @@
 
 enum {
     SUBPIXEL = 4096,      /* steps of a corner's place in one unit of the grid */
-    REACH = 3 << 16,      /* units: corners lie no farther from the picture's middle. Products of two differences fit into 63 bits */
+    REACH = 3 << 16,      /* units: corners lie no farther from the picture's middle, or by a rounding. Sums of two products of differences
+                           * stay under 2^63 */
     SQUARE_PIXELS = 32,
     POLYGON_MAX = 8,      /* a triangle's corners and one for each plane that cuts it */
     CHUNK_TRIANGLES = 4096
