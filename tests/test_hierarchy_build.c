@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "base/single.h"
 #include "geometry/hierarchy_team.h"
 #include "hierarchy_fixture.h"
 #include "random_stream.h"
@@ -145,7 +146,7 @@ static fixture soup(size_t count, double reach, double size, bool single, uint64
         vec3 center = random_point(&seed, reach);
         for (size_t k = 0; k < 3; k++) {
             vec3 v = vec3_add(center, random_point(&seed, size));
-            f.m.vertices[3 * i + k] = single ? vec3_make((float)v.x, (float)v.y, (float)v.z) : v;
+            f.m.vertices[3 * i + k] = single ? vec3_make(single_round(v.x), single_round(v.y), single_round(v.z)) : v;
         }
     }
     return f;

@@ -200,8 +200,8 @@ ALWAYS_INLINE int8x64 clamp_together(const packet *p, int i, const double (*corn
         far = double8_blend(parallel, far, last);
         met &= ~(parallel & aside);
     }
-    *t = double8_lesser(double8_greater(*t, near), far);
-    return met & (near <= far);
+    *t = double8_greater(*t, near);
+    return met & (near <= far) & (far >= doubles_at(&p->t_start[i]));
 }
 
 /* query_consider for the rays of `mask` among eight. Returns those that it accepts. */
