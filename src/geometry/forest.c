@@ -111,7 +111,7 @@ status forest_build(const forest_source *sources, int count, forest **out, diagn
     }
     f->parts = parts;
     f->part_count = count;
-    f->lowest_closed = INT_MAX;
+    f->lowest = f->lowest_closed = INT_MAX;
     memset(f->by_primitive, -1, sizeof f->by_primitive);
     for (int i = 0; i < count; i++) {
         forest_part *p = &f->parts[i];
@@ -121,6 +121,8 @@ status forest_build(const forest_source *sources, int count, forest **out, diagn
         f->primitives |= bit;
         *(p->closed ? &f->closed : &f->skins) |= bit;
         f->by_primitive[p->primitive] = i;
+        if (p->rank < f->lowest)
+            f->lowest = p->rank;
         if (p->closed && p->rank < f->lowest_closed)
             f->lowest_closed = p->rank;
     }
@@ -151,9 +153,9 @@ void forest_destroy(forest *f)
     free(f);
 }
 
-/* A direction along no axis and no diagonal. */
 uint64_t forest_inside(const forest *f, vec3 point)
 {
+    /* along no axis and no diagonal */
     const vec3 direction = vec3_make(0.5396, 0.6180, 0.5716);
     uint64_t inside = 0;
     for (int i = 0; i < f->part_count; i++) {

@@ -32,6 +32,7 @@ typedef struct forest {
     hierarchy *top;          /* over these */
     uint64_t primitives;     /* sets: of all meshes ... */
     uint64_t closed, skins;  /* ... and of either kind */
+    int lowest;              /* rank of the lowest mesh */
     uint64_t closed_under[PRIMITIVES_MAX + 1]; /* by rank: the closed meshes of lower ones */
     int lowest_closed;       /* rank of the lowest closed mesh; INT_MAX for none */
     int by_primitive[PRIMITIVES_MAX]; /* part, or -1 */
@@ -41,6 +42,7 @@ typedef struct forest {
 typedef struct forest_ray {
     vec3 origin, direction;
     double t_min, t_max;
+    double tie;              /* of cross: a front and a back of one mesh that are not farther apart are at one place */
     int64_t start;           /* face that it starts on, at its origin or where it was passed on; or FACE_NONE */
     int64_t before;          /* rank of the medium that it is in: meshes under it are hidden */
     uint64_t inside;         /* primitives that it is in */

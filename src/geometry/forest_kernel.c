@@ -6,17 +6,18 @@
 
 #define TREES KERNEL(hierarchy_kernels)
 
-struct last_crossing;
+/* The last crossings of each mesh's fronts and backs on the way, whichever triangles. */
+typedef struct crossings { double front[PRIMITIVES_MAX], back[PRIMITIVES_MAX], t_min; int primitive; } crossings;
 
 /* What one way down asks each copy that it comes by. */
 typedef struct quest {
     const forest *f;
     const forest_ray *ray;
-    enum quest_kind { NEXT, ANY, LAST } kind; /* the next crossing that matters; anything at all; the last crossing of each mesh */
-    bool blocked;
+    bool any, blocked;       /* any: whatever is first met; nothing is hidden */
+    crossings *all;          /* every crossing, and nothing is hidden; else NULL */
     double t_max;
-    forest_hit *best;        /* NEXT */
-    struct last_crossing *last; /* LAST: by part */
+    double beyond;           /* how far from its start it looks at skins */
+    forest_hit *best;
 } quest;
 
 static vec3 direction_in(const forest_part *p, vec3 d)
@@ -25,10 +26,14 @@ static vec3 direction_in(const forest_part *p, vec3 d)
     return p->scaled ? vec3_make(turned.x / p->scale.x, turned.y / p->scale.y, turned.z / p->scale.z) : turned;
 }
 
-/* A ray that starts on a skin may lie on either side of it by rounding, and of another triangle at the same place: it begins beyond its
- * point's error bound. */
-static double beyond_skin(const forest_part *p, uint32_t copy, const forest_ray *ray)
+/* A ray that starts on a mesh may lie on either side of it by rounding, and of a skin at the same place: of skins it sees those beyond
+ * its point's error bound. */
+static double beyond_start(const forest *f, const forest_ray *ray)
 {
+    if (!f->skins || !is_mesh_face(ray->start))
+        return 0.0;
+    const forest_part *p = &f->parts[f->by_primitive[mesh_face_primitive(ray->start)]];
+    const uint32_t copy = mesh_face_copy(ray->start);
     const mesh_triangle tri = p->triangles->triangles[mesh_face_triangle(ray->start)];
     const vec3 a = forest_vertex_point(p, copy, tri.corner[0]), b = forest_vertex_point(p, copy, tri.corner[1]),
                c = forest_vertex_point(p, copy, tri.corner[2]);
@@ -37,6 +42,11 @@ static double beyond_skin(const forest_part *p, uint32_t copy, const forest_ray 
     const double error = 0x1p-48 * (fabs(o.x) + fabs(o.y) + fabs(o.z) + p->reach) * length;
     const double least = 1e-6 * length * vec3_length(d);
     return error / greater(across, least);
+}
+
+static quest quest_of(const forest *f, const forest_ray *ray)
+{
+    return (quest){.f = f, .ray = ray, .t_max = ray->t_max, .beyond = beyond_start(f, ray)};
 }
 
 /* The ray in a copy's frame; false where that mesh is of no concern to it. */
@@ -49,12 +59,13 @@ static bool ray_in(const quest *q, const forest_part *p, uint32_t copy, mesh_ray
         return false;
     const vec3 moved = vec3_sub(ray->origin, forest_origin(p, copy));
     *local = (mesh_ray){.origin = direction_in(p, moved), .direction = direction_in(p, ray->direction), .t_min = ray->t_min, .t_max = q->t_max,
-                        .skip = TRIANGLE_NONE, .facing = !p->closed || q->kind == LAST ? FACING_ANY : within ? FACING_BACK : FACING_FRONT};
-    if (is_mesh_face(ray->start) && mesh_face_primitive(ray->start) == p->primitive && mesh_face_copy(ray->start) == copy) {
+                        .skip = TRIANGLE_NONE, .facing = !p->closed ? FACING_ANY : within ? FACING_BACK : FACING_FRONT};
+    if (is_mesh_face(ray->start) && mesh_face_primitive(ray->start) == p->primitive && mesh_face_copy(ray->start) == copy)
         local->skip = mesh_face_triangle(ray->start);
-        if (!p->closed)
-            local->t_min += beyond_skin(p, copy, ray);
-    }
+    if (!p->closed)
+        local->t_min += q->beyond;
+    if (q->all)
+        local->facing = FACING_ANY;
     return true;
 }
 
@@ -71,19 +82,12 @@ static void take(quest *q, const forest_part *p, uint32_t copy, const mesh_hit *
     q->t_max = hit->t;
 }
 
-/* The last crossing of each mesh on the way, whichever triangle: its side says whether the ray is inside behind it. */
-typedef struct last_crossing { double t; bool inside; double t_min; bool met; } last_crossing;
-
 static void note_crossing(void *context, const mesh_hit *hit)
 {
-    last_crossing *last = context;
-    if (hit->t <= last->t_min || (last->met && hit->t < last->t))
-        return;
-    /* At one distance, a silhouette's front and back: outside. */
-    const bool inside = hit->facing == FACING_FRONT;
-    last->inside = last->met && hit->t == last->t ? last->inside && inside : inside;
-    last->t = hit->t;
-    last->met = true;
+    crossings *all = context;
+    double *last = hit->facing == FACING_FRONT ? all->front : all->back;
+    if (hit->t > all->t_min && hit->t > last[all->primitive])
+        last[all->primitive] = hit->t;
 }
 
 static void ask_copy(quest *q, size_t instance)
@@ -95,7 +99,12 @@ static void ask_copy(quest *q, size_t instance)
     mesh_ray local;
     if (!ray_in(q, p, copy, &local))
         return;
-    if (q->kind == ANY) {
+    if (q->all) {
+        q->all->primitive = p->primitive;
+        TREES.all(p->tree, &local, note_crossing, q->all);
+        return;
+    }
+    if (q->any) {
         q->blocked |= TREES.any(p->tree, &local);
         return;
     }
@@ -138,7 +147,7 @@ static void nearest_of_one(const forest *f, const forest_ray *rays, int count, f
     mesh_hit found[BATCH];
     int ray[BATCH], asked = 0;
     for (int i = 0; i < count; i++) {
-        quest q = {.f = f, .ray = &rays[i], .t_max = rays[i].t_max};
+        const quest q = quest_of(f, &rays[i]);
         hits[i] = (forest_hit){.t = HUGE_VAL, .face = FACE_NONE};
         if (ray_in(&q, p, 0, &local[asked]))
             ray[asked++] = i;
@@ -159,7 +168,8 @@ static void nearest(const forest *f, const forest_ray *rays, int count, forest_h
     }
     for (int i = 0; i < count; i++) {
         hits[i] = (forest_hit){.t = HUGE_VAL, .face = FACE_NONE};
-        quest q = {.f = f, .ray = &rays[i], .t_max = rays[i].t_max, .best = &hits[i]};
+        quest q = quest_of(f, &rays[i]);
+        q.best = &hits[i];
         ask(&q);
     }
 }
@@ -170,7 +180,8 @@ static void any_of_one(const forest *f, const forest_ray *rays, int count, bool 
     bool found[BATCH];
     int ray[BATCH], asked = 0;
     for (int i = 0; i < count; i++) {
-        quest q = {.f = f, .ray = &rays[i], .kind = ANY, .t_max = rays[i].t_max};
+        quest q = quest_of(f, &rays[i]);
+        q.any = true;
         blocked[i] = false;
         if (ray_in(&q, f->parts, 0, &local[asked]))
             ray[asked++] = i;
@@ -189,9 +200,42 @@ static void any(const forest *f, const forest_ray *rays, int count, bool *blocke
         return;
     }
     for (int i = 0; i < count; i++) {
-        quest q = {.f = f, .ray = &rays[i], .kind = ANY, .t_max = rays[i].t_max};
+        quest q = quest_of(f, &rays[i]);
+        q.any = true;
         ask(&q);
         blocked[i] = q.blocked;
+    }
+}
+
+static void look_at_all(const forest *f, const forest_ray *ray, crossings *last)
+{
+    quest q = quest_of(f, ray);
+    q.any = true;
+    q.all = last;
+    last->t_min = ray->t_min;
+    for (int i = 0; i < f->part_count; i++)
+        last->front[f->parts[i].primitive] = last->back[f->parts[i].primitive] = -HUGE_VAL;
+    ask(&q);
+}
+
+/* Is a ray that has gone all its way in a closed mesh? What was crossed last says so: fronts lead in, backs lead out. Where both are at one
+ * place, at a silhouette or between two copies that touch, it is in what it was in before. */
+static bool is_in(const forest *f, const forest_ray *ray, const crossings *all, uint64_t bit, int number)
+{
+    crossings again;
+    forest_ray shorter = *ray;
+    shorter.wanted = bit;
+    for (const crossings *last = all;;) {
+        const double front = last->front[number], back = last->back[number], first = lesser(front, back);
+        if (greater(front, back) < 0.0 && front == back) /* nothing was crossed */
+            return (ray->inside & bit) != 0;
+        if (front - back > ray->tie || back - front > ray->tie)
+            return front > back;
+        shorter.t_max = first - ray->tie;
+        if (!(shorter.t_max > ray->t_min))
+            return (ray->inside & bit) != 0;
+        look_at_all(f, &shorter, &again);
+        last = &again;
     }
 }
 
@@ -203,10 +247,17 @@ static uint64_t cross(const forest *f, const forest_ray *ray)
     quest q = {.f = f, .ray = ray, .kind = LAST, .t_max = ray->t_max, .last = last};
     ask(&q);
     uint64_t set = ray->inside;
+    crossings last;
+    look_at_all(f, ray, &last);
     for (int i = 0; i < f->part_count; i++) {
-        const uint64_t bit = (uint64_t)1 << f->parts[i].primitive;
-        if (last[i].met)
-            set = !f->parts[i].closed || last[i].inside ? set | bit : set & ~bit;
+        const forest_part *p = &f->parts[i];
+        const uint64_t bit = (uint64_t)1 << p->primitive;
+        if (!(ray->wanted & bit))
+            continue;
+        if (p->closed)
+            set = is_in(f, ray, &last, bit, p->primitive) ? set | bit : set & ~bit;
+        else if (last.front[p->primitive] >= 0.0 || last.back[p->primitive] >= 0.0)
+            set |= bit;
     }
     return set;
 }

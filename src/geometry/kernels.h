@@ -22,6 +22,10 @@ void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_s
 /* The set just behind what column k crosses in low < t <= high. */
 uint64_t KERNEL(mesh_set_behind)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, uint64_t before, double low, double high);
 
+/* Where column k crosses the mesh of a bit in low <= t <= high, from the set `before`; its face is FACE_NONE where it does not. */
+forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit, uint64_t before, double low,
+                                    double high);
+
 /* Marks the shadow rays (but settled ones) that meshes of a set are in the way of. */
 void KERNEL(mesh_shadows)(const arrangement *a, const ray_batch *rays, uint64_t wanted, int64_t *marked, const int64_t *settled);
 

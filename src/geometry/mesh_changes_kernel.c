@@ -17,6 +17,9 @@ static forest_ray ray_of_column(const ray_batch *rays, int k, const ray_scratch 
                         .t_min = m->from[k], .t_max = HUGE_VAL, .start = m->last[k], .before = 0, .inside = s->inside[k]};
 }
 
+/* A front and a back of one mesh within this share of the distance are at one place, well above rounding. */
+#define ONE_PLACE 0x1p-40
+
 static double close_to(const ray_scratch *s, int k, double t)
 {
     return BOUNDARY_CLOSE * (t + s->slack[k]);
@@ -45,16 +48,20 @@ void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ra
     }
 }
 
-/* Does another mesh have a boundary next to column k's hit? */
+/* Does a mesh have another boundary next to column k's hit? One mesh alone that is not hidden was asked already, as far as that. */
 static bool others_are_near(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, const hit_batch *c)
 {
+    const bool on_mesh = f->primitives >> c->crossed[k] & 1;
+    if (f->instance_count == 1 && (on_mesh || f->lowest >= c->before[k]))
+        return false;
     const double close = close_to(s, k, c->t[k]);
     forest_ray ray = ray_of_column(rays, k, s);
     ray.t_min = c->t[k] - close;
     ray.t_max = c->t[k] + close;
+    ray.tie = ray.t_max - ray.t_min;
     ray.inside = c->inside_before[k];
-    ray.wanted = f->primitives & ~((uint64_t)1 << c->crossed[k]);
-    return FOREST.cross(f, &ray) != ray.inside;
+    ray.wanted = f->primitives;
+    return ((FOREST.cross(f, &ray) ^ c->inside_after[k]) & f->primitives) != 0;
 }
 
 void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, const forest_hit *hits)
@@ -66,6 +73,7 @@ void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_s
         if (f->lowest_closed < c->before[k]) {
             forest_ray ray = ray_of_column(rays, k, s);
             ray.t_max = c->t[k];
+            ray.tie = ONE_PLACE * (c->t[k] + s->slack[k]);
             ray.wanted = f->closed_under[c->before[k]];
             const uint64_t set = FOREST.cross(f, &ray) & ray.wanted;
             c->inside_before[k] = (c->inside_before[k] & ~ray.wanted) | set;
@@ -76,7 +84,7 @@ void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_s
             const bool leaves = (f->closed & bit) && hits[k].facing == FACING_BACK;
             c->inside_after[k] = leaves ? c->inside_after[k] & ~bit : c->inside_after[k] | bit;
         }
-        s->meshes->near[k] |= f->part_count > 1 && others_are_near(f, rays, k, s, c);
+        s->meshes->near[k] |= others_are_near(f, rays, k, s, c);
     }
 }
 
@@ -85,12 +93,26 @@ uint64_t KERNEL(mesh_set_behind)(const arrangement *a, const ray_batch *rays, in
     forest_ray ray = ray_of_column(rays, k, s);
     ray.t_min = low;
     ray.t_max = high;
+    ray.tie = high - low;
     ray.inside = before;
     ray.wanted = a->meshes->primitives;
     return FOREST.cross(a->meshes, &ray);
 }
 
-/* Rays that a mesh of the set is in the way of, between 0 and 1. */
+forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit, uint64_t before, double low,
+                                    double high)
+{
+    forest_hit hit;
+    forest_ray ray = ray_of_column(rays, k, s);
+    ray.t_min = low;
+    ray.t_max = high;
+    ray.inside = before;
+    ray.wanted = (uint64_t)1 << bit;
+    FOREST.nearest(a->meshes, &ray, 1, &hit);
+    return hit;
+}
+
+/* Rays that a mesh of the set is in the way of, between 0 and 1: those that set out in a closed one are in it from the start. */
 void KERNEL(mesh_shadows)(const arrangement *a, const ray_batch *rays, uint64_t wanted, int64_t *marked, const int64_t *settled)
 {
     forest_ray asked[BATCH];
@@ -99,6 +121,10 @@ void KERNEL(mesh_shadows)(const arrangement *a, const ray_batch *rays, uint64_t 
     for (int i = 0; i < rays->count; i++) {
         if (settled[i])
             continue;
+        if (rays->inside[i] & wanted & a->meshes->closed) {
+            marked[i] = -1;
+            continue;
+        }
         asked[count] = (forest_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
                                     .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]), .t_min = 0.0, .t_max = 1.0,
                                     .start = rays->start[i], .inside = rays->inside[i], .wanted = wanted};

@@ -44,6 +44,7 @@ typedef struct forest_hit {
 typedef struct mesh_scratch {
     forest_hit hit[ROW], again[ROW];
     double from[ROW];        /* how far a column has been followed */
+    double until[ROW];       /* the sets behind a column's hit are those here: beyond its error bound, if another boundary lies close to it */
     int64_t last[ROW];       /* the mesh face where that was, or where the ray starts */
     bool near[ROW];          /* another boundary lies close to the column's hit */
 } mesh_scratch;

@@ -168,13 +168,45 @@ static void next_changes(const arrangement *a, const ray_batch *rays, int n, ray
     ranks_of(a, n, c->inside_after, c->after);
     surfaces(a->opaque_ranks, n, c->before, c->after, c->surface);
     mark_attention(a, n, c, s->attention);
-    for (int k = 0; a->meshes && k < n; k++)
+    for (int k = 0; a->meshes && k < n; k++) {
         s->attention[k] |= -(int64_t)s->meshes->near[k];
+        s->meshes->until[k] = c->t[k];
+    }
+}
+
+/* Of several boundaries at column k's crossing, low <= t <= high, one of which is a mesh's, that of the body whose surface it is counts:
+ * its normal and its colours are what is seen. */
+static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits, double low,
+                             double high)
+{
+    const body *owner = &a->bodies[c->surface[k]];
+    const bool from_mesh = is_mesh(a, (int)c->crossed[k]);
+    if (c->surface[k] == 0 || c->crossed[k] == owner->outside || c->crossed[k] == owner->hollow)
+        return;
+    if (is_mesh(a, owner->outside)) {
+        const forest_hit own = KERNEL(mesh_hit_between)(a, rays, k, s, owner->outside, c->inside_before[k], low, high);
+        if (own.face == FACE_NONE)
+            return;
+        mesh_hits[k] = own;
+        c->t[k] = own.t;
+        c->crossed[k] = owner->outside;
+        return;
+    }
+    const int pieces[2] = {owner->outside, owner->hollow};
+    for (int i = 0; i < 2 && from_mesh && pieces[i] >= 0; i++) {
+        const int p = pieces[i];
+        const double t = c->inside_before[k] >> p & 1 ? s->out[p][k] : s->in[p][k];
+        if (low <= t && t <= high) {
+            c->t[k] = t;
+            c->crossed[k] = p;
+            return;
+        }
+    }
 }
 
 /* The sets around column k's crossing again, at the distance of its error bound: other boundaries within it are
  * part of the same crossing. */
-static void look_closely(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, const forest_hit *mesh_hits)
+static void look_closely(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits)
 {
     const int i = s->ray[k], crossed = (int)c->crossed[k];
     const ray_batch one = {1,           &rays->ox[i], &rays->oy[i], &rays->oz[i],    &rays->dx[i],
@@ -196,15 +228,18 @@ static void look_closely(const arrangement *a, const ray_batch *rays, int k, con
         const uint64_t meshes = a->meshes->primitives;
         before = (before & ~meshes) | (c->inside_before[k] & meshes);
         after = (after & ~meshes) | (KERNEL(mesh_set_behind)(a, rays, k, s, before, low, high) & meshes);
+        s->meshes->until[k] = high;
     }
     c->inside_before[k] = before;
     c->inside_after[k] = after;
     c->after[k] = arrangement_rank(a, after);
     c->surface[k] = arrangement_surface(a, (int)c->before[k], (int)c->after[k]);
+    if (a->meshes)
+        cross_the_owners(a, rays, k, s, c, mesh_hits, low, high);
 }
 
 /* Is column k an interface? Looks closely where another boundary is near. */
-static bool is_interface(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, const forest_hit *mesh_hits)
+static bool is_interface(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits)
 {
     const bool near = a->meshes && s->meshes->near[k];
     if (near || (c->inside_before[k] ^ c->inside_after[k]) != (uint64_t)1 << c->crossed[k])
@@ -227,7 +262,7 @@ static void pass_on(const arrangement *a, int k, int m, ray_scratch *s, const hi
             s->in[p][m] = inside ? -HUGE_VAL : HUGE_VAL, s->out[p][m] = -s->in[p][m];
     }
     if (a->meshes) {
-        s->meshes->from[m] = t;
+        s->meshes->from[m] = s->meshes->until[k];
         s->meshes->last[m] = is_mesh(a, (int)c->crossed[k]) ? mesh_hits[k].face : s->meshes->last[k];
     }
     s->inside[m] = set;

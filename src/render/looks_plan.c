@@ -2,6 +2,7 @@
 #include "render/plan.h"
 
 #include "scene/looks.h"
+#include "scene/medium.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,6 +38,8 @@ static surface_look face_look_of(const scene *s, const material *own, const char
         l.picture = given->picture;
     }
     l.surface.transparency = own->transparency;
+    if (!material_is_opaque(own)) /* shares that add up to at most 1 */
+        l.surface.reflectivity = own->reflectivity;
     return l;
 }
 

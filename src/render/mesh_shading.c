@@ -11,13 +11,12 @@ static void copy_point(surface_batch *s, mesh_points *m, int to, int from)
     m->gx[to] = m->gx[from], m->gy[to] = m->gy[from], m->gz[to] = m->gz[from];
 }
 
-void mesh_surface(tracer *t, int met, int rank, const int *list)
+void mesh_surface(tracer *t, int rank, const int *list)
 {
     const plan *p = t->target.scene;
     const shading_rule shading = p->looks[rank].shading;
     group *g = &t->gathered;
     mesh_work *w = t->meshes;
-    (void)met;
     for (int k = 0; k < g->count; k++)
         w->hits[k] = w->scratch.hit[list[k]];
     const ray_batch rays = {g->count, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
@@ -31,12 +30,17 @@ static vec3 geometric(const mesh_work *w, int k)
     return vec3_make(w->points.gx[k], w->points.gy[k], w->points.gz[k]);
 }
 
+bool mesh_lets_out(const tracer *t, int k, vec3 direction)
+{
+    return !t->on_mesh || vec3_dot(geometric(t->meshes, k), direction) > 0.0;
+}
+
 /* No light reaches the ray's side of a triangle from behind it, whatever its normal. */
 void mesh_bound_light(tracer *t)
 {
     lit_group *l = &t->lit;
     for (int k = 0; k < t->gathered.count; k++) {
-        if (vec3_dot(geometric(t->meshes, k), vec3_make(l->lx[k], l->ly[k], l->lz[k])) > 0.0)
+        if (mesh_lets_out(t, k, vec3_make(l->lx[k], l->ly[k], l->lz[k])))
             continue;
         l->r[k] = l->g[k] = l->b[k] = 0.0;
         l->shows[k] = 0;
@@ -123,7 +127,7 @@ static int slot_of(const tracer *t, int i)
 {
     const forest *f = t->target.scene->solids->meshes;
     const int64_t face = t->meshes->scratch.hit[i].face;
-    if (!f || face == FACE_NONE)
+    if (face == FACE_NONE)
         return 0;
     const mesh *m = f->parts[f->by_primitive[mesh_face_primitive(face)]].triangles;
     return m->slots ? m->slots[mesh_face_triangle(face)] : 0;

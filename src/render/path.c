@@ -119,7 +119,7 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
     const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
     const vec3 to = direction_about(vec3_scale(way, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
     const double n_l = vec3_dot(n, to), radiance = radiance_along(p, lamp, to), within = l->radius * l->radius - distance2 * sine * sine;
-    if (!(n_l > 0.0) || radiance == 0.0)
+    if (!(n_l > 0.0) || radiance == 0.0 || !mesh_lets_out(t, k, to))
         return;
     const double reach = sqrt(distance2) * cosine - sqrt(within > 0.0 ? within : 0.0);
     /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)); Phong's highlight by the same light. */
@@ -176,7 +176,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, int depth, dou
     const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
     c->direction = direction_about(n, sqrt(1.0 - sine2), sqrt(sine2), random_unit(drawn.word[1]));
     c->share = vec3_scale(vec3_make(g->cr[k], g->cg[k], g->cb[k]), m->diffuse / odds);
-    return true;
+    return mesh_lets_out(t, k, c->direction);
 }
 
 /* Ends a faint path by chance; the others carry its weight. */

@@ -295,7 +295,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
     const ray_batch rays = {g->padded, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
     t->on_mesh = surface->kind == PRIMITIVE_MESH;
     if (t->on_mesh)
-        mesh_surface(t, met, rank, list);
+        mesh_surface(t, rank, list);
     else
         t->geometry->surface(surface, &rays, g->t, met, &g->points);
     const int owner = p->solids->bodies[rank].solid;

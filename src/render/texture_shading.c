@@ -26,25 +26,32 @@ static mapped on_box(const primitive *p, int64_t face, vec3 q, double size)
     }
 }
 
-/* Around the axis by the angle, with one picture, or as the length of the arc. */
+/* Around the axis by the angle, with one picture, or as the length of the arc: to the right as seen from outside, the picture's middle in front,
+ * at -z, as on the bodies of geometry/bodies.h. */
 static mapped around(double x, double z, double radius, double v, double height, double size)
 {
-    const double turn = elementary_atan2_deg(x, z) / 360.0, arc = 6.283185307179586 * radius;
-    const mapped m = on_flat((turn < 0.0 ? turn + 1.0 : turn) * arc, v, arc, height, size);
-    return m;
+    const double turn = 0.5 + elementary_atan2_deg(x, -z) / 360.0, arc = 6.283185307179586 * radius;
+    return on_flat(turn * arc, v, arc, height, size);
+}
+
+/* A cup's hollow has no top; it is seen from within. */
+static mapped on_cylinder(const primitive *p, int64_t face, vec3 q, double size)
+{
+    const double r = p->radius, whole = 2.0 * r;
+    const bool hollow = !(p->top < HUGE_VAL);
+    if (face == 0)
+        return around(hollow ? -q.x : q.x, q.z, r, q.y - p->bottom, hollow ? whole : p->top - p->bottom, size);
+    return on_flat(q.x + r, face == 1 && !hollow ? r - q.z : q.z + r, whole, whole, size);
 }
 
 static mapped on_primitive(const primitive *p, int64_t face, vec3 point, double size)
 {
     const vec3 moved = vec3_sub(point, p->origin), q = p->turned ? mat3_apply_transposed(p->rotation, moved) : moved;
-    const double r = p->radius, whole = 2.0 * r;
+    const double r = p->radius;
     switch (p->kind) {
     case PRIMITIVE_HALFSPACE: return on_flat(q.x, q.z, 1.0, 1.0, size);
     case PRIMITIVE_BOX: return on_box(p, face - p->first_face, q, size);
-    case PRIMITIVE_CYLINDER:
-        if (face != p->first_face)
-            return on_flat(q.x + r, q.z + r, whole, whole, size);
-        return around(q.x, q.z, r, q.y - p->bottom, p->top - p->bottom < 1e100 ? p->top - p->bottom : whole, size);
+    case PRIMITIVE_CYLINDER: return on_cylinder(p, face - p->first_face, q, size);
     case PRIMITIVE_SPHERE: {
         const double latitude = 90.0 + elementary_atan2_deg(q.y, sqrt(q.x * q.x + q.z * q.z));
         return around(q.x, q.z, r, latitude / 180.0 * 3.141592653589793 * r, 3.141592653589793 * r, size);

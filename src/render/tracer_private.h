@@ -18,7 +18,6 @@ typedef struct mesh_work {
     mesh_points points;
     group corner;            /* Gouraud's: the group with a corner of each triangle in place of the point */
     lit_group corner_light;
-    double sum[3][ROW];
 } mesh_work;
 
 /* What a drawn frame needs: a square of the depth buffer, and of each ray of the batch the point of the grid and the triangle there. */
@@ -70,10 +69,11 @@ void tracer_run_batch(tracer *t, int depth);
 int tracer_camera_rays(tracer *t, int x, int y);
 
 /* mesh_shading.c: points of the gathered group on a mesh; the light and the branches that its triangles do not let through; Gouraud's light;
- * and how the group's list falls into faces that look alike. */
-void mesh_surface(tracer *t, int met, int rank, const int *list);
+ * which directions lead out of the triangle of record k; and how the group's list falls into faces that look alike. */
+void mesh_surface(tracer *t, int rank, const int *list);
 void mesh_bound_light(tracer *t);
 void mesh_bound_branches(tracer *t);
+bool mesh_lets_out(const tracer *t, int k, vec3 direction);
 bool mesh_has_corner_light(const tracer *t, int rank);
 void mesh_corner_light(tracer *t, const material *m, const light *lamp, int rank);
 int mesh_next_look(const tracer *t, int *list, int count, int *slot);

@@ -186,6 +186,17 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
                     owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, data->hole.sharing);
 }
 
+/* A spectral film's colours are spectra by material. */
+static status check_colors(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
+{
+    const bool by_face = m && owner->material_index < 0 && (m->looks || (m->data && m->data->slot_count > 1));
+    if (s->render.spectrum != SPECTRUM_SPECTRAL || !(by_face || owner->surface.texture[0])) {
+        return STATUS_OK;
+    }
+    return diagnose(why, STATUS_BAD_INPUT, by_face ? "set render.spectrum to rgb, or give the solid a material" : "set render.spectrum to rgb",
+                    "%.80s: %s have no spectra", owner->name, by_face ? "materials by face" : "textures");
+}
+
 /* What the solid names is there. */
 static status check_references(const scene *s, const solid *owner, diagnostic *why)
 {
@@ -194,12 +205,16 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
         return unknown(owner->name, "texture", owner->surface.texture, why);
     }
     if (owner->shape.kind != SHAPE_MESH) {
-        return STATUS_OK;
+        return check_colors(s, owner, NULL, why);
     }
     if (!owner->mesh[0]) {
         return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', of one in meshes", "%.80s: which mesh it is is not said", owner->name);
     }
-    return m ? check_closed(s, owner, m, why) : unknown(owner->name, "mesh", owner->mesh, why);
+    if (!m) {
+        return unknown(owner->name, "mesh", owner->mesh, why);
+    }
+    const status code = check_colors(s, owner, m, why);
+    return code == STATUS_OK ? check_closed(s, owner, m, why) : code;
 }
 
 status check_solid(const scene *s, const solid *owner, diagnostic *why)

@@ -1,0 +1,216 @@
+/* Rooms of overlapping solids some of which are meshes, at random, and what is where in them by definition: of a mesh by the winding number
+ * of its triangles around the point, of the others by their shapes. Ownership: mesh_room_fill gives, mesh_room_empty releases. */
+#ifndef CUVETTE_TESTS_MESH_ROOM_H
+#define CUVETTE_TESTS_MESH_ROOM_H
+
+#include "geometry/bodies.h"
+#include "geometry/forest.h"
+#include "room_fixture.h"
+#include <stdlib.h>
+
+typedef struct mesh_room {
+    room r;
+    mesh *body[SOLIDS_MAX];             /* NULL: the solid is none */
+    hierarchy *tree[SOLIDS_MAX];
+    vec3 (*triangle[SOLIDS_MAX])[3];    /* in the world, of all copies */
+    size_t count[SOLIDS_MAX];
+} mesh_room;
+
+static inline one_hit nearest_in_room(const arrangement *a, one_ray r)
+{
+    static mesh_scratch meshes;
+    static ray_scratch scratch;
+    static hit_batch hits;
+    static surface_batch points;
+    scratch.meshes = &meshes;
+    const geometry_kernels *kernels = kernels_of(isa_best());
+    const ray_batch batch = batch_of_one(&r);
+    kernels->nearest(a, &batch, &scratch, &hits);
+    one_hit h = {.t = hits.t[0], .crossed = (int)hits.crossed[0], .before = (int)hits.before[0], .after = (int)hits.after[0],
+                 .surface = (int)hits.surface[0], .inside_before = hits.inside_before[0], .inside_after = hits.inside_after[0], .face = FACE_NONE};
+    if (h.crossed < 0)
+        return h;
+    r.inside = h.inside_before;
+    if (a->primitives[h.crossed].kind == PRIMITIVE_MESH)
+        forest_surface(a->meshes, &batch, meshes.hit, false, &points, NULL);
+    else
+        kernels->surface(&a->primitives[h.crossed], &batch, hits.t, h.crossed, &points);
+    h.point = vec3_make(points.px[0], points.py[0], points.pz[0]);
+    h.normal = vec3_make(points.nx[0], points.ny[0], points.nz[0]);
+    h.cos_i = points.cos_i[0], h.error = points.error[0], h.face = points.face[0];
+    return h;
+}
+
+static inline double light_in_room(const arrangement *a, one_ray r, int solid_shadows)
+{
+    static mesh_scratch meshes;
+    static ray_scratch scratch;
+    static double transmitted[ROW];
+    scratch.meshes = &meshes;
+    const ray_batch batch = batch_of_one(&r);
+    kernels_of(isa_best())->shadow(a, &batch, solid_shadows, &scratch, transmitted);
+    return transmitted[0];
+}
+
+/* Turns around a point: the sum of the triangles' solid angles over 4 pi (Van Oosterom and Strackee, "The solid angle of a plane
+ * triangle", IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8). */
+static inline double winding(const vec3 (*triangle)[3], size_t count, vec3 at)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        const vec3 a = vec3_sub(triangle[i][0], at), b = vec3_sub(triangle[i][1], at), c = vec3_sub(triangle[i][2], at);
+        const double la = vec3_length(a), lb = vec3_length(b), lc = vec3_length(c);
+        sum += 2.0 * atan2(vec3_dot(a, vec3_cross(b, c)), la * lb * lc + vec3_dot(a, b) * lc + vec3_dot(b, c) * la + vec3_dot(c, a) * lb);
+    }
+    return sum / (4.0 * 3.141592653589793);
+}
+
+static inline bool solid_contains(const mesh_room *m, int i, vec3 at)
+{
+    return m->body[i] ? winding((const vec3 (*)[3])m->triangle[i], m->count[i], at) > 0.5 : solid_shape_contains(&m->r.shape[i], at);
+}
+
+static inline int winner_in_room(const mesh_room *m, vec3 at)
+{
+    int best = -1;
+    for (int i = 0; i < m->r.count; i++)
+        if (solid_contains(m, i, at) && (best < 0 || m->r.priority[i] > m->r.priority[best]))
+            best = i;
+    return best;
+}
+
+enum { ROOM_CROSSINGS_MAX = 512 };
+
+/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997, in quadruple precision; a hair wider than the triangle, so that
+ * none is missed. */
+static inline int triangle_event(const vec3 v[3], const reference_line *line, quad *t)
+{
+    const quad3 a = quad3_from(v[0]), e1 = quad3_sub(quad3_from(v[1]), a), e2 = quad3_sub(quad3_from(v[2]), a), s = quad3_sub(line->o, a);
+    const quad3 p = {line->d.y * e2.z - line->d.z * e2.y, line->d.z * e2.x - line->d.x * e2.z, line->d.x * e2.y - line->d.y * e2.x};
+    const quad3 q = {s.y * e1.z - s.z * e1.y, s.z * e1.x - s.x * e1.z, s.x * e1.y - s.y * e1.x};
+    const quad det = e1.x * p.x + e1.y * p.y + e1.z * p.z, hair = (quad)1e-12;
+    if (det == 0)
+        return 0;
+    const quad u = (s.x * p.x + s.y * p.y + s.z * p.z) / det, w = (line->d.x * q.x + line->d.y * q.y + line->d.z * q.z) / det;
+    *t = (e2.x * q.x + e2.y * q.y + e2.z * q.z) / det;
+    return u >= -hair && w >= -hair && u + w <= 1 + hair && *t > 0;
+}
+
+static inline int crossings_in_room(const mesh_room *m, const reference_line *line, quad *t)
+{
+    int n = 0;
+    for (int i = 0; i < m->r.count; i++) {
+        if (!m->body[i])
+            n += reference_events(&m->r.shape[i], line, 0, t + n);
+        for (size_t k = 0; m->body[i] && k < m->count[i]; k++)
+            n += triangle_event((const vec3 *)m->triangle[i][k], line, &t[n]);
+        assert_true(n < ROOM_CROSSINGS_MAX - REFERENCE_CROSSINGS_MAX);
+    }
+    reference_sort(t, n);
+    return n;
+}
+
+/* As changes_of in room_fixture.h. */
+static inline int changes_in_room(const mesh_room *m, const reference_line *line, change *out)
+{
+    const quad same = (quad)1e-13, clear = (quad)1e-6;
+    quad t[ROOM_CROSSINGS_MAX], last = 0;
+    const int n = crossings_in_room(m, line, t);
+    int count = 0;
+    for (int i = 0; i < n;) {
+        int next = i + 1;
+        while (next < n && t[next] - t[i] < same)
+            next++;
+        const quad behind = next < n ? t[next] : t[i] + 1;
+        if (t[i] - last < clear || behind - t[i] < clear)
+            return -1;
+        const int before = winner_in_room(m, point_at(line, (last + t[i]) / 2)), after = winner_in_room(m, point_at(line, (t[i] + behind) / 2));
+        if (medium_of(&m->r, before) != medium_of(&m->r, after))
+            out[count++] = (change){t[i], before, after};
+        last = t[i];
+        i = next;
+    }
+    return count;
+}
+
+/* Triangles of all copies, placed as solid.h says. */
+static inline void place_triangles(mesh_room *m, int i)
+{
+    const solid_shape *s = &m->r.shape[i];
+    const mesh *b = m->body[i];
+    const mat3 turn = rotation_from_deg(s->rotation_deg);
+    const size_t nx = (size_t)s->copies.x, ny = (size_t)s->copies.y, nz = (size_t)s->copies.z;
+    m->count[i] = 0;
+    m->triangle[i] = calloc(nx * ny * nz * b->triangle_count, sizeof *m->triangle[i]);
+    assert_non_null(m->triangle[i]);
+    for (size_t copy = 0; copy < nx * ny * nz; copy++) {
+        const vec3 at = vec3_make((double)(copy % nx) * s->spacing.x, (double)(copy / nx % ny) * s->spacing.y, (double)(copy / nx / ny) * s->spacing.z);
+        for (size_t k = 0; k < b->triangle_count; k++, m->count[i]++)
+            for (int c = 0; c < 3; c++) {
+                const vec3 v = b->vertices[b->triangles[k].corner[c]], local = vec3_make(v.x * s->scale.x + at.x, v.y * s->scale.y + at.y, v.z * s->scale.z + at.z);
+                m->triangle[i][m->count[i]][c] = vec3_add(s->position, mat3_apply(turn, local));
+            }
+    }
+}
+
+static inline mesh *random_body(uint64_t *seed, bool box, vec3 size)
+{
+    static const profile_point cup[] = {{0.0, -0.6}, {0.7, -0.6}, {0.7, 0.6}, {0.5, 0.6}, {0.5, -0.3}, {0.0, -0.3}};
+    mesh *b = NULL;
+    status code;
+    switch (box ? 0 : random_below(seed, 4)) {
+    case 0: code = body_box(size, &b, NULL); break;
+    case 1: code = body_icosphere(random_below(seed, 2), &b, NULL); break;
+    case 2: code = body_torus(0.7, 0.3, 7, 5, &b, NULL); break;
+    default: code = body_lathe(cup, sizeof cup / sizeof cup[0], 6, 30.0, &b, NULL); break;
+    }
+    assert_int_equal(code, STATUS_OK);
+    assert_true(b->closed);
+    return b;
+}
+
+static inline void mesh_room_arrange(mesh_room *m)
+{
+    body_source sources[SOLIDS_MAX];
+    for (int i = 0; i < m->r.count; i++)
+        sources[i] = (body_source){.shape = &m->r.shape[i], .tree = m->tree[i], .priority = m->r.priority[i], .medium = m->r.medium[i],
+                                   .opaque = m->r.opaque[i], .clearness = m->r.opaque[i] ? 0.0 : m->r.clearness[i], .solid = i};
+    assert_int_equal(arrangement_build(sources, m->r.count, 0, &m->r.solids, NULL), STATUS_OK);
+}
+
+/* About two solids in three are meshes; on the grid boxes whose faces, and whose copies, coincide wherever they can. */
+static inline void mesh_room_fill(mesh_room *m, uint64_t *seed, bool on_a_grid)
+{
+    memset(m, 0, sizeof *m);
+    (on_a_grid ? room_fill_on_a_grid : room_fill)(&m->r, seed);
+    arrangement_destroy(m->r.solids);
+    for (int i = 0; i < m->r.count; i++) {
+        solid_shape *s = &m->r.shape[i];
+        if (random_below(seed, 3) == 0)
+            continue;
+        m->body[i] = random_body(seed, on_a_grid, s->size);
+        s->kind = SHAPE_MESH;
+        s->mesh = m->body[i];
+        s->scale = on_a_grid || random_below(seed, 2) ? vec3_make(1.0, 1.0, 1.0)
+                                                       : vec3_make(random_real(seed, 0.4, 1.6), random_real(seed, 0.4, 1.6), random_real(seed, 0.4, 1.6));
+        s->copies = vec3_make(1.0 + random_below(seed, 3) % 2, 1.0, 1.0 + random_below(seed, 4) % 3 % 2);
+        s->spacing = on_a_grid ? s->size : vec3_make(2.1 * s->scale.x, 1.0, 2.1 * s->scale.z);
+        if (!on_a_grid)
+            s->spacing = vec3_add(s->spacing, vec3_scale(s->size, 1.0));
+        assert_int_equal(hierarchy_build(m->body[i], (hierarchy_kind)random_below(seed, HIERARCHY_EMBREE), 1, &m->tree[i], NULL), STATUS_OK);
+        place_triangles(m, i);
+    }
+    mesh_room_arrange(m);
+}
+
+static inline void mesh_room_empty(mesh_room *m)
+{
+    arrangement_destroy(m->r.solids);
+    for (int i = 0; i < m->r.count; i++) {
+        hierarchy_destroy(m->tree[i]);
+        mesh_release(m->body[i]);
+        free(m->triangle[i]);
+    }
+}
+
+#endif

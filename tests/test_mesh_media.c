@@ -1,0 +1,251 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "mesh_room.h"
+#include "optics/interface.h"
+
+/* Meshes among the analytic solids, by priority, against brute force: every crossing of every triangle and shape, and between each two of them
+ * the winner at the midpoint by definition. test_media.c does the same without meshes. */
+
+typedef struct walks { int interfaces, skipped, seen_meshes, hidden_meshes; } walks;
+
+static void walk_agrees(const mesh_room *m, vec3 from, vec3 direction, walks *sum)
+{
+    const reference_line line = {quad3_from(from), quad3_from(direction)};
+    const arrangement *a = m->r.solids;
+    change wanted[ROOM_CROSSINGS_MAX];
+    const int n = changes_in_room(m, &line, wanted);
+    if (n < 0) {
+        sum->skipped++;
+        return;
+    }
+    one_ray r = {from, direction, FACE_NONE, arrangement_inside(a, from)};
+    assert_int_equal(solid_of(&m->r, arrangement_rank(a, r.inside)), winner_in_room(m, from));
+    double gone = 0.0;
+    for (int k = 0; k < n; k++) {
+        const one_hit h = nearest_in_room(a, r);
+        assert_true(h.crossed >= 0);
+        gone += h.t;
+        assert_true(quad_abs(wanted[k].t - gone) < (quad)1e-8);
+        assert_int_equal(solid_of(&m->r, h.before), wanted[k].before);
+        assert_int_equal(solid_of(&m->r, h.after), wanted[k].after);
+        assert_int_equal(solid_of(&m->r, h.surface), owner_of_surface(&m->r, wanted[k].before, wanted[k].after));
+        assert_true(quad3_length(quad3_sub(quad3_from(h.point), reference_at(&line, wanted[k].t))) < (quad)1e-8);
+        assert_true(h.inside_before == arrangement_inside(a, point_at(&line, wanted[k].t - (quad)1e-7)));
+        assert_true(h.inside_after == arrangement_inside(a, point_at(&line, wanted[k].t + (quad)1e-7)));
+        sum->seen_meshes += is_mesh_face(h.face);
+        r = (one_ray){h.point, direction, h.face, h.inside_after};
+    }
+    assert_int_equal(nearest_in_room(a, r).crossed, -1);
+    sum->interfaces += n + 1;
+}
+
+static walks walk_about(int trials, uint64_t seed, bool on_a_grid)
+{
+    walks sum = {0, 0, 0, 0};
+    for (int trial = 0; trial < trials; trial++) {
+        mesh_room m;
+        mesh_room_fill(&m, &seed, on_a_grid);
+        for (int k = 0; k < 12; k++)
+            walk_agrees(&m, random_point(&seed, k % 2 ? 0.9 : 4.0), random_direction(&seed), &sum);
+        mesh_room_empty(&m);
+    }
+    return sum;
+}
+
+static void rooms_with_meshes_agree_with_brute_force(void **state)
+{
+    (void)state;
+    const walks sum = walk_about(400, 41, false);
+    assert_true(sum.interfaces > 8000 && sum.seen_meshes > 3000 && sum.skipped < 200);
+}
+
+static void mesh_boxes_with_coincident_faces_agree_with_brute_force(void **state)
+{
+    (void)state;
+    const walks sum = walk_about(500, 42, true);
+    assert_true(sum.interfaces > 5000 && sum.seen_meshes > 2000 && sum.skipped < 2500);
+}
+
+/* Along faces and edges there is no right answer, but there is an end, and no set is left behind. */
+static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
+{
+    (void)state;
+    uint64_t seed = 43;
+    for (int trial = 0; trial < 500; trial++) {
+        mesh_room m;
+        mesh_room_fill(&m, &seed, true);
+        const arrangement *a = m.r.solids;
+        for (int k = 0; k < 12; k++) {
+            const vec3 o = vec3_make(0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16));
+            const vec3 d = vec3_make(random_below(&seed, 3) - 1, random_below(&seed, 3) - 1, random_below(&seed, 3) - 1);
+            if (vec3_dot(d, d) == 0.0)
+                continue;
+            one_ray r = {o, vec3_normalize(d), FACE_NONE, arrangement_inside(a, o)};
+            int64_t medium = a->bodies[arrangement_rank(a, r.inside)].medium;
+            int steps = 0;
+            for (one_hit h = nearest_in_room(a, r); h.crossed >= 0; h = nearest_in_room(a, r), steps++) {
+                assert_int_equal(a->bodies[h.before].medium, medium);
+                assert_true(a->bodies[h.after].medium != medium);
+                assert_true(h.t >= 0.0 && steps < WALK_MAX);
+                medium = a->bodies[h.after].medium;
+                r = (one_ray){h.point, r.d, h.face, h.inside_after};
+            }
+        }
+        mesh_room_empty(&m);
+    }
+}
+
+/* Is a point farther than that from every triangle's plane's box and every shape's surface? A cheap and careful no. */
+static bool is_clear_of_surfaces(const mesh_room *m, vec3 at)
+{
+    for (int i = 0; i < m->r.count; i++) {
+        if (!m->body[i] && !(quad_abs(reference_distance(&m->r.shape[i], quad3_from(at))) > (quad)1e-12))
+            return false;
+        for (size_t k = 0; m->body[i] && k < m->count[i]; k++) {
+            const vec3 *v = (const vec3 *)m->triangle[i][k], n = vec3_cross(vec3_sub(v[1], v[0]), vec3_sub(v[2], v[0]));
+            if (!(fabs(vec3_dot(n, vec3_sub(at, v[0]))) > 1e-11 * vec3_length(n)))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* Mirrored or refracted at every interface, at random: half way to the next the ray is in the medium that its set says. */
+static void walk_at_random(const mesh_room *m, one_ray r, uint64_t *seed, int *asked)
+{
+    const arrangement *a = m->r.solids;
+    for (int step = 0; step < 60; step++) {
+        const one_hit h = nearest_in_room(a, r);
+        if (h.crossed < 0)
+            return;
+        const vec3 middle = vec3_add(r.o, vec3_scale(r.d, 0.5 * h.t));
+        if (is_clear_of_surfaces(m, middle)) {
+            assert_int_equal(medium_of(&m->r, winner_in_room(m, middle)), a->bodies[h.before].medium);
+            ++*asked;
+        }
+        const fresnel f = fresnel_dielectric(h.cos_i, 1.0 + 0.2 * h.before, 1.0 + 0.2 * h.after);
+        if (f.total || random_below(seed, 2))
+            r = (one_ray){h.point, direction_reflect(r.d, h.normal, h.cos_i), h.face, h.inside_before};
+        else
+            r = (one_ray){h.point, direction_refract(r.d, h.normal, h.cos_i, f.eta, f.cos_t), h.face, h.inside_after};
+    }
+}
+
+static void sets_stay_true_on_long_walks_among_meshes(void **state)
+{
+    (void)state;
+    uint64_t seed = 44;
+    int asked = 0;
+    for (int trial = 0; trial < 600; trial++) {
+        mesh_room m;
+        mesh_room_fill(&m, &seed, trial % 2 == 0);
+        for (int k = 0; k < 8; k++) {
+            const vec3 o = random_point(&seed, 1.5);
+            walk_at_random(&m, (one_ray){o, random_direction(&seed), FACE_NONE, arrangement_inside(m.r.solids, o)}, &seed, &asked);
+        }
+        mesh_room_empty(&m);
+    }
+    assert_true(asked > 20000);
+}
+
+/* By the definition: of the light at each change of medium what the higher solid lets through, and nothing through opaque ones. */
+static double light_by_definition(const mesh_room *m, const change *changes, int count, quad end, int start, bool solid_shadows)
+{
+    double share = is_opaque(&m->r, start) ? 0.0 : 1.0;
+    for (int k = 0; k < count && changes[k].t < end; k++) {
+        const int before = changes[k].before, after = changes[k].after;
+        const bool blocked = solid_shadows || is_opaque(&m->r, before) || is_opaque(&m->r, after);
+        share *= blocked ? 0.0 : m->r.clearness[higher_of(&m->r, before, after)];
+    }
+    return share;
+}
+
+static void shadow_rays_among_meshes_agree_with_brute_force(void **state)
+{
+    (void)state;
+    uint64_t seed = 45;
+    int lit = 0, dark = 0, between = 0;
+    for (int trial = 0; trial < 400; trial++) {
+        mesh_room m;
+        mesh_room_fill(&m, &seed, trial % 2 == 0);
+        for (int k = 0; k < 16; k++) {
+            const vec3 o = random_point(&seed, 1.6), to = random_point(&seed, k % 2 ? 1.0 : 4.0), d = vec3_sub(to, o);
+            const reference_line line = {quad3_from(o), quad3_from(d)};
+            change changes[ROOM_CROSSINGS_MAX];
+            const int n = changes_in_room(&m, &line, changes), start = winner_in_room(&m, o);
+            if (n < 0 || is_opaque(&m.r, start))
+                continue;
+            const one_ray r = {o, d, FACE_NONE, arrangement_inside(m.r.solids, o)};
+            for (int solid = 0; solid < 2; solid++) {
+                const double wanted = light_by_definition(&m, changes, n, 1, start, solid), got = light_in_room(m.r.solids, r, solid);
+                assert_true(fabs(wanted - got) < 1e-12);
+                lit += wanted == 1.0, dark += wanted == 0.0, between += wanted > 0.0 && wanted < 1.0;
+            }
+        }
+        mesh_room_empty(&m);
+    }
+    assert_true(lit > 500 && dark > 500 && between > 100);
+}
+
+static void instruction_sets_agree_to_the_bit_on_meshes(void **state)
+{
+    (void)state;
+    static double c[6][ROW];
+    static int64_t start[ROW];
+    static uint64_t inside[ROW];
+    static ray_scratch scratch;
+    static mesh_scratch meshes[ISA_COUNT];
+    static hit_batch hits[ISA_COUNT];
+    static double light[ISA_COUNT][2][ROW];
+    uint64_t seed = 46;
+    for (int trial = 0; trial < 200; trial++) {
+        mesh_room m;
+        mesh_room_fill(&m, &seed, trial % 4 == 0);
+        const int count = trial % 3 ? BATCH : 1 + random_below(&seed, BATCH);
+        for (int i = 0; i < count; i++) {
+            const vec3 o = random_point(&seed, 3.0), d = random_direction(&seed);
+            c[0][i] = o.x, c[1][i] = o.y, c[2][i] = o.z, c[3][i] = d.x, c[4][i] = d.y, c[5][i] = d.z;
+            start[i] = FACE_NONE;
+            inside[i] = arrangement_inside(m.r.solids, o);
+        }
+        const ray_batch rays = {count, c[0], c[1], c[2], c[3], c[4], c[5], start, inside};
+        memset(meshes, 0, sizeof meshes);
+        for (int level = 0; level <= (int)isa_best(); level++) {
+            const geometry_kernels *kernels = kernels_of((isa)level);
+            memset(&hits[level], 0, sizeof hits[level]);
+            memset(light[level], 0, sizeof light[level]);
+            scratch.meshes = &meshes[level];
+            kernels->nearest(m.r.solids, &rays, &scratch, &hits[level]);
+            for (int i = 0; i < count && level > 0; i++) {
+                if (hits[0].crossed[i] < 0 || m.r.solids->primitives[hits[0].crossed[i]].kind != PRIMITIVE_MESH)
+                    continue;
+                assert_int_equal(meshes[level].hit[i].face, meshes[0].hit[i].face);
+                assert_memory_equal(&meshes[level].hit[i].u, &meshes[0].hit[i].u, 2 * sizeof(double));
+            }
+            kernels->shadow(m.r.solids, &rays, 0, &scratch, light[level][0]);
+            kernels->shadow(m.r.solids, &rays, 1, &scratch, light[level][1]);
+            assert_memory_equal(&hits[level], &hits[0], sizeof hits[0]);
+            assert_memory_equal(light[level], light[0], sizeof light[0]);
+        }
+        mesh_room_empty(&m);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rooms_with_meshes_agree_with_brute_force),
+        cmocka_unit_test(mesh_boxes_with_coincident_faces_agree_with_brute_force),
+        cmocka_unit_test(rays_in_coincident_mesh_faces_come_to_an_end),
+        cmocka_unit_test(sets_stay_true_on_long_walks_among_meshes),
+        cmocka_unit_test(shadow_rays_among_meshes_agree_with_brute_force),
+        cmocka_unit_test(instruction_sets_agree_to_the_bit_on_meshes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
