@@ -153,23 +153,32 @@ void forest_destroy(forest *f)
     free(f);
 }
 
-uint64_t forest_inside(const forest *f, vec3 point)
+/* Does a back come before a front, along a direction of no axis and no diagonal? A front and a back at one place are copies that touch, or an
+ * edge: what comes behind them says it. */
+static bool is_inside(const forest *f, uint64_t bit, double reach, vec3 point)
 {
-    /* along no axis and no diagonal */
-    const vec3 direction = vec3_make(0.5396, 0.6180, 0.5716);
-    uint64_t inside = 0;
-    for (int i = 0; i < f->part_count; i++) {
-        const forest_part *p = &f->parts[i];
-        if (!p->closed)
-            continue;
-        /* As if it were inside: whether a back or a front comes first. */
-        const uint64_t bit = (uint64_t)1 << p->primitive;
-        forest_ray ray = {.origin = point, .direction = direction, .t_max = HUGE_VAL, .start = FACE_NONE, .before = 0, .inside = bit, .wanted = bit};
+    forest_ray ray = {.origin = point, .direction = vec3_make(0.5396, 0.6180, 0.5716), .t_max = HUGE_VAL, .start = FACE_NONE, .wanted = bit};
+    for (;;) {
         forest_hit back, front;
+        ray.inside = bit; /* looks for backs */
         forest_kernels_sse2.nearest(f, &ray, 1, &back);
         ray.inside = 0;
         forest_kernels_sse2.nearest(f, &ray, 1, &front);
-        inside |= back.t < front.t || (back.t == front.t && back.face != FACE_NONE) ? bit : 0;
+        const double first = fmin(back.t, front.t), tie = 0x1p-40 * (first + reach);
+        if (first == HUGE_VAL || fabs(back.t - front.t) > tie)
+            return back.t < front.t;
+        ray.t_min = first + tie;
+    }
+}
+
+uint64_t forest_inside(const forest *f, vec3 point)
+{
+    uint64_t inside = 0;
+    for (int i = 0; i < f->part_count; i++) {
+        const forest_part *p = &f->parts[i];
+        const uint64_t bit = (uint64_t)1 << p->primitive;
+        const double reach = p->reach + fabs(p->origin.x) + fabs(p->origin.y) + fabs(p->origin.z);
+        inside |= p->closed && is_inside(f, bit, reach, point) ? bit : 0;
     }
     return inside;
 }

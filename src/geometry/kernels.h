@@ -19,8 +19,9 @@ void KERNEL(surface_points)(const primitive *p, const ray_batch *rays, const dou
 void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, forest_hit *hits);
 void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, const forest_hit *hits);
 
-/* The set just behind what column k crosses in low < t <= high. */
-uint64_t KERNEL(mesh_set_behind)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, uint64_t before, double low, double high);
+/* The meshes' bits in the sets just before low and just behind high, between which column k, in the medium of that rank, crosses something. */
+void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, double low, double high,
+                               uint64_t *before, uint64_t *after);
 
 /* Where column k crosses the mesh of a bit in low <= t <= high, from the set `before`; its face is FACE_NONE where it does not. */
 forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit, uint64_t before, double low,

@@ -64,21 +64,28 @@ static bool others_are_near(const forest *f, const ray_batch *rays, int k, const
     return ((FOREST.cross(f, &ray) ^ c->inside_after[k]) & f->primitives) != 0;
 }
 
+/* The set at t, where the ray has been in the medium of that rank all the way from where it was looked at last: of the meshes that are hidden
+ * there what their last crossings say. */
+static uint64_t set_at(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, double t, uint64_t set)
+{
+    if (!(f->lowest_closed < rank))
+        return set;
+    forest_ray ray = ray_of_column(rays, k, s);
+    ray.t_max = t;
+    ray.tie = ONE_PLACE * (t + s->slack[k]);
+    ray.wanted = f->closed_under[rank];
+    return (set & ~ray.wanted) | (FOREST.cross(f, &ray) & ray.wanted);
+}
+
 void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, const forest_hit *hits)
 {
     const forest *f = a->meshes;
     for (int k = 0; k < n; k++) {
         if (c->crossed[k] < 0)
             continue;
-        if (f->lowest_closed < c->before[k]) {
-            forest_ray ray = ray_of_column(rays, k, s);
-            ray.t_max = c->t[k];
-            ray.tie = ONE_PLACE * (c->t[k] + s->slack[k]);
-            ray.wanted = f->closed_under[c->before[k]];
-            const uint64_t set = FOREST.cross(f, &ray) & ray.wanted;
-            c->inside_before[k] = (c->inside_before[k] & ~ray.wanted) | set;
-            c->inside_after[k] = (c->inside_after[k] & ~ray.wanted) | set;
-        }
+        const uint64_t hidden = f->closed_under[c->before[k]];
+        c->inside_before[k] = set_at(f, rays, k, s, c->before[k], c->t[k] - close_to(s, k, c->t[k]), c->inside_before[k]);
+        c->inside_after[k] = (c->inside_after[k] & ~hidden) | (c->inside_before[k] & hidden);
         const uint64_t bit = (uint64_t)1 << c->crossed[k];
         if (f->primitives & bit) {
             const bool leaves = (f->closed & bit) && hits[k].facing == FACING_BACK;
@@ -88,15 +95,18 @@ void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_s
     }
 }
 
-uint64_t KERNEL(mesh_set_behind)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, uint64_t before, double low, double high)
+void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, double low, double high,
+                               uint64_t *before, uint64_t *after)
 {
+    const uint64_t meshes = a->meshes->primitives;
+    *before = set_at(a->meshes, rays, k, s, rank, low, (*before & ~meshes) | (s->inside[k] & meshes));
     forest_ray ray = ray_of_column(rays, k, s);
     ray.t_min = low;
     ray.t_max = high;
     ray.tie = high - low;
-    ray.inside = before;
-    ray.wanted = a->meshes->primitives;
-    return FOREST.cross(a->meshes, &ray);
+    ray.inside = *before;
+    ray.wanted = meshes;
+    *after = (*after & ~meshes) | (FOREST.cross(a->meshes, &ray) & meshes);
 }
 
 forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit, uint64_t before, double low,

@@ -225,9 +225,7 @@ static void look_closely(const arrangement *a, const ray_batch *rays, int k, con
         after |= (uint64_t)(s->in[p][k] <= high && high < s->out[p][k]) << p;
     }
     if (a->meshes) {
-        const uint64_t meshes = a->meshes->primitives;
-        before = (before & ~meshes) | (c->inside_before[k] & meshes);
-        after = (after & ~meshes) | (KERNEL(mesh_set_behind)(a, rays, k, s, before, low, high) & meshes);
+        KERNEL(mesh_sets_closely)(a, rays, k, s, c->before[k], low, high, &before, &after);
         s->meshes->until[k] = high;
     }
     c->inside_before[k] = before;
