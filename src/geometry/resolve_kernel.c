@@ -171,6 +171,9 @@ static void next_changes(const arrangement *a, const ray_batch *rays, int n, ray
     for (int k = 0; a->meshes && k < n; k++) {
         s->attention[k] |= -(int64_t)s->meshes->near[k];
         s->meshes->until[k] = c->t[k];
+        /* Through an edge a front and a back are at one place: the second crossing there is the last, or they would follow one another for ever. */
+        if (c->t[k] <= s->meshes->from[k])
+            s->meshes->until[k] += 0x1p-48 * (c->t[k] + s->slack[k]);
     }
 }
 
