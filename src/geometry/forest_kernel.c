@@ -55,7 +55,7 @@ static bool ray_in(const quest *q, const forest_part *p, uint32_t copy, mesh_ray
     const forest_ray *ray = q->ray;
     const uint64_t bit = (uint64_t)1 << p->primitive;
     const bool within = (ray->inside & bit) != 0;
-    if (!(ray->wanted & bit) || (q->kind == NEXT && (p->closed && within ? p->rank < ray->before : p->rank <= ray->before)))
+    if (!(ray->wanted & bit) || (!q->any && (p->closed && within ? p->rank < ray->before : p->rank <= ray->before)))
         return false;
     const vec3 moved = vec3_sub(ray->origin, forest_origin(p, copy));
     *local = (mesh_ray){.origin = direction_in(p, moved), .direction = direction_in(p, ray->direction), .t_min = ray->t_min, .t_max = q->t_max,
@@ -106,10 +106,6 @@ static void ask_copy(quest *q, size_t instance)
     }
     if (q->any) {
         q->blocked |= TREES.any(p->tree, &local);
-        return;
-    }
-    if (q->kind == LAST) {
-        TREES.all(p->tree, &local, note_crossing, &q->last[p - q->f->parts]);
         return;
     }
     mesh_hit hit;
@@ -241,11 +237,6 @@ static bool is_in(const forest *f, const forest_ray *ray, const crossings *all, 
 
 static uint64_t cross(const forest *f, const forest_ray *ray)
 {
-    last_crossing last[PRIMITIVES_MAX];
-    for (int i = 0; i < f->part_count; i++)
-        last[i] = (last_crossing){.t_min = ray->t_min};
-    quest q = {.f = f, .ray = ray, .kind = LAST, .t_max = ray->t_max, .last = last};
-    ask(&q);
     uint64_t set = ray->inside;
     crossings last;
     look_at_all(f, ray, &last);
