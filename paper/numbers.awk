@@ -29,22 +29,31 @@ function formatted(column, v) {
     if (column ~ /_s(_[a-z]+)?$/) return digits(v * 1e3)
     if (column ~ /^rays_/) return sprintf("%.3f", v / 1e6)
     if (column ~ /^(imbalance|others_share)$/) return sprintf("%.1f", v * 100)
-    if (column == "peak_rss_bytes") return sprintf("%.1f", v / 1048576)
+    if (column ~ /^(peak_rss|accel)_bytes$/) return sprintf("%.1f", v / 1048576)
     if (column == "psnr_db") return sprintf("%.1f", v)
     if (column == "ssim") return sprintf("%.4f", v)
     if (column == "differing_share") return sprintf("%.1f", v * 100)
     if (column ~ /^(flip|mse|largest|error_rms|noise_rms|reference_noise_rms)$/) return significant(v)
-    if (column ~ /^(first_hits|total_internal|n$|marked)/) return sprintf("%d", v)
+    if (column ~ /^(first_hits|total_internal|n$|marked|triangles|instances)/) return sprintf("%d", v)
     return v
 }
 function alias() {
     if (study == "methods") return $2 == "path" ? study "/path/" $3 : study "/" $2
     if (study == "lighting") return study "/" $2
+    if (study == "triangles") return $4 == "off" ? study "/empty" : study "/" $2 "/" $3 + 0
+    if (study == "coverage") return study "/" $2 "/" sprintf("%.0f", value("first_hits.model") / 1000)
+    if (study == "hidden") return study "/" $2 + 0 "/" $6
+    if (study == "build") return study "/" $2 "/" $3 + 0 "/" $4 "/" $7 + 0
     return ""
 }
 function value(column) { return (column in at) && $at[column] != "NA" ? $at[column] + 0 : "" }
 
-BEGIN { FS = "\t" }
+BEGIN {
+    FS = "\t"
+    split("none sphere octant bvh", kind, " ")
+    for (i in kind) hierarchy[kind[i]] = 1
+    split("sparse dense sphere", kind, " ")
+}
 NR == 1 {
     for (i = 1; i <= NF; i++) {
         at[$i] = i
@@ -64,6 +73,10 @@ value("n") > 0 {
     if (rays && cpu) set(key "/rate", sprintf("%.1f", rays / cpu / 1e6))
     if (value("rays_camera") && value("cut_depth_throughput") != "")
         set(key "/cut", scientific(value("cut_depth_throughput") / value("rays_camera")))
+    if (value("triangles")) {
+        set(key "/bytes-triangle", sprintf("%.0f", value("accel_bytes") / value("triangles")))
+        if (rays && cpu) set(key "/million-rays", significant(rays / cpu / 1e6))
+    }
     if (value("rays_camera"))
         set(key "/glass", sprintf("%.1f", (value("first_hits.vessel") + value("first_hits.liquid")) / value("rays_camera") * 100))
     if (value("others_share") != "") { others += value("others_share"); told++ }
@@ -103,6 +116,15 @@ value("n") > 0 {
         set(key "/rays-ratio", digits(rays / first_rays))
     }
     if (study == "pool") wall_of[$2, $3] = wall
+    if (study ~ /^(triangles|crowding|build|hidden)$/) { cpu_of[key] = cpu; build_of[key] = value("build_s") }
+    if (study == "sectors") {
+        if ($4 == 1) one[$2, $3] = wall
+        if (one[$2, $3]) set(key "/speedup", digits(one[$2, $3] / wall))
+    }
+}
+# How often one key's value goes into another's.
+function ratio(result, of, above, below) {
+    if (of[below] > 0 && of[above] > 0) set(result, significant(of[above] / of[below]))
 }
 END {
     set(study "/cells", cells)
@@ -116,6 +138,20 @@ END {
         set("threads/" s "/best", best_count[s])
         if (s in most) set("threads/" s "/loss", sprintf("%.1f", (most[s] / best[s] - 1) * 100))
     }
+    for (accel in hierarchy) {
+        ratio("triangles/" accel "/growth", cpu_of, "triangles/" accel "/50000", "triangles/" accel "/10000")
+        ratio("triangles/" accel "/gain", cpu_of, "triangles/none/10000", "triangles/" accel "/10000")
+        ratio("crowding/" accel "/growth", cpu_of, "crowding/" accel "/50000", "crowding/" accel "/10000")
+        ratio("crowding/" accel "/gain", cpu_of, "crowding/none/10000", "crowding/" accel "/10000")
+        for (i = 1; i <= 3; i++)
+            for (count = 50000; count <= 500000; count *= 10) {
+                built = "build/" kind[i] "/" count "/" accel
+                ratio(built "/speedup", build_of, built "/1", built "/2")
+            }
+    }
+    ratio("triangles/octant-bvh", cpu_of, "triangles/octant/50000", "triangles/bvh/50000")
+    ratio("crowding/octant-bvh", cpu_of, "crowding/octant/50000", "crowding/bvh/50000")
+    ratio("hidden/more", cpu_of, "hidden/6/whitted", "hidden/3/whitted")
     for (pair in wall_of) {
         split(pair, part, SUBSEP)
         if (part[1] == "off" && ("on", part[2]) in wall_of)

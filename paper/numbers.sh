@@ -37,7 +37,19 @@ laws() {
     (cd "$here/.." && gnuplot -e "results = '$results'; units = $(units)" paper/laws.gp)
 }
 
+# Laws fitted to the studies of many triangles and of the area that they cover.
+polygons() {
+    for study in triangles coverage; do
+        [ -r "$results/tables/$study.tsv" ] || continue
+        (cd "$here/.." && gnuplot -e "results = '$results'" "paper/$study.gp")
+    done
+}
+
 published() {
+    for study in triangles coverage crowding; do
+        awk -F, -v study="$study" 'NR > 1 && $1 != "NA" { printf "\\setval{published/%s/%d}{%s}\n", study, $1, $2 }
+            NR > 1 && $1 == "NA" { printf "\\setval{published/%s/more}{%s}\n", study, $2 }' "$published/$study.csv"
+    done
     awk -F, 'NR == 2 { first = $2 } NR > 1 { printf "\\setval{published/depth/%s/cpu}{%.3f}\n\\setval{published/depth/%s/growth}{%.2f}\n",
         $1, $2, $1, $2 / first }' "$published/depth.csv"
     awk -F, 'NR == 2 { first = $2 } NR > 1 { printf "\\setval{published/threads/%s/wall}{%.3f}\n\\setval{published/threads/%s/speedup}{%.2f}\n",
@@ -91,6 +103,7 @@ mkdir -p "$out"
     slab
     machine
     laws
+    polygons
     # Rays by pixel are the same for every schedule.
     for map in "$results"/maps/images/*-rays.pfm; do
         [ ! -r "$map" ] || "$here/blocks.sh" "$map"
