@@ -43,6 +43,7 @@ function alias() {
     if (study == "triangles") return $4 == "off" ? study "/empty" : study "/" $2 "/" $3 + 0
     if (study == "coverage") return study "/" $2 "/" sprintf("%.0f", value("first_hits.model") / 1000)
     if (study == "hidden") return study "/" $2 + 0 "/" $6
+    if (study == "texture") return study "/" $2 "/" $3 "/" $4
     if (study == "build") return study "/" $2 "/" $3 + 0 "/" $4 "/" $7 + 0
     return ""
 }

@@ -1,23 +1,24 @@
 # Bodies of polygons by each method, of ten thousand polygons and of two hundred thousand: pictures, time and memory.
 # needs: tables/hidden.tsv hidden/images/*.png
-width = 1000; height = 850
+width = 1000; height = 625
 load "plots/style.gp"
 
 load "plots/picture.gp"
 rows = table("hidden")
-methods = "raycast whitted"
-names = "'ray casting' 'reflections and refractions'"
+methods = "zbuffer raycast whitted"
+names = "'depth buffer' 'ray casting' 'Whitted'"
 levels = "3 6"
 of(level, method, column) = first(rows, sprintf("ball.level=%s render.integrator=%s", word(levels, level), word(methods, method)), column)
-about(l, m) = sprintf("%.0f ms, %.0f MiB, FLIP %.3f from Whitted's tree", of(l, m, "cpu_s_median")*1e3, of(l, m, "peak_rss_bytes")/1048576, \
+about(l, m) = sprintf("%.0f ms, %.0f MiB, FLIP %.3f", of(l, m, "cpu_s_median")*1e3, of(l, m, "peak_rss_bytes")/1048576, \
     of(l, m, "flip"))
 set title offset 0,-0.7
-set multiplot layout 2,words(methods) margins 0.01,0.99,0.045,0.965 spacing 0.015,0.085
+set label 2 "time of a frame on one thread, peak of memory, distance from Whitted's picture; mirror, glass and shadows" at screen 0.5,0.02 center font ",9" textcolor rgb grey
+set multiplot layout 2,words(methods) margins 0.005,0.995,0.085,0.955 spacing 0.01,0.11
 do for [l=1:2] {
     do for [m=1:words(methods)] {
         cell = of(l, m, "cell")
         set title sprintf("%s, %.0f triangles", word(names, m), of(l, m, "triangles"))
-        set label 1 about(l, m) at graph 0.5, -0.04 center textcolor rgb ink
+        set label 1 about(l, m) at graph 0.5, -0.06 center textcolor rgb ink
         file = cell == cell ? image("hidden", cell) : ""
         if (cell == cell && readable(file)) {
             plot file binary filetype=png with rgbimage notitle
@@ -26,4 +27,5 @@ do for [l=1:2] {
         }
     }
 }
-unset multiplot
+unset label 2 "time of a frame on one thread, peak of memory, distance from Whitted's picture; mirror, glass and shadows" at screen 0.5,0.02 center font ",9" textcolor rgb grey
+set multiplot

@@ -1,18 +1,20 @@
-# A ground of two triangles under each filter, with the cost of a frame and its distance from 64 samples a pixel.
+# A ground of two triangles, read straight across the picture and with perspective, under each filter, beside 64 samples a pixel; with
+# the time of a frame and the distance from the last.
 # needs: tables/texture.tsv texture/images/*.png texture/references/*.png
-width = 1000; height = 880
+width = 1000; height = 625
 load "plots/style.gp"
 
 load "plots/picture.gp"
 rows = table("texture")
-about(i) = sprintf("%.1f ms, FLIP %.3f, rms error %.3f, PSNR %.1f dB", cell_value(rows, i, "cpu_s_median")*1e3, cell_value(rows, i, "flip"), \
-    cell_value(rows, i, "error_rms"), cell_value(rows, i, "psnr_db"))
+about(i) = sprintf("%.0f ms, FLIP %.3f, PSNR %.1f dB", cell_value(rows, i, "cpu_s_median")*1e3, cell_value(rows, i, "flip"), \
+    cell_value(rows, i, "psnr_db"))
+names = "'straight across, one texel' 'straight across, pyramid' 'with perspective, one texel' 'with perspective, four texels' 'with perspective, pyramid' '64 samples a pixel: the reference'"
 set title offset 0,-0.7
-set multiplot layout 2,2 margins 0.01,0.99,0.045,0.965 spacing 0.015,0.085
-do for [i=0:3] {
-    file = i < 3 ? image("texture", i) : results."/texture/references/".text(rows, "cell=0", "reference").".png"
-    set title i < 3 ? text(rows, sprintf("cell=%d", i), "tiles.filter") : "64 samples a pixel: the reference"
-    set label 1 (i < 3 ? about(i) : "") at graph 0.5, -0.04 center textcolor rgb ink
+set multiplot layout 2,3 margins 0.005,0.995,0.055,0.955 spacing 0.01,0.11
+do for [i=0:5] {
+    file = i < 5 ? image("texture", i) : results."/texture/references/".text(rows, "cell=0", "reference").".png"
+    set title word(names, i + 1)
+    set label 1 (i < 5 ? about(i) : "") at graph 0.5, -0.06 center textcolor rgb ink
     if (readable(file)) {
         plot file binary filetype=png with rgbimage notitle
     } else {
