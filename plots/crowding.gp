@@ -14,7 +14,7 @@ set label 100 disturbed("crowding") at screen 0.5,0.015 center font ",8" textcol
 set multiplot layout 1,2 margins 0.08,0.985,0.14,0.92 spacing 0.11
 set xlabel "triangles n / 1000"
 set xrange [5:55]
-set title "Triangles a quarter as wide as the cube"
+set title "Triangles up to a quarter as wide as the cube"
 set ylabel "CPU time of a frame / s"
 set logscale y
 set format y "10^{%T}"

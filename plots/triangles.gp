@@ -1,4 +1,4 @@
-# Time by the number of triangles for each hierarchy, the law a + b log n fitted (polygons.gp), the published times, and the time of a ray.
+# Time by the number of triangles for each hierarchy, the law a + b ln n fitted (polygons.gp), the published times, and the time of a ray.
 # needs: tables/triangles.tsv
 width = 1000; height = 790
 load "plots/style.gp"
@@ -7,7 +7,6 @@ load "plots/polygons.gp"
 rows = table("triangles")
 empty_s = first(rows, "model.visible=off", "cpu_s_median")
 names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'boxes'"
-about(i) = sprintf("%s: a = %.3g ms, b = %.2g ms, off by %.0f %%", word(names, i), log_a[i]*1e3, log_b[i]*1e3, log_off[i]*100)
 
 set label 100 disturbed("triangles") at screen 0.5,0.012 center font ",8" textcolor rgb grey
 set multiplot layout 2,2 margins 0.075,0.935,0.08,0.955 spacing 0.13,0.125
@@ -20,7 +19,7 @@ set yrange [1e-3:100]
 set grid xtics ytics lc rgb pale lw 0.5 dt solid
 set title "All hierarchies, small triangles"
 set ylabel "CPU time of a frame / s"
-set key bottom right
+set key top right Right noreverse
 set arrow 1 from graph 0, first empty_s to graph 1, first empty_s nohead dt (2,3) lc rgb grey
 set label 1 "the empty scene" at graph 0.015, first empty_s*0.6 left font ",8" textcolor rgb grey
 plot for [i=1:4] measured_times(i) using 1:2:3:4 with yerrorlines lt i title word(names, i)
@@ -33,40 +32,44 @@ set xlabel "triangles n / 1000"
 set ylabel "CPU time / ms"
 set xrange [0:55]
 set yrange [0:*]
+set offsets graph 0, graph 0, graph 0.45, graph 0
 set y2label "published / s"
-set y2range [0:*]
+set y2range [0:10]
 set y2tics
 set border 11
-few(i) = measured_times(i)." | awk '$1 >= 10000 && $1 <= 50000'"
-plot [1:55] few(3) using ($1/1e3):($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt 3 title word(names, 3), \
-     few(4) using ($1/1e3):($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt 4 title word(names, 4), \
-     x < 9 ? NaN : log_law(x*1e3, log_a[3], log_b[3])*1e3 lt 3 notitle, \
-     x < 9 ? NaN : log_law(x*1e3, log_a[4], log_b[4])*1e3 lt 4 notitle, \
-     measured_times(5) using ($1/1e3):2 axes x1y2 with points lt 7 title "published (right axis)", \
-     x < 1.2 ? NaN : log_law(x*1e3, log_a[5], log_b[5]) axes x1y2 with lines lt 7 title "its a + b ln n, from 10000 on"
-unset y2tics; unset y2label
+set key top left Left reverse font ",9"
+about(i) = log_fits[i] ? sprintf("%s: %.0f + %.0f ln(n / 10000) ms, off by %.1f %%", i == 3 ? "octants" : "boxes", log_a[i]*1e3, log_b[i]*1e3, log_off[i]*100) : word(names, i)
+fitted(i, n) = log_fits[i] && n >= 7 ? log_law(n*1e3, log_a[i], log_b[i]) : NaN
+plot for [i=3:4] few(i) using ($1/1e3):($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i title about(i), \
+     for [i=3:4] '+' using 1:(fitted(i, $1)*1e3) with lines lt i notitle, \
+     measured_times(5) using ($1/1e3):2 axes x1y2 with points lt 7 \
+         title sprintf("published: %.2f + %.2f ln(n / 10000) s, off by %.1f %%", log_a[5], log_b[5], log_off[5]*100), \
+     '+' using 1:(fitted(5, $1)) axes x1y2 with lines lt 7 notitle
+unset y2tics; unset y2label; unset offsets
 set border 3
 
-set title "Fitted: T = a + b ln(n / 10000)"
+set title "From 10000 on: logarithm and power"
 set xlabel "triangles n"
 set ylabel "CPU time of a frame / ms"
 set logscale x
 set format x "10^{%T}"
 set xrange [7e3:6e6]
 set yrange [0:*]
-set key top left
-plot for [i=3:4] long(i) using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i title about(i), \
-     for [i=3:4] log_fits[i] ? log_law(x, log_a[i], log_b[i])*1e3 : NaN with lines lt i notitle, \
-     for [i=3:4] log_fits[i] ? power_law(x, power_c[i], power_p[i])*1e3 : NaN with lines lt i lw 1 dt (2,3) \
-         title sprintf("its power law: n^{%.2f}, off by %.0f %%", power_p[i], power_off[i]*100)
+set offsets graph 0, graph 0, graph 0.35, graph 0
+plot for [i=3:4] wide(i) using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i title word(names, i), \
+     for [i=3:4] wide(i) using 1:(wide_fits[i] ? log_law($1, wide_a[i], wide_b[i])*1e3 : NaN) with lines lt i dt (6,3) \
+         title sprintf("a + b ln n, off by %.0f %%", wide_off[i]*100), \
+     for [i=3:4] wide(i) using 1:(wide_fits[i] ? power_law($1, wide_c[i], wide_p[i])*1e3 : NaN) with lines lt i \
+         title sprintf("n^{%.2f}, off by %.0f %%", wide_p[i], wide_power_off[i]*100)
+unset offsets
 
 set title "Time of a ray, less the empty scene's frame"
 set ylabel "ns / ray"
 set logscale xy
 set format y "10^{%T}"
 set xrange [700:6e6]
-set yrange [10:1e5]
-set key top left
+set yrange [10:1e6]
+set key top right Right noreverse font ",10"
 ray(i) = select(rows, "model.visible=on render.accel=".word(hierarchies, i), "soup.count cpu_s_median rays_total")
 plot for [i=1:4] ray(i) using 1:(($2 - empty_s)/$3*1e9) with linespoints lt i title word(names, i)
 unset multiplot
