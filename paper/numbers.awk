@@ -117,7 +117,14 @@ value("n") > 0 {
         set(key "/rays-ratio", digits(rays / first_rays))
     }
     if (study == "pool") wall_of[$2, $3] = wall
-    if (study ~ /^(triangles|crowding|build|hidden)$/) { cpu_of[key] = cpu; build_of[key] = value("build_s") }
+    if (study ~ /^(triangles|crowding|build|hidden)$/) {
+        cpu_of[key] = cpu
+        build_of[key] = value("build_s")
+        if (rays) ray_of[key] = cpu / rays
+    }
+    # What a method keeps beside triangles and film: hierarchies, or the depth buffer and what was drawn into it.
+    if (study == "hidden" && value("accel_bytes") + value("drawn_bytes") > 0)
+        set(key "/memory", sprintf("%.1f", (value("accel_bytes") + value("drawn_bytes")) / 1048576))
     if (study == "sectors") {
         if ($4 == 1) one[$2, $3] = wall
         if (one[$2, $3]) set(key "/speedup", digits(one[$2, $3] / wall))
@@ -150,9 +157,17 @@ END {
                 ratio(built "/speedup", build_of, built "/1", built "/2")
             }
     }
+    # After how many rays a build by one thread has paid.
+    for (accel in hierarchy)
+        for (i = 1; i <= 3; i++) {
+            built = "build/" kind[i] "/50000/" accel "/1"
+            saved = ray_of["build/" kind[i] "/50000/none/1"] - ray_of[built]
+            if (build_of[built] > 0 && saved > 0) set("build/" kind[i] "/50000/" accel "/pays", sprintf("%.0f", build_of[built] / saved))
+        }
     ratio("triangles/octant-bvh", cpu_of, "triangles/octant/50000", "triangles/bvh/50000")
     ratio("crowding/octant-bvh", cpu_of, "crowding/octant/50000", "crowding/bvh/50000")
-    ratio("hidden/more", cpu_of, "hidden/6/whitted", "hidden/3/whitted")
+    split("zbuffer raycast whitted", method, " ")
+    for (i in method) ratio("hidden/" method[i] "/more", cpu_of, "hidden/6/" method[i], "hidden/3/" method[i])
     for (pair in wall_of) {
         split(pair, part, SUBSEP)
         if (part[1] == "off" && ("on", part[2]) in wall_of)

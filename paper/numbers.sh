@@ -50,6 +50,8 @@ published() {
         awk -F, -v study="$study" 'NR > 1 && $1 != "NA" { printf "\\setval{published/%s/%d}{%s}\n", study, $1, $2 }
             NR > 1 && $1 == "NA" { printf "\\setval{published/%s/more}{%s}\n", study, $2 }' "$published/$study.csv"
     done
+    awk -F, '$1 == 10000 { time[++n] = $2 } END { printf "\\setval{published/crowding/slower}{%.0f}\n", time[2] / time[1] }' \
+        "$published/triangles.csv" "$published/crowding.csv"
     awk -F, 'NR == 2 { first = $2 } NR > 1 { printf "\\setval{published/depth/%s/cpu}{%.3f}\n\\setval{published/depth/%s/growth}{%.2f}\n",
         $1, $2, $1, $2 / first }' "$published/depth.csv"
     awk -F, 'NR == 2 { first = $2 } NR > 1 { printf "\\setval{published/threads/%s/wall}{%.3f}\n\\setval{published/threads/%s/speedup}{%.2f}\n",

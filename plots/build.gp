@@ -10,7 +10,7 @@ sets = "sparse dense sphere sparse dense sphere"
 counts = "50000 50000 50000 500000 500000 500000"
 # What a bar stands for; NaN where there is no such cell.
 bar(i, set, threads, column) = first(rows, sprintf("render.accel=%s soup.generate=%s soup.count=%s render.build_threads=%d", \
-    word(hierarchies, i), word(sets, set), word(counts, set), threads), column)
+    word(hierarchies, i), word(sets, int(set)), word(counts, int(set)), threads), column)
 half = 0.09
 place(i, set) = set + 2*half*(i - 2.5)
 set xrange [0.5:6.5]
@@ -33,10 +33,14 @@ do for [threads=1:2] {
     plot for [i=1:4] [1:6] '+' using (place(i, $1)):(bar(i, $1, threads, "build_s")) with boxes lt i title word(names, i)
     unset label 100
 }
+unset logscale y
+set format y "%h"
 set title "Memory"
 set ylabel "bytes a triangle"
-set yrange [1:1000]
+set yrange [0:*]
 plot for [i=1:4] [1:6] '+' using (place(i, $1)):(bar(i, $1, 1, "accel_bytes")/bar(i, $1, 1, "triangles")) with boxes lt i notitle
+set logscale y
+set format y "10^{%T}"
 set title "Rays, one thread"
 set ylabel "rays / CPU second"
 set yrange [1e3:1e8]
