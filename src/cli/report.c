@@ -217,6 +217,17 @@ static json_t *noise(const render_result *r)
                      json_of_real(mean[1]), json_of_real(mean[2]));
 }
 
+/* null where a scene has no meshes and none are drawn. */
+static json_t *meshes(const mesh_report *m)
+{
+    if (m->triangles == 0 && m->drawn == 0)
+        return json_null();
+    const double each = m->triangles > 0 ? (double)m->bytes / (double)m->triangles : (double)NAN;
+    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "triangles", json_of_count((int64_t)m->triangles), "instances", json_of_count((int64_t)m->instances),
+                     "accel_bytes", json_of_count((int64_t)m->bytes), "bytes_per_triangle", json_of_real(each), "build_s", json_of_real(m->build_s),
+                     "drawn", json_of_count((int64_t)m->drawn), "drawn_bytes", json_of_count((int64_t)m->drawn_bytes));
+}
+
 static int add_process(json_t *o, const frames *f)
 {
     int bad = json_object_set_new(o, "threads", workers(f->result));
@@ -237,6 +248,7 @@ json_t *report_create(const scene *s, isa level, const frames *f, bool repeated)
         return NULL;
     int bad = add_times(o, f, repeated) | add_counts(o, s, &f->result->counters) | add_process(o, f);
     bad |= json_object_set_new(o, "noise", noise(f->result));
+    bad |= json_object_set_new(o, "meshes", meshes(&f->result->meshes));
     bad |= json_object_set_new(o, "isa", json_string(isa_name(level)));
     bad |= json_object_set_new(o, "version", json_string(CUVETTE_VERSION));
     bad |= json_object_set_new(o, "scene", json_of_text(s->path ? s->path : ""));
