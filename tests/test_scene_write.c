@@ -76,8 +76,10 @@ static void assert_survives(const scene *s)
     }
 }
 
-static uint64_t hash_of(const scene *s)
+static uint64_t hash_of(scene *s)
 {
+    diagnostic why = {0};
+    worked(scene_load(s, &why), &why);
     render_result *result = render(s);
     uint64_t hash = film_hash(result->picture);
     render_result_destroy(result);
