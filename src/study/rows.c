@@ -148,6 +148,8 @@ static void put_time(csv_line *line, const study_row *r)
     X("instances", "", "copies of meshes", csv_count(line, (int64_t)r->frame->meshes.instances)) \
     X("accel_bytes", "B", "memory of the hierarchies over their triangles, each mesh once", csv_count(line, (int64_t)r->frame->meshes.bytes)) \
     X("build_s", "s", "wall time of building these, for this frame (render.keep off) or before it; not in wall_s", csv_real(line, r->frame->meshes.build_s)) \
+    X("drawn", "", "of the depth buffer: triangles in the picture, analytic solids' too; else 0", csv_count(line, (int64_t)r->frame->meshes.drawn)) \
+    X("drawn_bytes", "B", "memory of the depth buffer and of these triangles", csv_count(line, (int64_t)r->frame->meshes.drawn_bytes)) \
     X("workers", "", "threads of the frame", csv_count(line, r->frame->worker_count)) \
     X("workers_with_tiles", "", "those that had a piece of the picture", csv_count(line, w.with_tiles)) \
     X("busy_s_mean", "s", "from a worker's first piece to its last ray, 0 without a piece; mean over all workers", csv_real(line, w.busy_mean)) \
