@@ -28,7 +28,8 @@ sixth = number(system("awk -F, '$1 == \"NA\" { print $2 }' experiments/published
 set arrow 1 from graph 0, first sixth to graph 1, first sixth nohead dt (2,3) lc rgb grey
 set arrow 2 from 480, graph 0 to 480, graph 0.9 nohead dt (2,3) lc rgb grey
 set label 1 sprintf("a sixth time, %.2f s, that belongs to no area:", sixth) at 10, sixth + 0.28 left font ",8" textcolor rgb grey
-set label 2 sprintf("on the line it would be %.0f thousand pixels", (sixth - line_a[3])/line_b[3]*100) at 10, sixth - 0.28 left font ",8" textcolor rgb grey
+set label 2 sprintf("on the line it would be %.0f thousand pixels", (sixth - line_a[3])/line_b[3]*100) \
+    at 10, sixth - 0.28 left font ",8" textcolor rgb grey
 set label 3 " all of 800 by 600" at 480, graph 0.03 left font ",8" textcolor rgb grey
 set label 4 sprintf("%.2f s + %.4f s a 1000 pixels,\noff by %.1f %%", line_a[3], line_b[3]/100, line_off[3]*100) at 130, 0.75 left textcolor rgb ink
 unset key

@@ -14,7 +14,8 @@ drawn(bytes) = bytes == bytes ? bytes : 0
 memory(l, m) = of(l, m, "accel_bytes") + drawn(of(l, m, "drawn_bytes"))
 about(l, m) = sprintf("%.0f ms, %.1f MiB, FLIP %.3f", of(l, m, "cpu_s_median")*1e3, memory(l, m)/1048576, of(l, m, "flip"))
 set title offset 0,-0.7
-set label 2 "time of a frame on one thread, memory beside triangles and film, distance from Whitted's picture; mirror, glass and shadows" at screen 0.5,0.02 center font ",9" textcolor rgb grey
+said = "time of a frame on one thread, memory beside triangles and film, distance from Whitted's picture"
+set label 2 said at screen 0.5,0.02 center font ",9" textcolor rgb grey
 set multiplot layout 2,words(methods) margins 0.005,0.995,0.085,0.955 spacing 0.01,0.11
 do for [l=1:2] {
     do for [m=1:words(methods)] {

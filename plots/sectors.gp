@@ -34,7 +34,8 @@ set ylabel "imbalance / %"
 set key top left maxrows 4
 plot for [i=2:3] values("tiles", word(counts, i) + 0, "imbalance") using 1:($2*100) \
          with linespoints lt i pt 6 dt (6,3) title "tiles in turn, ".word(counts, i)." threads", \
-     for [i=2:3] values("dynamic", word(counts, i) + 0, "imbalance") using 1:($2*100) with linespoints lt i title "as asked, ".word(counts, i)." threads", \
+     for [i=2:3] values("dynamic", word(counts, i) + 0, "imbalance") using 1:($2*100) \
+         with linespoints lt i title "as asked, ".word(counts, i)." threads", \
      for [i=2:3] for [j=1:2] '+' using (j == 1 ? 500 : 900):(block(word(label_blocks, j), word(counts, i) + 0, "imbalance")*100) every ::0::0 \
          with points lt i pt 2 ps 1.2 notitle
 unset multiplot

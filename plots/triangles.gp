@@ -38,7 +38,8 @@ set y2range [0:10]
 set y2tics
 set border 11
 set key top left Left reverse font ",9"
-about(i) = log_fits[i] ? sprintf("%s: %.0f + %.0f ln(n / 10000) ms, off by %.1f %%", i == 3 ? "octants" : "boxes", log_a[i]*1e3, log_b[i]*1e3, log_off[i]*100) : word(names, i)
+about(i) = log_fits[i] ? sprintf("%s: %.0f + %.0f ln(n / 10000) ms, off by %.1f %%", \
+    i == 3 ? "octants" : "boxes", log_a[i]*1e3, log_b[i]*1e3, log_off[i]*100) : word(names, i)
 fitted(i, n) = log_fits[i] && n >= 7 ? log_law(n*1e3, log_a[i], log_b[i]) : NaN
 plot for [i=3:4] few(i) using ($1/1e3):($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i title about(i), \
      for [i=3:4] '+' using 1:(fitted(i, $1)*1e3) with lines lt i notitle, \
