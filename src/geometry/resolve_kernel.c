@@ -169,7 +169,9 @@ static void next_changes(const arrangement *a, const ray_batch *rays, int n, ray
     surfaces(a->opaque_ranks, n, c->before, c->after, c->surface);
     mark_attention(a, n, c, s->attention);
     for (int k = 0; a->meshes && k < n; k++) {
-        s->attention[k] |= -(int64_t)s->meshes->near[k];
+        const bool met = c->crossed[k] >= 0;
+        const bool others = met && (c->inside_before[k] ^ c->inside_after[k]) != (uint64_t)1 << c->crossed[k]; /* those of a lower number too */
+        s->attention[k] |= -(int64_t)(others || s->meshes->near[k]);
         s->meshes->until[k] = c->t[k];
         /* Through an edge a front and a back are at one place: the second crossing there is the last, or they would follow one another for ever. */
         if (c->t[k] <= s->meshes->from[k])
