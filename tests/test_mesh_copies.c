@@ -1,0 +1,148 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "base/counters.h"
+#include "measure/clock.h"
+#include "mesh_stage.h"
+
+/* Copies of meshes, and one picture however it is made. */
+
+#define FRAME "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [0.9, 0.8, 0.6]}\n" \
+              "render: {width: 96, height: 72, depth: 5}\n" \
+              "camera: {position: [1.1, 2.3, -5], target: [0.1, 0.4, 0], fov_deg: 42}\n" \
+              "lights: {lamp: {position: [3, 5, -4]}, other: {position: [-4, 3, -1], intensity: 0.5}}\n"
+
+static uint64_t hash_of(const char *text, const char *assignments, isa level)
+{
+    scene *s = scene_with_meshes(text, assignments);
+    render_result *r = render_at(s, level, NULL);
+    const uint64_t hash = film_hash(r->picture);
+    render_result_destroy(r);
+    scene_destroy(s);
+    return hash;
+}
+
+static void copies_are_as_many_solids(void **state)
+{
+    (void)state;
+    scene_text a = {.length = 0}, b = {.length = 0};
+    static const char look[] = "shape: mesh, mesh: ring, transparency: 1, ior: 1.5, shading: smooth, scale: [0.5, 0.75, 0.5]";
+    add(&a, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n  rings: {%s, copies: [3, 2, 2], spacing: [1.5, 1, 2], position: [-1.5, 0, -1]}\n",
+        FRAME, look);
+    add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n", FRAME);
+    for (int k = 0; k < 12; k++) /* one medium, as the copies are */
+        add(&b, "  r%d: {%s, position: [%g, %g, %g]}\n", k, look, -1.5 + 1.5 * (k % 3), 1.0 * (k / 3 % 2), -1.0 + 2.0 * (k / 6));
+    assert_true(hash_of(a.at, "", isa_best()) == hash_of(b.at, "", isa_best()));
+}
+
+/* Copies that touch are one block, flush to the last bit. */
+static void copies_that_touch_are_one_block(void **state)
+{
+    (void)state;
+    scene_text a = {.length = 0}, b = {.length = 0};
+    add(&a, "%smeshes: {cube: {generate: box, size: [0.3, 0.5, 0.7]}}\nsolids:\n  wall: {shape: mesh, mesh: cube, transparency: 1, ior: 1.5,"
+        " copies: [4, 2, 3], spacing: [0.3, 0.5, 0.7], position: [-0.45, 0, -0.7], rotation: [0, 20, 0]}\n", FRAME);
+    add(&b, "%ssolids:\n  wall: {shape: box, size: [1.2, 1, 2.1], transparency: 1, ior: 1.5, position: [%.17g, 0.25, %.17g], rotation: [0, 20, 0]}\n", FRAME,
+        -0.45 + turned(vec3_make(0.45, 0.0, 0.7), vec3_make(0.0, 20.0, 0.0)).x, -0.7 + turned(vec3_make(0.45, 0.0, 0.7), vec3_make(0.0, 20.0, 0.0)).z);
+    scene *many = scene_with_meshes(a.at, ""), *one = scene_with_meshes(b.at, "");
+    render_result *x = render(many), *y = render(one);
+    assert_true(rms_between(x->picture, y->picture) < 1e-8);
+    render_result_destroy(x);
+    render_result_destroy(y);
+    scene_destroy(many);
+    scene_destroy(one);
+}
+
+/* The world's vertices of a copy as a mesh of its own. */
+static void placed_copies_are_transformed_vertices(void **state)
+{
+    (void)state;
+    scene_text a = {.length = 0}, b = {.length = 0};
+    static const char look[] = "shape: mesh, transparency: 1, ior: 1.5, specular: 0.5, shading: smooth";
+    add(&a, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring, scale: [1.25, 2, 0.75], rotation: [30, 40, 50], position: [0.2, 0.4, 0.1]}}\n",
+        FRAME, look);
+    add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring}}\n", FRAME, look);
+    scene *placed = scene_with_meshes(a.at, ""), *moved = scene_with_meshes(b.at, "");
+    const mesh *from = moved->meshes[0].data;
+    mesh *m = NULL;
+    assert_int_equal(mesh_create(from->vertex_count, from->triangle_count, true, false, false, &m, NULL), STATUS_OK);
+    const vec3 turn = vec3_make(30.0, 40.0, 50.0);
+    for (size_t i = 0; i < from->vertex_count; i++) {
+        const vec3 v = from->vertices[i], n = from->normals[i];
+        m->vertices[i] = vec3_add(vec3_make(0.2, 0.4, 0.1), turned(vec3_make(1.25 * v.x, 2.0 * v.y, 0.75 * v.z), turn));
+        m->normals[i] = turned(vec3_normalize(vec3_make(n.x / 1.25, n.y / 2.0, n.z / 0.75)), turn);
+    }
+    memcpy(m->triangles, from->triangles, from->triangle_count * sizeof *m->triangles);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    mesh_release(moved->meshes[0].data);
+    moved->meshes[0].data = m;
+    render_result *x = render(placed), *y = render(moved);
+    assert_true(rms_between(x->picture, y->picture) < 1e-6);
+    render_result_destroy(x);
+    render_result_destroy(y);
+    scene_destroy(placed);
+    scene_destroy(moved);
+}
+
+static void a_hundred_thousand_copies_are_quick_and_small(void **state)
+{
+    (void)state;
+    scene_text t = {.length = 0};
+    add(&t, "%smeshes: {ball: {generate: icosphere, level: 3}, slab: {generate: box, size: [200, 0.1, 200]}}\nsolids:\n"
+        "  balls: {shape: mesh, mesh: ball, shading: smooth, transparency: 1, ior: 1.5, scale: [0.2, 0.2, 0.2], copies: [400, 1, 250], spacing: [0.5, 1, 0.5],"
+        " position: [-100, 0.2, 0]}\n  floor: {shape: mesh, mesh: slab, diffuse: 0.8, position: [0, -0.05, 60]}\n", FRAME);
+    scene *s = scene_with_meshes(t.at, "");
+    const int64_t began = clock_wall_ns();
+    render_result *r = render(s);
+    const double seconds = (double)(clock_wall_ns() - began) * 1e-9;
+    print_message("100001 copies: %.2f s, hierarchies %.1f KB, %llu rays\n", seconds, (double)r->meshes.bytes / 1024.0,
+                  (unsigned long long)ray_counters_total(&r->counters));
+    assert_int_equal(r->meshes.instances, 100001);
+    assert_true(r->meshes.bytes < 1 << 20);
+    assert_true(seconds < 20.0);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
+static const char gallery[] = FRAME
+    "meshes:\n  ring: {generate: torus, around: 40, tube: 20}\n  ball: {generate: icosphere, level: 2}\n  cube: {generate: box}\n  cloud: {generate: sparse, count: 500}\n"
+    "textures: {map: {file: none.png}}\n"
+    "solids:\n"
+    "  ground: {shape: plane, texture: map, diffuse: 0.8, ambient: 0.1, position: [0, -0.5, 0]}\n"
+    "  lens: {shape: mesh, mesh: ball, shading: smooth, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0.1, 0], position: [-1, 0.3, -0.5], priority: 2}\n"
+    "  bath: {shape: box, size: [2, 0.6, 2], transparency: 0.9, ior: 1.33, position: [-0.6, -0.2, -0.2], priority: 1}\n"
+    "  loop: {shape: mesh, mesh: ring, shading: gouraud, color: [0.8, 0.3, 0.2], diffuse: 0.7, specular: 0.5, shininess: 30, scale: [0.6, 0.6, 0.6],"
+    " rotation: [60, 0, 20], position: [0.9, 0.5, 0]}\n"
+    "  crate: {shape: mesh, mesh: cube, texture: map, diffuse: 0.7, ambient: 0.1, reflectivity: 0.2, position: [0.3, 0, 0.9], rotation: [0, 30, 0]}\n"
+    "  beads: {shape: mesh, mesh: ball, transparency: 1, ior: 1.5, absorb_per_m: [0, 1, 2], scale: [0.1, 0.1, 0.1], copies: [9, 2, 9], spacing: [0.21, 0.21, 0.21], position: [0.2, -0.3, -1.5]}\n"
+    "  leaves: {shape: mesh, mesh: cloud, diffuse: 0.6, position: [0, 0.9, 1.6]}\n";
+
+static void one_film_however_it_is_made(void **state)
+{
+    (void)state;
+    static const char *const ways[] = {"render.threads=1", "render.threads=2 render.schedule=rows", "render.threads=7 render.schedule=dynamic render.tile=8",
+                                       "render.threads=3 render.schedule=tiles render.tile=16 render.pool=off", "render.accel=none",
+                                       "render.accel=sphere", "render.accel=octant render.threads=2", "render.accel=bvh render.keep=off"};
+    const uint64_t wanted = hash_of(gallery, "", isa_best());
+    for (size_t k = 0; k < COUNT(ways); k++)
+        if (hash_of(gallery, ways[k], isa_best()) != wanted)
+            fail_msg("another film with %s", ways[k]);
+    for (int level = ISA_SSE2; level < (int)isa_best(); level++)
+        assert_true(hash_of(gallery, "", (isa)level) == wanted);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(copies_are_as_many_solids),
+        cmocka_unit_test(copies_that_touch_are_one_block),
+        cmocka_unit_test(placed_copies_are_transformed_vertices),
+        cmocka_unit_test(a_hundred_thousand_copies_are_quick_and_small),
+        cmocka_unit_test(one_film_however_it_is_made),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
