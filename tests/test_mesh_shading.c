@@ -1,0 +1,341 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "mesh_stage.h"
+#include "random_stream.h"
+
+/* What meshes look like at points where it can be worked out: Phong's sum with flat, interpolated and corner values; textures; and what shading
+ * normals must not do. */
+
+#define DARK "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 2, shadows: off}\n"
+
+/* A tilted square of side 2 in the plane z = 0, corners' normals leaning outwards; seen from z < 0. */
+static void give_square(scene *s, vec3 *corner, vec3 *normal)
+{
+    static const double at[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    mesh *m = NULL;
+    assert_int_equal(mesh_create(4, 2, true, true, false, &m, NULL), STATUS_OK);
+    for (int k = 0; k < 4; k++) {
+        corner[k] = m->vertices[k] = vec3_make(at[k][0], at[k][1], 0.0);
+        normal[k] = m->normals[k] = vec3_normalize(vec3_make(0.5 * at[k][0], 0.25 * at[k][1], -1.0));
+        m->uvs[k] = (mesh_uv){0.5 + 0.5 * at[k][0], 0.5 + 0.5 * at[k][1]};
+    }
+    m->triangles[0] = (mesh_triangle){{0, 2, 1}};
+    m->triangles[1] = (mesh_triangle){{0, 3, 2}};
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_false(m->closed);
+    s->meshes[0].data = m;
+}
+
+static stage square_stage(const char *more, const char *assignments)
+{
+    scene_text t = {.length = 0};
+    add(&t, DARK "meshes: {square: {generate: box}}\ntextures: {map: {file: none.png, filter: nearest}}\n"
+            "lights: {lamp: {position: [1.5, 2, -3], color: [1, 0.5, 0.25]}}\nsolids: {sheet: {shape: mesh, mesh: square, %s}}\n", more);
+    stage g = {.setting = scene_from(t.at)};
+    vec3 unused[8];
+    give_square(g.setting, unused, unused + 4);
+    set_all(g.setting, assignments);
+    static const double texels[24] = {0.125, 0.25, 1, 0.375, 0.25, 1, 0.625, 0.25, 1, 0.875, 0.25, 1, 0.125, 0.75, 1, 0.375, 0.75, 1, 0.625, 0.75, 1, 0.875, 0.75, 1};
+    give_texture(g.setting, "map", texels, 4, 2);
+    diagnostic why = {0};
+    worked(scene_load(g.setting, &why), &why);
+    stage_look(&g);
+    return g;
+}
+
+/* k_a + k_d (N.L) + k_s (R.V)^n, in red, of a lamp of 1. */
+static double phong(vec3 n, vec3 at, vec3 eye, double k_d, double k_s, double shininess)
+{
+    const vec3 l = vec3_normalize(vec3_sub(vec3_make(1.5, 2, -3), at)), v = vec3_normalize(vec3_sub(eye, at));
+    const double n_l = vec3_dot(n, l);
+    const vec3 r = vec3_sub(vec3_scale(n, 2.0 * n_l), l);
+    return n_l > 0.0 ? k_d * n_l + k_s * pow(fmax(vec3_dot(r, v), 0.0), shininess) : 0.0;
+}
+
+static void phongs_sum_at_known_points(void **state)
+{
+    (void)state;
+    static const char *const rules[] = {"flat", "smooth", "gouraud"};
+    vec3 corner[4], normal[4];
+    scene *unused = scene_from("meshes: {m: {generate: box}}\n");
+    give_square(unused, corner, normal);
+    scene_destroy(unused);
+    for (int rule = 0; rule < 3; rule++) {
+        char more[200];
+        snprintf(more, sizeof more, "color: [1, 1, 1], ambient: 0.125, diffuse: 0.5, specular: 0.25, shininess: 5, shading: %s", rules[rule]);
+        stage g = square_stage(more, "");
+        const vec3 eye = vec3_make(0.25, -0.5, -4.0);
+        for (int k = 0; k < 200; k++) {
+            const double x = -0.95 + 1.9 * (k % 20) / 19.0, y = -0.93 + 1.8 * (k / 20) / 9.0;
+            const vec3 at = vec3_make(x, y, 0.0);
+            const ray_tree *tree = stage_ray(&g, eye, vec3_sub(at, eye));
+            /* of the triangle 0 2 1 (x > y): weights of 0, 2, 1; else of 0, 2, 3 */
+            const double third = fabs(x - y) / 2.0, second = x > y ? (1.0 + y) / 2.0 : (1.0 + x) / 2.0, first = 1.0 - second - third;
+            const int other = x > y ? 1 : 3;
+            double wanted;
+            if (rule == 0)
+                wanted = phong(vec3_make(0, 0, -1), at, eye, 0.5, 0.25, 5.0);
+            else if (rule == 1)
+                wanted = phong(vec3_normalize(vec3_add(vec3_scale(normal[0], first), vec3_add(vec3_scale(normal[2], second), vec3_scale(normal[other], third)))), at,
+                               eye, 0.5, 0.25, 5.0);
+            else
+                wanted = first * phong(normal[0], corner[0], eye, 0.5, 0.25, 5.0) + second * phong(normal[2], corner[2], eye, 0.5, 0.25, 5.0) +
+                         third * phong(normal[other], corner[other], eye, 0.5, 0.25, 5.0);
+            assert_true(fabs(tree->radiance[0] - (0.125 + wanted)) < 1e-8);
+            assert_true(fabs(tree->radiance[2] - (0.125 + 0.25 * wanted)) < 1e-8);
+        }
+        stage_close(&g);
+    }
+}
+
+static void light_behind_the_plane_leaves_the_ambient(void **state)
+{
+    (void)state;
+    static const char *const rules[] = {"flat", "smooth", "gouraud"};
+    for (int rule = 0; rule < 3; rule++) {
+        char more[200];
+        snprintf(more, sizeof more, "color: [1, 1, 1], ambient: 0.125, diffuse: 0.5, specular: 0.25, shading: %s", rules[rule]);
+        stage g = square_stage(more, "lamp.position=6,1,0.001 render.shadows=attenuated");
+        for (int k = 0; k < 50; k++)
+            assert_true(stage_ray(&g, vec3_make(0.1, 0.2, -3.0), vec3_make(-0.3 + 0.012 * k, 0.1, 3.0))->radiance[0] == 0.125);
+        stage_close(&g);
+    }
+}
+
+/* An open sheet laid twice in one place has no shadow of itself, and no light comes through it. */
+static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
+{
+    (void)state;
+    static const char *const sheets[] = {
+        "shape: mesh, mesh: square, rotation: [31, 17, 5], ambient: 0.125, diffuse: 0.5, specular: 0, shading: flat}, second: {shape: mesh, mesh: square, rotation: [31, 17, 5], ambient: 0.125, diffuse: 0.5, specular: 0, shading: flat",
+        "shape: mesh, mesh: square, rotation: [31, 17, 5], copies: [2, 1, 1], spacing: [0, 0, 0], ambient: 0.125, diffuse: 0.5, specular: 0, shading: flat"};
+    for (size_t k = 0; k < COUNT(sheets); k++) {
+        scene_text t = {.length = 0};
+        add(&t, "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\nrender: {width: 1, height: 1}\nmeshes: {square: {generate: box}}\n"
+                "lights: {lamp: {position: [1, 2, -30]}, behind: {position: [-2, 1, 40]}}\nsolids: {sheet: {%s}}\n", sheets[k]);
+        stage g = {.setting = scene_from(t.at)};
+        vec3 unused[8];
+        give_square(g.setting, unused, unused + 4);
+        stage_look(&g);
+        uint64_t seed = 3;
+        for (int i = 0; i < 3000; i++) {
+            const vec3 at = vec3_make(random_real(&seed, -0.6, 0.6), random_real(&seed, -0.6, 0.6), 0.0), world = turned(at, vec3_make(31, 17, 5));
+            const vec3 n = turned(vec3_make(0, 0, -1), vec3_make(31, 17, 5)), eye = vec3_make(random_real(&seed, -2, 2), 0.3, -5.0);
+            const vec3 l = vec3_normalize(vec3_sub(vec3_make(1, 2, -30), world));
+            const double wanted = 0.125 + 0.5 * vec3_dot(n, l);
+            assert_true(fabs(stage_ray(&g, eye, vec3_sub(world, eye))->radiance[0] - wanted) < 1e-8);
+        }
+        stage_close(&g);
+    }
+}
+
+/* On a coarse smooth ball, inside and outside, mirrored rays stay on their side of the triangle and refracted ones leave it. */
+static void bent_normals_keep_rays_on_their_sides(void **state)
+{
+    (void)state;
+    static const char text[] = "background: {color: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 8, beyond: black}\nmeshes: {rough: {generate: icosphere, level: 0}}\n"
+                               "solids: {ball: {shape: mesh, mesh: rough, shading: smooth, transparency: 1, ior: 1.5}}\n";
+    stage g = stage_with_meshes(text, "");
+    const mesh *m = g.setting->meshes[0].data;
+    uint64_t seed = 8;
+    int reflected = 0, refracted = 0;
+    double worst = 0.0;
+    for (int i = 0; i < 4000; i++) {
+        const vec3 o = vec3_scale(random_direction(&seed), 3.0), to = vec3_scale(random_direction(&seed), 0.97);
+        const ray_tree *tree = stage_ray(&g, o, vec3_sub(to, o));
+        for (size_t k = 1; k < tree->count; k++) {
+            const ray_node *n = &tree->node[k], *p = &tree->node[n->parent];
+            const mesh_triangle t = m->triangles[p->hit.face];
+            const vec3 a = m->vertices[t.corner[0]];
+            vec3 side = vec3_cross(vec3_sub(m->vertices[t.corner[1]], a), vec3_sub(m->vertices[t.corner[2]], a));
+            side = vec3_dot(side, p->direction) > 0.0 ? vec3_scale(side, -1.0) : side;
+            assert_true((vec3_dot(side, n->direction) > 0.0) == (n->kind == RAY_REFLECT));
+            reflected += n->kind == RAY_REFLECT, refracted += n->kind == RAY_REFRACT;
+        }
+        worst = fmax(worst, fabs(tree->radiance[1] + tree_cut(tree, 1) - 1.0));
+    }
+    assert_true(reflected > 4000 && refracted > 4000);
+    assert_true(worst < 1e-8); /* and nothing is lost */
+    stage_close(&g);
+}
+
+/* The white furnace (test_furnace.c) with meshes in one another. */
+static void meshes_in_a_furnace_lose_nothing(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "background: {color: [1, 1, 1]}\ncamera: {position: [0.3, 1.9, -4.5], target: [0, 0.5, 0], fov_deg: 40}\nrender: {width: 16, height: 12, beyond: black}\n"
+        "meshes: {hoop: {generate: torus, around: 20, tube: 10}, globe: {generate: icosphere, level: 2}, cube: {generate: box}}\n"
+        "solids:\n  bath: {shape: mesh, mesh: cube, scale: [2.5, 1, 2.5], transparency: 1, ior: 1.33, priority: 1}\n"
+        "  ring: {shape: mesh, mesh: hoop, shading: smooth, transparency: 1, ior: 1.5, rotation: [20, 0, 30], position: [0, 0.4, 0], priority: 3}\n"
+        "  ball: {shape: mesh, mesh: globe, shading: smooth, transparency: 1, ior: 1.8, scale: [0.7, 0.5, 0.6], position: [0.6, 0.4, 0], priority: 2}\n"
+        "  bubble: {shape: sphere, radius: 0.5, transparency: 1, ior: 1, position: [-0.7, 0.5, 0.1], priority: 4}\n"
+        "  beads: {shape: mesh, mesh: globe, transparency: 1, ior: 2.4, scale: [0.15, 0.15, 0.15], copies: [3, 2, 3], spacing: [0.5, 0.4, 0.5], position: [-0.6, 0.2, -0.5], priority: 5}\n";
+    static const char *const eyes[] = {"", "camera.position=0,0.1,0", "camera.position=0.9,0.5,0.05", "render.polarisation=on"};
+    for (size_t k = 0; k < COUNT(eyes); k++) {
+        stage g = stage_with_meshes(text, eyes[k]);
+        set(g.setting, "render.depth=8");
+        stage_look(&g);
+        for (int y = 0; y < 12; y++)
+            for (int x = 0; x < 16; x++) {
+                const ray_tree *tree = stage_pixel(&g, x, y);
+                assert_true(fabs(tree->radiance[1] + tree_cut(tree, 1) - 1.0) < 1e-9);
+            }
+        stage_close(&g);
+    }
+}
+
+/* exp(-a d) over the way through a box and through the middle of a fine sphere, straight on. */
+static void absorption_over_lengths_in_meshes(void **state)
+{
+    (void)state;
+    static const char *const bodies[] = {"{generate: box, size: [2, 1, 2]}", "{generate: icosphere, level: 6}"};
+    for (int k = 0; k < 2; k++) {
+        scene_text t = {.length = 0};
+        add(&t, "background: {color: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 3}\nmeshes: {body: %s}\n"
+                "solids: {lump: {shape: mesh, mesh: body, transparency: 1, ior: 1.25, absorb_per_m: [0.5, 1, 2], position: [0, 0, 4]}}\n", bodies[k]);
+        stage g = stage_with_meshes(t.at, "render.unit_m=0.5 background.ior=1.25 lump.ior=1.5");
+        const double length = 2.0;
+        const ray_node *in = &stage_ray(&g, vec3_make(0.001, 0.002, 0), vec3_make(0, 0, 1))->node[0];
+        const ray_node *through = child_of(&g.tree, in, RAY_REFRACT);
+        assert_non_null(through);
+        for (int c = 0; c < 3; c++) {
+            const double a = c == 0 ? 0.5 : c == 1 ? 1.0 : 2.0, share = exp(-a * length * 0.5);
+            assert_true(fabs(through->hit.transmittance[c] - share) < (k == 0 ? 1e-14 : 1e-3));
+        }
+        stage_close(&g);
+    }
+}
+
+static void expect_texel(const ray_tree *tree, double u, double v)
+{
+    assert_int_equal(tree->node[0].end, RAY_END_HIT);
+    const double column = floor((u - floor(u)) * 4.0), line = floor((v - floor(v)) * 2.0);
+    assert_true(fabs(tree->radiance[0] - (column + 0.5) / 4.0) < 1e-6 && fabs(tree->radiance[1] - (line + 0.5) / 2.0) < 1e-6);
+}
+
+/* A picture in front of a viewer at -z who looks along +z begins at his left, whatever it is on. */
+static void textures_at_known_points(void **state)
+{
+    (void)state;
+    static const char head[] = DARK "textures: {map: {file: none.png, filter: nearest}}\nmeshes: {ball: {generate: icosphere, level: 5}, cube: {generate: box}, sheet: {generate: box}}\nsolids: {it: {ambient: 1, diffuse: 0, texture: map, ";
+    static const struct { const char *shape; int kind; } things[] = {
+        {"shape: sphere, radius: 1}}\n", 0}, {"shape: mesh, mesh: ball}}\n", 0}, {"shape: cylinder, radius: 1, height: 2, position: [0, -1, 0]}}\n", 1},
+        {"shape: box, size: [2, 2, 2]}}\n", 2}, {"shape: mesh, mesh: cube, scale: [2, 2, 2]}}\n", 2}, {"shape: plane, rotation: [-90, 0, 0], position: [0, 0, -1]}}\n", 3},
+        {"shape: plane, rotation: [-90, 0, 0], position: [0, 0, -1], texture_size: 2.5}}\n", 4}};
+    for (size_t k = 0; k < COUNT(things); k++) {
+        char text[2048];
+        snprintf(text, sizeof text, "%s%s", head, things[k].shape);
+        stage g = stage_with_meshes(text, "");
+        for (int i = 0; i < 100; i++) {
+            const double x = -0.713 + 0.149 * (i % 10), y = -0.67 + 0.147 * (i / 10);
+            const ray_tree *tree = stage_ray(&g, vec3_make(x, y, -5.0), vec3_make(0, 0, 1));
+            const vec3 p = tree->node[0].hit.point;
+            const double turn = 0.5 + atan2(p.x, -p.z) / (2.0 * M_PI);
+            if (things[k].kind < 2 && (fabs(turn * 4.0 - round(turn * 4.0)) < 0.01 || fabs(p.y) < 0.01))
+                continue;
+            switch (things[k].kind) {
+            case 0: expect_texel(tree, turn, 0.5 + asin(p.y / vec3_length(p)) / M_PI); break;
+            case 1: expect_texel(tree, turn, (y + 1.0) / 2.0); break;
+            case 2: expect_texel(tree, (x + 1.0) / 2.0, (y + 1.0) / 2.0); break;
+            case 3: expect_texel(tree, x, y); break;
+            default: expect_texel(tree, x / 2.5, y / 2.5); break;
+            }
+        }
+        stage_close(&g);
+    }
+}
+
+static const char *refusal_of(const char *text, const char *assignments, char *room)
+{
+    scene *s = scene_with_meshes(text, assignments);
+    diagnostic why = {0};
+    const status code = scene_check(s, &why);
+    room[0] = '\0';
+    if (code != STATUS_OK)
+        diagnostic_text(&why, room, DIAGNOSTIC_TEXT_MAX);
+    scene_destroy(s);
+    return room;
+}
+
+static void an_open_dielectric_names_its_hole(void **state)
+{
+    (void)state;
+    char why[DIAGNOSTIC_TEXT_MAX];
+    static const char open[] = DARK "meshes: {hills: {generate: terrain, around: 4, tube: 4}}\nsolids: {lens: {shape: mesh, mesh: hills, transparency: 1}}\n";
+    assert_non_null(strstr(refusal_of(open, "", why), "the edge from ("));
+    assert_null(strchr(why, '\n'));
+    assert_string_equal(refusal_of(open, "lens.transparency=0", why), "");
+    assert_string_equal(refusal_of(open, "render.transmission=simple lens.transparency=0.9", why), "");
+}
+
+static void spectral_films_refuse_textures_and_faces(void **state)
+{
+    (void)state;
+    char why[DIAGNOSTIC_TEXT_MAX];
+    static const char text[] = DARK "textures: {map: {file: none.png}}\nsolids: {ball: {shape: sphere, texture: map}}\n";
+    assert_non_null(strstr(refusal_of(text, "render.spectrum=spectral", why), "render.spectrum"));
+    assert_string_equal(refusal_of(text, "", why), "");
+}
+
+/* Two triangles, two materials: the file's looks, and the scene's own material where it has the slot's name. */
+static void faces_look_like_their_materials(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/cuvette-faces-XXXXXX", path[64], text[1024], why[DIAGNOSTIC_TEXT_MAX];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/two.obj", folder);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fputs("mtllib two.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl left\nf 1 4 3\nusemtl right\nf 1 3 2\n", f);
+    fclose(f);
+    char library[64];
+    snprintf(library, sizeof library, "%s/two.mtl", folder);
+    f = fopen(library, "w");
+    assert_non_null(f);
+    fputs("newmtl left\nKd 0.25 0.5 0.75\nKs 0 0 0\nnewmtl right\nKd 0.5 0.125 0.0625\nKs 0 0 0\n", f);
+    fclose(f);
+    for (int k = 0; k < 3; k++) {
+        snprintf(text, sizeof text, DARK "lights: {lamp: {position: [0, 0, -1000000]}}\nmeshes: {two: {file: %s}}\n%ssolids: {sheet: {shape: mesh, mesh: two%s}}\n", path,
+                 k == 1 ? "materials: {right: {color: [0, 1, 0], ambient: 0.5, diffuse: 0}}\n" : k == 2 ? "materials: {own: {color: [0, 0, 1], diffuse: 1, ambient: 0}}\n" : "",
+                 k == 2 ? ", material: own" : "");
+        stage g = stage_with_meshes(text, "");
+        const double *left = stage_ray(&g, vec3_make(-0.5, 0.5, -3.0), vec3_make(0, 0, 1))->radiance;
+        const double l[3] = {left[0], left[1], left[2]};
+        const double *right = stage_ray(&g, vec3_make(0.5, -0.5, -3.0), vec3_make(0, 0, 1))->radiance;
+        if (k == 2)
+            assert_true(fabs(l[2] - 1.0) < 1e-6 && l[0] == 0.0 && fabs(right[2] - 1.0) < 1e-6);
+        else
+            assert_true(l[0] < l[1] && l[1] < l[2] && (k == 1 ? right[1] == 0.5 && right[0] == 0.0 : right[0] > right[1] && right[1] > right[2]));
+        stage_close(&g);
+    }
+    snprintf(text, sizeof text, DARK "meshes: {two: {file: %s}}\nsolids: {sheet: {shape: mesh, mesh: two}}\n", path);
+    assert_non_null(strstr(refusal_of(text, "render.spectrum=spectral", why), "materials by face"));
+    unlink(path);
+    unlink(library);
+    rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(phongs_sum_at_known_points),
+        cmocka_unit_test(light_behind_the_plane_leaves_the_ambient),
+        cmocka_unit_test(doubled_sheets_have_no_acne_and_no_leaks),
+        cmocka_unit_test(bent_normals_keep_rays_on_their_sides),
+        cmocka_unit_test(meshes_in_a_furnace_lose_nothing),
+        cmocka_unit_test(absorption_over_lengths_in_meshes),
+        cmocka_unit_test(textures_at_known_points),
+        cmocka_unit_test(an_open_dielectric_names_its_hole),
+        cmocka_unit_test(spectral_films_refuse_textures_and_faces),
+        cmocka_unit_test(faces_look_like_their_materials),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
