@@ -263,7 +263,7 @@ $(RESULTS)/figures/trace.svg: experiments/scenes/rod.yaml | $(build)/cuvette
 paper: ## rebuild the report from the rows that are there; measures nothing
 	$(MAKE) -C paper
 
-bench: all ## frame times, what counters cost; PEERS=DIR (rod.pov, listing_baseline.cpp): against these too
+bench: all ## frame times, what counters cost, rays through meshes; PEERS=DIR (rod.pov, listing_baseline.cpp, embree_bench.c): against these too
 	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters all
 	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' PEERS='$(PEERS)' experiments/bench.sh
 
