@@ -5,6 +5,7 @@ areas(i) = i < 3 ? select(table("coverage"), "render.accel=".word("octant bvh", 
 line(pixels, a, b) = a + b*pixels/1e5
 array line_fits[3]; array line_a[3]; array line_b[3]; array line_off[3]
 do for [i=1:3] {
+    line_a[i] = NaN; line_b[i] = NaN; line_off[i] = NaN
     line_fits[i] = int(system(areas(i)[3:*]." | wc -l")) >= 3
     if (line_fits[i]) {
         a = 0.1; b = 0.1

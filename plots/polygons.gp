@@ -16,6 +16,8 @@ power_law(n, c, p) = c*(n/1e4)**p
 array log_fits[5]; array log_a[5]; array log_b[5]; array log_off[5]; array power_c[5]; array power_p[5]; array power_off[5]
 array wide_fits[5]; array wide_a[5]; array wide_b[5]; array wide_off[5]; array wide_c[5]; array wide_p[5]; array wide_power_off[5]
 do for [i=1:5] {
+    log_a[i] = NaN; log_b[i] = NaN; log_off[i] = NaN; power_c[i] = NaN; power_p[i] = NaN; power_off[i] = NaN
+    wide_a[i] = NaN; wide_b[i] = NaN; wide_off[i] = NaN; wide_c[i] = NaN; wide_p[i] = NaN; wide_power_off[i] = NaN
     log_fits[i] = lines(few(i)) >= 4
     wide_fits[i] = i < 5 && lines(wide(i)) >= 6
     do for [range=1:2] {
