@@ -135,6 +135,34 @@ static void one_film_however_it_is_made(void **state)
         assert_true(hash_of(gallery, "", (isa)level) == wanted);
 }
 
+/* Shadow rays through two hundred absorbing beads each: more media than a batch has room for at once. */
+static void light_through_very_many_media_is_the_same_in_any_batch(void **state)
+{
+    (void)state;
+    scene_text t = {.length = 0};
+    add(&t, "background: {color: [0, 0, 0]}\nrender: {width: 24, height: 16, depth: 1}\ncamera: {position: [0, 2, -3], target: [0, 0, -1], fov_deg: 30}\n"
+            "lights: {lamp: {position: [0.05, 0.45, 60]}}\nmeshes: {cube: {generate: box, size: [20, 3, 0.1]}}\nsolids:\n"
+            "  ground: {shape: plane, diffuse: 0.9, ambient: 0, specular: 0}\n"
+            "  slats: {shape: mesh, mesh: cube, transparency: 1, ior: 1, absorb_per_m: [0.01, 0.05, 0.1], copies: [1, 1, 200], spacing: [1, 1, 0.25], position: [0, 1, 1], priority: -1}\n");
+    const uint64_t wanted = hash_of(t.at, "", isa_best());
+    assert_true(hash_of(t.at, "render.threads=3 render.schedule=tiles render.tile=8", isa_best()) == wanted);
+    assert_true(hash_of(t.at, "render.schedule=columns render.threads=24", isa_best()) == wanted);
+    stage g = stage_with_meshes(t.at, "");
+    const ray_tree *tree = stage_pixel(&g, 12, 8);
+    assert_int_equal(tree->node[1].kind, RAY_SHADOW);
+    const vec3 at = tree->node[0].hit.point, l = vec3_sub(vec3_make(0.05, 0.45, 60), at), d = vec3_normalize(l);
+    const double a[3] = {0.01, 0.05, 0.1}, within = 200.0 * 0.1 / d.z;
+    for (int c = 0; c < 3; c++)
+        assert_true(fabs(tree->node[1].brought[c] - tree->node[1].throughput[c] * exp(-a[c] * within)) < 1e-7);
+    scene *s = scene_with_meshes(t.at, "");
+    render_result *r = render(s);
+    for (int c = 0; c < 3; c++)
+        assert_true(fabs(film_value(r->picture, 12, 8, c) - tree->radiance[c]) < 1e-9);
+    render_result_destroy(r);
+    scene_destroy(s);
+    stage_close(&g);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -143,6 +171,7 @@ int main(void)
         cmocka_unit_test(placed_copies_are_transformed_vertices),
         cmocka_unit_test(a_hundred_thousand_copies_are_quick_and_small),
         cmocka_unit_test(one_film_however_it_is_made),
+        cmocka_unit_test(light_through_very_many_media_is_the_same_in_any_batch),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

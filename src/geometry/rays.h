@@ -49,12 +49,15 @@ typedef struct mesh_scratch {
     bool near[ROW];          /* another boundary lies close to the column's hit */
 } mesh_scratch;
 
+/* Of convex solids no batch has more. Rays through many meshes may: then what there is is handed over to `full`, which empties the list. */
 enum { STRETCHES_MAX = BATCH * (2 * PRIMITIVES_MAX + 2) };
 
 /* The media that each ray of a batch went through, up to its hit or its light; those of one ray in order. Kept apart from the
  * scratch, whose rows lie in the cache as they were measured to be fastest. */
 typedef struct ray_ways {
     int count;
+    void (*full)(void *context);
+    void *context;
     double passed[ROW], unit[ROW]; /* how far a column has been followed; length of a step of 1 */
     stretch stretches[STRETCHES_MAX];
 } ray_ways;

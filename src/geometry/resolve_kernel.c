@@ -282,8 +282,9 @@ static void note_stretch(int k, double end, ray_scratch *s, const hit_batch *c)
 {
     ray_ways *w = s->ways;
     const double length = (lesser(c->t[k], end) - w->passed[k]) * w->unit[k];
-    if (w->count < STRETCHES_MAX) /* always: a ray crosses a convex primitive's surface twice at most */
-        w->stretches[w->count++] = (stretch){s->ray[k], (int)c->before[k], length};
+    if (w->count == STRETCHES_MAX)
+        w->full(w->context);
+    w->stretches[w->count++] = (stretch){s->ray[k], (int)c->before[k], length};
 }
 
 static void begin(const arrangement *a, const ray_batch *rays, ray_scratch *s)

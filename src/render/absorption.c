@@ -19,11 +19,11 @@ static double share_left(double optical_depth)
     return elementary_exp2_inline(-LOG2_E * optical_depth);
 }
 
-void absorption_shares(tracer *t, const int64_t *tickets, int count)
+/* The stretches' optical depths, into kept. */
+static void add_depths(tracer *t)
 {
     const plan *p = t->target.scene;
-    for (int i = 0; i < count; i++)
-        t->kept[0][i] = t->kept[1][i] = t->kept[2][i] = 0.0; /* optical depths first */
+    const int64_t *tickets = t->ways_tickets;
     for (int k = 0; k < t->scratch.ways->count; k++) {
         const stretch *s = &t->scratch.ways->stretches[k];
         if (!p->solids->bodies[s->rank].absorbs)
@@ -33,6 +33,32 @@ void absorption_shares(tracer *t, const int64_t *tickets, int count)
         t->kept[1][s->ray] += a.y * s->length;
         t->kept[2][s->ray] += a.z * s->length;
     }
+    t->scratch.ways->count = 0;
+}
+
+/* A way to the sky is spared here too: it is as long as can be. */
+static void make_room(void *context)
+{
+    tracer *t = context;
+    const double for_ever = 1e100;
+    for (int k = 0; k < t->scratch.ways->count; k++)
+        if (t->scratch.ways->stretches[k].rank == 0 && t->scratch.ways->stretches[k].length > for_ever)
+            t->scratch.ways->stretches[k].length = 0.0;
+    add_depths(t);
+}
+
+void absorption_begin(tracer *t, const int64_t *tickets, int count)
+{
+    t->ways_tickets = tickets;
+    t->scratch.ways->full = make_room;
+    t->scratch.ways->context = t;
+    for (int i = 0; i < count; i++)
+        t->kept[0][i] = t->kept[1][i] = t->kept[2][i] = 0.0; /* optical depths first */
+}
+
+static void absorption_shares(tracer *t, int count)
+{
+    add_depths(t);
     for (int i = 0; i < count; i++)
         for (int c = 0; c < 3; c++)
             t->kept[c][i] = t->kept[c][i] > 0.0 ? share_left(t->kept[c][i]) : 1.0;
@@ -53,7 +79,7 @@ void absorption_spare_sky(tracer *t)
 
 void absorption_dim(tracer *t, ray_queue *q, int first, int count)
 {
-    absorption_shares(t, q->ticket + first, count);
+    absorption_shares(t, count);
     for (int i = 0; i < count; i++) {
         q->wr[first + i] *= t->kept[0][i];
         q->wg[first + i] *= t->kept[1][i];

@@ -146,6 +146,8 @@ static void trace_batch(tracer *t, int depth)
     COUNT(t->counters.by_depth[depth] += (uint64_t)rays.count);
     if (depth == 0)
         COUNT(t->counters.camera += (uint64_t)rays.count);
+    if (t->scratch.ways)
+        absorption_begin(t, q->ticket + first, rays.count);
     if (t->target.depths)
         drawn_hits(t, q, first, &rays);
     else
@@ -179,6 +181,8 @@ static void trace_shadows(tracer *t)
     int first;
     const ray_batch rays = queue_take(q, &first);
     COUNT(t->counters.shadow += (uint64_t)rays.count);
+    if (p->solids->absorbs)
+        absorption_begin(t, q->ticket + first, rays.count);
     t->geometry->shadow(p->solids, &rays, p->solid_shadows, &t->scratch, t->transmitted);
     if (p->solids->absorbs)
         absorption_dim(t, q, first, rays.count);
@@ -319,20 +323,47 @@ static void draw(tracer *t, const span *piece)
             t->target.pixel_ns[(int64_t)y * t->target.scene->render.width + x] += share;
 }
 
+/* Edges of the blocks of pixels whose rays fill a batch: square ones where there are meshes, in whose hierarchies rays that are close
+ * together go the same way; else a row's. */
+typedef struct pixel_block { int width, height; } pixel_block;
+static pixel_block block_of(const plan *p, const span *piece, int64_t each)
+{
+    if (p->solids->meshes && each == 1)
+        return (pixel_block){16, BATCH / 16};
+    if (p->solids->meshes && each == 4)
+        return (pixel_block){8, BATCH / 32};
+    return (pixel_block){piece->x1 - piece->x0, 1};
+}
+
+/* A row of a block; false when the frame was stopped. */
+static bool trace_row(tracer *t, int y, int x0, int x1, int64_t each, const atomic_bool *stop)
+{
+    const int64_t all = each * (x1 - x0);
+    const int at_once = rays_at_once(each);
+    for (int64_t ray = 0; ray < all; ray += at_once) {
+        put_camera_rays_in_line(t, y, x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
+        while (run_full(t))
+            if (stopped(stop))
+                return false;
+    }
+    return true;
+}
+
 void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop)
 {
     if (t->target.depths)
         draw(t, piece);
-    const int64_t each = rays_a_pixel(&t->target.scene->render), all = each * (piece->x1 - piece->x0);
-    const int at_once = rays_at_once(each);
-    for (int y = piece->y0; y < piece->y1; y++) {
-        for (int64_t ray = 0; ray < all; ray += at_once) {
-            put_camera_rays_in_line(t, y, piece->x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
-            while (run_full(t))
-                if (stopped(stop))
+    const int64_t each = rays_a_pixel(&t->target.scene->render);
+    const pixel_block block = block_of(t->target.scene, piece, each);
+    for (int top = piece->y0; top < piece->y1; top += block.height) {
+        const int bottom = top + block.height < piece->y1 ? top + block.height : piece->y1;
+        for (int left = piece->x0; left < piece->x1; left += block.width) {
+            const int right = left + block.width < piece->x1 ? left + block.width : piece->x1;
+            for (int y = top; y < bottom; y++)
+                if (!trace_row(t, y, left, right, each, stop))
                     return;
         }
-        atomic_fetch_add_explicit(begun, (uint64_t)(piece->x1 - piece->x0), memory_order_relaxed);
+        atomic_fetch_add_explicit(begun, (uint64_t)(piece->x1 - piece->x0) * (uint64_t)(bottom - top), memory_order_relaxed);
     }
 }
 

@@ -48,6 +48,7 @@ struct tracer {
     _Alignas(64) branch_group branches;
     _Alignas(64) double transmitted[ROW];
     int list[PRIMITIVES_MAX + 2][ROW], listed[PRIMITIVES_MAX + 2]; /* see sort_by_primitive */
+    const int64_t *ways_tickets; /* of the batch whose ways are noted */
     ray_ways *ways;          /* once a scene that absorbs has been traced */
     double kept[3][ROW];     /* of an arrangement that absorbs: share of light that the way to the hit left, by channel */
     polar_group polar;
@@ -101,10 +102,10 @@ void shading_branches(tracer *t, bool opaque);
 int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
                          const uint64_t *inside);
 
-/* absorption.c: what the media on the way leave, from the stretches of the batch just looked at; and a batch of rays
- * dimmed by it. Of a batch that looked for its nearest interfaces, the surroundings are to be spared first on ways to the sky. */
+/* absorption.c: what the media on the way leave, from the stretches of the batch just looked at, which is announced before; and a batch of
+ * rays dimmed by it. Of a batch that looked for its nearest interfaces, the surroundings are to be spared first on ways to the sky. */
 void absorption_spare_sky(tracer *t);
-void absorption_shares(tracer *t, const int64_t *tickets, int count);
+void absorption_begin(tracer *t, const int64_t *tickets, int count);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
 
 /* spectral.c: the gathered group's indices, colours and light at each ray's wavelength. */
