@@ -9,7 +9,7 @@
  *   box       |x| <= size.x/2 and so on (position is its centre)
  *   sphere    x^2 + y^2 + z^2 <= radius^2
  *   mesh      a triangle mesh, each axis times scale, as often as copies says, spacing apart. A closed mesh is solid; an open
- *             one is a skin, which contains nothing
+ *             one is a skin, which contains nothing. Copies may touch but not overlap, and a mesh's own parts neither
  *
  * Pure; ownership: values; a shape borrows its mesh. */
 #ifndef CUVETTE_GEOMETRY_SOLID_H
