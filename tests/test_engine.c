@@ -282,6 +282,9 @@ static void a_texture_from_memory_is_seen(void **state)
     fine(cuvette_scene_add_solid(s, "wall", "box", NULL, &why), &why);
     for (size_t i = 0; i < COUNT(set); i++)
         turn(s, set[i][0], set[i][1]);
+    char text[4096];
+    assert_int_equal(cuvette_scene_write_text(s, text, sizeof text, NULL, &why), CUVETTE_BAD_INPUT); /* no file would hold its pixels */
+    assert_non_null(strstr(why.what, "paint"));
     fine(cuvette_scene_clone(s, &clone, &why), &why);
     cuvette_scene_destroy(s);
     cuvette_request request = CUVETTE_REQUEST;

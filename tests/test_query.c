@@ -243,6 +243,19 @@ static cuvette_query *query_of_cube(bool as_mesh)
     return q;
 }
 
+/* What is drawn needs no hierarchies, and rays do. */
+static void rays_through_a_scene_that_is_drawn_meet_its_meshes(void **state)
+{
+    (void)state;
+    cuvette_query *q = query_of_text("render: {integrator: zbuffer}\ncamera: {position: [0, 0, -9], target: [0, 0, 0]}\n"
+                                     "meshes: {cube: {generate: box, size: [2, 2, 2]}}\n"
+                                     "solids: {block: {shape: mesh, mesh: cube, transparency: 1, ior: 1.5}}\n", NULL);
+    const cuvette_ray ray = {.origin = {0.1, 0.2, -9.0}, .direction = {0.0, 0.0, 1.0}};
+    const cuvette_hit hit = nearest(q, &ray);
+    assert_true(fabs(hit.distance - 8.0) < 1e-12 && hit.solid == 0 && hit.n_after == 1.5);
+    cuvette_query_destroy(q);
+}
+
 /* Positions agree to the errors that both tell, media and sides exactly; and so on behind the surface. */
 static void a_cube_of_triangles_is_met_as_a_box_is(void **state)
 {
@@ -367,6 +380,7 @@ int main(void)
         cmocka_unit_test(camera_rays_meet_what_the_probe_meets),
         cmocka_unit_test(a_points_medium_is_the_winners),
         cmocka_unit_test(a_cube_of_triangles_is_met_as_a_box_is),
+        cmocka_unit_test(rays_through_a_scene_that_is_drawn_meet_its_meshes),
         cmocka_unit_test(wrong_triangles_are_refused_and_add_nothing),
         cmocka_unit_test(wrong_rays_are_named),
         cmocka_unit_test(threads_may_share_a_query),

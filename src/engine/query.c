@@ -31,6 +31,8 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
     isa level = ISA_SSE2;
     scene without_sky = *s; /* no ray of a query looks at it */
     without_sky.background.picture = NULL;
+    if (s->render.integrator == INTEGRATOR_ZBUFFER)
+        without_sky.render.integrator = INTEGRATOR_WHITTED; /* rays need the hierarchies that drawing does without */
     status code = engine_isa(instructions, &level, why);
     if (code == STATUS_OK)
         code = scene_check(s, why);
