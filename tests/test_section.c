@@ -218,11 +218,29 @@ static void a_thin_coat_is_drawn_along_one_face(void **state)
     scene_destroy(s);
 }
 
+/* A box of triangles as one of six faces: corners (0.65, 0.35). */
+static void a_mesh_has_a_section_too(void **state)
+{
+    (void)state;
+    scene *s = scene_from("meshes: {block: {generate: box, size: [1.3, 0.7, 1]}}\n"
+                          "solids: {box: {shape: mesh, mesh: block, transparency: 1, ior: 1.5, position: [0.1, 0, 0]}}\n");
+    diagnostic why = {0};
+    worked(scene_load(s, &why), &why);
+    probe *p = probe_of(s);
+    section out = cut(p, &upright, 50);
+    assert_true(fabs(length_between(&out, RAY_OUTSIDE, 0) - 4.0) < 1e-3);
+    assert_true(fabs(area_of(&out, 0) - 1.3 * 0.7) < 1e-3);
+    section_release(&out);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_spheres_section_is_a_circle),
         cmocka_unit_test(a_boxs_section_has_corners),
+        cmocka_unit_test(a_mesh_has_a_section_too),
         cmocka_unit_test(a_vessels_section_shows_wall_and_floor),
         cmocka_unit_test(equal_solids_have_a_boundary),
         cmocka_unit_test(a_window_without_extent_is_refused),

@@ -159,7 +159,10 @@ const char *probe_medium_name(const probe *p, int at)
 int probe_medium_at(const probe *p, vec3 point)
 {
     const scene *s = p->setting;
+    const arrangement *a = p->scene->solids;
     int best = RAY_OUTSIDE;
+    if (a->meshes) /* only who has their triangles in order knows what is in them */
+        return a->bodies[arrangement_rank(a, arrangement_inside(a, point))].solid;
     for (int i = 0; i < (int)s->solid_count; i++) {
         const solid *one = &s->solids[i];
         if (one->visible && solid_shape_contains(&one->shape, point) && (best < 0 || one->priority > s->solids[best].priority))

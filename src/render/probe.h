@@ -96,7 +96,8 @@ const char *probe_medium_name(const probe *p, int at);
 /* "outer side", "floor", "top": the name of a hit's face. */
 const char *probe_face_name(const probe *p, const ray_hit *hit);
 
-/* Which solid holds a point by the rule of priorities, or RAY_OUTSIDE: read from the solids' own shapes, not from the tracer. */
+/* Which solid holds a point by the rule of priorities, or RAY_OUTSIDE: read from the solids' own shapes, not from the tracer;
+ * where there are meshes, by the arrangement. An open mesh holds nothing. */
 int probe_medium_at(const probe *p, vec3 point);
 
 /* A camera ray's direction through a point of the picture, in pixels from its top left corner; unit vector. */
