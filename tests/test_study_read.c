@@ -130,6 +130,32 @@ static void what_is_the_same_definition(void **state)
         hash_of(f, "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n"), hash);
 }
 
+/* The same names with other contents are another definition: of a mesh's places, colours and normals. */
+static void what_files_hold_is_defined_too(void **state)
+{
+    const fixture *f = *state;
+    static const char text[] = "study: x\nscene: painted.yaml\n";
+    static const char *const files[][2] = {
+        {"tri.obj", "mtllib tri.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 2\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3\n"},
+        {"tri.obj", "mtllib tri.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 2\nvt 0 0\nvt 1 0\nvt 0 0.5\nusemtl red\nf 1/1 2/2 3/3\n"},
+        {"tri.mtl", "newmtl red\nKd 1 0 0.5\n"},
+        {"spots.pfm", "PF\n1 1\n1.0\n0000AAAA1111"},
+    };
+    fixture_write(f, "painted.yaml", "meshes: {tri: {file: tri.obj}}\ntextures: {spots: {file: spots.pfm}}\n"
+                                     "solids: {one: {shape: mesh, mesh: tri}}\n");
+    fixture_write(f, "tri.obj", "mtllib tri.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3\n");
+    fixture_write(f, "tri.mtl", "newmtl red\nKd 1 0 0\n");
+    fixture_write(f, "spots.pfm", "PF\n1 1\n1.0\n000000000000");
+    uint64_t hash = hash_of(f, text);
+    assert_int_equal(hash_of(f, text), hash);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        fixture_write(f, files[i][0], files[i][1]);
+        const uint64_t other = hash_of(f, text);
+        assert_int_not_equal(other, hash);
+        hash = other;
+    }
+}
+
 static void scenes_lie_beside_the_study(void **state)
 {
     const fixture *f = *state;
@@ -257,6 +283,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(what_is_left_out, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(ranges_are_even, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(what_is_the_same_definition, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(what_files_hold_is_defined_too, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(scenes_lie_beside_the_study, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(wrong_scenes_are_located_there, fixture_setup, fixture_teardown),
         cmocka_unit_test(bad_studies_are_located),

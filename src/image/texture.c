@@ -1,5 +1,6 @@
 #include "image/texture_parts.h"
 
+#include "base/hash.h"
 #include "image/codec.h"
 #include <math.h>
 #include <stdbool.h>
@@ -141,6 +142,18 @@ vec3 texture_texel(const texture *t, int level, int x, int y)
     const texture_level *from = &t->level[level];
     const texel *c = &from->texels[(size_t)y * (size_t)from->width + (size_t)x];
     return vec3_make((double)c->r, (double)c->g, (double)c->b);
+}
+
+uint64_t texture_hash(const texture *t, uint64_t hash)
+{
+    const texture_level *l = &t->level[0];
+    const int64_t size[2] = {l->width, l->height};
+    hash = hash_words(hash, size, 2);
+    for (size_t i = 0; i < (size_t)l->width * (size_t)l->height; i++) {
+        const float c[3] = {l->texels[i].r, l->texels[i].g, l->texels[i].b};
+        hash = hash_bytes(hash, c, sizeof c);
+    }
+    return hash;
 }
 
 size_t texture_bytes(const texture *t)

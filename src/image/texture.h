@@ -11,6 +11,7 @@
 #include "base/vec3.h"
 #include "image/image.h"
 #include <stddef.h>
+#include <stdint.h>
 
 /* What the numbers in a PNG or JPEG file stand for. image_read takes all of them for sRGB: with TEXTURE_SRGB they stay the
  * linear light that it made of them; with TEXTURE_LINEAR the file's own numbers (0 to 1) are restored, exactly to the file's 8 or
@@ -53,6 +54,9 @@ vec3 texture_sample(const texture *t, double u, double v, double footprint);
 int texture_levels(const texture *t);
 void texture_size(const texture *t, int level, int *width, int *height);
 vec3 texture_texel(const texture *t, int level, int x, int y);
+
+/* Goes into a fingerprint (base/hash.h): size and texels of the picture itself. */
+uint64_t texture_hash(const texture *t, uint64_t hash);
 
 /* Memory that it takes. */
 size_t texture_bytes(const texture *t);

@@ -204,16 +204,7 @@ status grid_hash_scene(uint64_t *hash, const scene *of, bool without_how)
         hash_integer(hash, of->solids[i].shape.kind);
         hash_integer(hash, of->solids[i].material_index);
     }
-    const image *sky = of->background.picture;
-    if (sky)
-        *hash = hash_bytes(*hash, sky->pixel, (size_t)sky->width * (size_t)sky->height * 3 * sizeof *sky->pixel);
-    for (size_t i = 0; i < of->mesh_count; i++) {
-        const mesh *data = of->meshes[i].source == MESH_FILE ? of->meshes[i].data : NULL;
-        if (data) {
-            *hash = hash_bytes(*hash, data->vertices, data->vertex_count * sizeof *data->vertices);
-            *hash = hash_bytes(*hash, data->triangles, data->triangle_count * sizeof *data->triangles);
-        }
-    }
+    grid_hash_files(hash, of);
     return STATUS_OK;
 }
 

@@ -1,0 +1,53 @@
+/* What a scene's files hold, for the fingerprint of a study: the same names with other contents are another scene. */
+#include "study/grid.h"
+
+#include "base/hash.h"
+#include "scene/looks.h"
+#include <string.h>
+
+static void hash_array(uint64_t *hash, const void *array, size_t count, size_t size)
+{
+    if (array)
+        *hash = hash_bytes(*hash, array, count * size);
+}
+
+static void hash_texture(uint64_t *hash, const texture *t)
+{
+    if (t)
+        *hash = texture_hash(t, *hash);
+}
+
+static void hash_look(uint64_t *hash, const face_look *l)
+{
+    const double numbers[] = {l->given, l->color.x, l->color.y, l->color.z, l->diffuse, l->specular, l->shininess};
+    hash_array(hash, numbers, sizeof numbers / sizeof *numbers, sizeof *numbers);
+    hash_texture(hash, l->picture);
+}
+
+static void hash_mesh(uint64_t *hash, const mesh *m)
+{
+    hash_array(hash, m->vertices, m->vertex_count, sizeof *m->vertices);
+    hash_array(hash, m->triangles, m->triangle_count, sizeof *m->triangles);
+    hash_array(hash, m->normals, m->vertex_count, sizeof *m->normals);
+    hash_array(hash, m->uvs, m->vertex_count, sizeof *m->uvs);
+    hash_array(hash, m->slots, m->triangle_count, sizeof *m->slots);
+    for (int i = 0; i < m->slot_count; i++)
+        if (m->slot_names[i])
+            hash_array(hash, m->slot_names[i], strlen(m->slot_names[i]) + 1, 1);
+}
+
+void grid_hash_files(uint64_t *hash, const scene *of)
+{
+    const image *sky = of->background.picture;
+    if (sky)
+        hash_array(hash, sky->pixel, (size_t)sky->width * (size_t)sky->height * 3, sizeof *sky->pixel);
+    for (size_t i = 0; i < of->texture_count; i++)
+        hash_texture(hash, of->textures[i].data);
+    for (size_t i = 0; i < of->mesh_count; i++) {
+        const mesh_entry *m = &of->meshes[i];
+        if (m->source == MESH_FILE && m->data)
+            hash_mesh(hash, m->data);
+        for (int slot = 0; slot < looks_count(m->looks); slot++)
+            hash_look(hash, looks_at(m->looks, slot));
+    }
+}
