@@ -99,6 +99,57 @@ static void every_hierarchy_gives_the_same_hits(void **state)
         one_scene(&seed, 5000);
 }
 
+/* Rays as a camera, a lamp or the sun sends them: they run one way, from one point or side by side, to corners, edges and anywhere. Random ones
+ * are too different to go down together. */
+static int rays_alike(const mesh *m, uint64_t *seed, mesh_ray *r)
+{
+    const int count = 1 + random_below(seed, BATCH), how = random_below(seed, 3);
+    const double reach = 1e-300 + vec3_length(vec3_sub(m->bounds.high, m->bounds.low));
+    const vec3 middle = vec3_scale(vec3_add(m->bounds.low, m->bounds.high), 0.5);
+    const vec3 along = random_below(seed, 4) ? random_direction(seed) : vec3_make(0.0, random_below(seed, 2) ? 1.0 : -1.0, 0.0);
+    const vec3 eye = vec3_sub(middle, vec3_scale(along, random_real(seed, 0.1, 4.0) * reach));
+    for (int i = 0; i < count; i++) {
+        const vec3 target = random_target(m, seed);
+        r[i] = random_ray(m, seed); /* for its limits, side and triangle to be skipped */
+        r[i].origin = how ? eye : vec3_sub(target, vec3_scale(along, reach));
+        r[i].direction = how ? vec3_sub(target, eye) : along;
+        if (how == 1 || !(vec3_dot(r[i].direction, r[i].direction) > 0.0))
+            r[i].direction = vec3_add(along, vec3_scale(random_direction(seed), 0.1));
+    }
+    return count;
+}
+
+static void rays_that_are_alike_hit_what_each_hits_alone(void **state)
+{
+    (void)state;
+    uint64_t seed = 7;
+    long met = 0;
+    for (int scene = 0; scene < effort(200); scene++) {
+        mesh *m = random_mesh(&seed, 1 + random_below(&seed, random_below(&seed, 4) ? 60 : 500));
+        hierarchy *h = NULL;
+        assert_non_null(m);
+        assert_int_equal(hierarchy_build(m, HIERARCHY_BVH, 1, &h, NULL), STATUS_OK);
+        for (int k = 0; k < 40; k++) {
+            mesh_ray r[BATCH];
+            mesh_hit expected, hits[BATCH];
+            bool shadowed[BATCH];
+            const int count = rays_alike(m, &seed, r);
+            const hierarchy_kernels *kernel = kernels[(unsigned)k % (unsigned)(isa_best() + 1)];
+            kernel->nearest_batch(h, r, count, hits);
+            kernel->any_batch(h, r, count, shadowed);
+            for (int i = 0; i < count; i++) {
+                kernels[ISA_SSE2]->nearest(h, &r[i], &expected);
+                same_hit(&hits[i], &expected);
+                assert_int_equal(shadowed[i], expected.triangle != TRIANGLE_NONE);
+                met += shadowed[i];
+            }
+        }
+        hierarchy_destroy(h);
+        mesh_release(m);
+    }
+    assert_true(met > 1000);
+}
+
 static void instruction_sets_give_the_same_hits(void **state)
 {
     (void)state;
@@ -396,6 +447,7 @@ int main(void)
         cmocka_unit_test(of_equally_near_triangles_the_lower_number_is_hit),
         cmocka_unit_test(a_mesh_of_no_triangles_is_never_hit),
         cmocka_unit_test(a_mesh_keeps_its_hierarchies),
+        cmocka_unit_test(rays_that_are_alike_hit_what_each_hits_alone),
         cmocka_unit_test(instruction_sets_give_the_same_hits),
         cmocka_unit_test(every_hierarchy_gives_the_same_hits),
         cmocka_unit_test(no_ray_slips_through_a_closed_mesh),
