@@ -179,6 +179,9 @@ typedef struct cuvette_triangles {
     const double *uvs;            /* u to the right, v upwards, of each vertex; 0, 0 is the texture's lower left corner */
     const float *uvs_float;
     const unsigned char *slots;   /* material slot of each triangle; NULL: all 0 */
+    const char *const *slot_names; /* names of slots 0 to slot_count - 1; may be NULL. Where the mesh's solid has no material of its own, faces look
+                                   * like the scene's material of their slot's name; what they are made of is the solid's alone */
+    int slot_count;               /* of slot_names, at most 256 */
 } cuvette_triangles;
 CUVETTE_API cuvette_status cuvette_scene_add_triangles(cuvette_scene *scene, const char *name, const cuvette_triangles *triangles,
                                                        cuvette_diagnostic *why);
@@ -193,9 +196,9 @@ CUVETTE_API cuvette_status cuvette_scene_add_pixels(cuvette_scene *scene, const 
 /* A material goes only when no solid has it. */
 CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 
-/* Adds by, three numbers in scene units, to the position of a light, a solid or "camera" (whose target goes with it). */
+/* Adds by, three numbers in scene units, to the position of a solid, a light or "camera" (the target of a cone or the camera goes with it). */
 CUVETTE_API cuvette_status cuvette_scene_move(cuvette_scene *scene, const char *name, const double *by, cuvette_diagnostic *why);
-/* Turns a solid where it stands, or the direction of "camera", about the world's x axis, then y, then z (three angles), on top of the
+/* Turns a solid where it stands, or the direction of a cone of light or "camera", about the world's x axis, then y, then z (three angles), on top of the
  * rotation that it has; right-hand rule on the axes' names. */
 CUVETTE_API cuvette_status cuvette_scene_turn(cuvette_scene *scene, const char *name, const double *degrees, cuvette_diagnostic *why);
 /* Aims the camera at a point. */

@@ -219,6 +219,37 @@ static const float cube_vertices[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1
 static const uint32_t cube_corners[] = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
 static const unsigned char cube_slots[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
 
+/* Faces look like the scene's materials of their slots' names. */
+static void slots_of_arrays_take_materials_by_name(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    cuvette_engine *engine;
+    fine(cuvette_scene_create(&s, &why), &why);
+    fine(cuvette_engine_create(NULL, &engine, &why), &why);
+    const char *const names[] = {"left", "right", "below", "above", "front", "back"};
+    const cuvette_triangles t = {.size = sizeof t, .vertex_count = 8, .triangle_count = 12, .vertices_float = cube_vertices,
+                                 .corners = cube_corners, .slots = cube_slots, .slot_names = names, .slot_count = 6};
+    fine(cuvette_scene_add_triangles(s, "cube", &t, &why), &why);
+    fine(cuvette_scene_add_material(s, "front", &why), &why);
+    fine(cuvette_scene_add_solid(s, "block", "mesh", NULL, &why), &why);
+    const char *const settings[][2] = {{"block.mesh", "cube"}, {"front.ambient", "1"}, {"front.color", "0.25,0.5,0.75"}, {"camera.position", "0,0,-9"},
+                                       {"camera.target", "0,0,0"}, {"render.width", "1"}, {"render.height", "1"}};
+    for (size_t i = 0; i < COUNT(settings); i++)
+        fine(cuvette_scene_set(s, settings[i][0], settings[i][1], &why), &why);
+    float seen[3];
+    cuvette_request request = CUVETTE_REQUEST;
+    request.width = request.height = 1, request.rgb = seen;
+    fine(cuvette_engine_render(engine, s, &request, NULL, &why), &why);
+    assert_true(fabsf(seen[0] - 0.25f) < 1e-6f && fabsf(seen[1] - 0.5f) < 1e-6f && fabsf(seen[2] - 0.75f) < 1e-6f);
+    fine(cuvette_scene_set(s, "camera.position", "0,0,9", &why), &why);
+    fine(cuvette_engine_render(engine, s, &request, NULL, &why), &why);
+    assert_true(seen[0] == 0.0f && seen[1] == 0.0f && seen[2] == 0.0f);
+    cuvette_scene_destroy(s);
+    cuvette_engine_destroy(engine);
+}
+
 static cuvette_query *query_of_cube(bool as_mesh)
 {
     cuvette_diagnostic why;
@@ -379,6 +410,7 @@ int main(void)
         cmocka_unit_test(rays_together_are_rays_alone_on_every_instruction_set),
         cmocka_unit_test(camera_rays_meet_what_the_probe_meets),
         cmocka_unit_test(a_points_medium_is_the_winners),
+        cmocka_unit_test(slots_of_arrays_take_materials_by_name),
         cmocka_unit_test(a_cube_of_triangles_is_met_as_a_box_is),
         cmocka_unit_test(rays_through_a_scene_that_is_drawn_meet_its_meshes),
         cmocka_unit_test(wrong_triangles_are_refused_and_add_nothing),

@@ -317,6 +317,26 @@ static vec3 direction_of(const camera *c)
     return vec3_make(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw));
 }
 
+/* Right-hand rule: about y, z goes to x. */
+static void a_cone_moves_with_its_target_and_turns_it(void **state)
+{
+    (void)state;
+    scene *s = scene_create();
+    diagnostic why = {0};
+    assert_int_equal(scene_add_light(s, "spot", NULL, &why), STATUS_OK);
+    assert_int_equal(scene_set(s, "spot.kind", "cone", &why), STATUS_OK);
+    assert_int_equal(scene_set(s, "spot.position", "1,2,3", &why), STATUS_OK);
+    assert_int_equal(scene_set(s, "spot.target", "1,2,5", &why), STATUS_OK);
+    assert_int_equal(scene_move(s, "spot", vec3_make(0.0, 1.0, 0.5), &why), STATUS_OK);
+    assert_true(s->lights[0].position.y == 3.0 && s->lights[0].target.y == 3.0 && s->lights[0].target.z == 5.5);
+    assert_int_equal(scene_turn(s, "spot", vec3_make(0.0, 90.0, 0.0), &why), STATUS_OK);
+    assert_true(fabs(s->lights[0].target.x - 3.0) < 1e-12 && fabs(s->lights[0].target.z - 3.5) < 1e-12);
+    assert_int_equal(scene_set(s, "spot.kind", "point", &why), STATUS_OK);
+    assert_int_equal(scene_move(s, "spot", vec3_make(1.0, 0.0, 0.0), &why), STATUS_OK);
+    assert_true(s->lights[0].position.x == 2.0 && fabs(s->lights[0].target.x - 3.0) < 1e-12);
+    scene_destroy(s);
+}
+
 static void the_camera_turns_in_place(void **state)
 {
     (void)state;
@@ -395,6 +415,7 @@ int main(void)
         cmocka_unit_test(what_would_leave_the_scene_stays),
         cmocka_unit_test(turns_are_rotations_about_the_axes_of_the_world),
         cmocka_unit_test(turns_keep_round_numbers_round),
+        cmocka_unit_test(a_cone_moves_with_its_target_and_turns_it),
         cmocka_unit_test(the_camera_turns_in_place),
         cmocka_unit_test(the_rod_in_its_vessel_is_built_by_calls_alone),
     };

@@ -44,7 +44,7 @@ static const struct argp_option options[] = {
     {"size", KEY_FIRST_PARAMETER + 9, "X,Y,Z", 0, "edges of the box; of terrain, with the height of its hills as Y; 1,1,1", 0},
     {"depth", KEY_FIRST_PARAMETER + 10, "D", 0, "terrain: how deep its flat bottom lies; 0 leaves it open", 0},
     {"seed", KEY_FIRST_PARAMETER + 11, "N", 0, "terrain: which hills; 1", 0},
-    {"format", 'f', "FORMAT", 0, "write the triangles as obj, bin, pov, tachyon or ply", 0},
+    {"format", 'f', "FORMAT", 0, "write the triangles as obj, bin, pov, tachyon or ply; else by the ending of -o FILE", 0},
     {"output", 'o', "FILE", 0, "write there instead of to standard output", 0},
     {"json", KEY_JSON, NULL, 0, "print the description as JSON", 0},
     {0},
@@ -123,6 +123,24 @@ static status check_request(const mesh_request *request, diagnostic *why)
     return result;
 }
 
+/* A file's ending says the format where no option does; a description goes into a .txt. */
+static status choose_format(mesh_request *request, diagnostic *why)
+{
+    const char *dot = request->output ? strrchr(request->output, '.') : NULL;
+    if (!dot || request->json || request->format != MESH_FORMAT_COUNT || strchr(dot, '/'))
+        return STATUS_OK;
+    for (int format = 0; format < MESH_FORMAT_COUNT; format++)
+        if (strcmp(dot + 1, mesh_format_name((mesh_format)format)) == 0) {
+            request->format = (mesh_format)format;
+            return STATUS_OK;
+        }
+    if (strcmp(dot, ".txt") == 0)
+        return STATUS_OK;
+    diagnostic_locate(why, "-o", 0, 0);
+    return diagnose(why, STATUS_BAD_INPUT, "end it in .obj, .pov, .bin or .ply, give --format, or .txt for the description",
+                    "'%.80s' says no format", request->output);
+}
+
 /* The mesh that is asked for; the scene keeps it. */
 static status obtain(const mesh_request *request, const mesh **out, diagnostic *why)
 {
@@ -177,6 +195,8 @@ status command_mesh(int argc, char **argv, diagnostic *why)
         result = options_parse(&parser, 0, argc, argv, &request, why);
     if (result == STATUS_OK)
         result = check_request(&request, why);
+    if (result == STATUS_OK)
+        result = choose_format(&request, why);
     if (result == STATUS_OK)
         result = obtain(&request, &m, why);
     if (result == STATUS_OK)

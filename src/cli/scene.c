@@ -129,8 +129,12 @@ static status print_list(const scene *s)
 static status check_files(const scene_request *request, scene *s, diagnostic *why)
 {
     status result = scene_load(s, why);
-    if (result != STATUS_OK)
+    if (result == STATUS_OK)
+        result = scene_check(s, why); /* again, with the meshes' triangles */
+    if (result != STATUS_OK) {
+        diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         return result;
+    }
     scene_input_note_hints(s);
     printf("%s: right; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n", request->path ? request->path : "--new",
            s->mesh_count, s->texture_count, s->material_count, s->light_count, s->solid_count);

@@ -52,7 +52,13 @@ static status make_mesh(const cuvette_triangles *t, mesh **out, diagnostic *why)
         m->slots[i] = t->slots[i];
         m->slot_count = m->slot_count > t->slots[i] ? m->slot_count : t->slots[i] + 1;
     }
-    code = mesh_finish(m, why);
+    for (int i = 0; t->slot_names && i < t->slot_count && i < MESH_SLOTS_MAX && code == STATUS_OK; i++) {
+        m->slot_count = m->slot_count > i ? m->slot_count : i + 1;
+        if (t->slot_names[i] && !(m->slot_names[i] = strdup(t->slot_names[i])))
+            code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+    }
+    if (code == STATUS_OK)
+        code = mesh_finish(m, why);
     if (code != STATUS_OK) {
         mesh_release(m);
         return code;

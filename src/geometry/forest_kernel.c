@@ -90,11 +90,17 @@ static void note_crossing(void *context, const mesh_hit *hit)
         last[all->primitive] = hit->t;
 }
 
-static void ask_copy(quest *q, size_t instance)
+static const forest_part *part_of_instance(const forest *f, size_t instance)
 {
-    const forest_part *p = q->f->parts;
+    const forest_part *p = f->parts;
     while (instance - p->first_instance >= (size_t)p->copies[0] * p->copies[1] * p->copies[2])
         p++;
+    return p;
+}
+
+static void ask_copy(quest *q, size_t instance)
+{
+    const forest_part *p = part_of_instance(q->f, instance);
     const uint32_t copy = (uint32_t)(instance - p->first_instance);
     mesh_ray local;
     if (!ray_in(q, p, copy, &local))
@@ -135,67 +141,70 @@ static void ask(quest *q)
         walk(q);
 }
 
-/* One copy of one mesh: its rays go down together. */
-static void nearest_of_one(const forest *f, const forest_ray *rays, int count, forest_hit *hits)
+/* With so few copies it pays to ask one after another, each for all rays, which then go down together. */
+enum { FEW_COPIES = 8 };
+
+static void nearest_of_copy(const forest *f, size_t instance, const forest_ray *rays, int count, forest_hit *hits)
 {
-    const forest_part *p = f->parts;
+    const forest_part *p = part_of_instance(f, instance);
+    const uint32_t copy = (uint32_t)(instance - p->first_instance);
     mesh_ray local[BATCH];
     mesh_hit found[BATCH];
     int ray[BATCH], asked = 0;
     for (int i = 0; i < count; i++) {
-        const quest q = quest_of(f, &rays[i]);
-        hits[i] = (forest_hit){.t = HUGE_VAL, .face = FACE_NONE};
-        if (ray_in(&q, p, 0, &local[asked]))
+        quest q = quest_of(f, &rays[i]);
+        q.t_max = hits[i].face == FACE_NONE ? q.t_max : hits[i].t;
+        if (ray_in(&q, p, copy, &local[asked]))
             ray[asked++] = i;
     }
     if (asked == 0)
         return;
     TREES.nearest_batch(p->tree, local, asked, found);
-    for (int k = 0; k < asked; k++)
-        if (found[k].triangle != TRIANGLE_NONE)
-            hits[ray[k]] = (forest_hit){found[k].t, found[k].u, found[k].v, mesh_face_number(p->primitive, 0, found[k].triangle), found[k].facing};
+    for (int k = 0; k < asked; k++) {
+        quest q = {.best = &hits[ray[k]]};
+        take(&q, p, copy, &found[k]);
+    }
 }
 
 static void nearest(const forest *f, const forest_ray *rays, int count, forest_hit *hits)
 {
-    if (f->instance_count == 1) {
-        nearest_of_one(f, rays, count, hits);
-        return;
-    }
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         hits[i] = (forest_hit){.t = HUGE_VAL, .face = FACE_NONE};
+    for (size_t instance = 0; f->instance_count <= FEW_COPIES && instance < f->instance_count; instance++)
+        nearest_of_copy(f, instance, rays, count, hits);
+    for (int i = 0; f->instance_count > FEW_COPIES && i < count; i++) {
         quest q = quest_of(f, &rays[i]);
         q.best = &hits[i];
         ask(&q);
     }
 }
 
-static void any_of_one(const forest *f, const forest_ray *rays, int count, bool *blocked)
+static void any_of_copy(const forest *f, size_t instance, const forest_ray *rays, int count, bool *blocked)
 {
+    const forest_part *p = part_of_instance(f, instance);
     mesh_ray local[BATCH];
     bool found[BATCH];
     int ray[BATCH], asked = 0;
     for (int i = 0; i < count; i++) {
         quest q = quest_of(f, &rays[i]);
         q.any = true;
-        blocked[i] = false;
-        if (ray_in(&q, f->parts, 0, &local[asked]))
+        if (!blocked[i] && ray_in(&q, p, (uint32_t)(instance - p->first_instance), &local[asked]))
             ray[asked++] = i;
     }
     if (asked == 0)
         return;
-    TREES.any_batch(f->parts->tree, local, asked, found);
+    TREES.any_batch(p->tree, local, asked, found);
     for (int k = 0; k < asked; k++)
         blocked[ray[k]] = found[k];
 }
 
 static void any(const forest *f, const forest_ray *rays, int count, bool *blocked)
 {
-    if (f->instance_count == 1) {
-        any_of_one(f, rays, count, blocked);
-        return;
-    }
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
+        blocked[i] = false;
+    for (size_t instance = 0; f->instance_count <= FEW_COPIES && instance < f->instance_count; instance++)
+        any_of_copy(f, instance, rays, count, blocked);
+    for (int i = 0; f->instance_count > FEW_COPIES && i < count; i++) {
         quest q = quest_of(f, &rays[i]);
         q.any = true;
         ask(&q);

@@ -43,8 +43,18 @@ static vec3 smooth_normal(const forest_part *p, mesh_triangle tri, double u, dou
     return bent_normal(n, g, d);
 }
 
-/* How far texture coordinates run in a scene unit: the root of the ratio of the triangle's areas. */
-static void texture_at(const mesh *m, mesh_triangle tri, double u, double v, double area2, mesh_points *more, int i)
+/* A triangle's edges from its first corner, its normal and the length of their cross product. */
+typedef struct edge_pair { vec3 b, c, n; double area2; } edge_pair;
+
+/* How fast a number that is 0 at the first corner, and at_b and at_c at the others, grows across the triangle: the length of its gradient. */
+static double steepness(const edge_pair *e, double at_b, double at_c)
+{
+    const vec3 along = vec3_add(vec3_scale(vec3_cross(e->c, e->n), at_b), vec3_scale(vec3_cross(e->n, e->b), at_c));
+    return vec3_length(along) / e->area2;
+}
+
+/* Texture coordinates, and how far u or v, whichever is faster, runs in a scene unit. */
+static void texture_at(const mesh *m, mesh_triangle tri, double u, double v, const edge_pair *e, mesh_points *more, int i)
 {
     more->tu[i] = more->tv[i] = more->uv_per_length[i] = 0.0;
     if (!m->uvs)
@@ -53,7 +63,7 @@ static void texture_at(const mesh *m, mesh_triangle tri, double u, double v, dou
     const double bu = b.u - a.u, bv = b.v - a.v, cu = c.u - a.u, cv = c.v - a.v;
     more->tu[i] = a.u + bu * u + cu * v;
     more->tv[i] = a.v + bv * u + cv * v;
-    more->uv_per_length[i] = area2 > 0.0 ? sqrt(fabs(bu * cv - bv * cu) / area2) : 0.0;
+    more->uv_per_length[i] = e->area2 > 0.0 ? greater(steepness(e, bu, cu), steepness(e, bv, cv)) : 0.0;
 }
 
 static void surface_at(const forest *f, const ray_batch *rays, const forest_hit *hit, bool smooth, int i, surface_batch *s, mesh_points *more)
@@ -83,7 +93,8 @@ static void surface_at(const forest *f, const ray_batch *rays, const forest_hit 
         more->weight[k][i] = weight[k];
         more->corner[k][i] = tri.corner[k];
     }
-    texture_at(p->triangles, tri, hit->u, hit->v, area2, more, i);
+    const edge_pair edges = {vec3_sub(b, a), vec3_sub(c, a), g, area2};
+    texture_at(p->triangles, tri, hit->u, hit->v, &edges, more, i);
 }
 
 void forest_surface(const forest *f, const ray_batch *rays, const forest_hit *hits, bool smooth, surface_batch *points, mesh_points *more)

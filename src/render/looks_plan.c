@@ -43,15 +43,10 @@ static surface_look face_look_of(const scene *s, const material *own, const char
     return l;
 }
 
-static bool has_face_looks(const solid *owner, const mesh_entry *m)
-{
-    return owner->shape.kind == SHAPE_MESH && owner->material_index < 0 && m && m->data && m->data->slot_count > 1 + (m->looks ? -1 : 0);
-}
-
 bool body_look_make(const scene *s, const solid *owner, const material *surface, body_look *out)
 {
     const mesh_entry *m = owner->shape.kind == SHAPE_MESH ? scene_find_mesh(s, owner->mesh) : NULL;
-    const bool by_face = has_face_looks(owner, m);
+    const bool by_face = looks_by_face(s, owner);
     out->shading = (shading_rule)owner->shading;
     out->count = by_face ? m->data->slot_count : 1;
     out->look = calloc((size_t)out->count, sizeof *out->look);

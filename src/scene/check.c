@@ -2,6 +2,7 @@
 #include "base/counters.h"
 #include "scene/medium.h"
 #include "scene/params.h"
+#include "scene/suggest.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -165,10 +166,25 @@ status check_texture(const texture_entry *t, diagnostic *why)
     return STATUS_OK;
 }
 
-static status unknown(const char *owner, const char *what, const char *name, diagnostic *why)
+/* Texture or mesh: group says which. */
+static status unknown(const scene *s, param_group group, const char *owner, const char *name, diagnostic *why)
 {
+    enum { ROOM = SCENE_MESHES_MAX > SCENE_TEXTURES_MAX ? (int)SCENE_MESHES_MAX : (int)SCENE_TEXTURES_MAX };
+    const char *words[ROOM], *what = param_group_name(group);
+    size_t count = 0;
+    for (size_t i = 0; group == PARAM_MESH && i < s->mesh_count; i++) {
+        words[count++] = s->meshes[i].name;
+    }
+    for (size_t i = 0; group == PARAM_TEXTURE && i < s->texture_count; i++) {
+        words[count++] = s->textures[i].name;
+    }
+    const char *nearest = suggest_word(name, words, count);
     char remedy[SCENE_NAME_MAX + 80];
-    snprintf(remedy, sizeof remedy, "add it to %s%s", what, what[0] == 'm' ? "es" : "s");
+    if (nearest) {
+        snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
+    } else {
+        snprintf(remedy, sizeof remedy, "add it to %s%s", what, group == PARAM_MESH ? "es" : "s");
+    }
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: there is no %s '%.80s'", owner, what, name);
 }
 
@@ -181,8 +197,8 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
     }
     const vec3 a = data->vertices[data->hole.from], b = data->vertices[data->hole.to];
     return diagnose(why, STATUS_BAD_INPUT, "close the mesh, or make the solid opaque (transparency 0)",
-                    "%.80s is clear, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, %g) of triangle %zu joins %d "
-                    "triangles, and not 2",
+                    "%.80s is clear, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, %g) of triangle %zu is an edge of %d "
+                    "triangles, and not of 2",
                     owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, data->hole.sharing);
 }
 
@@ -202,7 +218,7 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
 {
     const mesh_entry *m = scene_find_mesh(s, owner->mesh);
     if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture)) {
-        return unknown(owner->name, "texture", owner->surface.texture, why);
+        return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
     }
     if (owner->shape.kind != SHAPE_MESH) {
         return check_colors(s, owner, NULL, why);
@@ -211,7 +227,7 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
         return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', of one in meshes", "%.80s: which mesh it is is not said", owner->name);
     }
     if (!m) {
-        return unknown(owner->name, "mesh", owner->mesh, why);
+        return unknown(s, PARAM_MESH, owner->name, owner->mesh, why);
     }
     const status code = check_colors(s, owner, m, why);
     return code == STATUS_OK ? check_closed(s, owner, m, why) : code;

@@ -36,10 +36,11 @@ status scene_remove(scene *s, const char *name, diagnostic *why);
 /* Gives an object another name; what refers to it goes on doing so. */
 status scene_rename(scene *s, const char *name, const char *new_name, diagnostic *why);
 
-/* Moves a solid, a light, or "camera", by delta in scene units. An aimed camera's target moves with it: its direction holds. */
+/* Moves a solid, a light, or "camera", by delta in scene units. The target of an aimed camera or of a cone of light moves with it: its
+ * direction holds. */
 status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why);
 
-/* Turns a solid, or "camera", in place: about the world's x axis, then y, then z, right-hand rule, on top of how it stands
+/* Turns a solid, a cone of light, or "camera", in place: about the world's x axis, then y, then z, right-hand rule, on top of how it stands
  * already. Of the camera the direction is turned; its picture stays upright, and what it was aimed by (target or angles)
  * it is aimed by still. */
 status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why);

@@ -40,6 +40,21 @@ static status has_no(const char *name, param_group group, const char *what, cons
                     param_group_name(group), what);
 }
 
+/* A cone goes on shining the same way. */
+static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
+{
+    light *l = &s->lights[index];
+    const light before = *l;
+    status code = set_vector(s, l->name, "position", vec3_add(before.position, delta), why);
+    if (code == STATUS_OK && before.kind != LIGHT_POINT) {
+        code = set_vector(s, l->name, "target", vec3_add(before.target, delta), why);
+    }
+    if (code != STATUS_OK) {
+        *l = before;
+    }
+    return code;
+}
+
 status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
 {
     place at;
@@ -49,7 +64,7 @@ status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
     }
     switch (at.group) {
     case PARAM_CAMERA: return move_camera(s, delta, why);
-    case PARAM_LIGHT: return set_vector(s, name, "position", vec3_add(s->lights[at.index].position, delta), why);
+    case PARAM_LIGHT: return move_light(s, at.index, delta, why);
     case PARAM_SOLID: return set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
     case PARAM_RENDER:
     case PARAM_BACKGROUND:
@@ -154,6 +169,13 @@ static bool is_angle(double degrees)
     return fabs(degrees) <= 1e6; /* where elementary_sincos_deg still keeps its error; false for NaN */
 }
 
+/* A cone's target goes around its position. */
+static status turn_light(scene *s, const light *l, vec3 degrees, diagnostic *why)
+{
+    const vec3 way = mat3_apply(rotation_from_deg(degrees), vec3_sub(l->target, l->position));
+    return set_vector(s, l->name, "target", vec3_add(l->position, way), why);
+}
+
 status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
 {
     place at;
@@ -166,16 +188,20 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
     }
     switch (at.group) {
     case PARAM_CAMERA: return turn_camera(s, degrees, why);
+    case PARAM_LIGHT:
+        if (s->lights[at.index].kind != LIGHT_POINT) {
+            return turn_light(s, &s->lights[at.index], degrees, why);
+        }
+        break;
     case PARAM_SOLID: return set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
     case PARAM_RENDER:
     case PARAM_BACKGROUND:
     case PARAM_MESH:
     case PARAM_TEXTURE:
-    case PARAM_LIGHT:
     case PARAM_MATERIAL:
     case PARAM_GROUP_COUNT: break;
     }
-    return has_no(name, at.group, "direction", "turn a solid or the camera", why);
+    return has_no(name, at.group, "direction", "turn a solid, a cone of light or the camera", why);
 }
 
 status scene_look_at(scene *s, vec3 target, diagnostic *why)

@@ -1,4 +1,5 @@
 #include "scene/hints.h"
+#include "scene/looks.h"
 #include "scene/medium.h"
 
 #include <math.h>
@@ -49,7 +50,7 @@ static const char *solid_hint(const scene *s, const solid *owner, char text[HINT
         }
     } else if (m->medium != MEDIUM_IOR || m->ior != 1.0) {
         problem = "has a refractive index but is opaque; set its transparency";
-    } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m)) {
+    } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner)) {
         problem = "is neither transparent, nor diffuse, nor lit: it is black; set its diffuse";
     }
     if (problem) {

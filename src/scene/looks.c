@@ -48,7 +48,8 @@ static face_look look_of(const imported_material *m)
     face_look look = {.given = m->given, .diffuse = 1.0, .shininess = m->shininess};
     snprintf(look.name, sizeof look.name, "%s", m->name ? m->name : "");
     look.color = vec3_make(at_most_one(m->color[0]), at_most_one(m->color[1]), at_most_one(m->color[2]));
-    for (int c = 0; c < 3; c++) {
+    /* A file that gives a highlight no exponent means none: to the power of 0 it would cover everything. */
+    for (int c = 0; c < 3 && m->shininess > 0.0; c++) {
         look.specular = m->specular[c] > look.specular ? at_most_one(m->specular[c]) : look.specular;
     }
     return look;
@@ -90,6 +91,12 @@ void looks_release(const face_looks *l)
         texture_release(l->look[i].picture);
     }
     free(counted(l));
+}
+
+bool looks_by_face(const scene *s, const solid *owner)
+{
+    const mesh_entry *m = owner->shape.kind == SHAPE_MESH && owner->material_index < 0 ? scene_find_mesh(s, owner->mesh) : NULL;
+    return m && m->data && (m->looks || m->data->slot_count > 1);
 }
 
 int looks_count(const face_looks *l)

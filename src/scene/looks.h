@@ -19,6 +19,10 @@ status looks_create(const mesh_import *imported, const face_looks **out, diagnos
 void looks_retain(const face_looks *l); /* NULL is allowed, here and below */
 void looks_release(const face_looks *l);
 
+/* Do the mesh's slots, not one material, say how the solid's faces look? Where it is a mesh that has several, or a file's materials, and names
+ * no material itself. False before scene_load. */
+bool looks_by_face(const scene *s, const solid *owner);
+
 int looks_count(const face_looks *l); /* 0 for NULL */
 const face_look *looks_at(const face_looks *l, int slot);
 

@@ -1,7 +1,9 @@
 #include "scene/mesh_child.h"
 
 #include "base/text.h"
+#include <dlfcn.h>
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -10,6 +12,27 @@
 #ifndef CUVETTE_LIBEXEC
 #define CUVETTE_LIBEXEC "/usr/local/libexec/cuvette"
 #endif
+
+static const char here;
+
+/* Beside a file, or where `make install` puts it when the file is in bin, lib or lib/ARCHITECTURE; NULL if it is in none of them. */
+static char *near(char *file)
+{
+    static const char *const places[] = {"", "/../libexec/cuvette", "/../../libexec/cuvette"};
+    char *slash = strrchr(file, '/');
+    if (!slash) {
+        return NULL;
+    }
+    *slash = 0;
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        char *path = text_format("%s%s/" PROGRAM, file, places[i]);
+        if (path && access(path, X_OK) == 0) {
+            return path;
+        }
+        free(path);
+    }
+    return NULL;
+}
 
 char *mesh_child_program(void)
 {
@@ -20,17 +43,11 @@ char *mesh_child_program(void)
     char own[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
     own[length > 0 ? length : 0] = 0;
-    char *slash = strrchr(own, '/');
-    if (slash) {
-        *slash = 0;
-        static const char *const places[] = {"", "/../libexec/cuvette"};
-        for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-            char *path = text_format("%s%s/" PROGRAM, own, places[i]);
-            if (!path || access(path, X_OK) == 0) {
-                return path;
-            }
-            free(path);
-        }
+    char *path = near(own);
+    Dl_info library; /* that this stands in, when it is not the program itself */
+    if (!path && dladdr(&here, &library) && library.dli_fname) {
+        snprintf(own, sizeof own, "%s", library.dli_fname);
+        path = near(own);
     }
-    return strdup(CUVETTE_LIBEXEC "/" PROGRAM);
+    return path ? path : strdup(CUVETTE_LIBEXEC "/" PROGRAM);
 }
