@@ -59,11 +59,11 @@ ALWAYS_INLINE float pending_near(uint64_t p)
 }
 
 /* Where the ray meets the planes of a node's boxes. */
-ALWAYS_INLINE void slabs(const bvh_node *node, const box_ray *b, float *restrict near, float *restrict far)
+ALWAYS_INLINE void slabs(const bvh_node *node, const box_ray *b, float *__restrict near, float *__restrict far)
 {
     const float *p = (const float *)(const void *)node;
-    const float *restrict nx = p + b->near[0], *restrict ny = p + b->near[1], *restrict nz = p + b->near[2];
-    const float *restrict fx = p + b->far[0], *restrict fy = p + b->far[1], *restrict fz = p + b->far[2];
+    const float *__restrict nx = p + b->near[0], *__restrict ny = p + b->near[1], *__restrict nz = p + b->near[2];
+    const float *__restrict fx = p + b->far[0], *__restrict fy = p + b->far[1], *__restrict fz = p + b->far[2];
     /* VECTORISE */
     for (int i = 0; i < WIDTH; i++) {
         const float x = (nx[i] - b->near_origin[0]) * b->near_inverse[0], y = (ny[i] - b->near_origin[1]) * b->near_inverse[1],

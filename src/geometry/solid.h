@@ -28,7 +28,7 @@ typedef struct solid_shape {
     vec3 rotation_deg; /* about x, then y, then z */
     double radius, height, m, inner_radius, floor; /* those that kind has; the others are ignored */
     vec3 size;
-    const mesh *mesh;  /* NULL until it is there */
+    const struct mesh *mesh; /* NULL until it is there */
     vec3 scale;        /* above 0 */
     vec3 copies;       /* whole numbers from 1, along the axes of the solid's frame */
     vec3 spacing;      /* from copy to copy, in that frame */
