@@ -323,6 +323,27 @@ static void a_cube_of_triangles_is_met_as_a_box_is(void **state)
     cuvette_query_destroy(box);
 }
 
+/* No triangles, but several copies of them: a program may begin so. */
+static void copies_of_no_triangles_are_never_met(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    cuvette_query *q;
+    const cuvette_triangles none = {.size = sizeof none};
+    fine(cuvette_scene_create(&s, &why), &why);
+    fine(cuvette_scene_add_triangles(s, "nothing", &none, &why), &why);
+    fine(cuvette_scene_add_solid(s, "rows", "mesh", NULL, &why), &why);
+    fine(cuvette_scene_set(s, "rows.mesh", "nothing", &why), &why);
+    fine(cuvette_scene_set(s, "rows.copies", "3,1,1", &why), &why);
+    fine(cuvette_scene_set(s, "camera.target", "0,0,5", &why), &why);
+    fine(cuvette_query_create(s, NULL, &q, &why), &why);
+    const cuvette_ray ray = {.origin = {0.0, 0.0, -9.0}, .direction = {0.0, 0.0, 1.0}};
+    assert_true(isinf(nearest(q, &ray).distance));
+    cuvette_query_destroy(q);
+    cuvette_scene_destroy(s);
+}
+
 static void wrong_triangles_are_refused_and_add_nothing(void **state)
 {
     (void)state;
@@ -413,6 +434,7 @@ int main(void)
         cmocka_unit_test(slots_of_arrays_take_materials_by_name),
         cmocka_unit_test(a_cube_of_triangles_is_met_as_a_box_is),
         cmocka_unit_test(rays_through_a_scene_that_is_drawn_meet_its_meshes),
+        cmocka_unit_test(copies_of_no_triangles_are_never_met),
         cmocka_unit_test(wrong_triangles_are_refused_and_add_nothing),
         cmocka_unit_test(wrong_rays_are_named),
         cmocka_unit_test(threads_may_share_a_query),

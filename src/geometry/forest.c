@@ -75,28 +75,34 @@ static bounds3 bounds_in_world(const forest_part *p)
     return world;
 }
 
+/* In the part's place in the row; a mesh without triangles has no bounds, and the triangle of zeros stays, which no tree takes in. */
+static void span_copies(forest *f, const forest_part *p)
+{
+    const bounds3 box = bounds_in_world(p);
+    for (size_t copy = 0; copy < instances_of(p) && p->triangles->triangle_count > 0; copy++) {
+        const vec3 o = forest_origin(p, (uint32_t)copy);
+        const double slack = (fabs(o.x) + fabs(o.y) + fabs(o.z)) * 0x1p-48;
+        const vec3 wider = vec3_make(slack, slack, slack);
+        const vec3 low = vec3_sub(vec3_add(box.low, o), wider), high = vec3_add(vec3_add(box.high, o), wider);
+        const size_t at = p->first_instance + copy;
+        vec3 *corner = &f->proxies->vertices[3 * at];
+        corner[0] = low;
+        corner[1] = high;
+        corner[2] = vec3_make(low.x, high.y, low.z);
+        f->proxies->triangles[at] = (mesh_triangle){{(uint32_t)(3 * at), (uint32_t)(3 * at + 1), (uint32_t)(3 * at + 2)}};
+    }
+}
+
 /* A triangle that spans the bounds stands for each instance. */
 static status make_top(forest *f, diagnostic *why)
 {
     status code = mesh_create(3 * f->instance_count, f->instance_count, false, false, false, &f->proxies, why);
-    for (int i = 0; i < f->part_count && code == STATUS_OK; i++) {
-        const forest_part *p = &f->parts[i];
-        const bounds3 box = bounds_in_world(p);
-        for (size_t copy = 0; copy < instances_of(p); copy++) {
-            const vec3 o = forest_origin(p, (uint32_t)copy);
-            const double slack = (fabs(o.x) + fabs(o.y) + fabs(o.z)) * 0x1p-48;
-            const vec3 wider = vec3_make(slack, slack, slack);
-            const vec3 low = vec3_sub(vec3_add(box.low, o), wider), high = vec3_add(vec3_add(box.high, o), wider);
-            const size_t at = p->first_instance + copy;
-            vec3 *corner = &f->proxies->vertices[3 * at];
-            corner[0] = low;
-            corner[1] = high;
-            corner[2] = vec3_make(low.x, high.y, low.z);
-            f->proxies->triangles[at] = (mesh_triangle){{(uint32_t)(3 * at), (uint32_t)(3 * at + 1), (uint32_t)(3 * at + 2)}};
-        }
-    }
+    for (int i = 0; i < f->part_count && code == STATUS_OK; i++)
+        span_copies(f, &f->parts[i]);
     if (code == STATUS_OK)
         code = mesh_finish(f->proxies, why);
+    if (code == STATUS_BAD_INPUT)
+        code = diagnose(why, STATUS_BAD_INPUT, "scale them down, or stand them nearer", "meshes reach farther than 1e9 scene units");
     return code == STATUS_OK ? hierarchy_build(f->proxies, HIERARCHY_BVH, 1, &f->top, why) : code;
 }
 
