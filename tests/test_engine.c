@@ -615,6 +615,41 @@ static void two_engines_at_once_are_as_each_alone(void **state)
     }
 }
 
+/* One scene of meshes that nobody has loaded yet, rendered, checked and written by both. */
+static void *render_shared(void *context)
+{
+    const cuvette_scene *s = context;
+    char text[4096];
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    fine(cuvette_scene_check(s, &why), &why);
+    const uint64_t hash = hash_of(engine, s);
+    fine(cuvette_scene_write_text(s, text, sizeof text, NULL, &why), &why);
+    cuvette_engine_destroy(engine);
+    return (void *)(uintptr_t)hash;
+}
+
+static void two_engines_may_begin_with_one_scene(void **state)
+{
+    (void)state;
+    static const char text[] = "render: {width: 40, height: 30}\ncamera: {position: [0, 0, -3], target: [0, 0, 0]}\n"
+                               "meshes: {ball: {generate: icosphere, level: 5}}\n"
+                               "solids: {one: {shape: mesh, mesh: ball, transparency: 1, ior: 1.5}}\n";
+    for (int i = 0; i < 5; i++) {
+        cuvette_diagnostic why;
+        cuvette_scene *s;
+        pthread_t threads[2];
+        void *hash[2];
+        fine(cuvette_scene_read_text("test.yaml", text, sizeof text - 1, &s, &why), &why);
+        for (int k = 0; k < 2; k++)
+            assert_int_equal(pthread_create(&threads[k], NULL, render_shared, s), 0);
+        for (int k = 0; k < 2; k++)
+            assert_int_equal(pthread_join(threads[k], &hash[k]), 0);
+        assert_true(hash[0] == hash[1] && hash[0]);
+        cuvette_scene_destroy(s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -633,6 +668,7 @@ int main(void)
         cmocka_unit_test(another_thread_cancels_and_the_next_frame_is_whole),
         cmocka_unit_test(what_is_in_use_is_busy),
         cmocka_unit_test(two_engines_at_once_are_as_each_alone),
+        cmocka_unit_test(two_engines_may_begin_with_one_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -196,7 +196,7 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
 {
     cuvette_request request;
     stage now = {.engine = engine, .request = &request};
-    status code = scene_check(s->model, why);
+    status code = engine_check(s, why);
     if (code == STATUS_OK)
         code = engine_load(s, why);
     if (code == STATUS_OK)

@@ -41,6 +41,9 @@ status engine_isa(const char *name, isa *out, diagnostic *why);
 /* CUVETTE_OK when the scene may be changed now. */
 cuvette_status engine_may_change(const cuvette_scene *s, cuvette_diagnostic *why);
 
+/* scene_check, beside others that load the scene. */
+status engine_check(const cuvette_scene *s, diagnostic *why);
+
 /* Reads the files that the scene names, once. */
 status engine_load(cuvette_scene *s, diagnostic *why);
 

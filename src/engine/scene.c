@@ -50,13 +50,20 @@ cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_
     return code == STATUS_OK ? engine_wrap_scene(model, out, why) : engine_report(code, &inner, why);
 }
 
+/* What is loaded is looked at where it is there, so that nobody may be loading it meanwhile: renders of one scene may begin together. */
+static cuvette_scene *hold(const cuvette_scene *s)
+{
+    cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* every handle was made by us, none is constant */
+    pthread_mutex_lock(&held->loading);
+    return held;
+}
+
 cuvette_status cuvette_scene_clone(const cuvette_scene *s, cuvette_scene **out, cuvette_diagnostic *why)
 {
     ENGINE_NEED(out, why);
     *out = NULL;
     ENGINE_NEED_SCENE(s, why);
-    cuvette_scene *source = (cuvette_scene *)(uintptr_t)s; /* every handle was made by us, none is constant */
-    pthread_mutex_lock(&source->loading);
+    cuvette_scene *source = hold(s);
     scene *model = scene_clone(source->model);
     pthread_mutex_unlock(&source->loading);
     return engine_wrap_scene(model, out, why);
@@ -89,11 +96,19 @@ status engine_load(cuvette_scene *s, diagnostic *why)
     return code;
 }
 
+status engine_check(const cuvette_scene *s, diagnostic *why)
+{
+    cuvette_scene *held = hold(s);
+    const status code = scene_check(held->model, why);
+    pthread_mutex_unlock(&held->loading);
+    return code;
+}
+
 cuvette_status cuvette_scene_check(const cuvette_scene *s, cuvette_diagnostic *why)
 {
     ENGINE_NEED_SCENE(s, why);
     diagnostic inner = {.line = 0};
-    return engine_report(scene_check(s->model, &inner), &inner, why);
+    return engine_report(engine_check(s, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *context, const char *text), void *context,
@@ -101,7 +116,14 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
 {
     ENGINE_NEED_SCENE(s, why);
     ENGINE_NEED(note, why);
-    scene_hints(s->model, note, context);
+    cuvette_scene *held = hold(s);
+    scene *copy = scene_clone(held->model); /* the callback may use the scene */
+    pthread_mutex_unlock(&held->loading);
+    diagnostic inner = {.line = 0};
+    if (!copy)
+        return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
+    scene_hints(copy, note, context);
+    scene_destroy(copy);
     return CUVETTE_OK;
 }
 
@@ -126,7 +148,10 @@ cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuv
     ENGINE_NEED_SCENE(s, why);
     ENGINE_NEED(path, why);
     diagnostic inner = {.line = 0};
-    return engine_report(scene_write(s->model, path, false, &inner), &inner, why);
+    cuvette_scene *held = hold(s);
+    const status code = scene_write(held->model, path, false, &inner);
+    pthread_mutex_unlock(&held->loading);
+    return engine_report(code, &inner, why);
 }
 
 cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
@@ -136,6 +161,8 @@ cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size
         ENGINE_NEED(text, why);
     diagnostic inner = {.line = 0};
     char *content = NULL;
-    const status code = scene_write_text(s->model, NULL, false, &content, &inner);
+    cuvette_scene *held = hold(s);
+    const status code = scene_write_text(held->model, NULL, false, &content, &inner);
+    pthread_mutex_unlock(&held->loading);
     return code == STATUS_OK ? engine_give_text(content, text, size, length, why) : engine_report(code, &inner, why);
 }
