@@ -30,10 +30,19 @@ static bool make_chunks(zbuffer *z)
     return true;
 }
 
+static int points_across(int64_t samples)
+{
+    int n = 1;
+    while ((n + 1) * (n + 1) <= samples)
+        n++;
+    return n;
+}
+
 static void make_grid(zbuffer *z)
 {
     const plan *p = z->scene;
-    z->points = p->render.samples == 4 ? 2 : 1;
+    z->points = points_across(p->render.samples);
+    z->side = SQUARE_POINTS / z->points < SQUARE_PIXELS ? SQUARE_POINTS / z->points : SQUARE_PIXELS;
     z->width = (int)p->render.width * z->points;
     z->height = (int)p->render.height * z->points;
     z->units_x = 0.5 * z->width / p->view.half_width;
@@ -43,8 +52,8 @@ static void make_grid(zbuffer *z)
     const vec3 eye = p->view.eye;
     z->nearest = 0x1p-30 * (p->solids->extent + fabs(eye.x) + fabs(eye.y) + fabs(eye.z));
     z->nearest = z->nearest > 0.0 ? z->nearest : 0x1p-30;
-    z->across = ((int)p->render.width + SQUARE_PIXELS - 1) / SQUARE_PIXELS;
-    z->down = ((int)p->render.height + SQUARE_PIXELS - 1) / SQUARE_PIXELS;
+    z->across = ((int)p->render.width + z->side - 1) / z->side;
+    z->down = ((int)p->render.height + z->side - 1) / z->side;
 }
 
 status zbuffer_create(const plan *p, zbuffer **out, diagnostic *why)
@@ -54,6 +63,11 @@ status zbuffer_create(const plan *p, zbuffer **out, diagnostic *why)
         return no_memory(why);
     z->scene = p;
     make_grid(z);
+    if (z->width > 2 * REACH || z->height > 2 * REACH) {
+        zbuffer_destroy(z);
+        return diagnose(why, STATUS_BAD_INPUT, "take fewer samples, or a smaller picture", "the depth buffer has at most %d points across",
+                        2 * REACH);
+    }
     z->seen = malloc((size_t)z->width * (size_t)z->height * sizeof *z->seen);
     z->first = calloc((size_t)z->across * (size_t)z->down + 1, sizeof *z->first);
     status code = z->seen && z->first ? zbuffer_cut(z, why) : no_memory(why);
@@ -112,7 +126,7 @@ static int clamp(int v, int most)
 
 static box squares_of(const zbuffer *z, const screen_triangle *t)
 {
-    const int steps = SUBPIXEL * SQUARE_PIXELS * z->points;
+    const int steps = SUBPIXEL * z->side * z->points;
     int x0 = INT_MAX, y0 = INT_MAX, x1 = INT_MIN, y1 = INT_MIN;
     for (int k = 0; k < 3; k++) {
         x0 = t->x[k] < x0 ? t->x[k] : x0, x1 = t->x[k] > x1 ? t->x[k] : x1;

@@ -13,7 +13,8 @@
 
 typedef struct zbuffer zbuffer;
 
-/* STATUS_FAILURE: memory is out; STATUS_BAD_INPUT: a solid is too small to be cut into triangles. */
+/* STATUS_FAILURE: memory is out; STATUS_BAD_INPUT: a solid is too small to be cut into triangles, the picture too
+ * large for so many samples. */
 status zbuffer_create(const plan *p, zbuffer **out, diagnostic *why);
 void zbuffer_destroy(zbuffer *z); /* NULL is allowed */
 
@@ -22,7 +23,8 @@ void zbuffer_project(zbuffer *z);
 status zbuffer_sort(zbuffer *z, diagnostic *why);
 
 /* What drawing needs for itself: one for each thread that draws. */
-typedef struct zbuffer_square { double nearness[64 * 64]; } zbuffer_square;
+enum { SQUARE_POINTS = 64 /* across */ };
+typedef struct zbuffer_square { double nearness[SQUARE_POINTS * SQUARE_POINTS]; } zbuffer_square;
 
 /* Different pieces may be drawn by different threads. */
 void zbuffer_draw(zbuffer *z, const span *piece, zbuffer_square *square);

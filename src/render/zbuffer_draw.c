@@ -90,7 +90,7 @@ static void draw_square(zbuffer *z, int x, int y, const window *w, zbuffer_squar
 
 void zbuffer_draw(zbuffer *z, const span *piece, zbuffer_square *square)
 {
-    const int side = SQUARE_PIXELS, n = z->points;
+    const int side = z->side, n = z->points;
     for (int y = piece->y0 / side; y * side < piece->y1; y++) {
         for (int x = piece->x0 / side; x * side < piece->x1; x++) {
             const int x0 = x * side > piece->x0 ? x * side : piece->x0, x1 = (x + 1) * side < piece->x1 ? (x + 1) * side : piece->x1;

@@ -1,6 +1,6 @@
 /* The depth buffer's inside, for src/render/zbuffer*.c.
  *
- * Points where the picture is looked at form a grid: one a pixel, or two by two; its unit is the way from one to the next, its origin
+ * Points where the picture is looked at form a grid: one a pixel, or n by n; its unit is the way from one to the next, its origin
  * the picture's upper left corner, so that point i stands at i + 1/2. Corners of triangles are rounded to 2^-12 of that unit. From
  * there on all that decides which points a triangle covers is whole numbers; two triangles that share an edge share its rounded ends,
  * and by the rule of top and left edges no point on it is drawn twice or left out. */
@@ -15,7 +15,7 @@ enum {
     SUBPIXEL = 4096,      /* steps of a corner's place in one unit of the grid */
     REACH = 3 << 16,      /* units: corners lie no farther from the picture's middle, or by a rounding. Sums of two products of differences
                            * stay under 2^63 */
-    SQUARE_PIXELS = 32,
+    SQUARE_PIXELS = 32,   /* at most: fewer where pixels have more points than two by two */
     POLYGON_MAX = 8,      /* a triangle's corners and one for each plane that cuts it */
     CHUNK_TRIANGLES = 4096
 };
@@ -53,7 +53,8 @@ typedef struct chunk {
 
 struct zbuffer {
     const plan *scene;
-    int points;             /* along a pixel's edge: 1 or 2 */
+    int points;             /* along a pixel's edge: 1 to 8 */
+    int side;               /* of a square, in pixels */
     int width, height;      /* of the grid */
     double units_x, units_y; /* of the grid, in one of x / z and y / z */
     double reach_x, reach_y; /* largest of |x| / z and |y| / z */
