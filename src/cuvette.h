@@ -196,10 +196,10 @@ CUVETTE_API cuvette_status cuvette_scene_add_pixels(cuvette_scene *scene, const 
 /* A material goes only when no solid has it. */
 CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 
-/* Adds by, three numbers in scene units, to the position of a solid, a light or "camera" (the target of a cone or the camera goes with it). */
+/* Adds by, three numbers in scene units, to the position of a solid, a light or "camera" (whose target goes with it, and a cone's). */
 CUVETTE_API cuvette_status cuvette_scene_move(cuvette_scene *scene, const char *name, const double *by, cuvette_diagnostic *why);
-/* Turns a solid where it stands, or the direction of a cone of light or "camera", about the world's x axis, then y, then z (three angles), on top of the
- * rotation that it has; right-hand rule on the axes' names. */
+/* Turns a solid where it stands, or the direction of a cone of light or "camera", about the world's x axis, then y, then z (three
+ * angles), on top of the rotation that it has; right-hand rule on the axes' names. */
 CUVETTE_API cuvette_status cuvette_scene_turn(cuvette_scene *scene, const char *name, const double *degrees, cuvette_diagnostic *why);
 /* Aims the camera at a point. */
 CUVETTE_API cuvette_status cuvette_scene_look_at(cuvette_scene *scene, const double *target, cuvette_diagnostic *why);

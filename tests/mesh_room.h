@@ -10,9 +10,9 @@
 
 typedef struct mesh_room {
     room r;
-    mesh *body[SOLIDS_MAX];             /* NULL: the solid is none */
+    mesh *body[SOLIDS_MAX]; /* NULL: the solid is none */
     hierarchy *tree[SOLIDS_MAX];
-    vec3 (*triangle[SOLIDS_MAX])[3];    /* in the world, of all copies */
+    vec3 (*triangle[SOLIDS_MAX])[3]; /* in the world, of all copies */
     size_t count[SOLIDS_MAX];
 } mesh_room;
 
@@ -26,8 +26,14 @@ static inline one_hit nearest_in_room(const arrangement *a, one_ray r)
     const geometry_kernels *kernels = kernels_of(isa_best());
     const ray_batch batch = batch_of_one(&r);
     kernels->nearest(a, &batch, &scratch, &hits);
-    one_hit h = {.t = hits.t[0], .crossed = (int)hits.crossed[0], .before = (int)hits.before[0], .after = (int)hits.after[0],
-                 .surface = (int)hits.surface[0], .inside_before = hits.inside_before[0], .inside_after = hits.inside_after[0], .face = FACE_NONE};
+    one_hit h = {.t = hits.t[0],
+                 .crossed = (int)hits.crossed[0],
+                 .before = (int)hits.before[0],
+                 .after = (int)hits.after[0],
+                 .surface = (int)hits.surface[0],
+                 .inside_before = hits.inside_before[0],
+                 .inside_after = hits.inside_after[0],
+                 .face = FACE_NONE};
     if (h.crossed < 0)
         return h;
     r.inside = h.inside_before;
@@ -67,7 +73,7 @@ static inline double winding(const vec3 (*triangle)[3], size_t count, vec3 at)
 
 static inline bool solid_contains(const mesh_room *m, int i, vec3 at)
 {
-    return m->body[i] ? winding((const vec3 (*)[3])m->triangle[i], m->count[i], at) > 0.5 : solid_shape_contains(&m->r.shape[i], at);
+    return m->body[i] ? winding((const vec3(*)[3])m->triangle[i], m->count[i], at) > 0.5 : solid_shape_contains(&m->r.shape[i], at);
 }
 
 static inline int winner_in_room(const mesh_room *m, vec3 at)
@@ -144,10 +150,12 @@ static inline void place_triangles(mesh_room *m, int i)
     m->triangle[i] = calloc(nx * ny * nz * b->triangle_count, sizeof *m->triangle[i]);
     assert_non_null(m->triangle[i]);
     for (size_t copy = 0; copy < nx * ny * nz; copy++) {
-        const vec3 at = vec3_make((double)(copy % nx) * s->spacing.x, (double)(copy / nx % ny) * s->spacing.y, (double)(copy / nx / ny) * s->spacing.z);
+        const vec3 at =
+            vec3_make((double)(copy % nx) * s->spacing.x, (double)(copy / nx % ny) * s->spacing.y, (double)(copy / nx / ny) * s->spacing.z);
         for (size_t k = 0; k < b->triangle_count; k++, m->count[i]++)
             for (int c = 0; c < 3; c++) {
-                const vec3 v = b->vertices[b->triangles[k].corner[c]], local = vec3_make(v.x * s->scale.x + at.x, v.y * s->scale.y + at.y, v.z * s->scale.z + at.z);
+                const vec3 v = b->vertices[b->triangles[k].corner[c]],
+                           local = vec3_make(v.x * s->scale.x + at.x, v.y * s->scale.y + at.y, v.z * s->scale.z + at.z);
                 m->triangle[i][m->count[i]][c] = vec3_add(s->position, mat3_apply(turn, local));
             }
     }
@@ -173,8 +181,13 @@ static inline void mesh_room_arrange(mesh_room *m)
 {
     body_source sources[SOLIDS_MAX];
     for (int i = 0; i < m->r.count; i++)
-        sources[i] = (body_source){.shape = &m->r.shape[i], .tree = m->tree[i], .priority = m->r.priority[i], .medium = m->r.medium[i],
-                                   .opaque = m->r.opaque[i], .clearness = m->r.opaque[i] ? 0.0 : m->r.clearness[i], .solid = i};
+        sources[i] = (body_source){.shape = &m->r.shape[i],
+                                   .tree = m->tree[i],
+                                   .priority = m->r.priority[i],
+                                   .medium = m->r.medium[i],
+                                   .opaque = m->r.opaque[i],
+                                   .clearness = m->r.opaque[i] ? 0.0 : m->r.clearness[i],
+                                   .solid = i};
     assert_int_equal(arrangement_build(sources, m->r.count, 0, &m->r.solids, NULL), STATUS_OK);
 }
 
@@ -191,8 +204,9 @@ static inline void mesh_room_fill(mesh_room *m, uint64_t *seed, bool on_a_grid)
         m->body[i] = random_body(seed, on_a_grid, s->size);
         s->kind = SHAPE_MESH;
         s->mesh = m->body[i];
-        s->scale = on_a_grid || random_below(seed, 2) ? vec3_make(1.0, 1.0, 1.0)
-                                                       : vec3_make(random_real(seed, 0.4, 1.6), random_real(seed, 0.4, 1.6), random_real(seed, 0.4, 1.6));
+        s->scale = on_a_grid || random_below(seed, 2)
+                       ? vec3_make(1.0, 1.0, 1.0)
+                       : vec3_make(random_real(seed, 0.4, 1.6), random_real(seed, 0.4, 1.6), random_real(seed, 0.4, 1.6));
         s->copies = vec3_make(1.0 + random_below(seed, 3) % 2, 1.0, 1.0 + random_below(seed, 4) % 3 % 2);
         s->spacing = on_a_grid ? s->size : vec3_make(2.1 * s->scale.x, 1.0, 2.1 * s->scale.z);
         if (!on_a_grid)

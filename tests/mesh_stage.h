@@ -17,8 +17,9 @@ static inline void give_texture(scene *s, const char *name, const double *texels
             for (int x = 0; x < 3 * width; x++)
                 picture->pixel[(size_t)(height - 1 - y) * 3 * (size_t)width + (size_t)x] = (float)texels[y * 3 * width + x];
         texture *made = NULL;
-        assert_int_equal(texture_create(picture, TEXTURE_SRGB, (texture_wrap)t->wrap_u, (texture_wrap)t->wrap_v, (texture_filter)t->filter, &made, NULL),
-                         STATUS_OK);
+        assert_int_equal(
+            texture_create(picture, TEXTURE_SRGB, (texture_wrap)t->wrap_u, (texture_wrap)t->wrap_v, (texture_filter)t->filter, &made, NULL),
+            STATUS_OK);
         image_destroy(picture);
         t->data = made;
     }

@@ -11,10 +11,11 @@
 
 /* Copies of meshes, and one picture however it is made. */
 
-#define FRAME "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [0.9, 0.8, 0.6]}\n" \
-              "render: {width: 96, height: 72, depth: 5}\n" \
-              "camera: {position: [1.1, 2.3, -5], target: [0.1, 0.4, 0], fov_deg: 42}\n" \
-              "lights: {lamp: {position: [3, 5, -4]}, other: {position: [-4, 3, -1], intensity: 0.5}}\n"
+#define FRAME                                                                          \
+    "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [0.9, 0.8, 0.6]}\n" \
+    "render: {width: 96, height: 72, depth: 5}\n"                                      \
+    "camera: {position: [1.1, 2.3, -5], target: [0.1, 0.4, 0], fov_deg: 42}\n"         \
+    "lights: {lamp: {position: [3, 5, -4]}, other: {position: [-4, 3, -1], intensity: 0.5}}\n"
 
 static uint64_t hash_of(const char *text, const char *assignments, isa level)
 {
@@ -31,7 +32,8 @@ static void copies_are_as_many_solids(void **state)
     (void)state;
     scene_text a = {.length = 0}, b = {.length = 0};
     static const char look[] = "shape: mesh, mesh: ring, transparency: 1, ior: 1.5, shading: smooth, scale: [0.5, 0.75, 0.5]";
-    add(&a, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n  rings: {%s, copies: [3, 2, 2], spacing: [1.5, 1, 2], position: [-1.5, 0, -1]}\n",
+    add(&a,
+        "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n  rings: {%s, copies: [3, 2, 2], spacing: [1.5, 1, 2], position: [-1.5, 0, -1]}\n",
         FRAME, look);
     add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n", FRAME);
     for (int k = 0; k < 12; k++) /* one medium, as the copies are */
@@ -44,10 +46,13 @@ static void copies_that_touch_are_one_block(void **state)
 {
     (void)state;
     scene_text a = {.length = 0}, b = {.length = 0};
-    add(&a, "%smeshes: {cube: {generate: box, size: [0.3, 0.5, 0.7]}}\nsolids:\n  wall: {shape: mesh, mesh: cube, transparency: 1, ior: 1.5,"
-        " copies: [4, 2, 3], spacing: [0.3, 0.5, 0.7], position: [-0.45, 0, -0.7], rotation: [0, 20, 0]}\n", FRAME);
-    add(&b, "%ssolids:\n  wall: {shape: box, size: [1.2, 1, 2.1], transparency: 1, ior: 1.5, position: [%.17g, 0.25, %.17g], rotation: [0, 20, 0]}\n", FRAME,
-        -0.45 + turned(vec3_make(0.45, 0.0, 0.7), vec3_make(0.0, 20.0, 0.0)).x, -0.7 + turned(vec3_make(0.45, 0.0, 0.7), vec3_make(0.0, 20.0, 0.0)).z);
+    add(&a,
+        "%smeshes: {cube: {generate: box, size: [0.3, 0.5, 0.7]}}\nsolids:\n  wall: {shape: mesh, mesh: cube, transparency: 1, ior: 1.5,"
+        " copies: [4, 2, 3], spacing: [0.3, 0.5, 0.7], position: [-0.45, 0, -0.7], rotation: [0, 20, 0]}\n",
+        FRAME);
+    add(&b, "%ssolids:\n  wall: {shape: box, size: [1.2, 1, 2.1], transparency: 1, ior: 1.5, position: [%.17g, 0.25, %.17g], rotation: [0, 20, 0]}\n",
+        FRAME, -0.45 + turned(vec3_make(0.45, 0.0, 0.7), vec3_make(0.0, 20.0, 0.0)).x,
+        -0.7 + turned(vec3_make(0.45, 0.0, 0.7), vec3_make(0.0, 20.0, 0.0)).z);
     scene *many = scene_with_meshes(a.at, ""), *one = scene_with_meshes(b.at, "");
     render_result *x = render(many), *y = render(one);
     assert_true(rms_between(x->picture, y->picture) < 1e-8);
@@ -63,7 +68,8 @@ static void placed_copies_are_transformed_vertices(void **state)
     (void)state;
     scene_text a = {.length = 0}, b = {.length = 0};
     static const char look[] = "shape: mesh, transparency: 1, ior: 1.5, specular: 0.5, shading: smooth";
-    add(&a, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring, scale: [1.25, 2, 0.75], rotation: [30, 40, 50], position: [0.2, 0.4, 0.1]}}\n",
+    add(&a,
+        "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring, scale: [1.25, 2, 0.75], rotation: [30, 40, 50], position: [0.2, 0.4, 0.1]}}\n",
         FRAME, look);
     add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring}}\n", FRAME, look);
     scene *placed = scene_with_meshes(a.at, ""), *moved = scene_with_meshes(b.at, "");
@@ -92,9 +98,11 @@ static void a_hundred_thousand_copies_are_quick_and_small(void **state)
 {
     (void)state;
     scene_text t = {.length = 0};
-    add(&t, "%smeshes: {ball: {generate: icosphere, level: 3}, slab: {generate: box, size: [200, 0.1, 200]}}\nsolids:\n"
+    add(&t,
+        "%smeshes: {ball: {generate: icosphere, level: 3}, slab: {generate: box, size: [200, 0.1, 200]}}\nsolids:\n"
         "  balls: {shape: mesh, mesh: ball, shading: smooth, transparency: 1, ior: 1.5, scale: [0.2, 0.2, 0.2], copies: [400, 1, 250], spacing: [0.5, 1, 0.5],"
-        " position: [-100, 0.2, 0]}\n  floor: {shape: mesh, mesh: slab, diffuse: 0.8, position: [0, -0.05, 60]}\n", FRAME);
+        " position: [-100, 0.2, 0]}\n  floor: {shape: mesh, mesh: slab, diffuse: 0.8, position: [0, -0.05, 60]}\n",
+        FRAME);
     scene *s = scene_with_meshes(t.at, "");
     const int64_t began = clock_wall_ns();
     render_result *r = render(s);
@@ -124,9 +132,14 @@ static const char gallery[] = FRAME
 static void one_film_however_it_is_made(void **state)
 {
     (void)state;
-    static const char *const ways[] = {"render.threads=1", "render.threads=2 render.schedule=rows", "render.threads=7 render.schedule=dynamic render.tile=8",
-                                       "render.threads=3 render.schedule=tiles render.tile=16 render.pool=off", "render.accel=none",
-                                       "render.accel=sphere", "render.accel=octant render.threads=2", "render.accel=bvh render.keep=off"};
+    static const char *const ways[] = {"render.threads=1",
+                                       "render.threads=2 render.schedule=rows",
+                                       "render.threads=7 render.schedule=dynamic render.tile=8",
+                                       "render.threads=3 render.schedule=tiles render.tile=16 render.pool=off",
+                                       "render.accel=none",
+                                       "render.accel=sphere",
+                                       "render.accel=octant render.threads=2",
+                                       "render.accel=bvh render.keep=off"};
     const uint64_t wanted = hash_of(gallery, "", isa_best());
     for (size_t k = 0; k < COUNT(ways); k++)
         if (hash_of(gallery, ways[k], isa_best()) != wanted)
@@ -140,10 +153,11 @@ static void light_through_very_many_media_is_the_same_in_any_batch(void **state)
 {
     (void)state;
     scene_text t = {.length = 0};
-    add(&t, "background: {color: [0, 0, 0]}\nrender: {width: 24, height: 16, depth: 1}\ncamera: {position: [0, 2, -3], target: [0, 0, -1], fov_deg: 30}\n"
-            "lights: {lamp: {position: [0.05, 0.45, 60]}}\nmeshes: {cube: {generate: box, size: [20, 3, 0.1]}}\nsolids:\n"
-            "  ground: {shape: plane, diffuse: 0.9, ambient: 0, specular: 0}\n"
-            "  slats: {shape: mesh, mesh: cube, transparency: 1, ior: 1, absorb_per_m: [0.01, 0.05, 0.1], copies: [1, 1, 200], spacing: [1, 1, 0.25], position: [0, 1, 1], priority: -1}\n");
+    add(&t,
+        "background: {color: [0, 0, 0]}\nrender: {width: 24, height: 16, depth: 1}\ncamera: {position: [0, 2, -3], target: [0, 0, -1], fov_deg: 30}\n"
+        "lights: {lamp: {position: [0.05, 0.45, 60]}}\nmeshes: {cube: {generate: box, size: [20, 3, 0.1]}}\nsolids:\n"
+        "  ground: {shape: plane, diffuse: 0.9, ambient: 0, specular: 0}\n"
+        "  slats: {shape: mesh, mesh: cube, transparency: 1, ior: 1, absorb_per_m: [0.01, 0.05, 0.1], copies: [1, 1, 200], spacing: [1, 1, 0.25], position: [0, 1, 1], priority: -1}\n");
     const uint64_t wanted = hash_of(t.at, "", isa_best());
     assert_true(hash_of(t.at, "render.threads=3 render.schedule=tiles render.tile=8", isa_best()) == wanted);
     assert_true(hash_of(t.at, "render.schedule=columns render.threads=24", isa_best()) == wanted);

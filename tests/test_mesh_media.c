@@ -12,7 +12,9 @@
 /* Meshes among the analytic solids, by priority, against brute force: every crossing of every triangle and shape, and between each two of them
  * the winner at the midpoint by definition. test_media.c does the same without meshes. */
 
-typedef struct walks { int interfaces, skipped, seen_meshes, hidden_meshes; } walks;
+typedef struct walks {
+    int interfaces, skipped, seen_meshes, hidden_meshes;
+} walks;
 
 static void walk_agrees(const mesh_room *m, vec3 from, vec3 direction, walks *sum)
 {
@@ -84,7 +86,8 @@ static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
         mesh_room_fill(&m, &seed, true);
         const arrangement *a = m.r.solids;
         for (int k = 0; k < 12; k++) {
-            const vec3 o = vec3_make(0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16));
+            const vec3 o =
+                vec3_make(0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16));
             const vec3 d = vec3_make(random_below(&seed, 3) - 1, random_below(&seed, 3) - 1, random_below(&seed, 3) - 1);
             if (vec3_dot(d, d) == 0.0)
                 continue;
@@ -247,12 +250,9 @@ static void instruction_sets_agree_to_the_bit_on_meshes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rooms_with_meshes_agree_with_brute_force),
-        cmocka_unit_test(mesh_boxes_with_coincident_faces_agree_with_brute_force),
-        cmocka_unit_test(rays_in_coincident_mesh_faces_come_to_an_end),
-        cmocka_unit_test(sets_stay_true_on_long_walks_among_meshes),
-        cmocka_unit_test(shadow_rays_among_meshes_agree_with_brute_force),
-        cmocka_unit_test(instruction_sets_agree_to_the_bit_on_meshes),
+        cmocka_unit_test(rooms_with_meshes_agree_with_brute_force),        cmocka_unit_test(mesh_boxes_with_coincident_faces_agree_with_brute_force),
+        cmocka_unit_test(rays_in_coincident_mesh_faces_come_to_an_end),    cmocka_unit_test(sets_stay_true_on_long_walks_among_meshes),
+        cmocka_unit_test(shadow_rays_among_meshes_agree_with_brute_force), cmocka_unit_test(instruction_sets_agree_to_the_bit_on_meshes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

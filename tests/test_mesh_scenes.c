@@ -10,10 +10,11 @@
 
 /* Scenes of meshes against the same scenes of analytic solids. */
 
-#define FRAME "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [0.9, 0.8, 0.6]}\n" \
-              "render: {width: 24, height: 18, depth: 5}\n" \
-              "camera: {position: [1.1, 1.3, -4], target: [0.1, 0.4, 0], fov_deg: 42}\n" \
-              "lights: {lamp: {position: [3, 5, -4]}, other: {position: [-4, 3, -1], intensity: 0.5}}\n"
+#define FRAME                                                                          \
+    "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [0.9, 0.8, 0.6]}\n" \
+    "render: {width: 24, height: 18, depth: 5}\n"                                      \
+    "camera: {position: [1.1, 1.3, -4], target: [0.1, 0.4, 0], fov_deg: 42}\n"         \
+    "lights: {lamp: {position: [3, 5, -4]}, other: {position: [-4, 3, -1], intensity: 0.5}}\n"
 
 /* A box as one writes it, and as twelve triangles. */
 static scene_text with_boxes(const char *solids, bool as_mesh)
@@ -94,8 +95,10 @@ static void mesh_boxes_are_boxes(void **state)
 static void through_a_mesh_block_the_ground_is_the_ground(void **state)
 {
     (void)state;
-    const scene_text t = with_boxes("  ground: {shape: plane, position: [0.05, 0, 0.03], color: [1, 0, 0], checker_color: [0, 1, 0], checker: 0.2, ambient: 1}\n"
-                                    "  glass: {@[1.5, 1, 1.5], transparency: 1, ior: 1.5, position: [0, 0.5, 0], rotation: [0, 33, 0], priority: 1}\n", true);
+    const scene_text t =
+        with_boxes("  ground: {shape: plane, position: [0.05, 0, 0.03], color: [1, 0, 0], checker_color: [0, 1, 0], checker: 0.2, ambient: 1}\n"
+                   "  glass: {@[1.5, 1, 1.5], transparency: 1, ior: 1.5, position: [0, 0.5, 0], rotation: [0, 33, 0], priority: 1}\n",
+                   true);
     stage g = stage_with_meshes(t.at, "background.ambient=1,1,1");
     uint64_t seed = 5;
     for (int k = 0; k < 2000; k++) {
@@ -119,7 +122,8 @@ static void a_mesh_of_the_liquids_own_index_is_not_seen(void **state)
     (void)state;
     static const char pool[] = "  water: {shape: box, size: [2, 1, 2], transparency: 1, ior: 1.33, position: [0, 0.5, 0], priority: 1}\n";
     char both[1024];
-    snprintf(both, sizeof both, "%s  lump: {shape: mesh, mesh: ring, transparency: 1, ior: 1.33, position: [0, 0.5, 0], rotation: [50, 0, 0], priority: 2}\n", pool);
+    snprintf(both, sizeof both,
+             "%s  lump: {shape: mesh, mesh: ring, transparency: 1, ior: 1.33, position: [0, 0.5, 0], rotation: [50, 0, 0], priority: 2}\n", pool);
     scene_text a = {.length = 0}, b = {.length = 0};
     add(&a, "%ssolids:\n%s", FRAME, pool);
     add(&b, "%smeshes: {ring: {generate: torus, major: 0.4, minor: 0.15, around: 40, tube: 20}}\nsolids:\n%s", FRAME, both);
@@ -137,8 +141,10 @@ static void a_mesh_of_the_liquids_own_index_is_not_seen(void **state)
 static double error_at_level(int level, bool smooth, const film *wanted)
 {
     scene_text t = {.length = 0};
-    add(&t, "%smeshes: {triangles: {generate: icosphere, level: %d}}\nsolids:\n  ball: {shape: mesh, mesh: triangles, shading: %s, transparency: 1, ior: 1.5,"
-        " position: [0, 0.4, 0]}\n", FRAME, level, smooth ? "smooth" : "flat");
+    add(&t,
+        "%smeshes: {triangles: {generate: icosphere, level: %d}}\nsolids:\n  ball: {shape: mesh, mesh: triangles, shading: %s, transparency: 1, ior: 1.5,"
+        " position: [0, 0.4, 0]}\n",
+        FRAME, level, smooth ? "smooth" : "flat");
     scene *s = scene_with_meshes(t.at, "render.width=120 render.height=90 render.depth=6");
     render_result *r = render(s);
     const double rms = rms_between(r->picture, wanted);
@@ -159,7 +165,8 @@ static void a_glass_mesh_sphere_converges_to_the_sphere(void **state)
     for (int level = 0; level < LEVELS; level++) {
         smooth[level] = error_at_level(level, true, wanted->picture);
         flat[level] = error_at_level(level, false, wanted->picture);
-        print_message("level %d: smooth %.3e (%.1f dB), flat %.3e (%.1f dB)\n", level, smooth[level], psnr(smooth[level]), flat[level], psnr(flat[level]));
+        print_message("level %d: smooth %.3e (%.1f dB), flat %.3e (%.1f dB)\n", level, smooth[level], psnr(smooth[level]), flat[level],
+                      psnr(flat[level]));
     }
     render_result_destroy(wanted);
     scene_destroy(s);

@@ -36,13 +36,16 @@ static void give_square(scene *s, vec3 *corner, vec3 *normal)
 static stage square_stage(const char *more, const char *assignments)
 {
     scene_text t = {.length = 0};
-    add(&t, DARK "meshes: {square: {generate: box}}\ntextures: {map: {file: none.png, filter: nearest}}\n"
-            "lights: {lamp: {position: [1.5, 2, -3], color: [1, 0.5, 0.25]}}\nsolids: {sheet: {shape: mesh, mesh: square, %s}}\n", more);
+    add(&t,
+        DARK "meshes: {square: {generate: box}}\ntextures: {map: {file: none.png, filter: nearest}}\n"
+             "lights: {lamp: {position: [1.5, 2, -3], color: [1, 0.5, 0.25]}}\nsolids: {sheet: {shape: mesh, mesh: square, %s}}\n",
+        more);
     stage g = {.setting = scene_from(t.at)};
     vec3 unused[8];
     give_square(g.setting, unused, unused + 4);
     set_all(g.setting, assignments);
-    static const double texels[24] = {0.125, 0.25, 1, 0.375, 0.25, 1, 0.625, 0.25, 1, 0.875, 0.25, 1, 0.125, 0.75, 1, 0.375, 0.75, 1, 0.625, 0.75, 1, 0.875, 0.75, 1};
+    static const double texels[24] = {0.125, 0.25, 1, 0.375, 0.25, 1, 0.625, 0.25, 1, 0.875, 0.25, 1,
+                                      0.125, 0.75, 1, 0.375, 0.75, 1, 0.625, 0.75, 1, 0.875, 0.75, 1};
     give_texture(g.setting, "map", texels, 4, 2);
     diagnostic why = {0};
     worked(scene_load(g.setting, &why), &why);
@@ -83,8 +86,9 @@ static void phongs_sum_at_known_points(void **state)
             if (rule == 0)
                 wanted = phong(vec3_make(0, 0, -1), at, eye, 0.5, 0.25, 5.0);
             else if (rule == 1)
-                wanted = phong(vec3_normalize(vec3_add(vec3_scale(normal[0], first), vec3_add(vec3_scale(normal[2], second), vec3_scale(normal[other], third)))), at,
-                               eye, 0.5, 0.25, 5.0);
+                wanted = phong(
+                    vec3_normalize(vec3_add(vec3_scale(normal[0], first), vec3_add(vec3_scale(normal[2], second), vec3_scale(normal[other], third)))),
+                    at, eye, 0.5, 0.25, 5.0);
             else
                 wanted = first * phong(normal[0], corner[0], eye, 0.5, 0.25, 5.0) + second * phong(normal[2], corner[2], eye, 0.5, 0.25, 5.0) +
                          third * phong(normal[other], corner[other], eye, 0.5, 0.25, 5.0);
@@ -118,8 +122,10 @@ static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
         "shape: mesh, mesh: square, rotation: [31, 17, 5], copies: [2, 1, 1], spacing: [0, 0, 0], ambient: 0.125, diffuse: 0.5, specular: 0, shading: flat"};
     for (size_t k = 0; k < COUNT(sheets); k++) {
         scene_text t = {.length = 0};
-        add(&t, "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\nrender: {width: 1, height: 1}\nmeshes: {square: {generate: box}}\n"
-                "lights: {lamp: {position: [1, 2, -30]}, behind: {position: [-2, 1, 40]}}\nsolids: {sheet: {%s}}\n", sheets[k]);
+        add(&t,
+            "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\nrender: {width: 1, height: 1}\nmeshes: {square: {generate: box}}\n"
+            "lights: {lamp: {position: [1, 2, -30]}, behind: {position: [-2, 1, 40]}}\nsolids: {sheet: {%s}}\n",
+            sheets[k]);
         stage g = {.setting = scene_from(t.at)};
         vec3 unused[8];
         give_square(g.setting, unused, unused + 4);
@@ -140,8 +146,9 @@ static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
 static void bent_normals_keep_rays_on_their_sides(void **state)
 {
     (void)state;
-    static const char text[] = "background: {color: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 8, beyond: black}\nmeshes: {rough: {generate: icosphere, level: 0}}\n"
-                               "solids: {ball: {shape: mesh, mesh: rough, shading: smooth, transparency: 1, ior: 1.5}}\n";
+    static const char text[] =
+        "background: {color: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 8, beyond: black}\nmeshes: {rough: {generate: icosphere, level: 0}}\n"
+        "solids: {ball: {shape: mesh, mesh: rough, shading: smooth, transparency: 1, ior: 1.5}}\n";
     stage g = stage_with_meshes(text, "");
     const mesh *m = g.setting->meshes[0].data;
     uint64_t seed = 8;
@@ -199,8 +206,10 @@ static void absorption_over_lengths_in_meshes(void **state)
     static const char *const bodies[] = {"{generate: box, size: [2, 1, 2]}", "{generate: icosphere, level: 6}"};
     for (int k = 0; k < 2; k++) {
         scene_text t = {.length = 0};
-        add(&t, "background: {color: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 3}\nmeshes: {body: %s}\n"
-                "solids: {lump: {shape: mesh, mesh: body, transparency: 1, ior: 1.25, absorb_per_m: [0.5, 1, 2], position: [0, 0, 4]}}\n", bodies[k]);
+        add(&t,
+            "background: {color: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 3}\nmeshes: {body: %s}\n"
+            "solids: {lump: {shape: mesh, mesh: body, transparency: 1, ior: 1.25, absorb_per_m: [0.5, 1, 2], position: [0, 0, 4]}}\n",
+            bodies[k]);
         stage g = stage_with_meshes(t.at, "render.unit_m=0.5 background.ior=1.25 lump.ior=1.5");
         const double length = 2.0;
         const ray_node *in = &stage_ray(&g, vec3_make(0.001, 0.002, 0), vec3_make(0, 0, 1))->node[0];
@@ -225,11 +234,18 @@ static void expect_texel(const ray_tree *tree, double u, double v)
 static void textures_at_known_points(void **state)
 {
     (void)state;
-    static const char head[] = DARK "textures: {map: {file: none.png, filter: nearest}}\nmeshes: {ball: {generate: icosphere, level: 5}, cube: {generate: box}, sheet: {generate: box}}\nsolids: {it: {ambient: 1, diffuse: 0, texture: map, ";
-    static const struct { const char *shape; int kind; } things[] = {
-        {"shape: sphere, radius: 1}}\n", 0}, {"shape: mesh, mesh: ball}}\n", 0}, {"shape: cylinder, radius: 1, height: 2, position: [0, -1, 0]}}\n", 1},
-        {"shape: box, size: [2, 2, 2]}}\n", 2}, {"shape: mesh, mesh: cube, scale: [2, 2, 2]}}\n", 2}, {"shape: plane, rotation: [-90, 0, 0], position: [0, 0, -1]}}\n", 3},
-        {"shape: plane, rotation: [-90, 0, 0], position: [0, 0, -1], texture_size: 2.5}}\n", 4}};
+    static const char head[] = DARK
+        "textures: {map: {file: none.png, filter: nearest}}\nmeshes: {ball: {generate: icosphere, level: 5}, cube: {generate: box}, sheet: {generate: box}}\nsolids: {it: {ambient: 1, diffuse: 0, texture: map, ";
+    static const struct {
+        const char *shape;
+        int kind;
+    } things[] = {{"shape: sphere, radius: 1}}\n", 0},
+                  {"shape: mesh, mesh: ball}}\n", 0},
+                  {"shape: cylinder, radius: 1, height: 2, position: [0, -1, 0]}}\n", 1},
+                  {"shape: box, size: [2, 2, 2]}}\n", 2},
+                  {"shape: mesh, mesh: cube, scale: [2, 2, 2]}}\n", 2},
+                  {"shape: plane, rotation: [-90, 0, 0], position: [0, 0, -1]}}\n", 3},
+                  {"shape: plane, rotation: [-90, 0, 0], position: [0, 0, -1], texture_size: 2.5}}\n", 4}};
     for (size_t k = 0; k < COUNT(things); k++) {
         char text[2048];
         snprintf(text, sizeof text, "%s%s", head, things[k].shape);
@@ -269,7 +285,8 @@ static void an_open_dielectric_names_its_hole(void **state)
 {
     (void)state;
     char why[DIAGNOSTIC_TEXT_MAX];
-    static const char open[] = DARK "meshes: {hills: {generate: terrain, around: 4, tube: 4}}\nsolids: {lens: {shape: mesh, mesh: hills, transparency: 1}}\n";
+    static const char open[] =
+        DARK "meshes: {hills: {generate: terrain, around: 4, tube: 4}}\nsolids: {lens: {shape: mesh, mesh: hills, transparency: 1}}\n";
     assert_non_null(strstr(refusal_of(open, "", why), "the edge from ("));
     assert_null(strchr(why, '\n'));
     assert_string_equal(refusal_of(open, "lens.transparency=0", why), "");
@@ -303,8 +320,12 @@ static void faces_look_like_their_materials(void **state)
     fputs("newmtl left\nKd 0.25 0.5 0.75\nKs 0 0 0\nnewmtl right\nKd 0.5 0.125 0.0625\nKs 0 0 0\n", f);
     fclose(f);
     for (int k = 0; k < 3; k++) {
-        snprintf(text, sizeof text, DARK "lights: {lamp: {position: [0, 0, -1000000]}}\nmeshes: {two: {file: %s}}\n%ssolids: {sheet: {shape: mesh, mesh: two%s}}\n", path,
-                 k == 1 ? "materials: {right: {color: [0, 1, 0], ambient: 0.5, diffuse: 0}}\n" : k == 2 ? "materials: {own: {color: [0, 0, 1], diffuse: 1, ambient: 0}}\n" : "",
+        snprintf(text, sizeof text,
+                 DARK "lights: {lamp: {position: [0, 0, -1000000]}}\nmeshes: {two: {file: %s}}\n%ssolids: {sheet: {shape: mesh, mesh: two%s}}\n",
+                 path,
+                 k == 1   ? "materials: {right: {color: [0, 1, 0], ambient: 0.5, diffuse: 0}}\n"
+                 : k == 2 ? "materials: {own: {color: [0, 0, 1], diffuse: 1, ambient: 0}}\n"
+                          : "",
                  k == 2 ? ", material: own" : "");
         stage g = stage_with_meshes(text, "");
         const double *left = stage_ray(&g, vec3_make(-0.5, 0.5, -3.0), vec3_make(0, 0, 1))->radiance;

@@ -223,9 +223,16 @@ static json_t *meshes(const mesh_report *m)
     if (m->triangles == 0 && m->drawn == 0)
         return json_null();
     const double each = m->triangles > 0 ? (double)m->bytes / (double)m->triangles : (double)NAN;
-    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "triangles", json_of_count((int64_t)m->triangles), "instances", json_of_count((int64_t)m->instances),
-                     "accel_bytes", json_of_count((int64_t)m->bytes), "bytes_per_triangle", json_of_real(each), "build_s", json_of_real(m->build_s),
-                     "drawn", json_of_count((int64_t)m->drawn), "drawn_bytes", json_of_count((int64_t)m->drawn_bytes));
+    json_t *o = json_pack("{s:o,s:o,s:o}", "triangles", json_of_count((int64_t)m->triangles), "instances", json_of_count((int64_t)m->instances),
+                          "accel_bytes", json_of_count((int64_t)m->bytes));
+    int bad = json_object_set_new(o, "bytes_per_triangle", json_of_real(each));
+    bad |= json_object_set_new(o, "build_s", json_of_real(m->build_s));
+    bad |= json_object_set_new(o, "drawn", json_of_count((int64_t)m->drawn));
+    bad |= json_object_set_new(o, "drawn_bytes", json_of_count((int64_t)m->drawn_bytes));
+    if (!bad)
+        return o;
+    json_decref(o);
+    return NULL;
 }
 
 static int add_process(json_t *o, const frames *f)

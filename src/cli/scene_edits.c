@@ -171,7 +171,8 @@ static status apply_add(scene *s, const scene_edit *edit, const char *text, diag
 }
 
 const scene_edit scene_edits[] = {
-    {"--add", 0x200, "KIND:NAME[=SHAPE][,PARAM=VALUE]...", "add a solid, light, material, mesh or texture, as solid:rod=box,size=0.25,3,0.25", apply_add},
+    {"--add", 0x200, "KIND:NAME[=SHAPE][,PARAM=VALUE]...",
+     "add a solid, light, material, mesh or texture, as solid:rod=box,size=0.25,3,0.25", apply_add},
     {"--set", 's', "PATH=VALUE", "set a parameter, or NAME.material and NAME.shape of a solid", apply_set},
     {"--move", 0x201, "NAME=DX,DY,DZ", "move a solid, a light or the camera", apply_move},
     {"--turn", 0x202, "NAME=RX,RY,RZ", "turn a solid or the camera about the world's x, then y, then z axis, in degrees", apply_turn},

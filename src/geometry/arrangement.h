@@ -2,7 +2,8 @@
  * or one less another (a cup: its outside less its hollow), so that every solid is at most two intervals on a ray.
  *
  * The medium at a point is the body of the highest rank that contains it (rank 0: none, the surrounding medium). A ray carries
- * one bit for each primitive that it is in. A closed mesh is a primitive too, though not convex; an open one is a skin, in which no ray ever is. An interface is a point of the ray where the medium changes:
+ * one bit for each primitive that it is in. A closed mesh is a primitive too, though not convex; an open one is a skin, in which no ray
+ * ever is. An interface is a point of the ray where the medium changes:
  * crossings that a higher body hides, or that lead into an equal medium, are none (Schmidt and Budge,
  * "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2), 2002).
  *
@@ -24,7 +25,8 @@ enum {
 
 typedef enum primitive_kind { PRIMITIVE_HALFSPACE, PRIMITIVE_CYLINDER, PRIMITIVE_BOX, PRIMITIVE_SPHERE, PRIMITIVE_MESH } primitive_kind;
 
-/* Faces: half-space 0. Cylinder 0 side, 1 bottom, 2 top. Box 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. Sphere 0. Meshes number theirs otherwise: see forest.h. */
+/* Faces: half-space 0. Cylinder 0 side, 1 bottom, 2 top. Box 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. Sphere 0.
+ * Meshes number theirs otherwise: see forest.h. */
 typedef struct primitive {
     primitive_kind kind;
     bool turned;         /* rotation is not the identity */

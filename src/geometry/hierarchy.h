@@ -14,7 +14,9 @@
 
 #include "geometry/mesh.h"
 
-typedef enum hierarchy_kind { HIERARCHY_NONE, HIERARCHY_SPHERE, HIERARCHY_OCTANT, HIERARCHY_BVH, HIERARCHY_EMBREE, HIERARCHY_KIND_COUNT } hierarchy_kind;
+typedef enum hierarchy_kind {
+    HIERARCHY_NONE, HIERARCHY_SPHERE, HIERARCHY_OCTANT, HIERARCHY_BVH, HIERARCHY_EMBREE, HIERARCHY_KIND_COUNT
+} hierarchy_kind;
 
 typedef struct hierarchy hierarchy;
 

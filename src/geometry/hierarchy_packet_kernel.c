@@ -70,7 +70,7 @@ static void packet_start(packet *p, ray_query *const *rays, int count)
             p->near_inverse[k][i] = b.near_inverse[k], p->far_inverse[k][i] = b.far_inverse[k];
         }
         p->t_min[i] = b.t_min;
-        p->t_best[i] = float_above(q->t_best);
+        p->t_best[i] = i < count ? float_above(q->t_best) : 0.0f; /* so that they hold nobody up */
         p->t_farthest = MORE(p->t_farthest, p->t_best[i]);
         p->origin[0][i] = q->origin[q->x], p->origin[1][i] = q->origin[q->y], p->origin[2][i] = q->origin[q->z];
         p->shear[0][i] = q->shear_x, p->shear[1][i] = q->shear_y, p->shear[2][i] = q->shear_z;
@@ -215,8 +215,10 @@ ALWAYS_INLINE int8x64 consider_together(packet *p, int i, int8x64 mask, const pa
     const double8 det = h->u + h->v + h->w;
     const int8x64 front = det > zero, facing = (front & FACING_FRONT) | (~front & FACING_BACK);
     mask &= (front | (det < zero)) & ((facing & ints_at(&p->wanted[i])) != 0);
-    const double8 least_x = double8_lesser(double8_lesser(h->x[0], h->x[1]), h->x[2]), most_x = double8_greater(double8_greater(h->x[0], h->x[1]), h->x[2]);
-    const double8 least_y = double8_lesser(double8_lesser(h->y[0], h->y[1]), h->y[2]), most_y = double8_greater(double8_greater(h->y[0], h->y[1]), h->y[2]);
+    const double8 least_x = double8_lesser(double8_lesser(h->x[0], h->x[1]), h->x[2]);
+    const double8 most_x = double8_greater(double8_greater(h->x[0], h->x[1]), h->x[2]);
+    const double8 least_y = double8_lesser(double8_lesser(h->y[0], h->y[1]), h->y[2]);
+    const double8 most_y = double8_greater(double8_greater(h->y[0], h->y[1]), h->y[2]);
     mask &= (least_x <= zero) & (most_x >= zero) & (least_y <= zero) & (most_y >= zero);
     double8 t = h->t;
     mask &= clamp_together(p, i, corner, &t);

@@ -181,8 +181,8 @@ static void next_changes(const arrangement *a, const ray_batch *rays, int n, ray
 
 /* Of several boundaries at column k's crossing, low <= t <= high, one of which is a mesh's, that of the body whose surface it is counts:
  * its normal and its colours are what is seen. */
-static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits, double low,
-                             double high)
+static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits,
+                             double low, double high)
 {
     const body *owner = &a->bodies[c->surface[k]];
     const bool from_mesh = is_mesh(a, (int)c->crossed[k]);
