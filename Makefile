@@ -63,7 +63,7 @@ all_cflags = $(code_flags) -DCUVETTE_VERSION='"$(version)"' \
 all_libs = $(pkg_libs) $(embree_libs) -lm -pthread
 
 # Embree 3 is a yardstick, used where it is there: one file knows it. Asked for at its first use, as above.
-embree = $(eval embree := $$(shell echo '\#include <embree3/rtcore.h>' | $$(CC) -E -x c - >/dev/null 2>&1 && echo yes))$(embree)
+embree = $(eval embree := $$(shell $$(CC) -E -include embree3/rtcore.h -x c /dev/null >/dev/null 2>&1 && echo yes))$(embree)
 embree_cflags = $(if $(embree),-DCUVETTE_EMBREE=1)
 embree_libs = $(if $(embree),-lembree3)
 

@@ -69,7 +69,8 @@ static inline void add(bytes *b, const void *more, size_t size)
         b->at = realloc(b->at, b->room);
         assert_non_null(b->at);
     }
-    memcpy(b->at + b->size, more, size);
+    if (size > 0)
+        memcpy(b->at + b->size, more, size);
     b->size += size;
 }
 
