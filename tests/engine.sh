@@ -31,11 +31,11 @@ have() { command -v "$1" >/dev/null; }
 run_make() { make -s --no-print-directory config="$config" build="$build" CC="$cc" "$@" 2>&1 | grep -v -i -e jobserver -e '^ '; }
 
 # --- installed, under DESTDIR and without it
-prefix=$work/prefix
-run_make install DESTDIR="$work/root" PREFIX=/opt/cuvette
+prefix=$work/prefix staged=$work/destination/opt/cuvette
+run_make install DESTDIR="$work/destination" PREFIX=/opt/cuvette
 run_make install PREFIX="$prefix"
 empty "DESTDIR goes before PREFIX, and is in no file" \
-    "$(diff <(cd "$prefix" && find . | sort) <(cd "$work/root/opt/cuvette" && find . | sort); grep -l "$work" -r "$work/root/opt/cuvette/lib/pkgconfig")"
+    "$(diff <(cd "$prefix" && find . | sort) <(cd "$staged" && find . | sort); grep -l "$work" -r "$staged/lib/pkgconfig")"
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 flags() { pkg-config "$@" cuvette; }
 version=$(sed -n 's/^#define CUVETTE_VERSION_[A-Z]* //p' src/cuvette.h | paste -sd.)

@@ -16,48 +16,6 @@ typedef struct mesh_room {
     size_t count[SOLIDS_MAX];
 } mesh_room;
 
-static inline one_hit nearest_in_room(const arrangement *a, one_ray r)
-{
-    static mesh_scratch meshes;
-    static ray_scratch scratch;
-    static hit_batch hits;
-    static surface_batch points;
-    scratch.meshes = &meshes;
-    const geometry_kernels *kernels = kernels_of(isa_best());
-    const ray_batch batch = batch_of_one(&r);
-    kernels->nearest(a, &batch, &scratch, &hits);
-    one_hit h = {.t = hits.t[0],
-                 .crossed = (int)hits.crossed[0],
-                 .before = (int)hits.before[0],
-                 .after = (int)hits.after[0],
-                 .surface = (int)hits.surface[0],
-                 .inside_before = hits.inside_before[0],
-                 .inside_after = hits.inside_after[0],
-                 .face = FACE_NONE};
-    if (h.crossed < 0)
-        return h;
-    r.inside = h.inside_before;
-    if (a->primitives[h.crossed].kind == PRIMITIVE_MESH)
-        forest_surface(a->meshes, &batch, meshes.hit, false, &points, NULL);
-    else
-        kernels->surface(&a->primitives[h.crossed], &batch, hits.t, h.crossed, &points);
-    h.point = vec3_make(points.px[0], points.py[0], points.pz[0]);
-    h.normal = vec3_make(points.nx[0], points.ny[0], points.nz[0]);
-    h.cos_i = points.cos_i[0], h.error = points.error[0], h.face = points.face[0];
-    return h;
-}
-
-static inline double light_in_room(const arrangement *a, one_ray r, int solid_shadows)
-{
-    static mesh_scratch meshes;
-    static ray_scratch scratch;
-    static double transmitted[ROW];
-    scratch.meshes = &meshes;
-    const ray_batch batch = batch_of_one(&r);
-    kernels_of(isa_best())->shadow(a, &batch, solid_shadows, &scratch, transmitted);
-    return transmitted[0];
-}
-
 /* Turns around a point: the sum of the triangles' solid angles over 4 pi (Van Oosterom and Strackee, "The solid angle of a plane
  * triangle", IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8). */
 static inline double winding(const vec3 (*triangle)[3], size_t count, vec3 at)

@@ -4,6 +4,7 @@
 #define CUVETTE_TESTS_RAY_FIXTURE_H
 
 #include "base/isa.h"
+#include "geometry/forest.h"
 #include "geometry/rays.h"
 
 typedef struct one_ray {
@@ -35,9 +36,11 @@ static inline ray_batch batch_of_one(const one_ray *r)
 
 static inline one_hit nearest_interface(const arrangement *a, one_ray r)
 {
+    static mesh_scratch meshes;
     static ray_scratch scratch;
     static hit_batch hits;
     static surface_batch points;
+    scratch.meshes = &meshes;
     const geometry_kernels *kernels = kernels_of(isa_best());
     const ray_batch batch = batch_of_one(&r);
     kernels->nearest(a, &batch, &scratch, &hits);
@@ -52,7 +55,10 @@ static inline one_hit nearest_interface(const arrangement *a, one_ray r)
     if (h.crossed < 0)
         return h;
     r.inside = h.inside_before;
-    kernels->surface(&a->primitives[h.crossed], &batch, hits.t, h.crossed, &points);
+    if (a->primitives[h.crossed].kind == PRIMITIVE_MESH)
+        forest_surface(a->meshes, &batch, meshes.hit, false, &points, NULL);
+    else
+        kernels->surface(&a->primitives[h.crossed], &batch, hits.t, h.crossed, &points);
     h.point = vec3_make(points.px[0], points.py[0], points.pz[0]);
     h.normal = vec3_make(points.nx[0], points.ny[0], points.nz[0]);
     h.cos_i = points.cos_i[0];
@@ -63,8 +69,10 @@ static inline one_hit nearest_interface(const arrangement *a, one_ray r)
 
 static inline double light_through(const arrangement *a, one_ray r, int solid_shadows)
 {
+    static mesh_scratch meshes;
     static ray_scratch scratch;
     static double transmitted[ROW];
+    scratch.meshes = &meshes;
     const ray_batch batch = batch_of_one(&r);
     kernels_of(isa_best())->shadow(a, &batch, solid_shadows, &scratch, transmitted);
     return transmitted[0];

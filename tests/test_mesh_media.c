@@ -30,7 +30,7 @@ static void walk_agrees(const mesh_room *m, vec3 from, vec3 direction, walks *su
     assert_int_equal(solid_of(&m->r, arrangement_rank(a, r.inside)), winner_in_room(m, from));
     double gone = 0.0;
     for (int k = 0; k < n; k++) {
-        const one_hit h = nearest_in_room(a, r);
+        const one_hit h = nearest_interface(a, r);
         assert_true(h.crossed >= 0);
         gone += h.t;
         assert_true(quad_abs(wanted[k].t - gone) < (quad)1e-8);
@@ -43,7 +43,7 @@ static void walk_agrees(const mesh_room *m, vec3 from, vec3 direction, walks *su
         sum->seen_meshes += is_mesh_face(h.face);
         r = (one_ray){h.point, direction, h.face, h.inside_after};
     }
-    assert_int_equal(nearest_in_room(a, r).crossed, -1);
+    assert_int_equal(nearest_interface(a, r).crossed, -1);
     sum->interfaces += n + 1;
 }
 
@@ -94,7 +94,7 @@ static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
             one_ray r = {o, vec3_normalize(d), FACE_NONE, arrangement_inside(a, o)};
             int64_t medium = a->bodies[arrangement_rank(a, r.inside)].medium;
             int steps = 0, standing = 0;
-            for (one_hit h = nearest_in_room(a, r); h.crossed >= 0; h = nearest_in_room(a, r), steps++) {
+            for (one_hit h = nearest_interface(a, r); h.crossed >= 0; h = nearest_interface(a, r), steps++) {
                 assert_int_equal(a->bodies[h.before].medium, medium);
                 assert_true(a->bodies[h.after].medium != medium);
                 assert_true(h.t >= 0.0 && steps < WALK_MAX);
@@ -131,7 +131,7 @@ static void walk_at_random(const mesh_room *m, one_ray r, uint64_t *seed, int *a
 {
     const arrangement *a = m->r.solids;
     for (int step = 0; step < 60; step++) {
-        const one_hit h = nearest_in_room(a, r);
+        const one_hit h = nearest_interface(a, r);
         if (h.crossed < 0)
             return;
         const vec3 middle = vec3_add(r.o, vec3_scale(r.d, 0.5 * h.t));
@@ -193,7 +193,7 @@ static void shadow_rays_among_meshes_agree_with_brute_force(void **state)
                 continue;
             const one_ray r = {o, d, FACE_NONE, arrangement_inside(m.r.solids, o)};
             for (int solid = 0; solid < 2; solid++) {
-                const double wanted = light_by_definition(&m, changes, n, 1, start, solid), got = light_in_room(m.r.solids, r, solid);
+                const double wanted = light_by_definition(&m, changes, n, 1, start, solid), got = light_through(m.r.solids, r, solid);
                 assert_true(fabs(wanted - got) < 1e-12);
                 lit += wanted == 1.0, dark += wanted == 0.0, between += wanted > 0.0 && wanted < 1.0;
             }
