@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "base/single.h"
-#include "geometry/hierarchy_team.h"
+#include "base/team.h"
 #include "hierarchy_fixture.h"
 #include "random_stream.h"
 

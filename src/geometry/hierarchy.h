@@ -8,7 +8,8 @@
  *   bvh      surface-area heuristic, eight children a node, single-precision boxes rounded outwards
  *   embree   Embree's, where it was there at build time: a yardstick; single precision
  *
- * A hierarchy borrows its mesh, which must outlive it; it is not changed once it is built, and any number of threads may use it. */
+ * A hierarchy borrows its mesh, which must outlive it; it is not changed once it is built (but for hierarchy_refit and hierarchy_follow), and
+ * any number of threads may use it. */
 #ifndef CUVETTE_GEOMETRY_HIERARCHY_H
 #define CUVETTE_GEOMETRY_HIERARCHY_H
 
@@ -36,6 +37,24 @@ bool hierarchy_has(hierarchy_kind kind); /* false for Embree where it was not th
 
 /* A mesh's hierarchy of a kind, built at its first use and kept with the mesh as long as that lives; from any thread. */
 status hierarchy_of_mesh(const mesh *m, hierarchy_kind kind, int threads, const hierarchy **out, diagnostic *why);
+
+/* Fits a bvh to its mesh, whose vertices have moved: triangles and boxes anew, the tree as it is, bottom up (Wald, Boulos and Shirley, "Ray
+ * tracing deformable scenes using dynamic bounding volume hierarchies", ACM TOG 26(1), 2007). false: it cannot be, it is to be built anew (another kind; or
+ * triangles that had no area at its build, which it leaves out, or coordinates that were floats). No thread uses it meanwhile. */
+bool hierarchy_refit(hierarchy *h);
+
+/* Expected cost of a ray that meets the root's box, of a bvh: sum over nodes and blocks of their surface area over the root's (MacDonald and
+ * Booth, 1990), in tests of one block. 0 of other kinds and without triangles. */
+double hierarchy_cost(const hierarchy *h);
+
+/* What became of the hierarchies that a mesh keeps after mesh_move: each is refitted, or built anew where it cannot be or where its cost is
+ * more than `ratio` (at least 1) times what it was at its build. No thread uses the mesh meanwhile. STATUS_FAILURE: memory is out; the mesh keeps none then. */
+typedef struct hierarchy_moves {
+    int refitted, rebuilt;
+    double refit_s, build_s; /* wall time of either */
+    double growth;           /* largest cost after the refit over that at the build; 0 where nothing was refitted */
+} hierarchy_moves;
+status hierarchy_follow(const mesh *m, double ratio, int threads, hierarchy_moves *out, diagnostic *why);
 
 /* Sides of triangles that a ray looks for. */
 enum { FACING_FRONT = 1, FACING_BACK = 2, FACING_ANY = 3 };

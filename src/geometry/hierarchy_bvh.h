@@ -11,7 +11,7 @@
 #define CUVETTE_GEOMETRY_HIERARCHY_BVH_H
 
 #include "geometry/hierarchy_private.h"
-#include "geometry/hierarchy_team.h"
+#include "base/team.h"
 
 #include <string.h>
 

@@ -3,8 +3,8 @@
  * (b - a) x (c - a) points towards who looks at the front. A mesh whose every edge joins two triangles, once in each
  * direction, is closed: it bounds a volume, which lies behind the fronts.
  *
- * A mesh is not changed once it is made, and is shared: mesh_retain and mesh_release count its owners (from any thread). Makers and
- * readers fill one through mesh_create, and end with mesh_finish. */
+ * A mesh is not changed once it is made (but for mesh_move), and is shared: mesh_retain and mesh_release count its owners (from any thread).
+ * Makers and readers fill one through mesh_create, and end with mesh_finish. */
 #ifndef CUVETTE_GEOMETRY_MESH_H
 #define CUVETTE_GEOMETRY_MESH_H
 
@@ -61,6 +61,12 @@ void mesh_release(const mesh *m); /* NULL is allowed */
  * angle of each corner (Thurmer and Wuthrich, "Computing vertex normals from polygonal facets", JGT 3(1), 1998). Before mesh_finish or
  * after it, before others see the mesh. */
 status mesh_smooth(mesh *m, diagnostic *why);
+
+/* Moves the vertices of a finished mesh, and gives it these normals where it has any (they are normalised as by mesh_finish): of a body that
+ * moves, between frames, when no other thread looks at it. Vertices that lay at one place must do so still, for whether it is closed is not found
+ * out again. Hierarchies that were kept with it do not fit any more until hierarchy_follow (geometry/hierarchy.h). vertices and normals: one for each
+ * vertex; normals NULL leaves them. STATUS_BAD_INPUT as mesh_finish, the mesh is then as it was. */
+status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic *why);
 
 /* Volume enclosed by a closed mesh (negative when inside out), and surface area. */
 double mesh_volume(const mesh *m);

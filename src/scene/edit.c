@@ -58,6 +58,7 @@ static status remove_mesh(scene *s, size_t index, diagnostic *why)
     mesh_entry_unload(m);
     free(m->name);
     free(m->path);
+    free(m->script_path);
     close_gap(s->meshes, &s->mesh_count, sizeof *s->meshes, index);
     return STATUS_OK;
 }

@@ -91,6 +91,7 @@ status scene_add_mesh(scene *s, const char *name, size_t *index, diagnostic *why
     if (code != STATUS_OK) {
         free(new->name);
         free(new->path);
+        free(new->script_path);
     }
     return code;
 }

@@ -66,6 +66,7 @@ static status make(const mesh_entry *m, mesh **out, diagnostic *why)
     case MESH_TERRAIN: return make_terrain(m, out, why);
     case MESH_BOX: return body_box(m->size, out, why);
     case MESH_FILE:
+    case MESH_SLIME:
     case MESH_ARRAYS: break;
     }
     return diagnose(why, STATUS_BAD_INPUT, "give its triangles, or another source", "%.80s has no triangles", m->name);

@@ -5,6 +5,7 @@
 #include "scene/params_path.h"
 #include "scene/params_value.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -87,6 +88,10 @@ static void forget_loaded(scene *s, const place *at, param_value value)
     if (at->group == PARAM_MESH) {
         mesh_entry *m = &s->meshes[at->index];
         mesh_entry_unload(m);
+        if (at->row->offset == offsetof(mesh_entry, script_path)) {
+            m->script_line = m->script_column = 0;
+            return;
+        }
         m->source = some ? MESH_FILE : m->source;
         m->path_line = names_file ? 0 : m->path_line;
     } else if (at->group == PARAM_TEXTURE) {
@@ -182,10 +187,14 @@ static status visit_one(const scene *s, const place *at, param_visit *visit, voi
     return code;
 }
 
-/* Setting the camera's direction, the sky's picture or a mesh's file that is not in use would put it in use. */
+/* Setting the camera's direction, the sky's picture or a mesh's file that is not in use would put it in use; of a slime's parameters only a
+ * slime has any. */
 static bool is_in_use(const scene *s, const place *at)
 {
     const param *row = at->row;
+    if (row->group == PARAM_MESH && row->shapes != 0) {
+        return (row->shapes & 1u << s->meshes[at->index].source) != 0;
+    }
     if (row->type == PARAM_PATH && row->group == PARAM_MESH) {
         return s->meshes[at->index].source == MESH_FILE;
     }

@@ -21,7 +21,8 @@ static const char *const accel_words[] = {"none", "sphere", "octant", "bvh", "em
 static const char *const texturing_words[] = {"perspective", "affine", NULL};
 static const char *const shading_words[] = {"flat", "smooth", "gouraud", NULL};
 /* arrays: what a program gave, which no file can say */
-static const char *const source_words[] = {"file", "sparse", "dense", "sphere", "icosphere", "torus", "lathe", "terrain", "box", "arrays", NULL};
+static const char *const source_words[] = {"file", "sparse", "dense", "sphere", "icosphere", "torus", "lathe", "terrain", "box", "slime", "arrays", NULL};
+static const char *const motion_words[] = {"euler", "verlet", "implicit", NULL};
 static const char *const filter_words[] = {"nearest", "bilinear", "trilinear", NULL};
 static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
 static const char *const space_words[] = {"srgb", "linear", NULL};
@@ -35,6 +36,7 @@ enum {
     ON_BOX = 1 << SHAPE_BOX,
     ON_SPHERE = 1 << SHAPE_SPHERE,
     ON_MESH = 1 << SHAPE_MESH,
+    ON_SLIME = 1 << MESH_SLIME,
     ON_ALL = 0
 };
 
@@ -61,6 +63,27 @@ enum {
     {                                                                                                     \
         PARAM_RENDER, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, ON_ALL,            \
             .offset = offsetof(render_settings, field), .is_how = true                                              \
+    }
+#define HOW_REAL(field, unit, low, high, fallback, meaning)                                               \
+    {                                                                                                     \
+        PARAM_RENDER, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, ON_ALL,        \
+            .offset = offsetof(render_settings, field), .is_how = true                                              \
+    }
+/* Of a slime alone. */
+#define SLIME_REAL(field, unit, low, high, above, fallback, meaning)                                      \
+    {                                                                                                     \
+        PARAM_MESH, #field, PARAM_REAL, unit, low, high, above, fallback, meaning, NULL, ON_SLIME,        \
+            .offset = offsetof(mesh_entry, slime.field)                                                             \
+    }
+#define SLIME_VECTOR(field, unit, high, fallback, meaning)                                                \
+    {                                                                                                     \
+        PARAM_MESH, #field, PARAM_VECTOR, unit, -(high), high, false, fallback, meaning, NULL, ON_SLIME,  \
+            .offset = offsetof(mesh_entry, slime.field)                                                             \
+    }
+#define SLIME_CHOICE(field, words, fallback, meaning)                                                     \
+    {                                                                                                     \
+        PARAM_MESH, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, ON_SLIME,            \
+            .offset = offsetof(mesh_entry, slime.field)                                                             \
     }
 #define POSITIVE(group, type, field, unit, high, fallback, meaning)                                            \
     {                                                                                                          \
@@ -140,6 +163,7 @@ static const param table[] = {
                "hierarchy over a mesh's triangles: none, one sphere, the report's tree of spheres, boxes, or Embree's (not the same film)"),
     HOW_INTEGER(build_threads, "", 0, 1024, "0", "threads that build hierarchies; 0 is one a processing unit"),
     HOW_CHOICE(keep, off_on, "on", "meshes keep their hierarchies; off builds them anew for every frame"),
+    HOW_REAL(rebuild, "", 1, 1e6, "1.5", "boxes around a mesh that moves are built anew when rays are expected to cost so many times more"),
     CHOICE(PARAM_RENDER, render_settings, texturing, texturing_words, "perspective",
            "how the depth buffer runs through textures: right, or straight across the picture"),
 
@@ -171,7 +195,7 @@ static const param table[] = {
     {PARAM_MESH, "file", PARAM_PATH, "", 0, 0, false, "", "OBJ, PLY, STL or glTF file, from the scene file's folder", NULL, ON_ALL,
      .offset = offsetof(mesh_entry, path)},
     INTEGER(PARAM_MESH, mesh_entry, count, "", 1, 100000000, "10000", "triangles of sparse and dense; of sphere, the nearest 20 f^2"),
-    INTEGER(PARAM_MESH, mesh_entry, level, "", 0, 11, "4", "bisections of an icosphere: 20 * 4^level triangles"),
+    INTEGER(PARAM_MESH, mesh_entry, level, "", 0, 11, "4", "bisections of an icosphere or slime: 20 * 4^level triangles; of a slime at most 7"),
     POSITIVE(PARAM_MESH, mesh_entry, major, "scene units", FAR, "1", "of a torus: from the axis to the middle of the tube"),
     POSITIVE(PARAM_MESH, mesh_entry, minor, "scene units", FAR, "0.4", "of a torus: radius of the tube"),
     INTEGER(PARAM_MESH, mesh_entry, around, "", 3, 16384, "64", "segments around the axis of a torus or lathe; cells of terrain along x"),
@@ -182,6 +206,29 @@ static const param table[] = {
      ON_ALL, .offset = offsetof(mesh_entry, size)},
     REAL(PARAM_MESH, mesh_entry, depth, "scene units", 0, FAR, "0", "of terrain: its flat bottom lies so far below y = 0; 0 leaves it open"),
     INTEGER(PARAM_MESH, mesh_entry, seed, "", 0, 2147483647, "1", "of terrain: which hills"),
+    {PARAM_MESH, "time_s", PARAM_REAL, "s", 0, 86400, false, "0", "of a slime: the moment that is shown, after its beginning", NULL, ON_SLIME,
+     .offset = offsetof(mesh_entry, time_s)},
+    {PARAM_MESH, "script", PARAM_PATH, "", 0, 0, false, "", "of a slime: YAML file of what hands do with it, from the scene file's folder", NULL, ON_SLIME,
+     .offset = offsetof(mesh_entry, script_path)},
+    SLIME_REAL(radius, "scene units", 0, 1e3, true, "1", "of a slime's sphere at rest"),
+    SLIME_VECTOR(position, "scene units", FAR, "0,1,0", "of a slime's centre at the beginning, in the mesh's frame"),
+    SLIME_VECTOR(velocity, "scene units/s", 1e3, "0,0,0", "of all of a slime at the beginning"),
+    SLIME_REAL(mass_kg, "kg", 0, 1e6, true, "1", "of a slime, shared evenly by its vertices"),
+    SLIME_REAL(stiffness, "N/scene unit", 0, 1e9, false, "40", "of a slime's springs along edges, each"),
+    SLIME_REAL(bending, "N/scene unit", 0, 1e9, false, "10", "of its springs across two neighbouring faces, each"),
+    SLIME_REAL(through, "N/scene unit", 0, 1e9, false, "100", "of its springs from side to side, all together"),
+    SLIME_REAL(damping, "N s/scene unit", 0, 1e6, false, "0.02", "of a slime's springs along their length"),
+    SLIME_REAL(pressure, "N/scene unit^2", 0, 1e9, false, "300", "of a slime of no volume; it falls with the volume, to none at rest"),
+    SLIME_VECTOR(gravity, "scene units/s^2", 1e6, "0,-9.81,0", "on a slime"),
+    SLIME_CHOICE(ground, off_on, "on", "a floor under a slime, at ground_y of the mesh's frame"),
+    SLIME_REAL(ground_y, "scene units", -FAR, FAR, false, "0", "height of a slime's floor"),
+    SLIME_REAL(restitution, "", 0, 1, false, "0.3", "share of a vertex's speed against the floor with which it comes back"),
+    SLIME_REAL(friction, "", 0, 1e3, false, "0.6", "coefficient of Coulomb's law between a slime and its floor"),
+    SLIME_CHOICE(integrator, motion_words, "euler", "of a slime: semi-implicit Euler, velocity Verlet, or backward Euler, which stiff springs cannot blow up"),
+    SLIME_REAL(dt_s, "s", 0, 1, true, "0.001", "step of a slime's motion"),
+    SLIME_CHOICE(adaptive, off_on, "off", "splits a slime's steps until they are stable and short against its springs"),
+    {PARAM_MESH, "threads", PARAM_INT, "", 1, 1024, false, "1", "that move a slime", NULL, ON_SLIME,
+     .offset = offsetof(mesh_entry, slime.threads), .is_how = true},
 
     {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "", "PNG, JPEG or PFM file, from the scene file's folder", NULL, ON_ALL,
      .offset = offsetof(texture_entry, path)},

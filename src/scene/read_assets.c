@@ -9,9 +9,9 @@ static status no_name(const scene_reader *r, const node *key, status code)
 }
 
 /* Where a file that is named stands, for diagnostics when it is read. */
-static void note_place(const node *map, long *line, long *column)
+static void note_place(const node *map, const char *key, long *line, long *column)
 {
-    const node *file = node_get(map, "file");
+    const node *file = node_get(map, key);
     if (file) {
         *line = file->line;
         *column = file->column;
@@ -33,7 +33,9 @@ static status read_mesh(const scene_reader *r, const node *key, const node *map)
         code = read_entries(r, key->text, PARAM_MESH, map);
     }
     if (code == STATUS_OK) {
-        note_place(map, &r->scene->meshes[index].path_line, &r->scene->meshes[index].path_column);
+        mesh_entry *m = &r->scene->meshes[index];
+        note_place(map, "file", &m->path_line, &m->path_column);
+        note_place(map, "script", &m->script_line, &m->script_column);
         code = no_name(r, key, check_mesh(&r->scene->meshes[index], r->why));
     }
     return code;
@@ -50,7 +52,7 @@ static status read_texture(const scene_reader *r, const node *key, const node *m
         code = read_entries(r, key->text, PARAM_TEXTURE, map);
     }
     if (code == STATUS_OK) {
-        note_place(map, &r->scene->textures[index].path_line, &r->scene->textures[index].path_column);
+        note_place(map, "file", &r->scene->textures[index].path_line, &r->scene->textures[index].path_column);
         code = no_name(r, key, check_texture(&r->scene->textures[index], r->why));
     }
     return code;

@@ -42,6 +42,7 @@ void scene_destroy(scene *s)
         mesh_entry_unload(&s->meshes[i]);
         free(s->meshes[i].name);
         free(s->meshes[i].path);
+        free(s->meshes[i].script_path);
     }
     for (size_t i = 0; i < s->texture_count; i++) {
         texture_entry_unload(&s->textures[i]);
@@ -79,6 +80,7 @@ static bool clone_assets(scene *s, const scene *original)
         mesh_entry *m = &s->meshes[i];
         whole &= (m->name = strdup(m->name)) != NULL;
         whole &= (m->path = strdup(m->path)) != NULL;
+        whole &= (m->script_path = strdup(m->script_path)) != NULL;
         looks_retain(m->looks);
         if (m->data) {
             mesh_retain(m->data);

@@ -10,6 +10,7 @@
 #include "geometry/solid.h"
 #include "image/image.h"
 #include "image/texture.h"
+#include "softbody/softbody.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -62,6 +63,7 @@ typedef struct render_settings {
     int64_t accel;          /* hierarchy_kind */
     int64_t build_threads;  /* that build hierarchies; 0: one a processing unit */
     int64_t keep;           /* 1: a mesh keeps its hierarchy; 0: every frame builds them anew */
+    double rebuild;         /* a moving mesh's hierarchy is built anew when its expected cost has grown by more than this factor */
     int64_t texturing;      /* texturing_rule, of the rasteriser */
 } render_settings;
 
@@ -107,7 +109,7 @@ typedef struct material {
 
 /* Where a mesh comes from: its file, or a body that is computed (geometry/bodies.h). */
 typedef enum mesh_maker {
-    MESH_FILE, MESH_SPARSE, MESH_DENSE, MESH_SPHERE, MESH_ICOSPHERE, MESH_TORUS, MESH_LATHE, MESH_TERRAIN, MESH_BOX, MESH_ARRAYS
+    MESH_FILE, MESH_SPARSE, MESH_DENSE, MESH_SPHERE, MESH_ICOSPHERE, MESH_TORUS, MESH_LATHE, MESH_TERRAIN, MESH_BOX, MESH_SLIME, MESH_ARRAYS
 } mesh_maker;
 
 typedef struct face_looks face_looks; /* how the faces of a file's materials look: scene/looks.h */
@@ -126,6 +128,12 @@ typedef struct mesh_entry {
     vec3 size;              /* of a box; of a terrain, with the height of its hills */
     double depth;           /* of a terrain, below y = 0; 0 is open */
     int64_t seed;           /* of a terrain */
+    softbody_settings slime; /* of a slime, level but for its own above, which takes its place */
+    double time_s;          /* of a slime: the moment that is shown */
+    char *script_path;      /* of a slime: what hands do with it; "" for none; relative to the scene file */
+    long script_line, script_column; /* where the scene file names it; 0 when it was set otherwise */
+    softbody_account account; /* of a slime whose data is there: what became of it */
+    double motion_s;        /* and the wall time of its steps */
     const mesh *data;       /* one owner of it; NULL until scene_load */
     const face_looks *looks; /* one owner of them; NULL for none */
 } mesh_entry;

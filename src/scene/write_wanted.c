@@ -32,6 +32,9 @@ static bool is_background_row(const param *row, size_t offset)
 /* Of a mesh either the file is said or what generates it. */
 static bool is_other_source(const mesh_entry *m, const param *row)
 {
+    if (row->offset == offsetof(mesh_entry, script_path)) {
+        return false;
+    }
     return m->source == MESH_FILE ? row->offset == offsetof(mesh_entry, source) : row->offset == offsetof(mesh_entry, path);
 }
 

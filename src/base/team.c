@@ -1,4 +1,4 @@
-#include "geometry/hierarchy_team.h"
+#include "base/team.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -1,7 +1,7 @@
-/* Threads that share the work of one build. A team of one starts none. Where the system gives fewer threads than were asked for, the
+/* Threads that share the work of one caller: a build, a step. A team of one starts none. Where the system gives fewer threads than were asked for, the
  * team is smaller: what it works out must not depend on its size. team_start gives, team_stop releases; for one caller at a time. */
-#ifndef CUVETTE_GEOMETRY_HIERARCHY_TEAM_H
-#define CUVETTE_GEOMETRY_HIERARCHY_TEAM_H
+#ifndef CUVETTE_BASE_TEAM_H
+#define CUVETTE_BASE_TEAM_H
 
 #include <stddef.h>
 

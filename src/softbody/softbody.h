@@ -1,0 +1,137 @@
+/* A soft body of masses and springs: the slime toy. An icosahedron refined by bisection and blown up to a sphere; masses at its vertices,
+ * springs along its edges, across neighbouring faces (bending) and from side to side through the body; an optional pressure that holds its
+ * volume; gravity, a floor, and hands that hold parts of it.
+ *
+ * Forces, x from one end of a spring to the other, v the velocity of one end against the other, l the length at rest:
+ *   gravity m g; Hooke -k (|x| - l) x / |x|; damping -k_d (v.x) / (x.x) x; pressure K (V0 - V) / V0 along each face's area, a third to
+ *   each of its corners.
+ * They are gathered a vertex at a time, in one fixed order, and sums over all vertices go by blocks of fixed size: the same bits for any
+ * number of threads and any instruction set.
+ *
+ * Units: lengths in scene units, time in seconds, masses in kilograms; a force is kg scene units / s^2, called N here.
+ * Ownership: *_create gives, *_destroy releases; scripts are borrowed. Errors: STATUS_BAD_INPUT for settings that make no body and for one
+ * that blows up, with the step and the quantity; STATUS_FAILURE when memory is out. No global state; one caller at a time for each body. */
+#ifndef CUVETTE_SOFTBODY_SOFTBODY_H
+#define CUVETTE_SOFTBODY_SOFTBODY_H
+
+#include "base/isa.h"
+#include "base/status.h"
+#include "base/vec3.h"
+#include "geometry/mesh.h"
+#include "softbody/hand.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+/* euler: the report's step, v += a dt, then x += v dt, so x gets a dt^2 where the closed form of constant acceleration has half of that
+ * (semi-implicit Euler; Hairer, Lubich, Wanner, "Geometric Numerical Integration", I.1.2; order 1).
+ * verlet: velocity Verlet (Swope et al., J. Chem. Phys. 76, 1982; order 2).
+ * implicit: backward Euler, linearised once a step and solved by conjugate gradients (Baraff and Witkin, "Large steps in cloth
+ * simulation", SIGGRAPH 1998; order 1, stable for stiff springs, loses energy). */
+typedef enum softbody_integrator { SOFTBODY_EULER, SOFTBODY_VERLET, SOFTBODY_IMPLICIT } softbody_integrator;
+
+enum { SOFTBODY_LEVEL_MAX = 7, SOFTBODY_HANDS_MAX = 16 };
+
+typedef struct softbody_settings {
+    int64_t level;        /* 0..7: 10 * 4^level + 2 masses */
+    double radius;        /* of the sphere at rest, scene units */
+    vec3 position;        /* of its centre at time 0 */
+    vec3 velocity;        /* of all of it at time 0, scene units / s */
+    double mass_kg;       /* of all of it; each vertex has the same share */
+    double stiffness;     /* k of each spring along an edge, N / scene unit */
+    double bending;       /* k of each spring across two neighbouring faces, between the corners that they do not share */
+    double through;       /* sum of k over all springs from side to side; each has the same share */
+    double damping;       /* k_d of each spring along an edge or across faces, N s / scene unit; those through the body have
+                           * damping * through / (stiffness * their number) */
+    double pressure;      /* K: pressure at no volume, N / scene unit^2 */
+    vec3 gravity;         /* scene units / s^2 */
+    int64_t ground;       /* 1: a floor at ground_y, which it cannot pass */
+    double ground_y;
+    double restitution;   /* 0..1: share of the speed against the floor with which it comes back */
+    double friction;      /* coefficient of Coulomb's law on the floor */
+    int64_t integrator;   /* softbody_integrator */
+    double dt_s;          /* one step */
+    int64_t adaptive;     /* 1: a step is split until it is stable and no mass moves by more than a tenth of its shortest spring */
+    int64_t threads;      /* 1..1024 */
+} softbody_settings;
+
+/* Those of the default toy: the parameter table's (tests hold them equal). */
+softbody_settings softbody_defaults(void);
+
+/* Ranges, and that there is a body. The diagnostic names the field. */
+status softbody_check(const softbody_settings *s, diagnostic *why);
+
+typedef struct softbody softbody;
+
+/* The toy. level of instructions: isa_best() or lower. */
+status softbody_create(const softbody_settings *s, isa level, softbody **out, diagnostic *why);
+void softbody_destroy(softbody *b);
+
+/* Any net of masses and springs, for what is checked against closed forms: level, radius, position, stiffness .. damping of the settings
+ * mean nothing then, a mass of its own for each vertex. Faces (all springs' net is closed) are needed for pressure only. */
+typedef struct softbody_spring { uint32_t end[2]; double rest, stiffness, damping; } softbody_spring;
+typedef struct softbody_net {
+    size_t mass_count, spring_count, face_count;
+    const vec3 *position;
+    const vec3 *velocity;           /* NULL: settings.velocity for all */
+    const double *mass_kg;          /* by vertex */
+    const softbody_spring *springs;
+    const mesh_triangle *faces;
+} softbody_net;
+status softbody_create_net(const softbody_net *net, const softbody_settings *s, isa level, softbody **out, diagnostic *why);
+
+/* --- time --- */
+
+/* What the hands do; borrowed as long as the body lives. Before the first step. */
+void softbody_follow(softbody *b, const hand_script *script);
+
+/* One step of dt_s. STATUS_BAD_INPUT when the body blows up (the diagnostic says at which step, which vertex and which quantity; the
+ * body is of no more use), and where a hand of the script takes hold of nothing (located in the script). */
+status softbody_step(softbody *b, diagnostic *why);
+
+/* Steps until the time nearest to time_s that is a whole number of steps; nothing when that has been. */
+status softbody_advance(softbody *b, double time_s, diagnostic *why);
+
+/* --- hands, for who has no script --- */
+
+/* Where a ray first meets the skin, from outside; false where it misses. direction is not zero. */
+bool softbody_pick(const softbody *b, vec3 origin, vec3 direction, vec3 *where);
+/* Takes hold of what lies within reach of a point (at least of the nearest vertex). The hand's number, or -1 when all hands are full. */
+int softbody_grab(softbody *b, vec3 where, double reach);
+/* The hand moves to this place (its own starting place was `where`) in a straight line during the next step. */
+void softbody_hold(softbody *b, int hand, vec3 target);
+void softbody_release(softbody *b, int hand);
+
+/* --- looking --- */
+
+typedef struct softbody_account {
+    double time_s;
+    uint64_t steps, substeps;
+    double kinetic, elastic, compression, gravity; /* energies, N scene units; of the springs, of the pressure, in the field (from y = 0) */
+    vec3 momentum, angular_momentum;               /* about the origin */
+    vec3 center;                                   /* of mass */
+    double volume, volume_at_rest;                 /* scene units^3; 0 without faces */
+    double speed_max;                              /* of any mass */
+    double low, high;                              /* smallest and largest y of any mass */
+    size_t held;                                   /* masses in hands */
+} softbody_account;
+softbody_account softbody_measure(const softbody *b);
+
+size_t softbody_mass_count(const softbody *b);
+size_t softbody_spring_count(const softbody *b);
+void softbody_positions(const softbody *b, vec3 *out);
+void softbody_velocities(const softbody *b, vec3 *out);
+/* Puts the masses elsewhere and gives them speeds; lengths at rest and time stay. */
+void softbody_place(softbody *b, const vec3 *positions, const vec3 *velocities);
+
+/* A bound of the largest dt_s that euler and verlet are stable with, undamped and near rest: 2 / omega, where omega^2 is at most the largest of
+ * (sum of the springs' k at both ends of a spring) / mass (Gershgorin), and the pressure's share besides. */
+double softbody_stable_dt_s(const softbody *b);
+
+/* --- the skin --- */
+
+/* A closed mesh with normals (sums of the faces' area vectors) and texture coordinates, as the body lies now. The caller is its owner. Of the toy alone. */
+status softbody_skin(const softbody *b, mesh **out, diagnostic *why);
+/* Moves a mesh that softbody_skin made for this body to where that lies now; no one looks at it meanwhile (mesh_move). */
+status softbody_move_skin(const softbody *b, mesh *skin, diagnostic *why);
+
+#endif
