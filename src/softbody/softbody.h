@@ -40,8 +40,7 @@ typedef struct softbody_settings {
     double stiffness;     /* k of each spring along an edge, N / scene unit */
     double bending;       /* k of each spring across two neighbouring faces, between the corners that they do not share */
     double through;       /* sum of k over all springs from side to side; each has the same share */
-    double damping;       /* k_d of each spring along an edge or across faces, N s / scene unit; those through the body have
-                           * damping * through / (stiffness * their number) */
+    double damping;       /* k_d of each spring along an edge, N s / scene unit; the others have it in proportion to their k */
     double pressure;      /* K: pressure at no volume, N / scene unit^2 */
     vec3 gravity;         /* scene units / s^2 */
     int64_t ground;       /* 1: a floor at ground_y, which it cannot pass */
@@ -50,7 +49,7 @@ typedef struct softbody_settings {
     double friction;      /* coefficient of Coulomb's law on the floor */
     int64_t integrator;   /* softbody_integrator */
     double dt_s;          /* one step */
-    int64_t adaptive;     /* 1: a step is split until it is stable and no mass moves by more than a tenth of its shortest spring */
+    int64_t adaptive;     /* 1: a step is split until it is stable and the ends of no spring move against each other by more than a tenth of its length */
     int64_t threads;      /* 1..1024 */
 } softbody_settings;
 
@@ -123,8 +122,8 @@ void softbody_velocities(const softbody *b, vec3 *out);
 /* Puts the masses elsewhere and gives them speeds; lengths at rest and time stay. */
 void softbody_place(softbody *b, const vec3 *positions, const vec3 *velocities);
 
-/* A bound of the largest dt_s that euler and verlet are stable with, undamped and near rest: 2 / omega, where omega^2 is at most the largest of
- * (sum of the springs' k at both ends of a spring) / mass (Gershgorin), and the pressure's share besides. */
+/* A dt_s that euler is stable with near rest: 2 / omega without damping, where omega^2 is at most twice the largest sum of a mass's springs' k over it
+ * (Gershgorin) and the pressure's share besides; damping shortens it. The true limit is somewhat longer. */
 double softbody_stable_dt_s(const softbody *b);
 
 /* --- the skin --- */

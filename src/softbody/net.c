@@ -1,0 +1,143 @@
+/* The toy's net: masses where an icosphere's vertices lie, springs along its edges, across its neighbouring faces, and from side to side. */
+#include "geometry/bodies.h"
+#include "geometry/mesh_parts.h"
+#include "softbody/softbody_private.h"
+
+#include <stdlib.h>
+
+/* A face's side: between two masses, and the corner across from it. */
+typedef struct side { uint32_t low, high, across; } side;
+
+static int by_ends(const void *a, const void *b)
+{
+    const side *p = a, *q = b;
+    if (p->low != q->low)
+        return p->low < q->low ? -1 : 1;
+    if (p->high != q->high)
+        return p->high < q->high ? -1 : 1;
+    return p->across < q->across ? -1 : p->across > q->across;
+}
+
+/* Damping goes with stiffness (Rayleigh's second term); alone it is along edges. */
+static void add_spring(const softbody_settings *s, toy_net *n, uint32_t a, uint32_t b, double stiffness)
+{
+    const double damping = s->stiffness > 0.0 ? s->damping * (stiffness / s->stiffness) : n->spring_count < 3 * n->face_count / 2 ? s->damping : 0.0;
+    const double rest = vec3_length(vec3_sub(n->position[b], n->position[a]));
+    n->springs[n->spring_count++] = (softbody_spring){{a, b}, rest, stiffness, damping};
+}
+
+/* Each side of a closed surface is there twice: an edge, and two corners across. */
+static status add_edges(const softbody_settings *s, toy_net *n, diagnostic *why)
+{
+    const size_t count = 3 * n->face_count;
+    side *sides = malloc(count * sizeof *sides);
+    if (!sides)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t *corner = n->faces[i / 3].corner, a = corner[i % 3], b = corner[(i + 1) % 3];
+        sides[i] = (side){a < b ? a : b, a < b ? b : a, corner[(i + 2) % 3]};
+    }
+    qsort(sides, count, sizeof *sides, by_ends);
+    for (size_t i = 0; i < count; i += 2)
+        add_spring(s, n, sides[i].low, sides[i].high, s->stiffness);
+    for (size_t i = 0; i < count; i += 2)
+        add_spring(s, n, sides[i].across, sides[i + 1].across, s->bending);
+    free(sides);
+    return STATUS_OK;
+}
+
+typedef struct spot { vec3 at; uint32_t mass; } spot;
+
+static int by_place(const void *a, const void *b)
+{
+    const vec3 p = ((const spot *)a)->at, q = ((const spot *)b)->at;
+    if (p.x != q.x)
+        return p.x < q.x ? -1 : 1;
+    if (p.y != q.y)
+        return p.y < q.y ? -1 : 1;
+    return p.z < q.z ? -1 : p.z > q.z;
+}
+
+/* An icosphere has the opposite of each of its vertices, to the bit: it is made of the same operations with the other sign. unit: on the unit
+ * sphere. */
+static status add_diameters(const softbody_settings *s, const vec3 *unit, toy_net *n, diagnostic *why)
+{
+    spot *spots = malloc(n->mass_count * sizeof *spots);
+    if (!spots)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    for (size_t i = 0; i < n->mass_count; i++)
+        spots[i] = (spot){vec3_add(unit[i], vec3_make(0.0, 0.0, 0.0)), (uint32_t)i}; /* no -0 */
+    qsort(spots, n->mass_count, sizeof *spots, by_place);
+    const double share = s->through / (0.5 * (double)n->mass_count);
+    status code = STATUS_OK;
+    for (size_t i = 0; i < n->mass_count && code == STATUS_OK; i++) {
+        const spot wanted = {vec3_add(vec3_scale(unit[i], -1.0), vec3_make(0.0, 0.0, 0.0)), 0};
+        const spot *found = bsearch(&wanted, spots, n->mass_count, sizeof *spots, by_place);
+        if (!found)
+            code = diagnose(why, STATUS_FAILURE, "report this as a bug", "mass %zu has none across from it", i);
+        else if (found->mass > i)
+            add_spring(s, n, (uint32_t)i, found->mass, share);
+    }
+    free(spots);
+    return code;
+}
+
+/* Masses are the welded vertices, in the order in which they first come. */
+static status place_masses(const softbody_settings *s, const mesh *sphere, vec3 *unit, toy_net *n, diagnostic *why)
+{
+    uint32_t *same;
+    const status code = mesh_weld(sphere, &same, why);
+    if (code != STATUS_OK)
+        return code;
+    for (size_t v = 0; v < sphere->vertex_count; v++) {
+        if (same[v] != v) {
+            n->mass_of[v] = n->mass_of[same[v]];
+            continue;
+        }
+        n->mass_of[v] = (uint32_t)n->mass_count;
+        unit[n->mass_count] = sphere->vertices[v];
+        n->position[n->mass_count++] = vec3_add(s->position, vec3_scale(sphere->vertices[v], s->radius));
+    }
+    free(same);
+    for (size_t t = 0; t < sphere->triangle_count; t++)
+        for (int k = 0; k < 3; k++)
+            n->faces[t].corner[k] = n->mass_of[sphere->triangles[t].corner[k]];
+    n->face_count = sphere->triangle_count;
+    return STATUS_OK;
+}
+
+status toy_net_create(const softbody_settings *s, toy_net *out, diagnostic *why)
+{
+    *out = (toy_net){0};
+    mesh *sphere;
+    status code = body_icosphere((int)s->level, &sphere, why);
+    if (code != STATUS_OK)
+        return code;
+    vec3 *unit = malloc(sphere->vertex_count * sizeof *unit);
+    out->position = malloc(sphere->vertex_count * sizeof *out->position);
+    out->mass_of = malloc(sphere->vertex_count * sizeof *out->mass_of);
+    out->faces = malloc(sphere->triangle_count * sizeof *out->faces);
+    out->springs = malloc(4 * sphere->triangle_count * sizeof *out->springs); /* 1.5 edges a face, as many across, and a quarter through */
+    if (!unit || !out->position || !out->mass_of || !out->faces || !out->springs)
+        code = diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
+    if (code == STATUS_OK)
+        code = place_masses(s, sphere, unit, out, why);
+    if (code == STATUS_OK)
+        code = add_edges(s, out, why);
+    if (code == STATUS_OK)
+        code = add_diameters(s, unit, out, why);
+    free(unit);
+    mesh_release(sphere);
+    if (code != STATUS_OK)
+        toy_net_release(out);
+    return code;
+}
+
+void toy_net_release(toy_net *n)
+{
+    free(n->position);
+    free(n->springs);
+    free(n->faces);
+    free(n->mass_of);
+    *n = (toy_net){0};
+}

@@ -1,0 +1,234 @@
+#include "softbody/softbody_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+double *softbody_array(size_t count)
+{
+    const size_t bytes = (count * sizeof(double) / 64 + 1) * 64;
+    double *array = aligned_alloc(64, bytes);
+    if (array)
+        memset(array, 0, bytes);
+    return array;
+}
+
+bool softbody_vectors(vectors *v, size_t stride)
+{
+    *v = (vectors){softbody_array(stride), softbody_array(stride), softbody_array(stride)};
+    return v->x && v->y && v->z;
+}
+
+void softbody_vectors_free(vectors v)
+{
+    free(v.x);
+    free(v.y);
+    free(v.z);
+}
+
+static bool make_solver(softbody *b)
+{
+    const size_t count = (size_t)b->net.slots * b->net.stride;
+    b->stiff = (stiff_slots){softbody_array(count), softbody_array(count), softbody_array(count), softbody_array(count), softbody_array(count)};
+    vectors *const all[] = {&b->change, &b->residual, &b->direction, &b->image};
+    bool made = b->stiff.nx && b->stiff.ny && b->stiff.nz && b->stiff.across && b->stiff.along;
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        made &= softbody_vectors(all[i], b->net.stride);
+    return made;
+}
+
+static bool make_arrays(softbody *b)
+{
+    const size_t stride = b->net.stride, chunks = softbody_chunks(b);
+    b->mass_kg = softbody_array(stride);
+    b->inverse_mass = softbody_array(stride);
+    b->sums = softbody_array(chunks);
+    b->bad = calloc(chunks + 1, sizeof *b->bad);
+    b->state = softbody_array(STATE * stride);
+    bool made = b->mass_kg && b->inverse_mass && b->sums && b->bad && b->state;
+    made &= softbody_vectors(&b->at, stride) && softbody_vectors(&b->velocity, stride) && softbody_vectors(&b->force, stride) &&
+            softbody_vectors(&b->gradient, stride);
+    if (b->set.integrator == SOFTBODY_VERLET)
+        made &= softbody_vectors(&b->acceleration, stride) && softbody_vectors(&b->guess, stride);
+    return made && (b->set.integrator != SOFTBODY_IMPLICIT || make_solver(b));
+}
+
+static bool copy_net(softbody *b, const softbody_net *net)
+{
+    b->spring_list = malloc((net->spring_count + 1) * sizeof *b->spring_list);
+    b->faces = malloc((net->face_count + 1) * sizeof *b->faces);
+    if (!b->spring_list || !b->faces)
+        return false;
+    if (net->spring_count > 0)
+        memcpy(b->spring_list, net->springs, net->spring_count * sizeof *b->spring_list);
+    if (net->face_count > 0)
+        memcpy(b->faces, net->faces, net->face_count * sizeof *b->faces);
+    b->spring_count = net->spring_count;
+    b->face_count = net->face_count;
+    return true;
+}
+
+static double extent_of(const softbody_net *net)
+{
+    vec3 low = net->position[0], high = low;
+    for (size_t i = 1; i < net->mass_count; i++) {
+        const vec3 p = net->position[i];
+        low = vec3_make(fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z));
+        high = vec3_make(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
+    }
+    return fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));
+}
+
+static void fill_masses(softbody *b, const softbody_net *net)
+{
+    for (size_t i = 0; i < net->mass_count; i++) {
+        b->mass_kg[i] = net->mass_kg[i];
+        b->inverse_mass[i] = 1.0 / net->mass_kg[i];
+        vectors_put(b->at, i, net->position[i]);
+        vectors_put(b->velocity, i, net->velocity ? net->velocity[i] : b->set.velocity);
+    }
+}
+
+/* Of x'' = -omega^2 x - gamma x', semi-implicit Euler is stable where omega^2 dt^2 + 2 gamma dt < 4 (Jury's criterion for
+ * lambda^2 - (2 - gamma dt - omega^2 dt^2) lambda + 1 - gamma dt). */
+static double stable_dt_of(double omega2, double gamma)
+{
+    if (omega2 > 0.0)
+        return 4.0 / (gamma + sqrt(gamma * gamma + 4.0 * omega2));
+    return gamma > 0.0 ? 2.0 / gamma : INFINITY;
+}
+
+/* Rows of the stiffness over the mass, by Gershgorin's circles: a spring's k counts at both of its ends, and each end's sum twice. */
+static void find_stable_dt(softbody *b)
+{
+    double omega2 = 0.0, gamma = 0.0, pressed = 0.0;
+    for (size_t i = 0; i < b->net.count; i++) {
+        double k = 0.0, kd = 0.0;
+        for (int slot = 0; slot < b->net.slots; slot++) {
+            k += b->net.stiffness[(size_t)slot * b->net.stride + i];
+            kd += b->net.damping[(size_t)slot * b->net.stride + i];
+        }
+        omega2 = fmax(omega2, 2.0 * k / b->mass_kg[i]);
+        gamma = fmax(gamma, 2.0 * kd / b->mass_kg[i]);
+        const vec3 g = vectors_at(b->gradient, i);
+        pressed += vec3_dot(g, g) / (36.0 * b->mass_kg[i]);
+    }
+    if (b->volume_at_rest > 0.0)
+        omega2 += b->set.pressure / b->volume_at_rest * pressed;
+    b->stable_dt_s = stable_dt_of(omega2, gamma);
+}
+
+static status fill(softbody *b, const softbody_net *net, diagnostic *why)
+{
+    status code = springs_build(&b->net, net, why);
+    if (code != STATUS_OK)
+        return code;
+    const size_t chunks = softbody_chunks(b);
+    b->workers = team_start(b->set.threads < (int64_t)chunks ? (int)b->set.threads : (int)chunks);
+    if (!make_arrays(b) || !copy_net(b, net) || !b->workers)
+        return diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
+    fill_masses(b, net);
+    b->size = extent_of(net);
+    softbody_find_forces(b, WITH_OWN);
+    b->volume_at_rest = b->face_count > 0 ? softbody_volume_of_gradient(b) : 0.0;
+    if (b->face_count > 0 && !(b->volume_at_rest > 0.0))
+        return diagnose(why, STATUS_BAD_INPUT, "turn the faces round", "the faces enclose no volume");
+    find_stable_dt(b);
+    return STATUS_OK;
+}
+
+static status check_net(const softbody_net *net, diagnostic *why)
+{
+    if (net->mass_count < 1 || net->mass_count > INT32_MAX / 64)
+        return diagnose(why, STATUS_BAD_INPUT, "1 to 33554431", "a net of %zu masses", net->mass_count);
+    for (size_t i = 0; i < net->mass_count; i++)
+        if (!(net->mass_kg[i] > 0.0 && net->mass_kg[i] < INFINITY))
+            return diagnose(why, STATUS_BAD_INPUT, "masses are above 0", "mass %zu has %g kg", i, net->mass_kg[i]);
+    for (size_t i = 0; i < net->spring_count; i++) {
+        const softbody_spring *s = &net->springs[i];
+        if (s->end[0] >= net->mass_count || s->end[1] >= net->mass_count || s->end[0] == s->end[1])
+            return diagnose(why, STATUS_BAD_INPUT, "join two of its masses", "spring %zu joins masses %lu and %lu of %zu", i, (unsigned long)s->end[0],
+                            (unsigned long)s->end[1], net->mass_count);
+        if (!(s->rest >= 0.0 && s->stiffness >= 0.0 && s->damping >= 0.0))
+            return diagnose(why, STATUS_BAD_INPUT, "they are 0 or more", "spring %zu has length %g, stiffness %g, damping %g", i, s->rest, s->stiffness,
+                            s->damping);
+    }
+    for (size_t i = 0; i < 3 * net->face_count; i++)
+        if (net->faces[i / 3].corner[i % 3] >= net->mass_count)
+            return diagnose(why, STATUS_BAD_INPUT, "masses are counted from 0", "face %zu has a corner that is no mass", i / 3);
+    return STATUS_OK;
+}
+
+status softbody_create_net(const softbody_net *net, const softbody_settings *s, isa level, softbody **out, diagnostic *why)
+{
+    static const softbody_kernels *const kernels[ISA_COUNT] = {&softbody_kernels_sse2, &softbody_kernels_avx2, &softbody_kernels_avx512};
+    *out = NULL;
+    status code = softbody_check(s, why);
+    if (code == STATUS_OK)
+        code = check_net(net, why);
+    if (code != STATUS_OK)
+        return code;
+    softbody *b = calloc(1, sizeof *b);
+    if (!b)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    b->set = *s;
+    b->skin_level = -1;
+    b->kernels = kernels[level];
+    code = fill(b, net, why);
+    if (code != STATUS_OK) {
+        softbody_destroy(b);
+        return code;
+    }
+    *out = b;
+    return STATUS_OK;
+}
+
+status softbody_create(const softbody_settings *s, isa level, softbody **out, diagnostic *why)
+{
+    *out = NULL;
+    toy_net toy = {0};
+    status code = softbody_check(s, why);
+    if (code == STATUS_OK)
+        code = toy_net_create(s, &toy, why);
+    if (code != STATUS_OK)
+        return code;
+    double *mass_kg = malloc(toy.mass_count * sizeof *mass_kg);
+    for (size_t i = 0; mass_kg && i < toy.mass_count; i++)
+        mass_kg[i] = s->mass_kg / (double)toy.mass_count;
+    const softbody_net net = {.mass_count = toy.mass_count, .spring_count = toy.spring_count, .face_count = toy.face_count, .position = toy.position,
+                              .mass_kg = mass_kg, .springs = toy.springs, .faces = toy.faces};
+    code = mass_kg ? softbody_create_net(&net, s, level, out, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK) {
+        (*out)->mass_of = toy.mass_of;
+        (*out)->skin_level = (int)s->level;
+        toy.mass_of = NULL;
+    }
+    free(mass_kg);
+    toy_net_release(&toy);
+    return code;
+}
+
+void softbody_destroy(softbody *b)
+{
+    if (!b)
+        return;
+    const vectors all[] = {b->at, b->velocity, b->force, b->gradient, b->acceleration, b->guess, b->change, b->residual, b->direction, b->image};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        softbody_vectors_free(all[i]);
+    double *const stiff[] = {b->stiff.nx, b->stiff.ny, b->stiff.nz, b->stiff.across, b->stiff.along};
+    for (size_t i = 0; i < sizeof stiff / sizeof stiff[0]; i++)
+        free(stiff[i]);
+    for (int i = 0; i < SOFTBODY_HANDS_MAX; i++)
+        free(b->hands[i].masses);
+    team_stop(b->workers);
+    springs_release(&b->net);
+    free(b->spring_list);
+    free(b->faces);
+    free(b->mass_kg);
+    free(b->inverse_mass);
+    free(b->sums);
+    free(b->state);
+    free(b->bad);
+    free(b->plays);
+    free(b->mass_of);
+    free(b);
+}

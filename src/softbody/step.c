@@ -1,0 +1,224 @@
+/* Time: forces, substeps, and whether the body still holds together. */
+#include "softbody/softbody_private.h"
+
+#include <math.h>
+#include <stdio.h>
+
+typedef struct chunk_task { softbody *b; chunk_work *work; } chunk_task;
+
+static void run_chunk(void *context, size_t chunk, int member)
+{
+    (void)member;
+    const chunk_task *t = context;
+    const size_t begin = chunk * CHUNK, stride = t->b->net.stride;
+    t->work(t->b, begin, begin + CHUNK < stride ? begin + CHUNK : stride, chunk);
+}
+
+void softbody_for_chunks(softbody *b, chunk_work *work)
+{
+    chunk_task t = {b, work};
+    const size_t count = softbody_chunks(b);
+    if (team_size(b->workers) > 1) {
+        team_run(b->workers, run_chunk, &t, count);
+        return;
+    }
+    for (size_t chunk = 0; chunk < count; chunk++)
+        run_chunk(&t, chunk, 0);
+}
+
+double softbody_sum(const softbody *b)
+{
+    double sum = 0.0;
+    for (size_t chunk = 0; chunk < softbody_chunks(b); chunk++)
+        sum += b->sums[chunk];
+    return sum;
+}
+
+static void pack_with(softbody *b, size_t begin, size_t end, vectors velocity) { b->kernels->pack(b->at, velocity, b->state, begin, end); }
+
+/* Volume is of degree 3 in the places, so a third of the sum of place times gradient (Euler); seen from one mass, where least cancels. */
+static double volume_of_chunk(const softbody *b, size_t begin, size_t end)
+{
+    const double x = b->at.x[0], y = b->at.y[0], z = b->at.z[0];
+    double sum = 0.0;
+    for (size_t i = begin; i < end; i++)
+        sum += (b->at.x[i] - x) * b->gradient.x[i] + (b->at.y[i] - y) * b->gradient.y[i] + (b->at.z[i] - z) * b->gradient.z[i];
+    return sum;
+}
+
+static void find_with(softbody *b, size_t begin, size_t end, size_t chunk, vectors velocity)
+{
+    b->kernels->forces(&b->net, b->state, b->at, velocity, b->force, b->gradient, begin, end);
+    b->sums[chunk] = b->face_count > 0 ? volume_of_chunk(b, begin, end) : 0.0;
+}
+
+/* With which velocities the damping is found: the body's own; verlet's guess; none, which is what `change` has then. */
+static void pack_own(softbody *b, size_t begin, size_t end, size_t chunk) { (void)chunk, pack_with(b, begin, end, b->velocity); }
+static void pack_guess(softbody *b, size_t begin, size_t end, size_t chunk) { (void)chunk, pack_with(b, begin, end, b->guess); }
+static void pack_none(softbody *b, size_t begin, size_t end, size_t chunk) { (void)chunk, pack_with(b, begin, end, b->change); }
+static void find_own(softbody *b, size_t begin, size_t end, size_t chunk) { find_with(b, begin, end, chunk, b->velocity); }
+static void find_guess(softbody *b, size_t begin, size_t end, size_t chunk) { find_with(b, begin, end, chunk, b->guess); }
+static void find_none(softbody *b, size_t begin, size_t end, size_t chunk) { find_with(b, begin, end, chunk, b->change); }
+
+double softbody_volume_of_gradient(softbody *b)
+{
+    return softbody_sum(b) / 18.0;
+}
+
+void softbody_find_forces(softbody *b, forces_with which)
+{
+    static chunk_work *const packs[] = {pack_own, pack_guess, pack_none}, *const finds[] = {find_own, find_guess, find_none};
+    softbody_for_chunks(b, packs[which]);
+    softbody_for_chunks(b, finds[which]);
+    const double at_rest = b->volume_at_rest;
+    b->pushing.pressure = at_rest > 0.0 ? b->set.pressure * (at_rest - softbody_volume_of_gradient(b)) / at_rest / 6.0 : 0.0;
+}
+
+static void push_euler(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    b->bad[chunk] = b->kernels->euler(&b->pushing, b->inverse_mass, b->force, b->gradient, b->at, b->velocity, begin, end);
+}
+
+static void push_drift(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    (void)chunk;
+    b->kernels->drift(&b->pushing, b->inverse_mass, b->acceleration, b->at, b->velocity, b->guess, begin, end);
+}
+
+static void push_kick(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    b->bad[chunk] = b->kernels->kick(&b->pushing, b->inverse_mass, b->force, b->gradient, b->at, b->velocity, b->acceleration, begin, end);
+}
+
+static void push_settle(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    b->bad[chunk] = b->kernels->settle(&b->pushing, b->inverse_mass, b->change, b->at, b->velocity, begin, end);
+}
+
+/* The acceleration that the first half of a step begins with. */
+static void find_acceleration(softbody *b)
+{
+    const push step = b->pushing;
+    softbody_find_forces(b, WITH_OWN);
+    b->pushing.dt_s = 0.0;
+    b->pushing.ground_y = -INFINITY;
+    softbody_for_chunks(b, push_kick);
+    b->pushing = step;
+    b->has_acceleration = true;
+}
+
+static void substep_verlet(softbody *b)
+{
+    if (!b->has_acceleration)
+        find_acceleration(b);
+    softbody_for_chunks(b, push_drift);
+    softbody_find_forces(b, WITH_GUESS);
+    softbody_for_chunks(b, push_kick);
+}
+
+static void substep(softbody *b, double dt_s)
+{
+    const softbody_settings *s = &b->set;
+    b->pushing.dt_s = dt_s;
+    b->pushing.gravity = s->gravity;
+    b->pushing.ground_y = s->ground ? s->ground_y : -INFINITY;
+    b->pushing.restitution = s->restitution;
+    b->pushing.friction = s->friction;
+    b->pushing.rest_speed = 2.0 * fabs(s->gravity.y) * dt_s; /* what a mass at rest has gained in two steps */
+    b->pushing.speed_limit = b->size > 0.0 ? b->size / s->dt_s : 1e150;
+    switch ((softbody_integrator)s->integrator) {
+    case SOFTBODY_EULER:
+        softbody_find_forces(b, WITH_OWN);
+        softbody_for_chunks(b, push_euler);
+        break;
+    case SOFTBODY_VERLET: substep_verlet(b); break;
+    case SOFTBODY_IMPLICIT:
+        softbody_solve(b);
+        softbody_for_chunks(b, push_settle);
+        break;
+    }
+    b->substeps++;
+}
+
+/* Largest relative speed of a spring's ends, in its lengths a second. */
+static double strain_rate(const softbody *b)
+{
+    double square = 0.0;
+    for (size_t i = 0; i < b->spring_count; i++) {
+        const softbody_spring *s = &b->spring_list[i];
+        const vec3 u = vec3_sub(vectors_at(b->velocity, s->end[1]), vectors_at(b->velocity, s->end[0]));
+        if (s->rest > 0.0)
+            square = fmax(square, vec3_dot(u, u) / (s->rest * s->rest));
+    }
+    return sqrt(square);
+}
+
+enum { SUBSTEPS_MAX = 10000 };
+
+static double substeps_wanted(const softbody *b)
+{
+    if (!b->set.adaptive)
+        return 1.0;
+    const double by_motion = ceil(10.0 * strain_rate(b) * b->set.dt_s);
+    const double by_springs = b->set.integrator == SOFTBODY_IMPLICIT ? 1.0 : ceil(b->set.dt_s / (0.9 * b->stable_dt_s));
+    return fmax(1.0, fmax(by_motion, by_springs));
+}
+
+static bool any_bad(const softbody *b)
+{
+    int64_t bad = 0;
+    for (size_t chunk = 0; chunk < softbody_chunks(b); chunk++)
+        bad += b->bad[chunk];
+    return bad > 0;
+}
+
+/* The first mass that is too fast, or nowhere. */
+static status blown(const softbody *b, diagnostic *why)
+{
+    size_t i = 0;
+    double speed = NAN;
+    for (; i < b->net.count; i++) {
+        speed = vec3_length(vectors_at(b->velocity, i));
+        if (!(speed <= b->pushing.speed_limit))
+            break;
+    }
+    char remedy[200];
+    snprintf(remedy, sizeof remedy, "dt_s of at most %.3g is stable at rest; or 'adaptive: on', 'integrator: implicit', softer springs, a slower hand",
+             b->stable_dt_s);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "the slime blew up in step %llu, at %.6g s: the speed of mass %zu is %.3g, more than its own size in one step",
+                    (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s, i, speed);
+}
+
+status softbody_step(softbody *b, diagnostic *why)
+{
+    status code = softbody_play(b, why);
+    if (code != STATUS_OK)
+        return code;
+    const double count = substeps_wanted(b);
+    if (!(count <= SUBSTEPS_MAX))
+        return diagnose(why, STATUS_BAD_INPUT, "a smaller dt_s, or softer springs", "step %llu, at %.6g s, would have to be split into %.3g",
+                        (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s, count);
+    softbody_aim_hands(b, b->set.dt_s);
+    for (double i = 0.0; i < count; i += 1.0) {
+        substep(b, b->set.dt_s / count);
+        if (any_bad(b))
+            return blown(b, why);
+    }
+    softbody_land_hands(b);
+    b->steps++;
+    return STATUS_OK;
+}
+
+status softbody_advance(softbody *b, double time_s, diagnostic *why)
+{
+    const double steps = floor(time_s / b->set.dt_s + 0.5);
+    status code = STATUS_OK;
+    while (code == STATUS_OK && (double)b->steps < steps)
+        code = softbody_step(b, why);
+    return code;
+}
+
+double softbody_stable_dt_s(const softbody *b)
+{
+    return b->stable_dt_s;
+}
