@@ -125,7 +125,7 @@ static void substep(softbody *b, double dt_s)
     b->pushing.restitution = s->restitution;
     b->pushing.friction = s->friction;
     b->pushing.rest_speed = 2.0 * fabs(s->gravity.y) * dt_s; /* what a mass at rest has gained in two steps */
-    b->pushing.speed_limit = b->size > 0.0 ? b->size / s->dt_s : 1e150;
+    b->pushing.speed_limit = b->size > 0.0 ? b->size / dt_s : 1e150;
     switch ((softbody_integrator)s->integrator) {
     case SOFTBODY_EULER:
         softbody_find_forces(b, WITH_OWN);
@@ -185,7 +185,7 @@ static status blown(const softbody *b, diagnostic *why)
     char remedy[200];
     snprintf(remedy, sizeof remedy, "dt_s of at most %.3g is stable at rest; or 'adaptive: on', 'integrator: implicit', softer springs, a slower hand",
              b->stable_dt_s);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "the slime blew up in step %llu, at %.6g s: the speed of mass %zu is %.3g, more than its own size in one step",
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "the slime blew up in step %llu, at %.6g s: the speed of mass %zu is %.3g, over its own size in one substep",
                     (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s, i, speed);
 }
 

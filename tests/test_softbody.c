@@ -1,0 +1,256 @@
+/* Masses and springs against closed forms of mechanics. */
+#include "softbody_fixture.h"
+
+static const softbody_integrator all[] = {SOFTBODY_EULER, SOFTBODY_VERLET, SOFTBODY_IMPLICIT};
+enum { ALL = sizeof all / sizeof all[0] };
+
+/* Two masses on a spring swing with omega^2 = k / m_reduced, m_reduced = m1 m2 / (m1 + m2) (Landau and Lifshitz, Mechanics, 13 and 21). The steps of
+ * an integrator swing with omega_d of their own: (2/dt) asin(omega dt / 2) of semi-implicit Euler and Verlet, atan(omega dt) / dt of backward Euler, whose
+ * swing shrinks by (1 + omega^2 dt^2)^(-1/2) a step (eigenvalues of the step's matrix). After a whole number of steps the length is known. */
+static void a_spring_swings_as_its_integrator_says(void **state)
+{
+    (void)state;
+    const double m1 = 0.3, m2 = 0.7, k = 50.0, drawn = 0.01, dt = 0.004, omega = sqrt(k / (m1 * m2 / (m1 + m2)));
+    const double folded = 2.0 / dt * asin(0.5 * omega * dt);
+    for (int i = 0; i < ALL; i++) {
+        const softbody_settings s = settings_in_space(all[i], dt);
+        softbody *b = pair_of(m1, m2, k, 0.0, drawn, &s);
+        for (long n = 1; n <= 500; n++) {
+            steps_of(b, 1);
+            const double t = (double)n * dt, z = omega * dt;
+            /* semi-implicit Euler begins with v_0 = 0: x_n = cos((n + 1/2) w) / cos(w / 2) in its own frequency; Verlet: cos(n w) */
+            const double theory = all[i] == SOFTBODY_EULER    ? cos(folded * (t + 0.5 * dt)) / cos(0.5 * folded * dt)
+                                  : all[i] == SOFTBODY_VERLET ? cos(folded * t)
+                                                              : cos(atan(z) * (double)n) * pow(1.0 + z * z, -0.5 * (double)n);
+            assert_near((pair_length(b) - 1.0) / drawn, theory, 2e-8);
+        }
+        softbody_destroy(b);
+    }
+}
+
+/* Largest distance from cos(omega t) over one second, place and speed. */
+static double distance_from_swing(softbody_integrator integrator, double dt)
+{
+    const double k = 40.0, omega = sqrt(k / 0.5), drawn = 0.01;
+    const softbody_settings s = settings_in_space(integrator, dt);
+    softbody *b = pair_of(1.0, 1.0, k, 0.0, drawn, &s);
+    double worst = 0.0;
+    for (long n = 1; n <= lround(1.0 / dt); n++) {
+        vec3 v[2];
+        steps_of(b, 1);
+        softbody_velocities(b, v);
+        const double t = (double)n * dt;
+        worst = fmax(worst, fabs((pair_length(b) - 1.0) / drawn - cos(omega * t)) + fabs((v[1].x - v[0].x) / (drawn * omega) + sin(omega * t)));
+    }
+    softbody_destroy(b);
+    return worst;
+}
+
+static void orders_are_one_two_and_one(void **state)
+{
+    (void)state;
+    const double wanted[ALL] = {1.0, 2.0, 1.0};
+    for (int i = 0; i < ALL; i++) {
+        const double order = log2(distance_from_swing(all[i], 1.0 / 8192) / distance_from_swing(all[i], 1.0 / 16384));
+        assert_near(order, wanted[i], 0.01);
+    }
+}
+
+/* A damped swing: exp(-gamma t / 2) cos + ..., gamma = k_d / m_reduced (Landau and Lifshitz, 25.4). */
+static void damping_takes_what_it_should(void **state)
+{
+    (void)state;
+    const double k = 40.0, kd = 0.8, gamma = kd / 0.5, omega = sqrt(k / 0.5 - 0.25 * gamma * gamma), drawn = 0.01;
+    for (int i = 0; i < ALL; i++) {
+        const softbody_settings s = settings_in_space(all[i], 1e-4);
+        softbody *b = pair_of(1.0, 1.0, k, kd, drawn, &s);
+        steps_of(b, 7000);
+        const double t = 0.7, theory = exp(-0.5 * gamma * t) * (cos(omega * t) + 0.5 * gamma / omega * sin(omega * t));
+        assert_near((pair_length(b) - 1.0) / drawn, theory, all[i] == SOFTBODY_VERLET ? 1e-5 : 4e-3);
+        softbody_destroy(b);
+    }
+}
+
+/* -g t^2 / 2; the report's step, which adds a dt^2 where that has half of it, falls through -g t (t + dt) / 2, and so does backward Euler. */
+static void free_fall_is_the_closed_form(void **state)
+{
+    (void)state;
+    for (int i = 0; i < ALL; i++) {
+        softbody_settings s = settings_in_space(all[i], 0x1p-10);
+        s.gravity = vec3_make(0.0, -9.81, 0.0);
+        softbody *b = point_at(vec3_make(0.0, 0.0, 0.0), vec3_make(2.0, 0.0, 0.0), &s);
+        steps_of(b, 1024);
+        vec3 at, v;
+        softbody_positions(b, &at);
+        softbody_velocities(b, &v);
+        const double late = all[i] == SOFTBODY_VERLET ? 0.0 : s.dt_s;
+        assert_near(at.y, -0.5 * 9.81 * (1.0 + late), 1e-12);
+        assert_near(at.x, 2.0, 1e-12);
+        assert_near(v.y, -9.81, 1e-12);
+        softbody_destroy(b);
+    }
+}
+
+/* A mass that falls from h comes back to e^2 h; each step may take or give the height of one step at the floor's speed. */
+static void a_bounce_comes_back_to_e2_h(void **state)
+{
+    (void)state;
+    const double rest[] = {0.0, 0.5, 0.9, 1.0};
+    for (int i = 0; i < ALL; i++) {
+        for (int k = 0; k < 4; k++) {
+            softbody_settings s = settings_in_space(all[i], 1e-5);
+            s.gravity = vec3_make(0.0, -9.81, 0.0);
+            s.ground = 1;
+            s.restitution = rest[k];
+            softbody *b = point_at(vec3_make(0.0, 1.0, 0.0), vec3_make(0.0, 0.0, 0.0), &s);
+            const double down_s = sqrt(2.0 / 9.81);
+            steps_of(b, lround(1.001 * down_s / s.dt_s));
+            double top = 0.0;
+            for (long n = 0; n < lround((1.9 * rest[k] + 0.1) * down_s / s.dt_s); n++) {
+                steps_of(b, 1);
+                top = fmax(top, softbody_measure(b).center.y);
+            }
+            assert_near(top, rest[k] * rest[k], 4.0 * s.dt_s * sqrt(2.0 * 9.81));
+            assert_true(softbody_measure(b).low >= 0.0);
+            softbody_destroy(b);
+        }
+    }
+}
+
+/* Coulomb: a sliding mass stops after v^2 / (2 mu g). */
+static void friction_stops_a_mass(void **state)
+{
+    (void)state;
+    softbody_settings s = settings_in_space(SOFTBODY_EULER, 1e-4);
+    s.gravity = vec3_make(0.0, -10.0, 0.0);
+    s.ground = 1;
+    s.friction = 0.25;
+    softbody *b = point_at(vec3_make(0.0, 0.0, 0.0), vec3_make(0.6, 0.0, -0.8), &s);
+    steps_of(b, 20000);
+    vec3 at, v;
+    softbody_positions(b, &at);
+    softbody_velocities(b, &v);
+    const double way = 1.0 / (2.0 * 0.25 * 10.0);
+    assert_near(at.x, 0.6 * way, 1e-4);
+    assert_near(at.z, -0.8 * way, 1e-4);
+    assert_true(vec3_length(v) == 0.0);
+    softbody_destroy(b);
+}
+
+/* Dampers alone: what they take they do not give back, at any step that is stable. */
+static void damping_never_adds_energy(void **state)
+{
+    (void)state;
+    for (int i = 0; i < ALL; i++) {
+        softbody_settings s = settings_in_space(all[i], 0.001);
+        s.level = 2;
+        s.stiffness = s.bending = s.through = s.pressure = 0.0;
+        s.damping = 0.3;
+        softbody *b = toy_of(&s);
+        const size_t count = softbody_mass_count(b);
+        vec3 *at = malloc(count * sizeof *at), *v = malloc(count * sizeof *v);
+        softbody_positions(b, at);
+        for (size_t k = 0; k < count; k++)
+            v[k] = vec3_make(sin(7.0 * (double)k), cos(5.0 * (double)k), sin(3.0 * (double)k));
+        softbody_place(b, at, v);
+        double before = softbody_measure(b).kinetic;
+        const double first = before;
+        for (int n = 0; n < 1000; n++) {
+            steps_of(b, 1);
+            const double now = softbody_measure(b).kinetic;
+            assert_true(now <= before * (1.0 + 1e-14));
+            before = now;
+        }
+        assert_true(before < 0.9 * first);
+        free(at);
+        free(v);
+        softbody_destroy(b);
+    }
+}
+
+static void speeds_that_no_body_has_are_named(void **state)
+{
+    (void)state;
+    softbody_settings s = settings_in_space(SOFTBODY_EULER, 0.01);
+    s.stiffness = 1e6;
+    s.velocity = vec3_make(0.0, 0.0, 0.0);
+    softbody *b = toy_of(&s);
+    diagnostic why = {.what = ""};
+    vec3 *at = malloc(softbody_mass_count(b) * sizeof *at), *v = calloc(softbody_mass_count(b), sizeof *v);
+    softbody_positions(b, at);
+    at[0].x += 0.01;
+    softbody_place(b, at, v);
+    status code = STATUS_OK;
+    int n = 0;
+    for (; n < 1000 && code == STATUS_OK; n++)
+        code = softbody_step(b, &why);
+    char step[40];
+    snprintf(step, sizeof step, "blew up in step %d, at", n);
+    assert_int_equal(code, STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, step));
+    assert_non_null(strstr(why.what, "speed of mass"));
+    assert_non_null(strstr(why.remedy, "adaptive"));
+    free(at);
+    free(v);
+    softbody_destroy(b);
+}
+
+/* What explodes at its step holds when steps are split, and under backward Euler. */
+static void stiff_springs_hold_when_they_are_helped(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        softbody_settings s = settings_in_space(i == 0 ? SOFTBODY_EULER : i == 1 ? SOFTBODY_VERLET : SOFTBODY_IMPLICIT, 0.01);
+        s.level = 1;
+        s.stiffness = 1e5;
+        s.damping = 1.0;
+        s.adaptive = i < 2;
+        softbody *b = toy_of(&s);
+        vec3 at[42], v[42] = {{0.0, 0.0, 0.0}};
+        softbody_positions(b, at);
+        at[0] = vec3_scale(at[0], 1.02);
+        softbody_place(b, at, v);
+        const double before = energy_of(b);
+        steps_of(b, 100);
+        assert_true(energy_of(b) < before);
+        assert_true(i == 2 || softbody_measure(b).substeps > 200);
+        softbody_destroy(b);
+    }
+}
+
+static void bad_settings_are_named(void **state)
+{
+    (void)state;
+    struct { const char *name; size_t offset; double value; } bad[] = {
+        {"mass_kg", offsetof(softbody_settings, mass_kg), -1.0}, {"mass_kg", offsetof(softbody_settings, mass_kg), 0.0},
+        {"dt_s", offsetof(softbody_settings, dt_s), 0.0},        {"dt_s", offsetof(softbody_settings, dt_s), NAN},
+        {"radius", offsetof(softbody_settings, radius), 0.0},    {"stiffness", offsetof(softbody_settings, stiffness), -40.0},
+        {"restitution", offsetof(softbody_settings, restitution), 1.5}, {"friction", offsetof(softbody_settings, friction), INFINITY},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        softbody_settings s = softbody_defaults();
+        memcpy((char *)&s + bad[i].offset, &bad[i].value, sizeof(double));
+        softbody *b;
+        diagnostic why = {.what = ""};
+        assert_int_equal(softbody_create(&s, isa_best(), &b, &why), STATUS_BAD_INPUT);
+        assert_non_null(strstr(why.what, bad[i].name));
+        assert_null(b);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_spring_swings_as_its_integrator_says),
+        cmocka_unit_test(orders_are_one_two_and_one),
+        cmocka_unit_test(damping_takes_what_it_should),
+        cmocka_unit_test(free_fall_is_the_closed_form),
+        cmocka_unit_test(a_bounce_comes_back_to_e2_h),
+        cmocka_unit_test(friction_stops_a_mass),
+        cmocka_unit_test(damping_never_adds_energy),
+        cmocka_unit_test(speeds_that_no_body_has_are_named),
+        cmocka_unit_test(stiff_springs_hold_when_they_are_helped),
+        cmocka_unit_test(bad_settings_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

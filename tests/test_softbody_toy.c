@@ -1,0 +1,309 @@
+/* The toy as a whole: its net, what it conserves, its volume, its hands; and the same bits from all ways of working them out. */
+#include "softbody_fixture.h"
+
+static double sum_of_lengths(const vec3 *v, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++)
+        sum += vec3_length(v[i]);
+    return sum;
+}
+
+/* A smooth wobble and a spin: u = a (x, -2 y, z) + w x r. */
+static void stir(softbody *b, double wobble, vec3 spin)
+{
+    const size_t count = softbody_mass_count(b);
+    vec3 *at = malloc(count * sizeof *at), *v = malloc(count * sizeof *v);
+    const vec3 center = softbody_measure(b).center;
+    softbody_positions(b, at);
+    for (size_t i = 0; i < count; i++) {
+        const vec3 r = vec3_sub(at[i], center);
+        v[i] = vec3_add(vec3_make(wobble * r.x, -2.0 * wobble * r.y, wobble * r.z), vec3_cross(spin, r));
+    }
+    softbody_place(b, at, v);
+    free(at);
+    free(v);
+}
+
+/* 12, 42, 162 .. masses; by Euler's formula 3 (V - 2) edges, as many springs across, and one for each two masses. */
+static void its_net_has_as_many_springs_as_euler_says(void **state)
+{
+    (void)state;
+    for (int level = 0; level <= 5; level++) {
+        softbody_settings s = softbody_defaults();
+        s.level = level;
+        softbody *b = toy_of(&s);
+        const size_t masses = 10 * ((size_t)1 << 2 * level) + 2;
+        assert_int_equal(softbody_mass_count(b), masses);
+        assert_int_equal(softbody_spring_count(b), 2 * 3 * (masses - 2) + masses / 2);
+        const softbody_account a = softbody_measure(b);
+        assert_near(a.elastic, 0.0, 1e-25);
+        assert_near(a.volume, a.volume_at_rest, 1e-13);
+        assert_near(a.center.y, 1.0, 1e-13);
+        /* inscribed in the sphere */
+        assert_true(a.volume < 4.0 / 3.0 * M_PI && (level < 4 || a.volume > 0.997 * 4.0 / 3.0 * M_PI));
+        softbody_destroy(b);
+    }
+}
+
+/* Newton's third law, each force against its counterpart and around each ring: 10^5 steps of a body that wobbles, spins and flies, damped. What
+ * rounding can do: a random walk of 10^5 steps, each of some 1e-16 of all that moves. */
+static void momenta_stay_to_rounding(void **state)
+{
+    (void)state;
+    const softbody_integrator both[] = {SOFTBODY_EULER, SOFTBODY_VERLET};
+    for (int i = 0; i < 2; i++) {
+        softbody_settings s = settings_in_space(both[i], 0.001);
+        s.level = 1;
+        softbody *b = toy_of(&s);
+        stir(b, 0.5, vec3_make(0.3, 0.7, -0.4));
+        const softbody_account before = softbody_measure(b);
+        steps_of(b, 100000);
+        const softbody_account after = softbody_measure(b);
+        assert_near(vec3_length(vec3_sub(after.momentum, before.momentum)), 0.0, 1e-13);
+        assert_near(vec3_length(vec3_sub(after.angular_momentum, before.angular_momentum)), 0.0, 1e-12);
+        assert_true(vec3_length(before.angular_momentum) > 0.3);
+        softbody_destroy(b);
+    }
+}
+
+/* Backward Euler's matrix has no row that does not sum to the mass, and the solver starts from zero: momentum stays, and on a long way it does
+ * not drift. Its angular momentum is not kept: the places at which forces act are those of the step's beginning. */
+static void backward_euler_keeps_momentum(void **state)
+{
+    (void)state;
+    softbody_settings s = settings_in_space(SOFTBODY_IMPLICIT, 0.01);
+    s.level = 1;
+    s.velocity = vec3_make(0.1, 0.2, -0.3);
+    softbody *b = toy_of(&s);
+    const vec3 before = softbody_measure(b).momentum;
+    steps_of(b, 2000);
+    assert_near(vec3_length(vec3_sub(softbody_measure(b).momentum, before)), 0.0, 1e-12);
+    softbody_destroy(b);
+}
+
+/* Semi-implicit Euler and Verlet swing about a conserved energy (Hairer, Lubich and Wanner, IX); the swing falls with dt and dt^2. */
+static double energy_swing(softbody_integrator integrator, double dt)
+{
+    softbody_settings s = settings_in_space(integrator, dt);
+    s.level = 1;
+    s.damping = 0.0;
+    softbody *b = toy_of(&s);
+    stir(b, 0.2, vec3_make(0.0, 0.0, 0.0));
+    const double before = energy_of(b);
+    double worst = 0.0;
+    for (long n = 0; n < lround(1.0 / dt); n++) {
+        steps_of(b, 1);
+        worst = fmax(worst, fabs(energy_of(b) - before) / before);
+    }
+    softbody_destroy(b);
+    return worst;
+}
+
+static void energy_swings_less_with_shorter_steps(void **state)
+{
+    (void)state;
+    assert_near(log2(energy_swing(SOFTBODY_EULER, 0.002) / energy_swing(SOFTBODY_EULER, 0.001)), 1.0, 0.15);
+    assert_near(log2(energy_swing(SOFTBODY_VERLET, 0.002) / energy_swing(SOFTBODY_VERLET, 0.001)), 2.0, 0.3);
+    assert_true(energy_swing(SOFTBODY_VERLET, 0.001) < 1e-3);
+}
+
+/* A damped toy loses energy; by more, between two steps, than the swing that semi-implicit Euler has. */
+static void a_damped_toy_loses_energy(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        softbody_settings s = settings_in_space((softbody_integrator)i, 0.0002);
+        s.level = 2;
+        softbody *b = toy_of(&s);
+        stir(b, 0.5, vec3_make(0.0, 0.0, 0.0));
+        const double first = energy_of(b);
+        double before = first;
+        for (int n = 0; n < 100; n++) {
+            steps_of(b, 50);
+            const double now = energy_of(b);
+            assert_true(now <= before + 2e-3 * first);
+            before = now;
+        }
+        assert_true(before < 0.8 * first);
+        softbody_destroy(b);
+    }
+}
+
+/* Pressure alone, on a sphere that is blown up: the force on all is p times the area around each, so the first step's speeds are p A / 3m outwards,
+ * p = K (V0 - V) / V0 with V = f^3 V0. */
+static void pressure_pushes_along_the_area(void **state)
+{
+    (void)state;
+    softbody_settings s = settings_in_space(SOFTBODY_EULER, 1e-6);
+    s.level = 2;
+    s.stiffness = s.bending = s.through = s.damping = 0.0;
+    softbody *b = toy_of(&s);
+    const size_t count = softbody_mass_count(b);
+    vec3 *at = malloc(count * sizeof *at), *v = calloc(count, sizeof *v);
+    softbody_positions(b, at);
+    for (size_t i = 0; i < count; i++)
+        at[i] = vec3_scale(at[i], 0.95);
+    softbody_place(b, at, v);
+    const softbody_account a = softbody_measure(b);
+    assert_near(a.volume / a.volume_at_rest, 0.95 * 0.95 * 0.95, 1e-14);
+    steps_of(b, 1);
+    softbody_velocities(b, v);
+    double outwards = 0.0;
+    vec3 sum = {0.0, 0.0, 0.0};
+    for (size_t i = 0; i < count; i++) {
+        outwards += s.mass_kg / (double)count * vec3_dot(v[i], at[i]);
+        sum = vec3_add(sum, v[i]);
+    }
+    /* sum of force . place is 3 p V (the volume is of degree 3) */
+    const double p = s.pressure * (1.0 - 0.95 * 0.95 * 0.95);
+    assert_near(outwards / s.dt_s, 3.0 * p * a.volume, 1e-9 * p);
+    assert_near(vec3_length(sum), 0.0, 1e-12 * sum_of_lengths(v, count));
+    free(at);
+    free(v);
+    softbody_destroy(b);
+}
+
+/* The force of a displaced mass is minus the gradient of the energies, by differences. */
+static void forces_are_the_gradient_of_the_energy(void **state)
+{
+    (void)state;
+    softbody_settings s = settings_in_space(SOFTBODY_EULER, 1e-9);
+    s.level = 1;
+    s.damping = 0.0;
+    softbody *b = toy_of(&s);
+    const size_t count = softbody_mass_count(b);
+    vec3 *at = malloc(count * sizeof *at), *still = calloc(count, sizeof *still), *v = malloc(count * sizeof *v);
+    softbody_positions(b, at);
+    for (size_t i = 0; i < count; i++)
+        at[i] = vec3_add(vec3_scale(at[i], 0.97), vec3_make(0.05 * sin((double)i), 0.04 * cos(3.0 * (double)i), 0.03 * sin(2.0 * (double)i)));
+    softbody_place(b, at, still);
+    steps_of(b, 1);
+    softbody_velocities(b, v);
+    for (size_t i = 0; i < count; i += 5) {
+        const double h = 1e-5, kept = at[i].y;
+        at[i].y = kept + h;
+        softbody_place(b, at, still);
+        const double above = energy_of(b);
+        at[i].y = kept - h;
+        softbody_place(b, at, still);
+        const double below = energy_of(b);
+        at[i].y = kept;
+        assert_near(v[i].y * s.mass_kg / (double)count / s.dt_s, -(above - below) / (2.0 * h), 2e-7);
+    }
+    free(at);
+    free(still);
+    free(v);
+    softbody_destroy(b);
+}
+
+static void hands_hold_and_let_go(void **state)
+{
+    (void)state;
+    softbody_settings s = softbody_defaults();
+    s.level = 3;
+    softbody *b = toy_of(&s);
+    vec3 where;
+    assert_false(softbody_pick(b, vec3_make(0.0, 1.0, -6.0), vec3_make(0.0, 1.0, 0.0), &where));
+    assert_true(softbody_pick(b, vec3_make(0.0, 1.0, -6.0), vec3_make(0.0, 0.0, 2.0), &where));
+    assert_near(where.z, -1.0, 0.02);
+    const int hand = softbody_grab(b, where, 0.3), other = softbody_grab(b, vec3_make(0.0, 1.0, 1.0), 0.0);
+    assert_true(hand >= 0 && other >= 0 && other != hand);
+    const softbody_account held = softbody_measure(b);
+    assert_true(held.held > 5 && held.held < 60);
+    const size_t count = softbody_mass_count(b);
+    vec3 *at = malloc(count * sizeof *at), *later = malloc(count * sizeof *later);
+    softbody_positions(b, at);
+    softbody_release(b, other);
+    for (int n = 1; n <= 400; n++) {
+        softbody_hold(b, hand, vec3_add(where, vec3_make(0.0, 0.0, -0.002 * n)));
+        steps_of(b, 1);
+    }
+    softbody_positions(b, later);
+    size_t moved = 0;
+    for (size_t i = 0; i < count; i++)
+        if (vec3_length(vec3_sub(at[i], where)) <= 0.3) {
+            assert_near(vec3_length(vec3_sub(vec3_sub(later[i], at[i]), vec3_make(0.0, 0.0, -0.8))), 0.0, 1e-12);
+            moved++;
+        }
+    assert_int_equal(moved, softbody_measure(b).held);
+    softbody_release(b, hand);
+    assert_int_equal(softbody_measure(b).held, 0);
+    steps_of(b, 100);
+    softbody_positions(b, at);
+    assert_true(vec3_length(vec3_sub(at[0], later[0])) > 0.0);
+    free(at);
+    free(later);
+    softbody_destroy(b);
+}
+
+static void threads_and_instructions_change_no_bit(void **state)
+{
+    (void)state;
+    for (int integrator = 0; integrator < 3; integrator++) {
+        vec3 *first = NULL;
+        for (int run = 0; run < 5; run++) {
+            const isa levels[] = {isa_best(), isa_best(), isa_best(), ISA_SSE2, isa_best() < ISA_AVX2 ? ISA_SSE2 : ISA_AVX2};
+            const int threads[] = {1, 2, 7, 3, 1};
+            softbody_settings s = softbody_defaults();
+            s.level = 4;
+            s.integrator = integrator;
+            s.threads = threads[run];
+            s.position.y = 1.01;
+            softbody *b;
+            assert_int_equal(softbody_create(&s, levels[run], &b, NULL), STATUS_OK);
+            steps_of(b, integrator == SOFTBODY_IMPLICIT ? 20 : 120);
+            const size_t count = softbody_mass_count(b);
+            vec3 *at = malloc(count * sizeof *at);
+            softbody_positions(b, at);
+            if (first)
+                assert_memory_equal(at, first, count * sizeof *at);
+            else
+                first = at, at = NULL;
+            free(at);
+            softbody_destroy(b);
+        }
+        free(first);
+    }
+}
+
+/* Faces that leave a hole, and springs that join nothing. */
+static void bad_nets_are_refused(void **state)
+{
+    (void)state;
+    const vec3 at[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double mass_kg[4] = {1, 1, 1, 1};
+    const mesh_triangle faces[4] = {{{0, 2, 1}}, {{0, 1, 3}}, {{0, 3, 2}}, {{1, 2, 3}}};
+    const softbody_spring springs[2] = {{{0, 1}, 1.0, 1.0, 0.0}, {{0, 0}, 1.0, 1.0, 0.0}};
+    const softbody_settings s = settings_in_space(SOFTBODY_EULER, 0.001);
+    softbody_net net = {.mass_count = 4, .spring_count = 1, .face_count = 4, .position = at, .mass_kg = mass_kg, .springs = springs, .faces = faces};
+    softbody *b;
+    assert_int_equal(softbody_create_net(&net, &s, isa_best(), &b, NULL), STATUS_OK);
+    assert_near(softbody_measure(b).volume, 1.0 / 6.0, 1e-16);
+    softbody_destroy(b);
+    diagnostic why = {.what = ""};
+    net.face_count = 3;
+    assert_int_equal(softbody_create_net(&net, &s, isa_best(), &b, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "do not close"));
+    net.face_count = 4;
+    net.spring_count = 2;
+    assert_int_equal(softbody_create_net(&net, &s, isa_best(), &b, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "spring 1 joins"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(its_net_has_as_many_springs_as_euler_says),
+        cmocka_unit_test(momenta_stay_to_rounding),
+        cmocka_unit_test(backward_euler_keeps_momentum),
+        cmocka_unit_test(energy_swings_less_with_shorter_steps),
+        cmocka_unit_test(a_damped_toy_loses_energy),
+        cmocka_unit_test(pressure_pushes_along_the_area),
+        cmocka_unit_test(forces_are_the_gradient_of_the_energy),
+        cmocka_unit_test(hands_hold_and_let_go),
+        cmocka_unit_test(threads_and_instructions_change_no_bit),
+        cmocka_unit_test(bad_nets_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
