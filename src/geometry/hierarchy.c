@@ -62,6 +62,7 @@ status hierarchy_build(const mesh *m, hierarchy_kind kind, int threads, hierarch
         hierarchy_destroy(h);
         return s;
     }
+    h->built_cost = hierarchy_cost(h);
     h->report.build_s = now_s() - begun;
     *out = h;
     return STATUS_OK;
@@ -87,6 +88,55 @@ hierarchy_report hierarchy_describe(const hierarchy *h)
 bool hierarchy_has(hierarchy_kind kind)
 {
     return kind >= HIERARCHY_NONE && kind < HIERARCHY_KIND_COUNT && (kind != HIERARCHY_EMBREE || hierarchy_embree_there());
+}
+
+/* Refits a hierarchy that its mesh keeps. false: it is to be built anew. */
+static bool follow_by_refit(hierarchy *h, double ratio, hierarchy_moves *moves)
+{
+    const double begun = now_s();
+    const bool fits = hierarchy_refit(h);
+    const double cost = fits ? hierarchy_cost(h) : 0.0;
+    const bool cheap = fits && cost <= ratio * h->built_cost;
+    if (fits) {
+        const double growth = h->built_cost > 0.0 ? cost / h->built_cost : cost > 0.0 ? (double)INFINITY : 1.0;
+        moves->growth = growth > moves->growth ? growth : moves->growth;
+    }
+    moves->refitted += cheap;
+    moves->refit_s += now_s() - begun;
+    return cheap;
+}
+
+static status follow_by_build(hierarchy **kept, int threads, hierarchy_moves *moves, diagnostic *why)
+{
+    const mesh *m = (*kept)->of;
+    const hierarchy_kind kind = (*kept)->kind;
+    const double begun = now_s();
+    hierarchy_destroy(*kept); /* first, so that there is never room for two needed */
+    *kept = NULL;
+    const status s = hierarchy_build(m, kind, threads, kept, why);
+    moves->rebuilt += s == STATUS_OK;
+    moves->build_s += now_s() - begun;
+    return s;
+}
+
+status hierarchy_follow(const mesh *m, double ratio, int threads, hierarchy_moves *out, diagnostic *why)
+{
+    hierarchy_moves moves = {0};
+    status s = STATUS_OK;
+    pthread_mutex_lock(&m->share->mutex);
+    for (int kind = 0; kind < HIERARCHY_KIND_COUNT && s == STATUS_OK; kind++) {
+        hierarchy *kept = __atomic_load_n(&m->share->hierarchies[kind], __ATOMIC_ACQUIRE);
+        if (!kept || follow_by_refit(kept, ratio, &moves))
+            continue;
+        s = follow_by_build(&kept, threads, &moves, why);
+        __atomic_store_n(&m->share->hierarchies[kind], kept, __ATOMIC_RELEASE);
+    }
+    for (int kind = 0; kind < HIERARCHY_KIND_COUNT && s != STATUS_OK; kind++)
+        hierarchy_destroy(__atomic_exchange_n(&m->share->hierarchies[kind], NULL, __ATOMIC_ACQ_REL)); /* those left would not fit */
+    pthread_mutex_unlock(&m->share->mutex);
+    if (out)
+        *out = moves;
+    return s;
 }
 
 status hierarchy_of_mesh(const mesh *m, hierarchy_kind kind, int threads, const hierarchy **out, diagnostic *why)

@@ -52,7 +52,7 @@ double hierarchy_cost(const hierarchy *h);
 typedef struct hierarchy_moves {
     int refitted, rebuilt;
     double refit_s, build_s; /* wall time of either */
-    double growth;           /* largest cost after the refit over that at the build; 0 where nothing was refitted */
+    double growth;           /* largest cost after a refit over that at the build, of those too that were then built anew; 0 where none could be */
 } hierarchy_moves;
 status hierarchy_follow(const mesh *m, double ratio, int threads, hierarchy_moves *out, diagnostic *why);
 

@@ -4,18 +4,6 @@
 
 enum { PIECE = 16384 }; /* triangles that are referred to at a time */
 
-static float float_below(double v)
-{
-    float f = (float)v;
-    return (double)f > v ? nextafterf(f, -INFINITY) : f;
-}
-
-static float float_above(double v)
-{
-    float f = (float)v;
-    return (double)f < v ? nextafterf(f, INFINITY) : f;
-}
-
 static double least(double a, double b, double c)
 {
     double ab = a < b ? a : b;
@@ -40,13 +28,13 @@ static bool refer(const mesh *m, uint32_t triangle, bvh_ref *r)
     const vec3 *a = &m->vertices[corner[0]], *b = &m->vertices[corner[1]], *c = &m->vertices[corner[2]];
     if (same_place(a, b) || same_place(b, c) || same_place(c, a))
         return false;
-    r->low[0] = float_below(least(a->x, b->x, c->x));
-    r->low[1] = float_below(least(a->y, b->y, c->y));
-    r->low[2] = float_below(least(a->z, b->z, c->z));
+    r->low[0] = bvh_float_below(least(a->x, b->x, c->x));
+    r->low[1] = bvh_float_below(least(a->y, b->y, c->y));
+    r->low[2] = bvh_float_below(least(a->z, b->z, c->z));
     r->low[3] = bvh_lane_of(triangle);
-    r->high[0] = float_above(most(a->x, b->x, c->x));
-    r->high[1] = float_above(most(a->y, b->y, c->y));
-    r->high[2] = float_above(most(a->z, b->z, c->z));
+    r->high[0] = bvh_float_above(most(a->x, b->x, c->x));
+    r->high[1] = bvh_float_above(most(a->y, b->y, c->y));
+    r->high[2] = bvh_float_above(most(a->z, b->z, c->z));
     r->high[3] = 0.0f;
     return true;
 }
@@ -95,6 +83,7 @@ static status build(hierarchy *h, team *t, bvh_ref *refs, diagnostic *why)
     status code = read_triangles(h->of, t, refs, &all, why);
     if (code != STATUS_OK)
         return code;
+    h->referred = all.count;
     bvh_tree tree;
     code = bvh_grow(&tree, t, refs, &all, why);
     if (code == STATUS_OK)

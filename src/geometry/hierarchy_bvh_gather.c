@@ -2,10 +2,6 @@
 
 #include <stdlib.h>
 
-/* The time of a visit to a node (eight boxes), in those of the test of one block. Measured on sets of 50000 triangles: between half and
- * twice this, or with a constant for each leaf, frames take as long or longer. */
-#define COST_NODE 1.0f
-
 static uint32_t blocks_of(uint32_t triangles)
 {
     return (triangles + BLOCK - 1) / BLOCK;

@@ -42,6 +42,8 @@ struct hierarchy {
     bvh_node *nodes;          /* bvh; [0] is the root; 64-byte aligned */
     sphere_node *spheres;     /* sphere and octant; [0] is the root */
     size_t node_count;
+    size_t referred;          /* bvh: triangles in its blocks; fewer than the mesh's where some had no area at the build */
+    double built_cost;        /* hierarchy_cost at the build; 0 of other kinds */
     void *foreign;            /* embree's */
     hierarchy_report report;
 };

@@ -86,7 +86,7 @@ void mesh_normalize(mesh *m)
     }
 }
 
-static void find_bounds(mesh *m)
+void mesh_find_bounds(mesh *m)
 {
     bounds3 b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     bool single = true;
@@ -107,7 +107,7 @@ status mesh_finish(mesh *m, diagnostic *why)
     status result = mesh_check(m, why);
     if (result != STATUS_OK)
         return result;
-    find_bounds(m);
+    mesh_find_bounds(m);
     result = mesh_close(m, why);
     if (result == STATUS_OK && m->normals)
         mesh_normalize(m);

@@ -8,8 +8,12 @@
 #include "geometry/hierarchy.h"
 #include <pthread.h>
 
+/* Do triangles use all vertices of a mesh? For mesh_move, who asks once. */
+enum mesh_used { MESH_USED_UNKNOWN, MESH_USED_ALL, MESH_USED_SOME };
+
 struct mesh_share {
     long owners;
+    enum mesh_used used;                           /* the one owner who may move the mesh reads and writes it */
     pthread_mutex_t mutex;                         /* held while a hierarchy is built, so that each is built once */
     hierarchy *hierarchies[HIERARCHY_KIND_COUNT];  /* NULL until first used */
     void (*destroy)(hierarchy *h);                 /* NULL as long as there is none */

@@ -1,0 +1,40 @@
+/* A bvh whose mesh has moved, and what a bvh costs. */
+#include "base/isa.h"
+#include "geometry/hierarchy_bvh.h"
+
+bool hierarchy_refit(hierarchy *h)
+{
+    static void (*const refit[ISA_COUNT])(hierarchy *) = {hierarchy_refit_nodes_sse2, hierarchy_refit_nodes_avx2, hierarchy_refit_nodes_avx512};
+    isa level = ISA_SSE2;
+    if (h->kind != HIERARCHY_BVH || h->referred != h->of->triangle_count || (h->single && !h->of->single))
+        return false;
+    (void)isa_choose(&level, NULL); /* the same bits from all */
+    refit[level](h);
+    return true;
+}
+
+static double half_area(const bvh_node *n, int slot)
+{
+    const double x = (double)n->high[0][slot] - (double)n->low[0][slot], y = (double)n->high[1][slot] - (double)n->low[1][slot],
+                 z = (double)n->high[2][slot] - (double)n->low[2][slot];
+    return x * y + y * z + z * x;
+}
+
+double hierarchy_cost(const hierarchy *h)
+{
+    if (h->kind != HIERARCHY_BVH || h->block_count == 0)
+        return 0.0;
+    bvh_node root;
+    for (int axis = 0; axis < 3; axis++)
+        bvh_around(&h->nodes[0], axis, &root.low[axis][0], &root.high[axis][0]);
+    const double whole = half_area(&root, 0);
+    double sum = whole * (double)COST_NODE;
+    for (size_t i = 0; i < h->node_count; i++) {
+        const bvh_node *n = &h->nodes[i];
+        for (int slot = 0; slot < (int)n->child_count; slot++) {
+            const uint32_t child = n->child[slot];
+            sum += half_area(n, slot) * (child & CHILD_LEAF ? (double)child_blocks(child) : (double)COST_NODE);
+        }
+    }
+    return whole > 0.0 ? sum / whole : 0.0;
+}
