@@ -1,0 +1,157 @@
+#include "softbody/hand.h"
+#include "softbody/softbody.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+hand_script *hand_script_create(const char *path)
+{
+    hand_script *s = calloc(1, sizeof *s);
+    char *copy = strdup(path);
+    if (!s || !copy) {
+        free(s);
+        free(copy);
+        return NULL;
+    }
+    s->path = copy;
+    return s;
+}
+
+void hand_script_destroy(hand_script *s)
+{
+    if (!s) {
+        return;
+    }
+    for (size_t i = 0; i < s->track_count; i++) {
+        free(s->tracks[i].keys);
+    }
+    free(s->tracks);
+    free(s->path);
+    free(s);
+}
+
+static hand_track *find_track(const hand_script *s, const char *hand)
+{
+    for (size_t i = 0; i < s->track_count; i++) {
+        if (strcmp(s->tracks[i].name, hand) == 0) {
+            return &s->tracks[i];
+        }
+    }
+    return NULL;
+}
+
+/* Not NaN, which no comparison finds. */
+static bool is_point(vec3 v)
+{
+    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+}
+
+static status check_numbers(const char *hand, const hand_key *key, diagnostic *why)
+{
+    if (!(key->time_s >= 0.0 && isfinite(key->time_s))) {
+        return diagnose(why, STATUS_BAD_INPUT, "give a time from 0 on", "%s: %g is no time in seconds", hand, key->time_s);
+    }
+    if (key->act == HAND_MOVE && !is_point(key->by)) {
+        return diagnose(why, STATUS_BAD_INPUT, "give three finite numbers", "%s: it moves to nowhere", hand);
+    }
+    if (key->act != HAND_GRAB) {
+        return STATUS_OK;
+    }
+    if (!is_point(key->origin) || !is_point(key->direction) || !(vec3_dot(key->direction, key->direction) > 0.0)) {
+        return diagnose(why, STATUS_BAD_INPUT, "give a direction that is not zero", "%s: it grabs along no ray", hand);
+    }
+    if (!(key->reach > 0.0 && isfinite(key->reach))) {
+        return diagnose(why, STATUS_BAD_INPUT, "give a length greater than 0", "%s: a reach of %g", hand, key->reach);
+    }
+    return STATUS_OK;
+}
+
+/* Does the key follow from what the hand did last? */
+static status check_order(const char *hand, const hand_track *track, const hand_key *key, diagnostic *why)
+{
+    const hand_key *last = track && track->key_count ? &track->keys[track->key_count - 1] : NULL;
+    const bool holds = last && last->act != HAND_RELEASE;
+    if (last && key->time_s < last->time_s) {
+        return diagnose(why, STATUS_BAD_INPUT, "put what a hand does in the order of time", "%s: %g s comes after %g s", hand, key->time_s,
+                        last->time_s);
+    }
+    if (key->act == HAND_GRAB && holds) {
+        return diagnose(why, STATUS_BAD_INPUT, "let it release first, or give the second grab to another hand", "%s: it holds something already", hand);
+    }
+    if (key->act != HAND_GRAB && !holds) {
+        return diagnose(why, STATUS_BAD_INPUT, "let it grab first", "%s: it %s what it does not hold", hand,
+                        key->act == HAND_MOVE ? "moves" : "releases");
+    }
+    return STATUS_OK;
+}
+
+static status check_hand(const hand_script *s, const char *hand, const hand_track *track, diagnostic *why)
+{
+    if (!hand[0] || strlen(hand) > HAND_NAME_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "a name has 1 to 63 bytes", "'%.80s' cannot be a hand's name", hand);
+    }
+    if (!track && s->track_count == SOFTBODY_HANDS_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "a script has 16; one that has let go can grab again", "%s is one hand too many", hand);
+    }
+    return STATUS_OK;
+}
+
+/* Room for one more element; the room is always a power of two. NULL when memory is out, the array is then as it was. */
+static void *grow(void *array, size_t count, size_t size)
+{
+    if ((count & (count - 1)) != 0) {
+        return array;
+    }
+    const size_t room = count ? 2 * count : 1;
+    return room <= SIZE_MAX / size ? realloc(array, room * size) : NULL;
+}
+
+static hand_track *add_track(hand_script *s, const char *hand)
+{
+    hand_track *tracks = grow(s->tracks, s->track_count, sizeof *tracks);
+    if (!tracks) {
+        return NULL;
+    }
+    s->tracks = tracks;
+    hand_track *added = &tracks[s->track_count];
+    *added = (hand_track){.keys = NULL};
+    strcpy(added->name, hand);
+    return added; /* counted once it has a key */
+}
+
+status hand_script_add(hand_script *s, const char *hand, const hand_key *key, diagnostic *why)
+{
+    hand_track *track = find_track(s, hand);
+    status code = check_hand(s, hand, track, why);
+    if (code == STATUS_OK) {
+        code = check_numbers(hand, key, why);
+    }
+    if (code == STATUS_OK) {
+        code = check_order(hand, track, key, why);
+    }
+    if (code != STATUS_OK) {
+        return code;
+    }
+    const bool is_new = !track;
+    track = is_new ? add_track(s, hand) : track;
+    hand_key *keys = track ? grow(track->keys, track->key_count, sizeof *keys) : NULL;
+    if (!keys) {
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    track->keys = keys;
+    track->keys[track->key_count++] = *key;
+    s->track_count += is_new;
+    return STATUS_OK;
+}
+
+double hand_script_end_s(const hand_script *s)
+{
+    double end_s = 0.0;
+    for (size_t i = 0; i < s->track_count; i++) {
+        const hand_track *track = &s->tracks[i];
+        end_s = fmax(end_s, track->keys[track->key_count - 1].time_s);
+    }
+    return end_s;
+}
