@@ -121,7 +121,7 @@ static void every_scene_of_the_project_survives_and_makes_the_same_film(void **s
     assert_true(count >= 8);
 }
 
-static const char one_of_each[] = "meshes: {body: {generate: box}, model: {file: model.obj}}\n"
+static const char one_of_each[] = "meshes: {body: {generate: box}, model: {file: model.obj}, toy: {generate: slime}}\n"
                                   "textures: {wood: {file: wood.png}, bark: {file: bark.png}}\n"
                                   "materials: {paint: {}}\n"
                                   "lights: {lamp: {}}\n"
@@ -207,7 +207,7 @@ static size_t carry_row(const scene *s, const char *owner, const param *row)
 static void every_parameter_survives_away_from_its_default(void **state)
 {
     (void)state;
-    static const char *const owners[] = {"render", "camera", "background", "body",    "model", "wood",   "lamp",
+    static const char *const owners[] = {"render", "camera", "background", "body",    "model", "toy",   "wood",   "lamp",
                                          "paint",  "plane1", "cylinder1",  "cup1",    "box1",  "sphere1", "mesh1", "painted"};
     scene *s = scene_from(one_of_each);
     bool seen[512] = {false};
@@ -218,8 +218,8 @@ static void every_parameter_survives_away_from_its_default(void **state)
             snprintf(path, sizeof path, "%s.%s", owners[o], param_at(i)->name);
             if (place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
                 continue;
-            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->type == PARAM_PATH ? "body" : "model") == 0)
-                continue; /* a file takes the place of what is generated, which a mesh that has a file is not */
+            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->shapes ? "toy" : at.row->type == PARAM_PATH ? "model" : "body") != 0)
+                continue; /* a file takes the place of what is generated, which a mesh that has a file is not; a slime's rows are a slime's */
             if (at.group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
                 continue; /* one solid's will do */
             if (carry_row(s, owners[o], param_at(i)) == 0)

@@ -1,5 +1,4 @@
 #include "cli/outputs.h"
-#include "base/text.h"
 #include "render/record.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,17 +72,20 @@ static status check_folder(const named_file *file, diagnostic *why)
     return there ? STATUS_OK : wrong(file, why, "make it first, or name another", "its folder is not there");
 }
 
-/* The sky's path is relative to the scene file. */
-static bool is_sky_of(const char *path, const scene *s)
+static bool is_file_of(const char *path, const scene *s, const char *named)
 {
-    const char *sky = s->background.picture_path;
-    if (!sky || !sky[0])
-        return false;
-    const char *slash = s->path && sky[0] != '/' ? strrchr(s->path, '/') : NULL;
-    char *whole = slash ? text_format("%.*s/%s", (int)(slash - s->path), s->path, sky) : strdup(sky);
+    char *whole = named && named[0] ? scene_file_path(s, named) : NULL;
     bool same = whole && same_file(path, whole);
     free(whole);
     return same;
+}
+
+static bool is_script_of(const char *path, const scene *s)
+{
+    for (size_t i = 0; i < s->mesh_count; i++)
+        if (s->meshes[i].source == MESH_SLIME && is_file_of(path, s, s->meshes[i].script_path))
+            return true;
+    return false;
 }
 
 static status check_picture(const outputs *o, const named_file *file, bool is_map, diagnostic *why)
@@ -102,7 +104,7 @@ static status check_picture(const outputs *o, const named_file *file, bool is_ma
 
 static status check_not_read(const named_file *file, const scene *s, diagnostic *why)
 {
-    if ((s->path && same_file(file->path, s->path)) || is_sky_of(file->path, s))
+    if ((s->path && same_file(file->path, s->path)) || is_file_of(file->path, s, s->background.picture_path) || is_script_of(file->path, s))
         return wrong(file, why, "name another file", "the scene is read from it");
     return STATUS_OK;
 }
@@ -177,6 +179,13 @@ status outputs_check_place(const char *option, const char *path, const scene *s,
         return STATUS_OK;
     status result = check_folder(&file, why);
     return result == STATUS_OK ? check_not_read(&file, s, why) : result;
+}
+
+status outputs_check_script(const char *option, const char *path, const scene *s, diagnostic *why)
+{
+    const named_file file = {option, path};
+    const bool is_read = strcmp(path, "-") != 0 && is_script_of(path, s);
+    return is_read ? wrong(&file, why, "name another file", "a script of the scene is read from it") : STATUS_OK;
 }
 
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why)

@@ -24,8 +24,10 @@ status outputs_ending(const char *option, const char *path, const char *const *e
                       diagnostic *why);
 /* Its folder alone: for what may be written in place of what was read. "-" is always right. */
 status outputs_check_folder(const char *option, const char *path, diagnostic *why);
-/* Its folder, and that nothing is read from it: the scene and its sky. "-" is always right. */
+/* Its folder, and that nothing is read from it: the scene, its sky and the scripts of its slimes. "-" is always right. */
 status outputs_check_place(const char *option, const char *path, const scene *s, diagnostic *why);
+/* That no script is read from it: for what may be written in place of the scene itself. "-" is always right. */
+status outputs_check_script(const char *option, const char *path, const scene *s, diagnostic *why);
 
 /* Writes them all; result has what was wanted, or a part of it. */
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why);

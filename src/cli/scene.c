@@ -147,7 +147,9 @@ static status run(const scene_request *request, scene *s, diagnostic *why)
         return check_files(request, s, why);
     if (request->only_lists)
         return print_list(s);
-    return scene_write(s, request->output ? request->output : "-", request->writes_all, why);
+    const char *output = request->output ? request->output : "-";
+    status result = outputs_check_script("-o", output, s, why);
+    return result == STATUS_OK ? scene_write(s, output, request->writes_all, why) : result;
 }
 
 static const char about[] =

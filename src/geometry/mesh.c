@@ -80,6 +80,11 @@ void mesh_release(const mesh *m)
         mesh_free((mesh *)m);
 }
 
+long mesh_owners(const mesh *m)
+{
+    return __atomic_load_n(&m->share->owners, __ATOMIC_ACQUIRE);
+}
+
 double mesh_triangle_volume6(const mesh *m, size_t triangle, vec3 origin)
 {
     const uint32_t *corner = m->triangles[triangle].corner;

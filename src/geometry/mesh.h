@@ -56,6 +56,7 @@ status mesh_finish(mesh *m, diagnostic *why);
 
 void mesh_retain(const mesh *m);
 void mesh_release(const mesh *m); /* NULL is allowed */
+long mesh_owners(const mesh *m);  /* how many there are now */
 
 /* Normals by vertex where a mesh has none (one that has is left alone): the sum of the triangles' around each position, weighted by the
  * angle of each corner (Thurmer and Wuthrich, "Computing vertex normals from polygonal facets", JGT 3(1), 1998). Before mesh_finish or

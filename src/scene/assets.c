@@ -1,8 +1,10 @@
 /* What a scene names and does not hold in itself: meshes, textures and the sky's picture. */
 #include "base/text.h"
+#include "scene/assets.h"
 #include "scene/looks.h"
 #include "scene/params_value.h"
 #include "scene/mesh_make.h"
+#include "scene/slime.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +15,8 @@ void mesh_entry_unload(mesh_entry *m)
     looks_release(m->looks);
     m->data = NULL;
     m->looks = NULL;
+    m->account = (softbody_account){.steps = 0};
+    m->motion_s = 0.0;
 }
 
 void texture_entry_unload(texture_entry *t)
@@ -41,8 +45,7 @@ const texture_entry *scene_find_texture(const scene *s, const char *name)
     return NULL;
 }
 
-/* A file that the scene file names is wrong there. */
-static status file_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code, diagnostic *why)
+status asset_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code, diagnostic *why)
 {
     if (line == 0) {
         diagnostic_locate(why, bad->file, bad->line, bad->column);
@@ -52,8 +55,7 @@ static status file_error(const scene *s, const char *what, long line, long colum
     return diagnose(why, code, bad->remedy, "%s: %s%s%s", what, bad->file, bad->file[0] ? ": " : "", bad->what);
 }
 
-/* A path from the scene file's folder; fresh memory. */
-static char *path_from_scene(const scene *s, const char *path)
+char *scene_file_path(const scene *s, const char *path)
 {
     const char *slash = strrchr(s->path, '/');
     int folder = path[0] != '/' && slash ? (int)(slash - s->path) + 1 : 0;
@@ -85,7 +87,7 @@ static status load_sky(scene *s, diagnostic *why)
     if (sky->kind != BACKGROUND_PICTURE || sky->picture || !sky->picture_path[0]) {
         return STATUS_OK;
     }
-    char *path = path_from_scene(s, sky->picture_path);
+    char *path = scene_file_path(s, sky->picture_path);
     if (!path) {
         return diagnose(why, STATUS_FAILURE, "", "memory is out");
     }
@@ -96,12 +98,12 @@ static status load_sky(scene *s, diagnostic *why)
         sky->picture = NULL;
     }
     free(path);
-    return code == STATUS_OK ? code : file_error(s, "background.picture", sky->picture_line, sky->picture_column, &bad, code, why);
+    return code == STATUS_OK ? code : asset_error(s, "background.picture", sky->picture_line, sky->picture_column, &bad, code, why);
 }
 
 static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
 {
-    char *path = path_from_scene(s, t->path);
+    char *path = scene_file_path(s, t->path);
     if (!path) {
         return diagnose(why, STATUS_FAILURE, "", "memory is out");
     }
@@ -111,7 +113,7 @@ static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
                                      (texture_filter)t->filter, &data, &bad);
     free(path);
     t->data = data;
-    return code == STATUS_OK ? code : file_error(s, t->name, t->path_line, t->path_column, &bad, code, why);
+    return code == STATUS_OK ? code : asset_error(s, t->name, t->path_line, t->path_column, &bad, code, why);
 }
 
 static bool same_value(const param *row, const char *a, const char *b)
@@ -137,13 +139,16 @@ void scene_borrow_meshes(scene *s, const scene *from)
 {
     for (size_t i = 0; i < s->mesh_count; i++) {
         mesh_entry *m = &s->meshes[i];
-        for (size_t k = 0; k < from->mesh_count && !m->data; k++) {
+        const bool own = m->source == MESH_SLIME && !s->render.keep;
+        for (size_t k = 0; k < from->mesh_count && !m->data && !own; k++) {
             const mesh_entry *other = &from->meshes[k];
             if (!other->data || !same_mesh(m, other)) {
                 continue;
             }
             m->data = other->data;
             m->looks = other->looks;
+            m->account = other->account;
+            m->motion_s = other->motion_s;
             mesh_retain(m->data);
             looks_retain(m->looks);
         }
@@ -152,20 +157,24 @@ void scene_borrow_meshes(scene *s, const scene *from)
 
 static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
 {
+    if (m->source == MESH_SLIME) {
+        return slime_make(s, m, why);
+    }
     if (m->source != MESH_FILE) {
         return mesh_make(m, why);
     }
-    char *path = path_from_scene(s, m->path);
+    char *path = scene_file_path(s, m->path);
     if (!path) {
         return diagnose(why, STATUS_FAILURE, "", "memory is out");
     }
     diagnostic bad = {.what = ""};
     const status code = mesh_make_from_file(m, path, &bad);
     free(path);
-    return code == STATUS_OK ? code : file_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
+    return code == STATUS_OK ? code : asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
 }
 
-status scene_load(scene *s, diagnostic *why)
+/* Sky and textures. */
+static status load_pictures(scene *s, diagnostic *why)
 {
     status code = load_sky(s, why);
     for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++) {
@@ -173,9 +182,31 @@ status scene_load(scene *s, diagnostic *why)
             code = load_texture(s, &s->textures[i], why);
         }
     }
+    return code;
+}
+
+status scene_load(scene *s, diagnostic *why)
+{
+    status code = load_pictures(s, why);
     for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
         if (!s->meshes[i].data) {
             code = load_mesh(s, &s->meshes[i], why);
+        }
+    }
+    return code;
+}
+
+status scene_load_files(scene *s, diagnostic *why)
+{
+    status code = load_pictures(s, why);
+    for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
+        mesh_entry *m = &s->meshes[i];
+        if (m->source == MESH_FILE && !m->data) {
+            code = load_mesh(s, m, why);
+        } else if (m->source == MESH_SLIME) {
+            hand_script *script;
+            code = slime_read_script(s, m, &script, why);
+            hand_script_destroy(script);
         }
     }
     return code;

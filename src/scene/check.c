@@ -2,6 +2,7 @@
 #include "base/counters.h"
 #include "scene/medium.h"
 #include "scene/params.h"
+#include "scene/slime.h"
 #include "scene/suggest.h"
 
 #include <stdio.h>
@@ -155,7 +156,7 @@ status check_mesh(const mesh_entry *m, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "give radius, height, radius, height ..", "%.80s: the profile has an odd number of numbers",
                         m->name);
     }
-    return STATUS_OK;
+    return m->source == MESH_SLIME ? slime_check(m, why) : STATUS_OK;
 }
 
 status check_texture(const texture_entry *t, diagnostic *why)

@@ -34,7 +34,7 @@ static status read_mesh(const scene_reader *r, const node *key, const node *map)
     }
     if (code == STATUS_OK) {
         mesh_entry *m = &r->scene->meshes[index];
-        note_place(map, "file", &m->path_line, &m->path_column);
+        note_place(map, file ? "file" : "generate", &m->path_line, &m->path_column);
         note_place(map, "script", &m->script_line, &m->script_column);
         code = no_name(r, key, check_mesh(&r->scene->meshes[index], r->why));
     }

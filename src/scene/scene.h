@@ -118,7 +118,7 @@ typedef struct mesh_entry {
     char *name;
     int64_t source;         /* mesh_maker */
     char *path;             /* relative to the scene file; "" for none */
-    long path_line, path_column; /* where the scene file names it; 0 when it was set otherwise */
+    long path_line, path_column; /* where the scene file names it, or what generates it; 0 when it was set otherwise */
     int64_t count;          /* triangles, of sparse, dense and sphere */
     int64_t level;          /* of an icosphere */
     double major, minor;    /* of a torus */
@@ -201,6 +201,12 @@ status scene_read_text(const char *name, const char *text, size_t size, scene **
  * file that the scene file names is located there. A sky's values must be from 0 to SCENE_SKY_MAX. */
 status scene_load(scene *s, diagnostic *why);
 
+/* The same, but for bodies that are computed: what lies in files alone. Scripts of slimes are read, and nothing is kept of them. */
+status scene_load_files(scene *s, diagnostic *why);
+
+/* A path that the scene names, as it reads from the working folder; fresh memory, NULL when that is out. */
+char *scene_file_path(const scene *s, const char *path);
+
 /* Checks what single ranges cannot: shapes, energy (under constant weights or simple transmission: reflectivity + transparency <= 1),
  * names, limits, camera not at its own target, a picture sky that names its picture. Run by scene_read and
  * before every render. */
@@ -219,7 +225,8 @@ int scene_find_solid(const scene *s, const char *name);
 const mesh_entry *scene_find_mesh(const scene *s, const char *name);
 const texture_entry *scene_find_texture(const scene *s, const char *name);
 
-/* Gives each mesh of s that is not loaded the triangles of a mesh with the same parameters in another scene, where there is one. */
+/* Gives each mesh of s that is not loaded the triangles of a mesh with the same parameters in another scene, where there is one. Slimes only where
+ * s.render.keep is on: each frame is to have its own simulation else. */
 void scene_borrow_meshes(scene *s, const scene *from);
 
 /* Lets go of what was loaded for an entry whose parameters change. */

@@ -224,7 +224,7 @@ void grid_hash_point(uint64_t *hash, const study_point *point)
 
 status grid_definition(const study *s, uint64_t *hash, diagnostic *why)
 {
-    status code = scene_load(s->base, why);
+    status code = scene_load_files(s->base, why); /* what is computed follows from the parameters */
     if (code != STATUS_OK)
         return code;
     *hash = HASH_START;

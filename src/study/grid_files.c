@@ -1,8 +1,10 @@
 /* What a scene's files hold, for the fingerprint of a study: the same names with other contents are another scene. */
 #include "study/grid.h"
 
+#include "base/file.h"
 #include "base/hash.h"
 #include "scene/looks.h"
+#include <stdlib.h>
 #include <string.h>
 
 static void hash_array(uint64_t *hash, const void *array, size_t count, size_t size)
@@ -36,6 +38,18 @@ static void hash_mesh(uint64_t *hash, const mesh *m)
             hash_array(hash, m->slot_names[i], strlen(m->slot_names[i]) + 1, 1);
 }
 
+/* The text of a slime's script. One that cannot be read holds nothing: loading it says so. */
+static void hash_script(uint64_t *hash, const scene *of, const mesh_entry *m)
+{
+    enum { SCRIPT_BYTES_MAX = 1 << 20 };
+    char *path = scene_file_path(of, m->script_path), *text = NULL;
+    size_t size = 0;
+    if (path && file_read(path, SCRIPT_BYTES_MAX, &text, &size, NULL) == STATUS_OK)
+        hash_array(hash, text, size, 1);
+    free(text);
+    free(path);
+}
+
 void grid_hash_files(uint64_t *hash, const scene *of)
 {
     const image *sky = of->background.picture;
@@ -47,6 +61,8 @@ void grid_hash_files(uint64_t *hash, const scene *of)
         const mesh_entry *m = &of->meshes[i];
         if (m->source == MESH_FILE && m->data)
             hash_mesh(hash, m->data);
+        if (m->source == MESH_SLIME && m->script_path[0])
+            hash_script(hash, of, m);
         for (int slot = 0; slot < looks_count(m->looks); slot++)
             hash_look(hash, looks_at(m->looks, slot));
     }

@@ -14,11 +14,12 @@ static size_t triangles_of(const scene *s)
     return sum;
 }
 
+/* Does it lack nothing that the shelf would lend to others? */
 static bool is_whole(const scene *s)
 {
     bool whole = true;
     for (size_t i = 0; i < s->mesh_count; i++)
-        whole &= s->meshes[i].data != NULL;
+        whole &= s->meshes[i].data || (s->meshes[i].source == MESH_SLIME && !s->render.keep);
     return whole;
 }
 

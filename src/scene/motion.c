@@ -1,0 +1,216 @@
+#include "scene/motion.h"
+#include "measure/clock.h"
+#include "scene/slime.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+typedef struct moving_slime {
+    slime x;
+    size_t mesh;     /* in scene.meshes */
+    double given_s;  /* time_s before it moved */
+    uint64_t steps;  /* taken so far */
+} moving_slime;
+
+struct scene_motion {
+    scene *s;
+    moving_slime *slimes;
+    size_t count;
+    scene_motion_report last;
+};
+
+static size_t count_slimes(const scene *s)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        count += s->meshes[i].source == MESH_SLIME;
+    }
+    return count;
+}
+
+bool scene_moves(const scene *s)
+{
+    return count_slimes(s) > 0;
+}
+
+static mesh_entry *entry_of(const scene_motion *m, const moving_slime *one)
+{
+    return &m->s->meshes[one->mesh];
+}
+
+/* A skin of its own, in place of what others may look at. */
+static status give_skin(const scene_motion *m, const moving_slime *one, diagnostic *why)
+{
+    mesh_entry *entry = entry_of(m, one);
+    mesh *skin = NULL;
+    const status code = softbody_skin(one->x.body, &skin, why);
+    if (code == STATUS_OK) {
+        mesh_entry_unload(entry);
+        entry->data = skin;
+    }
+    return code;
+}
+
+static void add_moves(hierarchy_moves *sum, const hierarchy_moves *more)
+{
+    sum->refitted += more->refitted;
+    sum->rebuilt += more->rebuilt;
+    sum->refit_s += more->refit_s;
+    sum->build_s += more->build_s;
+    sum->growth = sum->growth > more->growth ? sum->growth : more->growth;
+}
+
+static int build_threads(const scene *s)
+{
+    return s->render.build_threads > 0 ? (int)s->render.build_threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+}
+
+static status move_skin(scene_motion *m, const moving_slime *one, diagnostic *why)
+{
+    mesh_entry *entry = entry_of(m, one);
+    if (!entry->data || mesh_owners(entry->data) > 1) {
+        return give_skin(m, one, why);
+    }
+    /* Made by give_skin for this scene, which alone holds it. */
+    status code = softbody_move_skin(one->x.body, (mesh *)(uintptr_t)entry->data, why);
+    hierarchy_moves moves = {.refitted = 0};
+    if (code == STATUS_OK) {
+        code = hierarchy_follow(entry->data, m->s->render.rebuild, build_threads(m->s), &moves, why);
+    }
+    if (code != STATUS_OK) {
+        mesh_entry_unload(entry); /* triangles and hierarchies that do not fit each other */
+        return code;
+    }
+    add_moves(&m->last.hierarchies, &moves);
+    return STATUS_OK;
+}
+
+static void take_account(scene_motion *m, const moving_slime *one, double time_s)
+{
+    mesh_entry *entry = entry_of(m, one);
+    entry->time_s = time_s;
+    entry->account = softbody_measure(one->x.body);
+    entry->motion_s = one->x.motion_s;
+}
+
+static status begin(scene_motion *m, diagnostic *why)
+{
+    for (size_t i = 0; i < m->s->mesh_count; i++) {
+        if (m->s->meshes[i].source != MESH_SLIME) {
+            continue;
+        }
+        moving_slime *one = &m->slimes[m->count];
+        *one = (moving_slime){.mesh = i, .given_s = m->s->meshes[i].time_s};
+        status code = slime_create(m->s, &m->s->meshes[i], &one->x, why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        m->count++;
+        code = give_skin(m, one, why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        take_account(m, one, 0.0);
+    }
+    return scene_load(m->s, why); /* all else */
+}
+
+/* The scene as if it had never moved: what is at time 0 would pass for another time. */
+static void undo(scene_motion *m)
+{
+    for (size_t i = 0; i < m->count; i++) {
+        mesh_entry *entry = entry_of(m, &m->slimes[i]);
+        mesh_entry_unload(entry);
+        entry->time_s = m->slimes[i].given_s;
+    }
+}
+
+status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
+{
+    *out = NULL;
+    const size_t count = count_slimes(s);
+    if (count == 0) {
+        return diagnose(why, STATUS_BAD_INPUT, "give a mesh 'generate: slime'", "nothing moves in this scene");
+    }
+    scene_motion *m = calloc(1, sizeof *m);
+    moving_slime *slimes = calloc(count, sizeof *slimes);
+    if (!m || !slimes) {
+        free(m);
+        free(slimes);
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    m->s = s;
+    m->slimes = slimes;
+    const status code = begin(m, why);
+    if (code != STATUS_OK) {
+        undo(m);
+        scene_motion_destroy(m);
+        return code;
+    }
+    *out = m;
+    return STATUS_OK;
+}
+
+void scene_motion_destroy(scene_motion *m)
+{
+    if (!m) {
+        return;
+    }
+    for (size_t i = 0; i < m->count; i++) {
+        slime_destroy(&m->slimes[i].x);
+    }
+    free(m->slimes);
+    free(m);
+}
+
+static status advance_one(scene_motion *m, moving_slime *one, double time_s, bool skins, diagnostic *why)
+{
+    const mesh_entry *entry = entry_of(m, one);
+    const double motion_before_s = one->x.motion_s;
+    status code = slime_advance(&one->x, m->s, entry, time_s, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    m->last.step_s += one->x.motion_s - motion_before_s;
+    if (skins) {
+        const double begun_s = clock_wall_s();
+        code = move_skin(m, one, why);
+        m->last.skin_s += clock_wall_s() - begun_s;
+    }
+    if (code == STATUS_OK) {
+        take_account(m, one, time_s);
+        m->last.steps += entry->account.steps - one->steps;
+        one->steps = entry->account.steps;
+    }
+    return code;
+}
+
+status scene_motion_advance(scene_motion *m, double time_s, bool skins, diagnostic *why)
+{
+    m->last = (scene_motion_report){.steps = 0};
+    status code = STATUS_OK;
+    for (size_t i = 0; i < m->count && code == STATUS_OK; i++) {
+        code = advance_one(m, &m->slimes[i], time_s, skins, why);
+    }
+    return code;
+}
+
+scene_motion_report scene_motion_last(const scene_motion *m)
+{
+    return m->last;
+}
+
+size_t scene_motion_count(const scene_motion *m)
+{
+    return m->count;
+}
+
+softbody *scene_motion_body(const scene_motion *m, size_t i)
+{
+    return m->slimes[i].x.body;
+}
+
+size_t scene_motion_mesh(const scene_motion *m, size_t i)
+{
+    return m->slimes[i].mesh;
+}

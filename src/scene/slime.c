@@ -1,0 +1,125 @@
+#include "scene/slime.h"
+#include "measure/clock.h"
+#include "scene/assets.h"
+#include "scene/script.h"
+
+#include <stdlib.h>
+
+softbody_settings slime_settings(const mesh_entry *m)
+{
+    softbody_settings settings = m->slime;
+    settings.level = m->level;
+    return settings;
+}
+
+status slime_check(const mesh_entry *m, diagnostic *why)
+{
+    const softbody_settings settings = slime_settings(m);
+    diagnostic bad = {.what = ""};
+    const status code = softbody_check(&settings, &bad);
+    if (code != STATUS_OK) {
+        return diagnose(why, code, bad.remedy, "%.80s: %s", m->name, bad.what);
+    }
+    if (m->time_s / settings.dt_s > SLIME_STEPS_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "raise dt_s, or lower time_s", "%.80s: %g s in steps of %g s are more than %g steps", m->name,
+                        m->time_s, settings.dt_s, SLIME_STEPS_MAX);
+    }
+    return STATUS_OK;
+}
+
+/* What is wrong with the body, unless it is in its script, which says so itself. */
+static status body_error(const scene *s, const mesh_entry *m, const diagnostic *bad, status code, diagnostic *why)
+{
+    if (bad->file[0] && bad->line > 0) {
+        diagnostic_locate(why, bad->file, bad->line, bad->column);
+        return diagnose(why, code, bad->remedy, "%s", bad->what);
+    }
+    return asset_error(s, m->name, m->path_line, m->path_column, bad, code, why);
+}
+
+status slime_read_script(const scene *s, const mesh_entry *m, hand_script **out, diagnostic *why)
+{
+    *out = NULL;
+    if (!m->script_path[0]) {
+        return STATUS_OK;
+    }
+    char *path = scene_file_path(s, m->script_path);
+    if (!path) {
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    diagnostic bad = {.what = ""};
+    const status code = script_read(path, out, &bad);
+    free(path);
+    if (code != STATUS_OK && bad.line == 0) { /* no text to point at: wrong is what names it */
+        return asset_error(s, m->name, m->script_line, m->script_column, &bad, code, why);
+    }
+    return code == STATUS_OK ? code : body_error(s, m, &bad, code, why);
+}
+
+status slime_create(const scene *s, const mesh_entry *m, slime *out, diagnostic *why)
+{
+    *out = (slime){.body = NULL};
+    const softbody_settings settings = slime_settings(m);
+    hand_script *script;
+    status code = slime_read_script(s, m, &script, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    diagnostic bad = {.what = ""};
+    softbody *body = NULL;
+    code = softbody_create(&settings, isa_best(), &body, &bad);
+    if (code != STATUS_OK) {
+        hand_script_destroy(script);
+        return body_error(s, m, &bad, code, why);
+    }
+    if (script) {
+        softbody_follow(body, script);
+    }
+    *out = (slime){.body = body, .script = script};
+    return STATUS_OK;
+}
+
+void slime_destroy(slime *x)
+{
+    softbody_destroy(x->body);
+    hand_script_destroy(x->script);
+    *x = (slime){.body = NULL};
+}
+
+status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_s, diagnostic *why)
+{
+    diagnostic bad = {.what = ""};
+    const double begun_s = clock_wall_s();
+    const status code = softbody_advance(x->body, time_s, &bad);
+    x->motion_s += clock_wall_s() - begun_s;
+    return code == STATUS_OK ? code : body_error(s, m, &bad, code, why);
+}
+
+static status make_skin(const slime *x, const scene *s, mesh_entry *m, diagnostic *why)
+{
+    diagnostic bad = {.what = ""};
+    mesh *skin = NULL;
+    const status code = softbody_skin(x->body, &skin, &bad);
+    if (code != STATUS_OK) {
+        return body_error(s, m, &bad, code, why);
+    }
+    m->data = skin;
+    m->account = softbody_measure(x->body);
+    m->motion_s = x->motion_s;
+    return STATUS_OK;
+}
+
+status slime_make(const scene *s, mesh_entry *m, diagnostic *why)
+{
+    slime x;
+    status code = slime_create(s, m, &x, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = slime_advance(&x, s, m, m->time_s, why);
+    if (code == STATUS_OK) {
+        code = make_skin(&x, s, m, why);
+    }
+    slime_destroy(&x);
+    return code;
+}

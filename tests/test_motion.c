@@ -1,0 +1,222 @@
+/* A scene that moves: its film at each moment is that of the scene with its slimes' time_s set, loaded afresh. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "render_fixture.h"
+#include "scene/motion.h"
+
+static const char toys[] = "render: {width: 64, height: 48, depth: 3}\n"
+                           "camera: {position: [0, 2, -6], target: [0, 1, 0]}\n"
+                           "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [0.9, 0.8, 0.6], ambient: [0.2, 0.2, 0.2]}\n"
+                           "lights: {lamp: {position: [3, 6, -4]}}\n"
+                           "meshes:\n"
+                           "  pin: {generate: icosphere, level: 1}\n"
+                           "  toy: {generate: slime, level: 2, position: [-0.6, 1.1, 0], radius: 0.9, time_s: 0.4}\n"
+                           "  drop: {generate: slime, level: 1, position: [1.2, 1.5, 0.3], radius: 0.5, dt_s: 0.0025, velocity: [-1, 0, 0]}\n"
+                           "solids:\n"
+                           "  ground: {shape: plane, diffuse: 0.7, ambient: 0.1, checker: 0.5}\n"
+                           "  jelly: {shape: mesh, mesh: toy, transparency: 0.9, ior: 1.3, specular: 0.5, priority: 1}\n"
+                           "  ball: {shape: mesh, mesh: drop, diffuse: 0.8, color: [0.9, 0.3, 0.2], priority: 2}\n"
+                           "  needle: {shape: mesh, mesh: pin, diffuse: 0.8, scale: [0.2, 0.2, 0.2], position: [0, 0.2, -1.5], priority: 3}\n";
+
+static const double moments[] = {0.0, 0.1, 0.15, 0.15, 0.3, 0.6};
+enum { MOMENTS = sizeof moments / sizeof *moments };
+
+static scene *toys_with(const char *assignments)
+{
+    scene *s = scene_from(toys);
+    set_all(s, assignments);
+    return s;
+}
+
+static uint64_t film_of(const scene *s)
+{
+    render_result *result = render(s);
+    const uint64_t hash = film_hash(result->picture);
+    render_result_destroy(result);
+    return hash;
+}
+
+static uint64_t film_afresh(const char *assignments, double time_s)
+{
+    scene *s = toys_with(assignments);
+    char text[128];
+    snprintf(text, sizeof text, "toy.time_s=%.17g drop.time_s=%.17g", time_s, time_s);
+    set_all(s, text);
+    diagnostic why = {0};
+    worked(scene_load(s, &why), &why);
+    const uint64_t hash = film_of(s);
+    scene_destroy(s);
+    return hash;
+}
+
+static scene_motion *begin(scene *s)
+{
+    scene_motion *m = NULL;
+    diagnostic why = {0};
+    worked(scene_motion_create(s, &m, &why), &why);
+    return m;
+}
+
+static void advance(scene_motion *m, double time_s, bool skins)
+{
+    diagnostic why = {0};
+    worked(scene_motion_advance(m, time_s, skins, &why), &why);
+}
+
+static void expect_films(const char *assignments)
+{
+    scene *s = toys_with(assignments);
+    scene_motion *m = begin(s);
+    uint64_t before = 0;
+    for (size_t i = 0; i < MOMENTS; i++) {
+        advance(m, moments[i], true);
+        const uint64_t seen = film_of(s);
+        if (seen != film_afresh(assignments, moments[i]))
+            fail_msg("%s: another film at %g s", assignments, moments[i]);
+        assert_true((seen == before) == (i > 0 && moments[i] == moments[i - 1])); /* it does move */
+        before = seen;
+    }
+    scene_motion_destroy(m);
+    scene_destroy(s);
+}
+
+static void a_film_is_that_of_the_scene_at_its_moment(void **state)
+{
+    (void)state;
+    static const char *const ways[] = {
+        "render.threads=1", "render.threads=2 toy.threads=2 drop.threads=2", "render.keep=off", "render.accel=octant", "render.rebuild=1",
+        "render.rebuild=1000 render.build_threads=2", "render.integrator=zbuffer", "toy.integrator=verlet drop.integrator=implicit"};
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++)
+        expect_films(ways[i]);
+}
+
+static void it_begins_at_time_0_with_all_else_loaded(void **state)
+{
+    (void)state;
+    scene *s = toys_with("render.threads=2");
+    diagnostic why = {0};
+    worked(scene_load(s, &why), &why); /* the toy at 0.4 s */
+    scene_motion *m = begin(s);
+    assert_true(scene_moves(s));
+    assert_int_equal(scene_motion_count(m), 2);
+    assert_int_equal(scene_motion_mesh(m, 0), 1);
+    assert_int_equal(scene_motion_mesh(m, 1), 2);
+    assert_int_equal(softbody_mass_count(scene_motion_body(m, 0)), 10 * 16 + 2);
+    assert_true(s->meshes[1].time_s == 0.0 && s->meshes[1].account.steps == 0);
+    assert_non_null(s->meshes[0].data);
+    assert_true(film_of(s) == film_afresh("render.threads=1", 0.0));
+    scene_motion_destroy(m);
+    assert_non_null(s->meshes[1].data); /* as it lies */
+    scene_destroy(s);
+}
+
+static void frames_that_are_not_rendered_leave_the_skins(void **state)
+{
+    (void)state;
+    scene *s = toys_with("render.threads=1");
+    scene_motion *m = begin(s);
+    const uint64_t start = film_of(s);
+    advance(m, 0.2, false);
+    assert_true(film_of(s) == start);
+    assert_true(s->meshes[1].time_s == 0.2 && s->meshes[1].account.steps == 200);
+    advance(m, 0.3, true);
+    assert_true(film_of(s) == film_afresh("render.threads=1", 0.3));
+    scene_motion_destroy(m);
+    scene_destroy(s);
+}
+
+static void the_latest_advance_is_accounted_for(void **state)
+{
+    (void)state;
+    scene *s = toys_with("render.threads=1 render.rebuild=1000");
+    scene_motion *m = begin(s);
+    film_of(s); /* builds hierarchies, which are kept */
+    advance(m, 0.1, true);
+    scene_motion_report r = scene_motion_last(m);
+    assert_int_equal(r.steps, 100 + 40);
+    assert_int_equal(r.hierarchies.refitted, 2);
+    assert_int_equal(r.hierarchies.rebuilt, 0);
+    assert_true(s->meshes[1].account.steps == 100 && s->meshes[2].account.steps == 40);
+    advance(m, 0.1, true);
+    r = scene_motion_last(m);
+    assert_int_equal(r.steps, 0);
+    advance(m, 0.2, false);
+    r = scene_motion_last(m);
+    assert_int_equal(r.steps, 140);
+    assert_int_equal(r.hierarchies.refitted, 0);
+    scene_motion_destroy(m);
+    scene_destroy(s);
+}
+
+/* A clone holds the skins too: they stay where they were for it, and the scene gets others. */
+static void a_clone_does_not_move(void **state)
+{
+    (void)state;
+    scene *s = toys_with("render.threads=1");
+    scene_motion *m = begin(s);
+    advance(m, 0.1, true);
+    scene *copy = scene_clone(s);
+    const mesh *shared = copy->meshes[1].data;
+    assert_ptr_equal(shared, s->meshes[1].data);
+    advance(m, 0.3, true);
+    assert_ptr_not_equal(shared, s->meshes[1].data);
+    assert_int_equal(mesh_owners(shared), 1);
+    assert_true(film_of(copy) == film_afresh("render.threads=1", 0.1));
+    assert_true(film_of(s) == film_afresh("render.threads=1", 0.3));
+    const mesh *own = s->meshes[1].data;
+    advance(m, 0.4, true);
+    assert_ptr_equal(own, s->meshes[1].data); /* in place, now that it is its own again */
+    scene_destroy(copy);
+    scene_motion_destroy(m);
+    scene_destroy(s);
+}
+
+static void a_scene_that_cannot_move_stays_as_it_was(void **state)
+{
+    (void)state;
+    scene *s = scene_from("meshes: {pin: {generate: icosphere}}\n");
+    scene_motion *m = NULL;
+    diagnostic why = {0};
+    assert_false(scene_moves(s));
+    assert_int_equal(scene_motion_create(s, &m, &why), STATUS_BAD_INPUT);
+    assert_null(m);
+    scene_destroy(s);
+    s = toys_with("drop.script=no-such.yaml");
+    assert_int_equal(scene_motion_create(s, &m, &why), STATUS_BAD_INPUT);
+    assert_null(m);
+    assert_non_null(strstr(why.what, "drop"));
+    assert_true(s->meshes[1].time_s == 0.4);
+    assert_null(s->meshes[1].data);
+    scene_destroy(s);
+    scene_motion_destroy(NULL);
+}
+
+static void a_body_that_blows_up_says_so(void **state)
+{
+    (void)state;
+    scene *s = toys_with("toy.stiffness=1e7 toy.dt_s=0.1");
+    scene_motion *m = begin(s);
+    diagnostic why = {0};
+    assert_int_equal(scene_motion_advance(m, 10.0, true, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "toy"));
+    scene_motion_destroy(m);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_film_is_that_of_the_scene_at_its_moment),
+        cmocka_unit_test(it_begins_at_time_0_with_all_else_loaded),
+        cmocka_unit_test(frames_that_are_not_rendered_leave_the_skins),
+        cmocka_unit_test(the_latest_advance_is_accounted_for),
+        cmocka_unit_test(a_clone_does_not_move),
+        cmocka_unit_test(a_scene_that_cannot_move_stays_as_it_was),
+        cmocka_unit_test(a_body_that_blows_up_says_so),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

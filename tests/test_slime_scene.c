@@ -1,0 +1,349 @@
+/* Slimes in scene files: the mesh is the skin of the body that the parameters and the script say, and nothing else. */
+#include "study_fixture.h"
+
+#include "scene/params.h"
+#include "scene/slime.h"
+#include "scene/write.h"
+#include "study/shelf.h"
+
+static const char tug[] = "hands:\n"
+                          "  left:\n"
+                          "    - {time_s: 0.01, grab: [0, 1, -6], towards: [0, 0, 1], reach: 0.4}\n"
+                          "    - {time_s: 0.05, move: [-0.3, 0.2, 0]}\n";
+
+static const char toy[] = "meshes:\n"
+                          "  toy:\n"
+                          "    generate: slime\n"
+                          "    level: 2\n"
+                          "    time_s: 0.05\n"
+                          "    script: scripts/tug.yaml\n"
+                          "solids: {body: {shape: mesh, mesh: toy, diffuse: 0.7}}\n";
+
+static const char falling[] = "meshes: {toy: {generate: slime, level: 2, time_s: 0.25, ground: off, velocity: [1, 2, 3]}}\n";
+
+static void worked(status code, const diagnostic *why)
+{
+    char text[DIAGNOSTIC_TEXT_MAX];
+    if (code != STATUS_OK)
+        fail_msg("%s", diagnostic_text(why, text, sizeof text));
+}
+
+static void write_scripts(const fixture *f, const char *text)
+{
+    char path[400];
+    fixture_path(f, "scripts", path);
+    mkdir(path, 0777);
+    fixture_write(f, "scripts/tug.yaml", text);
+}
+
+static scene *read_scene(const fixture *f, const char *text)
+{
+    char path[400];
+    fixture_write(f, "toy.yaml", text);
+    fixture_path(f, "toy.yaml", path);
+    scene *s = NULL;
+    diagnostic why = {0};
+    worked(scene_read(path, &s, &why), &why);
+    return s;
+}
+
+static scene *loaded(const fixture *f, const char *text)
+{
+    scene *s = read_scene(f, text);
+    diagnostic why = {0};
+    worked(scene_load(s, &why), &why);
+    assert_non_null(s->meshes[0].data);
+    return s;
+}
+
+static void set(scene *s, const char *assignment)
+{
+    diagnostic why = {0};
+    worked(scene_set_assignment(s, assignment, &why), &why);
+}
+
+#define SAME(field) assert_true(table.field == core.field)
+#define SAME_VECTOR(field) assert_true(table.field.x == core.field.x && table.field.y == core.field.y && table.field.z == core.field.z)
+
+static void the_table_s_defaults_are_the_body_s(void **state)
+{
+    scene *s = read_scene(*state, "meshes: {toy: {generate: slime}}\n");
+    const softbody_settings table = slime_settings(&s->meshes[0]), core = softbody_defaults();
+    SAME(level), SAME(radius), SAME(mass_kg), SAME(stiffness), SAME(bending), SAME(through), SAME(damping), SAME(pressure);
+    SAME(ground), SAME(ground_y), SAME(restitution), SAME(friction), SAME(integrator), SAME(dt_s), SAME(adaptive), SAME(threads);
+    SAME_VECTOR(position), SAME_VECTOR(velocity), SAME_VECTOR(gravity);
+    assert_true(s->meshes[0].time_s == 0.0 && s->meshes[0].script_path[0] == 0);
+    scene_destroy(s);
+}
+
+/* The body that a scene says, made without it. */
+static mesh *skin_of(const mesh_entry *m, const hand_script *script, softbody_account *account)
+{
+    const softbody_settings settings = slime_settings(m);
+    softbody *b = NULL;
+    mesh *skin = NULL;
+    diagnostic why = {0};
+    worked(softbody_create(&settings, isa_best(), &b, &why), &why);
+    if (script)
+        softbody_follow(b, script);
+    worked(softbody_advance(b, m->time_s, &why), &why);
+    worked(softbody_skin(b, &skin, &why), &why);
+    *account = softbody_measure(b);
+    softbody_destroy(b);
+    return skin;
+}
+
+static void expect_skin(const mesh_entry *m, const hand_script *script)
+{
+    softbody_account account;
+    mesh *skin = skin_of(m, script, &account);
+    assert_int_equal(m->data->vertex_count, skin->vertex_count);
+    assert_int_equal(m->data->triangle_count, skin->triangle_count);
+    assert_memory_equal(m->data->vertices, skin->vertices, skin->vertex_count * sizeof *skin->vertices);
+    assert_memory_equal(m->data->normals, skin->normals, skin->vertex_count * sizeof *skin->normals);
+    assert_true(m->data->closed);
+    assert_true(m->account.time_s == account.time_s && m->account.steps == account.steps && m->account.kinetic == account.kinetic);
+    assert_int_equal(m->account.held, account.held);
+    mesh_release(skin);
+}
+
+/* Semi-implicit Euler after n steps: y0 + v n dt - g dt^2 n (n + 1) / 2, of the centre whatever the springs do. */
+static void a_slime_that_falls_is_where_its_steps_say(void **state)
+{
+    scene *s = loaded(*state, falling);
+    const mesh_entry *m = &s->meshes[0];
+    const double dt = 0.001, n = 250.0;
+    assert_int_equal(m->account.steps, 250);
+    assert_true(fabs(m->account.time_s - 0.25) < 1e-12);
+    assert_int_equal(m->data->triangle_count, 20 * 16);
+    assert_true(fabs(m->account.center.x - n * dt) < 1e-12 && fabs(m->account.center.z - 3.0 * n * dt) < 1e-12);
+    assert_true(fabs(m->account.center.y - (1.0 + 2.0 * n * dt - 9.81 * dt * dt * n * (n + 1.0) / 2.0)) < 1e-12);
+    vec3 sum = {0.0, 0.0, 0.0}; /* of the skin, whose every vertex is a mass */
+    for (size_t i = 0; i < m->data->vertex_count; i++)
+        sum = vec3_add(sum, m->data->vertices[i]);
+    if (m->data->vertex_count == 10 * 16 + 2)
+        assert_true(fabs(sum.y / (double)m->data->vertex_count - m->account.center.y) < 1e-12);
+    expect_skin(m, NULL);
+    scene_destroy(s);
+}
+
+static void a_script_lies_beside_its_scene_and_moves_the_slime(void **state)
+{
+    write_scripts(*state, tug);
+    scene *s = loaded(*state, toy);
+    diagnostic why = {0};
+    hand_script *script = NULL;
+    worked(slime_read_script(s, &s->meshes[0], &script, &why), &why);
+    assert_non_null(script);
+    assert_int_equal(script->tracks[0].key_count, 2);
+    assert_true(s->meshes[0].account.held > 0);
+    expect_skin(&s->meshes[0], script);
+    hand_script_destroy(script);
+    scene_destroy(s);
+}
+
+/* Loading ends with this diagnostic, in a file of the fixture. */
+static void refused_at(const fixture *f, const char *text, const char *file, long line, long column, const char *what)
+{
+    char path[400];
+    scene *s = read_scene(f, text);
+    diagnostic why = {0};
+    assert_int_equal(scene_load(s, &why), STATUS_BAD_INPUT);
+    fixture_path(f, file, path);
+    assert_string_equal(why.file, path);
+    if (why.line != line || why.column != column || !strstr(why.what, what))
+        fail_msg("%ld:%ld: %s", why.line, why.column, why.what);
+    assert_null(s->meshes[0].data);
+    scene_destroy(s);
+}
+
+static void what_is_wrong_is_located_where_it_is_written(void **state)
+{
+    const fixture *f = *state;
+    refused_at(f, toy, "toy.yaml", 6, 13, "scripts/tug.yaml");
+    write_scripts(f, "hands:\n  left:\n    - {time_s: 1, move: [1, 0, 0]}\n");
+    refused_at(f, toy, "scripts/tug.yaml", 3, 7, "does not hold");
+    write_scripts(f, "");
+    refused_at(f, toy, "scripts/tug.yaml", 1, 1, "empty");
+    write_scripts(f, "hands:\n  left:\n    - {time_s: 0.02, grab: [9, 9, 9], towards: [0, 1, 0], reach: 1}\n");
+    refused_at(f, toy, "scripts/tug.yaml", 3, 7, "");
+    refused_at(f, "meshes:\n  toy: {generate: slime, level: 2, time_s: 1, dt_s: 0.1, stiffness: 1e6}\n", "toy.yaml", 2, 19, "toy: ");
+}
+
+static void refused_to_read(const char *text, const char *what)
+{
+    scene *s = NULL;
+    diagnostic why = {0};
+    assert_int_equal(scene_read_text("toy.yaml", text, strlen(text), &s, &why), STATUS_BAD_INPUT);
+    if (!strstr(why.what, what) || why.line != 1)
+        fail_msg("%ld:%ld: %s", why.line, why.column, why.what);
+}
+
+static void settings_that_make_no_body_are_refused(void **state)
+{
+    (void)state;
+    refused_to_read("meshes: {toy: {generate: slime, level: 8}}\n", "level");
+    refused_to_read("meshes: {toy: {generate: slime, stiffness: soft}}\n", "toy.stiffness");
+    refused_to_read("meshes: {toy: {generate: slime, mass_kg: 0}}\n", "toy.mass_kg");
+    refused_to_read("meshes: {toy: {generate: slime, time_s: -1}}\n", "toy.time_s");
+    refused_to_read("meshes: {toy: {generate: slime, time_s: 1000, dt_s: 1e-7}}\n", "steps");
+    refused_to_read("meshes: {toy: {generate: slime, file: a.obj}}\n", "generated too");
+    scene *s = NULL;
+    const char sphere[] = "meshes: {ball: {generate: icosphere, level: 8}}\n"; /* of which there may be more */
+    assert_int_equal(scene_read_text("ball.yaml", sphere, strlen(sphere), &s, NULL), STATUS_OK);
+    scene_destroy(s);
+}
+
+static void a_change_lets_go_of_the_body_and_a_clone_keeps_it(void **state)
+{
+    scene *s = loaded(*state, falling);
+    scene *copy = scene_clone(s);
+    assert_ptr_equal(copy->meshes[0].data, s->meshes[0].data);
+    assert_int_equal(copy->meshes[0].account.steps, 250);
+    assert_true(copy->meshes[0].motion_s == s->meshes[0].motion_s);
+    set(s, "toy.time_s=0.1");
+    assert_null(s->meshes[0].data);
+    assert_int_equal(s->meshes[0].account.steps, 0);
+    assert_true(s->meshes[0].motion_s == 0.0);
+    assert_non_null(copy->meshes[0].data);
+    worked(scene_load(s, NULL), &(diagnostic){0});
+    assert_int_equal(s->meshes[0].account.steps, 100);
+    scene_destroy(copy);
+    scene_destroy(s);
+}
+
+static void slimes_are_borrowed_only_where_meshes_are_kept(void **state)
+{
+    scene *from = loaded(*state, falling);
+    for (int keep = 0; keep < 2; keep++) {
+        scene *s = read_scene(*state, falling);
+        set(s, keep ? "render.keep=on" : "render.keep=off");
+        scene_borrow_meshes(s, from);
+        assert_true((s->meshes[0].data == from->meshes[0].data) == keep);
+        assert_int_equal(s->meshes[0].account.steps, keep ? 250 : 0);
+        assert_true(s->meshes[0].motion_s == (keep ? from->meshes[0].motion_s : 0.0));
+        scene_destroy(s);
+    }
+    scene *other = read_scene(*state, falling);
+    set(other, "toy.damping=0.03");
+    scene_borrow_meshes(other, from);
+    assert_null(other->meshes[0].data);
+    scene_destroy(other);
+    scene_destroy(from);
+}
+
+/* Two rows of one cell: one simulation, or one each. */
+static void a_study_s_rows_simulate_where_nothing_is_kept(void **state)
+{
+    for (int keep = 0; keep < 2; keep++) {
+        shelf shared = {.count = 0};
+        scene *rows[2];
+        for (int i = 0; i < 2; i++) {
+            diagnostic why = {0};
+            rows[i] = read_scene(*state, falling);
+            set(rows[i], keep ? "render.keep=on" : "render.keep=off");
+            worked(shelf_load(&shared, rows[i], &why), &why);
+            assert_int_equal(rows[i]->meshes[0].account.steps, 250);
+        }
+        assert_true((rows[0]->meshes[0].data == rows[1]->meshes[0].data) == keep);
+        assert_int_equal(shared.count, keep);
+        for (int i = 0; i < 2; i++)
+            scene_destroy(rows[i]);
+        shelf_clear(&shared);
+    }
+}
+
+static uint64_t definition(const fixture *f)
+{
+    char path[400];
+    study *s = NULL;
+    diagnostic why = {0};
+    fixture_path(f, "toy.study", path);
+    worked(study_read(path, &s, &why), &why);
+    const uint64_t hash = s->definition_hash;
+    study_destroy(s);
+    return hash;
+}
+
+static void a_study_s_definition_holds_the_script_s_text(void **state)
+{
+    const fixture *f = *state;
+    write_scripts(f, tug);
+    fixture_write(f, "toy.yaml", toy);
+    fixture_write(f, "toy.study", "study: toy\nscene: toy.yaml\ngrid:\n  - {toy.stiffness: [10, 20]}\n");
+    const uint64_t hash = definition(f);
+    assert_true(definition(f) == hash);
+    char other[sizeof tug];
+    memcpy(other, tug, sizeof tug);
+    *strstr(other, "0.4") = '1';
+    write_scripts(f, other);
+    assert_true(definition(f) != hash);
+    write_scripts(f, tug);
+    assert_true(definition(f) == hash);
+}
+
+static void a_slime_survives_its_file_and_its_script_follows(void **state)
+{
+    const fixture *f = *state;
+    char path[400], *text = NULL, *script = NULL;
+    write_scripts(f, tug);
+    scene *s = loaded(f, toy), *again = NULL;
+    set(s, "toy.stiffness=50");
+    set(s, "toy.velocity=[1, 0, 0]");
+    diagnostic why = {0};
+    fixture_path(f, "scripts/there.yaml", path);
+    worked(scene_write(s, path, false, &why), &why);
+    worked(scene_read(path, &again, &why), &why);
+    worked(scene_get(again, "toy.script", &script, &why), &why);
+    assert_string_equal(script, "tug.yaml");
+    worked(scene_load(s, &why), &why);
+    worked(scene_load(again, &why), &why);
+    assert_memory_equal(s->meshes[0].data->vertices, again->meshes[0].data->vertices, s->meshes[0].data->vertex_count * sizeof(vec3));
+    worked(scene_write_text(s, s->path, false, &text, &why), &why);
+    assert_non_null(strstr(text, "  toy:\n    generate: slime\n    level: 2\n    time_s: 0.05\n    script: scripts/tug.yaml\n    velocity: [1, 0, 0]\n"
+                                 "    stiffness: 50\n"));
+    free(text);
+    free(script);
+    scene_destroy(again);
+    scene_destroy(s);
+}
+
+static status note_row(void *context, const char *path, const param *row, const char *value)
+{
+    (void)row;
+    (void)value;
+    *(bool *)context |= strcmp(path, "toy.stiffness") == 0;
+    return STATUS_OK;
+}
+
+static void only_slimes_list_what_a_slime_has(void **state)
+{
+    scene *s = read_scene(*state, falling);
+    bool has = false;
+    assert_int_equal(scene_each_param(s, note_row, &has), STATUS_OK);
+    assert_true(has);
+    set(s, "toy.generate=icosphere");
+    has = false;
+    assert_int_equal(scene_each_param(s, note_row, &has), STATUS_OK);
+    assert_false(has);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, fixture_setup, fixture_teardown)
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(the_table_s_defaults_are_the_body_s),
+        IN_FOLDER(a_slime_that_falls_is_where_its_steps_say),
+        IN_FOLDER(a_script_lies_beside_its_scene_and_moves_the_slime),
+        IN_FOLDER(what_is_wrong_is_located_where_it_is_written),
+        cmocka_unit_test(settings_that_make_no_body_are_refused),
+        IN_FOLDER(a_change_lets_go_of_the_body_and_a_clone_keeps_it),
+        IN_FOLDER(slimes_are_borrowed_only_where_meshes_are_kept),
+        IN_FOLDER(a_study_s_rows_simulate_where_nothing_is_kept),
+        IN_FOLDER(a_study_s_definition_holds_the_script_s_text),
+        IN_FOLDER(a_slime_survives_its_file_and_its_script_follows),
+        IN_FOLDER(only_slimes_list_what_a_slime_has),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
