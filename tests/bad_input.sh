@@ -173,6 +173,22 @@ cp good.jpg sky.jpg
 printf '%s\n' 'background: {kind: picture, picture: sky.jpg}' 'render: {width: 8, height: 6}' >sky.yaml
 refused "picture over the sky" "the scene is read from it" render sky.yaml -o sky.jpg
 
+# --- scripts of slimes; their reader's own messages are in tests/bad-scripts
+mkdir slimes
+printf '%s\n' 'render: {width: 8, height: 6}' 'meshes:' '  toy: {generate: slime, level: 1, time_s: 0.02, script: tug.yaml}' 'solids:' \
+    '  body: {shape: mesh, mesh: toy, diffuse: 1}' >slimes/toy.yaml
+refused "a script that is not there" "^cuvette: slimes/toy.yaml:3:58: toy: slimes/tug.yaml" render slimes/toy.yaml --json
+printf '%s\n' 'hands:' '  left:' '    - {time_s: 0, move: [0, 0, 0]}' >slimes/tug.yaml
+refused "a wrong script" "^cuvette: slimes/tug.yaml:3:7: left: .*grab first" render slimes/toy.yaml --json
+refused "a wrong script, checked" "^cuvette: slimes/tug.yaml:3:7: " scene slimes/toy.yaml --check
+printf '%s\n' 'hands:' '  left:' '    - {time_s: 0.01, grab: [9, 9, 9], towards: [0, 1, 0], reach: 1}' >slimes/tug.yaml
+refused "a hand that misses" "^cuvette: slimes/tug.yaml:3:7: .*nothing" render slimes/toy.yaml --json
+refused "trace over the script" "the scene is read from it" trace slimes/toy.yaml --pixel 1,1 --text -o slimes/tug.yaml
+refused "scene over the script" "a script of the scene is read from it" scene slimes/toy.yaml -o slimes/tug.yaml
+refused "a slime that blows up" "^cuvette: slimes/toy.yaml:3:19: toy: " render slimes/toy.yaml --json --set toy.script= --set toy.stiffness=1e9
+refused "too fine a slime" "toy: .*level" render slimes/toy.yaml --json --set toy.level=8
+refused "a scene as a script" "unknown key 'render'" render slimes/toy.yaml --json --set toy.script=toy.yaml
+
 # --- pictures to compare
 refused "compare of nothing" "no pictures are named" compare
 refused "compare of one picture" "nothing to compare" compare good.png

@@ -132,7 +132,8 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
     if (result == STATUS_OK)
         result = scene_check(s, why); /* again, with the meshes' triangles */
     if (result != STATUS_OK) {
-        diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
+        if (why->line == 0) /* what has a line knows better */
+            diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         return result;
     }
     scene_input_note_hints(s);
