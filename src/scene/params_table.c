@@ -217,7 +217,7 @@ static const param table[] = {
     SLIME_REAL(stiffness, "N/scene unit", 0, 1e9, false, "40", "of a slime's springs along edges, each"),
     SLIME_REAL(bending, "N/scene unit", 0, 1e9, false, "10", "of its springs across two neighbouring faces, each"),
     SLIME_REAL(through, "N/scene unit", 0, 1e9, false, "100", "of its springs from side to side, all together"),
-    SLIME_REAL(damping, "N s/scene unit", 0, 1e6, false, "0.02", "of a slime's springs along their length"),
+    SLIME_REAL(damping, "N s/scene unit", 0, 1e6, false, "0.025", "of a slime's springs along their length"),
     SLIME_REAL(pressure, "N/scene unit^2", 0, 1e9, false, "300", "of a slime of no volume; it falls with the volume, to none at rest"),
     SLIME_VECTOR(gravity, "scene units/s^2", 1e6, "0,-9.81,0", "on a slime"),
     SLIME_CHOICE(ground, off_on, "on", "a floor under a slime, at ground_y of the mesh's frame"),
