@@ -1,0 +1,178 @@
+/* What a hierarchy costs, and whether it is refitted or built anew where its mesh has moved. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "refit_fixture.h"
+
+/* Four triangles that reach through the unit cube at x. */
+static void cluster(vec3 *corners, double x)
+{
+    for (int i = 0; i < 4; i++) {
+        corners[3 * i] = vec3_make(x, 0.0, 0.0);
+        corners[3 * i + 1] = vec3_make(x + 1.0, 1.0, 0.0);
+        corners[3 * i + 2] = vec3_make(x, 0.25 * (i + 1), 1.0);
+    }
+}
+
+static void cost_is_that_of_the_areas(void **state)
+{
+    (void)state;
+    vec3 corners[24];
+    cluster(corners, 0.0);
+    cluster(corners + 12, 99.0);
+    mesh *m = mesh_of_corners(corners, 4), *two = mesh_of_corners(corners, 8), *empty = mesh_of_corners(corners, 0);
+    hierarchy *h = built(m, HIERARCHY_BVH), *h2 = built(two, HIERARCHY_BVH), *none = built(m, HIERARCHY_NONE), *nothing = built(empty, HIERARCHY_BVH);
+    assert_true(hierarchy_cost(h) == 2.0); /* the root, and one block in a box as large */
+    /* Boxes 1 x 1 x 1, half of their surface 3, twice in one of 100 x 1 x 1, half of its surface 201. */
+    assert_true(fabs(hierarchy_cost(h2) - (1.0 + 2.0 * 3.0 / 201.0)) < 1e-15);
+    assert_true(hierarchy_cost(none) == 0.0 && hierarchy_cost(nothing) == 0.0);
+    assert_true(hierarchy_refit(nothing));
+    cluster(corners + 12, 9.0); /* the same boxes in one of 10 x 1 x 1 */
+    move(two, corners);
+    assert_true(hierarchy_refit(h2));
+    assert_true(fabs(hierarchy_cost(h2) - (1.0 + 2.0 * 3.0 / 21.0)) < 1e-15);
+    for (int i = 0; i < 24; i++)
+        corners[i] = vec3_make(1.0, 2.0, 3.0);
+    move(two, corners); /* into one place, which no ray meets */
+    assert_true(hierarchy_refit(h2));
+    assert_true(hierarchy_cost(h2) == 0.0);
+    hierarchy *const all[] = {h, h2, none, nothing};
+    for (size_t i = 0; i < COUNT(all); i++)
+        hierarchy_destroy(all[i]);
+    mesh_release(m);
+    mesh_release(two);
+    mesh_release(empty);
+}
+
+/* Vertices change places across the whole body. */
+static void shuffle(mesh *m, uint64_t *seed)
+{
+    vec3 *to = copy_of_vertices(m);
+    for (int i = (int)m->vertex_count - 1; i > 0; i--) {
+        const int other = random_below(seed, i + 1);
+        const vec3 kept = to[i];
+        to[i] = to[other];
+        to[other] = kept;
+    }
+    move(m, to);
+    free(to);
+}
+
+static void cost_grows_when_the_body_is_shuffled(void **state)
+{
+    (void)state;
+    uint64_t seed = 4;
+    mesh *m = icosphere(3);
+    hierarchy *h = built(m, HIERARCHY_BVH);
+    const double before = hierarchy_cost(h);
+    assert_true(before > 2.0 && before < 40.0);
+    shuffle(m, &seed);
+    assert_true(hierarchy_refit(h));
+    assert_true(hierarchy_cost(h) > 5.0 * before);
+    hierarchy_destroy(h);
+    mesh_release(m);
+}
+
+static const hierarchy *kept(const mesh *m, hierarchy_kind kind)
+{
+    const hierarchy *h = NULL;
+    assert_int_equal(hierarchy_of_mesh(m, kind, 1, &h, NULL), STATUS_OK);
+    return h;
+}
+
+static hierarchy_moves follow(const mesh *m, double ratio)
+{
+    hierarchy_moves moves;
+    assert_int_equal(hierarchy_follow(m, ratio, 2, &moves, NULL), STATUS_OK);
+    assert_true(moves.refit_s >= 0.0 && moves.build_s >= 0.0);
+    return moves;
+}
+
+static void same_by_all_kinds(const mesh *m, uint64_t *seed)
+{
+    assert_true(compare(m, kept(m, HIERARCHY_BVH), effort(8), seed) > 10);
+    for (int i = 0; i < effort(1000); i++) {
+        const mesh_ray r = random_ray(m, seed);
+        mesh_hit expected, hit;
+        kernels[ISA_SSE2]->nearest(kept(m, HIERARCHY_BVH), &r, &expected);
+        kernels[ISA_SSE2]->nearest(kept(m, HIERARCHY_NONE), &r, &hit);
+        same_hit(&hit, &expected);
+        kernels[ISA_SSE2]->nearest(kept(m, HIERARCHY_OCTANT), &r, &hit);
+        same_hit(&hit, &expected);
+    }
+}
+
+static void a_mesh_keeps_what_followed_it(void **state)
+{
+    (void)state;
+    uint64_t seed = 5;
+    mesh *m = icosphere(3);
+    vec3 *rest = copy_of_vertices(m);
+    hierarchy_moves moves = follow(m, 1.0); /* keeps none */
+    assert_true(moves.refitted == 0 && moves.rebuilt == 0 && moves.growth == 0.0);
+    const hierarchy *bvh = kept(m, HIERARCHY_BVH);
+    const double cost = hierarchy_cost(bvh);
+    moves = follow(m, 1.0); /* has not moved: costs what it did */
+    assert_true(moves.refitted == 1 && moves.rebuilt == 0 && moves.growth == 1.0);
+    assert_ptr_equal(kept(m, HIERARCHY_BVH), bvh);
+
+    shuffle(m, &seed);
+    moves = follow(m, 1e9);
+    assert_true(moves.refitted == 1 && moves.rebuilt == 0 && moves.growth > 5.0);
+    assert_ptr_equal(kept(m, HIERARCHY_BVH), bvh);
+    assert_true(moves.growth == hierarchy_cost(bvh) / cost);
+    assert_true(compare(m, bvh, effort(8), &seed) > 10);
+
+    (void)kept(m, HIERARCHY_NONE);
+    (void)kept(m, HIERARCHY_OCTANT);
+    deform(m, rest, scatter, &seed);
+    moves = follow(m, 1.0);
+    assert_true(moves.refitted == 0 && moves.rebuilt == 3 && moves.growth > 1.0);
+    hierarchy *fresh = built(m, HIERARCHY_BVH);
+    const double rebuilt = hierarchy_cost(fresh);
+    assert_true(hierarchy_cost(kept(m, HIERARCHY_BVH)) == rebuilt);
+    hierarchy_destroy(fresh);
+    same_by_all_kinds(m, &seed);
+
+    deform(m, rest, twist, &seed);
+    moves = follow(m, 1e9);
+    assert_true(moves.refitted == 1 && moves.rebuilt == 2);
+    assert_true(moves.growth == hierarchy_cost(kept(m, HIERARCHY_BVH)) / rebuilt); /* over that of the last build, not of the first */
+    free(rest);
+    mesh_release(m);
+}
+
+static void what_cannot_be_refitted_is_built_anew(void **state)
+{
+    (void)state;
+    uint64_t seed = 6;
+    mesh *m = icosphere(2);
+    vec3 *rest = copy_of_vertices(m);
+    deform(m, rest, on_floats, &seed);
+    (void)kept(m, HIERARCHY_BVH);
+    move(m, rest); /* doubles */
+    hierarchy_moves moves = follow(m, 1e9);
+    assert_true(moves.refitted == 0 && moves.rebuilt == 1 && moves.growth == 0.0);
+    assert_true(compare(m, kept(m, HIERARCHY_BVH), effort(8), &seed) > 10);
+    deform(m, rest, squash, &seed);
+    moves = follow(m, 1e9);
+    assert_true(moves.refitted == 1 && moves.rebuilt == 0);
+    free(rest);
+    mesh_release(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cost_is_that_of_the_areas),
+        cmocka_unit_test(cost_grows_when_the_body_is_shuffled),
+        cmocka_unit_test(a_mesh_keeps_what_followed_it),
+        cmocka_unit_test(what_cannot_be_refitted_is_built_anew),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
