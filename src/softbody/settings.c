@@ -3,8 +3,8 @@
 softbody_settings softbody_defaults(void)
 {
     return (softbody_settings){
-        .level = 4, .radius = 1.0, .position = {0.0, 1.0, 0.0}, .mass_kg = 1.0, .stiffness = 40.0, .bending = 10.0, .through = 100.0, .damping = 0.025,
-        .pressure = 300.0, .gravity = {0.0, -9.81, 0.0}, .ground = 1, .restitution = 0.3, .friction = 0.6, .integrator = SOFTBODY_EULER, .dt_s = 0.001,
+        .level = 4, .radius = 1.0, .position = {0.0, 1.0, 0.0}, .mass_kg = 1.0, .stiffness = 10.0, .bending = 4.0, .through = 100.0, .damping = 0.04,
+        .pressure = 300.0, .gravity = {0.0, -9.81, 0.0}, .ground = 1, .restitution = 0.3, .friction = 2.0, .integrator = SOFTBODY_EULER, .dt_s = 0.001,
         .threads = 1};
 }
 

@@ -1,0 +1,120 @@
+/* A minute of the default toy, with the recorded grab of experiments/scenes/tug.yaml: it rests, is drawn out, let go, and comes back. Under its own
+ * weight the toy is no sphere but a drop on a floor, so "back" is the shape in which it lay before the hand came; without weight it is the sphere. */
+#include "scene/script.h"
+#include "softbody_fixture.h"
+
+typedef struct extent { double tall, wide, nearest, farthest, turned_over; } extent;
+
+/* Of the body about its centre of mass, in radii; turned_over: faces that look inwards. */
+static extent extent_of(const softbody *b)
+{
+    const softbody_account a = softbody_measure(b);
+    const size_t count = softbody_mass_count(b);
+    vec3 *at = malloc(count * sizeof *at);
+    softbody_positions(b, at);
+    extent e = {.tall = a.high - a.low, .nearest = INFINITY};
+    for (size_t i = 0; i < count; i++) {
+        const vec3 r = vec3_sub(at[i], a.center);
+        e.wide = fmax(e.wide, sqrt(r.x * r.x + r.z * r.z));
+        e.nearest = fmin(e.nearest, vec3_length(r));
+        e.farthest = fmax(e.farthest, vec3_length(r));
+    }
+    free(at);
+    mesh *skin;
+    assert_int_equal(softbody_skin(b, &skin, NULL), STATUS_OK);
+    for (size_t t = 0; t < skin->triangle_count; t++) {
+        const uint32_t *corner = skin->triangles[t].corner;
+        const vec3 p = skin->vertices[corner[0]];
+        const vec3 n = vec3_cross(vec3_sub(skin->vertices[corner[1]], p), vec3_sub(skin->vertices[corner[2]], p));
+        e.turned_over += vec3_dot(n, vec3_sub(p, a.center)) <= 0.0;
+    }
+    mesh_release(skin);
+    return e;
+}
+
+static hand_script *recorded_grab(void)
+{
+    hand_script *script;
+    diagnostic why = {.what = ""};
+    const status code = script_read("experiments/scenes/tug.yaml", &script, &why);
+    assert_string_equal(why.what, "");
+    assert_int_equal(code, STATUS_OK);
+    return script;
+}
+
+/* Runs a toy through the script to a minute; before: as it lay after a second, stretched: while it is drawn out. */
+static softbody *after_a_minute(const softbody_settings *s, extent *before, extent *stretched)
+{
+    hand_script *script = recorded_grab();
+    softbody *b = toy_of(s);
+    diagnostic why = {.what = ""};
+    softbody_follow(b, script);
+    for (double t = 1.0; t <= 60.0; t += 1.0) {
+        const status code = softbody_advance(b, t, &why);
+        assert_string_equal(why.what, "");
+        assert_int_equal(code, STATUS_OK);
+        assert_true(isfinite(energy_of(b)));
+        if (t == 1.0)
+            *before = extent_of(b);
+        if (t == 2.0)
+            *stretched = extent_of(b);
+    }
+    hand_script_destroy(script);
+    return b;
+}
+
+/* The same toy that no hand touches. */
+static extent left_alone(const softbody_settings *s)
+{
+    softbody *b = toy_of(s);
+    assert_int_equal(softbody_advance(b, 60.0, NULL), STATUS_OK);
+    const extent e = extent_of(b);
+    softbody_destroy(b);
+    return e;
+}
+
+static void a_toy_on_its_floor_comes_back(void **state)
+{
+    (void)state;
+    const softbody_settings s = softbody_defaults();
+    extent before, stretched;
+    softbody *b = after_a_minute(&s, &before, &stretched);
+    const softbody_account a = softbody_measure(b);
+    const extent after = extent_of(b), rest = left_alone(&s);
+    assert_true(stretched.farthest > 1.2 * before.farthest);
+    assert_near(after.tall, rest.tall, 0.01 * s.radius);
+    assert_near(after.wide, rest.wide, 0.01 * s.radius);
+    assert_near(after.nearest, rest.nearest, 0.01 * s.radius);
+    assert_near(after.farthest, rest.farthest, 0.01 * s.radius);
+    assert_near(a.volume / a.volume_at_rest, 1.0, 0.02);
+    assert_true(after.turned_over == 0.0);
+    assert_true(a.kinetic < 1e-4);
+    softbody_destroy(b);
+}
+
+static void a_toy_without_weight_is_a_sphere_again(void **state)
+{
+    (void)state;
+    softbody_settings s = softbody_defaults();
+    s.gravity = vec3_make(0.0, 0.0, 0.0);
+    s.ground = 0;
+    extent before, stretched;
+    softbody *b = after_a_minute(&s, &before, &stretched);
+    const softbody_account a = softbody_measure(b);
+    const extent after = extent_of(b);
+    assert_true(stretched.farthest > 1.2);
+    assert_near(after.nearest, s.radius, 0.01 * s.radius);
+    assert_near(after.farthest, s.radius, 0.01 * s.radius);
+    assert_near(a.volume / a.volume_at_rest, 1.0, 0.02);
+    assert_true(after.turned_over == 0.0);
+    softbody_destroy(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_toy_on_its_floor_comes_back),
+        cmocka_unit_test(a_toy_without_weight_is_a_sphere_again),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
