@@ -86,11 +86,15 @@ static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hi
     return code;
 }
 
-static void report_mesh(plan *p, const solid_shape *shape, const hierarchy *tree, bool first)
+static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, const hierarchy *tree, bool first)
 {
     const double copies = shape->copies.x * shape->copies.y * shape->copies.z;
     p->meshes.instances += (uint64_t)copies;
     p->meshes.triangles += (uint64_t)copies * shape->mesh->triangle_count;
+    if (first && m->source == MESH_SLIME) {
+        p->meshes.motion_steps += m->account.substeps;
+        p->meshes.motion_s += m->motion_s;
+    }
     if (first && tree) {
         const hierarchy_report r = hierarchy_describe(tree);
         p->meshes.bytes += r.bytes;
@@ -113,7 +117,7 @@ static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, 
     for (size_t k = 0; k < i; k++)
         first &= !(s->solids[k].visible && s->solids[k].shape.kind == SHAPE_MESH && strcmp(s->solids[k].mesh, one->mesh) == 0);
     if (code == STATUS_OK)
-        report_mesh(p, shape, source->tree, first);
+        report_mesh(p, m, shape, source->tree, first);
     return code;
 }
 

@@ -126,6 +126,7 @@ static void trace_pieces(frame *f, int worker, desk *d, span piece)
         return;
     }
     const ray_counters *c = tracer_counters(t);
+    const double visibility_s = tracer_visibility_s(t);
     const uint64_t camera_rays = c->camera, reflect = c->reflect, refract = c->refract, shadow = c->shadow;
     do {
         double tile_began_s = timeline ? since(f) : 0.0;
@@ -143,6 +144,7 @@ static void trace_pieces(frame *f, int worker, desk *d, span piece)
     if (timeline && d->events.count > 0)
         d->events.event[d->events.count - 1].end_s = since(f);
     d->report.busy_s = since(f) - began_s;
+    d->report.visibility_s = tracer_visibility_s(t) - visibility_s;
     d->report.camera = c->camera - camera_rays, d->report.reflect = c->reflect - reflect;
     d->report.refract = c->refract - refract, d->report.shadow = c->shadow - shadow;
     tracer_set_give(f->owner->tracers, t);
@@ -215,6 +217,7 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
     for (int i = 0; i < count; i++) {
         desk *d = &f->desks[i];
         d->report.waiting_s = result->wall_s - d->report.busy_s;
+        d->report.visibility_s = f->scene->solids->meshes ? d->report.visibility_s : NAN;
         result->workers[i] = d->report;
         out_of_memory |= d->out_of_memory;
         misplaced |= d->misplaced;

@@ -26,6 +26,7 @@ typedef struct worker_report {
     double cpu_s;      /* CLOCK_THREAD_CPUTIME_ID over the same stretch */
     double start_s;    /* when it began to work, after the frame's start */
     double busy_s;     /* from its first tile taken to its last ray traced; 0 without a tile */
+    double visibility_s; /* of busy_s: finding out what rays meet and what stands in a light's way; NaN for scenes without meshes */
     double waiting_s;  /* the frame's wall time less busy_s */
     uint64_t tiles;    /* pieces of the picture that it took */
     uint64_t camera, reflect, refract, shadow; /* rays that it traced */

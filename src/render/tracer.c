@@ -85,6 +85,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     t->scratch.ways = absorbs ? t->ways : NULL;
     drop_all(t);
     memset(&t->counters, 0, sizeof t->counters);
+    t->visibility_ns = 0;
     t->overflow = 0;
     return true;
 }
@@ -92,6 +93,11 @@ bool tracer_begin(tracer *t, const tracer_target *target)
 const ray_counters *tracer_counters(const tracer *t)
 {
     return &t->counters;
+}
+
+double tracer_visibility_s(const tracer *t)
+{
+    return 1e-9 * (double)t->visibility_ns;
 }
 
 bool tracer_overflowed(const tracer *t)
@@ -137,6 +143,17 @@ static void shade_foreign(tracer *t, int depth, int first)
     }
 }
 
+static int64_t visibility_begins(const tracer *t)
+{
+    return t->target.scene->solids->meshes ? clock_wall_ns() : 0;
+}
+
+static void visibility_ends(tracer *t, int64_t began_ns)
+{
+    if (t->target.scene->solids->meshes)
+        t->visibility_ns += clock_wall_ns() - began_ns;
+}
+
 static void trace_batch(tracer *t, int depth)
 {
     const plan *p = t->target.scene;
@@ -148,10 +165,12 @@ static void trace_batch(tracer *t, int depth)
         COUNT(t->counters.camera += (uint64_t)rays.count);
     if (t->scratch.ways)
         absorption_begin(t, q->ticket + first, rays.count);
+    const int64_t began_ns = visibility_begins(t);
     if (t->target.depths)
         drawn_hits(t, q, first, &rays);
     else
         t->geometry->nearest(p->solids, &rays, &t->scratch, &t->hits);
+    visibility_ends(t, began_ns);
     const bool random_paths = p->render.integrator == INTEGRATOR_PATH;
     if (random_paths)
         path_meet_lights(t, q, first, rays.count);
@@ -183,7 +202,9 @@ static void trace_shadows(tracer *t)
     COUNT(t->counters.shadow += (uint64_t)rays.count);
     if (p->solids->absorbs)
         absorption_begin(t, q->ticket + first, rays.count);
+    const int64_t began_ns = visibility_begins(t);
     t->geometry->shadow(p->solids, &rays, p->solid_shadows, &t->scratch, t->transmitted);
+    visibility_ends(t, began_ns);
     if (p->solids->absorbs)
         absorption_dim(t, q, first, rays.count);
     for (int i = 0; i < rays.count; i++) {

@@ -35,6 +35,9 @@ void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, cons
 void tracer_finish(tracer *t, const atomic_bool *stop);
 
 const ray_counters *tracer_counters(const tracer *t);
+/* Time in which it was found out what rays meet and what stands in a light's way. Of a scene without meshes it is not measured, and 0: there the
+ * clock would be asked too often. */
+double tracer_visibility_s(const tracer *t);
 /* Did a contribution or a pixel's sum leave the film's range, or was it not a number? */
 bool tracer_overflowed(const tracer *t);
 

@@ -39,6 +39,7 @@ struct tracer {
     double least_weight;     /* a branch that weighs less is not followed: render.min_weight, for its share of the camera ray */
     bool by_ticket;          /* the film wants more of a ticket than its pixel */
     ray_counters counters;
+    int64_t visibility_ns;   /* of a scene with meshes: in the geometry's kernels */
     uint64_t frame;          /* of its tracer_set, in which it was last begun; 0 before */
     int64_t overflow;        /* negative: a sum or contribution left the film's range */
     _Alignas(64) ray_scratch scratch; /* whole vectors on whole cache lines, here and below */

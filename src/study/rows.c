@@ -16,7 +16,7 @@
  * others only wait, and would hide how evenly the work was shared. */
 typedef struct workers_sum {
     int64_t with_tiles;
-    double busy_mean, busy_max, waiting_mean, cpu_sum, imbalance;
+    double busy_mean, busy_max, waiting_mean, visibility_sum, cpu_sum, imbalance;
 } workers_sum;
 
 static workers_sum sum_workers(const render_result *frame)
@@ -28,6 +28,7 @@ static workers_sum sum_workers(const render_result *frame)
         sum.with_tiles += w->tiles > 0;
         sum.busy_mean += w->busy_s;
         sum.waiting_mean += w->waiting_s;
+        sum.visibility_sum += w->visibility_s;
         sum.busy_max = fmax(sum.busy_max, w->busy_s);
     }
     double count = frame->worker_count > 0 ? (double)frame->worker_count : NAN;
@@ -148,6 +149,8 @@ static void put_time(csv_line *line, const study_row *r)
     X("instances", "", "copies of meshes", csv_count(line, (int64_t)r->frame->meshes.instances)) \
     X("accel_bytes", "B", "memory of the hierarchies over their triangles, each mesh once", csv_count(line, (int64_t)r->frame->meshes.bytes)) \
     X("build_s", "s", "wall time of building these, for this frame (render.keep off) or before it; not in wall_s", csv_real(line, r->frame->meshes.build_s)) \
+    X("motion_steps", "", "steps and substeps of slimes from their beginnings to the moments that are shown; 0 without slimes", csv_count(line, (int64_t)r->frame->meshes.motion_steps)) \
+    X("motion_s", "s", "wall time of these, for this frame (render.keep off) or before it; not in wall_s", csv_real(line, r->frame->meshes.motion_s)) \
     X("drawn", "", "of the depth buffer: triangles in the picture, analytic solids' too; else 0", csv_count(line, (int64_t)r->frame->meshes.drawn)) \
     X("drawn_bytes", "B", "memory of the depth buffer and of these triangles", csv_count(line, (int64_t)r->frame->meshes.drawn_bytes)) \
     X("workers", "", "threads of the frame", csv_count(line, r->frame->worker_count)) \
@@ -155,6 +158,7 @@ static void put_time(csv_line *line, const study_row *r)
     X("busy_s_mean", "s", "from a worker's first piece to its last ray, 0 without a piece; mean over all workers", csv_real(line, w.busy_mean)) \
     X("busy_s_max", "s", "the longest of them", csv_real(line, w.busy_max)) \
     X("waiting_s_mean", "s", "wall_s less busy time, mean over all workers", csv_real(line, w.waiting_mean)) \
+    X("visibility_s_sum", "s", "of all workers' busy time, finding out what rays meet and what stands in a light's way; NA for scenes without meshes", csv_real(line, w.visibility_sum)) \
     X("worker_cpu_s_sum", "s", "CPU time of all workers", csv_real(line, w.cpu_sum)) \
     X("imbalance", "", "busy_s_max / busy_s_mean - 1", csv_real(line, w.imbalance)) \
     X("peak_rss_bytes", "bytes", "highest resident memory of the process: since the frame began where Linux lets it be reset, else so far", csv_count(line, r->used.peak_rss_bytes)) \
@@ -183,6 +187,7 @@ static void put_time(csv_line *line, const study_row *r)
     X("wall_s", "s", "from its first instruction to its last in the frame", csv_real(line, k->wall_s)) \
     X("cpu_s", "s", "its CPU time over the same stretch", csv_real(line, k->cpu_s)) \
     X("busy_s", "s", "from its first piece taken to its last ray traced; 0 without a piece", csv_real(line, k->busy_s)) \
+    X("visibility_s", "s", "of busy_s: finding out what rays meet and what stands in a light's way; NA for scenes without meshes", csv_real(line, k->visibility_s)) \
     X("waiting_s", "s", "wall time of the frame less busy_s", csv_real(line, k->waiting_s))
 /* clang-format on */
 
