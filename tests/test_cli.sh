@@ -53,10 +53,10 @@ run --version
 check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render scene trace fan params media mesh study compare realism machine help; do
+for command in render animate scene trace fan params media mesh study compare realism machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render scene trace fan params media mesh study compare realism machine "study run" "study list" "study status" "study merge" "study summary"; do
+for command in render animate scene trace fan params media mesh study compare realism machine "study run" "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"

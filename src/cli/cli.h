@@ -16,6 +16,7 @@ typedef struct command {
 } command;
 
 status command_render(int argc, char **argv, diagnostic *why);
+status command_animate(int argc, char **argv, diagnostic *why);
 status command_scene(int argc, char **argv, diagnostic *why);
 status command_trace(int argc, char **argv, diagnostic *why);
 status command_fan(int argc, char **argv, diagnostic *why);

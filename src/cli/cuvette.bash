@@ -48,6 +48,7 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
         fan) _cuvette_files 'svg|csv' ;;
         scene) _cuvette_files 'yaml|yml' ;;
         mesh) _cuvette_files 'obj|bin|pov|dat|ply' ;;
+        animate) _cuvette_files 'png|jpg|jpeg|pfm|y4m' ;;
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
         esac
         ;;
@@ -55,6 +56,9 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
         [[ ${COMP_WORDS[1]-} == fan ]] || _cuvette_files 'png|pfm'
         ;;
     --timeline) _cuvette_files 'json' ;;
+    --script) _cuvette_files 'yaml|yml' ;;
+    --rows) _cuvette_files 'csv' ;;
+    --fps) _cuvette_words 24 25 30 30000/1001 50 60 ;;
     --move | --turn | --rename) _cuvette_objects = ;;
     --delete) _cuvette_objects '' ;;
     --add)
@@ -62,6 +66,7 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
         _cuvette_words solid: light: material: mesh: texture:
         ;;
     --title) COMPREPLY=() ;;
+    --duration | --start) COMPREPLY=() ;;
     --bits) _cuvette_words 8 16 ;;
     --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
     --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size) COMPREPLY=() ;;
@@ -92,7 +97,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render scene trace fan params media mesh study compare realism machine help --help --usage --version
+        _cuvette_words render animate scene trace fan params media mesh study compare realism machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -100,6 +105,13 @@ _cuvette()
     render)
         if [[ $current == -* ]]; then
             _cuvette_words --output --set --json --bits --rays --time --noise --timeline --repeat --help --usage --version
+        else
+            _cuvette_files 'yaml|yml'
+        fi
+        ;;
+    animate)
+        if [[ $current == -* ]]; then
+            _cuvette_words --output --script --duration --fps --start --set --rows --restart --json --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
@@ -169,7 +181,7 @@ _cuvette()
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render scene trace fan params media mesh study compare realism machine
+            _cuvette_words render animate scene trace fan params media mesh study compare realism machine
         fi
         ;;
     esac

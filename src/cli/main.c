@@ -7,6 +7,7 @@ static status command_help(int argc, char **argv, diagnostic *why);
 
 static const command commands[] = {
     {"render", "render a scene; write the picture, the counts, the times", command_render},
+    {"animate", "render a film of a scene whose slimes move", command_animate},
     {"scene", "check, change and write a scene; build one without an editor", command_scene},
     {"trace", "take one ray apart: the whole tree that it grows into", command_trace},
     {"fan", "send many rays through the scene: their focus, their caustic", command_fan},

@@ -1,0 +1,133 @@
+#include "cli/animate.h"
+#include "cli/cli.h"
+#include "cli/json.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "scene/params.h"
+#include "base/text.h"
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --script is script= of every slime. */
+static status set_scripts(const animate_request *request, scene *s, diagnostic *why)
+{
+    status result = STATUS_OK;
+    for (size_t i = 0; i < s->mesh_count && result == STATUS_OK && request->script_path; i++) {
+        if (s->meshes[i].source != MESH_SLIME)
+            continue;
+        char *path = text_format("%s.script", s->meshes[i].name);
+        result = path ? scene_set(s, path, request->script_path, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+        if (result != STATUS_OK)
+            diagnostic_locate(why, "--script", 0, 0);
+        free(path);
+    }
+    return result;
+}
+
+/* As many frames as the script wants, and two seconds to come to rest. */
+static status choose_duration(animate_request *request, const scene *s, diagnostic *why)
+{
+    const double rest_s = 2, without_script_s = 4;
+    bool any;
+    double end_s;
+    status result = animate_script_end_s(s, &any, &end_s, why);
+    if (result != STATUS_OK)
+        return result;
+    if (!request->has_duration)
+        request->duration_s = any ? fmax(0, end_s + rest_s - request->start_s) : without_script_s;
+    return animate_check_length(request, why);
+}
+
+static status read_scene(animate_request *request, scene **out, diagnostic *why)
+{
+    status result = scene_input_read(&request->input, out, why);
+    if (result == STATUS_OK && !scene_moves(*out)) {
+        diagnostic_locate(why, request->input.path, 0, 0);
+        return diagnose(why, STATUS_BAD_INPUT, "give it a mesh with 'generate: slime', or use 'cuvette render'", "nothing moves in the scene");
+    }
+    if (result == STATUS_OK)
+        result = set_scripts(request, *out, why);
+    if (result == STATUS_OK && request->rows)
+        result = outputs_check_place("--rows", request->rows, *out, why);
+    if (result == STATUS_OK && animate_is_stream(request))
+        result = outputs_check_place("-o", request->output, *out, why);
+    return result == STATUS_OK ? choose_duration(request, *out, why) : result;
+}
+
+static void print_summary(const animate_request *request, const scene *s, const animate_account *a)
+{
+    printf("%" PRId64 " frames of %lldx%lld pixels, %.6g a second -> %s: %" PRId64 " rendered", a->rendered + a->kept,
+           (long long)s->render.width, (long long)s->render.height, (double)request->fps_num / (double)request->fps_den, request->output,
+           a->rendered);
+    if (a->rendered)
+        printf(" in %.4f s each", a->wall_s / (double)a->rendered);
+    printf(", %" PRId64 " kept; %.3g s of motion", a->kept, a->simulated_s);
+    if (a->step_s > 0)
+        printf(", simulated at %.3g s a second", a->simulated_s / a->step_s);
+    putchar('\n');
+}
+
+static status print_account(const animate_request *request, const scene *s, const animate_definition *d, isa level, const animate_account *a,
+                            diagnostic *why)
+{
+    char hash[32];
+    snprintf(hash, sizeof hash, "%016" PRIx64, d->hash);
+    json_t *o = json_pack("{s:i,s:s,s:s,s:s,s:o,s:I,s:I,s:I,s:[I,I],s:o,s:o,s:I,s:o,s:o,s:o,s:o,s:o}", "schema", REPORT_SCHEMA, "version",
+                          CUVETTE_VERSION, "isa", isa_name(level), "definition", hash, "output", json_of_text(request->output), "frames",
+                          (json_int_t)(a->rendered + a->kept), "rendered", (json_int_t)a->rendered, "kept", (json_int_t)a->kept, "fps",
+                          (json_int_t)request->fps_num, (json_int_t)request->fps_den, "start_s", json_of_real(request->start_s), "simulated_s",
+                          json_of_real(a->simulated_s), "steps", (json_int_t)a->steps, "step_s", json_of_real(a->step_s), "skin_s",
+                          json_of_real(a->skin_s), "wall_s", json_of_real(a->wall_s), "wall_s_mean",
+                          json_of_real(a->rendered ? a->wall_s / (double)a->rendered : (double)NAN), "params", report_params(s));
+    status result = o ? json_write(stdout, o, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    json_decref(o);
+    return result;
+}
+
+static status make(const animate_request *request, const animate_names *names, isa level, scene *s, diagnostic *why)
+{
+    scene_motion *motion = NULL;
+    animate_definition d = {0};
+    animate_account account = {0};
+    status result = scene_motion_create(s, &motion, why);
+    if (result == STATUS_OK)
+        result = animate_define(request, s, &d, why);
+    if (result == STATUS_OK && names && !request->restart)
+        result = animate_ledger_check(names, &d, why);
+    if (result == STATUS_OK)
+        result = animate_film(request, names, &d, level, s, motion, &account, why);
+    if (result == STATUS_OK && request->json)
+        result = print_account(request, s, &d, level, &account, why);
+    else if (result == STATUS_OK && strcmp(request->output, "-") != 0)
+        print_summary(request, s, &account);
+    animate_definition_release(&d);
+    scene_motion_destroy(motion);
+    return result;
+}
+
+status command_animate(int argc, char **argv, diagnostic *why)
+{
+    animate_request request;
+    animate_names names = {0};
+    scene *s = NULL;
+    isa level = ISA_SSE2;
+    status result = animate_request_parse(argc, argv, &request, why);
+    const bool in_files = result == STATUS_OK && !animate_is_stream(&request);
+    if (in_files)
+        result = animate_names_parse(request.output, &names, why);
+    if (result == STATUS_OK)
+        result = scene_input_isa(&level, why);
+    if (result == STATUS_OK)
+        result = read_scene(&request, &s, why);
+    if (result == STATUS_OK && !request.json)
+        scene_input_note_hints(s);
+    if (result == STATUS_OK)
+        result = make(&request, in_files ? &names : NULL, level, s, why);
+    scene_destroy(s);
+    animate_names_release(&names);
+    animate_request_release(&request);
+    return result;
+}

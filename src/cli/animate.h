@@ -1,0 +1,83 @@
+/* What the parts of `cuvette animate` share: what is asked for, the names of the frames, what the film is made of, and the film itself.
+ * Frames appear whole or not at all, one file each; a film that was stopped goes on: frames that are there are not rendered again, the motion is
+ * computed anew up to where they end, and so the frames are, to the bit, those of a run that nobody stopped. A stream (YUV4MPEG2) begins anew.
+ * Ownership: words of the command line are borrowed; *_create and *_parse give, *_release takes. Errors are located. */
+#ifndef CUVETTE_CLI_ANIMATE_H
+#define CUVETTE_CLI_ANIMATE_H
+
+#include "cli/scene_input.h"
+#include "scene/motion.h"
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Frame k, from 0, shows start_s + k fps_den / fps_num. */
+typedef struct animate_request {
+    scene_input input;
+    const char *output;       /* a pattern, "-", or a name that ends in .y4m */
+    const char *script, *rows; /* NULL: not said */
+    char *script_path;        /* script as an absolute path; owned */
+    double start_s, duration_s;
+    bool has_duration, restart, json;
+    int64_t fps_num, fps_den; /* in lowest terms */
+} animate_request;
+
+status animate_request_parse(int argc, char **argv, animate_request *out, diagnostic *why);
+void animate_request_release(animate_request *request);
+
+bool animate_is_stream(const animate_request *request);
+/* How many frames there are: duration_s times frames a second, rounded, at least 1. */
+int64_t animate_count(const animate_request *request);
+/* STATUS_BAD_INPUT where these are too many, or end too late. */
+status animate_check_length(const animate_request *request, diagnostic *why);
+double animate_time_s(const animate_request *request, int64_t frame);
+
+/* The names of a film's frames: a pattern with exactly one integer in the form of printf, %d or %05d. */
+typedef struct animate_names {
+    const char *pattern; /* borrowed */
+    char *folder;        /* "." for none */
+    char *before, *after; /* of the name in it, around the number */
+    int digits;          /* least number of digits */
+} animate_names;
+
+status animate_names_parse(const char *pattern, animate_names *out, diagnostic *why);
+void animate_names_release(animate_names *names);
+/* The path of a frame; fresh memory, NULL when that is out. */
+char *animate_name(const animate_names *names, int64_t frame);
+/* Which frame's name that is in its folder, or -1. */
+int64_t animate_name_frame(const animate_names *names, const char *name);
+
+/* All that changes the film's frames, by its path: parameters but for those that are how a frame is computed (param.is_how) and for names of files,
+ * frames a second and start; and a fingerprint of these and of what the files hold. Its length does not count. */
+typedef struct animate_definition {
+    json_t *parameters; /* text by path */
+    uint64_t hash;
+} animate_definition;
+
+/* The scene's files have been loaded. */
+status animate_define(const animate_request *request, const scene *s, animate_definition *out, diagnostic *why);
+void animate_definition_release(animate_definition *d);
+
+/* Time of the last key of all scripts of the scene's slimes; *any: there is one. */
+status animate_script_end_s(const scene *s, bool *any, double *end_s, diagnostic *why);
+
+/* The ledger beside the frames, PATTERN.json, says of which film they are. STATUS_BAD_INPUT where the frames there are of another film or of an unknown
+ * one. */
+status animate_ledger_check(const animate_names *names, const animate_definition *d, diagnostic *why);
+/* Makes folder and ledger where they are not there. restart: removes what frames are there first. */
+status animate_ledger_begin(const animate_names *names, const animate_definition *d, bool restart, diagnostic *why);
+
+/* What came of it. */
+typedef struct animate_account {
+    int64_t rendered, kept;
+    double wall_s;              /* of the renders */
+    double step_s, skin_s;      /* of all motion, that of kept frames too */
+    double simulated_s;
+    uint64_t steps;
+} animate_account;
+
+/* The film, frame by frame. names is NULL for a stream. STATUS_INTERRUPTED after a signal: the frames that are there are whole. */
+status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, isa level, scene *s,
+                    scene_motion *motion, animate_account *account, diagnostic *why);
+
+#endif

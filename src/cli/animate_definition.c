@@ -1,0 +1,94 @@
+/* What a film is of, for telling the frames of one from those of another. */
+#include "cli/animate.h"
+#include "base/hash.h"
+#include "base/number.h"
+#include "cli/json.h"
+#include "scene/params.h"
+#include "scene/slime.h"
+#include "study/grid.h"
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+static bool is_time_of_slime(const param *row)
+{
+    return row->group == PARAM_MESH && strcmp(row->name, "time_s") == 0;
+}
+
+/* The moment that a slime shows is the frame's; of files the contents count, so that a folder may be moved. */
+static status add_param(void *context, const char *path, const param *row, const char *value)
+{
+    if (row->is_how || row->type == PARAM_PATH || is_time_of_slime(row))
+        return STATUS_OK;
+    json_object_del(context, path); /* so that what is set last stands last */
+    return json_object_set_new(context, path, json_of_text(value)) == 0 ? STATUS_OK : STATUS_FAILURE;
+}
+
+static bool add_request(json_t *parameters, const animate_request *request)
+{
+    char fps[64], start[NUMBER_TEXT_MAX];
+    snprintf(fps, sizeof fps, "%" PRId64 "/%" PRId64, request->fps_num, request->fps_den);
+    return json_object_set_new(parameters, "--fps", json_string(fps)) == 0 &&
+           json_object_set_new(parameters, "--start", json_string(number_format(request->start_s, start))) == 0;
+}
+
+static void hash_parameters(uint64_t *hash, json_t *parameters)
+{
+    const char *path;
+    json_t *value;
+    json_object_foreach(parameters, path, value) {
+        const char *text = json_string_value(value);
+        *hash = hash_bytes(*hash, path, strlen(path) + 1);
+        *hash = hash_bytes(*hash, text, strlen(text) + 1);
+    }
+}
+
+/* Of each solid what its parameters do not say. */
+static void hash_solids(uint64_t *hash, const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const int64_t words[] = {s->solids[i].shape.kind, s->solids[i].material_index};
+        *hash = hash_words(*hash, words, 2);
+    }
+}
+
+status animate_define(const animate_request *request, const scene *s, animate_definition *out, diagnostic *why)
+{
+    *out = (animate_definition){.parameters = json_object(), .hash = HASH_START};
+    if (!out->parameters || !add_request(out->parameters, request) || scene_each_param(s, add_param, out->parameters) != STATUS_OK)
+        return no_memory(why);
+    hash_parameters(&out->hash, out->parameters);
+    hash_solids(&out->hash, s);
+    grid_hash_files(&out->hash, s);
+    out->hash = hash_finish(out->hash);
+    return STATUS_OK;
+}
+
+void animate_definition_release(animate_definition *d)
+{
+    json_decref(d->parameters);
+    *d = (animate_definition){0};
+}
+
+status animate_script_end_s(const scene *s, bool *any, double *end_s, diagnostic *why)
+{
+    *any = false;
+    *end_s = 0;
+    status result = STATUS_OK;
+    for (size_t i = 0; i < s->mesh_count && result == STATUS_OK; i++) {
+        hand_script *script = NULL;
+        if (s->meshes[i].source == MESH_SLIME)
+            result = slime_read_script(s, &s->meshes[i], &script, why);
+        if (script) {
+            *any = true;
+            *end_s = fmax(*end_s, hand_script_end_s(script));
+        }
+        hand_script_destroy(script);
+    }
+    return result;
+}

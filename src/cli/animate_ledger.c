@@ -1,0 +1,155 @@
+#include "cli/animate.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "cli/json.h"
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { LEDGER_BYTES_MAX = 1 << 26 };
+
+static const char otherwise[] = "put this film into another folder, or add --restart, which removes the frames there";
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+static status refuse(const char *path, diagnostic *why, const char *what)
+{
+    diagnostic_locate(why, path, 0, 0);
+    return diagnose(why, STATUS_BAD_INPUT, otherwise, "%s", what);
+}
+
+static char *ledger_path(const animate_names *names)
+{
+    return text_format("%s.json", names->pattern);
+}
+
+/* Counts the frames in the folder, or removes them. */
+static status each_frame(const animate_names *names, bool remove_them, size_t *count, diagnostic *why)
+{
+    *count = 0;
+    DIR *folder = opendir(names->folder);
+    if (!folder && errno == ENOENT)
+        return STATUS_OK;
+    if (!folder) {
+        diagnostic_locate(why, names->folder, 0, 0);
+        return diagnose(why, STATUS_FAILURE, "make the folder readable", "cannot be listed: %s", strerrordesc_np(errno));
+    }
+    status result = STATUS_OK;
+    for (const struct dirent *entry; result == STATUS_OK && (entry = readdir(folder));) {
+        if (animate_name_frame(names, entry->d_name) < 0)
+            continue;
+        ++*count;
+        if (remove_them && unlinkat(dirfd(folder), entry->d_name, 0) != 0) {
+            diagnostic_locate(why, entry->d_name, 0, 0);
+            result = diagnose(why, STATUS_FAILURE, "make the folder writable", "cannot be removed: %s", strerrordesc_np(errno));
+        }
+    }
+    closedir(folder);
+    return result;
+}
+
+static status write_ledger(const char *path, const animate_names *names, const animate_definition *d, diagnostic *why)
+{
+    char hash[32];
+    snprintf(hash, sizeof hash, "%016" PRIx64, d->hash);
+    json_t *ledger = json_pack("{s:s,s:o,s:s,s:O}", "version", CUVETTE_VERSION, "frames", json_of_text(names->pattern), "definition", hash,
+                               "parameters", d->parameters);
+    file_writer file = {0};
+    status result = ledger ? file_writer_open(&file, path, why) : no_memory(why);
+    if (result == STATUS_OK) {
+        result = json_write(file.stream, ledger, why);
+        if (result == STATUS_OK)
+            result = file_writer_commit(&file, why);
+        else
+            file_writer_abandon(&file);
+    }
+    json_decref(ledger);
+    return result;
+}
+
+/* The first parameter in which two films differ; NULL for none. */
+static const char *first_difference(const json_t *there, json_t *here)
+{
+    const char *path;
+    json_t *value;
+    json_object_foreach(here, path, value) {
+        if (!json_equal(json_object_get(there, path), value))
+            return path;
+    }
+    return NULL;
+}
+
+static status refuse_definition(const char *path, const json_t *ledger, const animate_definition *d, diagnostic *why)
+{
+    const json_t *there = json_object_get(ledger, "parameters");
+    const char *differs = first_difference(there, d->parameters);
+    const char *before = differs ? json_string_value(json_object_get(there, differs)) : NULL;
+    char what[320];
+    if (!differs)
+        snprintf(what, sizeof what, "the frames there are of another film: a file of the scene, or what it holds, is another");
+    else if (!before)
+        snprintf(what, sizeof what, "the frames there are of another film, which had no %.96s", differs);
+    else
+        snprintf(what, sizeof what, "the frames there are of another film: %.96s was %.64s and is %.64s", differs, before,
+                 json_string_value(json_object_get(d->parameters, differs)));
+    return refuse(path, why, what);
+}
+
+static status compare(const char *path, const animate_definition *d, diagnostic *why)
+{
+    char *text = NULL, hash[32];
+    size_t size;
+    status result = file_read(path, LEDGER_BYTES_MAX, &text, &size, why);
+    if (result != STATUS_OK)
+        return result;
+    json_t *ledger = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
+    free(text);
+    snprintf(hash, sizeof hash, "%016" PRIx64, d->hash);
+    const char *definition = json_string_value(json_object_get(ledger, "definition"));
+    const char *version = json_string_value(json_object_get(ledger, "version"));
+    char what[160];
+    if (!definition || !version) {
+        result = refuse(path, why, "is no ledger of a film");
+    } else if (strcmp(version, CUVETTE_VERSION) != 0) {
+        snprintf(what, sizeof what, "the frames there are by version %.32s of the program, this is %s", version, CUVETTE_VERSION);
+        result = refuse(path, why, what);
+    } else if (strcmp(definition, hash) != 0) {
+        result = refuse_definition(path, ledger, d, why);
+    }
+    json_decref(ledger);
+    return result;
+}
+
+status animate_ledger_check(const animate_names *names, const animate_definition *d, diagnostic *why)
+{
+    size_t frames = 0;
+    char *path = ledger_path(names);
+    status result = path ? STATUS_OK : no_memory(why);
+    if (path && access(path, F_OK) == 0)
+        result = compare(path, d, why);
+    else if (path)
+        result = each_frame(names, false, &frames, why);
+    if (result == STATUS_OK && frames > 0)
+        result = refuse(names->folder, why, "there are frames of this name without a ledger that says of which film");
+    free(path);
+    return result;
+}
+
+status animate_ledger_begin(const animate_names *names, const animate_definition *d, bool restart, diagnostic *why)
+{
+    size_t frames = 0;
+    char *path = ledger_path(names);
+    status result = path ? file_make_directory(names->folder, why) : no_memory(why);
+    if (result == STATUS_OK && restart)
+        result = each_frame(names, true, &frames, why);
+    if (result == STATUS_OK && (restart || access(path, F_OK) != 0))
+        result = write_ledger(path, names, d, why);
+    free(path);
+    return result;
+}

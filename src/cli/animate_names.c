@@ -1,0 +1,100 @@
+#include "cli/animate.h"
+#include "base/text.h"
+#include "image/image.h"
+#include <ctype.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIGITS_MAX = 18 };
+
+static status wrong(const char *pattern, const char *remedy, const char *what, diagnostic *why)
+{
+    char where[512];
+    snprintf(where, sizeof where, "-o %s", pattern);
+    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+    diagnostic_locate(why, where, 0, 0);
+    return STATUS_BAD_INPUT;
+}
+
+static const char number_form[] = "write one %d, or %05d for five digits; %% stands for a percent sign";
+
+/* The conversion that begins at text, "%d" or "%05d": how long it is, 0 for another one. */
+static size_t conversion_length(const char *text, int *digits)
+{
+    size_t at = 1;
+    *digits = 0;
+    if (text[at] == '0')
+        for (at++; isdigit((unsigned char)text[at]) && *digits <= DIGITS_MAX; at++)
+            *digits = 10 * *digits + (text[at] - '0');
+    bool right = text[at] == 'd' && *digits <= DIGITS_MAX && (at == 1 || *digits > 0);
+    return right ? at + 1 : 0;
+}
+
+/* Cuts name at its number; %% becomes %. */
+static status split(const char *pattern, const char *name, animate_names *out, diagnostic *why)
+{
+    char *part = out->before;
+    for (const char *at = name; *at;) {
+        if (*at != '%' || at[1] == '%') {
+            *part++ = *at;
+            at += *at == '%' ? 2 : 1;
+            continue;
+        }
+        int digits;
+        size_t length = conversion_length(at, &digits);
+        if (length == 0)
+            return wrong(pattern, number_form, "a % that begins no number of a frame", why);
+        if (out->digits >= 0)
+            return wrong(pattern, number_form, "more than one number of a frame", why);
+        out->digits = digits;
+        part = out->after;
+        at += length;
+    }
+    return out->digits >= 0 ? STATUS_OK : wrong(pattern, number_form, "no number of a frame in the name", why);
+}
+
+status animate_names_parse(const char *pattern, animate_names *out, diagnostic *why)
+{
+    const char *slash = strrchr(pattern, '/'), *name = slash ? slash + 1 : pattern;
+    *out = (animate_names){.pattern = pattern, .digits = -1};
+    if (image_format_of(name) == IMAGE_UNKNOWN)
+        return wrong(pattern, "end it in .png, .jpg or .pfm for frames, .y4m for a film", "the ending names no format of pictures or films", why);
+    if (slash && memchr(pattern, '%', (size_t)(slash - pattern)))
+        return wrong(pattern, "number the files, not their folder", "a % in the folder's name", why);
+    out->folder = !slash ? strdup(".") : slash == pattern ? strdup("/") : strndup(pattern, (size_t)(slash - pattern));
+    out->before = calloc(1, strlen(name) + 1);
+    out->after = calloc(1, strlen(name) + 1);
+    if (!out->folder || !out->before || !out->after)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return split(pattern, name, out, why);
+}
+
+void animate_names_release(animate_names *names)
+{
+    free(names->folder);
+    free(names->before);
+    free(names->after);
+    *names = (animate_names){0};
+}
+
+char *animate_name(const animate_names *names, int64_t frame)
+{
+    return text_format("%s/%s%0*" PRId64 "%s", strcmp(names->folder, "/") == 0 ? "" : names->folder, names->before, names->digits, frame,
+                       names->after);
+}
+
+int64_t animate_name_frame(const animate_names *names, const char *name)
+{
+    const size_t before = strlen(names->before), after = strlen(names->after), length = strlen(name);
+    if (length <= before + after || strncmp(name, names->before, before) != 0 || strcmp(name + length - after, names->after) != 0)
+        return -1;
+    const char *digits = name + before;
+    const size_t count = length - before - after;
+    if (count > DIGITS_MAX || count < (size_t)names->digits || strspn(digits, "0123456789") < count)
+        return -1;
+    if (digits[0] == '0' && count > 1 && count > (size_t)names->digits)
+        return -1; /* no number is written so */
+    return strtoll(digits, NULL, 10);
+}

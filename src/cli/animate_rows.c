@@ -1,0 +1,166 @@
+#include "cli/animate_rows.h"
+#include "base/number.h"
+#include "study/csv.h"
+#include "study/rows.h"
+#include "study/table.h"
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct animate_rows {
+    table *file;
+    int64_t *frames; /* that have a row, in order */
+    size_t count;
+};
+
+static void put_config(csv_line *line)
+{
+    char text[ROW_TIME_MAX];
+    csv_text(line, row_build_config(text));
+}
+
+/* A column's name and how it is written stand together, so that header and row cannot part. line; r: the row; c: its ray counts; m: the motion's
+ * report; b: the first slime's account. */
+#define COLUMNS(X) \
+    X("definition", csv_hash(line, r->definition)) \
+    X("frame", csv_count(line, r->frame)) \
+    X("time_s", csv_real(line, r->time_s)) \
+    X("film_hash", csv_hash(line, film_hash(r->result->picture))) \
+    X("wall_s", csv_real(line, r->result->wall_s)) \
+    X("cpu_s", csv_real(line, r->result->cpu_s)) \
+    X("rays_total", csv_count(line, (int64_t)ray_counters_total(c))) \
+    X("triangles", csv_count(line, (int64_t)r->result->meshes.triangles)) \
+    X("steps", csv_count(line, (int64_t)m.steps)) \
+    X("step_s", csv_real(line, m.step_s)) \
+    X("skin_s", csv_real(line, m.skin_s)) \
+    X("refitted", csv_count(line, m.hierarchies.refitted)) \
+    X("rebuilt", csv_count(line, m.hierarchies.rebuilt)) \
+    X("refit_s", csv_real(line, m.hierarchies.refit_s)) \
+    X("build_s", csv_real(line, m.hierarchies.build_s)) \
+    X("growth", csv_real(line, m.hierarchies.growth)) \
+    X("kinetic", csv_real(line, b.kinetic)) \
+    X("elastic", csv_real(line, b.elastic)) \
+    X("compression", csv_real(line, b.compression)) \
+    X("gravity", csv_real(line, b.gravity)) \
+    X("volume", csv_real(line, b.volume)) \
+    X("center_x", csv_real(line, b.center.x)) \
+    X("center_y", csv_real(line, b.center.y)) \
+    X("center_z", csv_real(line, b.center.z)) \
+    X("low", csv_real(line, b.low)) \
+    X("high", csv_real(line, b.high)) \
+    X("speed_max", csv_real(line, b.speed_max)) \
+    X("held", csv_count(line, (int64_t)b.held)) \
+    X("isa", csv_text(line, isa_name(r->level))) \
+    X("config", put_config(line))
+
+static void put_header(csv_line *line)
+{
+#define NAME(name, put) csv_text(line, name);
+    COLUMNS(NAME)
+#undef NAME
+    csv_end(line);
+}
+
+static void put_row(csv_line *line, const animate_row *r)
+{
+    const ray_counters *c = &r->result->counters;
+    const scene_motion_report m = r->moved;
+    const softbody_account b = softbody_measure(r->body);
+#define VALUE(name, put) put;
+    COLUMNS(VALUE)
+#undef VALUE
+    csv_end(line);
+}
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+static status refuse(const char *path, const char *what, diagnostic *why)
+{
+    diagnostic_locate(why, path, 0, 0);
+    return diagnose(why, STATUS_BAD_INPUT, "name another file by --rows, or move this one away", "%s", what);
+}
+
+static bool has_header(const csv *there, const char *header)
+{
+    const size_t size = strlen(header);
+    return there->whole >= size && memcmp(there->raw, header, size) == 0;
+}
+
+static int compare_frames(const void *a, const void *b)
+{
+    const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* What rows there are, all of them of this film. */
+static status take_rows(animate_rows *rows, const char *path, const csv *there, const char *header, uint64_t definition, diagnostic *why)
+{
+    char hash[32];
+    snprintf(hash, sizeof hash, "%016" PRIx64, definition);
+    if (there->whole == 0 && there->size < strlen(header) && memcmp(there->raw, header, there->size) == 0)
+        return STATUS_OK; /* killed while it was made */
+    if (!has_header(there, header))
+        return refuse(path, "has other columns than the rows of a film", why);
+    rows->frames = calloc(there->row_count + 1, sizeof *rows->frames);
+    if (!rows->frames)
+        return no_memory(why);
+    const int frame = csv_column(there, "frame"), of = csv_column(there, "definition");
+    for (size_t i = 0; i < there->row_count; i++) {
+        if (strcmp(csv_field(there, i, of), hash) != 0)
+            return refuse(path, "holds rows of another film", why);
+        if (!number_parse_int(csv_field(there, i, frame), &rows->frames[i]))
+            return refuse(path, "holds a row without a frame's number", why);
+    }
+    rows->count = there->row_count;
+    qsort(rows->frames, rows->count, sizeof *rows->frames, compare_frames);
+    return STATUS_OK;
+}
+
+status animate_rows_open(const char *path, uint64_t definition, animate_rows **out, diagnostic *why)
+{
+    csv_line header = {0};
+    put_header(&header);
+    animate_rows *rows = calloc(1, sizeof *rows);
+    csv *there = NULL;
+    status result = rows && !header.failed ? csv_read(path, &there, why) : no_memory(why);
+    if (result == STATUS_OK && there)
+        result = take_rows(rows, path, there, header.text, definition, why);
+    if (result == STATUS_OK)
+        result = table_open(path, header.text, &rows->file, why);
+    csv_destroy(there);
+    csv_line_free(&header);
+    if (result != STATUS_OK) {
+        animate_rows_close(rows);
+        rows = NULL;
+    }
+    *out = rows;
+    return result;
+}
+
+void animate_rows_close(animate_rows *rows)
+{
+    if (!rows)
+        return;
+    if (rows->file)
+        table_close(rows->file);
+    free(rows->frames);
+    free(rows);
+}
+
+bool animate_rows_have(const animate_rows *rows, int64_t frame)
+{
+    return rows->count > 0 && bsearch(&frame, rows->frames, rows->count, sizeof frame, compare_frames);
+}
+
+status animate_rows_add(animate_rows *rows, const animate_row *row, diagnostic *why)
+{
+    csv_line line = {0};
+    put_row(&line, row);
+    status result = line.failed ? no_memory(why) : table_append(rows->file, line.text, line.size, why);
+    csv_line_free(&line);
+    return result;
+}

@@ -1,0 +1,235 @@
+#!/bin/bash
+# Films: the same frames for any number of threads, and after being stopped; ledger, rows, names of frames, YUV4MPEG2. tests/animate.sh [PROGRAM];
+# needs the compiler (CC) for tests/json_get.c. One line a check ("ok ...", "not ok ...").
+set -uo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
+work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-animate.XXXXXX") || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+unset CUVETTE_ISA NO_COLOR
+export LC_ALL=C
+
+passed=0 failed=0
+verdict() # STATUS WHAT
+{
+    if (($1 == 0)); then
+        passed=$((passed + 1))
+        echo "ok $((passed + failed)) - $2"
+    else
+        failed=$((failed + 1))
+        echo "not ok $((passed + failed)) - $2"
+        sed 's/^/# /' err 2>/dev/null | head -5
+    fi
+}
+check() # WHAT COMMAND...: passes when the command succeeds
+{
+    local what=$1
+    shift
+    "$@" >check.log 2>&1
+    verdict $? "$what"
+}
+animate() # ARGUMENT...: the film of the scene; its results in out, err, code
+{
+    "$program" animate slime.yaml "$@" >out 2>err
+    code=$?
+}
+refused() # WHAT PATTERN ARGUMENT...: exit 2 and one line that matches
+{
+    local what=$1 pattern=$2
+    animate "${@:3}"
+    check "$what" eval '((code == 2)) && [[ ! -s out && $(wc -l <err) == 1 ]] && LC_ALL=C grep -qE -- "$pattern" err'
+}
+is() { [[ $1 == "$2" ]]; }
+done_well() { ((code == 0)) && [[ ! -s err ]]; }
+summary() { grep -q -- "$1" out; }
+frames() { find "$1" -name '*.png' | wc -l; }
+same_frames() { diff <(cd "$1" && sha256sum -- *.png) <(cd "$2" && sha256sum -- *.png); } # FOLDER FOLDER
+
+cat >slime.yaml <<'END'
+render: {width: 64, height: 48, depth: 2}
+camera: {position: [0, 1.5, -6], target: [0, 1, 0]}
+lights:
+  lamp: {position: [4, 7, -5]}
+meshes:
+  toy: {generate: slime, level: 2}
+solids:
+  body: {shape: mesh, mesh: toy, color: [0.3, 0.8, 0.3], diffuse: 0.7, specular: 0.5}
+END
+cat >tug.yaml <<'END'
+title: A tug
+hands:
+  left:
+    - {time_s: 0.1, grab: [0, 1, -6], towards: [0, 0, 1], reach: 0.5}
+    - {time_s: 0.3, move: [-0.6, 0.4, 0]}
+    - {time_s: 0.4, release: on}
+END
+check "tests/json_get.c compiles" bash -c \
+    '"$1" -std=gnu17 -Wall -Werror -o json_get "$2" $(pkg-config --cflags --libs jansson)' - "${CC:-gcc}" "$root/tests/json_get.c"
+
+# --- frames
+animate -o one/%05d.png --duration 0.6
+check "a film succeeds" done_well
+check "it has duration times rate frames, from 0" is "$(cd one && echo *)" "%05d.png.json $(printf '%05d.png ' {0..14} | sed 's/ $//')"
+check "the summary is one line" is "$(wc -l <out)" 1
+check "all were rendered" summary '15 rendered.* 0 kept'
+check "the body moves: no frame is as the next" is "$(sha256sum one/*.png | cut -c1-64 | sort -u | wc -l)" 15
+for threads in 2 7; do
+    animate -o "threads-$threads/%05d.png" --duration 0.6 --set render.threads=$threads --set toy.threads=$threads
+    check "$threads threads make the same frames" same_frames one "threads-$threads"
+done
+"$program" render slime.yaml --set toy.time_s=0.32 -o still.png >/dev/null
+check "a frame is the picture of its moment" cmp still.png one/00008.png
+
+# --- going on
+animate -o part/%05d.png --duration 0.24
+animate -o part/%05d.png --duration 0.6
+check "a film may be made longer" summary '9 rendered.* 6 kept'
+check "its frames are those of the long one" same_frames one part
+rm part/00003.png part/00011.png
+animate -o part/%05d.png --duration 0.6
+check "frames that are missing are rendered" summary '2 rendered.* 13 kept'
+check "and are as they were" same_frames one part
+animate -o part/%05d.png --duration 0.6 --set render.threads=3 --set render.accel=octant
+check "how it is computed does not make another film" summary '0 rendered.* 15 kept'
+
+interrupted() # SIGNAL FRAME: a long film, stopped when that frame is there
+{
+    "$program" animate slime.yaml -o long/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows long.csv >out 2>err &
+    local child=$!
+    until [[ -e long/$2.png ]] || ! kill -0 $child 2>/dev/null; do sleep 0.005; done
+    kill -"$1" $child 2>/dev/null
+    wait $child
+    code=$?
+}
+animate -o calm/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows calm.csv
+check "a film that nobody stops" is "$(frames calm)" 200
+interrupted INT 0010
+check "SIGINT ends it with status 130 and one line" eval '((code == 130)) && [[ $(wc -l <err) == 1 && ! -s out ]]'
+check "some frames are there" eval '(($(frames long) >= 11 && $(frames long) < 200))'
+check "and nothing half made" is "$(find long -type f ! -name '[0-9]*.png' -printf '%f ')" "%04d.png.json "
+interrupted TERM 0060
+check "SIGTERM does too" is $code 130
+animate -o long/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows long.csv
+check "it goes on to the end" done_well
+check "frames are those of the film that nobody stopped" same_frames calm long
+columns='definition|frame|time_s|film_hash|rays_total|triangles|steps|kinetic|elastic|compression|gravity|volume|center_[xyz]|low|high|speed_max|held'
+of_the_film() # FILE: its columns that do not depend on the machine
+{
+    awk -F, -v wanted="^($columns)\$" 'NR == 1 {for (i = 1; i <= NF; i++) take[i] = $i ~ wanted}
+        {for (i = 1; i <= NF; i++) if (take[i]) printf "%s,", $i; print ""}' "$1"
+}
+check "so are the rows, each frame once" diff <(of_the_film calm.csv) <(of_the_film long.csv)
+check "which say something" is "$(of_the_film calm.csv | sed -n 2p | cut -d, -f2,3)" 0,0
+
+# --- the ledger
+refused "frames of another scene are not mixed in" 'toy.level was 2 and is 3; .*--restart' -o part/%05d.png --set toy.level=3
+refused "nor such of another rate" 'fps was 25/1 and is 30/1' -o part/%05d.png --fps 30
+refused "nor such of another script" 'a file of the scene' -o part/%05d.png --script tug.yaml
+refused "nor such of another beginning" 'start was 0 and is 1' -o part/%05d.png --start 1
+check "all that changed nothing" same_frames one part
+sed -i 's/"version": "[^"]*"/"version": "0.0.0"/' part/*.json
+refused "nor such of another version" 'version 0.0.0' -o part/%05d.png
+rm part/*.json
+refused "frames without a ledger are not mixed in" 'part: .*without a ledger' -o part/%05d.png
+touch part/other.png part/123456.png part/1.png part/000012.png part/00012.png.bak
+animate -o part/%05d.png --duration 0.24 --set toy.level=1 --restart
+check "--restart begins anew" summary '6 rendered.* 0 kept'
+check "and removes the film's frames alone" is "$(cd part && echo *)" \
+    "%05d.png.json 00000.png 00001.png 000012.png 00002.png 00003.png 00004.png 00005.png 00012.png.bak 1.png other.png"
+animate -o part/side-%d.png --duration 0.1
+check "two films may share a folder" eval 'done_well && cmp part/side-2.png one/00002.png'
+animate -o "part/50%%-%03d.pfm" --duration 0
+check "a percent sign in a name, and at least one frame" eval 'done_well && [[ -s part/50%-000.pfm && ! -e part/50%-001.pfm ]]'
+
+# --- rows
+refused "rows of another film are not mixed in" 'another film' -o three/%d.png --duration 0.1 --rows calm.csv
+echo a,b >foreign.csv
+refused "nor such of another kind, and nothing is removed for them" 'other columns' -o one/%05d.png --duration 0.1 --rows foreign.csv --restart
+check "the frames are there still" is "$(frames one)" 15
+described()
+{
+    awk '/^## / {on = $0 == "## Rows of a film"} on && /^\| `/' "$root/results/README.md" |
+        sed -n 's/^| \(`[^|]*\) |.*/\1/p' | tr -d '` ' | tr ',' '\n'
+}
+check "results/README.md has the columns" diff <(described) <(head -1 calm.csv | tr , '\n')
+animate -o one/%05d.png --duration 0.6 --rows late.csv
+check "frames without a row are rendered again" eval 'summary "15 rendered.* 0 kept" && [[ $(wc -l <late.csv) == 16 ]]'
+
+# --- scripts
+animate -o tug/%05d.png --script tug.yaml --rows tug.csv
+check "a film with a script is 2 s longer than that" is "$(frames tug)" 60
+animate -o tug-2/%05d.png --set toy.script=tug.yaml --duration 1
+check "--script is script= of the slime" eval 'done_well && cmp tug/00012.png tug-2/00012.png'
+check "the hand changes the picture" eval '! cmp tug/00008.png one/00008.png && cmp tug/00002.png one/00002.png'
+held() { awk -F, -v frame="$1" 'NR == 1 {for (i = 1; i <= NF; i++) if ($i == "held") at = i} $2 == frame {print ($at > 0)}' tug.csv; }
+check "rows say what is held" is "$(held 2)$(held 5)$(held 12)" 010
+mkdir elsewhere && cp slime.yaml elsewhere/
+"$program" animate elsewhere/slime.yaml --script tug.yaml -o elsewhere/%05d.png --duration 0.4 >out 2>err
+check "--script is from the working folder" cmp elsewhere/00009.png tug/00009.png
+refused "a script that is not there" '--script nowhere.yaml: .*No such file' -o three/%d.png --script nowhere.yaml
+refused "one that the scene names" 'nowhere.yaml' -o three/%d.png --set toy.script=nowhere.yaml
+sed 's/grab: \[0, 1, -6\]/grab: [0, 9, -6]/' tug.yaml >miss.yaml
+refused "a grab that misses" 'miss.yaml:4' -o miss/%05d.png --script miss.yaml
+check "leaves the frames before it" eval '(($(frames miss) >= 2 && $(frames miss) <= 4)) && cmp miss/00001.png one/00001.png'
+
+# --- a body that blows up
+refused "a body that blows up" 'toy|slime' -o blown/%05d.png --set toy.stiffness=1e9 --duration 4
+check "leaves the frames before it" eval '(($(frames blown) >= 1 && $(frames blown) < 100))'
+"$program" compare blown/00000.png one/00000.png --json >out 2>err
+check "whole" is "$(./json_get out largest 2>&1)" 0.0
+
+# --- YUV4MPEG2
+animate -o - --duration 0.2 --fps 30000/1001
+check "a film to standard output" done_well
+header='YUV4MPEG2 W64 H48 F30000:1001 Ip A1:1 C420jpeg XCOLORRANGE=LIMITED'
+check "has its header" is "$(head -1 out)" "$header"
+check "and 6 frames of 6 + 64 * 48 * 3 / 2 bytes, nothing else" is "$(stat -c %s out)" $((${#header} + 1 + 6 * (6 + 64 * 48 * 3 / 2)))
+cp out stdout.y4m
+animate -o film.y4m --duration 0.2 --fps 30000/1001
+check "a file has the same bytes" eval 'done_well && cmp film.y4m stdout.y4m'
+animate -o blown.y4m --set toy.stiffness=1e9 --duration 4
+check "a film in one file appears whole or not at all" eval '((code == 2)) && [[ ! -e blown.y4m && -z $(ls -A | grep part$ | grep cuvette) ]]'
+"$program" animate slime.yaml -o - --duration 9 2>err | head -c 6000 >/dev/null
+check "a reader who leaves ends it without words" eval '[[ ${PIPESTATUS[0]} != 0 || ! -s err ]] && [[ ! -s err ]]'
+
+# --- the account
+animate -o one/%05d.png --duration 0.6 --json
+check "--json is one object" eval '[[ $(./json_get out @type) == object && ! -s err ]]'
+check "with frames, kept and rate" is "$(./json_get out frames kept rendered 'fps[]' | tr '\n' ' ')" "15 15 0 25 1 "
+check "0.56 s in steps of 1 ms" is "$(./json_get out steps simulated_s wall_s_mean | tr '\n' ' ')" "560 0.56 null "
+check "and the definition of the rows" is "$(./json_get out definition)" "$(sed -n 2p late.csv | cut -d, -f1)"
+
+# --- wrong command lines
+touch elsewhere/00000.jpg
+for pattern in x.png a%%.png %s.png %n%d.png %x.png '%5d.png' '%-5d.png' '%+d.png' '%lld.png' '%*d.png' '%1$d.png' '%0d.png' '%099d.png' \
+    '%0999999999999d.png' '%d%d.png' '%05d%s.png' '%.3d.png'; do
+    refused "-o $pattern" 'number' -o "$pattern"
+done
+refused "a number in the folder's name" 'folder' -o '%d/a.png'
+for pattern in %d.gif %d '' %d.y4; do
+    refused "no format: -o '$pattern'" 'ending' -o "$pattern"
+done
+refused "rows where nothing may be made" 'without a ledger' -o elsewhere/%05d.jpg --rows new.csv
+check "a film that is refused leaves no rows" eval '[[ ! -e new.csv ]]'
+refused "nothing asked for" 'add -o'
+for rate in 0 -1 1.5 25/0 /1 25/ x 1000001 30/1/2; do
+    refused "--fps $rate" '--fps' -o %d.png --fps="$rate"
+done
+refused "a negative duration" '--duration -1' -o %d.png --duration=-1
+refused "a duration that is no number" '--duration nan' -o %d.png --duration nan
+refused "too many frames" 'too long' -o %d.png --duration 86400 --fps 1000
+refused "too late" 'too long' -o %d.png --duration 10 --start 86399
+refused "--restart of a film in one file" '--restart' -o x.y4m --restart
+refused "film and account to standard output" '--json' -o - --json
+refused "rows that are no .csv" '.csv' -o %d.png --rows rows.txt
+refused "rows into the scene" 'slime.yaml' -o %d.png --rows slime.yaml
+refused "a film in place of a folder that is not there" 'folder' -o nowhere/x.y4m
+"$program" animate "$root/experiments/scenes/rod.yaml" -o %d.png >out 2>err
+code=$?
+check "a scene without a slime" eval '((code == 2)) && [[ $(wc -l <err) == 1 ]] && grep -q "rod.yaml: nothing moves.*generate: slime" err'
+check "wrong command lines leave nothing" is "$(find . -maxdepth 1 -name '*.png' ! -name still.png | wc -l)" 0
+
+echo "$passed passed, $failed failed"
+((failed == 0))
