@@ -160,7 +160,7 @@ static void columns_keep_their_order(void **state)
     header = row_file_header(s, WORKER_ROWS);
     assert_string_equal(
         header, "study,definition,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays_total,"
-                "rays_camera,rays_reflect,rays_refract,rays_shadow,start_s,wall_s,cpu_s,busy_s,waiting_s\n");
+                "rays_camera,rays_reflect,rays_refract,rays_shadow,start_s,wall_s,cpu_s,busy_s,visibility_s,waiting_s\n");
     free(header);
     study_destroy(s);
 }
