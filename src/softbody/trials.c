@@ -1,0 +1,133 @@
+#include "softbody/trials_private.h"
+
+#include <stdlib.h>
+
+/* HLW: Hairer, Lubich, Wanner, "Geometric numerical integration", 2nd edition. */
+static const softbody_trial trial_table[SOFTBODY_TRIAL_COUNT] = {
+    [SPRING_PERIOD] = {"spring.period_s", "s", "two masses on one spring: period; theory 2 pi sqrt(m / 2k) (Goldstein 3.1)", NAN, NAN},
+    [SPRING_PERIOD_DISCRETE] = {"spring.period_discrete_s", "s",
+                                "the same; theory the integrator's own: pi dt / asin(omega dt / 2), implicit 2 pi dt / atan(omega dt) (HLW I.1)", NAN, NAN},
+    [SPRING_DECAY] = {"spring.decay", "", "factor of the swing in one step; theory 1, implicit 1 / sqrt(1 + (omega dt)^2) (HLW I.1)", NAN, NAN},
+    [SPRING_ORDER] = {"spring.order", "", "log2 of the error with dt over that with dt / 2, after a quarter swing; theory 1, verlet 2 (HLW I.1)", NAN, NAN},
+    [FALL_DEPTH] = {"fall.depth", "scene units", "fall of one mass in 1 s (whole steps); theory g t^2 / 2 (Galilei)", NAN, NAN},
+    [FALL_DEPTH_DISCRETE] = {"fall.depth_discrete", "scene units", "the same; theory the integrator's own: g t (t + dt) / 2, verlet g t^2 / 2", NAN, NAN},
+    [BOUNCE_HEIGHT] = {"bounce.height", "scene units", "how high a mass rises again that falls by 1; theory restitution^2 (Newton)", NAN, NAN},
+    [BOUNCE_BODY] = {"bounce.body", "", "how high the toy's centre rises again over its height at rest, of a fall by its radius", NAN, NAN},
+    [ENERGY_DRIFT] = {"energy.drift", "", "free toy without damping, 1 s: largest |E - E0| / E0; theory 0", NAN, NAN},
+    [ENERGY_END] = {"energy.end", "", "the same at its end: E / E0 - 1; theory 0", NAN, NAN},
+    [ENERGY_RISE] = {"energy.rise", "", "free toy with damping, 1 s: largest rise of E from one step to the next, over E0; theory 0", NAN, NAN},
+    [MOMENTUM_DRIFT] = {"momentum.drift", "", "free toy that turns, 1 s: largest change of momentum over the sum of |m v|; theory 0", NAN, NAN},
+    [ANGULAR_MOMENTUM_DRIFT] = {"angular_momentum.drift", "", "the same of angular momentum, over the sum of |m x cross v|; theory 0", NAN, NAN},
+    [VOLUME_DRIFT] = {"volume.drift", "", "toy after 3 s on its floor: volume over that at rest, less 1; theory 0, for a pressure without limit", NAN, NAN},
+    [STABLE_SPRING] = {"stable_dt.spring_s", "s", "largest dt with which the spring's swing does not grow; theory 2 / omega; none for implicit", NAN, NAN},
+    [STABLE_TOY] = {"stable_dt.toy_s", "s", "the same of the free toy, 1000 steps; theory a bound from below (Gershgorin); none for implicit", NAN, NAN},
+    [RATE_SUBSTEPS] = {"rate.substeps", "", "steps that each step is split into, on the floor", NAN, NAN},
+    [RATE_STEP] = {"rate.step_s", "s", "wall time of a step: median of 64", NAN, NAN},
+    [RATE_SIMULATED] = {"rate.simulated_s_per_s", "", "simulated over wall time", NAN, NAN},
+};
+
+status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why)
+{
+    static status (*const all[])(const trials *) = {trials_spring, trials_fall, trials_bounce, trials_free, trials_rest, trials_stable};
+    const trials t = {s, level, out, why};
+    for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++)
+        out->value[i] = trial_table[i];
+    status code = softbody_check(s, why);
+    for (size_t i = 0; i < sizeof all / sizeof all[0] && code == STATUS_OK; i++)
+        code = all[i](&t);
+    return code;
+}
+
+double softbody_trial_error(const softbody_trial *t)
+{
+    return fabs(t->measured - t->theory);
+}
+
+softbody_settings trial_alone(const trials *t)
+{
+    softbody_settings s = *t->set;
+    s.position = s.velocity = s.gravity = vec3_make(0.0, 0.0, 0.0);
+    s.ground = s.adaptive = 0;
+    return s;
+}
+
+double trial_mass_kg(const softbody_settings *s)
+{
+    return s->mass_kg / (double)((INT64_C(10) << 2 * s->level) + 2);
+}
+
+double trial_omega(const softbody_settings *s)
+{
+    return sqrt(s->stiffness / (0.5 * trial_mass_kg(s)));
+}
+
+uint64_t trial_steps(const softbody_settings *s, double time_s)
+{
+    const double steps = fmax(floor(time_s / s->dt_s + 0.5), 1.0);
+    return steps <= TRIAL_STEPS_MAX ? (uint64_t)steps : 0;
+}
+
+status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, diagnostic *why)
+{
+    *held = steps > 0;
+    for (uint64_t i = 0; i < steps; i++) {
+        const status code = softbody_step(b, why);
+        if (code == STATUS_BAD_INPUT) {
+            *held = false;
+            return STATUS_OK;
+        }
+        if (code != STATUS_OK)
+            return code;
+        if (watch && !watch(b, context))
+            break;
+    }
+    return STATUS_OK;
+}
+
+double trial_energy(const softbody *b)
+{
+    const softbody_account a = softbody_measure(b);
+    return a.kinetic + a.elastic + a.compression;
+}
+
+status trial_one_mass(const trials *t, const softbody_settings *s, softbody **out)
+{
+    const double mass_kg = trial_mass_kg(s);
+    const softbody_net net = {.mass_count = 1, .position = &s->position, .mass_kg = &mass_kg};
+    return softbody_create_net(&net, s, t->level, out, t->why);
+}
+
+status trial_swing(const trials *t, const softbody_settings *s, double swing, softbody **out)
+{
+    const double half = 0.5 * (1.0 + swing), mass_kg[2] = {trial_mass_kg(s), trial_mass_kg(s)};
+    const vec3 position[2] = {{-half, 0.0, 0.0}, {half, 0.0, 0.0}};
+    const softbody_spring spring = {{0, 1}, 1.0, s->stiffness, 0.0};
+    const softbody_net net = {.mass_count = 2, .spring_count = 1, .position = position, .mass_kg = mass_kg, .springs = &spring};
+    return softbody_create_net(&net, s, t->level, out, t->why);
+}
+
+swing_state trial_swing_state(const softbody *b, double omega)
+{
+    vec3 at[2], velocity[2];
+    softbody_positions(b, at);
+    softbody_velocities(b, velocity);
+    return (swing_state){at[1].x - at[0].x - 1.0, (velocity[1].x - velocity[0].x) / omega};
+}
+
+status trial_stir(softbody *b, const trial_field *field, diagnostic *why)
+{
+    const size_t count = softbody_mass_count(b);
+    vec3 *at = malloc(count * sizeof *at), *velocity = malloc(count * sizeof *velocity);
+    const bool made = at && velocity;
+    if (made) {
+        softbody_positions(b, at);
+        for (size_t i = 0; i < count; i++) {
+            const vec3 wobble = vec3_scale(vec3_make(at[i].x, -2.0 * at[i].y, at[i].z), field->wobble);
+            velocity[i] = vec3_add(vec3_add(wobble, vec3_cross(field->turn, at[i])), field->drift);
+        }
+        softbody_place(b, at, velocity);
+    }
+    free(at);
+    free(velocity);
+    return made ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory");
+}

@@ -1,0 +1,114 @@
+/* The toy alone in space: what its motion keeps. */
+#include "softbody/trials_private.h"
+
+#include <stdlib.h>
+
+/* A frequency of the whole body, as far as the settings alone say: from all that holds it together, and its mass. */
+static double body_omega(const softbody_settings *s)
+{
+    return sqrt((s->stiffness + s->bending + s->through + s->pressure * s->radius) / s->mass_kg);
+}
+
+static status free_toy(const trials *t, double damping, const trial_field *field, softbody **out)
+{
+    softbody_settings s = trial_alone(t);
+    s.adaptive = t->set->adaptive;
+    s.damping = damping;
+    status code = softbody_create(&s, t->level, out, t->why);
+    return code == STATUS_OK ? trial_stir(*out, field, t->why) : code;
+}
+
+typedef struct energies { double first, before, now, off, rise; } energies;
+
+static bool watch_energy(const softbody *b, void *context)
+{
+    energies *e = context;
+    e->now = trial_energy(b);
+    e->off = fmax(e->off, fabs(e->now - e->first));
+    e->rise = fmax(e->rise, e->now - e->before);
+    e->before = e->now;
+    return true;
+}
+
+/* NaN where it blows up. */
+static status follow_energy(const trials *t, double damping, energies *e)
+{
+    const trial_field field = {.wobble = 0.02 * body_omega(t->set)};
+    softbody *b;
+    bool held = false;
+    status code = free_toy(t, damping, &field, &b);
+    if (code == STATUS_OK) {
+        e->first = e->before = e->now = trial_energy(b);
+        code = trial_run(b, trial_steps(t->set, 1.0), watch_energy, e, &held, t->why);
+    }
+    if (!held)
+        *e = (energies){NAN, NAN, NAN, NAN, NAN};
+    softbody_destroy(b);
+    return code;
+}
+
+typedef struct momenta { softbody_account first; double off, angular_off; } momenta;
+
+static bool watch_momenta(const softbody *b, void *context)
+{
+    momenta *m = context;
+    const softbody_account a = softbody_measure(b);
+    m->off = fmax(m->off, vec3_length(vec3_sub(a.momentum, m->first.momentum)));
+    m->angular_off = fmax(m->angular_off, vec3_length(vec3_sub(a.angular_momentum, m->first.angular_momentum)));
+    return true;
+}
+
+/* Sums over the masses of |v| and |x cross v|. */
+static status sizes_of(const trials *t, const softbody *b, double *speeds, double *moments)
+{
+    const size_t count = softbody_mass_count(b);
+    vec3 *at = malloc(count * sizeof *at), *velocity = malloc(count * sizeof *velocity);
+    const bool made = at && velocity;
+    *speeds = *moments = 0.0;
+    if (made) {
+        softbody_positions(b, at);
+        softbody_velocities(b, velocity);
+    }
+    for (size_t i = 0; made && i < count; i++) {
+        *speeds += vec3_length(velocity[i]);
+        *moments += vec3_length(vec3_cross(at[i], velocity[i]));
+    }
+    free(at);
+    free(velocity);
+    return made ? STATUS_OK : diagnose(t->why, STATUS_FAILURE, "use a lower level", "out of memory");
+}
+
+static status follow_momenta(const trials *t)
+{
+    const double rate = 0.02 * body_omega(t->set), speed = rate * t->set->radius, mass_kg = trial_mass_kg(t->set);
+    const trial_field field = {rate, vec3_make(2.0 * rate, rate, 3.0 * rate), vec3_make(speed, -0.5 * speed, 0.25 * speed)};
+    double speeds = 0.0, moments = 0.0;
+    softbody *b;
+    bool held = false;
+    momenta m = {0};
+    status code = free_toy(t, t->set->damping, &field, &b);
+    if (code == STATUS_OK)
+        code = sizes_of(t, b, &speeds, &moments);
+    if (code == STATUS_OK) {
+        m.first = softbody_measure(b);
+        code = trial_run(b, trial_steps(t->set, 1.0), watch_momenta, &m, &held, t->why);
+    }
+    trial_put(t, MOMENTUM_DRIFT, held ? m.off / (mass_kg * speeds) : NAN, 0.0);
+    trial_put(t, ANGULAR_MOMENTUM_DRIFT, held ? m.angular_off / (mass_kg * moments) : NAN, 0.0);
+    softbody_destroy(b);
+    return code;
+}
+
+status trials_free(const trials *t)
+{
+    if (!(body_omega(t->set) > 0.0))
+        return STATUS_OK;
+    energies kept = {0}, damped = {0};
+    status code = follow_energy(t, 0.0, &kept);
+    if (code == STATUS_OK)
+        code = follow_energy(t, t->set->damping, &damped);
+    trial_put(t, ENERGY_DRIFT, kept.off / kept.first, 0.0);
+    trial_put(t, ENERGY_END, kept.now / kept.first - 1.0, 0.0);
+    trial_put(t, ENERGY_RISE, damped.rise / damped.first, 0.0);
+    return code == STATUS_OK ? follow_momenta(t) : code;
+}
