@@ -236,13 +236,13 @@ studies := $(patsubst experiments/%.study,%,$(wildcard experiments/*.study))
 measured := $(foreach s,$(studies),$(if $(wildcard $(RESULTS)/$(s)/rows.csv),$(s)))
 # What is kept of each cell as a table of its own, all cells of a study one below the other.
 strung = $(patsubst $(RESULTS)/%/images/0000-$(1).tsv,$(RESULTS)/tables/%-$(1).tsv,$(wildcard $(RESULTS)/*/images/0000-$(1).tsv))
-tables: $(measured:%=$(RESULTS)/tables/%.tsv) $(call strung,metrics) $(call strung,curves) ## summarise the rows that are there
+tables: $(measured:%=$(RESULTS)/tables/%.tsv) $(foreach kind,metrics curves motion,$(call strung,$(kind))) ## summarise the rows that are there
 define strung_rule
 $(RESULTS)/tables/%-$(1).tsv: $(RESULTS)/%/images/index.tsv
 	@mkdir -p $$(@D)
 	awk 'NR == 1 || FNR > 1' $(RESULTS)/$$*/images/*-$(1).tsv >$$@
 endef
-$(foreach kind,metrics curves,$(eval $(call strung_rule,$(kind))))
+$(foreach kind,metrics curves motion,$(eval $(call strung_rule,$(kind))))
 .SECONDEXPANSION:
 $(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv experiments/%.study $$(wildcard $(RESULTS)/$$*/compare.csv) | $(build)/cuvette
 	@mkdir -p $(@D)

@@ -81,7 +81,7 @@ try() # COMMAND LINE: its words in said
 # The commands of the tour that are done in a moment. What follows a | may need a program that is not installed.
 while read -r line; do
     try "${line%% | *}"
-done < <(sed -n 's/^    \(cuvette \(render\|params\|media\|trace\|fan\|compare\|realism\|machine\|study list\).*\)/\1/p' "$root/README.md" | sed 's/ *#.*//' |
+done < <(sed -n 's/^    \(cuvette \(render\|params\|media\|trace\|fan\|compare\|realism\|motion\|machine\|study list\).*\)/\1/p' "$root/README.md" | sed 's/ *#.*//' |
     sed "s/ render / render --set=render.width=160 --set=render.height=120 /")
 
 # --- the example study, as it stands: the first block is the file, the second how to run it

@@ -53,10 +53,10 @@ run --version
 check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render animate scene trace fan params media mesh study compare realism machine help; do
+for command in render animate scene trace fan params media mesh study compare realism motion machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render animate scene trace fan params media mesh study compare realism machine "study run" "study list" "study status" "study merge" "study summary"; do
+for command in render animate scene trace fan params media mesh study compare realism motion machine "study run" "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -339,6 +339,26 @@ run realism
 check "realism wants a scene" matches "$code $(<err)" "^2 cuvette: realism: no scene is named; "
 for option in $("$program" realism --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
     check "cuvette.1 explains realism $option" grep -qF -- "${option/--/\\-\\-}" "$page"
+done
+
+# --- motion
+slime=$root/experiments/scenes/slime.yaml
+run motion "$slime" --set toy.level=1
+check "motion succeeds" silent_success
+check "motion names the slime, its integrator and its step" is "$(head -1 out)" "toy: level 1, euler, steps of 0.001 s"
+check "motion has a line a value" is "$(grep -c '^  [a-z_.]* ' out)" 20
+run motion "$slime" --set toy.level=1 --set toy.integrator=implicit --csv
+check "motion --csv has a line a value" is "$(wc -l <out)" 20
+check "what there is none of is NA" grep -q '^toy,stable_dt.spring_s,NA,NA,NA,s,"' out
+run motion "$slime" --set toy.level=1 --json
+check "motion --json" is "$(json schema 'slimes[].name' 'slimes[].integrator')" "$(lines 1 toy euler)"
+check "motion --json has all values" is "$(json 'slimes[].values[].name' | sort -u | wc -l)" 19
+run motion "$scene"
+check "a scene without a slime is refused" matches "$code $(<err)" "^2 cuvette: .*rod.yaml: nothing moves in this scene; "
+run motion "$slime" --json --csv
+check "motion takes JSON or CSV" matches "$code $(<err)" "^2 cuvette: motion: JSON and CSV do not go together"
+for option in $("$program" motion --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
+    check "cuvette.1 explains motion $option" grep -qF -- "${option/--/\\-\\-}" "$page"
 done
 
 # --- one ray, and many

@@ -97,7 +97,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render animate scene trace fan params media mesh study compare realism machine help --help --usage --version
+        _cuvette_words render animate scene trace fan params media mesh study compare realism motion machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -176,12 +176,19 @@ _cuvette()
             _cuvette_files 'yaml|yml'
         fi
         ;;
+    motion)
+        if [[ $current == -* ]]; then
+            _cuvette_words --set --json --csv --help --usage --version
+        else
+            _cuvette_files 'yaml|yml'
+        fi
+        ;;
     machine) _cuvette_words --json --help --usage --version ;;
     help)
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render animate scene trace fan params media mesh study compare realism machine
+            _cuvette_words render animate scene trace fan params media mesh study compare realism motion machine
         fi
         ;;
     esac

@@ -8,7 +8,7 @@
  *   rate.*                        the toy on a floor, all settings
  * Springs, falls and stable_dt.* take steps of dt_s that are not split; the others follow `adaptive`. Hands have no part in it.
  *
- * A body that blows up is an answer here and no error: NaN for what could not be measured then, and where a trial would take more than 100000 steps. All
+ * A body that blows up is an answer here and no error: NaN for what could not be measured then, and where a trial would take more than 300000 steps. All
  * values but rate.step_s and rate.simulated_s_per_s are the same to the bit for any number of threads and any instruction set.
  *
  * Cost, with steps of 1 ms, mostly of some 15000 steps of the toy (implicit: 8000), in seconds of one core:

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-enum { TRIAL_STEPS_MAX = 100000 };
+enum { TRIAL_STEPS_MAX = 300000 };
 
 /* What a trial measures with; out: where its values go. */
 typedef struct trials {

@@ -4,6 +4,7 @@
 #include "render/record.h"
 #include "study/grid.h"
 #include "study/metric_table.h"
+#include "study/motion_table.h"
 #include "study/rows.h"
 #include <fcntl.h>
 #include <stdlib.h>
@@ -21,6 +22,7 @@ typedef enum kept {
     KEPT_TIMELINE,
     KEPT_METRICS,
     KEPT_CURVES,
+    KEPT_MOTION,
     KEPT_COUNT
 } kept;
 
@@ -36,6 +38,7 @@ static bool wanted(const study *s, kept what)
     case KEPT_TIMELINE: return s->keep_timeline;
     case KEPT_METRICS: return s->keep_metrics;
     case KEPT_CURVES: return s->keep_curves;
+    case KEPT_MOTION: return s->keep_motion;
     case KEPT_COUNT: break;
     }
     return false;
@@ -52,7 +55,7 @@ bool study_keeps_files(const study *s)
 static char *kept_path(const char *folder, size_t cell, kept what)
 {
     static const char *const endings[KEPT_COUNT] = {".png",    ".pfm",    "-rays.png",      "-rays.pfm",   "-ns.png",
-                                                    "-ns.pfm", "-timeline.json", "-metrics.tsv", "-curves.tsv"};
+                                                    "-ns.pfm", "-timeline.json", "-metrics.tsv", "-curves.tsv", "-motion.tsv"};
     return text_format("%s/images/%04zu%s", folder, cell, endings[what]);
 }
 
@@ -87,6 +90,7 @@ static status write_kept(const study *s, const kept_cell *c, kept what, const ch
     case KEPT_TIMELINE: return record_timeline(frame, path, why);
     case KEPT_METRICS: return metric_table_write(s, c->cell, c->setting, c->level, path, why);
     case KEPT_CURVES: return curve_table_write(s, c->cell, c->setting, c->level, path, why);
+    case KEPT_MOTION: return motion_table_write(s, c->cell, c->setting, c->level, path, why);
     case KEPT_COUNT: break;
     }
     return STATUS_OK;

@@ -1,10 +1,9 @@
 #include "study/metric_table.h"
 
 #include "base/file.h"
-#include "base/number.h"
 #include "realism/realism.h"
+#include "study/cell_table.h"
 #include "study/grid.h"
-#include "study/rows.h"
 #include <math.h>
 
 static status check_cell(const study *s, size_t cell, diagnostic *why)
@@ -28,38 +27,17 @@ status metric_table_check(const study *s, diagnostic *why)
     return code;
 }
 
-static void put_header(const study *s, FILE *out, const char *rest)
-{
-    const char *path;
-    fputs("study\tcell", out);
-    for (size_t i = 0; (path = study_grid_path(s, i)); i++)
-        fprintf(out, "\t%s", path);
-    fprintf(out, "\t%s\n", rest);
-}
-
-static void put_cell(const study *s, size_t cell, FILE *out)
-{
-    fprintf(out, "%s\t%zu", s->name, cell);
-    grid_put_values(s, cell, out);
-}
-
-static void put_number(FILE *out, double value)
-{
-    char text[NUMBER_TEXT_MAX];
-    fprintf(out, "\t%s", isfinite(value) ? number_format(value, text) : "NA");
-}
-
 static void put_metrics(const study *s, size_t cell, const realism_report *r, FILE *out)
 {
-    put_header(s, out, "metric\tunit\tmeasured\ttheory\terror\ttolerance\tpasses\twhat");
+    cell_table_header(s, "metric\tunit\tmeasured\ttheory\terror\ttolerance\tpasses\twhat", out);
     for (int i = 0; i < r->count; i++) {
         const realism_value *v = &r->value[i];
-        put_cell(s, cell, out);
+        cell_table_begin(s, cell, out);
         fprintf(out, "\t%s\t%s", v->metric, v->unit[0] ? v->unit : "NA");
-        put_number(out, v->measured);
-        put_number(out, v->theory);
-        put_number(out, realism_error(v));
-        put_number(out, v->tolerance);
+        cell_table_number(out, v->measured);
+        cell_table_number(out, v->theory);
+        cell_table_number(out, realism_error(v));
+        cell_table_number(out, v->tolerance);
         fprintf(out, "\t%s\t%s\n", !realism_is_defined(v) ? "NA" : realism_passes(v) ? "1" : "0", v->what);
     }
 }
@@ -82,11 +60,11 @@ static status put_curve(const study *s, size_t cell, const scene *setting, isa l
     realism_points points;
     const status code = realism_trace_curve(setting, level, which, &points, why);
     for (int i = 0; code == STATUS_OK && i < points.count; i++) {
-        put_cell(s, cell, out);
+        cell_table_begin(s, cell, out);
         fprintf(out, "\t%s", realism_curve_name(which));
-        put_number(out, points.at[i].x);
-        put_number(out, points.at[i].measured);
-        put_number(out, points.at[i].theory);
+        cell_table_number(out, points.at[i].x);
+        cell_table_number(out, points.at[i].measured);
+        cell_table_number(out, points.at[i].theory);
         fputc('\n', out);
     }
     return code;
@@ -98,7 +76,7 @@ status curve_table_write(const study *s, size_t cell, const scene *setting, isa 
     status code = file_writer_open(&file, path, why);
     if (code != STATUS_OK)
         return code;
-    put_header(s, file.stream, "curve\tx\tmeasured\ttheory");
+    cell_table_header(s, "curve\tx\tmeasured\ttheory", file.stream);
     for (int which = 0; which < REALISM_CURVE_COUNT && code == STATUS_OK; which++)
         code = put_curve(s, cell, setting, level, (realism_curve)which, file.stream, why);
     if (code == STATUS_OK)

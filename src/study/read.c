@@ -13,7 +13,7 @@
  *   repetitions: 10                  or {min: 6, max: 20, relative_width: 0.02}
  *   warmups: 1
  *   order: {shuffle: on, seed: 1}
- *   keep: {image: on, pfm: off, workers: off, pixel_rays: off, pixel_time: off, timeline: off, metrics: off, curves: off}
+ *   keep: {image: on, pfm: off, workers: off, pixel_rays: off, pixel_time: off, timeline: off, metrics: off, curves: off, motion: off}
  *
  * Every path and value is tried on the scene here, so that a study that was read can be run. */
 #include "base/file.h"
@@ -22,6 +22,7 @@
 #include "study/grid.h"
 #include "study/read_grid.h"
 #include "study/metric_table.h"
+#include "study/motion_table.h"
 #include "study/reference.h"
 #include <libgen.h>
 #include <stdlib.h>
@@ -175,9 +176,9 @@ static status read_order(study *s, const document *d, const node *warmups, const
 
 static status read_keep(study *s, const document *d, const node *n, diagnostic *why)
 {
-    static const char *const keys[] = {"image", "pfm", "workers", "pixel_rays", "pixel_time", "timeline", "metrics", "curves"};
-    bool *const kept[] = {&s->keep_image,      &s->keep_pfm,        &s->keep_workers,
-                          &s->keep_pixel_rays, &s->keep_pixel_time, &s->keep_timeline, &s->keep_metrics, &s->keep_curves};
+    static const char *const keys[] = {"image", "pfm", "workers", "pixel_rays", "pixel_time", "timeline", "metrics", "curves", "motion"};
+    bool *const kept[] = {&s->keep_image,    &s->keep_pfm,     &s->keep_workers, &s->keep_pixel_rays, &s->keep_pixel_time,
+                          &s->keep_timeline, &s->keep_metrics, &s->keep_curves,  &s->keep_motion};
     if (!n)
         return STATUS_OK;
     if (n->kind != NODE_MAP)
@@ -255,6 +256,8 @@ static status read_root(study *s, const document *d, diagnostic *why)
         code = reference_check(s, why);
     if (code == STATUS_OK)
         code = metric_table_check(s, why);
+    if (code == STATUS_OK)
+        code = motion_table_check(s, why);
     if (code == STATUS_OK)
         code = grid_definition(s, &s->definition_hash, why);
     if (code == STATUS_OK)

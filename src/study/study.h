@@ -41,7 +41,7 @@ typedef struct study {
                                          this share of it; 0: always max */
     long warmups;                     /* frames of a cell before its first measured one, in every process */
     bool shuffle; uint64_t seed;
-    bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_timeline, keep_metrics, keep_curves; /* of each cell, once */
+    bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_timeline, keep_metrics, keep_curves, keep_motion; /* of each cell, once */
     char *text, *scene_text;          /* both files, as they were read */
     scene *base;                      /* the scene with the fixed parameters set */
     /* Of what a row means: name, scene, fixed parameters, grid; rows of another definition are not mixed in.
