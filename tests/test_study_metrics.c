@@ -2,6 +2,7 @@
 
 #include "realism/realism.h"
 #include "scene/params.h"
+#include "softbody/trials.h"
 #include "study/csv.h"
 
 static const char vessel_text[] = "study: test\n"
@@ -66,11 +67,63 @@ static void a_scene_without_metrics_is_refused(void **state)
     assert_false(fixture_has(f, "results"));
 }
 
+static const char slime_scene[] =
+    "render: {width: 24, height: 18, depth: 2}\n"
+    "camera: {position: [0, 1, -5], target: [0, 1, 0]}\n"
+    "meshes:\n"
+    "  toy: {generate: slime, level: 0}\n"
+    "  other: {generate: slime, level: 0, integrator: implicit}\n"
+    "  ball: {generate: icosphere}\n"
+    "solids:\n"
+    "  body: {shape: mesh, mesh: toy, diffuse: 1}\n";
+
+/* A line a value of each slime, and none of other meshes; what does not depend on time is what the trials say of the cell's settings. */
+static void motion_lies_beside_the_pictures(void **state)
+{
+    const fixture *f = *state;
+    fixture_write(f, "slime.yaml", slime_scene);
+    study *s = fixture_study(f, "study: test\nscene: slime.yaml\ngrid:\n  - {toy.integrator: [euler, verlet]}\nrepetitions: 1\nwarmups: 0\n"
+                                "keep: {motion: on}\n");
+    assert_int_equal(fixture_run(f, s), 2);
+    char *first = fixture_text(f, "results/test/images/0000-motion.tsv"), *second = fixture_text(f, "results/test/images/0001-motion.tsv");
+    char *index = fixture_text(f, "results/test/images/index.tsv");
+    assert_ptr_equal(strstr(first, "study\tcell\ttoy.integrator\tslime\tname\tunit\tmeasured\ttheory\terror\twhat\n"), first);
+    assert_int_equal(lines_of(first), 2 * SOFTBODY_TRIAL_COUNT + 1);
+    assert_int_equal(fixture_count(first, "test\t0\teuler\ttoy\t"), SOFTBODY_TRIAL_COUNT);
+    assert_int_equal(fixture_count(second, "test\t1\tverlet\ttoy\t"), SOFTBODY_TRIAL_COUNT);
+    assert_int_equal(fixture_count(second, "test\t1\tverlet\tother\t"), SOFTBODY_TRIAL_COUNT);
+    assert_int_equal(fixture_count(second, "\tother\tstable_dt.spring_s\ts\tNA\tNA\tNA\t"), 1);
+    double depth, theory;
+    assert_int_equal(sscanf(strstr(first, "\ttoy\tfall.depth\t"), "\ttoy\tfall.depth\tscene units\t%lf\t%lf\t", &depth, &theory), 2);
+    assert_true(fabs(theory - 4.905) < 1e-12 && fabs(depth - 4.909905) < 1e-12);
+    assert_int_equal(sscanf(strstr(second, "\ttoy\tfall.depth\t"), "\ttoy\tfall.depth\tscene units\t%lf\t", &depth), 1);
+    assert_true(fabs(depth - 4.905) < 1e-12);
+    assert_int_equal(fixture_count(index, "-motion.tsv\t"), 2);
+    assert_int_equal(fixture_run(f, s), 0);
+    free(first), free(second), free(index);
+    study_destroy(s);
+}
+
+static void a_scene_where_nothing_moves_is_refused(void **state)
+{
+    const fixture *f = *state;
+    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    diagnostic why = {0};
+    study *s = NULL;
+    fixture_write(f, "bad.study", "study: bad\nscene: scene.yaml\nkeep: {motion: on}\n");
+    fixture_path(f, "bad.study", path);
+    assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
+    diagnostic_text(&why, said, sizeof said);
+    assert_non_null(strstr(said, "bad.study: motion cannot be kept of cell 0: "));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(metrics_and_curves_lie_beside_the_pictures, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(a_scene_without_metrics_is_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(motion_lies_beside_the_pictures, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_scene_where_nothing_moves_is_refused, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,15 +69,16 @@ uint64_t trial_steps(const softbody_settings *s, double time_s)
 
 status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, diagnostic *why)
 {
+    diagnostic bad = {.what = ""};
     *held = steps > 0;
     for (uint64_t i = 0; i < steps; i++) {
-        const status code = softbody_step(b, why);
+        const status code = softbody_step(b, &bad);
         if (code == STATUS_BAD_INPUT) {
             *held = false;
             return STATUS_OK;
         }
         if (code != STATUS_OK)
-            return code;
+            return diagnose(why, code, bad.remedy, "%s", bad.what);
         if (watch && !watch(b, context))
             break;
     }
