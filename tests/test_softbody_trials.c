@@ -49,7 +49,11 @@ static int make_reports(void **state)
 }
 
 static double measured(const softbody_trial_report *r, const char *name) { return value_of(r, name).measured; }
-static double error(const softbody_trial_report *r, const char *name) { const softbody_trial v = value_of(r, name); return softbody_trial_error(&v); }
+static double error(const softbody_trial_report *r, const char *name)
+{
+    const softbody_trial v = value_of(r, name);
+    return softbody_trial_error(&v);
+}
 
 static double angle_of(const softbody_settings *s)
 {
@@ -64,7 +68,8 @@ static void a_spring_swings_as_its_integrator_says(void **state)
     for (int i = 0; i < 3; i++) {
         const double angle = angle_of(&all.set[i]), period_s = 2.0 * M_PI * all.set[i].dt_s / angle;
         const softbody_trial_report *r = &all.whole[i];
-        const softbody_trial period = value_of(r, "spring.period_s"), own = value_of(r, "spring.period_discrete_s"), decay = value_of(r, "spring.decay");
+        const softbody_trial period = value_of(r, "spring.period_s"), own = value_of(r, "spring.period_discrete_s");
+        const softbody_trial decay = value_of(r, "spring.decay");
         const double first = i == SOFTBODY_IMPLICIT ? angle * angle / 3.0 : -angle * angle / 24.0;
         assert_near(period.theory, period_s, 1e-14 * period_s);
         assert_near(period.measured, period_s * (1.0 + first), pow(angle, 4.0) * period_s);
@@ -74,8 +79,8 @@ static void a_spring_swings_as_its_integrator_says(void **state)
     }
 }
 
-/* A step is 1/64 of a quarter swing, h = 0.025: an error c h^p (1 + d h) shows the order p + d h / (2 log 2), with d of about 1; verlet's next term is
- * h^2. */
+/* A step is 1/64 of a quarter swing, h = 0.025: an error c h^p (1 + d h) shows the order p + d h / (2 log 2), with d of about 1; verlet's next
+ * term is h^2. */
 static void the_order_shows(void **state)
 {
     (void)state;
@@ -133,8 +138,8 @@ static void energy_is_kept_in_the_methods_order(void **state)
 }
 
 /* Forces come in pairs along their springs, and the explicit methods' steps add a multiple of them where the body lies: both momenta stay, but for
- * rounding, 1000 steps of 1e-16. Backward Euler adds forces of where the body will lie at places where it lies now: they have a torque, and angular momentum is kept to
- * the method's order; momentum to the solver's residual of 1e-10. */
+ * rounding, 1000 steps of 1e-16. Backward Euler adds forces of where the body will lie at places where it lies now: they have a torque, and angular
+ * momentum is kept to the method's order; momentum to the solver's residual of 1e-10. */
 static void momenta_stay(void **state)
 {
     (void)state;
@@ -242,8 +247,8 @@ static void what_blows_up_has_no_value(void **state)
     (void)state;
     const softbody_settings s = toy_settings(1, SOFTBODY_EULER, 0.1);
     const softbody_trial_report r = report_of(&s, isa_best());
-    const char *const lost[] = {"spring.period_s", "spring.decay", "bounce.body", "energy.drift", "energy.end", "energy.rise", "momentum.drift", "volume.drift",
-                                "rate.step_s"};
+    const char *const lost[] = {"spring.period_s", "spring.decay",   "bounce.body",  "energy.drift", "energy.end",
+                                "energy.rise",     "momentum.drift", "volume.drift", "rate.step_s"};
     for (size_t i = 0; i < sizeof lost / sizeof lost[0]; i++)
         if (!isnan(measured(&r, lost[i])))
             fail_msg("%s is %g", lost[i], measured(&r, lost[i]));
@@ -261,7 +266,8 @@ static void a_slime_without_forces_is_no_error(void **state)
     s.stiffness = s.bending = s.through = s.pressure = s.damping = 0.0;
     s.gravity = vec3_make(0.0, 0.0, 0.0);
     const softbody_trial_report r = report_of(&s, isa_best());
-    const char *const none[] = {"spring.period_s", "spring.order", "bounce.height", "bounce.body", "energy.drift", "stable_dt.spring_s", "stable_dt.toy_s"};
+    const char *const none[] = {"spring.period_s", "spring.order",       "bounce.height",  "bounce.body",
+                                "energy.drift",    "stable_dt.spring_s", "stable_dt.toy_s"};
     for (size_t i = 0; i < sizeof none / sizeof none[0]; i++)
         assert_true(isnan(measured(&r, none[i])));
     assert_near(measured(&r, "volume.drift"), 0.0, 1e-15);

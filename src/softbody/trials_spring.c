@@ -1,5 +1,5 @@
-/* A spring alone. Along its own line it is linear whatever its swing, so that its motion is that of a recurrence of second order, and the integrators'
- * closed forms hold to rounding. */
+/* A spring alone. Along its own line it is linear whatever its swing, so that its motion is that of a recurrence of second order, and the
+ * integrators' closed forms hold to rounding. */
 #include "softbody/trials_private.h"
 
 enum { SAMPLES = 64 };

@@ -44,8 +44,9 @@ static bool watch_swing(const softbody *b, void *context)
     return !w->grown;
 }
 
-/* Below the limit q^2 + p^2 - omega dt q p stays (verlet: p^2 + (1 - (omega dt / 2)^2) q^2), so a swing grows by at most sqrt(2 / (1 - omega dt / 2)):
- * to a thousandfold only 2e-6 from the limit; beyond it by exp(2 acosh(omega dt / 2)) a step: to that in 1000 steps from 6e-6 on. */
+/* Below the limit q^2 + p^2 - omega dt q p stays (verlet: p^2 + (1 - (omega dt / 2)^2) q^2), so a swing grows by at most
+ * sqrt(2 / (1 - omega dt / 2)): to a thousandfold only 2e-6 from the limit; beyond it by exp(2 acosh(omega dt / 2)) a step: to
+ * that in 1000 steps from 6e-6 on. */
 static status spring_holds(const trials *t, double dt_s, bool *holds)
 {
     softbody_settings s = trial_alone(t);
