@@ -167,7 +167,7 @@ check "params of a scene has its values" grep -q '^liquid.ior  *1\.33 ' out
 run params "$scene" liquid.ior
 check "params of a scene and a path has that one" is "$(tail -n +2 out | cut -d' ' -f1)" liquid.ior
 run params "${scene%/*}/slime.yaml"
-check "params of a scene with a slime has what a slime has" grep -q '^toy.stiffness  *5 ' out
+check "params of a scene with a slime has what a slime has" grep -q '^toy.stiffness  *10 ' out
 run params "${scene%/*}/models.yaml"
 check "and of other meshes it has not" is "$(grep -c stiffness out)" 0
 run params checker
