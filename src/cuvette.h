@@ -1,10 +1,11 @@
 /* Cuvette, the engine: make a scene, turn any of its parameters, render it into your own memory, and send rays of your own
- * through it. This is the only header that a program outside src/ includes; link with `pkg-config --cflags --libs cuvette`.
+ * through it, and take hold of what is soft in it. This is the only header that a program outside src/ includes; link with
+ * `pkg-config --cflags --libs cuvette`.
  *
- * Four handles. A cuvette_scene is a description, as a scene file is. A cuvette_engine is worker threads and their memory; it
+ * Five handles. A cuvette_scene is a description, as a scene file is. A cuvette_engine is worker threads and their memory; it
  * renders scenes, one at a time. A cuvette_frame is what a render leaves: film, ray counts, times. A cuvette_query is a scene made
- * ready for rays of the caller's, as it was at that moment. cuvette(1) is the manual of scenes, parameters and models;
- * `cuvette params` lists every parameter with its range, unit and default.
+ * ready for rays of the caller's, as it was at that moment. A cuvette_motion makes the slimes of a scene move, and has hands.
+ * cuvette(1) is the manual of scenes, parameters and models; `cuvette params` lists every parameter with its range, unit and default.
  *
  * Ownership. What a function whose name ends in _create, _read, _clone or _render hands out is the caller's; the function that ends in
  * _destroy releases it, and takes NULL. Arguments are borrowed for the call alone: the library keeps no pointer to the caller's
@@ -17,7 +18,7 @@
  *
  * Threads. There is no global state: what belongs to different handles may be used by different threads at the same time. Of one
  * scene any number of functions that take it as const may run at the same time, also renders by several engines, but none
- * beside one that changes it; a change while it is being rendered is refused with CUVETTE_BUSY. Of one engine one render
+ * beside one that changes it; a change while it is being rendered is refused with CUVETTE_BUSY. A motion counts as its scene here. Of one engine one render
  * runs at a time (CUVETTE_BUSY); cuvette_engine_cancel may be called from any thread. A frame and a query are never changed
  * once they are made: any number of threads may use them. Callbacks come on the thread that called, and never two at once.
  *
@@ -58,7 +59,7 @@ typedef enum cuvette_status {
     CUVETTE_OK = 0,
     CUVETTE_FAILURE = 1,    /* the machine failed us: memory, disk, threads */
     CUVETTE_BAD_INPUT = 2,  /* a file, a name or a value is wrong */
-    CUVETTE_BUSY = 3,       /* the engine or the scene is in use by a render */
+    CUVETTE_BUSY = 3,       /* the engine or the scene is in use by a render, or the scene by an advance */
     CUVETTE_CANCELLED = 130 /* stopped on request; what was finished is kept */
 } cuvette_status;
 
@@ -86,7 +87,7 @@ CUVETTE_API cuvette_status cuvette_scene_read(const char *path, cuvette_scene **
 /* The same from size bytes of text; name stands for the file in diagnostics, and its folder is where relative paths start. */
 CUVETTE_API cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_t size, cuvette_scene **out, cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_scene_clone(const cuvette_scene *scene, cuvette_scene **out, cuvette_diagnostic *why);
-/* Not while it is being rendered. */
+/* Not while it is being rendered or its slimes advance. */
 CUVETTE_API void cuvette_scene_destroy(cuvette_scene *scene);
 
 /* Checks what single values cannot (as every render does before it begins): shapes, energy, a camera at its own target. */
@@ -369,6 +370,68 @@ CUVETTE_API cuvette_status cuvette_query_camera_ray(const cuvette_query *query, 
 
 /* The index of the solid that is at a point (three numbers), by the rule of priorities, or CUVETTE_OUTSIDE. */
 CUVETTE_API cuvette_status cuvette_query_medium(const cuvette_query *query, const double *point, int32_t *solid, cuvette_diagnostic *why);
+
+/* --- slimes that move ---
+ *
+ * A motion takes all slimes of a scene (meshes of `generate` "slime") from their beginning on, a moment at a time: the scene then is what
+ * it would be with their `time_s` set to that moment, to the bit, unless hands of the caller's took hold of them. What is rendered or queried
+ * is the body as it lies; clones have it so too, a written file says the moment alone.
+ *
+ * The motion and its scene may be released in any order: the scene keeps the bodies as they lie, a motion without its scene answers
+ * CUVETTE_BAD_INPUT. So does, from then on, one whose slime's parameters were set, whose scene lost a mesh or was given another motion, or whose
+ * advance failed. All else of the scene may be changed. While it advances, what uses the motion or changes or renders its scene is
+ * CUVETTE_BUSY, as is an advance during a render; hands may act meanwhile. */
+
+typedef struct cuvette_motion cuvette_motion;
+
+/* Puts the scene's slimes back to their beginning, whatever their time_s. CUVETTE_BAD_INPUT when it has none. */
+CUVETTE_API cuvette_status cuvette_motion_create(cuvette_scene *scene, cuvette_motion **out, cuvette_diagnostic *why);
+/* Not while it advances. */
+CUVETTE_API void cuvette_motion_destroy(cuvette_motion *motion);
+
+/* On to time_s, 0 to 86400, of each slime to the nearest whole number of its steps; not backwards. CUVETTE_BAD_INPUT also when a slime blows up, or a
+ * hand of its script takes hold of nothing. */
+CUVETTE_API cuvette_status cuvette_motion_advance(cuvette_motion *motion, double time_s, cuvette_diagnostic *why);
+
+/* How many slimes move, and the names of their meshes; a name lasts until the scene is changed. 0 and NULL for what is not there. */
+CUVETTE_API size_t cuvette_motion_count(const cuvette_motion *motion);
+CUVETTE_API const char *cuvette_motion_name(const cuvette_motion *motion, size_t index);
+
+/* What became of a slime: of the mesh of that name, or the mesh that the solid of that name shows. Lengths, also in energies (N scene units, where
+ * N is kg scene units / s^2), are in the mesh's frame, which solids scale, turn and move. */
+typedef struct cuvette_slime {
+    size_t size;                       /* sizeof(cuvette_slime) */
+    double time_s;
+    uint64_t steps, substeps;          /* substeps: more than steps where `adaptive` has split them */
+    uint64_t masses, held;             /* held: in hands, the script's too */
+    double kinetic, elastic, compression, gravity; /* energies: of the springs, of the pressure, in the field from y = 0 */
+    double center[3], momentum[3];     /* of mass */
+    double volume, volume_at_rest;
+    double low, high;                  /* smallest and largest y */
+    double speed_max;
+} cuvette_slime;
+CUVETTE_API cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *name, cuvette_slime *out, cuvette_diagnostic *why);
+
+/* Hands. A ray is one of the world (cuvette_query_camera_ray makes one of a pixel); its start says nothing. The name is that of a solid
+ * that shows a slime, or of its mesh: then of whichever visible solid with it the ray meets first. Copies are met too; all of a mesh's move alike.
+ * What else stands in the way is not looked at. */
+
+/* Where the ray meets the slime's skin from outside, and how far that is from its origin; infinite where it misses, *where then is as it was.
+ * where, three numbers, may be NULL. */
+CUVETTE_API cuvette_status cuvette_motion_pick(const cuvette_motion *motion, const char *name, const cuvette_ray *ray, double *where,
+                                               double *distance, cuvette_diagnostic *why);
+
+enum { CUVETTE_NO_HAND = -1 };
+
+/* Takes hold of what lies within reach (scene units, above 0; where a solid scales unequally, of its largest scale) of where the ray meets
+ * the skin, of the nearest mass at least. *hand is the hand's number, from 0, or CUVETTE_NO_HAND where the ray misses. 16 hands at a time
+ * can hold a slime, the script's among them. where as above. */
+CUVETTE_API cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, const cuvette_ray *ray, double reach, int *hand,
+                                               double *where, cuvette_diagnostic *why);
+/* During the next advance the hand goes, in a straight line, to where it took hold plus `by`, three numbers in the world as the solid stood then. */
+CUVETTE_API cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand, const double *by, cuvette_diagnostic *why);
+/* Lets go; the number may then be another hand's. */
+CUVETTE_API cuvette_status cuvette_motion_release(cuvette_motion *motion, int hand, cuvette_diagnostic *why);
 
 #ifdef __cplusplus
 }

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The engine as other programs meet it: installed, found by pkg-config, linked shared and statically, from C and C++; its names, its
-# version; the example program's picture and memory. BUILD names the build folder, CONFIG its configuration.
+# version; the example programs' pictures and memory. BUILD names the build folder, CONFIG its configuration.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 build=${BUILD:-build} config=${CONFIG:-release} cc=${CC:-gcc}
@@ -53,10 +53,8 @@ empty "it asks for no stack that runs code" "$(readelf -lW "$library" | awk '/GN
 empty "it neither prints nor ends the program" \
     "$(nm -D --undefined-only "$library" | awk '{print $2}' | sed 's/@.*//' | grep -x -e exit -e _exit -e abort -e printf -e puts -e putchar -e perror -e stderr)"
 
-# --- the example, in four ways
+# --- the examples, in four ways
 warnings=(-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
-source=experiments/engine/glass_ball.c
-empty "the example has fewer than 100 lines" "$(awk 'END {if (NR >= 100) print NR}' $source)"
 read -ra shared <<<"$(flags --cflags --libs)"
 read -ra static <<<"$(flags --cflags --static --libs)"
 static=("${static[@]/#-lcuvette/-l:libcuvette.a}")
@@ -68,34 +66,46 @@ build_and_run() { # NAME COMPILER FLAG...
     verdict $? "the example builds: $name" "$said"
     said=$({ "$work/$name" >"$work/$name.ppm"; } 2>&1)
     verdict $? "and runs" "$said"
-    grep -o 'film.*preview\|rays:.*' <<<"$said" >"$work/$name.said"
+    grep -o "$what_is_said" <<<"$said" >"$work/$name.said"
 }
-LD_LIBRARY_PATH=$prefix/lib build_and_run shared-c "$cc" -std=c17 $source "${shared[@]}"
-build_and_run static-c "$cc" -std=c17 $source "${static[@]}"
-ways=(shared-c static-c)
-if have "$cxx"; then
-    LD_LIBRARY_PATH=$prefix/lib build_and_run shared-c++ "$cxx" -std=c++17 -x c++ $source "${shared[@]}"
-    build_and_run static-c++ "$cxx" -std=c++17 -x c++ $source "${static[@]}"
-    ways+=(shared-c++ static-c++)
-else
-    skip "the example as C++: no $cxx"
-fi
-empty "the shared one needs libcuvette.so.0, the static one none" \
-    "$(readelf -d "$work/shared-c" | grep -q 'NEEDED.*libcuvette\.so\.0\]' || echo shared; readelf -d "$work/static-c" | grep 'NEEDED.*libcuvette')"
-for way in "${ways[@]:1}"; do
-    empty "$way makes the same picture, film and counts" \
-        "$(cmp "$work/shared-c.ppm" "$work/$way.ppm" 2>&1; diff "$work/shared-c.said" "$work/$way.said")"
-done
-empty "the picture is a PPM of 320 x 240" "$([[ $(head -c 15 "$work/shared-c.ppm" | tr '\n' ' ') == "P6 320 240 255 " && $(wc -c <"$work/shared-c.ppm") == $((15 + 3 * 320 * 240)) ]] || wc -c <"$work/shared-c.ppm")"
-
-if have valgrind; then
+under_valgrind() { # NAME
+    local said
+    if ! have valgrind; then
+        skip "valgrind is not installed"
+        return
+    fi
     said=$(LD_LIBRARY_PATH=$prefix/lib valgrind -q --error-exitcode=9 --leak-check=full --show-leak-kinds=definite,indirect,possible \
-        --errors-for-leak-kinds=definite,indirect,possible "$work/shared-c" 2>&1 >"$work/valgrind.ppm")
+        --errors-for-leak-kinds=definite,indirect,possible "$work/$1" 2>&1 >"$work/valgrind.ppm")
     verdict $? "valgrind finds no fault in it, and no leak" "$(grep '^==' <<<"$said")"
-    empty "and it sees the same picture" "$(cmp "$work/shared-c.ppm" "$work/valgrind.ppm" 2>&1)"
-else
-    skip "valgrind is not installed"
-fi
+    empty "and it sees the same picture" "$(cmp "$work/$1.ppm" "$work/valgrind.ppm" 2>&1)"
+}
+try_example() { # NAME WIDTH HEIGHT WHAT_IS_SAID: what of its words is the same in every run
+    local name=$1 width=$2 height=$3 what_is_said=$4 source=experiments/engine/$1.c way
+    empty "$name has fewer than 100 lines" "$(awk 'END {if (NR >= 100) print NR}' "$source")"
+    LD_LIBRARY_PATH=$prefix/lib build_and_run "$name-shared-c" "$cc" -std=c17 "$source" "${shared[@]}"
+    build_and_run "$name-static-c" "$cc" -std=c17 "$source" "${static[@]}"
+    local ways=(static-c)
+    if have "$cxx"; then
+        LD_LIBRARY_PATH=$prefix/lib build_and_run "$name-shared-c++" "$cxx" -std=c++17 -x c++ "$source" "${shared[@]}"
+        build_and_run "$name-static-c++" "$cxx" -std=c++17 -x c++ "$source" "${static[@]}"
+        ways+=(shared-c++ static-c++)
+    else
+        skip "$name as C++: no $cxx"
+    fi
+    empty "the shared one needs libcuvette.so.0, the static one none" \
+        "$(readelf -d "$work/$name-shared-c" | grep -q 'NEEDED.*libcuvette\.so\.0\]' || echo shared; readelf -d "$work/$name-static-c" | grep 'NEEDED.*libcuvette')"
+    empty "it says what it did" "$([[ -s $work/$name-shared-c.said ]] || echo nothing)"
+    for way in "${ways[@]}"; do
+        empty "$name-$way makes the same picture, films and counts" \
+            "$(cmp "$work/$name-shared-c.ppm" "$work/$name-$way.ppm" 2>&1; diff "$work/$name-shared-c.said" "$work/$name-$way.said")"
+    done
+    local head="P6 $width $height 255 "
+    empty "the picture is a PPM of $width x $height" \
+        "$([[ $(head -c ${#head} "$work/$name-shared-c.ppm" | tr '\n' ' ') == "$head" && $(wc -c <"$work/$name-shared-c.ppm") == $((${#head} + 3 * width * height)) ]] || wc -c <"$work/$name-shared-c.ppm")"
+    under_valgrind "$name-shared-c"
+}
+try_example glass_ball 320 240 'film.*preview\|rays:.*'
+try_example slime 800 120 'film.*'
 
 # --- gone again
 run_make uninstall PREFIX="$prefix"

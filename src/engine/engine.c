@@ -226,11 +226,15 @@ cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene
         return CUVETTE_BUSY;
     }
     cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* every handle was made by us, none is constant */
-    atomic_fetch_add(&held->renders, 1);
+    const cuvette_status begun = engine_begin_render(held, why);
+    if (begun != CUVETTE_OK) {
+        atomic_store(&engine->busy, false);
+        return begun;
+    }
     atomic_store(&engine->cancelled, false);
     cuvette_frame *frame = calloc(1, sizeof *frame);
     const status code = frame ? render_held(engine, held, request, frame, &inner) : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
-    atomic_fetch_sub(&held->renders, 1);
+    engine_end_render(held);
     atomic_store(&engine->busy, false);
     if (out && frame && frame->result)
         *out = frame;

@@ -14,6 +14,9 @@ struct cuvette_scene {
     scene *model;
     pthread_mutex_t loading; /* held while pictures are read; afterwards they are only looked at */
     atomic_int renders;      /* under way */
+    atomic_bool advancing;   /* a motion moves its slimes */
+    atomic_int owners;       /* the handle and the motions made of it: the last one frees this struct, the handle's end the model */
+    uint64_t slimes_changed; /* how often what a motion holds of it has: its slimes, their number, their motion */
 };
 
 struct cuvette_engine {
@@ -41,6 +44,16 @@ status engine_isa(const char *name, isa *out, diagnostic *why);
 /* CUVETTE_OK when the scene may be changed now. */
 cuvette_status engine_may_change(const cuvette_scene *s, cuvette_diagnostic *why);
 
+/* A render and an advance keep each other out: whoever finds the other there goes away with CUVETTE_BUSY. */
+cuvette_status engine_begin_render(cuvette_scene *s, cuvette_diagnostic *why);
+void engine_end_render(cuvette_scene *s);
+cuvette_status engine_begin_advance(cuvette_scene *s, cuvette_diagnostic *why);
+void engine_end_advance(cuvette_scene *s);
+cuvette_status engine_is_advancing(cuvette_diagnostic *why); /* CUVETTE_BUSY, and why */
+
+/* One owner less. */
+void engine_release_scene(cuvette_scene *s);
+
 /* scene_check, beside others that load the scene. */
 status engine_check(const cuvette_scene *s, diagnostic *why);
 
@@ -49,6 +62,13 @@ status engine_load(cuvette_scene *s, diagnostic *why);
 
 /* Takes over the model; destroys it when memory is out. */
 cuvette_status engine_wrap_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why);
+
+/* Copies as much of content, of `known` bytes, as the caller's struct, an older or a newer one, has room for; its own size, with which both
+ * begin, stays. */
+cuvette_status engine_give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why);
+
+/* d / |d|, without over- or underflow on the way; a unit vector but for rounding stays as it is, to the bit. */
+vec3 engine_unit(const double *d);
 
 /* Copies text, which it frees, into the caller's memory. */
 cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why);

@@ -79,20 +79,6 @@ cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path,
     return engine_report(code, &inner, why);
 }
 
-/* Copies as much as the caller's struct, an older or a newer one, has room for; its own size stays. */
-static cuvette_status give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why)
-{
-    diagnostic inner = {.line = 0};
-    size_t size;
-    memcpy(&size, out, sizeof size);
-    if (size <= sizeof size || size > 65536)
-        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "set its size to the sizeof of its type before the call",
-                                      "the struct to be filled in says that it has %zu bytes", size), &inner, why);
-    memset((char *)out + sizeof size, 0, size - sizeof size);
-    memcpy((char *)out + sizeof size, (const char *)content + sizeof size, (size < known ? size : known) - sizeof size);
-    return CUVETTE_OK;
-}
-
 _Static_assert(sizeof(((cuvette_counters *)0)->by_depth) == sizeof(((ray_counters *)0)->by_depth), "as many depths");
 
 cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counters *out, cuvette_diagnostic *why)
@@ -107,7 +93,7 @@ cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counte
         told.cut_weight_throughput[i] = (double)c->cut_weight_throughput[i] / COUNTERS_CUT_ONE;
     }
     memcpy(told.by_depth, c->by_depth, sizeof told.by_depth);
-    return give_struct(&told, sizeof told, out, why);
+    return engine_give_struct(&told, sizeof told, out, why);
 }
 
 cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t index, cuvette_solid_counters *out, cuvette_diagnostic *why)
@@ -120,7 +106,7 @@ cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t i
                                       frame->solid_count), &inner, why);
     const ray_counters *c = &frame->result->counters;
     const cuvette_solid_counters told = {.tests = c->tests[index], .hits = c->hits[index], .first_hits = c->first_hits[index]};
-    return give_struct(&told, sizeof told, out, why);
+    return engine_give_struct(&told, sizeof told, out, why);
 }
 
 cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_statistics *out, cuvette_diagnostic *why)
@@ -130,5 +116,5 @@ cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_stat
     const render_result *r = frame->result;
     const cuvette_statistics told = {.wall_s = r->wall_s, .cpu_s = r->cpu_s, .preview_s = frame->preview_s, .threads = r->worker_count,
                                      .noise_rms = render_noise_rms(r)};
-    return give_struct(&told, sizeof told, out, why);
+    return engine_give_struct(&told, sizeof told, out, why);
 }

@@ -42,7 +42,10 @@ cuvette_status cuvette_scene_remove(cuvette_scene *s, const char *name, cuvette_
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     diagnostic inner = {.line = 0};
-    return engine_report(scene_remove(s->model, name, &inner), &inner, why);
+    const size_t meshes = s->model->mesh_count;
+    const status code = scene_remove(s->model, name, &inner);
+    s->slimes_changed += s->model->mesh_count != meshes; /* those behind it have other places now */
+    return engine_report(code, &inner, why);
 }
 
 cuvette_status cuvette_scene_rename(cuvette_scene *s, const char *name, const char *new_name, cuvette_diagnostic *why)

@@ -8,13 +8,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool is_slime(const scene *s, const char *path)
+{
+    place at;
+    return place_find(s, path, &at, NULL) == STATUS_OK && at.group == PARAM_MESH && s->meshes[at.index].source == MESH_SLIME;
+}
+
 cuvette_status cuvette_scene_set(cuvette_scene *s, const char *path, const char *value, cuvette_diagnostic *why)
 {
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(path, why);
     ENGINE_NEED(value, why);
     diagnostic inner = {.line = 0};
-    return engine_report(scene_set(s->model, path, value, &inner), &inner, why);
+    const bool was_slime = is_slime(s->model, path);
+    const status code = scene_set(s->model, path, value, &inner);
+    if (code == STATUS_OK && (was_slime || is_slime(s->model, path))) /* also one that has only now become one, or ceased to be one */
+        s->slimes_changed++;
+    return engine_report(code, &inner, why);
 }
 
 cuvette_status cuvette_scene_set_double(cuvette_scene *s, const char *path, double value, cuvette_diagnostic *why)

@@ -50,8 +50,7 @@ static status check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnos
     return STATUS_OK;
 }
 
-/* d / |d|, without over- or underflow on the way; a unit vector but for rounding stays as it is, to the bit. */
-static vec3 unit_of(const double *d)
+vec3 engine_unit(const double *d)
 {
     const vec3 v = vec3_make(d[0], d[1], d[2]);
     if (fabs(vec3_dot(v, v) - 1.0) <= 0x1p-50)
@@ -62,7 +61,7 @@ static vec3 unit_of(const double *d)
 
 static void put_ray(const cuvette_query *q, bench *b, int column, const cuvette_ray *ray, double length)
 {
-    const vec3 origin = vec3_make(ray->origin[0], ray->origin[1], ray->origin[2]), d = vec3_scale(unit_of(ray->direction), length);
+    const vec3 origin = vec3_make(ray->origin[0], ray->origin[1], ray->origin[2]), d = vec3_scale(engine_unit(ray->direction), length);
     b->ox[column] = origin.x, b->oy[column] = origin.y, b->oz[column] = origin.z;
     b->dx[column] = d.x, b->dy[column] = d.y, b->dz[column] = d.z;
     b->start[column] = ray->start.word[0] ? (int64_t)ray->start.word[1] : FACE_NONE;

@@ -16,6 +16,7 @@ cuvette_status engine_wrap_scene(scene *model, cuvette_scene **out, cuvette_diag
         return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
     }
     s->model = model;
+    atomic_init(&s->owners, 1);
     *out = s;
     return CUVETTE_OK;
 }
@@ -69,23 +70,73 @@ cuvette_status cuvette_scene_clone(const cuvette_scene *s, cuvette_scene **out, 
     return engine_wrap_scene(model, out, why);
 }
 
+void engine_release_scene(cuvette_scene *s)
+{
+    if (atomic_fetch_sub(&s->owners, 1) > 1)
+        return;
+    pthread_mutex_destroy(&s->loading);
+    free(s);
+}
+
 void cuvette_scene_destroy(cuvette_scene *s)
 {
     if (!s)
         return;
-    pthread_mutex_destroy(&s->loading);
     scene_destroy(s->model);
-    free(s);
+    s->model = NULL; /* its motions find out */
+    engine_release_scene(s);
+}
+
+static cuvette_status busy(const char *remedy, const char *what, cuvette_diagnostic *why)
+{
+    diagnostic inner = {.line = 0};
+    engine_report(diagnose(&inner, STATUS_BAD_INPUT, remedy, "%s", what), &inner, why);
+    return CUVETTE_BUSY;
+}
+
+static cuvette_status is_rendered(cuvette_diagnostic *why)
+{
+    return busy("wait for the render to end, cancel it, or change a clone", "the scene is being rendered", why);
+}
+
+cuvette_status engine_is_advancing(cuvette_diagnostic *why)
+{
+    return busy("wait for cuvette_motion_advance to return", "the scene's slimes are being moved", why);
 }
 
 cuvette_status engine_may_change(const cuvette_scene *s, cuvette_diagnostic *why)
 {
+    return atomic_load(&s->renders) > 0 ? is_rendered(why) : atomic_load(&s->advancing) ? engine_is_advancing(why) : CUVETTE_OK;
+}
+
+/* Each says that it is there before it looks for the other: of two that begin at once at least one sees the other. */
+cuvette_status engine_begin_render(cuvette_scene *s, cuvette_diagnostic *why)
+{
+    atomic_fetch_add(&s->renders, 1);
+    if (!atomic_load(&s->advancing))
+        return CUVETTE_OK;
+    engine_end_render(s);
+    return engine_is_advancing(why);
+}
+
+void engine_end_render(cuvette_scene *s)
+{
+    atomic_fetch_sub(&s->renders, 1);
+}
+
+cuvette_status engine_begin_advance(cuvette_scene *s, cuvette_diagnostic *why)
+{
+    if (atomic_exchange(&s->advancing, true))
+        return engine_is_advancing(why);
     if (atomic_load(&s->renders) == 0)
         return CUVETTE_OK;
-    diagnostic inner = {.line = 0};
-    engine_report(diagnose(&inner, STATUS_BAD_INPUT, "wait for the render to end, cancel it, or change a clone", "the scene is being rendered"),
-                  &inner, why);
-    return CUVETTE_BUSY;
+    engine_end_advance(s);
+    return is_rendered(why);
+}
+
+void engine_end_advance(cuvette_scene *s)
+{
+    atomic_store(&s->advancing, false);
 }
 
 status engine_load(cuvette_scene *s, diagnostic *why)

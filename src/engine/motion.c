@@ -1,0 +1,181 @@
+/* Motions: the slimes of a scene from their beginning on, as far as the scene stays the one that they were made of. */
+#include "engine/motion_private.h"
+
+#include "scene/params_path.h"
+#include "scene/slime.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const double time_max_s = 86400; /* of the parameter time_s, which the scene has afterwards */
+
+void cuvette_motion_destroy(cuvette_motion *motion)
+{
+    if (!motion)
+        return;
+    scene_motion_destroy(motion->bodies); /* looks at no scene, which may be gone */
+    engine_release_scene(motion->of);
+    free(motion->hands);
+    free(motion);
+}
+
+/* The scene is held. */
+static status begin(cuvette_motion *m, diagnostic *why)
+{
+    m->of->slimes_changed++; /* ends the motion before this one, whose skins these would be */
+    m->slimes_changed = m->of->slimes_changed;
+    pthread_mutex_lock(&m->of->loading);
+    status code = scene_check(m->of->model, why);
+    if (code == STATUS_OK)
+        code = scene_motion_create(m->of->model, &m->bodies, why);
+    pthread_mutex_unlock(&m->of->loading);
+    if (code != STATUS_OK)
+        return code;
+    m->hands = calloc(scene_motion_count(m->bodies) * SOFTBODY_HANDS_MAX, sizeof *m->hands);
+    return m->hands ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+cuvette_status cuvette_motion_create(cuvette_scene *s, cuvette_motion **out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(out, why);
+    *out = NULL;
+    ENGINE_NEED_SCENE(s, why);
+    const cuvette_status held = engine_begin_advance(s, why);
+    if (held != CUVETTE_OK)
+        return held;
+    diagnostic inner = {.line = 0};
+    cuvette_motion *m = calloc(1, sizeof *m);
+    status code = m ? STATUS_OK : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
+    if (m) {
+        m->of = s;
+        atomic_fetch_add(&s->owners, 1);
+        code = begin(m, &inner);
+    }
+    engine_end_advance(s);
+    if (code != STATUS_OK) {
+        cuvette_motion_destroy(m);
+        return engine_report(code, &inner, why);
+    }
+    *out = m;
+    return CUVETTE_OK;
+}
+
+static status check_alive(const cuvette_motion *m, diagnostic *why)
+{
+    static const char remedy[] = "destroy it, and make another one";
+    if (!m->of->model)
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "the motion's scene is destroyed");
+    if (m->of->slimes_changed != m->slimes_changed)
+        return diagnose(why, STATUS_BAD_INPUT, remedy,
+                        "the scene's slimes are no longer the motion's: one was changed, a mesh removed, or another motion made");
+    if (m->failed)
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "the motion ended when an advance failed");
+    return STATUS_OK;
+}
+
+cuvette_status motion_is_alive(const cuvette_motion *m, cuvette_diagnostic *why)
+{
+    diagnostic inner = {.line = 0};
+    return atomic_load(&m->of->advancing) ? engine_is_advancing(why) : engine_report(check_alive(m, &inner), &inner, why);
+}
+
+/* What can be seen before a body has moved: the motion goes on when it is refused. */
+static status check_time(const cuvette_motion *m, double time_s, diagnostic *why)
+{
+    if (!(time_s >= m->time_s && time_s <= time_max_s))
+        return diagnose(why, STATUS_BAD_INPUT, "give a time from its last one to 86400 s, or make another motion",
+                        "the motion cannot go from %g s to %g s", m->time_s, time_s);
+    status code = STATUS_OK;
+    for (size_t i = 0; i < scene_motion_count(m->bodies) && code == STATUS_OK; i++) {
+        mesh_entry then = m->of->model->meshes[scene_motion_mesh(m->bodies, i)];
+        then.time_s = time_s;
+        code = slime_check(&then, why);
+    }
+    return code;
+}
+
+static status advance(cuvette_motion *m, double time_s, diagnostic *why)
+{
+    status code = STATUS_OK;
+    pthread_mutex_lock(&m->of->loading);
+    for (size_t i = 0; i < scene_motion_count(m->bodies) && code == STATUS_OK; i++)
+        code = motion_step_held(m, i, time_s, why);
+    if (code == STATUS_OK)
+        code = scene_motion_advance(m->bodies, time_s, true, why);
+    pthread_mutex_unlock(&m->of->loading);
+    m->failed = code != STATUS_OK;
+    m->time_s = time_s;
+    return code;
+}
+
+cuvette_status cuvette_motion_advance(cuvette_motion *motion, double time_s, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(motion, why);
+    const cuvette_status held = engine_begin_advance(motion->of, why);
+    if (held != CUVETTE_OK)
+        return held;
+    diagnostic inner = {.line = 0};
+    status code = check_alive(motion, &inner);
+    if (code == STATUS_OK)
+        code = check_time(motion, time_s, &inner);
+    if (code == STATUS_OK)
+        code = advance(motion, time_s, &inner);
+    engine_end_advance(motion->of);
+    return engine_report(code, &inner, why);
+}
+
+size_t cuvette_motion_count(const cuvette_motion *motion)
+{
+    return motion && motion_is_alive(motion, NULL) == CUVETTE_OK ? scene_motion_count(motion->bodies) : 0;
+}
+
+const char *cuvette_motion_name(const cuvette_motion *motion, size_t index)
+{
+    return index < cuvette_motion_count(motion) ? motion->of->model->meshes[scene_motion_mesh(motion->bodies, index)].name : NULL;
+}
+
+status motion_find(const cuvette_motion *m, const char *name, size_t *index, int *solid_or_none, diagnostic *why)
+{
+    const scene *s = m->of->model;
+    place at;
+    const status code = place_find_object(s, name, &at, why);
+    if (code != STATUS_OK)
+        return code;
+    const bool is_solid = at.group == PARAM_SOLID && s->solids[at.index].shape.kind == SHAPE_MESH;
+    const char *mesh_name = is_solid ? s->solids[at.index].mesh : name;
+    *solid_or_none = is_solid ? (int)at.index : -1;
+    for (size_t i = 0; (is_solid || at.group == PARAM_MESH) && i < scene_motion_count(m->bodies); i++)
+        if (strcmp(s->meshes[scene_motion_mesh(m->bodies, i)].name, mesh_name) == 0) {
+            *index = i;
+            return STATUS_OK;
+        }
+    return diagnose(why, STATUS_BAD_INPUT, "name a slime's mesh, or a solid that shows one", "%.80s is no slime", name);
+}
+
+static void put_vector(vec3 v, double *out)
+{
+    out[0] = v.x, out[1] = v.y, out[2] = v.z;
+}
+
+cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *name, cuvette_slime *out, cuvette_diagnostic *why)
+{
+    ENGINE_NEED(motion, why);
+    ENGINE_NEED(name, why);
+    ENGINE_NEED(out, why);
+    const cuvette_status alive = motion_is_alive(motion, why);
+    if (alive != CUVETTE_OK)
+        return alive;
+    diagnostic inner = {.line = 0};
+    size_t i;
+    int unused;
+    const status code = motion_find(motion, name, &i, &unused, &inner);
+    if (code != STATUS_OK)
+        return engine_report(code, &inner, why);
+    const softbody *body = scene_motion_body(motion->bodies, i);
+    const softbody_account a = softbody_measure(body);
+    cuvette_slime told = {.time_s = a.time_s, .steps = a.steps, .substeps = a.substeps, .masses = softbody_mass_count(body), .held = a.held,
+                          .kinetic = a.kinetic, .elastic = a.elastic, .compression = a.compression, .gravity = a.gravity, .volume = a.volume,
+                          .volume_at_rest = a.volume_at_rest, .low = a.low, .high = a.high, .speed_max = a.speed_max};
+    put_vector(a.center, told.center);
+    put_vector(a.momentum, told.momentum);
+    return engine_give_struct(&told, sizeof told, out, why);
+}
