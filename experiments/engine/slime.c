@@ -10,11 +10,10 @@ enum { WIDTH = 160, HEIGHT = 120, FRAMES = 5, ROW = 3 * WIDTH * FRAMES };
 
 static const char *const settings[][2] = {
     {"render.width", "160"},        {"render.height", "120"},     {"render.depth", "6"},            {"render.threads", "2"},
-    {"camera.position", "0,2,-6"},  {"camera.target", "0,0.9,0"}, {"background.color", "0.5,0.7,0.9"},
-    {"lamp.position", "4,7,-5"},    {"ground.checker", "0.5"},    {"ground.checker_color", "0.25,0.3,0.35"},
-    {"toy.generate", "slime"},      {"toy.level", "3"},           {"toy.dt_s", "0.002"},
-    {"body.mesh", "toy"},           {"body.priority", "1"},       {"body.transparency", "0.9"},     {"body.absorb_per_m", "2.2,0.25,1.8"},
-    {"body.ior", "1.2"},            {"body.specular", "0.7"},     {"body.shininess", "120"},
+    {"camera.position", "0,2,-6"},  {"camera.target", "0,0.9,0"}, {"background.color", "0.5,0.7,0.9"}, {"ground.ambient", "0.1"},
+    {"lamp.position", "4,7,-5"},    {"ground.checker", "0.5"},    {"ground.diffuse", "0.8"},       {"ground.checker_color", "0.25,0.3,0.35"},
+    {"toy.generate", "slime"},      {"toy.level", "3"},           {"toy.dt_s", "0.002"},            {"body.mesh", "toy"},
+    {"body.priority", "1"},         {"body.ior", "1.2"},          {"body.transparency", "0.9"},     {"body.absorb_per_m", "2.2,0.25,1.8"},
 };
 
 /* Ends the program with the library's own words. */
