@@ -190,6 +190,7 @@ static void speeds_that_no_body_has_are_named(void **state)
     assert_non_null(strstr(why.what, step));
     assert_non_null(strstr(why.what, "speed of mass"));
     assert_non_null(strstr(why.remedy, "adaptive"));
+    assert_int_equal(softbody_step(b, NULL), STATUS_BAD_INPUT); /* and it stays so */
     free(at);
     free(v);
     softbody_destroy(b);

@@ -178,7 +178,7 @@ static status advance_one(scene_motion *m, moving_slime *one, double time_s, boo
         m->last.skin_s += clock_wall_s() - begun_s;
     }
     if (code == STATUS_OK) {
-        take_account(m, one, time_s);
+        take_account(m, one, time_s > entry->time_s ? time_s : entry->time_s); /* it does not go back */
         m->last.steps += entry->account.steps - one->steps;
         one->steps = entry->account.steps;
     }

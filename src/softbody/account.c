@@ -1,6 +1,8 @@
 /* What a body comes to: energies, momenta, volume; and its masses for who looks at them. Not of the steps' own code, so that it can judge them. */
 #include "softbody/softbody_private.h"
 
+#include <string.h>
+
 static double elastic_energy(const softbody *b)
 {
     double sum = 0.0;
@@ -86,4 +88,5 @@ void softbody_place(softbody *b, const vec3 *positions, const vec3 *velocities)
         vectors_put(b->velocity, i, velocities[i]);
     }
     b->has_acceleration = false;
+    memset(b->bad, 0, softbody_chunks(b) * sizeof *b->bad);
 }

@@ -84,7 +84,7 @@ status softbody_create_net(const softbody_net *net, const softbody_settings *s, 
 void softbody_follow(softbody *b, const hand_script *script);
 
 /* One step of dt_s. STATUS_BAD_INPUT when the body blows up (the diagnostic says at which step, which vertex and which quantity; the
- * body is of no more use), and where a hand of the script takes hold of nothing (located in the script). */
+ * body then stays as it is), and where a hand of the script takes hold of nothing (located in the script). */
 status softbody_step(softbody *b, diagnostic *why);
 
 /* Steps until the time nearest to time_s that is a whole number of steps; nothing when that has been. */
@@ -119,7 +119,7 @@ size_t softbody_mass_count(const softbody *b);
 size_t softbody_spring_count(const softbody *b);
 void softbody_positions(const softbody *b, vec3 *out);
 void softbody_velocities(const softbody *b, vec3 *out);
-/* Puts the masses elsewhere and gives them speeds; lengths at rest and time stay. */
+/* Puts the masses elsewhere and gives them speeds; lengths at rest and time stay. A body that blew up is good again then. */
 void softbody_place(softbody *b, const vec3 *positions, const vec3 *velocities);
 
 /* A dt_s that euler is stable with near rest: 2 / omega without damping, where omega^2 is at most twice the largest sum of a mass's springs' k over it

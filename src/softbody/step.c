@@ -191,6 +191,8 @@ static status blown(const softbody *b, diagnostic *why)
 
 status softbody_step(softbody *b, diagnostic *why)
 {
+    if (any_bad(b)) /* before this step; it has not come together since */
+        return blown(b, why);
     status code = softbody_play(b, why);
     if (code != STATUS_OK)
         return code;
