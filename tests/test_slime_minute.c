@@ -1,5 +1,5 @@
 /* A minute of the default toy, with the recorded grab of experiments/scenes/tug.yaml: it rests, is drawn out, let go, and comes back. Under its own
- * weight the toy is no sphere but a drop on a floor, so "back" is the shape in which it lay before the hand came; without weight it is the sphere. */
+ * weight the toy is no sphere but a drop on a floor, so "back" is the shape of one that no hand has touched; without weight it is the sphere. */
 #include "scene/script.h"
 #include "softbody_fixture.h"
 
@@ -48,7 +48,7 @@ static softbody *after_a_minute(const softbody_settings *s, extent *before, exte
     hand_script *script = recorded_grab();
     softbody *b = toy_of(s);
     diagnostic why = {.what = ""};
-    softbody_follow(b, script);
+    assert_int_equal(softbody_follow(b, script, NULL), STATUS_OK);
     for (double t = 1.0; t <= 60.0; t += 1.0) {
         const status code = softbody_advance(b, t, &why);
         assert_string_equal(why.what, "");

@@ -85,7 +85,7 @@ static mesh *skin_of(const mesh_entry *m, const hand_script *script, softbody_ac
     diagnostic why = {0};
     worked(softbody_create(&settings, isa_best(), &b, &why), &why);
     if (script)
-        softbody_follow(b, script);
+        assert_int_equal(softbody_follow(b, script, NULL), STATUS_OK);
     worked(softbody_advance(b, m->time_s, &why), &why);
     worked(softbody_skin(b, &skin, &why), &why);
     *account = softbody_measure(b);

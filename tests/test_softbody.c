@@ -137,6 +137,23 @@ static void friction_stops_a_mass(void **state)
     softbody_destroy(b);
 }
 
+/* Coulomb's impulse goes with all of the speed that the floor turns round, (1 + e) v: a mass that strikes it aslant loses mu (1 + e) v along it. */
+static void a_bounce_rubs_by_its_whole_turn(void **state)
+{
+    (void)state;
+    softbody_settings s = settings_in_space(SOFTBODY_EULER, 1e-4);
+    s.ground = 1;
+    s.friction = 0.2;
+    s.restitution = 0.5;
+    softbody *b = point_at(vec3_make(0.0, 0.0005, 0.0), vec3_make(3.0, -2.0, 0.0), &s);
+    vec3 v;
+    steps_of(b, 10);
+    softbody_velocities(b, &v);
+    assert_near(v.y, 1.0, 1e-15);
+    assert_near(v.x, 3.0 - 0.2 * 1.5 * 2.0, 1e-14);
+    softbody_destroy(b);
+}
+
 /* Dampers alone: what they take they do not give back, at any step that is stable. */
 static void damping_never_adds_energy(void **state)
 {
@@ -219,6 +236,76 @@ static void stiff_springs_hold_when_they_are_helped(void **state)
     }
 }
 
+/* A damper's rate gamma holds semi-implicit Euler to gamma dt < 2 and Verlet, which guesses the velocity, to gamma dt < 1: split steps stay under both. */
+static void split_steps_hold_strong_dampers(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        softbody_settings s = settings_in_space(i == 0 ? SOFTBODY_EULER : SOFTBODY_VERLET, 1e-3);
+        s.adaptive = 1;
+        softbody *b = pair_of(1.0, 1.0, 1.0, 890.0, 0.001, &s);
+        vec3 at[2], v[2] = {{-0.001, 0.0, 0.0}, {0.001, 0.0, 0.0}};
+        softbody_positions(b, at);
+        softbody_place(b, at, v);
+        steps_of(b, 500);
+        assert_true(softbody_measure(b).kinetic < 1e-6);
+        softbody_destroy(b);
+    }
+}
+
+/* Backward Euler of springs that are pushed to half their length, and of a pressure a thousand times as stiff as the toy's: energy only falls. */
+static void backward_euler_holds_what_is_pushed_together(void **state)
+{
+    (void)state;
+    softbody_settings s = settings_in_space(SOFTBODY_IMPLICIT, 0.02);
+    s.level = 2;
+    s.stiffness = 1e4;
+    s.pressure = 3e5;
+    softbody *b = toy_of(&s);
+    vec3 at[162], v[162] = {{0.0, 0.0, 0.0}};
+    softbody_positions(b, at);
+    for (int i = 0; i < 162; i++)
+        at[i] = vec3_scale(at[i], 0.98);
+    softbody_place(b, at, v);
+    const double first = energy_of(b);
+    double before = first;
+    for (int n = 0; n < 100; n++) {
+        steps_of(b, 1);
+        assert_true(energy_of(b) <= before + 1e-9 * first);
+        before = energy_of(b);
+    }
+    assert_near(softbody_measure(b).volume / softbody_measure(b).volume_at_rest, 1.0, 1e-3);
+    softbody_destroy(b);
+}
+
+/* What flies as a whole does not come apart, however far it goes in a step; and what is no number is said to be none. */
+static void a_fast_body_is_no_burst_one(void **state)
+{
+    (void)state;
+    softbody_settings s = settings_in_space(SOFTBODY_EULER, 0.01);
+    s.level = 1;
+    s.radius = 0.1;
+    s.velocity = vec3_make(300.0, 0.0, 0.0);
+    softbody *b = toy_of(&s);
+    steps_of(b, 10);
+    assert_near(softbody_measure(b).center.x, 30.0, 1e-9);
+    softbody_destroy(b);
+}
+
+static void no_body_begins_under_its_floor(void **state)
+{
+    (void)state;
+    softbody_settings s = softbody_defaults();
+    softbody *b;
+    diagnostic why = {.what = ""};
+    s.ground_y = 1.0;
+    assert_int_equal(softbody_create(&s, isa_best(), &b, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "under its floor"));
+    s.ground_y = NAN;
+    assert_int_equal(softbody_create(&s, isa_best(), &b, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "ground_y"));
+}
+
 static void bad_settings_are_named(void **state)
 {
     (void)state;
@@ -248,9 +335,14 @@ int main(void)
         cmocka_unit_test(free_fall_is_the_closed_form),
         cmocka_unit_test(a_bounce_comes_back_to_e2_h),
         cmocka_unit_test(friction_stops_a_mass),
+        cmocka_unit_test(a_bounce_rubs_by_its_whole_turn),
         cmocka_unit_test(damping_never_adds_energy),
         cmocka_unit_test(speeds_that_no_body_has_are_named),
         cmocka_unit_test(stiff_springs_hold_when_they_are_helped),
+        cmocka_unit_test(split_steps_hold_strong_dampers),
+        cmocka_unit_test(backward_euler_holds_what_is_pushed_together),
+        cmocka_unit_test(a_fast_body_is_no_burst_one),
+        cmocka_unit_test(no_body_begins_under_its_floor),
         cmocka_unit_test(bad_settings_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

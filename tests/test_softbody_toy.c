@@ -237,6 +237,86 @@ static void hands_hold_and_let_go(void **state)
     softbody_destroy(b);
 }
 
+static hand_key key_of(hand_act act, double time_s, vec3 by)
+{
+    return (hand_key){.time_s = time_s, .act = act, .origin = {0.0, 1.0, -6.0}, .direction = {0.0, 0.0, 1.0}, .reach = 0.2, .by = by};
+}
+
+/* The middle of the held masses, against where it was when the hand came. */
+static vec3 held_at(const softbody *b, const vec3 *first, size_t count)
+{
+    vec3 *at = malloc(count * sizeof *at), sum = {0.0, 0.0, 0.0};
+    size_t held = 0;
+    softbody_positions(b, at);
+    for (size_t i = 0; i < count; i++)
+        if (vec3_length(vec3_sub(first[i], vec3_make(0.0, 1.0, -1.0))) < 0.15) { /* well within reach of where the ray meets the skin */
+            sum = vec3_add(sum, vec3_sub(at[i], first[i]));
+            held++;
+        }
+    free(at);
+    assert_true(held > 0);
+    return vec3_scale(sum, 1.0 / (double)held);
+}
+
+/* Taken hold of at 0.01 s and drawn by 2 until 0.05 s: after each step the masses are where a straight way at one speed has them; a step in
+ * which a hand is fast is split when that is asked for, the first one too. */
+static void a_script_is_followed_to_the_step(void **state)
+{
+    (void)state;
+    softbody_settings s = settings_in_space(SOFTBODY_EULER, 0.001);
+    s.position = vec3_make(0.0, 1.0, 0.0);
+    s.level = 3;
+    s.adaptive = 1;
+    softbody *b = toy_of(&s);
+    hand_script *script = hand_script_create("");
+    const hand_key keys[] = {key_of(HAND_GRAB, 0.01, vec3_make(0, 0, 0)), key_of(HAND_MOVE, 0.05, vec3_make(0.0, 0.0, -2.0)),
+                             key_of(HAND_RELEASE, 0.06, vec3_make(0, 0, 0))};
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(hand_script_add(script, "one", &keys[i], NULL), STATUS_OK);
+    assert_int_equal(softbody_follow(b, script, NULL), STATUS_OK);
+    const size_t count = softbody_mass_count(b);
+    vec3 *first = malloc(count * sizeof *first);
+    softbody_positions(b, first);
+    for (int n = 1; n <= 60; n++) {
+        const uint64_t before = softbody_measure(b).substeps;
+        steps_of(b, 1);
+        const double theory = n <= 10 ? 0.0 : n <= 50 ? -2.0 * (n - 10) / 40.0 : -2.0;
+        const vec3 moved = held_at(b, first, count);
+        assert_near(moved.z, theory, 1e-12);
+        assert_near(moved.x, 0.0, 1e-12);
+        assert_true(n != 11 || softbody_measure(b).substeps - before > 1);
+        assert_int_equal(softbody_measure(b).held > 0, n > 10);
+    }
+    steps_of(b, 1);
+    assert_int_equal(softbody_measure(b).held, 0);
+    hand_script_destroy(script);
+    free(first);
+    softbody_destroy(b);
+}
+
+/* A hand that finds all that it could hold in others' says so. */
+static void a_hand_that_holds_nothing_is_named(void **state)
+{
+    (void)state;
+    softbody_settings s = softbody_defaults();
+    s.level = 1;
+    softbody *b = toy_of(&s);
+    hand_script *script = hand_script_create("two.yaml");
+    hand_key all = key_of(HAND_GRAB, 0.001, vec3_make(0, 0, 0)), late = key_of(HAND_GRAB, 0.002, vec3_make(0, 0, 0));
+    all.reach = 10.0;
+    late.line = 7;
+    assert_int_equal(hand_script_add(script, "all", &all, NULL), STATUS_OK);
+    assert_int_equal(hand_script_add(script, "late", &late, NULL), STATUS_OK);
+    assert_int_equal(softbody_follow(b, script, NULL), STATUS_OK);
+    diagnostic why = {.what = ""};
+    assert_int_equal(softbody_advance(b, 0.01, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "the hand late takes hold of nothing"));
+    assert_string_equal(why.file, "two.yaml");
+    assert_int_equal(why.line, 7);
+    hand_script_destroy(script);
+    softbody_destroy(b);
+}
+
 static void threads_and_instructions_change_no_bit(void **state)
 {
     (void)state;
@@ -302,6 +382,8 @@ int main(void)
         cmocka_unit_test(pressure_pushes_along_the_area),
         cmocka_unit_test(forces_are_the_gradient_of_the_energy),
         cmocka_unit_test(hands_hold_and_let_go),
+        cmocka_unit_test(a_script_is_followed_to_the_step),
+        cmocka_unit_test(a_hand_that_holds_nothing_is_named),
         cmocka_unit_test(threads_and_instructions_change_no_bit),
         cmocka_unit_test(bad_nets_are_refused),
     };

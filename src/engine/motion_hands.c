@@ -151,8 +151,10 @@ static status grab(cuvette_motion *m, size_t index, const grasp *found, double r
 {
     const vec3 scale = found->shape->scale;
     const int number = softbody_grab(scene_motion_body(m->bodies, index), found->on_mesh, reach / fmax(scale.x, fmax(scale.y, scale.z)));
+    if (number == HAND_NO_MEMORY)
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
     if (number < 0)
-        return diagnose(why, STATUS_BAD_INPUT, "let one release what it holds", "no hand is free");
+        return diagnose(why, STATUS_BAD_INPUT, "let one release what it holds", "no hand is free, or others hold all of it");
     *hand = (int)index * SOFTBODY_HANDS_MAX + number;
     const mat3 rotation = rotation_from_deg(found->shape->rotation_deg);
     m->hands[*hand] = (caller_hand){.holds = true, .rotation = rotation, .scale = scale, .where = found->on_mesh};

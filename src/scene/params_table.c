@@ -213,7 +213,7 @@ static const param table[] = {
     SLIME_REAL(radius, "scene units", 0, 1e3, true, "1", "of a slime's sphere at rest"),
     SLIME_VECTOR(position, "scene units", FAR, "0,1,0", "of a slime's centre at the beginning, in the mesh's frame"),
     SLIME_VECTOR(velocity, "scene units/s", 1e3, "0,0,0", "of all of a slime at the beginning"),
-    SLIME_REAL(mass_kg, "kg", 0, 1e6, true, "1", "of a slime, shared evenly by its vertices"),
+    SLIME_REAL(mass_kg, "kg", 1e-6, 1e6, false, "1", "of a slime, shared evenly by its vertices"),
     SLIME_REAL(stiffness, "N/scene unit", 0, 1e9, false, "10", "of a slime's springs along edges, each"),
     SLIME_REAL(bending, "N/scene unit", 0, 1e9, false, "4", "of its springs across two neighbouring faces, each"),
     SLIME_REAL(through, "N/scene unit", 0, 1e9, false, "100", "of its springs from side to side, all together"),

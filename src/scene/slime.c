@@ -73,10 +73,13 @@ status slime_create(const scene *s, const mesh_entry *m, slime *out, diagnostic 
         return body_error(s, m, &bad, code, why);
     }
     if (script) {
-        softbody_follow(body, script);
+        code = softbody_follow(body, script, why);
     }
     *out = (slime){.body = body, .script = script};
-    return STATUS_OK;
+    if (code != STATUS_OK) {
+        slime_destroy(out);
+    }
+    return code;
 }
 
 void slime_destroy(slime *x)

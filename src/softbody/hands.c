@@ -9,9 +9,11 @@ int softbody_grab(softbody *b, vec3 where, double reach)
     int hand_number = 0;
     while (hand_number < SOFTBODY_HANDS_MAX && b->hands[hand_number].busy)
         hand_number++;
-    held_mass *masses = hand_number < SOFTBODY_HANDS_MAX ? malloc((b->net.count + 1) * sizeof *masses) : NULL;
+    if (hand_number == SOFTBODY_HANDS_MAX)
+        return HAND_NONE;
+    held_mass *masses = malloc(b->net.count * sizeof *masses);
     if (!masses)
-        return -1;
+        return HAND_NO_MEMORY;
     size_t count = 0, nearest = 0;
     double least = INFINITY;
     for (size_t i = 0; i < b->net.count; i++) {
@@ -26,6 +28,10 @@ int softbody_grab(softbody *b, vec3 where, double reach)
     }
     if (count == 0 && least < INFINITY)
         masses[count++] = (held_mass){(uint32_t)nearest, vec3_sub(vectors_at(b->at, nearest), where)};
+    if (count == 0) {
+        free(masses);
+        return HAND_NONE;
+    }
     for (size_t i = 0; i < count; i++)
         b->inverse_mass[masses[i].mass] = 0.0;
     b->hands[hand_number] = (grip){.busy = true, .at = where, .target = where, .masses = masses, .count = count};
@@ -69,18 +75,22 @@ void softbody_land_hands(softbody *b)
         b->hands[i].at = b->hands[i].target;
 }
 
-void softbody_follow(softbody *b, const hand_script *script)
+status softbody_follow(softbody *b, const hand_script *script, diagnostic *why)
 {
     free(b->plays);
     b->script = script;
     b->plays = script ? calloc(script->track_count + 1, sizeof *b->plays) : NULL;
+    if (script && !b->plays)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory for a script");
     for (size_t i = 0; b->plays && i < script->track_count; i++)
-        b->plays[i].hand = -1;
+        b->plays[i].hand = HAND_NONE;
+    return STATUS_OK;
 }
 
+/* The step before which a time comes; far ones are never reached. */
 static uint64_t step_of(const softbody *b, double time_s)
 {
-    return (uint64_t)floor(time_s / b->set.dt_s + 0.5);
+    return (uint64_t)fmin(floor(time_s / b->set.dt_s + 0.5), 0x1p62);
 }
 
 static status take_hold(softbody *b, const hand_track *track, const hand_key *key, track_play *play, diagnostic *why)
@@ -92,8 +102,13 @@ static status take_hold(softbody *b, const hand_track *track, const hand_key *ke
                         track->name, key->time_s);
     }
     play->hand = softbody_grab(b, where, key->reach);
-    if (play->hand < 0)
+    if (play->hand == HAND_NO_MEMORY)
         return diagnose(why, STATUS_FAILURE, "", "out of memory for a hand");
+    if (play->hand == HAND_NONE) {
+        diagnostic_locate(why, b->script->path, key->line, key->column);
+        return diagnose(why, STATUS_BAD_INPUT, "let the others go before, or give them less reach", "the hand %.80s takes hold of nothing at %g s: other hands hold all of it",
+                        track->name, key->time_s);
+    }
     play->where = where;
     play->from = vec3_make(0.0, 0.0, 0.0);
     play->from_step = b->steps;
@@ -111,7 +126,7 @@ static status act(softbody *b, const hand_track *track, const hand_key *key, tra
         break;
     case HAND_RELEASE:
         softbody_release(b, play->hand);
-        play->hand = -1;
+        play->hand = HAND_NONE;
         break;
     }
     return STATUS_OK;

@@ -4,7 +4,7 @@
  * "An introduction to the conjugate gradient method", 1994). */
 #include "softbody/softbody_private.h"
 
-enum { ITERATIONS_MAX = 1000 };
+enum { ITERATIONS_MAX = 10000 };
 #define TOLERANCE 1e-10 /* of the residual, over the first one */
 
 static void stiffen(softbody *b, size_t begin, size_t end, size_t chunk)
@@ -84,7 +84,7 @@ static void clear_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
         vectors_put(b->change, i, vec3_make(0.0, 0.0, 0.0));
 }
 
-void softbody_solve(softbody *b)
+bool softbody_solve(softbody *b)
 {
     b->solver_dt_s = b->pushing.dt_s;
     softbody_for_chunks(b, clear_chunk);
@@ -95,7 +95,8 @@ void softbody_solve(softbody *b)
     softbody_for_chunks(b, begin_chunk);
     double square = softbody_sum(b);
     const double enough = TOLERANCE * TOLERANCE * square;
-    for (int i = 0; i < ITERATIONS_MAX && square > enough; i++) {
+    int left = ITERATIONS_MAX;
+    for (; left > 0 && square > enough; left--) {
         softbody_for_chunks(b, press_direction);
         b->pressing = pressing(b);
         softbody_for_chunks(b, apply_chunk);
@@ -106,4 +107,5 @@ void softbody_solve(softbody *b)
         b->factor = square / before;
         softbody_for_chunks(b, turn_chunk);
     }
+    return left > 0 && square <= enough; /* not of no number */
 }

@@ -18,9 +18,10 @@ typedef struct bounded { const char *name; double value; } bounded;
 static status check_shape(const softbody_settings *s, diagnostic *why)
 {
     const bounded above[] = {{"radius", s->radius}, {"mass_kg", s->mass_kg}, {"dt_s", s->dt_s}};
+    const double lowest[] = {1e-6, SOFTBODY_MASS_MIN_KG, SOFTBODY_DT_MIN_S};
     for (size_t i = 0; i < sizeof above / sizeof above[0]; i++)
-        if (!(above[i].value > 0.0 && above[i].value <= 1e6))
-            return refuse(why, above[i].name, above[i].value, "a number above 0");
+        if (!(above[i].value >= lowest[i] && above[i].value <= 1e6))
+            return refuse(why, above[i].name, above[i].value, i == 2 ? "a number from 1e-9 on" : "a number from 1e-6 on");
     const bounded least[] = {{"stiffness", s->stiffness}, {"bending", s->bending},   {"through", s->through},
                              {"damping", s->damping},     {"pressure", s->pressure}, {"friction", s->friction}};
     for (size_t i = 0; i < sizeof least / sizeof least[0]; i++)
@@ -28,6 +29,8 @@ static status check_shape(const softbody_settings *s, diagnostic *why)
             return refuse(why, least[i].name, least[i].value, "a number from 0 to 1e9");
     if (!(s->restitution >= 0.0 && s->restitution <= 1.0))
         return refuse(why, "restitution", s->restitution, "a number from 0 to 1");
+    if (!(fabs(s->ground_y) < 1e9))
+        return refuse(why, "ground_y", s->ground_y, "a finite number");
     const vec3 all[] = {s->position, s->velocity, s->gravity};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         if (!(vec3_length(all[i]) < 1e9))

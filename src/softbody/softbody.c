@@ -89,9 +89,11 @@ static void fill_masses(softbody *b, const softbody_net *net)
 }
 
 /* Of x'' = -omega^2 x - gamma x', semi-implicit Euler is stable where omega^2 dt^2 + 2 gamma dt < 4 (Jury's criterion for
- * lambda^2 - (2 - gamma dt - omega^2 dt^2) lambda + 1 - gamma dt). */
-static double stable_dt_of(double omega2, double gamma)
+ * lambda^2 - (2 - gamma dt - omega^2 dt^2) lambda + 1 - gamma dt). Verlet, whose damping takes a guess of the velocity, bears half as much of that:
+ * without springs, trace 1 - 3/2 gamma dt and determinant -1/2 gamma dt hold it to gamma dt < 1. */
+static double stable_dt_of(softbody_integrator integrator, double omega2, double damping)
 {
+    const double gamma = integrator == SOFTBODY_VERLET ? 2.0 * damping : damping;
     if (omega2 > 0.0)
         return 4.0 / (gamma + sqrt(gamma * gamma + 4.0 * omega2));
     return gamma > 0.0 ? 2.0 / gamma : INFINITY;
@@ -114,7 +116,7 @@ static void find_stable_dt(softbody *b)
     }
     if (b->volume_at_rest > 0.0)
         omega2 += b->set.pressure / b->volume_at_rest * pressed;
-    b->stable_dt_s = stable_dt_of(omega2, gamma);
+    b->stable_dt_s = stable_dt_of((softbody_integrator)b->set.integrator, omega2, gamma);
 }
 
 static status fill(softbody *b, const softbody_net *net, diagnostic *why)
@@ -128,6 +130,9 @@ static status fill(softbody *b, const softbody_net *net, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
     fill_masses(b, net);
     b->size = extent_of(net);
+    if (b->set.ground && softbody_measure(b).low < b->set.ground_y - 1e-9 * b->set.radius)
+        return diagnose(why, STATUS_BAD_INPUT, "raise its position, or lower ground_y", "the slime begins at %g, under its floor at %g", softbody_measure(b).low,
+                        b->set.ground_y);
     softbody_find_forces(b, WITH_OWN);
     b->volume_at_rest = b->face_count > 0 ? softbody_volume_of_gradient(b) : 0.0;
     if (b->face_count > 0 && !(b->volume_at_rest > 0.0))

@@ -30,20 +30,22 @@
 typedef enum softbody_integrator { SOFTBODY_EULER, SOFTBODY_VERLET, SOFTBODY_IMPLICIT } softbody_integrator;
 
 enum { SOFTBODY_LEVEL_MAX = 7, SOFTBODY_HANDS_MAX = 16 };
+#define SOFTBODY_MASS_MIN_KG 1e-6
+#define SOFTBODY_DT_MIN_S 1e-9
 
 typedef struct softbody_settings {
     int64_t level;        /* 0..7: 10 * 4^level + 2 masses */
     double radius;        /* of the sphere at rest, scene units */
     vec3 position;        /* of its centre at time 0 */
     vec3 velocity;        /* of all of it at time 0, scene units / s */
-    double mass_kg;       /* of all of it; each vertex has the same share */
+    double mass_kg;       /* of all of it, at least 1e-6; each vertex has the same share */
     double stiffness;     /* k of each spring along an edge, N / scene unit */
     double bending;       /* k of each spring across two neighbouring faces, between the corners that they do not share */
     double through;       /* sum of k over all springs from side to side; each has the same share */
     double damping;       /* k_d of each spring along an edge, N s / scene unit; the others have it in proportion to their k */
     double pressure;      /* K: pressure at no volume, N / scene unit^2 */
     vec3 gravity;         /* scene units / s^2 */
-    int64_t ground;       /* 1: a floor at ground_y, which it cannot pass */
+    int64_t ground;       /* 1: a floor at ground_y, which it cannot pass but where a hand draws it through */
     double ground_y;
     double restitution;   /* 0..1: share of the speed against the floor with which it comes back */
     double friction;      /* coefficient of Coulomb's law on the floor */
@@ -80,8 +82,8 @@ status softbody_create_net(const softbody_net *net, const softbody_settings *s, 
 
 /* --- time --- */
 
-/* What the hands do; borrowed as long as the body lives. Before the first step. */
-void softbody_follow(softbody *b, const hand_script *script);
+/* What the hands do; borrowed as long as the body lives. Before the first step. STATUS_FAILURE when memory is out. */
+status softbody_follow(softbody *b, const hand_script *script, diagnostic *why);
 
 /* One step of dt_s. STATUS_BAD_INPUT when the body blows up (the diagnostic says at which step, which vertex and which quantity; the
  * body then stays as it is), and where a hand of the script takes hold of nothing (located in the script). */
@@ -94,7 +96,9 @@ status softbody_advance(softbody *b, double time_s, diagnostic *why);
 
 /* Where a ray first meets the skin, from outside; false where it misses. direction is not zero. */
 bool softbody_pick(const softbody *b, vec3 origin, vec3 direction, vec3 *where);
-/* Takes hold of what lies within reach of a point (at least of the nearest vertex). The hand's number, or -1 when all hands are full. */
+/* Takes hold of what lies within reach of a point and is in no other hand, or else of the nearest such mass. The hand's number; HAND_NONE when all
+ * hands are full or hold all of it, HAND_NO_MEMORY when memory is out. */
+enum { HAND_NONE = -1, HAND_NO_MEMORY = -2 };
 int softbody_grab(softbody *b, vec3 where, double reach);
 /* The hand moves to this place (its own starting place was `where`) in a straight line during the next step. */
 void softbody_hold(softbody *b, int hand, vec3 target);
@@ -122,8 +126,8 @@ void softbody_velocities(const softbody *b, vec3 *out);
 /* Puts the masses elsewhere and gives them speeds; lengths at rest and time stay. A body that blew up is good again then. */
 void softbody_place(softbody *b, const vec3 *positions, const vec3 *velocities);
 
-/* A dt_s that euler is stable with near rest: 2 / omega without damping, where omega^2 is at most twice the largest sum of a mass's springs' k over it
- * (Gershgorin) and the pressure's share besides; damping shortens it. The true limit is somewhat longer. */
+/* A dt_s that the integrator (backward Euler: euler) is stable with near rest: 2 / omega without damping, where omega^2 is at most twice the largest sum
+ * of a mass's springs' k over it (Gershgorin) and the pressure's share besides; damping shortens it, verlet's more. The true limit is somewhat longer. */
 double softbody_stable_dt_s(const softbody *b);
 
 /* --- the skin --- */

@@ -141,8 +141,8 @@ void softbody_find_forces(softbody *b, forces_with which);
 /* Volume by the gradient, which find_forces has just left. */
 double softbody_volume_of_gradient(softbody *b);
 
-/* Backward Euler: the change of velocities to b->change; pushing is set. */
-void softbody_solve(softbody *b);
+/* Backward Euler: the change of velocities to b->change; pushing is set. False when it is not found. */
+bool softbody_solve(softbody *b);
 
 /* Sum of the chunks' sums, in their order. */
 double softbody_sum(const softbody *b);

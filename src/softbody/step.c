@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 typedef struct chunk_task { softbody *b; chunk_work *work; } chunk_task;
 
@@ -116,7 +117,8 @@ static void substep_verlet(softbody *b)
     softbody_for_chunks(b, push_kick);
 }
 
-static void substep(softbody *b, double dt_s)
+/* False when backward Euler finds no solution. */
+static bool substep(softbody *b, double dt_s)
 {
     const softbody_settings *s = &b->set;
     b->pushing.dt_s = dt_s;
@@ -133,11 +135,13 @@ static void substep(softbody *b, double dt_s)
         break;
     case SOFTBODY_VERLET: substep_verlet(b); break;
     case SOFTBODY_IMPLICIT:
-        softbody_solve(b);
+        if (!softbody_solve(b))
+            return false;
         softbody_for_chunks(b, push_settle);
         break;
     }
     b->substeps++;
+    return true;
 }
 
 /* Largest relative speed of a spring's ends, in its lengths a second. */
@@ -172,21 +176,61 @@ static bool any_bad(const softbody *b)
     return bad > 0;
 }
 
-/* The first mass that is too fast, or nowhere. */
-static status blown(const softbody *b, diagnostic *why)
+/* Speed of a mass against that of the centre of mass: how fast the body comes apart there. */
+static double speed_apart(const softbody *b, vec3 center, size_t i)
 {
+    return vec3_length(vec3_sub(vectors_at(b->velocity, i), center));
+}
+
+static vec3 velocity_of_center(const softbody *b)
+{
+    double mass = 0.0;
+    vec3 sum = {0.0, 0.0, 0.0};
+    for (size_t i = 0; i < b->net.count; i++) {
+        sum = vec3_add(sum, vec3_scale(vectors_at(b->velocity, i), b->mass_kg[i]));
+        mass += b->mass_kg[i];
+    }
+    return vec3_scale(sum, 1.0 / mass);
+}
+
+/* The first mass that is nowhere, or leaves the others too fast; the count of masses if there is none. */
+static size_t find_blown(const softbody *b, double *speed)
+{
+    const vec3 center = velocity_of_center(b);
     size_t i = 0;
-    double speed = NAN;
     for (; i < b->net.count; i++) {
-        speed = vec3_length(vectors_at(b->velocity, i));
-        if (!(speed <= b->pushing.speed_limit))
+        *speed = speed_apart(b, center, i);
+        if (!(*speed <= b->pushing.speed_limit))
             break;
     }
-    char remedy[200];
+    return i;
+}
+
+/* The kernels look at speeds as they are. A body that is fast as a whole is none that comes apart. */
+static bool has_blown(softbody *b)
+{
+    double speed;
+    if (!any_bad(b))
+        return false;
+    if (find_blown(b, &speed) < b->net.count)
+        return true;
+    memset(b->bad, 0, softbody_chunks(b) * sizeof *b->bad);
+    return false;
+}
+
+static status blown(const softbody *b, diagnostic *why)
+{
+    double speed = 0.0;
+    const size_t i = find_blown(b, &speed);
+    char remedy[200], what[120];
     snprintf(remedy, sizeof remedy, "dt_s of at most %.3g is stable at rest; or 'adaptive: on', 'integrator: implicit', softer springs, a slower hand",
              b->stable_dt_s);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "the slime blew up in step %llu, at %.6g s: the speed of mass %zu is %.3g, over its own size in one substep",
-                    (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s, i, speed);
+    if (isfinite(speed))
+        snprintf(what, sizeof what, "the speed of mass %zu against the others is %.3g, over its own size in one substep", i, speed);
+    else
+        snprintf(what, sizeof what, "the speed of mass %zu is no number", i < b->net.count ? i : 0);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "the slime blew up in step %llu, at %.6g s: %s", (unsigned long long)b->steps + 1,
+                    (double)(b->steps + 1) * b->set.dt_s, what);
 }
 
 status softbody_step(softbody *b, diagnostic *why)
@@ -196,14 +240,16 @@ status softbody_step(softbody *b, diagnostic *why)
     status code = softbody_play(b, why);
     if (code != STATUS_OK)
         return code;
+    softbody_aim_hands(b, b->set.dt_s);
     const double count = substeps_wanted(b);
     if (!(count <= SUBSTEPS_MAX))
         return diagnose(why, STATUS_BAD_INPUT, "a smaller dt_s, or softer springs", "step %llu, at %.6g s, would have to be split into %.3g",
                         (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s, count);
-    softbody_aim_hands(b, b->set.dt_s);
     for (double i = 0.0; i < count; i += 1.0) {
-        substep(b, b->set.dt_s / count);
-        if (any_bad(b))
+        if (!substep(b, b->set.dt_s / count))
+            return diagnose(why, STATUS_BAD_INPUT, "a smaller dt_s, or softer springs", "step %llu of the slime, at %.6g s, has no solution: its solver does not come to an end",
+                            (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s);
+        if (has_blown(b))
             return blown(b, why);
     }
     softbody_land_hands(b);
