@@ -16,7 +16,8 @@ static const char *const before_hash[] = {"rays_total",  "rays_camera",         
 static const char *const after_marked[] = {"busy_s_mean",  "busy_s_max",       "waiting_s_mean", "imbalance",
                                            "others_share", "worker_cpu_s_sum", "peak_rss_bytes", "noise_rms",
                                            "triangles",    "instances",        "accel_bytes",    "build_s",
-                                           "drawn",        "drawn_bytes"};
+                                           "drawn",        "drawn_bytes",      "visibility_s_sum", "motion_steps",
+                                           "motion_s"};
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
