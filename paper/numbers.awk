@@ -44,6 +44,7 @@ function alias() {
     if (study == "coverage") return study "/" $2 "/" sprintf("%.0f", value("first_hits.model") / 1000)
     if (study == "hidden") return study "/" $2 + 0 "/" $6
     if (study == "texture") return study "/" $2 "/" $3 "/" $4
+    if (study == "slime-step") return study "/" $2 + 0 "/" $3 "/" $6 + 0
     if (study == "build") return study "/" $2 "/" $3 + 0 "/" $4 "/" $7 + 0
     return ""
 }
@@ -125,6 +126,21 @@ value("n") > 0 {
     # What a method keeps beside triangles and film: hierarchies, or the depth buffer and what was drawn into it.
     if (study == "hidden" && value("accel_bytes") + value("drawn_bytes") > 0)
         set(key "/memory", sprintf("%.1f", (value("accel_bytes") + value("drawn_bytes")) / 1048576))
+    # One thread: all of its busy time is the frame's.
+    if (study == "slime-frame" && value("visibility_s_sum") && wall && rays) {
+        set(key "/visible-share", sprintf("%.0f", value("visibility_s_sum") / wall * 100))
+        set(key "/visible-ray", sprintf("%.0f", visible_of[key] = value("visibility_s_sum") / rays * 1e9))
+        if ($4 == "bvh" && $2 == 0) {
+            least_share = least_share == "" || value("visibility_s_sum") / wall < least_share ? value("visibility_s_sum") / wall : least_share
+            if (value("visibility_s_sum") / wall > most_share) most_share = value("visibility_s_sum") / wall
+        }
+    }
+    # Microseconds a step, and seconds that are simulated in one.
+    if (study == "slime-step" && value("motion_steps") && value("motion_s")) {
+        step_of[key] = value("motion_s") / value("motion_steps")
+        set(key "/step", digits(step_of[key] * 1e6))
+        set(key "/simulated", $5 > value("motion_s") ? digits($5 / value("motion_s")) : significant($5 / value("motion_s")))
+    }
     if (study == "sectors") {
         if ($4 == 1) one[$2, $3] = wall
         if (one[$2, $3]) set(key "/speedup", digits(one[$2, $3] / wall))
@@ -166,6 +182,18 @@ END {
         }
     ratio("triangles/octant-bvh", cpu_of, "triangles/octant/50000", "triangles/bvh/50000")
     ratio("crowding/octant-bvh", cpu_of, "crowding/octant/50000", "crowding/bvh/50000")
+    if (least_share != "") {
+        set("slime-frame/ball/bvh/least-share", sprintf("%.0f", least_share * 100))
+        set("slime-frame/ball/bvh/most-share", sprintf("%.0f", most_share * 100))
+    }
+    for (level = 0; level <= 7; level++) {
+        ratio("slime-frame/" level "/stretch", visible_of, "slime-frame/0.5/" level "/bvh", "slime-frame/0/" level "/bvh")
+        ratio("slime-frame/" level "/gain", visible_of, "slime-frame/0/" level "/none", "slime-frame/0/" level "/bvh")
+        ratio("slime-frame/" level "/octant-bvh", visible_of, "slime-frame/0/" level "/octant", "slime-frame/0/" level "/bvh")
+        ratio("slime-step/" level "/dearer", step_of, "slime-step/" level "/implicit/1", "slime-step/" level "/euler/1")
+        ratio("slime-step/" level "/speedup", step_of, "slime-step/" level "/euler/1", "slime-step/" level "/euler/2")
+        ratio("slime-step/" level "/implicit-speedup", step_of, "slime-step/" level "/implicit/1", "slime-step/" level "/implicit/2")
+    }
     split("zbuffer raycast whitted", method, " ")
     for (i in method) ratio("hidden/" method[i] "/more", cpu_of, "hidden/6/" method[i], "hidden/3/" method[i])
     for (pair in wall_of) {

@@ -89,6 +89,17 @@ slab() {
         }'
 }
 
+# Light through a ball of slime: how far the way that the green light went inside, absorbed by 1/m, lies from the ball's chord (rms over a row
+# of pixels), and what a surface that passes a share leaves of the light, against that share's square.
+ball() {
+    [ -r "$results/tables/slime-light.tsv" ] || return 0
+    awk -f "$here/../plots/select.awk" -v columns='cell toy.level jelly.transparency' "$results/tables/slime-light.tsv" |
+        while read -r cell level share; do
+            picture=$(printf '%s/slime-light/images/%04d.pfm' "$results" "$cell")
+            [ ! -r "$picture" ] || "$here/../plots/chord.sh" "$picture" 6 10 | awk -v level="$level" -v share="$share" -f "$here/scientific.awk" -f "$here/ball.awk"
+        done
+}
+
 mkdir -p "$out"
 {
     echo "% made by paper/numbers.sh; change rows or scripts, not this"
@@ -99,10 +110,12 @@ mkdir -p "$out"
         case $study in
         *-metrics) awk -v study="${study%-metrics}" -f "$here/scientific.awk" -f "$here/metrics.awk" "$table" ;;
         *-curves) awk -v study="${study%-curves}" -f "$here/scientific.awk" -f "$here/curves.awk" "$table" ;;
+        *-motion) awk -v study="${study%-motion}" -f "$here/scientific.awk" -f "$here/motion.awk" "$table" ;;
         *) awk -v study="$study" -f "$here/numbers.awk" "$table" ;;
         esac
     done | sort
     slab
+    ball
     machine
     laws
     polygons
