@@ -96,7 +96,8 @@ ball() {
     awk -f "$here/../plots/select.awk" -v columns='cell toy.level jelly.transparency' "$results/tables/slime-light.tsv" |
         while read -r cell level share; do
             picture=$(printf '%s/slime-light/images/%04d.pfm' "$results" "$cell")
-            [ ! -r "$picture" ] || "$here/../plots/chord.sh" "$picture" 6 10 | awk -v level="$level" -v share="$share" -f "$here/scientific.awk" -f "$here/ball.awk"
+            [ ! -r "$picture" ] || "$here/../plots/chord.sh" "$picture" 6 0.493 |
+                awk -v level="$level" -v share="$share" -f "$here/scientific.awk" -f "$here/ball.awk"
         done
 }
 

@@ -4,7 +4,7 @@ width = 1000; height = 430
 load "plots/style.gp"
 
 rows = table("slime-light")
-chords(level, share) = sprintf("< plots/chord.sh '%s/slime-light/images/%04d.pfm' 6 10", results, \
+chords(level, share) = sprintf("< plots/chord.sh '%s/slime-light/images/%04d.pfm' 6 0.493", results, \
     int(first(rows, sprintf("toy.level=%d jelly.transparency=%g", level, share), "cell")))
 # Root of the mean square over the row: length by the green light, absorbed by 1 / m, less the chord.
 off(level) = number(system(chords(level, 1)[3:*]." | awk '{ e = -log($3) - $1; s += e*e } END { print sqrt(s/NR) }'"))

@@ -148,7 +148,8 @@ static void columns_keep_their_order(void **state)
         "cell\trender.depth\tn\twall_s_median\twall_s_low\twall_s_high\twall_s_mean\twall_s_min\twall_s_max\tcpu_s_median\tcpu_s_low\t"
         "cpu_s_high\tcpu_s_mean\tcpu_s_min\tcpu_s_max\trays_total\trays_camera\trays_reflect\trays_refract\trays_shadow\t"
         "cut_depth_throughput\ttotal_internal\tfilm_hash\tmarked\tbusy_s_mean\tbusy_s_max\twaiting_s_mean\timbalance\tothers_share\t"
-        "worker_cpu_s_sum\tpeak_rss_bytes\tnoise_rms\ttriangles\tinstances\taccel_bytes\tbuild_s\tdrawn\tdrawn_bytes\tvisibility_s_sum\tmotion_steps\tmotion_s\tfirst_hits.ground\tfirst_hits.ball\n";
+        "worker_cpu_s_sum\tpeak_rss_bytes\tnoise_rms\ttriangles\tinstances\taccel_bytes\tbuild_s\tdrawn\tdrawn_bytes\t"
+        "visibility_s_sum\tmotion_steps\tmotion_s\tfirst_hits.ground\tfirst_hits.ball\n";
     assert_memory_equal(text, header, sizeof header - 1);
     size_t columns = fixture_count(header, "\t");
     assert_int_equal(fixture_count(text, "\t"), 4 * columns);
