@@ -26,9 +26,9 @@ set key top left
 plot for [i=1:2] for [t=1:words(threads)] steps(i, t) using (masses($1)):($2/$3) with linespoints lt kind(i, t) \
          title sprintf("%s, %s thread%s", word(names, i), word(threads, t), word(threads, t) eq "1" ? "" : "s")
 unset label 100
-set title "Simulated time, steps of 4 ms / 2^{level}"
+set title "Simulated time, steps of half the stable length"
 set ylabel "simulated / wall time"
-set yrange [1e-5:1e5]
+set yrange [1e-5:1e6]
 set key off
 set arrow 1 from graph 0, first 1 to graph 1, first 1 nohead dt (2,3) lc rgb grey
 set label 1 "as time goes by" at graph 0.985, first 1.8 right font ",8" textcolor rgb grey
