@@ -56,5 +56,6 @@ plot by_stiffness(1, "stable_dt.spring_s") using 1:($2*1e3) with points lt 3 tit
      2/sqrt(2*x/m)*1e3 with lines lt 3 title "2 / ω = 2 (m / 2k)^{1/2}", \
      by_stiffness(1, "stable_dt.toy_s") using 1:($2*1e3) with linespoints lt 1 title "the toy, semi-implicit Euler", \
      by_stiffness(2, "stable_dt.toy_s") using 1:($2*1e3) with linespoints lt 2 title "the toy, Verlet", \
-     by_stiffness(1, "stable_dt.toy_s") using 1:($3*1e3) with lines lt 7 title "the toy, Gershgorin's bound from below"
+     for [i=1:2] by_stiffness(i, "stable_dt.toy_s") using 1:($3*1e3) with lines lt i dt (2,3) notitle, \
+     NaN with lines lc rgb ink dt (2,3) title "Gershgorin's bounds from below"
 unset multiplot
