@@ -242,7 +242,7 @@ static void a_study_s_rows_simulate_where_nothing_is_kept(void **state)
             diagnostic why = {0};
             rows[i] = read_scene(*state, falling);
             set(rows[i], keep ? "render.keep=on" : "render.keep=off");
-            worked(shelf_load(&shared, rows[i], &why), &why);
+            worked(shelf_load(&shared, rows[i], NULL, &why), &why);
             assert_int_equal(rows[i]->meshes[0].account.steps, 250);
         }
         assert_true((rows[0]->meshes[0].data == rows[1]->meshes[0].data) == keep);

@@ -4,6 +4,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "scene/params.h"
+#include "scene/slime.h"
 #include "base/text.h"
 #include <inttypes.h>
 #include <math.h>
@@ -38,10 +39,16 @@ static status choose_duration(animate_request *request, const scene *s, diagnost
         return result;
     if (!request->has_duration)
         request->duration_s = any ? fmax(0, end_s + rest_s - request->start_s) : without_script_s;
-    return animate_check_length(request, why);
+    result = animate_check_length(request, why);
+    for (size_t i = 0; i < s->mesh_count && result == STATUS_OK; i++) {
+        diagnostic_locate(why, request->input.path, 0, 0);
+        if (s->meshes[i].source == MESH_SLIME)
+            result = slime_check_end(&s->meshes[i], request->start_s + request->duration_s, why);
+    }
+    return result;
 }
 
-static status read_scene(animate_request *request, scene **out, diagnostic *why)
+static status read_scene(animate_request *request, const animate_names *names, scene **out, diagnostic *why)
 {
     status result = scene_input_read(&request->input, out, why);
     if (result == STATUS_OK && !scene_moves(*out)) {
@@ -54,6 +61,8 @@ static status read_scene(animate_request *request, scene **out, diagnostic *why)
         result = outputs_check_place("--rows", request->rows, *out, why);
     if (result == STATUS_OK && animate_is_stream(request))
         result = outputs_check_place("-o", request->output, *out, why);
+    if (result == STATUS_OK && names)
+        result = animate_names_check(names, *out, why);
     return result == STATUS_OK ? choose_duration(request, *out, why) : result;
 }
 
@@ -95,8 +104,8 @@ static status make(const animate_request *request, const animate_names *names, i
     status result = scene_motion_create(s, &motion, why);
     if (result == STATUS_OK)
         result = animate_define(request, s, &d, why);
-    if (result == STATUS_OK && names && !request->restart)
-        result = animate_ledger_check(names, &d, why);
+    if (result == STATUS_OK && names)
+        result = animate_ledger_check(names, &d, animate_count(request), request->restart, why);
     if (result == STATUS_OK)
         result = animate_film(request, names, &d, level, s, motion, &account, why);
     if (result == STATUS_OK && request->json)
@@ -121,7 +130,7 @@ status command_animate(int argc, char **argv, diagnostic *why)
     if (result == STATUS_OK)
         result = scene_input_isa(&level, why);
     if (result == STATUS_OK)
-        result = read_scene(&request, &s, why);
+        result = read_scene(&request, in_files ? &names : NULL, &s, why);
     if (result == STATUS_OK && !request.json)
         scene_input_note_hints(s);
     if (result == STATUS_OK)

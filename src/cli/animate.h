@@ -61,11 +61,21 @@ void animate_definition_release(animate_definition *d);
 /* Time of the last key of all scripts of the scene's slimes; *any: there is one. */
 status animate_script_end_s(const scene *s, bool *any, double *end_s, diagnostic *why);
 
-/* The ledger beside the frames, PATTERN.json, says of which film they are. STATUS_BAD_INPUT where the frames there are of another film or of an unknown
- * one. */
-status animate_ledger_check(const animate_names *names, const animate_definition *d, diagnostic *why);
-/* Makes folder and ledger where they are not there. restart: removes what frames are there first. */
-status animate_ledger_begin(const animate_names *names, const animate_definition *d, bool restart, diagnostic *why);
+/* The ledger beside the frames, PATTERN.json, says of which film they are and how many it has. STATUS_BAD_INPUT where the frames there are of another
+ * film or of an unknown one; restart: of a film that the ledger does not know of. count: frames of this one. */
+status animate_ledger_check(const animate_names *names, const animate_definition *d, int64_t count, bool restart, diagnostic *why);
+/* Makes folder and ledger where they are not there; a longer film is written into it. restart: removes what frames are there first. */
+status animate_ledger_begin(const animate_names *names, const animate_definition *d, int64_t count, bool restart, diagnostic *why);
+/* How many frames a ledger says that its film has; -1 for what is no ledger. */
+int64_t animate_ledger_count(const char *path);
+
+/* STATUS_BAD_INPUT for files named as frames that are none of the film's known ones (known < 0: there is no ledger, and it has none), and where another
+ * film's ledger has names of the first frames of this one, as many as are known or wanted. */
+status animate_folder_check(const animate_names *names, int64_t known, int64_t wanted, diagnostic *why);
+/* Removes all frames. */
+status animate_folder_clear(const animate_names *names, diagnostic *why);
+/* STATUS_BAD_INPUT where a file that the scene reads has a frame's name, or the ledger's. */
+status animate_names_check(const animate_names *names, const scene *s, diagnostic *why);
 
 /* What came of it. */
 typedef struct animate_account {

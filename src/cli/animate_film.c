@@ -6,7 +6,6 @@
 #include "render/record.h"
 #include <errno.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -45,7 +44,7 @@ static status say_interrupted(const film_job *job, diagnostic *why)
 {
     const char *remedy = job->names ? "run it again, and it goes on there" : "";
     diagnostic_locate(why, job->request->output, 0, 0);
-    return diagnose(why, STATUS_INTERRUPTED, remedy, "interrupted at frame %" PRId64 " of %" PRId64 "%s", job->frame, job->count,
+    return diagnose(why, STATUS_INTERRUPTED, remedy, "interrupted at %s%s", job->label,
                     job->stream.temporary ? ", and nothing is left of the film" : "");
 }
 
@@ -55,27 +54,30 @@ static bool is_there(const film_job *job, const char *path)
     return path && access(path, F_OK) == 0 && (!job->rows || animate_rows_have(job->rows, job->frame));
 }
 
-/* In pieces of a tenth of a second, so that a wish to stop is heard on a long way; the steps are the same ones. */
-static status advance(film_job *job, double from_s, double to_s, bool skins, diagnostic *why)
+/* Frames are of equal length but for the way to the first one, which has a line of its own. */
+static bool show_motion(void *context, double share_done)
 {
-    const double piece_s = 0.1;
-    job->moved = (scene_motion_report){0};
-    for (double time_s = from_s;;) {
-        time_s = fmin(time_s + piece_s, to_s);
-        const bool last = time_s >= to_s;
-        status result = scene_motion_advance(job->motion, time_s, skins && last, why);
-        if (result != STATUS_OK)
-            return result;
-        const scene_motion_report done = scene_motion_last(job->motion);
-        job->moved.hierarchies = done.hierarchies;
-        job->moved.steps += done.steps;
-        job->moved.step_s += done.step_s;
-        job->moved.skin_s += done.skin_s;
-        if (last)
-            break;
-        if (!show_progress(job, 0))
-            return say_interrupted(job, why);
+    film_job *job = context;
+    if (job->frame > 0)
+        return show_progress(job, 0);
+    progress_draw(&job->line, share_done);
+    return !terminal_stop_asked();
+}
+
+static status advance(film_job *job, double to_s, bool skins, diagnostic *why)
+{
+    const load_watch watch = {show_motion, job};
+    const bool own_line = job->frame == 0 && to_s > 0;
+    if (own_line)
+        progress_start(&job->line, "moving to the first frame");
+    status result = scene_motion_advance_until(job->motion, to_s, skins, &watch, why);
+    if (own_line) {
+        progress_erase(&job->line);
+        progress_start(&job->line, job->label);
     }
+    if (result != STATUS_OK)
+        return result == STATUS_INTERRUPTED ? say_interrupted(job, why) : result;
+    job->moved = scene_motion_last(job->motion);
     animate_account *account = job->account;
     account->steps += job->moved.steps;
     account->step_s += job->moved.step_s;
@@ -136,11 +138,10 @@ static status make_frame(film_job *job, diagnostic *why)
     if (job->names && !path)
         return no_memory(why);
     const bool kept = is_there(job, path);
-    const double before_s = job->frame > 0 ? animate_time_s(job->request, job->frame - 1) : 0;
     snprintf(job->label, sizeof job->label, "frame %" PRId64 " of %" PRId64, job->frame + 1, job->count);
     status result = show_progress(job, 0) ? STATUS_OK : say_interrupted(job, why);
     if (result == STATUS_OK)
-        result = advance(job, before_s, animate_time_s(job->request, job->frame), !kept, why);
+        result = advance(job, animate_time_s(job->request, job->frame), !kept, why);
     if (result == STATUS_OK && kept)
         job->account->kept++;
     else if (result == STATUS_OK)
@@ -202,9 +203,9 @@ status animate_film(const animate_request *request, const animate_names *names, 
     film_job job = {.request = request, .names = names, .definition = d->hash, .s = s, .motion = motion, .level = level,
                     .count = animate_count(request), .account = account};
     *account = (animate_account){0};
-    status result = request->rows ? animate_rows_open(request->rows, d->hash, &job.rows, why) : STATUS_OK;
+    status result = request->rows ? animate_rows_open(request->rows, d->hash, request->restart || !names, &job.rows, why) : STATUS_OK;
     if (result == STATUS_OK && names)
-        result = animate_ledger_begin(names, d, request->restart, why);
+        result = animate_ledger_begin(names, d, job.count, request->restart, why);
     if (result == STATUS_OK)
         result = make_film(&job, why);
     animate_rows_close(job.rows);

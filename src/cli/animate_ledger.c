@@ -2,8 +2,6 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/json.h"
-#include <dirent.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,37 +27,12 @@ static char *ledger_path(const animate_names *names)
     return text_format("%s.json", names->pattern);
 }
 
-/* Counts the frames in the folder, or removes them. */
-static status each_frame(const animate_names *names, bool remove_them, size_t *count, diagnostic *why)
-{
-    *count = 0;
-    DIR *folder = opendir(names->folder);
-    if (!folder && errno == ENOENT)
-        return STATUS_OK;
-    if (!folder) {
-        diagnostic_locate(why, names->folder, 0, 0);
-        return diagnose(why, STATUS_FAILURE, "make the folder readable", "cannot be listed: %s", strerrordesc_np(errno));
-    }
-    status result = STATUS_OK;
-    for (const struct dirent *entry; result == STATUS_OK && (entry = readdir(folder));) {
-        if (animate_name_frame(names, entry->d_name) < 0)
-            continue;
-        ++*count;
-        if (remove_them && unlinkat(dirfd(folder), entry->d_name, 0) != 0) {
-            diagnostic_locate(why, entry->d_name, 0, 0);
-            result = diagnose(why, STATUS_FAILURE, "make the folder writable", "cannot be removed: %s", strerrordesc_np(errno));
-        }
-    }
-    closedir(folder);
-    return result;
-}
-
-static status write_ledger(const char *path, const animate_names *names, const animate_definition *d, diagnostic *why)
+static status write_ledger(const char *path, const animate_names *names, const animate_definition *d, int64_t count, diagnostic *why)
 {
     char hash[32];
     snprintf(hash, sizeof hash, "%016" PRIx64, d->hash);
-    json_t *ledger = json_pack("{s:s,s:o,s:s,s:O}", "version", CUVETTE_VERSION, "frames", json_of_text(names->pattern), "definition", hash,
-                               "parameters", d->parameters);
+    json_t *ledger = json_pack("{s:s,s:o,s:I,s:s,s:O}", "version", CUVETTE_VERSION, "frames", json_of_text(names->pattern), "count",
+                               (json_int_t)count, "definition", hash, "parameters", d->parameters);
     file_writer file = {0};
     status result = ledger ? file_writer_open(&file, path, why) : no_memory(why);
     if (result == STATUS_OK) {
@@ -101,55 +74,79 @@ static status refuse_definition(const char *path, const json_t *ledger, const an
     return refuse(path, why, what);
 }
 
-static status compare(const char *path, const animate_definition *d, diagnostic *why)
+static json_t *load(const char *path, status *result, diagnostic *why)
 {
-    char *text = NULL, hash[32];
+    char *text = NULL;
     size_t size;
-    status result = file_read(path, LEDGER_BYTES_MAX, &text, &size, why);
+    *result = file_read(path, LEDGER_BYTES_MAX, &text, &size, why);
+    json_t *ledger = *result == STATUS_OK ? json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL) : NULL;
+    free(text);
+    return ledger;
+}
+
+static int64_t count_of(const json_t *ledger)
+{
+    const json_t *count = json_object_get(ledger, "count");
+    return json_is_integer(count) && json_object_get(ledger, "definition") ? json_integer_value(count) : -1;
+}
+
+int64_t animate_ledger_count(const char *path)
+{
+    status result;
+    json_t *ledger = load(path, &result, NULL);
+    const int64_t count = count_of(ledger);
+    json_decref(ledger);
+    return count;
+}
+
+/* *count: of the frames that the ledger says the film has. */
+static status compare(const char *path, const animate_definition *d, bool restart, int64_t *count, diagnostic *why)
+{
+    status result;
+    char hash[32];
+    json_t *ledger = load(path, &result, why);
     if (result != STATUS_OK)
         return result;
-    json_t *ledger = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
-    free(text);
     snprintf(hash, sizeof hash, "%016" PRIx64, d->hash);
     const char *definition = json_string_value(json_object_get(ledger, "definition"));
     const char *version = json_string_value(json_object_get(ledger, "version"));
     char what[160];
-    if (!definition || !version) {
-        result = refuse(path, why, "is no ledger of a film");
-    } else if (strcmp(version, CUVETTE_VERSION) != 0) {
+    *count = count_of(ledger);
+    if (!definition || !version || *count < 0) {
+        diagnostic_locate(why, path, 0, 0);
+        result = diagnose(why, STATUS_BAD_INPUT, "put this film into another folder, or remove it and the frames yourself",
+                          "is no ledger of a film");
+    } else if (!restart && strcmp(version, CUVETTE_VERSION) != 0) {
         snprintf(what, sizeof what, "the frames there are by version %.32s of the program, this is %s", version, CUVETTE_VERSION);
         result = refuse(path, why, what);
-    } else if (strcmp(definition, hash) != 0) {
+    } else if (!restart && strcmp(definition, hash) != 0) {
         result = refuse_definition(path, ledger, d, why);
     }
     json_decref(ledger);
     return result;
 }
 
-status animate_ledger_check(const animate_names *names, const animate_definition *d, diagnostic *why)
+status animate_ledger_check(const animate_names *names, const animate_definition *d, int64_t count, bool restart, diagnostic *why)
 {
-    size_t frames = 0;
+    int64_t known = -1;
     char *path = ledger_path(names);
     status result = path ? STATUS_OK : no_memory(why);
     if (path && access(path, F_OK) == 0)
-        result = compare(path, d, why);
-    else if (path)
-        result = each_frame(names, false, &frames, why);
-    if (result == STATUS_OK && frames > 0)
-        result = refuse(names->folder, why, "there are frames of this name without a ledger that says of which film");
+        result = compare(path, d, restart, &known, why);
+    if (result == STATUS_OK)
+        result = animate_folder_check(names, known, count, why);
     free(path);
     return result;
 }
 
-status animate_ledger_begin(const animate_names *names, const animate_definition *d, bool restart, diagnostic *why)
+status animate_ledger_begin(const animate_names *names, const animate_definition *d, int64_t count, bool restart, diagnostic *why)
 {
-    size_t frames = 0;
     char *path = ledger_path(names);
     status result = path ? file_make_directory(names->folder, why) : no_memory(why);
     if (result == STATUS_OK && restart)
-        result = each_frame(names, true, &frames, why);
-    if (result == STATUS_OK && (restart || access(path, F_OK) != 0))
-        result = write_ledger(path, names, d, why);
+        result = animate_folder_clear(names, why);
+    if (result == STATUS_OK && (restart || count > animate_ledger_count(path)))
+        result = write_ledger(path, names, d, count, why);
     free(path);
     return result;
 }

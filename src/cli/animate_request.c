@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { KEY_SCRIPT = 0x100, KEY_DURATION, KEY_FPS, KEY_START, KEY_ROWS, KEY_RESTART, KEY_JSON };
@@ -139,6 +140,9 @@ static status find_script(animate_request *request, diagnostic *why)
 {
     if (!request->script)
         return STATUS_OK;
+    struct stat about;
+    if (stat(request->script, &about) == 0 && !S_ISREG(about.st_mode))
+        return wrong("--script", request->script, "name a regular file: a script is read more than once", "is no regular file", why);
     request->script_path = realpath(request->script, NULL);
     if (request->script_path)
         return STATUS_OK;
@@ -151,6 +155,7 @@ status animate_request_parse(int argc, char **argv, animate_request *out, diagno
 {
     *out = (animate_request){.fps_num = 25, .fps_den = 1};
     status result = scene_input_prepare(&out->input, "animate", argc, why);
+    out->input.from_beginning = true;
     if (result == STATUS_OK)
         result = options_parse(&parser, 0, argc, argv, out, why);
     if (result == STATUS_OK)

@@ -9,10 +9,16 @@
 #include <string.h>
 
 struct animate_rows {
+    char *path;
     table *file;
-    int64_t *frames; /* that have a row, in order */
+    struct film_row *there; /* in order of frames */
     size_t count;
 };
+
+typedef struct film_row {
+    int64_t frame;
+    char film_hash[32];
+} film_row;
 
 static void put_config(csv_line *line)
 {
@@ -92,7 +98,7 @@ static bool has_header(const csv *there, const char *header)
 
 static int compare_frames(const void *a, const void *b)
 {
-    const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+    const int64_t x = ((const film_row *)a)->frame, y = ((const film_row *)b)->frame;
     return (x > y) - (x < y);
 }
 
@@ -105,32 +111,46 @@ static status take_rows(animate_rows *rows, const char *path, const csv *there, 
         return STATUS_OK; /* killed while it was made */
     if (!has_header(there, header))
         return refuse(path, "has other columns than the rows of a film", why);
-    rows->frames = calloc(there->row_count + 1, sizeof *rows->frames);
-    if (!rows->frames)
+    rows->there = calloc(there->row_count + 1, sizeof *rows->there);
+    if (!rows->there)
         return no_memory(why);
-    const int frame = csv_column(there, "frame"), of = csv_column(there, "definition");
+    const int frame = csv_column(there, "frame"), of = csv_column(there, "definition"), picture = csv_column(there, "film_hash");
     for (size_t i = 0; i < there->row_count; i++) {
         if (strcmp(csv_field(there, i, of), hash) != 0)
             return refuse(path, "holds rows of another film", why);
-        if (!number_parse_int(csv_field(there, i, frame), &rows->frames[i]))
+        if (!number_parse_int(csv_field(there, i, frame), &rows->there[i].frame))
             return refuse(path, "holds a row without a frame's number", why);
+        snprintf(rows->there[i].film_hash, sizeof rows->there[i].film_hash, "%s", csv_field(there, i, picture));
     }
     rows->count = there->row_count;
-    qsort(rows->frames, rows->count, sizeof *rows->frames, compare_frames);
+    qsort(rows->there, rows->count, sizeof *rows->there, compare_frames);
     return STATUS_OK;
 }
 
-status animate_rows_open(const char *path, uint64_t definition, animate_rows **out, diagnostic *why)
+/* The table says what is right for a study. */
+static status open_table(const char *path, const char *header, table **out, diagnostic *why)
+{
+    const status result = table_open(path, header, out, why);
+    return result == STATUS_BAD_INPUT
+               ? diagnose(why, result, "wait for it to end, or name another file by --rows", "another process is writing these rows")
+               : result;
+}
+
+status animate_rows_open(const char *path, uint64_t definition, bool anew, animate_rows **out, diagnostic *why)
 {
     csv_line header = {0};
     put_header(&header);
     animate_rows *rows = calloc(1, sizeof *rows);
     csv *there = NULL;
-    status result = rows && !header.failed ? csv_read(path, &there, why) : no_memory(why);
+    if (rows)
+        rows->path = strdup(path);
+    status result = rows && rows->path && !header.failed ? csv_read(path, &there, why) : no_memory(why);
     if (result == STATUS_OK && there)
         result = take_rows(rows, path, there, header.text, definition, why);
+    if (result == STATUS_OK && anew && rows->count > 0)
+        result = refuse(path, "has rows already, and this film begins anew", why);
     if (result == STATUS_OK)
-        result = table_open(path, header.text, &rows->file, why);
+        result = open_table(path, header.text, &rows->file, why);
     csv_destroy(there);
     csv_line_free(&header);
     if (result != STATUS_OK) {
@@ -147,17 +167,34 @@ void animate_rows_close(animate_rows *rows)
         return;
     if (rows->file)
         table_close(rows->file);
-    free(rows->frames);
+    free(rows->there);
+    free(rows->path);
     free(rows);
+}
+
+static const film_row *find(const animate_rows *rows, int64_t frame)
+{
+    const film_row key = {.frame = frame};
+    return rows->count > 0 ? bsearch(&key, rows->there, rows->count, sizeof key, compare_frames) : NULL;
 }
 
 bool animate_rows_have(const animate_rows *rows, int64_t frame)
 {
-    return rows->count > 0 && bsearch(&frame, rows->frames, rows->count, sizeof frame, compare_frames);
+    return find(rows, frame) != NULL;
 }
 
 status animate_rows_add(animate_rows *rows, const animate_row *row, diagnostic *why)
 {
+    char hash[32];
+    const film_row *there = find(rows, row->frame);
+    snprintf(hash, sizeof hash, "%016" PRIx64, film_hash(row->result->picture));
+    if (there && strcmp(there->film_hash, hash) != 0) {
+        diagnostic_locate(why, rows->path, 0, 0);
+        return diagnose(why, STATUS_BAD_INPUT, "make the film anew, with --restart and another file by --rows",
+                        "frame %" PRId64 " is film %s now, and %s in its row", row->frame, hash, there->film_hash);
+    }
+    if (there)
+        return STATUS_OK;
     csv_line line = {0};
     put_row(&line, row);
     status result = line.failed ? no_memory(why) : table_append(rows->file, line.text, line.size, why);

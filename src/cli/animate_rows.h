@@ -8,8 +8,9 @@
 
 typedef struct animate_rows animate_rows;
 
-/* Opens or makes the file. STATUS_BAD_INPUT for rows of another film or of another kind. */
-status animate_rows_open(const char *path, uint64_t definition, animate_rows **out, diagnostic *why);
+/* Opens or makes the file. anew: the film's frames are all made again, so there may be no row yet. STATUS_BAD_INPUT for rows of another film or of
+ * another kind, and where another process writes them. */
+status animate_rows_open(const char *path, uint64_t definition, bool anew, animate_rows **out, diagnostic *why);
 void animate_rows_close(animate_rows *rows); /* NULL is allowed */
 
 /* Was there a row of that frame when the file was opened? */
@@ -26,6 +27,7 @@ typedef struct animate_row {
     isa level;
 } animate_row;
 
+/* Nothing where the same row is there: a frame has one. STATUS_BAD_INPUT where that is of another picture. */
 status animate_rows_add(animate_rows *rows, const animate_row *row, diagnostic *why);
 
 #endif

@@ -130,7 +130,7 @@ static status load_scene(const fan_request *request, scene **out, diagnostic *wh
     if (result == STATUS_OK)
         result = outputs_check_place("-o", request->output, *out, why);
     if (result == STATUS_OK)
-        result = scene_load(*out, why);
+        result = scene_input_load(*out, why);
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include "cli/json.h"
 #include "cli/mesh_rows.h"
 #include "cli/options.h"
+#include "cli/scene_input.h"
 #include "base/file.h"
 #include "scene/edit.h"
 #include "scene/mesh_write.h"
@@ -148,7 +149,7 @@ static status obtain(const mesh_request *request, const mesh **out, diagnostic *
     if (result == STATUS_OK)
         result = scene_check(request->around, why);
     if (result == STATUS_OK)
-        result = scene_load(request->around, why);
+        result = scene_input_load(request->around, why);
     if (result == STATUS_BAD_INPUT && request->generate)
         diagnostic_locate(why, "--generate", 0, 0);
     *out = request->around->meshes[0].data;

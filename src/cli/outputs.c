@@ -1,4 +1,5 @@
 #include "cli/outputs.h"
+#include "cli/scene_files.h"
 #include "render/record.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -102,9 +103,14 @@ static status check_picture(const outputs *o, const named_file *file, bool is_ma
     return STATUS_OK;
 }
 
+static bool is_same(void *context, const char *path)
+{
+    return same_file(context, path);
+}
+
 static status check_not_read(const named_file *file, const scene *s, diagnostic *why)
 {
-    if ((s->path && same_file(file->path, s->path)) || is_file_of(file->path, s, s->background.picture_path) || is_script_of(file->path, s))
+    if (scene_files_any(s, is_same, (void *)(uintptr_t)file->path))
         return wrong(file, why, "name another file", "the scene is read from it");
     return STATUS_OK;
 }

@@ -11,7 +11,7 @@ typedef struct outputs {
     int bits;                                     /* of a PNG picture: 8 or 16; 0 when not said */
 } outputs;
 
-/* Endings, folders, and no file named twice or in place of one that is read: the scene's own and its sky. */
+/* Endings, folders, and no file named twice or in place of one that the scene reads (cli/scene_files.h). */
 status outputs_check(const outputs *o, const scene *s, diagnostic *why);
 
 /* The same for one picture by itself that no scene has to do with; read are the count files that are read. option is what
@@ -24,7 +24,7 @@ status outputs_ending(const char *option, const char *path, const char *const *e
                       diagnostic *why);
 /* Its folder alone: for what may be written in place of what was read. "-" is always right. */
 status outputs_check_folder(const char *option, const char *path, diagnostic *why);
-/* Its folder, and that nothing is read from it: the scene, its sky and the scripts of its slimes. "-" is always right. */
+/* Its folder, and that the scene does not read it (cli/scene_files.h). "-" is always right. */
 status outputs_check_place(const char *option, const char *path, const scene *s, diagnostic *why);
 /* That no script is read from it: for what may be written in place of the scene itself. "-" is always right. */
 status outputs_check_script(const char *option, const char *path, const scene *s, diagnostic *why);

@@ -197,7 +197,7 @@ status command_realism(int argc, char **argv, diagnostic *why)
     if (result == STATUS_OK)
         result = scene_input_read(&request.input, &s, why);
     if (result == STATUS_OK)
-        result = scene_load(s, why);
+        result = scene_input_load(s, why);
     if (result == STATUS_OK && !request.json && !request.csv && request.curve < 0)
         scene_input_note_hints(s);
     if (result == STATUS_OK)

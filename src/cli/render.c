@@ -96,7 +96,7 @@ static status load_scene(const render_request *request, scene **out, diagnostic 
     if (result == STATUS_OK)
         result = outputs_check(&request->files, *out, why);
     if (result == STATUS_OK)
-        result = scene_load(*out, why);
+        result = scene_input_load(*out, why);
     return result;
 }
 

@@ -128,7 +128,7 @@ static status print_list(const scene *s)
 
 static status check_files(const scene_request *request, scene *s, diagnostic *why)
 {
-    status result = scene_load(s, why);
+    status result = scene_input_load(s, why);
     if (result == STATUS_OK)
         result = scene_check(s, why); /* again, with the meshes' triangles */
     if (result != STATUS_OK) {

@@ -56,10 +56,28 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
             diagnostic_locate(why, where, 0, 0);
         }
     }
+    for (size_t i = 0; result == STATUS_OK && input->from_beginning && i < (*out)->mesh_count; i++)
+        (*out)->meshes[i].time_s = 0;
     if (result == STATUS_OK) {
         diagnostic_locate(why, input->path, 0, 0); /* for checks that have no line to name */
         result = scene_check(*out, why);
     }
+    return result;
+}
+
+static bool show_motion(void *context, double share_done)
+{
+    progress_draw(context, share_done);
+    return !terminal_stop_asked();
+}
+
+status scene_input_load(scene *s, diagnostic *why)
+{
+    progress_line line;
+    progress_start(&line, "moving");
+    const load_watch watch = {show_motion, &line};
+    const status result = scene_load_until(s, &watch, why);
+    progress_erase(&line);
     return result;
 }
 

@@ -18,6 +18,7 @@ typedef struct scene_input {
     const char *path;    /* NULL until it is named */
     scene_change *changes;
     size_t count;
+    bool from_beginning; /* a slime's time_s does not count: it moves from its beginning on */
 } scene_input;
 
 /* Room for as many changes as the command line has words. */
@@ -35,6 +36,9 @@ status scene_input_check(const scene_input *input, diagnostic *why);
 
 /* The scene as the command line changes it, checked; its pictures are not loaded. */
 status scene_input_read(const scene_input *input, scene **out, diagnostic *why);
+
+/* scene_load, with a line of progress while slimes move, and heard when it shall stop. */
+status scene_input_load(scene *s, diagnostic *why);
 
 /* Notes where the scene's picture is made of random paths or is spectral, since a tree of rays has all branches and one wavelength; and
  * where a medium was not measured at that. */

@@ -120,7 +120,7 @@ static status load_scene(const trace_request *request, scene **out, diagnostic *
     if (result == STATUS_OK && request->output)
         result = outputs_check_place("-o", request->output, *out, why);
     if (result == STATUS_OK)
-        result = scene_load(*out, why);
+        result = scene_input_load(*out, why);
     return result;
 }
 

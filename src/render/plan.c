@@ -3,7 +3,6 @@
 #include "base/elementary.h"
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static void aim_at_target(const struct camera *c, camera_frame *f)
 {
@@ -61,11 +60,6 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
     return solid_index + 1;
 }
 
-static int build_threads(const scene *s)
-{
-    return s->render.build_threads > 0 ? (int)s->render.build_threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
-}
-
 /* The hierarchy of the solid's mesh: the mesh's own, or one for this frame, of which solids of one mesh share the first's. */
 static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
 {
@@ -73,7 +67,7 @@ static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hi
     if (s->render.integrator == INTEGRATOR_ZBUFFER)
         return STATUS_OK; /* what is drawn needs none */
     if (s->render.keep)
-        return hierarchy_of_mesh(m, kind, build_threads(s), out, why);
+        return hierarchy_of_mesh(m, kind, scene_build_threads(&s->render), out, why);
     for (size_t k = 0; k < i; k++) {
         const mesh_entry *other = s->solids[k].shape.kind == SHAPE_MESH ? scene_find_mesh(s, s->solids[k].mesh) : NULL;
         if (p->own_trees[k] && other && other->data == m) {
@@ -81,7 +75,7 @@ static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hi
             return STATUS_OK;
         }
     }
-    const status code = hierarchy_build(m, kind, build_threads(s), &p->own_trees[i], why);
+    const status code = hierarchy_build(m, kind, scene_build_threads(&s->render), &p->own_trees[i], why);
     *out = p->own_trees[i];
     return code;
 }

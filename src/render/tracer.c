@@ -258,66 +258,6 @@ static bool stopped(const atomic_bool *stop)
     return atomic_load_explicit(stop, memory_order_relaxed);
 }
 
-/* How many camera rays a pixel has. */
-static int64_t rays_a_pixel(const render_settings *r)
-{
-    if (r->integrator == INTEGRATOR_PATH)
-        return r->paths;
-    return r->spectrum == SPECTRUM_SPECTRAL ? r->samples * r->wavelengths : r->samples;
-}
-
-/* The point of a pixel that a ray goes through: the middle of one of its k x k cells, line by line. */
-static int64_t point_of(const render_settings *r, int64_t cells, int64_t ray)
-{
-    const bool wavelengths_inside = r->integrator != INTEGRATOR_PATH && r->spectrum == SPECTRUM_SPECTRAL;
-    return wavelengths_inside ? ray / r->wavelengths : ray % (cells * cells);
-}
-
-/* k: how many cells a pixel has across. Fewer where there are fewer paths than samples: the first lines of cells alone would move
- * the picture. */
-static int64_t cells_across(const render_settings *r)
-{
-    const int64_t most = r->integrator == INTEGRATOR_PATH && r->paths < r->samples ? r->paths : r->samples;
-    int64_t k = 1;
-    while ((k + 1) * (k + 1) <= most)
-        k++;
-    return k;
-}
-
-/* Rays first .. first + count - 1 of a row of pixels from x0 on. */
-static void put_camera_rays_in_line(tracer *t, int y, int x0, int64_t first, int count)
-{
-    const plan *p = t->target.scene;
-    const render_settings *r = &p->render;
-    ray_queue *q = &t->waiting[0];
-    double u[ROW], v[ROW];
-    const double across = 2.0 * p->view.half_width / (double)r->width, down = 2.0 * p->view.half_height / (double)r->height;
-    const int64_t each = rays_a_pixel(r), flag = r->integrator == INTEGRATOR_PATH ? TICKET_SEES_LIGHTS : 0;
-    const int64_t cells = cells_across(r);
-    const int at = q->count;
-    for (int k = 0; k < count; k++) {
-        const int64_t x = x0 + (first + k) / each, ray = (first + k) % each, s = point_of(r, cells, ray);
-        const double sx = ((double)(s % cells) + 0.5) / (double)cells, sy = ((double)(s / cells) + 0.5) / (double)cells;
-        u[k] = ((double)x + sx) * across - p->view.half_width;
-        v[k] = p->view.half_height - (y + sy) * down;
-        const int i = at + k;
-        q->ox[i] = p->view.eye.x, q->oy[i] = p->view.eye.y, q->oz[i] = p->view.eye.z;
-        q->wr[i] = q->wg[i] = q->wb[i] = 1.0 / (double)each;
-        q->start[i] = FACE_NONE;
-        q->ticket[i] = ticket_make((int64_t)y * r->width + x, t->by_ticket ? ray : 0);
-        if (p->spectral) {
-            const double *white;
-            q->ticket[i] = spectra_choose(p->spectral, r, q->ticket[i], &white);
-            q->wr[i] *= white[0], q->wg[i] *= white[1], q->wb[i] *= white[2];
-        }
-        q->ticket[i] |= flag;
-        q->inside[i] = p->eye_inside;
-        q->sq[i] = q->su[i] = q->sv[i] = 0.0;
-    }
-    t->shade->camera(&p->view, count, u, v, q->dx + at, q->dy + at, q->dz + at);
-    q->count += count;
-}
-
 /* Whole pixels at once, as many as fit into a batch. */
 static int rays_at_once(int64_t each)
 {
@@ -326,8 +266,8 @@ static int rays_at_once(int64_t each)
 
 int tracer_camera_rays(tracer *t, int x, int y)
 {
-    const int count = (int)rays_a_pixel(&t->target.scene->render);
-    put_camera_rays_in_line(t, y, x, 0, count);
+    const int count = (int)camera_rays_a_pixel(&t->target.scene->render);
+    camera_rays_put_in_line(t, y, x, 0, count);
     return count;
 }
 
@@ -362,7 +302,7 @@ static bool trace_row(tracer *t, int y, int x0, int x1, int64_t each, const atom
     const int64_t all = each * (x1 - x0);
     const int at_once = rays_at_once(each);
     for (int64_t ray = 0; ray < all; ray += at_once) {
-        put_camera_rays_in_line(t, y, x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
+        camera_rays_put_in_line(t, y, x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
         while (run_full(t))
             if (stopped(stop))
                 return false;
@@ -374,7 +314,7 @@ void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, cons
 {
     if (t->target.depths)
         draw(t, piece);
-    const int64_t each = rays_a_pixel(&t->target.scene->render);
+    const int64_t each = camera_rays_a_pixel(&t->target.scene->render);
     const pixel_block block = block_of(t->target.scene, piece, each);
     for (int top = piece->y0; top < piece->y1; top += block.height) {
         const int bottom = top + block.height < piece->y1 ? top + block.height : piece->y1;

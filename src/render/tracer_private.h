@@ -70,6 +70,10 @@ void tracer_run_batch(tracer *t, int depth);
 /* Puts the camera rays of one pixel of an rgb film in line; returns how many. */
 int tracer_camera_rays(tracer *t, int x, int y);
 
+/* camera_rays.c: how many camera rays a pixel has; rays first .. first + count - 1 of a row of pixels from x0 on. */
+int64_t camera_rays_a_pixel(const render_settings *r);
+void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count);
+
 /* mesh_shading.c: points of the gathered group on a mesh; the light and the branches that its triangles do not let through; Gouraud's light;
  * which directions lead out of the triangle of record k; and how the group's list falls into faces that look alike. */
 void mesh_surface(tracer *t, int rank, const int *list);

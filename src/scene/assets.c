@@ -157,9 +157,6 @@ void scene_borrow_meshes(scene *s, const scene *from)
 
 static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
 {
-    if (m->source == MESH_SLIME) {
-        return slime_make(s, m, why);
-    }
     if (m->source != MESH_FILE) {
         return mesh_make(m, why);
     }
@@ -185,15 +182,52 @@ static status load_pictures(scene *s, diagnostic *why)
     return code;
 }
 
-status scene_load(scene *s, diagnostic *why)
+/* Of all slimes that are to move, what one of them does. */
+typedef struct shared_watch {
+    const load_watch *whole;
+    double before, own, all; /* slime_work */
+} shared_watch;
+
+static bool go_on_all(void *context, double share_done)
 {
-    status code = load_pictures(s, why);
+    const shared_watch *w = context;
+    return w->whole->go_on(w->whole->context, (w->before + share_done * w->own) / w->all);
+}
+
+static double work_of(const mesh_entry *m)
+{
+    return m->source == MESH_SLIME && !m->data ? slime_work(m) : 0.0;
+}
+
+static status load_meshes(scene *s, const load_watch *watch, diagnostic *why)
+{
+    shared_watch shared = {.whole = watch};
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        shared.all += work_of(&s->meshes[i]);
+    }
+    status code = STATUS_OK;
     for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
-        if (!s->meshes[i].data) {
-            code = load_mesh(s, &s->meshes[i], why);
+        mesh_entry *m = &s->meshes[i];
+        shared.own = work_of(m);
+        if (!m->data && m->source == MESH_SLIME) {
+            code = slime_make(s, m, watch ? &(load_watch){go_on_all, &shared} : NULL, why);
+        } else if (!m->data) {
+            code = load_mesh(s, m, why);
         }
+        shared.before += shared.own;
     }
     return code;
+}
+
+status scene_load_until(scene *s, const load_watch *watch, diagnostic *why)
+{
+    const status code = load_pictures(s, why);
+    return code == STATUS_OK ? load_meshes(s, watch, why) : code;
+}
+
+status scene_load(scene *s, diagnostic *why)
+{
+    return scene_load_until(s, NULL, why);
 }
 
 status scene_load_files(scene *s, diagnostic *why)

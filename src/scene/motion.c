@@ -3,7 +3,6 @@
 #include "scene/slime.h"
 
 #include <stdlib.h>
-#include <unistd.h>
 
 typedef struct moving_slime {
     slime x;
@@ -60,11 +59,6 @@ static void add_moves(hierarchy_moves *sum, const hierarchy_moves *more)
     sum->growth = sum->growth > more->growth ? sum->growth : more->growth;
 }
 
-static int build_threads(const scene *s)
-{
-    return s->render.build_threads > 0 ? (int)s->render.build_threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
-}
-
 static status move_skin(scene_motion *m, const moving_slime *one, diagnostic *why)
 {
     mesh_entry *entry = entry_of(m, one);
@@ -75,7 +69,7 @@ static status move_skin(scene_motion *m, const moving_slime *one, diagnostic *wh
     status code = softbody_move_skin(one->x.body, (mesh *)(uintptr_t)entry->data, why);
     hierarchy_moves moves = {.refitted = 0};
     if (code == STATUS_OK) {
-        code = hierarchy_follow(entry->data, m->s->render.rebuild, build_threads(m->s), &moves, why);
+        code = hierarchy_follow(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why);
     }
     if (code != STATUS_OK) {
         mesh_entry_unload(entry); /* triangles and hierarchies that do not fit each other */
@@ -163,15 +157,32 @@ void scene_motion_destroy(scene_motion *m)
     free(m);
 }
 
-static status advance_one(scene_motion *m, moving_slime *one, double time_s, bool skins, diagnostic *why)
+/* One of count slimes, in turn. */
+typedef struct turn_watch {
+    const load_watch *whole;
+    size_t turn, count;
+} turn_watch;
+
+static bool go_on_turn(void *context, double share_done)
+{
+    const turn_watch *w = context;
+    return w->whole->go_on(w->whole->context, ((double)w->turn + share_done) / (double)w->count);
+}
+
+static status advance_one(scene_motion *m, size_t i, double time_s, const load_watch *watch, diagnostic *why)
+{
+    moving_slime *one = &m->slimes[i];
+    const double motion_before_s = one->x.motion_s;
+    turn_watch turn = {watch, i, m->count};
+    const status code = slime_advance(&one->x, m->s, entry_of(m, one), time_s, watch ? &(load_watch){go_on_turn, &turn} : NULL, why);
+    m->last.step_s += one->x.motion_s - motion_before_s;
+    return code;
+}
+
+static status show_one(scene_motion *m, moving_slime *one, double time_s, bool skins, diagnostic *why)
 {
     const mesh_entry *entry = entry_of(m, one);
-    const double motion_before_s = one->x.motion_s;
-    status code = slime_advance(&one->x, m->s, entry, time_s, why);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    m->last.step_s += one->x.motion_s - motion_before_s;
+    status code = STATUS_OK;
     if (skins) {
         const double begun_s = clock_wall_s();
         code = move_skin(m, one, why);
@@ -185,14 +196,22 @@ static status advance_one(scene_motion *m, moving_slime *one, double time_s, boo
     return code;
 }
 
-status scene_motion_advance(scene_motion *m, double time_s, bool skins, diagnostic *why)
+status scene_motion_advance_until(scene_motion *m, double time_s, bool skins, const load_watch *watch, diagnostic *why)
 {
     m->last = (scene_motion_report){.steps = 0};
     status code = STATUS_OK;
     for (size_t i = 0; i < m->count && code == STATUS_OK; i++) {
-        code = advance_one(m, &m->slimes[i], time_s, skins, why);
+        code = advance_one(m, i, time_s, watch, why);
+    }
+    for (size_t i = 0; i < m->count && code == STATUS_OK; i++) {
+        code = show_one(m, &m->slimes[i], time_s, skins, why);
     }
     return code;
+}
+
+status scene_motion_advance(scene_motion *m, double time_s, bool skins, diagnostic *why)
+{
+    return scene_motion_advance_until(m, time_s, skins, NULL, why);
 }
 
 scene_motion_report scene_motion_last(const scene_motion *m)

@@ -23,6 +23,9 @@ void scene_motion_destroy(scene_motion *m); /* NULL is allowed; the scene keeps 
 /* To the time nearest to time_s that is a whole number of steps of each slime; not backwards. The slimes' time_s are set to time_s. skins: false leaves
  * the scene's meshes as they were, for frames that are not rendered. */
 status scene_motion_advance(scene_motion *m, double time_s, bool skins, diagnostic *why);
+/* The same, for one who waits: STATUS_INTERRUPTED leaves the scene as it was, with bodies on the way, and a later advance goes on. The share is of
+ * this way; watch may be NULL. */
+status scene_motion_advance_until(scene_motion *m, double time_s, bool skins, const load_watch *watch, diagnostic *why);
 
 /* Of the latest advance: what the hierarchies of all slimes came to, and the wall time of steps and of moving skins. */
 typedef struct scene_motion_report {

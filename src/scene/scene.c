@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 scene *scene_create(void)
 {
@@ -163,4 +164,9 @@ int scene_find_solid(const scene *s, const char *name)
         }
     }
     return -1;
+}
+
+int scene_build_threads(const render_settings *r)
+{
+    return r->build_threads > 0 ? (int)r->build_threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
 }

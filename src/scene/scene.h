@@ -201,7 +201,17 @@ status scene_read_text(const char *name, const char *text, size_t size, scene **
  * file that the scene file names is located there. A sky's values must be from 0 to SCENE_SKY_MAX. */
 status scene_load(scene *s, diagnostic *why);
 
-/* The same, but for bodies that are computed: what lies in files alone. Scripts of slimes are read, and nothing is kept of them. */
+/* Who waits for slimes that move: go_on is asked about every 10 ms, from 0 to 1 of all their motion being done; false ends it. */
+typedef struct load_watch {
+    bool (*go_on)(void *context, double share_done);
+    void *context;
+} load_watch;
+
+/* scene_load that can be stopped: STATUS_INTERRUPTED then. What was loaded whole is kept, and a later load goes on from there; nothing else of the
+ * scene has changed. watch is borrowed; NULL: nobody waits. */
+status scene_load_until(scene *s, const load_watch *watch, diagnostic *why);
+
+/* The same as scene_load, but for bodies that are computed: what lies in files alone. Scripts of slimes are read, and nothing is kept of them. */
 status scene_load_files(scene *s, diagnostic *why);
 
 /* A path that the scene names, as it reads from the working folder; fresh memory, NULL when that is out. */
@@ -211,6 +221,9 @@ char *scene_file_path(const scene *s, const char *path);
  * names, limits, camera not at its own target, a picture sky that names its picture. Run by scene_read and
  * before every render. */
 status scene_check(const scene *s, diagnostic *why);
+
+/* Threads that build hierarchies: render.build_threads, or one a processing unit. */
+int scene_build_threads(const render_settings *r);
 
 /* Are the shares of a clear surface the material's own constants, whatever its index? */
 static inline bool scene_has_constant_shares(const render_settings *r)

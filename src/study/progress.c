@@ -55,10 +55,10 @@ void progress_pictures(progress_line *line, size_t picture, size_t pictures)
     line->pictures = pictures;
 }
 
-static void write_line(const progress_line *line, double share_done)
+static void write_line(const progress_line *line, double share_done, const char *more)
 {
     if (line->pictures) {
-        fprintf(line->terminal, "\r%s: pictures: %zu of %zu", line->name, line->picture, line->pictures);
+        fprintf(line->terminal, "\r%s: pictures: %zu of %zu%s", line->name, line->picture, line->pictures, more);
         return;
     }
     double done = line->frames_all ? ((double)line->frames_done + share_done) / (double)line->frames_all : 1;
@@ -66,17 +66,30 @@ static void write_line(const progress_line *line, double share_done)
             (int)(100 * done));
     if (line->left_s >= 0)
         fprintf(line->terminal, ", about %ld s left", (long)(line->left_s + 0.5));
+    fputs(more, line->terminal);
 }
 
-void progress_show(progress_line *line, double share_done)
+static void show(progress_line *line, double share_done, const char *more)
 {
     double now_s = clock_wall_s();
     if (!line->terminal || now_s - line->shown_s < refresh_s)
         return;
     line->shown_s = now_s;
-    write_line(line, share_done);
+    write_line(line, share_done, more);
     fputs("\033[K", line->terminal);
     fflush(line->terminal);
+}
+
+void progress_show(progress_line *line, double share_done)
+{
+    show(line, share_done, "");
+}
+
+void progress_moving(progress_line *line, double share_done)
+{
+    char text[32];
+    snprintf(text, sizeof text, ", moving: %d%%", (int)(100 * share_done));
+    show(line, 0, text);
 }
 
 void progress_end(progress_line *line)

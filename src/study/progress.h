@@ -15,6 +15,8 @@ void progress_count(progress_line *line, const study *s, const ledger *done, con
 void progress_pictures(progress_line *line, size_t picture, size_t pictures);
 /* Shows it; share_done is that of the frame. */
 void progress_show(progress_line *line, double share_done);
+/* The same while slimes move before a frame; share_done is that of their motion. */
+void progress_moving(progress_line *line, double share_done);
 void progress_end(progress_line *line);
 
 #endif

@@ -81,9 +81,19 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
     return ledger_add(r->done, &entry, why);
 }
 
+static bool show_motion(void *of, double share_done)
+{
+    run *r = of;
+    progress_moving(r->line, share_done);
+    return !run_should_stop(r);
+}
+
 status run_prepare_scene(run *r, scene *setting, diagnostic *why)
 {
-    status code = shelf_load(&r->meshes, setting, why);
+    const load_watch watch = {show_motion, r};
+    status code = shelf_load(&r->meshes, setting, &watch, why);
+    if (code == STATUS_INTERRUPTED)
+        return run_interrupted(why);
     return code == STATUS_OK ? renderer_prepare(r->tracer, setting, why) : code;
 }
 

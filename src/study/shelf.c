@@ -36,12 +36,12 @@ static void keep(shelf *s, const scene *setting)
         s->scenes[s->count++] = copy;
 }
 
-status shelf_load(shelf *s, scene *setting, diagnostic *why)
+status shelf_load(shelf *s, scene *setting, const load_watch *watch, diagnostic *why)
 {
     for (size_t i = 0; i < s->count; i++)
         scene_borrow_meshes(setting, s->scenes[i]);
     const bool new_ones = !is_whole(setting);
-    const status code = scene_load(setting, why);
+    const status code = scene_load_until(setting, watch, why);
     if (code == STATUS_OK && new_ones)
         keep(s, setting);
     return code;

@@ -10,8 +10,8 @@ enum { SHELF_SCENES = 64 };
 
 typedef struct shelf { scene *scenes[SHELF_SCENES]; size_t count; } shelf;
 
-/* scene_load, with meshes from the shelf where it has them; what had to be made is put there. */
-status shelf_load(shelf *s, scene *setting, diagnostic *why);
+/* scene_load_until, with meshes from the shelf where it has them; what had to be made is put there. */
+status shelf_load(shelf *s, scene *setting, const load_watch *watch, diagnostic *why);
 void shelf_clear(shelf *s);
 
 #endif

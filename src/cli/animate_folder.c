@@ -1,0 +1,167 @@
+/* What lies in the folder of a film's frames: its own, those of other films, and what the scene reads. */
+#include "cli/animate.h"
+#include "base/text.h"
+#include "cli/scene_files.h"
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char elsewhere[] = "put this film into another folder, or name its frames otherwise";
+
+static status refuse(const animate_names *names, const char *name, const char *remedy, const char *what, diagnostic *why)
+{
+    char *path = text_format("%s/%s", names->folder, name);
+    diagnostic_locate(why, path ? path : name, 0, 0);
+    free(path);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+}
+
+/* *out is NULL where there is no such folder yet. */
+static status open_folder(const animate_names *names, DIR **out, diagnostic *why)
+{
+    *out = opendir(names->folder);
+    if (*out || errno == ENOENT)
+        return STATUS_OK;
+    diagnostic_locate(why, names->folder, 0, 0);
+    return diagnose(why, STATUS_FAILURE, "make the folder readable", "cannot be listed: %s", strerrordesc_np(errno));
+}
+
+static bool is_folder(DIR *in, const char *name)
+{
+    struct stat about;
+    return fstatat(dirfd(in), name, &about, 0) == 0 && S_ISDIR(about.st_mode);
+}
+
+static const char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static bool is_own_ledger(const animate_names *names, const char *name)
+{
+    const char *own = name_of(names->pattern);
+    const size_t length = strlen(own);
+    return strncmp(name, own, length) == 0 && strcmp(name + length, ".json") == 0;
+}
+
+static status check_frame(const animate_names *names, DIR *in, const char *name, int64_t known, diagnostic *why)
+{
+    if (is_folder(in, name))
+        return refuse(names, name, elsewhere, "is a folder, and named as a frame", why);
+    if (known < 0) {
+        diagnostic_locate(why, names->folder, 0, 0);
+        return diagnose(why, STATUS_BAD_INPUT, "remove them yourself, or put this film into another folder",
+                        "there are frames of this name without a ledger that says of which film, as %.96s", name);
+    }
+    char what[128];
+    snprintf(what, sizeof what, "is named as a frame, but the film there has %" PRId64, known);
+    return animate_name_frame(names, name) < known ? STATUS_OK
+                                                   : refuse(names, name, "remove it yourself, or put this film into another folder", what, why);
+}
+
+/* Is that a ledger of another film, one of whose frames would be one of this film's first count? */
+static bool overlaps(const animate_names *names, const char *ledger, int64_t count)
+{
+    animate_names other = {.digits = 0};
+    char *path = text_format("%s/%s", names->folder, ledger), *pattern = strndup(ledger, strlen(ledger) - strlen(".json"));
+    const int64_t frames = path ? animate_ledger_count(path) : -1;
+    bool same = false;
+    if (pattern && animate_names_parse(pattern, &other, NULL) == STATUS_OK) {
+        for (int64_t k = 0; k < frames && !same; k++) {
+            char *theirs = animate_name(&other, k);
+            const int64_t ours = theirs ? animate_name_frame(names, name_of(theirs)) : -1;
+            same = ours >= 0 && ours < count;
+            free(theirs);
+        }
+    }
+    animate_names_release(&other);
+    free(pattern);
+    free(path);
+    return same;
+}
+
+static bool is_json(const char *name)
+{
+    const size_t length = strlen(name);
+    return length > 5 && strcmp(name + length - 5, ".json") == 0;
+}
+
+status animate_folder_check(const animate_names *names, int64_t known, int64_t wanted, diagnostic *why)
+{
+    DIR *folder;
+    status result = open_folder(names, &folder, why);
+    for (const struct dirent *entry; folder && result == STATUS_OK && (entry = readdir(folder));) {
+        const char *name = entry->d_name;
+        if (animate_name_frame(names, name) >= 0)
+            result = check_frame(names, folder, name, known, why);
+        else if (is_json(name) && !is_own_ledger(names, name) && overlaps(names, name, known > wanted ? known : wanted))
+            result = refuse(names, name, elsewhere, "another film has frames of the same names", why);
+    }
+    if (folder)
+        closedir(folder);
+    return result;
+}
+
+status animate_folder_clear(const animate_names *names, diagnostic *why)
+{
+    DIR *folder;
+    status result = open_folder(names, &folder, why);
+    for (const struct dirent *entry; folder && result == STATUS_OK && (entry = readdir(folder));) {
+        if (animate_name_frame(names, entry->d_name) < 0 || unlinkat(dirfd(folder), entry->d_name, 0) == 0)
+            continue;
+        char what[96];
+        snprintf(what, sizeof what, "cannot be removed: %s", strerrordesc_np(errno));
+        refuse(names, entry->d_name, "make the folder writable", what, why);
+        result = STATUS_FAILURE;
+    }
+    if (folder)
+        closedir(folder);
+    return result;
+}
+
+typedef struct read_search {
+    const animate_names *names;
+    char found[256]; /* of the file that is read, for the message */
+} read_search;
+
+static bool is_in_place(const animate_names *names, const char *path)
+{
+    const char *name = name_of(path);
+    if (animate_name_frame(names, name) < 0 && !is_own_ledger(names, name))
+        return false;
+    char *folder = name == path ? strdup(".") : strndup(path, (size_t)(name - path));
+    struct stat theirs, ours;
+    const bool same = folder && stat(folder, &theirs) == 0 && stat(names->folder, &ours) == 0 && theirs.st_dev == ours.st_dev &&
+                      theirs.st_ino == ours.st_ino;
+    free(folder);
+    return same;
+}
+
+/* A name that leads to a file by a link stands for that too. */
+static bool is_frame(void *context, const char *path)
+{
+    read_search *x = context;
+    char *whole = realpath(path, NULL);
+    const bool same = is_in_place(x->names, path) || (whole && is_in_place(x->names, whole));
+    free(whole);
+    if (same)
+        snprintf(x->found, sizeof x->found, "%.200s", path);
+    return same;
+}
+
+status animate_names_check(const animate_names *names, const scene *s, diagnostic *why)
+{
+    read_search x = {.names = names};
+    if (!scene_files_any(s, is_frame, &x))
+        return STATUS_OK;
+    char where[512];
+    snprintf(where, sizeof where, "-o %s", names->pattern);
+    diagnostic_locate(why, where, 0, 0);
+    return diagnose(why, STATUS_BAD_INPUT, elsewhere, "the scene is read from %s, which has such a name", x.found);
+}
