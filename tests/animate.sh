@@ -107,6 +107,7 @@ animate -o calm/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows cal
 check "a film that nobody stops" is "$(frames calm)" 200
 interrupted INT 0010
 check "SIGINT ends it with status 130 and one line" eval '((code == 130)) && [[ $(wc -l <err) == 1 && ! -s out ]]'
+check "which counts frames from 1" grep -q "interrupted at frame $(($(frames long) + 1)) of 200" err
 check "some frames are there" eval '(($(frames long) >= 11 && $(frames long) < 200))'
 check "and nothing half made" is "$(find long -type f ! -name '[0-9]*.png' -printf '%f ')" "%04d.png.json "
 interrupted TERM 0060
@@ -133,13 +134,56 @@ sed -i 's/"version": "[^"]*"/"version": "0.0.0"/' part/*.json
 refused "nor such of another version" 'version 0.0.0' -o part/%05d.png
 rm part/*.json
 refused "frames without a ledger are not mixed in" 'part: .*without a ledger' -o part/%05d.png
-touch part/other.png part/123456.png part/1.png part/000012.png part/00012.png.bak
+refused "nor removed by --restart" 'part: .*without a ledger.*yourself' -o part/%05d.png --restart
+check "they are there still" same_frames one part
+rm part/*.png
+animate -o part/%05d.png --duration 0.6
+touch part/123456.png
+for restart in '' --restart; do
+    refused "a frame that the film has not is not taken for its own $restart" 'part/123456.png: .*has 15' -o part/%05d.png --duration 0.6 $restart
+done
+rm part/123456.png
+touch part/other.png part/1.png part/000012.png part/00012.png.bak
 animate -o part/%05d.png --duration 0.24 --set toy.level=1 --restart
 check "--restart begins anew" summary '6 rendered.* 0 kept'
 check "and removes the film's frames alone" is "$(cd part && echo *)" \
     "%05d.png.json 00000.png 00001.png 000012.png 00002.png 00003.png 00004.png 00005.png 00012.png.bak 1.png other.png"
 animate -o part/side-%d.png --duration 0.1
 check "two films may share a folder" eval 'done_well && cmp part/side-2.png one/00002.png'
+animate -o over/a%d.png --duration 0.12
+animate -o over/a1%d.png --duration 0.12 --set toy.level=1
+check "even such whose names are alike" done_well
+refused "while none has a frame of the other's name" 'over/a1[012].png: .*has 3' -o over/a%d.png --duration 0.6
+rm over/a1?.png
+refused "or is to have one" 'over/a1%d.png.json: another film' -o over/a%d.png --duration 0.6
+rm over/a2.png
+mkdir over/a2.png
+for restart in '' --restart; do
+    refused "a folder is no frame $restart" 'over/a2.png: is a folder' -o over/a%d.png --duration 0.12 $restart
+done
+animate -o embree/%d.png --duration 0.04 --set render.accel=octant
+refused "frames by Embree are another film" 'render.accel was not embree and is embree' -o embree/%d.png --set render.accel=embree
+
+# --- what the scene reads
+animate -o read/%05d.png --duration 0.2
+sed 's/^solids:/textures:\n  skin: {file: read\/00003.png}\nsolids:/; s/mesh: toy,/mesh: toy, texture: skin,/' slime.yaml >textured.yaml
+mkdir links
+ln -s ../read/00003.png links/skin.png
+sed 's/read.00003/links\/skin/' textured.yaml >linked.yaml
+for from in textured linked; do
+    "$program" animate $from.yaml -o read/%05d.png --duration 0.2 --restart >out 2>err
+    code=$?
+    check "frames in place of a picture that the scene reads, $from" eval '((code == 2)) && [[ -e read/00003.png ]] && grep -q "is read from" err'
+done
+"$program" render textured.yaml -o read/00003.png >out 2>err
+code=$?
+check "nor is a still put there" eval '((code == 2)) && cmp read/00003.png one/00003.png && grep -q "is read from" err'
+cp slime.yaml '%d.png.json'
+"$program" animate %d.png.json -o ./%d.png --duration 0 >out 2>err
+code=$?
+check "nor the ledger in place of the scene" eval '((code == 2)) && cmp slime.yaml %d.png.json && grep -q "is read from" err'
+rm '%d.png.json'
+
 animate -o "part/50%%-%03d.pfm" --duration 0
 check "a percent sign in a name, and at least one frame" eval 'done_well && [[ -s part/50%-000.pfm && ! -e part/50%-001.pfm ]]'
 
@@ -157,6 +201,23 @@ check "results/README.md has the columns" diff <(described) <(head -1 calm.csv |
 animate -o one/%05d.png --duration 0.6 --rows late.csv
 check "frames without a row are rendered again" eval 'summary "15 rendered.* 0 kept" && [[ $(wc -l <late.csv) == 16 ]]'
 
+rm one/00003.png
+cp late.csv before.csv
+animate -o one/%05d.png --duration 0.6 --rows late.csv
+check "a frame whose picture is gone keeps its one row" eval 'summary "1 rendered.* 14 kept" && cmp before.csv late.csv'
+for film in one/%05d.png\ --restart film.y4m; do
+    refused "a film that begins anew makes no second rows: $film" 'late.csv: has rows already' -o $film --duration 0.6 --rows late.csv
+done
+check "and has removed nothing" is "$(frames one)" 15
+rm one/00014.png
+sed '$ s/,0.56[0-9]*,[0-9a-f]*,/,0.56,0123456789abcdef,/' late.csv >wrong.csv
+refused "a row of another picture" 'wrong.csv: frame 14 ' -o one/%05d.png --duration 0.6 --rows wrong.csv
+animate -o one/%05d.png --duration 0.6
+exec 9>>late.csv
+flock 9
+refused "rows that another process writes" 'another process.*another file by --rows' -o one/%05d.png --duration 0.6 --rows late.csv
+exec 9>&-
+
 # --- scripts
 animate -o tug/%05d.png --script tug.yaml --rows tug.csv
 check "a film with a script is 2 s longer than that" is "$(frames tug)" 60
@@ -169,6 +230,7 @@ mkdir elsewhere && cp slime.yaml elsewhere/
 "$program" animate elsewhere/slime.yaml --script tug.yaml -o elsewhere/%05d.png --duration 0.4 >out 2>err
 check "--script is from the working folder" cmp elsewhere/00009.png tug/00009.png
 refused "a script that is not there" '--script nowhere.yaml: .*No such file' -o three/%d.png --script nowhere.yaml
+refused "a script in a pipe" 'regular file' -o three/%d.png --script <(cat tug.yaml)
 refused "one that the scene names" 'nowhere.yaml' -o three/%d.png --set toy.script=nowhere.yaml
 sed 's/grab: \[0, 1, -6\]/grab: [0, 9, -6]/' tug.yaml >miss.yaml
 refused "a grab that misses" 'miss.yaml:4' -o miss/%05d.png --script miss.yaml
@@ -179,6 +241,38 @@ refused "a body that blows up" 'toy|slime' -o blown/%05d.png --set toy.stiffness
 check "leaves the frames before it" eval '(($(frames blown) >= 1 && $(frames blown) < 100))'
 "$program" compare blown/00000.png one/00000.png --json >out 2>err
 check "whole" is "$(./json_get out largest 2>&1)" 0.0
+
+# --- long ways
+stopped() # SECONDS ARGUMENT...: the program, sent SIGINT after that time, and killed when it has not heard it in 10 s more; its code
+{
+    "$program" "${@:2}" >out 2>err &
+    local child=$! left=100
+    sleep "$1"
+    kill -INT $child
+    while kill -0 $child 2>/dev/null && ((left-- > 0)); do sleep 0.1; done
+    kill -KILL $child 2>/dev/null
+    wait $child 2>/dev/null
+    code=$?
+}
+heard() { ((code == 130)) && [[ $(wc -l <err) == 1 && ! -s out ]] && grep -q -- "$1" err; } # PATTERN
+animate -o short/%d.png --duration 0.04 --set toy.time_s=86400 --set toy.dt_s=1e-5
+check "the slime's own time does not count" done_well
+refused "more steps to the film's end than there may be" 'toy: 2 s in steps of 1e-09 s' -o steps/%d.png --set toy.dt_s=1e-9 --duration 2
+refused "from a late start too" 'toy: 2000 s in steps' -o steps/%d.png --set toy.dt_s=1e-6 --start 1999.96 --duration 0.04
+refused "nor to the script's" 'toy: 2.4 s in steps' -o steps/%d.png --set toy.dt_s=1e-9 --script tug.yaml
+refused "a step of next to nothing" 'toy.dt_s' -o steps/%d.png --set toy.dt_s=1e-300
+stopped 0.5 animate slime.yaml -o steps/%d.png --set toy.time_s=0 --set toy.dt_s=1e-9 --duration 0.1
+check "short steps do not keep it from stopping" heard 'interrupted at frame 2 of 3'
+stopped 0.5 animate slime.yaml -o late/%d.png --start 80000 --duration 0.1
+check "nor does the way to a late start" heard 'interrupted at frame 1 of 3'
+for command in render\ --json trace\ --pixel=3,3 realism\ --json scene\ --check; do
+    sed 's/generate: slime,/generate: slime, time_s: 86400,/' slime.yaml >day.yaml
+    stopped 0.5 ${command%% *} day.yaml ${command#* }
+    check "nor a slime's day: $command" heard 'toy: interrupted at'
+done
+printf '%s\n' 'study: day' 'scene: day.yaml' 'grid: [{render.depth: [0]}]' 'repetitions: 1' >day.study
+stopped 0.5 study run day.study --results day-results
+check "nor one in a study" heard 'interrupted; its 0 new rows'
 
 # --- YUV4MPEG2
 animate -o - --duration 0.2 --fps 30000/1001

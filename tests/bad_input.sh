@@ -40,6 +40,8 @@ render() # WHAT PATTERN ARGUMENT...
 
 # --- command lines
 refused "no command" "name a command"
+printf 'meshes: {toy: {generate: slime, dt_s: 1e-300}}\n' >tiny.yaml
+refused "a step of motion of next to nothing" "tiny.yaml:1:.*dt_s" render tiny.yaml --json
 refused "misspelt command" "did you mean 'render'" rendr
 refused "unknown command" "give one of: render" frobnicate
 refused "unknown option of the program" "no option '--bogus'" --bogus

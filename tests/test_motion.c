@@ -207,6 +207,40 @@ static void a_body_that_blows_up_says_so(void **state)
     scene_destroy(s);
 }
 
+static bool leave(void *context, double share_done)
+{
+    *(double *)context = share_done;
+    return false;
+}
+
+/* Left at the first question of a long way, and again; then it goes where one goes whom nobody asks. */
+static void a_way_that_is_stopped_goes_on(void **state)
+{
+    (void)state;
+    const double far_s = 40.0;
+    scene *s = toys_with(""), *straight = toys_with("");
+    scene_motion *m = begin(s), *way = begin(straight);
+    const mesh *skin = s->meshes[1].data;
+    const vec3 first = skin->vertices[0];
+    for (int i = 0; i < 2; i++) {
+        double share = -1.0;
+        diagnostic why = {0};
+        assert_int_equal(scene_motion_advance_until(m, 4000.0, true, &(load_watch){leave, &share}, &why), STATUS_INTERRUPTED);
+        assert_true(share > 0.0 && share < 0.5); /* of two, on the way of the first */
+        assert_true(s->meshes[1].data == skin && s->meshes[1].time_s == 0.0 && s->meshes[1].account.steps == 0);
+        assert_memory_equal(&skin->vertices[0], &first, sizeof first);
+    }
+    advance(m, far_s, true);
+    advance(way, far_s, true);
+    assert_true(s->meshes[1].account.steps == straight->meshes[1].account.steps && s->meshes[1].time_s == far_s);
+    for (int i = 1; i < 3; i++)
+        assert_memory_equal(s->meshes[i].data->vertices, straight->meshes[i].data->vertices, s->meshes[i].data->vertex_count * sizeof first);
+    scene_motion_destroy(m);
+    scene_motion_destroy(way);
+    scene_destroy(s);
+    scene_destroy(straight);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -217,6 +251,7 @@ int main(void)
         cmocka_unit_test(a_clone_does_not_move),
         cmocka_unit_test(a_scene_that_cannot_move_stays_as_it_was),
         cmocka_unit_test(a_body_that_blows_up_says_so),
+        cmocka_unit_test(a_way_that_is_stopped_goes_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 #include "scene/slime.h"
 #include "scene/write.h"
 #include "study/shelf.h"
+#include <limits.h>
 
 static const char tug[] = "hands:\n"
                           "  left:\n"
@@ -187,6 +188,7 @@ static void settings_that_make_no_body_are_refused(void **state)
     refused_to_read("meshes: {toy: {generate: slime, mass_kg: 0}}\n", "toy.mass_kg");
     refused_to_read("meshes: {toy: {generate: slime, time_s: -1}}\n", "toy.time_s");
     refused_to_read("meshes: {toy: {generate: slime, time_s: 1000, dt_s: 1e-7}}\n", "steps");
+    refused_to_read("meshes: {toy: {generate: slime, time_s: 0, dt_s: 9e-10}}\n", "toy.dt_s");
     refused_to_read("meshes: {toy: {generate: slime, file: a.obj}}\n", "generated too");
     scene *s = NULL;
     const char sphere[] = "meshes: {ball: {generate: icosphere, level: 8}}\n"; /* of which there may be more */
@@ -251,6 +253,57 @@ static void a_study_s_rows_simulate_where_nothing_is_kept(void **state)
             scene_destroy(rows[i]);
         shelf_clear(&shared);
     }
+}
+
+typedef struct waiting {
+    int asked, patience; /* times */
+    double share;
+    bool in_order;
+} waiting;
+
+static bool wait(void *context, double share_done)
+{
+    waiting *w = context;
+    w->in_order &= share_done > w->share && share_done <= 1.0;
+    w->share = share_done;
+    return ++w->asked < w->patience;
+}
+
+/* Days of motion, and the one who waits leaves at the first question. */
+static void a_load_that_is_stopped_leaves_the_slime_as_it_was(void **state)
+{
+    scene *s = read_scene(*state, "meshes:\n  ball: {generate: icosphere, level: 1}\n  toy: {generate: slime, level: 2, time_s: 86400}\n");
+    waiting w = {.patience = 3, .in_order = true};
+    diagnostic why = {0};
+    assert_int_equal(scene_load_until(s, &(load_watch){wait, &w}, &why), STATUS_INTERRUPTED);
+    assert_int_equal(w.asked, 3);
+    assert_true(w.in_order && w.share > 0.0 && w.share < 1.0);
+    assert_non_null(strstr(why.what, "toy: interrupted at "));
+    assert_non_null(s->meshes[0].data);
+    assert_null(s->meshes[1].data);
+    assert_true(s->meshes[1].time_s == 86400.0 && s->meshes[1].motion_s == 0.0 && s->meshes[1].account.steps == 0);
+    set(s, "toy.time_s=0.05");
+    worked(scene_load(s, &why), &why);
+    assert_int_equal(s->meshes[1].account.steps, 50);
+    scene_destroy(s);
+}
+
+/* Two slimes share the whole; who waits changes nothing. */
+static void a_load_that_is_watched_is_the_same(void **state)
+{
+    static const char two[] = "meshes:\n  a: {generate: slime, level: 4, time_s: 0.31}\n  b: {generate: slime, level: 4, time_s: 0.4, dt_s: 0.003}\n";
+    scene *alone = loaded(*state, two), *watched = read_scene(*state, two);
+    waiting w = {.patience = INT_MAX, .in_order = true};
+    diagnostic why = {0};
+    worked(scene_load_until(watched, &(load_watch){wait, &w}, &why), &why);
+    assert_true(w.in_order);
+    for (int i = 0; i < 2; i++) {
+        const mesh *one = alone->meshes[i].data, *other = watched->meshes[i].data;
+        assert_int_equal(watched->meshes[i].account.steps, i == 0 ? 310 : 133);
+        assert_memory_equal(one->vertices, other->vertices, one->vertex_count * sizeof *one->vertices);
+    }
+    scene_destroy(alone);
+    scene_destroy(watched);
 }
 
 static uint64_t definition(const fixture *f)
@@ -341,6 +394,8 @@ int main(void)
         IN_FOLDER(a_change_lets_go_of_the_body_and_a_clone_keeps_it),
         IN_FOLDER(slimes_are_borrowed_only_where_meshes_are_kept),
         IN_FOLDER(a_study_s_rows_simulate_where_nothing_is_kept),
+        IN_FOLDER(a_load_that_is_stopped_leaves_the_slime_as_it_was),
+        IN_FOLDER(a_load_that_is_watched_is_the_same),
         IN_FOLDER(a_study_s_definition_holds_the_script_s_text),
         IN_FOLDER(a_slime_survives_its_file_and_its_script_follows),
         IN_FOLDER(only_slimes_list_what_a_slime_has),

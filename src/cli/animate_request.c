@@ -23,8 +23,8 @@ static const struct argp_option options[] = {
     {"fps", KEY_FPS, "N", 0, "frames a second, as 25 (the default) or 30000/1001", 0},
     {"start", KEY_START, "S", 0, "the first frame's time, in seconds after the motion's beginning; 0 when not said", 0},
     {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'toy.stiffness=80'; may be given many times", 0},
-    {"rows", KEY_ROWS, "FILE", 0, "append a row a frame to a .csv: times, counts, energies", 0},
-    {"restart", KEY_RESTART, NULL, 0, "remove the frames that are there, and begin anew", 0},
+    {"rows", KEY_ROWS, "FILE", 0, "append a row a frame, once, to a .csv: times, counts, energies", 0},
+    {"restart", KEY_RESTART, NULL, 0, "remove the frames of the film that is there, and begin anew", 0},
     {"json", KEY_JSON, NULL, 0, "print the account as one JSON object", 0},
     {0},
 };
