@@ -291,7 +291,7 @@ static void a_load_that_is_stopped_leaves_the_slime_as_it_was(void **state)
 /* Two slimes share the whole; who waits changes nothing. */
 static void a_load_that_is_watched_is_the_same(void **state)
 {
-    static const char two[] = "meshes:\n  a: {generate: slime, level: 4, time_s: 0.31}\n  b: {generate: slime, level: 4, time_s: 0.4, dt_s: 0.003}\n";
+    static const char two[] = "meshes:\n  a: {generate: slime, level: 4, time_s: 0.31}\n  b: {generate: slime, level: 4, time_s: 0.4, dt_s: 0.0007}\n";
     scene *alone = loaded(*state, two), *watched = read_scene(*state, two);
     waiting w = {.patience = INT_MAX, .in_order = true};
     diagnostic why = {0};
@@ -299,7 +299,7 @@ static void a_load_that_is_watched_is_the_same(void **state)
     assert_true(w.in_order);
     for (int i = 0; i < 2; i++) {
         const mesh *one = alone->meshes[i].data, *other = watched->meshes[i].data;
-        assert_int_equal(watched->meshes[i].account.steps, i == 0 ? 310 : 133);
+        assert_int_equal(watched->meshes[i].account.steps, i == 0 ? 310 : 571);
         assert_memory_equal(one->vertices, other->vertices, one->vertex_count * sizeof *one->vertices);
     }
     scene_destroy(alone);
