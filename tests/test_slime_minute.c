@@ -1,4 +1,4 @@
-/* A minute of the default toy, with the recorded grab of experiments/scenes/tug.yaml: it rests, is drawn out, let go, and comes back. Under its own
+/* A minute of the default toy, with the recorded grab of experiments/hands/tug.yaml: it rests, is drawn out, let go, and comes back. Under its own
  * weight the toy is no sphere but a drop on a floor, so "back" is the shape of one that no hand has touched; without weight it is the sphere. */
 #include "scene/script.h"
 #include "softbody_fixture.h"
@@ -36,7 +36,7 @@ static hand_script *recorded_grab(void)
 {
     hand_script *script;
     diagnostic why = {.what = ""};
-    const status code = script_read("experiments/scenes/tug.yaml", &script, &why);
+    const status code = script_read("experiments/hands/tug.yaml", &script, &why);
     assert_string_equal(why.what, "");
     assert_int_equal(code, STATUS_OK);
     return script;
