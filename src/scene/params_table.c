@@ -227,7 +227,7 @@ static const param table[] = {
     SLIME_CHOICE(integrator, motion_words, "euler", "of a slime: semi-implicit Euler, velocity Verlet, or backward Euler, which stiff springs cannot blow up"),
     SLIME_REAL(dt_s, "s", 1e-9, 1, false, "0.001", "step of a slime's motion; the default holds up to level 4, above it wants less, or adaptive"),
     SLIME_CHOICE(adaptive, off_on, "off", "splits a slime's steps until they are stable and short against its springs"),
-    {PARAM_MESH, "threads", PARAM_INT, "", 1, 1024, false, "1", "that move a slime", NULL, ON_SLIME,
+    {PARAM_MESH, "threads", PARAM_INT, "", 1, 1024, false, "1", "that move a slime; at most one for each 4096 masses is started", NULL, ON_SLIME,
      .offset = offsetof(mesh_entry, slime.threads), .is_how = true},
 
     {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "", "PNG, JPEG or PFM file, from the scene file's folder", NULL, ON_ALL,

@@ -119,13 +119,21 @@ static void find_stable_dt(softbody *b)
     b->stable_dt_s = stable_dt_of((softbody_integrator)b->set.integrator, omega2, gamma);
 }
 
+/* A step waits for its threads several times, which costs tens of microseconds each: with less to do than this they would only be waited for. */
+enum { CHUNKS_A_THREAD = 8 };
+
+static int useful_threads(const softbody *b)
+{
+    const int64_t most = (int64_t)(softbody_chunks(b) / CHUNKS_A_THREAD);
+    return most < 1 ? 1 : b->set.threads < most ? (int)b->set.threads : (int)most;
+}
+
 static status fill(softbody *b, const softbody_net *net, diagnostic *why)
 {
     status code = springs_build(&b->net, net, why);
     if (code != STATUS_OK)
         return code;
-    const size_t chunks = softbody_chunks(b);
-    b->workers = team_start(b->set.threads < (int64_t)chunks ? (int)b->set.threads : (int)chunks);
+    b->workers = team_start(useful_threads(b));
     if (!make_arrays(b) || !copy_net(b, net) || !b->workers)
         return diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
     fill_masses(b, net);

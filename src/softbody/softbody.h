@@ -52,7 +52,7 @@ typedef struct softbody_settings {
     int64_t integrator;   /* softbody_integrator */
     double dt_s;          /* one step */
     int64_t adaptive;     /* 1: a step is split until it is stable and the ends of no spring move against each other by more than a tenth of its length */
-    int64_t threads;      /* 1..1024 */
+    int64_t threads;      /* 1..1024, of which at most one for each 4096 masses is started */
 } softbody_settings;
 
 /* Those of the default toy: the parameter table's (tests hold them equal). */
