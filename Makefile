@@ -52,6 +52,8 @@ soname := libcuvette.so.$(firstword $(subst ., ,$(version)))
 pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
 pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
 import_libs = $(eval import_libs := $$(shell pkg-config --libs assimp jansson))$(import_libs)
+# Only the program serves a page.
+web_libs = $(eval web_libs := $$(shell pkg-config --libs libmicrohttpd))$(web_libs)
 CFLAGS ?= -g
 # One set of objects for the program and both libraries: on the machines that run it, position-independent code whose names are hidden
 # is as fast. Of a shared library only what cuvette.h marks is seen.
@@ -75,15 +77,19 @@ isas := sse2 avx2 avx512
 
 sources := $(wildcard src/*.c src/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
-library := $(filter-out src/cli/% src/import/% $(kernels),$(sources))
+library := $(filter-out src/cli/% src/import/% src/web/% $(kernels),$(sources))
 program := $(wildcard src/cli/*.c)
+web := $(wildcard src/web/*.c)
+page := $(wildcard $(addprefix src/web/page/*.,html css js svg))
 importer := $(wildcard src/import/*.c) src/base/status.c src/base/number.c
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
 library_objects := $(library:src/%.c=$(build)/obj/%.o) $(kernel_objects)
 program_objects := $(program:src/%.c=$(build)/obj/%.o)
+web_objects := $(web:src/%.c=$(build)/obj/%.o) $(build)/web/page_files.o
 importer_objects := $(importer:src/%.c=$(build)/plain/%.o)
 tests := $(wildcard tests/test_*.c)
 test_programs := $(tests:tests/%.c=$(build)/tests/%)
+web_tests := $(filter $(addprefix $(build)/tests/test_,http% lab%),$(test_programs))
 benches := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/bench_*.c))
 fuzzers := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/fuzz_*.c))
 
@@ -93,9 +99,20 @@ all: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) ## build build/
 # A half-written file would look newer than its sources.
 .DELETE_ON_ERROR:
 
-$(build)/cuvette: $(program_objects) $(build)/libcuvette.a
+$(build)/cuvette: $(program_objects) $(build)/libweb.a $(build)/libcuvette.a
 	$(call say,link $@)
-	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(all_libs)
+	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(web_libs) $(all_libs)
+
+# The page's server and the page itself, for the program and its tests, not for the library.
+$(build)/libweb.a: $(web_objects)
+	@rm -f $@
+	$(quiet)ar rcs $@ $^
+$(build)/web/page_files.c: src/web/embed.sh src/web/page $(page)
+	@mkdir -p $(@D)
+	$(quiet)src/web/embed.sh $(page) >$@
+$(build)/web/page_files.o: $(build)/web/page_files.c $(build)/flags
+	$(call say,$(CC) $<)
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -MMD -MP -c -o $@ $<
 
 # The one program that assimp is linked to: it reads mesh files for the other. Never with sanitizers, which need more addresses than
 # the limit that it sets itself.
@@ -130,8 +147,10 @@ $(build)/$(soname): $(library_objects)
 $(build)/obj/%.o: src/%.c $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
-	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -MMD -MP -c -o $@ $<
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) $(room_cflags) -MMD -MP -c -o $@ $<
 $(build)/obj/geometry/hierarchy_embree.o: pkg_cflags += $(embree_cflags)
+web_cflags = $(eval web_cflags := $$(shell pkg-config --cflags libmicrohttpd))$(web_cflags)
+$(build)/obj/web/%.o: private room_cflags = $(web_cflags)
 
 define kernel_rule
 $(build)/obj/%_kernel.$(1).o: src/%_kernel.c $(build)/flags
@@ -144,7 +163,10 @@ $(foreach i,$(isas),$(eval $(call kernel_rule,$(i))))
 $(build)/tests/test_%: tests/test_%.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
-	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs) -lcmocka
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(test_web) $(build)/libcuvette.a $(LDFLAGS) $(test_web_libs) $(all_libs) -lcmocka
+$(web_tests): $(build)/libweb.a
+$(web_tests): private test_web = $(build)/libweb.a
+$(web_tests): private test_web_libs = $(web_libs)
 
 $(build)/tests/fuzz_%: tests/fuzz_%.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
@@ -163,7 +185,7 @@ $(build)/flags: always $(if $(filter setup,$(MAKECMDGOALS)),| setup)
 	@mkdir -p $(@D)
 	@echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512) $(embree_cflags))' | cmp -s - $@ || echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512) $(embree_cflags))' >$@
 
--include $(library_objects:.o=.d) $(program_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
+-include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
 
 .PHONY: setup
 setup: ## install what is needed (Debian 12); does nothing when it is there
