@@ -9,8 +9,8 @@
  *     http_stop(server);
  *
  * What each request goes through, and what it is told where it fails; the first that fails answers, as {"error": .., "remedy": ..}:
- *   400  HTTP/1.0 or 1.1 with one Host; a path of printable characters without "." or ".." as a part, "//", "\", NUL, %2f or %5c,
- *        however they are written
+ *   400  HTTP/1.0 or 1.1 with one Host; a path of printable characters without "." or ".." as a part, "//", "\", %00, %2f or %5c,
+ *        however they are written; libmicrohttpd ends the line at a NUL that is not
  *   421  Host is 127.0.0.1, localhost or [::1] with this port: other names are another site's that was led here (DNS rebinding)
  *   403  Origin, where there is one, is that same host
  *   401  the token, as "Authorization: Bearer TOKEN" or in the cookie cuvette_PORT; or, for GET, as ?token=TOKEN, which answers 303 with that

@@ -1,0 +1,121 @@
+/* A client over plain sockets for tests of web/http.h. Ownership: texts are fresh memory; sockets are the caller's. A server that never answers
+ * shows as a reply of "" after READ_LIMIT_S, not as a test that hangs. */
+#ifndef CUVETTE_TESTS_HTTP_FIXTURE_H
+#define CUVETTE_TESTS_HTTP_FIXTURE_H
+
+#include "base/text.h"
+#include "web/http.h"
+#include <arpa/inet.h>
+#include <stdbool.h>
+#include <dirent.h>
+#include <netinet/in.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+enum { READ_LIMIT_S = 120 };
+
+static inline int client_connect(int port)
+{
+    const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const struct timeval limit = {.tv_sec = READ_LIMIT_S};
+    setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    const struct sockaddr_in there = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    assert_true(fd >= 0);
+    assert_int_equal(connect(fd, (const struct sockaddr *)&there, sizeof there), 0);
+    return fd;
+}
+
+/* Stops quietly where the server has closed. */
+static inline bool client_send(int fd, const void *bytes, size_t size)
+{
+    for (const char *at = bytes; size;) {
+        const ssize_t sent = send(fd, at, size, MSG_NOSIGNAL);
+        if (sent <= 0)
+            return false;
+        at += sent;
+        size -= (size_t)sent;
+    }
+    return true;
+}
+
+/* Until the server closes. */
+static inline char *client_read_all(int fd)
+{
+    char *text = NULL;
+    size_t size = 0, room = 0;
+    for (;;) {
+        if (room - size < 4096)
+            text = realloc(text, room = 2 * room + 8192);
+        const ssize_t got = recv(fd, text + size, room - size - 1, 0);
+        if (got <= 0)
+            break;
+        size += (size_t)got;
+    }
+    text[size] = 0;
+    return text;
+}
+
+static inline char *client_raw(int port, const void *bytes, size_t size)
+{
+    const int fd = client_connect(port);
+    client_send(fd, bytes, size);
+    char *reply = client_read_all(fd);
+    close(fd);
+    return reply;
+}
+
+/* heads: further lines, each ended by \r\n; body may be NULL. */
+static inline char *client_ask_as(int port, const char *method, const char *target, const char *heads, const char *body)
+{
+    char *request = body ? text_format("%s %s HTTP/1.1\r\nConnection: close\r\nContent-Length: %zu\r\n%s\r\n%s", method, target, strlen(body), heads, body)
+                         : text_format("%s %s HTTP/1.1\r\nConnection: close\r\n%s\r\n", method, target, heads);
+    char *reply = client_raw(port, request, strlen(request));
+    free(request);
+    return reply;
+}
+
+/* With Host and token. */
+static inline char *client_ask(const http_server *s, const char *method, const char *target, const char *heads, const char *body)
+{
+    char *all = text_format("Host: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n%s", http_port(s), http_token(s), heads);
+    char *reply = client_ask_as(http_port(s), method, target, all, body);
+    free(all);
+    return reply;
+}
+
+static inline int reply_code(const char *reply)
+{
+    return strncmp(reply, "HTTP/1.1 ", 9) == 0 ? atoi(reply + 9) : 0;
+}
+
+static inline const char *reply_body(const char *reply)
+{
+    const char *end = strstr(reply, "\r\n\r\n");
+    return end ? end + 4 : "";
+}
+
+/* Is there that line among its headers? */
+static inline bool reply_has(const char *reply, const char *line)
+{
+    char *whole = text_format("\r\n%s\r\n", line);
+    const char *at = strstr(reply, whole);
+    const bool has = at && at < reply_body(reply);
+    free(whole);
+    return has;
+}
+
+static inline int count_entries(const char *folder)
+{
+    int count = 0;
+    DIR *d = opendir(folder);
+    while (readdir(d))
+        count++;
+    closedir(d);
+    return count;
+}
+
+#endif
