@@ -146,15 +146,16 @@ static void slow_listeners_get_the_last_state(void **state)
         size += (size_t)got;
         text[size] = 0;
     } while (!strstr(size > 4096 ? text + size - 4096 : text, end));
-    int count = 0, last = -1, before = -1;
+    int count = 0, last = -1, before = -1, on_its_way = -1;
     for (const char *at = text; (at = strstr(at, "data: [")); at++, count++) {
+        on_its_way = before;
         before = last;
         last = atoi(at + 7);
         assert_true(last > before);
     }
     assert_int_equal(last, EVENTS);
     assert_int_equal(before, EVENTS - 1);
-    assert_true(count < EVENTS);
+    assert_true(on_its_way < EVENTS - 2 && count < EVENTS);
     free(text);
     free(filling);
     http_stop(s);
@@ -263,7 +264,7 @@ static void random_requests_do_no_harm(void **state)
         close(fd);
     }
     assert_true(answered > count / 10);
-    assert_true(passed > 0);
+    assert_true(passed > 0 || count < 1000);
     for (int i = 0; i < 3; i++) {
         const int fd = client_connect(http_port(s));
         client_send(fd, good[i], strlen(good[i]));
