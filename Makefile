@@ -52,7 +52,7 @@ soname := libcuvette.so.$(firstword $(subst ., ,$(version)))
 pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
 pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
 import_libs = $(eval import_libs := $$(shell pkg-config --libs assimp jansson))$(import_libs)
-# Only the program serves a page.
+# For src/web alone.
 web_libs = $(eval web_libs := $$(shell pkg-config --libs libmicrohttpd))$(web_libs)
 CFLAGS ?= -g
 # One set of objects for the program and both libraries: on the machines that run it, position-independent code whose names are hidden
@@ -99,11 +99,11 @@ all: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) ## build build/
 # A half-written file would look newer than its sources.
 .DELETE_ON_ERROR:
 
-$(build)/cuvette: $(program_objects) $(build)/libweb.a $(build)/libcuvette.a
+$(build)/cuvette: $(program_objects) $(build)/libcuvette.a
 	$(call say,link $@)
-	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(web_libs) $(all_libs)
+	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(all_libs)
 
-# The page's server and the page itself, for the program and its tests, not for the library.
+# The page's server and the page itself: so far for its tests alone, until a command serves it; never for the library.
 $(build)/libweb.a: $(web_objects)
 	@rm -f $@
 	$(quiet)ar rcs $@ $^
