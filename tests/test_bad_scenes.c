@@ -6,61 +6,25 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "bad_files.h"
 #include "scene/scene.h"
-#include <dirent.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define FOLDER "tests/bad/scenes/"
 
-/* Reads the file that a line of expected.txt begins with, and compares. */
-static void compare_line(const char *expected)
+static status read_bad_scene(const char *path, diagnostic *why)
 {
-    char path[256], text[DIAGNOSTIC_TEXT_MAX], wanted[DIAGNOSTIC_TEXT_MAX];
-    int name = (int)strcspn(expected, ":");
-    assert_true(snprintf(path, sizeof path, FOLDER "%.*s", name, expected) < (int)sizeof path);
-    assert_true(snprintf(wanted, sizeof wanted, FOLDER "%s", expected) < (int)sizeof wanted);
-    diagnostic why = {.what = ""};
     scene *s = NULL;
-    status code = scene_read(path, &s, &why);
-    if (code != STATUS_BAD_INPUT) {
-        print_error("%s: status %d\n", path, (int)code);
-    }
-    assert_int_equal(code, STATUS_BAD_INPUT);
+    const status code = scene_read(path, &s, why);
     assert_null(s);
-    assert_string_equal(diagnostic_text(&why, text, sizeof text), wanted);
-    assert_true(why.line > 0 && why.column > 0);
-    assert_null(strchr(text, '\n'));
-}
-
-static size_t count_scenes(void)
-{
-    DIR *folder = opendir(FOLDER);
-    assert_non_null(folder);
-    size_t count = 0;
-    for (struct dirent *entry = readdir(folder); entry; entry = readdir(folder)) {
-        count += strstr(entry->d_name, ".yaml") != NULL;
-    }
-    closedir(folder);
-    return count;
+    return code;
 }
 
 static void every_bad_scene_has_its_located_line(void **state)
 {
     (void)state;
-    FILE *list = fopen(FOLDER "expected.txt", "r");
-    assert_non_null(list);
-    char line[DIAGNOSTIC_TEXT_MAX];
-    size_t count = 0;
-    while (fgets(line, sizeof line, list)) {
-        line[strcspn(line, "\n")] = 0;
-        compare_line(line);
-        count++;
-    }
-    fclose(list);
-    assert_int_equal(count, count_scenes());
-    assert_true(count >= 60);
+    assert_bad_files(FOLDER, read_bad_scene, 60);
 }
 
 /* A file that was cut anywhere is a scene or is refused with a place; it never does anything else. */

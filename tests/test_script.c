@@ -6,8 +6,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "bad_files.h"
 #include "scene/script.h"
-#include <dirent.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,53 +65,19 @@ static void a_script_says_what_its_hands_do(void **state)
     hand_script_destroy(s);
 }
 
-/* Reads the file that a line of expected.txt begins with, and compares. */
-static void compare_line(const char *expected)
+static status read_bad_script(const char *path, diagnostic *why)
 {
-    char path[256], text[DIAGNOSTIC_TEXT_MAX], wanted[DIAGNOSTIC_TEXT_MAX];
-    const int name = (int)strcspn(expected, ":");
-    assert_true(snprintf(path, sizeof path, FOLDER "%.*s", name, expected) < (int)sizeof path);
-    assert_true(snprintf(wanted, sizeof wanted, FOLDER "%s", expected) < (int)sizeof wanted);
-    diagnostic why = {.what = ""};
     hand_script *s = NULL;
-    if (script_read(path, &s, &why) != STATUS_BAD_INPUT) {
-        fail_msg("%s is read", path);
-    }
+    const status code = script_read(path, &s, why);
     assert_null(s);
-    assert_string_equal(diagnostic_text(&why, text, sizeof text), wanted);
-    assert_true(why.line > 0 && why.column > 0);
-    assert_null(strchr(text, '\n'));
-    assert_true(why.remedy[0] != 0);
-    assert_int_equal(script_read(path, &s, NULL), STATUS_BAD_INPUT);
-}
-
-static size_t count_scripts(void)
-{
-    DIR *folder = opendir(FOLDER);
-    assert_non_null(folder);
-    size_t count = 0;
-    for (struct dirent *entry = readdir(folder); entry; entry = readdir(folder)) {
-        count += strstr(entry->d_name, ".yaml") != NULL;
-    }
-    closedir(folder);
-    return count;
+    assert_true(!why || why->remedy[0]);
+    return code;
 }
 
 static void every_bad_script_has_its_located_line(void **state)
 {
     (void)state;
-    FILE *list = fopen(FOLDER "expected.txt", "r");
-    assert_non_null(list);
-    char line[DIAGNOSTIC_TEXT_MAX];
-    size_t count = 0;
-    while (fgets(line, sizeof line, list)) {
-        line[strcspn(line, "\n")] = 0;
-        compare_line(line);
-        count++;
-    }
-    fclose(list);
-    assert_int_equal(count, count_scripts());
-    assert_true(count >= 50);
+    assert_bad_files(FOLDER, read_bad_script, 50);
 }
 
 /* A script that was cut anywhere is a script or is refused with a place. */
