@@ -229,8 +229,8 @@ static void every_reply_is_guarded(void **state)
         {"GET", "/hello", "Host: x\r\n"}, {"PUT", "/number", ""}, {"POST", "/hello", ""}, {"GET", "/nothing", ""},
     };
     static const char *const lines[] = {
-        "Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
-        "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+        ("Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
+         "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"),
         "X-Content-Type-Options: nosniff", "Referrer-Policy: no-referrer", "Cache-Control: no-store", "Cross-Origin-Opener-Policy: same-origin",
         "Cross-Origin-Resource-Policy: same-origin"};
     for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
