@@ -2,6 +2,8 @@
 #ifndef CUVETTE_TESTS_SOFTBODY_FIXTURE_H
 #define CUVETTE_TESTS_SOFTBODY_FIXTURE_H
 
+#include "scene/edit.h"
+#include "scene/slime.h"
 #include "softbody/softbody.h"
 
 #include <math.h>
@@ -21,10 +23,21 @@ static inline void assert_near_at(double got, double wanted, double within, cons
     }
 }
 
+/* The toy as the parameter table has it. */
+static inline softbody_settings default_toy(void)
+{
+    scene *s = scene_create();
+    assert_non_null(s);
+    assert_int_equal(scene_add_mesh(s, "toy", NULL, NULL), STATUS_OK);
+    const softbody_settings settings = slime_settings(&s->meshes[0]);
+    scene_destroy(s);
+    return settings;
+}
+
 /* Nothing acts but springs. */
 static inline softbody_settings settings_in_space(softbody_integrator integrator, double dt_s)
 {
-    softbody_settings s = softbody_defaults();
+    softbody_settings s = default_toy();
     s.integrator = integrator;
     s.dt_s = dt_s;
     s.gravity = vec3_make(0.0, 0.0, 0.0);

@@ -76,7 +76,7 @@ static extent left_alone(const softbody_settings *s)
 static void a_toy_on_its_floor_comes_back(void **state)
 {
     (void)state;
-    const softbody_settings s = softbody_defaults();
+    const softbody_settings s = default_toy();
     extent before, stretched;
     softbody *b = after_a_minute(&s, &before, &stretched);
     const softbody_account a = softbody_measure(b);
@@ -95,7 +95,7 @@ static void a_toy_on_its_floor_comes_back(void **state)
 static void a_toy_without_weight_is_a_sphere_again(void **state)
 {
     (void)state;
-    softbody_settings s = softbody_defaults();
+    softbody_settings s = default_toy();
     s.gravity = vec3_make(0.0, 0.0, 0.0);
     s.ground = 0;
     extent before, stretched;

@@ -63,20 +63,6 @@ static void set(scene *s, const char *assignment)
     worked(scene_set_assignment(s, assignment, &why), &why);
 }
 
-#define SAME(field) assert_true(table.field == core.field)
-#define SAME_VECTOR(field) assert_true(table.field.x == core.field.x && table.field.y == core.field.y && table.field.z == core.field.z)
-
-static void the_table_s_defaults_are_the_body_s(void **state)
-{
-    scene *s = read_scene(*state, "meshes: {toy: {generate: slime}}\n");
-    const softbody_settings table = slime_settings(&s->meshes[0]), core = softbody_defaults();
-    SAME(level), SAME(radius), SAME(mass_kg), SAME(stiffness), SAME(bending), SAME(through), SAME(damping), SAME(pressure);
-    SAME(ground), SAME(ground_y), SAME(restitution), SAME(friction), SAME(integrator), SAME(dt_s), SAME(adaptive), SAME(threads);
-    SAME_VECTOR(position), SAME_VECTOR(velocity), SAME_VECTOR(gravity);
-    assert_true(s->meshes[0].time_s == 0.0 && s->meshes[0].script_path[0] == 0);
-    scene_destroy(s);
-}
-
 /* The body that a scene says, made without it. */
 static mesh *skin_of(const mesh_entry *m, const hand_script *script, softbody_account *account)
 {
@@ -386,7 +372,6 @@ int main(void)
 {
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, fixture_setup, fixture_teardown)
     const struct CMUnitTest tests[] = {
-        IN_FOLDER(the_table_s_defaults_are_the_body_s),
         IN_FOLDER(a_slime_that_falls_is_where_its_steps_say),
         IN_FOLDER(a_script_lies_beside_its_scene_and_moves_the_slime),
         IN_FOLDER(what_is_wrong_is_located_where_it_is_written),

@@ -313,7 +313,7 @@ static void a_fast_body_is_no_burst_one(void **state)
 static void no_body_begins_under_its_floor(void **state)
 {
     (void)state;
-    softbody_settings s = softbody_defaults();
+    softbody_settings s = default_toy();
     softbody *b;
     diagnostic why = {.what = ""};
     s.ground_y = 1.0;
@@ -334,7 +334,7 @@ static void bad_settings_are_named(void **state)
         {"restitution", offsetof(softbody_settings, restitution), 1.5}, {"friction", offsetof(softbody_settings, friction), INFINITY},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        softbody_settings s = softbody_defaults();
+        softbody_settings s = default_toy();
         memcpy((char *)&s + bad[i].offset, &bad[i].value, sizeof(double));
         softbody *b;
         diagnostic why = {.what = ""};

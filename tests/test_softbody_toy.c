@@ -30,7 +30,7 @@ static void its_net_has_as_many_springs_as_euler_says(void **state)
 {
     (void)state;
     for (int level = 0; level <= 5; level++) {
-        softbody_settings s = softbody_defaults();
+        softbody_settings s = default_toy();
         s.level = level;
         softbody *b = toy_of(&s);
         const size_t masses = 10 * ((size_t)1 << 2 * level) + 2;
@@ -200,7 +200,7 @@ static void forces_are_the_gradient_of_the_energy(void **state)
 static void hands_hold_and_let_go(void **state)
 {
     (void)state;
-    softbody_settings s = softbody_defaults();
+    softbody_settings s = default_toy();
     s.level = 3;
     softbody *b = toy_of(&s);
     vec3 where;
@@ -298,7 +298,7 @@ static void a_script_is_followed_to_the_step(void **state)
 static void a_hand_that_holds_nothing_is_named(void **state)
 {
     (void)state;
-    softbody_settings s = softbody_defaults();
+    softbody_settings s = default_toy();
     s.level = 1;
     softbody *b = toy_of(&s);
     hand_script *script = hand_script_create("two.yaml");
@@ -325,7 +325,7 @@ static void threads_and_instructions_change_no_bit(void **state)
         for (int run = 0; run < 5; run++) {
             const isa levels[] = {isa_best(), isa_best(), isa_best(), ISA_SSE2, isa_best() < ISA_AVX2 ? ISA_SSE2 : ISA_AVX2};
             const int threads[] = {1, 2, 7, 3, 1};
-            softbody_settings s = softbody_defaults();
+            softbody_settings s = default_toy();
             s.level = 6; /* enough for all the threads to be started */
             s.dt_s = 5e-5;
             s.integrator = integrator;

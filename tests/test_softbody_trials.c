@@ -5,7 +5,7 @@
 
 static softbody_settings toy_settings(int64_t level, softbody_integrator integrator, double dt_s)
 {
-    softbody_settings s = softbody_defaults();
+    softbody_settings s = default_toy();
     s.level = level;
     s.integrator = integrator;
     s.dt_s = dt_s;
@@ -107,7 +107,7 @@ static void a_fall_is_that_of_the_integrator(void **state)
 static void a_bounce_has_restitution_squared(void **state)
 {
     (void)state;
-    const double e = softbody_defaults().restitution, v = sqrt(2.0 * 9.81);
+    const double e = default_toy().restitution, v = sqrt(2.0 * 9.81);
     for (int i = 0; i < 3; i++) {
         assert_near(value_of(&all.whole[i], "bounce.height").theory, e * e, 1e-16);
         assert_near(error(&all.whole[i], "bounce.height"), 0.0, (e * e + 0.5 * e) * v * 0.001);

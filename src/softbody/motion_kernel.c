@@ -168,9 +168,8 @@ static int64_t euler(const push *p, const double *inverse_mass, vectors force, v
     return euler_arrays(*p, inverse_mass, PASS3(force), PASS3(area), PASS3(at), PASS3(velocity), begin, end);
 }
 
-static void drift(const push *p, const double *inverse_mass, vectors acceleration, vectors at, vectors velocity, vectors guess, size_t begin, size_t end)
+static void drift(const push *p, vectors acceleration, vectors at, vectors velocity, vectors guess, size_t begin, size_t end)
 {
-    (void)inverse_mass;
     const double dt = p->dt_s, half = 0.5 * dt;
     double *const a[3] = {acceleration.x, acceleration.y, acceleration.z}, *const x[3] = {at.x, at.y, at.z};
     double *const v[3] = {velocity.x, velocity.y, velocity.z}, *const g[3] = {guess.x, guess.y, guess.z};

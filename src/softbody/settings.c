@@ -1,13 +1,5 @@
 #include "softbody/softbody.h"
 
-softbody_settings softbody_defaults(void)
-{
-    return (softbody_settings){
-        .level = 4, .radius = 1.0, .position = {0.0, 1.0, 0.0}, .mass_kg = 1.0, .stiffness = 10.0, .bending = 4.0, .through = 100.0, .damping = 0.04,
-        .pressure = 300.0, .gravity = {0.0, -9.81, 0.0}, .ground = 1, .restitution = 0.3, .friction = 2.0, .integrator = SOFTBODY_EULER, .dt_s = 0.001,
-        .threads = 1};
-}
-
 static status refuse(diagnostic *why, const char *name, double value, const char *remedy)
 {
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s is %g", name, value);

@@ -55,9 +55,6 @@ typedef struct softbody_settings {
     int64_t threads;      /* 1..1024, of which at most one for each 4096 masses is started */
 } softbody_settings;
 
-/* Those of the default toy: the parameter table's (tests hold them equal). */
-softbody_settings softbody_defaults(void);
-
 /* Ranges, and that there is a body. The diagnostic names the field. */
 status softbody_check(const softbody_settings *s, diagnostic *why);
 

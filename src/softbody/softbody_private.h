@@ -45,7 +45,7 @@ typedef struct softbody_kernels {
     /* velocity += dt (force / mass + gravity), then at += dt velocity, then the floor. Returns how many blew up. */
     int64_t (*euler)(const push *p, const double *inverse_mass, vectors force, vectors gradient, vectors at, vectors velocity, size_t begin, size_t end);
     /* Verlet's first half: at to the step's end, velocity to its middle, guess to its end. */
-    void (*drift)(const push *p, const double *inverse_mass, vectors acceleration, vectors at, vectors velocity, vectors guess, size_t begin, size_t end);
+    void (*drift)(const push *p, vectors acceleration, vectors at, vectors velocity, vectors guess, size_t begin, size_t end);
     /* Its second half: acceleration anew, velocity to the end, then the floor. */
     int64_t (*kick)(const push *p, const double *inverse_mass, vectors force, vectors gradient, vectors at, vectors velocity, vectors acceleration, size_t begin,
                     size_t end);
@@ -69,7 +69,7 @@ typedef struct grip {
 /* A script's hand: which key comes next, and which hand it is. */
 typedef struct track_play {
     size_t next;
-    int hand;               /* -1: it holds nothing */
+    int hand;               /* HAND_NONE: it holds nothing */
     vec3 where;             /* it took hold */
     vec3 from;              /* offset at from_step, where its present way begins */
     uint64_t from_step;

@@ -83,7 +83,7 @@ static void push_euler(softbody *b, size_t begin, size_t end, size_t chunk)
 static void push_drift(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     (void)chunk;
-    b->kernels->drift(&b->pushing, b->inverse_mass, b->acceleration, b->at, b->velocity, b->guess, begin, end);
+    b->kernels->drift(&b->pushing, b->acceleration, b->at, b->velocity, b->guess, begin, end);
 }
 
 static void push_kick(softbody *b, size_t begin, size_t end, size_t chunk)
