@@ -77,10 +77,10 @@ isas := sse2 avx2 avx512
 
 sources := $(wildcard src/*.c src/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
-library := $(filter-out src/cli/% src/import/% src/web/% $(kernels),$(sources))
+library := $(filter-out src/cli/% src/import/% src/report/% src/web/% $(kernels),$(sources))
 program := $(wildcard src/cli/*.c)
-web := $(wildcard src/web/*.c)
-page := $(wildcard $(addprefix src/web/page/*.,html css js svg))
+web := $(wildcard src/report/*.c src/web/*.c)
+page := $(sort $(wildcard $(addprefix src/web/page/*.,html css js svg)))
 importer := $(wildcard src/import/*.c) src/base/status.c src/base/number.c
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
 library_objects := $(library:src/%.c=$(build)/obj/%.o) $(kernel_objects)
@@ -99,11 +99,11 @@ all: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) ## build build/
 # A half-written file would look newer than its sources.
 .DELETE_ON_ERROR:
 
-$(build)/cuvette: $(program_objects) $(build)/libcuvette.a
+$(build)/cuvette: $(program_objects) $(build)/libweb.a $(build)/libcuvette.a
 	$(call say,link $@)
-	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(all_libs)
+	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(web_libs) $(all_libs)
 
-# The page's server and the page itself: so far for its tests alone, until a command serves it; never for the library.
+# What commands and the laboratory's page say alike, the page's server and the page itself: for the program, never for the library.
 $(build)/libweb.a: $(web_objects)
 	@rm -f $@
 	$(quiet)ar rcs $@ $^

@@ -2,7 +2,7 @@
 #include "cli/animate.h"
 #include "base/hash.h"
 #include "base/number.h"
-#include "cli/json.h"
+#include "report/json.h"
 #include "scene/params.h"
 #include "scene/slime.h"
 #include "study/grid.h"

@@ -1,7 +1,7 @@
 #include "cli/animate.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "cli/json.h"
+#include "report/json.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>

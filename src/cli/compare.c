@@ -1,5 +1,6 @@
 #include "cli/cli.h"
-#include "cli/json.h"
+#include "report/json.h"
+#include "report/report.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "image/compare.h"
@@ -115,20 +116,13 @@ static status print_json(const compare_request *request, const pair *p, diagnost
 {
     const image_comparison *c = &p->found;
     json_t *o = json_object();
-    json_t *place = c->largest > 0 ? json_pack("[i,i]", c->largest_x, c->largest_y) : json_null();
     int bad = json_object_set_new(o, "schema", json_integer(1));
     bad |= json_object_set_new(o, "files",
                                json_pack("[o,o]", json_of_text(request->paths[0]), json_of_text(request->paths[1])));
     bad |= json_object_set_new(o, "bits", json_pack("[i,i]", p->bits[0], p->bits[1]));
     bad |= json_object_set_new(o, "width", json_integer(p->pictures[0]->width));
     bad |= json_object_set_new(o, "height", json_integer(p->pictures[0]->height));
-    bad |= json_object_set_new(o, "mse", json_of_real(c->mse));
-    bad |= json_object_set_new(o, "psnr_db", json_of_real(c->psnr_db));
-    bad |= json_object_set_new(o, "ssim", json_of_real(c->ssim));
-    bad |= json_object_set_new(o, "flip", json_of_real(c->flip));
-    bad |= json_object_set_new(o, "largest", json_of_real(c->largest));
-    bad |= json_object_set_new(o, "largest_at", place);
-    bad |= json_object_set_new(o, "differing_share", json_of_real(c->differing_share));
+    bad |= !report_comparison(o, c);
     status result = json_write(stdout, bad ? NULL : o, why);
     json_decref(o);
     return result;

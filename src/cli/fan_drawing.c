@@ -1,7 +1,7 @@
 /* A fan of rays in its own plane: the section of the solids, the rays' ways, the caustic and the mean focus. */
-#include "cli/diagram.h"
+#include "report/diagram.h"
 #include "cli/fan_writers.h"
-#include "cli/svg.h"
+#include "report/svg.h"
 
 /* Branches lighter than this are not drawn with whole trees; nor is a wider picture made for a caustic farther off than this share of
  * the rest. */

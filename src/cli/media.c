@@ -1,6 +1,6 @@
 #include "cli/cli.h"
-#include "cli/json.h"
-#include "cli/media_rows.h"
+#include "report/json.h"
+#include "report/media_rows.h"
 #include "cli/options.h"
 #include "base/number.h"
 #include <errno.h>

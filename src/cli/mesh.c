@@ -1,8 +1,8 @@
 /* cuvette mesh: what a file or a computed body is made of, and its triangles for other programs. The body's numbers are the parameters of a
  * scene's mesh, set by the parameter table. */
 #include "cli/cli.h"
-#include "cli/json.h"
-#include "cli/mesh_rows.h"
+#include "report/json.h"
+#include "report/mesh_rows.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "base/file.h"

@@ -1,5 +1,5 @@
 #include "cli/cli.h"
-#include "cli/json.h"
+#include "report/json.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "scene/motion.h"

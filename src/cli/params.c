@@ -1,7 +1,7 @@
 #include "cli/cli.h"
-#include "cli/json.h"
+#include "report/json.h"
 #include "cli/options.h"
-#include "cli/param_rows.h"
+#include "report/param_rows.h"
 #include "cli/terminal.h"
 #include <errno.h>
 #include <stdbool.h>

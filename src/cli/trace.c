@@ -2,7 +2,7 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
-#include "cli/trace_writers.h"
+#include "report/trace_writers.h"
 #include "base/file.h"
 #include <errno.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SVG 1.1 as text: decimals to a hundredth of a pixel, so that the same drawing is the same bytes; no scripts, no fonts of its
  * own. Colours are those of plots/style.gp: Okabe and Ito's. Errors of the stream are left in the stream. Ownership: nothing is kept. */
-#ifndef CUVETTE_CLI_SVG_H
-#define CUVETTE_CLI_SVG_H
+#ifndef CUVETTE_REPORT_SVG_H
+#define CUVETTE_REPORT_SVG_H
 
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
 /* A diagram's ground: media as areas, boundaries as lines, and the key to them. */
-#include "cli/diagram_parts.h"
+#include "report/diagram_parts.h"
 #include "scene/medium.h"
 #include "image/image.h"
 #include <stdlib.h>

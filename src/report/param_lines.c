@@ -1,4 +1,4 @@
-#include "cli/param_lines.h"
+#include "report/param_lines.h"
 #include "base/text.h"
 #include <stdbool.h>
 #include <stdio.h>

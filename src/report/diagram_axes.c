@@ -1,5 +1,5 @@
 /* A diagram's axes: ticks at round numbers, and what the axes measure. */
-#include "cli/diagram_parts.h"
+#include "report/diagram_parts.h"
 #include "base/number.h"
 #include <string.h>
 

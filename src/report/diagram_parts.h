@@ -1,9 +1,9 @@
 /* The inside of a diagram, shared by diagram.c, diagram_axes.c and diagram_media.c. */
-#ifndef CUVETTE_CLI_DIAGRAM_PARTS_H
-#define CUVETTE_CLI_DIAGRAM_PARTS_H
+#ifndef CUVETTE_REPORT_DIAGRAM_PARTS_H
+#define CUVETTE_REPORT_DIAGRAM_PARTS_H
 
-#include "cli/diagram.h"
-#include "cli/svg.h"
+#include "report/diagram.h"
+#include "report/svg.h"
 
 static inline double diagram_x(const diagram *d, double u)
 {

@@ -1,7 +1,7 @@
 /* A tree of rays as text, as JSON, as a drawing. Each writes all of it to a stream, whose errors are left in the stream.
  * Ownership: everything is borrowed. */
-#ifndef CUVETTE_CLI_TRACE_WRITERS_H
-#define CUVETTE_CLI_TRACE_WRITERS_H
+#ifndef CUVETTE_REPORT_TRACE_WRITERS_H
+#define CUVETTE_REPORT_TRACE_WRITERS_H
 
 #include "render/probe.h"
 #include <stdio.h>

@@ -1,5 +1,5 @@
-#include "cli/json.h"
-#include "cli/trace_writers.h"
+#include "report/json.h"
+#include "report/trace_writers.h"
 
 static void write_list(FILE *out, const char *key, const double *values, int count)
 {

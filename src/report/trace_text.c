@@ -1,4 +1,4 @@
-#include "cli/trace_writers.h"
+#include "report/trace_writers.h"
 #include "base/elementary.h"
 #include <math.h>
 

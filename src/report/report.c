@@ -1,6 +1,6 @@
-#include "cli/report.h"
-#include "cli/json.h"
-#include "cli/param_lines.h"
+#include "report/report.h"
+#include "report/json.h"
+#include "report/param_lines.h"
 #include "base/number.h"
 #include "measure/statistics.h"
 #include <stdlib.h>
@@ -264,4 +264,17 @@ json_t *report_create(const scene *s, isa level, const frames *f, bool repeated)
         return o;
     json_decref(o);
     return NULL;
+}
+
+bool report_comparison(json_t *o, const image_comparison *c)
+{
+    json_t *place = c->largest > 0 ? json_pack("[i,i]", c->largest_x, c->largest_y) : json_null();
+    int bad = json_object_set_new(o, "mse", json_of_real(c->mse));
+    bad |= json_object_set_new(o, "psnr_db", json_of_real(c->psnr_db));
+    bad |= json_object_set_new(o, "ssim", json_of_real(c->ssim));
+    bad |= json_object_set_new(o, "flip", json_of_real(c->flip));
+    bad |= json_object_set_new(o, "largest", json_of_real(c->largest));
+    bad |= json_object_set_new(o, "largest_at", place);
+    bad |= json_object_set_new(o, "differing_share", json_of_real(c->differing_share));
+    return !bad;
 }

@@ -1,5 +1,5 @@
-#include "cli/media_rows.h"
-#include "cli/json.h"
+#include "report/media_rows.h"
+#include "report/json.h"
 #include "base/number.h"
 #include <math.h>
 #include <string.h>

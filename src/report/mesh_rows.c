@@ -1,5 +1,5 @@
-#include "cli/mesh_rows.h"
-#include "cli/json.h"
+#include "report/mesh_rows.h"
+#include "report/json.h"
 #include "base/number.h"
 
 /* Of the mesh's own arrays. */

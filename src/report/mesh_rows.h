@@ -1,7 +1,7 @@
 /* What a mesh is, as a person and as a program read it. Ownership: the JSON is a new reference, NULL without memory. Errors of the stream are
  * left in the stream. */
-#ifndef CUVETTE_CLI_MESH_ROWS_H
-#define CUVETTE_CLI_MESH_ROWS_H
+#ifndef CUVETTE_REPORT_MESH_ROWS_H
+#define CUVETTE_REPORT_MESH_ROWS_H
 
 #include "geometry/mesh.h"
 #include <jansson.h>

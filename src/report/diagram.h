@@ -2,8 +2,8 @@
  * and marks. Rays out of the plane are projected onto it at right angles; what leaves the window is clipped.
  *
  * Ownership: the probe, its scene and the stream are borrowed; diagram_begin takes memory, diagram_end releases it. */
-#ifndef CUVETTE_CLI_DIAGRAM_H
-#define CUVETTE_CLI_DIAGRAM_H
+#ifndef CUVETTE_REPORT_DIAGRAM_H
+#define CUVETTE_REPORT_DIAGRAM_H
 
 #include "render/section.h"
 #include <stdio.h>

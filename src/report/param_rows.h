@@ -1,6 +1,6 @@
 /* The parameter table as text for people: one line a parameter, or the reference of the manual page as roff. */
-#ifndef CUVETTE_CLI_PARAM_ROWS_H
-#define CUVETTE_CLI_PARAM_ROWS_H
+#ifndef CUVETTE_REPORT_PARAM_ROWS_H
+#define CUVETTE_REPORT_PARAM_ROWS_H
 
 #include "scene/params.h"
 #include <jansson.h>

@@ -1,7 +1,7 @@
-#include "cli/param_rows.h"
-#include "cli/json.h"
-#include "cli/param_lines.h"
-#include "cli/report.h"
+#include "report/param_rows.h"
+#include "report/json.h"
+#include "report/param_lines.h"
+#include "report/report.h"
 #include <stdbool.h>
 #include <string.h>
 

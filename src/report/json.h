@@ -1,7 +1,7 @@
 /* JSON out: jansson builds the value, this writes it. Reals get the fewest digits that read back the same, lists of
  * plain values stand on one line, keys keep the order they were put in. Ownership: json_* return new references. */
-#ifndef CUVETTE_CLI_JSON_H
-#define CUVETTE_CLI_JSON_H
+#ifndef CUVETTE_REPORT_JSON_H
+#define CUVETTE_REPORT_JSON_H
 
 #include "base/status.h"
 #include <jansson.h>

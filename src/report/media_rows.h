@@ -1,7 +1,7 @@
 /* The catalogue of media as a person and a program read it: one line each, all about one, or JSON. Ownership: the JSON
  * is a new reference. Errors of the stream are left in the stream. at_nm is a further wavelength, 0 for none. */
-#ifndef CUVETTE_CLI_MEDIA_ROWS_H
-#define CUVETTE_CLI_MEDIA_ROWS_H
+#ifndef CUVETTE_REPORT_MEDIA_ROWS_H
+#define CUVETTE_REPORT_MEDIA_ROWS_H
 
 #include "optics/media.h"
 #include <jansson.h>

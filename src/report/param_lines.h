@@ -1,7 +1,7 @@
 /* The parameters that a table shows: all there are, or those of a scene with their values, or the few that a word fits.
  * Ownership: param_lines_release releases what param_lines_collect filled, also after an error. */
-#ifndef CUVETTE_CLI_PARAM_LINES_H
-#define CUVETTE_CLI_PARAM_LINES_H
+#ifndef CUVETTE_REPORT_PARAM_LINES_H
+#define CUVETTE_REPORT_PARAM_LINES_H
 
 #include "scene/params.h"
 
@@ -17,7 +17,7 @@ typedef struct param_lines {
     size_t count, capacity;
 } param_lines;
 
-/* filter as in cli/param_rows.h; s and filter may be NULL. */
+/* filter as in report/param_rows.h; s and filter may be NULL. */
 status param_lines_collect(const scene *s, const char *filter, param_lines *out, diagnostic *why);
 void param_lines_release(param_lines *all);
 

@@ -1,4 +1,4 @@
-#include "cli/diagram_parts.h"
+#include "report/diagram_parts.h"
 #include <stdlib.h>
 
 void diagram_include(diagram_box *box, const section_plane *plane, vec3 p)

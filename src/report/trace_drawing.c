@@ -1,7 +1,7 @@
 /* A tree of rays drawn twice, side by side: in the plane of incidence of its first hit, and from above. */
-#include "cli/diagram.h"
-#include "cli/svg.h"
-#include "cli/trace_writers.h"
+#include "report/diagram.h"
+#include "report/svg.h"
+#include "report/trace_writers.h"
 
 /* Rays lighter than this share of the root's are not drawn. */
 #define LIGHTEST 0.002
