@@ -1,0 +1,26 @@
+/* The folder that was chosen: names that pages give, and what may be read and written. A name is relative to it, with '/', without "." or ".." or an empty
+ * part; what a symbolic link leads out of it is refused like a path that climbs.
+ * Ownership: folder_open gives, folder_close releases; paths are fresh memory. Errors: STATUS_BAD_INPUT. */
+#ifndef CUVETTE_WEB_FOLDER_H
+#define CUVETTE_WEB_FOLDER_H
+
+#include "scene/scene.h"
+#include <jansson.h>
+
+typedef struct folder folder;
+
+status folder_open(const char *path, folder **out, diagnostic *why);
+void folder_close(folder *f); /* NULL is allowed */
+
+/* The path of a file that is there, to be read; or, with must_exist false, of one whose folder is there. In the program's own terms. */
+status folder_path(const folder *f, const char *name, bool must_exist, char **path, diagnostic *why);
+/* The name of a path, in the program's own terms; NULL where it is not in the folder. The file need not be there. */
+char *folder_name(const folder *f, const char *path);
+
+/* Does the scene name files outside of it (textures, skies, meshes, scripts)? Files that are not there are in it when their path is. */
+status folder_check_scene(const folder *f, const scene *s, diagnostic *why);
+
+/* What GET /api/files answers; NULL when memory is out. */
+json_t *folder_tell(const folder *f);
+
+#endif

@@ -1,0 +1,28 @@
+/* The laboratory in a browser: one scene on a desk, a painter who renders it whenever it changes, a toy that moves, studies that run; served to
+ * pages and programs through web/http.h, by the API of web/README.md.
+ * Ownership: lab_start gives, lab_stop releases and joins all threads; the settings' texts are borrowed in between. Errors: STATUS_BAD_INPUT for a scene,
+ * folder or port that cannot be had, STATUS_FAILURE for memory and threads. Nothing is printed, no signal is taken. */
+#ifndef CUVETTE_WEB_LAB_H
+#define CUVETTE_WEB_LAB_H
+
+#include "base/isa.h"
+#include "scene/scene.h"
+
+typedef struct lab lab;
+
+typedef struct lab_settings {
+    const char *folder;  /* nothing outside of it is read or written */
+    const char *scene;   /* file to open, in the working folder's terms and below folder; NULL: a room with a floor, a light and a camera */
+    const char *results; /* folder of studies' rows, below folder; it need not be there */
+    int port;            /* 0: any that is free */
+    isa level;
+    int threads;         /* of scenes as they are opened; 0: what they say */
+} lab_settings;
+
+status lab_start(const lab_settings *settings, lab **out, diagnostic *why);
+void lab_stop(lab *l); /* NULL is allowed */
+
+/* "http://127.0.0.1:PORT/?token=TOKEN" */
+const char *lab_address(const lab *l);
+
+#endif

@@ -1,0 +1,48 @@
+/* What the laboratory's files share: not for others. Handlers have the lab as their context. */
+#ifndef CUVETTE_WEB_LAB_PRIVATE_H
+#define CUVETTE_WEB_LAB_PRIVATE_H
+
+#include "web/desk.h"
+#include "web/folder.h"
+#include "web/http.h"
+#include "web/lab.h"
+#include "web/painter.h"
+
+typedef struct pins pins;       /* web/pins.h */
+typedef struct studies studies; /* web/studies.h */
+
+struct lab {
+    lab_settings settings;
+    folder *files;
+    desk *desk;
+    painter *painter;
+    pins *pins;
+    studies *studies;
+    http_server *server;
+    http_route *routes;
+};
+
+/* One table for each api_*.c; context is filled in by lab.c. */
+typedef struct lab_routes { const http_route *routes; size_t count; } lab_routes;
+extern const lab_routes desk_routes, picture_routes, trace_routes, compare_routes, edit_routes, file_routes, slime_routes, study_routes;
+
+/* Sends the state to all pages. */
+void lab_tell_state(lab *l);
+json_t *lab_state(lab *l);
+
+/* {"generation": N}, or the diagnostic. */
+void lab_reply_generation(http_reply *r, status code, uint64_t generation, const diagnostic *why);
+
+/* Numbers and words of a body. Each is false, with the reply set to 400, where the key is of another kind; a missing one is an error only where
+ * needed. value is left alone where it is missing. */
+bool lab_take_number(const json_t *body, const char *key, bool needed, double *value, http_reply *r);
+bool lab_take_vector(const json_t *body, const char *key, bool needed, double value[3], http_reply *r);
+bool lab_take_text(const json_t *body, const char *key, bool needed, const char **value, http_reply *r);
+bool lab_take_flag(const json_t *body, const char *key, bool *value, http_reply *r);
+/* The gesture; NULL for none. */
+bool lab_take_gesture(const json_t *body, const char **gesture, http_reply *r);
+
+/* The ray through a place of the full picture, in pixels, of the scene's camera. direction is a unit vector. */
+void lab_camera_ray(const scene *s, double x, double y, vec3 *origin, vec3 *direction);
+
+#endif

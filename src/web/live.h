@@ -1,0 +1,49 @@
+/* The slime while it is played with: it moves in the painter's thread, hands reach into it from others. Off, paused or playing; while it is not off,
+ * the scene shown is the desk's with the slime as it lies now.
+ *
+ * Threads: those marked "painter" are called by the painter's thread alone, with the stage (the painter's own copy of the scene) that nobody else looks at
+ * meanwhile; the others from any thread.
+ * Ownership: live_create gives, live_destroy releases. Errors: STATUS_BAD_INPUT for what cannot be, among them a body that blew up: it is then paused and says
+ * so until it is started again. */
+#ifndef CUVETTE_WEB_LIVE_H
+#define CUVETTE_WEB_LIVE_H
+
+#include "scene/scene.h"
+#include <jansson.h>
+
+typedef struct live live;
+
+typedef enum live_preview { LIVE_TRACED, LIVE_ZBUFFER } live_preview;
+typedef enum live_order { LIVE_PLAY, LIVE_PAUSE, LIVE_RESTART, LIVE_OFF } live_order;
+
+/* wake: something was ordered; the painter should look. */
+live *live_create(void (*wake)(void *context), void *context);
+void live_destroy(live *l); /* NULL is allowed */
+
+/* --- from any thread --- */
+
+void live_give(live *l, live_order order);
+void live_set_preview(live *l, live_preview preview);
+/* Places are world rays and points: the caller knows the camera. The orders wait for the painter, which is told and answers within a frame. */
+status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, vec3 *where, diagnostic *why); /* hand: LIVE_MISSED where the ray meets no slime */
+status live_move(live *l, int hand, vec3 by, diagnostic *why); /* from where it took hold */
+status live_release(live *l, int hand, diagnostic *why);
+enum { LIVE_MISSED = -1 };
+/* The state's part; null where it is off and the scene has none. */
+json_t *live_tell(live *l);
+
+/* --- painter --- */
+
+/* Is there something to do for it now: is it playing, or was something ordered? */
+bool live_is_on(live *l);      /* not off */
+bool live_is_moving(live *l);  /* playing, and not at rest with no hand on it */
+live_preview live_preview_of(live *l);
+/* The stage is a fresh copy of what is on the desk: takes its slimes over, from their beginning or as they lie now where the slimes' own parameters are what
+ * they were. Call it whenever the stage was replaced. */
+status live_attach(live *l, scene *stage, diagnostic *why);
+/* The stage is about to go: hands and motion are kept for the next one where that is possible. */
+void live_detach(live *l);
+/* Obeys orders, then moves by the wall time since it was called last, at most most_s of work. told: live_tell says something else. */
+status live_advance(live *l, double most_s, bool *told, diagnostic *why);
+
+#endif
