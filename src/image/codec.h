@@ -5,6 +5,7 @@
 #define CUVETTE_IMAGE_CODEC_H
 
 #include "image/image.h"
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -29,7 +30,8 @@ unsigned char codec_byte(const codec_bytes *table, float linear);
 /* Linear light of the encoded values 0..maximum; free it. NULL without memory. */
 float *codec_decode_table(unsigned maximum);
 
-status codec_png_write(const image *picture, FILE *stream, int bits, diagnostic *why);
+/* fast: with less effort, a larger file. */
+status codec_png_write(const image *picture, FILE *stream, int bits, bool fast, diagnostic *why);
 status codec_jpeg_write(const image *picture, FILE *stream, diagnostic *why);
 status codec_pfm_write(const image *picture, FILE *stream, diagnostic *why);
 

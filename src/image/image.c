@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "image/codec.h"
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -24,17 +25,24 @@ status image_create(int width, int height, image **out, diagnostic *why)
         free(pixel);
         return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a picture of %d x %d pixels", width, height);
     }
-    *picture = (image){.width = width, .height = height, .pixel = pixel};
+    *picture = (image){.width = width, .height = height, .pixel = pixel, .owners = 1};
     *out = picture;
     return STATUS_OK;
 }
 
 void image_destroy(image *picture)
 {
-    if (picture) {
+    if (picture && __atomic_sub_fetch(&picture->owners, 1, __ATOMIC_ACQ_REL) <= 0) {
         free(picture->pixel);
         free(picture);
     }
+}
+
+image *image_share(const image *picture)
+{
+    image *own = (image *)(uintptr_t)picture; /* the count alone changes */
+    __atomic_add_fetch(&own->owners, 1, __ATOMIC_RELAXED);
+    return own;
 }
 
 image_format image_format_of(const char *path)
@@ -67,6 +75,34 @@ status codec_check_size(long long width, long long height, size_t file_bytes, di
     return STATUS_OK;
 }
 
+static status write_as(const image *picture, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
+{
+    switch (format) {
+    case IMAGE_PNG: return codec_png_write(picture, stream, bits, fast, why);
+    case IMAGE_JPEG: return codec_jpeg_write(picture, stream, why);
+    case IMAGE_PFM: return codec_pfm_write(picture, stream, why);
+    case IMAGE_UNKNOWN: break;
+    }
+    return diagnose(why, STATUS_BAD_INPUT, "PNG, JPEG or PFM", "unknown kind of picture");
+}
+
+status image_encode(const image *picture, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size, diagnostic *why)
+{
+    char *text = NULL;
+    *bytes = NULL;
+    FILE *stream = open_memstream(&text, size);
+    if (!stream)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = write_as(picture, format, stream, bits, fast, why);
+    if (fclose(stream) != 0 && code == STATUS_OK)
+        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK)
+        *bytes = (unsigned char *)text;
+    else
+        free(text);
+    return code;
+}
+
 status image_write(const image *picture, const char *path, int bits, diagnostic *why)
 {
     image_format format = image_format_of(path);
@@ -83,9 +119,7 @@ status image_write(const image *picture, const char *path, int bits, diagnostic 
     if (code != STATUS_OK) {
         return code;
     }
-    code = format == IMAGE_PNG    ? codec_png_write(picture, writer.stream, bits, why)
-           : format == IMAGE_JPEG ? codec_jpeg_write(picture, writer.stream, why)
-                                  : codec_pfm_write(picture, writer.stream, why);
+    code = write_as(picture, format, writer.stream, bits, false, why);
     if (code == STATUS_OK || ferror(writer.stream)) {
         return file_writer_commit(&writer, why); /* knows best why the stream failed */
     }

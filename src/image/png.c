@@ -18,6 +18,7 @@ typedef struct png_job {
     image *picture;
     float *linear;                   /* reading: sRGB decoding table */
     int bits;
+    bool fast;                       /* writing: a larger file, sooner */
     status code;                     /* of what went wrong beside libpng */
     diagnostic *why;
 } png_job;
@@ -43,7 +44,9 @@ static void write_rows(png_job *job, const image *picture, FILE *stream)
     png_set_IHDR(job->png, job->info, (png_uint_32)picture->width, (png_uint_32)picture->height, job->bits,
                  PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
-    png_set_compression_level(job->png, 6);
+    png_set_compression_level(job->png, job->fast ? 1 : 6);
+    if (job->fast)
+        png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_write_info(job->png, job->info);
     codec_bytes bytes;
     codec_bytes_prepare(&bytes);
@@ -73,9 +76,9 @@ static bool write_guarded(png_job *job, const image *picture, FILE *stream)
     return true;
 }
 
-status codec_png_write(const image *picture, FILE *stream, int bits, diagnostic *why)
+status codec_png_write(const image *picture, FILE *stream, int bits, bool fast, diagnostic *why)
 {
-    png_job job = {.bits = bits};
+    png_job job = {.bits = bits, .fast = fast};
     status code = STATUS_FAILURE;
     job.raw = malloc((size_t)picture->width * 3 * (size_t)(bits / 8));
     job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);

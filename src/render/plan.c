@@ -20,8 +20,9 @@ static void aim_along_angles(const struct camera *c, camera_frame *f)
     f->right = vec3_make(cos_yaw, 0.0, -sin_yaw);
 }
 
-static camera_frame frame_of(const struct camera *c, double aspect)
+camera_frame camera_frame_of(const scene *s)
 {
+    const struct camera *c = &s->camera;
     camera_frame f;
     f.eye = c->position;
     if (c->aimed)
@@ -32,7 +33,7 @@ static camera_frame frame_of(const struct camera *c, double aspect)
     double s, k;
     elementary_sincos_deg(0.5 * c->fov_deg, &s, &k);
     f.half_height = s / k;
-    f.half_width = f.half_height * aspect;
+    f.half_width = f.half_height * ((double)s->render.width / (double)s->render.height);
     return f;
 }
 
@@ -229,7 +230,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         plan_destroy(p);
         return code;
     }
-    p->view = frame_of(&s->camera, (double)s->render.width / (double)s->render.height);
+    p->view = camera_frame_of(s);
     p->render = s->render;
     if (s->render.integrator == INTEGRATOR_ZBUFFER)
         p->render.shadows = SHADOWS_OFF;

@@ -17,6 +17,8 @@ typedef struct camera_frame {
     double half_width, half_height;
 } camera_frame;
 
+camera_frame camera_frame_of(const scene *s);
+
 /* What one kind of face of a body looks like. */
 typedef struct surface_look { material surface; const texture *picture; } surface_look;
 

@@ -133,8 +133,8 @@ void pool_destroy(pool *p)
     free(p);
 }
 
-/* Waits for the last worker, looking up ten times a second if there is somebody to tell. */
-static void wait_until_done(pool *p, void (*watch)(void *))
+/* Waits for the last worker, looking up now and then if there is somebody to tell. */
+static void wait_until_done(pool *p, void (*watch)(void *), double every_s)
 {
     if (!watch) {
         wait_for(&p->done);
@@ -143,7 +143,7 @@ static void wait_until_done(pool *p, void (*watch)(void *))
     for (;;) {
         struct timespec until;
         clock_gettime(CLOCK_REALTIME, &until);
-        until.tv_nsec += 100000000;
+        until.tv_nsec += (long)(every_s * 1e9);
         until.tv_sec += until.tv_nsec / 1000000000;
         until.tv_nsec %= 1000000000;
         if (sem_timedwait(&p->done, &until) == 0)
@@ -153,7 +153,7 @@ static void wait_until_done(pool *p, void (*watch)(void *))
     }
 }
 
-static status run_fresh(pool *p, int count, void (*watch)(void *), diagnostic *why)
+static status run_fresh(pool *p, int count, void (*watch)(void *), double every_s, diagnostic *why)
 {
     worker *fresh = aligned_alloc(64, (size_t)count * sizeof *fresh);
     if (!fresh)
@@ -169,14 +169,14 @@ static status run_fresh(pool *p, int count, void (*watch)(void *), diagnostic *w
     int missing = count - started;
     if (missing > 0 && atomic_fetch_sub(&p->left, missing) == missing)
         sem_post(&p->done);
-    wait_until_done(p, watch);
+    wait_until_done(p, watch, every_s);
     for (int i = 0; i < started; i++)
         pthread_join(fresh[i].thread, NULL);
     free(fresh);
     return missing > 0 ? no_thread(started, error, why) : STATUS_OK;
 }
 
-status pool_run(pool *p, int count, bool keep, pool_task *task, void (*watch)(void *), void *context, diagnostic *why)
+status pool_run(pool *p, int count, bool keep, pool_task *task, void (*watch)(void *), double every_s, void *context, diagnostic *why)
 {
     if (keep) {
         status code = pool_reserve(p, count, why);
@@ -188,8 +188,8 @@ status pool_run(pool *p, int count, bool keep, pool_task *task, void (*watch)(vo
     p->running = count;
     atomic_store(&p->left, count);
     if (!keep)
-        return run_fresh(p, count, watch, why);
+        return run_fresh(p, count, watch, every_s, why);
     sem_post(&p->workers[0]->wake);
-    wait_until_done(p, watch);
+    wait_until_done(p, watch, every_s);
     return STATUS_OK;
 }

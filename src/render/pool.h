@@ -17,7 +17,7 @@ void pool_destroy(pool *p);
 status pool_reserve(pool *p, int count, diagnostic *why);
 
 /* Runs task(context, 0 .. count-1), each on a thread of its own, and returns when all have ended. Meanwhile watch (may be NULL)
- * is called about ten times a second on the calling thread. keep: use waiting threads; else fresh ones. */
-status pool_run(pool *p, int count, bool keep, pool_task *task, void (*watch)(void *), void *context, diagnostic *why);
+ * is called every so many seconds (under 1) on the calling thread. keep: use waiting threads; else fresh ones. */
+status pool_run(pool *p, int count, bool keep, pool_task *task, void (*watch)(void *), double every_s, void *context, diagnostic *why);
 
 #endif

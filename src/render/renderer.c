@@ -306,7 +306,7 @@ static status prepare_drawing(frame *f, int count, diagnostic *why)
 {
     if (!f->depths)
         return STATUS_OK;
-    const status code = pool_run(f->owner->threads, count, f->s->render.pool, project, NULL, f, why);
+    const status code = pool_run(f->owner->threads, count, f->s->render.pool, project, NULL, 0.0, f, why);
     return code == STATUS_OK ? zbuffer_sort(f->depths, why) : code;
 }
 
@@ -333,7 +333,8 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->began_s = clock_wall_s();
         code = prepare_drawing(f, count, why);
         if (code == STATUS_OK)
-            code = pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL, f, why);
+            code = pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL,
+                            options && options->progress_s > 0 ? options->progress_s : 0.1, f, why);
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
         if (code == STATUS_OK) {

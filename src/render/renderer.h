@@ -40,8 +40,9 @@ typedef struct render_options {
     bool pixel_rays;    /* rays of all kinds by pixel */
     bool pixel_time;    /* nanoseconds by pixel; a batch's time is shared among its rays */
     bool timeline;      /* when each tile was taken, and by whom */
-    /* Called about ten times a second from the thread that called render; return false to stop the frame. May be NULL. */
+    /* Called every progress_s (0: 0.1) seconds from the thread that called render; return false to stop the frame. May be NULL. */
     bool (*progress)(void *context, double share_done);
+    double progress_s;
     /* Called by the worker that has traced the last ray of a piece of the picture (x0 <= x < x1, y0 <= y < y1), so by different threads at the same
      * time; the film may be read there. Batches are then not filled up across pieces, which costs time and changes no bit. May be NULL. */
     void (*piece_done)(void *context, const film *picture, int x0, int y0, int x1, int y1);

@@ -125,14 +125,9 @@ static bool clone_picture(background *to, const background *from)
     if (!to->picture_path) {
         return false;
     }
-    if (!from->picture) {
-        return true;
+    if (from->picture) {
+        to->picture = image_share(from->picture); /* never changed once it is loaded */
     }
-    if (image_create(from->picture->width, from->picture->height, &to->picture, NULL) != STATUS_OK) {
-        return false;
-    }
-    size_t pixels = (size_t)from->picture->width * (size_t)from->picture->height;
-    memcpy(to->picture->pixel, from->picture->pixel, pixels * 3 * sizeof(float));
     return true;
 }
 
