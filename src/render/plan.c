@@ -30,9 +30,9 @@ camera_frame camera_frame_of(const scene *s)
     else
         aim_along_angles(c, &f);
     f.up = vec3_cross(f.forward, f.right);
-    double s, k;
-    elementary_sincos_deg(0.5 * c->fov_deg, &s, &k);
-    f.half_height = s / k;
+    double sine, cosine;
+    elementary_sincos_deg(0.5 * c->fov_deg, &sine, &cosine);
+    f.half_height = sine / cosine;
     f.half_width = f.half_height * ((double)s->render.width / (double)s->render.height);
     return f;
 }

@@ -1,13 +1,12 @@
 /* The scene that all pages work at, and how it came to be: each change makes a new generation of it; undo and redo go through them. For any number of
  * threads. A change is done to a copy, which is checked as a whole and against the bounds below before it takes the place of the scene, so that
  * nobody ever sees a half of one.
- * Ownership: desk_create gives, desk_destroy releases; scenes that go in or come out belong to the receiver, but for DESK's own copy in a change.
+ * Ownership: desk_create gives, desk_destroy releases; scenes that go in or come out belong to the receiver, but for the desk's own copy in a change.
  * Errors: STATUS_BAD_INPUT with the reason; the scene is then as it was. */
 #ifndef CUVETTE_WEB_DESK_H
 #define CUVETTE_WEB_DESK_H
 
-#include "scene/scene.h"
-#include <jansson.h>
+#include "web/folder.h"
 
 typedef struct desk desk;
 
@@ -15,8 +14,9 @@ typedef struct desk desk;
 enum { DESK_PIXELS_MAX = 16777216, DESK_TRIANGLES_MAX = 4000000, DESK_UNDO_MAX = 200 };
 #define DESK_WORK_MAX 1e12 /* pixels * (samples or paths) * wavelengths */
 
-/* Takes the scene. changed is called, with the desk unlocked, after each change. file: its name as pages see it, NULL for a new one. */
-status desk_create(scene *first, const char *file, void (*changed)(void *context), void *context, desk **out, diagnostic *why);
+/* Takes the scene, also after an error. changed is called, with the desk unlocked, after each change. file: its name as pages see it, NULL for a new one. files is
+ * borrowed: what a scene names must lie in it. */
+status desk_create(scene *first, const char *file, const folder *files, void (*changed)(void *context), void *context, desk **out, diagnostic *why);
 void desk_destroy(desk *d); /* NULL is allowed */
 
 /* Does something to a copy of the scene. */
