@@ -8,12 +8,12 @@
 #include "image/image.h"
 #include "web/desk.h"
 #include "web/live.h"
-#include <stdatomic.h>
 
 typedef struct painter painter;
 
 typedef struct picture {
     uint64_t generation;
+    uint64_t serial;             /* one more for each picture, whatever it shows */
     int pass, passes;            /* from 1 */
     bool final;                  /* the film that the scene makes */
     int width, height;           /* of this pass */
@@ -22,9 +22,8 @@ typedef struct picture {
     uint64_t rays, film_hash;    /* film_hash: of the final one */
     double noise;                /* of random paths; NaN for none */
     int threads;
-    image *linear;
-    scene *of;                   /* final: the scene that it shows; else NULL */
-    atomic_int owners;
+    const image *linear;
+    const scene *of;             /* final: the scene that it shows; else NULL */
 } picture;
 
 /* published: called after each pass with the desk and painter unlocked; the picture is borrowed. told: whenever painter_tell would say something else. */
@@ -50,6 +49,9 @@ const picture *painter_take(painter *p);
 status painter_take_final(painter *p, double limit_s, const picture **out, diagnostic *why);
 void picture_keep(const picture *p);
 void picture_release(const picture *p); /* NULL is allowed */
+
+/* The picture as a PNG of 8 bits, made once for all who ask; the bytes are the picture's. */
+status picture_png(const picture *p, const unsigned char **bytes, size_t *size, diagnostic *why);
 
 /* The picture as it is described in web/README.md; NULL when memory is out. */
 json_t *picture_json(const picture *p);
