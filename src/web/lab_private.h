@@ -7,6 +7,7 @@
 #include "web/http.h"
 #include "web/lab.h"
 #include "web/painter.h"
+#include <pthread.h>
 
 typedef struct pins pins;       /* web/pins.h */
 typedef struct studies studies; /* web/studies.h */
@@ -20,15 +21,23 @@ struct lab {
     studies *studies;
     http_server *server;
     http_route *routes;
+    pthread_mutex_t publish_lock;
+    bool open; /* events may be published */
 };
 
 /* One table for each api_*.c; context is filled in by lab.c. */
 typedef struct lab_routes { const http_route *routes; size_t count; } lab_routes;
 extern const lab_routes desk_routes, picture_routes, trace_routes, compare_routes, edit_routes, file_routes, slime_routes, study_routes;
 
+/* Sends an event to all pages; takes value. From any thread, at any time. */
+void lab_publish(lab *l, const char *event, json_t *value);
+
 /* Sends the state to all pages. */
 void lab_tell_state(lab *l);
 json_t *lab_state(lab *l);
+
+/* Scenes that are opened and do not say how many threads they want get the settings'. */
+void lab_give_threads(const lab *l, scene *s);
 
 /* {"generation": N}, or the diagnostic. */
 void lab_reply_generation(http_reply *r, status code, uint64_t generation, const diagnostic *why);

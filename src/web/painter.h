@@ -1,6 +1,6 @@
 /* The painter renders what is on the desk, in a thread of its own, in passes from coarse to fine; a change ends the pass that is on its way. It also
  * moves the slime while that is live (web/live.h). One picture, the newest, is there for all.
- * Ownership: painter_create gives, painter_destroy joins and releases. Pictures are shared and never change: picture_keep and picture_release count
+ * Ownership: painter_create gives, painter_end joins, painter_destroy releases. Pictures are shared and never change: picture_keep and picture_release count
  * their owners. */
 #ifndef CUVETTE_WEB_PAINTER_H
 #define CUVETTE_WEB_PAINTER_H
@@ -34,7 +34,10 @@ typedef struct painter_listener {
 } painter_listener;
 
 status painter_create(desk *d, isa level, const painter_listener *listener, painter **out, diagnostic *why);
-void painter_destroy(painter *p); /* NULL is allowed */
+/* Ends the thread and all waiting for it; what is asked from then on is answered with STATUS_INTERRUPTED. */
+void painter_end(painter *p);
+/* After painter_end, when nobody asks any more. NULL is allowed. */
+void painter_destroy(painter *p);
 
 /* Something changed on the desk or in the live slime: look. From any thread, returns at once. */
 void painter_wake(painter *p);

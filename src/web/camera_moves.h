@@ -1,0 +1,16 @@
+/* How a person moves the camera: around what it looks at, on the spot, along its own axes. Pure. */
+#ifndef CUVETTE_WEB_CAMERA_MOVES_H
+#define CUVETTE_WEB_CAMERA_MOVES_H
+
+#include "scene/scene.h"
+
+typedef struct camera_move {
+    double orbit_deg[2]; /* yaw: the camera goes to its left and looks further to the right; pitch: it goes up */
+    double turn_deg[2];  /* yaw to the right, pitch up */
+    double step[3];      /* right, up, forward, scene units; what is looked at moves with it */
+} camera_move;
+
+/* A desk_change; of is a camera_move. The camera never stands on its head: directions stay 0.5 degrees from straight up and down. */
+status camera_move_apply(void *of, scene *s, diagnostic *why);
+
+#endif

@@ -1,0 +1,11 @@
+/* The scene on the desk as the command that renders the same film. */
+#ifndef CUVETTE_WEB_COMMAND_LINE_H
+#define CUVETTE_WEB_COMMAND_LINE_H
+
+#include "web/folder.h"
+
+/* file: its name in the folder, NULL for none. *complete is false where the file is not there, or has other objects than the scene: no --set can make up
+ * for that. text is fresh memory. */
+status command_line(const folder *files, const char *file, const scene *s, char **text, bool *complete, diagnostic *why);
+
+#endif

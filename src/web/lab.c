@@ -1,0 +1,191 @@
+#include "web/lab_private.h"
+#include "scene/params.h"
+#include "web/new_scene.h"
+#include "web/page.h"
+#include "web/pins.h"
+#include "web/studies.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* --- events and the state --- */
+
+void lab_publish(lab *l, const char *event, json_t *value)
+{
+    pthread_mutex_lock(&l->publish_lock);
+    if (l->open && value)
+        http_publish(l->server, event, value, NULL);
+    pthread_mutex_unlock(&l->publish_lock);
+    json_decref(value);
+}
+
+json_t *lab_state(lab *l)
+{
+    json_t *state = json_pack("{s:s}", "version", CUVETTE_VERSION);
+    bool good = state && desk_tell(l->desk, state) && painter_tell(l->painter, state);
+    good = good && json_object_set_new(state, "slime", live_tell(painter_live(l->painter))) == 0;
+    good = good && json_object_set_new(state, "pin", pins_tell(l->pins)) == 0;
+    good = good && json_object_set_new(state, "study", studies_tell(l->studies)) == 0;
+    good = good && json_object_set_new(state, "limits", json_pack("{s:i,s:i}", "pixels", DESK_PIXELS_MAX, "triangles", DESK_TRIANGLES_MAX)) == 0;
+    if (good)
+        return state;
+    json_decref(state);
+    return NULL;
+}
+
+static bool is_open(lab *l)
+{
+    pthread_mutex_lock(&l->publish_lock);
+    const bool open = l->open;
+    pthread_mutex_unlock(&l->publish_lock);
+    return open;
+}
+
+void lab_tell_state(lab *l)
+{
+    if (is_open(l))
+        lab_publish(l, "state", lab_state(l));
+}
+
+static void on_desk(void *of)
+{
+    lab *l = of;
+    painter_wake(l->painter);
+    lab_tell_state(l);
+}
+
+static void on_picture(void *of, const picture *p)
+{
+    lab *l = of;
+    if (!is_open(l))
+        return;
+    lab_publish(l, "picture", picture_json(p));
+    live *toy = painter_live(l->painter);
+    if (live_is_on(toy))
+        lab_publish(l, "slime", live_tell(toy));
+}
+
+static void on_told(void *of)
+{
+    lab_tell_state(of);
+}
+
+/* --- start and stop --- */
+
+static status first_scene(const lab *l, scene **out, char **file, diagnostic *why)
+{
+    *file = NULL;
+    if (!l->settings.scene)
+        return new_scene(out, why);
+    *file = folder_name(l->files, l->settings.scene);
+    if (!*file) {
+        diagnostic_locate(why, l->settings.scene, 0, 0);
+        return diagnose(why, STATUS_BAD_INPUT, "name a scene below the folder, or another folder", "is not in the folder of the laboratory");
+    }
+    return scene_read(l->settings.scene, out, why);
+}
+
+void lab_give_threads(const lab *l, scene *s)
+{
+    if (l->settings.threads > 0 && s->render.threads == 1)
+        s->render.threads = l->settings.threads;
+}
+
+static status open_desk(lab *l, diagnostic *why)
+{
+    scene *first = NULL;
+    char *file = NULL;
+    status code = first_scene(l, &first, &file, why);
+    if (code == STATUS_OK) {
+        lab_give_threads(l, first);
+        code = desk_create(first, file, l->files, on_desk, l, &l->desk, why);
+    }
+    free(file);
+    return code;
+}
+
+/* All tables of routes in one, with the lab as their context. */
+static status join_routes(lab *l, size_t *count, diagnostic *why)
+{
+    const lab_routes *const tables[] = {&desk_routes,    &picture_routes, &trace_routes, &compare_routes,
+                                        &edit_routes, &file_routes,    &slime_routes, &study_routes};
+    *count = 0;
+    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
+        *count += tables[i]->count;
+    l->routes = calloc(*count, sizeof *l->routes);
+    if (!l->routes)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    size_t at = 0;
+    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
+        for (size_t k = 0; k < tables[i]->count; k++) {
+            l->routes[at] = tables[i]->routes[k];
+            l->routes[at++].context = l;
+        }
+    return STATUS_OK;
+}
+
+static status serve(lab *l, diagnostic *why)
+{
+    size_t count;
+    status code = join_routes(l, &count, why);
+    const http_settings settings = {.port = l->settings.port, .routes = l->routes, .route_count = count, .files = page_files, .file_count = page_file_count,
+                                    .connections = 128, .event_clients = 48, .timeout_s = 30};
+    if (code == STATUS_OK)
+        code = http_start(&settings, &l->server, why);
+    pthread_mutex_lock(&l->publish_lock);
+    l->open = code == STATUS_OK;
+    pthread_mutex_unlock(&l->publish_lock);
+    return code;
+}
+
+status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
+{
+    *out = NULL;
+    lab *l = calloc(1, sizeof *l);
+    if (!l)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    *l = (lab){.settings = *settings, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
+    const painter_listener listener = {on_picture, on_told, l};
+    status code = folder_open(settings->folder, &l->files, why);
+    if (code == STATUS_OK)
+        code = open_desk(l, why);
+    if (code == STATUS_OK)
+        code = painter_create(l->desk, settings->level, &listener, &l->painter, why);
+    if (code == STATUS_OK && !(l->pins = pins_create()))
+        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK)
+        code = studies_create(l, &l->studies, why);
+    if (code == STATUS_OK)
+        code = serve(l, why);
+    if (code == STATUS_OK)
+        *out = l;
+    else
+        lab_stop(l);
+    return code;
+}
+
+/* First nothing is published any more, then nobody waits any more, then no handler runs any more. */
+void lab_stop(lab *l)
+{
+    if (!l)
+        return;
+    pthread_mutex_lock(&l->publish_lock);
+    l->open = false;
+    pthread_mutex_unlock(&l->publish_lock);
+    if (l->painter)
+        painter_end(l->painter);
+    http_stop(l->server);
+    studies_destroy(l->studies);
+    pins_destroy(l->pins);
+    painter_destroy(l->painter);
+    desk_destroy(l->desk);
+    folder_close(l->files);
+    pthread_mutex_destroy(&l->publish_lock);
+    free(l->routes);
+    free(l);
+}
+
+const char *lab_address(const lab *l)
+{
+    return http_address(l->server);
+}

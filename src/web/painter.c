@@ -1,0 +1,508 @@
+#include "web/painter.h"
+#include "measure/clock.h"
+#include "measure/topology.h"
+#include "render/plan.h"
+#include "render/renderer.h"
+#include "report/json.h"
+#include "web/passes.h"
+#include "web/picture.h"
+
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* How long the first pass may take; how often a render looks up for something newer; of a frame of the live slime, how long its motion and its picture may take;
+ * and how long those who want a scene as it is now wait for it. */
+static const double first_s = 0.04, look_up_s = 0.002, move_s = 0.02, live_frame_s = 0.04, scene_wait_s = 60.0;
+
+/* So often may a first pass be ended by newer changes before one is let through: who watches somebody else's drag shall see it. */
+enum { ENDED_MAX = 12 };
+
+struct painter {
+    desk *desk;
+    live *toy;
+    isa level;
+    painter_listener listener;
+    pthread_t thread;
+    renderer *tracer;
+    topology *machine;
+
+    pthread_mutex_t lock; /* of what follows */
+    pthread_cond_t wake, news;
+    bool woken, stop, busy;
+    char *waiting;
+    const picture *newest;
+    uint64_t serial;
+    diagnostic trouble;
+    status trouble_code;            /* of the stage's generation */
+    uint64_t stage_generation;      /* 0: none yet */
+    bool stage_ready;               /* loaded */
+
+    pthread_rwlock_t stage_lock;    /* read to look at the stage or to render it, written to replace or move it */
+    scene *stage;
+
+    /* the thread's own */
+    pass_plan plan;
+    int pass;                       /* next */
+    double rate;
+    int ended;                      /* first passes in a row */
+    bool was_on;
+};
+
+/* --- what is asked from outside --- */
+
+void painter_wake(painter *p)
+{
+    pthread_mutex_lock(&p->lock);
+    p->woken = true;
+    pthread_cond_signal(&p->wake);
+    pthread_mutex_unlock(&p->lock);
+}
+
+static void wake(void *of)
+{
+    painter_wake(of);
+}
+
+void painter_wait(painter *p, const char *text)
+{
+    char *copy = text ? strdup(text) : NULL;
+    pthread_mutex_lock(&p->lock);
+    free(p->waiting);
+    p->waiting = copy;
+    pthread_cond_broadcast(&p->news);
+    pthread_cond_signal(&p->wake);
+    while (text && p->busy)
+        pthread_cond_wait(&p->news, &p->lock);
+    pthread_mutex_unlock(&p->lock);
+    p->listener.told(p->listener.context);
+}
+
+const picture *painter_take(painter *p)
+{
+    pthread_mutex_lock(&p->lock);
+    const picture *newest = p->newest;
+    if (newest)
+        picture_keep(newest);
+    pthread_mutex_unlock(&p->lock);
+    return newest;
+}
+
+static struct timespec after(double seconds)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    t.tv_sec += (time_t)seconds;
+    t.tv_nsec += (long)((seconds - floor(seconds)) * 1e9);
+    t.tv_sec += t.tv_nsec / 1000000000;
+    t.tv_nsec %= 1000000000;
+    return t;
+}
+
+status painter_take_final(painter *p, double limit_s, const picture **out, diagnostic *why)
+{
+    const uint64_t wanted = desk_generation(p->desk);
+    const struct timespec until = after(limit_s);
+    status code = STATUS_OK;
+    *out = NULL;
+    pthread_mutex_lock(&p->lock);
+    while (!*out && code == STATUS_OK) {
+        if (p->newest && p->newest->final && p->newest->generation >= wanted) {
+            picture_keep(*out = p->newest);
+        } else if (p->trouble_code != STATUS_OK && p->stage_generation >= wanted) {
+            *why = p->trouble;
+            code = p->trouble_code;
+        } else if (p->waiting) {
+            code = diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "nothing is rendered now: %.200s", p->waiting);
+        } else if (p->stop || pthread_cond_timedwait(&p->news, &p->lock, &until) == ETIMEDOUT) {
+            code = diagnose(why, STATUS_INTERRUPTED, "ask again", "the picture is not finished yet");
+        }
+    }
+    pthread_mutex_unlock(&p->lock);
+    return code;
+}
+
+live *painter_live(painter *p)
+{
+    return p->toy;
+}
+
+status painter_with_scene(painter *p, status (*look)(void *context, scene *s, diagnostic *why), void *context, diagnostic *why)
+{
+    const uint64_t wanted = desk_generation(p->desk);
+    const struct timespec until = after(scene_wait_s);
+    status code = STATUS_OK;
+    pthread_mutex_lock(&p->lock);
+    while (!(p->stage_generation >= wanted && (p->stage_ready || p->trouble_code != STATUS_OK)) && code == STATUS_OK) {
+        if (p->waiting)
+            code = diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "nothing is traced now: %.200s", p->waiting);
+        else if (p->stop || pthread_cond_timedwait(&p->news, &p->lock, &until) == ETIMEDOUT)
+            code = diagnose(why, STATUS_INTERRUPTED, "ask again", "the scene is still being loaded");
+    }
+    if (code == STATUS_OK && !p->stage_ready) {
+        *why = p->trouble;
+        code = p->trouble_code;
+    }
+    pthread_mutex_unlock(&p->lock);
+    if (code != STATUS_OK)
+        return code;
+    pthread_rwlock_rdlock(&p->stage_lock);
+    code = look(context, p->stage, why);
+    pthread_rwlock_unlock(&p->stage_lock);
+    return code;
+}
+
+/* --- what the thread tells --- */
+
+static void tell(painter *p)
+{
+    p->listener.told(p->listener.context);
+}
+
+static void set_trouble(painter *p, status code, const diagnostic *why)
+{
+    pthread_mutex_lock(&p->lock);
+    const bool changed = code != p->trouble_code || (code != STATUS_OK && strcmp(why->what, p->trouble.what) != 0);
+    p->trouble_code = code;
+    p->trouble = *why;
+    pthread_cond_broadcast(&p->news);
+    pthread_mutex_unlock(&p->lock);
+    if (changed)
+        tell(p);
+}
+
+static void publish(painter *p, picture *shown)
+{
+    pthread_mutex_lock(&p->lock);
+    shown->serial = ++p->serial;
+    pthread_mutex_unlock(&p->lock);
+    const picture *made = picture_create(shown);
+    if (!made) {
+        image_destroy((image *)(uintptr_t)shown->linear);
+        scene_destroy((scene *)(uintptr_t)shown->of);
+        return;
+    }
+    picture_keep(made); /* for the listener */
+    pthread_mutex_lock(&p->lock);
+    const picture *before = p->newest;
+    p->newest = made;
+    pthread_cond_broadcast(&p->news);
+    pthread_mutex_unlock(&p->lock);
+    picture_release(before);
+    p->listener.published(p->listener.context, made);
+    picture_release(made);
+}
+
+/* --- the thread: the stage --- */
+
+static bool is_stale(painter *p)
+{
+    return desk_generation(p->desk) != p->stage_generation;
+}
+
+/* Shall what is on its way end? A first pass that was ended too often goes on. */
+static bool must_end(painter *p)
+{
+    pthread_mutex_lock(&p->lock);
+    const bool now = p->stop || p->waiting;
+    pthread_mutex_unlock(&p->lock);
+    return now || (is_stale(p) && p->ended < ENDED_MAX) || (live_is_due(p->toy) && p->pass > 0);
+}
+
+static bool go_on_loading(void *of, double share_done)
+{
+    (void)share_done;
+    return !must_end(of);
+}
+
+static status load_stage(painter *p, diagnostic *why)
+{
+    const load_watch watch = {go_on_loading, p};
+    return scene_load_until(p->stage, &watch, why);
+}
+
+/* The stage becomes what is on the desk, with as much as possible of what was loaded before. */
+static void renew_stage(painter *p)
+{
+    diagnostic why = {.line = 0};
+    uint64_t generation;
+    scene *next = desk_take(p->desk, &generation);
+    pthread_rwlock_wrlock(&p->stage_lock);
+    status code = next ? STATUS_OK : diagnose(&why, STATUS_FAILURE, "", "out of memory");
+    if (next) {
+        if (p->stage && !live_is_on(p->toy))
+            scene_borrow_meshes(next, p->stage);
+        live_detach(p->toy);
+        scene_destroy(p->stage);
+        p->stage = next;
+        code = live_attach(p->toy, next, &why);
+    }
+    if (code == STATUS_OK)
+        code = load_stage(p, &why);
+    pthread_rwlock_unlock(&p->stage_lock);
+    if (code == STATUS_OK && !live_is_on(p->toy))
+        desk_lend(p->desk, p->stage, generation);
+    pthread_mutex_lock(&p->lock);
+    p->stage_generation = code == STATUS_INTERRUPTED ? 0 : generation; /* 0: begun again, from what was loaded so far */
+    p->stage_ready = code == STATUS_OK;
+    pthread_cond_broadcast(&p->news);
+    pthread_mutex_unlock(&p->lock);
+    set_trouble(p, code == STATUS_INTERRUPTED ? STATUS_OK : code, &why);
+    p->pass = 0;
+    p->plan = code == STATUS_OK ? passes_plan(&p->stage->render, p->rate, first_s) : (pass_plan){.count = 0};
+}
+
+/* The slime's orders and its motion; a stage that moved is painted anew. */
+static void move_stage(painter *p)
+{
+    diagnostic why = {.line = 0};
+    bool told = false;
+    pthread_rwlock_wrlock(&p->stage_lock);
+    status code = live_advance(p->toy, move_s, &told, &why);
+    const bool moved = live_take_moved(p->toy), ended = p->was_on && !live_is_on(p->toy);
+    p->was_on = live_is_on(p->toy);
+    if (code == STATUS_OK && ended)
+        code = load_stage(p, &why);
+    pthread_rwlock_unlock(&p->stage_lock);
+    if (code != STATUS_OK && code != STATUS_INTERRUPTED)
+        set_trouble(p, code, &why);
+    if (moved || ended || told) {
+        p->pass = 0;
+        p->plan = passes_plan(&p->stage->render, p->rate, live_is_moving(p->toy) ? live_frame_s : first_s);
+    }
+    if (told)
+        tell(p);
+}
+
+/* --- the thread: one pass --- */
+
+static bool go_on_rendering(void *of, double share_done)
+{
+    (void)share_done;
+    return !must_end(of);
+}
+
+/* The pass's own settings on a scene that is the stage's otherwise. */
+static scene pass_scene(const painter *p, int pass, bool moving)
+{
+    scene view = *p->stage;
+    view.render = passes_settings(&p->stage->render, p->plan.shrink[pass], p->plan.single[pass]);
+    if (moving && live_preview_of(p->toy) == LIVE_ZBUFFER) {
+        view.render = passes_settings(&p->stage->render, 1, true);
+        view.render.integrator = INTEGRATOR_ZBUFFER;
+        view.render.spectrum = SPECTRUM_RGB;
+    }
+    return view;
+}
+
+static bool describe(painter *p, const render_result *made, int pass, bool moving, picture *out)
+{
+    image *linear = NULL;
+    if (film_image(made->picture, &linear, NULL) != STATUS_OK)
+        return false;
+    const bool final = !moving && pass == p->plan.count - 1;
+    *out = (picture){.generation = p->stage_generation, .pass = pass + 1, .passes = p->plan.count, .final = final, .width = made->picture->width,
+                     .height = made->picture->height, .full_width = (int)p->stage->render.width, .full_height = (int)p->stage->render.height,
+                     .wall_s = made->wall_s, .cpu_s = made->cpu_s, .rays = ray_counters_total(&made->counters), .noise = render_noise_rms(made),
+                     .threads = made->worker_count, .linear = linear};
+    if (final) {
+        out->film_hash = film_hash(made->picture);
+        out->of = scene_clone(p->stage);
+    }
+    return true;
+}
+
+static void take_rate(painter *p, int pass, const render_result *made)
+{
+    if (made->wall_s > 0.0)
+        p->rate = passes_work(&p->stage->render, p->plan.shrink[pass], p->plan.single[pass]) / made->wall_s;
+}
+
+static void paint_pass(painter *p)
+{
+    const int pass = p->pass;
+    const bool moving = live_is_moving(p->toy);
+    const scene view = pass_scene(p, pass, moving);
+    const render_options options = {.progress = go_on_rendering, .progress_s = look_up_s, .context = p};
+    diagnostic why = {.line = 0};
+    render_result *made = NULL;
+    picture shown;
+    bool good = false;
+    pthread_rwlock_rdlock(&p->stage_lock);
+    const status code = renderer_render(p->tracer, &view, &options, &made, &why);
+    if (code == STATUS_OK)
+        good = describe(p, made, pass, moving, &shown);
+    pthread_rwlock_unlock(&p->stage_lock);
+    if (code == STATUS_OK) {
+        if (view.render.integrator != INTEGRATOR_ZBUFFER || p->stage->render.integrator == INTEGRATOR_ZBUFFER)
+            take_rate(p, pass, made);
+        p->pass = moving ? p->plan.count : pass + 1;
+        p->ended = 0;
+    } else if (code == STATUS_INTERRUPTED) {
+        p->ended += pass == 0 && is_stale(p);
+    } else {
+        p->pass = p->plan.count;
+    }
+    render_result_destroy(made);
+    if (code != STATUS_INTERRUPTED)
+        set_trouble(p, code, &why);
+    if (good)
+        publish(p, &shown);
+}
+
+/* --- the thread itself --- */
+
+/* Sleeps until there is something to do; false when it is to end. */
+static bool wait_for_work(painter *p)
+{
+    pthread_mutex_lock(&p->lock);
+    for (;;) {
+        pthread_mutex_unlock(&p->lock);
+        const bool due = is_stale(p) || p->pass < p->plan.count || live_is_due(p->toy);
+        pthread_mutex_lock(&p->lock);
+        if (p->stop || (due && !p->waiting))
+            break;
+        p->busy = false;
+        pthread_cond_broadcast(&p->news);
+        while (!p->woken && !p->stop && (p->waiting || !due))
+            pthread_cond_wait(&p->wake, &p->lock);
+        p->woken = false;
+    }
+    p->busy = !p->stop;
+    const bool go_on = !p->stop;
+    pthread_mutex_unlock(&p->lock);
+    return go_on;
+}
+
+static void *paint(void *of)
+{
+    painter *p = of;
+    while (wait_for_work(p)) {
+        if (is_stale(p))
+            renew_stage(p);
+        if (p->stage && (live_is_due(p->toy) || p->was_on))
+            move_stage(p);
+        if (p->stage_ready && p->pass < p->plan.count)
+            paint_pass(p);
+    }
+    pthread_mutex_lock(&p->lock);
+    p->busy = false;
+    pthread_cond_broadcast(&p->news);
+    pthread_mutex_unlock(&p->lock);
+    return NULL;
+}
+
+static bool prepare_locks(painter *p)
+{
+    pthread_condattr_t monotonic;
+    if (pthread_condattr_init(&monotonic) != 0)
+        return false;
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    const bool good = pthread_mutex_init(&p->lock, NULL) == 0 && pthread_rwlock_init(&p->stage_lock, NULL) == 0 && pthread_cond_init(&p->wake, NULL) == 0 &&
+                      pthread_cond_init(&p->news, &monotonic) == 0;
+    pthread_condattr_destroy(&monotonic);
+    return good;
+}
+
+static void release(painter *p)
+{
+    live_detach(p->toy);
+    live_destroy(p->toy);
+    scene_destroy(p->stage);
+    picture_release(p->newest);
+    renderer_destroy(p->tracer);
+    topology_destroy(p->machine);
+    free(p->waiting);
+    pthread_rwlock_destroy(&p->stage_lock);
+    pthread_cond_destroy(&p->wake);
+    pthread_cond_destroy(&p->news);
+    pthread_mutex_destroy(&p->lock);
+    free(p);
+}
+
+status painter_create(desk *d, isa level, const painter_listener *listener, painter **out, diagnostic *why)
+{
+    *out = NULL;
+    painter *p = calloc(1, sizeof *p);
+    if (!p || !prepare_locks(p)) {
+        free(p);
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    }
+    p->desk = d;
+    p->level = level;
+    p->listener = *listener;
+    p->toy = live_create(wake, p);
+    status code = p->toy ? topology_create(&p->machine, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK)
+        code = renderer_create(level, p->machine, &p->tracer, why);
+    if (code == STATUS_OK && pthread_create(&p->thread, NULL, paint, p) != 0)
+        code = diagnose(why, STATUS_FAILURE, "end other programs", "no thread can be started");
+    if (code == STATUS_OK)
+        *out = p;
+    else
+        release(p);
+    return code;
+}
+
+void painter_end(painter *p)
+{
+    pthread_mutex_lock(&p->lock);
+    p->stop = true;
+    pthread_cond_broadcast(&p->news);
+    pthread_cond_signal(&p->wake);
+    pthread_mutex_unlock(&p->lock);
+    live_stop(p->toy);
+    pthread_join(p->thread, NULL);
+}
+
+void painter_destroy(painter *p)
+{
+    if (p)
+        release(p);
+}
+
+/* --- the state --- */
+
+static json_t *vector_json(vec3 v)
+{
+    return json_pack("[o,o,o]", json_of_real(v.x), json_of_real(v.y), json_of_real(v.z));
+}
+
+static json_t *camera_json(const scene *s)
+{
+    const camera_frame f = camera_frame_of(s);
+    const double distance = s->camera.aimed ? vec3_length(vec3_sub(s->camera.target, s->camera.position)) : 0.0;
+    json_t *o = json_pack("{s:o,s:o,s:o,s:o,s:o,s:o}", "eye", vector_json(f.eye), "forward", vector_json(f.forward), "right", vector_json(f.right), "up",
+                          vector_json(f.up), "half_width", json_of_real(f.half_width), "half_height", json_of_real(f.half_height));
+    if (!o)
+        return NULL;
+    json_object_set_new(o, "target", s->camera.aimed ? vector_json(s->camera.target) : json_null());
+    json_object_set_new(o, "distance", s->camera.aimed ? json_of_real(distance) : json_null());
+    return o;
+}
+
+static json_t *trouble_json(const diagnostic *why)
+{
+    json_t *o = json_pack("{s:o,s:o}", "error", json_of_text(why->what), "remedy", json_of_text(why->remedy));
+    if (o && why->file[0])
+        json_object_set_new(o, "file", json_of_text(why->file));
+    if (o && why->line)
+        json_object_set_new(o, "line", json_integer(why->line));
+    return o;
+}
+
+bool painter_tell(painter *p, json_t *state)
+{
+    scene *now = desk_take(p->desk, NULL);
+    pthread_mutex_lock(&p->lock);
+    int bad = json_object_set_new(state, "trouble", p->trouble_code != STATUS_OK ? trouble_json(&p->trouble) : json_null());
+    bad |= json_object_set_new(state, "waiting", p->waiting ? json_of_text(p->waiting) : json_null());
+    bad |= json_object_set_new(state, "picture", p->newest ? picture_json(p->newest) : json_null());
+    pthread_mutex_unlock(&p->lock);
+    bad |= now ? json_object_set_new(state, "camera", camera_json(now)) : 1;
+    scene_destroy(now);
+    return !bad;
+}
