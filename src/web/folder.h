@@ -12,15 +12,24 @@ typedef struct folder folder;
 status folder_open(const char *path, folder **out, diagnostic *why);
 void folder_close(folder *f); /* NULL is allowed */
 
+/* The folder itself: as it was given, and its own name. */
+const char *folder_root(const folder *f);
+const char *folder_title(const folder *f);
+
 /* The path of a file that is there, to be read; or, with must_exist false, of one whose folder is there. In the program's own terms. */
 status folder_path(const folder *f, const char *name, bool must_exist, char **path, diagnostic *why);
 /* The name of a path, in the program's own terms; NULL where it is not in the folder. The file need not be there. */
 char *folder_name(const folder *f, const char *path);
 
+/* A name as a scene in that file gives it: relative to the file's folder, absolute where the two have nothing in common. file: "" stands for one in the
+ * working folder. */
+status folder_path_from(const folder *f, const char *name, const char *file, char **path, diagnostic *why);
+
 /* Does the scene name files outside of it (textures, skies, meshes, scripts)? Files that are not there are in it when their path is. */
 status folder_check_scene(const folder *f, const scene *s, diagnostic *why);
 
-/* What GET /api/files answers; NULL when memory is out. */
+/* What GET /api/files answers: three folders deep, at most FOLDER_FILES_MAX files, none that are hidden; NULL when memory is out. */
+enum { FOLDER_FILES_MAX = 2000 };
 json_t *folder_tell(const folder *f);
 
 #endif

@@ -1,0 +1,127 @@
+/* A second object like another. */
+#include "web/new_objects.h"
+#include "scene/edit.h"
+#include "scene/looks.h"
+#include "scene/params_path.h"
+#include "web/spot.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "memory is out");
+}
+
+/* Far enough beside it that both are seen; of a plane behind its surface, where it changes nothing before it is moved. */
+static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
+{
+    size_t index;
+    const status code = scene_add_solid(s, name, s->solids[of].shape.kind, &index, why);
+    if (code != STATUS_OK)
+        return code;
+    char *own = s->solids[index].name;
+    s->solids[index] = s->solids[of];
+    s->solids[index].name = own;
+    const spot where = spot_of(s);
+    vec3 centre, step = vec3_scale(mat3_apply(rotation_from_deg(s->solids[of].shape.rotation_deg), vec3_make(0, 1, 0)), -where.size);
+    double radius;
+    if (spot_ball(s, &s->solids[of], &centre, &radius))
+        step = vec3_scale(where.right, 2.1 * radius);
+    step = vec3_make(spot_round(step.x, where.size), spot_round(step.y, where.size), spot_round(step.z, where.size));
+    return scene_move(s, name, step, why);
+}
+
+static status copy_light(scene *s, size_t of, const char *name, diagnostic *why)
+{
+    size_t index;
+    const status code = scene_add_light(s, name, &index, why);
+    if (code != STATUS_OK)
+        return code;
+    char *own = s->lights[index].name;
+    s->lights[index] = s->lights[of];
+    s->lights[index].name = own;
+    const spot where = spot_of(s);
+    const vec3 step = vec3_scale(where.right, where.size);
+    return scene_move(s, name, vec3_make(spot_round(step.x, where.size), 0, spot_round(step.z, where.size)), why);
+}
+
+static status copy_material(scene *s, size_t of, const char *name, diagnostic *why)
+{
+    size_t index;
+    const status code = scene_add_material(s, name, &index, why);
+    if (code == STATUS_OK)
+        s->materials[index].value = s->materials[of].value;
+    return code;
+}
+
+/* Loaded anew where it was not computed from the same parameters. */
+static status copy_mesh(scene *s, size_t of, const char *name, diagnostic *why)
+{
+    char *path = strdup(s->meshes[of].path), *script = strdup(s->meshes[of].script_path);
+    size_t index;
+    const status code = path && script ? scene_add_mesh(s, name, &index, why) : no_memory(why);
+    if (code != STATUS_OK) {
+        free(path);
+        free(script);
+        return code;
+    }
+    mesh_entry *new = &s->meshes[index];
+    char *own = new->name;
+    free(new->path);
+    free(new->script_path);
+    *new = s->meshes[of];
+    new->name = own;
+    new->path = path;
+    new->script_path = script;
+    if (new->data)
+        mesh_retain(new->data);
+    looks_retain(new->looks);
+    return STATUS_OK;
+}
+
+static status copy_texture(scene *s, size_t of, const char *name, diagnostic *why)
+{
+    char *path = strdup(s->textures[of].path);
+    size_t index;
+    const status code = path ? scene_add_texture(s, name, &index, why) : no_memory(why);
+    if (code != STATUS_OK) {
+        free(path);
+        return code;
+    }
+    texture_entry *new = &s->textures[index];
+    char *own = new->name;
+    free(new->path);
+    *new = s->textures[of];
+    new->name = own;
+    new->path = path;
+    if (new->data)
+        texture_retain(new->data);
+    return STATUS_OK;
+}
+
+status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
+{
+    place at;
+    object_name base;
+    status code = place_find_object(s, of, &at, why);
+    if (code != STATUS_OK)
+        return code;
+    size_t length = strlen(strcpy(base, of));
+    while (length > 1 && base[length - 1] >= '0' && base[length - 1] <= '9')
+        base[--length] = 0;
+    if ((code = new_name(s, base, name, why)) != STATUS_OK)
+        return code;
+    switch (at.group) {
+    case PARAM_SOLID: return copy_solid(s, at.index, name, why);
+    case PARAM_LIGHT: return copy_light(s, at.index, name, why);
+    case PARAM_MATERIAL: return copy_material(s, at.index, name, why);
+    case PARAM_MESH: return copy_mesh(s, at.index, name, why);
+    case PARAM_TEXTURE: return copy_texture(s, at.index, name, why);
+    case PARAM_RENDER:
+    case PARAM_CAMERA:
+    case PARAM_BACKGROUND:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return diagnose(why, STATUS_BAD_INPUT, "copy a solid, a light, a material, a mesh or a texture", "there is only one %.60s", of);
+}

@@ -1,0 +1,9 @@
+/* The scene to begin with: a room with a floor, a light and a camera, and nothing in it. Ownership: the scene is the caller's. */
+#ifndef CUVETTE_WEB_NEW_SCENE_H
+#define CUVETTE_WEB_NEW_SCENE_H
+
+#include "scene/scene.h"
+
+status new_scene(scene **out, diagnostic *why);
+
+#endif

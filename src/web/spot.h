@@ -1,0 +1,30 @@
+/* Where something new goes in a scene, and how large it is to be: into the middle of the picture, a sixth of the way from the eye in size, beside what is
+ * there already, on the ground where there is one. Lengths are scene units. Pure. */
+#ifndef CUVETTE_WEB_SPOT_H
+#define CUVETTE_WEB_SPOT_H
+
+#include "scene/scene.h"
+#include <stdbool.h>
+
+typedef struct spot {
+    vec3 looked_at;
+    vec3 right, away; /* horizontal unit vectors of the camera */
+    double distance;  /* from the eye to looked_at */
+    double size;
+} spot;
+
+spot spot_of(const scene *s);
+
+/* The lowest point of a thing of that size that stands free. */
+vec3 spot_free(const scene *s, const spot *where, double size);
+
+/* The height of the highest plane that lies under the eye like a floor, at x and z; false for none. */
+bool spot_ground(const scene *s, double x, double z, double *y);
+
+/* A ball that holds the solid, as far as is known; false for a plane. */
+bool spot_ball(const scene *s, const solid *of, vec3 *centre, double *radius);
+
+/* value to so many digits as something of that size needs. */
+double spot_round(double value, double size);
+
+#endif
