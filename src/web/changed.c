@@ -1,0 +1,51 @@
+#include "web/changed.h"
+
+#include "report/report.h"
+
+static status add_value(void *context, const char *path, const param *row, const char *text)
+{
+    return json_object_set_new(context, path, report_value(row, text)) ? STATUS_FAILURE : STATUS_OK;
+}
+
+/* Those in use alone: a camera that is aimed has no angles of its own to differ in. */
+static json_t *values_of(const scene *s)
+{
+    json_t *values = json_object();
+    if (values && scene_each_param(s, add_value, values) == STATUS_OK)
+        return values;
+    json_decref(values);
+    return NULL;
+}
+
+static int add_change(json_t *list, const char *path, json_t *a, json_t *b)
+{
+    return json_array_append_new(list, json_pack("{s:s, s:O?, s:O?}", "path", path, "a", a ? a : json_null(), "b", b ? b : json_null()));
+}
+
+static json_t *list_changes(json_t *a, json_t *b)
+{
+    json_t *list = json_array(), *value;
+    const char *path;
+    int bad = !list;
+    json_object_foreach(b, path, value) {
+        json_t *before = json_object_get(a, path);
+        if (!before || !json_equal(before, value))
+            bad |= add_change(list, path, before, value);
+    }
+    json_object_foreach(a, path, value)
+        if (!json_object_get(b, path))
+            bad |= add_change(list, path, value, NULL);
+    if (!bad)
+        return list;
+    json_decref(list);
+    return NULL;
+}
+
+json_t *changed_params(const scene *a, const scene *b)
+{
+    json_t *of_a = values_of(a), *of_b = values_of(b);
+    json_t *list = of_a && of_b ? list_changes(of_a, of_b) : NULL;
+    json_decref(of_a);
+    json_decref(of_b);
+    return list;
+}

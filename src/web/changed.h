@@ -1,0 +1,12 @@
+/* Where two scenes differ: their parameters, by path. Ownership: scenes are borrowed, the list is the caller's. */
+#ifndef CUVETTE_WEB_CHANGED_H
+#define CUVETTE_WEB_CHANGED_H
+
+#include "scene/scene.h"
+#include <jansson.h>
+
+/* [{"path", "a", "b"}]: values as number, list or word, null where that scene has no such parameter or it is out of use there; b's in their order,
+ * then those that only a has. NULL when memory is out. */
+json_t *changed_params(const scene *a, const scene *b);
+
+#endif
