@@ -98,7 +98,7 @@ static status advance(cuvette_motion *m, double time_s, diagnostic *why)
     status code = STATUS_OK;
     pthread_mutex_lock(&m->of->loading);
     for (size_t i = 0; i < scene_motion_count(m->bodies) && code == STATUS_OK; i++)
-        code = motion_step_held(m, i, time_s, why);
+        code = scene_motion_step_held(m->bodies, i, &m->hands[i * SOFTBODY_HANDS_MAX], time_s, why);
     if (code == STATUS_OK)
         code = scene_motion_advance(m->bodies, time_s, true, why);
     pthread_mutex_unlock(&m->of->loading);

@@ -3,16 +3,7 @@
 #define CUVETTE_ENGINE_MOTION_PRIVATE_H
 
 #include "engine/engine_private.h"
-#include "scene/motion.h"
-
-/* A hand of the caller's; the scene may lose the solid under which it took hold. Places are in the mesh's frame. */
-typedef struct caller_hand {
-    bool holds;
-    mat3 rotation;      /* of the solid as it stood then: what the caller says is of the world */
-    vec3 scale;
-    vec3 where;         /* it took hold */
-    vec3 from, to;      /* how far from there it is, and is to be after the next advance */
-} caller_hand;
+#include "scene/motion_hands.h"
 
 struct cuvette_motion {
     cuvette_scene *of;
@@ -20,7 +11,7 @@ struct cuvette_motion {
     uint64_t slimes_changed; /* the scene's when this was made */
     bool failed;             /* an advance did: a body is of no more use */
     double time_s;
-    caller_hand *hands;      /* SOFTBODY_HANDS_MAX of each slime, by the body's own numbers */
+    motion_hand *hands;      /* SOFTBODY_HANDS_MAX of each slime, by the body's own numbers */
 };
 
 /* CUVETTE_OK when it can still be used, and is not under way. */
@@ -28,8 +19,5 @@ cuvette_status motion_is_alive(const cuvette_motion *m, cuvette_diagnostic *why)
 
 /* The slime of that mesh, or of the solid's. at: what the name means. */
 status motion_find(const cuvette_motion *m, const char *name, size_t *index, int *solid_or_none, diagnostic *why);
-
-/* All steps of the slime until time_s, with its hands on their ways. */
-status motion_step_held(cuvette_motion *m, size_t slime, double time_s, diagnostic *why);
 
 #endif

@@ -1,22 +1,8 @@
-#include "scene/motion.h"
+#include "scene/motion_private.h"
+
 #include "measure/clock.h"
-#include "scene/slime.h"
-
+#include <math.h>
 #include <stdlib.h>
-
-typedef struct moving_slime {
-    slime x;
-    size_t mesh;     /* in scene.meshes */
-    double given_s;  /* time_s before it moved */
-    uint64_t steps;  /* taken so far */
-} moving_slime;
-
-struct scene_motion {
-    scene *s;
-    moving_slime *slimes;
-    size_t count;
-    scene_motion_report last;
-};
 
 static size_t count_slimes(const scene *s)
 {
@@ -32,15 +18,9 @@ bool scene_moves(const scene *s)
     return count_slimes(s) > 0;
 }
 
-static mesh_entry *entry_of(const scene_motion *m, const moving_slime *one)
+status motion_give_skin(const scene_motion *m, const moving_slime *one, diagnostic *why)
 {
-    return &m->s->meshes[one->mesh];
-}
-
-/* A skin of its own, in place of what others may look at. */
-static status give_skin(const scene_motion *m, const moving_slime *one, diagnostic *why)
-{
-    mesh_entry *entry = entry_of(m, one);
+    mesh_entry *entry = motion_entry(m, one);
     mesh *skin = NULL;
     const status code = softbody_skin(one->x.body, &skin, why);
     if (code == STATUS_OK) {
@@ -61,11 +41,11 @@ static void add_moves(hierarchy_moves *sum, const hierarchy_moves *more)
 
 static status move_skin(scene_motion *m, const moving_slime *one, diagnostic *why)
 {
-    mesh_entry *entry = entry_of(m, one);
+    mesh_entry *entry = motion_entry(m, one);
     if (!entry->data || mesh_owners(entry->data) > 1) {
-        return give_skin(m, one, why);
+        return motion_give_skin(m, one, why);
     }
-    /* Made by give_skin for this scene, which alone holds it. */
+    /* Made by motion_give_skin for this scene, which alone holds it. */
     status code = softbody_move_skin(one->x.body, (mesh *)(uintptr_t)entry->data, why);
     hierarchy_moves moves = {.refitted = 0};
     if (code == STATUS_OK) {
@@ -79,9 +59,10 @@ static status move_skin(scene_motion *m, const moving_slime *one, diagnostic *wh
     return STATUS_OK;
 }
 
-static void take_account(scene_motion *m, const moving_slime *one, double time_s)
+void motion_take_account(scene_motion *m, moving_slime *one, double time_s)
 {
-    mesh_entry *entry = entry_of(m, one);
+    mesh_entry *entry = motion_entry(m, one);
+    one->time_s = time_s;
     entry->time_s = time_s;
     entry->account = softbody_measure(one->x.body);
     entry->motion_s = one->x.motion_s;
@@ -94,29 +75,24 @@ static status begin(scene_motion *m, diagnostic *why)
             continue;
         }
         moving_slime *one = &m->slimes[m->count];
-        *one = (moving_slime){.mesh = i, .given_s = m->s->meshes[i].time_s};
+        *one = (moving_slime){.mesh = i};
         status code = slime_create(m->s, &m->s->meshes[i], &one->x, why);
         if (code != STATUS_OK) {
             return code;
         }
+        code = motion_remember(m, one, why);
+        if (code != STATUS_OK) {
+            motion_forget(one);
+            return code;
+        }
         m->count++;
-        code = give_skin(m, one, why);
+        code = motion_give_skin(m, one, why);
         if (code != STATUS_OK) {
             return code;
         }
-        take_account(m, one, 0.0);
+        motion_take_account(m, one, 0.0);
     }
     return scene_load(m->s, why); /* all else */
-}
-
-/* The scene as if it had never moved: what is at time 0 would pass for another time. */
-static void undo(scene_motion *m)
-{
-    for (size_t i = 0; i < m->count; i++) {
-        mesh_entry *entry = entry_of(m, &m->slimes[i]);
-        mesh_entry_unload(entry);
-        entry->time_s = m->slimes[i].given_s;
-    }
 }
 
 status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
@@ -137,8 +113,7 @@ status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
     m->slimes = slimes;
     const status code = begin(m, why);
     if (code != STATUS_OK) {
-        undo(m);
-        scene_motion_destroy(m);
+        scene_motion_end(m); /* what is at time 0 would pass for another time */
         return code;
     }
     *out = m;
@@ -151,7 +126,7 @@ void scene_motion_destroy(scene_motion *m)
         return;
     }
     for (size_t i = 0; i < m->count; i++) {
-        slime_destroy(&m->slimes[i].x);
+        motion_forget(&m->slimes[i]);
     }
     free(m->slimes);
     free(m);
@@ -174,14 +149,14 @@ static status advance_one(scene_motion *m, size_t i, double time_s, const load_w
     moving_slime *one = &m->slimes[i];
     const double motion_before_s = one->x.motion_s;
     turn_watch turn = {watch, i, m->count};
-    const status code = slime_advance(&one->x, m->s, entry_of(m, one), time_s, watch ? &(load_watch){go_on_turn, &turn} : NULL, why);
+    const status code = slime_advance(&one->x, m->s, motion_entry(m, one), time_s, watch ? &(load_watch){go_on_turn, &turn} : NULL, why);
     m->last.step_s += one->x.motion_s - motion_before_s;
     return code;
 }
 
 static status show_one(scene_motion *m, moving_slime *one, double time_s, bool skins, diagnostic *why)
 {
-    const mesh_entry *entry = entry_of(m, one);
+    const mesh_entry *entry = motion_entry(m, one);
     status code = STATUS_OK;
     if (skins) {
         const double begun_s = clock_wall_s();
@@ -189,7 +164,7 @@ static status show_one(scene_motion *m, moving_slime *one, double time_s, bool s
         m->last.skin_s += clock_wall_s() - begun_s;
     }
     if (code == STATUS_OK) {
-        take_account(m, one, time_s > entry->time_s ? time_s : entry->time_s); /* it does not go back */
+        motion_take_account(m, one, time_s > entry->time_s ? time_s : entry->time_s); /* it does not go back */
         m->last.steps += entry->account.steps - one->steps;
         one->steps = entry->account.steps;
     }
@@ -232,4 +207,26 @@ softbody *scene_motion_body(const scene_motion *m, size_t i)
 size_t scene_motion_mesh(const scene_motion *m, size_t i)
 {
     return m->slimes[i].mesh;
+}
+
+double scene_motion_script_end_s(const scene_motion *m)
+{
+    double end_s = 0.0;
+    for (size_t i = 0; i < m->count; i++) {
+        const hand_script *script = m->slimes[i].x.script;
+        end_s = fmax(end_s, script ? hand_script_end_s(script) : 0.0);
+    }
+    return end_s;
+}
+
+bool scene_motion_drop_scripts(scene_motion *m)
+{
+    bool any = false;
+    for (size_t i = 0; i < m->count; i++) {
+        slime *x = &m->slimes[i].x;
+        any |= x->script && softbody_follow(x->body, NULL, NULL) == STATUS_OK;
+        hand_script_destroy(x->script);
+        x->script = NULL;
+    }
+    return any;
 }

@@ -19,6 +19,14 @@ bool scene_moves(const scene *s);
  * there is none. */
 status scene_motion_create(scene *s, scene_motion **out, diagnostic *why);
 void scene_motion_destroy(scene_motion *m); /* NULL is allowed; the scene keeps the skins as they lie */
+/* The same, and the scene gets back what it had: its slimes' time_s and what was loaded of them. NULL is allowed. */
+void scene_motion_end(scene_motion *m);
+
+/* Into another scene that has the same slimes, by name and by all their parameters but time_s: there they lie and go on as they did here, and the scene that
+ * is left gets back what it had. joined: false where that has others, and nothing has changed. What else is there is left to be loaded. */
+status scene_motion_join(scene_motion *m, scene *s, bool *joined, diagnostic *why);
+/* Out of its scene, which may then go, and into none: until it joins one, scene_motion_count and scene_motion_body alone may be asked. */
+void scene_motion_leave(scene_motion *m);
 
 /* To the time nearest to time_s that is a whole number of steps of each slime; not backwards. The slimes' time_s are set to time_s. skins: false leaves
  * the scene's meshes as they were, for frames that are not rendered. */
@@ -39,5 +47,10 @@ size_t scene_motion_count(const scene_motion *m);
 /* The i-th slime; its mesh's index in the scene. Borrowed. */
 softbody *scene_motion_body(const scene_motion *m, size_t i);
 size_t scene_motion_mesh(const scene_motion *m, size_t i);
+
+/* When the last hand of a script has done all; 0 without scripts. */
+double scene_motion_script_end_s(const scene_motion *m);
+/* From now on no script moves a hand; what those hold they let go. false where there was none. */
+bool scene_motion_drop_scripts(scene_motion *m);
 
 #endif

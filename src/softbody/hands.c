@@ -77,6 +77,8 @@ void softbody_land_hands(softbody *b)
 
 status softbody_follow(softbody *b, const hand_script *script, diagnostic *why)
 {
+    for (size_t i = 0; b->plays && i < b->script->track_count; i++)
+        softbody_release(b, b->plays[i].hand);
     free(b->plays);
     b->script = script;
     b->plays = script ? calloc(script->track_count + 1, sizeof *b->plays) : NULL;

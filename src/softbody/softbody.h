@@ -79,7 +79,8 @@ status softbody_create_net(const softbody_net *net, const softbody_settings *s, 
 
 /* --- time --- */
 
-/* What the hands do; borrowed as long as the body lives. Before the first step. STATUS_FAILURE when memory is out. */
+/* What the hands do; borrowed as long as the body lives. Before the first step. NULL, at any time: no more, and what its hands hold they let go.
+ * STATUS_FAILURE when memory is out. */
 status softbody_follow(softbody *b, const hand_script *script, diagnostic *why);
 
 /* One step of dt_s. STATUS_BAD_INPUT when the body blows up (the diagnostic says at which step, which vertex and which quantity; the
