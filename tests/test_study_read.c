@@ -276,10 +276,55 @@ static void the_studies_of_the_house(void **state)
     }
 }
 
+typedef struct guard_notes {
+    int opens, loads, refuse_open, refuse_load; /* the how manyeth is refused; 0: none */
+    bool seen_picture;
+} guard_notes;
+
+static status note_open(void *context, const char *path, diagnostic *why)
+{
+    guard_notes *n = context;
+    assert_non_null(strstr(path, "scene.yaml"));
+    return ++n->opens == n->refuse_open ? diagnose(why, STATUS_BAD_INPUT, "stay inside", "this lies outside") : STATUS_OK;
+}
+
+static status note_load(void *context, const scene *setting, diagnostic *why)
+{
+    guard_notes *n = context;
+    assert_null(setting->background.picture);
+    n->seen_picture |= strcmp(setting->background.picture_path, "far.png") == 0;
+    return ++n->loads == n->refuse_load ? diagnose(why, STATUS_BAD_INPUT, "stay inside", "that lies outside") : STATUS_OK;
+}
+
+/* Files are named by the scene, by cells and by the reference: each is asked about before any is read. */
+static void a_guard_is_asked_first(void **state)
+{
+    const fixture *f = *state;
+    const char *text = "study: test\nscene: scene.yaml\ngrid: [{background.picture: [near.png, far.png]}]\nreference: {render.depth: 3}\n";
+    char path[400];
+    fixture_write(f, "test.study", text);
+    fixture_path(f, "test.study", path);
+    for (int refused = 0; refused <= 6; refused++) {
+        guard_notes n = {.refuse_open = refused == 6, .refuse_load = refused};
+        const study_guard guard = {note_open, note_load, &n};
+        study *s = NULL;
+        diagnostic why = {0};
+        const status code = study_read_guarded(path, &guard, &s, &why);
+        assert_int_equal(n.opens, 1);
+        assert_int_equal(code, refused ? STATUS_BAD_INPUT : STATUS_OK);
+        assert_int_equal(n.loads, refused == 0 ? 5 : refused == 6 ? 0 : refused); /* the scene, two cells, two references */
+        assert_int_equal(refused == 0, n.seen_picture && s);
+        if (refused)
+            assert_string_equal(why.what, refused == 6 ? "this lies outside" : "that lies outside");
+        study_destroy(s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_whole_grammar, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_guard_is_asked_first, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(what_is_left_out, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(ranges_are_even, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(what_is_the_same_definition, fixture_setup, fixture_teardown),

@@ -1,6 +1,7 @@
 #include "study_fixture.h"
 #include "image/image.h"
 #include "study/csv.h"
+#include <pthread.h>
 #include <signal.h>
 #include <sys/file.h>
 #include <fcntl.h>
@@ -147,10 +148,10 @@ static void without_shuffling_cells_go_in_order(void **state)
 }
 
 /* Asked before and during each frame: stops the run after a while. */
-static int stop_after;
-static bool stop_soon(void)
+static bool stop_soon(void *context)
 {
-    return --stop_after < 0;
+    int *left = context;
+    return --*left < 0;
 }
 
 static void an_interrupted_study_goes_on(void **state)
@@ -162,8 +163,8 @@ static void an_interrupted_study_goes_on(void **state)
     for (int polls = 1; polls < 200; polls += 3) {
         diagnostic why = {0};
         size_t ran = 99;
-        stop_after = polls;
-        study_options options = {.results = f->results, .stop = stop_soon};
+        int stop_after = polls;
+        study_options options = {.results = f->results, .stop = stop_soon, .context = &stop_after};
         status code = study_run(s, &options, &ran, &why);
         total += ran;
         expect_begins(f, "results/test/rows.csv", earlier);
@@ -182,6 +183,84 @@ static void an_interrupted_study_goes_on(void **state)
         assert_true(t.warmups[cell] >= 1);
     }
     assert_int_equal(fixture_run(f, s), 0);
+    study_destroy(s);
+}
+
+typedef struct watch {
+    size_t calls, frames_done, pictures;
+    bool stop, knew_left;
+    pthread_t from;
+} watch;
+
+static void look(void *context, const study_moment *now)
+{
+    watch *w = context;
+    assert_true(pthread_equal(w->from, pthread_self()));
+    assert_true(now->cell < 4);
+    assert_true(now->share >= 0 && now->share <= 1);
+    if (w->calls++ == 0) {
+        assert_true(now->stage == STUDY_MEASURING);
+        assert_true(isnan(now->left_s)); /* no frame has told yet how long one takes */
+        assert_int_equal(now->frames_done, 0);
+        assert_int_equal(now->frames_all, 4 * 4000);
+    }
+    if (now->stage == STUDY_PICTURES) {
+        assert_true(now->picture >= 1 && now->picture <= now->pictures);
+        assert_int_equal(now->pictures, 4);
+    } else {
+        assert_int_equal(now->pictures, 0);
+    }
+    if (now->frames_done)
+        assert_true(now->left_s >= 0);
+    assert_true(now->frames_done >= w->frames_done && now->frames_done <= now->frames_all);
+    w->frames_done = now->frames_done;
+    w->pictures = now->pictures;
+    w->knew_left |= now->left_s > 0;
+}
+
+static bool stop_when_known(void *context)
+{
+    const watch *w = context;
+    return w->stop && w->knew_left;
+}
+
+/* Who asked is told in the same breath as the terminal, and the same. */
+static void whoever_asks_is_told(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nset: {render.width: 200, render.height: 150}\nrepetitions: 4000\nwarmups: 0\n"
+                                "grid: [{render.depth: [0, 1, 2, 3]}]\nkeep: {image: on}\n");
+    char *said = NULL;
+    size_t size, ran = 0;
+    FILE *terminal = open_memstream(&said, &size);
+    watch w = {.stop = true, .from = pthread_self()};
+    study_options options = {.results = f->results, .progress = terminal, .stop = stop_when_known, .progressed = look, .context = &w};
+    assert_int_equal(study_run(s, &options, &ran, NULL), STATUS_INTERRUPTED);
+    assert_true(w.calls >= 2 && w.frames_done > 0);
+    assert_true(ran >= w.frames_done);
+    fclose(terminal);
+    char last[64];
+    snprintf(last, sizeof last, "\rtest: %zu of 16000 frames, ", w.frames_done);
+    assert_int_equal(fixture_count(said, "\rtest: "), w.calls);
+    assert_non_null(strstr(said, "\rtest: 0 of 16000 frames, 0%"));
+    assert_non_null(strstr(said, last));
+    free(said);
+    study_destroy(s);
+}
+
+/* Alone, the pictures of a study whose rows are all there. */
+static void pictures_are_told_too(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\ngrid: [{render.depth: [0, 1, 2, 3]}]\n");
+    fixture_run(f, s);
+    study_destroy(s);
+    s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\ngrid: [{render.depth: [0, 1, 2, 3]}]\nkeep: {image: on}\n");
+    watch w = {.calls = 1, .from = pthread_self()};
+    study_options options = {.results = f->results, .progressed = look, .context = &w};
+    assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_OK);
+    assert_true(w.calls >= 2);
+    assert_int_equal(w.pictures, 4);
     study_destroy(s);
 }
 
@@ -435,8 +514,9 @@ static void a_full_disk_keeps_whole_rows(void **state)
     diagnostic why = {0};
     size_t ran = 0;
     study_options options = {.results = f->results};
-    stop_after = 12;
+    int stop_after = 12;
     options.stop = stop_soon;
+    options.context = &stop_after;
     assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_INTERRUPTED);
     options.stop = NULL;
     char *earlier = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/manifest.json");
@@ -484,6 +564,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(rounds_are_shuffled_blocks, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(without_shuffling_cells_go_in_order, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(an_interrupted_study_goes_on, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(whoever_asks_is_told, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(pictures_are_told_too, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(torn_rows_are_measured_again, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(other_definitions_are_refused, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(other_columns_are_refused, fixture_setup, fixture_teardown),

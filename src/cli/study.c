@@ -31,6 +31,12 @@ static status for_each_study(const study_request *request, study_action *act, di
     return result;
 }
 
+static bool stop_asked(void *context)
+{
+    (void)context;
+    return terminal_stop_asked();
+}
+
 static status run_one(const study *s, const study_request *request, diagnostic *why)
 {
     FILE *terminal = !request->quiet && terminal_is_smart(STDERR_FILENO) ? stderr : NULL;
@@ -38,7 +44,7 @@ static status run_one(const study *s, const study_request *request, diagnostic *
                                    .shard = request->shard,
                                    .shards = request->shards,
                                    .progress = terminal,
-                                   .stop = terminal_stop_asked};
+                                   .stop = stop_asked};
     size_t rows = 0;
     status result = study_run(s, &options, &rows, why);
     if (result == STATUS_INTERRUPTED) {

@@ -1,104 +1,127 @@
 #include "study/progress.h"
 #include "measure/clock.h"
+#include <math.h>
 #include <stdlib.h>
 
 static const double refresh_s = 0.1;
 
 struct progress_line {
-    FILE *terminal;
-    const char *name;
-    size_t frames_done, frames_all;
-    size_t picture, pictures; /* 0 while rows are measured */
-    double left_s; /* of the frames to come, at the time of the last count; < 0 unknown */
-    double shown_s;
+    const study *s;
+    const study_options *options;
+    study_moment now; /* left_s: at the time of the last count */
+    double shown_s;   /* 0: never */
 };
 
-progress_line *progress_begin(FILE *terminal, const study *s)
+progress_line *progress_begin(const study *s, const study_options *options)
 {
     progress_line *line = calloc(1, sizeof *line);
     if (line)
-        *line = (progress_line){.terminal = terminal, .name = s->name, .left_s = -1};
+        *line = (progress_line){.s = s, .options = options, .now.left_s = NAN};
     return line;
 }
 
-void progress_count(progress_line *line, const study *s, const ledger *done, const size_t *cells, size_t cell_count)
+static bool is_watched(const progress_line *line)
 {
-    if (!line->terminal)
-        return;
-    double known_s = 0, known_frames = 0;
+    return line->options->progress || line->options->progressed;
+}
+
+static double sum(const double *values, size_t count)
+{
+    double total = 0;
+    for (size_t i = 0; i < count; i++)
+        total += values[i];
+    return total;
+}
+
+static void count_frames(progress_line *line, const ledger *done, const size_t *cells, size_t cell_count)
+{
+    study_moment *now = &line->now;
+    double known_s = 0;
+    now->frames_done = now->frames_all = 0;
     for (size_t i = 0; i < cell_count; i++) {
         const ledger_cell *cell = &done->cells[cells[i]];
-        for (size_t k = 0; k < cell->counted; k++)
-            known_s += cell->wall_s[k];
-        known_frames += (double)cell->counted;
+        known_s += sum(cell->wall_s, cell->counted);
+        now->frames_done += cell->counted;
     }
-    line->frames_done = line->frames_all = 0;
-    line->left_s = known_frames > 0 ? 0 : -1;
+    const double mean_s = now->frames_done ? known_s / (double)now->frames_done : NAN;
+    now->left_s = 0;
     for (size_t i = 0; i < cell_count; i++) {
         const ledger_cell *cell = &done->cells[cells[i]];
-        size_t lacking = ledger_cell_done(done, cells[i]) ? 0 : (size_t)s->repetitions_max - cell->counted;
-        double mean_s = known_frames > 0 ? known_s / known_frames : 0;
-        if (cell->counted) {
-            mean_s = 0;
-            for (size_t k = 0; k < cell->counted; k++)
-                mean_s += cell->wall_s[k] / (double)cell->counted;
-        }
-        line->left_s += (double)lacking * mean_s;
-        line->frames_done += cell->counted;
-        line->frames_all += cell->counted + lacking;
+        size_t lacking = ledger_cell_done(done, cells[i]) ? 0 : (size_t)line->s->repetitions_max - cell->counted;
+        now->left_s += (double)lacking * (cell->counted ? sum(cell->wall_s, cell->counted) / (double)cell->counted : mean_s);
+        now->frames_all += cell->counted + lacking;
     }
 }
 
-void progress_pictures(progress_line *line, size_t picture, size_t pictures)
+static void write_line(const progress_line *line, const char *more)
 {
-    line->picture = picture;
-    line->pictures = pictures;
-}
-
-static void write_line(const progress_line *line, double share_done, const char *more)
-{
-    if (line->pictures) {
-        fprintf(line->terminal, "\r%s: pictures: %zu of %zu%s", line->name, line->picture, line->pictures, more);
+    const study_moment *now = &line->now;
+    FILE *terminal = line->options->progress;
+    if (now->pictures) {
+        fprintf(terminal, "\r%s: pictures: %zu of %zu%s", line->s->name, now->picture, now->pictures, more);
         return;
     }
-    double done = line->frames_all ? ((double)line->frames_done + share_done) / (double)line->frames_all : 1;
-    fprintf(line->terminal, "\r%s: %zu of %zu frames, %d%%", line->name, line->frames_done, line->frames_all,
-            (int)(100 * done));
-    if (line->left_s >= 0)
-        fprintf(line->terminal, ", about %ld s left", (long)(line->left_s + 0.5));
-    fputs(more, line->terminal);
+    double share = now->stage == STUDY_MEASURING ? now->share : 0;
+    double done = now->frames_all ? ((double)now->frames_done + share) / (double)now->frames_all : 1;
+    fprintf(terminal, "\r%s: %zu of %zu frames, %d%%", line->s->name, now->frames_done, now->frames_all, (int)(100 * done));
+    if (!isnan(now->left_s))
+        fprintf(terminal, ", about %ld s left", (long)(now->left_s + 0.5));
+    fputs(more, terminal);
 }
 
-static void show(progress_line *line, double share_done, const char *more)
+static void show(progress_line *line, study_stage stage, double share_done, const char *more)
 {
-    double now_s = clock_wall_s();
-    if (!line->terminal || now_s - line->shown_s < refresh_s)
+    const double now_s = clock_wall_s();
+    if (!is_watched(line) || (line->shown_s > 0 && now_s - line->shown_s < refresh_s))
         return;
     line->shown_s = now_s;
-    write_line(line, share_done, more);
-    fputs("\033[K", line->terminal);
-    fflush(line->terminal);
+    line->now.stage = stage;
+    line->now.share = share_done;
+    if (line->options->progress) {
+        write_line(line, more);
+        fputs("\033[K", line->options->progress);
+        fflush(line->options->progress);
+    }
+    if (line->options->progressed)
+        line->options->progressed(line->options->context, &line->now);
+}
+
+void progress_count(progress_line *line, size_t cell, const ledger *done, const size_t *cells, size_t cell_count)
+{
+    line->now.cell = cell;
+    if (!is_watched(line))
+        return;
+    count_frames(line, done, cells, cell_count);
+    progress_show(line, 0); /* frames of under a tenth of a second are not heard of in between */
+}
+
+void progress_pictures(progress_line *line, size_t cell, size_t picture, size_t pictures)
+{
+    line->now.cell = cell;
+    line->now.picture = picture;
+    line->now.pictures = pictures;
+    progress_show(line, 0);
 }
 
 void progress_show(progress_line *line, double share_done)
 {
-    show(line, share_done, "");
+    show(line, line->now.pictures ? STUDY_PICTURES : STUDY_MEASURING, share_done, "");
 }
 
 void progress_moving(progress_line *line, double share_done)
 {
     char text[32];
     snprintf(text, sizeof text, ", moving: %d%%", (int)(100 * share_done));
-    show(line, 0, text);
+    show(line, STUDY_MOVING, share_done, text);
 }
 
 void progress_end(progress_line *line)
 {
     if (!line)
         return;
-    if (line->terminal && line->shown_s > 0) {
-        fputs("\r\033[K", line->terminal);
-        fflush(line->terminal);
+    if (line->options->progress && line->shown_s > 0) {
+        fputs("\r\033[K", line->options->progress);
+        fflush(line->options->progress);
     }
     free(line);
 }

@@ -193,7 +193,7 @@ static status read_keep(study *s, const document *d, const node *n, diagnostic *
 }
 
 /* The scene's file, its text for the manifest and its model. Errors inside it are located in it. */
-static status read_scene(study *s, const document *d, const node *root, diagnostic *why)
+static status read_scene(study *s, const document *d, const node *root, const study_guard *guard, diagnostic *why)
 {
     const node *n = node_get(root, "scene");
     if (!n)
@@ -215,6 +215,12 @@ static status read_scene(study *s, const document *d, const node *root, diagnost
     free(copy);
     if (!s->scene_path)
         return no_memory(why);
+    diagnostic refused = {.what = ""};
+    const status allowed = guard ? guard->may_open(guard->context, s->scene_path, &refused) : STATUS_OK;
+    if (allowed != STATUS_OK) {
+        node_error(d, n, why, refused.remedy, "%s", refused.what);
+        return allowed;
+    }
     struct stat found;
     if (stat(s->scene_path, &found) != 0 || !S_ISREG(found.st_mode) || access(s->scene_path, R_OK) != 0)
         return node_error(d, n, why, "name a scene file that is there, relative to this file",
@@ -224,7 +230,23 @@ static status read_scene(study *s, const document *d, const node *root, diagnost
     return code == STATUS_OK ? scene_read_text(s->scene_path, s->scene_text, size, &s->base, why) : code;
 }
 
-static status read_root(study *s, const document *d, diagnostic *why)
+static status check_loads(const study *s, const study_guard *guard, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (size_t cell = 0; code == STATUS_OK && cell < study_cell_count(s); cell++) {
+        scene *own = NULL, *other = NULL;
+        code = study_cell_scene(s, cell, &own, why);
+        if (code == STATUS_OK)
+            code = guard->may_load(guard->context, own, why);
+        if (code == STATUS_OK && s->reference.count && (code = reference_scene(s, cell, &other, why)) == STATUS_OK)
+            code = guard->may_load(guard->context, other, why);
+        scene_destroy(own);
+        scene_destroy(other);
+    }
+    return code;
+}
+
+static status read_root(study *s, const document *d, const study_guard *guard, diagnostic *why)
 {
     static const char *const keys[] = {"study",     "title",       "scene",   "set",   "grid",
                                        "reference", "repetitions", "warmups", "order", "keep"};
@@ -245,7 +267,7 @@ static status read_root(study *s, const document *d, diagnostic *why)
     if (code == STATUS_OK)
         code = read_keep(s, d, node_get(root, "keep"), why);
     if (code == STATUS_OK)
-        code = read_scene(s, d, root, why);
+        code = read_scene(s, d, root, guard, why);
     if (code == STATUS_OK)
         code = read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why);
     if (code == STATUS_OK)
@@ -258,6 +280,10 @@ static status read_root(study *s, const document *d, diagnostic *why)
         code = metric_table_check(s, why);
     if (code == STATUS_OK)
         code = motion_table_check(s, why);
+    if (code == STATUS_OK && guard)
+        code = guard->may_load(guard->context, s->base, why);
+    if (code == STATUS_OK && guard)
+        code = check_loads(s, guard, why);
     if (code == STATUS_OK)
         code = grid_definition(s, &s->definition_hash, why);
     if (code == STATUS_OK)
@@ -265,7 +291,7 @@ static status read_root(study *s, const document *d, diagnostic *why)
     return code;
 }
 
-status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why)
+static status read_text(const char *name, const char *text, size_t size, const study_guard *guard, study **out, diagnostic *why)
 {
     *out = NULL;
     study *s = calloc(1, sizeof *s);
@@ -276,7 +302,7 @@ status study_read_text(const char *name, const char *text, size_t size, study **
     }
     status code = document_parse(name, text, size, &d, why);
     if (code == STATUS_OK)
-        code = read_root(s, d, why);
+        code = read_root(s, d, guard, why);
     document_destroy(d);
     if (code != STATUS_OK) {
         study_destroy(s);
@@ -286,7 +312,12 @@ status study_read_text(const char *name, const char *text, size_t size, study **
     return STATUS_OK;
 }
 
-status study_read(const char *path, study **out, diagnostic *why)
+status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why)
+{
+    return read_text(name, text, size, NULL, out, why);
+}
+
+status study_read_guarded(const char *path, const study_guard *guard, study **out, diagnostic *why)
 {
     char *text;
     size_t size;
@@ -294,7 +325,12 @@ status study_read(const char *path, study **out, diagnostic *why)
     status code = file_read(path, FILE_BYTES_MAX, &text, &size, why);
     if (code != STATUS_OK)
         return code;
-    code = study_read_text(path, text, size, out, why);
+    code = read_text(path, text, size, guard, out, why);
     free(text);
     return code;
+}
+
+status study_read(const char *path, study **out, diagnostic *why)
+{
+    return study_read_guarded(path, NULL, out, why);
 }

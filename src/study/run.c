@@ -25,7 +25,7 @@ status run_interrupted(diagnostic *why)
 
 bool run_should_stop(const run *r)
 {
-    return r->options->stop && r->options->stop();
+    return r->options->stop && r->options->stop(r->options->context);
 }
 
 bool run_frame_progress(void *of, double share_done)
@@ -164,7 +164,7 @@ static status run_rounds(run *r, diagnostic *why)
             size_t cell = r->cells[r->order[i]];
             if (r->done->cells[cell].counted > (size_t)round || ledger_cell_done(r->done, cell))
                 continue;
-            progress_count(r->line, r->s, r->done, r->cells, r->cell_count);
+            progress_count(r->line, cell, r->done, r->cells, r->cell_count);
             status code = measure_warm(r, cell, why);
             if (code != STATUS_OK)
                 return code;
@@ -188,7 +188,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
              .warm = calloc(total, sizeof *r.warm),
              .order = calloc(total, sizeof *r.order),
              .compared = calloc(total, sizeof *r.compared),
-             .line = progress_begin(options->progress, s)};
+             .line = progress_begin(s, options)};
     bool has_memory = r.folder && r.cells && r.warm && r.order && r.compared && r.line;
     status code = has_memory ? ledger_read(s, options->results, &r.done, why) : no_memory(why);
     if (code == STATUS_OK)

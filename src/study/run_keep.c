@@ -130,7 +130,7 @@ status run_keep_all(run *r, diagnostic *why)
         pictures += lacks_anything(r, r->cells[i]);
     for (size_t i = 0; code == STATUS_OK && i < r->cell_count; i++)
         if (lacks_anything(r, r->cells[i])) {
-            progress_pictures(r->line, ++picture, pictures);
+            progress_pictures(r->line, r->cells[i], ++picture, pictures);
             code = keep_cell(r, r->cells[i], why);
         }
     return code;

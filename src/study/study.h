@@ -54,6 +54,13 @@ typedef struct study {
 bool study_keeps_files(const study *s);
 
 status study_read(const char *path, study **out, diagnostic *why);
+/* Who reads a study for others says what it may read. Both are asked before anything is opened; other than STATUS_OK is the study's error. */
+typedef struct study_guard {
+    status (*may_open)(void *context, const char *path, diagnostic *why);     /* the scene's file */
+    status (*may_load)(void *context, const scene *setting, diagnostic *why); /* what is named in the scene of a cell, or of its reference */
+    void *context;
+} study_guard;
+status study_read_guarded(const char *path, const study_guard *guard, study **out, diagnostic *why);
 /* The same from memory; name stands for the file in diagnostics, and its folder is where the scene's path starts. */
 status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why);
 void study_destroy(study *s);
@@ -67,12 +74,26 @@ size_t study_cell_film(const study *s, size_t cell);
 /* The study's scene with the fixed parameters and the cell's set; pictures are not loaded. */
 status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *why);
 
+typedef enum study_stage { STUDY_MEASURING, STUDY_MOVING, STUDY_PICTURES } study_stage; /* moving: slimes, before a frame */
+
+/* How far a study is while it runs. */
+typedef struct study_moment {
+    study_stage stage;
+    size_t cell;                      /* whose frame it is */
+    double share;                     /* of that frame, or of the motion before it, 0..1 */
+    size_t frames_done, frames_all;   /* repetitions, without warm-ups, of this process' cells */
+    double left_s;                    /* for the frames to come; NaN: not known */
+    size_t picture, pictures;         /* which of the kept pictures, from 1; 0 of 0 while rows are measured */
+} study_moment;
+
 typedef struct study_options {
     const char *results;   /* folder; results/<name>/ is made in it */
     long shard, shards;    /* this process does the cells whose place in the shuffled grid, modulo shards, is shard;
                               0 of 1 (or 0 of 0) for all */
     FILE *progress;        /* a terminal for the progress line with ETA, or NULL */
-    bool (*stop)(void);    /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
+    bool (*stop)(void *context); /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
+    void (*progressed)(void *context, const study_moment *now); /* at most ten times a second, from the thread that runs it. May be NULL */
+    void *context;         /* of both */
 } study_options;
 
 /* Runs what is missing; a study that is complete costs nothing and says so through *ran = 0 (rows written). */
