@@ -18,6 +18,7 @@ static const command commands[] = {
     {"compare", "say how far two pictures lie apart", command_compare},
     {"realism", "measure how far what is traced lies from textbook optics", command_realism},
     {"motion", "measure how slimes move beside textbook mechanics", command_motion},
+    {"lab", "open the laboratory in the browser", command_lab},
     {"machine", "print what this machine is, and what could disturb a measurement", command_machine},
     {"help", "explain a command", command_help},
 };

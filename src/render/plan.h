@@ -8,16 +8,9 @@
 #include "render/mesh_report.h"
 #include "render/light_cone.h"
 #include "render/spectra.h"
+#include "scene/camera.h"
 #include "scene/medium.h"
 #include "scene/scene.h"
-
-/* Directions of camera rays: forward + u right + v up, for u in (-half_width, half_width), v likewise. */
-typedef struct camera_frame {
-    vec3 eye, forward, right, up;
-    double half_width, half_height;
-} camera_frame;
-
-camera_frame camera_frame_of(const scene *s);
 
 /* What one kind of face of a body looks like. */
 typedef struct surface_look { material surface; const texture *picture; } surface_look;

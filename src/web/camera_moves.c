@@ -1,5 +1,5 @@
 #include "web/camera_moves.h"
-#include "render/plan.h"
+#include "scene/camera.h"
 #include "scene/edit.h"
 
 #include <math.h>

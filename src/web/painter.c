@@ -1,7 +1,7 @@
 #include "web/painter.h"
 #include "measure/clock.h"
 #include "measure/topology.h"
-#include "render/plan.h"
+#include "scene/camera.h"
 #include "render/renderer.h"
 #include "report/json.h"
 #include "web/passes.h"

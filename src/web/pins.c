@@ -1,4 +1,5 @@
 #include "web/pins.h"
+#include <stdatomic.h>
 
 #include <pthread.h>
 #include <stdlib.h>

@@ -1,0 +1,144 @@
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "cli/scene_input.h"
+#include "cli/terminal.h"
+#include "base/text.h"
+#include "measure/topology.h"
+#include "web/lab.h"
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+typedef struct lab_request {
+    const char *scene, *folder, *results; /* NULL: not given */
+    int64_t port, threads;
+    bool no_browser;
+} lab_request;
+
+enum { KEY_PORT = 0x100, KEY_FOLDER, KEY_RESULTS, KEY_THREADS, KEY_NO_BROWSER };
+
+static const struct argp_option options[] = {
+    {"folder", KEY_FOLDER, "DIR", 0, "the folder whose scenes, models and studies are there, and where files are saved; nothing outside of it is read or written "
+     "(default: the working folder, or the scene's where that lies elsewhere)", 0},
+    {"results", KEY_RESULTS, "DIR", 0, "folder for rows of studies, within the other (default: results there)", 0},
+    {"port", KEY_PORT, "N", 0, "port on 127.0.0.1 (default: any that is free)", 0},
+    {"threads", KEY_THREADS, "N", 0, "threads for scenes that do not say how many (default: one a processing unit)", 0},
+    {"no-browser", KEY_NO_BROWSER, NULL, 0, "do not open the address in a browser", 0},
+    {0},
+};
+
+static error_t take_option(int key, char *value, struct argp_state *state)
+{
+    options_input *input = state->input;
+    lab_request *request = input->request;
+    switch (key) {
+    case KEY_FOLDER: request->folder = value; return 0;
+    case KEY_RESULTS: request->results = value; return 0;
+    case KEY_NO_BROWSER: request->no_browser = true; return 0;
+    case KEY_PORT: return options_integer("--port", value, 0, 65535, &request->port, input->why) == STATUS_OK ? 0 : EINVAL;
+    case KEY_THREADS: return options_integer("--threads", value, 1, 1024, &request->threads, input->why) == STATUS_OK ? 0 : EINVAL;
+    case ARGP_KEY_ARG:
+        if (!request->scene) {
+            request->scene = value;
+            return 0;
+        }
+        diagnose(input->why, STATUS_BAD_INPUT, "give one SCENE", "'%.128s' is one argument too many", value);
+        diagnostic_locate(input->why, "lab", 0, 0);
+        return EINVAL;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp parser = {
+    .options = options,
+    .parser = take_option,
+    .args_doc = "[SCENE]",
+    .doc = "Open the laboratory in the browser: look at a scene and turn every parameter of it, ask a pixel why, compare, edit, play with a slime, run studies. "
+           "The page is served by this program on 127.0.0.1 alone, to those who know the token in the address that is printed.\vFor example:\n"
+           "  cuvette lab experiments/scenes/rod.yaml\n"
+           "From another machine: ssh -L 8000:127.0.0.1:8000 HOST cuvette lab --port 8000 --no-browser SCENE, and open the address that it prints here. "
+           "Ctrl-C ends it.",
+};
+
+/* The working folder where the scene lies below it (or is not there, which is said later), otherwise the scene's own. Fresh memory. */
+static char *choose_folder(const lab_request *request)
+{
+    char *here = realpath(".", NULL), *there = request->scene ? realpath(request->scene, NULL) : NULL;
+    const size_t length = here ? strlen(here) : 0;
+    const bool below = !there || (here && strncmp(there, here, length) == 0 && (there[length] == '/' || length == 1));
+    char *slash = there ? strrchr(there, '/') : NULL;
+    if (slash)
+        slash[slash == there] = 0;
+    free(here);
+    if (!below)
+        return there;
+    free(there);
+    return strdup(".");
+}
+
+/* In a process of its own, whose words go nowhere. */
+static void open_browser(const char *address)
+{
+    const pid_t child = fork();
+    if (child == 0) {
+        if (fork() == 0) {
+            if (!freopen("/dev/null", "r", stdin) || !freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr))
+                _exit(127);
+            execlp("xdg-open", "xdg-open", address, (char *)NULL);
+        }
+        _exit(127);
+    }
+    if (child > 0)
+        waitpid(child, NULL, 0);
+}
+
+static void wait_for_stop(void)
+{
+    while (!terminal_stop_asked())
+        usleep(50000);
+}
+
+static status run_lab(const lab_request *request, const char *folder, const char *results, diagnostic *why)
+{
+    lab *l = NULL;
+    topology *machine = NULL;
+    lab_settings settings = {.folder = folder, .scene = request->scene, .results = results, .port = (int)request->port, .threads = (int)request->threads};
+    status code = scene_input_isa(&settings.level, why);
+    if (code == STATUS_OK && settings.threads == 0 && (code = topology_create(&machine, why)) == STATUS_OK)
+        settings.threads = topology_pu_count(machine);
+    topology_destroy(machine);
+    if (code == STATUS_OK)
+        code = lab_start(&settings, &l, why);
+    if (code != STATUS_OK)
+        return code;
+    printf("%s\n", lab_address(l));
+    code = terminal_flush(why);
+    if (code == STATUS_OK && !request->no_browser)
+        open_browser(lab_address(l));
+    if (code == STATUS_OK)
+        wait_for_stop();
+    lab_stop(l);
+    return code;
+}
+
+status command_lab(int argc, char **argv, diagnostic *why)
+{
+    lab_request request = {.scene = NULL};
+    status code = options_parse(&parser, 0, argc, argv, &request, why);
+    char *chosen = NULL, *results = NULL;
+    if (code == STATUS_OK && !request.folder && !(chosen = choose_folder(&request)))
+        code = diagnose(why, STATUS_FAILURE, "", "the working folder cannot be found");
+    const char *folder = request.folder ? request.folder : chosen;
+    if (code == STATUS_OK && !request.results) {
+        results = strcmp(folder, ".") == 0 ? strdup("results") : text_format("%s/results", folder);
+        code = results ? code : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    }
+    if (code == STATUS_OK)
+        code = run_lab(&request, folder, request.results ? request.results : results, why);
+    free(chosen);
+    free(results);
+    return code;
+}

@@ -1,0 +1,35 @@
+#include "scene/camera.h"
+#include "base/elementary.h"
+
+static void aim_at_target(const struct camera *c, camera_frame *f)
+{
+    f->forward = vec3_normalize(vec3_sub(c->target, c->position));
+    vec3 side = vec3_cross(vec3_make(0.0, 1.0, 0.0), f->forward);
+    f->right = vec3_length(side) > 1e-12 ? vec3_normalize(side) : vec3_make(1.0, 0.0, 0.0); /* straight up or down */
+}
+
+static void aim_along_angles(const struct camera *c, camera_frame *f)
+{
+    double sin_yaw, cos_yaw, sin_pitch, cos_pitch;
+    elementary_sincos_deg(c->yaw_deg, &sin_yaw, &cos_yaw);
+    elementary_sincos_deg(c->pitch_deg, &sin_pitch, &cos_pitch);
+    f->forward = vec3_make(cos_pitch * sin_yaw, sin_pitch, cos_pitch * cos_yaw);
+    f->right = vec3_make(cos_yaw, 0.0, -sin_yaw);
+}
+
+camera_frame camera_frame_of(const scene *s)
+{
+    const struct camera *c = &s->camera;
+    camera_frame f;
+    f.eye = c->position;
+    if (c->aimed)
+        aim_at_target(c, &f);
+    else
+        aim_along_angles(c, &f);
+    f.up = vec3_cross(f.forward, f.right);
+    double sine, cosine;
+    elementary_sincos_deg(0.5 * c->fov_deg, &sine, &cosine);
+    f.half_height = sine / cosine;
+    f.half_width = f.half_height * ((double)s->render.width / (double)s->render.height);
+    return f;
+}

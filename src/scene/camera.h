@@ -1,0 +1,15 @@
+/* Where the camera stands and looks, as vectors. Pure. */
+#ifndef CUVETTE_SCENE_CAMERA_H
+#define CUVETTE_SCENE_CAMERA_H
+
+#include "scene/scene.h"
+
+/* Directions of camera rays: forward + u right + v up, for u in (-half_width, half_width), v likewise. */
+typedef struct camera_frame {
+    vec3 eye, forward, right, up;
+    double half_width, half_height;
+} camera_frame;
+
+camera_frame camera_frame_of(const scene *s);
+
+#endif
