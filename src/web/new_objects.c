@@ -2,6 +2,7 @@
 #include "base/text.h"
 #include "scene/check.h"
 #include "scene/edit.h"
+#include "scene/looks.h"
 #include "scene/params_path.h"
 #include "web/spot.h"
 
@@ -234,6 +235,14 @@ status new_texture(scene *s, const char *path, const char *wanted, object_name n
     return code;
 }
 
+static void take_loaded(mesh_entry *m, const mesh_entry *from)
+{
+    m->data = from->data;
+    m->looks = from->looks;
+    mesh_retain(m->data);
+    looks_retain(m->looks);
+}
+
 status new_model(scene *s, const scene *loaded, const char *path, const char *wanted, object_name name, diagnostic *why)
 {
     const spot where = spot_of(s);
@@ -259,6 +268,6 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
                vec3_make(low.x - 0.5 * scale * (b.low.x + b.high.x), low.y - scale * b.low.y, low.z - 0.5 * scale * (b.low.z + b.high.z)));
     put_look(s, &code, why, name, count);
     if (code == STATUS_OK)
-        scene_borrow_meshes(s, loaded);
+        take_loaded(&s->meshes[s->mesh_count - 1], &loaded->meshes[0]);
     return code;
 }
