@@ -68,8 +68,7 @@ static void answer_open(lab *l, scene *s, const char *name, http_reply *r)
 {
     diagnostic why = {.what = ""};
     uint64_t generation = 0;
-    if (l->settings.threads > 0)
-        s->render.threads = l->settings.threads;
+    lab_give_threads(l, s);
     const status code = desk_open(l->desk, s, name, &generation, &why);
     lab_reply_generation(r, code, generation, &why);
 }
