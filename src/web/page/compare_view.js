@@ -1,0 +1,90 @@
+/* The pinned picture A and the map of differences, drawn over the picture B.
+ *
+ * exports: createCompareView(lab, onshare(share)) -> {set({a, map, mode, share, strength}), flip(on)}
+ *   a, map      addresses of pictures of B's size, or null
+ *   mode        'b': B alone; 'wipe': A to the left of the handle, its share of the width 0..1; 'map': the map, strength 0..1
+ * The handle is dragged, or moved with the arrow keys. */
+
+import {element, svg, unique} from './ui.js';
+
+export function createCompareView(lab, onshare) {
+  const {view} = lab;
+  const part = svg('rect', {x: 0, y: 0});
+  const clip = unique('wipe');
+  const a = svg('image', {'clip-path': `url(#${clip})`, preserveAspectRatio: 'none'});
+  const map = svg('image', {preserveAspectRatio: 'none'});
+  const edge = svg('path', {class: 'wipe-edge'});
+  const handle = element('button', {
+    type: 'button', class: 'wipe-handle', role: 'slider', 'aria-label': 'Share of the pinned picture', 'aria-valuemin': 0, 'aria-valuemax': 100,
+    'aria-orientation': 'horizontal', hidden: true,
+    onpointerdown: (event) => handle.setPointerCapture(event.pointerId),
+    onpointermove: (event) => {
+      if (handle.hasPointerCapture(event.pointerId)) onshare(Math.min(1, Math.max(0, view.fromEvent(event).x / view.width)));
+    },
+    onkeydown: (event) => {
+      const step = {ArrowLeft: -0.02, ArrowDown: -0.02, ArrowRight: 0.02, ArrowUp: 0.02, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1}[event.key];
+      if (step === undefined) return;
+      onshare(Math.min(1, Math.max(0, now.share + step)));
+      event.preventDefault();
+      event.stopPropagation();
+    },
+  });
+  const labels = ['A', 'B'].map((name) => element('span', {class: 'wipe-label', text: name, hidden: true}));
+  const layer = view.layer('compare');
+  let now = {a: null, map: null, mode: 'b', share: 0.5, strength: 1};
+  let flipped = false;
+
+  layer.append(svg('clipPath', {id: clip}, part), a, map, edge);
+  layer.parentNode.prepend(layer);
+  view.overlay.append(handle, ...labels);
+  lab.on('view', draw);
+  return {
+    set(next) {
+      now = {...now, ...next};
+      draw();
+    },
+    flip(on) {
+      flipped = on && Boolean(now.a);
+      draw();
+    },
+  };
+
+  function source(image, address) {
+    if (address && image.getAttribute('href') !== address) image.setAttribute('href', address);
+    if (!address) image.removeAttribute('href');
+  }
+
+  function draw() {
+    const wiping = now.mode === 'wipe' && Boolean(now.a) && !flipped;
+    const share = flipped ? 1 : wiping ? now.share : 0;
+    const {width, height} = view;
+    for (const image of [a, map]) {
+      for (const [name, value] of Object.entries({width, height})) image.setAttribute(name, value);
+      /* As the picture itself is drawn. */
+      image.style.imageRendering = view.scale * devicePixelRatio < 2 ? 'auto' : 'pixelated';
+    }
+    source(a, now.a);
+    source(map, now.map);
+    part.setAttribute('width', Math.max(0, share * width));
+    part.setAttribute('height', height);
+    a.style.display = share > 0 ? '' : 'none';
+    map.style.display = now.mode === 'map' && now.map && !flipped ? '' : 'none';
+    map.setAttribute('opacity', now.strength);
+    edge.setAttribute('d', wiping ? `M${share * width} 0V${height}` : '');
+    place(wiping, share);
+  }
+
+  function place(wiping, share) {
+    const at = view.toScreen(share * view.width, view.height / 2);
+    const top = view.toScreen(0, 0);
+    const right = view.toScreen(view.width, 0);
+    handle.hidden = !wiping;
+    handle.setAttribute('aria-valuenow', Math.round(100 * share));
+    handle.setAttribute('aria-valuetext', `A ${Math.round(100 * share)} %`);
+    Object.assign(handle.style, {left: `${at.x}px`, top: `${at.y}px`});
+    labels[0].hidden = !wiping && !flipped;
+    labels[1].hidden = !wiping;
+    Object.assign(labels[0].style, {left: `${Math.max(0, top.x)}px`, top: `${Math.max(0, top.y)}px`});
+    Object.assign(labels[1].style, {left: `${right.x}px`, top: `${Math.max(0, right.y)}px`});
+  }
+}

@@ -1,0 +1,173 @@
+/* Pixel: why a pixel has the colour that it has. Its tree of rays as a table, over the picture, and from the side and from above.
+ * exports: panel. The tool "Ask" chooses the pixel: click or drag, arrow keys; Escape clears. */
+
+import {button, count, dialog, digits, download, element, empty, facts, group, notice, number, replace, svg, toByte} from './ui.js';
+import {createQuestion} from './pixel_question.js';
+import {createRayOverlay} from './ray_overlay.js';
+import {createRayPlot, sidePlane, topPlane} from './ray_plot.js';
+import {createRayTable} from './ray_table.js';
+import {solidPoints} from './ray_solids.js';
+import {kinds} from './ray_tree.js';
+
+let question = null;
+let overlay = null;
+const marking = new Set(); /* what shows which ray is pointed at */
+
+function mark(ray) {
+  for (const shows of marking) shows(ray);
+}
+
+function start(lab) {
+  question = createQuestion(lab);
+  overlay = createRayOverlay(lab);
+  marking.add(overlay.mark);
+  question.on(() => overlay.show(question.tree, question.pixel));
+  lab.on('view', () => overlay.draw());
+  lab.on('state', () => { if (question.tree) overlay.draw(); });
+  lab.view.tool('ask', {
+    label: 'Ask', icon: 'pixel', order: 40, cursor: 'crosshair', hint: 'Ask a pixel why: click it, or move from pixel to pixel with the arrow keys',
+    chosen: () => lab.panels?.use('pixel'),
+    down: (point) => {
+      const ray = overlay.nearest(point);
+      if (ray && !point.inside) return false;
+      if (!point.inside) return false;
+      question.ask(point.x, point.y);
+      return true;
+    },
+    move: (point) => question.ask(point.x, point.y),
+    hover: (point) => mark(overlay.nearest(point)),
+    leave: () => mark(null),
+    key: (event) => pressed(event.key, event.shiftKey ? 10 : 1),
+  });
+}
+
+function pressed(key, far) {
+  const steps = {ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowUp: [0, -far], ArrowDown: [0, far]};
+  if (key === 'Escape' && question.pixel) question.clear();
+  else if (steps[key] && question.pixel) question.step(...steps[key]);
+  else return false;
+  return true;
+}
+
+/* --- the panel --- */
+
+function chooser(lab) {
+  const go = () => question.ask(x.input.valueAsNumber || 0, y.input.valueAsNumber || 0);
+  const x = number({label: 'Pixel x', min: 0, step: 1, onchange: go});
+  const y = number({label: 'y', min: 0, step: 1, onchange: go});
+  const clear = button('Clear', () => question.clear(), {kind: 'quiet', small: true, title: 'Clear (Escape)'});
+  const tool = button('Choose in the picture', () => {
+    lab.view.use('ask');
+    lab.view.stage.focus();
+  }, {icon: 'pixel', small: true});
+  return {
+    node: element('div', {class: 'pixel-chooser'}, x.node, y.node, tool, clear),
+    show() {
+      x.input.max = Math.max(0, lab.view.width - 1);
+      y.input.max = Math.max(0, lab.view.height - 1);
+      x.set(question.pixel ? question.pixel.x : NaN);
+      y.set(question.pixel ? question.pixel.y : NaN);
+      clear.disabled = !question.pixel;
+    },
+  };
+}
+
+function ofKind(tree, kind) {
+  return tree.rays.filter((ray) => ray.node.kind === kind).length;
+}
+
+function summary(tree) {
+  const {radiance, lambda_nm: lambda, depth} = tree.answer;
+  const [r, g, b] = radiance.map(toByte);
+  const deepest = tree.rays.reduce((most, ray) => Math.max(most, ray.node.depth), 0);
+  const tinted = element('span', {class: 'pixel-colour'},
+    element('span', {class: 'swatch', style: {background: `rgb(${r} ${g} ${b})`}, 'aria-hidden': 'true'}), `${r} ${g} ${b}`);
+  const parts = ['camera', 'reflect', 'refract', 'shadow'].map((kind) => [ofKind(tree, kind), kind]).filter(([n]) => n);
+  const words = {camera: 'from the camera', reflect: 'reflected', refract: 'refracted', shadow: 'to lights'};
+  return facts([
+    ['Radiance', radiance.map((x) => digits(x)).join(' · ')],
+    ['Shown as', tinted],
+    ['Rays', `${count(tree.rays.length)}: ${parts.map(([n, kind]) => `${count(n)} ${words[kind]}`).join(', ')}`],
+    ['Deepest', `${deepest} of at most ${depth}`],
+    ['Indices at', `${digits(lambda)} nm`],
+  ]);
+}
+
+/* The table shows a tree as Whitted traced it; of other pictures that is not the pixel's own sum. */
+function otherwise(lab) {
+  const how = lab.param('render.integrator')?.value;
+  if (how === 'path') return 'The picture is made of random paths: this tree has all branches instead, and no light by way of matt surfaces.';
+  if (how === 'zbuffer') return 'The picture is drawn into a depth buffer: this tree is what tracing rays would give.';
+  if (lab.param('render.spectrum')?.value === 'spectral') return 'The picture is spectral: this tree is that of one wavelength.';
+  return null;
+}
+
+function legend() {
+  return element('ul', {class: 'ray-legend', 'aria-label': 'Lines'}, kinds.map(([line, words]) => element('li', {},
+    svg('svg', {class: 'ray-sample', viewBox: '0 0 36 10', 'aria-hidden': 'true'},
+      svg('line', {class: `ray ${line}`, x1: 1, y1: 5, x2: 35, y2: 5, 'stroke-width': 2.5})), words)));
+}
+
+function openDrawing({x, y}) {
+  const address = `/api/trace.svg?x=${x}&y=${y}`;
+  const title = `Pixel ${x}, ${y}: rays in the plane of incidence, and from above`;
+  const content = element('div', {class: 'trace-drawing'}, element('img', {src: address, alt: title}),
+    button('Save the drawing', () => download(address, `pixel-${x}-${y}.svg`), {icon: 'save', small: true}));
+  dialog({title, wide: true, content});
+}
+
+function createAnswer(lab) {
+  const table = createRayTable({caption: 'Rays of the pixel', onmark: mark});
+  const side = createRayPlot({title: 'From the side', onmark: mark});
+  const top = createRayPlot({title: 'From above', onmark: mark});
+  const head = element('div', {class: 'pixel-summary'});
+  const left = element('p', {class: 'hint'});
+  marking.add(table.mark).add(side.mark).add(top.mark);
+  const node = element('div', {class: 'pixel-answer', hidden: true}, head, legend(), left,
+    element('div', {class: 'ray-figures'}, side.node, top.node),
+    button('Larger drawing', () => openDrawing(question.tree.pixel), {icon: 'chart', small: true}),
+    group('Rays', {id: 'pixel-rays'},
+      element('div', {class: 'ray-buttons'}, button('Open all', table.openAll, {kind: 'quiet', small: true}),
+        button('Close all', table.closeAll, {kind: 'quiet', small: true})), table.node));
+  let shown = null;
+
+  return {
+    node,
+    show(tree) {
+      node.hidden = !tree;
+      if (tree === shown) return;
+      shown = tree;
+      table.show(tree);
+      const solids = tree ? solidPoints(lab) : [];
+      side.show(tree, sidePlane(lab.state?.camera), solids);
+      top.show(tree, topPlane(), solids);
+      if (!tree) return;
+      const note = otherwise(lab);
+      replace(head, summary(tree), note ? notice(note) : null);
+      left.textContent = overlay.left ? `Drawn are ${count(overlay.count)} rays; ${count(overlay.left)} lighter ones are in the table alone.` : '';
+      left.hidden = !overlay.left;
+    },
+  };
+}
+
+function create(root, lab) {
+  const choose = chooser(lab);
+  const answer = createAnswer(lab);
+  const message = element('div', {});
+  root.append(choose.node, message, answer.node);
+  root.addEventListener('keydown', (event) => {
+    if (event.key === 'Escape' && pressed('Escape')) event.preventDefault();
+  });
+  const show = () => {
+    choose.show();
+    root.setAttribute('aria-busy', String(question.busy));
+    answer.show(question.tree);
+    if (question.error) replace(message, notice(question.error.message, {kind: 'error', remedy: question.error.remedy}));
+    else replace(message, question.pixel ? null : empty('Choose Ask above the picture and click a pixel, or give its place here.'));
+  };
+  question.on(show);
+  lab.on('view', choose.show);
+  show();
+}
+
+export const panel = {id: 'pixel', title: 'Pixel', start, create};

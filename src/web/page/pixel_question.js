@@ -1,0 +1,70 @@
+/* Which pixel is asked about, and the answer: one at a time is on its way, and of those that wait only the newest is sent.
+ *
+ * exports: createQuestion(lab) -> {pixel: {x, y} or null, tree or null, error or null, busy, ask(x, y), step(dx, dy), clear(), on(f)}
+ * It asks again for the same pixel when the final picture of a changed scene has come. */
+
+import {grow} from './ray_tree.js';
+
+export function createQuestion(lab) {
+  const listeners = new Set();
+  let asking = false;
+  let waiting = false;
+  let answered = -1; /* the generation of the tree, or an older one */
+
+  const question = {
+    pixel: null, tree: null, error: null, busy: false, ask, clear,
+    step(dx, dy) {
+      if (question.pixel) ask(question.pixel.x + dx, question.pixel.y + dy);
+    },
+    on: (listener) => listeners.add(listener),
+  };
+  lab.on('picture', (picture) => {
+    if (question.pixel && picture.final && picture.generation > answered) send();
+  });
+  return question;
+
+  function tell() {
+    for (const listener of listeners) listener(question);
+  }
+
+  function ask(x, y) {
+    const {width, height} = lab.view;
+    if (!width) return;
+    const at = (value, size) => Math.min(size - 1, Math.max(0, Math.floor(value)));
+    question.pixel = {x: at(x, width), y: at(y, height)};
+    send();
+  }
+
+  function clear() {
+    Object.assign(question, {pixel: null, tree: null, error: null});
+    tell();
+  }
+
+  async function send() {
+    waiting = true;
+    question.busy = true;
+    tell();
+    if (asking) return;
+    asking = true;
+    while (waiting) {
+      waiting = false;
+      const {pixel} = question;
+      if (pixel) await fetchTree(pixel);
+    }
+    asking = false;
+    question.busy = false;
+    tell();
+  }
+
+  async function fetchTree(pixel) {
+    const generation = lab.state?.generation ?? -1;
+    try {
+      const answer = await lab.get(`/api/trace?x=${pixel.x}&y=${pixel.y}`);
+      if (question.pixel) Object.assign(question, {tree: {...grow(answer), pixel}, error: null});
+    } catch (error) {
+      if (question.pixel) Object.assign(question, {tree: null, error});
+    }
+    answered = generation;
+    tell();
+  }
+}

@@ -1,0 +1,120 @@
+/* The rays of a pixel drawn over the picture.
+ *
+ * exports:
+ *   createRayOverlay(lab) -> {show(tree or null, pixel), draw(), mark(ray or null), nearest(point) -> ray or null, count, left}
+ *                                      draw: the camera has moved; count, left: rays that are drawn, and that are too faint or too many to be
+ *   drawn(tree) -> rays                those that drawings show */
+
+import {svg} from './ui.js';
+import {lineClass} from './ray_tree.js';
+import {add, dot, length, minus, times} from './ray_vectors.js';
+
+const LIGHTEST = 0.002;
+const LINES_MAX = 1500;
+const NEAR_PX = 8;
+
+export function drawn(tree) {
+  const heavy = tree.rays.filter((ray) => ray.weight >= LIGHTEST);
+  return heavy.length <= LINES_MAX ? heavy : heavy.sort((a, b) => b.weight - a.weight).slice(0, LINES_MAX);
+}
+
+export const strokeWidth = (ray) => (1 + 1.5 * Math.sqrt(ray.weight)).toFixed(2);
+
+export function createRayOverlay(lab) {
+  const layer = lab.view.layer('pixel');
+  let tree = null;
+  let pixel = null;
+  let pieces = []; /* {ray, a: [x, y], b: [x, y], node} */
+  let marked = null;
+
+  const overlay = {
+    count: 0, left: 0, draw, mark, nearest,
+    show(next, at) {
+      tree = next;
+      pixel = at;
+      marked = null;
+      draw();
+    },
+  };
+  return overlay;
+
+  function draw() {
+    const rays = tree ? drawn(tree) : [];
+    pieces = rays.map(piece).filter(Boolean);
+    for (const one of pieces) {
+      one.node = svg('line', {
+        class: lineClass(one.ray), x1: one.a[0], y1: one.a[1], x2: one.b[0], y2: one.b[1], 'stroke-width': strokeWidth(one.ray),
+      });
+    }
+    overlay.count = rays.length;
+    overlay.left = tree ? tree.rays.length - rays.length : 0;
+    const halo = pieces.length ? svg('path', {class: 'ray-halo', d: pieces.map(({a, b}) => `M${a}L${b}`).join('')}) : null;
+    layer.replaceChildren(...(halo ? [halo] : []), ...pieces.map((one) => one.node), ...(pixel ? [cross()] : []));
+    const again = marked;
+    marked = null;
+    mark(again);
+  }
+
+  /* The pixel itself, and arms of 10 CSS pixels about it, however large the picture's pixels are. */
+  function cross() {
+    const {x, y} = pixel;
+    const arm = 10 / lab.view.scale;
+    const d = `M${x} ${y}h1v1h-1zM${x + 0.5} ${y - arm}V${y}M${x + 0.5} ${y + 1}v${arm}M${x - arm} ${y + 0.5}H${x}M${x + 1} ${y + 0.5}h${arm}`;
+    return svg('g', {}, svg('path', {class: 'ray-halo', d}), svg('path', {class: 'ray-pixel', d}));
+  }
+
+  function piece(ray) {
+    const camera = lab.state?.camera;
+    const seen = camera && clipNear(ray.from, ray.to, camera, Math.max(1e-8, 1e-4 * tree.reach));
+    const ends = seen && seen.map((point) => lab.view.project(point));
+    if (!ends || !ends[0] || !ends[1]) return null;
+    const clipped = clipBox([ends[0].x, ends[0].y], [ends[1].x, ends[1].y], lab.view.width, lab.view.height);
+    return clipped && {ray, a: clipped[0], b: clipped[1]};
+  }
+
+  function mark(ray) {
+    if (ray === marked) return;
+    for (const one of pieces) if (one.ray === marked || one.ray === ray) one.node.classList.toggle('marked', one.ray === ray);
+    marked = ray;
+  }
+
+  function nearest(point) {
+    let best = null;
+    let least = NEAR_PX / lab.view.scale;
+    for (const {ray, a, b} of pieces) {
+      const away = distance([point.x, point.y], a, b);
+      if (away < least && ray.node.kind !== 'camera') [best, least] = [ray, away];
+    }
+    return best;
+  }
+}
+
+/* The part of it that lies in front of the camera; null for none. */
+function clipNear(a, b, camera, near) {
+  const size = length(camera.forward);
+  const depth = (p) => dot(minus(p, camera.eye), camera.forward) / size;
+  const [da, db] = [depth(a), depth(b)];
+  if (da < near && db < near) return null;
+  const between = () => add(a, times(minus(b, a), (near - da) / (db - da)));
+  return [da < near ? between() : a, db < near ? between() : b];
+}
+
+/* Liang and Barsky: the part of it that lies in the picture; null for none. */
+function clipBox(a, b, width, height) {
+  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+  let [first, last] = [0, 1];
+  for (const [p, q] of [[-dx, a[0]], [dx, width - a[0]], [-dy, a[1]], [dy, height - a[1]]]) {
+    if (p === 0 && q < 0) return null;
+    if (p < 0) first = Math.max(first, q / p);
+    if (p > 0) last = Math.min(last, q / p);
+  }
+  const at = (t) => [a[0] + t * dx, a[1] + t * dy];
+  return first <= last ? [at(first), at(last)] : null;
+}
+
+function distance(p, a, b) {
+  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+  const size = dx * dx + dy * dy;
+  const t = size ? Math.min(1, Math.max(0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / size)) : 0;
+  return Math.hypot(p[0] - a[0] - t * dx, p[1] - a[1] - t * dy);
+}

@@ -1,0 +1,146 @@
+/* A pixel's tree of rays, as /api/trace gives it, as a list, and what is read of each ray. Pure: no page, no server.
+ *
+ * exports:
+ *   grow(answer) -> {answer, rays, roots, reach}     rays in the order of a table; each {index, node, parent, level, children, weight, from, to};
+ *                                                    weight: 0..1 of the camera ray's; reach: how far rays are drawn that meet nothing
+ *   isCut(ray)                                       was it left out for its depth or weight?
+ *   lineClass(ray)                                   the class of its line in a drawing
+ *   kinds                                            [class, what it is] of each, for legends
+ *   columns, describe(ray)                           [key, head, title] of a table, and what stands in it */
+
+import {digits} from './ui.js';
+import {add, length, mean, minus, times} from './ray_vectors.js';
+
+export const kinds = [
+  ['ray-camera', 'camera ray'],
+  ['ray-reflect', 'reflected'],
+  ['ray-refract', 'refracted'],
+  ['ray-shadow', 'to a light'],
+  ['ray-blocked', 'to a light, blocked'],
+  ['ray-cut', 'not traced further'],
+];
+
+const kindWords = {camera: 'camera ray', reflect: 'reflected', refract: 'refracted', shadow: 'to a light'};
+
+const endWords = {
+  hit: 'meets a surface',
+  sky: 'background',
+  cut_depth: 'not traced: depth limit',
+  cut_weight: 'not traced: weight too small',
+  lit: 'light comes through',
+  blocked: 'blocked',
+};
+
+export const isCut = ({node}) => node.end === 'cut_depth' || node.end === 'cut_weight';
+
+export function lineClass(ray) {
+  if (isCut(ray)) return 'ray ray-cut';
+  return ray.node.end === 'blocked' ? 'ray ray-blocked' : `ray ray-${ray.node.kind}`;
+}
+
+export function grow(answer) {
+  const first = answer.roots || [answer.root];
+  const all = mean(first[0].throughput) || 1;
+  const rays = [];
+  const visit = (node, parent, level) => {
+    const ray = {index: rays.length, node, parent, level, children: []};
+    /* A shadow ray's throughput is a radiance: it counts as much as the ray whose hit it leaves. */
+    ray.weight = node.kind === 'shadow' && parent ? parent.weight : Math.min(1, mean(node.throughput) / all);
+    rays.push(ray);
+    ray.children = node.children.map((child) => visit(child, ray, level + 1));
+    return ray;
+  };
+  const roots = first.map((node) => visit(node, null, 1));
+  const reach = extent(rays);
+  for (const ray of rays) {
+    ray.from = ray.node.origin;
+    ray.to = endOf(ray, reach);
+  }
+  return {answer, rays, roots, reach};
+}
+
+/* The size of what is hit; of a single hit, a part of the way there. */
+function extent(rays) {
+  const hits = rays.filter((ray) => ray.node.hit).map((ray) => ray.node.hit);
+  if (!hits.length) return 1;
+  const sides = [0, 1, 2].map((k) => {
+    let low = Infinity;
+    let high = -Infinity;
+    for (const {point} of hits) {
+      low = Math.min(low, point[k]);
+      high = Math.max(high, point[k]);
+    }
+    return high - low;
+  });
+  return Math.max(length(sides), 0.25 * hits[0].t);
+}
+
+function endOf(ray, reach) {
+  const {node} = ray;
+  if (node.hit) return node.hit.point;
+  if (node.kind === 'shadow') return add(node.origin, times(node.direction, node.light_distance));
+  return add(node.origin, times(node.direction, isCut(ray) ? 0.15 * reach : 0.5 * reach));
+}
+
+/* --- words --- */
+
+export const columns = [
+  ['kind', 'Ray', 'how it came about'],
+  ['depth', 'Depth', 'reflections and refractions since the camera'],
+  ['surface', 'Meets', 'solid and surface'],
+  ['media', 'Media', 'before and behind that surface, with their refractive indices'],
+  ['angles', 'Angles', 'of incidence and of refraction, from the normal'],
+  ['reflectance', 'R (s, p)', 'share of the light that is reflected: unpolarised, and of each polarisation'],
+  ['path', 'Path', 'length of the ray up to there'],
+  ['transmittance', 'Let through', 'share of the light that the medium does not absorb on that way; red, green, blue where they differ'],
+  ['weight', 'Weight', "with how much of it the ray's light counts in the picture"],
+  ['brought', 'Brought', 'radiance that this ray itself brings to the pixel'],
+  ['end', 'Ended', 'what became of it'],
+];
+
+const share = (value) => `${digits(100 * value, 3)} %`;
+const degrees = (cosine) => `${digits((Math.acos(Math.min(1, Math.max(0, cosine))) * 180) / Math.PI, 4)}°`;
+
+/* One number where the channels are equal, else three. */
+const channels = (c) => (c[0] === c[1] && c[1] === c[2] ? digits(c[0], 3) : c.map((x) => digits(x, 3)).join(' · '));
+
+const medium = ({medium: name, n}) => (name === digits(n) ? name : `${name} ${digits(n)}`);
+
+function surface(hit) {
+  return hit.surface_of ? `${hit.solid}: ${hit.surface} of ${hit.surface_of}` : `${hit.solid}: ${hit.surface}`;
+}
+
+function angles(hit) {
+  if (hit.opaque) return degrees(hit.cos_i);
+  return hit.tir ? `${degrees(hit.cos_i)}, none refracted` : `${degrees(hit.cos_i)} → ${degrees(hit.cos_t)}`;
+}
+
+function reflectance(hit) {
+  if (hit.tir) return 'total reflection';
+  if (hit.opaque) return hit.R > 0 ? `${share(hit.R)}, opaque` : 'opaque';
+  return `${share(hit.R)} (${share(hit.R_s)}, ${share(hit.R_p)})`;
+}
+
+function ofHit(hit) {
+  return {
+    surface: surface(hit),
+    media: hit.opaque ? `in ${medium(hit.from)}` : `${medium(hit.from)} → ${medium(hit.to)}`,
+    angles: angles(hit),
+    reflectance: reflectance(hit),
+    path: `${digits(hit.path_length)} m`,
+    transmittance: channels(hit.transmittance),
+  };
+}
+
+export function describe(ray) {
+  const {node} = ray;
+  return {
+    kind: node.kind === 'shadow' && node.light ? `to ${node.light}` : kindWords[node.kind],
+    depth: String(node.depth),
+    surface: '', media: `in ${medium(node)}`, angles: '', reflectance: '', path: '', transmittance: '',
+    weight: channels(node.throughput),
+    brought: node.brought.some((x) => x !== 0) ? channels(node.brought) : '',
+    end: endWords[node.end] || node.end,
+    ...(node.hit ? ofHit(node.hit) : {}),
+  };
+}
