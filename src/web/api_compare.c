@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WAIT_S 600.0
+static const double final_wait_s = 120.0;
 
 static bool asks_for(const http_request *request, const char *key)
 {
@@ -34,7 +34,7 @@ static const picture *take_final(lab *l, const http_request *request, http_reply
     const picture *newest = NULL;
     diagnostic why = {0};
     if (asks_for(request, "wait")) {
-        const status code = painter_take_final(l->painter, WAIT_S, &newest, &why);
+        const status code = painter_take_final(l->painter, final_wait_s, &newest, &why);
         if (code != STATUS_OK)
             reply_failure(reply, code, &why);
         return newest;
@@ -77,6 +77,15 @@ static void reply_no_pin(http_reply *reply, int code)
     http_reply_error(reply, code, "no picture is pinned", "pin one with POST /api/pin");
 }
 
+/* The bytes belong to what they show. */
+static void reply_copy(http_reply *reply, const unsigned char *bytes, size_t size)
+{
+    void *copy = malloc(size);
+    if (copy)
+        memcpy(copy, bytes, size);
+    http_reply_bytes(reply, 200, "image/png", copy, size);
+}
+
 static void get_pin_picture(void *context, const http_request *request, http_reply *reply)
 {
     lab *l = context;
@@ -91,13 +100,17 @@ static void get_pin_picture(void *context, const http_request *request, http_rep
         return;
     }
     diagnostic why = {0};
-    unsigned char *bytes = NULL;
+    const unsigned char *shared = NULL;
+    unsigned char *own = NULL;
     size_t size = 0;
-    const status code = image_encode(a->linear, IMAGE_PNG, bits && strcmp(bits, "16") == 0 ? 16 : 8, true, &bytes, &size, &why);
-    if (code == STATUS_OK)
-        http_reply_bytes(reply, 200, "image/png", bytes, size);
-    else
+    const bool fine = bits && strcmp(bits, "16") == 0;
+    const status code = fine ? image_encode(a->linear, IMAGE_PNG, 16, true, &own, &size, &why) : picture_png(a, &shared, &size, &why);
+    if (code != STATUS_OK)
         http_reply_diagnostic(reply, code, &why);
+    else if (fine)
+        http_reply_bytes(reply, 200, "image/png", own, size);
+    else
+        reply_copy(reply, shared, size);
     picture_release(a);
 }
 
@@ -157,14 +170,10 @@ static void reply_map(pin_pair *pair, http_reply *reply)
     size_t size;
     diagnostic why = {0};
     const status code = pin_pair_map(pair, &bytes, &size, &why);
-    if (code != STATUS_OK) {
+    if (code == STATUS_OK)
+        reply_copy(reply, bytes, size);
+    else
         reply_failure(reply, code, &why);
-        return;
-    }
-    void *copy = malloc(size);
-    if (copy)
-        memcpy(copy, bytes, size);
-    http_reply_bytes(reply, 200, "image/png", copy, size);
 }
 
 static void get_compare_map(void *context, const http_request *request, http_reply *reply)

@@ -2,6 +2,7 @@
 #include <stdatomic.h>
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 struct pin_pair {
