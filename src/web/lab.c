@@ -129,7 +129,7 @@ static status serve(lab *l, diagnostic *why)
     size_t count;
     status code = join_routes(l, &count, why);
     const http_settings settings = {.port = l->settings.port, .routes = l->routes, .route_count = count, .files = page_files, .file_count = page_file_count,
-                                    .connections = 128, .event_clients = 48, .timeout_s = 30};
+                                    .connections = 128, .event_clients = 48, .timeout_s = 30, .requests_per_s = l->settings.requests_per_s};
     if (code == STATUS_OK)
         code = http_start(&settings, &l->server, why);
     pthread_mutex_lock(&l->publish_lock);
@@ -188,4 +188,9 @@ void lab_stop(lab *l)
 const char *lab_address(const lab *l)
 {
     return http_address(l->server);
+}
+
+const http_server *lab_server(const lab *l)
+{
+    return l->server;
 }

@@ -17,6 +17,7 @@ typedef struct lab_settings {
     int port;            /* 0: any that is free */
     isa level;
     int threads;         /* of scenes as they are opened; 0: what they say */
+    double requests_per_s; /* 0: as web/http.h has it */
 } lab_settings;
 
 status lab_start(const lab_settings *settings, lab **out, diagnostic *why);
@@ -24,5 +25,7 @@ void lab_stop(lab *l); /* NULL is allowed */
 
 /* "http://127.0.0.1:PORT/?token=TOKEN" */
 const char *lab_address(const lab *l);
+/* Who serves it: its port and token by themselves. */
+const struct http_server *lab_server(const lab *l);
 
 #endif
