@@ -18,7 +18,7 @@ typedef struct lab_room {
 /* A ball on a chequered floor: quick to trace, and looks otherwise when anything changes. */
 #define BALL_SCENE                                                                                                                                             \
     "title: Ball\nrender: {width: 64, height: 48, depth: 3}\ncamera: {position: [0, 2, -6], target: [0, 1, 0]}\nbackground: {color: [0.5, 0.7, 0.9]}\n"         \
-    "materials:\n  tiles: {color: [0.8, 0.8, 0.8], checker_color: [0.2, 0.3, 0.4], checker: 0.5}\n"                                                             \
+    "materials:\n  tiles: {ambient: 0.1, diffuse: 0.7, color: [0.8, 0.8, 0.8], checker_color: [0.2, 0.3, 0.4], checker: 0.5}\n"                                                             \
     "lights:\n  lamp: {position: [4, 7, -5]}\n"                                                                                                                \
     "solids:\n  ground: {shape: plane, material: tiles, priority: 0}\n"                                                                                        \
     "  ball: {shape: sphere, position: [0, 1.2, 0], radius: 1, transparency: 1, ior: 1.5, priority: 1}\n"

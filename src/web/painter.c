@@ -162,15 +162,22 @@ static void tell(painter *p)
     p->listener.told(p->listener.context);
 }
 
-static void set_trouble(painter *p, status code, const diagnostic *why)
+/* With the lock held; true where pages are to be told. */
+static bool take_trouble(painter *p, status code, const diagnostic *why)
 {
-    pthread_mutex_lock(&p->lock);
-    const bool changed = code != p->trouble_code || (code != STATUS_OK && strcmp(why->what, p->trouble.what) != 0);
+    const bool differs = code != p->trouble_code || (code != STATUS_OK && strcmp(why->what, p->trouble.what) != 0);
     p->trouble_code = code;
     p->trouble = *why;
     pthread_cond_broadcast(&p->news);
+    return differs;
+}
+
+static void set_trouble(painter *p, status code, const diagnostic *why)
+{
+    pthread_mutex_lock(&p->lock);
+    const bool differs = take_trouble(p, code, why);
     pthread_mutex_unlock(&p->lock);
-    if (changed)
+    if (differs)
         tell(p);
 }
 
@@ -248,9 +255,10 @@ static void renew_stage(painter *p)
     pthread_mutex_lock(&p->lock);
     p->stage_generation = code == STATUS_INTERRUPTED ? 0 : generation; /* 0: begun again, from what was loaded so far */
     p->stage_ready = code == STATUS_OK;
-    pthread_cond_broadcast(&p->news);
+    const bool differs = take_trouble(p, code == STATUS_INTERRUPTED ? STATUS_OK : code, &why);
     pthread_mutex_unlock(&p->lock);
-    set_trouble(p, code == STATUS_INTERRUPTED ? STATUS_OK : code, &why);
+    if (differs)
+        tell(p);
     p->pass = 0;
     p->plan = code == STATUS_OK ? passes_plan(&p->stage->render, p->rate, first_s) : (pass_plan){.count = 0};
 }

@@ -1,0 +1,262 @@
+/* The painter: what is final is the film of the scene, newer changes win, trouble is told, waiting ends. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "lab_fixture.h"
+#include "render_fixture.h"
+#include "web/painter.h"
+#include "web/passes.h"
+#include <pthread.h>
+
+typedef struct studio {
+    desk *d;
+    painter *p;
+    pthread_mutex_t lock;
+    uint64_t serial, generation; /* of the last picture */
+    int pictures, passes_after_final, told;
+    bool final;
+} studio;
+
+/* Pictures come in order: serials grow, generations and passes do not go back. */
+static void take_picture(void *of, const picture *shown)
+{
+    studio *s = of;
+    pthread_mutex_lock(&s->lock);
+    if (shown->serial <= s->serial || shown->generation < s->generation)
+        s->passes_after_final = -1000000;
+    if (s->final && shown->generation == s->generation)
+        s->passes_after_final++;
+    s->serial = shown->serial;
+    s->generation = shown->generation;
+    s->final = shown->final;
+    s->pictures++;
+    pthread_mutex_unlock(&s->lock);
+}
+
+static void be_told(void *of)
+{
+    studio *s = of;
+    pthread_mutex_lock(&s->lock);
+    s->told++;
+    pthread_mutex_unlock(&s->lock);
+}
+
+static void changed(void *of)
+{
+    studio *s = of;
+    painter_wake(s->p);
+}
+
+static void open_studio(studio *s, scene *first)
+{
+    *s = (studio){.lock = PTHREAD_MUTEX_INITIALIZER};
+    diagnostic why = {0};
+    worked(desk_create(first, "ball.yaml", NULL, changed, s, &s->d, &why), &why);
+    const painter_listener listener = {take_picture, be_told, s};
+    worked(painter_create(s->d, isa_best(), &listener, &s->p, &why), &why);
+}
+
+static void close_studio(studio *s)
+{
+    painter_end(s->p);
+    painter_destroy(s->p);
+    desk_destroy(s->d);
+    assert_int_equal(s->passes_after_final, 0);
+}
+
+static status set_one(void *of, scene *s, diagnostic *why)
+{
+    return scene_set_assignment(s, of, why);
+}
+
+static void apply(studio *s, const char *assignment)
+{
+    diagnostic why = {0};
+    worked(desk_apply(s->d, assignment, NULL, set_one, (void *)(uintptr_t)assignment, NULL, &why), &why);
+}
+
+static uint64_t final_film(studio *s)
+{
+    const picture *shown;
+    diagnostic why = {0};
+    worked(painter_take_final(s->p, 60.0, &shown, &why), &why);
+    assert_true(shown->final);
+    assert_int_equal(shown->generation, desk_generation(s->d));
+    assert_non_null(shown->of);
+    assert_int_equal(shown->width, shown->full_width);
+    const uint64_t hash = shown->film_hash;
+    picture_release(shown);
+    return hash;
+}
+
+static uint64_t film_of(scene *s)
+{
+    diagnostic why = {0};
+    renderer *r;
+    render_result *made;
+    worked(renderer_create(isa_best(), NULL, &r, &why), &why);
+    worked(scene_load(s, &why), &why);
+    worked(renderer_render(r, s, NULL, &made, &why), &why);
+    const uint64_t hash = film_hash(made->picture);
+    render_result_destroy(made);
+    renderer_destroy(r);
+    scene_destroy(s);
+    return hash;
+}
+
+static void the_final_picture_is_the_film(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, rod_scene("render.depth=8"));
+    assert_int_equal(final_film(&s), 0x804d2c54dfedd082);
+    apply(&s, "render.depth=4");
+    assert_int_equal(final_film(&s), 0xb92bb012fd9c5f71);
+    apply(&s, "liquid.ior=1.5");
+    assert_int_equal(final_film(&s), film_of(rod_scene("liquid.ior=1.5")));
+    close_studio(&s);
+}
+
+static void coarse_passes_come_first_and_change_no_film(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, rod_scene("render.width=400 render.height=300 render.samples=16"));
+    assert_int_equal(final_film(&s), film_of(rod_scene("render.width=400 render.height=300 render.samples=16")));
+    assert_true(s.pictures >= 2);
+    close_studio(&s);
+}
+
+static void the_last_of_many_changes_wins(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, rod_scene("render.width=320 render.height=240"));
+    for (int i = 0; i < 1000; i++) {
+        char text[32];
+        snprintf(text, sizeof text, "liquid.ior=%.3f", 1.0 + i * 0.001);
+        apply(&s, text);
+    }
+    assert_int_equal(final_film(&s), film_of(rod_scene("render.width=320 render.height=240 liquid.ior=1.999")));
+    close_studio(&s);
+}
+
+static void trouble_is_told_and_goes(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, scene_from(BALL_SCENE));
+    final_film(&s);
+    apply(&s, "background.picture=/nowhere/sky.png");
+    const picture *shown;
+    diagnostic why = {0};
+    assert_int_equal(painter_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
+    assert_null(shown);
+    assert_non_null(strstr(why.what, "background.picture"));
+    json_t *told = json_object();
+    assert_true(painter_tell(s.p, told));
+    assert_true(json_is_object(json_object_get(told, "trouble")));
+    json_decref(told);
+    assert_int_equal(desk_undo(s.d, false, NULL, NULL), STATUS_OK);
+    final_film(&s);
+    apply(&s, "lamp.color=1000,1000,1000");
+    apply(&s, "lamp.intensity=10000"); /* brighter than a film holds: found while rendering */
+    apply(&s, "ball.transparency=0");
+    assert_int_equal(painter_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
+    close_studio(&s);
+}
+
+static void nothing_is_rendered_while_it_waits(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, scene_from(BALL_SCENE));
+    final_film(&s);
+    painter_wait(s.p, "a study measures");
+    apply(&s, "ball.ior=1.7");
+    const picture *shown;
+    diagnostic why = {0};
+    assert_int_equal(painter_take_final(s.p, 60.0, &shown, &why), STATUS_INTERRUPTED);
+    assert_non_null(strstr(why.what, "a study measures"));
+    shown = painter_take(s.p);
+    assert_int_equal(shown->generation, 1);
+    picture_release(shown);
+    painter_wait(s.p, NULL);
+    final_film(&s);
+    close_studio(&s);
+}
+
+static void *wait_for_final(void *of)
+{
+    studio *s = of;
+    const picture *shown;
+    diagnostic why;
+    const status code = painter_take_final(s->p, 600.0, &shown, &why);
+    picture_release(shown);
+    return (void *)(intptr_t)code;
+}
+
+static void an_end_ends_all_waiting(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, rod_scene("render.integrator=path render.paths=1024 render.width=1600 render.height=1200"));
+    pthread_t waiting;
+    assert_int_equal(pthread_create(&waiting, NULL, wait_for_final, &s), 0);
+    painter_end(s.p); /* in the midst of a frame of minutes */
+    void *code;
+    pthread_join(waiting, &code);
+    assert_int_equal((intptr_t)code, STATUS_INTERRUPTED);
+    painter_destroy(s.p);
+    desk_destroy(s.d);
+}
+
+static void assert_whole(const pass_plan *plan)
+{
+    assert_in_range(plan->count, 1, PASSES_MAX);
+    assert_int_equal(plan->shrink[plan->count - 1], 1);
+    assert_false(plan->single[plan->count - 1]);
+    for (int i = 1; i < plan->count; i++)
+        assert_true(plan->shrink[i] < plan->shrink[i - 1] || (plan->single[i - 1] && !plan->single[i]));
+}
+
+static void passes_fit_the_time_that_there_is(void **state)
+{
+    (void)state;
+    const render_settings fast = {.width = 800, .height = 600, .samples = 1};
+    const render_settings slow = {.width = 4000, .height = 3000, .samples = 64, .integrator = INTEGRATOR_PATH, .paths = 256};
+    pass_plan plan = passes_plan(&fast, 480000 / 0.03, 0.04); /* a frame takes 0.03 s */
+    assert_int_equal(plan.count, 1);
+    plan = passes_plan(&fast, 480000 / 0.5, 0.04);
+    assert_whole(&plan);
+    assert_true(passes_work(&fast, plan.shrink[0], plan.single[0]) / (480000 / 0.5) <= 0.04);
+    assert_int_equal(plan.shrink[0], 4);
+    for (double rate = 1; rate < 1e9; rate *= 7) {
+        plan = passes_plan(&slow, rate, 0.04);
+        assert_whole(&plan);
+    }
+    plan = passes_plan(&slow, 0.0, 0.04);
+    assert_whole(&plan);
+    const render_settings odd = {.width = 801, .height = 1, .samples = 4};
+    const render_settings pass = passes_settings(&odd, 8, true);
+    assert_int_equal(pass.width, 101);
+    assert_int_equal(pass.height, 1);
+    assert_int_equal(pass.samples, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest cases[] = {
+        cmocka_unit_test(the_final_picture_is_the_film),
+        cmocka_unit_test(coarse_passes_come_first_and_change_no_film),
+        cmocka_unit_test(the_last_of_many_changes_wins),
+        cmocka_unit_test(trouble_is_told_and_goes),
+        cmocka_unit_test(nothing_is_rendered_while_it_waits),
+        cmocka_unit_test(an_end_ends_all_waiting),
+        cmocka_unit_test(passes_fit_the_time_that_there_is),
+    };
+    return cmocka_run_group_tests_name("lab_painter", cases, NULL, NULL);
+}
