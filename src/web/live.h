@@ -25,17 +25,19 @@ void live_destroy(live *l); /* NULL is allowed */
 void live_give(live *l, live_order order);
 void live_set_preview(live *l, live_preview preview);
 
-/* Places are world rays and points: the caller knows the camera. The orders wait for the painter, which is told and answers within a frame;
- * STATUS_INTERRUPTED when it has not after LIVE_WAIT_S, or live_stop was called. STATUS_BAD_INPUT: it is off or blew up, or there is no such hand. */
+/* Places are world rays and points: the caller knows the camera. A grab waits for the painter, which is woken and answers within a frame;
+ * STATUS_INTERRUPTED when it has not after LIVE_WAIT_S, or live_stop was called. The others are heard at its next move and do not wait. STATUS_BAD_INPUT: it is
+ * off or blew up, or there is no such hand (any more: it begins anew where its own parameters change). */
 #define LIVE_WAIT_S 5.0
 enum { LIVE_MISSED = -1, LIVE_ALL = -2 };
-status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, vec3 *where, diagnostic *why); /* hand: LIVE_MISSED where the ray meets no slime */
+/* reach: scene units; 0: three tenths of the slime's radius. hand: its number, never given again, or LIVE_MISSED where the ray meets no slime. */
+status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, vec3 *where, diagnostic *why);
 status live_move(live *l, int hand, vec3 by, diagnostic *why); /* from where it took hold */
 status live_release(live *l, int hand, diagnostic *why);       /* LIVE_ALL: all that there are */
-/* Where a hand took hold, in the world; does not wait. */
+/* Where a hand took hold, in the world. */
 status live_where(live *l, int hand, vec3 *where, diagnostic *why);
 
-/* All who wait, and who come later, get STATUS_INTERRUPTED at once: the painter will not answer any more. */
+/* Who waits, and who grabs later, gets STATUS_INTERRUPTED at once: the painter will not answer any more. */
 void live_stop(live *l);
 
 /* The state's part; null where it is off and the scene has none. NULL when memory is out. */
@@ -55,8 +57,8 @@ status live_attach(live *l, scene *stage, diagnostic *why);
 /* The stage is about to go, and is not rendered any more: hands and motion are kept for the next one where that is possible. */
 void live_detach(live *l);
 
-/* Obeys orders, then moves by the wall time since it was called last, at most about most_s of work. told: live_tell says something else (of mere motion,
- * some 30 times a second). A stage that was live and is off now has to be loaded again. The trouble of a body that blew up is told by live_tell, and is
+/* Obeys orders, then moves by the wall time since it was called last, at most about most_s of work. told: live_tell says something else than mere motion
+ * would: with each picture it is told anyway. A stage that was live and is off now has to be loaded again. The trouble of a body that blew up is told by live_tell, and is
  * no error here. */
 status live_advance(live *l, double most_s, bool *told, diagnostic *why);
 /* Does the stage look otherwise than when this was asked last? */
