@@ -1,0 +1,85 @@
+/* The laboratory's API over fetch.
+ *
+ * exports: ApiError, createApi(listeners)
+ *   api.get(path), api.post(path, body), api.del(path)   JSON in and out; throw ApiError
+ *   api.blob(path)                                       a picture or file: {blob, headers}; throws ApiError
+ *   listeners: generation(number) for each reply that has one, reached() for each reply, lost() when nobody answers, refused() for 401
+ * ApiError: message, remedy, status (0: nobody answered), and file, line, column where the server says them. */
+
+const PATIENCE_MS = 60000;
+
+export class ApiError extends Error {
+  constructor(status, reply = {}) {
+    super(reply.error || `the server answered ${status}`);
+    this.name = 'ApiError';
+    this.status = status;
+    this.remedy = reply.remedy || '';
+    for (const key of ['file', 'line', 'column']) {
+      if (reply[key] !== undefined) this[key] = reply[key];
+    }
+  }
+}
+
+const gone = () => new ApiError(0, {error: 'the server does not answer', remedy: 'see whether cuvette lab still runs in its terminal'});
+const stranger = () => new ApiError(401, {
+  error: 'this page is not known to the server', remedy: 'open the address that cuvette lab printed when it started',
+});
+
+async function parsed(response) {
+  const text = await response.text();
+  if (!text) return {};
+  try {
+    return JSON.parse(text);
+  } catch {
+    return {error: text.slice(0, 200)};
+  }
+}
+
+export function createApi(listeners) {
+  async function ask(method, path, body) {
+    const options = {method, credentials: 'same-origin', cache: 'no-store', signal: AbortSignal.timeout(PATIENCE_MS)};
+    if (method !== 'GET') {
+      options.headers = {'Content-Type': 'application/json'};
+      options.body = JSON.stringify(body ?? {});
+    }
+    let response;
+    try {
+      response = await fetch(path, options);
+    } catch (cause) {
+      if (cause.name === 'TimeoutError') throw new ApiError(0, {error: 'the server took more than a minute', remedy: 'try again'});
+      listeners.lost();
+      throw gone();
+    }
+    if (response.status === 401) {
+      listeners.refused();
+      throw stranger();
+    }
+    listeners.reached();
+    return response;
+  }
+
+  async function json(method, path, body) {
+    const response = await ask(method, path, body);
+    let reply;
+    try {
+      reply = await parsed(response);
+    } catch {
+      listeners.lost();
+      throw gone();
+    }
+    if (!response.ok) throw new ApiError(response.status, reply);
+    if (Number.isFinite(reply.generation) && method !== 'GET') listeners.generation(reply.generation);
+    return reply;
+  }
+
+  return {
+    get: (path) => json('GET', path),
+    post: (path, body) => json('POST', path, body),
+    del: (path) => json('DELETE', path),
+    async blob(path) {
+      const response = await ask('GET', path);
+      if (!response.ok) throw new ApiError(response.status, await parsed(response));
+      return {blob: await response.blob(), headers: response.headers};
+    },
+  };
+}

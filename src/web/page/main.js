@@ -1,0 +1,37 @@
+/* Puts the laboratory together: one object lab (store.js), the picture (view.js), the panels, head and status line. Exports nothing. */
+
+import {createLab} from './store.js';
+import {createView} from './view.js';
+import {createPanels} from './panels.js';
+import {createHead} from './head.js';
+import {createStatus} from './status.js';
+import {createBanner} from './banner.js';
+import {createKeys} from './keys.js';
+import {orbitTool} from './tool_orbit.js';
+import {lightTool} from './tool_light.js';
+import {cameraBox} from './camera_box.js';
+
+/* A panel that cannot be loaded leaves the others as they are. */
+const modules = ['params', 'edit', 'pixel', 'compare', 'slime', 'studies', 'machine'];
+
+const at = (id) => document.getElementById(id);
+
+async function start() {
+  const lab = createLab();
+  createStatus(at('status'), at('live'), lab);
+  createBanner(at('banner'), [at('head'), at('desk')], lab);
+  lab.view = createView(at('view'), lab);
+  orbitTool(lab);
+  lightTool(lab);
+  cameraBox(at('view'), lab);
+  lab.view.use('orbit');
+  createHead(at('head'), lab);
+  createKeys(lab);
+  const loaded = await Promise.allSettled(modules.map((name) => import(`./panel_${name}.js`)));
+  const panels = loaded.filter((each) => each.status === 'fulfilled').map((each) => each.value.panel);
+  lab.panels = createPanels(at('side'), at('splitter'), at('desk'), panels, lab);
+  for (const each of loaded) if (each.status === 'rejected') lab.fail(each.reason);
+  lab.start();
+}
+
+start();

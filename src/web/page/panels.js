@@ -1,0 +1,106 @@
+/* The panels as tabs beside the picture, and the splitter between the two. A panel is made when it is first shown.
+ * exports: createPanels(side, splitter, desk, panels, lab) -> {use(id), chosen()}
+ * panel: {id, title, wide?, css?, create(root, lab), shown?(), hidden?()}; a wide one takes the whole width, without the picture; css is the name of
+ * its own style sheet (panel_ID.css), which uses the variables of lab.css for all colours and starts each rule with .panel-ID */
+
+import {element, memory, notice, replace} from './ui.js';
+
+const NARROWEST = 340;
+const STEP = 24;
+
+export function createPanels(side, splitter, desk, panels, lab) {
+  const list = element('div', {class: 'tabs', role: 'tablist', 'aria-label': 'Panels'});
+  const entries = new Map(panels.map((panel) => [panel.id, makeEntry(panel)]));
+  let chosen = null;
+
+  list.append(...[...entries.values()].map((entry) => entry.tab));
+  list.addEventListener('keydown', key);
+  side.id = 'side';
+  side.append(list, element('div', {class: 'panel-room', id: 'panels', tabindex: '-1'}, [...entries.values()].map((entry) => entry.root)));
+  createSplitter(splitter, desk);
+  use(entries.has(memory.get('panel')) ? memory.get('panel') : panels[0]?.id);
+  return {use, chosen: () => chosen};
+
+  function makeEntry(panel) {
+    if (panel.css) document.head.append(element('link', {rel: 'stylesheet', href: panel.css}));
+    const tab = element('button', {
+      type: 'button', role: 'tab', class: 'tab', id: `tab-${panel.id}`, 'aria-controls': `panel-${panel.id}`, 'aria-selected': 'false', tabindex: '-1',
+      onclick: () => use(panel.id), text: panel.title,
+    });
+    const root = element('section', {
+      role: 'tabpanel', class: `panel panel-${panel.id}`, id: `panel-${panel.id}`, 'aria-labelledby': `tab-${panel.id}`, hidden: true, tabindex: '0',
+    });
+    return {panel, tab, root, made: false};
+  }
+
+  function show(entry, on) {
+    entry.tab.setAttribute('aria-selected', String(on));
+    entry.tab.tabIndex = on ? 0 : -1;
+    entry.root.hidden = !on;
+    try {
+      if (on && !entry.made) {
+        entry.made = true;
+        entry.panel.create(entry.root, lab);
+      }
+      (on ? entry.panel.shown : entry.panel.hidden)?.call(entry.panel);
+    } catch (error) {
+      console.error(error);
+      if (on) replace(entry.root, notice(`This panel failed: ${error.message}`, {kind: 'error', remedy: 'load the page again'}));
+    }
+  }
+
+  function use(id) {
+    if (id === chosen || !entries.has(id)) return;
+    if (chosen) show(entries.get(chosen), false);
+    chosen = id;
+    desk.classList.toggle('wide', Boolean(entries.get(id).panel.wide));
+    show(entries.get(id), true);
+    memory.set('panel', id);
+    lab.emit('panel', id);
+  }
+
+  function key(event) {
+    const ids = [...entries.keys()];
+    const now = ids.indexOf(chosen);
+    const to = {ArrowRight: now + 1, ArrowLeft: now - 1, ArrowDown: now + 1, ArrowUp: now - 1, Home: 0, End: ids.length - 1}[event.key];
+    if (to === undefined) return;
+    use(ids[(to + ids.length) % ids.length]);
+    entries.get(chosen).tab.focus();
+    event.preventDefault();
+  }
+}
+
+function createSplitter(splitter, desk) {
+  let width = memory.get('width', null);
+  const largest = () => Math.max(NARROWEST, desk.clientWidth - 360);
+  const apply = () => {
+    if (width) desk.style.setProperty('--side', `${Math.round(Math.min(largest(), Math.max(NARROWEST, width)))}px`);
+    else desk.style.removeProperty('--side');
+    const now = desk.querySelector('.side').clientWidth;
+    splitter.setAttribute('aria-valuemin', String(NARROWEST));
+    splitter.setAttribute('aria-valuemax', String(Math.round(largest())));
+    splitter.setAttribute('aria-valuenow', String(Math.round(now)));
+  };
+  const set = (next) => {
+    width = next;
+    memory.set('width', width);
+    apply();
+  };
+  const here = () => desk.querySelector('.side').clientWidth;
+  splitter.addEventListener('pointerdown', (event) => {
+    splitter.setPointerCapture(event.pointerId);
+    event.preventDefault();
+  });
+  splitter.addEventListener('pointermove', (event) => {
+    if (splitter.hasPointerCapture(event.pointerId)) set(desk.getBoundingClientRect().right - event.clientX - 3);
+  });
+  splitter.addEventListener('dblclick', () => set(null));
+  splitter.addEventListener('keydown', (event) => {
+    if (event.key === 'ArrowLeft') set(here() + STEP);
+    else if (event.key === 'ArrowRight') set(here() - STEP);
+    else if (event.key === 'Home') set(null);
+    else return;
+    event.preventDefault();
+  });
+  new ResizeObserver(apply).observe(desk);
+}

@@ -1,0 +1,72 @@
+/* The line at the bottom: what is shown, what it cost, and the last message; and the live region for screen readers.
+ * exports: createStatus(root, live, lab); sets lab.say and lab.fail */
+
+import {button, copy, count, digits, element, icon, replace, seconds} from './ui.js';
+
+const LINGER_MS = 9000;
+
+export function createStatus(root, live, lab) {
+  const facts = element('div', {class: 'status-facts'});
+  const message = element('div', {class: 'status-message', hidden: true});
+  let timer = 0;
+  let frame = 0;
+  root.append(facts, message);
+
+  const clear = () => {
+    message.hidden = true;
+    message.replaceChildren();
+  };
+
+  function tell(words, kind, remedy) {
+    clearTimeout(timer);
+    replace(message, icon(kind === 'error' ? 'warning' : 'info'), element('span', {class: 'status-words', title: [words, remedy].filter(Boolean).join('. ')},
+      element('strong', {text: words}), remedy ? ` — ${remedy}` : null),
+    button('Dismiss', clear, {icon: 'close', bare: true, kind: 'quiet', small: true}));
+    message.className = `status-message ${kind}`;
+    message.hidden = false;
+    live.textContent = '';
+    requestAnimationFrame(() => { live.textContent = [words, remedy].filter(Boolean).join('. '); });
+    timer = setTimeout(clear, kind === 'error' ? 2 * LINGER_MS : LINGER_MS);
+  }
+  lab.say = (words) => tell(words, 'info');
+  lab.fail = (error) => {
+    if (error.status === 0 || error.status === 401) return;
+    if (!error.status) console.error(error);
+    tell(error.message, 'error', error.remedy);
+  };
+
+  const draw = () => {
+    frame = 0;
+    replace(facts, items(lab));
+  };
+  const soon = () => { frame ||= requestAnimationFrame(draw); };
+  for (const name of ['picture', 'state', 'connection', 'news']) lab.on(name, soon);
+  draw();
+}
+
+const fact = (name, value, title) => element('span', {class: 'fact', title}, element('span', {class: 'fact-name', text: name}),
+  element('span', {class: 'fact-value'}, value));
+
+function items(lab) {
+  const {picture, state} = lab;
+  if (!picture) return [element('span', {class: 'fact', text: lab.connected === 'open' ? 'No picture yet' : 'Connecting …'})];
+  const {rays, wall_s: wall} = picture;
+  const behind = lab.wanted > picture.generation || !picture.final;
+  return [
+    element('span', {class: behind ? 'lamp busy' : 'lamp', role: 'img', 'aria-label': behind ? 'rendering' : 'final', title: behind ? 'rendering' : 'final picture'}),
+    fact('pass', picture.passes ? `${picture.pass} of ${picture.passes}` : String(picture.pass)),
+    fact('size', picture.width === picture.full_width ? `${picture.full_width} × ${picture.full_height}`
+      : `${picture.width} × ${picture.height} of ${picture.full_width} × ${picture.full_height}`),
+    fact('time', seconds(wall), 'wall time of the pass'),
+    fact('rays', count(rays)),
+    rays && wall ? fact('rays/s', count(rays / wall)) : null,
+    Number.isFinite(picture.noise) ? fact('noise', digits(picture.noise, 3), 'standard error of random paths') : null,
+    picture.film_hash ? fact('film', hash(picture.film_hash, lab), 'hash of the film; click to copy') : null,
+    fact('generation', String(picture.generation), state && state.generation > picture.generation ? `the scene is at ${state.generation}` : null),
+  ];
+}
+
+const hash = (words, lab) => element('button', {
+  type: 'button', class: 'hash', 'aria-label': `copy film hash ${words}`,
+  onclick: () => copy(words).then(() => lab.say('The film hash is on the clipboard.'), lab.fail),
+}, words);

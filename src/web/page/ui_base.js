@@ -1,0 +1,51 @@
+/* Elements, ids and memory, for ui.js and its parts.
+ * exports: element, svg, replace, unique, gesture, memory (see ui.js) */
+
+const SVG = 'http://www.w3.org/2000/svg';
+let counter = 0;
+
+function give(node, name, value) {
+  if (value === null || value === undefined || value === false) return;
+  if (name === 'text') node.textContent = value;
+  else if (name === 'dataset') Object.assign(node.dataset, value);
+  else if (name === 'style') for (const [key, what] of Object.entries(value)) node.style.setProperty(key, what);
+  else if (name === 'on') for (const [event, listener] of Object.entries(value)) node.addEventListener(event, listener);
+  else if (name === 'value') node.value = value;
+  else if (typeof value === 'function' && name.startsWith('on')) node.addEventListener(name.slice(2), value);
+  else node.setAttribute(name, value === true ? '' : value);
+}
+
+function fill(node, properties, children) {
+  for (const [name, value] of Object.entries(properties || {})) if (name !== 'value') give(node, name, value);
+  node.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false));
+  if (properties && properties.value !== undefined) give(node, 'value', properties.value);
+  return node;
+}
+
+export const element = (tag, properties, ...children) => fill(document.createElement(tag), properties, children);
+export const svg = (tag, attributes, ...children) => fill(document.createElementNS(SVG, tag), attributes, children);
+
+export function replace(node, ...children) {
+  node.replaceChildren(...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false));
+  return node;
+}
+
+export const unique = (prefix = 'id') => `${prefix}-${++counter}`;
+export const gesture = (prefix = 'drag') => `${prefix}-${Date.now().toString(36)}-${++counter}-${Math.random().toString(36).slice(2, 8)}`.slice(-64);
+
+/* Browsers may forbid it, or lose it at any time: it is for comfort only. */
+export const memory = {
+  get(key, otherwise) {
+    try {
+      const kept = localStorage.getItem(`cuvette.${key}`);
+      return kept === null ? otherwise : JSON.parse(kept);
+    } catch {
+      return otherwise;
+    }
+  },
+  set(key, value) {
+    try {
+      localStorage.setItem(`cuvette.${key}`, JSON.stringify(value));
+    } catch { /* then it is forgotten */ }
+  },
+};

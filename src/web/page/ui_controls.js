@@ -1,0 +1,150 @@
+/* Controls with a label of their own. exports: number, text, check, slider, choice (see ui.js)
+ * Each is {node, set(value), ..}; set shows a value and tells nobody. */
+
+import {element, gesture, unique} from './ui_base.js';
+import {digits} from './ui_numbers.js';
+
+const shown = (value) => (Number.isFinite(value) ? String(Number(Number(value).toPrecision(7))) : '');
+
+function frame(label, input, unit) {
+  input.id ||= unique('input');
+  return element('div', {class: 'field'}, element('label', {for: input.id, text: label}),
+    element('span', {class: 'field-control'}, input, unit ? element('span', {class: 'unit', text: unit}) : null));
+}
+
+export function number({label, value, min, max, step, unit, onchange}) {
+  let last = value;
+  const input = element('input', {type: 'number', class: 'input numeric', min, max, step: step ?? 'any', value: shown(value)});
+  input.addEventListener('change', () => {
+    if (input.value === '' || !input.checkValidity()) {
+      if (input.value === '') input.value = shown(last);
+      else input.reportValidity();
+      return;
+    }
+    last = input.valueAsNumber;
+    onchange?.(last);
+  });
+  const set = (next) => {
+    last = next;
+    if (document.activeElement !== input || input.value === '') input.value = shown(next);
+  };
+  return {node: label ? frame(label, input, unit) : input, input, set, get value() { return input.valueAsNumber; }};
+}
+
+export function text({label, value = '', placeholder, onchange}) {
+  const input = element('input', {type: 'text', class: 'input', value, placeholder, spellcheck: 'false', autocomplete: 'off'});
+  input.addEventListener('change', () => onchange?.(input.value));
+  const set = (next) => {
+    if (document.activeElement !== input) input.value = next;
+  };
+  return {node: label ? frame(label, input) : input, input, set, get value() { return input.value; }};
+}
+
+export function check(label, checked, onchange) {
+  const input = element('input', {type: 'checkbox', checked});
+  input.addEventListener('change', () => onchange?.(input.checked));
+  const node = element('label', {class: 'check'}, input, element('span', {text: label}));
+  return {node, input, set(next) { input.checked = next; }, get value() { return input.checked; }};
+}
+
+/* Positions of the slider are 0..steps; a logarithmic one that starts at 0 has 0 at its left end. */
+export function scale({min, max, step, log}) {
+  const integer = step >= 1;
+  const floor = log && min <= 0 ? max * 1e-5 : min;
+  const steps = !log && step && (max - min) / step <= 1000 ? Math.round((max - min) / step) : 1000;
+  const tidy = (x) => {
+    if (integer) return Math.round(x);
+    return log ? Number(x.toPrecision(3)) : Number(Number((Math.round(x / step) * step).toPrecision(10)));
+  };
+  return {
+    steps,
+    position(value) {
+      if (!log) return Math.round(steps * Math.min(1, Math.max(0, (value - min) / (max - min))));
+      if (value <= floor) return 0;
+      return Math.round(steps * Math.min(1, Math.log(value / floor) / Math.log(max / floor)));
+    },
+    value(position) {
+      if (position <= 0) return min;
+      if (position >= steps) return max;
+      return tidy(log ? floor * (max / floor) ** (position / steps) : min + (max - min) * (position / steps));
+    },
+  };
+}
+
+export function slider({label, min, max, step = (max - min) / 200, value, log = false, unit, oninput, onchange}) {
+  const ruler = scale({min, max, step, log});
+  const input = element('input', {type: 'range', class: 'range', min: 0, max: ruler.steps, step: 1, id: unique('range')});
+  const box = element('input', {type: 'number', class: 'input numeric', step: 'any', value: shown(value), 'aria-label': `${label}, number`});
+  let mine = null;
+  let dragged = false;
+  const show = (next) => {
+    input.value = ruler.position(next);
+    input.setAttribute('aria-valuetext', `${digits(next)}${unit ? ` ${unit}` : ''}`);
+    input.style.setProperty('--filled', `${100 * input.value / ruler.steps}%`);
+  };
+  input.addEventListener('input', () => {
+    mine ??= gesture('slider');
+    dragged = true;
+    const next = ruler.value(Number(input.value));
+    box.value = shown(next);
+    show(next);
+    oninput?.(next, mine);
+  });
+  input.addEventListener('change', () => {
+    onchange?.(ruler.value(Number(input.value)), mine ?? gesture('slider'));
+    mine = null;
+    dragged = false;
+  });
+  box.addEventListener('change', () => {
+    if (box.value === '') return;
+    const next = box.valueAsNumber;
+    show(next);
+    const once = gesture('number');
+    oninput?.(next, once);
+    onchange?.(next, once);
+  });
+  show(value);
+  const node = element('div', {class: 'field'}, element('label', {for: input.id, text: label}),
+    element('span', {class: 'field-control'}, input, box, unit ? element('span', {class: 'unit', text: unit}) : null));
+  return {
+    node, input, box,
+    set(next) {
+      if (dragged) return;
+      show(next);
+      if (document.activeElement !== box) box.value = shown(next);
+    },
+    get value() { return box.valueAsNumber; },
+  };
+}
+
+const pair = (entry) => (Array.isArray(entry) ? entry : [entry, String(entry)]);
+
+function radioGroup({label, choices, value, onchange}) {
+  const name = unique('radio');
+  const inputs = new Map();
+  const buttons = choices.map(pair).map(([word, title]) => {
+    const input = element('input', {type: 'radio', name, value: word, checked: word === value, class: 'visually-hidden'});
+    input.addEventListener('change', () => onchange?.(word));
+    inputs.set(word, input);
+    return element('label', {class: 'segment'}, input, element('span', {text: title}));
+  });
+  const node = element('div', {class: 'segments', role: 'radiogroup', 'aria-label': label}, buttons);
+  return {
+    node, inputs,
+    set(next) { for (const [word, input] of inputs) input.checked = word === next; },
+    get value() { return [...inputs].find(([, input]) => input.checked)?.[0]; },
+  };
+}
+
+export function choice({label, choices, value, radios = false, onchange}) {
+  if (radios) {
+    const group = radioGroup({label, choices, value, onchange});
+    const node = element('div', {class: 'field'}, element('span', {class: 'label', 'aria-hidden': 'true', text: label}),
+      element('span', {class: 'field-control'}, group.node));
+    return {node, group: group.node, inputs: group.inputs, set: group.set, get value() { return group.value; }};
+  }
+  const input = element('select', {class: 'input select'},
+    choices.map(pair).map(([word, title]) => element('option', {value: word, selected: word === value, text: title})));
+  input.addEventListener('change', () => onchange?.(input.value));
+  return {node: frame(label, input), input, set(next) { input.value = next; }, get value() { return input.value; }};
+}

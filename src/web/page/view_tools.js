@@ -1,0 +1,140 @@
+/* The bar over the picture, and the pointer and keys on it: the chosen tool's, and panning, zooming and the readout, which all tools share.
+ * exports: createToolbar(view, lab, readout) -> {node, bar, options, tool, use, chosen} */
+
+import {button, element, icon, unique} from './ui.js';
+
+const ZOOM = 1.25;
+const PAN = 48;
+
+const hex = (byte) => byte.toString(16).padStart(2, '0');
+
+export function createToolbar(view, lab, readout) {
+  const tools = new Map();
+  const radios = element('div', {class: 'segments tools', role: 'radiogroup', 'aria-label': 'What the pointer does'});
+  const options = element('div', {class: 'tool-options'});
+  const level = element('button', {type: 'button', class: 'button quiet small level', title: 'Picture pixels as they are (1)', onclick: () => view.actual()});
+  const bar = element('div', {class: 'bar-end'});
+  const node = element('div', {class: 'toolbar'}, radios, options, element('div', {class: 'bar-end'},
+    button('Zoom out', () => view.zoom(1 / ZOOM), {icon: 'minus', bare: true, kind: 'quiet', small: true, title: 'Zoom out (-)'}), level,
+    button('Zoom in', () => view.zoom(ZOOM), {icon: 'plus', bare: true, kind: 'quiet', small: true, title: 'Zoom in (+)'}),
+    button('Fit', () => view.fit(), {icon: 'fit', bare: true, kind: 'quiet', small: true, title: 'The whole picture (0)'}), bar));
+  const group = unique('tool');
+  let chosen = null;
+  let drag = null;
+  let space = false;
+
+  listen(view.stage);
+  lab.on('view', () => { level.textContent = `${Math.round(view.scale * devicePixelRatio * 100)} %`; });
+  return {node, bar, options, tool, use, chosen: () => chosen};
+
+  function tool(name, what) {
+    tools.set(name, what);
+    if (what.label) {
+      const input = element('input', {type: 'radio', name: group, value: name, class: 'visually-hidden'});
+      input.addEventListener('change', () => use(name));
+      what.radio = input;
+      what.segment = element('label', {class: 'segment', title: what.hint}, input, icon(what.icon || 'move'), element('span', {text: what.label}));
+    }
+    radios.replaceChildren(...[...tools.values()].filter((each) => each.segment)
+      .sort((a, b) => (a.order ?? 50) - (b.order ?? 50)).map((each) => each.segment));
+    if (chosen && tools.get(chosen).radio) tools.get(chosen).radio.checked = true;
+  }
+
+  function use(name) {
+    if (!tools.has(name) || name === chosen) return;
+    const before = tools.get(chosen);
+    chosen = name;
+    before?.dropped?.();
+    const now = tools.get(name);
+    if (now.radio) now.radio.checked = true;
+    view.stage.style.cursor = now.cursor || 'default';
+    now.chosen?.();
+    lab.emit('tool', name);
+  }
+
+  function listen(stage) {
+    stage.addEventListener('pointerdown', down);
+    stage.addEventListener('pointermove', move);
+    stage.addEventListener('pointerup', up);
+    stage.addEventListener('pointercancel', up);
+    stage.addEventListener('pointerleave', () => {
+      readout.hidden = true;
+      tools.get(chosen)?.leave?.();
+    });
+    stage.addEventListener('wheel', wheel, {passive: false});
+    stage.addEventListener('keydown', key);
+    stage.addEventListener('keyup', (event) => { if (event.key === ' ') space = false; });
+    stage.addEventListener('blur', () => { space = false; });
+    stage.addEventListener('contextmenu', (event) => { if (drag) event.preventDefault(); });
+  }
+
+  function down(event) {
+    if (event.target.closest('button, input, select, a') || drag) return;
+    view.stage.focus({preventScroll: true});
+    const point = view.fromEvent(event);
+    const panning = event.button === 1 || (event.button === 0 && space);
+    if (!panning && event.button !== 0) return;
+    if (!panning && tools.get(chosen)?.down?.(point, event) === false) return;
+    drag = {id: event.pointerId, start: point, panning, x: event.clientX, y: event.clientY};
+    view.stage.setPointerCapture(event.pointerId);
+    event.preventDefault();
+  }
+
+  function move(event) {
+    const point = view.fromEvent(event);
+    read(point);
+    if (!drag) {
+      tools.get(chosen)?.hover?.(point, event);
+    } else if (event.pointerId === drag.id) {
+      if (drag.panning) {
+        view.pan(event.clientX - drag.x, event.clientY - drag.y);
+        Object.assign(drag, {x: event.clientX, y: event.clientY});
+      } else {
+        tools.get(chosen)?.move?.(point, event, drag.start);
+      }
+    }
+  }
+
+  function up(event) {
+    if (!drag || event.pointerId !== drag.id) return;
+    const {panning} = drag;
+    drag = null;
+    if (!panning) tools.get(chosen)?.up?.(view.fromEvent(event), event);
+  }
+
+  function wheel(event) {
+    const lines = event.deltaY * (event.deltaMode === 1 ? 16 : event.deltaMode === 2 ? 400 : 1);
+    if (event.ctrlKey || event.metaKey) {
+      const box = view.stage.getBoundingClientRect();
+      view.zoom(Math.exp(-lines / 400), {x: event.clientX - box.left, y: event.clientY - box.top});
+    } else if (tools.get(chosen)?.wheel) {
+      tools.get(chosen).wheel(view.fromEvent(event), event, lines);
+    } else {
+      view.pan(-event.deltaX, -lines);
+    }
+    event.preventDefault();
+  }
+
+  function key(event) {
+    if (event.target !== view.stage || event.altKey) return;
+    const arrows = {ArrowLeft: [PAN, 0], ArrowRight: [-PAN, 0], ArrowUp: [0, PAN], ArrowDown: [0, -PAN]};
+    const zooms = {'+': () => view.zoom(ZOOM), '=': () => view.zoom(ZOOM), '-': () => view.zoom(1 / ZOOM), 0: () => view.fit(), 1: () => view.actual()};
+    if (event.ctrlKey && arrows[event.key]) view.pan(...arrows[event.key]);
+    else if (event.ctrlKey || event.metaKey) return;
+    else if (event.key === ' ') space = true;
+    else if (zooms[event.key]) zooms[event.key]();
+    else if (!tools.get(chosen)?.key?.(event) && !view.camera?.key(event)) return;
+    event.preventDefault();
+  }
+
+  function read(point) {
+    const bytes = point.inside ? view.pixel(point.x, point.y) : null;
+    readout.hidden = !bytes;
+    if (!bytes) return;
+    const [r, g, b] = bytes;
+    readout.replaceChildren(
+      element('span', {class: 'swatch', style: {background: `rgb(${r} ${g} ${b})`}}),
+      element('span', {text: `x ${Math.floor(point.x)}  y ${Math.floor(point.y)}`}),
+      element('span', {text: `${r} ${g} ${b}`}), element('span', {text: `#${hex(r)}${hex(g)}${hex(b)}`}));
+  }
+}
