@@ -7,6 +7,10 @@ import {moveCamera} from './tool_orbit.js';
 const ORBIT = 5;
 const FINE_ORBIT = 1;
 const AXES = ['x', 'y', 'z'];
+const TURNS = {
+  around: ['Yaw: around to the left', 'Yaw: around to the right', 'Pitch: around, higher', 'Pitch: around, lower'],
+  spot: ['Yaw: look left', 'Yaw: look right', 'Pitch: look up', 'Pitch: look down'],
+};
 
 export function cameraBox(root, lab) {
   const settings = {length: memory.get('camera.length', 0.2), angle: memory.get('camera.angle', 5), around: memory.get('camera.around', true)};
@@ -16,22 +20,30 @@ export function cameraBox(root, lab) {
   };
   const once = (body) => moveCamera(lab, body, gesture('camera'));
   const step = (way) => once({step: way.map((x) => x * settings.length)});
-  const turn = (yaw, pitch) => once(settings.around ? {orbit: [-yaw * settings.angle, -pitch * settings.angle]} : {turn: [yaw * settings.angle, pitch * settings.angle]});
+  const turn = (right, up) => once(settings.around ? {orbit: [-right * settings.angle, up * settings.angle]} : {turn: [right * settings.angle, up * settings.angle]});
   const arrow = (name, drawing, act) => button(name, act, {icon: drawing, bare: true, small: true});
 
   const steps = element('div', {class: 'pad', role: 'group', 'aria-label': 'Step'},
     arrow('Step left', 'left', () => step([-1, 0, 0])), arrow('Step right', 'right', () => step([1, 0, 0])),
     arrow('Step up', 'up', () => step([0, 1, 0])), arrow('Step down', 'down', () => step([0, -1, 0])),
     arrow('Step forward', 'forward', () => step([0, 0, 1])), arrow('Step back', 'back', () => step([0, 0, -1])));
-  const turns = element('div', {class: 'pad', role: 'group', 'aria-label': 'Rotation'},
-    arrow('Yaw left', 'turnleft', () => turn(-1, 0)), arrow('Yaw right', 'turnright', () => turn(1, 0)),
-    arrow('Pitch up', 'tiltup', () => turn(0, 1)), arrow('Pitch down', 'tiltdown', () => turn(0, -1)));
+  const turned = [['turnleft', -1, 0], ['turnright', 1, 0], ['tiltup', 0, 1], ['tiltdown', 0, -1]]
+    .map(([drawing, right, up]) => arrow(' ', drawing, () => turn(right, up)));
+  const turns = element('div', {class: 'pad', role: 'group', 'aria-label': 'Rotation'}, turned);
+  const nameTurns = () => turned.forEach((node, index) => {
+    node.title = TURNS[settings.around ? 'around' : 'spot'][index];
+    node.querySelector('.visually-hidden').textContent = node.title;
+  });
   const length = number({label: 'Length', value: settings.length, min: 0.0001, max: 100000, unit: 'units', onchange: (x) => keep('length', x)});
   const angle = number({label: 'Angle', value: settings.angle, min: 0.001, max: 180, unit: '°', onchange: (x) => keep('angle', x)});
   const how = choice({
     label: 'Rotation', radios: true, choices: [['around', 'Around target'], ['spot', 'On the spot']], value: settings.around ? 'around' : 'spot',
-    onchange: (word) => keep('around', word === 'around'),
+    onchange: (word) => {
+      keep('around', word === 'around');
+      nameTurns();
+    },
   });
+  nameTurns();
   const fields = element('div', {class: 'camera-fields'});
   const box = element('div', {class: 'camera-box', hidden: true, role: 'region', 'aria-label': 'Camera'},
     element('div', {class: 'camera-part'}, length.node, steps),
@@ -100,7 +112,7 @@ function createFields(root, lab) {
 
 function createKeys(lab, settings) {
   const ways = {a: [-1, 0, 0], d: [1, 0, 0], e: [0, 1, 0], q: [0, -1, 0], w: [0, 0, 1], s: [0, 0, -1]};
-  const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+  const arrows = {ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
   let held = null;
   lab.view.stage.addEventListener('keyup', () => { held = null; });
 

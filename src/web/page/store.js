@@ -5,7 +5,8 @@
  *   lab.state, lab.scene, lab.picture, lab.slime, lab.study    what came last; null before
  *   lab.wanted                          the newest generation that is known of: older pictures are not shown
  *   lab.connected                       'opening', 'open', 'lost' or 'refused'
- *   lab.on(name, f) -> end()            names: state, scene, picture (a pass was drawn), news (a pass is there), slime, study, connection, view
+ *   lab.on(name, f) -> end()            names: state, scene, picture (a pass was drawn), news (a pass is there), slime, study, connection,
+ *                                       afresh (another server: what was known is void), view (the picture's place changed), tool, panel (one was chosen)
  *   lab.emit(name, value)
  *   lab.param(path)                     the row of that parameter; undefined: the scene has none
  *   lab.object(name)                    the object of that name; undefined
@@ -156,13 +157,11 @@ export function createLab() {
       const state = await api.get('/api/state');
       if (stream !== mine) return;
       if (!lab.state || state.generation < lab.state.generation || lab.connected !== 'open') {
-        lab.wanted = 0;
-        lab.news = null;
-        lab.scene = null;
+        Object.assign(lab, {wanted: 0, news: null, scene: null});
+        emit('afresh', null);
       }
       connection('open');
       receive('state', state);
-      emit('news', null);
     } catch (error) {
       if (stream === mine && error.status !== 401 && error.status !== 0) lab.fail(error);
     }
@@ -174,7 +173,7 @@ export function createLab() {
       lab.state = value;
       lab.slime = value.slime;
       lab.study = value.study;
-      if (value.picture) lab.news = value.picture;
+      if (value.picture && !(lab.news?.serial > value.picture.serial)) lab.news = value.picture;
       emit('state', value);
       if (!lab.scene || lab.scene.generation < value.generation) fetchScene();
     } else if (name === 'picture') {

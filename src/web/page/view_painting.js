@@ -1,7 +1,8 @@
-/* Fetches the newest pass and draws it. A picture that is older than what was asked for (lab.wanted), or than the one that is shown, is never drawn.
+/* Fetches the newest pass and draws it. A picture that is older than what was asked for (lab.wanted), or than the one that is shown, is never drawn;
+ * serials say which is newer, also where a slime moves within one generation.
  * exports: createPainting(canvas, view, place, lab) -> {paint, pixel, show} */
 
-const newer = (a, b) => !b || a.generation > b.generation || (a.generation === b.generation && a.pass > b.pass);
+const newer = (a, b) => Boolean(a) && (!b || a.serial > b.serial);
 
 export function createPainting(canvas, view, place, lab) {
   const context = canvas.getContext('2d', {alpha: true});
@@ -13,39 +14,35 @@ export function createPainting(canvas, view, place, lab) {
   let fetching = false;
   let frame = 0;
 
-  lab.on('news', (news) => {
-    if (!news) {
-      shown = null;
-      told.clear();
-      load();
-      return;
-    }
-    remember(news);
-    if (shown && news.generation === shown.generation && news.pass === shown.pass) publish();
-    else if (newer(news, shown) && news.generation >= lab.wanted) load();
+  lab.on('afresh', () => {
+    shown = null;
+    told.clear();
   });
-  lab.on('state', (state) => {
-    if (state.picture) remember(state.picture);
-    if (state.picture && newer(state.picture, shown) && state.picture.generation >= lab.wanted) load();
-  });
+  lab.on('news', hear);
+  lab.on('state', (state) => { if (state.picture) hear(state.picture); });
   return {paint: () => { frame ||= requestAnimationFrame(paint); }, pixel, show};
 
-  function remember(news) {
-    const key = `${news.generation}/${news.pass}`;
-    told.set(key, {...told.get(key), ...news});
+  function due() {
+    return newer(lab.news, shown) && lab.news.generation >= lab.wanted;
+  }
+
+  function hear(news) {
+    const more = !told.has(news.serial) || news.noise !== undefined;
+    told.set(news.serial, {...told.get(news.serial), ...news});
     if (told.size > 12) told.delete(told.keys().next().value);
+    if (shown?.serial === news.serial && more) publish();
+    else if (due()) load();
   }
 
   async function load() {
     if (fetching) return;
     fetching = true;
-    let more = true;
-    while (more) {
-      more = false;
+    let last = null;
+    while (due() && newer(lab.news, last)) {
       try {
         const {blob, headers} = await lab.blob('/api/picture.png');
         const head = {
-          generation: Number(headers.get('X-Cuvette-Generation')), pass: Number(headers.get('X-Cuvette-Pass')),
+          serial: Number(headers.get('X-Cuvette-Serial')), generation: Number(headers.get('X-Cuvette-Generation')), pass: Number(headers.get('X-Cuvette-Pass')),
           final: headers.get('X-Cuvette-Final') === '1',
         };
         if (head.generation >= lab.wanted && newer(head, shown)) {
@@ -53,8 +50,9 @@ export function createPainting(canvas, view, place, lab) {
           if (head.generation >= lab.wanted) draw(next, head);
           else next.close();
         }
-        more = Boolean(lab.news && newer(lab.news, shown) && lab.news.generation >= lab.wanted && newer(lab.news, head));
+        last = head;
       } catch (error) {
+        last = lab.news;
         if (error.status !== 404 && error.status !== 0 && error.status !== 401) lab.fail(error);
       }
     }
@@ -69,7 +67,7 @@ export function createPainting(canvas, view, place, lab) {
   }
 
   function publish() {
-    const about = told.get(`${shown.generation}/${shown.pass}`) || {};
+    const about = told.get(shown.serial) || {};
     const width = about.full_width || (shown.final ? bitmap.width : view.width || bitmap.width);
     const height = about.full_height || (shown.final ? bitmap.height : view.height || bitmap.height);
     const resized = width !== view.width || height !== view.height;

@@ -1,0 +1,185 @@
+/* The control for one parameter, by its type.
+ * exports: controlOf(row, context) -> {node, inputs, single, busy(), set(value)}
+ *   context: {name (for screen readers), describedby, send(value, gesture), names: words that may be meant}
+ *   single: the one input that a label belongs to, or null for a group; busy: it is being dragged */
+
+import {element, gesture, toByte, toLinear, unique} from './ui.js';
+import {scale} from './ui_controls.js';
+import {workingRange} from './param_range.js';
+
+const CHANNELS = ['red', 'green', 'blue'];
+const AXES = ['x', 'y', 'z'];
+const COEFFICIENT = 1e6;    /* colours whose bound is beyond this are coefficients by channel */
+
+export const written = (x) => (Number.isFinite(x) ? String(Number(x.toPrecision(7))) : '');
+const digitsOf = (x, n) => Number(x.toPrecision(n));
+
+function attributes(context, label) {
+  return {id: unique('param'), 'aria-label': label || context.name, 'aria-describedby': context.describedby};
+}
+
+/* A number field that gives back what was last sent where it is left empty. */
+function numberInput(context, label, onvalue) {
+  const input = element('input', {type: 'number', class: 'input numeric', step: 'any', ...attributes(context, label)});
+  let last = null;
+  input.addEventListener('change', () => {
+    if (Number.isFinite(input.valueAsNumber)) onvalue(input.valueAsNumber);
+    else input.value = written(last);
+  });
+  return {
+    input,
+    set(value) {
+      last = value;
+      input.value = written(value);
+    },
+  };
+}
+
+function slider(row, context, label, send) {
+  let ruler = null;
+  let mine = null;
+  const range = element('input', {type: 'range', class: 'range', min: 0, step: 1, ...attributes(context, label)});
+  const box = numberInput(context, `${label || context.name}, number`, (value) => {
+    show(value);
+    send(value, gesture('number'));
+  });
+  const fit = (value) => {
+    ruler = {...workingRange(row, value)};
+    Object.assign(ruler, scale({...ruler, step: ruler.step || undefined}));
+    range.max = ruler.steps;
+  };
+  const show = (value) => {
+    if (!ruler || value > ruler.max || value < ruler.min) fit(value);
+    range.value = ruler.position(value);
+    range.setAttribute('aria-valuetext', `${written(value)}${row.unit ? ` ${row.unit}` : ''}`);
+    range.style.setProperty('--filled', `${100 * range.value / ruler.steps}%`);
+  };
+  range.addEventListener('input', () => {
+    mine ??= gesture('slider');
+    const value = ruler.value(Number(range.value));
+    show(value);
+    box.set(value);
+    send(value, mine);
+  });
+  range.addEventListener('change', () => { mine = null; });
+  return {
+    nodes: [range, box.input], inputs: [range, box.input], busy: () => mine !== null,
+    set(value) {
+      show(value);
+      if (document.activeElement !== box.input) box.set(value);
+    },
+  };
+}
+
+function scalar(row, context) {
+  const one = slider(row, context, null, context.send);
+  return {...one, node: element('span', {class: 'param-slider'}, one.nodes), single: one.inputs[0]};
+}
+
+function parts(row, context, names, make) {
+  let value = [...row.value];
+  const send = (index) => (x, name) => {
+    value = value.map((old, at) => (at === index ? x : old));
+    context.send(value, name || gesture('number'));
+  };
+  const all = names.map((name, index) => make(`${context.name}, ${name}`, send(index)));
+  return {all, set(next) {
+    value = [...next];
+    all.forEach((part, index) => part.set(value[index]));
+  }};
+}
+
+function vector(row, context) {
+  const three = parts(row, context, AXES, (label, send) => {
+    const part = numberInput(context, label, send);
+    return {...part, set(x) { if (document.activeElement !== part.input) part.set(x); }};
+  });
+  const node = element('span', {class: 'param-vector'}, three.all.map((part, index) => element('span', {class: 'param-axis'},
+    element('span', {class: 'axis', 'aria-hidden': 'true', text: AXES[index]}), part.input)));
+  return {node, inputs: three.all.map((part) => part.input), single: null, busy: () => false, set: three.set};
+}
+
+function channels(row, context) {
+  const three = parts(row, context, CHANNELS, (label, send) => slider(row, context, label, send));
+  const node = element('span', {class: 'param-channels'}, three.all.map((part, index) => element('span', {class: 'param-slider'},
+    element('span', {class: `axis channel-${CHANNELS[index]}`, 'aria-hidden': 'true', text: CHANNELS[index][0]}), part.nodes)));
+  return {node, inputs: three.all.flatMap((part) => part.inputs), single: null, busy: () => three.all.some((part) => part.busy()), set: three.set};
+}
+
+const hex = (value, bright) => `#${value.map((x) => toByte(x / bright).toString(16).padStart(2, '0')).join('')}`;
+
+/* The picker knows colours up to 1: brighter ones are shown, and chosen, divided by their largest channel. */
+function colour(row, context) {
+  let bright = 1;
+  let mine = null;
+  const picker = element('input', {type: 'color', ...attributes(context, `${context.name}, colour`)});
+  const three = parts(row, context, CHANNELS, (label, send) => {
+    const part = numberInput(context, `${label}, linear`, send);
+    return {...part, set(x) { if (document.activeElement !== part.input) part.set(x); }};
+  });
+  const set = (value) => {
+    bright = Math.max(1, ...value);
+    if (mine === null) picker.value = hex(value, bright);
+    three.set(value);
+  };
+  picker.addEventListener('input', () => {
+    mine ??= gesture('colour');
+    const value = [1, 3, 5].map((at) => digitsOf(toLinear(parseInt(picker.value.slice(at, at + 2), 16)) * bright, 4));
+    three.set(value);
+    context.send(value, mine);
+  });
+  picker.addEventListener('change', () => { mine = null; });
+  const node = element('span', {class: 'param-colour'}, picker, three.all.map((part) => part.input));
+  return {node, inputs: [picker, ...three.all.map((part) => part.input)], single: null, busy: () => mine !== null, set};
+}
+
+function switches(row, context) {
+  const name = unique('switch');
+  const inputs = [...row.choices].reverse().map((word) => {
+    const input = element('input', {type: 'radio', name, value: word, class: 'visually-hidden', 'aria-describedby': context.describedby});
+    input.addEventListener('change', () => context.send(word, gesture('choice')));
+    return input;
+  });
+  const node = element('span', {class: 'segments'}, inputs.map((input) => element('label', {class: 'segment'}, input, element('span', {text: input.value}))));
+  return {node, inputs, single: null, busy: () => false, set(value) { for (const input of inputs) input.checked = input.value === value; }};
+}
+
+function words(row, context) {
+  const integer = row.type === 'integer';
+  const input = element('select', {class: 'input select', ...attributes(context)}, row.choices.map((word) => element('option', {value: word, text: word})));
+  input.addEventListener('change', () => context.send(integer ? Number(input.value) : input.value, gesture('choice')));
+  return {node: input, inputs: [input], single: input, busy: () => false, set(value) { input.value = String(value); }};
+}
+
+const listText = (value) => (Array.isArray(value) ? value.map(written).join(', ') : String(value));
+
+function text(row, context) {
+  const list = row.type === 'list';
+  const known = context.names?.length ? element('datalist', {id: unique('known')}, context.names.map((word) => element('option', {value: word}))) : null;
+  const input = element('input', {
+    type: 'text', class: 'input', spellcheck: 'false', autocomplete: 'off', placeholder: list ? 'numbers, with commas' : 'none', list: known?.id, ...attributes(context),
+  });
+  const read = () => {
+    const pieces = input.value.split(/[,;\s]+/).filter(Boolean);
+    return list ? pieces.map((piece) => (Number.isFinite(Number(piece)) ? Number(piece) : piece)) : input.value.trim();
+  };
+  input.addEventListener('change', () => context.send(read(), gesture('text')));
+  return {
+    node: element('span', {class: 'param-text'}, input, known), inputs: [input], single: input, busy: () => false,
+    set(value) { if (document.activeElement !== input) input.value = listText(value); },
+  };
+}
+
+export function controlOf(row, context) {
+  const made = maker(row)(row, context);
+  made.set(row.value);
+  return made;
+}
+
+function maker(row) {
+  if (row.choices) return row.choices.length === 2 && row.choices[0] === 'off' && row.choices[1] === 'on' ? switches : words;
+  if (row.type === 'color') return row.highest > COEFFICIENT ? channels : colour;
+  if (row.type === 'vector') return vector;
+  if (row.type === 'real' || row.type === 'integer') return scalar;
+  return text;
+}

@@ -1,0 +1,111 @@
+/* One parameter: its name, control, unit, way back to its first value, what it means, and why a value was refused.
+ * exports: createRow(row, lab, {onabout(row), long}) -> {node, path, update(row, generation), same(row)}
+ *   long: the label is the whole path; same: the row can be shown by what is there */
+
+import {button, element, unique} from './ui.js';
+import {controlOf, written} from './param_controls.js';
+
+const labelOf = (name) => name.replaceAll('_', ' ');
+const kindOf = (row) => `${row.type}|${row.choices || ''}|${row.lowest}|${row.highest}`;
+const equal = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+export function valueText(value) {
+  if (Array.isArray(value)) return value.length ? value.map(valueText).join(', ') : 'none';
+  if (typeof value === 'number') return written(value);
+  return value === '' || value === null ? 'none' : String(value);
+}
+
+export function createRow(first, lab, {onabout, long} = {}) {
+  const {path} = first;
+  const object = path.slice(0, path.length - first.name.length - 1);
+  const meaning = element('span', {class: 'param-meaning', id: unique('meaning'), text: `${first.meaning}. ${first.range}; default ${valueText(first.default)}`});
+  const problem = element('p', {class: 'param-problem', role: 'alert', hidden: true});
+  const label = element('label', {class: 'param-label', title: path, text: long ? path : labelOf(first.name)});
+  const reset = button(`Reset ${path}`, undo, {icon: 'reset', bare: true, small: true, kind: 'quiet'});
+  let known = first;
+  let waiting = 0;
+  let settled = 0;
+
+  const control = controlOf(first, {
+    name: `${object} ${labelOf(first.name)}`, describedby: meaning.id, send,
+    names: (lab.scene?.objects || []).filter((each) => each.kind === first.name).map((each) => each.name),
+  });
+  label.id = unique('label');
+  if (control.single) label.htmlFor = control.single.id;
+  const node = element('div', {
+    class: 'param', role: control.single ? null : 'group', 'aria-label': control.single ? null : `${object} ${labelOf(first.name)}`,
+    'aria-describedby': control.single ? null : meaning.id, dataset: {path},
+  }, control.single ? label : element('span', {class: 'param-label', title: path, text: label.textContent}),
+  element('div', {class: 'param-control'}, control.node, first.unit ? element('span', {class: 'unit', text: shortUnit(first.unit), title: first.unit}) : null),
+  reset, meaning, problem);
+  node.addEventListener('pointerenter', () => onabout?.(known));
+  node.addEventListener('focusin', () => onabout?.(known));
+  showReset();
+  return {node, path, update, same: (row) => kindOf(row) === kindOf(known)};
+
+  function shortUnit(unit) {
+    return unit === 'scene units' ? 'u' : unit === 'deg' ? '°' : unit;
+  }
+
+  function showReset() {
+    const away = known.initial !== undefined && known.initial !== null && !equal(known.value, known.initial);
+    reset.classList.toggle('unseen', !away);
+    reset.disabled = !away;
+    reset.title = away ? `Back to ${valueText(known.initial)}` : '';
+    node.classList.toggle('changed', away);
+  }
+
+  function refuse(error) {
+    problem.hidden = !error;
+    problem.textContent = error ? [error.message, error.remedy].filter(Boolean).join('. ') : '';
+    for (const input of control.inputs) {
+      if (error) input.setAttribute('aria-invalid', 'true');
+      else input.removeAttribute('aria-invalid');
+    }
+  }
+
+  async function send(value, gesture) {
+    waiting += 1;
+    let error = null;
+    try {
+      const reply = await lab.set({[path]: value}, gesture);
+      settled = Math.max(settled, reply.generation || 0);
+      known = {...known, value};
+    } catch (caught) {
+      error = caught;
+    }
+    waiting -= 1;
+    if (waiting) return;
+    if (error && error.status !== 0 && error.status !== 401) refuse(error);
+    else refuse(null);
+    if (error) {
+      known = lab.param(path) || known;
+      force(known.value);
+    }
+    showReset();
+  }
+
+  /* Also into the field that is being written in. */
+  function force(value) {
+    const held = document.activeElement;
+    if (control.inputs.includes(held)) held.blur();
+    control.set(value);
+    if (control.inputs.includes(held)) held.focus({preventScroll: true});
+  }
+
+  function undo() {
+    refuse(null);
+    lab.change('/api/reset', {paths: [path]}).catch(refuse);
+    (control.single || control.inputs[0]).focus();
+  }
+
+  /* What was sent from here is newer than a scene that was asked for before. */
+  function update(row, generation) {
+    if (waiting || control.busy() || generation < settled) return;
+    const changed = !equal(row.value, known.value);
+    known = row;
+    control.set(row.value);
+    if (changed) refuse(null);
+    showReset();
+  }
+}
