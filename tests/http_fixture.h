@@ -8,6 +8,7 @@
 #include <arpa/inet.h>
 #include <stdbool.h>
 #include <dirent.h>
+#include <errno.h>
 #include <netinet/in.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,6 +52,8 @@ static inline char *client_read_all(int fd)
         if (room - size < 4096)
             text = realloc(text, room = 2 * room + 8192);
         const ssize_t got = recv(fd, text + size, room - size - 1, 0);
+        if (got < 0 && errno == EINTR) /* a child of the server's ended: the limit on the time keeps the call from going on by itself */
+            continue;
         if (got <= 0)
             break;
         size += (size_t)got;

@@ -213,9 +213,9 @@ static status load_alone(lab *l, const char *file, bool is_model, scene **out, d
     if (code == STATUS_OK && !s)
         code = diagnose(why, STATUS_FAILURE, "", "memory is out");
     if (code == STATUS_OK)
-        code = is_model ? scene_add_mesh(s, "it", NULL, why) : scene_add_texture(s, "it", NULL, why);
+        code = is_model ? scene_add_mesh(s, "model", NULL, why) : scene_add_texture(s, "picture", NULL, why);
     if (code == STATUS_OK)
-        code = scene_set(s, "it.file", path, why);
+        code = scene_set(s, is_model ? "model.file" : "picture.file", path, why);
     if (code == STATUS_OK)
         code = scene_load(s, why);
     if (code == STATUS_OK && is_model && s->meshes[0].data->triangle_count > DESK_TRIANGLES_MAX)

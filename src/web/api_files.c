@@ -141,9 +141,9 @@ static void save_file(void *context, const http_request *q, http_reply *r)
         json_decref(body);
         return;
     }
-    const status code = is_scene_name(name) ? folder_path(l->files, name, false, &path, &why)
-                                            : diagnose(&why, STATUS_BAD_INPUT, "let it end in .yaml, and no part of it begin with a dot",
-                                                       "'%.200s' is no name for a scene", name);
+    status code = folder_path(l->files, name, false, &path, &why);
+    if (code == STATUS_OK && !is_scene_name(name))
+        code = diagnose(&why, STATUS_BAD_INPUT, "let it end in .yaml, and no part of it begin with a dot", "'%.200s' is no name for a scene", name);
     if (code != STATUS_OK)
         http_reply_diagnostic(r, code, &why);
     else if (!replace && access(path, F_OK) == 0 && !is_open(l, name))

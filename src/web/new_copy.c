@@ -5,6 +5,7 @@
 #include "scene/params_path.h"
 #include "web/spot.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,9 +14,38 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "memory is out");
 }
 
-/* Far enough beside it that both are seen; of a plane behind its surface, where it changes nothing before it is moved. */
+static vec3 rounded(vec3 v, double size)
+{
+    return vec3_make(spot_round(v.x, size), spot_round(v.y, size), spot_round(v.z, size));
+}
+
+/* From it to where a second one is seen and stands free, or nearly so: to a side, or behind or before it. */
+static vec3 step_beside(const scene *s, const spot *where, vec3 centre, double radius)
+{
+    static const double ways[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {2, 0}, {-2, 0}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}, {0, 2}};
+    vec3 best = where->right;
+    double least = INFINITY;
+    for (size_t i = 0; i < sizeof ways / sizeof *ways && least > 0.0; i++) {
+        vec3 step = vec3_add(vec3_scale(where->right, 2.1 * radius * ways[i][0]), vec3_scale(where->away, 2.1 * radius * ways[i][1]));
+        step = rounded(step, radius);
+        const double deep = spot_overlap(s, vec3_add(centre, step), radius);
+        if (deep < least) {
+            least = deep;
+            best = step;
+        }
+    }
+    return best;
+}
+
+/* A plane's stands behind its surface, where it changes nothing before it is moved. */
 static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
 {
+    const spot where = spot_of(s);
+    const vec3 normal = mat3_apply(rotation_from_deg(s->solids[of].shape.rotation_deg), vec3_make(0, 1, 0));
+    vec3 centre, step = rounded(vec3_scale(normal, -where.size), where.size);
+    double radius;
+    if (spot_ball(s, &s->solids[of], &centre, &radius))
+        step = step_beside(s, &where, centre, radius);
     size_t index;
     const status code = scene_add_solid(s, name, s->solids[of].shape.kind, &index, why);
     if (code != STATUS_OK)
@@ -23,12 +53,6 @@ static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
     char *own = s->solids[index].name;
     s->solids[index] = s->solids[of];
     s->solids[index].name = own;
-    const spot where = spot_of(s);
-    vec3 centre, step = vec3_scale(mat3_apply(rotation_from_deg(s->solids[of].shape.rotation_deg), vec3_make(0, 1, 0)), -where.size);
-    double radius;
-    if (spot_ball(s, &s->solids[of], &centre, &radius))
-        step = vec3_scale(where.right, 2.1 * radius);
-    step = vec3_make(spot_round(step.x, where.size), spot_round(step.y, where.size), spot_round(step.z, where.size));
     return scene_move(s, name, step, why);
 }
 
@@ -42,8 +66,7 @@ static status copy_light(scene *s, size_t of, const char *name, diagnostic *why)
     s->lights[index] = s->lights[of];
     s->lights[index].name = own;
     const spot where = spot_of(s);
-    const vec3 step = vec3_scale(where.right, where.size);
-    return scene_move(s, name, vec3_make(spot_round(step.x, where.size), 0, spot_round(step.z, where.size)), why);
+    return scene_move(s, name, rounded(vec3_scale(where.right, where.size), where.size), why);
 }
 
 static status copy_material(scene *s, size_t of, const char *name, diagnostic *why)

@@ -149,6 +149,8 @@ status new_solid(scene *s, shape_kind shape, const char *wanted, object_name nam
         s->solids[s->solid_count - 1].visible = 1;
     }
     put_look(s, &code, why, name, count);
+    if (shape == SHAPE_PLANE)
+        put(s, &code, why, name, "color", "0.72,0.7,0.66");
     return code;
 }
 

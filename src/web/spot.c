@@ -111,8 +111,7 @@ spot spot_of(const scene *s)
     return where;
 }
 
-/* How deep a ball would lie in others, all together. */
-static double overlap(const scene *s, vec3 centre, double radius)
+double spot_overlap(const scene *s, vec3 centre, double radius)
 {
     double sum = 0.0;
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -136,7 +135,7 @@ vec3 spot_free(const scene *s, const spot *where, double size)
         at.z = spot_round(at.z, size);
         if (!spot_ground(s, at.x, at.z, &at.y))
             at.y = spot_round(at.y - 0.5 * size, size);
-        const double deep = overlap(s, vec3_add(at, vec3_make(0, 0.5 * size, 0)), 0.5 * size);
+        const double deep = spot_overlap(s, vec3_add(at, vec3_make(0, 0.5 * size, 0)), 0.5 * size);
         if (deep < least) {
             least = deep;
             best = at;

@@ -1,0 +1,497 @@
+/* Files and objects of a running laboratory: nothing outside of its folder is read or written, what is saved and opened again makes the same film, and objects
+ * come, change and go whole or not at all. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "http_fixture.h"
+#include "image/image.h"
+#include "web/lab.h"
+#include <jansson.h>
+#include <math.h>
+#include <sys/stat.h>
+
+static const char small[] = "title: A ball\n"
+                            "render: {width: 48, height: 36}\n"
+                            "camera: {position: [0, 1, -6], target: [0, 1, 0]}\n"
+                            "materials: {stone: {color: [0.5, 0.5, 0.5], diffuse: 0.7, ambient: 0.2}}\n"
+                            "lights: {lamp: {position: [4, 8, -6]}, beam: {kind: cone, position: [0, 5, 0], target: [0, 0, 0]}}\n"
+                            "solids: {ground: {shape: plane, material: stone}, ball: {shape: sphere, position: [0, 1, 0], diffuse: 0.8, color: [0.8, 0.2, 0.1]}}\n";
+static const char tetrahedron[] = "v 0 0 0\nv 20 0 0\nv 0 20 0\nv 0 0 20\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+typedef struct room { char *above, *inside; lab *l; int port; char token[64]; } room;
+
+static void put(const room *r, const char *name, const char *text)
+{
+    char *path = text_format("%s/%s", r->above, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    free(path);
+}
+
+static bool is_there(const room *r, const char *name)
+{
+    char *path = text_format("%s/%s", r->above, name);
+    const bool is = access(path, F_OK) == 0;
+    free(path);
+    return is;
+}
+
+static void start(room *r)
+{
+    char *ball = text_format("%s/deep/ball.yaml", r->inside);
+    const lab_settings settings = {.folder = r->inside, .scene = ball, .results = r->inside, .level = ISA_SSE2, .threads = 1};
+    diagnostic why = {.what = ""};
+    if (lab_start(&settings, &r->l, &why) != STATUS_OK)
+        fail_msg("%s", why.what);
+    assert_int_equal(sscanf(lab_address(r->l), "http://127.0.0.1:%d/?token=%63s", &r->port, r->token), 2);
+    free(ball);
+}
+
+static void make_folder(const char *path)
+{
+    assert_int_equal(mkdir(path, 0700), 0);
+}
+
+static int enter(void **state)
+{
+    room *r = calloc(1, sizeof *r);
+    char place[] = "/tmp/cuvette-edit-XXXXXX";
+    r->above = strdup(mkdtemp(place));
+    r->inside = text_format("%s/lab", r->above);
+    make_folder(r->inside);
+    char *deep = text_format("%s/deep", r->inside), *picture_path = text_format("%s/picture.png", r->inside), *outside = text_format("%s/outside.png", r->above);
+    make_folder(deep);
+    image *picture = NULL;
+    assert_int_equal(image_create(4, 2, &picture, NULL), STATUS_OK);
+    assert_int_equal(image_write(picture, picture_path, 8, NULL), STATUS_OK);
+    assert_int_equal(image_write(picture, outside, 8, NULL), STATUS_OK);
+    image_destroy(picture);
+    free(deep);
+    free(picture_path);
+    free(outside);
+    put(r, "lab/deep/ball.yaml", small);
+    put(r, "lab/deep/Two sides.obj", tetrahedron);
+    put(r, "outside.yaml", small);
+    put(r, "outside.obj", tetrahedron);
+    put(r, "lab/climbs.yaml", "background: {picture: ../outside.png}\n");
+    put(r, "lab/climbs2.yaml", "meshes: {m: {file: ../outside.obj}}\nsolids: {s: {shape: mesh, mesh: m}}\n");
+    put(r, "lab/wrong.yaml", "solids: {ball: {shape: sphere,\n  radios: 3}}\n");
+    start(r);
+    *state = r;
+    return 0;
+}
+
+static int leave(void **state)
+{
+    room *r = *state;
+    lab_stop(r->l);
+    char *command = text_format("rm -r '%s'", r->above);
+    assert_int_equal(system(command), 0);
+    free(command);
+    free(r->inside);
+    free(r->above);
+    free(r);
+    return 0;
+}
+
+/* The reply's JSON, which code must be that of; a new reference. */
+static json_t *ask(const room *r, int code, const char *method, const char *target, const char *body)
+{
+    char *heads = text_format("Host: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\nContent-Type: application/json\r\n", r->port, r->token);
+    char *reply = client_ask_as(r->port, method, target, heads, body);
+    if (reply_code(reply) != code)
+        fail_msg("%s %s %s: %d expected, and the reply is %.700s", method, target, body ? body : "", code, reply);
+    json_t *value = json_loads(reply_body(reply), JSON_DECODE_ANY, NULL);
+    if (code >= 400)
+        assert_true(json_is_string(json_object_get(value, "error")) && json_is_string(json_object_get(value, "remedy")));
+    free(reply);
+    free(heads);
+    return value;
+}
+
+static void tell(const room *r, int code, const char *method, const char *target, const char *body)
+{
+    json_decref(ask(r, code, method, target, body));
+}
+
+static json_int_t generation(const room *r)
+{
+    json_t *state = ask(r, 200, "GET", "/api/state", NULL);
+    const json_int_t number = json_integer_value(json_object_get(state, "generation"));
+    json_decref(state);
+    return number;
+}
+
+/* A text of the state, "" for null; static memory. */
+static const char *told(const room *r, const char *key, char text[256])
+{
+    json_t *state = ask(r, 200, "GET", "/api/state", NULL);
+    const char *value = json_string_value(json_object_get(state, key));
+    snprintf(text, 256, "%s", value ? value : "");
+    json_decref(state);
+    return text;
+}
+
+/* Hash of the final film of what is on the desk. */
+static void film(const room *r, char hash[64])
+{
+    tell(r, 200, "GET", "/api/picture.png?wait=1", NULL);
+    json_t *state = ask(r, 200, "GET", "/api/state", NULL), *picture = json_object_get(state, "picture");
+    assert_true(json_is_null(json_object_get(state, "trouble")));
+    assert_true(json_is_true(json_object_get(picture, "final")));
+    snprintf(hash, 64, "%s", json_string_value(json_object_get(picture, "film_hash")));
+    assert_true(hash[0]);
+    json_decref(state);
+}
+
+static json_t *find(const room *r, const char *list, const char *key, const char *name)
+{
+    json_t *all = ask(r, 200, "GET", "/api/scene", NULL), *found = NULL, *item;
+    size_t i;
+    json_array_foreach(json_object_get(all, list), i, item)
+        if (strcmp(json_string_value(json_object_get(item, key)), name) == 0)
+            found = json_incref(item);
+    json_decref(all);
+    return found;
+}
+
+static bool has_object(const room *r, const char *name)
+{
+    json_t *object = find(r, "objects", "name", name);
+    json_decref(object);
+    return object != NULL;
+}
+
+static const char *word_of(const room *r, const char *object_name, const char *key, char text[64])
+{
+    json_t *object = find(r, "objects", "name", object_name);
+    const char *word = json_string_value(json_object_get(object, key));
+    snprintf(text, 64, "%s", word ? word : "");
+    json_decref(object);
+    return text;
+}
+
+static double value(const room *r, const char *path, size_t index)
+{
+    json_t *row = find(r, "params", "path", path), *v = json_object_get(row, "value");
+    const double number = json_number_value(json_is_array(v) ? json_array_get(v, index) : v);
+    json_decref(row);
+    return number;
+}
+
+static void test_files(void **state)
+{
+    const room *r = *state;
+    json_t *files = ask(r, 200, "GET", "/api/files", NULL);
+    assert_string_equal(json_string_value(json_object_get(files, "folder")), "lab");
+    assert_int_equal(json_array_size(json_object_get(files, "scenes")), 4);
+    assert_string_equal(json_string_value(json_array_get(json_object_get(files, "models"), 0)), "deep/Two sides.obj");
+    assert_string_equal(json_string_value(json_object_get(files, "prefix")), "../");
+    json_decref(files);
+    /* With its prefix a name is a path as the scene gives it. */
+    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
+    char hash[64];
+    film(r, hash);
+    json_t *media = ask(r, 200, "GET", "/api/media", NULL);
+    assert_true(json_array_size(media) > 10 || json_object_size(media) > 0);
+    json_decref(media);
+}
+
+static void test_open_refuses(void **state)
+{
+    const room *r = *state;
+    const json_int_t before = generation(r);
+    static const char *const bad[] = {
+        "{\"file\": \"../outside.yaml\"}", "{\"file\": \"deep/../../outside.yaml\"}", "{\"file\": \"/etc/passwd\"}", "{\"file\": \"\"}", "{\"file\": 3}", "{}",
+        "[]", "{\"file\": \"deep\"}", "{\"file\": \"climbs.yaml\"}", "{\"file\": \"climbs2.yaml\"}", "{\"new\": true, \"file\": \"deep/ball.yaml\"}", "{\"new\": 1}",
+        "{\"file\": \"picture.png\"}", "{\"file\"",
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        tell(r, 400, "POST", "/api/open", bad[i]);
+    tell(r, 404, "POST", "/api/open", "{\"file\": \"none.yaml\"}");
+    json_t *why = ask(r, 400, "POST", "/api/open", "{\"file\": \"wrong.yaml\"}");
+    assert_int_equal(json_integer_value(json_object_get(why, "line")), 2);
+    json_decref(why);
+    assert_int_equal(generation(r), before);
+}
+
+static void test_open_and_undo(void **state)
+{
+    const room *r = *state;
+    char first[64], hash[64], text[256];
+    film(r, first);
+    tell(r, 200, "POST", "/api/open", "{\"new\": true}");
+    assert_string_equal(told(r, "file", text), "");
+    assert_string_equal(told(r, "title", text), "A new scene");
+    tell(r, 200, "POST", "/api/set", "{\"set\": {\"render.width\": 40, \"render.height\": 30}}");
+    film(r, hash);
+    assert_string_not_equal(hash, first);
+    tell(r, 200, "POST", "/api/undo", "{}");
+    tell(r, 200, "POST", "/api/undo", "{}");
+    assert_string_equal(told(r, "file", text), "deep/ball.yaml");
+    film(r, hash);
+    assert_string_equal(hash, first);
+    tell(r, 200, "POST", "/api/open", "{\"file\": \"deep/ball.yaml\"}");
+    film(r, hash);
+    assert_string_equal(hash, first);
+}
+
+static void test_save(void **state)
+{
+    const room *r = *state;
+    static const char *const bad[] = {"{\"file\": \"../new.yaml\"}", "{\"file\": \"/tmp/new.yaml\"}", "{\"file\": \"none/new.yaml\"}", "{\"file\": \"new.txt\"}",
+                                      "{\"file\": \"new\"}", "{\"file\": \".new.yaml\"}", "{\"file\": \"-\"}", "{\"file\": \"\"}", "{}",
+                                      "{\"file\": \"new.yaml\", \"replace\": \"yes\"}", "{\"file\": \"deep\", \"replace\": true}"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        tell(r, 400, "POST", "/api/save", bad[i]);
+    assert_false(is_there(r, "new.yaml"));
+    char before[64], after[64], text[256];
+    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\"}");
+    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
+    film(r, before);
+    tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
+    tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": false}");
+    tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": true}"); /* whose paths are now from another folder */
+    assert_string_equal(told(r, "file", text), "wrong.yaml");
+    tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
+    tell(r, 200, "POST", "/api/save", "{\"file\": \"deep/Another \\u00fc.yml\"}");
+    assert_true(is_there(r, "lab/deep/Another \xc3\xbc.yml"));
+    tell(r, 200, "POST", "/api/open", "{\"new\": true}");
+    static const char *const again[] = {"{\"file\": \"wrong.yaml\"}", "{\"file\": \"deep/Another \\u00fc.yml\"}"};
+    for (size_t i = 0; i < 2; i++) {
+        tell(r, 200, "POST", "/api/open", again[i]);
+        film(r, after);
+        assert_string_equal(before, after);
+    }
+}
+
+static void test_links_are_not_written_through(void **state)
+{
+    const room *r = *state;
+    char *link_path = text_format("%s/link.yaml", r->inside), *gone = text_format("%s/gone.yaml", r->inside);
+    assert_int_equal(symlink("../outside.yaml", link_path), 0);
+    assert_int_equal(symlink("../fresh.yaml", gone), 0);
+    tell(r, 400, "POST", "/api/save", "{\"file\": \"link.yaml\", \"replace\": true}");
+    tell(r, 400, "POST", "/api/save", "{\"file\": \"gone.yaml\", \"replace\": true}");
+    tell(r, 400, "POST", "/api/open", "{\"file\": \"link.yaml\"}");
+    assert_false(is_there(r, "fresh.yaml"));
+    free(link_path);
+    free(gone);
+}
+
+static void test_paths_of_parameters(void **state)
+{
+    const room *r = *state;
+    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
+    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\", \"name\": \"body\"}");
+    const json_int_t before = generation(r);
+    tell(r, 400, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../../outside.png\"}}");
+    tell(r, 400, "POST", "/api/set", "{\"set\": {\"cloth.file\": \"../../outside.png\"}}");
+    tell(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.file\": \"../../outside.obj\"}}");
+    tell(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.script\": \"/etc/passwd\"}}");
+    assert_int_equal(generation(r), before);
+    tell(r, 200, "POST", "/api/objects/body/rename", "{\"to\": \"cut\"}");
+    tell(r, 200, "POST", "/api/set", "{\"set\": {\"stone.texture\": \"cloth\"}}");
+    char hash[64];
+    film(r, hash);
+}
+
+static void test_each_solid_comes_and_shows(void **state)
+{
+    const room *r = *state;
+    static const char *const shapes[] = {"plane", "cylinder", "cup", "box", "sphere", "mesh"};
+    char before[64], after[64], word[64];
+    film(r, before);
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+        char *body = text_format("{\"kind\": \"solid\", \"shape\": \"%s\"}", shapes[i]);
+        json_t *reply = ask(r, 200, "POST", "/api/objects", body);
+        const char *name = json_string_value(json_object_get(reply, "name"));
+        assert_string_equal(name, strcmp(shapes[i], "mesh") == 0 ? "torus" : shapes[i]);
+        assert_string_equal(word_of(r, name, "shape", word), shapes[i]);
+        film(r, after);
+        assert_string_not_equal(before, after);
+        memcpy(before, after, sizeof before);
+        json_decref(reply);
+        free(body);
+    }
+    json_t *second = ask(r, 200, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"box\"}");
+    assert_string_equal(json_string_value(json_object_get(second, "name")), "box2");
+    json_decref(second);
+    /* Of a sixth of the way that the camera looks, on the ground, and not within each other. */
+    assert_float_equal(value(r, "box.size", 0), 1.0, 1e-9);
+    assert_float_equal(value(r, "box.position", 1), 0.5, 1e-9);
+    assert_float_equal(value(r, "cup.position", 1), 0.0, 1e-9);
+    assert_true(hypot(value(r, "box.position", 0) - value(r, "box2.position", 0), value(r, "box.position", 2) - value(r, "box2.position", 2)) > 1.0);
+}
+
+static void test_others_come(void **state)
+{
+    const room *r = *state;
+    char hash[64], next[64];
+    film(r, hash);
+    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"light\"}");
+    film(r, next);
+    assert_string_not_equal(hash, next);
+    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"material\"}");
+    assert_true(has_object(r, "lamp2") && has_object(r, "paint"));
+    json_t *model = ask(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\"}");
+    assert_string_equal(json_string_value(json_object_get(model, "name")), "Two-sides");
+    json_decref(model);
+    assert_true(has_object(r, "Two-sides-mesh"));
+    assert_float_equal(value(r, "Two-sides.scale", 0), 0.05, 1e-9); /* its edges are 20, and it is to be 1 */
+    film(r, hash);
+    assert_string_not_equal(hash, next);
+    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"slime\"}");
+    film(r, next);
+    assert_string_not_equal(hash, next);
+    static const char *const bad[] = {"{\"kind\": \"solid\"}", "{\"kind\": \"solid\", \"shape\": \"cone\"}", "{\"kind\": \"cloud\"}", "{}", "{\"kind\": 1}",
+                                      "{\"kind\": \"light\", \"name\": \"two words\"}", "{\"kind\": \"light\", \"name\": \"camera\"}", "{\"kind\": \"model\"}",
+                                      "{\"kind\": \"model\", \"file\": \"../outside.obj\"}", "{\"kind\": \"model\", \"file\": \"picture.png\"}",
+                                      "{\"kind\": \"texture\", \"file\": \"../outside.png\"}", "{\"kind\": \"texture\", \"file\": \"deep/ball.yaml\"}",
+                                      "{\"kind\": \"model\", \"file\": \"none.obj\"}"};
+    const json_int_t before = generation(r);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        tell(r, 400, "POST", "/api/objects", bad[i]);
+    tell(r, 409, "POST", "/api/objects", "{\"kind\": \"material\", \"name\": \"ball\"}");
+    assert_int_equal(generation(r), before);
+}
+
+static void test_change(void **state)
+{
+    const room *r = *state;
+    char word[64], text[256];
+    tell(r, 200, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, -0.5], \"gesture\": \"a\"}");
+    tell(r, 200, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, -0.5], \"gesture\": \"a\"}");
+    assert_float_equal(value(r, "ball.position", 0), 2.0, 1e-12);
+    assert_string_equal(told(r, "undo", text), "move ball");
+    tell(r, 200, "POST", "/api/undo", "{}");
+    assert_float_equal(value(r, "ball.position", 0), 0.0, 1e-12); /* one gesture, one step */
+    tell(r, 200, "POST", "/api/objects/ball/turn", "{\"by\": [0, 90, 0]}");
+    assert_float_equal(value(r, "ball.rotation", 1), 90.0, 1e-9);
+    tell(r, 200, "POST", "/api/objects/beam/turn", "{\"by\": [0, 0, 30]}");
+    tell(r, 200, "POST", "/api/objects/camera/move", "{\"by\": [0, 0, 1]}");
+    assert_float_equal(value(r, "camera.position", 2), -5.0, 1e-12);
+    tell(r, 200, "POST", "/api/objects/ball/rename", "{\"to\": \"globe\"}");
+    assert_true(has_object(r, "globe") && !has_object(r, "ball"));
+    tell(r, 200, "POST", "/api/objects/globe/material", "{\"material\": \"stone\"}");
+    assert_string_equal(word_of(r, "globe", "material", word), "stone");
+    tell(r, 200, "POST", "/api/objects/globe/material", "{\"material\": null}");
+    assert_string_equal(word_of(r, "globe", "material", word), "");
+    assert_float_equal(value(r, "globe.diffuse", 0), 0.7, 1e-12); /* it looks as the stone did */
+    static const char *const copied[][2] = {{"globe", "globe2"}, {"lamp", "lamp2"}, {"stone", "stone2"}, {"lamp2", "lamp3"}, {"ground", "ground2"}};
+    for (size_t i = 0; i < sizeof copied / sizeof *copied; i++) {
+        char *target = text_format("/api/objects/%s/copy", copied[i][0]);
+        json_t *reply = ask(r, 200, "POST", target, "{}");
+        assert_string_equal(json_string_value(json_object_get(reply, "name")), copied[i][1]);
+        json_decref(reply);
+        free(target);
+    }
+    assert_true(fabs(value(r, "globe2.position", 0) - value(r, "globe.position", 0)) >= 2.0);
+}
+
+static void test_copies_of_meshes(void **state)
+{
+    const room *r = *state;
+    char hash[64], next[64];
+    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\", \"name\": \"body\"}");
+    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
+    film(r, hash);
+    tell(r, 200, "POST", "/api/objects/body-mesh/copy", "{}");
+    tell(r, 200, "POST", "/api/objects/cloth/copy", "{}");
+    assert_true(has_object(r, "body-mesh2") && has_object(r, "cloth2"));
+    film(r, next);
+    assert_string_equal(hash, next);
+    tell(r, 200, "POST", "/api/objects/body/copy", "{}");
+    film(r, next);
+    assert_string_not_equal(hash, next);
+    tell(r, 409, "DELETE", "/api/objects/body-mesh", "{}");
+    tell(r, 200, "DELETE", "/api/objects/body", "{}");
+    tell(r, 200, "DELETE", "/api/objects/body2", "{}");
+    tell(r, 200, "DELETE", "/api/objects/body-mesh", "{}");
+    tell(r, 200, "POST", "/api/undo", "{}");
+    tell(r, 200, "POST", "/api/undo", "{}");
+    tell(r, 200, "POST", "/api/undo", "{}");
+    film(r, hash);
+    assert_string_equal(hash, next);
+}
+
+static void test_change_refuses(void **state)
+{
+    const room *r = *state;
+    const json_int_t before = generation(r);
+    static const struct { int code; const char *method, *target, *body; } bad[] = {
+        {404, "DELETE", "/api/objects/none", "{}"},
+        {409, "DELETE", "/api/objects/stone", "{}"},
+        {400, "DELETE", "/api/objects/camera", "{}"},
+        {400, "DELETE", "/api/objects/render", "{}"},
+        {404, "POST", "/api/objects/none/move", "{\"by\": [1, 0, 0]}"},
+        {400, "POST", "/api/objects/ball/move", "{\"by\": [1, 0]}"},
+        {400, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, \"x\"]}"},
+        {400, "POST", "/api/objects/ball/move", "{\"by\": [1e9, 0, 0]}"},
+        {400, "POST", "/api/objects/ball/move", "{}"},
+        {400, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, 0], \"gesture\": 3}"},
+        {400, "POST", "/api/objects/stone/move", "{\"by\": [1, 0, 0]}"},
+        {400, "POST", "/api/objects/background/move", "{\"by\": [1, 0, 0]}"},
+        {400, "POST", "/api/objects/lamp/turn", "{\"by\": [10, 0, 0]}"},
+        {400, "POST", "/api/objects/ball/turn", "{\"by\": [1e300, 0, 0]}"},
+        {409, "POST", "/api/objects/ball/rename", "{\"to\": \"lamp\"}"},
+        {400, "POST", "/api/objects/ball/rename", "{\"to\": \"camera\"}"},
+        {400, "POST", "/api/objects/ball/rename", "{\"to\": \"two words\"}"},
+        {400, "POST", "/api/objects/ball/rename", "{\"to\": \"\"}"},
+        {400, "POST", "/api/objects/camera/rename", "{\"to\": \"eye\"}"},
+        {404, "POST", "/api/objects/none/rename", "{\"to\": \"some\"}"},
+        {400, "POST", "/api/objects/ball/material", "{\"material\": \"none\"}"},
+        {400, "POST", "/api/objects/ball/material", "{}"},
+        {400, "POST", "/api/objects/ball/material", "{\"material\": 3}"},
+        {400, "POST", "/api/objects/lamp/material", "{\"material\": \"stone\"}"},
+        {400, "POST", "/api/objects/lamp/material", "{\"material\": null}"},
+        {404, "POST", "/api/objects/none/material", "{\"material\": null}"},
+        {400, "POST", "/api/objects/render/copy", "{}"},
+        {404, "POST", "/api/objects/none/copy", "{}"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        tell(r, bad[i].code, bad[i].method, bad[i].target, bad[i].body);
+    assert_int_equal(generation(r), before);
+}
+
+/* Names stay free, and no more than a scene holds. */
+static void test_until_it_is_full(void **state)
+{
+    const room *r = *state;
+    char name[64];
+    for (int i = 1; i <= 62; i++) {
+        json_t *reply = ask(r, 200, "POST", "/api/objects", "{\"kind\": \"light\"}");
+        snprintf(name, sizeof name, "lamp%d", i + 1);
+        assert_string_equal(json_string_value(json_object_get(reply, "name")), name);
+        json_decref(reply);
+    }
+    tell(r, 400, "POST", "/api/objects", "{\"kind\": \"light\"}");
+    for (int i = 1; i <= 62; i++)
+        tell(r, 200, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\"}");
+    tell(r, 400, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\"}");
+    tell(r, 400, "POST", "/api/objects/ball/copy", "{}");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_files, enter, leave),
+        cmocka_unit_test_setup_teardown(test_open_refuses, enter, leave),
+        cmocka_unit_test_setup_teardown(test_open_and_undo, enter, leave),
+        cmocka_unit_test_setup_teardown(test_save, enter, leave),
+        cmocka_unit_test_setup_teardown(test_links_are_not_written_through, enter, leave),
+        cmocka_unit_test_setup_teardown(test_paths_of_parameters, enter, leave),
+        cmocka_unit_test_setup_teardown(test_each_solid_comes_and_shows, enter, leave),
+        cmocka_unit_test_setup_teardown(test_others_come, enter, leave),
+        cmocka_unit_test_setup_teardown(test_change, enter, leave),
+        cmocka_unit_test_setup_teardown(test_copies_of_meshes, enter, leave),
+        cmocka_unit_test_setup_teardown(test_change_refuses, enter, leave),
+        cmocka_unit_test_setup_teardown(test_until_it_is_full, enter, leave),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
