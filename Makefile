@@ -210,6 +210,15 @@ test: $(selected) $(build)/cuvette-import $(if $(only),,$(build)/cuvette $(build
 	@CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
+# The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for pictures of every view. After what else
+# installs or measures.
+.PHONY: test-web setup-web
+setup-web: | $(filter setup,$(MAKECMDGOALS))
+	@.ci/setup-web $(build)/web-tests
+test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, which it installs with node where there is none; only=NAME for one file
+	@node tests/web/run.mjs --program '$(abspath $(build)/cuvette)' --modules '$(abspath $(build)/web-tests)' \
+	  $(if $(screenshots),--screenshots '$(abspath $(screenshots))') $(only)
+
 .PHONY: layers headers vectorise
 layers: ## check that includes stay on their floors
 	@tests/run tests/layers.sh
@@ -328,4 +337,4 @@ distclean: clean ## also remove tables and figures; measured rows stay in result
 	rm -rf build $(RESULTS)/tables $(RESULTS)/figures
 	@test ! -f paper/Makefile || $(MAKE) -C paper clean
 help: ## list the targets
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
