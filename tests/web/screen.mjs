@@ -57,32 +57,69 @@ export class Screen {
     /** Until an answer of the page is true; it may use window.lab. */
     until(condition, argument) { return this.page.waitForFunction(condition, argument); }
 
-    /** The picture's canvas as {width, height, data}. */
+    /** What the canvas shows of the picture, as {width, height, data}: at actual size, so that each of its pixels is one of the canvas. */
     async pixels() {
-        const { width, height, text } = await this.page.evaluate(() => {
-            const canvas = window.lab.view.canvas;
-            const { width, height, data } = { width: canvas.width, height: canvas.height, ...{ data: canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data } };
+        const { width, height, scale, text } = await this.page.evaluate(async () => {
+            const { view } = window.lab;
+            await new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)));
+            const canvas = view.stage.querySelector('canvas');
+            const { width, height, scale } = view;
+            const corner = view.toScreen(0, 0);
+            const shown = canvas.getContext('2d').getImageData(Math.round(corner.x), Math.round(corner.y), width, height).data;
             let text = '';
-            for (let i = 0; i < data.length; i += 32768) text += String.fromCharCode(...data.subarray(i, i + 32768));
-            return { width, height, text: btoa(text) };
+            for (let i = 0; i < shown.length; i += 32768) text += String.fromCharCode(...shown.subarray(i, i + 32768));
+            return { width, height, scale, text: btoa(text) };
         });
+        if (Math.abs(scale - 1) > 1e-6) throw new Error(`the picture is shown at ${scale} of its size; actualSize() first`);
         return { width, height, data: new Uint8ClampedArray(Buffer.from(text, 'base64')) };
+    }
+
+    /** Picture pixels as they are, by the key for it. */
+    async actualSize() {
+        await this.stage.focus();
+        await this.page.keyboard.press('1');
+        await this.until(() => Math.abs(window.lab.view.scale - 1) < 1e-6);
     }
 
     /** The same picture from the server. */
     async served(path = '/api/picture.png?wait=1') { return readPng((await this.lab.ask('GET', path)).bytes); }
 
-    /** Where the pixel's middle lies on the screen. */
+    /** Where a place of the picture, in its pixels, lies in the window. */
     place(x, y) {
         return this.page.evaluate(([px, py]) => {
-            const { x, y } = window.lab.view.toScreen(px, py);
-            return { x, y };
-        }, [x + 0.5, y + 0.5]);
+            const { view } = window.lab;
+            const box = view.stage.getBoundingClientRect();
+            const at = view.toScreen(px, py);
+            return { x: box.left + view.stage.clientLeft + at.x, y: box.top + view.stage.clientTop + at.y };
+        }, [x, y]);
     }
 
     async clickPixel(x, y) {
-        const at = await this.place(x, y);
+        const at = await this.place(x + 0.5, y + 0.5);
         await this.page.mouse.click(at.x, at.y);
+    }
+
+    /** Presses at one place of the picture, goes to another in steps, and lets go. */
+    async drag(from, to, steps = 12) {
+        const [a, b] = [await this.place(from.x, from.y), await this.place(to.x, to.y)];
+        await this.page.mouse.move(a.x, a.y);
+        await this.page.mouse.down();
+        await this.page.mouse.move(b.x, b.y, { steps });
+        await this.page.mouse.up();
+    }
+
+    get stage() { return this.page.locator('#picture'); }
+
+    /** Of the bar over the picture: what the pointer does. The radio buttons are small; people click what stands around them. */
+    async chooseTool(name) {
+        const radio = this.page.getByRole('radiogroup', { name: 'What the pointer does' }).getByRole('radio', { name, exact: true });
+        await radio.locator('xpath=ancestor::label').click();
+        await this.until((input) => input.checked, await radio.elementHandle());
+    }
+
+    async showPanel(name) {
+        await this.tab(name).click();
+        await this.page.getByRole('tabpanel', { name }).waitFor();
     }
 
     button(name) { return this.page.getByRole('button', { name }); }
