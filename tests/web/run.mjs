@@ -98,7 +98,7 @@ const selected = readdirSync(here).filter((file) => file.endsWith('.test.mjs')).
     .filter((name) => names.length === 0 || names.includes(name));
 const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', headless: true,
-    args: process.getuid() === 0 ? ['--no-sandbox'] : [],
+    args: ['--force-color-profile=srgb', ...(process.getuid() === 0 ? ['--no-sandbox'] : [])],
 });
 let [passed, failed] = [0, 0];
 for (const name of selected) {

@@ -14,6 +14,8 @@ export class Screen {
         screen.page = await screen.context.newPage();
         screen.troubles = [];
         screen.expected = [];
+        screen.asking = new Set();
+        screen.idle = [];
         screen.watch();
         await screen.load();
         return screen;
@@ -30,6 +32,11 @@ export class Screen {
             const url = new URL(request.url());
             if (['data:', 'blob:', 'about:'].includes(url.protocol)) return;
             if (url.origin !== this.lab.origin) note(`a request to ${url.origin}`);
+            if (url.pathname !== '/api/events') this.asking.add(request);
+        });
+        for (const end of ['requestfinished', 'requestfailed']) page.on(end, (request) => {
+            this.asking.delete(request);
+            if (this.asking.size === 0) for (const wake of this.idle.splice(0)) wake();
         });
     }
 
@@ -54,6 +61,12 @@ export class Screen {
         }, least);
     }
 
+    /** Until nothing is asked of the server, but for the stream of events, and what came is drawn. */
+    async quiet() {
+        if (this.asking.size) await new Promise((resolve) => this.idle.push(resolve));
+        await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+    }
+
     /** Until an answer of the page is true; it may use window.lab. */
     until(condition, argument) { return this.page.waitForFunction(condition, argument); }
 
@@ -72,6 +85,13 @@ export class Screen {
         });
         if (Math.abs(scale - 1) > 1e-6) throw new Error(`the picture is shown at ${scale} of its size; actualSize() first`);
         return { width, height, data: new Uint8ClampedArray(Buffer.from(text, 'base64')) };
+    }
+
+    /** What people see of the picture, with all that lies over it. */
+    async seen() {
+        const { width, height } = await this.page.evaluate(() => ({ width: window.lab.view.width, height: window.lab.view.height }));
+        const corner = await this.place(0, 0);
+        return readPng(await this.page.screenshot({ clip: { ...corner, width, height } }));
     }
 
     /** Picture pixels as they are, by the key for it. */
