@@ -261,6 +261,7 @@ static void pictures_are_told_too(void **state)
     assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_OK);
     assert_true(w.calls >= 2);
     assert_int_equal(w.pictures, 4);
+    assert_int_equal(w.frames_done, 4);
     study_destroy(s);
 }
 

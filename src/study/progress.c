@@ -9,7 +9,8 @@ struct progress_line {
     const study *s;
     const study_options *options;
     study_moment now; /* left_s: at the time of the last count */
-    double shown_s;   /* 0: never */
+    bool shown;
+    double shown_s;   /* 0: what comes next is shown at once */
 };
 
 progress_line *progress_begin(const study *s, const study_options *options)
@@ -74,6 +75,7 @@ static void show(progress_line *line, study_stage stage, double share_done, cons
     const double now_s = clock_wall_s();
     if (!is_watched(line) || (line->shown_s > 0 && now_s - line->shown_s < refresh_s))
         return;
+    line->shown = true;
     line->shown_s = now_s;
     line->now.stage = stage;
     line->now.share = share_done;
@@ -95,11 +97,22 @@ void progress_count(progress_line *line, size_t cell, const ledger *done, const 
     progress_show(line, 0); /* frames of under a tenth of a second are not heard of in between */
 }
 
+void progress_measured(progress_line *line, const ledger *done, const size_t *cells, size_t cell_count)
+{
+    if (!is_watched(line))
+        return;
+    count_frames(line, done, cells, cell_count);
+    line->shown_s = 0;
+    progress_show(line, 0);
+}
+
 void progress_pictures(progress_line *line, size_t cell, size_t picture, size_t pictures)
 {
     line->now.cell = cell;
     line->now.picture = picture;
     line->now.pictures = pictures;
+    if (picture == 1)
+        line->shown_s = 0; /* what comes after the rows is not held up by them */
     progress_show(line, 0);
 }
 
@@ -119,7 +132,7 @@ void progress_end(progress_line *line)
 {
     if (!line)
         return;
-    if (line->options->progress && line->shown_s > 0) {
+    if (line->options->progress && line->shown) {
         fputs("\r\033[K", line->options->progress);
         fflush(line->options->progress);
     }

@@ -10,6 +10,8 @@ typedef struct progress_line progress_line;
 progress_line *progress_begin(const study *s, const study_options *options);
 /* Before a cell is measured. Reckons what is left: the repetitions that cells lack at most, at the mean time of theirs so far. */
 void progress_count(progress_line *line, size_t cell, const ledger *done, const size_t *cells, size_t cell_count);
+/* All of them are measured; told at once. */
+void progress_measured(progress_line *line, const ledger *done, const size_t *cells, size_t cell_count);
 /* From now on the kept pictures are made, this one (from 1) of how many. */
 void progress_pictures(progress_line *line, size_t cell, size_t picture, size_t pictures);
 /* Shows it; share_done is that of the frame. */

@@ -170,6 +170,7 @@ static status run_rounds(run *r, diagnostic *why)
                 return code;
         }
     }
+    progress_measured(r->line, r->done, r->cells, r->cell_count);
     return STATUS_OK;
 }
 

@@ -92,7 +92,7 @@ typedef struct study_options {
                               0 of 1 (or 0 of 0) for all */
     FILE *progress;        /* a terminal for the progress line with ETA, or NULL */
     bool (*stop)(void *context); /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
-    void (*progressed)(void *context, const study_moment *now); /* at most ten times a second, from the thread that runs it. May be NULL */
+    void (*progressed)(void *context, const study_moment *now); /* about ten times a second at most, from the thread that runs it. May be NULL */
     void *context;         /* of both */
 } study_options;
 

@@ -164,7 +164,7 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     return code;
 }
 
-/* First nothing is published any more, then nobody waits any more, then no handler runs any more. */
+/* First nothing is published any more, then nothing is measured and nobody waits any more, then no handler runs any more. */
 void lab_stop(lab *l)
 {
     if (!l)
@@ -172,6 +172,8 @@ void lab_stop(lab *l)
     pthread_mutex_lock(&l->publish_lock);
     l->open = false;
     pthread_mutex_unlock(&l->publish_lock);
+    if (l->studies)
+        studies_end(l->studies);
     if (l->painter)
         painter_end(l->painter);
     http_stop(l->server);

@@ -1,0 +1,167 @@
+#include "web/study_json.h"
+#include "report/json.h"
+#include "scene/params.h"
+#include "study/row_files.h"
+#include "study/summary.h"
+#include <stdlib.h>
+#include <string.h>
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+json_t *study_trouble(const diagnostic *why)
+{
+    json_t *told = json_pack("{s:o, s:o}", "error", json_of_text(why->what), "remedy", json_of_text(why->remedy));
+    if (told && why->file[0])
+        json_object_set_new(told, "file", json_of_text(why->file));
+    if (told && why->line > 0)
+        json_object_set_new(told, "line", json_integer(why->line));
+    if (told && why->column > 0)
+        json_object_set_new(told, "column", json_integer(why->column));
+    return told;
+}
+
+/* --- what is in the study --- */
+
+typedef struct unit_search {
+    const char *path, *unit;
+} unit_search;
+
+static status look_for_unit(void *context, const char *path, const param *row, const char *value)
+{
+    (void)value;
+    unit_search *search = context;
+    const size_t length = strlen(path);
+    /* One element of a vector is path.x */
+    if (strncmp(path, search->path, length) != 0 || (search->path[length] && search->path[length] != '.'))
+        return STATUS_OK;
+    search->unit = row->unit;
+    return STATUS_INTERRUPTED;
+}
+
+static const char *unit_of(const study *s, const char *path)
+{
+    unit_search search = {path, ""};
+    scene_each_param(s->base, look_for_unit, &search);
+    return search.unit;
+}
+
+static json_t *axis_json(const study *s, const study_axis *axis)
+{
+    json_t *paths = json_array(), *units = json_array();
+    bool bad = !paths || !units;
+    for (size_t i = 0; !bad && i < axis->points[0].count; i++) {
+        bad |= json_array_append_new(paths, json_of_text(axis->points[0].paths[i])) != 0;
+        bad |= json_array_append_new(units, json_of_text(unit_of(s, axis->points[0].paths[i]))) != 0;
+    }
+    if (!bad)
+        return json_pack("{s:o, s:o, s:o, s:I}", "name", json_of_text(axis->name), "paths", paths, "units", units, "count", (json_int_t)axis->count);
+    json_decref(paths);
+    json_decref(units);
+    return NULL;
+}
+
+bool study_json_about(const study *s, json_t *into)
+{
+    json_t *axes = json_array();
+    bool bad = !axes;
+    for (size_t i = 0; !bad && i < s->axis_count; i++)
+        bad |= json_array_append_new(axes, axis_json(s, &s->axes[i])) != 0;
+    bad |= json_object_set_new(into, "title", json_of_text(s->title)) != 0;
+    bad |= json_object_set_new(into, "cells", json_integer((json_int_t)study_cell_count(s))) != 0;
+    bad |= json_object_set_new(into, "axes", axes) != 0;
+    return !bad;
+}
+
+/* --- its tables --- */
+
+/* A line of fields between tabs, cut apart in place. */
+static json_t *fields_json(char *line)
+{
+    json_t *fields = json_array();
+    for (char *field; (field = strsep(&line, "\t"));)
+        if (json_array_append_new(fields, json_of_text(field)) != 0) {
+            json_decref(fields);
+            return NULL;
+        }
+    return fields;
+}
+
+static json_t *table_json(json_t *columns, json_t *rows, size_t count)
+{
+    return json_pack("{s:o, s:o, s:I}", "columns", columns, "rows", rows, "count", (json_int_t)count);
+}
+
+static json_t *lines_json(char *text)
+{
+    char *line = strsep(&text, "\n");
+    json_t *columns = fields_json(line), *rows = json_array();
+    size_t count = 0;
+    bool bad = !columns || !rows;
+    while (!bad && (line = strsep(&text, "\n")) && *line)
+        if (count++ < STUDY_JSON_CELLS_MAX)
+            bad |= json_array_append_new(rows, fields_json(line)) != 0;
+    if (!bad)
+        return table_json(columns, rows, count);
+    json_decref(columns);
+    json_decref(rows);
+    return NULL;
+}
+
+status study_json_summary(const study *s, const char *results, json_t **out, diagnostic *why)
+{
+    study_progress progress;
+    *out = NULL;
+    status code = study_status(s, results, &progress, why);
+    if (code != STATUS_OK)
+        return code;
+    if (progress.rows == 0)
+        return (*out = json_null()) ? STATUS_OK : no_memory(why);
+    char *text = NULL;
+    size_t size;
+    FILE *whole = open_memstream(&text, &size);
+    code = whole ? study_summary(s, results, whole, why) : no_memory(why);
+    if (whole && fclose(whole) != 0 && code == STATUS_OK)
+        code = no_memory(why);
+    if (code == STATUS_OK && !(*out = lines_json(text)))
+        code = no_memory(why);
+    free(text);
+    return code;
+}
+
+static json_t *row_json(const csv *table, char *const *fields)
+{
+    json_t *row = json_array();
+    for (size_t i = 0; i < table->column_count; i++)
+        if (json_array_append_new(row, json_of_text(fields[i])) != 0) {
+            json_decref(row);
+            return NULL;
+        }
+    return row;
+}
+
+status study_json_rows(const study *s, const char *results, size_t from, json_t **out, diagnostic *why)
+{
+    row_files *files;
+    *out = NULL;
+    status code = row_files_read(s, results, ROWS, &files, why);
+    if (code != STATUS_OK)
+        return code;
+    const csv *first = files->count ? files->tables[0] : NULL;
+    json_t *columns = first && first->header ? row_json(first, first->header) : json_array(), *rows = json_array();
+    bool bad = !columns || !rows;
+    for (size_t i = from; !bad && i < files->row_count && i - from < STUDY_JSON_ROWS_MAX; i++) {
+        const csv *table = files->rows[i].table;
+        bad |= json_array_append_new(rows, row_json(table, table->fields + files->rows[i].row * table->column_count)) != 0;
+    }
+    if (!bad) {
+        *out = table_json(columns, rows, files->row_count);
+    } else {
+        json_decref(columns);
+        json_decref(rows);
+    }
+    row_files_destroy(files);
+    return *out ? STATUS_OK : no_memory(why);
+}
