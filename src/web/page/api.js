@@ -1,7 +1,7 @@
 /* The laboratory's API over fetch.
  *
  * exports: ApiError, createApi(listeners)
- *   api.get(path), api.post(path, body), api.del(path)   JSON in and out; throw ApiError
+ *   api.get(path), api.post(path, body), api.del(path)   JSON in and out; throw ApiError; get takes a limit in ms too
  *   api.blob(path)                                       a picture or file: {blob, headers}; throws ApiError
  *   listeners: generation(number) for each reply that has one, reached() for each reply, lost() when nobody answers, refused() for 401
  * ApiError: message, remedy, status (0: nobody answered), and file, line, column where the server says them. */
@@ -36,8 +36,8 @@ async function parsed(response) {
 }
 
 export function createApi(listeners) {
-  async function ask(method, path, body) {
-    const options = {method, credentials: 'same-origin', cache: 'no-store', signal: AbortSignal.timeout(PATIENCE_MS)};
+  async function ask(method, path, body, patience = PATIENCE_MS) {
+    const options = {method, credentials: 'same-origin', cache: 'no-store', signal: AbortSignal.timeout(patience)};
     if (method !== 'GET') {
       options.headers = {'Content-Type': 'application/json'};
       options.body = JSON.stringify(body ?? {});
@@ -46,7 +46,7 @@ export function createApi(listeners) {
     try {
       response = await fetch(path, options);
     } catch (cause) {
-      if (cause.name === 'TimeoutError') throw new ApiError(0, {error: 'the server took more than a minute', remedy: 'try again'});
+      if (cause.name === 'TimeoutError') throw new ApiError(0, {error: 'the server took too long', remedy: 'try again'});
       listeners.lost();
       throw gone();
     }
@@ -58,8 +58,8 @@ export function createApi(listeners) {
     return response;
   }
 
-  async function json(method, path, body) {
-    const response = await ask(method, path, body);
+  async function json(method, path, body, patience) {
+    const response = await ask(method, path, body, patience);
     let reply;
     try {
       reply = await parsed(response);
@@ -73,7 +73,7 @@ export function createApi(listeners) {
   }
 
   return {
-    get: (path) => json('GET', path),
+    get: (path, patience) => json('GET', path, undefined, patience),
     post: (path, body) => json('POST', path, body),
     del: (path) => json('DELETE', path),
     async blob(path) {

@@ -34,8 +34,8 @@ export function cameraBox(root, lab) {
     node.title = TURNS[settings.around ? 'around' : 'spot'][index];
     node.querySelector('.visually-hidden').textContent = node.title;
   });
-  const length = number({label: 'Length', value: settings.length, min: 0.0001, max: 100000, unit: 'units', onchange: (x) => keep('length', x)});
-  const angle = number({label: 'Angle', value: settings.angle, min: 0.001, max: 180, unit: '°', onchange: (x) => keep('angle', x)});
+  const length = number({label: 'Step', value: settings.length, min: 0.0001, max: 100000, unit: 'u', onchange: (x) => keep('length', x)});
+  const angle = number({label: 'Turn', value: settings.angle, min: 0.001, max: 180, unit: '°', onchange: (x) => keep('angle', x)});
   const how = choice({
     label: 'Rotation', radios: true, choices: [['around', 'Around target'], ['spot', 'On the spot']], value: settings.around ? 'around' : 'spot',
     onchange: (word) => {
@@ -91,7 +91,7 @@ function createFields(root, lab) {
   }
 
   function plainField(row) {
-    const label = {yaw_deg: 'Yaw', pitch_deg: 'Pitch', fov_deg: 'Field'}[row.name] || row.name;
+    const label = {yaw_deg: 'Yaw', pitch_deg: 'Pitch', fov_deg: 'Field of view'}[row.name] || row.name;
     const part = number({label, value: row.value, unit: '°', onchange: (x) => send(row.path, x)});
     part.node.classList.add('camera-field');
     return part;

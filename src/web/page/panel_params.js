@@ -131,7 +131,7 @@ export const panel = {
       return group('At hand', {id: 'params.hand'}, parts.map(([name, own], index) => {
         const open = memory.get(`group.hand.${name}`, !many || index < 2 || name === 'render');
         const node = element('details', {class: 'hand-part', open},
-          element('summary', {}, element('h3', {text: TITLES[name] || name}), element('span', {class: 'group-hint', text: hint(name)})),
+          element('summary', {}, element('h4', {text: TITLES[name] || name}), element('span', {class: 'group-hint', text: hint(name)})),
           own.map((row) => make('hand', row)));
         node.addEventListener('toggle', () => memory.set(`group.hand.${name}`, node.open));
         return node;
@@ -157,7 +157,7 @@ export const panel = {
         const kinds = [...new Set(own.map((row) => row.group))];
         const titles = {solid: 'Shape and place', material: 'Look', mesh: 'Mesh', light: 'Light'};
         body.append(...kinds.flatMap((kind) => [
-          kinds.length > 1 ? element('h3', {class: 'param-kind', text: titles[kind] || kind}) : null,
+          kinds.length > 1 ? element('h4', {class: 'param-kind', text: titles[kind] || kind}) : null,
           ...own.filter((row) => row.group === kind).map((row) => make(name, row)),
         ]).filter(Boolean), button(`Reset ${name}`, () => resetGroup(name), {icon: 'reset', small: true, kind: 'quiet', class: 'button quiet small param-reset-group'}));
       };

@@ -1,7 +1,8 @@
 /* The panels as tabs beside the picture, and the splitter between the two. A panel is made when it is first shown.
  * exports: createPanels(side, splitter, desk, panels, lab) -> {use(id), chosen()}
  * panel: {id, title, wide?, css?, create(root, lab), shown?(), hidden?()}; a wide one takes the whole width, without the picture; css is the name of
- * its own style sheet (panel_ID.css), which uses the variables of lab.css for all colours and starts each rule with .panel-ID */
+ * its own style sheet (panel_ID.css), which uses the variables of lab.css for all colours and starts each rule with .panel-ID.
+ * The panel's title is its h2: headings within start at h3 */
 
 import {element, memory, notice, replace} from './ui.js';
 
@@ -16,7 +17,7 @@ export function createPanels(side, splitter, desk, panels, lab) {
   list.append(...[...entries.values()].map((entry) => entry.tab));
   list.addEventListener('keydown', key);
   side.id = 'side';
-  side.append(list, element('div', {class: 'panel-room', id: 'panels', tabindex: '-1'}, [...entries.values()].map((entry) => entry.root)));
+  side.append(list, element('div', {class: 'panel-room', id: 'panels', tabindex: '-1'}, [...entries.values()].map((entry) => entry.frame)));
   createSplitter(splitter, desk);
   use(entries.has(memory.get('panel')) ? memory.get('panel') : panels[0]?.id);
   return {use, chosen: () => chosen};
@@ -27,16 +28,17 @@ export function createPanels(side, splitter, desk, panels, lab) {
       type: 'button', role: 'tab', class: 'tab', id: `tab-${panel.id}`, 'aria-controls': `panel-${panel.id}`, 'aria-selected': 'false', tabindex: '-1',
       onclick: () => use(panel.id), text: panel.title,
     });
-    const root = element('section', {
-      role: 'tabpanel', class: `panel panel-${panel.id}`, id: `panel-${panel.id}`, 'aria-labelledby': `tab-${panel.id}`, hidden: true, tabindex: '0',
-    });
-    return {panel, tab, root, made: false};
+    const root = element('section', {class: `panel panel-${panel.id}`, tabindex: '0', 'aria-label': panel.title});
+    const frame = element('div', {
+      role: 'tabpanel', class: 'panel-frame', id: `panel-${panel.id}`, 'aria-labelledby': `tab-${panel.id}`, hidden: true,
+    }, element('h2', {class: 'visually-hidden', text: panel.title}), root);
+    return {panel, tab, root, frame, made: false};
   }
 
   function show(entry, on) {
     entry.tab.setAttribute('aria-selected', String(on));
     entry.tab.tabIndex = on ? 0 : -1;
-    entry.root.hidden = !on;
+    entry.frame.hidden = !on;
     try {
       if (on && !entry.made) {
         entry.made = true;

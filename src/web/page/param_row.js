@@ -1,9 +1,11 @@
 /* One parameter: its name, control, unit, way back to its first value, what it means, and why a value was refused.
  * exports: createRow(row, lab, {onabout(row), long}) -> {node, path, update(row, generation), same(row)}
- *   long: the label is the whole path; same: the row can be shown by what is there */
+ *   long: the label has the object's name too; same: the row can be shown by what is there */
 
 import {button, element, unique} from './ui.js';
 import {controlOf, written} from './param_controls.js';
+
+const FORGET_MS = 8000;
 
 const labelOf = (name) => name.replaceAll('_', ' ');
 const kindOf = (row) => `${row.type}|${row.choices || ''}|${row.lowest}|${row.highest}`;
@@ -20,11 +22,13 @@ export function createRow(first, lab, {onabout, long} = {}) {
   const object = path.slice(0, path.length - first.name.length - 1);
   const meaning = element('span', {class: 'param-meaning', id: unique('meaning'), text: `${first.meaning}. ${first.range}; default ${valueText(first.default)}`});
   const problem = element('p', {class: 'param-problem', role: 'alert', hidden: true});
-  const label = element('label', {class: 'param-label', title: path, text: long ? path : labelOf(first.name)});
+  const title = () => [long ? element('span', {class: 'param-object', text: object}) : null, labelOf(first.name)].filter(Boolean);
+  const label = element('label', {class: 'param-label', title: path}, title());
   const reset = button(`Reset ${path}`, undo, {icon: 'reset', bare: true, small: true, kind: 'quiet'});
   let known = first;
   let waiting = 0;
   let settled = 0;
+  let forget = 0;
 
   const control = controlOf(first, {
     name: `${object} ${labelOf(first.name)}`, describedby: meaning.id, send,
@@ -34,12 +38,16 @@ export function createRow(first, lab, {onabout, long} = {}) {
   if (control.single) label.htmlFor = control.single.id;
   const node = element('div', {
     class: 'param', role: control.single ? null : 'group', 'aria-label': control.single ? null : `${object} ${labelOf(first.name)}`,
-    'aria-describedby': control.single ? null : meaning.id, dataset: {path},
-  }, control.single ? label : element('span', {class: 'param-label', title: path, text: label.textContent}),
+    dataset: {path},
+  }, control.single ? label : element('span', {class: 'param-label', title: path}, title()),
   element('div', {class: 'param-control'}, control.node, first.unit ? element('span', {class: 'unit', text: shortUnit(first.unit), title: first.unit}) : null),
   reset, meaning, problem);
   node.addEventListener('pointerenter', () => onabout?.(known));
   node.addEventListener('focusin', () => onabout?.(known));
+  node.addEventListener('focusout', () => {
+    clearTimeout(forget);
+    forget = setTimeout(() => { if (!node.contains(document.activeElement)) refuse(null); }, FORGET_MS);
+  });
   showReset();
   return {node, path, update, same: (row) => kindOf(row) === kindOf(known)};
 
@@ -57,7 +65,7 @@ export function createRow(first, lab, {onabout, long} = {}) {
 
   function refuse(error) {
     problem.hidden = !error;
-    problem.textContent = error ? [error.message, error.remedy].filter(Boolean).join('. ') : '';
+    problem.textContent = error ? [error.message, error.remedy].filter(Boolean).join(' – ') : '';
     for (const input of control.inputs) {
       if (error) input.setAttribute('aria-invalid', 'true');
       else input.removeAttribute('aria-invalid');

@@ -20,7 +20,7 @@ export function createStatus(root, live, lab) {
   function tell(words, kind, remedy) {
     clearTimeout(timer);
     replace(message, icon(kind === 'error' ? 'warning' : 'info'), element('span', {class: 'status-words', title: [words, remedy].filter(Boolean).join('. ')},
-      element('strong', {text: words}), remedy ? ` — ${remedy}` : null),
+      element('strong', {text: words}), remedy ? ` – ${remedy}` : null),
     button('Dismiss', clear, {icon: 'close', bare: true, kind: 'quiet', small: true}));
     message.className = `status-message ${kind}`;
     message.hidden = false;

@@ -20,6 +20,8 @@
 import {createApi} from './api.js';
 
 const RETRY_MS = 1000;
+const STRANGER_RETRY_MS = 5000;
+const PULSE_MS = 10000;
 const EVENTS = ['state', 'picture', 'slime', 'study'];
 
 function createEmitter() {
@@ -84,6 +86,7 @@ export function createLab() {
   let retry = 0;
   let fetching = null;
   let again = false;
+  let stale = false;
 
   const api = createApi({
     generation: (value) => want(value),
@@ -103,6 +106,7 @@ export function createLab() {
     start: connect,
     refresh,
   };
+  setInterval(pulse, PULSE_MS);
   lab.change = createQueue(api.post);
   lab.set = (values, gesture) => lab.change('/api/set', {set: values}, {
     gesture, merge: (waiting, newer) => ({set: {...waiting.set, ...newer.set}}),
@@ -124,7 +128,7 @@ export function createLab() {
     stream = null;
     connection(how);
     clearTimeout(retry);
-    retry = setTimeout(connect, RETRY_MS);
+    retry = setTimeout(connect, how === 'refused' ? STRANGER_RETRY_MS : RETRY_MS);
   }
 
   function connect() {
@@ -145,6 +149,11 @@ export function createLab() {
     }
   }
 
+  /* A connection that is cut on the way may stay open at this end. */
+  function pulse() {
+    if (lab.connected === 'open') api.get('/api/state', PULSE_MS).catch((error) => { if (error.status === 0) lose('lost'); });
+  }
+
   /* The stream does not say why it failed; a request does. */
   async function ask() {
     lose('lost');
@@ -157,7 +166,8 @@ export function createLab() {
       const state = await api.get('/api/state');
       if (stream !== mine) return;
       if (!lab.state || state.generation < lab.state.generation || lab.connected !== 'open') {
-        Object.assign(lab, {wanted: 0, news: null, scene: null});
+        Object.assign(lab, {wanted: 0, news: null});
+        stale = true;
         emit('afresh', null);
       }
       connection('open');
@@ -175,7 +185,7 @@ export function createLab() {
       lab.study = value.study;
       if (value.picture && !(lab.news?.serial > value.picture.serial)) lab.news = value.picture;
       emit('state', value);
-      if (!lab.scene || lab.scene.generation < value.generation) fetchScene();
+      if (stale || !lab.scene || lab.scene.generation < value.generation) fetchScene();
     } else if (name === 'picture') {
       lab.news = value;
       emit('news', value);
@@ -199,6 +209,7 @@ export function createLab() {
     fetching = true;
     do {
       again = false;
+      stale = false;
       try {
         const scene = await api.get('/api/scene');
         rows = new Map(scene.params.map((row) => [row.path, row]));

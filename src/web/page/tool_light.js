@@ -1,9 +1,9 @@
 /* Light: a handle for each light at its place in the picture; dragged it moves the light parallel to the picture, with shift along the line of sight.
  * exports: lightTool(lab) */
 
-import {button, digits, gesture} from './ui.js';
+import {digits, element, gesture, icon} from './ui.js';
 
-const EDGE = 18;
+const EDGE = 30;
 const KEY_PX = 12;
 const PAUSE_MS = 600;
 
@@ -83,6 +83,11 @@ export function lightTool(lab) {
     handle.node.style.top = `${at.y}px`;
     handle.node.style.setProperty('--way', `${at.angle}rad`);
     handle.node.classList.toggle('outside', at.outside);
+    handle.node.classList.toggle('low', at.outside && at.y > view.stage.clientHeight / 2);
+    handle.node.classList.toggle('left', at.outside && at.x < 90);
+    handle.node.classList.toggle('right', at.outside && at.x > view.stage.clientWidth - 90);
+    const told = handle.drag || document.activeElement === handle.node;
+    handle.label.textContent = told ? `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}` : handle.name;
     const side = at.behind ? ', behind the camera' : at.outside ? ', outside the picture' : '';
     handle.node.setAttribute('aria-label', `${handle.name}, light at ${point.map((x) => digits(x, 3)).join(', ')}${side}`);
   }
@@ -108,7 +113,11 @@ export function lightTool(lab) {
 
   function createHandle(name) {
     const handle = {name, moved: null, drag: null, keys: null};
-    handle.node = button(name, null, {icon: 'light', class: 'light-handle', title: `${name}: drag; Shift for nearer and farther; arrow keys`});
+    handle.label = element('span', {class: 'light-name', text: name});
+    handle.node = element('button', {
+      type: 'button', class: 'light-handle', title: `${name}: drag, or arrow keys; with Shift nearer and farther`,
+      onfocus: () => show(handle), onblur: () => show(handle),
+    }, icon('light'), handle.label);
     handle.node.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return;
       handle.node.setPointerCapture(event.pointerId);

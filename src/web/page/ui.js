@@ -63,7 +63,7 @@ export function field(label, control, {hint, unit, wide} = {}) {
 export function group(title, {open = true, id, hint} = {}, ...children) {
   const key = id ? `group.${id}` : null;
   const node = element('details', {class: 'group', open: key ? memory.get(key, open) : open},
-    element('summary', {}, element('span', {class: 'group-title', text: title}), hint ? element('span', {class: 'group-hint', text: hint}) : null),
+    element('summary', {}, element('h3', {class: 'group-title', text: title}), hint ? element('span', {class: 'group-hint', text: hint}) : null),
     element('div', {class: 'group-body'}, ...children));
   if (key) node.addEventListener('toggle', () => memory.set(key, node.open));
   return node;

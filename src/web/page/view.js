@@ -62,7 +62,7 @@ export function createView(root, lab) {
 
   root.append(toolbar.node, stage);
   lab.on('state', (state) => {
-    const why = state.trouble ? `${state.trouble.error}. ${state.trouble.remedy || ''}` : state.waiting;
+    const why = state.trouble ? [state.trouble.error, state.trouble.remedy].filter(Boolean).join(' – ') : state.waiting;
     waiting.textContent = why || '';
     waiting.hidden = !why;
     waiting.classList.toggle('trouble', Boolean(state.trouble));
