@@ -1,0 +1,354 @@
+/* A pinned picture beside the newest: numbers and map as image/compare.h has them of the same scenes, what differs between them, what is refused. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "image/compare.h"
+#include "lab_fixture.h"
+#include "render_fixture.h"
+#include <pthread.h>
+
+static int open_ball(void **state)
+{
+    lab_room *room = calloc(1, sizeof *room);
+    room_open(room, BALL_SCENE);
+    *state = room;
+    return 0;
+}
+
+static int close_room(void **state)
+{
+    room_close(*state);
+    free(*state);
+    return 0;
+}
+
+static void change(const lab_room *room, const char *values)
+{
+    char *body = text_format("{\"set\": {%s}}", values);
+    room_post(room, "/api/set", body);
+    free(body);
+}
+
+static void pin(const lab_room *room)
+{
+    json_t *told = room_ask(room, "POST", "/api/pin?wait=1", "{}", 200);
+    assert_true(json_is_object(json_object_get(told, "pin")));
+    json_decref(told);
+}
+
+static double number(const json_t *of, const char *key)
+{
+    const json_t *value = json_object_get(of, key);
+    if (!json_is_number(value))
+        fail_msg("%s is no number", key);
+    return json_number_value(value);
+}
+
+static image *picture_of(const char *assignments)
+{
+    scene *s = scene_from(BALL_SCENE);
+    image *picture = NULL;
+    set_all(s, assignments);
+    render_result *result = render(s);
+    assert_int_equal(film_image(result->picture, &picture, NULL), STATUS_OK);
+    render_result_destroy(result);
+    scene_destroy(s);
+    return picture;
+}
+
+static void refused(const lab_room *room, const char *method, const char *target, int code, const char *words)
+{
+    char *told = room_refused(room, method, target, strcmp(method, "GET") == 0 ? NULL : "{}", code);
+    if (!strstr(told, words))
+        fail_msg("%s: '%s' does not say '%s'", target, told, words);
+    free(told);
+}
+
+/* The body of a reply with a picture. */
+static unsigned char *bytes_of(const lab_room *room, const char *target, size_t *size)
+{
+    char *reply = client_ask(room->server, "GET", target, "", NULL);
+    assert_int_equal(reply_code(reply), 200);
+    assert_true(reply_has(reply, "Content-Type: image/png"));
+    const char *length = strstr(reply, "Content-Length: ");
+    assert_non_null(length);
+    *size = (size_t)strtoul(length + strlen("Content-Length: "), NULL, 10);
+    unsigned char *bytes = malloc(*size + 1);
+    memcpy(bytes, reply_body(reply), *size);
+    free(reply);
+    return bytes;
+}
+
+static image *decoded(const lab_room *room, const char *target)
+{
+    size_t size;
+    unsigned char *bytes = bytes_of(room, target, &size);
+    char *path = room_path(room, "reply.png");
+    FILE *out = fopen(path, "wb");
+    assert_int_equal(fwrite(bytes, 1, size, out), size);
+    assert_int_equal(fclose(out), 0);
+    image *picture = NULL;
+    diagnostic why = {.line = 0};
+    worked(image_read(path, &picture, NULL, &why), &why);
+    free(path);
+    free(bytes);
+    return picture;
+}
+
+static void without_a_pin_there_is_nothing_to_compare(void **state)
+{
+    free(room_film(*state));
+    refused(*state, "GET", "/api/compare", 409, "no picture is pinned");
+    refused(*state, "GET", "/api/compare?wait=1", 409, "POST /api/pin");
+    refused(*state, "GET", "/api/compare.png", 409, "no picture is pinned");
+    refused(*state, "GET", "/api/pin.png", 404, "no picture is pinned");
+    json_t *told = room_get(*state, "/api/state");
+    assert_true(json_is_null(json_object_get(told, "pin")));
+    json_decref(told);
+    json_decref(room_ask(*state, "DELETE", "/api/pin", "{}", 200));
+}
+
+static void equal_pictures_have_no_difference(void **state)
+{
+    pin(*state);
+    json_t *told = room_get(*state, "/api/compare?wait=1"), *c = json_object_get(told, "comparison");
+    assert_true(json_is_null(json_object_get(c, "psnr_db")));
+    assert_true(json_is_null(json_object_get(c, "largest_at")));
+    assert_true(number(c, "mse") == 0.0 && number(c, "flip") == 0.0 && number(c, "largest") == 0.0 && number(c, "differing_share") == 0.0);
+    assert_true(number(c, "ssim") == 1.0);
+    assert_int_equal(json_array_size(json_object_get(told, "changed")), 0);
+    assert_true(json_equal(json_object_get(told, "a"), json_object_get(told, "b")));
+    json_decref(told);
+}
+
+static void check_numbers(const json_t *c, const image_comparison *found)
+{
+    assert_true(number(c, "mse") == found->mse);
+    assert_true(number(c, "psnr_db") == found->psnr_db);
+    assert_true(number(c, "ssim") == found->ssim);
+    assert_true(number(c, "flip") == found->flip);
+    assert_true(number(c, "largest") == found->largest);
+    assert_true(number(c, "differing_share") == found->differing_share);
+    const json_t *place = json_object_get(c, "largest_at");
+    assert_int_equal(json_integer_value(json_array_get(place, 0)), found->largest_x);
+    assert_int_equal(json_integer_value(json_array_get(place, 1)), found->largest_y);
+}
+
+static void check_map(const lab_room *room, const image *a, const image *b)
+{
+    image *map = NULL;
+    unsigned char *bytes = NULL;
+    size_t size, there_size;
+    assert_int_equal(image_compare_map(a, b, &map, NULL), STATUS_OK);
+    assert_int_equal(image_encode(map, IMAGE_PNG, 8, true, &bytes, &size, NULL), STATUS_OK);
+    unsigned char *there = bytes_of(room, "/api/compare.png?wait=1", &there_size);
+    assert_int_equal(there_size, size);
+    assert_memory_equal(there, bytes, size);
+    free(there);
+    free(bytes);
+    image_destroy(map);
+}
+
+static void numbers_and_map_are_those_of_the_pictures(void **state)
+{
+    pin(*state);
+    change(*state, "\"ball.ior\": 1.7");
+    json_t *told = room_get(*state, "/api/compare?wait=1");
+    image *a = picture_of(""), *b = picture_of("ball.ior=1.7");
+    image_comparison found;
+    assert_int_equal(image_compare(a, b, &found, NULL), STATUS_OK);
+    assert_true(found.largest > 0.05);
+    check_numbers(json_object_get(told, "comparison"), &found);
+    check_map(*state, a, b);
+    assert_string_not_equal(json_string_value(json_object_get(json_object_get(told, "a"), "film_hash")),
+                            json_string_value(json_object_get(json_object_get(told, "b"), "film_hash")));
+    assert_true(number(json_object_get(told, "a"), "rays") > 64 * 48);
+    assert_true(number(json_object_get(told, "b"), "generation") > number(json_object_get(told, "a"), "generation"));
+    image_destroy(a);
+    image_destroy(b);
+    json_decref(told);
+}
+
+static void the_pinned_picture_stays(void **state)
+{
+    pin(*state);
+    change(*state, "\"render.width\": 32");
+    free(room_film(*state));
+    image *a = picture_of(""), *fine = decoded(*state, "/api/pin.png?bits=16"), *plain = decoded(*state, "/api/pin.png");
+    image_comparison found;
+    assert_int_equal(fine->coded_bits, 16);
+    assert_int_equal(plain->coded_bits, 8);
+    assert_int_equal(image_compare(a, fine, &found, NULL), STATUS_OK);
+    assert_true(found.largest <= 0.51 / 65535);
+    assert_int_equal(image_compare(a, plain, &found, NULL), STATUS_OK);
+    assert_true(found.largest <= 0.51 / 255 && found.largest > 0.51 / 65535);
+    refused(*state, "GET", "/api/pin.png?bits=9", 400, "8 nor 16");
+    image_destroy(a);
+    image_destroy(fine);
+    image_destroy(plain);
+}
+
+static void wanted_change(const json_t *list, size_t at, const char *path, const char *a, const char *b)
+{
+    json_t *wanted = json_pack("{s:s, s:o, s:o}", "path", path, "a", json_loads(a, JSON_DECODE_ANY, NULL), "b", json_loads(b, JSON_DECODE_ANY, NULL));
+    char *text = json_dumps(json_array_get(list, at), 0), *wanted_text = json_dumps(wanted, 0);
+    if (!json_equal(json_array_get(list, at), wanted))
+        fail_msg("%s is there, and wanted is %s", text ? text : "nothing", wanted_text);
+    free(text);
+    free(wanted_text);
+    json_decref(wanted);
+}
+
+static void it_says_which_parameters_changed(void **state)
+{
+    pin(*state);
+    change(*state, "\"ball.ior\": 1.7, \"lamp.position\": [1, 2, 3], \"render.threads\": 1, \"background.kind\": \"gradient\"");
+    change(*state, "\"ball.radius\": 0.5");
+    change(*state, "\"ball.radius\": 1");
+    json_t *told = room_get(*state, "/api/compare?wait=1"), *list = json_object_get(told, "changed");
+    assert_int_equal(json_array_size(list), 4);
+    wanted_change(list, 0, "render.threads", "2", "1");
+    wanted_change(list, 1, "background.kind", "\"uniform\"", "\"gradient\"");
+    wanted_change(list, 2, "lamp.position", "[4.0, 7.0, -5.0]", "[1.0, 2.0, 3.0]");
+    wanted_change(list, 3, "ball.ior", "1.5", "1.7");
+    json_decref(told);
+}
+
+static const json_t *entry(const json_t *list, const char *path)
+{
+    const json_t *one;
+    size_t i;
+    json_array_foreach(list, i, one)
+        if (strcmp(json_string_value(json_object_get(one, "path")), path) == 0)
+            return one;
+    fail_msg("%s is not among what changed", path);
+    return NULL;
+}
+
+static void objects_that_come_and_go_have_parameters_on_one_side(void **state)
+{
+    pin(*state);
+    json_decref(room_ask(*state, "DELETE", "/api/objects/ball", "{}", 200));
+    json_decref(room_ask(*state, "POST", "/api/objects", "{\"kind\": \"light\", \"name\": \"sun\"}", 200));
+    json_t *told = room_get(*state, "/api/compare?wait=1"), *list = json_object_get(told, "changed");
+    assert_true(json_is_null(json_object_get(entry(list, "ball.radius"), "b")));
+    assert_true(number(entry(list, "ball.radius"), "a") == 1.0);
+    assert_true(json_is_null(json_object_get(entry(list, "sun.intensity"), "a")));
+    assert_true(json_is_number(json_object_get(entry(list, "sun.intensity"), "b")));
+    json_decref(told);
+}
+
+static void pictures_of_two_sizes_have_no_comparison(void **state)
+{
+    pin(*state);
+    change(*state, "\"render.width\": 32");
+    json_t *told = room_get(*state, "/api/compare?wait=1");
+    assert_true(json_is_null(json_object_get(told, "comparison")));
+    assert_true(number(json_object_get(told, "a"), "width") == 64 && number(json_object_get(told, "b"), "width") == 32);
+    assert_int_equal(json_array_size(json_object_get(told, "changed")), 1);
+    refused(*state, "GET", "/api/compare.png", 409, "");
+    json_decref(told);
+}
+
+static void what_is_let_go_of_is_gone(void **state)
+{
+    pin(*state);
+    json_t *told = room_get(*state, "/api/state");
+    assert_true(number(json_object_get(told, "pin"), "width") == 64);
+    json_decref(told);
+    told = room_ask(*state, "DELETE", "/api/pin", "{}", 200);
+    assert_true(json_is_null(json_object_get(told, "pin")));
+    json_decref(told);
+    refused(*state, "GET", "/api/compare", 409, "no picture is pinned");
+    told = room_get(*state, "/api/state");
+    assert_true(json_is_null(json_object_get(told, "pin")));
+    json_decref(told);
+}
+
+typedef struct asker { const lab_room *room; pthread_t thread; char *text; int rounds, code; } asker;
+
+static void *ask(void *context)
+{
+    asker *a = context;
+    char *reply = client_ask(a->room->server, "GET", "/api/compare?wait=1", "", NULL);
+    a->code = reply_code(reply);
+    a->text = strdup(reply_body(reply));
+    free(reply);
+    return NULL;
+}
+
+static void many_at_once_get_the_same(void **state)
+{
+    asker askers[10];
+    pin(*state);
+    change(*state, "\"ball.ior\": 1.3");
+    for (size_t i = 0; i < 10; i++) {
+        askers[i] = (asker){.room = *state};
+        assert_int_equal(pthread_create(&askers[i].thread, NULL, ask, &askers[i]), 0);
+    }
+    for (size_t i = 0; i < 10; i++)
+        pthread_join(askers[i].thread, NULL);
+    assert_non_null(strstr(askers[0].text, "\"comparison\":{"));
+    for (size_t i = 0; i < 10; i++) {
+        assert_int_equal(askers[i].code, 200);
+        assert_string_equal(askers[i].text, askers[0].text);
+    }
+    for (size_t i = 0; i < 10; i++)
+        free(askers[i].text);
+}
+
+static void *ask_often(void *context)
+{
+    static const char *const targets[] = {"/api/compare", "/api/compare.png", "/api/pin.png", "/api/compare?wait=1", "/api/trace?x=30&y=20"};
+    asker *a = context;
+    for (int k = 0; k < a->rounds; k++) {
+        char *reply = client_ask(a->room->server, "GET", targets[k % 5], "", NULL);
+        a->code = reply_code(reply);
+        free(reply);
+        if (a->code != 200 && a->code != 404 && a->code != 409)
+            break;
+    }
+    return NULL;
+}
+
+/* Pictures go and come under those who look at them. */
+static void pins_may_change_while_others_compare(void **state)
+{
+    asker askers[6];
+    for (size_t i = 0; i < 6; i++) {
+        askers[i] = (asker){.room = *state, .rounds = 25};
+        assert_int_equal(pthread_create(&askers[i].thread, NULL, ask_often, &askers[i]), 0);
+    }
+    for (int k = 0; k < 8; k++) {
+        char *values = text_format("\"ball.ior\": %g", 1.2 + 0.05 * k);
+        pin(*state);
+        change(*state, values);
+        free(values);
+        if (k % 3 == 2)
+            json_decref(room_ask(*state, "DELETE", "/api/pin", "{}", 200));
+    }
+    for (size_t i = 0; i < 6; i++)
+        pthread_join(askers[i].thread, NULL);
+    for (size_t i = 0; i < 6; i++)
+        assert_true(askers[i].code == 200 || askers[i].code == 404 || askers[i].code == 409);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(without_a_pin_there_is_nothing_to_compare, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(equal_pictures_have_no_difference, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(numbers_and_map_are_those_of_the_pictures, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(the_pinned_picture_stays, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(it_says_which_parameters_changed, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(objects_that_come_and_go_have_parameters_on_one_side, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(pictures_of_two_sizes_have_no_comparison, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(what_is_let_go_of_is_gone, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(many_at_once_get_the_same, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(pins_may_change_while_others_compare, open_ball, close_room),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
