@@ -266,9 +266,11 @@ static void post_draw(void *context, const http_request *q, http_reply *r)
         return;
     free(file);
     if (studies_begin_drawing(l->studies)) {
-        const status code = figures_draw(l, s, &said, &why);
+        bool whole;
+        const status code = figures_draw(l, s, &said, &whole, &why);
         studies_end_drawing(l->studies);
-        reply(r, code, code == STATUS_OK ? json_pack("{s:o, s:o}", "figures", figures_of(l, s->name), "said", json_of_text(said)) : NULL, &why);
+        reply(r, code,
+              code == STATUS_OK ? json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said", json_of_text(said), "complete", whole) : NULL, &why);
     } else {
         http_reply_error(r, 409, "figures are being drawn", "wait for them");
     }

@@ -96,7 +96,7 @@ static status write_tables(const study *s, const char *results, diagnostic *why)
 
 /* --- the script --- */
 
-static status run_script(const lab *l, const char *script, const json_t *figures, char **said, diagnostic *why)
+static status run_script(const lab *l, const char *script, const json_t *figures, char **said, bool *whole, diagnostic *why)
 {
     enum { BEFORE = 6 };
     const size_t count = json_array_size(figures);
@@ -110,17 +110,15 @@ static status run_script(const lab *l, const char *script, const json_t *figures
     int exit_code;
     status code = child_run((char *const *)(uintptr_t)arguments, draw_limit_s, studies_ending(l->studies), said, &exit_code, why);
     free(arguments);
-    if (code == STATUS_OK && exit_code != 0) {
-        const char *last = *said && (*said)[0] ? *said : "it did not say why";
-        code = diagnose(why, STATUS_FAILURE, "draw them from a terminal to see more", "not all figures were drawn: %.300s", last);
-    }
+    *whole = exit_code == 0;
     return code;
 }
 
-status figures_draw(const lab *l, const study *s, char **said, diagnostic *why)
+status figures_draw(const lab *l, const study *s, char **said, bool *whole, diagnostic *why)
 {
     char *script = NULL;
     *said = NULL;
+    *whole = false;
     json_t *figures = figures_drawable(l, s->name);
     status code = figures ? STATUS_OK : no_memory(why);
     if (code == STATUS_OK && json_array_size(figures) == 0)
@@ -136,7 +134,7 @@ status figures_draw(const lab *l, const study *s, char **said, diagnostic *why)
     if (code == STATUS_OK)
         code = write_tables(s, l->settings.results, why);
     if (code == STATUS_OK)
-        code = run_script(l, script, figures, said, why);
+        code = run_script(l, script, figures, said, whole, why);
     free(script);
     json_decref(figures);
     return code;
