@@ -1,4 +1,5 @@
-/* Puts the laboratory together: one object lab (store.js), the picture (view.js), the panels, head and status line. Exports nothing. */
+/* Puts the laboratory together: one object lab (store.js), the picture (view.js), the panels, head and status line. Exports nothing; the browser's
+ * console finds it as lab. */
 
 import {createLab} from './store.js';
 import {createView} from './view.js';
@@ -18,6 +19,7 @@ const at = (id) => document.getElementById(id);
 
 async function start() {
   const lab = createLab();
+  window.lab = lab;
   createStatus(at('status'), at('live'), lab);
   createBanner(at('banner'), [at('head'), at('desk')], lab);
   lab.view = createView(at('view'), lab);

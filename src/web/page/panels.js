@@ -1,8 +1,8 @@
 /* The panels as tabs beside the picture, and the splitter between the two. A panel is made when it is first shown.
  * exports: createPanels(side, splitter, desk, panels, lab) -> {use(id), chosen()}
- * panel: {id, title, wide?, css?, create(root, lab), shown?(), hidden?()}; a wide one takes the whole width, without the picture; css is the name of
- * its own style sheet (panel_ID.css), which uses the variables of lab.css for all colours and starts each rule with .panel-ID.
- * The panel's title is its h2: headings within start at h3 */
+ * panel: {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}; start is called once when the page opens, for tools of the
+ * picture; a wide one takes the whole width, without the picture; css is the name of its own style sheet (panel_ID.css), which uses the variables
+ * of lab.css for all colours and starts each rule with .panel-ID. The panel's title is its h2: headings within start at h3 */
 
 import {element, memory, notice, replace} from './ui.js';
 
@@ -19,6 +19,7 @@ export function createPanels(side, splitter, desk, panels, lab) {
   side.id = 'side';
   side.append(list, element('div', {class: 'panel-room', id: 'panels', tabindex: '-1'}, [...entries.values()].map((entry) => entry.frame)));
   createSplitter(splitter, desk);
+  for (const entry of entries.values()) guard(entry, () => entry.panel.start?.(lab));
   use(entries.has(memory.get('panel')) ? memory.get('panel') : panels[0]?.id);
   return {use, chosen: () => chosen};
 
@@ -39,15 +40,23 @@ export function createPanels(side, splitter, desk, panels, lab) {
     entry.tab.setAttribute('aria-selected', String(on));
     entry.tab.tabIndex = on ? 0 : -1;
     entry.frame.hidden = !on;
-    try {
+    guard(entry, () => {
       if (on && !entry.made) {
         entry.made = true;
         entry.panel.create(entry.root, lab);
       }
       (on ? entry.panel.shown : entry.panel.hidden)?.call(entry.panel);
+    });
+  }
+
+  /* A panel that fails leaves the others as they are. */
+  function guard(entry, act) {
+    try {
+      act();
     } catch (error) {
       console.error(error);
-      if (on) replace(entry.root, notice(`This panel failed: ${error.message}`, {kind: 'error', remedy: 'load the page again'}));
+      entry.made = true;
+      replace(entry.root, notice(`This panel failed: ${error.message}`, {kind: 'error', remedy: 'load the page again'}));
     }
   }
 
