@@ -92,10 +92,11 @@ export function lightTool(lab) {
     handle.node.setAttribute('aria-label', `${handle.name}, light at ${point.map((x) => digits(x, 3)).join(', ')}${side}`);
   }
 
-  /* The world's way for dx, dy CSS pixels on the picture, at the light's own distance. */
-  function along(point, dx, dy, deep) {
+  /* The world's way for dx, dy CSS pixels on the picture, at the light's own depth, so that it stays under the pointer. One that is not in the picture,
+   * and so perhaps very near or behind the camera, moves as if it were no nearer than the target. */
+  function along(point, dx, dy, {deep, seen}) {
     const camera = lab.state.camera;
-    const depth = Math.max(dot(minus(point, camera.eye), camera.forward), camera.distance || 1);
+    const depth = Math.max(dot(minus(point, camera.eye), camera.forward), seen ? 0 : camera.distance || 1);
     const x = dx / view.scale * camera.half_width * 2 / view.width * depth;
     const y = -dy / view.scale * camera.half_height * 2 / view.height * depth;
     return point.map((value, axis) => value + (deep ? y * camera.forward[axis] : x * camera.right[axis] + y * camera.up[axis]));
@@ -122,13 +123,13 @@ export function lightTool(lab) {
       if (event.button !== 0) return;
       handle.node.setPointerCapture(event.pointerId);
       handle.node.focus({preventScroll: true});
-      handle.drag = {x: event.clientX, y: event.clientY, at: position(handle), gesture: gesture('light')};
+      handle.drag = {x: event.clientX, y: event.clientY, at: position(handle), seen: !where(position(handle)).outside, gesture: gesture('light')};
       event.preventDefault();
       event.stopPropagation();
     });
     handle.node.addEventListener('pointermove', (event) => {
       if (!handle.drag) return;
-      const next = along(handle.drag.at, event.clientX - handle.drag.x, event.clientY - handle.drag.y, event.shiftKey);
+      const next = along(handle.drag.at, event.clientX - handle.drag.x, event.clientY - handle.drag.y, {deep: event.shiftKey, seen: handle.drag.seen});
       Object.assign(handle.drag, {x: event.clientX, y: event.clientY, at: next});
       move(handle, next, handle.drag.gesture);
     });
@@ -140,7 +141,7 @@ export function lightTool(lab) {
       if (!way || event.ctrlKey || event.altKey) return;
       if (!handle.keys || event.timeStamp - handle.keys.at > PAUSE_MS) handle.keys = {gesture: gesture('light')};
       handle.keys.at = event.timeStamp;
-      move(handle, along(position(handle), ...way, event.shiftKey), handle.keys.gesture);
+      move(handle, along(position(handle), ...way, {deep: event.shiftKey, seen: !where(position(handle)).outside}), handle.keys.gesture);
       event.preventDefault();
       event.stopPropagation();
     });

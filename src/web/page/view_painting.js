@@ -27,11 +27,12 @@ export function createPainting(canvas, view, place, lab) {
   }
 
   function hear(news) {
-    const more = !told.has(news.serial) || news.noise !== undefined;
-    told.set(news.serial, {...told.get(news.serial), ...news});
+    const before = told.get(news.serial);
+    told.set(news.serial, {...before, ...news});
     if (told.size > 12) told.delete(told.keys().next().value);
-    if (shown?.serial === news.serial && more) publish();
-    else if (due()) load();
+    if (shown?.serial !== news.serial) load();
+    else if (!before && shown.generation >= lab.wanted) publish();
+    else if (lab.picture?.serial === news.serial) Object.assign(lab.picture, news);
   }
 
   async function load() {
