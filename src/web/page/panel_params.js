@@ -5,6 +5,7 @@ import {button, check, element, empty, group, icon, memory, replace} from './ui.
 import {createRow, valueText} from './param_row.js';
 
 const FOUND_MAX = 80;
+const LATER_MS = 300;     /* the list is not made anew while one of its controls is dragged */
 const MANY = 36;
 const LAST = ['camera', 'background', 'render'];
 const TITLES = {camera: 'Camera', background: 'Background', render: 'Rendering'};
@@ -36,10 +37,12 @@ function ordered(names, lab) {
   return [...names].sort((a, b) => place(a) - place(b));
 }
 
-function handParts(lab) {
+/* Once clear, a solid stays in that list: its slider for transparency must not go away under the hand. */
+function handParts(lab, onceClear) {
   const take = (name, wanted) => wanted.map((word) => lab.param(`${name}.${word}`)).filter(Boolean);
   const solids = lab.scene.objects.filter((object) => object.kind === 'solid').map((object) => object.name);
-  const isClear = (name) => (lab.param(`${name}.transparency`)?.value ?? 0) > 0;
+  for (const name of solids) if ((lab.param(`${name}.transparency`)?.value ?? 0) > 0) onceClear.add(name);
+  const isClear = (name) => onceClear.has(name);
   const parts = [
     ...solids.filter(isClear).map((name) => [name, take(name, HAND.clear)]),
     ...solids.filter((name) => !isClear(name)).map((name) => [name, take(name, HAND.opaque)]),
@@ -63,7 +66,9 @@ export const panel = {
       memory.set('meanings', on);
     });
     const rows = new Map();
+    const onceClear = new Set();
     let built = '';
+    let later = 0;
     let timer = 0;
 
     root.classList.toggle('explained', explain.value);
@@ -98,8 +103,11 @@ export const panel = {
     }
 
     function show(scene) {
-      const shape = JSON.stringify([scene.objects, scene.params.map((row) => [row.path, row.type, row.choices?.length]), handParts(lab).map(([name, own]) => [name, own.length])]);
-      if (shape !== built) {
+      const shape = JSON.stringify([scene.objects, scene.params.map((row) => [row.path, row.type, row.choices?.length]), handParts(lab, onceClear).map(([name, own]) => [name, own.length])]);
+      if (shape !== built && [...rows.values()].flat().some((made) => made.busy())) {
+        clearTimeout(later);
+        later = setTimeout(() => show(lab.scene), LATER_MS);
+      } else if (shape !== built) {
         built = shape;
         build();
       } else {
@@ -114,19 +122,21 @@ export const panel = {
     }
 
     function build() {
-      const focused = document.activeElement?.closest?.('.param')?.dataset.path;
+      const held = document.activeElement?.closest?.('.panel-params .param');
+      const focused = held?.dataset.path;
+      const nth = held ? [...held.querySelectorAll('input, select')].indexOf(document.activeElement) : -1;
       const place = list.scrollTop;
       rows.clear();
       replace(list, hand(), ordered(grouped(lab.scene.params).keys(), lab).map(objectGroup));
       list.scrollTop = place;
       if (focused && root.contains(document.activeElement) === false) {
-        list.querySelector(`.param[data-path="${CSS.escape(focused)}"] :is(input, select)`)?.focus({preventScroll: true});
+        list.querySelector(`.param[data-path="${CSS.escape(focused)}"]`)?.querySelectorAll('input, select')[nth]?.focus({preventScroll: true});
       }
       if (search.value) find();
     }
 
     function hand() {
-      const parts = handParts(lab);
+      const parts = handParts(lab, onceClear);
       const many = parts.reduce((sum, [, own]) => sum + own.length, 0) > MANY;
       return group('At hand', {id: 'params.hand'}, parts.map(([name, own], index) => {
         const open = memory.get(`group.hand.${name}`, !many || index < 2 || name === 'render');

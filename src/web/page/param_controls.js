@@ -9,6 +9,7 @@ import {workingRange} from './param_range.js';
 
 const CHANNELS = ['red', 'green', 'blue'];
 const AXES = ['x', 'y', 'z'];
+const PAUSE_MS = 1000;      /* keys that follow each other faster are one step of undo */
 const COEFFICIENT = 1e6;    /* colours whose bound is beyond this are coefficients by channel */
 
 export const written = (x) => (Number.isFinite(x) ? String(Number(x.toPrecision(7))) : '');
@@ -38,6 +39,8 @@ function numberInput(context, label, onvalue) {
 function slider(row, context, label, send) {
   let ruler = null;
   let mine = null;
+  let last = -Infinity;
+  let dragged = false;
   const range = element('input', {type: 'range', class: 'range', min: 0, step: 1, ...attributes(context, label)});
   const box = numberInput(context, `${label || context.name}, number`, (value) => {
     show(value);
@@ -47,6 +50,7 @@ function slider(row, context, label, send) {
     ruler = {...workingRange(row, value)};
     Object.assign(ruler, scale({...ruler, step: ruler.step || undefined}));
     range.max = ruler.steps;
+    box.input.step = row.type === 'integer' ? 1 : ruler.log ? 'any' : written(10 * ruler.step);
   };
   const show = (value) => {
     if (!ruler || value > ruler.max || value < ruler.min) fit(value);
@@ -54,16 +58,19 @@ function slider(row, context, label, send) {
     range.setAttribute('aria-valuetext', `${written(value)}${row.unit ? ` ${row.unit}` : ''}`);
     range.style.setProperty('--filled', `${100 * range.value / ruler.steps}%`);
   };
-  range.addEventListener('input', () => {
-    mine ??= gesture('slider');
+  range.addEventListener('pointerdown', () => { last = -Infinity; });
+  range.addEventListener('input', (event) => {
+    if (!dragged && event.timeStamp - last > PAUSE_MS) mine = gesture('slider');
+    last = event.timeStamp;
+    dragged = true;
     const value = ruler.value(Number(range.value));
     show(value);
     box.set(value);
     send(value, mine);
   });
-  range.addEventListener('change', () => { mine = null; });
+  range.addEventListener('change', () => { dragged = false; });
   return {
-    nodes: [range, box.input], inputs: [range, box.input], busy: () => mine !== null,
+    nodes: [range, box.input], inputs: [range, box.input], busy: () => dragged,
     set(value) {
       show(value);
       if (document.activeElement !== box.input) box.set(value);
@@ -92,6 +99,7 @@ function parts(row, context, names, make) {
 function vector(row, context) {
   const three = parts(row, context, AXES, (label, send) => {
     const part = numberInput(context, label, send);
+    part.input.step = written(10 * workingRange(row, row.value).step) || 'any';
     return {...part, set(x) { if (document.activeElement !== part.input) part.set(x); }};
   });
   const node = element('span', {class: 'param-vector'}, three.all.map((part, index) => element('span', {class: 'param-axis'},

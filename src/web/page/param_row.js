@@ -1,6 +1,7 @@
 /* One parameter: its name, control, unit, way back to its first value, what it means, and why a value was refused.
- * exports: createRow(row, lab, {onabout(row), long}) -> {node, path, update(row, generation), same(row)}
- *   long: the label has the object's name too; same: the row can be shown by what is there */
+ * exports: createRow(row, lab, {onabout(row), long}) -> {node, path, update(row, generation), busy()}
+ *   long: the label has the object's name too; busy: it is being dragged.
+ * node is .param with data-path, the slider in it an input of type range, the number beside it one of type number */
 
 import {button, element, unique} from './ui.js';
 import {controlOf, written} from './param_controls.js';
@@ -8,7 +9,6 @@ import {controlOf, written} from './param_controls.js';
 const FORGET_MS = 8000;
 
 const labelOf = (name) => name.replaceAll('_', ' ');
-const kindOf = (row) => `${row.type}|${row.choices || ''}|${row.lowest}|${row.highest}`;
 const equal = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
 export function valueText(value) {
@@ -49,7 +49,7 @@ export function createRow(first, lab, {onabout, long} = {}) {
     forget = setTimeout(() => { if (!node.contains(document.activeElement)) refuse(null); }, FORGET_MS);
   });
   showReset();
-  return {node, path, update, same: (row) => kindOf(row) === kindOf(known)};
+  return {node, path, update, busy: () => control.busy()};
 
   function shortUnit(unit) {
     return unit === 'scene units' ? 'u' : unit === 'deg' ? '°' : unit;

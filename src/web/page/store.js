@@ -22,6 +22,7 @@ import {createApi} from './api.js';
 const RETRY_MS = 1000;
 const STRANGER_RETRY_MS = 5000;
 const PULSE_MS = 10000;
+const SCENE_MS = 150;      /* the scene is fetched no more often */
 const EVENTS = ['state', 'picture', 'slime', 'study'];
 
 function createEmitter() {
@@ -216,6 +217,7 @@ export function createLab() {
         objects = new Map(scene.objects.map((object) => [object.name, object]));
         lab.scene = scene;
         emit('scene', scene);
+        await new Promise((resolve) => setTimeout(resolve, SCENE_MS));
       } catch (error) {
         if (error.status) lab.fail(error);
         again = false;

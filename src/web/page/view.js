@@ -61,12 +61,17 @@ export function createView(root, lab) {
   Object.defineProperty(view, 'chosen', {get: () => toolbar.chosen()});
 
   root.append(toolbar.node, stage);
-  lab.on('state', (state) => {
-    const why = state.trouble ? [state.trouble.error, state.trouble.remedy].filter(Boolean).join(' – ') : state.waiting;
+  const explain = () => {
+    const {state} = lab;
+    if (!state) return;
+    const why = state.trouble ? [state.trouble.error, state.trouble.remedy].filter(Boolean).join(' – ')
+      : state.waiting || (lab.picture ? '' : 'The scene is being prepared …');
     waiting.textContent = why || '';
     waiting.hidden = !why;
     waiting.classList.toggle('trouble', Boolean(state.trouble));
-  });
+  };
+  lab.on('state', explain);
+  lab.on('picture', explain);
   return view;
 
   function redraw() {

@@ -17,6 +17,7 @@ export function createPlace(stage, view, changed) {
 
   function size() {
     const {clientWidth, clientHeight} = stage;
+    if (!clientWidth || !clientHeight) return;
     const dx = (clientWidth - place.width) / 2;
     const dy = (clientHeight - place.height) / 2;
     place.width = clientWidth;
