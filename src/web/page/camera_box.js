@@ -1,12 +1,13 @@
 /* The camera in numbers: exact steps, and fields for where it stands and looks. Opens under the picture.
  * exports: cameraBox(root, lab); sets lab.view.camera: {key(event)} for the keys of the picture */
 
-import {button, choice, digits, element, gesture, memory, number} from './ui.js';
+import {button, choice, element, gesture, memory, number} from './ui.js';
 import {moveCamera} from './tool_orbit.js';
 
 const ORBIT = 5;
 const FINE_ORBIT = 1;
 const AXES = ['x', 'y', 'z'];
+const short = (x) => Number(x.toPrecision(5));
 const TURNS = {
   around: ['Yaw: around to the left', 'Yaw: around to the right', 'Pitch: around, higher', 'Pitch: around, lower'],
   spot: ['Yaw: look left', 'Yaw: look right', 'Pitch: look up', 'Pitch: look down'],
@@ -86,7 +87,7 @@ function createFields(root, lab) {
     });
     return {
       node: element('div', {class: 'camera-field', role: 'group', 'aria-label': label}, element('span', {class: 'label', text: label}), parts.map((part) => part.node)),
-      set: (value) => parts.forEach((part, index) => part.set(Number(digits(value[index], 6).replace('\u2212', '-')))),
+      set: (value) => parts.forEach((part, index) => part.set(short(value[index]))),
     };
   }
 
@@ -94,7 +95,7 @@ function createFields(root, lab) {
     const label = {yaw_deg: 'Yaw', pitch_deg: 'Pitch', fov_deg: 'Field of view'}[row.name] || row.name;
     const part = number({label, value: row.value, unit: '°', onchange: (x) => send(row.path, x)});
     part.node.classList.add('camera-field');
-    return part;
+    return {node: part.node, set: (value) => part.set(short(value))};
   }
 
   function update() {

@@ -40,7 +40,7 @@ export function createRow(first, lab, {onabout, long} = {}) {
     class: 'param', role: control.single ? null : 'group', 'aria-label': control.single ? null : `${object} ${labelOf(first.name)}`,
     dataset: {path},
   }, control.single ? label : element('span', {class: 'param-label', title: path}, title()),
-  element('div', {class: 'param-control'}, control.node, first.unit ? element('span', {class: 'unit', text: shortUnit(first.unit), title: first.unit}) : null),
+  element('div', {class: 'param-control'}, control.node, element('span', {class: 'unit', text: shortUnit(first.unit), title: first.unit || null})),
   reset, meaning, problem);
   node.addEventListener('pointerenter', () => onabout?.(known));
   node.addEventListener('focusin', () => onabout?.(known));
