@@ -247,6 +247,21 @@ static void passes_fit_the_time_that_there_is(void **state)
     assert_int_equal(pass.samples, 1);
 }
 
+/* Long enough that loading it is asked whether to go on. */
+static void what_takes_long_to_load_is_shown(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, scene_from("render: {width: 8, height: 8}\n"
+                                  "camera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
+                                  "meshes:\n"
+                                  "  toy: {generate: slime, level: 3, position: [0, 0, 0], ground_y: -1, dt_s: 0.0005, time_s: 1}\n"
+                                  "solids:\n"
+                                  "  body: {shape: mesh, mesh: toy}\n"));
+    final_film(&s);
+    close_studio(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest cases[] = {
@@ -256,6 +271,7 @@ int main(void)
         cmocka_unit_test(trouble_is_told_and_goes),
         cmocka_unit_test(nothing_is_rendered_while_it_waits),
         cmocka_unit_test(an_end_ends_all_waiting),
+        cmocka_unit_test(what_takes_long_to_load_is_shown),
         cmocka_unit_test(passes_fit_the_time_that_there_is),
     };
     return cmocka_run_group_tests_name("lab_painter", cases, NULL, NULL);

@@ -46,6 +46,7 @@ struct painter {
 
     /* the thread's own */
     pass_plan plan;
+    uint64_t loading;               /* generation of the stage, loaded or not */
     int pass;                       /* next */
     double rate;
     int ended;                      /* first passes in a row */
@@ -219,10 +220,15 @@ static bool must_end(painter *p)
     return now || (is_stale(p) && p->ended < ENDED_MAX) || (live_is_due(p->toy) && p->pass > 0);
 }
 
+/* The stage is newer than stage_generation says until it is loaded. */
 static bool go_on_loading(void *of, double share_done)
 {
+    painter *p = of;
     (void)share_done;
-    return !must_end(of);
+    pthread_mutex_lock(&p->lock);
+    const bool now = p->stop || p->waiting;
+    pthread_mutex_unlock(&p->lock);
+    return !now && desk_generation(p->desk) == p->loading;
 }
 
 static status load_stage(painter *p, diagnostic *why)
@@ -237,6 +243,7 @@ static void renew_stage(painter *p)
     diagnostic why = {.line = 0};
     uint64_t generation;
     scene *next = desk_take(p->desk, &generation);
+    p->loading = generation;
     pthread_rwlock_wrlock(&p->stage_lock);
     status code = next ? STATUS_OK : diagnose(&why, STATUS_FAILURE, "", "out of memory");
     if (next) {
