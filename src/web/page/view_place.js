@@ -4,6 +4,9 @@
 const MARGIN = 12;
 const LARGEST = 64;
 const SMALLEST = 0.05;
+const CRISP = 1.2;     /* a picture that would be enlarged by less is shown pixel for pixel */
+
+const whole = (x) => Math.round(x * devicePixelRatio) / devicePixelRatio;
 
 export function createPlace(stage, view, changed) {
   const place = {
@@ -34,8 +37,10 @@ export function createPlace(stage, view, changed) {
     place.fitted = true;
     if (view.width && place.width) {
       place.scale = Math.max(SMALLEST / 4, Math.min((place.width - 2 * MARGIN) / view.width, (place.height - 2 * MARGIN) / view.height));
-      place.left = (place.width - view.width * place.scale) / 2;
-      place.top = (place.height - view.height * place.scale) / 2;
+      const enlarged = place.scale * devicePixelRatio;
+      if (enlarged > 1 && enlarged < CRISP) place.scale = 1 / devicePixelRatio;
+      place.left = whole((place.width - view.width * place.scale) / 2);
+      place.top = whole((place.height - view.height * place.scale) / 2);
     }
     changed();
   }
@@ -51,8 +56,8 @@ export function createPlace(stage, view, changed) {
 
   function actual() {
     zoom(1 / (place.scale * devicePixelRatio));
-    place.left = Math.round(place.left * devicePixelRatio) / devicePixelRatio;
-    place.top = Math.round(place.top * devicePixelRatio) / devicePixelRatio;
+    place.left = whole(place.left);
+    place.top = whole(place.top);
     changed();
   }
 
