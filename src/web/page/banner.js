@@ -9,17 +9,23 @@ const words = {
 };
 
 export function createBanner(banner, parts, lab) {
+  let held = null; /* what had the focus, which goes back to it */
   const show = (how) => {
     const [what, remedy] = words[how] || [];
     banner.hidden = !what;
     document.body.classList.toggle('lost', Boolean(what));
     if (what && banner.dataset.how !== how) replace(banner, icon('warning'), element('strong', {text: what}), element('span', {text: remedy}));
     banner.dataset.how = what ? how : '';
+    const gone = Boolean(what);
+    if (gone && !parts[0].inert) held = document.activeElement;
     for (const part of parts) {
       part.inert = Boolean(what);
       part.setAttribute('aria-busy', String(Boolean(what)));
     }
-    if (!what) banner.replaceChildren();
+    if (gone) return;
+    banner.replaceChildren();
+    if (document.activeElement === document.body) held?.focus?.({preventScroll: true});
+    held = null;
   };
   let before = lab.connected;
   lab.on('connection', (how) => {
