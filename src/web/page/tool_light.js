@@ -89,7 +89,7 @@ export function lightTool(lab) {
     const told = handle.drag || document.activeElement === handle.node;
     handle.label.textContent = told ? `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}` : handle.name;
     const side = at.behind ? ', behind the camera' : at.outside ? ', outside the picture' : '';
-    handle.node.setAttribute('aria-label', `${handle.name}, light at ${point.map((x) => digits(x, 3)).join(', ')}${side}`);
+    handle.node.setAttribute('aria-label', `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}, light${side}`);
   }
 
   /* The world's way for dx, dy CSS pixels on the picture, at the light's own depth, so that it stays under the pointer. One that is not in the picture,
