@@ -1,0 +1,89 @@
+/* Which object is chosen, for the list, its details and the picture; and what is done to it.
+ * exports: createChoice(lab) -> choice
+ *   choice.name, choice.object          '' and undefined for none; an object that was just made may not be in the scene yet
+ *   choice.choose(name)                 '' lets go
+ *   choice.on(f)                        f() after another is chosen, or the chosen one is no more
+ *   choice.add(body)                    POST /api/objects; chooses what comes
+ *   choice.move(by, gesture), choice.turn(by, gesture)      of the chosen one; those of one gesture that wait are added up
+ *   choice.copy(), choice.remove(), choice.rename(to), choice.dress(material or null)    promises of true where it was done */
+
+import {add} from './ray_vectors.js';
+
+const join = (waiting, newer) => ({by: add(waiting.by, newer.by)});
+
+export function createChoice(lab) {
+  const listeners = new Set();
+  let since = 0; /* the generation in which it is to be there */
+
+  const choice = {
+    name: '',
+    get object() { return choice.name ? lab.object(choice.name) : undefined; },
+    on: (listener) => listeners.add(listener),
+    choose, add: make, rename, remove,
+    copy: () => made(lab.change(at('copy'), {})),
+    dress: (material) => done(lab.change(at('material'), {material})),
+    move: (by, gesture) => done(lab.change(at('move'), {by}, {gesture, merge: join})),
+    turn: (by, gesture) => done(lab.change(at('turn'), {by}, {gesture, merge: join})),
+  };
+  lab.on('scene', (scene) => {
+    if (choice.name && !lab.object(choice.name) && scene.generation >= since) choose('');
+  });
+  return choice;
+
+  function at(what) {
+    return `/api/objects/${encodeURIComponent(choice.name)}/${what}`;
+  }
+
+  function choose(name, generation = 0) {
+    since = generation;
+    if (name === choice.name) return;
+    choice.name = name;
+    for (const listener of listeners) listener();
+  }
+
+  async function done(promise) {
+    try {
+      await promise;
+      return true;
+    } catch (error) {
+      lab.fail(error);
+      return false;
+    }
+  }
+
+  async function made(promise) {
+    try {
+      const reply = await promise;
+      choose(reply.name, reply.generation);
+      lab.say(`${reply.name} is there.`);
+      return true;
+    } catch (error) {
+      lab.fail(error);
+      return false;
+    }
+  }
+
+  function make(body) {
+    return made(lab.change('/api/objects', body));
+  }
+
+  async function rename(to) {
+    const {name} = choice;
+    try {
+      const reply = await lab.change(at('rename'), {to});
+      if (choice.name === name) choose(to, reply.generation);
+      return true;
+    } catch (error) {
+      lab.fail(error);
+      return false;
+    }
+  }
+
+  async function remove() {
+    const {name} = choice;
+    if (!name || !await done(lab.del(`/api/objects/${encodeURIComponent(name)}`))) return false;
+    choose('');
+    lab.say(`${name} is removed. Undo brings it back.`);
+    return true;
+  }
+}

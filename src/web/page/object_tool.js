@@ -1,0 +1,117 @@
+/* Object: a click in the picture chooses what is there, dragging moves it parallel to the picture, as far from the eye as it is. Planes are chosen but not
+ * dragged: on them, on the sky, and with Shift anywhere, dragging moves what is chosen already.
+ * exports: objectTool(lab, choice, mark) */
+
+import {gesture} from './ui.js';
+import {add, dot, minus, times} from './ray_vectors.js';
+
+const STILL_PX = 3;
+const KEY_PX = 8;
+const PAUSE_MS = 600;
+
+const isPlane = (object) => object?.kind === 'solid' && object.shape === 'plane';
+const moves = (object) => object && (object.kind === 'solid' || object.kind === 'light') && !isPlane(object);
+
+export function objectTool(lab, choice, mark) {
+  const {view} = lab;
+  let drag = null;
+  let keys = null;
+
+  view.tool('object', {
+    label: 'Object', icon: 'cube', order: 15, cursor: 'pointer',
+    hint: 'Click an object to choose it, drag to move it; with Shift dragging moves what is chosen already; arrow keys move, Delete removes',
+    chosen: () => lab.panels?.use('edit'),
+    down, move, up, key,
+  });
+
+  function depthOf(point) {
+    const camera = lab.state.camera;
+    return dot(minus(point, camera.eye), camera.forward);
+  }
+
+  /* The world's way for dx, dy picture pixels at that depth. */
+  function way(dx, dy, depth) {
+    const {right, up: upward, half_width: w, half_height: h} = lab.state.camera;
+    return add(times(right, dx * (2 * w / view.width) * depth), times(upward, -dy * (2 * h / view.height) * depth));
+  }
+
+  async function hitAt(point) {
+    try {
+      const tree = await lab.get(`/api/trace?x=${Math.floor(point.x)}&y=${Math.floor(point.y)}`);
+      return tree.root?.hit || null;
+    } catch (error) {
+      if (error.status !== 409) lab.fail(error);
+      return null;
+    }
+  }
+
+  function takeChosen(now) {
+    const place = mark.at();
+    if (moves(choice.object) && place) now.depth = depthOf(place);
+  }
+
+  function down(point, event) {
+    if (!lab.state?.camera || (!point.inside && !choice.name)) return false;
+    const now = drag = {gesture: gesture('object'), from: point, last: point, depth: 0, hit: null, far: false};
+    if (event.shiftKey || !point.inside) {
+      takeChosen(now);
+      return true;
+    }
+    hitAt(point).then((hit) => take(now, hit, point));
+    return true;
+  }
+
+  /* The pointer may have moved on meanwhile, or gone up. */
+  function take(now, hit) {
+    now.hit = hit;
+    const object = hit && lab.object(hit.solid);
+    if (moves(object)) {
+      choice.choose(hit.solid);
+      now.depth = depthOf(hit.point);
+    } else if (!now.far && now.ended) {
+      choice.choose(hit ? hit.solid : '');
+    } else {
+      takeChosen(now);
+    }
+    now.known = true;
+    if (now.far) go(now, now.last);
+  }
+
+  function go(now, point) {
+    if (!(now.depth > 0) || !choice.name) return;
+    const start = now.moved || now.from;
+    const by = way(point.x - start.x, point.y - start.y, now.depth);
+    now.moved = point;
+    if (by.some((x) => x !== 0)) choice.move(by, now.gesture);
+  }
+
+  function move(point) {
+    if (!drag) return;
+    drag.last = point;
+    drag.far ||= Math.hypot(point.x - drag.from.x, point.y - drag.from.y) * view.scale > STILL_PX;
+    if (drag.far) go(drag, point);
+  }
+
+  function up() {
+    const now = drag;
+    drag = null;
+    if (!now) return;
+    now.ended = true;
+    if (!now.far && now.known && !moves(lab.object(now.hit?.solid))) choice.choose(now.hit ? now.hit.solid : '');
+  }
+
+  function key(event) {
+    const ways = {ArrowLeft: [-KEY_PX, 0], ArrowRight: [KEY_PX, 0], ArrowUp: [0, -KEY_PX], ArrowDown: [0, KEY_PX]};
+    if (!choice.name) return false;
+    if (event.key === 'Escape') choice.choose('');
+    else if (event.key === 'Delete') choice.remove();
+    else if (ways[event.key] && moves(choice.object) && mark.at()) {
+      if (!keys || event.timeStamp - keys.at > PAUSE_MS) keys = {gesture: gesture('object')};
+      keys.at = event.timeStamp;
+      const fine = event.shiftKey ? 0.1 : 1;
+      const [dx, dy] = ways[event.key];
+      choice.move(way(dx * fine / view.scale, dy * fine / view.scale, Math.max(depthOf(mark.at()), 0)), keys.gesture);
+    } else return false;
+    return true;
+  }
+}

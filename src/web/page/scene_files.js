@@ -1,0 +1,148 @@
+/* Opening, saving and choosing files of the laboratory's folder.
+ * exports: createFiles(lab, choice) -> {open(), fresh(), save(), saveAs(), pickSky(), pick(title, kind, empty) -> promise of a name or null, forObject(object) -> node or null} */
+
+import {ask, button, dialog, element, empty, replace, unique} from './ui.js';
+
+const MANY = 8;
+
+export function createFiles(lab, choice) {
+  return {open, fresh, save, saveAs, pickSky, pick, addFile, forObject};
+
+  /* kind: a key of /api/files. */
+  async function pick(title, kind, nothing) {
+    try {
+      const files = await lab.get('/api/files');
+      return await chooser(title, files[kind], files.folder, nothing);
+    } catch (error) {
+      lab.fail(error);
+      return null;
+    }
+  }
+
+  function chooser(title, names, folder, nothing) {
+    const list = element('ul', {class: 'file-list'});
+    const search = element('input', {type: 'search', class: 'input', id: unique('find'), spellcheck: 'false', placeholder: 'Find'});
+    const content = element('div', {class: 'file-choice'}, element('p', {class: 'hint', text: `In the folder ${folder}`}),
+      names.length > MANY ? element('label', {class: 'visually-hidden', for: search.id, text: 'Find a file'}) : null, names.length > MANY ? search : null,
+      names.length ? list : empty(nothing));
+    const made = dialog({title, content, actions: [['Cancel', null]]});
+    made.node.classList.add('file-dialog');
+    const fill = () => {
+      const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+      const fitting = names.filter((name) => words.every((word) => name.toLowerCase().includes(word)));
+      replace(list, fitting.length ? fitting.map((name) => element('li', {}, element('button', {
+        type: 'button', class: 'object-item', 'aria-current': name === lab.state?.file ? 'true' : null, onclick: () => made.close(name),
+      }, ...named(name)))) : element('li', {class: 'hint', text: 'No file has that in its name.'}));
+    };
+    search.addEventListener('input', fill);
+    fill();
+    (names.length > MANY ? search : list.querySelector('button'))?.focus();
+    return made.closed;
+  }
+
+  function named(name) {
+    const at = name.lastIndexOf('/') + 1;
+    return [element('span', {class: 'object-hint', text: name.slice(0, at)}), element('span', {class: 'object-name', text: name.slice(at)})];
+  }
+
+  /* Is there nothing to lose, or may it go? Undo brings it back as long as the laboratory runs. */
+  async function mayLeave() {
+    if (!lab.state || lab.state.saved) return true;
+    const answer = await dialog({
+      title: 'Unsaved changes', content: element('p', {text: `${lab.state.file || 'This scene'} has changes that are in no file. Undo goes back to them only while the laboratory runs.`}),
+      actions: [['Cancel', null], ['Go on without saving', 'go', 'danger'], ['Save first', 'save', 'primary']],
+    }).closed;
+    return answer === 'save' ? save() : answer === 'go';
+  }
+
+  async function opened(body) {
+    try {
+      await lab.change('/api/open', body);
+      choice.choose('');
+      lab.say(body.file ? `${body.file} is open.` : 'A new scene.');
+    } catch (error) {
+      lab.fail(error);
+    }
+  }
+
+  async function open() {
+    if (!await mayLeave()) return;
+    const file = await pick('Open a scene', 'scenes', 'There are no scenes in the folder.');
+    if (file) await opened({file});
+  }
+
+  async function fresh() {
+    if (await mayLeave()) await opened({new: true});
+  }
+
+  async function write(file, replaceIt) {
+    try {
+      await lab.change('/api/save', replaceIt ? {file, replace: true} : {file});
+      lab.say(`${file} is saved.`);
+      return true;
+    } catch (error) {
+      if (error.status !== 409) {
+        lab.fail(error);
+        return false;
+      }
+      return await ask('Replace the file', `There is a file ${file} already. Replace it?`, 'Replace', 'danger') && write(file, true);
+    }
+  }
+
+  function save() {
+    return lab.state?.file ? write(lab.state.file, false) : saveAs();
+  }
+
+  async function saveAs() {
+    const input = element('input', {type: 'text', class: 'input', id: unique('file'), spellcheck: 'false', autocomplete: 'off', value: lab.state?.file || `${lab.name?.() || 'scene'}.yaml`});
+    const field = element('div', {class: 'field wide'}, element('label', {for: input.id, text: 'Name, from the folder of the laboratory on'}),
+      element('span', {class: 'field-control'}, input));
+    const made = dialog({title: 'Save the scene as', content: field, actions: [['Cancel', null], ['Save', () => input.value.trim(), 'primary']]});
+    input.addEventListener('keydown', (event) => {
+      if (event.key !== 'Enter') return;
+      event.preventDefault(); /* it would press the button that gets the focus back */
+      made.close(input.value.trim());
+    });
+    input.focus();
+    input.setSelectionRange(input.value.lastIndexOf('/') + 1, input.value.replace(/\.ya?ml$/, '').length);
+    const name = await made.closed;
+    return Boolean(name) && write(/\.ya?ml$/i.test(name) ? name : `${name}.yaml`, false);
+  }
+
+  /* A file as the scene names it. */
+  async function asPath(name) {
+    return `${(await lab.get('/api/files')).prefix}${name}`;
+  }
+
+  async function setFile(path, title, kind, nothing) {
+    const name = await pick(title, kind, nothing);
+    if (!name) return;
+    try {
+      await lab.set({[path]: await asPath(name)});
+      lab.say(`${path} is ${name}.`);
+    } catch (error) {
+      lab.fail(error);
+    }
+  }
+
+  function pickSky() {
+    return setFile('background.picture', 'Picture of the sky', 'pictures', 'There are no pictures in the folder.');
+  }
+
+  async function addFile(kind, title) {
+    const file = await pick(title, kind === 'model' ? 'models' : 'pictures', kind === 'model' ? 'There are no models in the folder.' : 'There are no pictures in the folder.');
+    if (file) await choice.add({kind, file});
+  }
+
+  /* Buttons for what an object has of files. */
+  function forObject(object) {
+    const of = (name) => lab.param(`${object.name}.${name}`);
+    const parts = [];
+    if (object.kind === 'texture') parts.push(['Choose a picture …', () => setFile(`${object.name}.file`, 'Picture', 'pictures', 'There are no pictures in the folder.')]);
+    if (object.kind === 'mesh' && of('file')) parts.push(['Choose a model …', () => setFile(`${object.name}.file`, 'Model', 'models', 'There are no models in the folder.')]);
+    if (object.kind === 'mesh' && of('script')) {
+      parts.push(['Choose what hands do …', () => setFile(`${object.name}.script`, 'What hands do with it', 'scripts', 'There are no scripts of hands in the folder.')]);
+    }
+    return parts.length ? element('div', {class: 'buttons'}, parts.map(([label, act]) => button(label, act, {icon: 'folder', small: true}))) : null;
+  }
+}
