@@ -42,7 +42,7 @@ static bool is_there(const room *r, const char *name)
 static void start(room *r)
 {
     char *ball = text_format("%s/deep/ball.yaml", r->inside);
-    const lab_settings settings = {.folder = r->inside, .scene = ball, .results = r->inside, .level = isa_best(), .threads = 1, .requests_per_s = 1e9};
+    const lab_settings settings = {.folder = r->inside, .scene = ball, .results = r->inside, .level = isa_best(), .threads = 3, .requests_per_s = 1e9};
     diagnostic why = {.what = ""};
     if (lab_start(&settings, &r->lab.lab, &why) != STATUS_OK)
         fail_msg("%s", why.what);
@@ -250,6 +250,13 @@ static void test_save(void **state)
     tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
     tell(r, 200, "POST", "/api/save", "{\"file\": \"deep/Another \\u00fc.yml\"}");
     assert_true(is_there(r, "lab/deep/Another \xc3\xbc.yml"));
+    char *path = text_format("%s/wrong.yaml", r->inside), *saved = NULL;
+    size_t size;
+    assert_int_equal(file_read(path, 1 << 20, &saved, &size, NULL), STATUS_OK);
+    assert_null(strstr(saved, "threads")); /* which the laboratory gave it */
+    assert_non_null(strstr(saved, "deep/Two sides.obj"));
+    free(saved);
+    free(path);
     tell(r, 200, "POST", "/api/open", "{\"new\": true}");
     static const char *const again[] = {"{\"file\": \"wrong.yaml\"}", "{\"file\": \"deep/Another \\u00fc.yml\"}"};
     for (size_t i = 0; i < 2; i++) {
@@ -337,6 +344,9 @@ static void test_others_come(void **state)
     assert_string_not_equal(hash, next);
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"slime\"}");
     film(r, next);
+    assert_string_not_equal(hash, next);
+    tell(r, 200, "POST", "/api/set", "{\"set\": {\"slime-mesh.time_s\": 0.3}}"); /* whose motion takes its time to load */
+    film(r, hash);
     assert_string_not_equal(hash, next);
     static const char *const bad[] = {"{\"kind\": \"solid\"}", "{\"kind\": \"solid\", \"shape\": \"cone\"}", "{\"kind\": \"cloud\"}", "{}", "{\"kind\": 1}",
                                       "{\"kind\": \"light\", \"name\": \"two words\"}", "{\"kind\": \"light\", \"name\": \"camera\"}", "{\"kind\": \"model\"}",

@@ -46,10 +46,10 @@ struct painter {
 
     /* the thread's own */
     pass_plan plan;
-    uint64_t loading;               /* generation of the stage, loaded or not */
     int pass;                       /* next */
     double rate;
-    int ended;                      /* first passes in a row */
+    int ended;                      /* first passes in a row, and loads before them */
+    uint64_t taken;                 /* the generation that the stage is a copy of, loaded or not; 0: to be taken anew */
     bool was_on;
 };
 
@@ -208,7 +208,7 @@ static void publish(painter *p, picture *shown)
 
 static bool is_stale(painter *p)
 {
-    return desk_generation(p->desk) != p->stage_generation;
+    return desk_generation(p->desk) != p->taken;
 }
 
 /* Shall what is on its way end? A first pass that was ended too often goes on. */
@@ -220,15 +220,10 @@ static bool must_end(painter *p)
     return now || (is_stale(p) && p->ended < ENDED_MAX) || (live_is_due(p->toy) && p->pass > 0);
 }
 
-/* The stage is newer than stage_generation says until it is loaded. */
 static bool go_on_loading(void *of, double share_done)
 {
-    painter *p = of;
     (void)share_done;
-    pthread_mutex_lock(&p->lock);
-    const bool now = p->stop || p->waiting;
-    pthread_mutex_unlock(&p->lock);
-    return !now && desk_generation(p->desk) == p->loading;
+    return !must_end(of);
 }
 
 static status load_stage(painter *p, diagnostic *why)
@@ -243,7 +238,7 @@ static void renew_stage(painter *p)
     diagnostic why = {.line = 0};
     uint64_t generation;
     scene *next = desk_take(p->desk, &generation);
-    p->loading = generation;
+    p->taken = generation; /* before it is loaded, which ends when there is a newer one */
     pthread_rwlock_wrlock(&p->stage_lock);
     status code = next ? STATUS_OK : diagnose(&why, STATUS_FAILURE, "", "out of memory");
     if (next) {
@@ -266,6 +261,10 @@ static void renew_stage(painter *p)
     pthread_mutex_unlock(&p->lock);
     if (differs)
         tell(p);
+    if (code == STATUS_INTERRUPTED) {
+        p->ended += is_stale(p);
+        p->taken = 0;
+    }
     p->pass = 0;
     p->plan = code == STATUS_OK ? passes_plan(&p->stage->render, p->rate, first_s) : (pass_plan){.count = 0};
 }
