@@ -72,6 +72,22 @@ static void put_look(scene *s, status *code, diagnostic *why, const char *name, 
     put(s, code, why, name, "specular", "0.3");
 }
 
+/* Where there was no free place, it is what is seen there. */
+static void put_above_others(scene *s, status *code, diagnostic *why, const char *name)
+{
+    const int index = scene_find_solid(s, name);
+    vec3 centre, other;
+    double radius, its_radius;
+    if (*code != STATUS_OK || index < 0 || !spot_ball(s, &s->solids[index], &centre, &radius))
+        return;
+    int64_t priority = s->solids[index].priority;
+    for (int i = 0; i < (int)s->solid_count; i++)
+        if (i != index && s->solids[i].visible && spot_ball(s, &s->solids[i], &other, &its_radius) &&
+            vec3_length(vec3_sub(other, centre)) < radius + its_radius && s->solids[i].priority >= priority)
+            priority = s->solids[i].priority + (s->solids[i].priority < 1000000);
+    put(s, code, why, name, "priority", "%lld", (long long)priority);
+}
+
 /* A floor under what is looked at; or, where there is one, a wall behind it. */
 static void put_plane(scene *s, status *code, diagnostic *why, const char *name, const spot *where)
 {
@@ -151,6 +167,7 @@ status new_solid(scene *s, shape_kind shape, const char *wanted, object_name nam
     put_look(s, &code, why, name, count);
     if (shape == SHAPE_PLANE)
         put(s, &code, why, name, "color", "0.72,0.7,0.66");
+    put_above_others(s, &code, why, name);
     return code;
 }
 
@@ -204,6 +221,7 @@ status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why
     put(s, &code, why, name, "specular", "0.7");
     put(s, &code, why, name, "shininess", "120");
     put(s, &code, why, name, "priority", "1");
+    put_above_others(s, &code, why, name);
     return code;
 }
 
@@ -271,5 +289,6 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
     put_look(s, &code, why, name, count);
     if (code == STATUS_OK)
         take_loaded(&s->meshes[s->mesh_count - 1], &loaded->meshes[0]);
+    put_above_others(s, &code, why, name);
     return code;
 }

@@ -123,9 +123,18 @@ double spot_overlap(const scene *s, vec3 centre, double radius)
     return sum;
 }
 
+static bool is_in_view(const camera_frame *view, vec3 point)
+{
+    const vec3 way = vec3_sub(point, view->eye);
+    const double depth = vec3_dot(way, view->forward);
+    return depth > 0.0 && fabs(vec3_dot(way, view->right)) < view->half_width * depth && fabs(vec3_dot(way, view->up)) < view->half_height * depth;
+}
+
 vec3 spot_free(const scene *s, const spot *where, double size)
 {
     static const double steps[][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {1, 1}, {-1, 1}, {0, -1}, {1, -1}, {-1, -1}, {2, 0}, {-2, 0}, {2, 1}, {-2, 1}, {0, 2}, {1, 2}, {-1, 2}};
+    const camera_frame view = camera_frame_of(s);
+    const vec3 half_up = vec3_make(0, 0.5 * size, 0);
     vec3 best = where->looked_at;
     double least = INFINITY;
     for (size_t i = 0; i < sizeof steps / sizeof *steps && least > 0.0; i++) {
@@ -133,9 +142,11 @@ vec3 spot_free(const scene *s, const spot *where, double size)
         vec3 at = vec3_add(where->looked_at, step);
         at.x = spot_round(at.x, size);
         at.z = spot_round(at.z, size);
-        if (!spot_ground(s, at.x, at.z, &at.y))
-            at.y = spot_round(at.y - 0.5 * size, size);
-        const double deep = spot_overlap(s, vec3_add(at, vec3_make(0, 0.5 * size, 0)), 0.5 * size);
+        const double in_the_air = spot_round(at.y - 0.5 * size, size);
+        if (!spot_ground(s, at.x, at.z, &at.y) || !is_in_view(&view, vec3_add(at, half_up)))
+            at.y = in_the_air;
+        const vec3 centre = vec3_add(at, half_up);
+        const double deep = spot_overlap(s, centre, 0.5 * size) + (is_in_view(&view, centre) ? 0.0 : size);
         if (deep < least) {
             least = deep;
             best = at;
