@@ -9,6 +9,7 @@
 #include "image/image.h"
 #include "lab_fixture.h"
 #include <math.h>
+#include <pthread.h>
 
 static const char small[] = "title: A ball\n"
                             "render: {width: 48, height: 36}\n"
@@ -476,6 +477,46 @@ static void test_until_it_is_full(void **state)
     tell(r, 400, "POST", "/api/objects/ball/copy", "{}");
 }
 
+typedef struct visitor { const room *r; int number; pthread_t thread; } visitor;
+
+static void *visit(void *of)
+{
+    const visitor *v = of;
+    char *save = text_format("{\"file\": \"visitor%d.yaml\", \"replace\": true}", v->number), *target = text_format("/api/objects/mine%d", v->number);
+    char *body = text_format("{\"kind\": \"solid\", \"shape\": \"box\", \"name\": \"mine%d\"}", v->number), *move = text_format("%s/move", target);
+    for (int i = 0; i < 5; i++) {
+        tell(v->r, 200, "POST", "/api/objects", body);
+        tell(v->r, 200, "POST", move, "{\"by\": [0.1, 0, 0], \"gesture\": \"drag\"}");
+        tell(v->r, 200, "POST", "/api/save", save);
+        tell(v->r, 200, "GET", "/api/files", NULL);
+        tell(v->r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\"}");
+        tell(v->r, 200, "DELETE", target, "{}");
+    }
+    free(save);
+    free(target);
+    free(body);
+    free(move);
+    return NULL;
+}
+
+static void test_many_at_once(void **state)
+{
+    enum { VISITORS = 4 };
+    const room *r = *state;
+    visitor all[VISITORS];
+    const json_int_t before = generation(r);
+    for (int i = 0; i < VISITORS; i++) {
+        all[i] = (visitor){.r = r, .number = i};
+        assert_int_equal(pthread_create(&all[i].thread, NULL, visit, &all[i]), 0);
+    }
+    for (int i = 0; i < VISITORS; i++)
+        pthread_join(all[i].thread, NULL);
+    assert_int_equal(generation(r), before + VISITORS * 5 * 4); /* none was lost */
+    assert_true(has_object(r, "picture20") && !has_object(r, "mine0"));
+    char hash[64];
+    film(r, hash);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -491,6 +532,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_copies_of_meshes, enter, leave),
         cmocka_unit_test_setup_teardown(test_change_refuses, enter, leave),
         cmocka_unit_test_setup_teardown(test_until_it_is_full, enter, leave),
+        cmocka_unit_test_setup_teardown(test_many_at_once, enter, leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
