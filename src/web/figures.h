@@ -17,7 +17,7 @@ json_t *figures_of(const lab *l, const char *name);
 /* Those that could be drawn of it; empty without plots/draw.sh. */
 json_t *figures_drawable(const lab *l, const char *name);
 
-/* Writes the tables of the study (results/tables/) and draws its figures; takes at most two minutes. *said: what the script said, one line a figure, or NULL. *whole: it
+/* Writes the tables of the study (results/tables/) and draws its figures; takes less than a minute, which is how long a page waits. *said: what the script said, one line a figure, or NULL. *whole: it
  * failed in none of them; figures of a study that is not complete often cannot be drawn. */
 status figures_draw(const lab *l, const study *s, char **said, bool *whole, diagnostic *why);
 

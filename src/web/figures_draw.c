@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double draw_limit_s = 120;
+static const double draw_limit_s = 50;
 enum { PART_MAX = 64 << 20 };
 
 static status no_memory(diagnostic *why)

@@ -1,10 +1,115 @@
-/* Studies: to come. exports: panel */
+/* Studies: the list of them, and the one that was chosen. While one runs, what is shown follows it, a few seconds apart: asking takes time from
+ * what is measured. exports: panel */
 
-import {empty} from './ui.js';
+import {button, element, empty, memory, replace} from './ui.js';
+import {createStudyList} from './study_list.js';
+import {createDetails} from './study_details.js';
+
+const APART_MS = 3000;
+let visible = false;
+let refresh = () => undefined;
+
+function create(root, lab) {
+  const list = createStudyList({onchoose: choose});
+  const details = createDetails(lab, {onrun: run, onstop: stop});
+  const place = element('div', {class: 'study-place'});
+  let studies = [];
+  let results = null;
+  let chosen = memory.get('study', null);
+  let asked_at = 0;
+  let seen = {frames: -1, running: false, name: null};
+  let asking = false;
+  root.append(element('div', {class: 'study-side'}, element('div', {class: 'study-side-head'}, element('h2', {text: 'Studies'}),
+    button('Look again', () => refresh(), {icon: 'reset', kind: 'quiet', small: true, title: 'read the files again'})), list.node), place);
+  refresh = () => all().catch(lab.fail);
+  lab.on('study', follow);
+  lab.on('state', () => follow(lab.study));
+  lab.on('afresh', () => refresh());
+  refresh();
+
+  const path = (study, more = '') => `/api/studies/${encodeURIComponent(study.name)}${more}`;
+
+  function choose(study) {
+    chosen = study.file;
+    memory.set('study', chosen);
+    showList();
+    one().catch(lab.fail);
+  }
+
+  function showList() {
+    list.show(studies, chosen, lab.study?.running ? lab.study : null);
+  }
+
+  async function all() {
+    const told = await lab.get('/api/studies');
+    ({studies, results} = told);
+    if (!studies.some((study) => study.file === chosen)) chosen = (studies.find((study) => !study.error) || studies[0])?.file ?? null;
+    showList();
+    if (!studies.length) replace(place, empty('There is no study in the folder. A study is a file NAME.study: a scene, a grid over its parameters, and repetitions.'));
+    else await one();
+  }
+
+  /* Answers that came late are of another study. */
+  async function one() {
+    const study = studies.find(({file}) => file === chosen);
+    if (!study) return;
+    asked_at = Date.now();
+    const told = study.error && study.cells === undefined ? study : await lab.get(path(study));
+    if (study.file !== chosen) return;
+    Object.assign(study, told.file === study.file ? told : {});
+    showList();
+    details.show(study, told, results);
+    if (!place.contains(details.node)) replace(place, details.node);
+  }
+
+  async function run(study) {
+    try {
+      await lab.post(path(study, '/run'), {});
+      lab.say(`${study.name} is measured; the picture waits meanwhile.`);
+    } catch (error) {
+      lab.fail(error);
+    }
+  }
+
+  async function stop(study) {
+    try {
+      await lab.post(path(study, '/stop'), {});
+    } catch (error) {
+      lab.fail(error);
+    }
+  }
+
+  async function follow(now) {
+    if (!now) return;
+    const ended = seen.running && !now.running;
+    const begun = now.running && (!seen.running || seen.name !== now.name);
+    const grew = now.frames_done !== seen.frames;
+    if (ended) lab.say(now.error ? `${now.name}: ${now.error.error}` : `${now.name} has ended; all rows are kept.`);
+    seen = {frames: grew && !due(now, ended) && !begun ? seen.frames : now.frames_done, running: now.running, name: now.name};
+    if (!visible) return;
+    details.progress(now);
+    if (ended || begun || now.running) showList();
+    if (asking || !(ended || begun || (grew && due(now, ended)))) return;
+    asking = true;
+    try {
+      await (ended ? all() : one());
+      if (studies.find(({file}) => file === chosen)?.name === now.name) details.grew(ended);
+    } catch (error) {
+      lab.fail(error);
+    }
+    asking = false;
+  }
+
+  function due(now, ended) {
+    return ended || Date.now() - asked_at >= APART_MS;
+  }
+}
 
 export const panel = {
-  id: 'studies', title: 'Studies', wide: true,
-  create(root) {
-    root.append(empty('Nothing here yet.'));
+  id: 'studies', title: 'Studies', wide: true, css: 'panel_studies.css', create,
+  shown() {
+    visible = true;
+    refresh();
   },
+  hidden() { visible = false; },
 };
