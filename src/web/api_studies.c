@@ -164,12 +164,11 @@ static void post_run(void *context, const http_request *q, http_reply *r)
 {
     lab *l = context;
     study *s;
-    char *file;
+    char *file = NULL;
     diagnostic why = {.what = ""};
-    if (!take_nothing(q, r) || take_study(l, q, &s, &file, r, &why) != STATUS_OK)
-        return;
+    if (take_nothing(q, r) && take_study(l, q, &s, &file, r, &why) == STATUS_OK)
+        reply_state(l, studies_start(l->studies, s, &why), r, &why);
     free(file);
-    reply_state(l, studies_start(l->studies, s, &why), r, &why);
 }
 
 static void post_stop(void *context, const http_request *q, http_reply *r)
@@ -256,26 +255,32 @@ static void get_figure(void *context, const http_request *q, http_reply *r)
         reply(r, code, NULL, &why);
 }
 
+static void draw(lab *l, const study *s, http_reply *r)
+{
+    char *said = NULL;
+    bool whole;
+    diagnostic why = {.what = ""};
+    if (!studies_begin_drawing(l->studies)) {
+        http_reply_error(r, 409, "figures are being drawn", "wait for them");
+        return;
+    }
+    const status code = figures_draw(l, s, &said, &whole, &why);
+    studies_end_drawing(l->studies);
+    json_t *told = code == STATUS_OK ? json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said", json_of_text(said), "complete", whole) : NULL;
+    reply(r, code, told, &why);
+    free(said);
+}
+
 static void post_draw(void *context, const http_request *q, http_reply *r)
 {
     lab *l = context;
-    study *s;
-    char *file, *said = NULL;
+    study *s = NULL;
+    char *file = NULL;
     diagnostic why = {.what = ""};
-    if (!take_nothing(q, r) || take_study(l, q, &s, &file, r, &why) != STATUS_OK)
-        return;
-    free(file);
-    if (studies_begin_drawing(l->studies)) {
-        bool whole;
-        const status code = figures_draw(l, s, &said, &whole, &why);
-        studies_end_drawing(l->studies);
-        reply(r, code,
-              code == STATUS_OK ? json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said", json_of_text(said), "complete", whole) : NULL, &why);
-    } else {
-        http_reply_error(r, 409, "figures are being drawn", "wait for them");
-    }
-    free(said);
+    if (take_nothing(q, r) && take_study(l, q, &s, &file, r, &why) == STATUS_OK)
+        draw(l, s, r);
     study_destroy(s);
+    free(file);
 }
 
 static const http_route routes[] = {

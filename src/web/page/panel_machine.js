@@ -19,8 +19,7 @@ function draw(place, told) {
   replace(place,
     element('h3', {text: 'What disturbs measurements now'}), element('div', {class: 'notices'}, disturbances(told.disturbances)),
     group('Processors', {id: 'machine-processors'}, facts([
-      ['Topology', told.machine ? topology(told.machine) : 'not known'],
-      ['Processing units', String(told.units)], ['Cores', String(told.cores)], ['Packages', String(told.packages)],
+      ['Topology', told.machine ? topology(told.machine) : `${told.packages} packages, ${told.cores} cores, ${told.units} processing units`],
       ['Vector instructions', told.isa === told.isa_best ? told.isa : `${told.isa}; this machine has ${told.isa_best}`],
       ['Hardware counters', told.hardware_counters ? 'there are some' : 'the system gives none'],
     ])),

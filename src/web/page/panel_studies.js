@@ -17,7 +17,8 @@ function create(root, lab) {
   let results = null;
   let chosen = memory.get('study', null);
   let asked_at = 0;
-  let seen = {frames: -1, running: false, name: null};
+  let seen = {running: false, name: null};
+  let fetched = -1;
   let asking = false;
   root.append(element('div', {class: 'study-side'}, element('div', {class: 'study-side-head'}, element('h2', {text: 'Studies'}),
     button('Look again', () => refresh(), {icon: 'reset', kind: 'quiet', small: true, title: 'read the files again'})), list.node), place);
@@ -25,7 +26,6 @@ function create(root, lab) {
   lab.on('study', follow);
   lab.on('state', () => follow(lab.study));
   lab.on('afresh', () => refresh());
-  refresh();
 
   const path = (study, more = '') => `/api/studies/${encodeURIComponent(study.name)}${more}`;
 
@@ -79,18 +79,20 @@ function create(root, lab) {
     }
   }
 
+  /* Every few seconds while it runs, and at its beginning and end. */
   async function follow(now) {
     if (!now) return;
-    const ended = seen.running && !now.running;
     const begun = now.running && (!seen.running || seen.name !== now.name);
-    const grew = now.frames_done !== seen.frames;
+    const ended = seen.running && !now.running;
+    seen = {running: now.running, name: now.name};
     if (ended) lab.say(now.error ? `${now.name}: ${now.error.error}` : `${now.name} has ended; all rows are kept.`);
-    seen = {frames: grew && !due(now, ended) && !begun ? seen.frames : now.frames_done, running: now.running, name: now.name};
     if (!visible) return;
     details.progress(now);
-    if (ended || begun || now.running) showList();
-    if (asking || !(ended || begun || (grew && due(now, ended)))) return;
+    if (begun || ended || now.running) showList();
+    const due = now.frames_done !== fetched && Date.now() - asked_at >= APART_MS;
+    if (!begun && !ended && (!due || asking)) return;
     asking = true;
+    fetched = now.frames_done;
     try {
       await (ended ? all() : one());
       if (studies.find(({file}) => file === chosen)?.name === now.name) details.grew(ended);
@@ -98,10 +100,6 @@ function create(root, lab) {
       lab.fail(error);
     }
     asking = false;
-  }
-
-  function due(now, ended) {
-    return ended || Date.now() - asked_at >= APART_MS;
   }
 }
 

@@ -1,18 +1,20 @@
 /* A chart: lines of points with intervals over one axis, told apart by colour, marker and dash.
  *
- * exports: plot({title, x, y, series, mark}) -> SVG element
+ * exports: plot({title, x, y, series, heading, mark}) -> SVG element
  *   x: {label, log, values}       values: texts where the axis has words, not numbers: points then stand at 0, 1, 2 ..
  *   y: {label, log}
  *   series: [{name, points: [{x, y, low, high}]}]      low and high NaN: no interval is known
+ *   heading: what the lines are told apart by, over their names
  *   mark: a value of y with a line across, such as 1 for ratios */
 
 import {digits, svg, unique} from './ui.js';
 
 const WIDTH = 860;
 const HEIGHT = 400;
-const FRAME = {left: 76, top: 34, right: 22, bottom: 62};
-const LEGEND = 210;
-const NAME_MAX = 27;
+const FRAME = {left: 76, top: 34, right: 22, bottom: 48};
+const WORDS = 30; /* more under an axis of words */
+const LEGEND = 226;
+const NAME_MAX = 23;
 const TICKS = 6;
 const COLOURS = 5;
 const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2'];
@@ -102,7 +104,7 @@ function axes(area, x, y, across, up) {
         svg('path', {class: 'plot-grid', d: `M${across.at(value)} ${area.y}V${bottom}`}), text(across.at(value), bottom + 16, 'middle', digits(value)),
       ]),
     svg('path', {class: 'plot-frame', d: `M${area.x} ${area.y}V${bottom}H${right}`}),
-    text(area.x + area.width / 2, HEIGHT - 9, 'middle', x.label, {class: 'plot-label'}),
+    text(area.x + area.width / 2, HEIGHT - 8, 'middle', x.label, {class: 'plot-label'}),
     text(0, 0, 'middle', y.label, {class: 'plot-label', transform: `translate(15 ${area.y + area.height / 2}) rotate(-90)`}));
 }
 
@@ -133,7 +135,7 @@ function legend(series, heading, left) {
 
 export function plot({title, x, y, series, heading = '', mark}) {
   const many = series.length > 1;
-  const area = {x: FRAME.left, y: FRAME.top, width: WIDTH - FRAME.left - FRAME.right - (many ? LEGEND : 0), height: HEIGHT - FRAME.top - FRAME.bottom};
+  const area = {x: FRAME.left, y: FRAME.top, width: WIDTH - FRAME.left - FRAME.right - (many ? LEGEND : 0), height: HEIGHT - FRAME.top - FRAME.bottom - (x.values ? WORDS : 0)};
   const points = series.flatMap((one) => one.points);
   const xs = points.map((point) => point.x);
   const ys = finite([...points.flatMap((point) => [point.y, point.low, point.high]), mark]).filter((value) => !y.log || value > 0);

@@ -1,5 +1,5 @@
 /* A chart of a study's cells with its choices (what against what, logarithmic or not) and the same as a table.
- * exports: createChart({caption, log}) -> {node, show({title, cells(quantity), quantities, paths, mark, note})} */
+ * exports: createChart({caption, id}) -> {node, show({title, cells(quantity), quantities, paths, mark, note})} */
 
 import {check, choice, digits, element, empty, group, replace, table} from './ui.js';
 import {plot} from './plot.js';
@@ -20,7 +20,7 @@ function numbers(series, x, quantity, caption) {
 export function createChart({caption, id}) {
   const chosen = {quantity: null, x: null, logX: null, logY: null};
   const bar = element('div', {class: 'study-choices'});
-  const place = element('figure', {class: 'study-plot'});
+  const place = element('figure', {class: 'study-plot', tabindex: '0', 'aria-label': caption});
   const below = element('div', {class: 'study-numbers'});
   const alternative = group('The figure as a table', {open: false, id}, below);
   const node = element('div', {class: 'study-chart'}, bar, place, alternative);
@@ -55,9 +55,9 @@ export function createChart({caption, id}) {
 
   function draw() {
     const quantity = what.quantities.find(({key}) => key === chosen.quantity) || what.quantities[0];
-    const cells = quantity ? what.cells(quantity).filter(({y}) => Number.isFinite(y)) : [];
-    bar.hidden = alternative.hidden = cells.length === 0;
-    if (cells.length === 0) {
+    const cells = quantity ? what.cells(quantity) : []; /* those to come too, so that lines keep their looks */
+    bar.hidden = alternative.hidden = !cells.some(({y}) => Number.isFinite(y));
+    if (bar.hidden) {
       replace(place, empty('There is nothing to draw yet.'));
       return;
     }

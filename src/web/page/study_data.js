@@ -78,14 +78,13 @@ export function seriesOf(cells, paths, x) {
   const words = all.some((value) => Number.isNaN(numberOf(value)));
   const lines = new Map();
   for (const cell of cells) {
-    const name = telling.map((path) => (telling.length > 1 ? `${path.split('.').pop()} ${cell.at[path]}` : cell.at[path])).join(', ');
+    const name = telling.map((path) => cell.at[path]).join(', ');
     if (!lines.has(name)) lines.set(name, []);
     lines.get(name).push({x: words || !x ? Math.max(0, all.indexOf(cell.at[x])) : numberOf(cell.at[x]), text: x ? cell.at[x] : '', ...cell});
   }
-  const series = [...lines].map(([name, points]) => ({name, points: points.filter((point) => Number.isFinite(point.y)).sort((a, b) => a.x - b.x)}))
-    .filter((one) => one.points.length);
+  const series = [...lines].map(([name, points]) => ({name, points: points.filter((point) => Number.isFinite(point.y)).sort((a, b) => a.x - b.x)}));
   return {
     series: series.slice(0, SERIES_MAX), left: Math.max(0, series.length - SERIES_MAX), values: words || !x ? all : null,
-    heading: telling.length === 1 ? telling[0] : '',
+    heading: telling.length === 1 ? telling[0] : telling.map((path) => path.split('.').pop()).join(', '),
   };
 }

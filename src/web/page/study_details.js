@@ -75,7 +75,7 @@ export function createDetails(lab, {onrun, onstop}) {
   const progress = createProgress();
   const trouble = element('div');
   const what = element('div');
-  const chart = createChart({caption: 'The figure as a table', id: 'study-figure-numbers'});
+  const chart = createChart({caption: 'The study in numbers', id: 'study-figure-numbers'});
   const summary = createSummary();
   const rows = createRows(lab);
   const figures = createFigures(lab);
@@ -123,9 +123,10 @@ export function createDetails(lab, {onrun, onstop}) {
     start.hidden = Boolean(mine && now.running);
     stop.hidden = !start.hidden;
     const complete = details.cells > 0 && details.cells_done >= details.cells;
-    start.querySelector('.button-label').textContent = details.rows ? 'Continue' : 'Start';
+    start.querySelector('.button-label').textContent = complete ? 'Make what is missing' : details.rows ? 'Continue' : 'Start';
+    start.classList.toggle('primary', !complete);
     start.disabled = Boolean(other) || (Boolean(details.error) && details.cells === undefined);
-    start.title = other ? `the study ${other} runs` : complete ? 'complete: only what is lost is made again' : 'measures what is missing; nothing is rendered beside it';
+    start.title = other ? `the study ${other} runs` : complete ? 'all rows are there; pictures that lack are made' : 'measures what is missing; nothing is rendered beside it';
     const error = details.error || (mine && now.error) || null;
     const where = error?.file ? `${error.file}${error.line ? `:${error.line}` : ''}: ` : '';
     if (trouble.dataset.of !== JSON.stringify(error)) {

@@ -1,0 +1,204 @@
+/* What came of a study, through the laboratory's API: tables, two runs beside each other, figures. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "lab_study_fixture.h"
+#include "study/csv.h"
+#include "study/summary.h"
+#include <pthread.h>
+
+/* --- what was measured --- */
+
+static void tables_are_as_the_files(void **state)
+{
+    const lab_room *room = *state;
+    room_write(room, "tiny.study", TINY("7"));
+    run_to_the_end(room);
+    char *path = room_path(room, "tiny.study"), *text = NULL, *joined = strdup("");
+    size_t size;
+    study *s;
+    assert_int_equal(study_read(path, &s, NULL), STATUS_OK);
+    FILE *out = open_memstream(&text, &size);
+    assert_int_equal(study_summary(s, room->results, out, NULL), STATUS_OK);
+    fclose(out);
+    study_destroy(s);
+    json_t *told = room_get(room, "/api/studies/tiny"), *summary = json_object_get(told, "summary"), *rows = json_object_get(summary, "rows");
+    assert_int_equal(json_array_size(rows), TINY_CELLS);
+    for (size_t i = 0; i <= json_array_size(rows); i++) {
+        const json_t *line = i ? json_array_get(rows, i - 1) : json_object_get(summary, "columns");
+        for (size_t k = 0; k < json_array_size(line); k++) {
+            char *longer = text_format("%s%s%s", joined, json_string_value(json_array_get(line, k)), k + 1 < json_array_size(line) ? "\t" : "\n");
+            free(joined);
+            joined = longer;
+        }
+    }
+    assert_string_equal(joined, text);
+    assert_string_equal(json_string_value(json_array_get(json_object_get(told, "runs"), 0)), "results");
+    json_decref(told);
+    free(joined);
+    free(text);
+    free(path);
+
+    told = room_get(room, "/api/studies/tiny/rows");
+    const json_int_t count = number_at(told, "count");
+    assert_int_equal(count, TINY_CELLS * 8);
+    json_t *raw = json_object_get(told, "rows");
+    assert_int_equal(json_array_size(raw), count);
+    json_t *rest = room_get(room, "/api/studies/tiny/rows?from=40");
+    assert_int_equal(json_array_size(json_object_get(rest, "rows")), count - 40);
+    assert_true(json_equal(json_array_get(raw, 40), json_array_get(json_object_get(rest, "rows"), 0)));
+    assert_true(json_equal(json_object_get(told, "columns"), json_object_get(rest, "columns")));
+    json_decref(rest);
+    json_decref(told);
+    free(room_refused(room, "GET", "/api/studies/tiny/rows?from=-1", NULL, 400));
+    free(room_refused(room, "GET", "/api/studies/tiny/rows?from=two", NULL, 400));
+}
+
+/* The same rows with twice the times, and another film in one cell. */
+static void write_other_run(const lab_room *room)
+{
+    char *path = room_path(room, "results/tiny/rows.csv"), *other = room_path(room, "old/runs/tiny/rows.csv");
+    csv *table = NULL;
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    FILE *out = fopen(other, "w");
+    fwrite(table->raw, 1, table->start[0], out);
+    const int wall = csv_column(table, "wall_s"), film = csv_column(table, "film_hash"), expected = csv_column(table, "film_expected");
+    for (size_t i = 0; i < table->row_count; i++)
+        for (int k = 0; k < (int)table->column_count; k++) {
+            const bool other_film = strcmp(csv_field(table, i, csv_column(table, "cell")), "2") == 0 && (k == film || k == expected);
+            if (k == wall)
+                fprintf(out, "%.17g", 2 * csv_field_real(table, i, k));
+            else
+                fputs(other_film ? "0123456789abcdef" : csv_field(table, i, k), out);
+            fputc(k + 1 < (int)table->column_count ? ',' : '\n', out);
+        }
+    fclose(out);
+    csv_destroy(table);
+    free(path);
+    free(other);
+}
+
+static void two_runs_are_compared(void **state)
+{
+    const lab_room *room = *state;
+    room_write(room, "tiny.study", TINY("6"));
+    run_to_the_end(room);
+    make_folder(room, "old");
+    make_folder(room, "old/runs");
+    make_folder(room, "old/runs/tiny");
+    write_other_run(room);
+    json_t *told = room_get(room, "/api/studies/tiny");
+    assert_int_equal(json_array_size(json_object_get(told, "runs")), 2);
+    assert_string_equal(json_string_value(json_array_get(json_object_get(told, "runs"), 0)), "old/runs");
+    json_decref(told);
+    told = room_get(room, "/api/studies/tiny/compare?with=old/runs");
+    const json_t *cells = json_object_get(told, "cells");
+    assert_int_equal(json_array_size(cells), TINY_CELLS);
+    for (size_t i = 0; i < TINY_CELLS; i++) {
+        const json_t *cell = json_array_get(cells, i), *a = json_object_get(cell, "a"), *b = json_object_get(cell, "b");
+        assert_int_equal(number_at(cell, "cell"), i);
+        assert_int_equal(atoi(json_string_value(json_object_get(cell, "render.depth"))), i / 2);
+        assert_true(json_real_value(json_object_get(cell, "ratio")) == 2);
+        assert_int_equal(number_at(a, "n"), 6);
+        assert_true(json_number_value(json_object_get(b, "median")) == 2 * json_number_value(json_object_get(a, "median")));
+        assert_true(json_number_value(json_object_get(a, "low")) <= json_number_value(json_object_get(a, "median")));
+        assert_true(json_number_value(json_object_get(a, "high")) >= json_number_value(json_object_get(a, "median")));
+        assert_int_equal(json_is_true(json_object_get(cell, "same_film")), i != 2);
+    }
+    json_decref(told);
+    static const char *const wrong[] = {"", "?with=", "?with=nowhere", "?with=..", "?with=../tmp", "?with=/tmp", "?with=old/../old/runs", "?with=old"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char *target = text_format("/api/studies/tiny/compare%s", wrong[i]);
+        free(room_refused(room, "GET", target, NULL, 400));
+        free(target);
+    }
+}
+
+/* --- figures --- */
+
+static void figures_are_drawn(void **state)
+{
+    const lab_room *room = *state;
+    room_write(room, "tiny.study", TINY("1"));
+    free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 400)); /* there is no script */
+    make_folder(room, "plots");
+    room_write(room, "plots/draw.sh", "shift; results=$1; shift 3; mkdir -p $results/figures\n"
+                                      "for f in $*; do head -n 1 $results/tables/tiny.tsv >$results/figures/$f.svg; echo drawn: $f; done\n");
+    room_write(room, "plots/of-it.gp", "# A figure.\n# needs: other/rows.csv tables/tiny.tsv\n");
+    room_write(room, "plots/not-of-it.gp", "# needs: tables/tiny-other.tsv tiny-other/images/*.png\n");
+    room_write(room, "plots/tiny-not.gp", "# needs: tables/another.tsv\n");
+    json_t *told = room_get(room, "/api/studies/tiny");
+    assert_int_equal(json_array_size(json_object_get(told, "figures")), 0);
+    assert_int_equal(json_array_size(json_object_get(told, "drawable")), 1);
+    assert_string_equal(json_string_value(json_array_get(json_object_get(told, "drawable"), 0)), "of-it");
+    json_decref(told);
+    run_to_the_end(room);
+    told = room_ask(room, "POST", "/api/studies/tiny/draw", "{}", 200);
+    assert_string_equal(json_string_value(json_object_get(told, "said")), "drawn: of-it\n");
+    assert_true(json_is_true(json_object_get(told, "complete")));
+    json_decref(told);
+    room_write(room, "results/figures/tiny-by-name.svg", "<svg/>");
+    room_write(room, "results/figures/tiny-not.svg", "<svg/>");
+    room_write(room, "results/figures/Tiny.svg", "<svg/>");
+    told = room_get(room, "/api/studies/tiny");
+    const json_t *figures = json_object_get(told, "figures");
+    assert_int_equal(json_array_size(figures), 2);
+    assert_string_equal(json_string_value(json_array_get(figures, 0)), "of-it");
+    assert_string_equal(json_string_value(json_array_get(figures, 1)), "tiny-by-name");
+    json_decref(told);
+    char *reply = client_ask(room->server, "GET", "/api/figures/of-it", "", NULL);
+    assert_int_equal(reply_code(reply), 200);
+    assert_true(reply_has(reply, "Content-Type: image/svg+xml"));
+    assert_int_equal(strncmp(reply_body(reply), "cell\trender.depth\trender.threads\tn\t", 34), 0);
+    free(reply);
+    static const char *const wrong[] = {"nothing", "Tiny", "of-it.svg", "of_it"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char *target = text_format("/api/figures/%s", wrong[i]);
+        free(room_refused(room, "GET", target, NULL, 404));
+        free(target);
+    }
+    free(room_refused(room, "GET", "/api/figures/..%2fof-it", NULL, 400));
+}
+
+static void *draw(void *of)
+{
+    const lab_room *room = of;
+    return client_ask(room->server, "POST", "/api/studies/tiny/draw", "Content-Type: application/json\r\n", "{}");
+}
+
+/* A script that does not end is ended with the laboratory. */
+static void drawing_ends_with_the_laboratory(void **state)
+{
+    lab_room *room = *state;
+    room_write(room, "tiny.study", TINY("1"));
+    make_folder(room, "plots");
+    room_write(room, "plots/draw.sh", "echo begun >$2/begun\nsleep 1000 & sleep 1000\n");
+    room_write(room, "plots/of-it.gp", "# needs: tables/tiny.tsv\n");
+    run_to_the_end(room);
+    pthread_t drawer;
+    void *reply;
+    char *begun = room_path(room, "results/begun");
+    assert_int_equal(pthread_create(&drawer, NULL, draw, room), 0);
+    while (access(begun, F_OK) != 0)
+        ;
+    free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 409));
+    lab_stop(room->lab);
+    room->lab = NULL;
+    pthread_join(drawer, &reply);
+    free(reply);
+    free(begun);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(tables_are_as_the_files, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(two_runs_are_compared, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(figures_are_drawn, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(drawing_ends_with_the_laboratory, set_up, tear_down),
+    };
+    return cmocka_run_group_tests_name("lab_study_tables", tests, NULL, NULL);
+}
