@@ -186,7 +186,10 @@ static void a_study_is_stopped_and_goes_on(void **state)
     assert_int_equal(number_at(one, "cells_done"), TINY_CELLS);
     assert_int_equal(number_at(one, "rows"), count);
     json_decref(list);
-    free(room_film(room)); /* pictures are made again */
+    room_post(room, "/api/set", "{\"set\": {\"ball.ior\": 1.3}}");
+    char *picture = client_ask(room->server, "GET", "/api/picture.png?wait=1", "", NULL);
+    assert_int_equal(reply_code(picture), 200); /* pictures are made again */
+    free(picture);
     free(rows);
     free(rows_now);
 }
