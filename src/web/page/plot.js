@@ -12,7 +12,7 @@ import {digits, svg, unique} from './ui.js';
 const WIDTH = 860;
 const HEIGHT = 400;
 const FRAME = {left: 76, top: 34, right: 22, bottom: 48};
-const WORDS = 30; /* more under an axis of words */
+const WORDS = 30; /* more under an axis of slanted words */
 const LEGEND = 226;
 const NAME_MAX = 23;
 const TICKS = 6;
@@ -78,11 +78,10 @@ function ticksOf(scale, own) {
 
 const text = (x, y, anchor, words, more) => svg('text', {x, y, 'text-anchor': anchor, ...more}, words);
 
-/* Words under the axis, slanted where they would not fit beside each other. */
-function words(values, scale, bottom) {
-  const room = values.length > 1 ? Math.abs(scale.at(1) - scale.at(0)) : WIDTH;
-  const longest = Math.max(...values.map((value) => value.length));
-  const slanted = longest * 6.5 > room;
+/* Words under the axis are slanted where they would not fit beside each other. */
+const areSlanted = (values, width) => values && Math.max(...values.map((value) => value.length)) * 6.5 > width / values.length;
+
+function words(values, scale, bottom, slanted) {
   const short = (value) => (slanted && value.length > 14 ? `${value.slice(0, 13)}…` : value);
   return values.map((value, i) => {
     const x = scale.at(i);
@@ -99,7 +98,7 @@ function axes(area, x, y, across, up) {
     ticksOf(up).map((value) => [
       svg('path', {class: 'plot-grid', d: `M${area.x} ${up.at(value)}H${right}`}), text(area.x - 7, up.at(value) + 4, 'end', digits(value)),
     ]),
-    x.values ? words(x.values, across, bottom)
+    x.values ? words(x.values, across, bottom, areSlanted(x.values, area.width))
       : ticksOf(across, own).map((value) => [
         svg('path', {class: 'plot-grid', d: `M${across.at(value)} ${area.y}V${bottom}`}), text(across.at(value), bottom + 16, 'middle', digits(value)),
       ]),
@@ -135,7 +134,8 @@ function legend(series, heading, left) {
 
 export function plot({title, x, y, series, heading = '', mark}) {
   const many = series.length > 1;
-  const area = {x: FRAME.left, y: FRAME.top, width: WIDTH - FRAME.left - FRAME.right - (many ? LEGEND : 0), height: HEIGHT - FRAME.top - FRAME.bottom - (x.values ? WORDS : 0)};
+  const width = WIDTH - FRAME.left - FRAME.right - (many ? LEGEND : 0);
+  const area = {x: FRAME.left, y: FRAME.top, width, height: HEIGHT - FRAME.top - FRAME.bottom - (areSlanted(x.values, width) ? WORDS : 0)};
   const points = series.flatMap((one) => one.points);
   const xs = points.map((point) => point.x);
   const ys = finite([...points.flatMap((point) => [point.y, point.low, point.high]), mark]).filter((value) => !y.log || value > 0);

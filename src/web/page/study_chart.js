@@ -71,10 +71,11 @@ export function createChart({caption, id}) {
     log.x &&= !values && series.every((one) => one.points.every((point) => point.x > 0));
     choices(quantity, axis?.path, axes, log);
     const title = `${what.title}: ${quantity.label}`;
+    const few = quantity.low >= 0 && !cells.some(({low}) => Number.isFinite(low)) ? 'Of fewer than six rows a cell no interval of the median is known.' : '';
     replace(place, plot({
       title, series, heading, mark: what.mark,
       x: {label: withUnit(axis?.path || '', axis?.unit), log: log.x, values}, y: {label: withUnit(quantity.label, quantity.unit), log: log.y},
-    }), element('figcaption', {class: 'hint', text: [what.note, left ? `${left} more lines are not drawn; the summary has them.` : ''].filter(Boolean).join(' ')}));
+    }), element('figcaption', {class: 'hint', text: [what.note, few, left ? `${left} more lines are not drawn; the summary has them.` : ''].filter(Boolean).join(' ')}));
     replace(below, numbers(series, axis?.path, quantity, caption));
   }
 }
