@@ -26,6 +26,7 @@ export function createGrab(lab) {
     down, hover, wheel, key,
   };
   view.tool('grab', tool);
+  tool.segment.hidden = true;
   for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) view.stage.addEventListener(name, (event) => hands.drop(event.pointerId));
   view.stage.addEventListener('blur', () => {
     hands.drop(KEYS);
