@@ -4,6 +4,7 @@
 #include "scene/camera.h"
 #include "render/renderer.h"
 #include "report/json.h"
+#include "web/pace.h"
 #include "web/passes.h"
 #include "web/picture.h"
 
@@ -16,7 +17,7 @@
 
 /* How long the first pass may take; how often a render looks up for something newer; of a frame of the live slime, how long its motion and its picture may take;
  * and how long those who want a scene as it is now wait for it. */
-static const double first_s = 0.04, look_up_s = 0.002, move_s = 0.02, live_frame_s = 0.04, scene_wait_s = 60.0;
+static const double first_s = 0.04, look_up_s = 0.002, move_s = 0.02, live_frame_s = 0.03, scene_wait_s = 60.0;
 
 /* So often may a first pass be ended by newer changes before one is let through: who watches somebody else's drag shall see it. */
 enum { ENDED_MAX = 12 };
@@ -51,6 +52,7 @@ struct painter {
     int ended;                      /* first passes in a row, and loads before them */
     uint64_t taken;                 /* the generation that the stage is a copy of, loaded or not; 0: to be taken anew */
     bool was_on;
+    pace traced, raster;            /* of the film of the live slime */
 };
 
 /* --- what is asked from outside --- */
@@ -220,10 +222,11 @@ static bool must_end(painter *p)
     return now || (is_stale(p) && p->ended < ENDED_MAX) || (live_is_due(p->toy) && p->pass > 0);
 }
 
+/* A slime's way to its moment may be long: it ends where that is no longer wanted, by the desk or by who plays with it. */
 static bool go_on_loading(void *of, double share_done)
 {
     (void)share_done;
-    return !must_end(of);
+    return !must_end(of) && !live_is_due(((painter *)of)->toy);
 }
 
 static status load_stage(painter *p, diagnostic *why)
@@ -281,11 +284,18 @@ static void move_stage(painter *p)
     if (code == STATUS_OK && ended)
         code = load_stage(p, &why);
     pthread_rwlock_unlock(&p->stage_lock);
-    if (code != STATUS_OK && code != STATUS_INTERRUPTED)
+    if (code == STATUS_INTERRUPTED) {
+        pthread_mutex_lock(&p->lock);
+        p->stage_generation = 0;
+        p->stage_ready = false;
+        pthread_mutex_unlock(&p->lock);
+        p->taken = 0; /* begun again */
+    } else if (code != STATUS_OK) {
         set_trouble(p, code, &why);
+    }
     if (moved || ended || told) {
         p->pass = 0;
-        p->plan = passes_plan(&p->stage->render, p->rate, live_is_moving(p->toy) ? live_frame_s : first_s);
+        p->plan = passes_plan(&p->stage->render, p->rate, first_s);
     }
     if (told)
         tell(p);
@@ -299,13 +309,18 @@ static bool go_on_rendering(void *of, double share_done)
     return !must_end(of);
 }
 
-/* The pass's own settings on a scene that is the stage's otherwise. */
-static scene pass_scene(const painter *p, int pass, bool moving)
+static bool is_raster(painter *p, bool moving)
+{
+    return moving && live_preview_of(p->toy) == LIVE_ZBUFFER;
+}
+
+/* The pass's own settings on a scene that is the stage's otherwise. tempo: of a film that moves; else NULL. */
+static scene pass_scene(const painter *p, int pass, const pace *tempo, bool raster)
 {
     scene view = *p->stage;
-    view.render = passes_settings(&p->stage->render, p->plan.shrink[pass], p->plan.single[pass]);
-    if (moving && live_preview_of(p->toy) == LIVE_ZBUFFER) {
-        view.render = passes_settings(&p->stage->render, 1, true);
+    view.render = tempo ? passes_settings(&p->stage->render, pace_shrink(tempo), true)
+                       : passes_settings(&p->stage->render, p->plan.shrink[pass], p->plan.single[pass]);
+    if (raster) {
         view.render.integrator = INTEGRATOR_ZBUFFER;
         view.render.spectrum = SPECTRUM_RGB;
     }
@@ -339,7 +354,9 @@ static void paint_pass(painter *p)
 {
     const int pass = p->pass;
     const bool moving = live_is_moving(p->toy);
-    const scene view = pass_scene(p, pass, moving);
+    const bool raster = is_raster(p, moving);
+    pace *tempo = !moving ? NULL : raster ? &p->raster : &p->traced;
+    const scene view = pass_scene(p, pass, tempo, raster);
     const render_options options = {.progress = go_on_rendering, .progress_s = look_up_s, .context = p};
     diagnostic why = {.line = 0};
     render_result *made = NULL;
@@ -351,7 +368,9 @@ static void paint_pass(painter *p)
         good = describe(p, made, pass, moving, &shown);
     pthread_rwlock_unlock(&p->stage_lock);
     if (code == STATUS_OK) {
-        if (view.render.integrator != INTEGRATOR_ZBUFFER || p->stage->render.integrator == INTEGRATOR_ZBUFFER)
+        if (tempo)
+            pace_take(tempo, made->wall_s, live_frame_s);
+        else
             take_rate(p, pass, made);
         p->pass = moving ? p->plan.count : pass + 1;
         p->ended = 0;
@@ -448,6 +467,7 @@ status painter_create(desk *d, isa level, const painter_listener *listener, pain
     p->desk = d;
     p->level = level;
     p->listener = *listener;
+    p->traced.step = p->raster.step = 3; /* until it is known how long frames take */
     p->toy = live_create(wake, p);
     status code = p->toy ? topology_create(&p->machine, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK)
