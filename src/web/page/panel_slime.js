@@ -50,14 +50,14 @@ function controls(lab) {
 
 /* Numbers that change with each picture; their places stay. */
 function readings() {
-  const names = ['Time', 'Of real time', 'Speed', 'Volume', 'Held'];
+  const names = ['Time', 'Real time', 'Speed', 'Volume', 'Masses held'];
   const values = names.map(() => element('dd'));
   const node = element('dl', {class: 'slime-readings'}, names.map((name, index) => element('div', {}, element('dt', {text: name}), values[index])));
   return {node, show(slime) {
     const share = slime.volume_at_rest > 0 ? `${digits(100 * slime.volume / slime.volume_at_rest, 4)} %` : '–';
     const texts = !slime.on ? names.map(() => '–') : [
       `${slime.time_s.toFixed(2)} s`, slime.playing && !slime.resting ? `${Math.round(100 * slime.realtime)} %` : '–',
-      `${slime.speed === null ? '–' : digits(slime.speed, 3)} u/s`, share, slime.held === 1 ? '1 mass' : `${slime.held} masses`,
+      `${slime.speed === null ? '–' : digits(slime.speed, 3)} u/s`, share, String(slime.held),
     ];
     texts.forEach((text, index) => { values[index].textContent = text; });
   }};
