@@ -197,6 +197,38 @@ static void forces_are_the_gradient_of_the_energy(void **state)
     softbody_destroy(b);
 }
 
+/* A hand that reaches for a corner or an edge does not fall through between the faces. */
+static void no_ray_falls_between_faces(void **state)
+{
+    (void)state;
+    const vec3 eyes[] = {{0.0, 1.0, -6.0}, {0.0, 4.0, -5.0}, {3.0, 1.3, -2.0}};
+    softbody_settings s = default_toy();
+    s.level = 3;
+    softbody *b = toy_of(&s);
+    steps_of(b, 50);
+    mesh *skin = NULL;
+    diagnostic why = {.what = ""};
+    assert_int_equal(softbody_skin(b, &skin, &why), STATUS_OK);
+    size_t reached = 0;
+    for (size_t e = 0; e < sizeof eyes / sizeof *eyes; e++)
+        for (size_t i = 0; i < 3 * skin->triangle_count; i++) {
+            const mesh_triangle *face = &skin->triangles[i / 3];
+            const vec3 from = skin->vertices[face->corner[i % 3]], to = skin->vertices[face->corner[(i + 1) % 3]];
+            const vec3 ends[] = {from, vec3_scale(vec3_add(from, to), 0.5)};
+            for (size_t k = 0; k < 2; k++) {
+                const vec3 direction = vec3_sub(ends[k], eyes[e]);
+                vec3 where;
+                if (vec3_dot(skin->normals[face->corner[i % 3]], direction) > -0.2 * vec3_length(direction))
+                    continue; /* not towards the eye */
+                assert_true(softbody_pick(b, eyes[e], direction, &where));
+                reached++;
+            }
+        }
+    assert_true(reached > 1000);
+    mesh_release(skin);
+    softbody_destroy(b);
+}
+
 static void hands_hold_and_let_go(void **state)
 {
     (void)state;
@@ -384,6 +416,7 @@ int main(void)
         cmocka_unit_test(forces_are_the_gradient_of_the_energy),
         cmocka_unit_test(hands_hold_and_let_go),
         cmocka_unit_test(a_script_is_followed_to_the_step),
+        cmocka_unit_test(no_ray_falls_between_faces),
         cmocka_unit_test(a_hand_that_holds_nothing_is_named),
         cmocka_unit_test(threads_and_instructions_change_no_bit),
         cmocka_unit_test(bad_nets_are_refused),

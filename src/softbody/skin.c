@@ -50,8 +50,9 @@ status softbody_skin(const softbody *b, mesh **out, diagnostic *why)
     return code;
 }
 
-/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997; fronts alone. */
-static bool meets(const softbody *b, const mesh_triangle *face, vec3 origin, vec3 direction, double *t)
+/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997; fronts alone. slack: how far beyond an edge, as a share of the
+ * face, still counts. */
+static bool meets(const softbody *b, const mesh_triangle *face, double slack, vec3 origin, vec3 direction, double *t)
 {
     const vec3 a = vectors_at(b->at, face->corner[0]);
     const vec3 p = vec3_sub(vectors_at(b->at, face->corner[1]), a), q = vec3_sub(vectors_at(b->at, face->corner[2]), a);
@@ -64,15 +65,24 @@ static bool meets(const softbody *b, const mesh_triangle *face, vec3 origin, vec
     const vec3 turned = vec3_cross(away, p);
     const double v = vec3_dot(direction, turned);
     *t = vec3_dot(q, turned) / det;
-    return u >= 0.0 && v >= 0.0 && u + v <= det && *t >= 0.0;
+    const double beyond = slack * det;
+    return u >= -beyond && v >= -beyond && u + v <= det + beyond && *t >= 0.0;
+}
+
+static double nearest_front(const softbody *b, double slack, vec3 origin, vec3 direction)
+{
+    double nearest = INFINITY, t;
+    for (size_t i = 0; i < b->face_count; i++)
+        if (meets(b, &b->faces[i], slack, origin, direction, &t) && t < nearest)
+            nearest = t;
+    return nearest;
 }
 
 bool softbody_pick(const softbody *b, vec3 origin, vec3 direction, vec3 *where)
 {
-    double nearest = INFINITY, t;
-    for (size_t i = 0; i < b->face_count; i++)
-        if (meets(b, &b->faces[i], origin, direction, &t) && t < nearest)
-            nearest = t;
+    double nearest = nearest_front(b, 0.0, origin, direction);
+    if (!(nearest < INFINITY)) /* along an edge rounding can lose both of its faces */
+        nearest = nearest_front(b, 1e-9, origin, direction);
     if (nearest < INFINITY)
         *where = vec3_add(origin, vec3_scale(direction, nearest));
     return nearest < INFINITY;
