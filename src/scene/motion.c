@@ -75,7 +75,7 @@ static status begin(scene_motion *m, diagnostic *why)
             continue;
         }
         moving_slime *one = &m->slimes[m->count];
-        *one = (moving_slime){.mesh = i};
+        *one = (moving_slime){.entry = i};
         status code = slime_create(m->s, &m->s->meshes[i], &one->x, why);
         if (code != STATUS_OK) {
             return code;
@@ -206,7 +206,7 @@ softbody *scene_motion_body(const scene_motion *m, size_t i)
 
 size_t scene_motion_mesh(const scene_motion *m, size_t i)
 {
-    return m->slimes[i].mesh;
+    return m->slimes[i].entry;
 }
 
 double scene_motion_script_end_s(const scene_motion *m)

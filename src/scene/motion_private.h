@@ -15,7 +15,7 @@ typedef struct given_slime {
 
 typedef struct moving_slime {
     slime x;
-    size_t mesh;      /* in scene.meshes */
+    size_t entry;     /* in scene.meshes */
     uint64_t steps;   /* taken so far */
     double time_s;    /* that of its entry */
     char *name, *parameters; /* of its entry, for other scenes */
@@ -32,7 +32,7 @@ struct scene_motion {
 
 static inline mesh_entry *motion_entry(const scene_motion *m, const moving_slime *one)
 {
-    return &m->s->meshes[one->mesh];
+    return &m->s->meshes[one->entry];
 }
 
 /* What it is made of, as one text: its parameters but for time_s, and where its script lies. NULL when memory is out. */

@@ -143,7 +143,7 @@ status scene_motion_join(scene_motion *m, scene *s, bool *joined, diagnostic *wh
     for (size_t i = 0; i < m->count && code == STATUS_OK; i++) {
         moving_slime *one = &m->slimes[i];
         const bool had_skin = one->skin != NULL;
-        one->mesh = places[i];
+        one->entry = places[i];
         put_into(m, one);
         code = had_skin ? STATUS_OK : motion_give_skin(m, one, why);
     }

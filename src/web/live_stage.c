@@ -220,12 +220,14 @@ static status obey(live *l, live_mode *mode, diagnostic *why)
     return wanted && scene_moves(l->stage) ? begin(l, why) : STATUS_OK;
 }
 
-/* Hands that held may have gone with what they held; the lock is held while those that are there are heard. */
+/* Who is answered finds what was done in the account. */
 static void hear(live *l)
 {
     pthread_mutex_lock(&l->lock);
     answer(l);
     let_go(l);
+    if (l->changed)
+        measure(l);
     pthread_mutex_unlock(&l->lock);
 }
 
