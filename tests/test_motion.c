@@ -175,6 +175,40 @@ static void a_clone_does_not_move(void **state)
     scene_destroy(s);
 }
 
+/* It goes on in another scene that has the same slimes, and the one that it left has what it had. */
+static void it_goes_over_to_another_scene(void **state)
+{
+    (void)state;
+    scene *s = toys_with("render.threads=1"), *other = toys_with("render.threads=1 jelly.ior=1.6 camera.fov_deg=30 drop.time_s=3");
+    diagnostic why = {0};
+    worked(scene_load(s, &why), &why);
+    const mesh *own = s->meshes[1].data;
+    scene_motion *m = begin(s);
+    advance(m, 0.1, true);
+    const mesh *skin = s->meshes[1].data;
+    bool joined = false;
+    worked(scene_motion_join(m, other, &joined, &why), &why);
+    assert_true(joined);
+    assert_ptr_equal(s->meshes[1].data, own);
+    assert_true(s->meshes[1].time_s == 0.4 && s->meshes[1].account.steps == 400);
+    assert_ptr_equal(other->meshes[1].data, skin);
+    assert_true(other->meshes[1].time_s == 0.1 && other->meshes[2].time_s == 0.1);
+    worked(scene_load(other, &why), &why);
+    advance(m, 0.3, true);
+    assert_true(film_of(other) == film_afresh("render.threads=1 jelly.ior=1.6 camera.fov_deg=30", 0.3));
+    scene_destroy(s);
+    scene *softer = toys_with("toy.stiffness=9"), *fewer = scene_from("meshes: {toy: {generate: slime, level: 2}}\n");
+    worked(scene_motion_join(m, softer, &joined, &why), &why);
+    assert_false(joined || softer->meshes[1].data);
+    worked(scene_motion_join(m, fewer, &joined, &why), &why);
+    assert_false(joined);
+    scene_motion_end(m);
+    assert_true(other->meshes[1].time_s == 0.4 && other->meshes[2].time_s == 3.0 && !other->meshes[1].data);
+    scene_destroy(softer);
+    scene_destroy(fewer);
+    scene_destroy(other);
+}
+
 static void a_scene_that_cannot_move_stays_as_it_was(void **state)
 {
     (void)state;
@@ -249,6 +283,7 @@ int main(void)
         cmocka_unit_test(frames_that_are_not_rendered_leave_the_skins),
         cmocka_unit_test(the_latest_advance_is_accounted_for),
         cmocka_unit_test(a_clone_does_not_move),
+        cmocka_unit_test(it_goes_over_to_another_scene),
         cmocka_unit_test(a_scene_that_cannot_move_stays_as_it_was),
         cmocka_unit_test(a_body_that_blows_up_says_so),
         cmocka_unit_test(a_way_that_is_stopped_goes_on),

@@ -12,6 +12,7 @@ const list = [
   ['Ctrl arrow keys', 'on the picture: move the zoomed picture'],
   ['Ctrl wheel', 'zoom about the pointer; wheel alone: forward and back while Orbit is chosen'],
   ['Space or middle button', 'and drag: move the zoomed picture'],
+  ['Enter', 'with Grab, on the picture: take hold of the slime and let go; arrow keys pull, Page Up and Page Down along the view'],
   ['Shift drag', 'with Orbit: turn on the spot; with Light: nearer and farther'],
   ['Home on the splitter', 'panels of their usual width; arrow keys make them wider and narrower'],
 ];
