@@ -29,7 +29,7 @@ export function createCompareView(lab, onshare) {
       event.stopPropagation();
     },
   });
-  const labels = ['A', 'B'].map((name) => element('span', {class: 'wipe-label', text: name, hidden: true}));
+  const labels = ['A', 'B'].map((name) => element('span', {class: name === 'B' ? 'wipe-label right' : 'wipe-label', text: name, hidden: true}));
   const layer = view.layer('compare');
   let now = {a: null, map: null, mode: 'b', share: 0.5, strength: 1};
   let flipped = false;

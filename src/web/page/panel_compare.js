@@ -163,4 +163,4 @@ function create(root, lab) {
   show();
 }
 
-export const panel = {id: 'compare', title: 'Compare', start: (lab) => { model = createModel(lab); }, create};
+export const panel = {id: 'compare', title: 'Compare', css: 'panel_compare.css', start: (lab) => { model = createModel(lab); }, create};

@@ -28,11 +28,8 @@ function start(lab) {
     label: 'Ask', icon: 'pixel', order: 40, cursor: 'crosshair', hint: 'Ask a pixel why: click it, or move from pixel to pixel with the arrow keys',
     chosen: () => lab.panels?.use('pixel'),
     down: (point) => {
-      const ray = overlay.nearest(point);
-      if (ray && !point.inside) return false;
-      if (!point.inside) return false;
-      question.ask(point.x, point.y);
-      return true;
+      if (point.inside) question.ask(point.x, point.y);
+      return point.inside;
     },
     move: (point) => question.ask(point.x, point.y),
     hover: (point) => mark(overlay.nearest(point)),
@@ -170,4 +167,4 @@ function create(root, lab) {
   show();
 }
 
-export const panel = {id: 'pixel', title: 'Pixel', start, create};
+export const panel = {id: 'pixel', title: 'Pixel', css: 'panel_pixel.css', start, create};
