@@ -217,6 +217,22 @@ static void it_says_which_parameters_changed(void **state)
     json_decref(told);
 }
 
+/* A solid that has its material's colour changes with it, which goes without saying; one that got another does not. */
+static void a_material_is_named_once(void **state)
+{
+    pin(*state);
+    change(*state, "\"tiles.color\": [0.1, 0.2, 0.3]");
+    json_t *told = room_get(*state, "/api/compare?wait=1");
+    assert_int_equal(json_array_size(json_object_get(told, "changed")), 1);
+    wanted_change(json_object_get(told, "changed"), 0, "tiles.color", "[0.8, 0.8, 0.8]", "[0.1, 0.2, 0.3]");
+    json_decref(told);
+    change(*state, "\"ground.color\": [0.5, 0.5, 0.5]");
+    told = room_get(*state, "/api/compare?wait=1");
+    assert_int_equal(json_array_size(json_object_get(told, "changed")), 2);
+    wanted_change(json_object_get(told, "changed"), 1, "ground.color", "[0.8, 0.8, 0.8]", "[0.5, 0.5, 0.5]");
+    json_decref(told);
+}
+
 static const json_t *entry(const json_t *list, const char *path)
 {
     const json_t *one;
@@ -344,6 +360,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(numbers_and_map_are_those_of_the_pictures, open_ball, close_room),
         cmocka_unit_test_setup_teardown(the_pinned_picture_stays, open_ball, close_room),
         cmocka_unit_test_setup_teardown(it_says_which_parameters_changed, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(a_material_is_named_once, open_ball, close_room),
         cmocka_unit_test_setup_teardown(objects_that_come_and_go_have_parameters_on_one_side, open_ball, close_room),
         cmocka_unit_test_setup_teardown(pictures_of_two_sizes_have_no_comparison, open_ball, close_room),
         cmocka_unit_test_setup_teardown(what_is_let_go_of_is_gone, open_ball, close_room),

@@ -7,6 +7,8 @@
 
 import {element, svg, unique} from './ui.js';
 
+const EDGE = 0.05; /* a share too small for its letter */
+
 export function createCompareView(lab, onshare) {
   const {view} = lab;
   const part = svg('rect', {x: 0, y: 0});
@@ -82,8 +84,8 @@ export function createCompareView(lab, onshare) {
     handle.setAttribute('aria-valuenow', Math.round(100 * share));
     handle.setAttribute('aria-valuetext', `A ${Math.round(100 * share)} %`);
     Object.assign(handle.style, {left: `${at.x}px`, top: `${at.y}px`});
-    labels[0].hidden = !wiping && !flipped;
-    labels[1].hidden = !wiping;
+    labels[0].hidden = !(wiping && share > EDGE) && !flipped;
+    labels[1].hidden = !(wiping && share < 1 - EDGE);
     Object.assign(labels[0].style, {left: `${Math.max(0, top.x)}px`, top: `${Math.max(0, top.y)}px`});
     Object.assign(labels[1].style, {left: `${right.x}px`, top: `${Math.max(0, right.y)}px`});
   }

@@ -3,7 +3,7 @@
  *          sidePlane(camera), topPlane()     {u: [x,y,z], v: [x,y,z], uName, vName}: what is to the right, what is up */
 
 import {digits, element, svg, unique} from './ui.js';
-import {isCut, lineClass} from './ray_tree.js';
+import {lineClass} from './ray_tree.js';
 import {drawn, strokeWidth} from './ray_overlay.js';
 import {hull} from './ray_solids.js';
 import {dot, unit} from './ray_vectors.js';
@@ -78,11 +78,11 @@ function windowOf(rays, outlines, flat) {
   const near = size(box);
   for (const ray of rays) {
     if (ray.node.hit && (near === 0 || within(flat(ray.to), box, near))) take(flat(ray.to));
-    if (near === 0 || isCut(ray)) take(flat(ray.from));
+    if (!ray.node.hit && !ray.parent) take(flat(ray.to));
   }
   const wide = [...box];
   take(flat(rays[0].from), wide);
-  return size(box) === 0 || size(wide) < 4 * size(box) ? wide : box;
+  return near === 0 || size(wide) < 4 * size(box) ? wide : box;
 }
 
 const within = ([u, v], box, reach) => u > box[0] - reach && u < box[2] + reach && v > box[1] - reach && v < box[3] + reach;
