@@ -11,7 +11,7 @@ const decibels = (value) => (value === null ? '∞ (equal)' : `${digits(value)} 
 export function similarity(comparison, goto) {
   const {largest, largest_at: place} = comparison;
   const where = place ? element('span', {class: 'compare-largest'}, `${digits(largest)} at `,
-    button(`${place[0]}, ${place[1]}`, () => goto(...place), {kind: 'quiet', small: true, title: 'Show that pixel'})) : '0';
+    button(`${place[0]}, ${place[1]}`, () => goto(...place), {small: true, title: 'Show that pixel'})) : '0';
   return facts([
     ['PSNR', decibels(comparison.psnr_db)],
     ['SSIM', digits(comparison.ssim, 5)],
@@ -27,7 +27,7 @@ const rate = ({rays, wall_s: wall}) => (wall > 0 ? rays / wall : NaN);
 export function costs(a, b) {
   const line = (name, x, y, words) => [name, words(x), words(y), ratio(x, y)];
   return table({
-    caption: 'What they cost', columns: ['', {label: 'A', numeric: true}, {label: 'B', numeric: true}, {label: 'B to A', numeric: true}],
+    caption: 'What they cost', columns: ['Cost', {label: 'A', numeric: true}, {label: 'B', numeric: true}, {label: 'B to A', numeric: true}],
     rows: [
       line('Wall time', a.wall_s, b.wall_s, seconds),
       line('CPU time', a.cpu_s, b.cpu_s, seconds),

@@ -1,8 +1,9 @@
 /* The pinned picture A and the map of differences, drawn over the picture B.
  *
- * exports: createCompareView(lab, onshare(share)) -> {set({a, map, mode, share, strength}), flip(on)}
+ * exports: createCompareView(lab, onshare(share)) -> {set({a, map, mode, share, strength, spot}), flip(on)}
  *   a, map      addresses of pictures of B's size, or null
  *   mode        'b': B alone; 'wipe': A to the left of the handle, its share of the width 0..1; 'map': the map, strength 0..1
+ *   spot        [x, y], a pixel that is framed, or null
  * The handle is dragged, or moved with the arrow keys. */
 
 import {element, svg, unique} from './ui.js';
@@ -16,6 +17,7 @@ export function createCompareView(lab, onshare) {
   const a = svg('image', {'clip-path': `url(#${clip})`, preserveAspectRatio: 'none'});
   const map = svg('image', {preserveAspectRatio: 'none'});
   const edge = svg('path', {class: 'wipe-edge'});
+  const frame = svg('path', {class: 'wipe-spot'});
   const handle = element('button', {
     type: 'button', class: 'wipe-handle', role: 'slider', 'aria-label': 'Share of the pinned picture', 'aria-valuemin': 0, 'aria-valuemax': 100,
     'aria-orientation': 'horizontal', hidden: true,
@@ -33,10 +35,10 @@ export function createCompareView(lab, onshare) {
   });
   const labels = ['A', 'B'].map((name) => element('span', {class: name === 'B' ? 'wipe-label right' : 'wipe-label', text: name, hidden: true}));
   const layer = view.layer('compare');
-  let now = {a: null, map: null, mode: 'b', share: 0.5, strength: 1};
+  let now = {a: null, map: null, mode: 'b', share: 0.5, strength: 1, spot: null};
   let flipped = false;
 
-  layer.append(svg('clipPath', {id: clip}, part), a, map, edge);
+  layer.append(svg('clipPath', {id: clip}, part), a, map, edge, frame);
   layer.parentNode.prepend(layer);
   view.overlay.append(handle, ...labels);
   lab.on('view', draw);
@@ -73,6 +75,7 @@ export function createCompareView(lab, onshare) {
     map.style.display = now.mode === 'map' && now.map && !flipped ? '' : 'none';
     map.setAttribute('opacity', now.strength);
     edge.setAttribute('d', wiping ? `M${share * width} 0V${height}` : '');
+    frame.setAttribute('d', now.spot ? `M${now.spot}h1v1h-1z` : '');
     place(wiping, share);
   }
 

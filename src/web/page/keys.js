@@ -14,6 +14,8 @@ const list = [
   ['Space or middle button', 'and drag: move the zoomed picture'],
   ['Enter', 'with Grab, on the picture: take hold of the slime and let go; arrow keys pull, Page Up and Page Down along the view'],
   ['Shift drag', 'with Orbit: turn on the spot; with Light: nearer and farther'],
+  ['Arrow keys with Ask', 'on the picture: the next pixel, with Shift the tenth; Escape clears'],
+  ['F', 'while it is held: the pinned picture in place of the newest'],
   ['Home on the splitter', 'panels of their usual width; arrow keys make them wider and narrower'],
 ];
 

@@ -15,14 +15,14 @@ function createModel(lab) {
   const mine = {answer: null, error: null, pin: null, current: false, on: (listener) => listeners.add(listener)};
   let asking = false;
   let again = false;
-  const key = (pin) => (pin ? `${pin.generation}-${pin.film_hash}` : '');
+  const key = (pin) => (pin ? pin.serial : 0);
   lab.on('state', ({pin}) => {
     if (key(pin) === key(mine.pin)) return;
     Object.assign(mine, {pin: pin || null, answer: null, error: null});
     ask();
   });
   lab.on('picture', (picture) => {
-    mine.current = Boolean(mine.answer) && picture.final && mine.answer.b.generation === picture.generation;
+    mine.current = Boolean(mine.answer) && picture.final && mine.answer.b.serial === picture.serial;
     if (picture.final && !mine.current) ask();
     else tell();
   });
@@ -70,7 +70,7 @@ function createShow(lab) {
   let addresses = {a: null, map: null};
 
   hold(flip, view.flip);
-  return {node, set};
+  return {node, set, spot: (place) => view.set({spot: place})};
 
   function setShare(value) {
     share.set(100 * value);
@@ -129,21 +129,18 @@ function pinButtons(lab) {
   };
 }
 
-function numbers(lab, {answer, current}) {
-  const {a, b, comparison, changed} = answer;
-  return element('div', {class: current ? 'compare-numbers' : 'compare-numbers stale', 'aria-busy': String(!current)},
-    current ? null : notice('B is being rendered again: these are the numbers of the picture before.'),
+function numbers({a, b, comparison, changed}, goto) {
+  return element('div', {class: 'compare-numbers'},
     comparison ? null : notice(sizes(a, b), {kind: 'warning'}),
     comparison && a.film_hash === b.film_hash ? notice('The two films are the same, to the last bit.', {kind: 'good'}) : null,
-    comparison ? similarity(comparison, (x, y) => closeUp(lab, x, y)) : null,
+    comparison ? similarity(comparison, goto) : null,
     changes(changed), costs(a, b));
 }
 
 function addressesOf({pin, answer}) {
   if (!pin || (answer && !same(answer))) return {a: null, map: null};
-  const of = `${pin.generation}-${pin.film_hash}`;
-  const map = answer?.comparison ? `/api/compare.png?a=${of}&b=${answer.b.generation}-${answer.b.film_hash}` : null;
-  return {a: `/api/pin.png?of=${of}`, map};
+  const map = answer?.comparison ? `/api/compare.png?a=${pin.serial}&b=${answer.b.serial}` : null;
+  return {a: `/api/pin.png?a=${pin.serial}`, map};
 }
 
 function create(root, lab) {
@@ -151,11 +148,26 @@ function create(root, lab) {
   const how = createShow(lab);
   const below = element('div', {class: 'compare-below'});
   root.append(buttons.node, how.node, below);
+  const goto = (x, y) => {
+    how.spot([x, y]);
+    closeUp(lab, x, y);
+  };
+  let shown = null;
   const show = () => {
     buttons.show();
     how.set(addressesOf(model));
+    if (model.answer && !model.error) {
+      if (shown !== model.answer) {
+        replace(below, numbers(model.answer, goto));
+        how.spot(null);
+      }
+      below.firstChild.setAttribute('aria-busy', String(!model.current));
+      shown = model.answer;
+      return;
+    }
+    shown = null;
+    how.spot(null);
     if (model.error) replace(below, notice(model.error.message, {kind: 'error', remedy: model.error.remedy}));
-    else if (model.answer) replace(below, numbers(lab, model));
     else replace(below, empty(model.pin ? 'A is pinned; the comparison comes with the finished picture.'
       : 'Pin the finished picture as A, change the scene, and see here what that did.'));
   };

@@ -7,7 +7,7 @@ import {createRayOverlay} from './ray_overlay.js';
 import {createRayPlot, sidePlane, topPlane} from './ray_plot.js';
 import {createRayTable} from './ray_table.js';
 import {solidPoints} from './ray_solids.js';
-import {kinds} from './ray_tree.js';
+import {isCut, kinds} from './ray_tree.js';
 
 let question = null;
 let overlay = null;
@@ -69,22 +69,25 @@ function chooser(lab) {
   };
 }
 
-function ofKind(tree, kind) {
-  return tree.rays.filter((ray) => ray.node.kind === kind).length;
+/* How many of which kind, and how many were not traced for their depth or weight. */
+function parts(tree) {
+  const words = {camera: 'from the camera', reflect: 'reflected', refract: 'refracted', shadow: 'to lights'};
+  const traced = tree.rays.filter((ray) => !isCut(ray));
+  const list = Object.keys(words).map((kind) => [traced.filter((ray) => ray.node.kind === kind).length, words[kind]]);
+  list.push([tree.rays.length - traced.length, 'not traced further']);
+  return list.filter(([n]) => n).map(([n, what]) => `${count(n)} ${what}`).join(', ');
 }
 
 function summary(tree) {
   const {radiance, lambda_nm: lambda, depth} = tree.answer;
   const [r, g, b] = radiance.map(toByte);
-  const deepest = tree.rays.reduce((most, ray) => Math.max(most, ray.node.depth), 0);
+  const deepest = tree.rays.reduce((most, ray) => (isCut(ray) ? most : Math.max(most, ray.node.depth)), 0);
   const tinted = element('span', {class: 'pixel-colour'},
     element('span', {class: 'swatch', style: {background: `rgb(${r} ${g} ${b})`}, 'aria-hidden': 'true'}), `${r} ${g} ${b}`);
-  const parts = ['camera', 'reflect', 'refract', 'shadow'].map((kind) => [ofKind(tree, kind), kind]).filter(([n]) => n);
-  const words = {camera: 'from the camera', reflect: 'reflected', refract: 'refracted', shadow: 'to lights'};
   return facts([
     ['Radiance', radiance.map((x) => digits(x)).join(' · ')],
     ['Shown as', tinted],
-    ['Rays', `${count(tree.rays.length)}: ${parts.map(([n, kind]) => `${count(n)} ${words[kind]}`).join(', ')}`],
+    ['Rays', `${count(tree.rays.length)}: ${parts(tree)}`],
     ['Deepest', `${deepest} of at most ${depth}`],
     ['Indices at', `${digits(lambda)} nm`],
   ]);

@@ -1,7 +1,7 @@
 /* Which pixel is asked about, and the answer: one at a time is on its way, and of those that wait only the newest is sent.
  *
  * exports: createQuestion(lab) -> {pixel: {x, y} or null, tree or null, error or null, busy, ask(x, y), step(dx, dy), clear(), on(f)}
- * It asks again for the same pixel when the final picture of a changed scene has come. */
+ * It asks again for the same pixel when another final picture has come. */
 
 import {grow} from './ray_tree.js';
 
@@ -9,7 +9,7 @@ export function createQuestion(lab) {
   const listeners = new Set();
   let asking = false;
   let waiting = false;
-  let answered = -1; /* the generation of the tree, or an older one */
+  let asked = -1; /* the serial of the picture that was shown when the tree was asked for */
 
   const question = {
     pixel: null, tree: null, error: null, busy: false, ask, clear,
@@ -19,7 +19,7 @@ export function createQuestion(lab) {
     on: (listener) => listeners.add(listener),
   };
   lab.on('picture', (picture) => {
-    if (question.pixel && picture.final && picture.generation > answered) send();
+    if (question.pixel && picture.final && picture.serial !== asked) send();
   });
   return question;
 
@@ -57,14 +57,13 @@ export function createQuestion(lab) {
   }
 
   async function fetchTree(pixel) {
-    const generation = lab.state?.generation ?? -1;
+    asked = lab.picture?.serial ?? -1;
     try {
       const answer = await lab.get(`/api/trace?x=${pixel.x}&y=${pixel.y}`);
       if (question.pixel) Object.assign(question, {tree: {...grow(answer), pixel}, error: null});
     } catch (error) {
       if (question.pixel) Object.assign(question, {tree: null, error});
     }
-    answered = generation;
     tell();
   }
 }

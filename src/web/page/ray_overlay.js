@@ -18,7 +18,7 @@ export function drawn(tree) {
   return heavy.length <= LINES_MAX ? heavy : heavy.sort((a, b) => b.weight - a.weight).slice(0, LINES_MAX);
 }
 
-export const strokeWidth = (ray) => (1 + 1.5 * Math.sqrt(ray.weight)).toFixed(2);
+export const strokeWidth = (ray) => (1.4 + 1.4 * Math.sqrt(ray.weight)).toFixed(2);
 
 export function createRayOverlay(lab) {
   const layer = lab.view.layer('pixel');
@@ -48,11 +48,15 @@ export function createRayOverlay(lab) {
     }
     overlay.count = rays.length;
     overlay.left = tree ? tree.rays.length - rays.length : 0;
-    const halo = pieces.length ? svg('path', {class: 'ray-halo', d: pieces.map(({a, b}) => `M${a}L${b}`).join('')}) : null;
-    layer.replaceChildren(...(halo ? [halo] : []), ...pieces.map((one) => one.node), ...(pixel ? [cross()] : []));
+    layer.replaceChildren(...pieces.map(halo), ...pieces.map((one) => one.node), ...(pixel ? [cross()] : []));
     const again = marked;
     marked = null;
     mark(again);
+  }
+
+  /* So that it is seen on any picture. */
+  function halo({ray, a, b}) {
+    return svg('line', {class: 'ray-halo', x1: a[0], y1: a[1], x2: b[0], y2: b[1], 'stroke-width': Number(strokeWidth(ray)) + 2});
   }
 
   /* The pixel itself, and arms of 10 CSS pixels about it, however large the picture's pixels are. */
@@ -60,7 +64,7 @@ export function createRayOverlay(lab) {
     const {x, y} = pixel;
     const arm = 10 / lab.view.scale;
     const d = `M${x} ${y}h1v1h-1zM${x + 0.5} ${y - arm}V${y}M${x + 0.5} ${y + 1}v${arm}M${x - arm} ${y + 0.5}H${x}M${x + 1} ${y + 0.5}h${arm}`;
-    return svg('g', {}, svg('path', {class: 'ray-halo', d}), svg('path', {class: 'ray-pixel', d}));
+    return svg('g', {}, svg('path', {class: 'ray-halo', d, 'stroke-width': 4}), svg('path', {class: 'ray-pixel', d}));
   }
 
   function piece(ray) {

@@ -8,9 +8,9 @@ import {drawn, strokeWidth} from './ray_overlay.js';
 import {hull} from './ray_solids.js';
 import {dot, unit} from './ray_vectors.js';
 
-const WIDTH = 340;
-const HEIGHT = 240;
-const FRAME = {left: 40, top: 10, right: 10, bottom: 34};
+const WIDTH = 250;
+const HEIGHT = 220;
+const FRAME = {left: 32, top: 8, right: 8, bottom: 32};
 
 export const topPlane = () => ({u: [1, 0, 0], v: [0, 0, 1], uName: 'x', vName: 'z'});
 
@@ -102,7 +102,7 @@ function fit(box) {
   };
 }
 
-/* Steps of 1, 2 or 5 times a power of ten, about five of them on the longer side. */
+/* Steps of 1, 2 or 5 times a power of ten, about five of them across. */
 function ticks(low, high, step) {
   const first = Math.ceil(low / step);
   const last = Math.floor(high / step);
