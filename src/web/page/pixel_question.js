@@ -19,7 +19,9 @@ export function createQuestion(lab) {
     on: (listener) => listeners.add(listener),
   };
   lab.on('picture', (picture) => {
-    if (question.pixel && picture.final && picture.serial !== asked) send();
+    if (!question.pixel || !picture.final || picture.serial === asked) return;
+    if (question.pixel.x < picture.full_width && question.pixel.y < picture.full_height) send();
+    else clear(); /* the picture has become smaller */
   });
   return question;
 

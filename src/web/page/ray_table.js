@@ -24,7 +24,7 @@ export function createRayTable({caption, onmark}) {
     if (!event.altKey && !event.ctrlKey && !event.metaKey && press(event.key)) event.preventDefault();
   });
   body.addEventListener('focusin', (event) => note(rayOf(event.target)));
-  body.addEventListener('pointerover', (event) => note(rayOf(event.target)));
+  body.addEventListener('pointermove', (event) => note(rayOf(event.target))); /* not 'over': rows that scroll under it were not meant */
   body.addEventListener('pointerleave', () => note(null));
   body.addEventListener('click', (event) => {
     const ray = rayOf(event.target);
