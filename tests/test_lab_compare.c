@@ -167,8 +167,42 @@ static void numbers_and_map_are_those_of_the_pictures(void **state)
                             json_string_value(json_object_get(json_object_get(told, "b"), "film_hash")));
     assert_true(number(json_object_get(told, "a"), "rays") > 64 * 48);
     assert_true(number(json_object_get(told, "b"), "generation") > number(json_object_get(told, "a"), "generation"));
+    json_decref(told);
+    change(*state, "\"ball.ior\": 1.2");
+    told = room_get(*state, "/api/compare?wait=1");
+    image *c = picture_of("ball.ior=1.2");
+    assert_int_equal(image_compare(a, c, &found, NULL), STATUS_OK);
+    check_numbers(json_object_get(told, "comparison"), &found);
+    check_map(*state, a, c);
     image_destroy(a);
     image_destroy(b);
+    image_destroy(c);
+    json_decref(told);
+}
+
+typedef enum shown { SHOWN_OTHER, SHOWN_COARSE, SHOWN_FINAL } shown;
+
+/* What the newest picture is of that generation. */
+static shown shown_of(const lab_room *room, json_int_t generation)
+{
+    json_t *told = room_get(room, "/api/state"), *newest = json_object_get(told, "picture");
+    const bool its = json_integer_value(json_object_get(newest, "generation")) == generation, final = json_is_true(json_object_get(newest, "final"));
+    json_decref(told);
+    return !its ? SHOWN_OTHER : final ? SHOWN_FINAL : SHOWN_COARSE;
+}
+
+static void a_picture_that_is_not_finished_is_not_compared(void **state)
+{
+    pin(*state);
+    const json_int_t heavy = room_post(*state, "/api/set", "{\"set\": {\"render.width\": 2400, \"render.height\": 1800, \"render.samples\": 64}}");
+    while (shown_of(*state, heavy) == SHOWN_OTHER)
+        usleep(1000);
+    refused(*state, "GET", "/api/compare", 409, "not finished yet");
+    refused(*state, "POST", "/api/pin", 409, "?wait=1");
+    assert_int_equal(shown_of(*state, heavy), SHOWN_COARSE);
+    room_post(*state, "/api/undo", "{}");
+    json_t *told = room_get(*state, "/api/compare?wait=1");
+    assert_true(number(json_object_get(told, "b"), "generation") > (double)heavy);
     json_decref(told);
 }
 
@@ -358,6 +392,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(without_a_pin_there_is_nothing_to_compare, open_ball, close_room),
         cmocka_unit_test_setup_teardown(equal_pictures_have_no_difference, open_ball, close_room),
         cmocka_unit_test_setup_teardown(numbers_and_map_are_those_of_the_pictures, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(a_picture_that_is_not_finished_is_not_compared, open_ball, close_room),
         cmocka_unit_test_setup_teardown(the_pinned_picture_stays, open_ball, close_room),
         cmocka_unit_test_setup_teardown(it_says_which_parameters_changed, open_ball, close_room),
         cmocka_unit_test_setup_teardown(a_material_is_named_once, open_ball, close_room),
