@@ -26,6 +26,10 @@ function createModel(lab) {
     if (picture.final && !mine.current) ask();
     else tell();
   });
+  lab.on('afresh', () => {
+    Object.assign(mine, {pin: null, answer: null, error: null});
+    tell();
+  });
   return mine;
 
   function tell() {

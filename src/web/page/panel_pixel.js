@@ -118,8 +118,8 @@ function openDrawing({x, y}) {
 
 function createAnswer(lab) {
   const table = createRayTable({caption: 'Rays of the pixel', onmark: mark});
-  const side = createRayPlot({title: 'From the side', onmark: mark});
-  const top = createRayPlot({title: 'From above', onmark: mark});
+  const side = createRayPlot({title: 'From the side', onmark: mark, onchoose: table.reveal});
+  const top = createRayPlot({title: 'From above', onmark: mark, onchoose: table.reveal});
   const head = element('div', {class: 'pixel-summary'});
   const left = element('p', {class: 'hint'});
   marking.add(table.mark).add(side.mark).add(top.mark);

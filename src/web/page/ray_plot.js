@@ -1,5 +1,5 @@
 /* A small drawing of the rays of a pixel at right angles onto a plane: from the side, or from above; both axes at one scale, in scene units.
- * exports: createRayPlot({title, onmark(ray or null)}) -> {node, show(tree or null, plane, solids), mark(ray or null)}
+ * exports: createRayPlot({title, onmark(ray or null), onchoose(ray)}) -> {node, show(tree or null, plane, solids), mark(ray or null)}
  *          sidePlane(camera), topPlane()     {u: [x,y,z], v: [x,y,z], uName, vName}: what is to the right, what is up */
 
 import {digits, element, svg, unique} from './ui.js';
@@ -22,14 +22,17 @@ export function sidePlane(camera) {
   return {u: isZ ? [0, 0, 1] : u, v: [0, 1, 0], uName: isZ ? 'z' : 'along the line of sight', vName: 'y'};
 }
 
-export function createRayPlot({title, onmark}) {
+export function createRayPlot({title, onmark, onchoose}) {
   const drawing = svg('svg', {class: 'ray-plot', viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'img', 'aria-label': title});
   const node = element('figure', {class: 'ray-figure'}, drawing, element('figcaption', {text: title}));
   let lines = new Map();
   let marked = null;
+  const rayAt = (event) => [...lines].find(([, line]) => line === event.target)?.[0];
   drawing.addEventListener('pointerover', (event) => {
-    const ray = [...lines].find(([, line]) => line === event.target)?.[0];
-    if (ray) onmark(ray);
+    if (rayAt(event)) onmark(rayAt(event));
+  });
+  drawing.addEventListener('click', (event) => {
+    if (rayAt(event)) onchoose(rayAt(event));
   });
   drawing.addEventListener('pointerleave', () => onmark(null));
   return {node, show, mark};

@@ -9,7 +9,7 @@
  *   columns, describe(ray)                           [key, head, title] of a table, and what stands in it */
 
 import {digits} from './ui.js';
-import {add, length, mean, minus, times} from './ray_vectors.js';
+import {add, length, mean, times} from './ray_vectors.js';
 
 export const kinds = [
   ['ray-camera', 'camera ray'],
