@@ -144,7 +144,7 @@ function createAnswer(lab) {
       if (!tree) return;
       const note = otherwise(lab);
       replace(head, summary(tree), note ? notice(note) : null);
-      left.textContent = overlay.left ? `Drawn are ${count(overlay.count)} rays; ${count(overlay.left)} lighter ones are in the table alone.` : '';
+      left.textContent = overlay.left ? `Rays drawn: ${count(overlay.count)}. Lighter ones, in the table alone: ${count(overlay.left)}.` : '';
       left.hidden = !overlay.left;
     },
   };
