@@ -1,15 +1,18 @@
 // What is drawn is never older than what was drawn before or than what was asked for, and the last is the final picture of the last value.
 import { difference } from './screen.mjs';
 
-/** From now on, every pass that is drawn: generation, pass, final, and what was wanted when it was. */
+/** From now on, every pass that is drawn, once, and what was wanted when it was. The event also tells more of what is drawn already. */
 const record = (screen) => screen.page.evaluate(() => {
     window.drawn = [];
-    window.lab.on('picture', ({ generation, pass, final }) => window.drawn.push({ generation, pass, final, wanted: window.lab.wanted }));
+    let { serial: last } = window.lab.picture;
+    window.lab.on('picture', ({ serial, generation, pass, final }) => {
+        if (serial !== last) window.drawn.push({ serial, generation, pass, final, wanted: window.lab.wanted });
+        last = serial;
+    });
 });
 
 function checkOrder(t, drawn, what) {
-    t.none(drawn.filter((frame, i) => i > 0 && (frame.generation < drawn[i - 1].generation ||
-        (frame.generation === drawn[i - 1].generation && frame.pass < drawn[i - 1].pass))).map((frame) => JSON.stringify(frame)), `${what}: a frame older than the one before`);
+    t.none(drawn.filter((frame, i) => i > 0 && (frame.serial < drawn[i - 1].serial || frame.generation < drawn[i - 1].generation)).map((frame) => JSON.stringify(frame)), `${what}: a frame older than the one before`);
     t.none(drawn.filter((frame) => frame.generation < frame.wanted).map((frame) => JSON.stringify(frame)), `${what}: a frame older than what was asked for`);
     t.check(drawn.at(-1)?.final, `${what}: the last frame is the final one: ${JSON.stringify(drawn.at(-1))}`);
 }

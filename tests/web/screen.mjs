@@ -78,7 +78,9 @@ export class Screen {
             const canvas = view.stage.querySelector('canvas');
             const { width, height, scale } = view;
             const corner = view.toScreen(0, 0);
-            const shown = canvas.getContext('2d').getImageData(Math.round(corner.x), Math.round(corner.y), width, height).data;
+            const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+            copy.drawImage(canvas, -Math.round(corner.x), -Math.round(corner.y));
+            const shown = copy.getImageData(0, 0, width, height).data;
             let text = '';
             for (let i = 0; i < shown.length; i += 32768) text += String.fromCharCode(...shown.subarray(i, i + 32768));
             return { width, height, scale, text: btoa(text) };
@@ -140,6 +142,23 @@ export class Screen {
     async showPanel(name) {
         await this.tab(name).click();
         await this.page.getByRole('tabpanel', { name }).waitFor();
+    }
+
+    /** A parameter's slider, at hand in the panel of parameters. */
+    async paramSlider(path) {
+        await this.showPanel('Parameters');
+        return this.page.getByRole('slider', { name: path.replaceAll(/[._]/g, ' '), exact: true }).first();
+    }
+
+    /** Types a value into a parameter's number field and waits until it is on the desk and drawn. */
+    async setNumber(path, value) {
+        await this.showPanel('Parameters');
+        const field = this.page.getByRole('spinbutton', { name: `${path.replaceAll(/[._]/g, ' ')}, number`, exact: true }).first();
+        const { generation } = await this.lab.get('/api/state');
+        await field.fill(String(value));
+        await field.press('Enter');
+        await this.until((g) => window.lab.wanted > g, generation);
+        await this.settled(generation + 1);
     }
 
     button(name) { return this.page.getByRole('button', { name }); }
