@@ -1,89 +1,119 @@
-// The slime in the page: it plays, hands draw it through the picture by pointer and by keys, and its colours are turned while it moves.
+// A ball of slime is let fall, taken hold of in the picture, pulled and let go: it comes back. What is green in the picture is the body.
 
-const slime = async (lab) => (await lab.get('/api/state')).slime;
-
-/** The panel with the slime playing. */
-async function play(t, options) {
-    const lab = await t.lab('scenes/slime.yaml');
-    await lab.post('/api/set', { set: { 'toy.script': '', 'toy.time_s': 0 } });
-    const screen = await t.open(lab, options);
-    await screen.showPanel('Slime');
-    await screen.button('Play').click();
-    await screen.until(() => window.lab.slime.playing && window.lab.slime.time_s > 0.1);
-    return { lab, screen };
+function silhouette({ width, height, data }) {
+    let [count, left, right, top, bottom] = [0, width, -1, height, -1];
+    for (let y = 0; y < height; y++)
+        for (let x = 0; x < width; x++) {
+            const i = (y * width + x) * 4;
+            if (data[i + 1] < 1.3 * data[i] || data[i + 1] < 1.3 * data[i + 2]) continue;
+            count++;
+            [left, right, top, bottom] = [Math.min(left, x), Math.max(right, x), Math.min(top, y), Math.max(bottom, y)];
+        }
+    return { count, left, right, top, bottom, wide: right - left, high: bottom - top, middle: (top + bottom) / 2 };
 }
 
-/** Until it is told and true. */
-const told = (screen, condition) => screen.until(condition);
+const atRest = (screen) => screen.until(() => window.lab.slime?.resting && window.lab.slime.held === 0 && window.lab.picture.final);
+const nextPicture = (screen) => screen.page.evaluate(() => new Promise((drawn) => {
+    const end = window.lab.on('picture', () => {
+        end();
+        drawn();
+    });
+}));
+
+async function fallen(t) {
+    const lab = await t.lab('tests/slime.yaml');
+    const screen = await t.open(lab, { width: 1920, height: 1080 });
+    screen.context.setDefaultTimeout(60000);
+    await screen.actualSize();
+    await screen.showPanel('Slime');
+    await screen.button('Play').click();
+    await atRest(screen);
+    return { lab, screen, rest: silhouette(await screen.pixels()) };
+}
+
+function checkBack(t, before, after, what) {
+    t.near(after.wide, before.wide, 0.04 * before.wide, `${what}: its width, pixels`);
+    t.near(after.high, before.high, 0.04 * before.high, `${what}: its height, pixels`);
+    t.near(after.count, before.count, 0.05 * before.count, `${what}: its area, pixels`);
+}
 
 export const cases = {
-    'a pointer draws it': async (t) => {
-        const { lab, screen } = await play(t);
+    'pulled by the mouse': async (t) => {
+        const { lab, screen, rest } = await fallen(t);
+        t.more(rest.count, 2000, 'the body is in the picture, pixels');
         await screen.chooseTool('Grab');
-        const [a, b] = [await screen.place(400, 330), await screen.place(330, 250)];
+        const [from, to] = [{ x: rest.right - 20, y: rest.middle }, { x: rest.right + 70, y: rest.middle - 30 }];
+        const [a, b] = [await screen.place(from.x, from.y), await screen.place(to.x, to.y)];
         await screen.page.mouse.move(a.x, a.y);
         await screen.page.mouse.down();
-        await told(screen, () => window.lab.slime.held > 0);
-        await screen.page.mouse.move(b.x, b.y, { steps: 8 });
-        await screen.page.mouse.wheel(0, -60);
-        await told(screen, () => window.lab.slime.speed > 1);
-        t.more(await screen.page.locator('.layer-grab circle').count(), 1, 'marks of the hand');
-        await t.picture(screen, 'slime-drawn');
+        await screen.until(() => window.lab.slime.held > 0);
+        t.more((await lab.get('/api/state')).slime.held, 0, 'masses that are held');
+        await screen.page.mouse.move(b.x, b.y, { steps: 20 });
+        let pulled = silhouette(await screen.pixels());
+        while (pulled.right < rest.right + 30) {
+            await nextPicture(screen);
+            pulled = silhouette(await screen.pixels());
+        }
+        t.more(pulled.right, rest.right + 29, 'its right edge while it is pulled');
+        await t.picture(screen, 'slime');
         await screen.page.mouse.up();
-        await told(screen, () => window.lab.slime.held === 0);
-        t.equal(await screen.page.locator('.layer-grab circle').count(), 0, 'marks when it let go');
-        t.equal((await slime(lab)).trouble, null, 'it holds together');
+        await screen.until(() => window.lab.slime.held === 0);
+        await atRest(screen);
+        checkBack(t, rest, silhouette(await screen.pixels()), 'let go');
+        const { slime } = await lab.get('/api/state');
+        t.near(slime.volume / slime.volume_at_rest, 1, 0.03, 'its volume, of that at rest');
+        t.equal(slime.trouble, null, 'it has no trouble');
     },
 
-    'keys draw it': async (t) => {
-        const { screen } = await play(t);
+    'pulled by keys': async (t) => {
+        const { screen, rest } = await fallen(t);
         await screen.chooseTool('Grab');
         await screen.stage.focus();
-        await screen.page.keyboard.press('ArrowDown');
+        // The cross begins in the middle of the picture, where the body is.
         await screen.page.keyboard.press('Enter');
-        await told(screen, () => window.lab.slime.held > 0);
-        for (const key of ['ArrowRight', 'ArrowRight', 'ArrowUp', 'PageDown']) await screen.page.keyboard.press(key);
-        await screen.page.keyboard.press('Enter');
-        await told(screen, () => window.lab.slime.held === 0);
-        await screen.page.keyboard.press('Enter');
-        await told(screen, () => window.lab.slime.held > 0);
-        await screen.chooseTool('Orbit');
-        await told(screen, () => window.lab.slime.held === 0);
-        t.check(true, 'another tool lets go');
-    },
-
-    'colours are turned while it moves, and another body begins anew': async (t) => {
-        const { lab, screen } = await play(t);
-        const { time_s: then } = await slime(lab);
-        await screen.page.getByLabel('Absorption, red', { exact: true }).press('End');
-        await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 100);
-        t.more((await slime(lab)).time_s, then, 'its time goes on');
-        const { generation } = await lab.get('/api/state');
-        await screen.page.getByLabel('Damping', { exact: true }).press('ArrowRight');
-        await screen.until((g) => window.lab.state.generation > g && window.lab.slime.time_s < window.lab.state.slime.time_s + 1, generation);
-        t.equal((await slime(lab)).trouble, null, 'no trouble');
-        await screen.button('Pause').click();
-        await told(screen, () => !window.lab.slime.playing);
-        await screen.button('Off').click();
-        await told(screen, () => !window.lab.slime.on);
-        await screen.settled();
-    },
-
-    'the panel, light and dark': async (t) => {
-        for (const dark of [false, true]) {
-            const { screen } = await play(t, { dark });
-            await screen.button('Pause').click();
-            await told(screen, () => !window.lab.slime.playing);
-            await t.axe(screen, dark ? 'slime, dark' : 'slime, light');
-            await t.picture(screen, `slime-${dark ? 'dark' : 'light'}`);
+        await screen.until(() => window.lab.slime.held > 0);
+        for (let i = 0; i < 3; i++) await screen.page.keyboard.press('Shift+ArrowLeft');
+        let pulled = silhouette(await screen.pixels());
+        while (pulled.left > rest.left - 25) {
+            await nextPicture(screen);
+            pulled = silhouette(await screen.pixels());
         }
+        t.check(pulled.left <= rest.left - 25, 'its left edge follows the keys');
+        await screen.page.keyboard.press('Enter');
+        await screen.until(() => window.lab.slime.held === 0);
+        await atRest(screen);
+        checkBack(t, rest, silhouette(await screen.pixels()), 'let go');
+    },
+
+    'paused, and off': async (t) => {
+        const lab = await t.lab('tests/slime.yaml');
+        const screen = await t.open(lab);
+        await screen.showPanel('Slime');
+        await screen.button('Play').click();
+        await screen.until(() => window.lab.slime.time_s > 0.2);
+        await screen.button('Pause').click();
+        await screen.until(() => !window.lab.slime.playing && window.lab.picture.final);
+        const { slime, picture } = await lab.get('/api/state');
+        const own = JSON.parse(await lab.run('render', 'tests/slime.yaml', '--json')).film_hash;
+        t.check(picture.film_hash !== own, 'the picture shows where it is, not where the scene has it');
+        const [again] = [(await lab.get('/api/state')).slime];
+        t.equal(again.time_s, slime.time_s, 'its time stands still');
+        await screen.button('Off').click();
+        await screen.until((hash) => window.lab.picture.film_hash === hash, own);
+        t.equal((await lab.get('/api/state')).slime.on, false, 'it is off, and the picture is that of cuvette render');
     },
 
     'a scene without one': async (t) => {
         const lab = await t.lab('scenes/rod.yaml');
         const screen = await t.open(lab);
         await screen.showPanel('Slime');
-        t.equal(await screen.page.getByRole('radio', { name: 'Grab' }).count(), 0, 'tools to grab with');
-        await t.axe(screen, 'no slime');
+        await screen.page.getByText('This scene has no slime').waitFor();
+        t.equal(await screen.page.getByRole('radio', { name: 'Grab' }).isVisible(), false, 'there is no tool to grab it');
+        const { generation } = await lab.get('/api/state');
+        await screen.button('Add a slime').click();
+        await screen.until((g) => window.lab.wanted > g, generation);
+        await screen.settled(generation + 1);
+        await screen.button('Play').waitFor();
+        t.check(await screen.page.getByRole('radiogroup', { name: 'What the pointer does' }).getByText('Grab').isVisible(), 'one that was added can be grabbed');
     },
 };

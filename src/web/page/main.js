@@ -31,7 +31,6 @@ async function start() {
   createKeys(lab);
   const loaded = await Promise.allSettled(modules.map((name) => import(`./panel_${name}.js`)));
   const panels = loaded.filter((each) => each.status === 'fulfilled').map((each) => each.value.panel);
-  for (const panel of panels) panel.start?.(lab);
   lab.panels = createPanels(at('side'), at('splitter'), at('desk'), panels, lab);
   for (const each of loaded) if (each.status === 'rejected') lab.fail(each.reason);
   lab.start();

@@ -25,7 +25,6 @@ export function createPanels(side, splitter, desk, panels, lab) {
 
   function makeEntry(panel) {
     if (panel.css) document.head.append(element('link', {rel: 'stylesheet', href: panel.css}));
-    panel.start?.(lab);
     const tab = element('button', {
       type: 'button', role: 'tab', class: 'tab', id: `tab-${panel.id}`, 'aria-controls': `panel-${panel.id}`, 'aria-selected': 'false', tabindex: '-1',
       onclick: () => use(panel.id), text: panel.title,
