@@ -2,6 +2,7 @@
 #include "measure/clock.h"
 #include "measure/topology.h"
 #include "scene/camera.h"
+#include "scene/motion.h"
 #include "render/renderer.h"
 #include "report/json.h"
 #include "web/pace.h"
@@ -235,6 +236,11 @@ static status load_stage(painter *p, diagnostic *why)
     return scene_load_until(p->stage, &watch, why);
 }
 
+static bool has_slime(const painter *p)
+{
+    return p->stage && scene_moves(p->stage);
+}
+
 /* The stage becomes what is on the desk, with as much as possible of what was loaded before. */
 static void renew_stage(painter *p)
 {
@@ -242,6 +248,7 @@ static void renew_stage(painter *p)
     uint64_t generation;
     scene *next = desk_take(p->desk, &generation);
     p->taken = generation; /* before it is loaded, which ends when there is a newer one */
+    const bool had_slime = has_slime(p);
     pthread_rwlock_wrlock(&p->stage_lock);
     status code = next ? STATUS_OK : diagnose(&why, STATUS_FAILURE, "", "out of memory");
     if (next) {
@@ -262,7 +269,7 @@ static void renew_stage(painter *p)
     p->stage_ready = code == STATUS_OK;
     const bool differs = take_trouble(p, code == STATUS_INTERRUPTED ? STATUS_OK : code, &why);
     pthread_mutex_unlock(&p->lock);
-    if (differs)
+    if (differs || has_slime(p) != had_slime) /* which is part of the state */
         tell(p);
     if (code == STATUS_INTERRUPTED) {
         p->ended += is_stale(p);
