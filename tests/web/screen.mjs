@@ -161,7 +161,7 @@ export class Screen {
         await this.settled(generation + 1);
     }
 
-    button(name) { return this.page.getByRole('button', { name }); }
+    button(name, exact = false) { return this.page.getByRole('button', { name, exact }); }
     tab(name) { return this.page.getByRole('tab', { name }); }
 }
 

@@ -1,0 +1,162 @@
+// Undo and redo, saving, opening and copying: what is on the desk is what the program makes of the file.
+import { readFile } from 'node:fs/promises';
+import { join } from 'node:path';
+import { readPng } from './png.mjs';
+import { difference } from './screen.mjs';
+
+const filmOf = async (lab, ...words) => JSON.parse(await lab.run('render', ...words, '--json')).film_hash;
+const shownFilm = (screen) => screen.page.evaluate(() => window.lab.picture.film_hash);
+
+/** What is asked and changes the scene, and the final picture that follows. */
+async function change(screen, act) {
+    const { generation } = await screen.lab.get('/api/state');
+    await act();
+    await screen.until((g) => window.lab.wanted > g, generation);
+    await screen.settled(generation + 1);
+}
+
+export const cases = {
+    'undo and redo, by buttons and keys': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        const first = await shownFilm(screen);
+        t.equal(first, await filmOf(lab, 'scenes/rod.yaml'), 'the film of the scene as opened');
+        t.equal(await screen.button('Undo').isEnabled(), false, 'there is nothing to undo');
+        await screen.setNumber('liquid.ior', 1.6);
+        await screen.setNumber('rod.reflectivity', 0.5);
+        const both = await shownFilm(screen);
+        t.equal(both, await filmOf(lab, 'scenes/rod.yaml', '--set', 'liquid.ior=1.6', '--set', 'rod.reflectivity=0.5'), 'the film with both values');
+        await change(screen, () => screen.button('Undo').click());
+        t.equal(await lab.value('rod.reflectivity'), 0, 'the newer change is undone first');
+        t.equal(await lab.value('liquid.ior'), 1.6, 'the older one is not');
+        // Keys work on the page, not in a field where text has an undo of its own.
+        await screen.stage.focus();
+        await change(screen, () => screen.page.keyboard.press('Control+z'));
+        t.equal(await shownFilm(screen), first, 'both undone, the film is the first one');
+        t.equal(await screen.button('Undo').isEnabled(), false, 'there is nothing to undo any more');
+        await change(screen, () => screen.button('Redo').click());
+        await change(screen, () => screen.page.keyboard.press('Control+Shift+Z'));
+        t.equal(await shownFilm(screen), both, 'both done again');
+        await change(screen, () => screen.page.keyboard.press('Control+z'));
+        await change(screen, () => screen.page.keyboard.press('Control+y'));
+        t.equal(await shownFilm(screen), both, 'and once more by Ctrl Y');
+        t.equal(await screen.button('Redo').isEnabled(), false, 'there is nothing to redo');
+    },
+
+    'a drag of a slider is one step': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        const slider = await screen.paramSlider('liquid.ior');
+        const box = await slider.boundingBox();
+        const at = await slider.evaluate((input) => (input.value - input.min) / (input.max - input.min));
+        await change(screen, async () => {
+            await screen.page.mouse.move(box.x + 8 + (box.width - 16) * at, box.y + box.height / 2);
+            await screen.page.mouse.down();
+            await screen.page.mouse.move(box.x + box.width - 20, box.y + box.height / 2, { steps: 30 });
+            await screen.page.mouse.up();
+        });
+        const dragged = await lab.value('liquid.ior');
+        t.more(dragged, 1.34, 'the index after the drag');
+        await change(screen, () => screen.button('Undo').click());
+        t.equal(await lab.value('liquid.ior'), 1.33, 'one undo takes all of it back');
+        await change(screen, () => screen.button('Redo').click());
+        t.equal(await lab.value('liquid.ior'), dragged, 'one redo brings all of it back');
+    },
+
+    'reset': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        const first = await shownFilm(screen);
+        await screen.setNumber('liquid.ior', 1.7);
+        await screen.setNumber('render.depth', 2);
+        await screen.button('Reset liquid.ior').first().click();
+        await screen.settled();
+        await screen.until(() => window.lab.param('liquid.ior').value === 1.33);
+        t.equal(await lab.value('render.depth'), 2, 'a reset of one value leaves the others');
+        await screen.button('Reset all').click();
+        await change(screen, () => screen.page.getByRole('dialog').getByRole('button', { name: 'Reset all' }).click());
+        t.equal(await shownFilm(screen), first, 'the film is the first one');
+        await change(screen, () => screen.button('Undo').click());
+        t.equal(await lab.value('render.depth'), 2, 'a reset can be undone');
+    },
+
+    'saved under another name, and opened again': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        await screen.setNumber('liquid.ior', 1.5);
+        await screen.setNumber('render.depth', 6);
+        const film = await shownFilm(screen);
+        await screen.showPanel('Objects');
+        await screen.button('Save as').click();
+        const dialog = screen.page.getByRole('dialog', { name: 'Save the scene as' });
+        await t.axe(screen, 'the dialog of names');
+        await dialog.getByRole('textbox').fill('scenes/denser.yaml');
+        await dialog.getByRole('button', { name: 'Save', exact: true }).click();
+        await screen.until(() => window.lab.state.file === 'scenes/denser.yaml' && window.lab.state.saved);
+        t.match(await readFile(join(lab.folder, 'scenes/denser.yaml'), 'utf8'), /ior: 1\.5/, 'the file has the new index');
+        t.equal(await filmOf(lab, 'scenes/denser.yaml'), film, 'cuvette render makes the film of the page from the saved file');
+        await screen.load();
+        t.equal(await shownFilm(screen), film, 'loaded again, the page shows the same film');
+        for (const [file, wanted] of [['rod', await filmOf(lab, 'scenes/rod.yaml')], ['denser', film]]) {
+            await screen.showPanel('Objects');
+            await screen.button('Open').click();
+            const choice = screen.page.getByRole('dialog', { name: 'Open a scene' });
+            await choice.getByRole('searchbox').fill(`scenes/${file}.yaml`);
+            await change(screen, () => choice.getByRole('button', { name: `scenes/${file}.yaml` }).click());
+            t.equal(await shownFilm(screen), wanted, `${file}.yaml, opened in the page: the film`);
+        }
+    },
+
+    'a file that is there is not overwritten unasked': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        screen.expect(/409/);
+        const before = await readFile(join(lab.folder, 'scenes/prism.yaml'), 'utf8');
+        await screen.showPanel('Objects');
+        await screen.button('Save as').click();
+        const dialog = screen.page.getByRole('dialog', { name: 'Save the scene as' });
+        await dialog.getByRole('textbox').fill('scenes/prism.yaml');
+        await dialog.getByRole('textbox').press('Enter');
+        const question = screen.page.getByRole('dialog', { name: 'Replace the file' });
+        await question.getByRole('button', { name: 'Cancel' }).click();
+        await screen.quiet();
+        t.equal(await readFile(join(lab.folder, 'scenes/prism.yaml'), 'utf8'), before, 'the other file');
+        t.equal((await lab.get('/api/state')).file, 'scenes/rod.yaml', 'the scene keeps its file');
+    },
+
+    'outside of the folder': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        screen.expect(/400/);
+        await screen.showPanel('Objects');
+        await screen.button('Save as').click();
+        const dialog = screen.page.getByRole('dialog', { name: 'Save the scene as' });
+        await dialog.getByRole('textbox').fill('../outside.yaml');
+        await dialog.getByRole('textbox').press('Enter');
+        const said = screen.page.locator('#status');
+        await said.getByText('outside.yaml').waitFor();
+        t.equal((await lab.get('/api/state')).file, 'scenes/rod.yaml', 'it is refused');
+    },
+
+    'pictures and commands for other programs': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        await screen.context.grantPermissions(['clipboard-read', 'clipboard-write'], { origin: lab.origin });
+        await screen.setNumber('liquid.ior', 1.45);
+        const film = await shownFilm(screen);
+        const [download] = await Promise.all([screen.page.waitForEvent('download'), screen.button('Save PNG').click()]);
+        t.equal(download.suggestedFilename(), 'rod.png', 'the name of the picture');
+        const saved = readPng(await readFile(await download.path()));
+        t.equal(difference(saved, await screen.served()), 0, 'share of pixels that are not the server\'s');
+        await screen.button('Copy render command').click();
+        await screen.page.locator('#status').getByText('The command is on the clipboard').waitFor();
+        const command = await screen.page.evaluate(() => navigator.clipboard.readText());
+        const words = command.split(' ');
+        t.equal(words.slice(0, 2), ['cuvette', 'render'], 'the command');
+        const account = JSON.parse(await lab.run(...words.slice(1), '--json'));
+        t.equal(account.film_hash, film, `the film of ${command}`);
+        await screen.button('Copy scene file').click();
+        await screen.page.locator('#status').getByText('The scene file is on the clipboard').waitFor();
+        t.match(await screen.page.evaluate(() => navigator.clipboard.readText()), /ior: 1\.45/, 'the scene file on the clipboard');
+    },
+};
