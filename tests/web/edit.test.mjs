@@ -43,8 +43,11 @@ export const cases = {
         });
         const after = await lab.value('ball.position');
         const there = view.project(after);
-        t.near(there.x, middle.x + 90, 3, 'its middle follows the pointer, x');
-        t.near(there.y, middle.y + 30, 3, 'its middle follows the pointer, y');
+        // What the pointer took hold of is the point of the ball that is nearest to the eye.
+        const away = before.map((v, i) => v - eye[i]);
+        const held = after.map((v, i) => v - 0.3 * away[i] / Math.hypot(...away));
+        t.near(view.project(held).x, middle.x + 90, 1, 'what is held stays under the pointer, x');
+        t.near(view.project(held).y, middle.y + 30, 1, 'what is held stays under the pointer, y');
         const moved = blue(await screen.pixels());
         t.near(moved.x - seen.x, there.x - middle.x, 1.5, 'and so does what is seen of it, x');
         t.near(moved.y - seen.y, there.y - middle.y, 1.5, 'and so does what is seen of it, y');

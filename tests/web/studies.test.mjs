@@ -3,7 +3,7 @@ import { readFile } from 'node:fs/promises';
 import { join } from 'node:path';
 
 const CELLS = 16;
-const ROWS = CELLS * 11; // ten repetitions and a warm-up
+const ROWS = CELLS * 10;
 
 const running = (screen, yes) => screen.until((on) => Boolean(window.lab.study?.running) === on, yes);
 
@@ -18,6 +18,8 @@ async function chosen(t) {
 }
 
 const rowsOf = async (lab) => (await readFile(join(lab.folder, 'results/quick/rows.csv'), 'utf8')).trim().split('\n').slice(1);
+/** Without warm-ups: whoever goes on warms up again. */
+const measured = (rows) => rows.filter((row) => row.split(',')[4] === '0');
 
 export const cases = {
     'started, stopped, continued to its end': async (t) => {
@@ -33,7 +35,7 @@ export const cases = {
         await screen.quiet();
         const some = await rowsOf(lab);
         t.more(some.length, 12, 'rows after it was stopped');
-        t.check(some.length < ROWS, `it was stopped before its end: ${some.length} of ${ROWS} rows`);
+        t.check(measured(some).length < ROWS, `it was stopped before its end: ${measured(some).length} of ${ROWS} rows`);
         const plot = study.getByRole('img', { name: /Time by recursion depth and index/ });
         t.more(await plot.locator('.plot-marker').count(), 0, 'markers in its figure');
 
@@ -43,7 +45,7 @@ export const cases = {
         await screen.until(() => window.lab.study.frames_done === window.lab.study.frames_all);
         await screen.quiet();
         const all = await rowsOf(lab);
-        t.equal(all.length, ROWS, 'rows at the end');
+        t.equal(measured(all).length, ROWS, 'rows at the end');
         t.equal(all.slice(0, some.length), some, 'the rows from before are kept as they were');
         const told = await lab.get('/api/studies/quick');
         t.equal([told.cells_done, told.marked], [CELLS, 0], 'cells done, rows of another film');
