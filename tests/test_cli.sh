@@ -53,10 +53,10 @@ run --version
 check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render animate scene trace fan params media mesh study compare realism motion machine help; do
+for command in render animate scene trace fan params media mesh study compare realism motion lab machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render animate scene trace fan params media mesh study compare realism motion machine "study run" "study list" "study status" "study merge" "study summary"; do
+for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -440,7 +440,7 @@ check "a row a ray" is "$(cut -d, -f1-4 fan.csv | tr '\n' ' ')" \
 check "the middle ray goes straight on, and is the axis" is "$(sed -n 4p fan.csv | cut -d, -f11,13-)" 0,NA,NA,NA,NA
 run fan "$scene" --from -3,1.5,0 --to 3,1.5,0 --spread 10 --rays 3 -o fan.csv
 check "a fan has angles, and ends on what is opaque" is "$(cut -d, -f2,4 fan.csv | tr '\n' ' ')" "offset_deg,end -5,sky 0,rod 5,sky "
-for command in trace fan; do
+for command in trace fan lab; do
     for option in $("$program" $command --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
         check "cuvette.1 explains $command $option" grep -qF -- "${option/--/\\-\\-}" "$page"
     done
@@ -452,6 +452,53 @@ check "machine prints what it is" grep -q '^wall clock ' out
 run machine --json
 check "machine --json" holds "$(json units) >= 1 && $(json wall_clock.tick_s) > 0"
 check "machine --json lists disturbances" is "$(json disturbances@type)" array
+
+# --- lab
+run_lab() # ARGUMENT...: starts one in the background; its address is in `address`
+{
+    "$program" lab --no-browser "$@" >lab.out 2>lab.err &
+    lab=$!
+    for ((i = 0; i < 600; i++)); do
+        address=$(<lab.out)
+        [[ $address ]] || ! kill -0 $lab 2>/dev/null && break
+        sleep 0.1
+    done
+}
+ask() # PATH: over bash's own sockets; the whole reply
+{
+    local port=${address#http://127.0.0.1:}
+    exec 9<>"/dev/tcp/127.0.0.1/${port%%/*}"
+    printf 'GET %s HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nAuthorization: Bearer %s\r\nConnection: close\r\n\r\n' "$1" "${port%%/*}" "${address##*token=}" >&9
+    cat <&9
+    exec 9>&-
+}
+cp "$scene" here.yaml
+run_lab here.yaml
+check "lab prints its address, and nothing else" matches "$address $(wc -l <lab.out) $(wc -c <lab.err)" '^http://127\.0\.0\.1:[0-9]+/\?token=[0-9a-f]{32} 1 0$'
+check "lab serves its page" grep -q '<title>' <(ask /)
+check "lab's picture is the film of render" grep -q '"film_hash":"b92bb012fd9c5f71"' <(ask '/api/picture.png?wait=1' >/dev/null; ask /api/state)
+kill -INT $lab
+wait $lab
+check "Ctrl-C ends it well" is "$? $(wc -c <lab.err)" "0 0"
+run_lab --folder . --results . --port 0
+check "lab needs no scene" matches "$address" '^http'
+kill -TERM $lab
+wait $lab
+check "a termination ends it too" is $? 0
+refused_lab() # WHAT ERROR ARGUMENT...
+{
+    local what=$1 error=$2
+    shift 2
+    run lab --no-browser "$@"
+    check "lab refuses $what" matches "$code $(wc -l <err) $(wc -c <out) $(<err)" "^2 1 0 cuvette: $error"
+}
+mkdir -p elsewhere
+refused_lab "two scenes" "lab: 'here.yaml' is one argument too many; give one SCENE" here.yaml here.yaml
+refused_lab "a scene that is not there" 'nowhere.yaml: ' nowhere.yaml
+refused_lab "a scene outside of its folder" 'here.yaml: is not in the folder' --folder elsewhere here.yaml
+refused_lab "a folder that is none" 'nowhere: ' --folder nowhere
+refused_lab "a port that is none" '--port 70000' --port 70000
+refused_lab "results elsewhere" '.*results' --folder elsewhere --results results
 
 # --- notes
 echo 'solids: {ball: {shape: sphere, ior: 1.5}}' >odd.yaml
@@ -647,6 +694,7 @@ check "completion offers options of trace" is "$(complete_line cuvette trace --p
 check "completion offers options of fan" is "$(complete_line cuvette fan --sp)" --spread
 check "completion offers objects of the scene" is "$(complete_line "$program" scene "$scene" --delete ve; complete_line "$program" scene "$scene" --move ro)" \
     "$(lines vessel rod=)"
+check "completion offers options of lab" is "$(complete_line cuvette lab --no)" --no-browser
 check "completion offers study verbs" is "$(complete_line cuvette study mer)" merge
 
 echo "$passed passed, $failed failed"

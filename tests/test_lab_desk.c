@@ -205,6 +205,8 @@ static void resets_go_back_to_what_was_opened(void **state)
     for (int i = 0; i < 3; i++)
         assert_int_equal(desk_undo(d, false, NULL, NULL), STATUS_OK);
     assert_told(d, "file", "ball.yaml"); /* opening can be undone */
+    assert_int_equal(desk_reset(d, NULL, 0, NULL, NULL), STATUS_OK); /* and resets know then what was opened before */
+    assert_value(d, "ball.radius", "1");
     desk_destroy(d);
 }
 
@@ -225,7 +227,9 @@ static void it_knows_what_is_saved(void **state)
     assert_false(is_saved(d));
     desk_undo(d, false, NULL, NULL);
     assert_true(is_saved(d)); /* it is again what the file holds */
-    desk_undo(d, true, NULL, NULL);
+    desk_reset(d, NULL, 0, NULL, NULL);
+    assert_true(is_saved(d));
+    apply(d, "ball.ior=1.6");
     assert_false(is_saved(d));
     desk_saved(d, "new.yaml", generation); /* of a scene that has gone */
     assert_false(is_saved(d));

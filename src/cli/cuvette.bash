@@ -70,7 +70,8 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
     --bits) _cuvette_words 8 16 ;;
     --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
     --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size) COMPREPLY=() ;;
-    -r | --results)
+    --port | --threads) COMPREPLY=() ;;
+    -r | --results | --folder)
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$current")
         ;;
@@ -97,7 +98,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render animate scene trace fan params media mesh study compare realism motion machine help --help --usage --version
+        _cuvette_words render animate scene trace fan params media mesh study compare realism motion lab machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -183,12 +184,19 @@ _cuvette()
             _cuvette_files 'yaml|yml'
         fi
         ;;
+    lab)
+        if [[ $current == -* ]]; then
+            _cuvette_words --folder --results --port --threads --no-browser --help --usage --version
+        else
+            _cuvette_files 'yaml|yml'
+        fi
+        ;;
     machine) _cuvette_words --json --help --usage --version ;;
     help)
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render animate scene trace fan params media mesh study compare realism motion machine
+            _cuvette_words render animate scene trace fan params media mesh study compare realism motion lab machine
         fi
         ;;
     esac

@@ -49,6 +49,18 @@ static bool write_text(FILE *stream, const char *text)
     return quoted != NULL;
 }
 
+json_t *json_of_diagnostic(const diagnostic *why)
+{
+    json_t *told = json_pack("{s:o, s:o}", "error", json_of_text(why->what), "remedy", json_of_text(why->remedy));
+    if (told && why->file[0])
+        json_object_set_new(told, "file", json_of_text(why->file));
+    if (told && why->line > 0)
+        json_object_set_new(told, "line", json_integer(why->line));
+    if (told && why->column > 0)
+        json_object_set_new(told, "column", json_integer(why->column));
+    return told;
+}
+
 bool json_write_text(FILE *stream, const char *text)
 {
     json_t *value = json_of_text(text);

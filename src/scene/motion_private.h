@@ -20,7 +20,7 @@ typedef struct moving_slime {
     double time_s;    /* that of its entry */
     char *name, *parameters; /* of its entry, for other scenes */
     given_slime given;
-    const mesh *skin; /* while it is in no scene: one owner of it; NULL for none */
+    const struct mesh *skin; /* while it is in no scene: one owner of it; NULL for none */
 } moving_slime;
 
 struct scene_motion {

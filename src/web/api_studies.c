@@ -36,7 +36,7 @@ static void add_progress(const lab *l, const study *s, json_t *told)
     json_object_set_new(told, "warmups", json_integer((json_int_t)progress.warmups));
     json_object_set_new(told, "marked", json_integer((json_int_t)progress.rows_marked));
     if (code != STATUS_OK)
-        json_object_set_new(told, "error", study_trouble(&why));
+        json_object_set_new(told, "error", json_of_diagnostic(&why));
 }
 
 /* A study of the list; one that cannot be read (s NULL) has its error. */
@@ -46,7 +46,7 @@ static json_t *study_json(const lab *l, const char *name, const char *file, cons
     if (told && s && study_json_about(s, told))
         add_progress(l, s, told);
     if (told && !s)
-        json_object_set_new(told, "error", study_trouble(why));
+        json_object_set_new(told, "error", json_of_diagnostic(why));
     return told;
 }
 
@@ -129,7 +129,7 @@ static void get_study(void *context, const http_request *q, http_reply *r)
         const char *name = http_path_value(q, "name");
         json_t *told = study_json(l, name, file, s, &why), *summary = NULL;
         if (s && study_json_summary(s, l->settings.results, &summary, &why) != STATUS_OK)
-            json_object_set_new(told, "error", study_trouble(&why));
+            json_object_set_new(told, "error", json_of_diagnostic(&why));
         json_object_set_new(told, "summary", summary ? summary : json_null());
         json_object_set_new(told, "runs", s ? study_runs(l, s->name) : json_array());
         json_object_set_new(told, "figures", s ? figures_of(l, s->name) : json_array());

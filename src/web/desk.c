@@ -8,12 +8,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A scene as it was opened, for all versions that came of it. With the desk's lock. */
+typedef struct origin {
+    scene *s;
+    uint64_t number; /* of its version */
+    int owners;
+} origin;
+
 /* One state of the desk. Those that were keep nothing that was loaded: a hundred steps of undo must not hold a hundred meshes. */
 typedef struct version {
     scene *s;
     char *file;      /* NULL: of none */
     char *what;      /* was done to it, for undo; of one to redo: led to it */
     uint64_t number; /* of the version, which undo brings back */
+    origin *from;
 } version;
 
 typedef struct pile { version item[DESK_UNDO_MAX]; size_t count; } pile;
@@ -24,7 +32,6 @@ struct desk {
     void (*changed)(void *context);
     void *context;
     version now;
-    scene *opened;
     uint64_t generation, numbers, saved_number;
     char gesture[80]; /* of the last change; "" for none */
     pile undo, redo;
@@ -35,9 +42,29 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
+static origin *origin_create(const scene *s, uint64_t number)
+{
+    origin *o = calloc(1, sizeof *o);
+    if (o)
+        *o = (origin){.s = scene_clone(s), .number = number, .owners = 1};
+    if (o && o->s)
+        return o;
+    free(o);
+    return NULL;
+}
+
+static void origin_release(origin *o)
+{
+    if (o && --o->owners == 0) {
+        scene_destroy(o->s);
+        free(o);
+    }
+}
+
 static void version_clear(version *v)
 {
     scene_destroy(v->s);
+    origin_release(v->from);
     free(v->file);
     free(v->what);
     *v = (version){0};
@@ -81,15 +108,14 @@ status desk_create(scene *first, const char *file, const folder *files, void (*c
     *out = NULL;
     status code = first ? desk_check(first, files, why) : no_memory(why);
     desk *d = code == STATUS_OK ? calloc(1, sizeof *d) : NULL;
-    scene *opened = d ? scene_clone(first) : NULL;
-    if (!opened) {
+    origin *from = d ? origin_create(first, 1) : NULL;
+    if (!from) {
         free(d);
         scene_destroy(first);
         return code == STATUS_OK ? no_memory(why) : code;
     }
-    *d = (desk){.lock = PTHREAD_MUTEX_INITIALIZER, .files = files, .changed = changed, .context = context, .opened = opened, .generation = 1,
-                .numbers = 1, .saved_number = file ? 1 : 0};
-    d->now = (version){.s = first, .file = copy_or_null(file), .number = 1};
+    *d = (desk){.lock = PTHREAD_MUTEX_INITIALIZER, .files = files, .changed = changed, .context = context, .generation = 1, .numbers = 1, .saved_number = file ? 1 : 0};
+    d->now = (version){.s = first, .file = copy_or_null(file), .number = 1, .from = from};
     *out = d;
     return STATUS_OK;
 }
@@ -101,13 +127,13 @@ void desk_destroy(desk *d)
     pile_clear(&d->undo);
     pile_clear(&d->redo);
     version_clear(&d->now);
-    scene_destroy(d->opened);
     pthread_mutex_destroy(&d->lock);
     free(d);
 }
 
-/* Puts next in place of the scene, which goes to the undo pile, or is forgotten where the same gesture made it. next is the desk's from now on. */
-static status replace(desk *d, scene *next, const char *file, const char *what, const char *gesture, diagnostic *why)
+/* Puts next in place of the scene, which goes to the undo pile, or is forgotten where the same gesture made it. next is the desk's from now on. from: the origin,
+ * which it takes, of a scene that is opened; NULL: the one that was. */
+static status replace(desk *d, scene *next, const char *file, origin *from, const char *what, const char *gesture, diagnostic *why)
 {
     char *name = copy_or_null(file), *words = strdup(what);
     if (!words || (file && !name)) {
@@ -118,7 +144,11 @@ static status replace(desk *d, scene *next, const char *file, const char *what, 
     const bool goes_on = gesture && d->gesture[0] && strcmp(gesture, d->gesture) == 0;
     snprintf(d->gesture, sizeof d->gesture, "%s", gesture ? gesture : "");
     version before = d->now;
-    d->now = (version){.s = next, .file = name, .number = ++d->numbers};
+    d->now = (version){.s = next, .file = name, .number = ++d->numbers, .from = from ? from : before.from};
+    if (from)
+        from->number = d->now.number;
+    else
+        before.from->owners++;
     if (goes_on) {
         free(words);
         version_clear(&before);
@@ -150,7 +180,7 @@ status desk_apply(desk *d, const char *what, const char *gesture, desk_change *c
     if (code == STATUS_OK)
         code = desk_check(next, d->files, why);
     if (code == STATUS_OK)
-        code = replace(d, next, d->now.file, what, gesture, why);
+        code = replace(d, next, d->now.file, NULL, what, gesture, why);
     if (code != STATUS_OK)
         scene_destroy(next);
     return finish(d, code, generation);
@@ -159,23 +189,20 @@ status desk_apply(desk *d, const char *what, const char *gesture, desk_change *c
 status desk_open(desk *d, scene *s, const char *file, uint64_t *generation, diagnostic *why)
 {
     status code = desk_check(s, d->files, why);
-    scene *opened = code == STATUS_OK ? scene_clone(s) : NULL;
-    if (!opened) {
+    origin *from = code == STATUS_OK ? origin_create(s, 0) : NULL;
+    if (!from) {
         scene_destroy(s);
         return code == STATUS_OK ? no_memory(why) : code;
     }
     char words[128];
     snprintf(words, sizeof words, "open %.100s", file ? file : "a new scene");
     pthread_mutex_lock(&d->lock);
-    code = replace(d, s, file, words, NULL, why);
-    if (code == STATUS_OK) {
-        scene_destroy(d->opened);
-        d->opened = opened;
-        if (file)
-            d->saved_number = d->now.number;
-    } else {
-        scene_destroy(opened);
+    code = replace(d, s, file, from, words, NULL, why);
+    if (code != STATUS_OK) {
+        origin_release(from);
         scene_destroy(s);
+    } else if (file) {
+        d->saved_number = d->now.number;
     }
     return finish(d, code, generation);
 }
@@ -210,17 +237,20 @@ static status set_back(scene *s, const scene *opened, const char *path, diagnost
 status desk_reset(desk *d, const char *const *paths, size_t count, uint64_t *generation, diagnostic *why)
 {
     pthread_mutex_lock(&d->lock);
-    scene *next = scene_clone(count ? d->now.s : d->opened);
+    const origin *from = d->now.from;
+    scene *next = scene_clone(count ? d->now.s : from->s);
     status code = next ? STATUS_OK : no_memory(why);
     for (size_t i = 0; i < count && code == STATUS_OK; i++)
-        code = set_back(next, d->opened, paths[i], why);
+        code = set_back(next, from->s, paths[i], why);
     if (code == STATUS_OK)
         code = desk_check(next, d->files, why);
     if (code == STATUS_OK) {
         scene_borrow_meshes(next, d->now.s);
         char words[128];
         snprintf(words, sizeof words, count == 1 ? "reset %.100s" : "reset", count == 1 ? paths[0] : "");
-        code = replace(d, next, d->now.file, words, NULL, why);
+        code = replace(d, next, d->now.file, NULL, words, NULL, why);
+        if (code == STATUS_OK && count == 0)
+            d->now.number = from->number; /* it is that version again */
     }
     if (code != STATUS_OK)
         scene_destroy(next);
@@ -240,7 +270,7 @@ scene *desk_take(desk *d, uint64_t *generation)
 scene *desk_take_opened(desk *d)
 {
     pthread_mutex_lock(&d->lock);
-    scene *copy = scene_clone(d->opened);
+    scene *copy = scene_clone(d->now.from->s);
     pthread_mutex_unlock(&d->lock);
     return copy;
 }

@@ -1,5 +1,6 @@
 /* What is sent back. */
 #include "web/http_private.h"
+#include "report/json.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -74,14 +75,7 @@ void http_reply_error(http_reply *r, int code, const char *what, const char *rem
 
 void http_reply_diagnostic(http_reply *r, status code, const diagnostic *why)
 {
-    json_t *error = json_pack("{s:o, s:o}", "error", text_value(why->what), "remedy", text_value(why->remedy));
-    if (error && why->file[0])
-        json_object_set_new(error, "file", text_value(why->file));
-    if (error && why->line > 0)
-        json_object_set_new(error, "line", json_integer(why->line));
-    if (error && why->column > 0)
-        json_object_set_new(error, "column", json_integer(why->column));
-    http_reply_json(r, code == STATUS_BAD_INPUT ? 400 : 500, error);
+    http_reply_json(r, code == STATUS_BAD_INPUT ? 400 : 500, json_of_diagnostic(why));
 }
 
 static bool printable(const char *text)

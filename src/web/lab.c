@@ -91,6 +91,17 @@ void lab_give_threads(const lab *l, scene *s)
         s->render.threads = l->settings.threads;
 }
 
+static status check_results(const lab *l, diagnostic *why)
+{
+    char *name = folder_name(l->files, l->settings.results);
+    const bool inside = name != NULL;
+    free(name);
+    if (inside)
+        return STATUS_OK;
+    diagnostic_locate(why, l->settings.results, 0, 0);
+    return diagnose(why, STATUS_BAD_INPUT, "give a folder for results below the laboratory's", "is not in the folder of the laboratory");
+}
+
 static status open_desk(lab *l, diagnostic *why)
 {
     scene *first = NULL;
@@ -147,6 +158,8 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     *l = (lab){.settings = *settings, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
     const painter_listener listener = {on_picture, on_told, l};
     status code = folder_open(settings->folder, &l->files, why);
+    if (code == STATUS_OK)
+        code = check_results(l, why);
     if (code == STATUS_OK)
         code = open_desk(l, why);
     if (code == STATUS_OK)

@@ -15,10 +15,10 @@ typedef struct studies studies; /* web/studies.h */
 struct lab {
     lab_settings settings;
     folder *files;
-    desk *desk;
-    painter *painter;
-    pins *pins;
-    studies *studies;
+    struct desk *desk;
+    struct painter *painter;
+    struct pins *pins;
+    struct studies *studies;
     http_server *server;
     http_route *routes;
     pthread_mutex_t publish_lock;

@@ -241,7 +241,7 @@ live_preview live_preview_of(live *l)
 
 static json_t *json_of_trouble(const live_account *a)
 {
-    return a->in_trouble ? json_pack("{s:o, s:o}", "error", json_of_text(a->trouble.what), "remedy", json_of_text(a->trouble.remedy)) : json_null();
+    return a->in_trouble ? json_of_diagnostic(&a->trouble) : json_null();
 }
 
 json_t *live_tell(live *l)

@@ -525,21 +525,11 @@ static json_t *camera_json(const scene *s)
     return o;
 }
 
-static json_t *trouble_json(const diagnostic *why)
-{
-    json_t *o = json_pack("{s:o,s:o}", "error", json_of_text(why->what), "remedy", json_of_text(why->remedy));
-    if (o && why->file[0])
-        json_object_set_new(o, "file", json_of_text(why->file));
-    if (o && why->line)
-        json_object_set_new(o, "line", json_integer(why->line));
-    return o;
-}
-
 bool painter_tell(painter *p, json_t *state)
 {
     scene *now = desk_take(p->desk, NULL);
     pthread_mutex_lock(&p->lock);
-    int bad = json_object_set_new(state, "trouble", p->trouble_code != STATUS_OK ? trouble_json(&p->trouble) : json_null());
+    int bad = json_object_set_new(state, "trouble", p->trouble_code != STATUS_OK ? json_of_diagnostic(&p->trouble) : json_null());
     bad |= json_object_set_new(state, "waiting", p->waiting ? json_of_text(p->waiting) : json_null());
     bad |= json_object_set_new(state, "picture", p->newest ? picture_json(p->newest) : json_null());
     pthread_mutex_unlock(&p->lock);

@@ -82,7 +82,7 @@ json_t *studies_tell(studies *st)
                                          (json_int_t)now->frames_done, "frames_all", (json_int_t)now->frames_all, "left_s", json_of_real(now->left_s), "cell",
                                          (json_int_t)now->cell, "share", json_of_real(now->share), "stage", stages[now->stage], "picture",
                                          (json_int_t)now->picture, "pictures", (json_int_t)now->pictures, "error",
-                                         st->failed ? study_trouble(&st->trouble) : json_null());
+                                         st->failed ? json_of_diagnostic(&st->trouble) : json_null());
     pthread_mutex_unlock(&st->lock);
     return told;
 }

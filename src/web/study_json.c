@@ -11,18 +11,6 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
-json_t *study_trouble(const diagnostic *why)
-{
-    json_t *told = json_pack("{s:o, s:o}", "error", json_of_text(why->what), "remedy", json_of_text(why->remedy));
-    if (told && why->file[0])
-        json_object_set_new(told, "file", json_of_text(why->file));
-    if (told && why->line > 0)
-        json_object_set_new(told, "line", json_integer(why->line));
-    if (told && why->column > 0)
-        json_object_set_new(told, "column", json_integer(why->column));
-    return told;
-}
-
 /* --- what is in the study --- */
 
 typedef struct unit_search {

@@ -8,8 +8,6 @@
 
 enum { STUDY_JSON_ROWS_MAX = 1000, STUDY_JSON_CELLS_MAX = 5000 };
 
-/* {"error", "remedy", "file"?, "line"?, "column"?}; NULL when memory is out. */
-json_t *study_trouble(const diagnostic *why);
 
 /* title, cells, axes: [{"name", "paths", "units", "count"}]; false when memory is out. */
 bool study_json_about(const study *s, json_t *into);
