@@ -261,7 +261,7 @@ static void the_page_is_embedded(void **state)
     }
     char *named = client_ask(*state, "GET", "/index.html", "", NULL), *bare = client_ask(*state, "GET", "/", "", NULL);
     assert_true(reply_has(bare, "Content-Type: text/html; charset=utf-8"));
-    assert_non_null(strstr(reply_body(bare), "<h1>Cuvette</h1>"));
+    assert_non_null(strstr(reply_body(bare), "<title>Cuvette</title>"));
     assert_string_equal(reply_body(bare), reply_body(named));
     free(bare);
     free(named);
