@@ -48,9 +48,9 @@ export class Lab {
     }
 
     /** Starts the program; at a port of its choice or, after stop(), at the one that it had. */
-    async serve(scene) {
+    async serve(scene, more = []) {
         const port = this.port ? ['--port', String(this.port)] : [];
-        this.child = spawn(this.program, ['lab', ...(scene ? [join(this.folder, scene)] : []), '--no-browser', '--folder', this.folder, ...port],
+        this.child = spawn(this.program, ['lab', ...(scene ? [join(this.folder, scene)] : []), '--no-browser', '--folder', this.folder, ...port, ...more],
             { cwd: this.folder, stdio: ['ignore', 'pipe', 'pipe'] });
         const [address, number, token] = await said(this.child, /http:\/\/127\.0\.0\.1:(\d+)\/\?token=([0-9a-f]+)/);
         Object.assign(this, { address, port: Number(number), token, origin: `http://127.0.0.1:${number}` });
