@@ -1,16 +1,14 @@
 #include "scene/mesh_child.h"
+#include "base/spawn.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/pidfd.h>
 #include <unistd.h>
-
-extern char **environ;
 
 static status machine_error(diagnostic *why, const char *doing, int error)
 {
@@ -40,34 +38,6 @@ static int open_pipe(int ends[2])
     return error;
 }
 
-/* Standard input is empty, the other two are pipes, nothing else is open, and no signal is blocked or ignored. */
-static int spawn(pid_t *pid, const char *program, char *const *arguments, int out, int err)
-{
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-    sigset_t none, all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    int error = posix_spawn_file_actions_init(&actions);
-    if (error) {
-        return error;
-    }
-    error = posix_spawnattr_init(&attributes);
-    if (!error) {
-        posix_spawnattr_setsigmask(&attributes, &none);
-        posix_spawnattr_setsigdefault(&attributes, &all);
-        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-        error = posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-        error = error ? error : posix_spawn_file_actions_adddup2(&actions, out, 1);
-        error = error ? error : posix_spawn_file_actions_adddup2(&actions, err, 2);
-        error = error ? error : posix_spawn_file_actions_addclosefrom_np(&actions, 3);
-        error = error ? error : posix_spawn(pid, program, &actions, &attributes, arguments, environ);
-        posix_spawnattr_destroy(&attributes);
-    }
-    posix_spawn_file_actions_destroy(&actions);
-    return error;
-}
-
 static int spawn_with_pipes(mesh_child *child, const char *program, char *const *arguments)
 {
     int out[2], err[2];
@@ -78,7 +48,7 @@ static int spawn_with_pipes(mesh_child *child, const char *program, char *const 
     error = open_pipe(err);
     if (!error) {
         fcntl(out[0], F_SETPIPE_SZ, 1 << 20); /* fewer switches between the two; it works without */
-        error = spawn(&child->pid, program, arguments, out[1], err[1]);
+        error = spawn_program(&child->pid, program, arguments, out[1], err[1], false);
         close(err[1]);
         if (error) {
             close(err[0]);

@@ -1,18 +1,16 @@
 #include "web/child.h"
+#include "base/spawn.h"
 #include "measure/clock.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/pidfd.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-extern char **environ;
 
 enum { SAID_MAX = 16384, LOOK_MS = 100 };
 
@@ -24,39 +22,12 @@ typedef struct child {
     size_t length;
 } child;
 
-static int spawn(pid_t *pid, char *const *arguments, int out)
-{
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-    sigset_t none, all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    int error = posix_spawn_file_actions_init(&actions);
-    if (error)
-        return error;
-    error = posix_spawnattr_init(&attributes);
-    if (!error) {
-        posix_spawnattr_setsigmask(&attributes, &none);
-        posix_spawnattr_setsigdefault(&attributes, &all);
-        posix_spawnattr_setpgroup(&attributes, 0);
-        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-        error = posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-        error = error ? error : posix_spawn_file_actions_adddup2(&actions, out, 1);
-        error = error ? error : posix_spawn_file_actions_adddup2(&actions, out, 2);
-        error = error ? error : posix_spawn_file_actions_addclosefrom_np(&actions, 3);
-        error = error ? error : posix_spawn(pid, arguments[0], &actions, &attributes, arguments, environ);
-        posix_spawnattr_destroy(&attributes);
-    }
-    posix_spawn_file_actions_destroy(&actions);
-    return error;
-}
-
 static int begin(child *c, char *const *arguments)
 {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0)
         return errno;
-    int error = fcntl(ends[0], F_SETFL, O_NONBLOCK) == 0 ? spawn(&c->pid, arguments, ends[1]) : errno;
+    int error = fcntl(ends[0], F_SETFL, O_NONBLOCK) == 0 ? spawn_program(&c->pid, arguments[0], arguments, ends[1], ends[1], true) : errno;
     close(ends[1]);
     if (error) {
         close(ends[0]);

@@ -53,24 +53,9 @@ void http_reply_json(http_reply *r, int code, json_t *value)
     http_reply_bytes(r, code, "application/json", text, text ? strlen(text) : 0);
 }
 
-/* A new reference. */
-static json_t *text_value(const char *text)
-{
-    json_t *value = json_string(text);
-    if (value)
-        return value;
-    char *plain = strdup(text);
-    for (char *c = plain; c && *c; c++)
-        if ((unsigned char)*c >= 0x80)
-            *c = '?';
-    value = plain ? json_string(plain) : NULL;
-    free(plain);
-    return value;
-}
-
 void http_reply_error(http_reply *r, int code, const char *what, const char *remedy)
 {
-    http_reply_json(r, code, json_pack("{s:o, s:o}", "error", text_value(what), "remedy", text_value(remedy ? remedy : "")));
+    http_reply_json(r, code, json_pack("{s:o, s:o}", "error", json_of_text(what), "remedy", json_of_text(remedy ? remedy : "")));
 }
 
 void http_reply_diagnostic(http_reply *r, status code, const diagnostic *why)

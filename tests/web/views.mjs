@@ -43,7 +43,7 @@ const views = {
         await screen.until(() => window.lab.state.pin);
         const { generation } = await screen.lab.post('/api/set', { set: { 'liquid.ior': 1.5, 'liquid.absorb_per_m': [0.9, 0.25, 0.05] } });
         await screen.settled(generation);
-        await screen.page.getByText('liquid.ior', { exact: false }).first().waitFor();
+        await screen.page.getByText(/ dB$/).first().waitFor();
         await screen.quiet();
     } },
     slime: { scene: 'experiments/scenes/slime.yaml', async show(screen) {
