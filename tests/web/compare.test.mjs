@@ -37,7 +37,6 @@ export const cases = {
             if (percent > 0) t.equal(difference(seen, a, left), 0, `${percent} %: share of pixels to the left that are not A's`);
             if (percent < 100) t.equal(difference(seen, b, right), 0, `${percent} %: share of pixels to the right that are not B's`);
         }
-        await t.picture(screen, 'wipe');
     },
 
     'the handle in the picture': async (t) => {

@@ -53,7 +53,6 @@ export const cases = {
         t.near(moved.y - seen.y, there.y - middle.y, 1.5, 'and so does what is seen of it, y');
         await change(screen, () => screen.button('Undo').click());
         t.equal(await lab.value('ball.position'), before, 'one undo takes the drag back');
-        await t.picture(screen, 'objects');
     },
 
     'steps, by buttons and by keys': async (t) => {

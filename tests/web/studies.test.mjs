@@ -52,7 +52,6 @@ export const cases = {
         // A line for each depth or index, four markers a line; and one in the legend.
         t.equal(await plot.locator('.plot-series .plot-marker').count(), CELLS + 4, 'markers in its figure');
         await t.axe(screen, 'a study with rows');
-        await t.picture(screen, 'study');
 
         const summary = (await lab.run('study', 'summary', 'studies/quick.study')).trim().split('\n').map((line) => line.split('\t'));
         t.equal(told.summary.columns, summary[0], 'columns of the summary');
