@@ -53,8 +53,8 @@ async function checkBack(t, lab, screen, rest) {
     await held(screen, false);
     await atRest(screen);
     const now = silhouette(await screen.pixels());
-    // It may have rolled nearer or farther; its shape is the same.
-    t.near(now.wide / now.high, rest.wide / rest.high, 0.05, 'let go, how wide it is by how high');
+    // It may have rolled nearer or farther and lie on another side, which weighs on its shape; half of what lifting it did would be too much.
+    t.near(now.wide / now.high, rest.wide / rest.high, 0.1, 'let go, how wide it is by how high');
     t.near(now.count / (now.wide * now.high), rest.count / (rest.wide * rest.high), 0.03, 'let go, its share of its frame');
     const { slime } = await lab.get('/api/state');
     t.near(slime.volume / slime.volume_at_rest, 1, 0.03, 'its volume, of that at rest');

@@ -1,4 +1,4 @@
-// Every panel at work, light and dark: axe finds no fault in it either; and these are the pictures for people (--screenshots).
+// Every panel at work, light and dark: axe finds no fault in what stands there then either.
 
 const size = { width: 1440, height: 900 };
 
