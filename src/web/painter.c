@@ -298,6 +298,9 @@ static void move_stage(painter *p)
         pthread_mutex_unlock(&p->lock);
         p->taken = 0; /* begun again */
     } else if (code != STATUS_OK) {
+        pthread_mutex_lock(&p->lock);
+        p->stage_ready = false;
+        pthread_mutex_unlock(&p->lock);
         set_trouble(p, code, &why);
     }
     if (moved || ended || told) {
@@ -401,7 +404,7 @@ static bool wait_for_work(painter *p)
     pthread_mutex_lock(&p->lock);
     for (;;) {
         pthread_mutex_unlock(&p->lock);
-        const bool due = is_stale(p) || p->pass < p->plan.count || live_is_due(p->toy);
+        const bool due = is_stale(p) || (p->stage_ready && p->pass < p->plan.count) || live_is_due(p->toy);
         pthread_mutex_lock(&p->lock);
         if (p->stop || (due && !p->waiting))
             break;
