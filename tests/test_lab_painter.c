@@ -302,6 +302,25 @@ static void what_cannot_be_painted_keeps_nobody_busy(void **state)
     close_studio(&s);
 }
 
+/* Each change ends a load of hours; no number of them lets one through to its end. */
+static void what_takes_hours_keeps_no_newer_change_back(void **state)
+{
+    (void)state;
+    enum { CHANGES = 60 };
+    const struct timespec as_a_hand_drags = {.tv_nsec = 10000000};
+    studio s;
+    open_studio(&s, scene_from(SLIME_SCENE("80000")));
+    for (int i = 0; i < CHANGES; i++) {
+        char text[48];
+        snprintf(text, sizeof text, "toy.damping=%g", 0.04 + 0.01 * (i % 2));
+        apply(&s, text);
+        nanosleep(&as_a_hand_drags, NULL);
+    }
+    apply(&s, "toy.time_s=0");
+    final_film(&s);
+    close_studio(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest cases[] = {
@@ -313,6 +332,7 @@ int main(void)
         cmocka_unit_test(an_end_ends_all_waiting),
         cmocka_unit_test(what_takes_long_to_load_is_shown),
         cmocka_unit_test(what_cannot_be_painted_keeps_nobody_busy),
+        cmocka_unit_test(what_takes_hours_keeps_no_newer_change_back),
         cmocka_unit_test(passes_fit_the_time_that_there_is),
     };
     return cmocka_run_group_tests_name("lab_painter", cases, NULL, NULL);

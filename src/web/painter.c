@@ -20,8 +20,10 @@
  * and how long those who want a scene as it is now wait for it. */
 static const double first_s = 0.04, look_up_s = 0.002, move_s = 0.02, live_frame_s = 0.03, scene_wait_s = 60.0;
 
-/* So often may a first pass be ended by newer changes before one is let through: who watches somebody else's drag shall see it. */
+/* So often may a first pass be ended by newer changes before one is let through: who watches somebody else's drag shall see it. But no longer
+ * than so: what takes minutes must not keep back what is newer. */
 enum { ENDED_MAX = 12 };
+static const double let_through_s = 0.5;
 
 struct painter {
     desk *desk;
@@ -51,6 +53,7 @@ struct painter {
     int pass;                       /* next */
     double rate;
     int ended;                      /* first passes in a row, and loads before them */
+    double begun_s;                 /* when what is on its way, a load or a pass, began */
     uint64_t taken;                 /* the generation that the stage is a copy of, loaded or not; 0: to be taken anew */
     bool was_on;
     pace traced, raster;            /* of the film of the live slime */
@@ -214,13 +217,14 @@ static bool is_stale(painter *p)
     return desk_generation(p->desk) != p->taken;
 }
 
-/* Shall what is on its way end? A first pass that was ended too often goes on. */
+/* Shall what is on its way end? A first pass that was ended too often goes on for a while. */
 static bool must_end(painter *p)
 {
     pthread_mutex_lock(&p->lock);
     const bool now = p->stop || p->waiting;
     pthread_mutex_unlock(&p->lock);
-    return now || (is_stale(p) && p->ended < ENDED_MAX) || (live_is_due(p->toy) && p->pass > 0);
+    const bool let_through = p->ended >= ENDED_MAX && clock_wall_s() - p->begun_s < let_through_s;
+    return now || (is_stale(p) && !let_through) || (live_is_due(p->toy) && p->pass > 0);
 }
 
 /* A slime's way to its moment may be long: it ends where that is no longer wanted, by the desk or by who plays with it. */
@@ -233,6 +237,7 @@ static bool go_on_loading(void *of, double share_done)
 static status load_stage(painter *p, diagnostic *why)
 {
     const load_watch watch = {go_on_loading, p};
+    p->begun_s = clock_wall_s();
     return scene_load_until(p->stage, &watch, why);
 }
 
@@ -372,6 +377,7 @@ static void paint_pass(painter *p)
     render_result *made = NULL;
     picture shown;
     bool good = false;
+    p->begun_s = clock_wall_s();
     pthread_rwlock_rdlock(&p->stage_lock);
     const status code = renderer_render(p->tracer, &view, &options, &made, &why);
     if (code == STATUS_OK)
