@@ -1,7 +1,6 @@
 /* The desk's part of the API: the state, the scene, its parameters, undo, the camera. See web/README.md. */
 #include "web/lab_private.h"
 #include "base/number.h"
-#include "base/text.h"
 #include "report/json.h"
 #include "report/param_rows.h"
 #include "scene/params.h"
@@ -34,29 +33,36 @@ static void get_scene(void *of, const http_request *q, http_reply *r)
 
 /* --- set and reset --- */
 
-/* As scene_set takes it; fresh memory, NULL for what is no value of a parameter (or memory that is out). */
-static char *value_text(const json_t *value)
+/* One number or word; fresh memory, NULL for what is neither (or memory that is out). */
+static char *item_text(const json_t *value)
 {
     if (json_is_string(value))
         return strlen(json_string_value(value)) == json_string_length(value) ? strdup(json_string_value(value)) : NULL;
     if (json_is_boolean(value))
         return strdup(json_is_true(value) ? "on" : "off");
-    if (json_is_number(value)) {
-        char text[NUMBER_TEXT_MAX];
-        return isfinite(json_number_value(value)) ? strdup(number_format(json_number_value(value), text)) : NULL;
-    }
+    char text[NUMBER_TEXT_MAX];
+    return json_is_number(value) && isfinite(json_number_value(value)) ? strdup(number_format(json_number_value(value), text)) : NULL;
+}
+
+/* As scene_set takes it; likewise. */
+static char *value_text(const json_t *value)
+{
     if (!json_is_array(value))
-        return NULL;
-    char *joined = strdup("");
-    for (size_t i = 0; i < json_array_size(value) && joined; i++) {
-        const json_t *item = json_array_get(value, i);
-        char *one = json_is_array(item) ? NULL : value_text(item);
-        char *longer = one ? text_format("%s%s%s", joined, i ? "," : "", one) : NULL;
+        return item_text(value);
+    char *joined = NULL;
+    size_t size;
+    FILE *out = open_memstream(&joined, &size);
+    bool good = out != NULL;
+    for (size_t i = 0; i < json_array_size(value) && good; i++) {
+        char *one = item_text(json_array_get(value, i));
+        good = one && fprintf(out, "%s%s", i ? "," : "", one) >= 0;
         free(one);
-        free(joined);
-        joined = longer;
     }
-    return joined;
+    good = (!out || fclose(out) == 0) && good;
+    if (good)
+        return joined;
+    free(joined);
+    return NULL;
 }
 
 static status set_all(void *of, scene *s, diagnostic *why)
@@ -108,7 +114,7 @@ static void post_reset(void *of, const http_request *q, http_reply *r)
     const json_t *paths = json_object_get(body, "paths");
     const size_t count = json_array_size(paths);
     const char **text = calloc(count + 1, sizeof *text);
-    bool good = text && (!paths || (json_is_array(paths) && count > 0 && count <= PATHS_MAX));
+    bool good = text && json_is_object(body) && (!paths || (json_is_array(paths) && count > 0 && count <= PATHS_MAX));
     for (size_t i = 0; i < count && good; i++)
         good = (text[i] = json_string_value(json_array_get(paths, i))) != NULL;
     if (good) {
