@@ -42,7 +42,7 @@ static long resident_kib(void)
 /* A page: listens to events and asks for each picture that it hears of, until it has seen the final one of the wanted generation. */
 typedef struct tab {
     pthread_t thread;
-    json_int_t wanted, seen, serial; /* wanted: atomic, 0 while it is not known */
+    json_int_t wanted, seen, serial, told; /* told: generation of the latest state; wanted: atomic, 0 while it is not known */
     bool disorder;
 } tab;
 
@@ -56,6 +56,10 @@ static void take_event(tab *t, const char *line)
         if (json_is_true(json_object_get(told, "final")))
             t->seen = json_integer_value(json_object_get(told, "generation"));
         free(client_ask(room.server, "GET", "/api/picture.png", "", NULL));
+    } else if (json_object_get(told, "undo")) {
+        const json_int_t generation = json_integer_value(json_object_get(told, "generation"));
+        t->disorder |= generation < t->told;
+        t->told = generation;
     }
     json_decref(told);
 }
@@ -112,6 +116,35 @@ static void ten_pages_and_a_thousand_changes(void **state)
     room_close(&fresh);
     free(many);
     free(one);
+}
+
+static void *push_and_pull(void *unused)
+{
+    char change[64];
+    for (int i = 0; i < CHANGES; i++) {
+        snprintf(change, sizeof change, "{\"set\": {\"ball.ior\": %.4f}, \"gesture\": \"g\"}", 1.0 + i * 0.001);
+        room_post(&room, "/api/set", change);
+    }
+    return unused;
+}
+
+/* Whoever changes it: what is told last is what is there. */
+static void states_are_told_in_order(void **state)
+{
+    (void)state;
+    pthread_t others[PAGES];
+    tab listener = {.seen = 0};
+    assert_int_equal(pthread_create(&listener.thread, NULL, be_a_tab, &listener), 0);
+    while (http_event_clients((http_server *)(uintptr_t)room.server) < 1)
+        usleep(1000);
+    for (int i = 0; i < PAGES; i++)
+        assert_int_equal(pthread_create(&others[i], NULL, push_and_pull, NULL), 0);
+    for (int i = 0; i < PAGES; i++)
+        pthread_join(others[i], NULL);
+    __atomic_store_n(&listener.wanted, PAGES * CHANGES + 2, __ATOMIC_RELAXED);
+    assert_int_equal(room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.5}}"), PAGES * CHANGES + 2);
+    pthread_join(listener.thread, NULL);
+    assert_false(listener.disorder);
 }
 
 static void who_hangs_or_raves_hinders_nobody(void **state)
@@ -274,6 +307,7 @@ int main(void)
 #define IN_A_ROOM(test) cmocka_unit_test_setup_teardown(test, open_room, close_room)
     const struct CMUnitTest cases[] = {
         IN_A_ROOM(ten_pages_and_a_thousand_changes),
+        IN_A_ROOM(states_are_told_in_order),
         IN_A_ROOM(who_hangs_or_raves_hinders_nobody),
         IN_A_ROOM(random_requests_do_no_harm),
     };

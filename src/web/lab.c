@@ -43,8 +43,10 @@ static bool is_open(lab *l)
 
 void lab_tell_state(lab *l)
 {
+    pthread_mutex_lock(&l->tell_lock);
     if (is_open(l))
         lab_publish(l, "state", lab_state(l));
+    pthread_mutex_unlock(&l->tell_lock);
 }
 
 static void on_desk(void *of)
@@ -155,7 +157,7 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     lab *l = calloc(1, sizeof *l);
     if (!l)
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
-    *l = (lab){.settings = *settings, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
+    *l = (lab){.settings = *settings, .tell_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
     const painter_listener listener = {on_picture, on_told, l};
     status code = folder_open(settings->folder, &l->files, why);
     if (code == STATUS_OK)
@@ -196,6 +198,7 @@ void lab_stop(lab *l)
     desk_destroy(l->desk);
     folder_close(l->files);
     pthread_mutex_destroy(&l->publish_lock);
+    pthread_mutex_destroy(&l->tell_lock);
     free(l->routes);
     free(l);
 }

@@ -21,6 +21,7 @@ struct lab {
     struct studies *studies;
     http_server *server;
     http_route *routes;
+    pthread_mutex_t tell_lock;    /* held while the state is looked at and sent: what comes last is the newest; goes before all others */
     pthread_mutex_t publish_lock;
     bool open; /* events may be published */
 };
