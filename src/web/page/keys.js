@@ -4,6 +4,7 @@ import {dialog, element, table} from './ui.js';
 
 const list = [
   ['Ctrl Z', 'undo; Ctrl Shift Z or Ctrl Y redo'],
+  ['Ctrl S', 'save the scene'],
   ['?', 'this list'],
   ['Arrow keys', 'on the picture: orbit by 5°, with Shift by 1°'],
   ['W S, A D, Q E', 'on the picture: step forward and back, left and right, down and up; with Shift a tenth of it'],
@@ -26,12 +27,24 @@ export function showHelp() {
 
 const writes = (target) => target.closest?.('input:not([type=range]):not([type=checkbox]):not([type=radio]):not([type=color]), textarea, select, [contenteditable]');
 
+/* What is being written in a field is part of what is saved. */
+function save(field, lab) {
+  if (writes(field)) {
+    field.blur();
+    field.focus({preventScroll: true});
+  }
+  lab.save?.();
+}
+
 export function createKeys(lab) {
   document.addEventListener('keydown', (event) => {
-    if (event.defaultPrevented || writes(event.target) || document.querySelector('dialog[open]')) return;
+    if (event.defaultPrevented || document.querySelector('dialog[open]')) return;
     const letter = event.key.toLowerCase();
     const control = (event.ctrlKey || event.metaKey) && !event.altKey;
-    if (control && letter === 'z') lab.undo(event.shiftKey);
+    const saves = control && letter === 's' && !event.shiftKey;
+    if (writes(event.target) && !saves) return;
+    if (saves) save(event.target, lab);
+    else if (control && letter === 'z') lab.undo(event.shiftKey);
     else if (control && letter === 'y') lab.undo(true);
     else if (event.key === '?' && !control) showHelp();
     else return;

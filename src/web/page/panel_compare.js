@@ -51,7 +51,7 @@ function createModel(lab) {
   async function fetchAnswer(of) {
     try {
       const answer = await lab.get('/api/compare');
-      if (key(answer.a) === of && of === key(mine.pin)) Object.assign(mine, {answer, error: null, current: true});
+      if (key(answer.a) === of && of === key(mine.pin)) Object.assign(mine, {answer, error: null, current: answer.b.serial === lab.picture?.serial});
     } catch (error) {
       if (error.status === 409) mine.current = false; /* B is being rendered again, or A is gone: news of that comes */
       else mine.error = error;
@@ -91,6 +91,11 @@ function createShow(lab) {
     share.node.hidden = how.value !== 'wipe';
     strength.node.hidden = legend.hidden = how.value !== 'map';
     view.set({...addresses, map: how.value === 'map' ? addresses.map : null, mode: how.value});
+    lab.view.note('compare', how.value === 'map' && addresses.map ? 'Difference from A' : null, () => {
+      how.set('b');
+      draw();
+      lab.view.stage.focus();
+    });
   }
 }
 

@@ -17,6 +17,7 @@ function start(lab) {
   if (choice) return;
   choice = createChoice(lab);
   files = createFiles(lab, choice);
+  lab.save = files.save;
   const mark = createMark(lab, choice);
   objectTool(lab, choice, mark);
 }
@@ -24,7 +25,7 @@ function start(lab) {
 function fileButtons() {
   return element('div', {class: 'buttons', role: 'group', 'aria-label': 'Scene file'},
     button('Open …', files.open, {icon: 'folder'}), button('New', files.fresh, {icon: 'plus'}),
-    button('Save', files.save, {icon: 'save'}), button('Save as …', files.saveAs));
+    button('Save', files.save, {icon: 'save', title: 'Save (Ctrl S)'}), button('Save as …', () => files.saveAs()));
 }
 
 function addButtons() {

@@ -2,7 +2,7 @@
  * exports: panel */
 
 import {button, check, element, empty, group, icon, memory, replace} from './ui.js';
-import {createRow, valueText} from './param_row.js';
+import {createRow, hasLaw, valueText} from './param_row.js';
 
 const FOUND_MAX = 80;
 const LATER_MS = 300;     /* the list is not made anew while one of its controls is dragged */
@@ -12,7 +12,7 @@ const TITLES = {camera: 'Camera', background: 'Background', render: 'Rendering'}
 
 /* What stands at hand where the scene has it; all else comes from the rows. */
 const HAND = {
-  clear: ['medium', 'ior', 'color', 'reflectivity', 'transparency', 'absorb_per_m'],
+  clear: ['medium', 'ior', 'coefficients', 'color', 'reflectivity', 'transparency', 'absorb_per_m'],
   opaque: ['color', 'reflectivity'],
   light: ['position', 'intensity'],
   render: ['depth', 'lighting', 'samples', 'shadows', 'transmission', 'width', 'height', 'accel', 'threads'],
@@ -39,7 +39,7 @@ function ordered(names, lab) {
 
 /* Once clear, a solid stays in that list: its slider for transparency must not go away under the hand. */
 function handParts(lab, onceClear) {
-  const take = (name, wanted) => wanted.map((word) => lab.param(`${name}.${word}`)).filter(Boolean);
+  const take = (name, wanted) => wanted.map((word) => lab.param(`${name}.${word}`)).filter((row) => row && (row.name !== 'coefficients' || hasLaw(lab, name)));
   const solids = lab.scene.objects.filter((object) => object.kind === 'solid').map((object) => object.name);
   for (const name of solids) if ((lab.param(`${name}.transparency`)?.value ?? 0) > 0) onceClear.add(name);
   const isClear = (name) => onceClear.has(name);
@@ -206,7 +206,9 @@ export const panel = {
         return wanted.every((word) => hay.includes(word));
       });
       const paths = found.filter((row) => wanted.every((word) => row.path.toLowerCase().includes(word)));
-      const best = [...paths, ...found.filter((row) => !paths.includes(row))];
+      const near = new Set(handParts(lab, onceClear).flatMap(([, own]) => own.map((row) => row.path)));
+      const handFirst = (some) => [...some.filter((row) => near.has(row.path)), ...some.filter((row) => !near.has(row.path))];
+      const best = [...handFirst(paths), ...handFirst(found.filter((row) => !paths.includes(row)))];
       said.textContent = `${best.length} found`;
       replace(results, best.length ? element('p', {class: 'hint', text: best.length > FOUND_MAX ? `${FOUND_MAX} of ${best.length} found` : `${best.length} found`})
         : empty('No parameter has that in its name or meaning.'), best.slice(0, FOUND_MAX).map((row) => make('found', row, true)));

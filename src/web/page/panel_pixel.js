@@ -22,6 +22,8 @@ function start(lab) {
   overlay = createRayOverlay(lab);
   marking.add(overlay.mark);
   question.on(() => overlay.show(question.tree, question.pixel));
+  question.on(() => note(lab));
+  lab.on('tool', () => note(lab));
   lab.on('view', () => overlay.draw());
   lab.on('state', () => { if (question.tree) overlay.draw(); });
   lab.view.tool('ask', {
@@ -35,6 +37,15 @@ function start(lab) {
     hover: (point) => mark(overlay.nearest(point)),
     leave: () => mark(null),
     key: (event) => pressed(event.key, event.shiftKey ? 10 : 1),
+  });
+}
+
+/* With other tools: whose rays those are, and a way to be rid of them. */
+function note(lab) {
+  const {pixel} = question;
+  lab.view.note('pixel', pixel && lab.view.chosen !== 'ask' ? `Rays of pixel ${pixel.x}, ${pixel.y}` : null, () => {
+    question.clear();
+    lab.view.stage.focus();
   });
 }
 

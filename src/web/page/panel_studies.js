@@ -65,7 +65,7 @@ function create(root, lab) {
   async function run(study) {
     try {
       await lab.post(path(study, '/run'), {});
-      lab.say(`${study.name} is measured; the picture waits meanwhile.`);
+      lab.say(`${study.name} is being measured; the picture waits meanwhile.`);
     } catch (error) {
       lab.fail(error);
     }

@@ -82,11 +82,12 @@ export function createPanels(side, splitter, desk, panels, lab) {
 }
 
 function createSplitter(splitter, desk) {
+  const root = document.documentElement.style;
   let width = memory.get('width', null);
   const largest = () => Math.max(NARROWEST, desk.clientWidth - 360);
   const apply = () => {
-    if (width) desk.style.setProperty('--side', `${Math.round(Math.min(largest(), Math.max(NARROWEST, width)))}px`);
-    else desk.style.removeProperty('--side');
+    if (width) root.setProperty('--side', `${Math.round(Math.min(largest(), Math.max(NARROWEST, width)))}px`);
+    else root.removeProperty('--side');
     const now = desk.querySelector('.side').clientWidth;
     splitter.setAttribute('aria-valuemin', String(NARROWEST));
     splitter.setAttribute('aria-valuemax', String(Math.round(largest())));

@@ -1,7 +1,7 @@
 /* The control for one parameter, by its type.
  * exports: controlOf(row, context) -> {node, inputs, single, busy(), set(value)}
  *   context: {name (for screen readers), describedby, send(value, gesture), names: words that may be meant}
- *   single: the one input that a label belongs to, or null for a group; busy: it is being dragged */
+ *   single: the one input that a label belongs to, or null for a group; busy: it is being dragged; set(value, true): after a refused value */
 
 import {element, gesture, toByte, toLinear, unique} from './ui.js';
 import {scale} from './ui_controls.js';
@@ -71,7 +71,8 @@ function slider(row, context, label, send) {
   range.addEventListener('change', () => { dragged = false; });
   return {
     nodes: [range, box.input], inputs: [range, box.input], busy: () => dragged,
-    set(value) {
+    set(value, afresh) {
+      if (afresh) fit(value); /* not the range that a refused value made */
       show(value);
       if (document.activeElement !== box.input) box.set(value);
     },
@@ -90,9 +91,9 @@ function parts(row, context, names, make) {
     context.send(value, name || gesture('number'));
   };
   const all = names.map((name, index) => make(`${context.name}, ${name}`, send(index)));
-  return {all, set(next) {
+  return {all, set(next, afresh) {
     value = [...next];
-    all.forEach((part, index) => part.set(value[index]));
+    all.forEach((part, index) => part.set(value[index], afresh));
   }};
 }
 

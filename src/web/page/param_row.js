@@ -1,12 +1,14 @@
 /* One parameter: its name, control, unit, way back to its first value, what it means, and why a value was refused.
  * exports: createRow(row, lab, {onabout(row), long}) -> {node, path, update(row, generation), busy()}
  *   long: the label has the object's name too; busy: it is being dragged.
+ * hasLaw(lab, object) -> is its medium given by coefficients
  * node is .param with data-path, the slider in it an input of type range, the number beside it one of type number */
 
 import {button, element, unique} from './ui.js';
 import {controlOf, written} from './param_controls.js';
 
 const FORGET_MS = 8000;
+const LAWS = ['sellmeier', 'cauchy', 'table']; /* media that are given by coefficients */
 
 const labelOf = (name) => name.replaceAll('_', ' ');
 const equal = (a, b) => JSON.stringify(a) === JSON.stringify(b);
@@ -17,6 +19,17 @@ export function valueText(value) {
   return value === '' || value === null ? 'none' : String(value);
 }
 
+export const hasLaw = (lab, object) => LAWS.includes(lab.param(`${object}.medium`)?.value);
+
+/* Why it has no effect now; '' where it has. */
+function idle(name, object, lab) {
+  const medium = lab.param(`${object}.medium`)?.value;
+  if (!medium) return '';
+  if (name === 'ior' && medium !== 'ior') return `the medium ${medium} gives the index`;
+  if (name === 'coefficients' && !hasLaw(lab, object)) return `the medium ${medium} is not given by coefficients`;
+  return '';
+}
+
 export function createRow(first, lab, {onabout, long} = {}) {
   const {path} = first;
   const object = path.slice(0, path.length - first.name.length - 1);
@@ -24,6 +37,7 @@ export function createRow(first, lab, {onabout, long} = {}) {
   const problem = element('p', {class: 'param-problem', role: 'alert', hidden: true});
   const title = () => [long ? element('span', {class: 'param-object', text: object}) : null, labelOf(first.name)].filter(Boolean);
   const label = element('label', {class: 'param-label', title: path}, title());
+  const unit = element('span', {class: 'unit'});
   const reset = button(`Reset ${path}`, undo, {icon: 'reset', bare: true, small: true, kind: 'quiet'});
   let known = first;
   let waiting = 0;
@@ -40,7 +54,7 @@ export function createRow(first, lab, {onabout, long} = {}) {
     class: 'param', role: control.single ? null : 'group', 'aria-label': control.single ? null : `${object} ${labelOf(first.name)}`,
     dataset: {path},
   }, control.single ? label : element('span', {class: 'param-label', title: path}, title()),
-  element('div', {class: 'param-control'}, control.node, element('span', {class: 'unit', text: shortUnit(first.unit), title: first.unit || null})),
+  element('div', {class: 'param-control'}, control.node, unit),
   reset, meaning, problem);
   node.addEventListener('pointerenter', () => onabout?.(known));
   node.addEventListener('focusin', () => onabout?.(known));
@@ -49,6 +63,7 @@ export function createRow(first, lab, {onabout, long} = {}) {
     forget = setTimeout(() => { if (!node.contains(document.activeElement)) refuse(null); }, FORGET_MS);
   });
   showReset();
+  showUse();
   return {node, path, update, busy: () => control.busy()};
 
   function shortUnit(unit) {
@@ -61,6 +76,13 @@ export function createRow(first, lab, {onabout, long} = {}) {
     reset.disabled = !away;
     reset.title = away ? `Back to ${valueText(known.initial)}` : '';
     node.classList.toggle('changed', away);
+  }
+
+  function showUse() {
+    const why = idle(first.name, object, lab);
+    unit.textContent = why ? 'unused' : shortUnit(first.unit);
+    unit.title = why || first.unit || '';
+    node.classList.toggle('idle', Boolean(why));
   }
 
   function refuse(error) {
@@ -97,7 +119,7 @@ export function createRow(first, lab, {onabout, long} = {}) {
   function force(value) {
     const held = document.activeElement;
     if (control.inputs.includes(held)) held.blur();
-    control.set(value);
+    control.set(value, true);
     if (control.inputs.includes(held)) held.focus({preventScroll: true});
   }
 
@@ -115,5 +137,6 @@ export function createRow(first, lab, {onabout, long} = {}) {
     control.set(row.value);
     if (changed) refuse(null);
     showReset();
+    showUse();
   }
 }

@@ -1,7 +1,7 @@
 /* Opening, saving and choosing files of the laboratory's folder.
  * exports: createFiles(lab, choice) -> {open(), fresh(), save(), saveAs(), pickSky(), pick(title, kind, empty) -> promise of a name or null, forObject(object) -> node or null} */
 
-import {ask, button, dialog, element, empty, replace, unique} from './ui.js';
+import {ask, button, dialog, element, empty, notice, replace, unique} from './ui.js';
 
 const MANY = 8;
 
@@ -75,17 +75,14 @@ export function createFiles(lab, choice) {
     if (await mayLeave()) await opened({new: true});
   }
 
-  async function write(file, replaceIt) {
+  async function write(file, replaceIt, failed = lab.fail) {
     try {
       await lab.change('/api/save', replaceIt ? {file, replace: true} : {file});
       lab.say(`${file} is saved.`);
       return true;
     } catch (error) {
-      if (error.status !== 409) {
-        lab.fail(error);
-        return false;
-      }
-      return await ask('Replace the file', `There is a file ${file} already. Replace it?`, 'Replace', 'danger') && write(file, true);
+      if (error.status !== 409) return Boolean(await failed(error));
+      return await ask('Replace the file', `There is a file ${file} already. Replace it?`, 'Replace', 'danger') && write(file, true, failed);
     }
   }
 
@@ -93,11 +90,13 @@ export function createFiles(lab, choice) {
     return lab.state?.file ? write(lab.state.file, false) : saveAs();
   }
 
-  async function saveAs() {
-    const input = element('input', {type: 'text', class: 'input', id: unique('file'), spellcheck: 'false', autocomplete: 'off', value: lab.state?.file || `${lab.name?.() || 'scene'}.yaml`});
+  /* Where it cannot be written, the name is there to be mended. */
+  async function saveAs(again, problem) {
+    const proposed = typeof again === 'string' ? again : lab.state?.file || `${lab.name?.() || 'scene'}.yaml`;
+    const input = element('input', {type: 'text', class: 'input', id: unique('file'), spellcheck: 'false', autocomplete: 'off', value: proposed});
     const field = element('div', {class: 'field wide'}, element('label', {for: input.id, text: 'Name, from the folder of the laboratory on'}),
       element('span', {class: 'field-control'}, input));
-    const made = dialog({title: 'Save the scene as', content: field, actions: [['Cancel', null], ['Save', () => input.value.trim(), 'primary']]});
+    const made = dialog({title: 'Save the scene as', content: problem ? [field, notice(problem.message, {kind: 'error', remedy: problem.remedy})] : field, actions: [['Cancel', null], ['Save', () => input.value.trim(), 'primary']]});
     input.addEventListener('keydown', (event) => {
       if (event.key !== 'Enter') return;
       event.preventDefault(); /* it would press the button that gets the focus back */
@@ -106,7 +105,9 @@ export function createFiles(lab, choice) {
     input.focus();
     input.setSelectionRange(input.value.lastIndexOf('/') + 1, input.value.replace(/\.ya?ml$/, '').length);
     const name = await made.closed;
-    return Boolean(name) && write(/\.ya?ml$/i.test(name) ? name : `${name}.yaml`, false);
+    if (!name) return false;
+    const file = `${name.replace(/(\.ya?ml)+$/i, '')}${name.match(/\.ya?ml$/i)?.[0] || '.yaml'}`;
+    return write(file, false, (error) => saveAs(file, error));
   }
 
   /* A file as the scene names it. */

@@ -3,7 +3,7 @@
 
 import {button, copy, count, digits, element, icon, replace, seconds} from './ui.js';
 
-const LINGER_MS = 9000;
+const LINGER_MS = 6000;
 
 export function createStatus(root, live, lab) {
   const facts = element('div', {class: 'status-facts'});
@@ -26,7 +26,7 @@ export function createStatus(root, live, lab) {
     message.hidden = false;
     live.textContent = '';
     requestAnimationFrame(() => { live.textContent = [words, remedy].filter(Boolean).join('. '); });
-    timer = setTimeout(clear, kind === 'error' ? 2 * LINGER_MS : LINGER_MS);
+    timer = setTimeout(clear, kind === 'error' ? 3 * LINGER_MS : LINGER_MS);
   }
   lab.say = (words) => tell(words, 'info');
   lab.fail = (error) => {

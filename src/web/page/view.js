@@ -20,12 +20,14 @@
  *   view.zoom(factor, at), view.fit(), view.actual()     at: {x, y} on the stage
  *   view.show(blob or null)             another picture of the full size in place of the pass (for comparisons); null goes back. Promise
  *   view.redraw()
+ *   view.note(name, text or null, onclose)   a line at the upper edge about what lies over the picture, with a button that takes it away
  * lab.on('view', f) tells that scale, place or size changed: what stands in overlay must be placed anew. */
 
 import {element, svg} from './ui.js';
 import {createPlace} from './view_place.js';
 import {createPainting} from './view_painting.js';
 import {createToolbar} from './view_tools.js';
+import {createNotes} from './view_notes.js';
 
 export function createView(root, lab) {
   const canvas = element('canvas', {class: 'view-canvas', 'aria-hidden': 'true'});
@@ -34,9 +36,11 @@ export function createView(root, lab) {
   const overlay = element('div', {class: 'view-overlay'});
   const readout = element('div', {class: 'readout', hidden: true});
   const waiting = element('div', {class: 'view-waiting', hidden: true});
+  const notes = createNotes();
+  notes.node.append(waiting);
   const stage = element('div', {
     class: 'stage', id: 'picture', tabindex: '0', role: 'application', 'aria-label': 'Picture. Arrow keys orbit, W A S D Q E step, plus and minus zoom',
-  }, canvas, drawing, overlay, readout, waiting);
+  }, canvas, drawing, overlay, readout, notes.node);
   const named = new Map();
 
   const view = {
@@ -52,6 +56,7 @@ export function createView(root, lab) {
     actual: () => place.actual(),
     pan: (dx, dy) => place.pan(dx, dy),
     show: (blob) => painting.show(blob),
+    note: notes.note,
     redraw,
   };
   const place = createPlace(stage, view, redraw);
