@@ -133,9 +133,83 @@ export const cases = {
         const dialog = screen.page.getByRole('dialog', { name: 'Save the scene as' });
         await dialog.getByRole('textbox').fill('../outside.yaml');
         await dialog.getByRole('textbox').press('Enter');
-        const said = screen.page.locator('#status');
-        await said.getByText('outside.yaml').waitFor();
+        await dialog.getByText('outside.yaml').waitFor();
         t.equal((await lab.get('/api/state')).file, 'scenes/rod.yaml', 'it is refused');
+        t.equal(await dialog.getByRole('textbox').inputValue(), '../outside.yaml', 'the name is there to be mended');
+        await dialog.getByRole('textbox').fill('inside.yaml.yaml');
+        await dialog.getByRole('textbox').press('Enter');
+        await screen.until(() => window.lab.state.file === 'inside.yaml' && window.lab.state.saved);
+        t.match(await readFile(join(lab.folder, 'inside.yaml'), 'utf8'), /liquid/, 'the file of the mended name');
+    },
+
+    'saved by a key': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        await screen.setNumber('render.depth', 3);
+        const field = screen.page.getByRole('spinbutton', { name: 'liquid ior, number', exact: true }).first();
+        await field.fill('1.45');
+        await field.press('Control+s');
+        await screen.until(() => window.lab.state.saved);
+        const text = await readFile(join(lab.folder, 'scenes/rod.yaml'), 'utf8');
+        t.match(text, /depth: 3/, 'the file has what was set');
+        t.match(text, /ior: 1\.45/, 'and what was still being written');
+    },
+
+    'media': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        await screen.showPanel('Parameters');
+        const medium = screen.page.getByRole('combobox', { name: 'liquid medium', exact: true }).first();
+        const unused = screen.page.locator('.param[data-path="liquid.ior"]').first().getByText('unused');
+        t.equal(await unused.count(), 0, 'the index is in use');
+        await change(screen, () => medium.selectOption('diamond'));
+        await unused.waitFor();
+        t.equal(await lab.value('liquid.medium'), 'diamond', 'the medium');
+        for (const law of ['cauchy', 'sellmeier', 'table']) {
+            await change(screen, () => medium.selectOption(law));
+            t.equal(await lab.value('liquid.medium'), law, `${law} is taken, with coefficients`);
+            t.more((await lab.value('liquid.coefficients')).length, 1, `${law}: coefficients`);
+            t.equal(await screen.page.getByRole('textbox', { name: 'liquid coefficients', exact: true }).first().isVisible(), true, `${law}: they are at hand`);
+        }
+        await change(screen, () => medium.selectOption('ior'));
+        await unused.waitFor({ state: 'detached' });
+    },
+
+    'the page opened again, whichever panel it was on': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        const names = await screen.page.getByRole('tablist', { name: 'Panels' }).getByRole('tab').allInnerTexts();
+        for (const name of ['Parameters', 'Objects', 'Machine']) {
+            await screen.showPanel(name);
+            await screen.load();
+            for (const other of names) await screen.showPanel(other);
+            t.equal(await screen.page.getByText('This panel failed').count(), 0, `opened on ${name}: panels that failed`);
+        }
+    },
+
+    'what is at hand is found first': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        await screen.showPanel('Parameters');
+        await screen.page.getByRole('searchbox', { name: 'Find a parameter' }).fill('refractive index');
+        const found = screen.page.locator('.param-list:not([hidden]) > .param');
+        await screen.until(() => document.querySelectorAll('.param-list:not([hidden]) > .param').length > 2);
+        const paths = await found.evaluateAll((rows) => rows.map((row) => row.dataset.path));
+        t.equal(paths.slice(0, 2), ['vessel.ior', 'liquid.ior'], 'the first of those found');
+    },
+
+    'a value that is refused leaves the slider as it was': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        screen.expect(/400/);
+        const slider = await screen.paramSlider('render.width');
+        const before = await slider.inputValue();
+        const field = screen.page.getByRole('spinbutton', { name: 'render width, number', exact: true }).first();
+        await field.fill('60000');
+        await field.press('Enter');
+        await screen.page.getByText('pixels are more than').first().waitFor();
+        t.equal(await slider.inputValue(), before, 'where its thumb stands');
+        t.equal(await field.inputValue(), '800', 'the number');
     },
 
     'pictures and commands for other programs': async (t) => {

@@ -2,7 +2,8 @@
  * exports: panel */
 
 import {button, check, element, empty, group, icon, memory, replace} from './ui.js';
-import {createRow, hasLaw, valueText} from './param_row.js';
+import {createRow, valueText} from './param_row.js';
+import {hasLaw} from './param_laws.js';
 
 const FOUND_MAX = 80;
 const LATER_MS = 300;     /* the list is not made anew while one of its controls is dragged */
@@ -177,8 +178,10 @@ export const panel = {
       return node;
     }
 
-    const changedRows = (name) => (grouped(lab.scene.params).get(name) || [])
-      .filter((row) => row.initial !== null && row.initial !== undefined && JSON.stringify(row.value) !== JSON.stringify(row.initial));
+    function changedRows(name) {
+      return (grouped(lab.scene.params).get(name) || [])
+        .filter((row) => row.initial !== null && row.initial !== undefined && JSON.stringify(row.value) !== JSON.stringify(row.initial));
+    }
 
     function mark(node) {
       const many = changedRows(node.dataset.object).length;
