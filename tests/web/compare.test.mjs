@@ -56,6 +56,21 @@ export const cases = {
         t.equal(difference(seen, b, (x, y) => x > 200 + EDGE && y > 40), 0, 'share of pixels to the right that are not B\'s');
     },
 
+    'the difference, and back': async (t) => {
+        const { lab, screen, b } = await pinAndChange(t);
+        const map = readPng((await lab.ask('GET', '/api/compare.png')).bytes);
+        await screen.page.getByRole('radio', { name: 'Difference' }).locator('xpath=ancestor::label').click();
+        await screen.page.locator('#picture').getByText('Difference from A', { exact: true }).waitFor();
+        await screen.page.mouse.move(1, 1);
+        await screen.quiet();
+        t.near(difference(await screen.seen(), map, (x, y) => y > 40), 0, 0.001, 'share of pixels that are not the map\'s');
+        await t.axe(screen, 'the map of differences');
+        await screen.button('Close: Difference from A').click();
+        await screen.page.mouse.move(1, 1);
+        await screen.quiet();
+        t.equal(difference(await screen.seen(), b, (x, y) => y > 40), 0, 'closed, share of pixels that are not B\'s');
+    },
+
     'the numbers': async (t) => {
         const { lab, screen } = await pinAndChange(t);
         const { a, b, changed, comparison } = await lab.get('/api/compare?wait=1');

@@ -1,14 +1,13 @@
 /* One parameter: its name, control, unit, way back to its first value, what it means, and why a value was refused.
  * exports: createRow(row, lab, {onabout(row), long}) -> {node, path, update(row, generation), busy()}
  *   long: the label has the object's name too; busy: it is being dragged.
- * hasLaw(lab, object) -> is its medium given by coefficients
  * node is .param with data-path, the slider in it an input of type range, the number beside it one of type number */
 
 import {button, element, unique} from './ui.js';
 import {controlOf, written} from './param_controls.js';
+import {whyUnused, withMedium} from './param_laws.js';
 
 const FORGET_MS = 8000;
-const LAWS = ['sellmeier', 'cauchy', 'table']; /* media that are given by coefficients */
 
 const labelOf = (name) => name.replaceAll('_', ' ');
 const equal = (a, b) => JSON.stringify(a) === JSON.stringify(b);
@@ -17,17 +16,6 @@ export function valueText(value) {
   if (Array.isArray(value)) return value.length ? value.map(valueText).join(', ') : 'none';
   if (typeof value === 'number') return written(value);
   return value === '' || value === null ? 'none' : String(value);
-}
-
-export const hasLaw = (lab, object) => LAWS.includes(lab.param(`${object}.medium`)?.value);
-
-/* Why it has no effect now; '' where it has. */
-function idle(name, object, lab) {
-  const medium = lab.param(`${object}.medium`)?.value;
-  if (!medium) return '';
-  if (name === 'ior' && medium !== 'ior') return `the medium ${medium} gives the index`;
-  if (name === 'coefficients' && !hasLaw(lab, object)) return `the medium ${medium} is not given by coefficients`;
-  return '';
 }
 
 export function createRow(first, lab, {onabout, long} = {}) {
@@ -79,7 +67,7 @@ export function createRow(first, lab, {onabout, long} = {}) {
   }
 
   function showUse() {
-    const why = idle(first.name, object, lab);
+    const why = whyUnused(lab, object, first.name);
     unit.textContent = why ? 'unused' : shortUnit(first.unit);
     unit.title = why || first.unit || '';
     node.classList.toggle('idle', Boolean(why));
@@ -98,7 +86,7 @@ export function createRow(first, lab, {onabout, long} = {}) {
     waiting += 1;
     let error = null;
     try {
-      const reply = await lab.set({[path]: value}, gesture);
+      const reply = await lab.set(first.name === 'medium' ? withMedium(lab, object, value) : {[path]: value}, gesture);
       settled = Math.max(settled, reply.generation || 0);
       known = {...known, value};
     } catch (caught) {
