@@ -1,4 +1,5 @@
 #include "web/lab_private.h"
+#include "base/text.h"
 #include "scene/params.h"
 #include "web/new_scene.h"
 #include "web/page.h"
@@ -93,12 +94,20 @@ void lab_give_threads(const lab *l, scene *s)
         s->render.threads = l->settings.threads;
 }
 
+/* The folder itself has no name, but what is in it has. */
+static bool is_inside(const folder *files, const char *path)
+{
+    char *any = text_format("%s/any", path), *name = folder_name(files, path), *within = any ? folder_name(files, any) : NULL;
+    const bool inside = name || within;
+    free(any);
+    free(name);
+    free(within);
+    return inside;
+}
+
 static status check_results(const lab *l, diagnostic *why)
 {
-    char *name = folder_name(l->files, l->settings.results);
-    const bool inside = name != NULL;
-    free(name);
-    if (inside)
+    if (is_inside(l->files, l->settings.results))
         return STATUS_OK;
     diagnostic_locate(why, l->settings.results, 0, 0);
     return diagnose(why, STATUS_BAD_INPUT, "give a folder for results below the laboratory's", "is not in the folder of the laboratory");

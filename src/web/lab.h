@@ -13,7 +13,7 @@ typedef struct lab lab;
 typedef struct lab_settings {
     const char *folder;  /* nothing outside of it is read or written */
     const char *scene;   /* file to open, in the working folder's terms and below folder; NULL: a room with a floor, a light and a camera */
-    const char *results; /* folder of studies' rows, below folder; it need not be there */
+    const char *results; /* folder of studies' rows: folder, or below it; it need not be there */
     int port;            /* 0: any that is free */
     isa level;
     int threads;         /* of scenes as they are opened; 0: what they say */
