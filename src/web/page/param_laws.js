@@ -24,7 +24,7 @@ export const hasLaw = (lab, object) => value(lab, object, 'medium') in STARTS;
 export function whyUnused(lab, object, name) {
   const medium = value(lab, object, 'medium');
   if (!medium) return '';
-  if (name === 'ior' && medium !== 'ior') return `the medium ${medium} gives the index`;
+  if (name === 'ior' && medium !== 'ior') return `the medium ${medium} gives the index; one that is set here takes its place`;
   if (name === 'coefficients' && !hasLaw(lab, object)) return `the medium ${medium} is not given by coefficients`;
   return '';
 }

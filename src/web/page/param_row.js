@@ -23,9 +23,9 @@ export function createRow(first, lab, {onabout, long} = {}) {
   const object = path.slice(0, path.length - first.name.length - 1);
   const meaning = element('span', {class: 'param-meaning', id: unique('meaning'), text: `${first.meaning}. ${first.range}; default ${valueText(first.default)}`});
   const problem = element('p', {class: 'param-problem', role: 'alert', hidden: true});
-  const title = () => [long ? element('span', {class: 'param-object', text: object}) : null, labelOf(first.name)].filter(Boolean);
+  const unused = element('span', {class: 'param-unused', text: 'unused', hidden: true});
+  const title = () => [long ? element('span', {class: 'param-object', text: object}) : null, labelOf(first.name), unused].filter(Boolean);
   const label = element('label', {class: 'param-label', title: path}, title());
-  const unit = element('span', {class: 'unit'});
   const reset = button(`Reset ${path}`, undo, {icon: 'reset', bare: true, small: true, kind: 'quiet'});
   let known = first;
   let waiting = 0;
@@ -42,7 +42,7 @@ export function createRow(first, lab, {onabout, long} = {}) {
     class: 'param', role: control.single ? null : 'group', 'aria-label': control.single ? null : `${object} ${labelOf(first.name)}`,
     dataset: {path},
   }, control.single ? label : element('span', {class: 'param-label', title: path}, title()),
-  element('div', {class: 'param-control'}, control.node, unit),
+  element('div', {class: 'param-control'}, control.node, element('span', {class: 'unit', text: shortUnit(first.unit), title: first.unit || null})),
   reset, meaning, problem);
   node.addEventListener('pointerenter', () => onabout?.(known));
   node.addEventListener('focusin', () => onabout?.(known));
@@ -68,9 +68,8 @@ export function createRow(first, lab, {onabout, long} = {}) {
 
   function showUse() {
     const why = whyUnused(lab, object, first.name);
-    unit.textContent = why ? 'unused' : shortUnit(first.unit);
-    unit.title = why || first.unit || '';
-    node.classList.toggle('idle', Boolean(why));
+    unused.hidden = !why;
+    unused.title = why;
   }
 
   function refuse(error) {
@@ -119,12 +118,12 @@ export function createRow(first, lab, {onabout, long} = {}) {
 
   /* What was sent from here is newer than a scene that was asked for before. */
   function update(row, generation) {
+    showUse();
     if (waiting || control.busy() || generation < settled) return;
     const changed = !equal(row.value, known.value);
     known = row;
     control.set(row.value);
     if (changed) refuse(null);
     showReset();
-    showUse();
   }
 }
