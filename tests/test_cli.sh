@@ -456,6 +456,7 @@ check "machine --json lists disturbances" is "$(json disturbances@type)" array
 # --- lab
 run_lab() # ARGUMENT...: starts one in the background; its address is in `address`
 {
+    : >lab.out # the last one's address is not this one's
     "$program" lab --no-browser "$@" >lab.out 2>lab.err &
     lab=$!
     for ((i = 0; i < 600; i++)); do
@@ -496,7 +497,7 @@ mkdir -p elsewhere
 refused_lab "two scenes" "lab: 'here.yaml' is one argument too many; give one SCENE" here.yaml here.yaml
 refused_lab "a scene that is not there" 'nowhere.yaml: ' nowhere.yaml
 refused_lab "a scene outside of its folder" 'here.yaml: is not in the folder' --folder elsewhere here.yaml
-refused_lab "a folder that is none" 'nowhere: ' --folder nowhere
+refused_lab "a folder that is none" 'nowhere: the folder cannot be opened' --folder nowhere
 refused_lab "a port that is none" '--port 70000' --port 70000
 refused_lab "results elsewhere" '.*results' --folder elsewhere --results results
 

@@ -232,6 +232,34 @@ static void the_command_renders_the_same_film(void **state)
     free(made);
 }
 
+/* Which says where its pictures lie from where it lies itself. */
+static void a_command_of_a_file_in_another_folder(void **state)
+{
+    (void)state;
+    char *inner = room_path(&room, "inner");
+    assert_int_equal(mkdir(inner, 0700), 0);
+    char *png = client_ask(room.server, "GET", "/api/picture.png?wait=1", "", NULL), *path = room_path(&room, "sky.png");
+    const char *length = strstr(png, "Content-Length: ");
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    assert_non_null(length);
+    assert_int_equal(fwrite(reply_body(png), 1, strtoul(length + 16, NULL, 10), out), strtoul(length + 16, NULL, 10));
+    assert_int_equal(fclose(out), 0);
+    room_post(&room, "/api/set", "{\"set\": {\"background.picture\": \"sky.png\"}}");
+    free(room_film(&room));
+    room_post(&room, "/api/save", "{\"file\": \"inner/moved.yaml\"}");
+    room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.25}}");
+    json_t *told = room_get(&room, "/api/command");
+    char *wanted = text_format("cuvette render %s/moved.yaml --set ball.ior=1.25 -o picture.png", inner);
+    assert_string_equal(json_string_value(json_object_get(told, "command")), wanted);
+    assert_true(json_is_true(json_object_get(told, "complete")));
+    json_decref(told);
+    free(wanted);
+    free(png);
+    free(path);
+    free(inner);
+}
+
 static void the_scene_is_a_file_too(void **state)
 {
     (void)state;
@@ -244,6 +272,7 @@ static void the_scene_is_a_file_too(void **state)
     char *value;
     assert_int_equal(scene_get(s, "ball.ior", &value, NULL), STATUS_OK);
     assert_string_equal(value, "1.8");
+    assert_int_equal(s->render.threads, 1); /* the two that it has here are the laboratory's */
     free(value);
     scene_destroy(s);
     free(path);
@@ -344,6 +373,7 @@ int main(void)
         IN_A_ROOM(parameters_are_set_as_by_the_option), IN_A_ROOM(wrong_values_are_refused_with_a_remedy), IN_A_ROOM(the_camera_orbits_turns_and_steps),
         IN_A_ROOM(the_command_renders_the_same_film),   IN_A_ROOM(the_scene_is_a_file_too),                IN_A_ROOM(pictures_say_what_they_show),
         IN_A_ROOM(nobody_else_is_served),               IN_A_ROOM(no_scene_is_a_room_to_begin_with),       IN_A_ROOM(bad_starts_are_refused),
+        IN_A_ROOM(a_command_of_a_file_in_another_folder),
         IN_A_ROOM(the_longest_list_is_soon_refused),
     };
     return cmocka_run_group_tests_name("lab", cases, NULL, NULL);

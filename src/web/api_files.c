@@ -117,20 +117,13 @@ static bool is_open(const lab *l, const char *name)
     return same;
 }
 
-/* As many threads as the laboratory gives are not the scene's own wish, and belong to this machine alone. */
-static void forget_threads(const lab *l, scene *s)
-{
-    if (s->render.threads == l->settings.threads)
-        s->render.threads = 1;
-}
-
 static void write_file(lab *l, const char *name, const char *path, http_reply *r)
 {
     diagnostic why = {.what = ""};
     uint64_t generation = 0;
     scene *s = desk_take(l->desk, &generation);
     if (s)
-        forget_threads(l, s);
+        lab_forget_threads(l, s);
     const status code = s ? scene_write(s, path, false, &why) : diagnose(&why, STATUS_FAILURE, "", "memory is out");
     scene_destroy(s);
     if (code == STATUS_OK)

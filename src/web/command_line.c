@@ -1,6 +1,7 @@
 #include "web/command_line.h"
 #include "base/text.h"
 #include "scene/params.h"
+#include "scene/write.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -73,24 +74,46 @@ static status add_option(void *of, const char *path, const param *row, const cha
     return code;
 }
 
-static status read_again(const folder *files, const char *file, scene **out, char **path)
+static status read_again(const folder *files, const char *file, int threads, scene **out, char **path)
 {
     diagnostic unread;
-    const status code = folder_path(files, file, true, path, &unread);
-    return code == STATUS_OK ? scene_read(*path, out, &unread) : code;
+    status code = folder_path(files, file, true, path, &unread);
+    if (code == STATUS_OK)
+        code = scene_read(*path, out, &unread);
+    if (code == STATUS_OK && threads > 0 && (*out)->render.threads == 1)
+        (*out)->render.threads = threads;
+    return code;
+}
+
+/* As it reads from that file, whose folder need not be the one that its own paths start from; NULL where it cannot be. */
+static scene *seen_from(const scene *s, const char *path)
+{
+    if (strcmp(s->path, path) == 0)
+        return scene_clone(s);
+    scene *seen = NULL;
+    char *text = NULL;
+    diagnostic unsaid;
+    if (scene_write_text(s, path, false, &text, &unsaid) == STATUS_OK && scene_read_text(path, text, strlen(text), &seen, &unsaid) != STATUS_OK)
+        seen = NULL;
+    free(text);
+    return seen;
 }
 
 static bool write_line(FILE *out, scene *from, const char *path, const scene *s)
 {
     fputs("cuvette render ", out);
     write_word(out, path);
-    writing w = {.out = out, .so_far = from, .camera = from->camera.aimed != s->camera.aimed};
-    const bool whole = same_objects(from, s) && scene_each_param(s, add_option, &w) == STATUS_OK;
+    scene *seen = seen_from(s, path);
+    writing w = {.out = out, .so_far = from};
+    if (seen)
+        w.camera = from->camera.aimed != seen->camera.aimed;
+    const bool whole = seen && same_objects(from, seen) && scene_each_param(seen, add_option, &w) == STATUS_OK;
+    scene_destroy(seen);
     fputs(" -o picture.png", out);
     return whole;
 }
 
-status command_line(const folder *files, const char *file, const scene *s, char **text, bool *complete, diagnostic *why)
+status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete, diagnostic *why)
 {
     scene *from = NULL;
     char *path = NULL;
@@ -100,7 +123,7 @@ status command_line(const folder *files, const char *file, const scene *s, char 
     FILE *out = open_memstream(text, &size);
     if (!out)
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
-    if (file && read_again(files, file, &from, &path) == STATUS_OK)
+    if (file && read_again(files, file, threads, &from, &path) == STATUS_OK)
         *complete = write_line(out, from, path, s);
     else
         fputs("cuvette render scene.yaml -o picture.png", out);

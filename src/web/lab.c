@@ -94,6 +94,12 @@ void lab_give_threads(const lab *l, scene *s)
         s->render.threads = l->settings.threads;
 }
 
+void lab_forget_threads(const lab *l, scene *s)
+{
+    if (s->render.threads == l->settings.threads)
+        s->render.threads = 1;
+}
+
 /* The folder itself has no name, but what is in it has. */
 static bool is_inside(const folder *files, const char *path)
 {

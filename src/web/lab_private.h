@@ -39,6 +39,8 @@ json_t *lab_state(lab *l);
 
 /* Scenes that are opened and do not say how many threads they want get the settings'. */
 void lab_give_threads(const lab *l, scene *s);
+/* As many as those are not the scene's own wish, and belong to this machine alone: files do without. */
+void lab_forget_threads(const lab *l, scene *s);
 
 /* {"generation": N}, or the diagnostic. */
 void lab_reply_generation(http_reply *r, status code, uint64_t generation, const diagnostic *why);
