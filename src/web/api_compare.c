@@ -104,9 +104,13 @@ static void get_pin_picture(void *context, const http_request *request, http_rep
     unsigned char *own = NULL;
     size_t size = 0;
     const bool fine = bits && strcmp(bits, "16") == 0;
-    const status code = fine ? image_encode(a->linear, IMAGE_PNG, 16, true, &own, &size, &why) : picture_png(a, &shared, &size, &why);
+    status code = gate_enter(l->heavy, &why);
+    if (code == STATUS_OK) {
+        code = fine ? image_encode(a->linear, IMAGE_PNG, 16, true, &own, &size, &why) : picture_png(a, &shared, &size, &why);
+        gate_leave(l->heavy);
+    }
     if (code != STATUS_OK)
-        http_reply_diagnostic(reply, code, &why);
+        reply_failure(reply, code, &why);
     else if (fine)
         http_reply_bytes(reply, 200, "image/png", own, size);
     else
@@ -145,15 +149,20 @@ static json_t *comparison_json(const image_comparison *c)
 
 static void get_compare(void *context, const http_request *request, http_reply *reply)
 {
+    lab *l = context;
     pin_pair *pair;
     const picture *b;
     image_comparison found;
     diagnostic why = {0};
-    if (!take_pair(context, request, reply, &pair, &b))
+    if (!take_pair(l, request, reply, &pair, &b))
         return;
     const picture *a = pin_pair_a(pair);
     const bool fits = pin_pair_fits(pair);
-    const status code = fits ? pin_pair_numbers(pair, &found, &why) : STATUS_OK;
+    status code = fits ? gate_enter(l->heavy, &why) : STATUS_OK;
+    if (fits && code == STATUS_OK) {
+        code = pin_pair_numbers(pair, &found, &why);
+        gate_leave(l->heavy);
+    }
     if (code == STATUS_OK)
         http_reply_json(reply, 200,
                         json_pack("{s:o, s:o, s:o, s:o}", "a", picture_json(a), "b", picture_json(b), "changed", changed_params(a->of, b->of),
@@ -164,12 +173,16 @@ static void get_compare(void *context, const http_request *request, http_reply *
     pin_pair_release(pair);
 }
 
-static void reply_map(pin_pair *pair, http_reply *reply)
+static void reply_map(lab *l, pin_pair *pair, http_reply *reply)
 {
     const unsigned char *bytes;
     size_t size;
     diagnostic why = {0};
-    const status code = pin_pair_map(pair, &bytes, &size, &why);
+    status code = gate_enter(l->heavy, &why);
+    if (code == STATUS_OK) {
+        code = pin_pair_map(pair, &bytes, &size, &why);
+        gate_leave(l->heavy);
+    }
     if (code == STATUS_OK)
         reply_copy(reply, bytes, size);
     else
@@ -182,7 +195,7 @@ static void get_compare_map(void *context, const http_request *request, http_rep
     const picture *b;
     if (!take_pair(context, request, reply, &pair, &b))
         return;
-    reply_map(pair, reply);
+    reply_map(context, pair, reply);
     picture_release(b);
     pin_pair_release(pair);
 }

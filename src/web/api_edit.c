@@ -239,9 +239,13 @@ static bool take_new(lab *l, const json_t *body, edit *e, scene **loaded, http_r
         return false;
     diagnostic why = {.what = ""};
     status code = is_solid ? scene_shape_named(shape, &e->shape, &why) : STATUS_OK;
-    if (is_model || is_texture)
+    if ((is_model || is_texture) && (code = gate_enter(l->heavy, &why)) == STATUS_OK) {
         code = load_alone(l, e->file, is_model, loaded, &why);
-    if (code != STATUS_OK)
+        gate_leave(l->heavy);
+    }
+    if (code == STATUS_INTERRUPTED)
+        http_reply_error(r, 409, why.what, why.remedy);
+    else if (code != STATUS_OK)
         http_reply_diagnostic(r, code, &why);
     return code == STATUS_OK;
 }

@@ -42,8 +42,8 @@ static const picture *take(lab *l, bool final, http_reply *r)
     return p;
 }
 
-/* Makes the reply's own bytes. */
-static status encode(const picture *p, image_format format, int bits, unsigned char **bytes, size_t *size, diagnostic *why)
+/* A reply's own bytes. */
+static status encode_own(const picture *p, image_format format, int bits, unsigned char **bytes, size_t *size, diagnostic *why)
 {
     if (format != IMAGE_PNG || bits != 8)
         return image_encode(p->linear, format, bits, false, bytes, size, why);
@@ -54,6 +54,20 @@ static status encode(const picture *p, image_format format, int bits, unsigned c
         memcpy(*bytes, shared, *size);
     else if (code == STATUS_OK)
         code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return code;
+}
+
+/* Small ones, as they come while something moves, wait for nobody. */
+static status encode(lab *l, const picture *p, image_format format, int bits, unsigned char **bytes, size_t *size, diagnostic *why)
+{
+    const double small = 1e6; /* pixels */
+    if ((double)p->width * p->height <= small)
+        return encode_own(p, format, bits, bytes, size, why);
+    status code = gate_enter(l->heavy, why);
+    if (code != STATUS_OK)
+        return code;
+    code = encode_own(p, format, bits, bytes, size, why);
+    gate_leave(l->heavy);
     return code;
 }
 
@@ -71,7 +85,7 @@ static void reply_picture(lab *l, const http_request *q, http_reply *r, image_fo
     diagnostic why = {.line = 0};
     unsigned char *bytes = NULL;
     size_t size;
-    const status code = encode(p, format, (int)bits, &bytes, &size, &why);
+    const status code = encode(l, p, format, (int)bits, &bytes, &size, &why);
     if (code == STATUS_OK) {
         http_reply_bytes(r, 200, type, bytes, size);
         add_number(r, "X-Cuvette-Serial", p->serial);
@@ -80,6 +94,8 @@ static void reply_picture(lab *l, const http_request *q, http_reply *r, image_fo
         add_number(r, "X-Cuvette-Final", p->final);
         if (download)
             name_download(r, download);
+    } else if (code == STATUS_INTERRUPTED) {
+        http_reply_error(r, 409, why.what, why.remedy);
     } else {
         http_reply_diagnostic(r, code, &why);
     }

@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* As many handlers may do what takes much memory and time. */
+enum { HEAVY_AT_ONCE = 2 };
+
 /* --- events and the state --- */
 
 void lab_publish(lab *l, const char *event, json_t *value)
@@ -181,7 +184,7 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
         code = open_desk(l, why);
     if (code == STATUS_OK)
         code = painter_create(l->desk, settings->level, &listener, &l->painter, why);
-    if (code == STATUS_OK && !(l->pins = pins_create()))
+    if (code == STATUS_OK && (!(l->pins = pins_create()) || !(l->heavy = gate_create(HEAVY_AT_ONCE))))
         code = diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK)
         code = studies_create(l, &l->studies, why);
@@ -202,12 +205,15 @@ void lab_stop(lab *l)
     pthread_mutex_lock(&l->publish_lock);
     l->open = false;
     pthread_mutex_unlock(&l->publish_lock);
+    if (l->heavy)
+        gate_close(l->heavy);
     if (l->studies)
         studies_end(l->studies);
     if (l->painter)
         painter_end(l->painter);
     http_stop(l->server);
     studies_destroy(l->studies);
+    gate_destroy(l->heavy);
     pins_destroy(l->pins);
     painter_destroy(l->painter);
     desk_destroy(l->desk);

@@ -4,6 +4,7 @@
 
 #include "web/desk.h"
 #include "web/folder.h"
+#include "web/gate.h"
 #include "web/http.h"
 #include "web/lab.h"
 #include "web/painter.h"
@@ -19,6 +20,7 @@ struct lab {
     struct painter *painter;
     struct pins *pins;
     struct studies *studies;
+    gate *heavy; /* for handlers that take much memory and time */
     http_server *server;
     http_route *routes;
     pthread_mutex_t tell_lock;    /* held while the state is looked at and sent: what comes last is the newest; goes before all others */
