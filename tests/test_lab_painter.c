@@ -11,6 +11,7 @@
 #include "web/painter.h"
 #include "web/passes.h"
 #include <pthread.h>
+#include <stdatomic.h>
 #include <time.h>
 
 typedef struct studio {
@@ -321,6 +322,64 @@ static void what_takes_hours_keeps_no_newer_change_back(void **state)
     close_studio(&s);
 }
 
+typedef struct looker { studio *s; atomic_bool *ends; int looks, bare; } looker;
+
+static status look_at_meshes(void *of, scene *s, diagnostic *why)
+{
+    (void)why;
+    looker *l = of;
+    l->looks++;
+    for (size_t i = 0; i < s->mesh_count; i++)
+        l->bare += s->meshes[i].data == NULL;
+    return STATUS_OK;
+}
+
+static void *look_on_and_on(void *of)
+{
+    looker *l = of;
+    diagnostic why;
+    while (!atomic_load(l->ends))
+        painter_with_scene(l->s->p, look_at_meshes, l, &why);
+    return NULL;
+}
+
+/* Who looks without a gap keeps no change back, and sees no scene of which nothing was loaded. */
+static void lookers_see_what_is_loaded(void **state)
+{
+    (void)state;
+    enum { LOOKERS = 6, CHANGES = 300 };
+    static const char ring[] = "render: {width: 8, height: 8}\ncamera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
+                               "meshes: {ring: {generate: torus}}\nsolids: {body: {shape: mesh, mesh: ring}}\n";
+    studio s;
+    atomic_bool ends = false;
+    pthread_t thread[LOOKERS];
+    looker look[LOOKERS];
+    open_studio(&s, scene_from(ring));
+    final_film(&s);
+    for (int i = 0; i < LOOKERS; i++) {
+        look[i] = (looker){.s = &s, .ends = &ends};
+        assert_int_equal(pthread_create(&thread[i], NULL, look_on_and_on, &look[i]), 0);
+    }
+    for (int i = 0; i < CHANGES; i++) {
+        const picture *shown;
+        diagnostic why;
+        char text[48];
+        apply(&s, "background.picture=/nowhere/sky.png");
+        snprintf(text, sizeof text, "ring.major=%d", 2 + i % 7);
+        apply(&s, text);
+        assert_int_equal(painter_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
+        apply(&s, "background.kind=uniform");
+        final_film(&s);
+    }
+    atomic_store(&ends, true);
+    for (int i = 0; i < LOOKERS; i++) {
+        pthread_join(thread[i], NULL);
+        assert_int_equal(look[i].bare, 0);
+        assert_true(look[i].looks > 0);
+    }
+    close_studio(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest cases[] = {
@@ -333,6 +392,7 @@ int main(void)
         cmocka_unit_test(what_takes_long_to_load_is_shown),
         cmocka_unit_test(what_cannot_be_painted_keeps_nobody_busy),
         cmocka_unit_test(what_takes_hours_keeps_no_newer_change_back),
+        cmocka_unit_test(lookers_see_what_is_loaded),
         cmocka_unit_test(passes_fit_the_time_that_there_is),
     };
     return cmocka_run_group_tests_name("lab_painter", cases, NULL, NULL);

@@ -137,13 +137,19 @@ live *painter_live(painter *p)
     return p->toy;
 }
 
-status painter_with_scene(painter *p, status (*look)(void *context, scene *s, diagnostic *why), void *context, diagnostic *why)
+/* Is that generation, or a newer one, on the stage, or known not to get there? The lock is held. */
+static bool is_settled(const painter *p, uint64_t wanted)
+{
+    return p->stage_generation >= wanted && (p->stage_ready || p->trouble_code != STATUS_OK);
+}
+
+static status wait_for_scene(painter *p, diagnostic *why)
 {
     const uint64_t wanted = desk_generation(p->desk);
     const struct timespec until = after(scene_wait_s);
     status code = STATUS_OK;
     pthread_mutex_lock(&p->lock);
-    while (!(p->stage_generation >= wanted && (p->stage_ready || p->trouble_code != STATUS_OK)) && code == STATUS_OK) {
+    while (!is_settled(p, wanted) && code == STATUS_OK) {
         if (p->waiting)
             code = diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "nothing is traced now: %.200s", p->waiting);
         else if (p->stop || pthread_cond_timedwait(&p->news, &p->lock, &until) == ETIMEDOUT)
@@ -154,12 +160,33 @@ status painter_with_scene(painter *p, status (*look)(void *context, scene *s, di
         code = p->trouble_code;
     }
     pthread_mutex_unlock(&p->lock);
-    if (code != STATUS_OK)
-        return code;
-    pthread_rwlock_rdlock(&p->stage_lock);
-    code = look(context, p->stage, why);
-    pthread_rwlock_unlock(&p->stage_lock);
     return code;
+}
+
+/* The stage lock is held. */
+static bool is_there_still(painter *p)
+{
+    pthread_mutex_lock(&p->lock);
+    const bool is = p->stage_ready && p->stage_generation > 0;
+    pthread_mutex_unlock(&p->lock);
+    return is;
+}
+
+/* Between the two locks the painter may have begun with another scene, which then is waited for. */
+status painter_with_scene(painter *p, status (*look)(void *context, scene *s, diagnostic *why), void *context, diagnostic *why)
+{
+    for (;;) {
+        status code = wait_for_scene(p, why);
+        if (code != STATUS_OK)
+            return code;
+        pthread_rwlock_rdlock(&p->stage_lock);
+        const bool is_there = is_there_still(p);
+        if (is_there)
+            code = look(context, p->stage, why);
+        pthread_rwlock_unlock(&p->stage_lock);
+        if (is_there)
+            return code;
+    }
 }
 
 /* --- what the thread tells --- */
@@ -246,6 +273,14 @@ static bool has_slime(const painter *p)
     return p->stage && scene_moves(p->stage);
 }
 
+/* Under the stage lock, so that nobody looks at a stage that is not loaded. */
+static void set_ready(painter *p, bool ready)
+{
+    pthread_mutex_lock(&p->lock);
+    p->stage_ready = ready;
+    pthread_mutex_unlock(&p->lock);
+}
+
 /* The stage becomes what is on the desk, with as much as possible of what was loaded before. */
 static void renew_stage(painter *p)
 {
@@ -255,6 +290,7 @@ static void renew_stage(painter *p)
     p->taken = generation; /* before it is loaded, which ends when there is a newer one */
     const bool had_slime = has_slime(p);
     pthread_rwlock_wrlock(&p->stage_lock);
+    set_ready(p, false);
     status code = next ? STATUS_OK : diagnose(&why, STATUS_FAILURE, "", "out of memory");
     if (next) {
         if (p->stage && !live_is_on(p->toy))
@@ -295,17 +331,15 @@ static void move_stage(painter *p)
     p->was_on = live_is_on(p->toy);
     if (code == STATUS_OK && ended)
         code = load_stage(p, &why);
+    if (code != STATUS_OK)
+        set_ready(p, false);
     pthread_rwlock_unlock(&p->stage_lock);
     if (code == STATUS_INTERRUPTED) {
         pthread_mutex_lock(&p->lock);
         p->stage_generation = 0;
-        p->stage_ready = false;
         pthread_mutex_unlock(&p->lock);
         p->taken = 0; /* begun again */
     } else if (code != STATUS_OK) {
-        pthread_mutex_lock(&p->lock);
-        p->stage_ready = false;
-        pthread_mutex_unlock(&p->lock);
         set_trouble(p, code, &why);
     }
     if (moved || ended || told) {
@@ -450,8 +484,16 @@ static bool prepare_locks(painter *p)
     if (pthread_condattr_init(&monotonic) != 0)
         return false;
     pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
-    const bool good = pthread_mutex_init(&p->lock, NULL) == 0 && pthread_rwlock_init(&p->stage_lock, NULL) == 0 && pthread_cond_init(&p->wake, NULL) == 0 &&
+    pthread_rwlockattr_t kind;
+    if (pthread_rwlockattr_init(&kind) != 0) {
+        pthread_condattr_destroy(&monotonic);
+        return false;
+    }
+    /* Those who look, one after another without a gap, shall not keep the painter from going on. */
+    pthread_rwlockattr_setkind_np(&kind, PTHREAD_RWLOCK_PREFER_WRITER_NONRECURSIVE_NP);
+    const bool good = pthread_mutex_init(&p->lock, NULL) == 0 && pthread_rwlock_init(&p->stage_lock, &kind) == 0 && pthread_cond_init(&p->wake, NULL) == 0 &&
                       pthread_cond_init(&p->news, &monotonic) == 0;
+    pthread_rwlockattr_destroy(&kind);
     pthread_condattr_destroy(&monotonic);
     return good;
 }
