@@ -86,6 +86,39 @@ export const cases = {
         t.equal(seen.size, all, 'tools that arrow keys choose');
     },
 
+    'a light': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        await screen.chooseTool('Light');
+        await screen.page.locator('#head').click({ position: { x: 5, y: 5 } });
+        await tabTo(t, screen, '.light-handle');
+        await checkFocusShows(t, screen, 'the light');
+        const before = await lab.value('lamp.position');
+        await screen.page.keyboard.press('ArrowLeft');
+        await screen.until((x) => window.lab.param('lamp.position').value[0] < x, before[0]);
+        t.more(before[0], (await lab.value('lamp.position'))[0], 'an arrow key moves it to the left');
+    },
+
+    'a parameter': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        await screen.showPanel('Parameters');
+        await tabTo(t, screen, '.param[data-path="liquid.ior"] input[type=range]');
+        await checkFocusShows(t, screen, 'the slider');
+        await screen.page.keyboard.press('ArrowRight');
+        await screen.until(() => window.lab.param('liquid.ior').value > 1.33);
+        t.more(await lab.value('liquid.ior'), 1.33, 'an arrow key turns it');
+        await tabTo(t, screen, '.param[data-path="liquid.ior"] input[type=number]');
+        await screen.page.keyboard.type('1.4');
+        await screen.page.keyboard.press('Enter');
+        await screen.until(() => window.lab.param('liquid.ior').value === 1.4);
+        t.equal(await lab.value('liquid.ior'), 1.4, 'what is typed into the field beside it');
+        await tabTo(t, screen, '.param[data-path="liquid.ior"] button');
+        await screen.page.keyboard.press('Enter');
+        await screen.until(() => window.lab.param('liquid.ior').value === 1.33);
+        t.equal(await lab.value('liquid.ior'), 1.33, 'the button beside it resets it');
+    },
+
     'the panels': async (t) => {
         const lab = await t.lab('scenes/rod.yaml');
         const screen = await t.open(lab);

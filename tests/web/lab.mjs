@@ -1,5 +1,6 @@
 // A laboratory of its own for a test: a temporary folder, `cuvette lab` on it, requests as curl would send them, and the program's other commands.
 import { spawn, execFile } from 'node:child_process';
+import { rmSync } from 'node:fs';
 import { cp, mkdtemp, mkdir, rm } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join, dirname } from 'node:path';
@@ -33,6 +34,16 @@ function said(child, pattern) {
     });
 }
 
+/** What runs and lies there now: it goes with this program, also where that is ended. */
+const running = new Set();
+process.on('exit', () => {
+    for (const { child, folder } of running) {
+        child?.kill('SIGKILL');
+        rmSync(folder, { recursive: true, force: true });
+    }
+});
+for (const [signal, code] of [['SIGINT', 130], ['SIGTERM', 143]]) process.on(signal, () => process.exit(code));
+
 export class Lab {
     /** scene: a file of the folder, in which are experiments/scenes as scenes, experiments/hands as hands, tests/web/scenes as tests and the studies
      *  of tests/web/studies. */
@@ -40,6 +51,7 @@ export class Lab {
         const lab = new Lab();
         lab.program = program;
         lab.folder = await mkdtemp(join(tmpdir(), 'cuvette-web-'));
+        running.add(lab);
         for (const [from, to] of [['experiments/scenes', 'scenes'], ['experiments/hands', 'hands'], ['tests/web/scenes', 'tests'], ['tests/web/studies', 'studies']])
             await cp(join(root, from), join(lab.folder, to), { recursive: true });
         await mkdir(join(lab.folder, 'results'));
@@ -67,6 +79,7 @@ export class Lab {
     async end() {
         await this.stop();
         await rm(this.folder, { recursive: true, force: true });
+        running.delete(this);
     }
 
     /** Status, type and bytes of a reply. */

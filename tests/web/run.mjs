@@ -1,8 +1,9 @@
 // tests/web/run.mjs --program CUVETTE --modules FOLDER [--screenshots FOLDER] [NAME...]: runs tests/web/NAME.test.mjs, or all, in Chromium, one line a
 // file and a line a failed check, and ends with "N passed, M failed". A file exports cases: {what: async (t) => ..}; t has the checks of checks.mjs,
 // t.lab(scene), t.open(lab, options) and t.axe(screen, what); what these start ends with the case.
+import { execFileSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
-import { mkdir } from 'node:fs/promises';
+import { mkdir, readFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
@@ -65,7 +66,7 @@ class Case extends Checks {
 }
 
 let axe = null;
-const axeSource = async () => (axe ??= (await import('node:fs/promises')).readFile(axePath, 'utf8'));
+const axeSource = () => (axe ??= readFile(axePath, 'utf8'));
 
 function limited(promise) {
     let timer;
@@ -97,7 +98,7 @@ function at(error) {
 const selected = readdirSync(here).filter((file) => file.endsWith('.test.mjs')).map((file) => file.replace('.test.mjs', '')).sort()
     .filter((name) => names.length === 0 || names.includes(name));
 const browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', headless: true,
+    executablePath: process.env.CHROMIUM ?? execFileSync('sh', ['-c', 'command -v chromium'], { encoding: 'utf8' }).trim(), headless: true,
     args: ['--force-color-profile=srgb', ...(process.getuid() === 0 ? ['--no-sandbox'] : [])],
 });
 let [passed, failed] = [0, 0];

@@ -1,7 +1,7 @@
 // A page in the browser, watched: what it prints, what it asks for and from where. Waiting is for conditions alone.
 import { readPng } from './png.mjs';
 
-const LIMIT_MS = 20000;
+const LIMIT_MS = 30000;
 
 export class Screen {
     /** options: width, height, dark. */
