@@ -42,14 +42,14 @@ static bool is_there(const room *r, const char *name)
 
 static void start(room *r)
 {
-    char *ball = text_format("%s/deep/ball.yaml", r->inside), *results = text_format("%s/results", r->inside);
-    const lab_settings settings = {.folder = r->inside, .scene = ball, .results = results, .level = isa_best(), .threads = 3, .requests_per_s = 1e9};
+    char *ball = text_format("%s/deep/ball.yaml", r->inside);
+    snprintf(r->lab.results, sizeof r->lab.results, "%s/results", r->inside);
+    const lab_settings settings = {.folder = r->inside, .scene = ball, .results = r->lab.results, .level = isa_best(), .threads = 3, .requests_per_s = 1e9};
     diagnostic why = {.what = ""};
     if (lab_start(&settings, &r->lab.lab, &why) != STATUS_OK)
         fail_msg("%s", why.what);
     r->lab.server = lab_server(r->lab.lab);
     free(ball);
-    free(results);
 }
 
 static void make_folder(const char *path)
