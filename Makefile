@@ -81,7 +81,7 @@ library := $(filter-out src/cli/% src/import/% src/report/% src/web/% $(kernels)
 program := $(wildcard src/cli/*.c)
 web := $(wildcard src/report/*.c src/web/*.c)
 page := $(sort $(wildcard $(addprefix src/web/page/*.,html css js svg)))
-importer := $(wildcard src/import/*.c) src/base/status.c src/base/number.c
+importer := $(wildcard src/import/*.c) src/base/status.c src/base/number.c src/base/below.c
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
 library_objects := $(library:src/%.c=$(build)/obj/%.o) $(kernel_objects)
 program_objects := $(program:src/%.c=$(build)/obj/%.o)

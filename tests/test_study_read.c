@@ -306,7 +306,7 @@ static void a_guard_is_asked_first(void **state)
     fixture_path(f, "test.study", path);
     for (int refused = 0; refused <= 6; refused++) {
         guard_notes n = {.refuse_open = refused == 6, .refuse_load = refused};
-        const study_guard guard = {note_open, note_load, &n};
+        const study_guard guard = {.may_open = note_open, .may_load = note_load, .context = &n};
         study *s = NULL;
         diagnostic why = {0};
         const status code = study_read_guarded(path, &guard, &s, &why);

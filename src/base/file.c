@@ -1,5 +1,6 @@
 #include "base/file.h"
 
+#include "base/below.h"
 #include "base/text.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -76,10 +77,18 @@ static status read_descriptor(int fd, const char *path, size_t limit, size_t exp
 
 status file_read(const char *path, size_t limit, char **text, size_t *size, diagnostic *why)
 {
+    return file_read_below(path, NULL, limit, text, size, why);
+}
+
+status file_read_below(const char *path, const char *root, size_t limit, char **text, size_t *size, diagnostic *why)
+{
     *text = NULL;
     *size = 0;
-    /* O_NONBLOCK: opening a FIFO must not wait for a writer. */
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    int fd = below_open(path, root);
+    if (fd < 0 && errno == EXDEV) {
+        diagnostic_locate(why, path, 0, 0);
+        return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
+    }
     if (fd < 0) {
         bool ours = errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == EIO;
         return system_error(why, ours ? STATUS_FAILURE : STATUS_BAD_INPUT, path, "cannot open", errno);

@@ -8,6 +8,8 @@
 
 /* Reads a regular file of at most limit bytes; *text is its bytes and a final 0 that *size leaves out. */
 status file_read(const char *path, size_t limit, char **text, size_t *size, diagnostic *why);
+/* The same of a file that lies below root (base/below.h); STATUS_BAD_INPUT for others. */
+status file_read_below(const char *path, const char *root, size_t limit, char **text, size_t *size, diagnostic *why);
 
 /* A file being written. Open, write to stream, then commit or abandon: both release it. path "-" is standard
  * output. Nothing shows under path before the commit. The errors of all the writes come out at the commit. */

@@ -162,11 +162,16 @@ static status decode(const unsigned char *bytes, size_t size, image **out, int *
 
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why)
 {
+    return image_read_below(path, NULL, out, file_bits, why);
+}
+
+status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why)
+{
     char *bytes;
     size_t size;
     int bits = 0;
     *out = NULL;
-    status code = file_read(path, FILE_BYTES_MAX, &bytes, &size, why);
+    status code = file_read_below(path, root, FILE_BYTES_MAX, &bytes, &size, why);
     if (code != STATUS_OK) {
         return code;
     }

@@ -41,5 +41,7 @@ status image_encode(const image *picture, image_format format, int bits, bool fa
  * linear. Truncated, damaged or larger than 2^28 pixels is STATUS_BAD_INPUT.
  * file_bits, when not NULL, receives 8 or 16 for PNG, 8 for JPEG and 32 for PFM. */
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why);
+/* The same of a file that lies below root (base/below.h). */
+status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why);
 
 #endif

@@ -99,9 +99,15 @@ status texture_create(const image *picture, texture_space space, texture_wrap wr
 status texture_read(const char *path, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter,
                     texture **out, diagnostic *why)
 {
+    return texture_read_below(path, NULL, space, wrap_u, wrap_v, filter, out, why);
+}
+
+status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter,
+                          texture **out, diagnostic *why)
+{
     image *picture;
     *out = NULL;
-    status code = image_read(path, &picture, NULL, why);
+    status code = image_read_below(path, root, &picture, NULL, why);
     if (code != STATUS_OK) {
         return code;
     }

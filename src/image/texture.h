@@ -37,6 +37,9 @@ status texture_create(const image *picture, texture_space space, texture_wrap wr
 /* The same from a file: image_read's diagnostics and limits. */
 status texture_read(const char *path, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter,
                     texture **out, diagnostic *why);
+/* The same of a file that lies below root (base/below.h). */
+status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter,
+                          texture **out, diagnostic *why);
 
 void texture_retain(const texture *t);
 void texture_release(const texture *t); /* NULL is allowed */

@@ -1,19 +1,22 @@
 #include "import/import.h"
 
+#include "base/below.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 /* A regular file as a stream, or NULL and the reason. Does not wait for a FIFO's writer. */
-static FILE *open_regular(const char *path, const char **reason)
+static FILE *open_regular(const char *path, const char *root, const char **reason, bool *outside)
 {
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    int fd = below_open(path, root);
     struct stat about;
     FILE *stream = NULL;
-    if (fd < 0 || fstat(fd, &about) != 0) {
+    *outside = fd < 0 && errno == EXDEV;
+    if (*outside) {
+        *reason = BELOW_WHAT;
+    } else if (fd < 0 || fstat(fd, &about) != 0) {
         *reason = strerrordesc_np(errno);
     } else if (!S_ISREG(about.st_mode)) {
         *reason = S_ISDIR(about.st_mode) ? "is a folder" : "is not a regular file";
@@ -27,11 +30,22 @@ static FILE *open_regular(const char *path, const char **reason)
     return stream;
 }
 
-status files_check(const char *path, diagnostic *why)
+FILE *files_open(const request *asked)
+{
+    const char *reason;
+    bool outside;
+    return open_regular(asked->path, asked->root, &reason, &outside);
+}
+
+status files_check(const request *asked, diagnostic *why)
 {
     const char *reason = NULL;
-    diagnostic_locate(why, path, 0, 0);
-    FILE *stream = open_regular(path, &reason);
+    bool outside;
+    diagnostic_locate(why, asked->path, 0, 0);
+    FILE *stream = open_regular(asked->path, asked->root, &reason, &outside);
+    if (outside) {
+        return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
+    }
     if (!stream) {
         return diagnose(why, STATUS_BAD_INPUT, "name a mesh file that can be read", "cannot open: %s", reason ? reason : "unknown error");
     }
@@ -86,7 +100,8 @@ static struct aiFile *on_open(struct aiFileIO *io, const char *path, const char 
     file_access *access = (file_access *)(void *)io->UserData;
     const char *reason = "is not for writing";
     struct aiFile *file = NULL;
-    FILE *stream = strpbrk(mode, "wa+") ? NULL : open_regular(path, &reason);
+    bool outside = false;
+    FILE *stream = strpbrk(mode, "wa+") ? NULL : open_regular(path, access->root, &reason, &outside);
     if (stream && (file = calloc(1, sizeof *file))) {
         *file = (struct aiFile){on_read, on_write, on_tell, on_size, on_seek, on_flush, (char *)(void *)stream};
     } else if (stream) {
@@ -94,6 +109,7 @@ static struct aiFile *on_open(struct aiFileIO *io, const char *path, const char 
     } else if (!access->missing[0]) {
         snprintf(access->missing, sizeof access->missing, "%s", *path ? path : "(no name)");
         access->reason = reason;
+        access->outside = outside;
     }
     return file;
 }
@@ -107,7 +123,7 @@ static void on_close(struct aiFileIO *io, struct aiFile *file)
     }
 }
 
-void files_prepare(file_access *access)
+void files_prepare(file_access *access, const request *asked)
 {
-    *access = (file_access){.io = {on_open, on_close, (char *)(void *)access}};
+    *access = (file_access){.io = {on_open, on_close, (char *)(void *)access}, .root = asked->root};
 }

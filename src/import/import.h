@@ -24,20 +24,26 @@ typedef struct request {
     file_kind kind;                /* by the ending of its name */
     uint64_t memory_mib, seconds;  /* limits on this process */
     uint64_t triangles, vertices;  /* limits on the mesh */
+    const char *root;              /* all that is opened lies below it (base/below.h); "": anywhere */
 } request;
 
 /* ---- files.c ---- */
 
-/* How assimp opens files: regular ones, for reading, without waiting. Counts the ones that are named and not there. */
+/* How assimp opens files, here and all that they name: regular ones below the root, for reading, without waiting. Counts the ones that are named and
+ * not there. */
 typedef struct file_access {
     struct aiFileIO io;
+    const char *root;
     char missing[512];             /* the first one that could not be opened; "" */
-    const char *reason;            /* the system's word on it */
+    const char *reason;            /* the system's word on it, or ours */
+    bool outside;                  /* that it is not below the root */
 } file_access;
 
-void files_prepare(file_access *access);
-/* That path is a regular file with something in it, or why not. */
-status files_check(const char *path, diagnostic *why);
+void files_prepare(file_access *access, const request *asked);
+/* The file itself as such a stream, NULL where it cannot be opened any more. */
+FILE *files_open(const request *asked);
+/* That it is a regular file with something in it, or why not. */
+status files_check(const request *asked, diagnostic *why);
 
 /* ---- whole.c ---- */
 

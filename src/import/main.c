@@ -30,6 +30,9 @@ static error_t parse_option(int key, char *value, struct argp_state *state)
     uint64_t *number = key == 'm' ? &asked->memory_mib : key == 's' ? &asked->seconds : key == 't' ? &asked->triangles : &asked->vertices;
     int64_t got;
     switch (key) {
+    case 'r':
+        asked->root = value;
+        return 0;
     case 'm': case 's': case 't': case 'v':
         if (!number_parse_int(value, &got) || got < 1) {
             argp_error(state, "'%s' is not a number from 1", value);
@@ -55,6 +58,7 @@ static const struct argp_option options[] = {
     {.name = "seconds", .key = 's', .arg = "N", .doc = "Processor time (60)"},
     {.name = "triangles", .key = 't', .arg = "N", .doc = "Most triangles (33554432)"},
     {.name = "vertices", .key = 'v', .arg = "N", .doc = "Most vertices (67108864)"},
+    {.name = "root", .key = 'r', .arg = "FOLDER", .doc = "Only files below this folder are opened: its path from / without links"},
     {0},
 };
 
@@ -99,7 +103,7 @@ int main(int count, char **arguments)
         .doc = "Reads a triangle mesh (OBJ, PLY, STL, glTF, glb) and writes it to standard output, a pipe, in the form that the "
                "program cuvette, which starts this one, reads.",
     };
-    request asked = {.memory_mib = 4096, .seconds = 60, .triangles = (uint64_t)1 << 25, .vertices = (uint64_t)1 << 26};
+    request asked = {.memory_mib = 4096, .seconds = 60, .triangles = (uint64_t)1 << 25, .vertices = (uint64_t)1 << 26, .root = ""};
     argp_err_exit_status = STATUS_BAD_INPUT;
     argp_parse(&parser, count, arguments, 0, NULL, &asked);
     asked.kind = kind_of(asked.path);

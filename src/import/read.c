@@ -1,5 +1,6 @@
 #include "import/import.h"
 
+#include "base/below.h"
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <jansson.h>
@@ -16,7 +17,12 @@ status no_memory(const request *asked, diagnostic *why)
 static bool locate_json(const request *asked, diagnostic *why)
 {
     json_error_t error;
-    json_t *root = json_load_file(asked->path, JSON_REJECT_DUPLICATES, &error);
+    FILE *stream = files_open(asked);
+    if (!stream) {
+        return false;
+    }
+    json_t *root = json_loadf(stream, JSON_REJECT_DUPLICATES, &error);
+    fclose(stream);
     if (!root) {
         diagnostic_locate(why, asked->path, error.line, error.column);
         diagnose(why, STATUS_BAD_INPUT, "a .gltf file is a JSON text, a binary one ends in .glb", "%s", error.text);
@@ -29,6 +35,9 @@ static status explain(const request *asked, const file_access *access, const cha
 {
     static const char *const names[] = {"OBJ", "PLY", "STL", "glTF 2.0", "binary glTF 2.0 (glb)"};
     diagnostic_locate(why, asked->path, 0, 0);
+    if (access->outside) {
+        return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, "needs the file '%s', which %s", access->missing, access->reason);
+    }
     if (access->missing[0]) {
         return diagnose(why, STATUS_BAD_INPUT, "put it where the mesh file says, or take the line that names it out",
                         "needs the file '%s': %s", access->missing, access->reason ? access->reason : "cannot be opened");
@@ -51,7 +60,7 @@ status read_scene(const request *asked, const struct aiScene **out, diagnostic *
 {
     file_access access;
     diagnostic_locate(why, asked->path, 0, 0);
-    status code = files_check(asked->path, why);
+    status code = files_check(asked, why);
     if (code != STATUS_OK) {
         return code;
     }
@@ -62,7 +71,7 @@ status read_scene(const request *asked, const struct aiScene **out, diagnostic *
     if (code != STATUS_OK) {
         return code;
     }
-    files_prepare(&access);
+    files_prepare(&access, asked);
     /* Equal vertices are joined in join.c: assimp's own step moves those together that lie within 1e-5. */
     const struct aiScene *scene = aiImportFileEx(asked->path, aiProcess_ValidateDataStructure | aiProcess_Triangulate, &access.io);
     if (!scene || access.missing[0]) {

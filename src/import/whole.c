@@ -4,8 +4,8 @@
  * PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80 bytes, a count, 50 bytes a facet; or a text from solid to endsolid. */
 #include "import/import.h"
 
+#include "base/below.h"
 #include <ctype.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -254,7 +254,7 @@ status check_whole(const request *asked, diagnostic *why)
         return STATUS_OK;
     }
     struct stat about;
-    int fd = open(asked->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    int fd = below_open(asked->path, asked->root);
     void *bytes = fd >= 0 && fstat(fd, &about) == 0 ? mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, fd, 0) : MAP_FAILED;
     if (fd >= 0) {
         close(fd);

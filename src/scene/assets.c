@@ -92,7 +92,7 @@ static status load_sky(scene *s, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "", "memory is out");
     }
     diagnostic bad = {.what = ""};
-    status code = image_read(path, &sky->picture, NULL, &bad);
+    status code = image_read_below(path, s->limits.root, &sky->picture, NULL, &bad);
     if (code == STATUS_OK && (code = check_sky(sky->picture, path, &bad)) != STATUS_OK) {
         image_destroy(sky->picture);
         sky->picture = NULL;
@@ -109,8 +109,8 @@ static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
     }
     diagnostic bad = {.what = ""};
     texture *data = NULL;
-    const status code = texture_read(path, (texture_space)t->space, (texture_wrap)t->wrap_u, (texture_wrap)t->wrap_v,
-                                     (texture_filter)t->filter, &data, &bad);
+    const status code = texture_read_below(path, s->limits.root, (texture_space)t->space, (texture_wrap)t->wrap_u, (texture_wrap)t->wrap_v,
+                                           (texture_filter)t->filter, &data, &bad);
     free(path);
     t->data = data;
     return code == STATUS_OK ? code : asset_error(s, t->name, t->path_line, t->path_column, &bad, code, why);
@@ -165,9 +165,26 @@ static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "", "memory is out");
     }
     diagnostic bad = {.what = ""};
-    const status code = mesh_make_from_file(m, path, &bad);
+    const status code = mesh_make_from_file(m, path, &s->limits, &bad);
     free(path);
     return code == STATUS_OK ? code : asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
+}
+
+/* After m was loaded: is it too much, with all that is there? */
+static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
+{
+    size_t all = 0;
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        all += s->meshes[i].data ? s->meshes[i].data->triangle_count : 0;
+    }
+    if (!s->limits.triangles || all <= s->limits.triangles) {
+        return STATUS_OK;
+    }
+    diagnostic bad = {.what = ""};
+    const status code = diagnose(&bad, STATUS_BAD_INPUT, "use smaller meshes, or fewer", "%zu triangles in all meshes are more than the limit of %zu", all,
+                                 s->limits.triangles);
+    mesh_entry_unload(m);
+    return asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
 }
 
 /* Sky and textures. */
@@ -214,6 +231,9 @@ static status load_meshes(scene *s, const load_watch *watch, diagnostic *why)
         } else if (!m->data) {
             code = load_mesh(s, m, why);
         }
+        if (code == STATUS_OK) {
+            code = check_triangles(s, m, why);
+        }
         shared.before += shared.own;
     }
     return code;
@@ -237,6 +257,9 @@ status scene_load_files(scene *s, diagnostic *why)
         mesh_entry *m = &s->meshes[i];
         if (m->source == MESH_FILE && !m->data) {
             code = load_mesh(s, m, why);
+            if (code == STATUS_OK) {
+                code = check_triangles(s, m, why);
+            }
         } else if (m->source == MESH_SLIME) {
             hand_script *script;
             code = slime_read_script(s, m, &script, why);

@@ -279,10 +279,15 @@ status document_parse(const char *name, const char *text, size_t size, document 
 
 status document_read(const char *path, document **out, diagnostic *why)
 {
+    return document_read_below(path, NULL, out, why);
+}
+
+status document_read_below(const char *path, const char *root, document **out, diagnostic *why)
+{
     *out = NULL;
     char *text;
     size_t size;
-    status code = file_read(path, SIZE_LIMIT, &text, &size, why);
+    status code = file_read_below(path, root, SIZE_LIMIT, &text, &size, why);
     if (code != STATUS_OK) {
         return code;
     }

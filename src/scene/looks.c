@@ -23,7 +23,7 @@ static double at_most_one(double value)
 }
 
 /* Shared with a slot before it where that has the same picture. */
-static status read_picture(const mesh_import *imported, int slot, face_looks *looks, diagnostic *why)
+static status read_picture(const mesh_import *imported, int slot, const char *root, face_looks *looks, diagnostic *why)
 {
     const char *path = imported->materials[slot].texture;
     for (int i = 0; i < slot; i++) {
@@ -35,7 +35,7 @@ static status read_picture(const mesh_import *imported, int slot, face_looks *lo
         }
     }
     texture *picture;
-    const status code = texture_read(path, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &picture, why);
+    const status code = texture_read_below(path, root, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &picture, why);
     if (code == STATUS_OK) {
         looks->look[slot].picture = picture;
     }
@@ -55,7 +55,7 @@ static face_look look_of(const imported_material *m)
     return look;
 }
 
-status looks_create(const mesh_import *imported, const face_looks **out, diagnostic *why)
+status looks_create(const mesh_import *imported, const char *root, const face_looks **out, diagnostic *why)
 {
     face_looks *looks = calloc(1, sizeof *looks + (size_t)imported->material_count * sizeof looks->look[0]);
     if (!looks) {
@@ -65,7 +65,7 @@ status looks_create(const mesh_import *imported, const face_looks **out, diagnos
     looks->count = imported->material_count;
     for (int i = 0; i < looks->count; i++) {
         looks->look[i] = look_of(&imported->materials[i]);
-        const status code = imported->materials[i].texture ? read_picture(imported, i, looks, why) : STATUS_OK;
+        const status code = imported->materials[i].texture ? read_picture(imported, i, root, looks, why) : STATUS_OK;
         if (code != STATUS_OK) {
             looks_release(looks);
             return code;

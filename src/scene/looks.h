@@ -14,8 +14,8 @@ typedef struct face_look {
     const texture *picture; /* one owner of it; NULL for none */
 } face_look;
 
-/* From what an importer found; reads the pictures that it names, each once. A diagnostic names the picture's file. */
-status looks_create(const mesh_import *imported, const face_looks **out, diagnostic *why);
+/* From what an importer found; reads the pictures that it names, each once, below root (base/below.h). A diagnostic names the picture's file. */
+status looks_create(const mesh_import *imported, const char *root, const face_looks **out, diagnostic *why);
 void looks_retain(const face_looks *l); /* NULL is allowed, here and below */
 void looks_release(const face_looks *l);
 

@@ -10,7 +10,7 @@
 
 #include "scene/mesh_stream.h"
 
-/* limits may be NULL. Textures come back as paths that can be opened: absolute, or beside the mesh file. */
+/* limits may be NULL. Textures come back as paths that can be opened: absolute, or beside the mesh file; they are looked for, not opened. */
 status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import **out, diagnostic *why);
 
 #endif

@@ -80,14 +80,15 @@ status mesh_make(mesh_entry *m, diagnostic *why)
     return code;
 }
 
-status mesh_make_from_file(mesh_entry *m, const char *path, diagnostic *why)
+status mesh_make_from_file(mesh_entry *m, const char *path, const load_limits *limits, diagnostic *why)
 {
+    const mesh_limits own = {.root = limits->root, .triangles = limits->triangles};
     mesh_import *imported;
-    status code = mesh_read_file(path, NULL, &imported, why);
+    status code = mesh_read_file(path, &own, &imported, why);
     if (code != STATUS_OK) {
         return code;
     }
-    code = looks_create(imported, &m->looks, why);
+    code = looks_create(imported, limits->root, &m->looks, why);
     if (code == STATUS_OK) {
         m->data = imported->mesh;
         mesh_retain(m->data);

@@ -8,7 +8,7 @@
 /* Of an entry whose source is no file and that has no data. */
 status mesh_make(mesh_entry *m, diagnostic *why);
 
-/* path: from the working folder. */
-status mesh_make_from_file(mesh_entry *m, const char *path, diagnostic *why);
+/* path: from the working folder. No mesh has more triangles than limits allow all together. */
+status mesh_make_from_file(mesh_entry *m, const char *path, const load_limits *limits, diagnostic *why);
 
 #endif

@@ -15,6 +15,7 @@ typedef struct mesh_limits {
     size_t triangles, vertices; /* 2^25 and 2^26 */
     uint64_t memory_bytes;      /* of the process that reads the file; 4 GiB */
     double wall_s;              /* 60 */
+    const char *root;           /* the file, and all that it names, lie below it (base/below.h); NULL or "": anywhere. Borrowed */
 } mesh_limits;
 
 /* The same with the defaults filled in, and nothing over MESH_TRIANGLES_MAX and MESH_VERTICES_MAX; limits may be NULL. */

@@ -147,10 +147,22 @@ static status build_and_release(document *file, scene **out, diagnostic *why)
 
 status scene_read(const char *path, scene **out, diagnostic *why)
 {
+    return scene_read_below(path, NULL, out, why);
+}
+
+status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why)
+{
     *out = NULL;
     document *file;
-    status code = document_read(path, &file, why);
-    return code == STATUS_OK ? build_and_release(file, out, why) : code;
+    status code = document_read_below(path, root, &file, why);
+    if (code == STATUS_OK) {
+        code = build_and_release(file, out, why);
+    }
+    if (code == STATUS_OK && (code = scene_limit(*out, root, 0, why)) != STATUS_OK) {
+        scene_destroy(*out);
+        *out = NULL;
+    }
+    return code;
 }
 
 status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why)

@@ -59,6 +59,7 @@ void scene_destroy(scene *s)
     image_destroy(s->background.picture);
     free(s->path);
     free(s->title);
+    free(s->limits.root);
     free(s);
 }
 
@@ -144,11 +145,23 @@ scene *scene_clone(const scene *original)
     s->title = strdup(original->title);
     bool whole = clone_picture(&s->background, &original->background);
     whole = clone_objects(s, original) && whole;
+    whole = scene_limit(s, original->limits.root, original->limits.triangles, NULL) == STATUS_OK && whole;
     if (!whole || !s->path || !s->title) {
         scene_destroy(s);
         return NULL;
     }
     return s;
+}
+
+status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why)
+{
+    char *copy = root ? strdup(root) : NULL;
+    if (root && !copy) {
+        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    }
+    free(s->limits.root);
+    s->limits = (load_limits){.root = copy, .triangles = triangles};
+    return STATUS_OK;
 }
 
 int scene_find_solid(const scene *s, const char *name)

@@ -168,6 +168,12 @@ typedef struct solid {
     material surface;       /* its own copy, with its own changes */
 } solid;
 
+/* What loading is held to, for scenes that others wrote; copies of a scene are held to the same. */
+typedef struct load_limits {
+    char *root;             /* every file that is read lies below it, whoever names it (base/below.h); NULL or "": anywhere */
+    size_t triangles;       /* of all meshes together; 0: no limit but the importer's own */
+} load_limits;
+
 typedef struct scene {
     char *path;             /* file it came from, "" if none */
     char *title;
@@ -179,6 +185,7 @@ typedef struct scene {
     named_material *materials; size_t material_count;
     light *lights; size_t light_count;
     solid *solids; size_t solid_count;
+    load_limits limits;     /* none by itself; set by scene_limit */
 } scene;
 
 /* Limits of a scene. Primitives are the convex pieces that solids are made of: a cup is two, the others are one. */
@@ -194,11 +201,17 @@ void scene_destroy(scene *s);
 
 /* Reads a scene file (YAML; grammar in scene/read.c's head and the manual). Pictures, textures and meshes are not loaded yet. */
 status scene_read(const char *path, scene **out, diagnostic *why);
+/* The same of a file that lies below root (base/below.h), which is the root of its limits, too. */
+status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why);
 /* The same from memory; name stands for the file in diagnostics, and its folder is where relative paths start. */
 status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why);
 
+/* Sets its limits; root is copied. What was loaded stays. */
+status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why);
+
 /* Loads what the scene names and does not have yet: the sky picture, textures, and meshes, from files or computed. A diagnostic about a
- * file that the scene file names is located there. A sky's values must be from 0 to SCENE_SKY_MAX. */
+ * file that the scene file names is located there. A sky's values must be from 0 to SCENE_SKY_MAX. STATUS_BAD_INPUT over the limits; of meshes that are
+ * too large together the one that was too much is not kept. */
 status scene_load(scene *s, diagnostic *why);
 
 /* Who waits for slimes that move: go_on is asked about every 10 ms, from 0 to 1 of all their motion being done; false ends it. */

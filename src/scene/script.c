@@ -229,9 +229,14 @@ static status build_and_release(document *file, hand_script **out, diagnostic *w
 
 status script_read(const char *path, hand_script **out, diagnostic *why)
 {
+    return script_read_below(path, NULL, out, why);
+}
+
+status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why)
+{
     *out = NULL;
     document *file;
-    const status code = document_read(path, &file, why);
+    const status code = document_read_below(path, root, &file, why);
     return code == STATUS_OK ? build_and_release(file, out, why) : code;
 }
 

@@ -59,7 +59,7 @@ status slime_read_script(const scene *s, const mesh_entry *m, hand_script **out,
         return diagnose(why, STATUS_FAILURE, "", "memory is out");
     }
     diagnostic bad = {.what = ""};
-    const status code = script_read(path, out, &bad);
+    const status code = script_read_below(path, s->limits.root, out, &bad);
     free(path);
     if (code != STATUS_OK && bad.line == 0) { /* no text to point at: wrong is what names it */
         return asset_error(s, m->name, m->script_line, m->script_column, &bad, code, why);

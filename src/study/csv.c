@@ -193,13 +193,18 @@ static status split_all(csv *table, const char *path, diagnostic *why)
 
 status csv_read(const char *path, csv **out, diagnostic *why)
 {
+    return csv_read_below(path, NULL, out, why);
+}
+
+status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why)
+{
     *out = NULL;
     if (access(path, F_OK) != 0)
         return STATUS_OK;
     csv *table = calloc(1, sizeof *table);
     if (!table)
         return no_memory(why);
-    status code = file_read(path, CSV_BYTES_MAX, &table->raw, &table->size, why);
+    status code = file_read_below(path, root, CSV_BYTES_MAX, &table->raw, &table->size, why);
     if (code == STATUS_OK) {
         const char *newline = table->size ? memrchr(table->raw, '\n', table->size) : NULL;
         table->whole = newline ? (size_t)(newline - table->raw) + 1 : 0;

@@ -36,6 +36,8 @@ typedef struct csv {
 /* STATUS_OK and *out = NULL when there is no such file. A row with another number of fields than the header is
  * STATUS_BAD_INPUT. */
 status csv_read(const char *path, csv **out, diagnostic *why);
+/* The same of a file that lies below root (base/below.h). */
+status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why);
 void csv_destroy(csv *table);
 
 /* Index of the column of that name, or -1. */

@@ -44,7 +44,7 @@ static void hash_script(uint64_t *hash, const scene *of, const mesh_entry *m)
     enum { SCRIPT_BYTES_MAX = 1 << 20 };
     char *path = scene_file_path(of, m->script_path), *text = NULL;
     size_t size = 0;
-    if (path && file_read(path, SCRIPT_BYTES_MAX, &text, &size, NULL) == STATUS_OK)
+    if (path && file_read_below(path, of->limits.root, SCRIPT_BYTES_MAX, &text, &size, NULL) == STATUS_OK)
         hash_array(hash, text, size, 1);
     free(text);
     free(path);

@@ -138,7 +138,7 @@ static status load(const study *s, const char *path, const topology *machine, js
     size_t size;
     *out = NULL;
     if (access(path, F_OK) == 0) {
-        status code = file_read(path, MANIFEST_BYTES_MAX, &text, &size, why);
+        status code = file_read_below(path, s->base->limits.root, MANIFEST_BYTES_MAX, &text, &size, why);
         if (code != STATUS_OK)
             return code;
         *out = json_loadb(text, size, 0, NULL);

@@ -226,8 +226,11 @@ static status read_scene(study *s, const document *d, const node *root, const st
         return node_error(d, n, why, "name a scene file that is there, relative to this file",
                           "scene %s cannot be read", s->scene_path);
     size_t size;
-    status code = file_read(s->scene_path, FILE_BYTES_MAX, &s->scene_text, &size, why);
-    return code == STATUS_OK ? scene_read_text(s->scene_path, s->scene_text, size, &s->base, why) : code;
+    const char *below = guard ? guard->root : NULL;
+    status code = file_read_below(s->scene_path, below, FILE_BYTES_MAX, &s->scene_text, &size, why);
+    if (code == STATUS_OK)
+        code = scene_read_text(s->scene_path, s->scene_text, size, &s->base, why);
+    return code == STATUS_OK ? scene_limit(s->base, below, 0, why) : code;
 }
 
 static status check_loads(const study *s, const study_guard *guard, diagnostic *why)
@@ -322,7 +325,7 @@ status study_read_guarded(const char *path, const study_guard *guard, study **ou
     char *text;
     size_t size;
     *out = NULL;
-    status code = file_read(path, FILE_BYTES_MAX, &text, &size, why);
+    status code = file_read_below(path, guard ? guard->root : NULL, FILE_BYTES_MAX, &text, &size, why);
     if (code != STATUS_OK)
         return code;
     code = read_text(path, text, size, guard, out, why);

@@ -99,11 +99,11 @@ static uint64_t get_hash(const json_t *facts, const char *key)
     return text ? strtoull(text, NULL, 16) : 0;
 }
 
-static status load_facts(const char *path, reference *out, uint64_t *pixels, diagnostic *why)
+static status load_facts(const char *path, const char *root, reference *out, uint64_t *pixels, diagnostic *why)
 {
     char *text;
     size_t size;
-    status code = file_read(path, FACTS_BYTES_MAX, &text, &size, why);
+    status code = file_read_below(path, root, FACTS_BYTES_MAX, &text, &size, why);
     if (code != STATUS_OK)
         return code;
     json_t *facts = json_loadb(text, size, 0, NULL);
@@ -117,7 +117,7 @@ static status load_facts(const char *path, reference *out, uint64_t *pixels, dia
     return code;
 }
 
-status reference_load(const char *folder, uint64_t scene_hash, reference *out, diagnostic *why)
+status reference_load(const char *folder, const char *root, uint64_t scene_hash, reference *out, diagnostic *why)
 {
     *out = (reference){.scene_hash = scene_hash};
     char *facts = file_path(folder, scene_hash, ".json"), *picture = file_path(folder, scene_hash, ".pfm");
@@ -125,9 +125,9 @@ status reference_load(const char *folder, uint64_t scene_hash, reference *out, d
     status code = facts && picture ? STATUS_OK : no_memory(why);
     /* The facts are written last: without them the picture is not believed. */
     if (code == STATUS_OK && access(facts, F_OK) == 0 && access(picture, F_OK) == 0) {
-        code = load_facts(facts, out, &pixels, why);
+        code = load_facts(facts, root, out, &pixels, why);
         if (code == STATUS_OK)
-            code = image_read(picture, &out->picture, NULL, why);
+            code = image_read_below(picture, root, &out->picture, NULL, why);
         if (code == STATUS_OK && pixel_hash(out->picture) != pixels) {
             reference_release(out);
             code = damaged(picture, why);

@@ -26,9 +26,9 @@ status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why
 /* Its fingerprint: scenes that differ only in how they are computed have one. Pictures must have been loaded. */
 status reference_scene_hash(const scene *setting, uint64_t *hash);
 
-/* The reference with that scene_hash from the study's folder; out->picture is NULL when it is not there. A file that is not
+/* The reference with that scene_hash from the study's folder, below root (base/below.h); out->picture is NULL when it is not there. A file that is not
  * what was written is STATUS_BAD_INPUT. */
-status reference_load(const char *folder, uint64_t scene_hash, reference *out, diagnostic *why);
+status reference_load(const char *folder, const char *root, uint64_t scene_hash, reference *out, diagnostic *why);
 /* Keeps it there, with the parameters of its scene; as a PNG for the eye too when the study keeps images. */
 status reference_save(const study *s, const char *folder, const reference *of, const scene *setting, diagnostic *why);
 void reference_release(reference *of);

@@ -93,12 +93,12 @@ static status list_shards(const char *folder, row_kind kind, shard_name **list, 
     return code;
 }
 
-static status add_file(row_files *files, char *path, diagnostic *why)
+static status add_file(row_files *files, const study *s, char *path, diagnostic *why)
 {
     if (!path)
         return no_memory(why);
     csv *table;
-    status code = csv_read(path, &table, why);
+    status code = csv_read_below(path, s->base->limits.root, &table, why);
     if (code != STATUS_OK || !table) {
         free(path);
         return code;
@@ -108,7 +108,7 @@ static status add_file(row_files *files, char *path, diagnostic *why)
     return STATUS_OK;
 }
 
-static status open_files(row_files *files, const char *folder, row_kind kind, diagnostic *why)
+static status open_files(row_files *files, const study *s, const char *folder, row_kind kind, diagnostic *why)
 {
     shard_name *shards;
     size_t count;
@@ -116,10 +116,10 @@ static status open_files(row_files *files, const char *folder, row_kind kind, di
     if (code == STATUS_OK) {
         files->paths = calloc(count + 1, sizeof *files->paths);
         files->tables = calloc(count + 1, sizeof *files->tables);
-        code = files->paths && files->tables ? add_file(files, row_file_path(folder, kind, 0, 1), why) : no_memory(why);
+        code = files->paths && files->tables ? add_file(files, s, row_file_path(folder, kind, 0, 1), why) : no_memory(why);
     }
     for (size_t i = 0; code == STATUS_OK && i < count; i++)
-        code = add_file(files, row_file_path(folder, kind, shards[i].shard, shards[i].shards), why);
+        code = add_file(files, s, row_file_path(folder, kind, shards[i].shard, shards[i].shards), why);
     free(shards);
     return code;
 }
@@ -200,7 +200,7 @@ static status load(const study *s, const char *results, row_kind kind, row_files
     *out = NULL;
     row_files *files = calloc(1, sizeof *files);
     char *folder = study_folder(s, results);
-    status code = files && folder ? open_files(files, folder, kind, why) : no_memory(why);
+    status code = files && folder ? open_files(files, s, folder, kind, why) : no_memory(why);
     if (code == STATUS_OK)
         code = read_rows(files, s, kind, why);
     free(folder);

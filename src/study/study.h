@@ -59,6 +59,7 @@ typedef struct study_guard {
     status (*may_open)(void *context, const char *path, diagnostic *why);     /* the scene's file */
     status (*may_load)(void *context, const scene *setting, diagnostic *why); /* what is named in the scene of a cell, or of its reference */
     void *context;
+    const char *root; /* nothing is read that does not lie below it, whoever names it (base/below.h), rows included; NULL or "": anywhere */
 } study_guard;
 status study_read_guarded(const char *path, const study_guard *guard, study **out, diagnostic *why);
 /* The same from memory; name stands for the file in diagnostics, and its folder is where the scene's path starts. */

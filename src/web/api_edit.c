@@ -1,5 +1,6 @@
 /* Objects come, go, move, turn and change their names: POST and DELETE under /api/objects. How new ones look is in new_objects.c. */
 #include "web/lab_private.h"
+#include "web/desk_bounds.h"
 #include "web/new_objects.h"
 #include "scene/check.h"
 #include "scene/edit.h"
@@ -217,10 +218,9 @@ static status load_alone(lab *l, const char *file, bool is_model, scene **out, d
     if (code == STATUS_OK)
         code = scene_set(s, is_model ? "model.file" : "picture.file", path, why);
     if (code == STATUS_OK)
+        code = desk_limit(s, l->files, why);
+    if (code == STATUS_OK)
         code = scene_load(s, why);
-    if (code == STATUS_OK && is_model && s->meshes[0].data->triangle_count > DESK_TRIANGLES_MAX)
-        code = diagnose(why, STATUS_BAD_INPUT, "use a smaller model", "%zu triangles are more than the %d of the laboratory", s->meshes[0].data->triangle_count,
-                        DESK_TRIANGLES_MAX);
     free(path);
     if (code == STATUS_OK)
         *out = s;

@@ -52,7 +52,7 @@ static bool read_scene(const lab *l, const char *name, scene **out, http_reply *
     char *path = NULL;
     status code = folder_path(l->files, name, true, &path, &why);
     if (code == STATUS_OK) {
-        code = scene_read(path, out, &why);
+        code = scene_read_below(path, folder_real(l->files), out, &why);
         if (code != STATUS_OK)
             http_reply_diagnostic(r, code, &why);
     } else if (code == STATUS_BAD_INPUT && folder_path(l->files, name, false, &path, NULL) == STATUS_OK) {

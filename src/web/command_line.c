@@ -79,7 +79,7 @@ static status read_again(const folder *files, const char *file, int threads, sce
     diagnostic unread;
     status code = folder_path(files, file, true, path, &unread);
     if (code == STATUS_OK)
-        code = scene_read(*path, out, &unread);
+        code = scene_read_below(*path, folder_real(files), out, &unread);
     if (code == STATUS_OK && threads > 0 && (*out)->render.threads == 1)
         (*out)->render.threads = threads;
     return code;

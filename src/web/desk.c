@@ -107,6 +107,8 @@ status desk_create(scene *first, const char *file, const folder *files, void (*c
 {
     *out = NULL;
     status code = first ? desk_check(first, files, why) : no_memory(why);
+    if (code == STATUS_OK)
+        code = desk_limit(first, files, why);
     desk *d = code == STATUS_OK ? calloc(1, sizeof *d) : NULL;
     origin *from = d ? origin_create(first, 1) : NULL;
     if (!from) {
@@ -189,6 +191,8 @@ status desk_apply(desk *d, const char *what, const char *gesture, desk_change *c
 status desk_open(desk *d, scene *s, const char *file, uint64_t *generation, diagnostic *why)
 {
     status code = desk_check(s, d->files, why);
+    if (code == STATUS_OK)
+        code = desk_limit(s, d->files, why);
     origin *from = code == STATUS_OK ? origin_create(s, 0) : NULL;
     if (!from) {
         scene_destroy(s);

@@ -15,7 +15,7 @@ enum { DESK_PIXELS_MAX = 16777216, DESK_TRIANGLES_MAX = 4000000, DESK_UNDO_MAX =
 #define DESK_WORK_MAX 1e12 /* pixels * (samples or paths) * wavelengths */
 
 /* Takes the scene, also after an error. changed is called, with the desk unlocked, after each change. file: its name as pages see it, NULL for a new one. files is
- * borrowed: what a scene names must lie in it. */
+ * borrowed: what a scene names must lie in it, and nothing else is opened when a copy of it is loaded. */
 status desk_create(scene *first, const char *file, const folder *files, void (*changed)(void *context), void *context, desk **out, diagnostic *why);
 void desk_destroy(desk *d); /* NULL is allowed */
 

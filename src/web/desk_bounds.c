@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* As many as its parameters ask for; files say themselves how many they hold, and the importer has limits of its own. */
+/* As many as its parameters ask for; those of files are counted when they are loaded. */
 static double triangles_of(const mesh_entry *m)
 {
     switch ((mesh_maker)m->source) {
@@ -53,4 +53,9 @@ status desk_check(const scene *s, const folder *files, diagnostic *why)
     if (code == STATUS_OK)
         code = check_bounds(s, why);
     return code == STATUS_OK && files ? folder_check_scene(files, s, why) : code;
+}
+
+status desk_limit(scene *s, const folder *files, diagnostic *why)
+{
+    return scene_limit(s, files ? folder_real(files) : NULL, DESK_TRIANGLES_MAX, why);
 }

@@ -36,7 +36,7 @@ status figure_read(const lab *l, const char *name, char **svg, size_t *size, dia
     status code = figure_name_is_fit(name) ? inner_path(l, in, name, ".svg", &path, why)
                                            : diagnose(why, STATUS_BAD_INPUT, "small letters, digits and - name a figure", "this names no figure");
     if (code == STATUS_OK)
-        code = file_read(path, SVG_MAX, svg, size, why);
+        code = file_read_below(path, folder_real(l->files), SVG_MAX, svg, size, why);
     free(path);
     free(in);
     return code;
@@ -69,7 +69,8 @@ static bool script_needs(const lab *l, const char *figure, const char *of, bool 
     size_t size;
     bool needs = false;
     *says = false;
-    if (inner_path(l, "plots", figure, ".gp", &path, NULL) == STATUS_OK && file_read(path, SCRIPT_MAX, &text, &size, NULL) == STATUS_OK) {
+    if (inner_path(l, "plots", figure, ".gp", &path, NULL) == STATUS_OK &&
+        file_read_below(path, folder_real(l->files), SCRIPT_MAX, &text, &size, NULL) == STATUS_OK) {
         static const char key[] = "# needs:";
         for (const char *line = text; line && *line == '#' && !needs; line = strchr(line, '\n'), line += line != NULL) {
             if (strncmp(line, key, sizeof key - 1) != 0)

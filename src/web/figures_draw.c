@@ -38,11 +38,11 @@ static char *part_path(const study *s, const char *results, size_t cell, const c
 }
 
 /* What is kept of each cell, one below the other; the header of the first stands for all. */
-static status append_part(FILE *out, const char *path, bool *headed, diagnostic *why)
+static status append_part(FILE *out, const char *path, const char *root, bool *headed, diagnostic *why)
 {
     char *text = NULL;
     size_t size;
-    const status code = file_read(path, PART_MAX, &text, &size, why);
+    const status code = file_read_below(path, root, PART_MAX, &text, &size, why);
     if (code != STATUS_OK)
         return code;
     const char *line = strchr(text, '\n');
@@ -64,7 +64,7 @@ static status string_parts(const study *s, const char *results, const char *kind
         if (!part)
             code = no_memory(why);
         else if (access(part, R_OK) == 0)
-            code = append_part(file.stream, part, &headed, why);
+            code = append_part(file.stream, part, s->base->limits.root, &headed, why);
         free(part);
     }
     if (code == STATUS_OK)

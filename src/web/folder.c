@@ -58,6 +58,11 @@ const char *folder_root(const folder *f)
     return f->given;
 }
 
+const char *folder_real(const folder *f)
+{
+    return f->real;
+}
+
 const char *folder_title(const folder *f)
 {
     const char *slash = strrchr(f->real, '/');

@@ -15,6 +15,8 @@ void folder_close(folder *f); /* NULL is allowed */
 /* The folder itself: as it was given, and its own name. */
 const char *folder_root(const folder *f);
 const char *folder_title(const folder *f);
+/* Where it really lies: what files are below that may be read (base/below.h). */
+const char *folder_real(const folder *f);
 
 /* The path of a file that is there, to be read; or, with must_exist false, of one whose folder is there. In the program's own terms. */
 status folder_path(const folder *f, const char *name, bool must_exist, char **path, diagnostic *why);

@@ -78,11 +78,11 @@ static file_use use_by_ending(const char *name)
 }
 
 /* A YAML file is what its keys say; one that cannot be read is listed with the scenes, so that opening it says what is wrong. */
-static file_use use_by_keys(const char *path)
+static file_use use_by_keys(const folder *f, const char *path)
 {
     static const char *const of_scenes[] = {"solids", "camera", "lights", "render", "background", "meshes", "materials", "textures"};
     document *file;
-    if (document_read(path, &file, NULL) != STATUS_OK)
+    if (document_read_below(path, folder_real(f), &file, NULL) != STATUS_OK)
         return USE_SCENE;
     const node *root = document_root(file);
     file_use use = USE_COUNT;
@@ -105,7 +105,7 @@ static void look_at_file(listing *l, char *name)
         return;
     }
     if (use == USE_SCENE)
-        use = stat(path, &about) == 0 && about.st_size <= DOCUMENT_MAX ? use_by_keys(path) : USE_COUNT;
+        use = stat(path, &about) == 0 && about.st_size <= DOCUMENT_MAX ? use_by_keys(l->of, path) : USE_COUNT;
     free(path);
     if (use == USE_COUNT) {
         free(name);

@@ -88,7 +88,7 @@ static status first_scene(const lab *l, scene **out, char **file, diagnostic *wh
         diagnostic_locate(why, l->settings.scene, 0, 0);
         return diagnose(why, STATUS_BAD_INPUT, "name a scene below the folder, or another folder", "is not in the folder of the laboratory");
     }
-    return scene_read(l->settings.scene, out, why);
+    return scene_read_below(l->settings.scene, folder_real(l->files), out, why);
 }
 
 void lab_give_threads(const lab *l, scene *s)

@@ -14,7 +14,8 @@ static char *name_of(const lab *l, const char *file)
 {
     char *path = NULL, *name = NULL;
     document *d = NULL;
-    if (folder_path(l->files, file, true, &path, NULL) == STATUS_OK && document_read(path, &d, NULL) == STATUS_OK) {
+    if (folder_path(l->files, file, true, &path, NULL) == STATUS_OK &&
+        document_read_below(path, folder_real(l->files), &d, NULL) == STATUS_OK) {
         const node *root = document_root(d), *given = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
         if (given && given->kind == NODE_SCALAR && given->text[0])
             name = strdup(given->text);
@@ -87,7 +88,7 @@ static status may_load(void *context, const scene *setting, diagnostic *why)
 
 status study_open(const lab *l, const char *file, study **out, diagnostic *why)
 {
-    const study_guard guard = {may_open, may_load, (void *)(uintptr_t)l};
+    const study_guard guard = {may_open, may_load, (void *)(uintptr_t)l, folder_real(l->files)};
     char *path = NULL;
     *out = NULL;
     status code = folder_path(l->files, file, true, &path, why);

@@ -1,0 +1,50 @@
+#include "base/below.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { FLAGS = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY };
+
+/* The name under which the system shows an open file; opening that opens the very same one. */
+typedef struct shown { char name[32]; } shown;
+
+static shown show(int fd)
+{
+    shown s;
+    snprintf(s.name, sizeof s.name, "/proc/self/fd/%d", fd);
+    return s;
+}
+
+static bool lies_below(const char *name, const char *root)
+{
+    char real[PATH_MAX];
+    const size_t length = strlen(root);
+    const ssize_t size = readlink(name, real, sizeof real);
+    /* One that is as long as there is room may have been cut off. */
+    return size > 0 && (size_t)size < sizeof real && (size_t)size > length + 1 && memcmp(real, root, length) == 0 && real[length] == '/';
+}
+
+int below_open(const char *path, const char *root)
+{
+    if (!root || !*root) {
+        return open(path, FLAGS);
+    }
+    const int place = open(path, O_PATH | O_CLOEXEC); /* of devices, too, nothing happens by that */
+    if (place < 0) {
+        return -1;
+    }
+    const shown file = show(place);
+    int fd = -1, error = EXDEV;
+    if (lies_below(file.name, root)) {
+        fd = open(file.name, FLAGS);
+        error = errno;
+    }
+    close(place);
+    errno = error;
+    return fd;
+}

@@ -1,0 +1,493 @@
+/* Nothing outside of the laboratory's folder is read while a scene is loaded: not what a model's own files name, nor what a link leads to that is put there
+ * between the check of the scene and its loading; and not more triangles than the laboratory's. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "base/below.h"
+#include "image/image.h"
+#include "lab_fixture.h"
+#include "study/study.h"
+#include "web/lab_private.h"
+
+/* The laboratory's folder is above/lab. Every file is in both, but for links and scenes. */
+typedef struct room { char *above, *inside; lab_room lab; } room;
+
+#define TRIANGLE "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n"
+#define GLTF(buffer, picture)                                                                                                                                  \
+    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"                                                      \
+    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]}],"                                                          \
+    "\"materials\":[{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],\"textures\":[{\"source\":0}],"                            \
+    "\"images\":[{\"uri\":\"" picture "\"}],"                                                                                                                  \
+    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                                                                  \
+    "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}],"                                                                              \
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":6}],"                                                    \
+    "\"buffers\":[{\"byteLength\":42,\"uri\":\"" buffer "\"}]}"
+#define SCENE(more) "render: {width: 16, height: 12}\ncamera: {position: [0, 0, -6], target: [0, 0, 0]}\nlights: {lamp: {position: [4, 8, -6]}}\n" more
+#define BODY(file) SCENE("meshes: {body: {file: '" file "'}}\nsolids: {it: {shape: mesh, mesh: body}}\n")
+
+static void put_bytes(const room *r, const char *name, const void *bytes, size_t size)
+{
+    char *path = text_format("%s/%s", r->above, name);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+    free(path);
+}
+
+static void put(const room *r, const char *name, const char *text)
+{
+    put_bytes(r, name, text, strlen(text));
+}
+
+static void put_everywhere(const room *r, const char *name, const void *bytes, size_t size)
+{
+    char *inside = text_format("lab/%s", name);
+    put_bytes(r, name, bytes, size);
+    put_bytes(r, inside, bytes, size);
+    free(inside);
+}
+
+static void take_away(const room *r, const char *name)
+{
+    char *path = text_format("%s/%s", r->inside, name);
+    unlink(path);
+    free(path);
+}
+
+/* In the folder, in place of what was there. */
+static void put_link(const room *r, const char *name, const char *target)
+{
+    take_away(r, name);
+    char *path = text_format("%s/%s", r->inside, name);
+    assert_int_equal(symlink(target, path), 0);
+    free(path);
+}
+
+static void put_pictures(const room *r)
+{
+    image *blank = NULL;
+    unsigned char *bytes = NULL;
+    size_t size = 0;
+    assert_int_equal(image_create(4, 2, &blank, NULL), STATUS_OK);
+    assert_int_equal(image_encode(blank, IMAGE_PNG, 8, true, &bytes, &size, NULL), STATUS_OK);
+    put_everywhere(r, "p.png", bytes, size);
+    free(bytes);
+    image_destroy(blank);
+}
+
+static void put_files(const room *r)
+{
+    static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    static const uint16_t order[3] = {0, 1, 2};
+    static const char paint[] = "newmtl a\nKd 1 0 0\n", model[] = TRIANGLE;
+    static const char pull[] = "hands: {left: [{time_s: 0.5, grab: [0, 1, -6], towards: [0, 0, 1], reach: 0.3}]}\n";
+    unsigned char buffer[42];
+    memcpy(buffer, corners, sizeof corners);
+    memcpy(buffer + sizeof corners, order, sizeof order);
+    put_everywhere(r, "b.bin", buffer, sizeof buffer);
+    put_everywhere(r, "a.mtl", paint, sizeof paint - 1);
+    put_everywhere(r, "plain.obj", model, sizeof model - 1);
+    put_everywhere(r, "pull.yaml", pull, sizeof pull - 1);
+    put_pictures(r);
+}
+
+static int enter(void **state)
+{
+    room *r = calloc(1, sizeof *r);
+    char place[] = "/tmp/cuvette-confine-XXXXXX";
+    r->above = strdup(mkdtemp(place));
+    r->inside = text_format("%s/lab", r->above);
+    assert_int_equal(mkdir(r->inside, 0700), 0);
+    put_files(r);
+    snprintf(r->lab.results, sizeof r->lab.results, "%s/results", r->inside);
+    const lab_settings settings = {.folder = r->inside, .results = r->lab.results, .level = isa_best(), .threads = 2, .requests_per_s = 1e9};
+    diagnostic why = {.what = ""};
+    if (lab_start(&settings, &r->lab.lab, &why) != STATUS_OK)
+        fail_msg("%s", why.what);
+    r->lab.server = lab_server(r->lab.lab);
+    *state = r;
+    return 0;
+}
+
+static int leave(void **state)
+{
+    room *r = *state;
+    lab_stop(r->lab.lab);
+    nftw(r->above, room_unlink, 16, FTW_DEPTH | FTW_PHYS);
+    free(r->inside);
+    free(r->above);
+    free(r);
+    return 0;
+}
+
+static void open_scene(const room *r, const char *yaml)
+{
+    put(r, "lab/scene.yaml", yaml);
+    room_post(&r->lab, "/api/open", "{\"file\": \"scene.yaml\"}");
+}
+
+/* What the state says of the scene that is on the desk: "" where it was rendered. */
+static char *trouble(const room *r)
+{
+    char *reply = client_ask(r->lab.server, "GET", "/api/picture.png?wait=1", "", NULL);
+    const int code = reply_code(reply);
+    free(reply);
+    json_t *state = room_get(&r->lab, "/api/state");
+    const json_t *bad = json_object_get(state, "trouble");
+    assert_int_equal(code, json_is_null(bad) ? 200 : 409);
+    if (!json_is_null(bad))
+        assert_true(json_string_length(json_object_get(bad, "remedy")) > 0);
+    const char *error = json_string_value(json_object_get(bad, "error"));
+    char *text = strdup(error ? error : "");
+    json_decref(state);
+    return text;
+}
+
+static void is_loaded(const room *r, const char *what)
+{
+    char *said = trouble(r);
+    if (said[0])
+        fail_msg("%s: %s", what, said);
+    free(said);
+}
+
+/* word: what it must name. */
+static void is_refused(const room *r, const char *what, const char *word)
+{
+    char *said = trouble(r);
+    if (!strstr(said, word) || strchr(said, '\n') || (!strstr(said, BELOW_WHAT) && !strstr(said, "No such file")))
+        fail_msg("%s: '%s'", what, said);
+    free(said);
+}
+
+/* --- what models name --- */
+
+static void open_obj(const room *r, const char *library)
+{
+    char *text = text_format("mtllib %s\n" TRIANGLE, library);
+    put(r, "lab/m.obj", text);
+    open_scene(r, BODY("m.obj"));
+    free(text);
+}
+
+static void test_libraries_of_materials(void **state)
+{
+    const room *r = *state;
+    char *sub = text_format("%s/sub", r->inside);
+    assert_int_equal(mkdir(sub, 0700), 0);
+    free(sub);
+    put_link(r, "out.mtl", "../a.mtl");
+    put_link(r, "in.mtl", "a.mtl");
+    put_link(r, "up", "..");
+    char *absolute = text_format("%s/a.mtl", r->above);
+    const char *const bad[] = {"../a.mtl", "sub/../../a.mtl", "out.mtl", "up/a.mtl", absolute};
+    const char *const good[] = {"a.mtl", "in.mtl", "sub/../a.mtl", "up/lab/a.mtl"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        open_obj(r, bad[i]);
+        is_refused(r, bad[i], bad[i]);
+    }
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        open_obj(r, good[i]);
+        is_loaded(r, good[i]);
+    }
+    free(absolute);
+}
+
+/* From the working folder, assimp takes the name of a library as it is. */
+static void test_absolute_libraries_of_models_in_the_working_folder(void **state)
+{
+    const room *r = *state;
+    char here[4096];
+    assert_non_null(getcwd(here, sizeof here));
+    assert_int_equal(chdir(r->inside), 0);
+    for (int outside = 0; outside < 2; outside++) {
+        char *text = text_format("mtllib %s/a.mtl\n" TRIANGLE, outside ? r->above : r->inside);
+        put(r, "lab/m.obj", text);
+        scene *s = NULL;
+        diagnostic why = {.what = ""};
+        assert_int_equal(scene_read_text("", BODY("m.obj"), sizeof BODY("m.obj") - 1, &s, NULL), STATUS_OK);
+        assert_int_equal(scene_limit(s, r->inside, 0, NULL), STATUS_OK);
+        assert_int_equal(scene_load(s, &why), outside ? STATUS_BAD_INPUT : STATUS_OK);
+        assert_true(!outside || (strstr(why.what, BELOW_WHAT) && why.remedy[0]));
+        scene_destroy(s);
+        free(text);
+    }
+    assert_int_equal(chdir(here), 0);
+}
+
+static void test_pictures_of_materials(void **state)
+{
+    const room *r = *state;
+    put_link(r, "out.png", "../p.png");
+    put_link(r, "in.png", "p.png");
+    char *absolute = text_format("%s/p.png", r->above), *own = text_format("%s/p.png", r->inside);
+    const char *const bad[] = {"../p.png", "..\\p.png", "%2e%2e/p.png", "out.png", absolute}, *const good[] = {"p.png", "in.png", own};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad + sizeof good / sizeof *good; i++) {
+        const bool is_bad = i < sizeof bad / sizeof *bad;
+        const char *name = is_bad ? bad[i] : good[i - sizeof bad / sizeof *bad];
+        char *text = text_format("newmtl a\nKd 1 1 1\nmap_Kd %s\n", name);
+        put(r, "lab/m.mtl", text);
+        open_obj(r, "m.mtl");
+        if (is_bad)
+            is_refused(r, name, ".png");
+        else
+            is_loaded(r, name);
+        free(text);
+    }
+    free(own);
+    free(absolute);
+}
+
+static void test_what_gltf_names(void **state)
+{
+    const room *r = *state;
+    put(r, "lab/m.gltf", GLTF("../b.bin", "p.png"));
+    open_scene(r, BODY("m.gltf"));
+    is_refused(r, "a buffer above", "../b.bin");
+    put_link(r, "out.bin", "../b.bin");
+    put(r, "lab/m2.gltf", GLTF("out.bin", "p.png"));
+    open_scene(r, BODY("m2.gltf"));
+    is_refused(r, "a linked buffer", "out.bin");
+    put(r, "lab/m3.gltf", GLTF("b.bin", "../p.png"));
+    open_scene(r, BODY("m3.gltf"));
+    is_refused(r, "a picture above", "../p.png");
+    put(r, "lab/m4.gltf", GLTF("b.bin", "p.png"));
+    open_scene(r, BODY("m4.gltf"));
+    is_loaded(r, "all of it within");
+}
+
+/* A model that is to be added is loaded before it is on the desk. */
+static void test_models_that_are_added(void **state)
+{
+    const room *r = *state;
+    put(r, "lab/m.obj", "mtllib ../a.mtl\n" TRIANGLE);
+    char *said = room_refused(&r->lab, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"m.obj\"}", 400);
+    assert_non_null(strstr(said, "../a.mtl"));
+    assert_non_null(strstr(said, BELOW_WHAT));
+    free(said);
+    put(r, "lab/m.obj", "mtllib a.mtl\n" TRIANGLE);
+    room_post(&r->lab, "/api/objects", "{\"kind\": \"model\", \"file\": \"m.obj\"}");
+    is_loaded(r, "a model that is added");
+}
+
+/* --- what is put in a file's place after the check --- */
+
+/* A model's own file is looked at before it is handed to assimp. */
+static void is_said_of_the_file_itself(const room *r)
+{
+    char *said = trouble(r);
+    assert_null(strstr(said, "needs"));
+    free(said);
+}
+
+static void test_files_that_become_links(void **state)
+{
+    const room *r = *state;
+    static const struct { const char *file, *scene; } cases[] = {
+        {"p.png", SCENE("textures: {cloth: {file: p.png}}\nsolids: {it: {shape: sphere, texture: cloth}}\n")},
+        {"p.png", SCENE("background: {kind: picture, picture: p.png}\n")},
+        {"plain.obj", BODY("plain.obj")},
+        {"pull.yaml", SCENE("meshes: {body: {generate: slime, level: 2, time_s: 0.05, script: pull.yaml}}\nsolids: {it: {shape: mesh, mesh: body}}\n")},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        put_files(r);
+        painter_wait(r->lab.lab->painter, "a file is exchanged");
+        open_scene(r, cases[i].scene); /* passes the check */
+        char *target = text_format("../%s", cases[i].file);
+        put_link(r, cases[i].file, target);
+        painter_wait(r->lab.lab->painter, NULL);
+        is_refused(r, cases[i].scene, cases[i].file);
+        is_said_of_the_file_itself(r);
+        free(target);
+        take_away(r, cases[i].file);
+        put_files(r);
+        room_post(&r->lab, "/api/open", "{\"new\": true}");
+        room_post(&r->lab, "/api/undo", "{}");
+        is_loaded(r, cases[i].scene);
+    }
+}
+
+/* Scenes that come from no file are held to the folder, too. */
+static void test_a_new_scene(void **state)
+{
+    const room *r = *state;
+    char *change = text_format("{\"set\": {\"background.kind\": \"picture\", \"background.picture\": \"%s/p.png\"}}", r->inside);
+    for (int opened = 0; opened < 2; opened++) { /* the first one, another one */
+        if (opened)
+            room_post(&r->lab, "/api/open", "{\"new\": true}");
+        take_away(r, "p.png");
+        put_pictures(r);
+        painter_wait(r->lab.lab->painter, "a file is exchanged");
+        room_post(&r->lab, "/api/set", change);
+        put_link(r, "p.png", "../p.png");
+        painter_wait(r->lab.lab->painter, NULL);
+        is_refused(r, "a sky", "background.picture");
+    }
+    free(change);
+}
+
+static status let_all_pass(void *context, const char *path, diagnostic *why)
+{
+    (void)context, (void)path, (void)why;
+    return STATUS_OK;
+}
+
+static status let_all_load(void *context, const scene *setting, diagnostic *why)
+{
+    (void)context, (void)setting, (void)why;
+    return STATUS_OK;
+}
+
+/* As if each were exchanged for a link just after it was looked at. */
+static void test_scenes_and_studies_that_become_links(void **state)
+{
+    const room *r = *state;
+    put(r, "s.yaml", SCENE(""));
+    put(r, "t.study", "study: t\nscene: lab/s.yaml\ngrid: [{render.depth: [1, 2]}]\n");
+    put(r, "lab/t.study", "study: t\nscene: s.yaml\ngrid: [{render.depth: [1, 2]}]\n");
+    put_link(r, "s.yaml", "../s.yaml");
+    put_link(r, "u.study", "../t.study");
+    char *scene_path = text_format("%s/s.yaml", r->inside);
+    for (int within = 0; within < 2; within++) {
+        const char *root = within ? r->above : r->inside;
+        scene *s = NULL;
+        diagnostic why = {.what = ""};
+        assert_int_equal(scene_read_below(scene_path, root, &s, &why), within ? STATUS_OK : STATUS_BAD_INPUT);
+        assert_string_equal(within ? s->limits.root : why.what, within ? root : BELOW_WHAT);
+        scene_destroy(s);
+        for (int k = 0; k < 2; k++) {
+            char *path = text_format("%s/%s.study", r->inside, k ? "u" : "t");
+            const study_guard guard = {.may_open = let_all_pass, .may_load = let_all_load, .root = root};
+            study *t = NULL;
+            if (!within) {
+                assert_int_equal(study_read_guarded(path, &guard, &t, &why), STATUS_BAD_INPUT);
+                assert_string_equal(why.what, BELOW_WHAT);
+            } else if (k == 0) {
+                assert_int_equal(study_read_guarded(path, &guard, &t, &why), STATUS_OK);
+                assert_string_equal(t->base->limits.root, root);
+            }
+            study_destroy(t);
+            free(path);
+        }
+    }
+    free(scene_path);
+}
+
+/* --- what lies below a folder --- */
+
+static bool opens(const room *r, const char *name, const char *root)
+{
+    char *path = text_format("%s/%s", r->above, name);
+    const int fd = below_open(path, root);
+    const int error = errno;
+    free(path);
+    if (fd >= 0)
+        close(fd);
+    else
+        assert_true(error == EXDEV || error == ENOENT);
+    return fd >= 0;
+}
+
+static void test_below(void **state)
+{
+    const room *r = *state;
+    char *beginning = text_format("%s/la", r->above);
+    put_link(r, "to-itself", ".");
+    assert_true(opens(r, "lab/a.mtl", r->inside));
+    assert_true(opens(r, "lab/../lab/to-itself/a.mtl", r->inside));
+    assert_true(opens(r, "a.mtl", NULL) && opens(r, "a.mtl", "") && opens(r, "a.mtl", r->above));
+    assert_false(opens(r, "a.mtl", r->inside));
+    assert_false(opens(r, "lab/../a.mtl", r->inside));
+    assert_false(opens(r, "lab/a.mtl", beginning)); /* which is no folder of its own */
+    assert_false(opens(r, "lab/to-itself", r->inside)); /* the folder itself is not below it */
+    assert_false(opens(r, "lab/nothing", r->inside));
+    free(beginning);
+}
+
+/* --- triangles --- */
+
+/* The second of two meshes that are too large together is not kept. */
+static void test_triangles_together(void **state)
+{
+    const room *r = *state;
+    static const char two[] = SCENE("meshes: {one: {file: plain.obj}, two: {file: plain.obj}, more: {generate: box}}\n");
+    char *name = text_format("%s/any.yaml", r->inside);
+    const struct { size_t limit, kept; const char *word; } cases[] = {{0, 3, NULL}, {14, 3, NULL}, {13, 2, "14 triangles"}, {1, 1, "2 triangles"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        scene *s = NULL;
+        diagnostic why = {.what = ""};
+        assert_int_equal(scene_read_text(name, two, sizeof two - 1, &s, NULL), STATUS_OK);
+        assert_int_equal(scene_limit(s, NULL, cases[i].limit, NULL), STATUS_OK);
+        scene *copy = scene_clone(s); /* is held to the same */
+        assert_int_equal(scene_load(copy, &why), cases[i].word ? STATUS_BAD_INPUT : STATUS_OK);
+        size_t kept = 0;
+        for (size_t k = 0; k < copy->mesh_count; k++)
+            kept += copy->meshes[k].data != NULL;
+        assert_int_equal(kept, cases[i].kept);
+        assert_true(!cases[i].word || (strstr(why.what, cases[i].word) && why.remedy[0]));
+        scene_destroy(copy);
+        scene_destroy(s);
+    }
+    free(name);
+}
+
+/* The importer itself stops at a file that is too large alone. */
+static void test_triangles_of_one_file(void **state)
+{
+    const room *r = *state;
+    put(r, "lab/two.obj", TRIANGLE "f 1 3 2\n");
+    static const char one[] = SCENE("meshes: {one: {file: two.obj}}\n");
+    char *name = text_format("%s/any.yaml", r->inside);
+    scene *s = NULL;
+    diagnostic why = {.what = ""};
+    assert_int_equal(scene_read_text(name, one, sizeof one - 1, &s, NULL), STATUS_OK);
+    assert_int_equal(scene_limit(s, NULL, 1, NULL), STATUS_OK);
+    assert_int_equal(scene_load(s, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "more triangles than the limit of 1"));
+    assert_null(s->meshes[0].data);
+    scene_destroy(s);
+    free(name);
+}
+
+/* The desk counts a file as a few; what it holds is known when it is loaded. */
+static void test_triangles_of_the_laboratory(void **state)
+{
+    const room *r = *state;
+    char *path = text_format("%s/many.obj", r->inside);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    free(path);
+    fputs("v 0 0 0\nv 1 0 0\nv 0 1 0\n", file);
+    for (int i = 0; i < 100; i++)
+        fprintf(file, "v 0 0 %d\nf 1 2 %d\n", i + 1, i + 4);
+    assert_int_equal(fclose(file), 0);
+    open_scene(r, SCENE("meshes: {many: {file: many.obj}, sparse: {generate: sparse, count: 3999900}}\n"));
+    is_loaded(r, "just as many");
+    open_scene(r, SCENE("meshes: {many: {file: many.obj}, sparse: {generate: sparse, count: 3999901}}\n"));
+    char *said = trouble(r);
+    assert_non_null(strstr(said, "4000001 triangles"));
+    free(said);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_libraries_of_materials, enter, leave),
+        cmocka_unit_test_setup_teardown(test_absolute_libraries_of_models_in_the_working_folder, enter, leave),
+        cmocka_unit_test_setup_teardown(test_pictures_of_materials, enter, leave),
+        cmocka_unit_test_setup_teardown(test_what_gltf_names, enter, leave),
+        cmocka_unit_test_setup_teardown(test_models_that_are_added, enter, leave),
+        cmocka_unit_test_setup_teardown(test_files_that_become_links, enter, leave),
+        cmocka_unit_test_setup_teardown(test_a_new_scene, enter, leave),
+        cmocka_unit_test_setup_teardown(test_scenes_and_studies_that_become_links, enter, leave),
+        cmocka_unit_test_setup_teardown(test_below, enter, leave),
+        cmocka_unit_test_setup_teardown(test_triangles_together, enter, leave),
+        cmocka_unit_test_setup_teardown(test_triangles_of_one_file, enter, leave),
+        cmocka_unit_test_setup_teardown(test_triangles_of_the_laboratory, enter, leave),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
