@@ -22,7 +22,7 @@ async function compare(t, screen, what) {
     const found = edges(await screen.pixels());
     const wanted = predicted(index);
     if (!t.equal(found.length, 2, `${what}, index ${index}: edges in the row at eye level`)) return { index, found: [NaN, NaN] };
-    for (const side of [0, 1]) t.near(found[side], wanted[side], 2, `${what}, index ${index}: ${['left', 'right'][side]} edge, pixels`);
+    for (const side of [0, 1]) t.near(found[side], wanted[side], 1, `${what}, index ${index}: ${['left', 'right'][side]} edge, pixels`);
     return { index, found };
 }
 
