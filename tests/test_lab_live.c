@@ -520,6 +520,30 @@ static void many_may_order(void **state)
     scene_destroy(s);
 }
 
+/* A slime may be on the desk, and be ordered to play, while the painter is about to show what was there before. */
+static void an_order_for_a_slime_to_come_is_kept(void **state)
+{
+    (void)state;
+    static const char bare[] = "camera: {position: [0, 0, -6], target: [0, 0, 0]}\n";
+    live *l = live_create(NULL, NULL);
+    scene *s = scene_with(bare, ""), *next = scene_with(toys, "");
+    live_give(l, LIVE_PLAY);
+    attach(l, s);
+    live_detach(l);
+    attach(l, next);
+    assert_true(live_is_on(l));
+    advance(l);
+    assert_true(flag(l, "playing"));
+    assert_true(number(l, "time_s") > 0.0);
+    live_detach(l);
+    scene_destroy(next);
+    attach(l, s); /* and when it is gone for good, nothing is ordered any more */
+    assert_false(live_is_on(l));
+    live_detach(l);
+    live_destroy(l);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -534,6 +558,7 @@ int main(void)
         cmocka_unit_test(a_slime_that_cannot_begin_says_why),
         cmocka_unit_test(who_waits_is_told_when_nobody_paints_any_more),
         cmocka_unit_test(many_may_order),
+        cmocka_unit_test(an_order_for_a_slime_to_come_is_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

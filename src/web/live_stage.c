@@ -97,11 +97,11 @@ status live_attach(live *l, scene *stage, diagnostic *why)
     l->stage = stage;
     pthread_mutex_lock(&l->lock);
     l->account.has_slime = scene_moves(stage);
-    if (!l->account.has_slime)
+    if (!l->account.has_slime && !l->ordered) /* who ordered knows of a scene to come */
         l->mode = LIVE_IS_OFF;
-    const bool off = l->mode == LIVE_IS_OFF;
+    const bool still = l->mode == LIVE_IS_OFF || !l->account.has_slime;
     pthread_mutex_unlock(&l->lock);
-    if (off) {
+    if (still) {
         end(l);
         return STATUS_OK;
     }
