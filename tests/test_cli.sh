@@ -481,6 +481,20 @@ check "lab's picture is the film of render" grep -q '"film_hash":"b92bb012fd9c5f
 kill -INT $lab
 wait $lab
 check "Ctrl-C ends it well" is "$? $(wc -c <lab.err)" "0 0"
+mkdir -p browser
+printf '#!/bin/bash\nread -r _ _ _ _ _ session _ </proc/$$/stat\necho "$session $1" >browser/seen.part && mv browser/seen.part browser/seen\n' >browser/xdg-open
+chmod +x browser/xdg-open
+PATH=$PWD/browser:$PATH "$program" lab here.yaml >lab.out 2>lab.err &
+lab=$!
+for ((i = 0; i < 600; i++)); do
+    [[ -s browser/seen ]] && break
+    sleep 0.1
+done
+read -r _ _ _ _ _ session _ </proc/$lab/stat
+check "lab opens its address in a browser" is "$(cut -d' ' -f2 browser/seen)" "$(<lab.out)"
+check "which is in a session of its own, so that Ctrl-C leaves it alone" holds "$(cut -d' ' -f1 browser/seen) != $session"
+kill -INT $lab
+wait $lab
 run_lab --folder . --results . --port 0
 check "lab needs no scene" matches "$address" '^http'
 kill -TERM $lab

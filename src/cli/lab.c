@@ -6,6 +6,8 @@
 #include "measure/topology.h"
 #include "web/lab.h"
 #include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,14 +81,17 @@ static char *choose_folder(const lab_request *request)
     return strdup(".");
 }
 
-/* In a process of its own, whose words go nowhere. */
+/* In a process of its own, whose words go nowhere, and in a session of its own: the Ctrl-C that ends the laboratory is not for the browser. */
 static void open_browser(const char *address)
 {
     const pid_t child = fork();
     if (child == 0) {
+        setsid();
         if (fork() == 0) {
-            if (!freopen("/dev/null", "r", stdin) || !freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr))
+            const int nowhere = open("/dev/null", O_RDWR);
+            if (dup2(nowhere, STDIN_FILENO) < 0 || dup2(nowhere, STDOUT_FILENO) < 0 || dup2(nowhere, STDERR_FILENO) < 0)
                 _exit(127);
+            signal(SIGPIPE, SIG_DFL);
             execlp("xdg-open", "xdg-open", address, (char *)NULL);
         }
         _exit(127);
