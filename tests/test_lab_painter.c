@@ -380,6 +380,34 @@ static void lookers_see_what_is_loaded(void **state)
     close_studio(&s);
 }
 
+/* Even where it is ordered to end before it has moved at all: while something else is loaded. */
+static void what_was_live_is_loaded_again(void **state)
+{
+    (void)state;
+    enum { TURNS = 20 };
+    static const char toys[] = "render: {width: 8, height: 8}\ncamera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
+                               "meshes:\n  toy: {generate: slime, level: 2, ground_y: -1, time_s: 0.001}\n  ring: {generate: torus, around: 500, tube: 100}\n"
+                               "solids:\n  body: {shape: mesh, mesh: toy}\n  hoop: {shape: mesh, mesh: ring}\n";
+    const struct timespec a_moment = {.tv_nsec = 2000000};
+    studio s;
+    open_studio(&s, scene_from(toys));
+    live *toy = painter_live(s.p);
+    final_film(&s);
+    for (int i = 0; i < TURNS; i++) {
+        painter_wait(s.p, "a change comes");
+        apply(&s, i % 2 ? "ring.major=3" : "ring.major=4");
+        apply(&s, i % 2 ? "toy.time_s=0.002" : "toy.time_s=0.003");
+        live_give(toy, LIVE_PLAY);
+        painter_wait(s.p, NULL);
+        nanosleep(&a_moment, NULL);
+        live_give(toy, LIVE_OFF);
+        final_film(&s);
+    }
+    painter_end(s.p);
+    painter_destroy(s.p);
+    desk_destroy(s.d);
+}
+
 int main(void)
 {
     const struct CMUnitTest cases[] = {
@@ -393,6 +421,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_painted_keeps_nobody_busy),
         cmocka_unit_test(what_takes_hours_keeps_no_newer_change_back),
         cmocka_unit_test(lookers_see_what_is_loaded),
+        cmocka_unit_test(what_was_live_is_loaded_again),
         cmocka_unit_test(passes_fit_the_time_that_there_is),
     };
     return cmocka_run_group_tests_name("lab_painter", cases, NULL, NULL);

@@ -320,14 +320,22 @@ static void renew_stage(painter *p)
     p->plan = code == STATUS_OK ? passes_plan(&p->stage->render, p->rate, first_s) : (pass_plan){.count = 0};
 }
 
-/* The slime's orders and its motion; a stage that moved is painted anew. */
+static bool is_bare(const scene *stage)
+{
+    bool bare = false;
+    for (size_t i = 0; i < stage->mesh_count; i++)
+        bare |= !stage->meshes[i].data;
+    return bare;
+}
+
+/* The slime's orders and its motion; a stage that moved is painted anew. What it leaves without a mesh, whenever the order came, is loaded. */
 static void move_stage(painter *p)
 {
     diagnostic why = {.line = 0};
     bool told = false;
     pthread_rwlock_wrlock(&p->stage_lock);
     status code = live_advance(p->toy, move_s, &told, &why);
-    const bool moved = live_take_moved(p->toy), ended = p->was_on && !live_is_on(p->toy);
+    const bool moved = live_take_moved(p->toy), ended = (p->was_on && !live_is_on(p->toy)) || (p->stage_ready && is_bare(p->stage));
     p->was_on = live_is_on(p->toy);
     if (code == STATUS_OK && ended)
         code = load_stage(p, &why);
