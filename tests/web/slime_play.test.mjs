@@ -58,6 +58,12 @@ export const cases = {
         await screen.page.getByLabel('Absorption, red', { exact: true }).press('End');
         await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 100);
         t.more((await slime(lab)).time_s, then, 'its time goes on');
+        await screen.page.getByLabel('Tint', { exact: true }).fill('#ff8000');
+        await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 0);
+        const [red, green, blue] = await lab.value('body.absorb_per_m');
+        t.equal(red, 0, 'an orange tint absorbs no red');
+        t.near(Math.exp(-green), ((128 / 255 + 0.055) / 1.055) ** 2.4, 0.001, 'the share of green behind 1 m');
+        t.more(blue, 5, 'absorption of blue, 1/m');
         const { generation } = await lab.get('/api/state');
         await screen.page.getByLabel('Damping', { exact: true }).press('ArrowRight');
         await screen.until((g) => window.lab.state.generation > g && window.lab.slime.time_s < window.lab.state.slime.time_s + 1, generation);

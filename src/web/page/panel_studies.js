@@ -12,7 +12,7 @@ let refresh = () => undefined;
 function create(root, lab) {
   const list = createStudyList({onchoose: choose});
   const details = createDetails(lab, {onrun: run, onstop: stop});
-  const place = element('div', {class: 'study-place'});
+  const place = element('div', {class: 'study-place'}, empty('Reading the studies …'));
   let studies = [];
   let results = null;
   let chosen = memory.get('study', null);

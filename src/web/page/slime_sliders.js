@@ -1,7 +1,7 @@
 /* Sliders for how a slime looks and how it is made.
  * exports: createSliders(lab, solid, mesh) -> {looks: [nodes], body: [nodes], update()}; names of the solid that shows it and of its mesh */
 
-import {slider, element} from './ui.js';
+import {slider, element, gesture, toByte, toLinear, unique} from './ui.js';
 
 const CHANNELS = [['red', 0], ['green', 1], ['blue', 2]];
 
@@ -11,7 +11,7 @@ const looks = [
   {label: 'Diffuse share', of: 'solid', name: 'diffuse', min: 0, max: 1, step: 0.005, hint: 'how much of the colour is seen; clear slime is coloured by what it absorbs'},
   {label: 'Transmission', of: 'solid', name: 'transparency', min: 0, max: 1, step: 0.005},
   {label: 'Index', of: 'solid', name: 'ior', min: 1, max: 2.5, step: 0.005},
-  {heading: 'Absorption', of: 'solid', name: 'absorb_per_m', channels: true, min: 0, max: 100, log: true, unit: '1/m'},
+  {heading: 'Absorption', of: 'solid', name: 'absorb_per_m', channels: true, tint: true, min: 0, max: 100, log: true, unit: '1/m'},
 ];
 const body = [
   {label: 'Stiffness', of: 'mesh', name: 'stiffness', min: 0, max: 200, log: true, unit: 'N/u'},
@@ -38,6 +38,28 @@ function create(lab, path, entry, label, at) {
   return {node: one.node, update: () => one.set(read())};
 }
 
+const DARKEST = 1e-3;      /* what is left of a channel that the chosen colour lacks */
+
+/* The absorption as the colour of white light behind 1 m of it, by Beer and Lambert. */
+function tint(lab, path) {
+  const input = element('input', {type: 'color', id: unique('tint')});
+  let mine = null;
+  const update = () => {
+    const value = lab.param(path)?.value;
+    if (!mine && value) input.value = `#${value.map((a) => toByte(Math.exp(-a)).toString(16).padStart(2, '0')).join('')}`;
+  };
+  input.addEventListener('input', () => {
+    mine ??= gesture('tint');
+    const left = [1, 3, 5].map((at) => Math.max(DARKEST, toLinear(parseInt(input.value.slice(at, at + 2), 16))));
+    lab.set({[path]: left.map((share) => Math.max(0, Number((-Math.log(share)).toPrecision(4))))}, mine).catch(lab.fail);
+  });
+  input.addEventListener('change', () => { mine = null; });
+  update();
+  const node = element('div', {class: 'field'}, element('label', {for: input.id, text: 'Tint'}),
+    element('span', {class: 'field-control'}, input, element('span', {class: 'hint', text: 'white light behind 1 m of it'})));
+  return {node, update};
+}
+
 function channels(lab, path, entry) {
   const three = CHANNELS.map(([name, at]) => {
     const one = create(lab, path, entry, `${entry.heading}, ${name}`, at);
@@ -45,8 +67,9 @@ function channels(lab, path, entry) {
     one.node.querySelector('.range').setAttribute('aria-label', `${entry.heading}, ${name}`);
     return one;
   });
-  const node = element('fieldset', {class: 'slime-channels'}, element('legend', {text: entry.heading}), three.map((one) => one.node));
-  return {node, update: () => three.forEach((one) => one.update())};
+  const all = entry.tint ? [tint(lab, path), ...three] : three;
+  const node = element('fieldset', {class: 'slime-channels'}, element('legend', {text: entry.heading}), all.map((one) => one.node));
+  return {node, update: () => all.forEach((one) => one.update())};
 }
 
 export function createSliders(lab, solid, mesh) {
