@@ -8,24 +8,24 @@ const MANY = 8;
 export function createFiles(lab, choice) {
   return {open, fresh, save, saveAs, pickSky, pick, addFile, forObject};
 
-  /* kind: a key of /api/files. */
-  async function pick(title, kind, nothing) {
+  /* kind: a key of /api/files; actions: of the dialog, beside Cancel. */
+  async function pick(title, kind, nothing, actions = []) {
     try {
       const files = await lab.get('/api/files');
-      return await chooser(title, files[kind], files.folder, nothing);
+      return await chooser(title, files[kind], files.folder, nothing, actions);
     } catch (error) {
       lab.fail(error);
       return null;
     }
   }
 
-  function chooser(title, names, folder, nothing) {
+  function chooser(title, names, folder, nothing, actions) {
     const list = element('ul', {class: 'file-list'});
     const search = element('input', {type: 'search', class: 'input', id: unique('find'), spellcheck: 'false', placeholder: 'Find'});
     const content = element('div', {class: 'file-choice'}, element('p', {class: 'hint', text: `In the folder ${folder}`}),
       names.length > MANY ? element('label', {class: 'visually-hidden', for: search.id, text: 'Find a file'}) : null, names.length > MANY ? search : null,
       names.length ? list : empty(nothing));
-    const made = dialog({title, content, actions: [['Cancel', null]]});
+    const made = dialog({title, content, actions: [...actions, ['Cancel', null]]});
     made.node.classList.add('file-dialog');
     const fill = () => {
       const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
@@ -115,19 +115,25 @@ export function createFiles(lab, choice) {
     return `${(await lab.get('/api/files')).prefix}${name}`;
   }
 
-  async function setFile(path, title, kind, nothing) {
-    const name = await pick(title, kind, nothing);
-    if (!name) return;
+  /* none(): what is set instead where an action chose no file. */
+  async function setFile(path, title, kind, nothing, actions, none) {
+    const name = await pick(title, kind, nothing, actions);
+    if (name === null) return;
     try {
-      await lab.set({[path]: await asPath(name)});
-      lab.say(`${path} is ${name}.`);
+      await lab.set(name ? {[path]: await asPath(name)} : none());
+      lab.say(`${path} is ${name || 'none'}.`);
     } catch (error) {
       lab.fail(error);
     }
   }
 
   function pickSky() {
-    return setFile('background.picture', 'Picture of the sky', 'pictures', 'There are no pictures in the folder.');
+    const kind = lab.param('background.kind');
+    const away = kind?.value === 'picture' ? [['No picture', '']] : [];
+    return setFile('background.picture', 'Picture of the sky', 'pictures', 'There are no pictures in the folder.', away, () => {
+      const plain = kind.initial && kind.initial !== 'picture' ? kind.initial : kind.choices.find((word) => word !== 'picture');
+      return {'background.kind': plain};
+    });
   }
 
   async function addFile(kind, title) {
