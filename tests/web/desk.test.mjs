@@ -204,6 +204,36 @@ export const cases = {
         t.equal(paths.slice(0, 2), ['vessel.ior', 'liquid.ior'], 'the first of those found');
     },
 
+    'what the camera refuses does not stay in its field': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        screen.expect(/400/);
+        await screen.button('Camera', true).click();
+        for (const [label, wrong, right] of [['Field of view', '500', '45'], ['Position x', '1e9', '0']]) {
+            const field = screen.page.getByRole('spinbutton', { name: label, exact: true });
+            await field.fill(wrong);
+            await field.press('Enter');
+            await screen.quiet();
+            await field.blur();
+            t.equal(await field.inputValue(), right, `${label}, left after ${wrong}`);
+        }
+    },
+
+    'a picture of the sky, and none again': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        const before = await shownFilm(screen);
+        await screen.showPanel('Objects');
+        await screen.button('Sky').click();
+        const dialog = screen.page.getByRole('dialog', { name: 'Picture of the sky' });
+        t.equal(await dialog.getByRole('button', { name: 'No picture' }).count(), 0, 'a way to be rid of one that is not there');
+        await change(screen, () => dialog.getByRole('listitem').getByRole('button').first().click());
+        t.check(await shownFilm(screen) !== before, 'the sky is another');
+        await screen.button('Sky').click();
+        await change(screen, () => dialog.getByRole('button', { name: 'No picture' }).click());
+        t.equal(await shownFilm(screen), before, 'the film without it');
+    },
+
     'a value that is refused leaves the slider as it was': async (t) => {
         const lab = await t.lab('scenes/rod.yaml');
         const screen = await t.open(lab);

@@ -24,6 +24,7 @@ export function number({label, value, min, max, step, unit, onchange}) {
     last = input.valueAsNumber;
     onchange?.(last);
   });
+  input.addEventListener('blur', () => { input.value = shown(last); }); /* not what was refused */
   const set = (next) => {
     last = next;
     if (document.activeElement !== input || input.value === '') input.value = shown(next);
