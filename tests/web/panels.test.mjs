@@ -43,7 +43,7 @@ async function optics(t, dark) {
     await screen.until(() => window.lab.state.pin);
     const { generation } = await lab.post('/api/set', { set: { 'liquid.medium': 'water', 'liquid.absorb_per_m': [1.5, 0.4, 0.1] } });
     await screen.settled(generation);
-    await page.getByText('PSNR').waitFor();
+    await page.getByRole('tabpanel', { name: 'Compare' }).getByText(await page.evaluate(() => window.lab.picture.film_hash)).waitFor();
     await show(t, screen, `compare-${theme}`);
     await page.getByText('Difference', { exact: true }).click();
     await show(t, screen, `difference-${theme}`);
