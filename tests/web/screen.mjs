@@ -63,8 +63,10 @@ export class Screen {
 
     /** Until nothing is asked of the server, but for the stream of events, and what came is drawn. */
     async quiet() {
-        if (this.asking.size) await new Promise((resolve) => this.idle.push(resolve));
-        await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+        do { // what waited in the page for an answer is asked when that has come
+            if (this.asking.size) await new Promise((resolve) => this.idle.push(resolve));
+            await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+        } while (this.asking.size);
     }
 
     /** Until an answer of the page is true; it may use window.lab. */
