@@ -25,7 +25,7 @@ export function whyUnused(lab, object, name) {
   const medium = value(lab, object, 'medium');
   if (!medium) return '';
   if (name === 'ior' && medium !== 'ior') return `the medium ${medium} gives the index; one that is set here takes its place`;
-  if (name === 'coefficients' && !hasLaw(lab, object)) return `the medium ${medium} is not given by coefficients`;
+  if (name === 'coefficients' && value(lab, object, name).length && !hasLaw(lab, object)) return `the medium ${medium} is not given by coefficients`;
   return '';
 }
 
