@@ -113,7 +113,7 @@ static void come_to_rest(live *l)
 
 /* --- another thread's hand --- */
 
-typedef struct helper {
+typedef struct puller {
     live *l;
     vec3 origin, direction;
     int hand;
@@ -121,20 +121,20 @@ typedef struct helper {
     status code;
     diagnostic why;
     atomic_bool done;
-} helper;
+} puller;
 
 static void *grab_there(void *of)
 {
-    helper *h = of;
+    puller *h = of;
     h->code = live_grab(h->l, h->origin, h->direction, 0.3, &h->hand, &h->where, &h->why);
     atomic_store(&h->done, true);
     return NULL;
 }
 
 /* While this thread paints. */
-static helper grab(live *l, double x, double y)
+static puller grab(live *l, double x, double y)
 {
-    helper h = {.l = l, .origin = vec3_make(x, y, -6), .direction = vec3_make(0, 0, 2)};
+    puller h = {.l = l, .origin = vec3_make(x, y, -6), .direction = vec3_make(0, 0, 2)};
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, grab_there, &h), 0);
     while (!atomic_load(&h.done))
@@ -221,10 +221,10 @@ static void a_pull_draws_it_out_and_it_comes_back(void **state)
     while (number(l, "time_s") < 0.5) /* until the floor has it */
         go_on(l);
     const bounds3 rest = s->meshes[TOY].data->bounds;
-    helper missed = grab(l, 3.5, 0);
+    puller missed = grab(l, 3.5, 0);
     assert_int_equal(missed.code, STATUS_OK);
     assert_int_equal(missed.hand, LIVE_MISSED);
-    helper h = grab(l, 0.2, 0), still = grab(l, 1.5, 0); /* which keeps it from rolling away */
+    puller h = grab(l, 0.2, 0), still = grab(l, 1.5, 0); /* which keeps it from rolling away */
     assert_int_equal(h.code, STATUS_OK);
     assert_true(h.hand > 0);
     assert_true(fabs(h.where.x - 0.2) < 1e-9 && h.where.z < 0.0 && h.where.z > -1.0);
@@ -259,7 +259,7 @@ static void a_hand_wakes_what_rests(void **state)
     live_give(l, LIVE_PLAY);
     come_to_rest(l);
     assert_false(live_is_due(l));
-    helper h = grab(l, 1, 0), other = grab(l, 1.3, 0.7);
+    puller h = grab(l, 1, 0), other = grab(l, 1.3, 0.7);
     assert_true(live_is_moving(l));
     assert_true(other.hand > h.hand);
     diagnostic why = {.what = ""};
@@ -290,7 +290,7 @@ static void other_colours_leave_its_shape(void **state)
     attach(l, s);
     live_give(l, LIVE_PLAY);
     advance(l);
-    helper h = grab(l, 0.2, 0);
+    puller h = grab(l, 0.2, 0);
     diagnostic why = {.what = ""};
     live_move(l, h.hand, vec3_make(-1.0, 0.3, 0), &why);
     while (skin_low(s).x > -1.5)
@@ -328,7 +328,7 @@ static void another_body_begins_anew(void **state)
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         while (number(l, "time_s") == 0.0)
             go_on(l);
-        helper h = grab(l, 1.1, 0.1);
+        puller h = grab(l, 1.1, 0.1);
         assert_true(h.hand > 0);
         s = replace(l, s, others[i]);
         assert_true(number(l, "time_s") == 0.0);
@@ -365,7 +365,7 @@ static void a_body_that_blows_up_says_so_until_it_is_started_again(void **state)
     assert_false(flag(l, "playing"));
     assert_false(live_is_moving(l) || live_is_due(l));
     assert_false(advance(l));
-    helper h = grab(l, 1, 0);
+    puller h = grab(l, 1, 0);
     assert_int_equal(h.code, STATUS_BAD_INPUT);
     live_give(l, LIVE_PLAY);
     advance(l);
@@ -459,7 +459,7 @@ static void who_waits_is_told_when_nobody_paints_any_more(void **state)
     attach(l, s);
     live_give(l, LIVE_PLAY);
     advance(l);
-    helper h = {.l = l, .origin = vec3_make(1, 0, -6), .direction = vec3_make(0, 0, 1)};
+    puller h = {.l = l, .origin = vec3_make(1, 0, -6), .direction = vec3_make(0, 0, 1)};
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, grab_there, &h), 0);
     live_stop(l);
@@ -475,7 +475,7 @@ static void who_waits_is_told_when_nobody_paints_any_more(void **state)
 /* Orders from many sides while it goes from stage to stage. */
 static void *give_orders(void *of)
 {
-    helper *h = of;
+    puller *h = of;
     diagnostic why;
     for (int i = 0; i < 50; i++) {
         live_grab(h->l, h->origin, h->direction, 0.3, &h->hand, &h->where, &h->why);
@@ -498,10 +498,10 @@ static void many_may_order(void **state)
     scene *s = scene_with(toys, "");
     attach(l, s);
     live_give(l, LIVE_PLAY);
-    helper h[THREADS];
+    puller h[THREADS];
     pthread_t threads[THREADS];
     for (int i = 0; i < THREADS; i++) {
-        h[i] = (helper){.l = l, .origin = vec3_make(0.7 + 0.2 * i, 0, -6), .direction = vec3_make(0, 0, 1)};
+        h[i] = (puller){.l = l, .origin = vec3_make(0.7 + 0.2 * i, 0, -6), .direction = vec3_make(0, 0, 1)};
         assert_int_equal(pthread_create(&threads[i], NULL, give_orders, &h[i]), 0);
     }
     for (int turn = 0; !atomic_load(&h[0].done); turn++) {

@@ -243,9 +243,7 @@ static bool take_new(lab *l, const json_t *body, edit *e, scene **loaded, http_r
         code = load_alone(l, e->file, is_model, loaded, &why);
         gate_leave(l->heavy);
     }
-    if (code == STATUS_INTERRUPTED)
-        http_reply_error(r, 409, why.what, why.remedy);
-    else if (code != STATUS_OK)
+    if (code != STATUS_OK)
         http_reply_diagnostic(r, code, &why);
     return code == STATUS_OK;
 }

@@ -94,8 +94,6 @@ static void reply_picture(lab *l, const http_request *q, http_reply *r, image_fo
         add_number(r, "X-Cuvette-Final", p->final);
         if (download)
             name_download(r, download);
-    } else if (code == STATUS_INTERRUPTED) {
-        http_reply_error(r, 409, why.what, why.remedy);
     } else {
         http_reply_diagnostic(r, code, &why);
     }

@@ -15,8 +15,6 @@ static void reply(http_reply *r, status code, json_t *value, const diagnostic *w
 {
     if (code == STATUS_OK)
         http_reply_json(r, 200, value);
-    else if (code == STATUS_INTERRUPTED)
-        http_reply_error(r, 409, why->what, why->remedy);
     else
         http_reply_diagnostic(r, code, why);
 }
@@ -260,6 +258,10 @@ static void draw(lab *l, const study *s, http_reply *r)
     char *said = NULL;
     bool whole;
     diagnostic why = {.what = ""};
+    if (studies_is_running(l->studies)) {
+        http_reply_error(r, 409, "a study measures, and drawing would disturb it", "draw when it has ended, or stop it");
+        return;
+    }
     if (!studies_begin_drawing(l->studies)) {
         http_reply_error(r, 409, "figures are being drawn", "wait for them");
         return;

@@ -64,15 +64,6 @@ static bool take_place(const http_request *request, const char *key, int *place,
     return false;
 }
 
-/* STATUS_INTERRUPTED: a study measures, or the scene is not there in time. */
-static void reply_trouble(http_reply *reply, status code, const diagnostic *why)
-{
-    if (code == STATUS_INTERRUPTED)
-        http_reply_error(reply, 409, why->what, why->remedy);
-    else
-        http_reply_diagnostic(reply, code, why);
-}
-
 static void reply_trace(lab *l, const http_request *request, http_reply *reply, trace_writer *write, const char *type)
 {
     trace_question q = {.lab = l, .write = write};
@@ -89,7 +80,7 @@ static void reply_trace(lab *l, const http_request *request, http_reply *reply, 
         http_reply_bytes(reply, 200, type, q.bytes, q.size);
     } else {
         free(q.bytes);
-        reply_trouble(reply, code, &why);
+        http_reply_diagnostic(reply, code, &why);
     }
     json_decref(told);
 }

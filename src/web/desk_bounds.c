@@ -1,5 +1,6 @@
 #include "web/desk_bounds.h"
 #include "web/desk.h"
+#include "web/passes.h"
 #include "scene/check.h"
 
 #include <math.h>
@@ -23,13 +24,6 @@ static double triangles_of(const mesh_entry *m)
     return 12.0;
 }
 
-static double work_of(const render_settings *r)
-{
-    const double rays = r->integrator == INTEGRATOR_PATH ? fmax((double)r->paths, (double)r->samples) : (double)r->samples;
-    const double wavelengths = r->spectrum == SPECTRUM_SPECTRAL ? (double)r->wavelengths : 1.0;
-    return (double)r->width * (double)r->height * rays * wavelengths;
-}
-
 static status check_bounds(const scene *s, diagnostic *why)
 {
     double triangles = 0.0;
@@ -38,9 +32,9 @@ static status check_bounds(const scene *s, diagnostic *why)
     if (s->render.width * s->render.height > DESK_PIXELS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "render larger pictures by `cuvette render`", "%lld x %lld pixels are more than the %d of the laboratory",
                         (long long)s->render.width, (long long)s->render.height, DESK_PIXELS_MAX);
-    if (work_of(&s->render) > DESK_WORK_MAX)
+    if (passes_work(&s->render, 1, false) > DESK_WORK_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use fewer pixels, samples, paths or wavelengths, or `cuvette render`",
-                        "%.3g camera rays are more than the %.0e of the laboratory", work_of(&s->render), DESK_WORK_MAX);
+                        "%.3g camera rays are more than the %.0e of the laboratory", passes_work(&s->render, 1, false), DESK_WORK_MAX);
     if (triangles > DESK_TRIANGLES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use smaller meshes, or `cuvette render`", "%.0f triangles are more than the %d of the laboratory", triangles,
                         DESK_TRIANGLES_MAX);

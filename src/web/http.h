@@ -97,7 +97,7 @@ void http_reply_static(http_reply *reply, int code, const char *type, const void
 void http_reply_json(http_reply *reply, int code, json_t *value);                               /* takes the reference; NULL is a 500 */
 /* {"error": what, "remedy": remedy}; bytes of what that are not UTF-8 become '?'. */
 void http_reply_error(http_reply *reply, int code, const char *what, const char *remedy);
-/* 400 for STATUS_BAD_INPUT, otherwise 500; with file, line and column where the diagnostic has them. */
+/* 400 for STATUS_BAD_INPUT, 409 for STATUS_INTERRUPTED, otherwise 500; with file, line and column where the diagnostic has them. */
 void http_reply_diagnostic(http_reply *reply, status code, const diagnostic *why);
 /* Adds a header (copied), at most 8; not those that every reply has. Without effect where name or value have control characters. */
 void http_reply_header(http_reply *reply, const char *name, const char *value);

@@ -60,7 +60,7 @@ void http_reply_error(http_reply *r, int code, const char *what, const char *rem
 
 void http_reply_diagnostic(http_reply *r, status code, const diagnostic *why)
 {
-    http_reply_json(r, code == STATUS_BAD_INPUT ? 400 : 500, json_of_diagnostic(why));
+    http_reply_json(r, code == STATUS_BAD_INPUT ? 400 : code == STATUS_INTERRUPTED ? 409 : 500, json_of_diagnostic(why));
 }
 
 static bool printable(const char *text)

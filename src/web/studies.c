@@ -212,6 +212,14 @@ const atomic_bool *studies_ending(const studies *st)
     return &st->ending;
 }
 
+bool studies_is_running(studies *st)
+{
+    pthread_mutex_lock(&st->lock);
+    const bool running = st->running;
+    pthread_mutex_unlock(&st->lock);
+    return running;
+}
+
 bool studies_begin_drawing(studies *st)
 {
     return !atomic_exchange(&st->drawing, true);

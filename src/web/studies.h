@@ -25,6 +25,9 @@ json_t *studies_tell(studies *st);
 
 /* Set when the laboratory ends: for what takes long. And one at a time may draw figures: false where another does. */
 const atomic_bool *studies_ending(const studies *st);
+/* Is one being measured now? */
+bool studies_is_running(studies *st);
+
 bool studies_begin_drawing(studies *st);
 void studies_end_drawing(studies *st);
 

@@ -2,19 +2,16 @@
 
 import {button, check, element, empty, notice, replace} from './ui.js';
 
-const AGAIN_MS = 15000;
-
 export function createFigures(lab) {
   const said = element('div');
   const list = element('div', {class: 'study-figures'});
   const draw = button('Draw with gnuplot', () => ask(), {icon: 'chart', small: true});
-  const along = check('Draw again as rows come', false);
-  const warning = element('p', {class: 'hint', text: 'Drawing takes processor time from what is measured at that moment.'});
+  const along = check('Draw again when it has ended', false);
+  const warning = element('p', {class: 'hint', text: 'Drawing would disturb what is measured now: these are drawn when it has ended or is stopped.'});
   const bar = element('div', {class: 'buttons'}, draw, along.node);
   const node = element('div', {class: 'study-part'}, bar, warning, said, list);
   let study = null;
   let busy = false;
-  let drawn_at = 0;
   let version = 0;
   let names = '';
   return {node, show, grew};
@@ -23,7 +20,7 @@ export function createFigures(lab) {
     if (next.name !== study?.name) replace(said);
     study = next;
     bar.hidden = drawable.length === 0;
-    draw.disabled = busy || !rows;
+    draw.disabled = busy || !rows || running;
     draw.title = rows ? drawable.join(', ') : 'when there are rows';
     warning.hidden = bar.hidden || !running;
     drawList(figures, drawable);
@@ -42,9 +39,9 @@ export function createFigures(lab) {
       element('figcaption', {class: 'hint', text: name}))));
   }
 
-  /* More rows are there, or the study has ended. */
+  /* More rows are there; ended: and no more will come for now. */
   function grew(ended) {
-    if (along.value && !bar.hidden && (ended || Date.now() - drawn_at > AGAIN_MS)) ask();
+    if (along.value && !bar.hidden && ended) ask();
   }
 
   async function ask() {
@@ -53,7 +50,6 @@ export function createFigures(lab) {
     const of = study;
     try {
       const told = await lab.post(`/api/studies/${encodeURIComponent(of.name)}/draw`, {});
-      drawn_at = Date.now();
       version++;
       if (of.name === study.name) {
         replace(said, told.complete ? null : notice('Not all figures could be drawn from the rows so far.', {kind: 'warning', remedy: told.said.slice(0, 400)}));
