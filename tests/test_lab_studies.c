@@ -204,6 +204,7 @@ static void one_runs_at_a_time(void **state)
     assert_non_null(strstr(said, "tiny"));
     free(said);
     free(room_refused(room, "POST", "/api/studies/tiny/run", "{}", 409));
+    free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 409)); /* it would disturb the other one */
     free(room_refused(room, "POST", "/api/studies/other/stop", "{}", 409));
     json_t *told = room_get(room, "/api/studies/tiny");
     assert_true(json_is_true(json_object_get(told, "running")));
