@@ -395,6 +395,53 @@ static void test_change(void **state)
     assert_true(fabs(value(r, "globe2.position", 0) - value(r, "globe.position", 0)) >= 2.0);
 }
 
+/* The reference scene's rod, which is long and thin, in its vessel. */
+static const char rod_scene[] = "render: {width: 40, height: 30}\ncamera: {position: [0, 2.75, -6], target: [0, 1.5, 0], fov_deg: 45}\n"
+                                "lights: {lamp: {position: [4, 7, -5]}}\n"
+                                "solids:\n  ground: {shape: plane, priority: 0}\n"
+                                "  vessel: {shape: cup, transparency: 1, ior: 1.5, position: [0, 0.001, 0], radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: 2}\n"
+                                "  liquid: {shape: cylinder, transparency: 1, ior: 1.33, position: [0, 0.051, 0], radius: 0.95, height: 1.95, priority: 1}\n"
+                                "  rod: {shape: box, diffuse: 0.7, position: [0.2, 2.101, 0], size: [0.25, 3, 0.25], priority: 3}\n";
+
+static double apart(const room *r, const char *a, const char *b, size_t axis)
+{
+    char of_a[32], of_b[32];
+    snprintf(of_a, sizeof of_a, "%s.position", a);
+    snprintf(of_b, sizeof of_b, "%s.position", b);
+    return fabs(value(r, of_a, axis) - value(r, of_b, axis));
+}
+
+/* Are all of its corners in the picture of rod_scene? */
+static bool is_seen(const room *r, const char *rod)
+{
+    char path[32];
+    snprintf(path, sizeof path, "%s.position", rod);
+    const double length = hypot(1.25, 6.0), half_height = tan(acos(-1.0) / 8.0), half_width = half_height * 4.0 / 3.0;
+    for (int corner = 0; corner < 8; corner++) {
+        const double x = value(r, path, 0) + (corner & 1 ? 0.125 : -0.125);
+        const double y = value(r, path, 1) + (corner & 2 ? 1.5 : -1.5) - 2.75, z = value(r, path, 2) + (corner & 4 ? 0.125 : -0.125) + 6.0;
+        const double ahead = (6.0 * z - 1.25 * y) / length, up = (6.0 * y + 1.25 * z) / length;
+        if (ahead <= 0.0 || fabs(x) > half_width * ahead || fabs(up) > half_height * ahead)
+            return false;
+    }
+    return true;
+}
+
+static void test_copies_of_a_rod(void **state)
+{
+    const room *r = *state;
+    static const char *const rods[] = {"rod", "rod2", "rod3", "rod4"};
+    put(r, "lab/rod.yaml", rod_scene);
+    tell(r, 200, "POST", "/api/open", "{\"file\": \"rod.yaml\"}");
+    for (size_t i = 1; i < sizeof rods / sizeof *rods; i++) {
+        tell(r, 200, "POST", "/api/objects/rod/copy", "{}");
+        assert_true(is_seen(r, rods[i]));
+        for (size_t k = 0; k < i; k++)
+            assert_true(apart(r, rods[i], rods[k], 0) > 0.25 || apart(r, rods[i], rods[k], 2) > 0.25 || apart(r, rods[i], rods[k], 1) > 3.0);
+    }
+    assert_true(apart(r, "rod", "rod2", 0) < 0.3); /* it stands in the liquid, too */
+}
+
 static void test_copies_of_meshes(void **state)
 {
     const room *r = *state;
@@ -530,6 +577,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_each_solid_comes_and_shows, enter, leave),
         cmocka_unit_test_setup_teardown(test_others_come, enter, leave),
         cmocka_unit_test_setup_teardown(test_change, enter, leave),
+        cmocka_unit_test_setup_teardown(test_copies_of_a_rod, enter, leave),
         cmocka_unit_test_setup_teardown(test_copies_of_meshes, enter, leave),
         cmocka_unit_test_setup_teardown(test_change_refuses, enter, leave),
         cmocka_unit_test_setup_teardown(test_until_it_is_full, enter, leave),

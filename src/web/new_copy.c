@@ -19,18 +19,51 @@ static vec3 rounded(vec3 v, double size)
     return vec3_make(spot_round(v.x, size), spot_round(v.y, size), spot_round(v.z, size));
 }
 
+/* How deep boxes around two solids, along the camera's ways, lie in each other once the first one has stepped; 0 where something parts them. */
+static double depth(const scene *s, const spot *where, const solid *a, vec3 step, const solid *b)
+{
+    const vec3 along[] = {where->right, where->away, vec3_make(0, 1, 0)};
+    vec3 from, to;
+    double radius, least = INFINITY;
+    if (!spot_ball(s, a, &from, &radius) || !spot_ball(s, b, &to, &radius))
+        return 0.0;
+    const vec3 way = vec3_sub(to, vec3_add(from, step));
+    for (size_t i = 0; i < sizeof along / sizeof *along; i++)
+        least = fmin(least, spot_half_size(s, a, along[i]) + spot_half_size(s, b, along[i]) - fabs(vec3_dot(way, along[i])));
+    return fmax(0.0, least);
+}
+
+/* What it stands in, its copy may stand in, too. */
+static double overlap_after(const scene *s, const spot *where, const solid *of, vec3 step)
+{
+    double sum = depth(s, where, of, step, of);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *other = &s->solids[i];
+        if (other != of && other->visible && depth(s, where, of, vec3_make(0, 0, 0), other) <= 0.0)
+            sum += depth(s, where, of, step, other);
+    }
+    return sum;
+}
+
+/* A little more than its size that way, so that something parts it and its copy. */
+static double stride(const scene *s, const solid *of, vec3 along, double radius)
+{
+    return 2.1 * fmax(spot_half_size(s, of, along), 0.01 * radius);
+}
+
 /* From it to where a second one is seen and stands free, or nearly so: to a side, or behind or before it. */
-static vec3 step_beside(const scene *s, const spot *where, vec3 centre, double radius)
+static vec3 step_beside(const scene *s, const spot *where, const solid *of, vec3 centre, double radius)
 {
     static const double ways[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {2, 0}, {-2, 0}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}, {0, 2}};
+    const double aside = stride(s, of, where->right, radius), behind = stride(s, of, where->away, radius);
     vec3 best = where->right;
     double least = INFINITY;
     for (size_t i = 0; i < sizeof ways / sizeof *ways && least > 0.0; i++) {
-        vec3 step = vec3_add(vec3_scale(where->right, 2.1 * radius * ways[i][0]), vec3_scale(where->away, 2.1 * radius * ways[i][1]));
-        step = rounded(step, radius);
-        const double deep = spot_overlap(s, vec3_add(centre, step), radius);
-        if (deep < least) {
-            least = deep;
+        vec3 step = vec3_add(vec3_scale(where->right, aside * ways[i][0]), vec3_scale(where->away, behind * ways[i][1]));
+        step = rounded(step, fmin(aside, behind));
+        const double bad = overlap_after(s, where, of, step) + (spot_in_view(s, vec3_add(centre, step)) ? 0.0 : radius);
+        if (bad < least) {
+            least = bad;
             best = step;
         }
     }
@@ -45,7 +78,7 @@ static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
     vec3 centre, step = rounded(vec3_scale(normal, -where.size), where.size);
     double radius;
     if (spot_ball(s, &s->solids[of], &centre, &radius))
-        step = step_beside(s, &where, centre, radius);
+        step = step_beside(s, &where, &s->solids[of], centre, radius);
     size_t index;
     const status code = scene_add_solid(s, name, s->solids[of].shape.kind, &index, why);
     if (code != STATUS_OK)

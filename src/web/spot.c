@@ -76,6 +76,30 @@ bool spot_ball(const scene *s, const solid *of, vec3 *centre, double *radius)
     return true;
 }
 
+double spot_half_size(const scene *s, const solid *of, vec3 along)
+{
+    const solid_shape *shape = &of->shape;
+    const mat3 turn = rotation_from_deg(shape->rotation_deg);
+    const double x = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(1, 0, 0)))), y = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(0, 1, 0)))),
+                 z = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(0, 0, 1))));
+    vec3 size = shape->size;
+    switch (shape->kind) {
+    case SHAPE_CYLINDER:
+    case SHAPE_CUP:
+        return 0.5 * y * shape->height + hypot(x, z) * shape->radius / (shape->kind == SHAPE_CYLINDER ? fmin(shape->m, 1.0) : 1.0);
+    case SHAPE_SPHERE: return shape->radius;
+    case SHAPE_MESH: {
+        const bounds3 b = mesh_box(s, of);
+        size = vec3_sub(b.high, b.low);
+        break;
+    }
+    case SHAPE_BOX: break;
+    case SHAPE_PLANE:
+    case SHAPE_COUNT: return 0.0;
+    }
+    return 0.5 * (x * fabs(size.x) + y * fabs(size.y) + z * fabs(size.z));
+}
+
 /* How far away is what the camera looks at that is not aimed at a point? */
 static double distance_ahead(const scene *s, vec3 eye, vec3 forward)
 {
@@ -116,7 +140,7 @@ double spot_overlap(const scene *s, vec3 centre, double radius)
     double sum = 0.0;
     for (size_t i = 0; i < s->solid_count; i++) {
         vec3 other;
-        double its_radius;
+        double its_radius = 0.0;
         if (s->solids[i].visible && spot_ball(s, &s->solids[i], &other, &its_radius))
             sum += fmax(0.0, radius + its_radius - vec3_length(vec3_sub(other, centre)));
     }
@@ -128,6 +152,12 @@ static bool is_in_view(const camera_frame *view, vec3 point)
     const vec3 way = vec3_sub(point, view->eye);
     const double depth = vec3_dot(way, view->forward);
     return depth > 0.0 && fabs(vec3_dot(way, view->right)) < view->half_width * depth && fabs(vec3_dot(way, view->up)) < view->half_height * depth;
+}
+
+bool spot_in_view(const scene *s, vec3 point)
+{
+    const camera_frame view = camera_frame_of(s);
+    return is_in_view(&view, point);
 }
 
 vec3 spot_free(const scene *s, const spot *where, double size)

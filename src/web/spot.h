@@ -27,6 +27,11 @@ double spot_overlap(const scene *s, vec3 centre, double radius);
 /* A ball that holds the solid, as far as is known; false for a plane. */
 bool spot_ball(const scene *s, const solid *of, vec3 *centre, double *radius);
 
+/* Half of the solid's size along a unit vector, as far as is known; 0 for a plane. */
+double spot_half_size(const scene *s, const solid *of, vec3 along);
+
+bool spot_in_view(const scene *s, vec3 point);
+
 /* value to so many digits as something of that size needs. */
 double spot_round(double value, double size);
 
