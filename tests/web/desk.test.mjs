@@ -149,10 +149,52 @@ export const cases = {
         const field = screen.page.getByRole('spinbutton', { name: 'liquid ior, number', exact: true }).first();
         await field.fill('1.45');
         await field.press('Control+s');
+        await screen.page.getByRole('dialog', { name: 'Replace the file' }).getByRole('button', { name: 'Replace', exact: true }).click();
         await screen.until(() => window.lab.state.saved);
         const text = await readFile(join(lab.folder, 'scenes/rod.yaml'), 'utf8');
         t.match(text, /depth: 3/, 'the file has what was set');
         t.match(text, /ior: 1\.45/, 'and what was still being written');
+    },
+
+    'a file written by hand is replaced when that is wanted, and asked about once': async (t) => {
+        const lab = await t.lab('scenes/rod.yaml');
+        const screen = await t.open(lab);
+        const text = () => readFile(join(lab.folder, 'scenes/rod.yaml'), 'utf8');
+        const byHand = await text();
+        t.match(byHand, /^#/m, 'the file has comments');
+        const question = screen.page.getByRole('dialog', { name: 'Replace the file' });
+        const naming = screen.page.getByRole('dialog', { name: 'Save the scene as' });
+        const answer = (dialog, name) => dialog.getByRole('button', { name, exact: true }).click();
+        const save = () => screen.button('Save', true).click();
+        await screen.setNumber('render.depth', 3);
+        await screen.showPanel('Objects');
+        await save();
+        await question.getByText('Replace scenes/rod.yaml? It is written anew: comments are lost.').waitFor();
+        await t.axe(screen, 'the question');
+        await answer(question, 'Cancel');
+        await save();
+        await answer(question, 'Save as …');
+        await answer(naming, 'Save'); // the very name again
+        await answer(question, 'Cancel');
+        await screen.quiet();
+        t.equal(await text(), byHand, 'the file, until it may be replaced');
+        await save();
+        await answer(question, 'Replace');
+        await screen.until(() => window.lab.state.saved);
+        t.match(await text(), /depth: 3/, 'the file has what was set');
+        await screen.setNumber('render.depth', 5);
+        await screen.until(() => !window.lab.state.saved);
+        await screen.stage.focus();
+        await screen.page.keyboard.press('Control+s');
+        await screen.until(() => window.lab.state.saved);
+        t.match(await text(), /depth: 5/, 'then it is written unasked');
+        await screen.showPanel('Objects');
+        await screen.button('Open').click();
+        const choice = screen.page.getByRole('dialog', { name: 'Open a scene' });
+        await choice.getByRole('searchbox').fill('scenes/rod.yaml');
+        await change(screen, () => choice.getByRole('listitem').getByRole('button').click());
+        await save();
+        await answer(question, 'Cancel');
     },
 
     'media': async (t) => {

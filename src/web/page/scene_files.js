@@ -6,6 +6,8 @@ import {ask, button, dialog, element, empty, notice, replace, unique} from './ui
 const MANY = 8;
 
 export function createFiles(lab, choice) {
+  const ours = new Set(); /* files that were written from here since they were opened: they have nothing more to lose */
+
   return {open, fresh, save, saveAs, pickSky, pick, addFile, forObject};
 
   /* kind: a key of /api/files; actions: of the dialog, beside Cancel. */
@@ -58,6 +60,7 @@ export function createFiles(lab, choice) {
   async function opened(body) {
     try {
       await lab.change('/api/open', body);
+      ours.delete(body.file);
       choice.choose('');
       lab.say(body.file ? `${body.file} is open.` : 'A new scene.');
     } catch (error) {
@@ -75,9 +78,20 @@ export function createFiles(lab, choice) {
     if (await mayLeave()) await opened({new: true});
   }
 
+  /* The server asks about other files alone, and one written by hand has more in it than the scene. */
+  async function overwrite(file, failed) {
+    const answer = ours.has(file) ? 'replace' : await dialog({
+      title: 'Replace the file', content: element('p', {text: `Replace ${file}? It is written anew: comments are lost.`}),
+      actions: [['Cancel', null], ['Save as …', 'as'], ['Replace', 'replace', 'danger']],
+    }).closed;
+    if (answer === 'as') return saveAs(file);
+    return answer === 'replace' && write(file, false, failed);
+  }
+
   async function write(file, replaceIt, failed = lab.fail) {
     try {
       await lab.change('/api/save', replaceIt ? {file, replace: true} : {file});
+      ours.add(file);
       lab.say(`${file} is saved.`);
       return true;
     } catch (error) {
@@ -87,7 +101,7 @@ export function createFiles(lab, choice) {
   }
 
   function save() {
-    return lab.state?.file ? write(lab.state.file, false) : saveAs();
+    return lab.state?.file ? overwrite(lab.state.file) : saveAs();
   }
 
   /* Where it cannot be written, the name is there to be mended. */
@@ -107,7 +121,8 @@ export function createFiles(lab, choice) {
     const name = await made.closed;
     if (!name) return false;
     const file = `${name.replace(/(\.ya?ml)+$/i, '')}${name.match(/\.ya?ml$/i)?.[0] || '.yaml'}`;
-    return write(file, false, (error) => saveAs(file, error));
+    const mend = (error) => saveAs(file, error);
+    return file === lab.state?.file ? overwrite(file, mend) : write(file, false, mend);
   }
 
   /* A file as the scene names it. */
