@@ -34,7 +34,7 @@ export const cases = {
         const middle = view.project(before);
         await screen.chooseTool('Object');
         await screen.clickPixel(Math.floor(middle.x), Math.floor(middle.y));
-        await screen.page.getByRole('heading', { name: 'ball' }).waitFor();
+        await screen.page.getByRole('heading', { name: 'ball', exact: true }).waitFor();
         const seen = blue(await screen.pixels());
         t.near(seen.x, middle.x, 1, 'the ball is where it is projected to, x');
         await change(screen, async () => {
