@@ -2,13 +2,13 @@
 // program to the first picture drawn, and a change of an index to its first and to its final picture drawn, by medians and worst of N. No test: times
 // depend on the machine.
 import { createRequire } from 'node:module';
-import { join } from 'node:path';
+import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { Lab } from './lab.mjs';
 import { Screen } from './screen.mjs';
 
 const { values: options } = parseArgs({ options: { program: { type: 'string' }, modules: { type: 'string' }, changes: { type: 'string', default: '40' } } });
-const { chromium } = createRequire(join(options.modules, 'package.json'))('playwright-core');
+const { chromium } = createRequire(resolve(options.modules, 'package.json'))('playwright-core');
 
 const median = (times) => [...times].sort((a, b) => a - b)[times.length >> 1];
 const told = (times) => `${median(times).toFixed(0)} (worst ${Math.max(...times).toFixed(0)})`;
