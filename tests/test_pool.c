@@ -40,7 +40,7 @@ static void expect_each_once(job *j, int count)
 static void run_once(pool *p, int count, bool keep, job *j)
 {
     memset(j, 0, sizeof *j);
-    assert_int_equal(pool_run(p, count, keep, note, NULL, j, NULL), STATUS_OK);
+    assert_int_equal(pool_run(p, count, keep, note, NULL, 0.0, j, NULL), STATUS_OK);
     expect_each_once(j, count);
 }
 
@@ -82,7 +82,7 @@ static void many_runs_in_a_row(void **state)
     pool *p = pool_create();
     assert_non_null(p);
     for (int i = 0; i < 3000; i++)
-        assert_int_equal(pool_run(p, 1 + i % 9, true, note, NULL, &j, NULL), STATUS_OK);
+        assert_int_equal(pool_run(p, 1 + i % 9, true, note, NULL, 0.0, &j, NULL), STATUS_OK);
     int wanted = 0;
     for (int i = 0; i < 3000; i++)
         wanted += 1 + i % 9;
@@ -126,7 +126,7 @@ static void the_watcher_is_called_while_workers_run(void **state)
         pool *p = pool_create();
         assert_non_null(p);
         memset(&j, 0, sizeof j);
-        assert_int_equal(pool_run(p, 3, keep, wait_for_the_watcher, watch, &j, NULL), STATUS_OK);
+        assert_int_equal(pool_run(p, 3, keep, wait_for_the_watcher, watch, 0.1, &j, NULL), STATUS_OK);
         expect_each_once(&j, 3);
         assert_true(j.watched >= 2);
         pool_destroy(p);
