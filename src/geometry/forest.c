@@ -51,7 +51,7 @@ static forest_part part_of(const forest_source *source, size_t first_instance)
                          .scaled = scale.x != 1.0 || scale.y != 1.0 || scale.z != 1.0, .rotation = rotation_from_deg(turn), .scale = scale,
                          .origin = shape->position, .spacing = shape->spacing,
                          .copies = {(uint32_t)copies.x, (uint32_t)copies.y, (uint32_t)copies.z}, .first_instance = first_instance,
-                         .reach = largest_coordinate(shape->mesh, scale)};
+                         .reach = largest_coordinate(shape->mesh, scale), .extent = source->extent};
 }
 
 static size_t instances_of(const forest_part *p)

@@ -22,6 +22,7 @@ typedef struct forest_part {
     uint32_t copies[3];
     size_t first_instance;
     double reach;            /* largest coordinate of the mesh in its frame, scaled */
+    double extent;           /* largest coordinate of all its copies in the world */
 } forest_part;
 
 typedef struct forest {
@@ -42,7 +43,8 @@ typedef struct forest {
 typedef struct forest_ray {
     vec3 origin, direction;
     double t_min, t_max;
-    double tie;              /* of cross: a front and a back of one mesh that are not farther apart are at one place */
+    double tie;              /* of cross: a front and a back of one mesh that are not farther apart are at one place ... */
+    double tie_by_extent;    /* ... nor this share of the mesh's extent more */
     int64_t start;           /* face that it starts on, at its origin or where it was passed on; or FACE_NONE */
     int64_t before;          /* rank of the medium that it is in: meshes under it are hidden */
     uint64_t inside;         /* primitives that it is in */
@@ -65,6 +67,7 @@ typedef struct forest_source {
     const solid_shape *shape;
     const hierarchy *tree;
     int primitive, rank;
+    double extent;           /* the primitive's */
 } forest_source;
 
 status forest_build(const forest_source *sources, int count, forest **out, diagnostic *why);
@@ -103,6 +106,8 @@ typedef struct forest_kernels {
     void (*any)(const forest *f, const forest_ray *rays, int count, bool *blocked);
     /* The set behind all crossings of wanted meshes in t_min < t <= t_max; bits of skins that were crossed are set. */
     uint64_t (*cross)(const forest *f, const forest_ray *ray);
+    /* The wanted meshes that are crossed in t_min < t <= t_max at another face than `but`, whatever hides them. */
+    uint64_t (*among)(const forest *f, const forest_ray *ray, int64_t but);
 } forest_kernels;
 
 extern const forest_kernels forest_kernels_sse2, forest_kernels_avx2, forest_kernels_avx512;

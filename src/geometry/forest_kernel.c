@@ -6,8 +6,14 @@
 
 #define TREES KERNEL(hierarchy_kernels)
 
-/* The last crossings of each mesh's fronts and backs on the way, whichever triangles. */
-typedef struct crossings { double front[PRIMITIVES_MAX], back[PRIMITIVES_MAX], t_min; int primitive; } crossings;
+/* The last crossings of each mesh's fronts and backs on the path, whichever triangles; and the meshes that were crossed at another face than `but`. */
+typedef struct crossings {
+    double front[PRIMITIVES_MAX], back[PRIMITIVES_MAX], t_min;
+    int64_t but;
+    uint64_t met;
+    int primitive;           /* of the copy that is asked */
+    uint32_t copy;
+} crossings;
 
 /* What one way down asks each copy that it comes by. */
 typedef struct quest {
@@ -86,7 +92,11 @@ static void note_crossing(void *context, const mesh_hit *hit)
 {
     crossings *all = context;
     double *last = hit->facing == FACING_FRONT ? all->front : all->back;
-    if (hit->t > all->t_min && hit->t > last[all->primitive])
+    if (!(hit->t > all->t_min))
+        return;
+    if (mesh_face_number(all->primitive, all->copy, hit->triangle) != all->but)
+        all->met |= (uint64_t)1 << all->primitive;
+    if (hit->t > last[all->primitive])
         last[all->primitive] = hit->t;
 }
 
@@ -107,6 +117,7 @@ static void ask_copy(quest *q, size_t instance)
         return;
     if (q->all) {
         q->all->primitive = p->primitive;
+        q->all->copy = copy;
         TREES.all(p->tree, &local, note_crossing, q->all);
         return;
     }
@@ -212,12 +223,14 @@ static void any(const forest *f, const forest_ray *rays, int count, bool *blocke
     }
 }
 
-static void look_at_all(const forest *f, const forest_ray *ray, crossings *last)
+static void look_at_all(const forest *f, const forest_ray *ray, int64_t but, crossings *last)
 {
     quest q = quest_of(f, ray);
     q.any = true;
     q.all = last;
     last->t_min = ray->t_min;
+    last->but = but;
+    last->met = 0;
     for (int i = 0; i < f->part_count; i++)
         last->front[f->parts[i].primitive] = last->back[f->parts[i].primitive] = -HUGE_VAL;
     ask(&q);
@@ -225,8 +238,11 @@ static void look_at_all(const forest *f, const forest_ray *ray, crossings *last)
 
 /* Is a ray that has gone all its way in a closed mesh? What was crossed last says so: fronts lead in, backs lead out. Where both are at one
  * place, at a silhouette or between two copies that touch, it is in what it was in before. */
-static bool is_in(const forest *f, const forest_ray *ray, const crossings *all, uint64_t bit, int number)
+static bool is_in(const forest *f, const forest_ray *ray, const crossings *all, const forest_part *p)
 {
+    const int number = p->primitive;
+    const uint64_t bit = (uint64_t)1 << number;
+    const double tie = ray->tie + ray->tie_by_extent * p->extent;
     crossings again;
     forest_ray shorter = *ray;
     shorter.wanted = bit;
@@ -234,12 +250,12 @@ static bool is_in(const forest *f, const forest_ray *ray, const crossings *all, 
         const double front = last->front[number], back = last->back[number], first = lesser(front, back);
         if (greater(front, back) < 0.0 && front == back) /* nothing was crossed */
             return (ray->inside & bit) != 0;
-        if (front - back > ray->tie || back - front > ray->tie)
+        if (front - back > tie || back - front > tie)
             return front > back;
-        shorter.t_max = first - ray->tie;
+        shorter.t_max = first - tie;
         if (!(shorter.t_max > ray->t_min))
             return (ray->inside & bit) != 0;
-        look_at_all(f, &shorter, &again);
+        look_at_all(f, &shorter, FACE_NONE, &again);
         last = &again;
     }
 }
@@ -248,18 +264,25 @@ static uint64_t cross(const forest *f, const forest_ray *ray)
 {
     uint64_t set = ray->inside;
     crossings last;
-    look_at_all(f, ray, &last);
+    look_at_all(f, ray, FACE_NONE, &last);
     for (int i = 0; i < f->part_count; i++) {
         const forest_part *p = &f->parts[i];
         const uint64_t bit = (uint64_t)1 << p->primitive;
         if (!(ray->wanted & bit))
             continue;
         if (p->closed)
-            set = is_in(f, ray, &last, bit, p->primitive) ? set | bit : set & ~bit;
+            set = is_in(f, ray, &last, p) ? set | bit : set & ~bit;
         else if (last.front[p->primitive] >= 0.0 || last.back[p->primitive] >= 0.0)
             set |= bit;
     }
     return set;
 }
 
-const forest_kernels KERNEL(forest_kernels) = {nearest, any, cross};
+static uint64_t among(const forest *f, const forest_ray *ray, int64_t but)
+{
+    crossings all;
+    look_at_all(f, ray, but, &all);
+    return all.met;
+}
+
+const forest_kernels KERNEL(forest_kernels) = {nearest, any, cross, among};

@@ -3,25 +3,46 @@
 #define CUVETTE_GEOMETRY_KERNELS_H
 
 #include "base/kernel.h"
+#include "geometry/forest.h"
 #include "geometry/rays.h"
+#include <float.h>
+#include <math.h>
 
 /* scratch->in and out of every wanted primitive (a set) for every ray; scratch->slack is not touched. */
 void KERNEL(intervals_of)(const arrangement *a, const ray_batch *rays, uint64_t wanted, ray_scratch *scratch);
 
 void KERNEL(surface_points)(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points);
 
-/* Share of the distance and of the arrangement's extent within which a second boundary is looked at closely. It changes no
- * result: it only must be wider than the error bounds, which it is unless a ray grazes within 2e-7 rad. */
+/* A share of the distance and of the scene geometry's extent: boundaries within it of a crossing are compared with it one by one (contact_kernel.c).
+ * It filters and decides nothing: a contact is never wider than half of it. */
 #define BOUNDARY_CLOSE 0x1p-24
 
+/* Share of all magnitudes that a point is computed from by which it may be wrong: see surface_kernel.c. */
+#define POINT_ERROR (16.0 * DBL_EPSILON)
+
+static inline bool is_mesh(const arrangement *a, int p)
+{
+    return a->meshes && (a->meshes->primitives >> p & 1);
+}
+
+/* What a scene unit is along ray i, in its t: 1 for a ray that looks for its nearest interface. */
+static inline double steps_per_unit(const ray_batch *rays, int i)
+{
+    return 1.0 / sqrt(rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i]);
+}
+
+/* Which of the boundaries in s->near[k] are at column k's crossing, and the sets and ranks on both sides of it when they are. */
+void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c, forest_hit *mesh_hits);
+
 /* The next crossings of meshes, where they come before those that c has, for the first n columns; then the meshes' bits in
- * c's sets, when those of the others are there. */
+ * c's sets and in s->near, when those of the others are there. */
 void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, forest_hit *hits);
 void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, const forest_hit *hits);
 
-/* The meshes' bits in the sets just before low and just behind high, between which column k, in the medium of that rank, crosses something. */
-void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, double low, double high,
-                               uint64_t *before, uint64_t *after);
+/* The bits of the wanted meshes in the sets just before low and just behind high, between which column k, in the medium of that rank, crosses
+ * something. */
+void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, uint64_t wanted, double low,
+                               double high, uint64_t *before, uint64_t *after);
 
 /* Where column k crosses the mesh of a bit in low <= t <= high, from the set `before`; its face is FACE_NONE where it does not. */
 forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit, uint64_t before, double low,

@@ -17,7 +17,7 @@ static forest_ray ray_of_column(const ray_batch *rays, int k, const ray_scratch 
                         .t_min = m->from[k], .t_max = HUGE_VAL, .start = m->last[k], .before = 0, .inside = s->inside[k]};
 }
 
-/* A front and a back of one mesh within this share of the distance are at one place, well above rounding. */
+/* A front and a back of one mesh within this share of the distance and of the mesh's own extent are at one place, well above rounding. */
 #define ONE_PLACE 0x1p-40
 
 static double close_to(const ray_scratch *s, int k, double t)
@@ -48,20 +48,19 @@ void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ra
     }
 }
 
-/* Does a mesh have another boundary next to column k's hit? One mesh alone that is not hidden was asked already, as far as that. */
-static bool others_are_near(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, const hit_batch *c)
+/* The meshes with a boundary close to column k's crossing, other than the one that is crossed there. One mesh alone that is not hidden was asked
+ * already, as far as that. */
+static uint64_t near_meshes(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, const hit_batch *c, const forest_hit *hit)
 {
     const bool on_mesh = f->primitives >> c->crossed[k] & 1;
     if (f->instance_count == 1 && (on_mesh || f->lowest >= c->before[k]))
-        return false;
+        return s->meshes->near[k] && !on_mesh ? f->primitives : 0;
     const double close = close_to(s, k, c->t[k]);
     forest_ray ray = ray_of_column(rays, k, s);
     ray.t_min = c->t[k] - close;
     ray.t_max = c->t[k] + close;
-    ray.tie = ray.t_max - ray.t_min;
-    ray.inside = c->inside_before[k];
     ray.wanted = f->primitives;
-    return ((FOREST.cross(f, &ray) ^ c->inside_after[k]) & f->primitives) != 0;
+    return FOREST.among(f, &ray, on_mesh ? hit->face : FACE_NONE);
 }
 
 /* The set at t, where the ray has been in the medium of that rank all the way from where it was looked at last: of the meshes that are hidden
@@ -72,7 +71,8 @@ static uint64_t set_at(const forest *f, const ray_batch *rays, int k, const ray_
         return set;
     forest_ray ray = ray_of_column(rays, k, s);
     ray.t_max = t;
-    ray.tie = ONE_PLACE * (t + s->slack[k]);
+    ray.tie = ONE_PLACE * t;
+    ray.tie_by_extent = ONE_PLACE * steps_per_unit(rays, s->ray[k]);
     ray.wanted = f->closed_under[rank];
     return (set & ~ray.wanted) | (FOREST.cross(f, &ray) & ray.wanted);
 }
@@ -91,22 +91,23 @@ void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_s
             const bool leaves = (f->closed & bit) && hits[k].facing == FACING_BACK;
             c->inside_after[k] = leaves ? c->inside_after[k] & ~bit : c->inside_after[k] | bit;
         }
-        s->meshes->near[k] |= others_are_near(f, rays, k, s, c);
+        const uint64_t near = near_meshes(f, rays, k, s, c, &hits[k]);
+        s->near[k] = (s->near[k] & ~f->primitives) | near | (bit & f->primitives);
+        s->meshes->near[k] = near != 0; /* of the crossed mesh's own too, of which the sets may know nothing */
     }
 }
 
-void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, double low, double high,
-                               uint64_t *before, uint64_t *after)
+void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, uint64_t wanted, double low,
+                               double high, uint64_t *before, uint64_t *after)
 {
-    const uint64_t meshes = a->meshes->primitives;
-    *before = set_at(a->meshes, rays, k, s, rank, low, (*before & ~meshes) | (s->inside[k] & meshes));
+    *before = (*before & ~wanted) | (set_at(a->meshes, rays, k, s, rank, low, s->inside[k]) & wanted);
     forest_ray ray = ray_of_column(rays, k, s);
     ray.t_min = low;
     ray.t_max = high;
     ray.tie = high - low;
     ray.inside = *before;
-    ray.wanted = meshes;
-    *after = (*after & ~meshes) | (FOREST.cross(a->meshes, &ray) & meshes);
+    ray.wanted = wanted;
+    *after = (*after & ~wanted) | (FOREST.cross(a->meshes, &ray) & wanted);
 }
 
 forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit, uint64_t before, double low,

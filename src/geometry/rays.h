@@ -46,7 +46,7 @@ typedef struct mesh_scratch {
     double from[ROW];        /* how far a column has been followed */
     double until[ROW];       /* the sets behind a column's hit are those here: beyond its error bound, if another boundary lies close to it */
     int64_t last[ROW];       /* the mesh face where that was, or where the ray starts */
-    bool near[ROW];          /* another boundary lies close to the column's hit */
+    bool near[ROW];          /* a mesh's nearest crossing lies close to another boundary */
 } mesh_scratch;
 
 /* Of convex solids no batch has more. Rays through many meshes may: then what there is is handed over to `full`, which empties the list. */
@@ -69,6 +69,7 @@ typedef struct ray_scratch {
     double axial_dx[ROW], axial[ROW], inverse_axial[ROW];
     double slack[ROW], low[ROW], high[ROW];
     uint64_t inside[ROW];
+    uint64_t near[ROW];      /* primitives with a boundary close to the column's crossing: see BOUNDARY_CLOSE */
     hit_batch again;           /* of rays that are looked at another time */
     int64_t attention[ROW], undecided[ROW], blocked[ROW];
     int ray[ROW];            /* which ray of the batch a column belongs to */

@@ -73,20 +73,24 @@ static void next_of_hollow(int n, int64_t rank, int64_t outside, int64_t hollow,
     }
 }
 
-/* Adds `many` primitives from the one numbered first to the sets just before and just behind t; the first call starts the sets. */
+/* Adds `many` primitives from the one numbered first to the sets just before and just behind t, and to the set of those whose interval reaches
+ * in between; the first call starts the sets. */
 ALWAYS_INLINE void sets_around(int n, int first, int many, ray_scratch *restrict s, hit_batch *restrict c)
 {
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
         int64_t before = first == 0 ? 0 : (int64_t)c->inside_before[i], after = first == 0 ? 0 : (int64_t)c->inside_after[i];
+        int64_t between = first == 0 ? 0 : (int64_t)s->near[i];
         for (int k = 0; k < many; k++) {
             const int64_t bit = (int64_t)((uint64_t)1 << (first + k));
             double in = s->in[first + k][i], out = s->out[first + k][i];
-            before |= mask_less_equal(in, s->low[i]) & mask_less(s->low[i], out) & bit;
-            after |= mask_less_equal(in, s->high[i]) & mask_less(s->high[i], out) & bit;
+            before |= -(int64_t)((in <= s->low[i]) & (s->low[i] < out)) & bit;
+            after |= -(int64_t)((in <= s->high[i]) & (s->high[i] < out)) & bit;
+            between |= -(int64_t)((in <= s->high[i]) & (s->low[i] < out)) & bit;
         }
         c->inside_before[i] = (uint64_t)before;
         c->inside_after[i] = (uint64_t)after;
+        s->near[i] = (uint64_t)between;
     }
 }
 
@@ -105,6 +109,10 @@ static void all_sets_around(const arrangement *a, int n, ray_scratch *s, hit_bat
         sets_around(n, k, 4, s, c);
     for (; k < a->primitive_count; k++)
         sets_around(n, k, 1, s, c);
+    /* An interval that reaches in between and does not cover both ends has a boundary there. */
+    /* VECTORISE */
+    for (int i = 0; i < n; i++)
+        s->near[i] &= ~(c->inside_before[i] & c->inside_after[i]);
 }
 
 /* -1 where the body of that rank is opaque: bit rank - 1 of the set. */
@@ -125,22 +133,18 @@ static void surfaces(uint64_t opaque_ranks, int n, const int64_t *restrict befor
     }
 }
 
-/* Columns that cannot simply be believed: another boundary lies near, or the media are perhaps equal. */
-static void mark_attention(const arrangement *a, int n, const hit_batch *restrict c, int64_t *restrict attention)
+/* Columns that need a second, exact check: another boundary is near, or the media are perhaps equal. */
+static void mark_attention(const arrangement *a, int n, const ray_scratch *restrict s, const hit_batch *restrict c, int64_t *restrict attention)
 {
     const int64_t doubt = -(int64_t)!a->distinct;
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
         const int64_t met = -(int64_t)(c->crossed[i] >= 0);
         const uint64_t changed = c->inside_before[i] ^ c->inside_after[i];
-        const int64_t unclean = ~mask_same((int64_t)(changed >> (uint64_t)(c->crossed[i] & met)), 1);
-        attention[i] = (unclean | mask_same(c->before[i], c->after[i]) | doubt) & met;
+        /* 0 where all of these are the one bit that is crossed; gcc vectorises shifts of variables to the right alone */
+        const uint64_t others = (s->near[i] ^ changed) | (changed & (changed - 1)) | ((changed >> (uint64_t)(c->crossed[i] & met)) ^ 1);
+        attention[i] = (~mask_same((int64_t)others, 0) | mask_same(c->before[i], c->after[i]) | doubt) & met;
     }
-}
-
-static bool is_mesh(const arrangement *a, int bit)
-{
-    return a->meshes && (a->meshes->primitives >> bit & 1);
 }
 
 /* The next change of medium of the first n columns. */
@@ -167,86 +171,22 @@ static void next_changes(const arrangement *a, const ray_batch *rays, int n, ray
         KERNEL(mesh_sets)(a, rays, n, s, c, mesh_hits);
     ranks_of(a, n, c->inside_after, c->after);
     surfaces(a->opaque_ranks, n, c->before, c->after, c->surface);
-    mark_attention(a, n, c, s->attention);
+    mark_attention(a, n, s, c, s->attention);
     for (int k = 0; a->meshes && k < n; k++) {
-        const bool met = c->crossed[k] >= 0;
-        const bool others = met && (c->inside_before[k] ^ c->inside_after[k]) != (uint64_t)1 << c->crossed[k]; /* those of a lower number too */
-        s->attention[k] |= -(int64_t)(others || s->meshes->near[k]);
+        s->attention[k] |= -(int64_t)(c->crossed[k] >= 0 && s->meshes->near[k]);
         s->meshes->until[k] = c->t[k];
         /* Through an edge a front and a back are at one place: the second crossing there is the last, or they would follow one another for ever. */
-        if (c->t[k] <= s->meshes->from[k])
-            s->meshes->until[k] += 0x1p-48 * (c->t[k] + s->slack[k]);
+        if (c->crossed[k] >= 0 && c->t[k] <= s->meshes->from[k])
+            s->meshes->until[k] += POINT_ERROR * (c->t[k] + a->primitives[c->crossed[k]].extent * steps_per_unit(rays, s->ray[k]));
     }
 }
 
-/* Of several boundaries at column k's crossing, low <= t <= high, one of which is a mesh's, that of the body whose surface it is counts:
- * its normal and its colours are what is seen. */
-static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits,
-                             double low, double high)
+/* Is column k an interface? */
+static bool is_interface(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c, forest_hit *mesh_hits)
 {
-    const body *owner = &a->bodies[c->surface[k]];
-    const bool from_mesh = is_mesh(a, (int)c->crossed[k]);
-    if (c->surface[k] == 0 || c->crossed[k] == owner->outside || c->crossed[k] == owner->hollow)
-        return;
-    if (is_mesh(a, owner->outside)) {
-        const forest_hit own = KERNEL(mesh_hit_between)(a, rays, k, s, owner->outside, c->inside_before[k], low, high);
-        if (own.face == FACE_NONE)
-            return;
-        mesh_hits[k] = own;
-        c->t[k] = own.t;
-        c->crossed[k] = owner->outside;
-        return;
-    }
-    const int pieces[2] = {owner->outside, owner->hollow};
-    for (int i = 0; i < 2 && from_mesh && pieces[i] >= 0; i++) {
-        const int p = pieces[i];
-        const double t = c->inside_before[k] >> p & 1 ? s->out[p][k] : s->in[p][k];
-        if (low <= t && t <= high) {
-            c->t[k] = t;
-            c->crossed[k] = p;
-            return;
-        }
-    }
-}
-
-/* The sets around column k's crossing again, at the distance of its error bound: other boundaries within it are
- * part of the same crossing. */
-static void look_closely(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits)
-{
-    const int i = s->ray[k], crossed = (int)c->crossed[k];
-    const ray_batch one = {1,           &rays->ox[i], &rays->oy[i], &rays->oz[i],    &rays->dx[i],
-                           &rays->dy[i], &rays->dz[i], &rays->start[i], &s->inside[k]};
-    surface_batch point;
-    if (is_mesh(a, crossed))
-        forest_surface(a->meshes, &one, &mesh_hits[k], false, &point, NULL);
-    else
-        KERNEL(surface_points)(&a->primitives[crossed], &one, &c->t[k], crossed, &point);
-    double reach = 2.0 * point.error[0] / point.cos_i[0], widest = BOUNDARY_CLOSE * (c->t[k] + s->slack[k]);
-    reach = lesser(reach, widest);
-    double low = c->t[k] - reach, high = c->t[k] + reach;
-    uint64_t before = 0, after = 0;
-    for (int p = 0; p < a->primitive_count; p++) {
-        before |= (uint64_t)(s->in[p][k] <= low && low < s->out[p][k]) << p;
-        after |= (uint64_t)(s->in[p][k] <= high && high < s->out[p][k]) << p;
-    }
-    if (a->meshes) {
-        KERNEL(mesh_sets_closely)(a, rays, k, s, c->before[k], low, high, &before, &after);
-        s->meshes->until[k] = high;
-    }
-    c->inside_before[k] = before;
-    c->inside_after[k] = after;
-    c->after[k] = arrangement_rank(a, after);
-    c->surface[k] = arrangement_surface(a, (int)c->before[k], (int)c->after[k]);
-    if (a->meshes)
-        cross_the_owners(a, rays, k, s, c, mesh_hits, low, high);
-}
-
-/* Is column k an interface? Looks closely where another boundary is near. */
-static bool is_interface(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits)
-{
-    const bool near = a->meshes && s->meshes->near[k];
-    if (near || (c->inside_before[k] ^ c->inside_after[k]) != (uint64_t)1 << c->crossed[k])
-        look_closely(a, rays, k, s, c, mesh_hits);
+    const uint64_t only = (uint64_t)1 << c->crossed[k];
+    if (s->near[k] != only || (c->inside_before[k] ^ c->inside_after[k]) != only || (a->meshes && s->meshes->near[k]))
+        KERNEL(merge_contacts)(a, rays, k, s, c, mesh_hits);
     return a->bodies[c->before[k]].medium != a->bodies[c->after[k]].medium;
 }
 

@@ -8,9 +8,6 @@
 #include "geometry/kernels.h"
 
 #include "geometry/roots.h"
-#include <float.h>
-
-#define ERROR_FACTOR (32.0 * DBL_EPSILON / 2.0)
 
 typedef struct local_point { vec3 point, normal; int64_t face; } local_point;
 
@@ -102,7 +99,7 @@ ALWAYS_INLINE void points_on(const primitive *p, primitive_kind kind, bool turne
         s->ny[i] = n.y;
         s->nz[i] = n.z;
         s->cos_i[i] = lesser(greater(cosine, DBL_MIN), 1.0);
-        s->error[i] = ERROR_FACTOR * (size + p->extent);
+        s->error[i] = POINT_ERROR * (size + p->extent);
         s->face[i] = l.face;
     }
 }
