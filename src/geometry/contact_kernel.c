@@ -83,38 +83,47 @@ static void set_bit(uint64_t *set, int bit, bool on)
     *set = (*set & ~((uint64_t)1 << bit)) | (uint64_t)on << bit;
 }
 
-/* Of several boundaries at column k's crossing, low <= t <= high, one of which is a mesh's, that of the body whose surface it is counts:
- * its normal and its colours are what is seen. */
+static void cross_mesh_of_owner(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits,
+                                double low, double high)
+{
+    const int primitive_of_owner = a->bodies[c->surface[k]].outside;
+    const forest_hit own = KERNEL(mesh_hit_between)(a, rays, k, s, primitive_of_owner, c->inside_before[k], low, high);
+    if (own.face == FACE_NONE)
+        return;
+    mesh_hits[k] = own;
+    c->t[k] = own.t;
+    c->crossed[k] = primitive_of_owner;
+}
+
+/* Of several boundaries at column k's crossing that of the body whose surface it is counts: its normal, its frame and its colours are what is
+ * seen. Those of meshes lie within `reach`. */
 static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits,
-                             double low, double high)
+                             const crossing *at, double reach)
 {
     const body *owner = &a->bodies[c->surface[k]];
-    const bool from_mesh = is_mesh(a, (int)c->crossed[k]);
-    if (c->surface[k] == 0 || c->crossed[k] == owner->outside || c->crossed[k] == owner->hollow)
+    const int pieces[2] = {owner->outside, owner->hollow};
+    if (c->surface[k] == 0 || at->of == owner->outside || at->of == owner->hollow)
         return;
     if (is_mesh(a, owner->outside)) {
-        const forest_hit own = KERNEL(mesh_hit_between)(a, rays, k, s, owner->outside, c->inside_before[k], low, high);
-        if (own.face == FACE_NONE)
-            return;
-        mesh_hits[k] = own;
-        c->t[k] = own.t;
-        c->crossed[k] = owner->outside;
+        if (reach > 0.0)
+            cross_mesh_of_owner(a, rays, k, s, c, mesh_hits, at->t - reach, at->t + reach);
         return;
     }
-    const int pieces[2] = {owner->outside, owner->hollow};
-    for (int i = 0; i < 2 && from_mesh && pieces[i] >= 0; i++) {
-        const int p = pieces[i];
-        const double t = c->inside_before[k] >> p & 1 ? s->out[p][k] : s->in[p][k];
-        if (low <= t && t <= high) {
-            c->t[k] = t;
-            c->crossed[k] = p;
-            return;
+    for (int piece = 0; piece < 2 && pieces[piece] >= 0; piece++) {
+        const int p = pieces[piece];
+        for (int leaving = 0; leaving < 2; leaving++) {
+            const double t = leaving ? s->out[p][k] : s->in[p][k];
+            if (side_of(a, rays, s->ray[k], at, p, t, leaving) == 0) {
+                c->t[k] = t;
+                c->crossed[k] = p;
+                return;
+            }
         }
     }
 }
 
-/* The meshes among the near boundaries, all within one distance: that of the least exact of them. */
-static void merge_meshes(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c, forest_hit *mesh_hits, const crossing *at)
+/* The meshes among the near boundaries, all within one distance, which it returns: that of the least exact of them. */
+static double merge_meshes(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c, const crossing *at)
 {
     const int i = s->ray[k];
     const uint64_t near = s->near[k] & a->meshes->primitives;
@@ -125,9 +134,7 @@ static void merge_meshes(const arrangement *a, const ray_batch *rays, int k, ray
     const double low = at->t - reach, high = at->t + reach;
     KERNEL(mesh_sets_closely)(a, rays, k, s, c->before[k], near, low, high, &c->inside_before[k], &c->inside_after[k]);
     s->meshes->until[k] = greater(s->meshes->until[k], high);
-    c->after[k] = arrangement_rank(a, c->inside_after[k]);
-    c->surface[k] = arrangement_surface(a, (int)c->before[k], (int)c->after[k]);
-    cross_the_owners(a, rays, k, s, c, mesh_hits, low, high);
+    return reach;
 }
 
 void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c, forest_hit *mesh_hits)
@@ -144,8 +151,8 @@ void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, 
         set_bit(&c->inside_before[k], p, entry < 0 && exit >= 0);
         set_bit(&c->inside_after[k], p, entry <= 0 && exit > 0);
     }
-    if (s->near[k] & meshes)
-        merge_meshes(a, rays, k, s, c, mesh_hits, &at);
+    const double reach = s->near[k] & meshes ? merge_meshes(a, rays, k, s, c, &at) : 0.0;
     c->after[k] = arrangement_rank(a, c->inside_after[k]);
     c->surface[k] = arrangement_surface(a, (int)c->before[k], (int)c->after[k]);
+    cross_the_owners(a, rays, k, s, c, mesh_hits, &at, reach);
 }

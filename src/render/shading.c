@@ -265,11 +265,13 @@ static void branch(tracer *t, int depth, bool opaque)
     COUNT(t->counters.refract += (uint64_t)refracted);
 }
 
+/* A checker's cells lie in the frame of the solid whose surface it is, also where another solid's face lays it bare. */
 static void color(tracer *t, int rank, const primitive *surface)
 {
     const plan *p = t->target.scene;
+    const primitive *frame = surface->rank == rank ? surface : &p->solids->primitives[p->solids->bodies[rank].outside];
     if (!p->spectral) {
-        t->shade->color(&t->look->surface, surface, &t->gathered);
+        t->shade->color(&t->look->surface, frame, &t->gathered);
         if (t->look->picture)
             texture_colors(t, surface);
         return;
@@ -278,7 +280,7 @@ static void color(tracer *t, int rank, const primitive *surface)
     material marked = t->look->surface;
     marked.color = vec3_make(1.0, 0.0, 0.0);
     marked.checker_color = vec3_make(0.0, 1.0, 0.0);
-    t->shade->color(&marked, surface, &t->gathered);
+    t->shade->color(&marked, frame, &t->gathered);
     spectral_colors(t, rank);
 }
 

@@ -1,0 +1,285 @@
+/* Whether a pair of scenes keeps its law: what is compared, and within what. Ownership: a judge is made by judge_open and released by judge_close. */
+#ifndef CUVETTE_TESTS_LAW_JUDGE_H
+#define CUVETTE_TESTS_LAW_JUDGE_H
+
+#include "law_pairs.h"
+#include "reversal_fixture.h"
+
+typedef enum verdict { HELD, SKIPPED, BROKEN } verdict;
+
+/* rays, unlike: of LAW_MOTION and LAW_REVERSAL, how many were compared, and how many were not, because they take another sequence of interfaces when they are displaced
+ * (or are no path to turn round). off: the largest difference found. */
+typedef struct judge { renderer *renderer; long rays, unlike; double off; } judge;
+
+static inline judge judge_open(void)
+{
+    judge j = {.rays = 0};
+    diagnostic why = {0};
+    worked(renderer_create(isa_best(), NULL, &j.renderer, &why), &why);
+    return j;
+}
+
+static inline void judge_close(judge *j)
+{
+    renderer_destroy(j->renderer);
+}
+
+static inline scene *law_load(const law_scene *w)
+{
+    scene *s = scene_from(law_text(w).at);
+    diagnostic why = {0};
+    worked(scene_load(s, &why), &why);
+    return s;
+}
+
+static inline render_result *law_render(judge *j, const scene *s)
+{
+    render_result *r = NULL;
+    diagnostic why = {0};
+    worked(renderer_render(j->renderer, s, NULL, &r, &why), &why);
+    return r;
+}
+
+static inline void scale_vector(vec3 *v, double f)
+{
+    *v = vec3_scale(*v, f);
+}
+
+/* All lengths, whatever ranges a scene file is held to. */
+static inline void scale_lengths(scene *s, double f)
+{
+    s->render.unit_m /= f;
+    scale_vector(&s->camera.position, f);
+    scale_vector(&s->camera.target, f);
+    for (size_t i = 0; i < s->light_count; i++) {
+        scale_vector(&s->lights[i].position, f);
+        s->lights[i].reach *= f;
+        s->lights[i].radius *= f;
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        solid_shape *shape = &s->solids[i].shape;
+        scale_vector(&shape->position, f);
+        scale_vector(&shape->size, f);
+        scale_vector(&shape->scale, f);
+        scale_vector(&shape->spacing, f);
+        shape->radius *= f, shape->inner_radius *= f, shape->height *= f, shape->floor *= f;
+        s->solids[i].surface.checker *= f;
+    }
+}
+
+/* Does a piece of the line meet a solid, by quadruple precision? Of a mesh, the ball around it. */
+static inline bool meets(const law_solid *s, vec3 origin, vec3 direction, double length)
+{
+    const reference_line line = {quad3_from(origin), quad3_from(direction)};
+    quad t[REFERENCE_CROSSINGS_MAX];
+    if (s->mesh) {
+        const ball around = ball_around(s);
+        const vec3 to = vec3_sub(around.middle, origin);
+        const double along = fmin(fmax(vec3_dot(to, direction), 0.0), length);
+        return vec3_length(vec3_sub(to, vec3_scale(direction, along))) <= around.radius;
+    }
+    return solid_shape_contains(&s->shape, origin) || (reference_events(&s->shape, &line, 0, t) > 0 && t[0] < (quad)length);
+}
+
+static inline double length_of(const ray_node *n)
+{
+    return n->kind == RAY_SHADOW ? n->light_distance : n->end == RAY_END_HIT ? n->hit.t : HUGE_VAL;
+}
+
+static inline const law_solid *solid_numbered(const law_scene *w, int number)
+{
+    for (int i = 0; i < w->solid_count; i++)
+        if (w->solid[i].number == number)
+            return &w->solid[i];
+    return NULL;
+}
+
+/* Does any ray of the first scene's image cross the solids of these numbers, all of them on one ray? Of random paths, which no probe shows: perhaps. */
+static inline bool some_ray_meets(const law_scene *w, const law_solid *const *solids, int count, int most_rays)
+{
+    stage g = {.setting = law_load(w)};
+    stage_look(&g);
+    bool met = g.setting->render.integrator == INTEGRATOR_PATH;
+    int rays = 0;
+    for (int y = 0; y < LAW_HEIGHT && !met && rays < most_rays; y++)
+        for (int x = 0; x < LAW_WIDTH && !met && rays < most_rays; x++) {
+            const ray_tree *tree = stage_pixel(&g, (x * 7) % LAW_WIDTH, (y * 5) % LAW_HEIGHT);
+            for (size_t i = 0; i < tree->count && !met && rays < most_rays; i++, rays++) {
+                int together = 0;
+                for (int k = 0; k < count; k++)
+                    together += meets(solids[k], tree->node[i].origin, tree->node[i].direction, length_of(&tree->node[i]));
+                met = together == count;
+            }
+        }
+    stage_close(&g);
+    return met;
+}
+
+/* Was the part of the scene that the law alters on a ray's path? */
+static inline bool law_was_tried(const law_pair *p)
+{
+    const law_solid *solids[2] = {solid_numbered(&p->b, LAW_ADDED), solid_numbered(&p->b, LAW_ADDED + 1)};
+    return some_ray_meets(&p->a, solids, p->which == LAW_CUT ? 2 : 1, 400);
+}
+
+/* Largest difference of two films, relative to the larger value where that is above 1. */
+static inline double film_apart(const film *a, const film *b)
+{
+    double most = 0.0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++)
+            for (int c = 0; c < 3; c++) {
+                const double p = film_value(a, x, y, c), q = film_value(b, x, y, c);
+                most = fmax(most, fabs(p - q) / fmax(1.0, fmax(p, q)));
+            }
+    return most;
+}
+
+/* exact: the same bits; else within 1e-12. */
+static inline verdict same_films(judge *j, const law_pair *p, bool exact)
+{
+    scene *s = law_load(&p->a), *t = law_load(&p->b);
+    if (p->which == LAW_SCALE)
+        scale_lengths(t, ldexp(1.0, p->exponent));
+    render_result *x = law_render(j, s), *y = law_render(j, t);
+    j->off = film_apart(x->picture, y->picture);
+    const bool same = exact ? film_hash(x->picture) == film_hash(y->picture) : j->off <= 1e-12;
+    render_result_destroy(x);
+    render_result_destroy(y);
+    scene_destroy(s);
+    scene_destroy(t);
+    return same ? HELD : BROKEN;
+}
+
+static inline bool same_path(const ray_tree *a, const ray_tree *b)
+{
+    if (a->count != b->count)
+        return false;
+    for (size_t i = 0; i < a->count; i++) {
+        const ray_node *p = &a->node[i], *q = &b->node[i];
+        if (p->kind != q->kind || p->end != q->end || p->medium != q->medium || p->parent != q->parent)
+            return false;
+        if (p->end == RAY_END_HIT && (p->hit.solid != q->hit.solid || p->hit.face_solid != q->hit.face_solid || p->hit.face != q->hit.face ||
+                                      p->hit.from != q->hit.from || p->hit.to != q->hit.to))
+            return false;
+    }
+    return true;
+}
+
+/* A ray of the first scene, the same displaced by 1e-12 of the scene, and the moved one in the moved scene. */
+static inline verdict same_radiance(judge *j, const law_pair *p)
+{
+    enum { RAYS = 12 };
+    const double displacement = 1e-12 * 4.0;
+    uint64_t seed = p->seed;
+    stage a = {.setting = law_load(&p->a)}, b = {.setting = law_load(&p->b)};
+    stage_look(&a);
+    stage_look(&b);
+    verdict result = HELD;
+    for (int k = 0; k < RAYS && result == HELD; k++) {
+        const double x = random_real(&seed, 0.0, LAW_WIDTH), y = random_real(&seed, 0.0, LAW_HEIGHT);
+        const vec3 d = probe_camera_direction(a.probe, x, y), off = vec3_scale(random_direction(&seed), displacement);
+        const ray_tree plain = *stage_ray(&a, p->a.eye, d);
+        a.tree = (ray_tree){.count = 0};
+        const ray_tree *beside = stage_ray(&a, vec3_add(p->a.eye, off), d);
+        const ray_tree *moved = stage_ray(&b, move_point(&p->moved, p->a.eye), move_direction(&p->moved, d));
+        const bool alike = same_path(&plain, beside);
+        j->rays += alike, j->unlike += !alike;
+        for (int c = 0; c < 3 && alike; c++) {
+            const double L = plain.radiance[c], allowed = 1e-9 * L + 10.0 * fabs(beside->radiance[c] - L) + (double)plain.count / FILM_ONE;
+            j->off = fabs(moved->radiance[c] - L);
+            if (!(j->off <= allowed))
+                result = BROKEN;
+        }
+        ray_tree gone = plain;
+        ray_tree_release(&gone);
+    }
+    stage_close(&a);
+    stage_close(&b);
+    return result;
+}
+
+static inline verdict reversible(judge *j, const law_pair *p)
+{
+    uint64_t seed = p->seed;
+    stage g = {.setting = law_load(&p->a)};
+    stage_look(&g);
+    verdict result = HELD;
+    for (int k = 0; k < 6 && result == HELD; k++) {
+        const vec3 origin = random_point(&seed, k % 3 ? 3.0 : 0.8), target = random_point(&seed, 0.8);
+        const reversal r = there_and_back(&g, origin, vec3_sub(target, origin), random_below(&seed, 12) - 4);
+        j->rays += r.used, j->unlike += !r.used;
+        j->off = r.unequal;
+        if (r.used && !(r.same_surfaces && r.unequal <= 1e-9 && r.unlike_closed_form <= 1e-9 && r.direction <= 1e-9))
+            result = BROKEN;
+    }
+    stage_close(&g);
+    return result;
+}
+
+/* A film that a solid changes after all has been met by a ray. */
+static inline verdict unmet_changes_nothing(judge *j, const law_pair *p)
+{
+    const law_solid *added = solid_numbered(&p->b, LAW_ADDED);
+    const verdict result = same_films(j, p, true);
+    return result == BROKEN && some_ray_meets(&p->a, &added, 1, INT_MAX) ? SKIPPED : result;
+}
+
+static inline verdict law_judge(judge *j, const law_pair *p)
+{
+    switch (p->which) {
+    case LAW_UNMET: return unmet_changes_nothing(j, p);
+    case LAW_ORDER:
+    case LAW_SCALE: return same_films(j, p, true);
+    case LAW_MOTION: return same_radiance(j, p);
+    case LAW_REVERSAL: return reversible(j, p);
+    /* a stretch in two parts is weakened by two exponentials, whose product is rounded once more */
+    case LAW_SAME: return same_films(j, p, vec3_dot(p->a.outside_absorb_per_m, p->a.outside_absorb_per_m) == 0.0);
+    case LAW_CUT:
+    case LAW_FILL: return same_films(j, p, false);
+    case LAW_COUNT: break;
+    }
+    return SKIPPED;
+}
+
+static inline void remove_solid(law_scene *w, int number)
+{
+    int kept = 0, gone = -1;
+    for (int i = 0; i < w->solid_count; i++)
+        if (w->solid[i].number == number)
+            gone = i;
+        else
+            w->solid[kept++] = w->solid[i];
+    if (gone < 0)
+        return;
+    int order = 0;
+    for (int i = 0; i < w->solid_count; i++) {
+        const int at = w->material_order[i];
+        if (at != gone)
+            w->material_order[order++] = at - (at > gone);
+    }
+    w->solid_count = kept;
+}
+
+/* The same fault with as few solids as can be, none of the law's own taken away, and without lights where it needs none. */
+static inline law_pair law_shrink(judge *j, law_pair p)
+{
+    for (bool smaller = true; smaller;) {
+        smaller = false;
+        for (int number = 0; number < LAW_SOLIDS_MAX; number++) {
+            law_pair q = p;
+            remove_solid(&q.a, number);
+            remove_solid(&q.b, number);
+            if (q.a.solid_count < p.a.solid_count && q.a.solid_count > 0 && law_judge(j, &q) == BROKEN)
+                p = q, smaller = true;
+        }
+        law_pair q = p;
+        q.a.light_count = q.b.light_count = 0;
+        if (p.a.light_count > 0 && law_judge(j, &q) == BROKEN)
+            p = q, smaller = true;
+    }
+    law_judge(j, &p);
+    return p;
+}
+
+#endif

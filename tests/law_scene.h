@@ -1,0 +1,273 @@
+/* Random scenes for the laws (test_laws.c): solids of all shapes that overlap, touch, lie within one another or stand apart by next to
+ * nothing, as values that can be changed, and as scene files. Ownership: values. */
+#ifndef CUVETTE_TESTS_LAW_SCENE_H
+#define CUVETTE_TESTS_LAW_SCENE_H
+
+#include "random_scene.h"
+
+enum { LAW_SOLIDS_MAX = 12, LAW_LIGHTS_MAX = 2, LAW_WIDTH = 10, LAW_HEIGHT = 8, LAW_ADDED = 100 /* numbers from here on were added by a law */ };
+
+typedef struct law_solid {
+    int number;              /* its name, whatever its place */
+    solid_shape shape;       /* a mesh's frame and scale; its triangles are read from its name */
+    const char *mesh;        /* "cube", "ball", "ring"; NULL for all other shapes */
+    int64_t priority;
+    bool opaque;
+    double ior, transparency, reflectivity, specular, checker;
+    vec3 absorb_per_m;
+} law_solid;
+
+typedef struct law_light { vec3 position; double reach; } law_light;
+
+typedef struct law_scene {
+    const char *settings;
+    double outside_ior;
+    vec3 outside_absorb_per_m;
+    double sky;
+    vec3 eye, target;
+    int light_count, solid_count;
+    law_light light[LAW_LIGHTS_MAX];
+    law_solid solid[LAW_SOLIDS_MAX];
+    int material_order[LAW_SOLIDS_MAX]; /* in which the materials of solid[0], solid[1] .. are declared */
+} law_scene;
+
+static const struct { const char *name, *text; double reach; } law_meshes[] = {
+    {"cube", "{generate: box, size: [1, 1, 1]}", 0.87},
+    {"ball", "{generate: icosphere, level: 1}", 1.0},
+    {"ring", "{generate: torus, around: 8, tube: 6}", 1.4},
+};
+
+/* 1e-12 .. 1, as many of each power of ten; a part of them 0. */
+static inline double random_gap(uint64_t *seed)
+{
+    const double exponent = random_real(seed, -12.0, 0.0);
+    return random_below(seed, 3) == 0 ? 0.0 : pow(10.0, exponent);
+}
+
+static inline vec3 in_frame_of(const solid_shape *s, double x, double y, double z)
+{
+    return vec3_add(s->position, mat3_apply(rotation_from_deg(s->rotation_deg), vec3_make(x, y, z)));
+}
+
+static inline void place_mesh(law_solid *s, uint64_t *seed)
+{
+    s->mesh = law_meshes[random_below(seed, (int)COUNT(law_meshes))].name;
+    s->shape = (solid_shape){.kind = SHAPE_MESH, .position = random_point(seed, 0.8), .copies = vec3_make(1.0, 1.0, 1.0)};
+    s->shape.rotation_deg = random_below(seed, 3) ? random_point(seed, 180.0) : vec3_make(0.0, 0.0, 0.0);
+    s->shape.scale.x = random_real(seed, 0.2, 1.2);
+    s->shape.scale.y = random_below(seed, 2) ? s->shape.scale.x : random_real(seed, 0.2, 1.2);
+    s->shape.scale.z = s->shape.scale.x;
+}
+
+/* Half the height of a solid along its own y, and where its middle is; 0 for those that have no flat top. */
+static inline double flat_half(const law_solid *s, double *middle)
+{
+    *middle = s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP ? 0.5 * s->shape.height : 0.0;
+    if (s->mesh)
+        return strcmp(s->mesh, "cube") == 0 ? 0.5 * s->shape.scale.y : 0.0;
+    return s->shape.kind == SHAPE_BOX ? 0.5 * s->shape.size.y : *middle;
+}
+
+/* On top of another with a flat top: at a gap, or as a film. */
+static inline void stack_on(law_solid *s, const law_solid *base, uint64_t *seed)
+{
+    double middle, gap = random_gap(seed);
+    const double top = flat_half(base, &middle) + middle;
+    solid_shape *shape = &s->shape;
+    const bool thin = random_below(seed, 3) == 0;
+    *shape = random_shape(seed);
+    s->mesh = NULL;
+    shape->rotation_deg = base->shape.rotation_deg;
+    if (random_below(seed, 4) == 0 && !thin) {
+        place_mesh(s, seed);
+        s->mesh = "cube";
+        shape->rotation_deg = base->shape.rotation_deg;
+        shape->position = in_frame_of(&base->shape, 0.1, top + gap + 0.5 * shape->scale.y, 0.0);
+        return;
+    }
+    if (shape->kind == SHAPE_PLANE || shape->kind == SHAPE_SPHERE || thin)
+        shape->kind = SHAPE_BOX;
+    if (thin) {
+        const double thickness = gap > 0.0 ? gap : 0.125;
+        shape->size.y = thickness;
+        shape->position = in_frame_of(&base->shape, 0.0, top + 0.5 * thickness, 0.05);
+        return;
+    }
+    const double half = shape->kind == SHAPE_BOX ? 0.5 * shape->size.y : 0.0;
+    shape->position = in_frame_of(&base->shape, 0.0, top + gap + half, -0.1);
+}
+
+static inline double smallest(vec3 v)
+{
+    return fmin(v.x, fmin(v.y, v.z));
+}
+
+/* Around another, or within it: a wall of that thickness all round, which may be none at all. */
+static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
+{
+    s->shape = base->shape;
+    s->mesh = base->mesh;
+    solid_shape *shape = &s->shape;
+    const double wall = random_gap(seed), least = fmin(fmin(shape->radius, shape->height), shape->kind == SHAPE_BOX ? smallest(shape->size) : 1.0);
+    const double step = random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
+    shape->radius += step;
+    shape->inner_radius += 0.5 * step;
+    shape->size = vec3_add(shape->size, vec3_make(2.0 * step, 2.0 * step, 2.0 * step));
+    if (shape->kind == SHAPE_CYLINDER || shape->kind == SHAPE_CUP) {
+        shape->position = in_frame_of(&base->shape, 0.0, -step, 0.0);
+        shape->height += 2.0 * step;
+    }
+    if (shape->kind == SHAPE_PLANE)
+        shape->position = in_frame_of(&base->shape, 0.0, step, 0.0);
+    shape->scale = vec3_scale(shape->scale, 1.0 + step);
+}
+
+static inline void random_surface(law_solid *s, const law_scene *w, uint64_t *seed)
+{
+    const double indices[] = {w->outside_ior, 1.33, 1.5, random_real(seed, 1.0, 2.5)};
+    s->opaque = random_below(seed, 5) == 0;
+    s->priority = random_below(seed, 6) - 2;
+    s->ior = indices[random_below(seed, 4)];
+    s->transparency = random_below(seed, 3) ? 1.0 : random_real(seed, 0.2, 1.0);
+    s->reflectivity = s->opaque && random_below(seed, 2) ? random_real(seed, 0.0, 1.0) : 0.0;
+    s->specular = random_below(seed, 2) ? 0.5 : 0.0;
+    s->checker = random_below(seed, 4) == 0 && !s->mesh ? random_real(seed, 0.1, 0.6) : 0.0;
+    s->absorb_per_m = vec3_make(0.0, 0.0, 0.0);
+    if (random_below(seed, 3) == 0)
+        s->absorb_per_m = vec3_make(random_real(seed, 0.0, 0.8), 0.0, random_real(seed, 0.0, 0.8));
+}
+
+static inline law_solid random_solid(const law_scene *w, int number, uint64_t *seed)
+{
+    law_solid s = {.number = number, .shape = random_shape(seed)};
+    double middle;
+    const law_solid *base = w->solid_count ? &w->solid[random_below(seed, w->solid_count)] : NULL;
+    const int relation = random_below(seed, 8);
+    if (base && relation < 3 && flat_half(base, &middle) > 0.0)
+        stack_on(&s, base, seed);
+    else if (base && relation < 5)
+        nest_in(&s, base, seed);
+    else if (random_below(seed, 8) == 0)
+        place_mesh(&s, seed);
+    random_surface(&s, w, seed);
+    return s;
+}
+
+static inline void add_solid(law_scene *w, law_solid s)
+{
+    assert_true(w->solid_count < LAW_SOLIDS_MAX);
+    w->material_order[w->solid_count] = w->solid_count;
+    w->solid[w->solid_count++] = s;
+}
+
+static inline law_scene random_law_scene(uint64_t *seed, const char *settings)
+{
+    law_scene w = {.settings = settings, .sky = 1.0, .outside_ior = random_below(seed, 3) ? 1.0 : random_real(seed, 1.0, 2.0)};
+    if (random_below(seed, 8) == 0)
+        w.outside_absorb_per_m = vec3_make(0.1, 0.02, 0.0);
+    w.light_count = random_below(seed, LAW_LIGHTS_MAX + 1);
+    for (int i = 0; i < w.light_count; i++)
+        w.light[i] = (law_light){random_point(seed, 5.0), 2.0 * i};
+    const int count = 1 + random_below(seed, 9);
+    for (int i = 0; i < count; i++)
+        add_solid(&w, random_solid(&w, i, seed));
+    const law_solid *within = &w.solid[random_below(seed, count)];
+    const vec3 near = random_point(seed, 0.2);
+    w.eye = random_below(seed, 4) ? random_point(seed, 3.0) : vec3_add(within->shape.position, near);
+    w.target = random_point(seed, 0.5);
+    return w;
+}
+
+static inline void add_vector(scene_text *t, const char *key, vec3 v)
+{
+    add(t, "%s: [%.17g, %.17g, %.17g], ", key, v.x, v.y, v.z);
+}
+
+static inline void write_material(scene_text *t, const law_solid *s)
+{
+    add(t, "  m%d: {", s->number);
+    if (s->opaque)
+        add(t, "ambient: 0.2, diffuse: 0.5, color: [0.9, 0.5, 0.2], ");
+    else
+        add(t, "ior: %.17g, transparency: %.17g, ", s->ior, s->transparency);
+    if (s->checker > 0.0)
+        add(t, "checker: %.17g, checker_color: [0.1, 0.3, 0.9], ", s->checker);
+    if (vec3_dot(s->absorb_per_m, s->absorb_per_m) > 0.0 && !s->opaque)
+        add_vector(t, "absorb_per_m", s->absorb_per_m);
+    add(t, "reflectivity: %.17g, specular: %.17g, shininess: 20}\n", s->reflectivity, s->specular);
+}
+
+static inline void write_solid(scene_text *t, const law_solid *s)
+{
+    add(t, "  s%d: {material: m%d, priority: %d, ", s->number, s->number, (int)s->priority);
+    if (s->mesh) {
+        add(t, "shape: mesh, mesh: %s, ", s->mesh);
+        add_vector(t, "scale", s->shape.scale);
+        add_vector(t, "position", s->shape.position);
+        add_vector(t, "rotation", s->shape.rotation_deg);
+    } else
+        add_shape(t, &s->shape);
+    add(t, "}\n");
+}
+
+static inline bool has_meshes(const law_scene *w)
+{
+    for (int i = 0; i < w->solid_count; i++)
+        if (w->solid[i].mesh)
+            return true;
+    return false;
+}
+
+static inline scene_text law_text(const law_scene *w)
+{
+    scene_text t = {.length = 0};
+    add(&t, "render: {width: %d, height: %d, %s}\n", LAW_WIDTH, LAW_HEIGHT, w->settings);
+    add(&t, "background: {color: [%g, %g, %g], ambient: [1, 1, 1], ior: %.17g, ", 0.5 * w->sky, 0.75 * w->sky, w->sky, w->outside_ior);
+    add_vector(&t, "absorb_per_m", w->outside_absorb_per_m);
+    add(&t, "}\ncamera: {");
+    add_vector(&t, "position", w->eye);
+    add_vector(&t, "target", w->target);
+    add(&t, "fov_deg: 50}\n");
+    for (int i = 0; i < w->light_count; i++) {
+        add(&t, "%s  lamp%d: {", i ? "" : "lights:\n", i);
+        add_vector(&t, "position", w->light[i].position);
+        add(&t, "reach: %.17g}\n", w->light[i].reach);
+    }
+    for (size_t k = 0; k < COUNT(law_meshes) && has_meshes(w); k++)
+        add(&t, "%s  %s: %s\n", k ? "" : "meshes:\n", law_meshes[k].name, law_meshes[k].text);
+    add(&t, "materials:\n");
+    for (int i = 0; i < w->solid_count; i++)
+        write_material(&t, &w->solid[w->material_order[i]]);
+    add(&t, "solids:\n");
+    for (int i = 0; i < w->solid_count; i++)
+        write_solid(&t, &w->solid[i]);
+    return t;
+}
+
+/* A sphere around a solid; without an end around a plane. */
+typedef struct ball { vec3 middle; double radius; } ball;
+
+static inline ball ball_around(const law_solid *s)
+{
+    const solid_shape *shape = &s->shape;
+    const double wide = shape->radius * fmax(1.0, shape->kind == SHAPE_CYLINDER ? 1.0 / shape->m : 1.0);
+    switch (shape->kind) {
+    case SHAPE_SPHERE: return (ball){shape->position, shape->radius};
+    case SHAPE_BOX: return (ball){shape->position, 0.5 * vec3_length(shape->size)};
+    case SHAPE_CYLINDER:
+    case SHAPE_CUP: return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0), hypot(0.5 * shape->height, wide)};
+    case SHAPE_MESH: return (ball){shape->position, 1.45 * fmax(shape->scale.x, fmax(shape->scale.y, shape->scale.z))};
+    case SHAPE_PLANE:
+    case SHAPE_COUNT: break;
+    }
+    return (ball){shape->position, HUGE_VAL};
+}
+
+/* May two solids overlap or touch? Never a wrong no. */
+static inline bool may_touch(const law_solid *a, const law_solid *b)
+{
+    const ball p = ball_around(a), q = ball_around(b);
+    return !(vec3_length(vec3_sub(p.middle, q.middle)) > 1.0001 * (p.radius + q.radius));
+}
+
+#endif

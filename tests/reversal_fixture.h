@@ -1,0 +1,96 @@
+/* A path of light there and back, for tests. Ownership as in probe_fixture.h. */
+#ifndef CUVETTE_TESTS_REVERSAL_FIXTURE_H
+#define CUVETTE_TESTS_REVERSAL_FIXTURE_H
+
+#include "probe_fixture.h"
+
+/* Light's way is the same there and back (Hecht, 4.5: Fermat's principle and reversibility; 4.10: Stokes's relations), and so is the
+ * share of power that goes along it: R and T = n_t cos_t / (n_i cos_i) |t|^2 of an interface are the same from either side.
+ * Radiance is another matter: it grows by (n_t / n_i)^2 on the way into a medium, L / n^2 stays (Nicodemus, Applied Optics 2, 1963;
+ * Veach 1997, 5.2). The tracer's throughput is one of power: between an eye in a medium a and a sky in a medium b it leaves out the
+ * factor (n_a / n_b)^2, which is 1 where both are of one medium. Were the factor in it, there and back would differ by its square. */
+
+/* Curved surfaces are a billiard, where a rounding grows with every bounce (to 1e-7 after sixty), and near grazing with the square of
+ * 1/cos. A reflectance next to nothing is a difference of almost equal numbers. */
+static const double STEEP = 0.1;
+enum { BOUNCES_MAX = 12 };
+/* A point that lies beside the other turns the normal, the angles and so the reflectances: relative change of throughput a unit of length. */
+static const double SWAY = 100.0;
+
+static inline bool is_tame(const ray_tree *way)
+{
+    if (way->count > BOUNCES_MAX + 1)
+        return false;
+    for (size_t j = 0; j + 1 < way->count; j++) {
+        const ray_hit *h = &way->node[j].hit;
+        const double sine = h->n_from / h->n_to * sqrt(1.0 - h->cos_i * h->cos_i);
+        if (h->cos_i < STEEP || (h->tir ? sine * sine - 1.0 < STEEP * STEEP : h->cos_t < STEEP))
+            return false;
+        if (way->node[j + 1].kind == RAY_REFLECT && h->R < 1e-4)
+            return false;
+    }
+    return way->node[way->count - 1].end == RAY_END_SKY;
+}
+
+/* T of power by Hecht's eqs. 4.61, 4.32 and 4.38, the mean of both polarisations; R under a reflection. */
+static inline double share_of(const ray_hit *h, ray_kind next)
+{
+    const double a = h->n_from * h->cos_i, b = h->n_to * h->cos_t;
+    const double t_s = 2.0 * a / (a + b), t_p = 2.0 * a / (h->n_to * h->cos_i + h->n_from * h->cos_t);
+    const double T = h->tir ? 0.0 : 0.5 * b / a * (t_s * t_s + t_p * t_p);
+    return next == RAY_REFRACT ? T : 1.0 - T;
+}
+
+/* What came of a path: whether it was one to compare, whether the path back met the same surfaces, how far its points lay from those of the path
+ * there, by how much their throughputs differ beyond what that explains, and that of the path there from the closed forms. */
+typedef struct reversal {
+    bool used, same_surfaces, reflected, other_media;
+    int crossings;
+    double farthest, unequal, unlike_closed_form, direction;
+} reversal;
+
+static inline double unequal_throughput(const ray_node *there, const ray_node *back, int n)
+{
+    double worst = 0.0;
+    for (int c = 0; c < 3; c++) {
+        /* the first stretch of either path is not part of the other; absorption between is */
+        const double forth = there[n].throughput[c] / there[0].hit.transmittance[c];
+        const double other = back[n].throughput[c] / back[0].hit.transmittance[c];
+        worst = fmax(worst, fabs(forth / other - 1.0));
+    }
+    return worst;
+}
+
+/* One path, and back from 3 units behind its last interface. */
+static inline reversal there_and_back(stage *g, vec3 origin, vec3 direction, int reflect_at)
+{
+    reversal r = {.used = false};
+    const ray_tree *path = stage_way(g, origin, direction, reflect_at);
+    const int n = (int)path->count - 1;
+    if (n == 0 || !is_tame(path))
+        return r;
+    ray_node there[BOUNCES_MAX + 1];
+    memcpy(there, path->node, (size_t)(n + 1) * sizeof *there);
+    const ray_node *last = &there[n];
+    r = (reversal){.used = true, .same_surfaces = true, .crossings = n, .other_media = there[0].n != last->n};
+    r.reflected = reflect_at >= 0 && reflect_at < n;
+    const vec3 end = vec3_add(last->origin, vec3_scale(last->direction, 3.0));
+    path = stage_way(g, end, vec3_scale(last->direction, -1.0), r.reflected ? n - 1 - reflect_at : -1);
+    r.same_surfaces = (int)path->count > n;
+    double known = 1.0, kept = 1.0;
+    for (int j = 0; j < n && r.same_surfaces; j++) {
+        const ray_hit *h = &there[j].hit, *same = &path->node[n - 1 - j].hit;
+        r.farthest = fmax(r.farthest, apart(h->point, same->point));
+        r.same_surfaces = h->face_solid == same->face_solid && there[j + 1].kind == path->node[n - j].kind;
+        known *= share_of(h, there[j + 1].kind);
+        kept *= h->transmittance[1];
+    }
+    if (!r.same_surfaces)
+        return r;
+    r.unequal = unequal_throughput(there, path->node, n) - SWAY * r.farthest;
+    r.unlike_closed_form = fabs(there[n].throughput[1] / (kept * known) - 1.0);
+    r.direction = apart(path->node[n].direction, vec3_scale(there[0].direction, -1.0));
+    return r;
+}
+
+#endif

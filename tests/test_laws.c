@@ -1,0 +1,158 @@
+#include <limits.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "law_judge.h"
+
+/* What must hold in every scene: random scenes under changes that the image must not show (law_pairs.h). LAWS_SCENES and LAWS_SEED choose how
+ * many scenes and which; `make laws` tries a million. A scene that breaks a law is printed as a scene file, with as few solids as show it. */
+
+typedef struct tally { long scenes, skipped, broken, asked, tried; } tally;
+
+static long number_from(const char *name, long fallback)
+{
+    const char *text = getenv(name);
+    return text && *text ? strtol(text, NULL, 10) : fallback;
+}
+
+static void print_scene(const char *title, const law_scene *w)
+{
+    print_message("%s\n", title);
+    const scene_text text = law_text(w);
+    for (const char *line = text.at; *line;) {
+        const size_t length = strcspn(line, "\n");
+        print_message("  %.*s\n", (int)length, line);
+        line += length + (line[length] == '\n');
+    }
+}
+
+static void print_fault(judge *j, const law_pair *p, long seed, long number)
+{
+    const law_pair small = law_shrink(j, *p);
+    print_message("law %s is broken: LAWS_SEED=%ld, scene %ld, off by %g\n", law_names[p->which], seed, number, j->off);
+    print_scene("the scene:", &small.a);
+    if (p->which == LAW_SCALE)
+        print_message("and the same times 2^%d\n", p->exponent);
+    else if (p->which != LAW_REVERSAL)
+        print_scene("and changed:", &small.b);
+}
+
+/* Scene `number` of a seed, whatever came before it. */
+static uint64_t seed_of(long seed, law which, long number)
+{
+    uint64_t mixed = (uint64_t)seed * 0x9e3779b97f4a7c15u + (uint64_t)which * 0xd1342543de82ef95u + (uint64_t)number;
+    return random_bits(&mixed);
+}
+
+/* How many scenes broke it; the first few are printed. */
+static tally try_law(law which, judge *j)
+{
+    enum { PRINTED_MAX = 3, ASKED_EVERY = 5 };
+    const long scenes = number_from("LAWS_SCENES", 10000), seed = number_from("LAWS_SEED", 1);
+    tally sum = {.scenes = scenes};
+    for (long number = 0; number < scenes; number++) {
+        law_pair p;
+        verdict result = SKIPPED;
+        if (law_pair_make(which, seed_of(seed, which, number), (int)(number % 7919), &p))
+            result = law_judge(j, &p);
+        sum.skipped += result == SKIPPED;
+        if (result == BROKEN && sum.broken++ < PRINTED_MAX)
+            print_fault(j, &p, seed, number);
+        const bool asks = which == LAW_CUT || which == LAW_SAME || which == LAW_FILL;
+        if (asks && result == HELD && number % ASKED_EVERY == 0) {
+            sum.asked++;
+            sum.tried += law_was_tried(&p);
+        }
+    }
+    return sum;
+}
+
+/* A law over all scenes; at most this share of them skipped, and where it alters a part of a scene, at least a 20th of them looked at through it. */
+static void law_holds(law which, double skipped_at_most)
+{
+    judge j = judge_open();
+    const tally sum = try_law(which, &j);
+    judge_close(&j);
+    print_message("law %s: %ld scenes, %ld broken, %ld skipped", law_names[which], sum.scenes, sum.broken, sum.skipped);
+    if (sum.asked > 0)
+        print_message("; a ray crossed the altered part in %ld of %ld", sum.tried, sum.asked);
+    if (j.rays > 0)
+        print_message("; %ld rays compared, %ld not", j.rays, j.unlike);
+    print_message("\n");
+    assert_int_equal(sum.broken, 0);
+    assert_true((double)sum.skipped <= skipped_at_most * (double)sum.scenes);
+    if (sum.asked > 0)
+        assert_true(5 * sum.tried >= sum.asked);
+    if (which == LAW_MOTION)
+        assert_true(j.unlike * 5 <= j.rays + j.unlike);
+    if (which == LAW_REVERSAL)
+        assert_true(20 * j.rays >= sum.scenes);
+}
+
+static void a_solid_that_no_ray_meets_changes_no_bit(void **state)
+{
+    (void)state;
+    law_holds(LAW_UNMET, 0.01);
+}
+
+static void order_and_priorities_of_solids_apart_change_no_bit(void **state)
+{
+    (void)state;
+    law_holds(LAW_ORDER, 0.01);
+}
+
+static void a_scale_by_a_power_of_two_changes_no_bit(void **state)
+{
+    (void)state;
+    law_holds(LAW_SCALE, 0.0);
+}
+
+static void translation_rotation_and_mirror_change_no_radiance(void **state)
+{
+    (void)state;
+    law_holds(LAW_MOTION, 0.2);
+}
+
+static void a_clear_solid_may_be_cut_into_two(void **state)
+{
+    (void)state;
+    law_holds(LAW_CUT, 0.01);
+}
+
+static void a_solid_of_the_surroundings_medium_is_not_seen(void **state)
+{
+    (void)state;
+    law_holds(LAW_SAME, 0.01);
+}
+
+static void a_path_reversed_has_the_same_throughput(void **state)
+{
+    (void)state;
+    law_holds(LAW_REVERSAL, 0.0);
+}
+
+static void a_gap_may_be_filled_with_the_surroundings_medium(void **state)
+{
+    (void)state;
+    law_holds(LAW_FILL, 0.01);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_solid_that_no_ray_meets_changes_no_bit),
+        cmocka_unit_test(order_and_priorities_of_solids_apart_change_no_bit),
+        cmocka_unit_test(a_scale_by_a_power_of_two_changes_no_bit),
+        cmocka_unit_test(translation_rotation_and_mirror_change_no_radiance),
+        cmocka_unit_test(a_clear_solid_may_be_cut_into_two),
+        cmocka_unit_test(a_solid_of_the_surroundings_medium_is_not_seen),
+        cmocka_unit_test(a_path_reversed_has_the_same_throughput),
+        cmocka_unit_test(a_gap_may_be_filled_with_the_surroundings_medium),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
