@@ -60,7 +60,7 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
     s.priority = random_below(seed, 12) - 4;
     const bool far = random_below(seed, 3) != 0;
     const double power = far ? random_real(seed, 1.0, 5.9) : random_real(seed, -6.0, -3.0);
-    const double distance = pow(10.0, power), size = far ? fmin(0.1 * distance, pow(10.0, random_real(seed, -3.0, 3.0))) : distance;
+    const double distance = pow(10.0, power), size = far ? fmin(0.002 * distance, pow(10.0, random_real(seed, -3.0, 3.0))) : distance;
     s.shape.position = far ? vec3_scale(random_direction(seed), distance) : random_point(seed, 1.5);
     s.shape.radius *= size, s.shape.inner_radius *= size, s.shape.height *= size, s.shape.floor *= size;
     s.shape.size = vec3_scale(s.shape.size, size);
@@ -339,6 +339,7 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
     *p = (law_pair){.which = which, .a = random_law_scene(&seed, settings)};
     for (int i = 0; i < p->a.solid_count && which == LAW_REVERSAL; i++)
         p->a.solid[i].transparency = 1.0;
+    p->a.flat = which == LAW_REVERSAL; /* normals that are interpolated between vertices belong to no surface, and know no way back */
     p->b = p->a;
     p->seed = random_bits(&seed);
     switch (which) {

@@ -24,6 +24,7 @@ typedef struct law_scene {
     double outside_ior;
     vec3 outside_absorb_per_m;
     double sky;
+    bool flat;               /* meshes are shaded flat */
     vec3 eye, target;
     int light_count, solid_count;
     law_light light[LAW_LIGHTS_MAX];
@@ -197,11 +198,11 @@ static inline void write_material(scene_text *t, const law_solid *s)
     add(t, "reflectivity: %.17g, specular: %.17g, shininess: 20}\n", s->reflectivity, s->specular);
 }
 
-static inline void write_solid(scene_text *t, const law_solid *s)
+static inline void write_solid(scene_text *t, const law_solid *s, bool flat)
 {
     add(t, "  s%d: {material: m%d, priority: %d, ", s->number, s->number, (int)s->priority);
     if (s->mesh) {
-        add(t, "shape: mesh, mesh: %s, ", s->mesh);
+        add(t, "shape: mesh, mesh: %s, %s", s->mesh, flat ? "shading: flat, " : "");
         add_vector(t, "scale", s->shape.scale);
         add_vector(t, "position", s->shape.position);
         add_vector(t, "rotation", s->shape.rotation_deg);
@@ -240,7 +241,7 @@ static inline scene_text law_text(const law_scene *w)
         write_material(&t, &w->solid[w->material_order[i]]);
     add(&t, "solids:\n");
     for (int i = 0; i < w->solid_count; i++)
-        write_solid(&t, &w->solid[i]);
+        write_solid(&t, &w->solid[i], w->flat);
     return t;
 }
 

@@ -142,7 +142,7 @@ void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, 
     const int i = s->ray[k], crossed = (int)c->crossed[k];
     const crossing at = is_mesh(a, crossed)
                             ? mesh_crossing_of(a, rays, i, &mesh_hits[k])
-                            : crossing_of(a, rays, i, crossed, c->t[k], s->inside[k] >> crossed & 1);
+                            : crossing_of(a, rays, i, crossed, c->t[k], c->t[k] != s->in[crossed][k]);
     const uint64_t meshes = a->meshes ? a->meshes->primitives : 0;
     for (int p = 0; p < a->primitive_count; p++) {
         if (!((s->near[k] & ~meshes) >> p & 1))

@@ -419,6 +419,8 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
         for (int k = 0; k < n; k++) {
             if (s->ways)
                 note_stretch(k, 1.0, s, c);
+            if (a->bodies[c->before[k]].opaque) /* it sets out within one, as from the wall around an eye in there */
+                transmitted[s->ray[k]] = 0.0;
             if (c->crossed[k] < 0 || c->t[k] >= 1.0)
                 continue;
             if (!s->attention[k] || is_interface(a, rays, k, s, c, again))
