@@ -232,9 +232,11 @@ static uint64_t ask_numbers(void)
         "camera: {position: [0.1, 1.7, -5.3], fov_deg: 41.7}\n"
         "materials: {g: {transparency: 0.3, medium: water, absorb_per_m: [1e-310, 0.1, 4.9e-324]}}\n"
         "lights: {lamp: {position: [0.7, 6.1, -4.3], intensity: 0.9}}\n"
-        "solids: {ball: {shape: sphere, material: g, radius: 0.7, position: [0.1, 0.2, 0.3], rotation: [10.1, 20.2, 30.3]}}\n";
+        "solids: {ball: {shape: sphere, material: g, radius: 0.7, position: [0.1, 0.2, 0.3], rotation: [10.1, 20.2, 30.3]},\n"
+        "         mote: {shape: sphere, radius: 0.01, position: [3e-310, 2, 0]}}\n";
     static char written[65536];
     static const double third[] = {1.0 / 3.0, 2.0 / 3.0, 0.1}, degrees[] = {10.7, -33.3, 71.1};
+    static const double subnormal[] = {1e-310, 0, 5e-324}; /* what flushing makes 0 */
     static const float pixels[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f, 1.0f, 0.15f, 0.25f};
     static const float corners[] = {-0.3f, 0.1f, 0.2f, 0.9f, 0.3f, -0.1f, 0.1f, 1.1f, 0.7f};
     static const uint32_t triangle[] = {0, 1, 2};
@@ -252,6 +254,7 @@ static uint64_t ask_numbers(void)
     fine(cuvette_scene_turn(s, "ball", degrees, &why), &why);
     fine(cuvette_scene_turn(s, "camera", degrees, &why), &why);
     fine(cuvette_scene_move(s, "ball", third, &why), &why);
+    fine(cuvette_scene_move(s, "mote", subnormal, &why), &why);
     fine(cuvette_scene_look_at(s, third, &why), &why);
     fine(cuvette_scene_get_vector(s, "camera.position", three, 3, &length, &why), &why);
     hash = mix(hash, three, sizeof three);
