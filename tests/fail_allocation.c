@@ -1,6 +1,6 @@
-/* A library to preload: one allocation of a program fails, as when memory is out. FAIL_AT=N fails the Nth, counted from 1 (0: none) among those
- * whose letters FAIL_KINDS names: m malloc and its like, c calloc, g a growing realloc, s a shrinking one, p a realpath. FAIL_COUNT names a
- * file that gets their number when the program ends. */
+/* A library to preload: one allocation of a program fails, as when memory is out. FAIL_AT=N fails the Nth, counted
+ * from 1 (0: none) among those whose letters FAIL_KINDS names: m malloc and its like, c calloc, g a growing
+ * realloc, s a shrinking one, p a realpath. FAIL_COUNT names a file that gets their number when the program ends. */
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -12,7 +12,8 @@
 #include <string.h>
 #include <unistd.h>
 
-static void *(*next_malloc)(size_t), *(*next_calloc)(size_t, size_t), *(*next_realloc)(void *, size_t), *(*next_aligned)(size_t, size_t);
+static void *(*next_malloc)(size_t), *(*next_calloc)(size_t, size_t), *(*next_realloc)(void *, size_t),
+    *(*next_aligned)(size_t, size_t);
 static char *(*next_realpath)(const char *, char *);
 static const char *kinds, *count_path;
 static long fail_at;

@@ -1,7 +1,7 @@
 #!/bin/bash
-# The program in every floating-point environment: a preloaded library sets it before main, as the start-up code of a library that was linked with
-# -ffast-math does. tests/float_environment.sh [PROGRAM]; needs the compiler (CC). What is printed must be the same, byte for byte.
-# One line a check ("ok ...", "not ok ...").
+# The program in every floating-point environment: a preloaded library sets it before main, as the start-up code of a
+# library that was linked with -ffast-math does. tests/float_environment.sh [PROGRAM]; needs the compiler (CC). What
+# is printed must be the same, byte for byte. One line a check ("ok ...", "not ok ...").
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -78,6 +78,13 @@ cuvette() { strange "$program" "$@"; }
 [[ $(environment=$up,0,0,0 && strange ./names) == *"; $up" ]]
 verdict $? "the preloaded library sets the environment"
 
+# A function that is added to the engine enters the default environment too.
+bare=$(awk '/^cuvette_status cuvette_/ {name = $2; sub(/\(.*/, "", name); n++}
+            name && open {if ($0 !~ /^ *ENGINE_ENTER\(host\);$/) print name; name = ""}
+            {open = /^{$/} END {if (n < 50) print "only", n, "functions"}' "$root"/src/engine/*.c)
+[[ -z $bare ]]
+verdict $? "every function of cuvette.h that can fail begins with ENGINE_ENTER${bare:+, but not }$bare"
+
 scenes=$root/experiments/scenes
 "$program" mesh --generate torus --around 24 --tube 12 -o ring.ply >/dev/null || exit 1
 cat >ring.yaml <<'EOF'
@@ -102,8 +109,10 @@ run_all() # prints what the program says and writes
     hash_of "$scenes/models.yaml" "${small[@]}" --set ball.level=2 --set render.integrator=zbuffer
     hash_of ring.yaml
     cuvette trace "$scenes/rod.yaml" --pixel 400,300 --depth 4 --json
-    cuvette fan "$scenes/rod.yaml" --from -3,1.5,0 --to 3,1.5,0 --width 1.7 --rays 9 --set rod.visible=off -o fan.csv && cat fan.csv
-    cuvette fan "$scenes/rod.yaml" --from -3,1.5,0 --to 3,1.5,0 --width 1.7 --rays 9 --set rod.visible=off -o fan.svg && cat fan.svg
+    for file in fan.csv fan.svg; do
+        cuvette fan "$scenes/rod.yaml" --from -3,1.5,0 --to 3,1.5,0 --width 1.7 --rays 9 --set rod.visible=off -o $file
+        cat $file
+    done
     cuvette scene "$scenes/rod.yaml" --set liquid.ior=1.234567890123456789 --set camera.fov_deg=33.3 -o -
     cuvette realism "$scenes/rod.yaml" "${small[@]}" --csv
     cuvette media

@@ -13,8 +13,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A host of the library in every floating-point environment: the same films, numbers, hits and motions, to the bit, and the host's
- * environment as it was. */
+/* A host of the library in every floating-point environment: the same films, numbers, hits and motions, to the
+ * bit, and the host's environment as it was. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -23,22 +23,26 @@
 enum { X86_DAZ = 0x0040, X86_FTZ = 0x8000, X87_PRECISION = 0x0300 };
 
 typedef struct surroundings {
-    int rounding;       /* FE_UPWARD ... */
-    unsigned flushing;  /* bits of MXCSR; other processors do without */
-    bool narrow;        /* x87 registers with 24-bit significands */
-    int traps;          /* for feenableexcept */
+    int rounding;      /* FE_UPWARD ... */
+    unsigned flushing; /* bits of MXCSR; other processors do without */
+    bool narrow;       /* x87 registers with 24-bit significands */
+    int traps;         /* for feenableexcept */
 } surroundings;
 
 static const int roundings[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
 static const unsigned flushings[] = {0, X86_FTZ, X86_DAZ, X86_FTZ | X86_DAZ};
 
-/* Every rounding with every flushing; then narrow registers, then traps, both in all else that is unusual. */
-enum { PLAIN = COUNT(roundings) * COUNT(flushings), SURROUNDINGS = PLAIN + 2 };
+/* Every rounding with every flushing; then narrow registers and traps, alone and in all else that is unusual. */
+enum { PLAIN = COUNT(roundings) * COUNT(flushings), SURROUNDINGS = PLAIN + 4 };
 
 static surroundings surroundings_at(size_t i)
 {
+    const surroundings unusual[] = {{FE_TONEAREST, 0, true, 0},
+                                    {FE_TONEAREST, 0, false, FE_ALL_EXCEPT},
+                                    {FE_UPWARD, X86_FTZ | X86_DAZ, true, 0},
+                                    {FE_UPWARD, X86_FTZ | X86_DAZ, false, FE_ALL_EXCEPT}};
     if (i >= PLAIN)
-        return (surroundings){FE_UPWARD, X86_FTZ | X86_DAZ, i == PLAIN, i == PLAIN ? 0 : FE_ALL_EXCEPT};
+        return unusual[i - PLAIN];
     return (surroundings){roundings[i / COUNT(flushings)], flushings[i % COUNT(flushings)], false, 0};
 }
 
@@ -81,9 +85,10 @@ static void expect_unchanged(const noticed *before)
     const noticed after = notice();
     fesetenv(FE_DFL_ENV);
     if (memcmp(before, &after, sizeof after) != 0)
-        fail_msg("rounding %x to %x, raised %x to %x, traps %x to %x, mxcsr %x to %x, control word %x to %x", (unsigned)before->rounding,
-                 (unsigned)after.rounding, (unsigned)before->raised, (unsigned)after.raised, (unsigned)before->traps, (unsigned)after.traps,
-                 before->mxcsr, after.mxcsr, before->control, after.control);
+        fail_msg("rounding %x to %x, raised %x to %x, traps %x to %x, mxcsr %x to %x, control word %x to %x",
+                 (unsigned)before->rounding, (unsigned)after.rounding, (unsigned)before->raised, (unsigned)after.raised,
+                 (unsigned)before->traps, (unsigned)after.traps, before->mxcsr, after.mxcsr, before->control,
+                 after.control);
 }
 
 /* --- what a host asks for; no arithmetic on numbers here: it would be the host's own --- */
@@ -232,7 +237,8 @@ static uint64_t ask_numbers(void)
         "camera: {position: [0.1, 1.7, -5.3], fov_deg: 41.7}\n"
         "materials: {g: {transparency: 0.3, medium: water, absorb_per_m: [1e-310, 0.1, 4.9e-324]}}\n"
         "lights: {lamp: {position: [0.7, 6.1, -4.3], intensity: 0.9}}\n"
-        "solids: {ball: {shape: sphere, material: g, radius: 0.7, position: [0.1, 0.2, 0.3], rotation: [10.1, 20.2, 30.3]},\n"
+        "solids: {ball: {shape: sphere, material: g, radius: 0.7, position: [0.1, 0.2, 0.3],\n"
+        "                rotation: [10.1, 20.2, 30.3]},\n"
         "         mote: {shape: sphere, radius: 0.01, position: [3e-310, 2, 0]}}\n";
     static char written[65536];
     static const double third[] = {1.0 / 3.0, 2.0 / 3.0, 0.1}, degrees[] = {10.7, -33.3, 71.1};
@@ -263,8 +269,13 @@ static uint64_t ask_numbers(void)
     fine(cuvette_scene_write_text(s, written, sizeof written, &length, &why), &why);
     hash = mix_text(hash, written);
     fine(cuvette_scene_add_pixels(s, "tiles", 2, 2, pixels, &why), &why);
-    const cuvette_triangles one = {.size = sizeof one, .vertex_count = 3, .triangle_count = 1, .vertices_float = corners, .corners = triangle,
-                                   .normals_float = corners, .uvs_float = corners};
+    const cuvette_triangles one = {.size = sizeof one,
+                                   .vertex_count = 3,
+                                   .triangle_count = 1,
+                                   .vertices_float = corners,
+                                   .corners = triangle,
+                                   .normals_float = corners,
+                                   .uvs_float = corners};
     fine(cuvette_scene_add_triangles(s, "shard", &one, &why), &why);
     fine(cuvette_scene_add_solid(s, "splinter", "mesh", NULL, &why), &why);
     turn(s, "splinter.mesh", "shard");
@@ -278,7 +289,8 @@ static uint64_t ask_numbers(void)
 static uint64_t ask_rays(void)
 {
     enum { SIDE = 12, RAYS = SIDE * SIDE };
-    static const double columns[SIDE] = {0.5, 4.3, 8.9, 12.1, 16.7, 20.2, 24.6, 28.4, 32.8, 36.1, 40.7, 47.9}, inside[] = {0.1, 0.7, 0.2};
+    static const double columns[SIDE] = {0.5, 4.3, 8.9, 12.1, 16.7, 20.2, 24.6, 28.4, 32.8, 36.1, 40.7, 47.9},
+                        inside[] = {0.1, 0.7, 0.2};
     static cuvette_ray rays[RAYS];
     static cuvette_hit hits[RAYS];
     static unsigned char blocked[RAYS];
@@ -349,16 +361,17 @@ static void expect_one_answer(question *ask)
         const uint64_t answer = ask();
         expect_unchanged(&before);
         if (answer != expected)
-            fail_msg("rounding %x, MXCSR bits %x, narrow %d, traps %x: %016llx, not %016llx", (unsigned)now.rounding, now.flushing, now.narrow,
-                     (unsigned)now.traps, (unsigned long long)answer, (unsigned long long)expected);
+            fail_msg("rounding %x, MXCSR bits %x, narrow %d, traps %x: %016llx, not %016llx", (unsigned)now.rounding,
+                     now.flushing, now.narrow, (unsigned)now.traps, (unsigned long long)answer,
+                     (unsigned long long)expected);
     }
 }
 
-#define ONE_ANSWER(name, ask) \
+#define ONE_ANSWER(name, ask)      \
     static void name(void **state) \
-    { \
-        (void)state; \
-        expect_one_answer(ask); \
+    {                              \
+        (void)state;               \
+        expect_one_answer(ask);    \
     }
 ONE_ANSWER(a_whole_tree_of_rays, ask_whitted)
 ONE_ANSWER(random_paths, ask_path)
@@ -495,10 +508,12 @@ static void it_comes_back_whichever_way_a_call_ends(void **state)
     set_surroundings(&now);
     listener l = {.expected = notice(), .cancels = true};
     const cuvette_status cancelled = render_with(engine, s, &l);
-    const cuvette_status wrong[] = {
-        cuvette_engine_render(engine, NULL, NULL, NULL, NULL), cuvette_scene_read("no/such.yaml", &none, NULL),
-        cuvette_scene_read_text("slip.yaml", slip, strlen(slip), &none, NULL), cuvette_scene_set(s, "camera.fov_deg", "0.1.2", NULL),
-        cuvette_query_nearest(query, &nowhere, 1, &hit, NULL), cuvette_scene_move(s, "nobody", nowhere.origin, NULL)};
+    const cuvette_status wrong[] = {cuvette_engine_render(engine, NULL, NULL, NULL, NULL),
+                                    cuvette_scene_read("no/such.yaml", &none, NULL),
+                                    cuvette_scene_read_text("slip.yaml", slip, strlen(slip), &none, NULL),
+                                    cuvette_scene_set(s, "camera.fov_deg", "0.1.2", NULL),
+                                    cuvette_query_nearest(query, &nowhere, 1, &hit, NULL),
+                                    cuvette_scene_move(s, "nobody", nowhere.origin, NULL)};
     expect_unchanged(&l.expected);
     assert_int_equal(cancelled, CUVETTE_CANCELLED);
     for (size_t i = 0; i < COUNT(wrong); i++)

@@ -161,7 +161,8 @@ static status render_preview(stage *now, const scene *s, diagnostic *why)
     if (code == STATUS_OK) {
         canvas_fill(&now->buffers, result->picture, 0, 0, (int)small.render.width, (int)small.render.height, coarse);
         if (now->request->piece)
-            canvas_hand_piece(&now->buffers, &(cuvette_piece){0, 0, (int)s->render.width, (int)s->render.height, coarse});
+            canvas_hand_piece(&now->buffers,
+                              &(cuvette_piece){0, 0, (int)s->render.width, (int)s->render.height, coarse});
     }
     render_result_destroy(result);
     return code;
@@ -202,8 +203,8 @@ static status render(stage *now, const scene *s, cuvette_frame *frame, diagnosti
 }
 
 /* The engine and the scene are held; request is the caller's. */
-static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvette_request *given, float_environment *host,
-                          cuvette_frame *frame, diagnostic *why)
+static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvette_request *given,
+                          float_environment *host, cuvette_frame *frame, diagnostic *why)
 {
     cuvette_request request;
     stage now = {.engine = engine, .request = &request, .host = host};
