@@ -51,7 +51,7 @@ soname := libcuvette.so.$(firstword $(subst ., ,$(version)))
 # pkg-config is asked at its first use, not when this file is read: `make setup all` installs the libraries first.
 pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
 pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
-import_libs = $(eval import_libs := $$(shell pkg-config --libs assimp jansson))$(import_libs)
+import_libs = $(eval import_libs := $$(shell pkg-config --libs assimp jansson) -lm)$(import_libs)
 # For src/web alone.
 web_libs = $(eval web_libs := $$(shell pkg-config --libs libmicrohttpd))$(web_libs)
 CFLAGS ?= -g
@@ -81,7 +81,7 @@ library := $(filter-out src/cli/% src/import/% src/report/% src/web/% $(kernels)
 program := $(wildcard src/cli/*.c)
 web := $(wildcard src/report/*.c src/web/*.c)
 page := $(sort $(wildcard $(addprefix src/web/page/*.,html css js svg)))
-importer := $(wildcard src/import/*.c) src/base/status.c src/base/number.c src/base/below.c
+importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c number.c below.c float_environment.c)
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
 library_objects := $(library:src/%.c=$(build)/obj/%.o) $(kernel_objects)
 program_objects := $(program:src/%.c=$(build)/obj/%.o)

@@ -26,7 +26,12 @@
  * from 0, 0 at the top left; pixel x, y covers the square from x, y to x + 1, y + 1.
  *
  * The film is a function of the scene alone: the same bits for any number of threads, schedule, instruction set or compiler,
- * and with or without pieces, previews and callbacks. Its hash proves it. */
+ * and with or without pieces, previews and callbacks. Its hash proves it.
+ *
+ * Floating-point environment. Functions that return a cuvette_status compute in C's default one (to nearest, no
+ * traps, subnormal numbers kept), whatever the caller's rounding mode, traps (feenableexcept), FTZ, DAZ or x87
+ * precision. On return the caller's is as it was, raised exceptions too; it is in force in the caller's callbacks,
+ * and what they change in it stays. */
 #ifndef CUVETTE_H
 #define CUVETTE_H
 

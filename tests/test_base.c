@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "base/status.h"
 #include "base/text.h"
+#include "base/text_writer.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -242,6 +243,32 @@ static void text_is_formatted(void **state)
     char *text = text_format("%s-%03d", "cell", 7);
     assert_string_equal(text, "cell-007");
     free(text);
+}
+
+/* What happens when memory is out is the business of tests/memory.sh. */
+static void written_text_is_whole(void **state)
+{
+    (void)state;
+    enum { LINES = 20000 };
+    text_writer w;
+    char *text = NULL;
+    size_t size = 0;
+    assert_int_equal(text_writer_open(&w, NULL), STATUS_OK);
+    assert_int_equal(text_writer_close(&w, &text, &size, NULL), STATUS_OK);
+    assert_true(size == 0 && strcmp(text, "") == 0);
+    free(text);
+    assert_int_equal(text_writer_open(&w, NULL), STATUS_OK);
+    for (int i = 0; i < LINES; i++)
+        fprintf(w.stream, "%05d%c", i, i % 2 ? '\0' : '\n');
+    assert_int_equal(text_writer_close(&w, &text, &size, NULL), STATUS_OK);
+    assert_true(size == 6 * LINES && text[size] == 0);
+    for (int i = 0; i < LINES; i++)
+        assert_true(atoi(text + 6 * i) == i && text[6 * i + 5] == (i % 2 ? '\0' : '\n'));
+    free(text);
+    assert_int_equal(text_writer_open(&w, NULL), STATUS_OK);
+    fputs("given up", w.stream);
+    text_writer_abandon(&w);
+    assert_null(w.stream);
 }
 
 /* ---- hashes: expected values from an independent computation with integers of any size ---- */
@@ -682,6 +709,7 @@ int main(void)
         cmocka_unit_test(distances_are_optimal_string_alignments),
         cmocka_unit_test(nearest_word_is_near),
         cmocka_unit_test(text_is_formatted),
+        cmocka_unit_test(written_text_is_whole),
         cmocka_unit_test(hashes_are_known),
         cmocka_unit_test(hashes_see_order_and_top_bits),
         file_test(written_files_read_back),

@@ -54,7 +54,9 @@ static double area_of(const section *s, int medium)
 {
     section_step step[256];
     assert_true(s->line_count <= 256);
-    const size_t steps = section_area(s, medium, step);
+    size_t steps = 0;
+    diagnostic why = {.what = ""};
+    worked(section_area(s, medium, step, &steps, &why), &why);
     double ring = 0.0, largest = 0.0, sum = 0.0;
     section_point last = {0.0, 0.0};
     for (size_t i = 0; i < steps; i++) {

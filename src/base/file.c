@@ -12,11 +12,19 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+static status no_memory(diagnostic *why, const char *path)
+{
+    diagnostic_locate(why, path, 0, 0);
+    return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+}
+
 /* Fills *why with an error of the system about path. The reason is text of its own, because strerror is not
  * safe among threads and follows the locale. */
 static status system_error(diagnostic *why, status code, const char *path, const char *doing, int error)
 {
     const char *reason = strerrordesc_np(error), *remedy = NULL;
+    if (error == ENOMEM)
+        return no_memory(why, path);
     switch (error) {
     case ENOSPC: case EDQUOT: remedy = "free some space or choose another disk"; break;
     case EFBIG: remedy = "raise the limit on file size"; break;
@@ -26,12 +34,6 @@ static status system_error(diagnostic *why, status code, const char *path, const
     }
     diagnostic_locate(why, path, 0, 0);
     return diagnose(why, code, remedy, "%s: %s", doing, reason ? reason : "unknown error");
-}
-
-static status no_memory(diagnostic *why, const char *path)
-{
-    diagnostic_locate(why, path, 0, 0);
-    return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
 }
 
 /* Reads to the end of the file whatever fstat said: files of /proc claim to be empty. */

@@ -1,5 +1,6 @@
 #include "base/team.h"
 
+#include "base/float_environment.h"
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -40,6 +41,7 @@ static void *attend(void *argument)
     member *m = argument;
     team *t = m->of;
     unsigned long done = 0;
+    float_environment_set();
     pthread_mutex_lock(&t->lock);
     for (;;) {
         while (t->run == done && !t->quit)

@@ -1,3 +1,4 @@
+#include "base/float_environment.h"
 #include "cli/cli.h"
 #include "cli/terminal.h"
 #include <stdio.h>
@@ -58,6 +59,7 @@ static void print_version(FILE *stream, struct argp_state *state)
 
 int main(int argc, char **argv)
 {
+    float_environment_set(); /* the start-up code of a library can have left another one */
     terminal_prepare();
     argp_err_exit_status = STATUS_BAD_INPUT;
     argp_program_version_hook = print_version;

@@ -131,6 +131,8 @@ status options_parse(const struct argp *argp, unsigned flags, int argc, char **a
     error_t error = argp_parse(argp, argc, argv, flags, NULL, &input);
     if (error == EINVAL)
         return STATUS_BAD_INPUT;
+    if (error == ENOMEM)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
     return error ? diagnose(why, STATUS_FAILURE, "", "cannot read the command line: %s", strerror(error)) : STATUS_OK;
 }
 

@@ -1,3 +1,4 @@
+#include "base/text_writer.h"
 #include "cli/cli.h"
 #include "cli/study_request.h"
 #include "cli/study_table.h"
@@ -88,11 +89,15 @@ static status print_summary(const study *s, const study_request *request, diagno
     if (!terminal_columns(STDOUT_FILENO))
         return study_summary(s, request->results, stdout, why);
     char *text = NULL;
-    size_t size;
-    FILE *whole = open_memstream(&text, &size);
-    status result = whole ? study_summary(s, request->results, whole, why) : STATUS_FAILURE;
-    if (!whole || (fclose(whole) != 0 && result == STATUS_OK))
-        result = diagnose(why, STATUS_FAILURE, "", "out of memory");
+    text_writer writer;
+    status result = text_writer_open(&writer, why);
+    if (result != STATUS_OK)
+        return result;
+    result = study_summary(s, request->results, writer.stream, why);
+    if (result == STATUS_OK)
+        result = text_writer_close(&writer, &text, NULL, why);
+    else
+        text_writer_abandon(&writer);
     if (result == STATUS_OK)
         result = study_table_print(stdout, text, why);
     free(text);

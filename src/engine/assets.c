@@ -6,6 +6,7 @@
 
 cuvette_status cuvette_scene_add_mesh(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     diagnostic inner = {.line = 0};
@@ -14,6 +15,7 @@ cuvette_status cuvette_scene_add_mesh(cuvette_scene *s, const char *name, cuvett
 
 cuvette_status cuvette_scene_add_texture(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     diagnostic inner = {.line = 0};
@@ -80,6 +82,7 @@ static status check_arrays(const cuvette_triangles *t, diagnostic *why)
 
 cuvette_status cuvette_scene_add_triangles(cuvette_scene *s, const char *name, const cuvette_triangles *triangles, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     ENGINE_NEED(triangles, why);
@@ -103,6 +106,7 @@ cuvette_status cuvette_scene_add_triangles(cuvette_scene *s, const char *name, c
 
 cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int width, int height, const float *rgb, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     ENGINE_NEED(rgb, why);

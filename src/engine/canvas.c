@@ -10,9 +10,9 @@ static int lesser(int a, int b)
     return a < b ? a : b;
 }
 
-status canvas_open(const cuvette_request *request, canvas *c, diagnostic *why)
+status canvas_open(const cuvette_request *request, float_environment *host, canvas *c, diagnostic *why)
 {
-    *c = (canvas){.request = request};
+    *c = (canvas){.request = request, .host = host};
     if (request->srgb)
         c->bytes = malloc(sizeof *c->bytes);
     if ((request->srgb && !c->bytes) || pthread_mutex_init(&c->lock, NULL) != 0) {
@@ -100,6 +100,13 @@ void canvas_note(canvas *c, cuvette_piece piece)
     pthread_mutex_unlock(&c->lock);
 }
 
+void canvas_hand_piece(canvas *c, const cuvette_piece *piece)
+{
+    float_environment_leave(c->host);
+    c->request->piece(c->request->context, piece);
+    float_environment_enter(c->host);
+}
+
 status canvas_hand_out(canvas *c, diagnostic *why)
 {
     pthread_mutex_lock(&c->lock);
@@ -110,7 +117,7 @@ status canvas_hand_out(canvas *c, diagnostic *why)
     c->count = c->capacity = 0;
     pthread_mutex_unlock(&c->lock);
     for (size_t i = 0; i < count; i++)
-        c->request->piece(c->request->context, &pieces[i]);
+        canvas_hand_piece(c, &pieces[i]);
     free(pieces);
     return out_of_memory ? diagnose(why, STATUS_FAILURE, "", "out of memory for the list of finished pieces") : STATUS_OK;
 }

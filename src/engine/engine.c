@@ -26,6 +26,7 @@ status engine_isa(const char *name, isa *out, diagnostic *why)
 
 cuvette_status cuvette_engine_create(const char *instructions, cuvette_engine **out, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(out, why);
     *out = NULL;
     diagnostic inner = {.line = 0};
@@ -60,17 +61,26 @@ void cuvette_engine_cancel(cuvette_engine *engine)
 typedef struct stage {
     cuvette_engine *engine;
     const cuvette_request *request;
+    float_environment *host; /* the caller's, for the caller's functions */
     canvas buffers;
     double share;      /* reported so far */
     bool is_preview;
     status noted;      /* of handing out pieces */
 } stage;
 
+static bool caller_goes_on(stage *now)
+{
+    float_environment_leave(now->host);
+    const bool goes_on = now->request->progress(now->request->context, now->share);
+    float_environment_enter(now->host);
+    return goes_on;
+}
+
 static bool report_share(stage *now, double share)
 {
     if (share > now->share)
         now->share = share;
-    if (now->request->progress && !now->request->progress(now->request->context, now->share))
+    if (now->request->progress && !caller_goes_on(now))
         atomic_store(&now->engine->cancelled, true);
     return !atomic_load(&now->engine->cancelled);
 }
@@ -151,7 +161,8 @@ static status render_preview(stage *now, const scene *s, diagnostic *why)
     if (code == STATUS_OK) {
         canvas_fill(&now->buffers, result->picture, 0, 0, (int)small.render.width, (int)small.render.height, coarse);
         if (now->request->piece)
-            now->request->piece(now->request->context, &(cuvette_piece){0, 0, (int)s->render.width, (int)s->render.height, coarse});
+            canvas_hand_piece(&now->buffers,
+                              &(cuvette_piece){0, 0, (int)s->render.width, (int)s->render.height, coarse});
     }
     render_result_destroy(result);
     return code;
@@ -192,10 +203,11 @@ static status render(stage *now, const scene *s, cuvette_frame *frame, diagnosti
 }
 
 /* The engine and the scene are held; request is the caller's. */
-static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvette_request *given, cuvette_frame *frame, diagnostic *why)
+static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvette_request *given,
+                          float_environment *host, cuvette_frame *frame, diagnostic *why)
 {
     cuvette_request request;
-    stage now = {.engine = engine, .request = &request};
+    stage now = {.engine = engine, .request = &request, .host = host};
     status code = engine_check(s, why);
     if (code == STATUS_OK)
         code = engine_load(s, why);
@@ -204,7 +216,7 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
     if (code == STATUS_OK)
         code = know_machine(engine, s->model, why);
     if (code == STATUS_OK)
-        code = canvas_open(&request, &now.buffers, why);
+        code = canvas_open(&request, host, &now.buffers, why);
     if (code != STATUS_OK)
         return code;
     frame->solid_count = s->model->solid_count;
@@ -216,6 +228,7 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
 cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene *s, const cuvette_request *request, cuvette_frame **out,
                                      cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     if (out)
         *out = NULL;
     ENGINE_NEED(engine, why);
@@ -233,7 +246,8 @@ cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene
     }
     atomic_store(&engine->cancelled, false);
     cuvette_frame *frame = calloc(1, sizeof *frame);
-    const status code = frame ? render_held(engine, held, request, frame, &inner) : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
+    const status code = frame ? render_held(engine, held, request, &host, frame, &inner)
+                              : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
     engine_end_render(held);
     atomic_store(&engine->busy, false);
     if (out && frame && frame->result)

@@ -3,6 +3,7 @@
 #ifndef CUVETTE_ENGINE_ENGINE_PRIVATE_H
 #define CUVETTE_ENGINE_ENGINE_PRIVATE_H
 
+#include "base/float_environment.h"
 #include "base/isa.h"
 #include "cuvette.h"
 #include "render/renderer.h"
@@ -72,6 +73,14 @@ vec3 engine_unit(const double *d);
 
 /* Copies text, which it frees, into the caller's memory. */
 cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why);
+
+/* Stands first in each function of cuvette.h that can fail: it computes in the default floating-point environment,
+ * and whichever way it returns, the caller's is put back (the attribute is one of gcc and clang). The caller's
+ * functions run in the caller's: around a call of one stand float_environment_leave(&host) and
+ * float_environment_enter(&host). */
+#define ENGINE_ENTER(host) \
+    float_environment host __attribute__((cleanup(float_environment_leave))); \
+    float_environment_enter(&host)
 
 /* Shorthand for the beginning of a function: leaves with CUVETTE_BAD_INPUT when an argument is NULL. Where cuvette.h's name of it
  * is a type of the library, the definition has another one. */

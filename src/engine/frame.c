@@ -42,6 +42,7 @@ static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, siz
 
 cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, float *rgb, size_t stride, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
     ENGINE_NEED(rgb, why);
     diagnostic inner = {.line = 0};
@@ -55,6 +56,7 @@ cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int
 cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, unsigned char *srgb, size_t stride,
                                   cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
     ENGINE_NEED(srgb, why);
     diagnostic inner = {.line = 0};
@@ -70,6 +72,7 @@ cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, in
 
 cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path, int bits, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
     ENGINE_NEED(path, why);
     diagnostic inner = {.line = 0};
@@ -83,6 +86,7 @@ _Static_assert(sizeof(((cuvette_counters *)0)->by_depth) == sizeof(((ray_counter
 
 cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counters *out, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
     ENGINE_NEED(out, why);
     const ray_counters *c = &frame->result->counters;
@@ -98,6 +102,7 @@ cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counte
 
 cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t index, cuvette_solid_counters *out, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
     ENGINE_NEED(out, why);
     diagnostic inner = {.line = 0};
@@ -111,6 +116,7 @@ cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t i
 
 cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_statistics *out, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
     ENGINE_NEED(out, why);
     const render_result *r = frame->result;

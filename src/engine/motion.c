@@ -36,6 +36,7 @@ static status begin(cuvette_motion *m, diagnostic *why)
 
 cuvette_status cuvette_motion_create(cuvette_scene *s, cuvette_motion **out, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(out, why);
     *out = NULL;
     ENGINE_NEED_SCENE(s, why);
@@ -109,6 +110,7 @@ static status advance(cuvette_motion *m, double time_s, diagnostic *why)
 
 cuvette_status cuvette_motion_advance(cuvette_motion *motion, double time_s, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(motion, why);
     const cuvette_status held = engine_begin_advance(motion->of, why);
     if (held != CUVETTE_OK)
@@ -158,6 +160,7 @@ static void put_vector(vec3 v, double *out)
 
 cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *name, cuvette_slime *out, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(motion, why);
     ENGINE_NEED(name, why);
     ENGINE_NEED(out, why);

@@ -48,6 +48,7 @@ static void tell(const motion_place *found, double *where)
 cuvette_status cuvette_motion_pick(const cuvette_motion *motion, const char *name, const cuvette_ray *ray, double *where, double *distance,
                                    cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(motion, why);
     ENGINE_NEED(name, why);
     ENGINE_NEED(ray, why);
@@ -69,6 +70,7 @@ cuvette_status cuvette_motion_pick(const cuvette_motion *motion, const char *nam
 cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, const cuvette_ray *ray, double reach, int *hand, double *where,
                                    cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(motion, why);
     ENGINE_NEED(name, why);
     ENGINE_NEED(ray, why);
@@ -112,6 +114,7 @@ static cuvette_status find_hand(cuvette_motion *m, int number, motion_hand **out
 
 cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand, const double *by, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(motion, why);
     ENGINE_NEED(by, why);
     motion_hand *h = NULL;
@@ -127,6 +130,7 @@ cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand, const doubl
 
 cuvette_status cuvette_motion_release(cuvette_motion *motion, int hand, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(motion, why);
     motion_hand *h = NULL;
     const cuvette_status code = find_hand(motion, hand, &h, why);

@@ -5,6 +5,7 @@
 
 cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     diagnostic inner = {.line = 0};
@@ -13,6 +14,7 @@ cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvet
 
 cuvette_status cuvette_scene_add_material(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     diagnostic inner = {.line = 0};
@@ -21,6 +23,7 @@ cuvette_status cuvette_scene_add_material(cuvette_scene *s, const char *name, cu
 
 cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const char *shape, const char *of, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     ENGINE_NEED(shape, why);
@@ -39,6 +42,7 @@ cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const
 
 cuvette_status cuvette_scene_remove(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     diagnostic inner = {.line = 0};
@@ -50,6 +54,7 @@ cuvette_status cuvette_scene_remove(cuvette_scene *s, const char *name, cuvette_
 
 cuvette_status cuvette_scene_rename(cuvette_scene *s, const char *name, const char *new_name, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     ENGINE_NEED(new_name, why);
@@ -59,6 +64,7 @@ cuvette_status cuvette_scene_rename(cuvette_scene *s, const char *name, const ch
 
 cuvette_status cuvette_scene_give_material(cuvette_scene *s, const char *to, const char *of, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED_NAMED(to, "solid", why);
     diagnostic inner = {.line = 0};
@@ -67,6 +73,7 @@ cuvette_status cuvette_scene_give_material(cuvette_scene *s, const char *to, con
 
 cuvette_status cuvette_scene_move(cuvette_scene *s, const char *name, const double *by, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     ENGINE_NEED(by, why);
@@ -76,6 +83,7 @@ cuvette_status cuvette_scene_move(cuvette_scene *s, const char *name, const doub
 
 cuvette_status cuvette_scene_turn(cuvette_scene *s, const char *name, const double *degrees, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(name, why);
     ENGINE_NEED(degrees, why);
@@ -85,6 +93,7 @@ cuvette_status cuvette_scene_turn(cuvette_scene *s, const char *name, const doub
 
 cuvette_status cuvette_scene_look_at(cuvette_scene *s, const double *target, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(target, why);
     diagnostic inner = {.line = 0};

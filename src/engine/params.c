@@ -16,6 +16,7 @@ static bool is_slime(const scene *s, const char *path)
 
 cuvette_status cuvette_scene_set(cuvette_scene *s, const char *path, const char *value, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
     ENGINE_NEED(path, why);
     ENGINE_NEED(value, why);
@@ -29,6 +30,7 @@ cuvette_status cuvette_scene_set(cuvette_scene *s, const char *path, const char 
 
 cuvette_status cuvette_scene_set_double(cuvette_scene *s, const char *path, double value, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     char text[NUMBER_TEXT_MAX];
     return cuvette_scene_set(s, path, number_format(value, text), why);
 }
@@ -40,6 +42,7 @@ static bool is_switch(const param *row)
 
 cuvette_status cuvette_scene_set_int(cuvette_scene *s, const char *path, int64_t value, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED_SCENE(s, why);
     ENGINE_NEED(path, why);
     place at;
@@ -51,6 +54,7 @@ cuvette_status cuvette_scene_set_int(cuvette_scene *s, const char *path, int64_t
 
 cuvette_status cuvette_scene_set_vector(cuvette_scene *s, const char *path, const double *values, size_t count, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     enum { EACH = NUMBER_TEXT_MAX + 1, MOST = NUMBER_LIST_MAX + 1 };
     char text[MOST * EACH + 3] = "[", number[NUMBER_TEXT_MAX];
     size_t length = 1;
@@ -74,6 +78,7 @@ static cuvette_status get(const cuvette_scene *s, const char *path, char **value
 
 cuvette_status cuvette_scene_get(const cuvette_scene *s, const char *path, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     char *value;
     if (size > 0)
         ENGINE_NEED(text, why);
@@ -90,6 +95,7 @@ static cuvette_status is_no_number(const char *path, const char *value, const ch
 
 cuvette_status cuvette_scene_get_double(const cuvette_scene *s, const char *path, double *value, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     char *text;
     double number = 0.0;
     ENGINE_NEED(value, why);
@@ -106,6 +112,7 @@ cuvette_status cuvette_scene_get_double(const cuvette_scene *s, const char *path
 
 cuvette_status cuvette_scene_get_int(const cuvette_scene *s, const char *path, int64_t *value, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     char *text;
     int64_t number = 0;
     ENGINE_NEED(value, why);
@@ -139,6 +146,7 @@ static int parse_numbers(char *text, double numbers[NUMBER_LIST_MAX])
 cuvette_status cuvette_scene_get_vector(const cuvette_scene *s, const char *path, double *values, size_t room, size_t *count,
                                         cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     char *text;
     double numbers[NUMBER_LIST_MAX];
     ENGINE_NEED(count, why);
@@ -164,6 +172,7 @@ cuvette_status cuvette_scene_get_vector(const cuvette_scene *s, const char *path
 typedef struct visitor {
     bool (*visit)(void *context, const cuvette_parameter *one);
     void *context;
+    float_environment *host; /* the caller's, for the caller's function */
 } visitor;
 
 static status visit_one(void *context, const char *path, const param *row, const char *value)
@@ -172,15 +181,19 @@ static status visit_one(void *context, const char *path, const param *row, const
     char range[1024];
     const cuvette_parameter one = {.path = path, .value = value, .unit = row->unit, .range = param_range_text(row, range, sizeof range),
                                    .initial = row->fallback, .meaning = row->meaning};
-    return v->visit(v->context, &one) ? STATUS_OK : STATUS_INTERRUPTED;
+    float_environment_leave(v->host);
+    const bool goes_on = v->visit(v->context, &one);
+    float_environment_enter(v->host);
+    return goes_on ? STATUS_OK : STATUS_INTERRUPTED;
 }
 
 cuvette_status cuvette_scene_each_parameter(const cuvette_scene *s, bool (*visit)(void *context, const cuvette_parameter *one), void *context,
                                             cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED_SCENE(s, why);
     ENGINE_NEED(visit, why);
-    visitor v = {visit, context};
+    visitor v = {visit, context, &host};
     diagnostic inner = {.line = 0};
     const status code = scene_each_param(s->model, visit_one, &v);
     if (code == STATUS_OK || code == STATUS_INTERRUPTED)

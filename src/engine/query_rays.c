@@ -175,6 +175,7 @@ static status begin(const cuvette_query *q, const cuvette_ray *rays, size_t coun
 
 cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_ray *rays, size_t count, cuvette_hit *hits, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(query, why);
     if (count == 0)
         return CUVETTE_OK;
@@ -223,6 +224,7 @@ static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, 
 cuvette_status cuvette_query_occluded(const cuvette_query *query, const cuvette_ray *rays, size_t count, unsigned char *blocked,
                                       cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(query, why);
     if (count == 0)
         return CUVETTE_OK;

@@ -23,6 +23,7 @@ cuvette_status engine_wrap_scene(scene *model, cuvette_scene **out, cuvette_diag
 
 cuvette_status cuvette_scene_create(cuvette_scene **out, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(out, why);
     *out = NULL;
     return engine_wrap_scene(scene_create(), out, why);
@@ -30,6 +31,7 @@ cuvette_status cuvette_scene_create(cuvette_scene **out, cuvette_diagnostic *why
 
 cuvette_status cuvette_scene_read(const char *path, cuvette_scene **out, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(out, why);
     *out = NULL;
     ENGINE_NEED(path, why);
@@ -41,6 +43,7 @@ cuvette_status cuvette_scene_read(const char *path, cuvette_scene **out, cuvette
 
 cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_t size, cuvette_scene **out, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(out, why);
     *out = NULL;
     ENGINE_NEED(name, why);
@@ -61,6 +64,7 @@ static cuvette_scene *hold(const cuvette_scene *s)
 
 cuvette_status cuvette_scene_clone(const cuvette_scene *s, cuvette_scene **out, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED(out, why);
     *out = NULL;
     ENGINE_NEED_SCENE(s, why);
@@ -157,14 +161,30 @@ status engine_check(const cuvette_scene *s, diagnostic *why)
 
 cuvette_status cuvette_scene_check(const cuvette_scene *s, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED_SCENE(s, why);
     diagnostic inner = {.line = 0};
     return engine_report(engine_check(s, &inner), &inner, why);
 }
 
+typedef struct note_taker {
+    void (*note)(void *context, const char *text);
+    void *context;
+    float_environment *host; /* the caller's, for the caller's function */
+} note_taker;
+
+static void take_note(void *context, const char *text)
+{
+    const note_taker *t = context;
+    float_environment_leave(t->host);
+    t->note(t->context, text);
+    float_environment_enter(t->host);
+}
+
 cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *context, const char *text), void *context,
                                    cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED_SCENE(s, why);
     ENGINE_NEED(note, why);
     cuvette_scene *held = hold(s);
@@ -173,7 +193,7 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
     diagnostic inner = {.line = 0};
     if (!copy)
         return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
-    scene_hints(copy, note, context);
+    scene_hints(copy, take_note, &(note_taker){note, context, &host});
     scene_destroy(copy);
     return CUVETTE_OK;
 }
@@ -196,6 +216,7 @@ cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *
 
 cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED_SCENE(s, why);
     ENGINE_NEED(path, why);
     diagnostic inner = {.line = 0};
@@ -207,6 +228,7 @@ cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuv
 
 cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
 {
+    ENGINE_ENTER(host);
     ENGINE_NEED_SCENE(s, why);
     if (size > 0)
         ENGINE_NEED(text, why);

@@ -1,6 +1,7 @@
 #include "image/image.h"
 
 #include "base/file.h"
+#include "base/text_writer.h"
 #include "image/codec.h"
 #include <stdbool.h>
 #include <stdint.h>
@@ -89,17 +90,17 @@ static status write_as(const image *picture, image_format format, FILE *stream, 
 status image_encode(const image *picture, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size, diagnostic *why)
 {
     char *text = NULL;
+    text_writer writer;
     *bytes = NULL;
-    FILE *stream = open_memstream(&text, size);
-    if (!stream)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
-    status code = write_as(picture, format, stream, bits, fast, why);
-    if (fclose(stream) != 0 && code == STATUS_OK)
-        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = text_writer_open(&writer, why);
+    if (code != STATUS_OK)
+        return code;
+    code = write_as(picture, format, writer.stream, bits, fast, why);
     if (code == STATUS_OK)
-        *bytes = (unsigned char *)text;
+        code = text_writer_close(&writer, &text, size, why);
     else
-        free(text);
+        text_writer_abandon(&writer);
+    *bytes = (unsigned char *)text;
     return code;
 }
 

@@ -1,6 +1,7 @@
 /* cuvette-import FILE: see import.h. Exit codes 0, 1 (the machine failed) and 2 (the file is wrong), one line on standard error. */
 #include "import/import.h"
 
+#include "base/float_environment.h"
 #include "base/number.h"
 #include <argp.h>
 #include <signal.h>
@@ -104,6 +105,7 @@ int main(int count, char **arguments)
                "program cuvette, which starts this one, reads.",
     };
     request asked = {.memory_mib = 4096, .seconds = 60, .triangles = (uint64_t)1 << 25, .vertices = (uint64_t)1 << 26, .root = ""};
+    float_environment_set();
     argp_err_exit_status = STATUS_BAD_INPUT;
     argp_parse(&parser, count, arguments, 0, NULL, &asked);
     asked.kind = kind_of(asked.path);

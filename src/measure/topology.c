@@ -11,7 +11,7 @@
 
 static status no_memory(diagnostic *why)
 {
-    return diagnose(why, STATUS_FAILURE, "", "no memory for the topology of the machine");
+    return diagnose(why, STATUS_FAILURE, "", "out of memory for the topology of the machine");
 }
 
 static int units_of(hwloc_topology_t tree)

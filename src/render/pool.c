@@ -1,5 +1,6 @@
 #include "render/pool.h"
 
+#include "base/float_environment.h"
 #include <errno.h>
 #include <pthread.h>
 #include <semaphore.h>
@@ -54,6 +55,7 @@ static void *kept_worker(void *argument)
 {
     worker *w = argument;
     pool *p = w->owner;
+    float_environment_set();
     for (;;) {
         wait_for(&w->wake);
         if (p->quit)
@@ -68,6 +70,7 @@ static void *kept_worker(void *argument)
 static void *fresh_worker(void *argument)
 {
     worker *w = argument;
+    float_environment_set();
     w->owner->task(w->owner->context, w->index);
     end_of_task(w->owner);
     return NULL;

@@ -42,8 +42,8 @@ void section_release(section *s);
 /* The area of one medium: its lines, in order and direction, as closed rings. */
 typedef struct section_step { size_t line; bool backwards, starts_ring; } section_step;
 
-/* Writes up to line_count steps; returns how many. */
-size_t section_area(const section *s, int medium, section_step *out);
+/* Writes *count steps, up to line_count. */
+status section_area(const section *s, int medium, section_step *out, size_t *count, diagnostic *why);
 
 /* A point of space in the plane's coordinates, projected at right angles; and back. */
 section_point section_project(const section_plane *plane, vec3 p);

@@ -67,11 +67,13 @@ static size_t line_at(const section *s, int medium, int junction, const bool *us
     return s->line_count;
 }
 
-size_t section_area(const section *s, int medium, section_step *out)
+status section_area(const section *s, int medium, section_step *out, size_t *count, diagnostic *why)
 {
-    size_t count = 0;
+    *count = 0;
     bool *used = calloc(s->line_count + 1, sizeof *used);
-    for (size_t i = 0; i < s->line_count && used; i++) {
+    if (!used)
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    for (size_t i = 0; i < s->line_count; i++) {
         if (used[i] || !bounds(&s->line[i], medium))
             continue;
         size_t at = i;
@@ -79,11 +81,11 @@ size_t section_area(const section *s, int medium, section_step *out)
         for (bool first = true; at < s->line_count; first = false) {
             const bool backwards = s->line[at].end[0] != junction;
             used[at] = true;
-            out[count++] = (section_step){at, backwards, first};
+            out[(*count)++] = (section_step){at, backwards, first};
             junction = s->line[at].end[backwards ? 0 : 1];
             at = junction < 0 ? s->line_count : line_at(s, medium, junction, used);
         }
     }
     free(used);
-    return count;
+    return STATUS_OK;
 }

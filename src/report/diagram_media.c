@@ -35,12 +35,13 @@ static void write_fill(FILE *out, const scene *s, int i)
     fprintf(out, "fill=\"#56b4e9\" fill-opacity=\"%.3f\"", power < 0.8 ? 0.06 + 0.5 * power : 0.46);
 }
 
-static void write_area(const diagram *d, int of, section_step *steps)
+static status write_area(const diagram *d, int of, section_step *steps, diagnostic *why)
 {
     const section *cut = &d->cut;
-    const size_t count = section_area(cut, of, steps);
-    if (count == 0)
-        return;
+    size_t count;
+    const status code = section_area(cut, of, steps, &count, why);
+    if (code != STATUS_OK || count == 0)
+        return code;
     fprintf(d->out, "<path ");
     write_fill(d->out, d->s, of);
     fputs(" fill-rule=\"evenodd\" d=\"", d->out);
@@ -55,6 +56,7 @@ static void write_area(const diagram *d, int of, section_step *steps)
         }
     }
     fputs("Z\"/>\n", d->out);
+    return STATUS_OK;
 }
 
 static void write_boundary(const diagram *d, const section_line *line)
@@ -106,16 +108,17 @@ status diagram_media(diagram *d, diagnostic *why)
         free(steps);
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
+    status code = STATUS_OK;
     fputs("<g>\n", d->out);
-    for (int i = 0; i < (int)d->s->solid_count; i++)
-        write_area(d, i, steps);
+    for (int i = 0; i < (int)d->s->solid_count && code == STATUS_OK; i++)
+        code = write_area(d, i, steps, why);
     fputs("</g>\n<g stroke=\"" SVG_INK "\" stroke-width=\"0.9\" stroke-opacity=\"0.65\">\n", d->out);
     for (size_t i = 0; i < d->cut.line_count; i++)
         if (d->cut.line[i].a != SECTION_EDGE)
             write_boundary(d, &d->cut.line[i]);
     fputs("</g>\n", d->out);
     free(steps);
-    return STATUS_OK;
+    return code;
 }
 
 static void key_words(const probe *p, const scene *s, int i, char *text, size_t size)

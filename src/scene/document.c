@@ -233,7 +233,7 @@ static status wrap(const char *name, node *root, document **out, diagnostic *why
         free(d);
         free(copy);
         node_destroy(root);
-        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
     d->name = copy;
     d->root = root;

@@ -40,8 +40,9 @@ status node_error(const document *d, const node *at, diagnostic *why, const char
 /* Error, with the key that was meant (scene/suggest.h), if the map has a key that is not among words[0..count-1]. */
 status node_check_keys(const document *d, const node *map, const char *const *words, size_t count, diagnostic *why);
 
-/* A scalar, or a list of scalars, as text in the form scene_set takes ("8", "0,2.75,-6"); fresh memory, NULL for
- * other kinds. */
+/* Is it a scalar, or a list of scalars, that scene_set may take? */
+bool node_is_value(const node *n);
+/* Such a one as text ("8", "0,2.75,-6"); fresh memory, NULL when memory is out, and for other kinds. */
 char *node_value_text(const node *n);
 
 #endif

@@ -57,16 +57,22 @@ status node_check_keys(const document *d, const node *map, const char *const *wo
     return STATUS_OK;
 }
 
+bool node_is_value(const node *n)
+{
+    for (size_t i = 0; n->kind == NODE_LIST && i < n->count; i++) {
+        /* A comma in an element would read back as two. */
+        if (n->items[i]->kind != NODE_SCALAR || strchr(n->items[i]->text, ',')) {
+            return false;
+        }
+    }
+    return n->kind != NODE_MAP;
+}
+
 static char *list_text(const node *list)
 {
     size_t size = 1;
     for (size_t i = 0; i < list->count; i++) {
-        const node *item = list->items[i];
-        /* A comma in an element would read back as two. */
-        if (item->kind != NODE_SCALAR || strchr(item->text, ',')) {
-            return NULL;
-        }
-        size += strlen(item->text) + 1;
+        size += strlen(list->items[i]->text) + 1;
     }
     char *text = malloc(size), *end = text;
     if (!text) {
@@ -84,6 +90,9 @@ static char *list_text(const node *list)
 
 char *node_value_text(const node *n)
 {
+    if (!node_is_value(n)) {
+        return NULL;
+    }
     switch (n->kind) {
     case NODE_SCALAR: return strdup(n->text);
     case NODE_LIST: return list_text(n);

@@ -171,7 +171,7 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
         code = check_name_is_free(s, new_name, why);
     }
     if (code == STATUS_OK && !(copy = strdup(new_name))) {
-        code = diagnose(why, STATUS_FAILURE, "", "memory is out");
+        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
     if (code == STATUS_OK) {
         follow_name(s, &at, name, copy);
@@ -185,7 +185,7 @@ status scene_set_title(scene *s, const char *title, diagnostic *why)
 {
     char *copy = strdup(title);
     if (!copy) {
-        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
     free(s->title);
     s->title = copy;

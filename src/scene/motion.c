@@ -107,7 +107,7 @@ status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
     if (!m || !slimes) {
         free(m);
         free(slimes);
-        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
     m->s = s;
     m->slimes = slimes;

@@ -1,6 +1,7 @@
 /* Which scene a motion is in: what that had before, what it gets back, and whether another one has the same slimes. */
 #include "scene/motion_private.h"
 
+#include "base/text_writer.h"
 #include "scene/params.h"
 #include "scene/params_value.h"
 #include <stdio.h>
@@ -15,21 +16,21 @@ static bool is_of_the_body(const param *row)
 char *motion_parameters(const scene *s, const mesh_entry *entry)
 {
     char *text = NULL, *script = scene_file_path(s, entry->script_path);
-    size_t size;
-    FILE *stream = script ? open_memstream(&text, &size) : NULL;
-    bool good = stream != NULL;
+    text_writer writer;
+    bool good = script && text_writer_open(&writer, NULL) == STATUS_OK;
+    const bool begun = good;
     for (size_t i = 0; i < param_count() && good; i++) {
         const param *row = param_at(i);
         char *value = is_of_the_body(row) ? param_value_text(row, -1, (const char *)entry + row->offset) : NULL;
-        good = !is_of_the_body(row) || (value && fprintf(stream, "%s\n", value) >= 0);
+        good = !is_of_the_body(row) || (value && fprintf(writer.stream, "%s\n", value) >= 0);
         free(value);
     }
-    good = good && (!entry->script_path[0] || fprintf(stream, "%s\n", script) >= 0);
-    good = (!stream || fclose(stream) == 0) && good;
+    good = good && (!entry->script_path[0] || fprintf(writer.stream, "%s\n", script) >= 0);
     free(script);
-    if (!good) {
-        free(text);
-        return NULL;
+    if (good) {
+        text_writer_close(&writer, &text, NULL, NULL);
+    } else if (begun) {
+        text_writer_abandon(&writer);
     }
     return text;
 }
@@ -56,7 +57,7 @@ status motion_remember(scene_motion *m, moving_slime *one, diagnostic *why)
     one->name = strdup(entry->name);
     one->parameters = motion_parameters(m->s, entry);
     if (!one->name || !one->parameters) {
-        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
     take_given(&one->given, entry);
     return STATUS_OK;
@@ -102,7 +103,7 @@ static status find_same(const scene *s, const moving_slime *one, size_t *mesh_in
         }
         char *parameters = motion_parameters(s, entry);
         if (!parameters) {
-            return diagnose(why, STATUS_FAILURE, "", "memory is out");
+            return diagnose(why, STATUS_FAILURE, "", "out of memory");
         }
         *mesh_index = i;
         *found = strcmp(parameters, one->parameters) == 0;

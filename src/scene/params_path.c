@@ -140,7 +140,7 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
     size_t count;
     const char **words = group_words(s, &count);
     if (!words) {
-        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
     const char *nearest = suggest_word(path->group, words, count);
     char remedy[300] =
@@ -243,7 +243,7 @@ status place_find_object(const scene *s, const char *name, place *out, diagnosti
     size_t count;
     const char **words = group_words(s, &count);
     if (!words) {
-        return diagnose(why, STATUS_FAILURE, "", "memory is out");
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
     const char *nearest = suggest_word(name, words, count);
     char remedy[SCENE_NAME_MAX + 80] = "give the name of a light, material or solid";

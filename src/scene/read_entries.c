@@ -16,7 +16,7 @@ status read_located(const scene_reader *r, const node *at, status code)
 
 status read_out_of_memory(const scene_reader *r)
 {
-    return diagnose(r->why, STATUS_FAILURE, "", "memory is out");
+    return diagnose(r->why, STATUS_FAILURE, "", "out of memory");
 }
 
 static bool is_empty(const node *n)
@@ -65,7 +65,10 @@ static status read_value(const scene_reader *r, const char *path, const param *r
         return code;
     }
     char *text = node_value_text(value);
-    if (!text) { /* a list that holds more than numbers; or no memory, which shows again soon */
+    if (!text && node_is_value(value)) {
+        return diagnose(r->why, STATUS_FAILURE, "", "out of memory");
+    }
+    if (!text) {
         return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",
                           "%.150s holds more than plain numbers", path);
     }

@@ -3,6 +3,7 @@
  * write_paths.c. */
 #include "scene/write.h"
 #include "base/file.h"
+#include "base/text_writer.h"
 #include "scene/params_path.h"
 #include "scene/write_parts.h"
 #include "scene/write_wanted.h"
@@ -191,23 +192,19 @@ static status put_scene(scene_writer *w)
 status scene_write_text(const scene *s, const char *path, bool all, char **text, diagnostic *why)
 {
     *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(text, &size);
-    if (!out) {
-        return diagnose(why, STATUS_FAILURE, "", "memory is out");
-    }
-    scene_writer w = {.s = s, .path = path ? path : "", .all = all, .out = out, .why = why};
-    status code = put_scene(&w);
-    bool whole = !ferror(out);
-    whole = fclose(out) == 0 && whole;
-    if (code == STATUS_OK && !whole) {
-        code = diagnose(why, STATUS_FAILURE, "", "memory is out");
-    }
+    text_writer writer;
+    status code = text_writer_open(&writer, why);
     if (code != STATUS_OK) {
-        free(*text);
-        *text = NULL;
+        return code;
     }
-    return code;
+    scene_writer w = {.s = s, .path = path ? path : "", .all = all, .out = writer.stream, .why = why};
+    code = put_scene(&w);
+    if (code == STATUS_OK) {
+        return text_writer_close(&writer, text, NULL, why);
+    }
+    text_writer_abandon(&writer);
+    /* Of a parameter whose text found no room, nothing has been said yet. */
+    return code == STATUS_FAILURE ? diagnose(why, code, "", "out of memory") : code;
 }
 
 status scene_write(const scene *s, const char *path, bool all, diagnostic *why)

@@ -1,6 +1,7 @@
 #include "scene/write_parts.h"
 #include "base/text.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -13,7 +14,7 @@ static char *real_folder(const char *file)
     const char *slash = strrchr(file, '/');
     char *folder = slash ? strndup(file, (size_t)(slash - file) + 1) : strdup("."), here[PATH_MAX];
     char *real = folder ? realpath(folder, NULL) : NULL;
-    if (folder && !real) {
+    if (folder && !real && errno != ENOMEM) { /* then the folder may well be there, elsewhere than it is spelt */
         real = folder[0] != '/' && getcwd(here, sizeof here) ? text_format("%s/%s", here, folder) : strdup(folder);
     }
     free(folder);
@@ -77,5 +78,5 @@ status write_moved_path(const char *path, const char *old_file, const char *new_
     free(from);
     free(to);
     free(whole);
-    return *moved ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "memory is out");
+    return *moved ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
 }

@@ -1,5 +1,6 @@
 #include "study/provenance.h"
 #include "base/text.h"
+#include "base/text_writer.h"
 #include <fcntl.h>
 #include <sched.h>
 #include <spawn.h>
@@ -52,9 +53,8 @@ char *provenance_binding(void)
     if (sched_getaffinity(0, sizeof set, &set) != 0)
         return NULL;
     char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
+    text_writer writer;
+    if (text_writer_open(&writer, NULL) != STATUS_OK)
         return NULL;
     bool later = false;
     for (size_t first = 0; first < CPU_SETSIZE; first++) {
@@ -63,11 +63,11 @@ char *provenance_binding(void)
         size_t last = first;
         while (last + 1 < CPU_SETSIZE && CPU_ISSET(last + 1, &set))
             last++;
-        fprintf(out, last > first ? "%s%zu-%zu" : "%s%zu", later ? "," : "", first, last);
+        fprintf(writer.stream, last > first ? "%s%zu-%zu" : "%s%zu", later ? "," : "", first, last);
         later = true;
         first = last;
     }
-    fclose(out);
+    text_writer_close(&writer, &text, NULL, NULL);
     return text;
 }
 

@@ -37,6 +37,8 @@ static status try_value(scene *on, const document *d, const node *key, const nod
     if (code != STATUS_OK)
         return locate(d, key, why, code);
     char *text = node_value_text(value);
+    if (!text && node_is_value(value))
+        return no_memory(why);
     if (!text)
         return node_error(d, value, why, "write a number, a word, or a list of numbers", "%s cannot be set to this",
                           key->text);

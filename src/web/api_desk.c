@@ -1,6 +1,7 @@
 /* The desk's part of the API: the state, the scene, its parameters, undo, the camera. See web/README.md. */
 #include "web/lab_private.h"
 #include "base/number.h"
+#include "base/text_writer.h"
 #include "report/json.h"
 #include "report/param_rows.h"
 #include "scene/params.h"
@@ -50,19 +51,20 @@ static char *value_text(const json_t *value)
     if (!json_is_array(value))
         return item_text(value);
     char *joined = NULL;
-    size_t size;
-    FILE *out = open_memstream(&joined, &size);
-    bool good = out != NULL;
+    text_writer writer;
+    if (text_writer_open(&writer, NULL) != STATUS_OK)
+        return NULL;
+    bool good = true;
     for (size_t i = 0; i < json_array_size(value) && good; i++) {
         char *one = item_text(json_array_get(value, i));
-        good = one && fprintf(out, "%s%s", i ? "," : "", one) >= 0;
+        good = one && fprintf(writer.stream, "%s%s", i ? "," : "", one) >= 0;
         free(one);
     }
-    good = (!out || fclose(out) == 0) && good;
     if (good)
-        return joined;
-    free(joined);
-    return NULL;
+        text_writer_close(&writer, &joined, NULL, NULL);
+    else
+        text_writer_abandon(&writer);
+    return joined;
 }
 
 static status set_all(void *of, scene *s, diagnostic *why)

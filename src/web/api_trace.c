@@ -2,6 +2,7 @@
 #include "web/lab_private.h"
 
 #include "base/number.h"
+#include "base/text_writer.h"
 #include "report/trace_writers.h"
 #include <limits.h>
 #include <stdlib.h>
@@ -25,13 +26,14 @@ static status write_tree(trace_question *q, const scene *s, const probe *p, cons
     if (tree->count > TRACE_RAYS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "lower render.depth or render.samples, or set render.min_weight",
                         "the pixel's tree has %zu rays, more than the %d that are sent", tree->count, TRACE_RAYS_MAX);
-    FILE *out = open_memstream(&q->bytes, &q->size);
-    if (!out)
-        return diagnose(why, STATUS_FAILURE, "", "no memory for the tree of rays");
-    status code = q->write(&(traced){s, p, tree, q->scene_name}, out, why);
-    const bool whole = !ferror(out);
-    if ((fclose(out) || !whole) && code == STATUS_OK)
-        code = diagnose(why, STATUS_FAILURE, "", "no memory for the tree of rays");
+    text_writer writer;
+    status code = text_writer_open(&writer, why);
+    if (code != STATUS_OK)
+        return code;
+    code = q->write(&(traced){s, p, tree, q->scene_name}, writer.stream, why);
+    if (code == STATUS_OK)
+        return text_writer_close(&writer, &q->bytes, &q->size, why);
+    text_writer_abandon(&writer);
     return code;
 }
 

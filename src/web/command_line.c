@@ -1,5 +1,6 @@
 #include "web/command_line.h"
 #include "base/text.h"
+#include "base/text_writer.h"
 #include "scene/params.h"
 #include "scene/write.h"
 
@@ -117,21 +118,17 @@ status command_line(const folder *files, const char *file, const scene *s, int t
 {
     scene *from = NULL;
     char *path = NULL;
-    size_t size;
     *complete = false;
     *text = NULL;
-    FILE *out = open_memstream(text, &size);
-    if (!out)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    text_writer writer;
+    const status code = text_writer_open(&writer, why);
+    if (code != STATUS_OK)
+        return code;
     if (file && read_again(files, file, threads, &from, &path) == STATUS_OK)
-        *complete = write_line(out, from, path, s);
+        *complete = write_line(writer.stream, from, path, s);
     else
-        fputs("cuvette render scene.yaml -o picture.png", out);
+        fputs("cuvette render scene.yaml -o picture.png", writer.stream);
     scene_destroy(from);
     free(path);
-    if (fclose(out) == 0)
-        return STATUS_OK;
-    free(*text);
-    *text = NULL;
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return text_writer_close(&writer, text, NULL, why);
 }

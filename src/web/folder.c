@@ -16,7 +16,7 @@ struct folder {
 
 static status no_memory(diagnostic *why)
 {
-    return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
 static void trim_slashes(char *path, size_t least)

@@ -2,6 +2,7 @@
  * with the time by which its request must have come, or its reply be taken; a thread looks once a second. */
 #include "web/http_private.h"
 
+#include "base/float_environment.h"
 #include "measure/clock.h"
 #include <stdlib.h>
 #include <sys/socket.h>
@@ -10,6 +11,7 @@
 static void *watch(void *context)
 {
     http_server *s = context;
+    float_environment_set();
     pthread_mutex_lock(&s->watch_lock);
     while (!s->watch_ends) {
         const double now_s = clock_wall_s();

@@ -11,7 +11,7 @@
 
 static status no_memory(diagnostic *why)
 {
-    return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
 static vec3 rounded(vec3 v, double size)

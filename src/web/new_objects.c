@@ -15,7 +15,7 @@
 
 static status no_memory(diagnostic *why)
 {
-    return diagnose(why, STATUS_FAILURE, "", "memory is out");
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
 status new_name(const scene *s, const char *base, object_name name, diagnostic *why)

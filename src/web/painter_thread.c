@@ -1,6 +1,7 @@
 /* What the painter's thread does in turn. See web/painter_private.h. */
 #include "web/painter_private.h"
 
+#include "base/float_environment.h"
 #include <string.h>
 
 void painter_say(painter *p)
@@ -52,6 +53,7 @@ static bool wait_for_work(painter *p)
 void *painter_thread(void *of)
 {
     painter *p = of;
+    float_environment_set();
     while (wait_for_work(p)) {
         if (painter_is_stale(p))
             painter_renew_stage(p);

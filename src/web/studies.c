@@ -1,4 +1,5 @@
 #include "web/studies.h"
+#include "base/float_environment.h"
 #include "base/text.h"
 #include "measure/clock.h"
 #include "report/json.h"
@@ -117,6 +118,7 @@ static bool should_stop(void *context)
 static void *run(void *context)
 {
     studies *st = context;
+    float_environment_set();
     char *text = text_format("a study measures: %s", st->s->name);
     painter_wait(st->l->painter, text ? text : "a study measures");
     free(text);

@@ -1,4 +1,5 @@
 #include "web/study_json.h"
+#include "base/text_writer.h"
 #include "report/json.h"
 #include "scene/params.h"
 #include "study/row_files.h"
@@ -108,11 +109,15 @@ status study_json_summary(const study *s, const char *results, json_t **out, dia
     if (progress.rows == 0)
         return (*out = json_null()) ? STATUS_OK : no_memory(why);
     char *text = NULL;
-    size_t size;
-    FILE *whole = open_memstream(&text, &size);
-    code = whole ? study_summary(s, results, whole, why) : no_memory(why);
-    if (whole && fclose(whole) != 0 && code == STATUS_OK)
-        code = no_memory(why);
+    text_writer writer;
+    code = text_writer_open(&writer, why);
+    if (code != STATUS_OK)
+        return code;
+    code = study_summary(s, results, writer.stream, why);
+    if (code == STATUS_OK)
+        code = text_writer_close(&writer, &text, NULL, why);
+    else
+        text_writer_abandon(&writer);
     if (code == STATUS_OK && !(*out = lines_json(text)))
         code = no_memory(why);
     free(text);
