@@ -1,6 +1,7 @@
 #!/bin/sh
 # What fixed blocks can gain at best: all rays of the picture over the rays of its largest block, for columns and rows shared among
-# n threads as the renderer does, ceil(size / n) to each. From a map of rays by pixel (PFM); prints \setval{blocks/...} lines.
+# n threads as the renderer does, ceil(size / n) to each; and for columns where at most four or eight threads run at a time. From a
+# map of rays by pixel (PFM); prints \setval{blocks/...} lines.
 #   paper/blocks.sh MAP-rays.pfm
 export LC_ALL=C
 set -eu
@@ -27,6 +28,7 @@ tail -c +$(($(head -n 3 "$1" | wc -c) + 1)) "$1" | od -An -v -t f4 -w12 | awk -v
             printf "\\setval{blocks/columns/%d}{%.2f}\n", n, gain(column, width, n)
             printf "\\setval{blocks/rows/%d}{%.2f}\n", n, gain(row, height, n)
             bound = gain(column, width, n)
-            printf "\\setval{blocks/four/%d}{%.2f}\n", n, bound < 4 ? (bound < n ? bound : n) : (n < 4 ? n : 4)
+            printf "\\setval{blocks/four/%d}{%.2f}\n", n, bound < 4 ? bound : 4
+            printf "\\setval{blocks/eight/%d}{%.2f}\n", n, bound < 8 ? bound : 8
         }
     }'

@@ -45,19 +45,25 @@ polygons() {
     done
 }
 
+# Columns of a published series, tab separated.
+series() { awk -f "$here/../plots/select.awk" -v columns="$2" "$published/$1.csv"; }
+
+# What the sources print, and what follows from it.
 published() {
-    for study in triangles coverage crowding; do
-        awk -F, -v study="$study" 'NR > 1 && $1 != "NA" { printf "\\setval{published/%s/%d}{%s}\n", study, $1, $2 }
-            NR > 1 && $1 == "NA" { printf "\\setval{published/%s/more}{%s}\n", study, $2 }' "$published/$study.csv"
-    done
-    awk -F, '$1 == 10000 { time[++n] = $2 } END { printf "\\setval{published/crowding/slower}{%.0f}\n", time[2] / time[1] }' \
-        "$published/triangles.csv" "$published/crowding.csv"
-    awk -F, 'NR == 2 { first = $2 } NR > 1 { printf "\\setval{published/depth/%s/cpu}{%.3f}\n\\setval{published/depth/%s/growth}{%.2f}\n",
-        $1, $2, $1, $2 / first }' "$published/depth.csv"
-    awk -F, 'NR == 2 { first = $2 } NR > 1 { printf "\\setval{published/threads/%s/wall}{%.3f}\n\\setval{published/threads/%s/speedup}{%.2f}\n",
-        $1, $2, $1, first / $2 }
-        NR > 1 { if (!best || $2 < best) { best = $2; count = $1 } }
-        END { printf "\\setval{published/threads/best}{%s}\n", count }' "$published/threads.csv"
+    series triangles 'triangles time_s' | awk '{ printf "\\setval{published/triangles/%d}{%s}\n", $1, $2 }'
+    series coverage 'pixels time_s' | awk '{ printf "\\setval{published/coverage/%d}{%s}\n", $1, $2 }'
+    series crowding 'triangles time_s' | awk '{ printf "\\setval{published/crowding/%d}{%s}\n", $1, $2 }'
+    { series triangles 'triangles time_s'; series crowding 'triangles time_s'; } |
+        awk '!($1 in sparse) { sparse[$1] = $2; next }
+            $1 > 0 { printf "\\setval{published/crowding/%d/slower}{%.0f}\n", $1, $2 / sparse[$1] }'
+    series depth 'depth cpu_s' | awk 'NR == 1 { first = $2 }
+        { printf "\\setval{published/depth/%s/cpu}{%.3f}\n", $1, $2
+          printf "\\setval{published/depth/%s/growth}{%.2f}\n", $1, $2 / first }'
+    series threads 'threads wall_s' | awk 'NR == 1 { first = $2 }
+        { printf "\\setval{published/threads/%s/wall}{%.3f}\n", $1, $2
+          printf "\\setval{published/threads/%s/speedup}{%.2f}\n", $1, first / $2 }
+        !best || $2 < best { best = $2; count = $1 }
+        END { printf "\\setval{published/threads/best}{%s}\n", count }'
 }
 
 # Light through a slab: the middle pixel of each thickness, what the slab's law says, and how far they lie apart at most.

@@ -37,5 +37,6 @@ set logscale y
 set yrange [0.9:*]
 plot times("cpu_s") using 1:($2/cpu_0):($3/cpu_0):($4/cpu_0) with yerrorlines lt 2 title "CPU time", \
      select(rows, "", "render.depth rays_total") using 1:($2/rays_0) with linespoints lt 3 title "rays", \
-     select(published."depth.csv", "", "depth cpu_s") using 1:($2/published_0) with linespoints lt 7 title "CPU time, ".published_name
+     select(published."depth.csv", "", "depth cpu_s") using 1:($2/published_0) with linespoints lt 7 \
+         title "CPU time, published (threads not said)"
 unset multiplot

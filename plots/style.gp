@@ -38,6 +38,6 @@ set bars small
 set style fill solid 1.0 noborder
 
 published = "experiments/published/"
-published_name = "published (4-core laptop)"
+published_name = "published (4 cores, 8 logical)"
 viridis = "(0 '#440154', 1 '#472d7b', 2 '#3b528b', 3 '#2c728e', 4 '#21918c', 5 '#28ae80', 6 '#5ec962', 7 '#addc30', 8 '#fde725')"
 signed = "(-3 '#003a5c', -2 '#0072b2', -1 '#8fc3e0', 0 '#ffffff', 1 '#f0b48a', 2 '#d55e00', 3 '#7a3000')"

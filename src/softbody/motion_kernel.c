@@ -76,7 +76,7 @@ ALWAYS_INLINE void add_cross(columns *sum, columns a, columns b)
     sum->z += a.x * b.y - a.y * b.x;
 }
 
-/* One slot of four vertices: Hooke -k (|x| - l) x / |x| and damping -k_d (v.x) / (x.x) x; towards the other end they change their signs. x is
+/* One slot of four vertices: Hooke and damping of softbody.h, whose signs change here, since x leads to the other end. It is
  * left in *away. */
 ALWAYS_INLINE void add_spring(const springs *s, size_t at, const double *state, columns place, columns velocity, columns *force, columns *away)
 {

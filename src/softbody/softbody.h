@@ -2,9 +2,12 @@
  * springs along its edges, across neighbouring faces (bending) and from side to side through the body; an optional pressure that holds its
  * volume; gravity, a floor, and hands that hold parts of it.
  *
- * Forces, x from one end of a spring to the other, v the velocity of one end against the other, l the length at rest:
+ * Forces on a mass, x to it from the other end of a spring, v its velocity against that end, l the length at rest:
  *   gravity m g; Hooke -k (|x| - l) x / |x|; damping -k_d (v.x) / (x.x) x; pressure K (V0 - V) / V0 along each face's area, a third to
  *   each of its corners.
+ * Gravity and Hooke are eqs. 2.1 and 2.2 of the slime report. Its damping, eq. 2.3, is printed with x / |x| in place of
+ * the last x: it falls with the spring's length and its k_d is in N s, where ours is k_d times the velocity along the
+ * spring, whatever its length. (2.2 and 2.3 print x_j - x_i in the force on i, with which a drawn spring would push.)
  * They are gathered a vertex at a time, in one fixed order, and sums over all vertices go by blocks of fixed size: the same bits for any
  * number of threads and any instruction set.
  *
@@ -22,8 +25,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* euler: the report's step, v += a dt, then x += v dt, so x gets a dt^2 where the closed form of constant acceleration has half of that
- * (semi-implicit Euler; Hairer, Lubich, Wanner, "Geometric Numerical Integration", I.1.2; order 1).
+/* euler: the slime report's step (eqs. 2.6 and 2.7), v += a dt, then x += v dt, so x gets a dt^2 where the closed form of
+ * constant acceleration has half of that (semi-implicit Euler; Hairer, Lubich, Wanner, "Geometric Numerical Integration",
+ * I.1.2; order 1).
  * verlet: velocity Verlet (Swope et al., J. Chem. Phys. 76, 1982; order 2).
  * implicit: backward Euler, linearised once a step and solved by conjugate gradients (Baraff and Witkin, "Large steps in cloth
  * simulation", SIGGRAPH 1998; order 1, stable for stiff springs, loses energy). */

@@ -1,0 +1,96 @@
+#!/bin/bash
+# The numbers that experiments/published takes from other reports say where they stand: each row has `where` and `quote`,
+# the quote holds the row's numbers (a label 0 of polygons2004 is our reading and is not printed), and the page there knows
+# the report. SOURCES=DIR, a folder with the plain texts that the page names: also that the quote stands in that line.
+# One line a check ("ok ...", "not ok ...").
+set -uo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+folder=$root/experiments/published
+count=0 failed=0
+verdict() # WHAT WRONG: passes when the text, what is wrong, is empty
+{
+    count=$((count + 1))
+    if [[ -z $2 ]]; then
+        echo "ok $count - $1"
+    else
+        failed=$((failed + 1))
+        echo "not ok $count - $1"
+        sed 's/^/# /' <<<"$2"
+    fi
+}
+columns() # FILE NAMES: tab separated; a row that lacks one of them is left out
+{
+    awk -f "$root/plots/select.awk" -v columns="$2" "$1"
+}
+text_of() { sed -n "s/^| \`$1\` |.*| \`\([^\`]*\.txt\)\` |\$/\1/p" "$folder/README.md"; } # KEY
+
+# A number as the quote may print it: with a comma, and alone, not as a part of another.
+is_in() # NUMBER QUOTE
+{
+    grep -qE "(^|[^0-9.,])${1//./[.,]}($|[^0-9.,])" <<<"$2"
+}
+check_rows() # FILE KEY_COLUMN TIME_COLUMN: what is wrong with its rows
+{
+    local label time where quote key line found=0
+    while IFS=$'\t' read -r label time where quote; do
+        found=$((found + 1))
+        is_in "$time" "$quote" || echo "$label: $time is not in '$quote'"
+        [[ $label == 0 && $where == polygons2004:* ]] || is_in "$label" "$quote" ||
+            echo "$label is not in '$quote'"
+        key=${where%%:*} line=${where##*line }
+        [[ -n $(text_of "$key") && $line =~ ^[0-9]+$ ]] ||
+            echo "$label: '$where' names no report of README.md, or no line"
+        [[ -z ${SOURCES:-} ]] ||
+            sed -n "${line}p" "$SOURCES/$(text_of "$key")" | tr '\t' ' ' | grep -qF -- "$quote" ||
+            echo "$label: '$quote' does not stand in line $line of $key"
+    done < <(columns "$1" "$2 $3 where quote")
+    local rows=$(($(wc -l <"$1") - 1))
+    ((found > 0 && found == rows)) || echo "$found rows of $rows have $2, $3, where and quote"
+}
+
+verdict "depth.csv says where its numbers stand" "$(check_rows "$folder/depth.csv" depth cpu_s 2>&1)"
+verdict "threads.csv says where its numbers stand" "$(check_rows "$folder/threads.csv" threads wall_s 2>&1)"
+verdict "triangles.csv says where its numbers stand" "$(check_rows "$folder/triangles.csv" triangles time_s 2>&1)"
+verdict "coverage.csv says where its numbers stand" "$(check_rows "$folder/coverage.csv" pixels time_s 2>&1)"
+verdict "crowding.csv says where its numbers stand" "$(check_rows "$folder/crowding.csv" triangles time_s 2>&1)"
+# polygons2004 prints six times, then five labels: a row has the time of its own place, and the label of the place before.
+check_order() # FILE KEY_COLUMN
+{
+    columns "$1" "$2 time_s quote" | tr ',' '.' | awk -F'\t' '{
+        printed = split($3, part, " ")
+        if (printed == 11 && ($2 != part[NR] || $1 != (NR == 1 ? 0 : part[NR + 5])))
+            print $1 ", " $2 " is not place " NR " of " $3
+    } END { if (NR != 6) print NR " rows for six times" }'
+}
+for series in triangles:triangles coverage:pixels crowding:triangles; do
+    verdict "${series%:*}.csv pairs times and labels as printed" \
+        "$(check_order "$folder/${series%:*}.csv" "${series#*:}" 2>&1)"
+done
+verdict "no other series is there" \
+    "$(cd "$folder" && printf '%s\n' *.csv | grep -vxE '(depth|threads|triangles|coverage|crowding)\.csv')"
+verdict "README.md describes every column" \
+    "$(for name in $(head -q -n 1 "$folder"/*.csv | tr ',' '\n' | sort -u); do
+    grep -q "^| \`$name\` |" "$folder/README.md" || echo "$name"
+done)"
+# shellcheck disable=SC2016
+keys=$(sed -n 's/^| `\([a-z0-9]*\)` |.*\.txt` |$/\1/p' "$folder/README.md")
+verdict "the paper cites every report" "$(for key in ${keys:-none}; do
+    grep -qF "\\bibitem{$key}" "$root/paper/paper.tex" || echo "$key is not in the bibliography"
+    grep -qE "\\\\cite\{([a-z0-9]*,)*${key}[,}]" "$root/paper/paper.tex" || echo "$key is not cited"
+done)"
+
+# What these files are read with keeps commas and quotes within quotes.
+sheet=$(mktemp --suffix=.csv) || exit 1
+trap 'rm -f "$sheet"' EXIT
+printf 'a,b,c\n"1,5 2",3,"x ""y"" z"\n' >"$sheet"
+verdict "select.awk reads quoted fields" "$(diff <(printf '1,5 2\tx "y" z\t3\n') <(columns "$sheet" "a c b"))"
+
+if [[ -n ${SOURCES:-} ]]; then
+    verdict "the texts are there" "$(for key in $keys; do
+        [[ -r $SOURCES/$(text_of "$key") ]] || echo "$SOURCES/$(text_of "$key")"
+    done)"
+else
+    echo "ok $((count + 1)) # SKIP quotes beside the texts: set SOURCES to their folder"
+fi
+((failed == 0))
