@@ -49,9 +49,6 @@ static void make_grid(zbuffer *z)
     z->units_y = 0.5 * z->height / p->view.half_height;
     z->reach_x = REACH / z->units_x;
     z->reach_y = REACH / z->units_y;
-    const vec3 eye = p->view.eye;
-    z->nearest = 0x1p-30 * (p->solids->extent + fabs(eye.x) + fabs(eye.y) + fabs(eye.z));
-    z->nearest = z->nearest > 0.0 ? z->nearest : 0x1p-30;
     z->across = ((int)p->render.width + z->side - 1) / z->side;
     z->down = ((int)p->render.height + z->side - 1) / z->side;
 }

@@ -41,13 +41,19 @@ static status cut_sphere(const zbuffer *z, mesh **out, diagnostic *why)
     return body_icosphere(SPHERE_LEVEL, out, why);
 }
 
+static double nearest_depth(const primitive *p, vec3 eye)
+{
+    const double nearest = 0x1p-30 * (p->extent + fabs(eye.x) + fabs(eye.y) + fabs(eye.z));
+    return nearest > 0.0 ? nearest : 0x1p-30;
+}
+
 static status add(zbuffer *z, const body *b, int met, diagnostic *why)
 {
     const arrangement *a = z->scene->solids;
     const primitive *p = &a->primitives[met];
     drawn_part *part = &z->parts[z->part_count];
     vec3 scale = vec3_make(1.0, 1.0, 1.0);
-    *part = (drawn_part){.met = met};
+    *part = (drawn_part){.met = met, .nearest = nearest_depth(p, z->scene->view.eye)};
     status code = STATUS_OK;
     switch (p->kind) {
     case PRIMITIVE_HALFSPACE: part->plane = true; break;

@@ -36,10 +36,10 @@ void zbuffer_corners(const zbuffer *z, const drawn_part *p, uint32_t copy, uint3
 }
 
 /* How far a corner is on the right side of a plane: the nearest depth, and the four sides. */
-static double side_of(const zbuffer *z, const clip_corner *c, int plane)
+static double side_of(const zbuffer *z, double nearest, const clip_corner *c, int plane)
 {
     switch (plane) {
-    case 0: return c->z - z->nearest * c->h;
+    case 0: return c->z - nearest * c->h;
     case 1: return z->reach_x * c->z + c->x;
     case 2: return z->reach_x * c->z - c->x;
     case 3: return z->reach_y * c->z + c->y;
@@ -58,13 +58,13 @@ static clip_corner cut(const clip_corner *in, const clip_corner *out, double inn
 }
 
 /* Sutherland and Hodgman, "Reentrant polygon clipping", CACM 17(1), 1974: one plane. */
-static int clip_at(const zbuffer *z, int plane, clip_corner *polygon, int count)
+static int clip_at(const zbuffer *z, double nearest, int plane, clip_corner *polygon, int count)
 {
     clip_corner from[POLYGON_MAX];
     double side[POLYGON_MAX];
     int outside = 0, made = 0;
     for (int k = 0; k < count; k++) {
-        side[k] = side_of(z, &polygon[k], plane);
+        side[k] = side_of(z, nearest, &polygon[k], plane);
         outside += !(side[k] >= 0.0);
     }
     if (outside == 0 || outside == count)
@@ -83,11 +83,11 @@ static int clip_at(const zbuffer *z, int plane, clip_corner *polygon, int count)
     return made;
 }
 
-int zbuffer_clip(const zbuffer *z, clip_corner polygon[POLYGON_MAX])
+int zbuffer_clip(const zbuffer *z, const drawn_part *p, clip_corner polygon[POLYGON_MAX])
 {
     int count = 3;
     for (int plane = 0; plane < 5 && count >= 3; plane++)
-        count = clip_at(z, plane, polygon, count);
+        count = clip_at(z, p->nearest, plane, polygon, count);
     for (int k = 0; k < count; k++) { /* a direction across the view, an eye on a corner, what is no number */
         const clip_corner *c = &polygon[k];
         if (!(c->z > 0.0 && fabs(c->x) <= 1.001 * z->reach_x * c->z && fabs(c->y) <= 1.001 * z->reach_y * c->z))

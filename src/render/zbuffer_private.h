@@ -30,6 +30,7 @@ typedef struct clip_corner {
 typedef struct drawn_part {
     forest_part at;
     int met;              /* primitive */
+    double nearest;       /* depth that is drawn; by the part's own extent, so that no other solid shows in it */
     bool plane;           /* four triangles from the foot of the eye's perpendicular to the horizon */
     mesh *own;            /* an analytic solid's triangles; NULL for a mesh */
 } drawn_part;
@@ -58,7 +59,6 @@ struct zbuffer {
     int width, height;      /* of the grid */
     double units_x, units_y; /* of the grid, in one of x / z and y / z */
     double reach_x, reach_y; /* largest of |x| / z and |y| / z */
-    double nearest;         /* depth */
     int part_count;
     drawn_part parts[PRIMITIVES_MAX]; /* the highest rank first, so that of equally near triangles the one with the lower number is drawn */
     chunk *chunks;
@@ -78,7 +78,7 @@ status zbuffer_cut(zbuffer *z, diagnostic *why);
 
 /* zbuffer_clip.c: the triangle's corners as seen from the camera; what the planes leave of it, in order; where a corner is on the grid. */
 void zbuffer_corners(const zbuffer *z, const drawn_part *p, uint32_t copy, uint32_t triangle, clip_corner out[POLYGON_MAX]);
-int zbuffer_clip(const zbuffer *z, clip_corner polygon[POLYGON_MAX]);
+int zbuffer_clip(const zbuffer *z, const drawn_part *p, clip_corner polygon[POLYGON_MAX]);
 void zbuffer_place(const zbuffer *z, const clip_corner *c, double *x, double *y);
 
 static inline uint32_t zbuffer_number(const drawn_part *p)

@@ -93,7 +93,7 @@ static void straight_weights(const zbuffer *z, const screen_triangle *s, double 
 {
     clip_corner polygon[POLYGON_MAX];
     zbuffer_corners(z, &z->parts[s->part], s->copy, s->triangle, polygon);
-    zbuffer_clip(z, polygon);
+    zbuffer_clip(z, &z->parts[s->part], polygon);
     const clip_corner *corner[3] = {&polygon[0], &polygon[s->piece], &polygon[s->piece + 1]};
     double cx[3], cy[3], area[3];
     for (int k = 0; k < 3; k++)
