@@ -238,6 +238,16 @@ valgrind: ## run the test programs under valgrind
 clang: ## build and test with clang
 	@$(MAKE) CC=clang build=$(build)/clang test
 
+# Random scenes in runs of 10 000, one run a processing unit at a time; LAWS_SCENES of each law in all, from LAWS_SEED on.
+.PHONY: laws law-faults
+laws: LAWS_SCENES ?= 1000000
+laws: LAWS_SEED ?= 1
+laws: $(build)/tests/test_laws ## try the laws that every scene keeps on a million random scenes
+	@seq $(LAWS_SEED) $$(($(LAWS_SEED) + ($(LAWS_SCENES) + 9999) / 10000 - 1)) | \
+	  LAWS_SCENES=10000 xargs -P "$$(nproc)" -I SEED tests/faults/run_seed.sh $(build)/tests/test_laws SEED
+law-faults: ## put known faults into the sources, one after the other: the laws must catch each
+	@tests/faults/laws.sh
+
 .PHONY: fuzz run_fuzzers
 fuzz: ## feed the readers with libFuzzer (clang), FUZZ_SECONDS=60 each
 	@$(MAKE) config=fuzz CC=clang build=$(build)/fuzz run_fuzzers

@@ -320,7 +320,7 @@ done
 # --- realism
 run realism "$scene"
 check "realism succeeds" silent_success
-check "realism passes on the rod scene" is "$(tail -1 out)" "30 of 30 pass"
+check "realism passes on the rod scene" is "$(tail -1 out)" "32 of 32 pass"
 run realism "$scene" --set liquid.visible=off --csv
 check "realism --csv has a line a metric" is "$(wc -l <out)" 31
 check "what is not defined is NA, with its reason" grep -q '^absorption.slope,none,NA,NA,NA,.*"there is no liquid"$' out

@@ -2,9 +2,8 @@
  *
  * Two boundaries that a ray crosses at t1 and t2 are in contact when these distances are equal within the boundaries' own error bounds at these
  * crossings: |t1 - t2| <= e1 / cos1 + e2 / cos2. e is the bound on a point's error across its surface (surface_kernel.c); the cosine carries it
- * over to the ray. Nothing else enters: no other solid, no extent of the scene. Seen at normal incidence from a distance of d scene units, gaps
- * down to about 16 DBL_EPSILON times twice the sum of d, the ray's start (counted from the solid) and the solid's extent are resolved: 2e-13
- * in a scene of 10 units.
+ * over to the ray. Nothing else enters: no other solid, no extent of the scene. The narrowest gap that is seen is therefore e1 + e2, the sum of
+ * both surfaces' 16 DBL_EPSILON (|start| + |way| + extent): 2e-14 to 1.4e-13 scene units in the scene of the rod.
  *
  * Crossings in contact are one crossing: the sets before and behind it are those before the first and behind the last of them. So faces that
  * coincide by their numbers, whatever rounding made of these, enclose no film of another medium. */

@@ -5,9 +5,7 @@
  * that happens below rank b before it has no effect. So one pass over the bodies finds it.
  *
  * If the media on both sides are equal it is no interface: the crossing is marked as done in the intervals (the ray is not started anew) and the
- * next change is sought, for those rays alone. Crossings that coincide to within their error bounds are
- * one crossing: where any other boundary lies suspiciously near, the sets on both sides are read again at the
- * distance of the true error bound. */
+ * next change is sought, for those rays alone. Where another boundary lies near the crossing, contact_kernel.c decides whether they are one. */
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"

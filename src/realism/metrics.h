@@ -21,6 +21,7 @@ status realism_lens(const metrics *m, diagnostic *why);         /* lens.c: devia
 status realism_interfaces(const metrics *m, diagnostic *why);   /* interfaces.c: critical angles, Fresnel */
 status realism_balance(const metrics *m, diagnostic *why);      /* balance.c: white furnace */
 status realism_slab(const metrics *m, diagnostic *why);         /* slab.c: convergence with depth */
+status realism_gap(const metrics *m, diagnostic *why);          /* gap.c: empty gaps, and solids far away */
 status realism_absorption(const metrics *m, diagnostic *why);   /* attenuation.c: Beer and Lambert */
 status realism_reversal(const metrics *m, diagnostic *why);     /* reversal.c: ways backwards */
 

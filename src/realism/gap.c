@@ -1,0 +1,75 @@
+/* An empty gap between the vessel's medium and an opaque surface of radiance 1, seen from within the medium: 1 - R below the critical angle, and nothing
+ * beyond it, however narrow the gap; light that would cross in contact is reflected. With a solid far away, which no ray meets, the same.
+ *
+ * Depth 1, so that nothing comes back from the medium's other face. Tolerance: some film units, 5.7e-14 each, and near the critical angle,
+ * where R has an infinite slope, the root of a rounding times the angle's distance from it, a degree at the least. */
+#include "realism/metrics.h"
+
+#include <math.h>
+
+#define GAP_TOLERANCE 1e-11
+static const double narrow = 1e-7, wide = 1e-3; /* scene units */
+
+static scene *gap_scene(const scene *s, const setup *at, double gap, bool far_solid)
+{
+    scene *copy = arrange_empty(s);
+    if (!copy)
+        return NULL;
+    solid *above = &copy->solids[at->vessel], *shining = &copy->solids[at->rod];
+    above->visible = shining->visible = 1;
+    above->priority = 2, shining->priority = 0;
+    above->shape = (solid_shape){.kind = SHAPE_BOX, .position = {0.0, 0.5, 0.0}, .size = {100.0, 1.0, 100.0}};
+    above->surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
+    above->surface.absorb_spectrum.count = 0;
+    shining->shape = (solid_shape){.kind = SHAPE_PLANE, .position = {0.0, -gap, 0.0}};
+    shining->surface = (material){.color = {1.0, 1.0, 1.0}, .ambient = 1.0, .ior = 1.0};
+    if (far_solid) {
+        solid *far = &copy->solids[at->liquid];
+        far->visible = 1;
+        far->priority = 9;
+        far->shape = (solid_shape){.kind = SHAPE_SPHERE, .position = {0.0, 1e5, 0.0}, .radius = 1.0};
+    }
+    copy->background.ambient = vec3_make(1.0, 1.0, 1.0);
+    copy->background.kind = BACKGROUND_UNIFORM;
+    copy->background.color = vec3_make(0.0, 0.0, 0.0);
+    copy->render.beyond = BEYOND_BLACK;
+    copy->render.depth = 1;
+    return copy;
+}
+
+static double gap_theory(const setup *at, double angle)
+{
+    const double n_from = at->n[SETUP_VESSEL], n_to = at->n[SETUP_OUTSIDE];
+    return n_from == n_to ? 1.0 : 1.0 - theory_fresnel(angle, n_from, n_to);
+}
+
+static status measure(const metrics *m, double gap, bool far_solid, worst_pair *worst, diagnostic *why)
+{
+    trial t;
+    status code = trial_start(&t, gap_scene(m->traced, &m->at, gap, far_solid), m->level, why);
+    for (int degrees = 0; degrees <= 85 && code == STATUS_OK; degrees += 5) {
+        const double angle = degrees * M_PI / 180.0;
+        code = probe_ray(t.p, vec3_make(0.0, 0.5, 0.0), vec3_make(sin(angle), -cos(angle), 0.0), &t.tree, why);
+        worst_take(worst, code == STATUS_OK ? t.tree.radiance[0] : NAN, gap_theory(&m->theory_at, angle));
+    }
+    trial_end(&t);
+    return code;
+}
+
+status realism_gap(const metrics *m, diagnostic *why)
+{
+    static const char *const names[] = {"gap.empty", "gap.far_solid"};
+    static const char *const what[] = {"radiance through an empty gap of 1e-7; of the angles 0 to 85 degrees the worst",
+                                       "through a gap of 0.001, with a solid 100000 away that no ray meets"};
+    const bool fresnel = !scene_has_constant_shares(&m->traced->render) && m->traced->render.transmission == TRANSMISSION_REFRACT;
+    status code = STATUS_OK;
+    for (int far_solid = 0; far_solid < 2 && code == STATUS_OK; far_solid++) {
+        const bool third = !far_solid || m->at.liquid >= 0;
+        worst_pair worst = {NAN, NAN, false};
+        if (fresnel && third)
+            code = measure(m, far_solid ? wide : narrow, far_solid, &worst, why);
+        const char *line = !fresnel ? "constant shares know no critical angle" : !third ? "an empty vessel's scene has no third solid" : what[far_solid];
+        metrics_add(m, (realism_value){names[far_solid], line, "", worst.measured, worst.theory, GAP_TOLERANCE});
+    }
+    return code;
+}

@@ -1,0 +1,138 @@
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "ray_fixture.h"
+
+/* Contact: where two boundaries are one crossing, and where a gap between them is seen. The limit is that of the manual: 16 DBL_EPSILON times
+ * the sum, over both solids, of the ray's start counted from the solid, the way to the crossing, and the solid's extent. */
+
+/* Below y = 0 and above it, a gap apart; and perhaps a solid far away. */
+static arrangement *halves(double gap, double x, bool upper_wins, bool far_solid)
+{
+    const solid_shape shapes[3] = {
+        {.kind = SHAPE_BOX, .position = {x, 0.5, 0.0}, .size = {4.0, 1.0, 4.0}},
+        {.kind = SHAPE_BOX, .position = {x, -1.0 - gap, 0.0}, .size = {4.0, 2.0, 4.0}},
+        {.kind = SHAPE_SPHERE, .position = {0.0, 1e6, 0.0}, .radius = 10.0},
+    };
+    const body_source sources[3] = {
+        {.shape = &shapes[0], .priority = upper_wins ? 2 : 1, .medium = 1, .clearness = 1.0, .solid = 0},
+        {.shape = &shapes[1], .priority = upper_wins ? 1 : 2, .medium = 2, .clearness = 1.0, .solid = 1},
+        {.shape = &shapes[2], .priority = 9, .medium = 3, .clearness = 1.0, .solid = 2},
+    };
+    arrangement *a = NULL;
+    assert_int_equal(arrangement_build(sources, far_solid ? 3 : 2, 0, &a, NULL), STATUS_OK);
+    return a;
+}
+
+static one_ray downwards_ray(const arrangement *a, double x, double angle, double height)
+{
+    one_ray r = {{x, height, 0.0}, {sin(angle), -cos(angle), 0.0}, FACE_NONE, 0};
+    r.inside = arrangement_inside(a, r.o);
+    return r;
+}
+
+/* Is the surrounding medium behind the upper box? */
+static bool sees_gap(double gap, double x, double angle, bool upper_wins, bool far_solid)
+{
+    arrangement *a = halves(gap, x, upper_wins, far_solid);
+    const one_hit h = nearest_interface(a, downwards_ray(a, x, angle, 0.5));
+    assert_true(h.crossed >= 0 && fabs(h.t * cos(angle) - 0.5) < 1e-9);
+    const bool outside = h.after == 0;
+    arrangement_destroy(a);
+    return outside;
+}
+
+/* The narrowest gap that is seen, by bisection of its logarithm. */
+static double narrowest_gap(double x, double angle, bool upper_wins, bool far_solid)
+{
+    double contact = 1e-17, gap = 1e-6;
+    while (gap > 1.01 * contact) {
+        const double middle = sqrt(gap * contact);
+        *(sees_gap(middle, x, angle, upper_wins, far_solid) ? &gap : &contact) = middle;
+    }
+    return gap;
+}
+
+/* The sum of magnitudes for a box, from which its error bound is taken. */
+static double magnitudes(double x, double middle, double size, double angle)
+{
+    const double start = 0.5 - middle, way = 0.5 + 0.5 * fabs(tan(angle));
+    return fabs(start) + way + fmax(fabs(x), fabs(middle)) + size;
+}
+
+static void the_narrowest_gap_is_the_manuals(void **state)
+{
+    (void)state;
+    const double angles[] = {0.0, 0.3, 0.8, 1.2}, places[] = {0.0, 30.0, 1000.0};
+    for (int k = 0; k < 12; k++) {
+        const double angle = angles[k % 4], x = places[k / 4];
+        const double limit = 16.0 * DBL_EPSILON * (magnitudes(x, 0.5, 4.0, angle) + magnitudes(x, -1.0, 4.0, angle));
+        for (int upper_wins = 0; upper_wins < 2; upper_wins++) {
+            const double narrowest = narrowest_gap(x, angle, upper_wins, false);
+            /* where a box lies is itself rounded, to a few 1e-16 */
+            if (!(fabs(narrowest / limit - 1.0) <= 0.05))
+                fail_msg("x %g, angle %g: %g, not %g", x, angle, narrowest, limit);
+        }
+    }
+}
+
+static void both_sides_of_the_limit_whichever_solid_wins(void **state)
+{
+    (void)state;
+    const double limit = 16.0 * DBL_EPSILON * (magnitudes(0.0, 0.5, 4.0, 0.4) + magnitudes(0.0, -1.0, 4.0, 0.4));
+    for (int upper_wins = 0; upper_wins < 2; upper_wins++) {
+        assert_true(sees_gap(1.2 * limit, 0.0, 0.4, upper_wins, false));
+        assert_false(sees_gap(0.8 * limit, 0.0, 0.4, upper_wins, false));
+    }
+}
+
+static void a_solid_far_away_moves_the_limit_by_nothing(void **state)
+{
+    (void)state;
+    for (int upper_wins = 0; upper_wins < 2; upper_wins++)
+        assert_true(narrowest_gap(0.0, 0.4, upper_wins, false) == narrowest_gap(0.0, 0.4, upper_wins, true));
+}
+
+/* A film that touches a solid is behind it, not the film's other side, however thin it is. */
+static void a_film_in_contact_is_entered(void **state)
+{
+    (void)state;
+    for (int order = 0; order < 6; order++) {
+        for (double thickness = 1e-12; thickness < 1.0; thickness *= 10.0) {
+            const solid_shape shapes[2] = {
+                {.kind = SHAPE_BOX, .position = {0.0, 0.5, 0.0}, .size = {4.0, 1.0, 4.0}},
+                {.kind = SHAPE_BOX, .position = {0.0, -0.5 * thickness, 0.0}, .size = {4.0, thickness, 4.0}},
+            };
+            const body_source sources[2] = {
+                {.shape = &shapes[0], .priority = order % 2, .medium = 1, .clearness = 1.0, .solid = 0},
+                {.shape = &shapes[1], .priority = 1 - order % 2, .medium = 2, .clearness = 1.0, .solid = 1},
+            };
+            arrangement *a = NULL;
+            assert_int_equal(arrangement_build(sources, 2, 0, &a, NULL), STATUS_OK);
+            one_ray r = downwards_ray(a, 0.0, 0.3 * (order / 2), 0.5);
+            one_hit h = nearest_interface(a, r);
+            assert_int_equal(a->bodies[h.after].medium, 2);
+            r = (one_ray){h.point, r.d, h.face, h.inside_after};
+            h = nearest_interface(a, r);
+            assert_int_equal(h.after, 0);
+            assert_true(fabs(h.t * cos(0.3 * (order / 2)) - thickness) <= 1e-14);
+            arrangement_destroy(a);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_narrowest_gap_is_the_manuals),
+        cmocka_unit_test(both_sides_of_the_limit_whichever_solid_wins),
+        cmocka_unit_test(a_solid_far_away_moves_the_limit_by_nothing),
+        cmocka_unit_test(a_film_in_contact_is_entered),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
