@@ -205,9 +205,12 @@ selected_scripts := $(if $(only),,$(scripts))
 
 kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
+# Random scenes of tests/test_laws.c; fewer under instruments.
+test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER),20,$(if $(filter release,$(config)),10000,500)))
+
 .PHONY: test
 test: $(selected) $(build)/cuvette-import $(if $(only),,$(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a) ## build and run every test; only=NAME for tests/test_NAME.c alone
-	@CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
+	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for pictures of every view. After what else

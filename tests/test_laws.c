@@ -58,21 +58,23 @@ static tally try_law(law which, judge *j)
     for (long number = 0; number < scenes; number++) {
         law_pair p;
         verdict result = SKIPPED;
+        const long rays = j->rays;
         if (law_pair_make(which, seed_of(seed, which, number), (int)(number % 7919), &p))
             result = law_judge(j, &p);
         sum.skipped += result == SKIPPED;
         if (result == BROKEN && sum.broken++ < PRINTED_MAX)
             print_fault(j, &p, seed, number);
+        if (result != HELD || number % ASKED_EVERY != 0)
+            continue;
         const bool asks = which == LAW_CUT || which == LAW_SAME || which == LAW_FILL;
-        if (asks && result == HELD && number % ASKED_EVERY == 0) {
-            sum.asked++;
-            sum.tried += law_was_tried(&p);
-        }
+        sum.asked += asks || which == LAW_REVERSAL;
+        sum.tried += asks ? law_was_tried(&p) : which == LAW_REVERSAL && j->rays > rays;
     }
     return sum;
 }
 
-/* A law over all scenes; at most this share of them skipped, and where it alters a part of a scene, at least a 20th of them looked at through it. */
+/* A law over all scenes; at most this share of them skipped. Of the scenes that are asked whether a ray crosses the part that a law alters, at least a
+ * quarter do: 500 of 10 000 scenes. */
 static void law_holds(law which, double skipped_at_most)
 {
     judge j = judge_open();
@@ -80,18 +82,16 @@ static void law_holds(law which, double skipped_at_most)
     judge_close(&j);
     print_message("law %s: %ld scenes, %ld broken, %ld skipped", law_names[which], sum.scenes, sum.broken, sum.skipped);
     if (sum.asked > 0)
-        print_message("; a ray crossed the altered part in %ld of %ld", sum.tried, sum.asked);
+        print_message("; a ray crossed the altered part in %ld of %ld scenes asked", sum.tried, sum.asked);
     if (j.rays > 0)
         print_message("; %ld rays compared, %ld not", j.rays, j.unlike);
     print_message("\n");
     assert_int_equal(sum.broken, 0);
     assert_true((double)sum.skipped <= skipped_at_most * (double)sum.scenes);
     if (sum.asked > 0)
-        assert_true(5 * sum.tried >= sum.asked);
+        assert_true(4 * sum.tried >= sum.asked);
     if (which == LAW_MOTION)
         assert_true(j.unlike * 5 <= j.rays + j.unlike);
-    if (which == LAW_REVERSAL)
-        assert_true(20 * j.rays >= sum.scenes);
 }
 
 static void a_solid_that_no_ray_meets_changes_no_bit(void **state)
