@@ -1,7 +1,7 @@
 #!/bin/bash
 # mesh_frames.sh - whole frames of the triangle sets, one thread, 800x600, camera and shadow rays, beside POV-Ray's and Tachyon's in the same rounds.
 #   experiments/mesh_frames.sh
-# Environment: CUVETTE (the program), REPS=5 (rounds), SETS="sparse:50000 ...". Needs povray and tachyon.
+# Environment: CUVETTE (the program), REPS=5 (rounds), SETS="sparse:50000 ...". Needs povray and tachyon (make setup-peers).
 # Each says itself how long it traced; reading, building and writing are not in it. Ratios are taken round by round, medians and spread of them.
 set -euo pipefail
 export LC_ALL=C
@@ -9,7 +9,7 @@ cuvette=${CUVETTE:-build/cuvette} reps=${REPS:-5}
 sets=${SETS:-sparse:50000 dense:50000 sphere:50000}
 scene=$(dirname "$0")/scenes/soup.yaml
 for peer in povray tachyon; do
-    command -v "$peer" >/dev/null || { echo "mesh_frames.sh: no $peer; apt-get install $peer" >&2; exit 2; }
+    command -v "$peer" >/dev/null || { echo "mesh_frames.sh: $peer is not installed; make setup-peers installs it" >&2; exit 2; }
 done
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
