@@ -13,7 +13,8 @@
 #include <string.h>
 #include <time.h>
 
-enum { COLUMNS = MESH_RAYS_COLUMNS, ROWS = MESH_RAYS_ROWS, TILE_COLUMNS = 16, TILE_ROWS = 8, TILE = TILE_COLUMNS * TILE_ROWS };
+enum { COLUMNS = MESH_RAYS_COLUMNS, ROWS = MESH_RAYS_ROWS, TILE_COLUMNS = MESH_RAYS_TILE_COLUMNS, TILE_ROWS = MESH_RAYS_TILE_ROWS,
+       TILE = TILE_COLUMNS * TILE_ROWS };
 
 static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2, &hierarchy_kernels_avx512};
 

@@ -1,6 +1,6 @@
 /* embree - camera and shadow rays through the triangle sets of Cuvette's mesh bench, traced by Embree 3 on one thread.
  *   embree [-m sparse|dense|sphere] [-n TRIANGLES] [-k 1|16|1,16] [-r ROUNDS]
- * k: rays one at a time (rtcIntersect1, rtcOccluded1), or in packets of 16, tiles of 4 x 4 pixels. The triangles are Cuvette's own
+ * k: rays one at a time (rtcIntersect1, rtcOccluded1), or in packets of 16, squares of 4 x 4 pixels. The triangles are Cuvette's own
  * (geometry/bodies.h), the rays those of mesh_rays.h. Prints a line for each k and round: milliseconds of CPU time, and exact counts of hits and of
  * shadow rays that are blocked. */
 #include <embree3/rtcore.h>
@@ -16,7 +16,8 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { COLUMNS = MESH_RAYS_COLUMNS, ROWS = MESH_RAYS_ROWS, SINGLE = 1, PACKET = 16, TILE = 4, ROUNDS_MAX = 10000 };
+enum { COLUMNS = MESH_RAYS_COLUMNS, ROWS = MESH_RAYS_ROWS, TILE_COLUMNS = MESH_RAYS_TILE_COLUMNS, TILE_ROWS = MESH_RAYS_TILE_ROWS };
+enum { SINGLE = 1, PACKET = 16, PACKET_EDGE = 4, ROUNDS_MAX = 10000 };
 static const char usage[] = "embree [-m sparse|dense|sphere] [-n TRIANGLES] [-k 1|16|1,16] [-r ROUNDS]";
 
 typedef struct order {
@@ -75,7 +76,7 @@ static void packet_of_camera_rays(int x, int y, struct RTCRayHit16 *r)
 {
     for (int i = 0; i < PACKET; i++) {
         float d[3];
-        mesh_rays_direction(x + i % TILE, y + i / TILE, d);
+        mesh_rays_direction(x + i % PACKET_EDGE, y + i / PACKET_EDGE, d);
         r->ray.org_x[i] = mesh_rays_eye[0];
         r->ray.org_y[i] = mesh_rays_eye[1];
         r->ray.org_z[i] = mesh_rays_eye[2];
@@ -133,17 +134,17 @@ static void trace_packet(RTCScene scene, int x, int y, tally *a)
         a->blocked += valid[i] && s.tfar[i] < 0.0f;
 }
 
+/* Tiles as in Cuvette's bench, for both sizes: rays that are neighbours in the image follow each other through the caches. */
 static tally frame(RTCScene scene, int size)
 {
+    const int step = size == SINGLE ? 1 : PACKET_EDGE;
     tally a = {0};
-    if (size == SINGLE)
-        for (int y = 0; y < ROWS; y++)
-            for (int x = 0; x < COLUMNS; x++)
-                trace_ray(scene, x, y, &a);
-    else
-        for (int y = 0; y < ROWS; y += TILE)
-            for (int x = 0; x < COLUMNS; x += TILE)
-                trace_packet(scene, x, y, &a);
+    for (int tile = 0; tile < COLUMNS * ROWS / (TILE_COLUMNS * TILE_ROWS); tile++) {
+        const int x0 = tile % (COLUMNS / TILE_COLUMNS) * TILE_COLUMNS, y0 = tile / (COLUMNS / TILE_COLUMNS) * TILE_ROWS;
+        for (int y = y0; y < y0 + TILE_ROWS; y += step)
+            for (int x = x0; x < x0 + TILE_COLUMNS; x += step)
+                (size == SINGLE ? trace_ray : trace_packet)(scene, x, y, &a);
+    }
     return a;
 }
 

@@ -6,6 +6,7 @@
 #include <math.h>
 
 enum { MESH_RAYS_COLUMNS = 800, MESH_RAYS_ROWS = 600 };
+enum { MESH_RAYS_TILE_COLUMNS = 16, MESH_RAYS_TILE_ROWS = 8 }; /* the order in which pixels are visited; the frame is whole tiles */
 
 /* The camera looks along +z; y up, x to the right. A shadow ray is the way from the hit to the light, from `shadow_near` of it to all of it. */
 static const float mesh_rays_eye[3] = {0.0f, 0.0f, -3.0f}, mesh_rays_light[3] = {2.0f, 3.0f, -4.0f}, mesh_rays_shadow_near = 1e-3f;

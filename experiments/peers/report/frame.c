@@ -38,6 +38,8 @@ static void tally_add(tally *sum, const tally *more)
     sum->sky += more->sky;
     for (int i = 0; i < SHAPE_COUNT; i++)
         sum->first_hits[i] += more->first_hits[i];
+    if (tally_rays(more) > sum->busiest)
+        sum->busiest = tally_rays(more);
 }
 
 void room_frame(const room *in, const setting *of, rgb *pixels, tally *counted)

@@ -22,7 +22,10 @@ enum { SHAPE_GROUND, SHAPE_VESSEL, SHAPE_LIQUID, SHAPE_ROD, SHAPE_COUNT };
 typedef struct tally {
     uint64_t camera, secondary, shadow, sky;
     uint64_t first_hits[SHAPE_COUNT];
+    uint64_t busiest; /* of a frame: the rays of the thread that followed most of them */
 } tally;
+
+static inline uint64_t tally_rays(const tally *t) { return t->camera + t->secondary + t->shadow; }
 
 typedef struct shape shape;
 struct shape {
@@ -45,12 +48,13 @@ typedef struct hit {
 typedef struct setting {
     int width, height, depth, threads;
     float glass_index, liquid_index;
+    float fov_deg; /* over the shorter edge of the image */
 } setting;
 
 typedef struct room {
     shape shapes[SHAPE_COUNT];
     vec3f light, eye;
-    float pitch; /* radians, downwards */
+    float pitch, distance; /* radians, downwards; of the image, whose shorter edge is 2 */
     int depth;   /* the listings' MAX_BOUNCES */
 } room;
 

@@ -119,10 +119,10 @@ static rgb shade(const room *in, const hit *at, int limit, tally *counted)
     return rgb_add(rgb_add(local, rgb_scale(reflection, s->reflectivity * s->emission)), rgb_scale(refraction, s->transparency));
 }
 
-/* Lines 87 to 94. The field of view is 45 degrees; the camera looks downwards by its pitch. */
+/* Lines 87 to 94. The camera looks downwards by its pitch. */
 rgb room_pixel(const room *in, float u, float v, tally *counted)
 {
-    const vec3f d = unit((vec3f){u, v, 1.0f / tanf(22.5f * (float)M_PI / 180.0f)});
+    const vec3f d = unit((vec3f){u, v, in->distance});
     const float c = cosf(in->pitch), s = sinf(in->pitch);
     const ray r = {in->eye, {d.x, d.y * c - d.z * s, d.y * s + d.z * c}};
     counted->camera++;

@@ -129,7 +129,9 @@ static shape clear_cylinder(float base, float height, float radius, float index,
 /* The lengths, eye and lamp of experiments/scenes/rod.yaml. */
 void room_fill(room *out, const setting *of)
 {
-    *out = (room){.light = {4.0f, 7.0f, -5.0f}, .eye = {0.0f, 2.75f, -6.0f}, .pitch = atan2f(2.75f - 1.5f, 6.0f), .depth = of->depth};
+    *out = (room){.light = {4.0f, 7.0f, -5.0f}, .eye = {0.0f, 2.75f, -6.0f}, .depth = of->depth};
+    out->pitch = atan2f(2.75f - 1.5f, 6.0f);
+    out->distance = 1.0f / tanf(of->fov_deg * (float)M_PI / 360.0f);
     out->shapes[SHAPE_GROUND] = (shape){.intersect = plane_intersect, .normal = plane_normal, .color = {0.7f, 0.7f, 0.7f}, .index = 1.0f};
     out->shapes[SHAPE_VESSEL] = clear_cylinder(0.001f, 3.0f, 1.0f, of->glass_index, (rgb){0.2f, 0.2f, 0.25f});
     out->shapes[SHAPE_LIQUID] = clear_cylinder(0.101f, 1.9f, 0.9f, of->liquid_index, (rgb){0.1f, 0.15f, 0.3f});
