@@ -225,7 +225,7 @@ selected_scripts := $(if $(only),,$(scripts))
 kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
 .PHONY: test
-test: $(selected) $(build)/cuvette-import $(if $(only),,$(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a peers) ## build and run every test; only=NAME for tests/test_NAME.c alone
+test: $(selected) $(build)/cuvette-import $(if $(only),,$(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh peers) ## build and run every test; only=NAME for tests/test_NAME.c alone
 	@CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
