@@ -185,11 +185,11 @@ $(build)/flags: always | $(filter setup setup-peers,$(MAKECMDGOALS))
 	@mkdir -p $(@D)
 	@echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512) $(embree_cflags))' | cmp -s - $@ || echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512) $(embree_cflags))' >$@
 
-# What the benches compare with: the report's algorithm, which needs a compiler alone, and Embree where it is there. Embree's rays are made by the
-# program that hands them over, for the machine that it runs on.
+# What the benches compare with: the report's algorithm, which needs a compiler alone, and Embree where it is there.
+# Embree's rays are made by the program that hands them over, for the machine that it runs on.
 report_sources := $(wildcard experiments/peers/report/*.[ch])
 .PHONY: peers
-peers: $(build)/peers/report $(build)/libcuvette.a ## build the programs of experiments/peers that the benches compare with
+peers: $(build)/peers/report $(build)/libcuvette.a ## build what the benches compare with (experiments/peers)
 	@$(if $(embree),$(MAKE) --no-print-directory build=$(build) $(build)/peers/embree)
 $(build)/peers/report: $(report_sources) $(build)/flags
 	$(call say,$(CC) experiments/peers/report)
@@ -200,14 +200,15 @@ $(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) -march=native -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
 
--include $(build)/peers/embree.d $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
+-include $(build)/peers/embree.d
+-include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
 
 .PHONY: setup
 setup: ## install what is needed (Debian 12); does nothing when it is there
 	@.ci/setup
 
 .PHONY: setup-peers
-setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install what the benches compare with: POV-Ray, Tachyon, Embree (Debian 12)
+setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install what the benches compare with: POV-Ray, Tachyon, Embree
 	@.ci/setup-peers
 
 # --- tests ---
@@ -225,7 +226,9 @@ selected_scripts := $(if $(only),,$(scripts))
 kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
 .PHONY: test
-test: $(selected) $(build)/cuvette-import $(if $(only),,$(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh peers) ## build and run every test; only=NAME for tests/test_NAME.c alone
+# What scripts of tests run.
+tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh peers
+test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c alone
 	@CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
@@ -277,7 +280,8 @@ asked = $(filter $(1),$(MAKECMDGOALS))
 experiments: | $(call asked,test)
 bench: | $(call asked,test experiments)
 paper: | $(call asked,experiments figures)
-experiments: $(build)/cuvette $(build)/cuvette-import ## run the studies (goes on where it stopped), make tables and figures
+experiments: $(build)/cuvette-import
+experiments: $(build)/cuvette ## run the studies (goes on where it stopped), make tables and figures
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
 	@$(MAKE) --no-print-directory build=$(build) tables figures
 
@@ -313,7 +317,7 @@ $(RESULTS)/figures/trace.svg: experiments/scenes/rod.yaml | $(build)/cuvette
 paper: ## rebuild the report from the rows that are there; measures nothing
 	$(MAKE) -C paper
 
-bench: all peers $(build)/tests/bench_mesh ## frame times, what counters cost, rays through meshes, beside the report's algorithm, POV-Ray and Embree; REPS=7 rounds
+bench: all peers $(build)/tests/bench_mesh ## measure frames and rays as ratios to other programs; REPS=7 rounds
 	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters $(build)/nocounters/cuvette
 	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' experiments/bench.sh
 	@echo

@@ -1,16 +1,18 @@
 #!/bin/bash
 # bench.sh - how fast, as ratios of things measured in turn in one run; medians of REPS rounds.
 #   experiments/bench.sh CUVETTE [CUVETTE_WITHOUT_COUNTERS]
-# Environment: REPS=7 (rounds), SIZE=800x600. One round runs every contestant once, so that drift of the machine falls on all alike: the report's
-# algorithm (peers/report next to CUVETTE; make peers) and, where it is installed, POV-Ray (make setup-peers) with peers/rod.pov. Pruned: branches of
-# less than 1/255 of a camera ray's weight are not followed. CPU seconds are of the tracing alone, for POV-Ray its own figure. POV-Ray follows the whole
-# tree in the first three rounds only: it takes a quarter of a minute each time.
+# Environment: REPS=7 (rounds), SIZE=800x600. One round runs every contestant once, so that drift of the machine falls
+# on all alike: the report's algorithm (peers/report next to CUVETTE; make peers) and, where it is installed, POV-Ray
+# (make setup-peers) with peers/rod.pov. Pruned: branches of less than 1/255 of a camera ray's weight are not followed.
+# CPU seconds are of the tracing alone, for POV-Ray its own figure. POV-Ray follows the whole tree in the first three
+# rounds only: it takes a quarter of a minute each time.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
 ours=${1:-${CUVETTE:-build/cuvette}} bare=${2:-${NOCOUNTERS:-}} reps=${REPS:-7}
 report=$(dirname "$ours")/peers/report
-[ -x "$ours" ] || { echo "usage: bench.sh [CUVETTE [CUVETTE_WITHOUT_COUNTERS]] (no program $ours; make builds it)" >&2; exit 2; }
+[ -x "$ours" ] ||
+    { echo "usage: bench.sh [CUVETTE [CUVETTE_WITHOUT_COUNTERS]] (no program $ours; make builds it)" >&2; exit 2; }
 [ -x "$report" ] || { echo "bench.sh: no program $report; make peers builds it next to CUVETTE" >&2; exit 2; }
 scene=$here/scenes/rod.yaml size=${SIZE:-800x600} with_pov=
 if command -v povray >/dev/null; then
@@ -29,7 +31,8 @@ frame() { # frame CONTESTANT PROGRAM CLOCK [set...]: the median of five frames i
     note "$who" "$(field "$clock" <<<"$json")" "$(field total <<<"$json")"
 }
 pov() { # pov CONTESTANT depth adc; the ground is unbounded, so its tests count the rays that were followed
-    povray "+I$here/peers/rod.pov" "+O$work/pov.png" "+W${size%x*}" "+H${size#*x}" -D -A -V +WT1 "Declare=DEPTH=$2" "Declare=ADC=$3" >"$work/log" 2>&1 ||
+    povray "+I$here/peers/rod.pov" "+O$work/pov.png" "+W${size%x*}" "+H${size#*x}" -D -A -V +WT1 \
+        "Declare=DEPTH=$2" "Declare=ADC=$3" >"$work/log" 2>&1 ||
         { echo "bench.sh: povray failed: $(tail -n 1 "$work/log")" >&2; exit 1; }
     note "$1" "$(awk '/Trace Time/ {f = 1} f && /CPU-seconds/ {for (i = 1; i <= NF; i++) if ($i == "with") {print $(i + 1); exit}}' "$work/log")" \
         "$(awk '/^Plane /{print $2; exit}' "$work/log")"
@@ -55,12 +58,16 @@ for ((round = 0; round < reps; round++)); do
     ((round >= 3)) || pov "POV-Ray, depth 8, whole tree" 8 0
 done
 
-median() { cut -f "$2" "$work/$1" | sort -g | awk '{a[NR] = $1} END {print NR % 2 ? a[(NR + 1) / 2] : (a[NR / 2] + a[NR / 2 + 1]) / 2}'; }
+median() { awk -F'\t' -v c="$2" "$(<"$here/order.awk")"'{ list = list " " $c } END { print median(list) }' "$work/$1"; }
 # The ratio of two contestants, round by round, then the median.
 ratio() {
     [ -s "$work/$1" ] && [ -s "$work/$2" ] || return 0
-    paste "$work/$1" "$work/$2" | awk -F'\t' '$1 != "" && $3 != "" {print $1 / $3}' | sort -g |
-        awk -v what="$3" '{a[NR] = $1} END {printf "%-66s %8.3f   (%d rounds, %.3f to %.3f)\n", what, NR % 2 ? a[(NR + 1) / 2] : (a[NR / 2] + a[NR / 2 + 1]) / 2, NR, a[1], a[NR]}'
+    paste "$work/$1" "$work/$2" | awk -F'\t' -v what="$3" "$(<"$here/order.awk")"'
+        $1 != "" && $3 != "" { list = list " " $1 / $3 }
+        END {
+            n = sorted(list, v)
+            printf "%-66s %8.3f   (%d rounds, %.3f to %.3f)\n", what, median(list), n, v[1], v[n]
+        }'
 }
 printf '%-40s %10s %12s %10s\n' "rod.yaml, $size" seconds rays "M rays/s"
 rm -f "$work/beside another"

@@ -1,19 +1,22 @@
 #!/bin/bash
-# mesh_bench.sh - camera and shadow rays a second through the mesh hierarchies, one thread, and through Embree's on the same triangles in the same rounds.
+# mesh_bench.sh - camera and shadow rays a second through the mesh hierarchies, one thread, and through Embree's on the
+# same triangles in the same rounds.
 #   experiments/mesh_bench.sh [BENCH_MESH]
-# Environment: REPS=5 (rounds), SETS="sparse:10000 ...", ACCEL=bvh. Embree's bench is peers/embree next to BENCH_MESH's folder: make setup-peers installs
-# Embree, make peers builds the bench; without it the table has our columns alone.
-# A round runs every contestant once on each set, all on processor 0, so that drift of the machine falls on all alike. Rates are of CPU time, medians;
-# ratios are taken round by round: median (lowest to highest). Hits of the two differ by rays along edges, which single precision decides otherwise.
+# Environment: REPS=5 (rounds), SETS="sparse:10000 ...", ACCEL=bvh. Embree's bench is peers/embree next to BENCH_MESH's
+# folder: make setup-peers installs Embree, make peers builds the bench; without it the table has our columns alone. A
+# round runs every contestant once on each set, all on processor 0, so that drift of the machine falls on all alike.
+# Rates are of CPU time, medians; ratios are taken round by round: median (lowest to highest). Hits of the two differ by
+# rays along edges, which single precision decides otherwise.
 set -euo pipefail
 export LC_ALL=C
 ours=${1:-build/tests/bench_mesh} reps=${REPS:-5} accel=${ACCEL:-bvh}
 sets=${SETS:-sparse:10000 sparse:50000 sparse:1000000 dense:10000 dense:50000 dense:1000000 sphere:10000 sphere:50000 sphere:1000000}
-[ -x "$ours" ] || { echo "usage: mesh_bench.sh [BENCH_MESH] (no program $ours; make build/tests/bench_mesh)" >&2; exit 2; }
+[ -x "$ours" ] ||
+    { echo "usage: mesh_bench.sh [BENCH_MESH] (no program $ours; make build/tests/bench_mesh builds it)" >&2; exit 2; }
 embree=$(dirname "$(dirname "$ours")")/peers/embree
 if [ ! -x "$embree" ]; then
     embree=
-    echo "mesh_bench.sh: Embree is not installed and is left out; make setup-peers peers installs it and builds its bench" >&2
+    echo "mesh_bench.sh: Embree is not installed and is left out; make setup-peers peers installs it" >&2
 fi
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 
@@ -27,24 +30,19 @@ for ((round = 0; round < reps; round++)); do
     done
 done >"$work/rows"
 
-awk -v sets="$sets" -v with="$embree" '
-    function sorted(list, out,   n, i, j, t) {
-        n = split(list, out, " ")
-        for (i = 2; i <= n; i++) for (j = i; j > 1 && out[j - 1] + 0 > out[j] + 0; j--) { t = out[j]; out[j] = out[j - 1]; out[j - 1] = t }
-        return n
-    }
-    function median(list,   n, v) { n = sorted(list, v); return n ? (v[int((n + 1) / 2)] + v[int((n + 2) / 2)]) / 2 : 0 }
+awk -v sets="$sets" -v with="$embree" "$(<"$(dirname "$0")/order.awk")"'
     { ms[$2, $3] = ms[$2, $3] " " $4; at[$1, $2, $3] = $4; hits[$2, $3] = $5; blocked[$2, $3] = $6; rounds = $1 + 1 }
     function rate(set, who) { return (480000 + hits[set, who]) / median(ms[set, who]) / 1000 }
-    function ratio(set, a, b,   i, list, n, v) {
+    function ratio(set, a, b,   i, list) {
         for (i = 0; i < rounds; i++) list = list " " at[i, set, a] / at[i, set, b]
-        n = sorted(list, v)
-        return sprintf("%.2f (%.2f to %.2f)", median(list), v[1], v[n])
+        return spread(list, "%.2f")
     }
     END {
         n = split(sets, set, " ")
         printf "%-16s %9s %9s", "M rays/s", "ours", "batches"
-        if (with != "") printf " %9s %9s  %-21s %-21s %-21s %s", "Embree 1", "Embree 16", "ours/E1", "batches/E1", "batches/E16", "hits (shadows) that differ"
+        if (with != "")
+            printf " %9s %9s  %-21s %-21s %-21s %s",
+                "Embree 1", "Embree 16", "ours/E1", "batches/E1", "batches/E16", "hits (shadows) that differ"
         print ""
         for (i = 1; i <= n; i++) {
             s = set[i]

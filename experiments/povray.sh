@@ -1,7 +1,8 @@
 #!/bin/bash
 # povray.sh - our picture of rod.yaml beside POV-Ray's of the same scene, as 8-bit sRGB, depth 8: PSNR, and how many pixels differ by
 # more than 8 of 255, above and below row 424, where the vessel's base begins.
-#   experiments/povray.sh [CUVETTE]      of peers/rod.pov; needs povray (make setup-peers) and gnuplot; pictures are left in OUT=DIR if set
+#   experiments/povray.sh [CUVETTE]
+# Needs povray (make setup-peers) and gnuplot; the scene is peers/rod.pov. OUT=DIR keeps the images.
 # POV-Ray shows black beyond its last depth, so render.beyond is black here. It knows no priorities: rod.pov lets the liquid overlap
 # the glass, and where the two meet at the base it shows the ground, though total reflection is certain there. With both
 # indices at 1.5, vessel and liquid are one body, which POV-Ray can have without any overlap, as a vessel filled with glass ("one body"):

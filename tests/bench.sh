@@ -1,6 +1,7 @@
 #!/bin/bash
-# The benches run in sizes too small to mean anything, with and without the programs that they compare with, and print every ratio. What the report's
-# algorithm counts is compared with what must come out: Cuvette's own first hits, and the sums that the recursion implies.
+# The benches run in sizes too small to mean anything, with and without the programs that they compare with, and print
+# every ratio. What the report's algorithm counts is compared with what must come out: Cuvette's own first hits, and the
+# sums that the recursion implies.
 set -uo pipefail
 cuvette=${CUVETTE:-build/cuvette} build=${BUILD:-build}
 report=$build/peers/report
@@ -32,7 +33,8 @@ has_ratio() # TEXT NAME: the ratio, its rounds and its range
 
 # --- frames
 ours=('counters, depth 4' 'counters, depth 8' 'two threads' '1024 threads, depth 8: wall / wall of two'
-      "the report's algorithm / ours, depth 0" "the report's algorithm / ours, depth 4" "the report's algorithm / ours, depth 8")
+      "the report's algorithm / ours, depth 0" "the report's algorithm / ours, depth 4"
+      "the report's algorithm / ours, depth 8")
 theirs=('POV-Ray / ours, depth 8, both pruned' 'POV-Ray / ours, depth 8, whole tree')
 
 # A path without POV-Ray, whether it is installed or not.
@@ -66,7 +68,8 @@ first() # SOLID: camera rays that meet it first, by Cuvette
 {
     sed -n '/"first_hits"/,/}/s/^ *"'"$1"'": *\([0-9]*\),*$/\1/p' "$work/ours.json"
 }
-"$cuvette" render experiments/scenes/rod.yaml --json --set render.depth=0 --set render.width=160 --set render.height=120 >"$work/ours.json"
+"$cuvette" render experiments/scenes/rod.yaml --json --set render.depth=0 \
+    --set render.width=160 --set render.height=120 >"$work/ours.json"
 camera=$((160 * 120)) glass=$(($(first vessel) + $(first liquid)))
 met=$((glass + $(first ground) + $(first rod)))
 equal 'depth 0: camera rays are pixels' "$(value 0 1 camera)" "$camera"
@@ -95,13 +98,15 @@ verdict $? 'its growth is set beside the published tables' "$text"
 text=$(REPS=1 SETS=sphere:320 experiments/mesh_bench.sh "$build/tests/bench_mesh" 2>&1)
 verdict $? 'the bench of meshes runs' "$text"
 if [[ -x $build/peers/embree ]]; then
-    # Along edges single precision may decide otherwise; rays and triangles are the same. Triangles that reach over the image's border tell rays apart.
+    # Along edges single precision may decide otherwise; rays and triangles are the same. Triangles that reach over the
+    # image's border tell rays apart.
     text=$(paste <("$build/tests/bench_mesh" -m dense -n 100 -k 1 -r 1 | awk 'NR > 1 { print $7, $12 }') \
         <("$build/peers/embree" -m dense -n 100 -k 1 | awk 'NR > 1 { print $6, $9 }'))
     awk 'function off(a, b) { return a > b ? a - b : b - a }
         { exit !(NF == 4 && $1 > 100000 && off($1, $3) <= 3 && off($2, $4) < 1e-5) }' <<<"$text"
     verdict $? "Embree's hits are Cuvette's but for single ones" "hits and mean distance of both: $text"
-    equal 'Embree: packets hit what single rays hit' "$("$build/peers/embree" -m dense -n 100 | awk 'NR > 1 { print $6, $7 }' | sort -u | wc -l)" 1
+    text=$("$build/peers/embree" -m dense -n 100 | awk 'NR > 1 { print $6, $7 }' | sort -u)
+    equal 'Embree: packets hit what single rays hit' "$(wc -l <<<"$text")" 1
     text=$("$build/peers/embree" -k 8 2>&1)
     equal 'embree -k 8: refused with exit status 2' $? 2
 else

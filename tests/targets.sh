@@ -1,5 +1,6 @@
 #!/bin/bash
-# What targets of the Makefile would build, from nothing: the programs that a target's commands run are among it. Reads `make -n`; builds nothing.
+# What targets of the Makefile would build, from nothing: the programs that a target's commands run are among it. Reads
+# `make -n`; builds nothing.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-targets.XXXXXX") || exit 1

@@ -1,8 +1,8 @@
 /* embree - camera and shadow rays through the triangle sets of Cuvette's mesh bench, traced by Embree 3 on one thread.
  *   embree [-m sparse|dense|sphere] [-n TRIANGLES] [-k 1|16|1,16] [-r ROUNDS]
- * k: rays one at a time (rtcIntersect1, rtcOccluded1), or in packets of 16, squares of 4 x 4 pixels. The triangles are Cuvette's own
- * (geometry/bodies.h), the rays those of mesh_rays.h. Prints a line for each k and round: milliseconds of CPU time, and exact counts of hits and of
- * shadow rays that are blocked. */
+ * k: rays one at a time (rtcIntersect1, rtcOccluded1), or in packets of 16, squares of 4 x 4 pixels. The triangles are
+ * Cuvette's own (geometry/bodies.h), the rays those of mesh_rays.h. Prints a line for each k and round: milliseconds of
+ * CPU time, and exact counts of hits and of shadow rays that are blocked. */
 #include <embree3/rtcore.h>
 
 #include "geometry/bodies.h"
@@ -16,7 +16,12 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { COLUMNS = MESH_RAYS_COLUMNS, ROWS = MESH_RAYS_ROWS, TILE_COLUMNS = MESH_RAYS_TILE_COLUMNS, TILE_ROWS = MESH_RAYS_TILE_ROWS };
+enum {
+    COLUMNS = MESH_RAYS_COLUMNS,
+    ROWS = MESH_RAYS_ROWS,
+    TILE_COLUMNS = MESH_RAYS_TILE_COLUMNS,
+    TILE_ROWS = MESH_RAYS_TILE_ROWS
+};
 enum { SINGLE = 1, PACKET = 16, PACKET_EDGE = 4, ROUNDS_MAX = 10000 };
 static const char usage[] = "embree [-m sparse|dense|sphere] [-n TRIANGLES] [-k 1|16|1,16] [-r ROUNDS]";
 
@@ -26,7 +31,10 @@ typedef struct order {
     int sizes[2], size_count, rounds;
 } order;
 
-typedef struct tally { unsigned long long hits, blocked; double total_t; } tally;
+typedef struct tally {
+    unsigned long long hits, blocked;
+    double total_t;
+} tally;
 
 /* CPU time: what others do on the machine does not count. */
 static double cpu_s(void)
@@ -51,16 +59,25 @@ static void trace_ray(RTCScene scene, int x, int y, tally *a)
     struct RTCIntersectContext context = coherent();
     float d[3];
     mesh_rays_direction(x, y, d);
-    struct RTCRayHit r = {
-        .ray = {.org_x = mesh_rays_eye[0], .org_y = mesh_rays_eye[1], .org_z = mesh_rays_eye[2], .dir_x = d[0], .dir_y = d[1], .dir_z = d[2],
-                .tfar = INFINITY, .mask = ~0u},
-        .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
+    struct RTCRayHit r = {.ray = {.org_x = mesh_rays_eye[0],
+                                  .org_y = mesh_rays_eye[1],
+                                  .org_z = mesh_rays_eye[2],
+                                  .dir_x = d[0],
+                                  .dir_y = d[1],
+                                  .dir_z = d[2],
+                                  .tfar = INFINITY,
+                                  .mask = ~0u},
+                          .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
     rtcIntersect1(scene, &context, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return;
     const float t = r.ray.tfar;
-    struct RTCRay s = {.org_x = mesh_rays_eye[0] + t * d[0], .org_y = mesh_rays_eye[1] + t * d[1], .org_z = mesh_rays_eye[2] + t * d[2],
-                       .tnear = mesh_rays_shadow_near, .tfar = 1.0f, .mask = ~0u};
+    struct RTCRay s = {.org_x = mesh_rays_eye[0] + t * d[0],
+                       .org_y = mesh_rays_eye[1] + t * d[1],
+                       .org_z = mesh_rays_eye[2] + t * d[2],
+                       .tnear = mesh_rays_shadow_near,
+                       .tfar = 1.0f,
+                       .mask = ~0u};
     s.dir_x = mesh_rays_light[0] - s.org_x;
     s.dir_y = mesh_rays_light[1] - s.org_y;
     s.dir_z = mesh_rays_light[2] - s.org_z;
@@ -134,7 +151,8 @@ static void trace_packet(RTCScene scene, int x, int y, tally *a)
         a->blocked += valid[i] && s.tfar[i] < 0.0f;
 }
 
-/* Tiles as in Cuvette's bench, for both sizes: rays that are neighbours in the image follow each other through the caches. */
+/* Tiles as in Cuvette's bench, for both sizes: rays that are neighbours in the image follow each other through the
+ * caches. */
 static tally frame(RTCScene scene, int size)
 {
     const int step = size == SINGLE ? 1 : PACKET_EDGE;
@@ -153,8 +171,10 @@ static tally frame(RTCScene scene, int size)
 /* The mesh's corners as Embree's buffers, which it owns. False when it has no memory. */
 static bool fill(RTCGeometry geometry, const mesh *m)
 {
-    float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), m->vertex_count);
-    unsigned *corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), m->triangle_count);
+    float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                              m->vertex_count);
+    unsigned *corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                3 * sizeof(unsigned), m->triangle_count);
     if (!vertices || !corners)
         return false;
     for (size_t i = 0; i < m->vertex_count; i++) {
@@ -192,7 +212,8 @@ static bool bench(const order *o, const mesh *m)
     RTCScene scene = device ? build(device, m) : NULL;
     const double build_s = cpu_s() - begun;
     if (!scene) {
-        fprintf(stderr, "embree: Embree builds nothing of %zu triangles (error %d); set fewer with -n\n", m->triangle_count, (int)rtcGetDeviceError(device));
+        fprintf(stderr, "embree: Embree builds nothing of %zu triangles (error %d); set fewer with -n\n",
+                m->triangle_count, (int)rtcGetDeviceError(device));
         if (device)
             rtcReleaseDevice(device);
         return false;
@@ -202,8 +223,8 @@ static bool bench(const order *o, const mesh *m)
         for (int i = 0; i < o->size_count; i++) {
             const double start = cpu_s();
             const tally a = frame(scene, o->sizes[i]);
-            printf("%d\t%s\t%zu\t%.2f\t%d\t%llu\t%llu\t%.3f\t%.6f\n", round, o->set, m->triangle_count, 1e3 * build_s, o->sizes[i], a.hits, a.blocked,
-                   1e3 * (cpu_s() - start), a.hits ? a.total_t / (double)a.hits : 0.0);
+            printf("%d\t%s\t%zu\t%.2f\t%d\t%llu\t%llu\t%.3f\t%.6f\n", round, o->set, m->triangle_count, 1e3 * build_s,
+                   o->sizes[i], a.hits, a.blocked, 1e3 * (cpu_s() - start), a.hits ? a.total_t / (double)a.hits : 0.0);
             fflush(stdout);
         }
     rtcReleaseScene(scene);
@@ -223,7 +244,10 @@ static bool read_count(const char *text, long high, long *out)
 
 static bool read_sizes(const char *text, order *o)
 {
-    static const struct { const char *text; int count, sizes[2]; } known[] = {{"1", 1, {SINGLE}}, {"16", 1, {PACKET}}, {"1,16", 2, {SINGLE, PACKET}}};
+    static const struct {
+        const char *text;
+        int count, sizes[2];
+    } known[] = {{"1", 1, {SINGLE}}, {"16", 1, {PACKET}}, {"1,16", 2, {SINGLE, PACKET}}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (!strcmp(text, known[i].text)) {
             o->size_count = known[i].count;
@@ -238,9 +262,7 @@ static bool read_option(int option, const char *text, order *o)
 {
     long value;
     switch (option) {
-    case 'm':
-        o->set = text;
-        return !strcmp(text, "sparse") || !strcmp(text, "dense") || !strcmp(text, "sphere");
+    case 'm': o->set = text; return !strcmp(text, "sparse") || !strcmp(text, "dense") || !strcmp(text, "sphere");
     case 'n':
         if (!read_count(text, MESH_TRIANGLES_MAX, &value))
             return false;
@@ -275,7 +297,9 @@ int main(int count, char **words)
     mesh *m = NULL;
     diagnostic why = {0};
     char text[DIAGNOSTIC_TEXT_MAX];
-    if ((!strcmp(o.set, "sparse") ? body_sparse : !strcmp(o.set, "dense") ? body_dense : body_sphere)(o.triangles, &m, &why) != STATUS_OK) {
+    if ((!strcmp(o.set, "sparse")  ? body_sparse
+         : !strcmp(o.set, "dense") ? body_dense
+                                   : body_sphere)(o.triangles, &m, &why) != STATUS_OK) {
         fprintf(stderr, "embree: %s\n", diagnostic_text(&why, text, sizeof text));
         return 1;
     }

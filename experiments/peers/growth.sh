@@ -1,36 +1,31 @@
 #!/bin/bash
-# growth.sh - is the report's published growth of time by depth (table 4), and by threads (table 5), its algorithm's own?
+# growth.sh - do the report's published times by depth (table 4) and by threads (table 5) follow from its algorithm?
 #   experiments/peers/growth.sh [REPORT]      REPORT: the program of peers/report, build/peers/report (make peers)
 # Environment: REPS=5 (rounds), SIZE=800x600, THREADS="1 4 8 ..." (table 5's), FOVS="45 110" (fields of view, degrees).
-# Every round renders each depth, and then each number of threads, once. The published figures are read from experiments/published. Times are medians
-# (lowest to highest); counts are exact and the same in every round. Fits are least squares of relative deviations, each row weighted alike.
+# Every round renders each depth, and then each number of threads, once. The published figures are read from
+# experiments/published. Times are medians (lowest to highest); counts are exact and the same in every round. Fits are
+# least squares of relative deviations, each row weighted alike.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
-report=${1:-build/peers/report} reps=${REPS:-5} size=${SIZE:-800x600} fovs=${FOVS:-45 110}
+report=${1:-build/peers/report} reps=${REPS:-5} size=${SIZE:-800x600} fovs=${FOVS-45 110}
 threads=${THREADS:-1 4 8 16 32 64 128 256 512 1024}
 [ -x "$report" ] || { echo "usage: growth.sh [REPORT] (no program $report; make peers builds it)" >&2; exit 2; }
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 
-# column FILE.csv KEY VALUE: "key value" by the names in its first line; what the two hold is numbers, to the left of any quoted text
+# column FILE.csv KEY VALUE: "key value" by the names in its first line; what the two hold is numbers, to the left of
+# any quoted text
 column() {
     awk -F, -v key="$2" -v value="$3" '
         NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i
-                  if (!(key in at) || !(value in at)) { print "growth.sh: no " key " or " value " in " FILENAME >"/dev/stderr"; exit 1 } next }
+                  if (key in at && value in at) next
+                  print "growth.sh: no " key " or " value " in " FILENAME >"/dev/stderr"; exit 1 }
         { print $at[key], $at[value] }' "$1"
 }
 column "$here/../published/depth.csv" depth cpu_s >"$work/depth"
 column "$here/../published/threads.csv" threads wall_s >"$work/threads"
 
-# The same for both tables: order statistics of what was noted as a list.
-library='
-    function sorted(list, out,   n, i, j, t) {
-        n = split(list, out, " ")
-        for (i = 2; i <= n; i++) for (j = i; j > 1 && out[j - 1] + 0 > out[j] + 0; j--) { t = out[j]; out[j] = out[j - 1]; out[j - 1] = t }
-        return n
-    }
-    function median(list,   n, v) { n = sorted(list, v); return n ? (v[int((n + 1) / 2)] + v[int((n + 2) / 2)]) / 2 : 0 }
-    function spread(list,   n, v) { n = sorted(list, v); return sprintf("%.4f (%.4f to %.4f)", median(list), v[1], v[n]) }'
+library=$(<"$here/../order.awk")
 
 for fov in $fovs; do
     "$report" -d 0,1,2,3,4,5,6,7,8 -s "$size" -f "$fov" -r "$reps" >"$work/rows"
@@ -38,7 +33,8 @@ for fov in $fovs; do
         # T = offset + scale x, which minimises the sum of (fitted / T - 1)^2; offset 0 where none is wanted.
         function fit(what, x, free,   d, w, s0, sx, sy, sxx, sxy, scale, offset, off, worst, text) {
             for (d = 0; d <= 8; d++) {
-                w = 1 / (T[d] * T[d]); s0 += w; sx += w * x[d]; sy += w * T[d]; sxx += w * x[d] * x[d]; sxy += w * x[d] * T[d]
+                w = 1 / (T[d] * T[d])
+                s0 += w; sx += w * x[d]; sy += w * T[d]; sxx += w * x[d] * x[d]; sxy += w * x[d] * T[d]
             }
             scale = free ? (s0 * sxy - sx * sy) / (s0 * sxx - sx * sx) : sxy / sxx
             offset = free ? (sy - scale * sx) / s0 : 0
@@ -48,7 +44,8 @@ for fov in $fovs; do
                 if (off < 0) off = -off
                 if (off > worst) worst = off
             }
-            printf "  %-24s %8.3f s %12.4g s %8.0f%%   %s\n", what (free ? ", offset" : ""), offset, scale, 100 * worst, text
+            printf "  %-26s %8.3f s %12.4g s %8.0f%%   %s\n",
+                what (free ? ", offset" : ""), offset, scale, 100 * worst, text
         }
         NR == FNR { T[$1] = $2; next }
         FNR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
@@ -56,14 +53,18 @@ for fov in $fovs; do
           shaded[d] = $at["sky"] - $at["camera"]; glass = ($at["vessel"] + $at["liquid"]) / $at["camera"] }
         END {
             printf "field of view %g degrees: %.1f %% of the camera rays meet the glass\n", fov, 100 * glass
-            printf "%5s %12s %12s %12s  %-28s | %7s %7s %7s | %10s %7s\n", "depth", "rays", "hits", "sky", "CPU s", "x rays", "x sky", "x CPU", "table 4", "growth"
+            printf "%5s %12s %12s %12s  %-28s | %7s %7s %7s | %10s %7s\n",
+                "depth", "rays", "hits", "sky", "CPU s", "x rays", "x sky", "x CPU", "table 4", "growth"
             for (d = 0; d <= 8; d++) {
                 s[d] = median(cpu[d])
-                printf "%5d %12d %12d %12d  %-28s | %7.2f %7.2f %7.2f | %10.4f %7.2f\n", d, rays[d], shaded[d], sky[d], spread(cpu[d]),
-                    rays[d] / rays[0], sky[d] / sky[0], s[d] / s[0], T[d], T[d] / T[0]
+                printf "%5d %12d %12d %12d  %-28s | %7.2f %7.2f %7.2f | %10.4f %7.2f\n",
+                    d, rays[d], shaded[d], sky[d], spread(cpu[d], "%.4f"), rays[d] / rays[0], sky[d] / sky[0],
+                    s[d] / s[0], T[d], T[d] / T[0]
             }
-            printf "table 4 by                   offset        scale    worst    deviation by depth, %%\n"
-            for (free = 0; free <= 1; free++) { fit("our CPU time", s, free); fit("rays", rays, free); fit("colours of the sky", sky, free) }
+            printf "table 4 by                     offset        scale    worst    deviation by depth, %%\n"
+            for (free = 0; free <= 1; free++) {
+                fit("our CPU time", s, free); fit("rays", rays, free); fit("colours of the sky", sky, free)
+            }
             print ""
         }' "$work/depth" FS='\t' "$work/rows"
 done
@@ -73,14 +74,17 @@ awk "$library"'
     NR == FNR { T[$1] = $2; next }
     FNR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
     { t = $at["threads"]; if (!(t in wall)) order[++n] = t
-      wall[t] = wall[t] " " $at["wall_s"]; busy[t] = busy[t] " " $at["cpu_s"] / $at["wall_s"]; bound[t] = $at["rays"] / $at["busiest"] }
+      wall[t] = wall[t] " " $at["wall_s"]; busy[t] = busy[t] " " $at["cpu_s"] / $at["wall_s"]
+      bound[t] = $at["rays"] / $at["busiest"] }
     END {
-        print "depth 4 by threads; processors: CPU time by wall time, so those that the frame had to itself; bound: all rays by those of the"
-        print "busiest thread, the speed-up that blocks of columns allow on any number of processors"
-        printf "%7s %-28s %9s %10s %9s | %10s %9s\n", "threads", "wall s", "speed-up", "processors", "bound", "table 5", "speed-up"
+        print "depth 4 by threads; processors: CPU time by wall time, so those that the frame had to itself; bound: all rays"
+        print "by those of the busiest thread, the speed-up that blocks of columns allow on any number of processors"
+        printf "%7s %-28s %9s %10s %9s | %10s %9s\n",
+            "threads", "wall s", "speed-up", "processors", "bound", "table 5", "speed-up"
         for (i = 1; i <= n; i++) {
             t = order[i]
-            printf "%7d %-28s %9.2f %10.2f %9.2f |", t, spread(wall[t]), median(wall[order[1]]) / median(wall[t]), median(busy[t]), bound[t]
+            printf "%7d %-28s %9.2f %10.2f %9.2f |",
+                t, spread(wall[t], "%.4f"), median(wall[order[1]]) / median(wall[t]), median(busy[t]), bound[t]
             if (t in T) printf " %10.4f %9.2f", T[t], T[1] / T[t]
             print ""
         }

@@ -3,14 +3,15 @@
 // No anti-aliasing, no radiosity, no photons: camera rays through pixel centres, and the rays that they spawn.
 //
 // Parameters, by Declare=NAME=VALUE:
-//   DEPTH       reflections and refractions after the camera ray, as render.depth (POV-Ray's max_trace_level counts the camera ray too)
+//   DEPTH       reflections and refractions after the camera ray, as render.depth (max_trace_level counts that ray too)
 //   ADC         a branch of less weight than this is not followed, as render.min_weight; 0 follows the whole tree
 //   IOR_GLASS   index of the vessel, as vessel.ior
 //   IOR_LIQUID  index of the liquid, as liquid.ior
-//   ONE_BODY    1: a vessel that is filled with its own glass, one solid without any overlap; IOR_LIQUID then means nothing
+//   ONE_BODY    1: a vessel filled with its own glass, one solid without any overlap; IOR_LIQUID then means nothing
 //
-// POV-Ray knows no priorities. The liquid reaches by OVERLAP into the glass: a ray from the glass meets the liquid's surface first, from index
-// IOR_GLASS to IOR_LIQUID, and then leaves the glass within the liquid, where POV-Ray lets it pass straight on.
+// POV-Ray knows no priorities. The liquid reaches by OVERLAP into the glass: a ray from the glass meets the liquid's
+// surface first, from index IOR_GLASS to IOR_LIQUID, and then leaves the glass within the liquid, where POV-Ray lets it
+// pass straight on.
 #version 3.7;
 
 #ifndef (DEPTH)      #declare DEPTH = 4;         #end

@@ -23,7 +23,8 @@ static void *render_block(void *argument)
     const int width = b->of->width, height = b->of->height, shorter = width > height ? height : width;
     for (int x = b->begin; x < b->end; x++)
         for (int y = 0; y < height; y++) {
-            const float u = (float)(2 * x + 1 - width) / (float)shorter, v = (float)(height - 2 * y - 1) / (float)shorter;
+            const float u = (float)(2 * x + 1 - width) / (float)shorter,
+                        v = (float)(height - 2 * y - 1) / (float)shorter;
             b->pixels[(size_t)y * (size_t)width + (size_t)x] = room_pixel(b->in, u, v, &counted);
         }
     b->counted = counted;
@@ -53,7 +54,8 @@ void room_frame(const room *in, const setting *of, rgb *pixels, tally *counted)
         blocks[i] = (block){.in = in, .of = of, .pixels = pixels, .begin = begin, .end = end};
         const int failed = pthread_create(&blocks[i].thread, NULL, render_block, &blocks[i]);
         if (failed) {
-            fprintf(stderr, "report: thread %d of %d does not start (%s); set fewer with -t\n", i + 1, of->threads, strerror(failed));
+            fprintf(stderr, "report: thread %d of %d does not start (%s); set fewer with -t\n", i + 1, of->threads,
+                    strerror(failed));
             exit(1);
         }
     }

@@ -1,8 +1,10 @@
 /* report - the rod scene by the report's algorithm (see report.h), timed and counted.
- *   report [-d DEPTH,...] [-t THREADS,...] [-r ROUNDS] [-s WIDTHxHEIGHT] [-f FOV_DEG] [-g INDEX] [-l INDEX] [-o FILE.ppm]
- * Every round renders each depth with each number of threads once, so that drift of the machine falls on all alike; a line a frame is printed with its
- * times and exact counts of rays. CPU time is clock()'s, which adds up all threads, as in the report. -f is the field of view over
- * the shorter edge; -g and -l are the refractive indices of glass and liquid; -o keeps the last frame. Counting is always on; it is a few additions a ray, next to a dozen heap allocations. */
+ *   report [-d DEPTH,...] [-t THREADS,...] [-r ROUNDS] [-s WIDTHxHEIGHT] [-f FOV_DEG] [-g INDEX] [-l INDEX] [-o
+ * FILE.ppm] Every round renders each depth with each number of threads once, so that drift of the machine falls on all
+ * alike; a line a frame is printed with its times and exact counts of rays. CPU time is clock()'s, which adds up all
+ * threads, as in the report. -f is the field of view over the shorter edge; -g and -l are the refractive indices of
+ * glass and liquid; -o keeps the last frame. Counting is always on; it is a few additions a ray, next to a dozen heap
+ * allocations. */
 #include "report.h"
 
 #include <errno.h>
@@ -16,14 +18,17 @@
 
 enum { LIST_MAX = 64, DEPTH_MAX = 24, THREADS_MAX = 4096, ROUNDS_MAX = 10000, EDGE_MAX = 16384 };
 static const char usage[] =
-    "report [-d DEPTH,...] [-t THREADS,...] [-r ROUNDS] [-s WIDTHxHEIGHT] [-f FOV_DEG] [-g INDEX] [-l INDEX] [-o FILE.ppm]";
+    "report [-d DEPTH,...] [-t THREADS,...] [-r ROUNDS] [-s WIDTHxHEIGHT] [-f FOV_DEG] "
+    "[-g INDEX] [-l INDEX] [-o FILE.ppm]";
 
-typedef struct list { int count, value[LIST_MAX]; } list;
+typedef struct list {
+    int count, value[LIST_MAX];
+} list;
 typedef struct order {
     list depths, threads;
     int rounds;
     setting of;
-    const char *picture;
+    const char *image;
 } order;
 
 /* Whole numbers between separators; false if there is anything else. */
@@ -62,7 +67,7 @@ static bool read_option(int option, const char *text, order *o)
     case 'f': return read_real(text, 1.0f, 170.0f, &o->of.fov_deg);
     case 'g': return read_real(text, 0.1f, 10.0f, &o->of.glass_index);
     case 'l': return read_real(text, 0.1f, 10.0f, &o->of.liquid_index);
-    case 'o': o->picture = text; return true;
+    case 'o': o->image = text; return true;
     case 'r':
         if (!read_list(text, ',', 1, ROUNDS_MAX, &one) || one.count != 1)
             return false;
@@ -96,11 +101,12 @@ static double mean(const rgb *pixels, size_t count)
 
 static void print_frame(int round, const order *o, double cpu, double wall, const tally *n, const rgb *pixels)
 {
-    printf("%d\t%d\t%d\t%.6f\t%.6f\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%.9f\n", round, o->of.depth, o->of.threads, cpu, wall,
-           (unsigned long long)tally_rays(n), (unsigned long long)n->camera, (unsigned long long)n->secondary,
-           (unsigned long long)n->shadow, (unsigned long long)n->sky, (unsigned long long)n->first_hits[SHAPE_GROUND],
-           (unsigned long long)n->first_hits[SHAPE_VESSEL], (unsigned long long)n->first_hits[SHAPE_LIQUID],
-           (unsigned long long)n->first_hits[SHAPE_ROD], (unsigned long long)n->busiest, mean(pixels, (size_t)o->of.width * (size_t)o->of.height));
+    printf("%d\t%d\t%d\t%.6f\t%.6f\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%.9f\n", round,
+           o->of.depth, o->of.threads, cpu, wall, (unsigned long long)tally_rays(n), (unsigned long long)n->camera,
+           (unsigned long long)n->secondary, (unsigned long long)n->shadow, (unsigned long long)n->sky,
+           (unsigned long long)n->first_hits[SHAPE_GROUND], (unsigned long long)n->first_hits[SHAPE_VESSEL],
+           (unsigned long long)n->first_hits[SHAPE_LIQUID], (unsigned long long)n->first_hits[SHAPE_ROD],
+           (unsigned long long)n->busiest, mean(pixels, (size_t)o->of.width * (size_t)o->of.height));
     fflush(stdout);
 }
 
@@ -121,9 +127,9 @@ static unsigned char encoded(float value)
 }
 
 /* Binary PPM, gamma 2. */
-static bool write_picture(const order *o, const rgb *pixels)
+static bool write_image(const order *o, const rgb *pixels)
 {
-    FILE *file = fopen(o->picture, "wb");
+    FILE *file = fopen(o->image, "wb");
     if (!file)
         return false;
     fprintf(file, "P6\n%d %d\n255\n", o->of.width, o->of.height);
@@ -137,7 +143,10 @@ static bool write_picture(const order *o, const rgb *pixels)
 
 int main(int count, char **words)
 {
-    order o = {.depths = {1, {4}}, .threads = {1, {1}}, .rounds = 1, .of = {.width = 800, .height = 600, .glass_index = 1.5f, .liquid_index = 1.33f, .fov_deg = 45.0f}};
+    order o = {.depths = {1, {4}},
+               .threads = {1, {1}},
+               .rounds = 1,
+               .of = {.width = 800, .height = 600, .glass_index = 1.5f, .liquid_index = 1.33f, .fov_deg = 45.0f}};
     opterr = 0;
     for (int option; (option = getopt(count, words, "d:t:r:s:f:g:l:o:")) != -1;)
         if (!read_option(option, optarg, &o)) {
@@ -152,7 +161,9 @@ int main(int count, char **words)
         return 2;
     }
     rgb *pixels = allocate((size_t)o.of.width * (size_t)o.of.height * sizeof *pixels);
-    printf("round\tdepth\tthreads\tcpu_s\twall_s\trays\tcamera\tsecondary\tshadow\tsky\tground\tvessel\tliquid\trod\tbusiest\tmean\n");
+    printf(
+        "round\tdepth\tthreads\tcpu_s\twall_s\trays\tcamera\tsecondary\tshadow\tsky\t"
+        "ground\tvessel\tliquid\trod\tbusiest\tmean\n");
     for (int round = 0; round < o.rounds; round++)
         for (int d = 0; d < o.depths.count; d++)
             for (int t = 0; t < o.threads.count; t++) {
@@ -160,9 +171,9 @@ int main(int count, char **words)
                 o.of.threads = o.threads.value[t];
                 measure(round, &o, pixels);
             }
-    const bool kept = !o.picture || write_picture(&o, pixels);
+    const bool kept = !o.image || write_image(&o, pixels);
     if (!kept)
-        fprintf(stderr, "report: %s cannot be written (%s)\n", o.picture, strerror(errno));
+        fprintf(stderr, "report: %s cannot be written (%s)\n", o.image, strerror(errno));
     free(pixels);
     return kept ? 0 : 1;
 }

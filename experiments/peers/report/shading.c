@@ -31,7 +31,8 @@ static vec3f refracted(vec3f incident, vec3f normal, float cosine, float from, f
 /* How a step of the shadow ray ends. */
 typedef enum passage { PASSAGE_ON, PASSAGE_LIT, PASSAGE_DARK } passage;
 
-/* Lines 28 to 51: one cast of the shadow ray, and what the blocker makes of it. Clear shapes weaken and bend it; one beyond the light blocks, too. */
+/* Lines 28 to 51: one cast of the shadow ray, and what the blocker makes of it. Clear shapes weaken and bend it; one
+ * beyond the light blocks, too. */
 static passage shadow_step(const room *in, vec3f to_light, ray *shadow, const shape **leaving, float *passed)
 {
     hit *blocker = room_cast(in, shadow);
@@ -113,10 +114,12 @@ static rgb shade(const room *in, const hit *at, int limit, tally *counted)
     const float cosine = dot(at->ray.direction, at->normal);
     const vec3f mirrored = sub(at->ray.direction, scale(at->normal, 2.0f * cosine));
     const rgb reflection = branch(in, at, mirrored, limit, counted);
-    const rgb refraction = branch(in, at, refracted(at->ray.direction, at->normal, cosine, s->index, at->index), limit, counted);
+    const rgb refraction =
+        branch(in, at, refracted(at->ray.direction, at->normal, cosine, s->index, at->index), limit, counted);
     const rgb mixed = rgb_add(rgb_scale(s->color, 1.0f - s->reflectivity), rgb_scale(reflection, s->reflectivity));
     const rgb local = rgb_add(rgb_scale(mixed, lit), (rgb){gloss, gloss, gloss});
-    return rgb_add(rgb_add(local, rgb_scale(reflection, s->reflectivity * s->emission)), rgb_scale(refraction, s->transparency));
+    return rgb_add(rgb_add(local, rgb_scale(reflection, s->reflectivity * s->emission)),
+                   rgb_scale(refraction, s->transparency));
 }
 
 /* Lines 87 to 94. The camera looks downwards by its pitch. */

@@ -39,16 +39,18 @@ static bool side_reaches(const shape *s, const ray *r, float t)
     return !(fabsf(r->origin.y + t * r->direction.y - s->position.y) > s->half_height) && t > 0.0f;
 }
 
-/* Listing 1. Both caps share one flag, the nearer one of their planes counts even behind the origin, and grazing rays (a discriminant below epsilon)
- * miss the side: as printed. */
+/* Listing 1. Both caps share one flag, the nearer one of their planes counts even behind the origin, and grazing rays
+ * (a discriminant below epsilon) miss the side: as printed. */
 static vec3f *cylinder_intersect(const shape *s, const ray *r)
 {
     const vec3f o = r->origin, d = r->direction, p = s->position;
-    const float top = (s->half_height - o.y + p.y) / (d.y + epsilon), base = (-s->half_height - o.y + p.y) / (d.y + epsilon);
+    const float top = (s->half_height - o.y + p.y) / (d.y + epsilon),
+                base = (-s->half_height - o.y + p.y) / (d.y + epsilon);
     const bool capped = cap_covers(s, r, top) || cap_covers(s, r, base);
     const float a = d.x * d.x + d.z * d.z;
     const float b = o.x * d.x - d.x * p.x + o.z * d.z - d.z * p.z;
-    const float c = o.x * o.x + p.x * p.x + o.z * o.z + p.z * p.z - 2.0f * (p.x * o.x + o.z * p.z) - s->radius * s->radius;
+    const float c =
+        o.x * o.x + p.x * p.x + o.z * o.z + p.z * p.z - 2.0f * (p.x * o.x + o.z * p.z) - s->radius * s->radius;
     const float discriminant = b * b - a * c, cap = least(top, base);
     if (discriminant < epsilon) {
         if (!capped)
@@ -67,14 +69,16 @@ static vec3f *cylinder_intersect(const shape *s, const ray *r)
 static vec3f cylinder_normal(const shape *s, vec3f at)
 {
     const vec3f d = sub(at, s->position);
-    const float from_side = fabsf(sqrtf(d.x * d.x + d.z * d.z) - s->radius), from_cap = fabsf(fabsf(d.y) - s->half_height);
+    const float from_side = fabsf(sqrtf(d.x * d.x + d.z * d.z) - s->radius),
+                from_cap = fabsf(fabsf(d.y) - s->half_height);
     return from_cap < from_side ? (vec3f){0.0f, d.y > 0.0f ? 1.0f : -1.0f, 0.0f} : unit((vec3f){d.x, 0.0f, d.z});
 }
 
 /* Listing 2. The nearer of the two points counts, even behind an origin within the box: as printed. */
 static vec3f *box_intersect(const shape *s, const ray *r)
 {
-    const float origin[3] = {r->origin.x, r->origin.y, r->origin.z}, direction[3] = {r->direction.x, r->direction.y, r->direction.z};
+    const float origin[3] = {r->origin.x, r->origin.y, r->origin.z},
+                direction[3] = {r->direction.x, r->direction.y, r->direction.z};
     const float low[3] = {s->low.x, s->low.y, s->low.z}, high[3] = {s->high.x, s->high.y, s->high.z};
     float near = -INFINITY, far = INFINITY;
     bool met = true;
@@ -96,8 +100,8 @@ static vec3f *box_intersect(const shape *s, const ray *r)
 /* Of the six faces the nearest. */
 static vec3f box_normal(const shape *s, vec3f at)
 {
-    const float from[6] = {fabsf(at.x - s->low.x), fabsf(at.x - s->high.x), fabsf(at.y - s->low.y),
-                           fabsf(at.y - s->high.y), fabsf(at.z - s->low.z), fabsf(at.z - s->high.z)};
+    const float from[6] = {fabsf(at.x - s->low.x),  fabsf(at.x - s->high.x), fabsf(at.y - s->low.y),
+                           fabsf(at.y - s->high.y), fabsf(at.z - s->low.z),  fabsf(at.z - s->high.z)};
     int face = 0;
     for (int i = 1; i < 6; i++)
         if (from[i] < from[face])
@@ -119,11 +123,20 @@ static vec3f plane_normal(const shape *s, vec3f at)
     return (vec3f){0.0f, 1.0f, 0.0f};
 }
 
-/* The report's constant weights, for both clear bodies. Its vessel is a full cylinder, and the liquid another one within. */
+/* The report's constant weights, for both clear bodies. Its vessel is a full cylinder, and the liquid another one
+ * within. */
 static shape clear_cylinder(float base, float height, float radius, float index, rgb color)
 {
-    return (shape){.intersect = cylinder_intersect, .normal = cylinder_normal, .position = {0.0f, base + height / 2.0f, 0.0f}, .radius = radius,
-                   .half_height = height / 2.0f, .color = color, .reflectivity = 0.1f, .transparency = 0.9f, .index = index, .emission = 0.5f};
+    return (shape){.intersect = cylinder_intersect,
+                   .normal = cylinder_normal,
+                   .position = {0.0f, base + height / 2.0f, 0.0f},
+                   .radius = radius,
+                   .half_height = height / 2.0f,
+                   .color = color,
+                   .reflectivity = 0.1f,
+                   .transparency = 0.9f,
+                   .index = index,
+                   .emission = 0.5f};
 }
 
 /* The lengths, eye and lamp of experiments/scenes/rod.yaml. */
@@ -132,11 +145,17 @@ void room_fill(room *out, const setting *of)
     *out = (room){.light = {4.0f, 7.0f, -5.0f}, .eye = {0.0f, 2.75f, -6.0f}, .depth = of->depth};
     out->pitch = atan2f(2.75f - 1.5f, 6.0f);
     out->distance = 1.0f / tanf(of->fov_deg * (float)M_PI / 360.0f);
-    out->shapes[SHAPE_GROUND] = (shape){.intersect = plane_intersect, .normal = plane_normal, .color = {0.7f, 0.7f, 0.7f}, .index = 1.0f};
+    out->shapes[SHAPE_GROUND] =
+        (shape){.intersect = plane_intersect, .normal = plane_normal, .color = {0.7f, 0.7f, 0.7f}, .index = 1.0f};
     out->shapes[SHAPE_VESSEL] = clear_cylinder(0.001f, 3.0f, 1.0f, of->glass_index, (rgb){0.2f, 0.2f, 0.25f});
     out->shapes[SHAPE_LIQUID] = clear_cylinder(0.101f, 1.9f, 0.9f, of->liquid_index, (rgb){0.1f, 0.15f, 0.3f});
-    out->shapes[SHAPE_ROD] = (shape){.intersect = box_intersect, .normal = box_normal, .low = {0.075f, 0.601f, -0.125f},
-                                     .high = {0.325f, 3.601f, 0.125f}, .color = {0.85f, 0.15f, 0.1f}, .reflectivity = 0.1f, .index = 1.0f};
+    out->shapes[SHAPE_ROD] = (shape){.intersect = box_intersect,
+                                     .normal = box_normal,
+                                     .low = {0.075f, 0.601f, -0.125f},
+                                     .high = {0.325f, 3.601f, 0.125f},
+                                     .color = {0.85f, 0.15f, 0.1f},
+                                     .reflectivity = 0.1f,
+                                     .index = 1.0f};
 }
 
 hit *room_cast(const room *in, const ray *r)
@@ -148,8 +167,8 @@ hit *room_cast(const room *in, const ray *r)
         vec3f *p = in->shapes[i].intersect(&in->shapes[i], r);
         if (!p)
             continue;
-        const vec3f way = sub(*p, r->origin);
-        const float squared = dot(way, way);
+        const vec3f apart = sub(*p, r->origin);
+        const float squared = dot(apart, apart);
         if (squared < shortest) {
             shortest = squared;
             nearest = &in->shapes[i];
@@ -162,7 +181,8 @@ hit *room_cast(const room *in, const ray *r)
     if (!nearest)
         return NULL;
     hit *found = allocate(sizeof *found);
-    *found = (hit){.ray = *r, .shape = nearest, .position = *where, .normal = nearest->normal(nearest, *where), .index = 1.0f};
+    *found = (hit){
+        .ray = *r, .shape = nearest, .position = *where, .normal = nearest->normal(nearest, *where), .index = 1.0f};
     free(where);
     return found;
 }
