@@ -75,16 +75,17 @@ awk "$library"'
     FNR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
     { t = $at["threads"]; if (!(t in wall)) order[++n] = t
       wall[t] = wall[t] " " $at["wall_s"]; busy[t] = busy[t] " " $at["cpu_s"] / $at["wall_s"]
-      bound[t] = $at["rays"] / $at["busiest"] }
+      by_rays[t] = $at["rays"] / $at["busiest"]; by_sky[t] = $at["sky"] / $at["busiest_sky"] }
     END {
-        print "depth 4 by threads; processors: CPU time by wall time, so those that the frame had to itself; bound: all rays"
-        print "by those of the busiest thread, the speed-up that blocks of columns allow on any number of processors"
-        printf "%7s %-28s %9s %10s %9s | %10s %9s\n",
-            "threads", "wall s", "speed-up", "processors", "bound", "table 5", "speed-up"
+        print "depth 4 by threads; processors: CPU time by wall time, those that the frame had; bounds: all rays, or"
+        print "colours of the sky, by those of the busiest thread: the speed-up that blocks of columns allow at best"
+        printf "%7s %-28s %9s %10s %7s %7s | %10s %9s\n",
+            "threads", "wall s", "speed-up", "processors", "by rays", "by sky", "table 5", "speed-up"
         for (i = 1; i <= n; i++) {
             t = order[i]
-            printf "%7d %-28s %9.2f %10.2f %9.2f |",
-                t, spread(wall[t], "%.4f"), median(wall[order[1]]) / median(wall[t]), median(busy[t]), bound[t]
+            printf "%7d %-28s %9.2f %10.2f %7.2f %7.2f |",
+                t, spread(wall[t], "%.4f"), median(wall[order[1]]) / median(wall[t]), median(busy[t]),
+                by_rays[t], by_sky[t]
             if (t in T) printf " %10.4f %9.2f", T[t], T[1] / T[t]
             print ""
         }

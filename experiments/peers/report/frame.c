@@ -41,6 +41,8 @@ static void tally_add(tally *sum, const tally *more)
         sum->first_hits[i] += more->first_hits[i];
     if (tally_rays(more) > sum->busiest)
         sum->busiest = tally_rays(more);
+    if (more->sky > sum->busiest_sky)
+        sum->busiest_sky = more->sky;
 }
 
 void room_frame(const room *in, const setting *of, rgb *pixels, tally *counted)

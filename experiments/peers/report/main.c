@@ -17,9 +17,8 @@
 #include <unistd.h>
 
 enum { LIST_MAX = 64, DEPTH_MAX = 24, THREADS_MAX = 4096, ROUNDS_MAX = 10000, EDGE_MAX = 16384 };
-static const char usage[] =
-    "report [-d DEPTH,...] [-t THREADS,...] [-r ROUNDS] [-s WIDTHxHEIGHT] [-f FOV_DEG] "
-    "[-g INDEX] [-l INDEX] [-o FILE.ppm]";
+static const char usage[] = "report [-d DEPTH,...] [-t THREADS,...] [-r ROUNDS] [-s WIDTHxHEIGHT] [-f FOV_DEG] "
+                            "[-g INDEX] [-l INDEX] [-o FILE.ppm]";
 
 typedef struct list {
     int count, value[LIST_MAX];
@@ -101,12 +100,13 @@ static double mean(const rgb *pixels, size_t count)
 
 static void print_frame(int round, const order *o, double cpu, double wall, const tally *n, const rgb *pixels)
 {
-    printf("%d\t%d\t%d\t%.6f\t%.6f\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%.9f\n", round,
+    printf("%d\t%d\t%d\t%.6f\t%.6f\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%llu\t%.9f\n", round,
            o->of.depth, o->of.threads, cpu, wall, (unsigned long long)tally_rays(n), (unsigned long long)n->camera,
            (unsigned long long)n->secondary, (unsigned long long)n->shadow, (unsigned long long)n->sky,
            (unsigned long long)n->first_hits[SHAPE_GROUND], (unsigned long long)n->first_hits[SHAPE_VESSEL],
            (unsigned long long)n->first_hits[SHAPE_LIQUID], (unsigned long long)n->first_hits[SHAPE_ROD],
-           (unsigned long long)n->busiest, mean(pixels, (size_t)o->of.width * (size_t)o->of.height));
+           (unsigned long long)n->busiest, (unsigned long long)n->busiest_sky,
+           mean(pixels, (size_t)o->of.width * (size_t)o->of.height));
     fflush(stdout);
 }
 
@@ -161,9 +161,8 @@ int main(int count, char **words)
         return 2;
     }
     rgb *pixels = allocate((size_t)o.of.width * (size_t)o.of.height * sizeof *pixels);
-    printf(
-        "round\tdepth\tthreads\tcpu_s\twall_s\trays\tcamera\tsecondary\tshadow\tsky\t"
-        "ground\tvessel\tliquid\trod\tbusiest\tmean\n");
+    printf("round\tdepth\tthreads\tcpu_s\twall_s\trays\tcamera\tsecondary\tshadow\tsky\t"
+           "ground\tvessel\tliquid\trod\tbusiest\tbusiest_sky\tmean\n");
     for (int round = 0; round < o.rounds; round++)
         for (int d = 0; d < o.depths.count; d++)
             for (int t = 0; t < o.threads.count; t++) {

@@ -30,7 +30,7 @@ enum { SHAPE_GROUND, SHAPE_VESSEL, SHAPE_LIQUID, SHAPE_ROD, SHAPE_COUNT };
 typedef struct tally {
     uint64_t camera, secondary, shadow, sky;
     uint64_t first_hits[SHAPE_COUNT];
-    uint64_t busiest; /* of a frame: the rays of the thread that followed most of them */
+    uint64_t busiest, busiest_sky; /* of a frame: the most rays, and the most colours of the sky, of one thread */
 } tally;
 
 static inline uint64_t tally_rays(const tally *t)
