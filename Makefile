@@ -181,20 +181,40 @@ $(build)/tests/bench_%: tests/bench_%.c $(build)/libcuvette.a $(build)/flags
 # Rebuilds everything when the compiler or its flags change. Everything that is compiled depends on it, so that it is
 # also the place to wait for setup when both are asked for.
 .PHONY: always
-$(build)/flags: always $(if $(filter setup,$(MAKECMDGOALS)),| setup)
+$(build)/flags: always | $(filter setup setup-peers,$(MAKECMDGOALS))
 	@mkdir -p $(@D)
 	@echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512) $(embree_cflags))' | cmp -s - $@ || echo '$(subst ','\'',$(CC) $(all_cflags) $(isa_flags_avx512) $(embree_cflags))' >$@
 
+# What the benches compare with: the report's algorithm, which needs a compiler alone, and Embree where it is there.
+# Embree's rays are made by the program that hands them over, for the machine that it runs on.
+report_sources := $(wildcard experiments/peers/report/*.[ch])
+.PHONY: peers
+peers: $(build)/peers/report $(build)/libcuvette.a ## build what the benches compare with (experiments/peers)
+	@$(if $(embree),$(MAKE) --no-print-directory build=$(build) $(build)/peers/embree)
+$(build)/peers/report: $(report_sources) $(build)/flags
+	$(call say,$(CC) experiments/peers/report)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(all_cflags) -o $@ $(filter %.c,$^) $(LDFLAGS) -lm -pthread
+$(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)/flags
+	$(call say,$(CC) $<)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(all_cflags) -march=native -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
+
+-include $(build)/peers/embree.d
 -include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
 
 .PHONY: setup
 setup: ## install what is needed (Debian 12); does nothing when it is there
 	@.ci/setup
 
+.PHONY: setup-peers
+setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install what the benches compare with: POV-Ray, Tachyon, Embree
+	@.ci/setup-peers
+
 # --- tests ---
 
 # Checks that read the sources; one run of them is enough, whatever the configuration.
-source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh
+source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh
 scripts := $(filter-out $(source_checks),$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))
@@ -209,14 +229,16 @@ kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLA
 test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER),20,$(if $(filter release,$(config)),10000,500)))
 
 .PHONY: test
-test: $(selected) $(build)/cuvette-import $(if $(only),,$(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a) ## build and run every test; only=NAME for tests/test_NAME.c alone
+# What scripts of tests run.
+tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh peers
+test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c alone
 	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for pictures of every view. After what else
 # installs or measures.
 .PHONY: test-web setup-web
-setup-web: | $(filter setup,$(MAKECMDGOALS))
+setup-web: | $(filter setup setup-peers,$(MAKECMDGOALS))
 	@.ci/setup-web $(build)/web-tests
 test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, which it installs with node where there is none; only=NAME for one file
 	@node tests/web/run.mjs --program '$(abspath $(build)/cuvette)' --modules '$(abspath $(build)/web-tests)' \
@@ -271,6 +293,7 @@ asked = $(filter $(1),$(MAKECMDGOALS))
 experiments: | $(call asked,test)
 bench: | $(call asked,test experiments)
 paper: | $(call asked,experiments figures)
+experiments: $(build)/cuvette-import
 experiments: $(build)/cuvette ## run the studies (goes on where it stopped), make tables and figures
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
 	@$(MAKE) --no-print-directory build=$(build) tables figures
@@ -307,9 +330,11 @@ $(RESULTS)/figures/trace.svg: experiments/scenes/rod.yaml | $(build)/cuvette
 paper: ## rebuild the report from the rows that are there; measures nothing
 	$(MAKE) -C paper
 
-bench: all ## frame times, what counters cost, rays through meshes; PEERS=DIR (rod.pov, listing_baseline.cpp, embree_bench.c): against these too
-	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters all
-	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' PEERS='$(PEERS)' experiments/bench.sh
+bench: all peers $(build)/tests/bench_mesh ## measure frames and rays as ratios to other programs; REPS=7 rounds
+	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters $(build)/nocounters/cuvette
+	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' experiments/bench.sh
+	@echo
+	experiments/mesh_bench.sh $(build)/tests/bench_mesh
 
 # --- installation, upkeep ---
 
@@ -343,7 +368,7 @@ uninstall: ## remove what install put there
 
 .PHONY: format clean distclean help
 format: ## lay out the sources with clang-format
-	find src tests -name '*.[ch]' -exec clang-format -i {} +
+	find src tests experiments/peers -name '*.[ch]' -exec clang-format -i {} +
 clean: ## remove everything that was built
 	rm -rf $(build)
 distclean: clean ## also remove tables and figures; measured rows stay in results/

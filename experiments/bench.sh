@@ -1,16 +1,25 @@
 #!/bin/bash
 # bench.sh - how fast, as ratios of things measured in turn in one run; medians of REPS rounds.
 #   experiments/bench.sh CUVETTE [CUVETTE_WITHOUT_COUNTERS]
-# Environment: REPS=7 (rounds), SIZE=800x600, PEERS=DIR (a folder with rod.pov and listing_baseline.cpp: POV-Ray and the report's
-# algorithm then run in the same rounds; needs povray and g++). One round runs every contestant once, so that drift of the machine
-# falls on all alike. Pruned: branches of less than 1/255 of a camera ray's weight are not followed. CPU seconds are of the tracing
-# alone, for POV-Ray its own figure.
+# Environment: REPS=7 (rounds), SIZE=800x600. One round runs every contestant once, so that drift of the machine falls
+# on all alike: the report's algorithm (peers/report next to CUVETTE; make peers) and, where it is installed, POV-Ray
+# (make setup-peers) with peers/rod.pov. Pruned: branches of less than 1/255 of a camera ray's weight are not followed.
+# CPU seconds are of the tracing alone, for POV-Ray its own figure. POV-Ray follows the whole tree in the first three
+# rounds only: it takes a quarter of a minute each time.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
-[ -x "${1:-${CUVETTE:-build/cuvette}}" ] || { echo "usage: bench.sh [CUVETTE [CUVETTE_WITHOUT_COUNTERS]]" >&2; exit 2; }
-ours=${1:-${CUVETTE:-build/cuvette}} bare=${2:-${NOCOUNTERS:-}} reps=${REPS:-7} peers=${PEERS:-}
-scene=$here/scenes/rod.yaml size=${SIZE:-800x600}
+ours=${1:-${CUVETTE:-build/cuvette}} bare=${2:-${NOCOUNTERS:-}} reps=${REPS:-7}
+report=$(dirname "$ours")/peers/report
+[ -x "$ours" ] ||
+    { echo "usage: bench.sh [CUVETTE [CUVETTE_WITHOUT_COUNTERS]] (no program $ours; make builds it)" >&2; exit 2; }
+[ -x "$report" ] || { echo "bench.sh: no program $report; make peers builds it next to CUVETTE" >&2; exit 2; }
+scene=$here/scenes/rod.yaml size=${SIZE:-800x600} with_pov=
+if command -v povray >/dev/null; then
+    with_pov=1
+else
+    echo "bench.sh: POV-Ray is not installed and is left out; make setup-peers installs it" >&2
+fi
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 
 # field NAME < JSON: the first number under that name
@@ -21,22 +30,18 @@ frame() { # frame CONTESTANT PROGRAM CLOCK [set...]: the median of five frames i
     json=$("$program" render "$scene" --json --repeat 5 --set "render.width=${size%x*}" --set "render.height=${size#*x}" "${@/#/--set=}")
     note "$who" "$(field "$clock" <<<"$json")" "$(field total <<<"$json")"
 }
-pov() { # pov CONTESTANT depth adc
-    povray "+I$peers/rod.pov" "+O$work/pov.png" +W800 +H600 -D -A -V +WT1 "Declare=DEPTH=$2" "Declare=ADC=$3" >"$work/log" 2>&1
+pov() { # pov CONTESTANT depth adc; the ground is unbounded, so its tests count the rays that were followed
+    povray "+I$here/peers/rod.pov" "+O$work/pov.png" "+W${size%x*}" "+H${size#*x}" -D -A -V +WT1 \
+        "Declare=DEPTH=$2" "Declare=ADC=$3" >"$work/log" 2>&1 ||
+        { echo "bench.sh: povray failed: $(tail -n 1 "$work/log")" >&2; exit 1; }
     note "$1" "$(awk '/Trace Time/ {f = 1} f && /CPU-seconds/ {for (i = 1; i <= NF; i++) if ($i == "with") {print $(i + 1); exit}}' "$work/log")" \
         "$(awk '/^Plane /{print $2; exit}' "$work/log")"
 }
-listing() { # listing CONTESTANT depth
-    note "$1" "$("$work/listing" -d "$2" -t 1 -r 1 | awk 'END {print $3}')" "${listing_rays[$2]}"
+report_frame() { # report_frame CONTESTANT depth
+    local row
+    row=$("$report" -d "$2" -s "$size" | tail -n 1)
+    note "$1" "$(cut -f 4 <<<"$row")" "$(cut -f 6 <<<"$row")"
 }
-declare -A listing_rays=([4]=NA [8]=NA)
-if [ -n "$peers" ]; then
-    [ "$size" = 800x600 ] || { echo "bench.sh: the peers' size is 800x600; leave SIZE out" >&2; exit 2; }
-    command -v povray >/dev/null && command -v g++ >/dev/null || { echo "bench.sh: PEERS needs povray and g++" >&2; exit 1; }
-    g++ -std=c++17 -O2 -o "$work/listing" "$peers/listing_baseline.cpp" -pthread
-    g++ -std=c++17 -O2 -DCOUNT -o "$work/listing_count" "$peers/listing_baseline.cpp" -pthread
-    while read -r _ depth _ _ _ _ _ _ _ total _; do listing_rays[$depth]=$total; done < <("$work/listing_count" | grep '^depth [48] ')
-fi
 
 for ((round = 0; round < reps; round++)); do
     for depth in 0 4 8; do frame "depth $depth" "$ours" cpu_s render.depth=$depth; done
@@ -47,19 +52,22 @@ for ((round = 0; round < reps; round++)); do
     frame "beside another" "$ours" wall_s render.depth=8 &
     frame "wall, depth 8, 1 thread beside another" "$ours" wall_s render.depth=8
     wait
-    [ -n "$peers" ] || continue
-    listing "the report's algorithm, depth 4" 4
-    listing "the report's algorithm, depth 8" 8
+    for depth in 0 4 8; do report_frame "the report's algorithm, depth $depth" $depth; done
+    [ -n "$with_pov" ] || continue
     pov "POV-Ray, depth 8, pruned" 8 0.00392156862745098
     ((round >= 3)) || pov "POV-Ray, depth 8, whole tree" 8 0
 done
 
-median() { cut -f "$2" "$work/$1" | sort -g | awk '{a[NR] = $1} END {print NR % 2 ? a[(NR + 1) / 2] : (a[NR / 2] + a[NR / 2 + 1]) / 2}'; }
+median() { awk -F'\t' -v c="$2" "$(<"$here/order.awk")"'{ list = list " " $c } END { print median(list) }' "$work/$1"; }
 # The ratio of two contestants, round by round, then the median.
 ratio() {
     [ -s "$work/$1" ] && [ -s "$work/$2" ] || return 0
-    paste "$work/$1" "$work/$2" | awk -F'\t' '$1 != "" && $3 != "" {print $1 / $3}' | sort -g |
-        awk -v what="$3" '{a[NR] = $1} END {printf "%-64s %8.3f   (%d rounds, %.3f to %.3f)\n", what, NR % 2 ? a[(NR + 1) / 2] : (a[NR / 2] + a[NR / 2 + 1]) / 2, NR, a[1], a[NR]}'
+    paste "$work/$1" "$work/$2" | awk -F'\t' -v what="$3" "$(<"$here/order.awk")"'
+        $1 != "" && $3 != "" { list = list " " $1 / $3 }
+        END {
+            n = sorted(list, v)
+            printf "%-66s %8.3f   (%d rounds, %.3f to %.3f)\n", what, median(list), n, v[1], v[n]
+        }'
 }
 printf '%-40s %10s %12s %10s\n' "rod.yaml, $size" seconds rays "M rays/s"
 rm -f "$work/beside another"
@@ -73,6 +81,7 @@ ratio "depth 8" "depth 8, no counters" "counters, depth 8: time with / without"
 ratio "wall, depth 8, 1 threads" "wall, depth 8, 2 threads" "two threads, depth 8: wall of one / wall of two"
 ratio "wall, depth 8, 1 thread beside another" "wall, depth 8, 1 threads" "one thread beside another process: wall / wall of one alone"
 ratio "wall, depth 8, 1024 threads" "wall, depth 8, 2 threads" "1024 threads, depth 8: wall / wall of two"
+ratio "the report's algorithm, depth 0" "depth 0" "the report's algorithm / ours, depth 0 (it casts no shadow rays)"
 ratio "the report's algorithm, depth 4" "depth 4" "the report's algorithm / ours, depth 4"
 ratio "the report's algorithm, depth 8" "depth 8" "the report's algorithm / ours, depth 8"
 ratio "POV-Ray, depth 8, pruned" "depth 8, pruned" "POV-Ray / ours, depth 8, both pruned at 1/255"

@@ -1,7 +1,8 @@
 #!/bin/bash
 # mesh_frames.sh - whole frames of the triangle sets, one thread, 800x600, camera and shadow rays, beside POV-Ray's and Tachyon's in the same rounds.
 #   experiments/mesh_frames.sh
-# Environment: CUVETTE (the program), REPS=5 (rounds), SETS="sparse:50000 ...". Needs povray and tachyon.
+# Environment: CUVETTE (the program), REPS=5 (rounds), SETS="sparse:50000 ...".
+# Needs povray and tachyon (make setup-peers).
 # Each says itself how long it traced; reading, building and writing are not in it. Ratios are taken round by round, medians and spread of them.
 set -euo pipefail
 export LC_ALL=C
@@ -9,7 +10,8 @@ cuvette=${CUVETTE:-build/cuvette} reps=${REPS:-5}
 sets=${SETS:-sparse:50000 dense:50000 sphere:50000}
 scene=$(dirname "$0")/scenes/soup.yaml
 for peer in povray tachyon; do
-    command -v "$peer" >/dev/null || { echo "mesh_frames.sh: no $peer; apt-get install $peer" >&2; exit 2; }
+    command -v "$peer" >/dev/null ||
+        { echo "mesh_frames.sh: $peer is not installed; make setup-peers installs it" >&2; exit 2; }
 done
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -31,17 +33,10 @@ for ((round = 0; round < reps; round++)); do
     done
 done >"$work/rows"
 
-awk -v sets="$sets" '
-    function sorted(list, out,   n, i, j, t) {
-        n = split(list, out, " ")
-        for (i = 2; i <= n; i++) for (j = i; j > 1 && out[j - 1] + 0 > out[j] + 0; j--) { t = out[j]; out[j] = out[j - 1]; out[j - 1] = t }
-        return n
-    }
-    function median(list,   n, v) { n = sorted(list, v); return n ? (v[int((n + 1) / 2)] + v[int((n + 2) / 2)]) / 2 : 0 }
-    function ratios(set, a,   i, list, n, v) {
+awk -v sets="$sets" "$(<"$(dirname "$0")/order.awk")"'
+    function ratios(set, a,   i, list) {
         for (i = 0; i < rounds; i++) list = list " " at[i, set, a] / at[i, set, "cuvette"]
-        n = sorted(list, v)
-        return sprintf("%.2f (%.2f to %.2f)", median(list), v[1], v[n])
+        return spread(list, "%.2f")
     }
     { s[$2, $3] = s[$2, $3] " " $4; at[$1, $2, $3] = $4; rounds = $1 + 1 }
     END {

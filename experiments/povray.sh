@@ -1,7 +1,8 @@
 #!/bin/bash
 # povray.sh - our picture of rod.yaml beside POV-Ray's of the same scene, as 8-bit sRGB, depth 8: PSNR, and how many pixels differ by
 # more than 8 of 255, above and below row 424, where the vessel's base begins.
-#   PEERS=DIR experiments/povray.sh [CUVETTE]      DIR holds rod.pov; needs povray and gnuplot; pictures are left in OUT=DIR if set
+#   experiments/povray.sh [CUVETTE]
+# Needs povray (make setup-peers) and gnuplot; the scene is peers/rod.pov. OUT=DIR keeps the images.
 # POV-Ray shows black beyond its last depth, so render.beyond is black here. It knows no priorities: rod.pov lets the liquid overlap
 # the glass, and where the two meet at the base it shows the ground, though total reflection is certain there. With both
 # indices at 1.5, vessel and liquid are one body, which POV-Ray can have without any overlap, as a vessel filled with glass ("one body"):
@@ -9,18 +10,20 @@
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
-ours=${1:-${CUVETTE:-build/cuvette}} peers=${PEERS:?set PEERS to the folder of rod.pov}
+ours=${1:-${CUVETTE:-build/cuvette}}
 [ -x "$ours" ] || { echo "povray.sh: no program $ours; run make" >&2; exit 2; }
-command -v povray >/dev/null && command -v gnuplot >/dev/null || { echo "povray.sh: needs povray and gnuplot" >&2; exit 1; }
+command -v povray >/dev/null && command -v gnuplot >/dev/null ||
+    { echo "povray.sh: needs povray (make setup-peers) and gnuplot (make setup)" >&2; exit 1; }
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 
 # x, y from below, red, green, blue, alpha, type
 pixels() { gnuplot -e "set table '$1.txt'; plot '$1' binary filetype=png using 1:2:3 with rgbimage" && grep '^ *[0-9]' "$1.txt"; }
-compare() { # compare NAME POV_SCENE VESSEL_IOR LIQUID_IOR
-    povray "+I$2" "+O$work/theirs.png" +W800 +H600 +FN8 -D -A -V Declare=DEPTH=8 Declare=ADC=0 \
-        "Declare=IOR_GLASS=$3" "Declare=IOR_LIQUID=$4" >"$work/log" 2>&1
+compare() { # compare NAME VESSEL_IOR LIQUID_IOR ONE_BODY
+    povray "+I$here/peers/rod.pov" "+O$work/theirs.png" +W800 +H600 +FN8 -D -A -V Declare=DEPTH=8 Declare=ADC=0 \
+        "Declare=IOR_GLASS=$2" "Declare=IOR_LIQUID=$3" "Declare=ONE_BODY=$4" >"$work/log" 2>&1 ||
+        { echo "povray.sh: povray failed: $(tail -n 1 "$work/log")" >&2; exit 1; }
     "$ours" render "$here/scenes/rod.yaml" -o "$work/ours.png" --set render.depth=8 --set render.beyond=black \
-        --set "vessel.ior=$3" --set "liquid.ior=$4" >"$work/log"
+        --set "vessel.ior=$2" --set "liquid.ior=$3" >"$work/log"
     if [ -n "${OUT:-}" ]; then
         cp "$work/ours.png" "$OUT/$1-ours.png"
         cp "$work/theirs.png" "$OUT/$1-povray.png"
@@ -36,8 +39,6 @@ compare() { # compare NAME POV_SCENE VESSEL_IOR LIQUID_IOR
 }
 
 printf '%-14s %-18s %11s %s\n' indices rows PSNR "differ by more than 8"
-compare 1.5-1.33 "$peers/rod.pov" 1.5 1.33
-compare 1.5-1.5 "$peers/rod.pov" 1.5 1.5
-awk '/^cylinder \{ <0, YB\+0.1-OV/ {liquid = 1} !liquid {sub("<0, YB\\+0.1, 0>, <0, YB\\+4", "<0, YB+2, 0>, <0, YB+4"); print}
-     liquid && /^}/ {liquid = 0}' "$peers/rod.pov" >"$work/one-body.pov"
-compare one-body "$work/one-body.pov" 1.5 1.5
+compare 1.5-1.33 1.5 1.33 0
+compare 1.5-1.5 1.5 1.5 0
+compare one-body 1.5 1.5 1

@@ -1,8 +1,9 @@
-/* bench_mesh - rays a second through the mesh hierarchies, for the rays that the head of peers/embree_bench.c describes: a camera of 800 x 600
- * and, from each point it sees, a ray to a point light.
+/* bench_mesh - rays a second through the mesh hierarchies, for the rays of experiments/peers/mesh_rays.h: a camera of
+ * 800 x 600 and, from each point it sees, a ray to a point light.
  *   bench_mesh [-m sparse|dense|sphere|all] [-n N,...] [-a none|sphere|octant|bvh|embree] [-k 1|128,...] [-r REPEATS] [-t BUILD_THREADS]
  * k: rays one at a time, or in batches of 128, tiles of 16 x 8 pixels. Milliseconds are of CPU time a frame, medians.
  * Prints a row for each set and k; sum is over the triangles hit and the bits of t, so that equal sums are equal hits. */
+#include "../experiments/peers/mesh_rays.h"
 #include "base/isa.h"
 #include "geometry/bodies.h"
 #include "geometry/hierarchy.h"
@@ -12,7 +13,8 @@
 #include <string.h>
 #include <time.h>
 
-enum { COLUMNS = 800, ROWS = 600, TILE_COLUMNS = 16, TILE_ROWS = 8, TILE = TILE_COLUMNS * TILE_ROWS };
+enum { COLUMNS = MESH_RAYS_COLUMNS, ROWS = MESH_RAYS_ROWS };
+enum { TILE_COLUMNS = MESH_RAYS_TILE_COLUMNS, TILE_ROWS = MESH_RAYS_TILE_ROWS, TILE = TILE_COLUMNS * TILE_ROWS };
 
 static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2, &hierarchy_kernels_avx512};
 
@@ -26,19 +28,22 @@ static double now_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+static vec3 exactly(const float v[3])
+{
+    return vec3_make((double)v[0], (double)v[1], (double)v[2]);
+}
+
 static mesh_ray camera_ray(int x, int y)
 {
-    const float s = (float)0.41421356237309503, aspect = (float)COLUMNS / (float)ROWS;
-    const float px = (((float)x + 0.5f) / (float)COLUMNS * 2.0f - 1.0f) * s * aspect, py = (1.0f - ((float)y + 0.5f) / (float)ROWS * 2.0f) * s;
-    const float scale = 1.0f / sqrtf(px * px + py * py + 1.0f);
-    const vec3 d = {(double)(px * scale), (double)(py * scale), (double)scale};
-    return (mesh_ray){{0.0, 0.0, -3.0}, d, 0.0, (double)INFINITY, TRIANGLE_NONE, FACING_ANY};
+    float d[3];
+    mesh_rays_direction(x, y, d);
+    return (mesh_ray){exactly(mesh_rays_eye), exactly(d), 0.0, (double)INFINITY, TRIANGLE_NONE, FACING_ANY};
 }
 
 static mesh_ray shadow_ray(const mesh_ray *from, double t)
 {
     const vec3 p = vec3_add(from->origin, vec3_scale(from->direction, t));
-    return (mesh_ray){p, vec3_sub(vec3_make(2.0, 3.0, -4.0), p), 1e-3, 1.0, TRIANGLE_NONE, FACING_ANY};
+    return (mesh_ray){p, vec3_sub(exactly(mesh_rays_light), p), 1e-3, 1.0, TRIANGLE_NONE, FACING_ANY};
 }
 
 static void count_hit(tally *a, const mesh_hit *hit)

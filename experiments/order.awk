@@ -1,0 +1,18 @@
+# Order statistics for the benches' tables. A list is numbers in a text, with spaces between; out gets them sorted, from 1.
+function sorted(list, out,   n, i, j, t) {
+    n = split(list, out, " ")
+    for (i = 2; i <= n; i++)
+        for (j = i; j > 1 && out[j - 1] + 0 > out[j] + 0; j--) {
+            t = out[j]; out[j] = out[j - 1]; out[j - 1] = t
+        }
+    return n
+}
+function median(list,   n, v) {
+    n = sorted(list, v)
+    return n ? (v[int((n + 1) / 2)] + v[int((n + 2) / 2)]) / 2 : 0
+}
+# "median (lowest to highest)"; form is that of one number, such as "%.2f"
+function spread(list, form,   n, v) {
+    n = sorted(list, v)
+    return sprintf(form " (" form " to " form ")", median(list), v[1], v[n])
+}
