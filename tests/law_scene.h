@@ -211,12 +211,23 @@ static inline void write_solid(scene_text *t, const law_solid *s, bool flat)
     add(t, "}\n");
 }
 
-static inline bool has_meshes(const law_scene *w)
+static inline bool has_mesh(const law_scene *w, const char *name)
 {
     for (int i = 0; i < w->solid_count; i++)
-        if (w->solid[i].mesh)
+        if (w->solid[i].mesh && strcmp(w->solid[i].mesh, name) == 0)
             return true;
     return false;
+}
+
+static inline void write_meshes(scene_text *t, const law_scene *w)
+{
+    bool any = false;
+    for (size_t k = 0; k < COUNT(law_meshes); k++) {
+        if (!has_mesh(w, law_meshes[k].name))
+            continue;
+        add(t, "%s  %s: %s\n", any ? "" : "meshes:\n", law_meshes[k].name, law_meshes[k].text);
+        any = true;
+    }
 }
 
 static inline scene_text law_text(const law_scene *w)
@@ -234,8 +245,7 @@ static inline scene_text law_text(const law_scene *w)
         add_vector(&t, "position", w->light[i].position);
         add(&t, "reach: %.17g}\n", w->light[i].reach);
     }
-    for (size_t k = 0; k < COUNT(law_meshes) && has_meshes(w); k++)
-        add(&t, "%s  %s: %s\n", k ? "" : "meshes:\n", law_meshes[k].name, law_meshes[k].text);
+    write_meshes(&t, w);
     add(&t, "materials:\n");
     for (int i = 0; i < w->solid_count; i++)
         write_material(&t, &w->solid[w->material_order[i]]);
