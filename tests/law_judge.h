@@ -1,4 +1,5 @@
-/* Whether a pair of scenes keeps its law: what is compared, and within what. Ownership: a judge is made by judge_open and released by judge_close. */
+/* Whether a pair of scenes keeps its law: what is compared, and within what. Ownership: a judge is made by judge_open
+ * and released by judge_close. */
 #ifndef CUVETTE_TESTS_LAW_JUDGE_H
 #define CUVETTE_TESTS_LAW_JUDGE_H
 
@@ -7,9 +8,14 @@
 
 typedef enum verdict { HELD, SKIPPED, BROKEN } verdict;
 
-/* rays, unlike: of LAW_MOTION and LAW_REVERSAL, how many were compared, and how many were not, because they take another sequence of interfaces when they are displaced
- * (or are no path to turn round). off: the largest difference found. */
-typedef struct judge { renderer *renderer; long rays, unlike; double off; } judge;
+/* rays, unlike: of LAW_MOTION and LAW_REVERSAL, how many were compared, and how many were not, because they take
+ * another sequence of interfaces when they are displaced (or are no path to turn round). off: the largest difference
+ * found. */
+typedef struct judge {
+    renderer *renderer;
+    long rays, unlike;
+    double off;
+} judge;
 
 static inline judge judge_open(void)
 {
@@ -78,7 +84,8 @@ static inline bool meets(const law_solid *s, vec3 origin, vec3 direction, double
         const double along = fmin(fmax(vec3_dot(to, direction), 0.0), length);
         return vec3_length(vec3_sub(to, vec3_scale(direction, along))) <= around.radius;
     }
-    return solid_shape_contains(&s->shape, origin) || (reference_events(&s->shape, &line, 0, t) > 0 && t[0] < (quad)length);
+    return solid_shape_contains(&s->shape, origin) ||
+           (reference_events(&s->shape, &line, 0, t) > 0 && t[0] < (quad)length);
 }
 
 static inline double length_of(const ray_node *n)
@@ -94,7 +101,8 @@ static inline const law_solid *solid_numbered(const law_scene *w, int number)
     return NULL;
 }
 
-/* Does any ray of the first scene's image cross the solids of these numbers, all of them on one ray? Of random paths, which no probe shows: perhaps. */
+/* Does any ray of the first scene's image cross the solids of these numbers, all of them on one ray? Of random paths,
+ * which no probe shows: perhaps. */
 static inline bool some_ray_meets(const law_scene *w, const law_solid *const *solids, int count, int most_rays)
 {
     stage g = {.setting = law_load(w)};
@@ -107,7 +115,8 @@ static inline bool some_ray_meets(const law_scene *w, const law_solid *const *so
             for (size_t i = 0; i < tree->count && !met && rays < most_rays; i++, rays++) {
                 int together = 0;
                 for (int k = 0; k < count; k++)
-                    together += meets(solids[k], tree->node[i].origin, tree->node[i].direction, length_of(&tree->node[i]));
+                    together +=
+                        meets(solids[k], tree->node[i].origin, tree->node[i].direction, length_of(&tree->node[i]));
                 met = together == count;
             }
         }
@@ -159,8 +168,9 @@ static inline bool same_path(const ray_tree *a, const ray_tree *b)
         const ray_node *p = &a->node[i], *q = &b->node[i];
         if (p->kind != q->kind || p->end != q->end || p->medium != q->medium || p->parent != q->parent)
             return false;
-        if (p->end == RAY_END_HIT && (p->hit.solid != q->hit.solid || p->hit.face_solid != q->hit.face_solid || p->hit.face != q->hit.face ||
-                                      p->hit.from != q->hit.from || p->hit.to != q->hit.to))
+        if (p->end == RAY_END_HIT &&
+            (p->hit.solid != q->hit.solid || p->hit.face_solid != q->hit.face_solid || p->hit.face != q->hit.face ||
+             p->hit.from != q->hit.from || p->hit.to != q->hit.to))
             return false;
     }
     return true;
@@ -186,7 +196,8 @@ static inline verdict same_radiance(judge *j, const law_pair *p)
         const bool alike = same_path(&plain, beside);
         j->rays += alike, j->unlike += !alike;
         for (int c = 0; c < 3 && alike; c++) {
-            const double L = plain.radiance[c], allowed = 1e-9 * L + 10.0 * fabs(beside->radiance[c] - L) + (double)plain.count / FILM_ONE;
+            const double L = plain.radiance[c],
+                         allowed = 1e-9 * L + 10.0 * fabs(beside->radiance[c] - L) + (double)plain.count / FILM_ONE;
             j->off = fabs(moved->radiance[c] - L);
             if (!(j->off <= allowed))
                 result = BROKEN;
@@ -261,7 +272,8 @@ static inline void remove_solid(law_scene *w, int number)
     w->solid_count = kept;
 }
 
-/* The same fault with as few solids as can be, none of the law's own taken away, and without lights where it needs none. */
+/* The same fault with as few solids as can be, none of the law's own taken away, and without lights where it needs
+ * none. */
 static inline law_pair law_shrink(judge *j, law_pair p)
 {
     for (bool smaller = true; smaller;) {

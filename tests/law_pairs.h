@@ -1,35 +1,41 @@
-/* The laws, each as a change of a scene that must not be seen: a pair of scenes whose images are to be compared. Ownership: values. */
+/* The laws, each as a change of a scene that must not be seen: a pair of scenes whose images are to be compared.
+ * Ownership: values. */
 #ifndef CUVETTE_TESTS_LAW_PAIRS_H
 #define CUVETTE_TESTS_LAW_PAIRS_H
 
 #include "law_scene.h"
 
 typedef enum law {
-    LAW_UNMET,     /* 1: a solid that no ray meets */
-    LAW_ORDER,     /* 2: the order of declarations, and priorities of solids that stand apart */
-    LAW_SCALE,     /* 3: all lengths times a power of two */
-    LAW_MOTION,    /* 3: translation, rotation, mirror */
-    LAW_CUT,       /* 4: one solid, or two that touch */
-    LAW_SAME,      /* 5: a solid of the surroundings' medium */
-    LAW_REVERSAL,  /* 6: a path there and back */
-    LAW_FILL,      /* 7: an empty gap, or one filled with the surroundings' medium */
+    LAW_UNMET,    /* 1: a solid that no ray meets */
+    LAW_ORDER,    /* 2: the order of declarations, and priorities of solids that stand apart */
+    LAW_SCALE,    /* 3: all lengths times a power of two */
+    LAW_MOTION,   /* 3: translation, rotation, mirror */
+    LAW_CUT,      /* 4: one solid, or two that touch */
+    LAW_SAME,     /* 5: a solid of the surroundings' medium */
+    LAW_REVERSAL, /* 6: a path there and back */
+    LAW_FILL,     /* 7: an empty gap, or one filled with the surroundings' medium */
     LAW_COUNT
 } law;
 
 static const char *const law_names[] = {
-    "1 a solid that no ray meets", "2 order and priorities",  "3 scale by a power of two", "3 translation, rotation, mirror",
-    "4 a solid cut into two",      "5 the surroundings' medium", "6 a path reversed",        "7 a gap filled",
+    "1 a solid that no ray meets", "2 order and priorities",
+    "3 scale by a power of two",   "3 translation, rotation, mirror",
+    "4 a solid cut into two",      "5 the surroundings' medium",
+    "6 a path reversed",           "7 a gap filled",
 };
 
 /* Each point p becomes turn p + shift; mirrored: its x is negated first. */
-typedef struct motion { bool mirrored; vec3 turn_deg, shift; } motion;
+typedef struct motion {
+    bool mirrored;
+    vec3 turn_deg, shift;
+} motion;
 
 typedef struct law_pair {
     law which;
     law_scene a, b;
-    int exponent;            /* of LAW_SCALE */
-    motion moved;            /* of LAW_MOTION */
-    uint64_t seed;           /* of the rays that are looked along */
+    int exponent;  /* of LAW_SCALE */
+    motion moved;  /* of LAW_MOTION */
+    uint64_t seed; /* of the rays that are looked along */
 } law_pair;
 
 static inline void insert_solid(law_scene *w, int at, law_solid s)
@@ -60,7 +66,8 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
     s.priority = random_below(seed, 12) - 4;
     const bool far = random_below(seed, 3) != 0;
     const double power = far ? random_real(seed, 1.0, 5.9) : random_real(seed, -6.0, -3.0);
-    const double distance = pow(10.0, power), size = far ? fmin(0.002 * distance, pow(10.0, random_real(seed, -3.0, 3.0))) : distance;
+    const double distance = pow(10.0, power),
+                 size = far ? fmin(0.002 * distance, pow(10.0, random_real(seed, -3.0, 3.0))) : distance;
     s.shape.position = far ? vec3_scale(random_direction(seed), distance) : random_point(seed, 1.5);
     s.shape.radius *= size, s.shape.inner_radius *= size, s.shape.height *= size, s.shape.floor *= size;
     s.shape.size = vec3_scale(s.shape.size, size);
@@ -74,7 +81,8 @@ static inline bool ranks_below(const law_scene *w, int a, int b)
     return w->solid[a].priority != w->solid[b].priority ? w->solid[a].priority < w->solid[b].priority : a > b;
 }
 
-/* Order is kept between solids that may touch: of all pairs, or of those of equal priority alone. In `order` any order that allows it. */
+/* Order is kept between solids that may touch: of all pairs, or of those of equal priority alone. In `order` any order
+ * that allows it. */
 static inline void shuffle(const law_scene *w, bool all_pairs, uint64_t *seed, int *order)
 {
     bool taken[LAW_SOLIDS_MAX] = {false};
@@ -83,7 +91,8 @@ static inline void shuffle(const law_scene *w, bool all_pairs, uint64_t *seed, i
         for (int i = 0; i < w->solid_count; i++) {
             bool first = !taken[i];
             for (int j = 0; j < w->solid_count; j++)
-                if (j != i && !taken[j] && (all_pairs || w->solid[i].priority == w->solid[j].priority) && may_touch(&w->solid[i], &w->solid[j]))
+                if (j != i && !taken[j] && (all_pairs || w->solid[i].priority == w->solid[j].priority) &&
+                    may_touch(&w->solid[i], &w->solid[j]))
                     first &= ranks_below(w, i, j);
             if (first)
                 free[count++] = i;
@@ -132,7 +141,8 @@ static inline vec3 move_point(const motion *m, vec3 v)
 static inline vec3 angles_of(mat3 r)
 {
     const double steep = hypot(r.row[2].y, r.row[2].z);
-    return vec3_make(atan2(r.row[2].y, r.row[2].z) / DEGREE, atan2(-r.row[2].x, steep) / DEGREE, atan2(r.row[1].x, r.row[0].x) / DEGREE);
+    return vec3_make(atan2(r.row[2].y, r.row[2].z) / DEGREE, atan2(-r.row[2].x, steep) / DEGREE,
+                     atan2(r.row[1].x, r.row[0].x) / DEGREE);
 }
 
 static inline mat3 product(mat3 a, mat3 b)
@@ -167,7 +177,8 @@ static inline bool move_scene(law_scene *w, uint64_t *seed, motion *m)
     for (int i = 0; i < w->solid_count; i++) {
         law_solid *s = &w->solid[i];
         s->checker = 0.0; /* its cells are not mirrored, and have edges */
-        known &= move_solid(m, &s->shape) && !(s->mesh && m->mirrored && strcmp(s->mesh, "ring") == 0); /* whose quads have one diagonal */
+        known &= move_solid(m, &s->shape) &&
+                 !(s->mesh && m->mirrored && strcmp(s->mesh, "ring") == 0); /* whose quads have one diagonal */
     }
     for (int i = 0; i < w->light_count; i++)
         w->light[i].position = move_point(m, w->light[i].position);
@@ -229,14 +240,16 @@ static inline double room_around(const law_scene *w, vec3 at)
         const law_solid *s = &w->solid[i];
         const ball around = ball_around(s);
         const bool exact = !s->mesh && !(s->shape.kind == SHAPE_CYLINDER && s->shape.m != 1.0);
-        const double free = exact ? (double)reference_distance(&s->shape, quad3_from(at)) : vec3_length(vec3_sub(at, around.middle)) - around.radius;
+        const double free = exact ? (double)reference_distance(&s->shape, quad3_from(at))
+                                  : vec3_length(vec3_sub(at, around.middle)) - around.radius;
         least = fmin(least, free);
     }
     return least;
 }
 
-/* Surroundings that absorb spare the sky, to which there is no end (background.absorb_per_m); a solid of their medium does not. It may be seen
- * before a sky, then, that is not black. */
+/* Surroundings absorb on paths to surfaces and lights, not to the sky, which is infinitely far
+ * (background.absorb_per_m); a solid of the same medium does. Where the surroundings absorb, the sky is therefore
+ * black. */
 static inline double sky_of(const law_scene *w)
 {
     return vec3_dot(w->outside_absorb_per_m, w->outside_absorb_per_m) > 0.0 ? 0.0 : w->sky;
@@ -324,14 +337,18 @@ static const char *const all_settings[] = {
 
 /* Of surfaces that reflect by Fresnel's equations alone: a crossing between equal media is no interface then. */
 static const char *const fresnel_settings[] = {
-    "depth: 5", "depth: 5, beyond: black, polarisation: on", "depth: 6, shadows: off", "depth: 3, shadows: opaque, samples: 4",
+    "depth: 5",
+    "depth: 5, beyond: black, polarisation: on",
+    "depth: 6, shadows: off",
+    "depth: 3, shadows: opaque, samples: 4",
 };
 
 /* false where the law cannot be tried on such a scene. */
 static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair *p)
 {
     const bool any = which == LAW_UNMET || which == LAW_ORDER || which == LAW_SCALE;
-    const char *settings = any ? all_settings[number % (int)COUNT(all_settings)] : fresnel_settings[number % (int)COUNT(fresnel_settings)];
+    const char *settings =
+        any ? all_settings[number % (int)COUNT(all_settings)] : fresnel_settings[number % (int)COUNT(fresnel_settings)];
     if (which == LAW_MOTION && number % 8 == 0)
         settings = "integrator: raycast";
     if (which == LAW_REVERSAL)
@@ -339,7 +356,7 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
     *p = (law_pair){.which = which, .a = random_law_scene(&seed, settings)};
     for (int i = 0; i < p->a.solid_count && which == LAW_REVERSAL; i++)
         p->a.solid[i].transparency = 1.0;
-    p->a.flat = which == LAW_REVERSAL; /* normals that are interpolated between vertices belong to no surface, and know no way back */
+    p->a.flat = which == LAW_REVERSAL; /* interpolated normals belong to no surface: such a path cannot be reversed */
     p->b = p->a;
     p->seed = random_bits(&seed);
     switch (which) {
@@ -351,9 +368,7 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
             p->a.solid[i].checker = 0.0;
         return move_scene(&p->b, &seed, &p->moved);
     case LAW_CUT: cut(p, &seed); break;
-    case LAW_SAME:
-        p->b.sky = p->a.sky = sky_of(&p->a);
-        return add_same(&p->b, &seed);
+    case LAW_SAME: p->b.sky = p->a.sky = sky_of(&p->a); return add_same(&p->b, &seed);
     case LAW_FILL: fill(p, &seed); break;
     case LAW_REVERSAL:
     case LAW_COUNT: break;

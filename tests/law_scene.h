@@ -1,30 +1,39 @@
-/* Random scenes for the laws (test_laws.c): solids of all shapes that overlap, touch, lie within one another or stand apart by next to
- * nothing, as values that can be changed, and as scene files. Ownership: values. */
+/* Random scenes for the laws (test_laws.c): solids of all shapes that overlap, touch, lie within one another or stand
+ * apart by next to nothing, as values that can be changed, and as scene files. Ownership: values. */
 #ifndef CUVETTE_TESTS_LAW_SCENE_H
 #define CUVETTE_TESTS_LAW_SCENE_H
 
 #include "random_scene.h"
 
-enum { LAW_SOLIDS_MAX = 12, LAW_LIGHTS_MAX = 2, LAW_WIDTH = 10, LAW_HEIGHT = 8, LAW_ADDED = 100 /* numbers from here on were added by a law */ };
+enum {
+    LAW_SOLIDS_MAX = 12,
+    LAW_LIGHTS_MAX = 2,
+    LAW_WIDTH = 10,
+    LAW_HEIGHT = 8,
+    LAW_ADDED = 100 /* numbers from here on were added by a law */
+};
 
 typedef struct law_solid {
-    int number;              /* its name, whatever its place */
-    solid_shape shape;       /* a mesh's frame and scale; its triangles are read from its name */
-    const char *mesh;        /* "cube", "ball", "ring"; NULL for all other shapes */
+    int number;        /* its name, whatever its place */
+    solid_shape shape; /* a mesh's frame and scale; its triangles are read from its name */
+    const char *mesh;  /* "cube", "ball", "ring"; NULL for all other shapes */
     int64_t priority;
     bool opaque;
     double ior, transparency, reflectivity, specular, checker;
     vec3 absorb_per_m;
 } law_solid;
 
-typedef struct law_light { vec3 position; double reach; } law_light;
+typedef struct law_light {
+    vec3 position;
+    double reach;
+} law_light;
 
 typedef struct law_scene {
     const char *settings;
     double outside_ior;
     vec3 outside_absorb_per_m;
     double sky;
-    bool flat;               /* meshes are shaded flat */
+    bool flat; /* meshes are shaded flat */
     vec3 eye, target;
     int light_count, solid_count;
     law_light light[LAW_LIGHTS_MAX];
@@ -32,7 +41,10 @@ typedef struct law_scene {
     int material_order[LAW_SOLIDS_MAX]; /* in which the materials of solid[0], solid[1] .. are declared */
 } law_scene;
 
-static const struct { const char *name, *text; double reach; } law_meshes[] = {
+static const struct {
+    const char *name, *text;
+    double reach;
+} law_meshes[] = {
     {"cube", "{generate: box, size: [1, 1, 1]}", 0.87},
     {"ball", "{generate: icosphere, level: 1}", 1.0},
     {"ring", "{generate: torus, around: 8, tube: 6}", 1.4},
@@ -53,7 +65,8 @@ static inline vec3 in_frame_of(const solid_shape *s, double x, double y, double 
 static inline void place_mesh(law_solid *s, uint64_t *seed)
 {
     s->mesh = law_meshes[random_below(seed, (int)COUNT(law_meshes))].name;
-    s->shape = (solid_shape){.kind = SHAPE_MESH, .position = random_point(seed, 0.8), .copies = vec3_make(1.0, 1.0, 1.0)};
+    s->shape =
+        (solid_shape){.kind = SHAPE_MESH, .position = random_point(seed, 0.8), .copies = vec3_make(1.0, 1.0, 1.0)};
     s->shape.rotation_deg = random_below(seed, 3) ? random_point(seed, 180.0) : vec3_make(0.0, 0.0, 0.0);
     s->shape.scale.x = random_real(seed, 0.2, 1.2);
     s->shape.scale.y = random_below(seed, 2) ? s->shape.scale.x : random_real(seed, 0.2, 1.2);
@@ -109,7 +122,8 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     s->shape = base->shape;
     s->mesh = base->mesh;
     solid_shape *shape = &s->shape;
-    const double wall = random_gap(seed), least = fmin(fmin(shape->radius, shape->height), shape->kind == SHAPE_BOX ? smallest(shape->size) : 1.0);
+    const double wall = random_gap(seed), least = fmin(fmin(shape->radius, shape->height),
+                                                       shape->kind == SHAPE_BOX ? smallest(shape->size) : 1.0);
     const double step = random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
     shape->radius += step;
     shape->inner_radius += 0.5 * step;
@@ -163,7 +177,8 @@ static inline void add_solid(law_scene *w, law_solid s)
 
 static inline law_scene random_law_scene(uint64_t *seed, const char *settings)
 {
-    law_scene w = {.settings = settings, .sky = 1.0, .outside_ior = random_below(seed, 3) ? 1.0 : random_real(seed, 1.0, 2.0)};
+    law_scene w = {
+        .settings = settings, .sky = 1.0, .outside_ior = random_below(seed, 3) ? 1.0 : random_real(seed, 1.0, 2.0)};
     if (random_below(seed, 8) == 0)
         w.outside_absorb_per_m = vec3_make(0.1, 0.02, 0.0);
     w.light_count = random_below(seed, LAW_LIGHTS_MAX + 1);
@@ -234,7 +249,8 @@ static inline scene_text law_text(const law_scene *w)
 {
     scene_text t = {.length = 0};
     add(&t, "render: {width: %d, height: %d, %s}\n", LAW_WIDTH, LAW_HEIGHT, w->settings);
-    add(&t, "background: {color: [%g, %g, %g], ambient: [1, 1, 1], ior: %.17g, ", 0.5 * w->sky, 0.75 * w->sky, w->sky, w->outside_ior);
+    add(&t, "background: {color: [%g, %g, %g], ambient: [1, 1, 1], ior: %.17g, ", 0.5 * w->sky, 0.75 * w->sky, w->sky,
+        w->outside_ior);
     add_vector(&t, "absorb_per_m", w->outside_absorb_per_m);
     add(&t, "}\ncamera: {");
     add_vector(&t, "position", w->eye);
@@ -256,7 +272,10 @@ static inline scene_text law_text(const law_scene *w)
 }
 
 /* A sphere around a solid; without an end around a plane. */
-typedef struct ball { vec3 middle; double radius; } ball;
+typedef struct ball {
+    vec3 middle;
+    double radius;
+} ball;
 
 static inline ball ball_around(const law_solid *s)
 {

@@ -4,17 +4,19 @@
 
 #include "probe_fixture.h"
 
-/* Light's way is the same there and back (Hecht, 4.5: Fermat's principle and reversibility; 4.10: Stokes's relations), and so is the
- * share of power that goes along it: R and T = n_t cos_t / (n_i cos_i) |t|^2 of an interface are the same from either side.
- * Radiance is another matter: it grows by (n_t / n_i)^2 on the way into a medium, L / n^2 stays (Nicodemus, Applied Optics 2, 1963;
- * Veach 1997, 5.2). The tracer's throughput is one of power: between an eye in a medium a and a sky in a medium b it leaves out the
- * factor (n_a / n_b)^2, which is 1 where both are of one medium. Were the factor in it, there and back would differ by its square. */
+/* Light's way is the same there and back (Hecht, 4.5: Fermat's principle and reversibility; 4.10: Stokes's relations),
+ * and so is the share of power that goes along it: R and T = n_t cos_t / (n_i cos_i) |t|^2 of an interface are the same
+ * from either side. Radiance is another matter: it grows by (n_t / n_i)^2 on the way into a medium, L / n^2 stays
+ * (Nicodemus, Applied Optics 2, 1963; Veach 1997, 5.2). The tracer's throughput is one of power: between an eye in a
+ * medium a and a sky in a medium b it leaves out the factor (n_a / n_b)^2, which is 1 where both are of one medium.
+ * Were the factor in it, there and back would differ by its square. */
 
-/* Curved surfaces are a billiard, where a rounding grows with every bounce (to 1e-7 after sixty), and near grazing with the square of
- * 1/cos. A reflectance next to nothing is a difference of almost equal numbers. */
+/* Curved surfaces are a billiard, where a rounding grows with every bounce (to 1e-7 after sixty), and near grazing with
+ * the square of 1/cos. A reflectance next to nothing is a difference of almost equal numbers. */
 static const double STEEP = 0.1;
 enum { BOUNCES_MAX = 12 };
-/* A point that lies beside the other turns the normal, the angles and so the reflectances: relative change of throughput a unit of length. */
+/* A point that lies beside the other turns the normal, the angles and so the reflectances: relative change of
+ * throughput a unit of length. */
 static const double SWAY = 100.0;
 
 static inline bool is_tame(const ray_tree *way)
@@ -41,8 +43,9 @@ static inline double share_of(const ray_hit *h, ray_kind next)
     return next == RAY_REFRACT ? T : 1.0 - T;
 }
 
-/* What came of a path: whether it was one to compare, whether the path back met the same surfaces, how far its points lay from those of the path
- * there, by how much their throughputs differ beyond what that explains, and that of the path there from the closed forms. */
+/* What came of a path: whether it was one to compare, whether the path back met the same surfaces, how far its points
+ * lay from those of the path there, by how much their throughputs differ beyond what that explains, and that of the
+ * path there from the closed forms. */
 typedef struct reversal {
     bool used, same_surfaces, reflected, other_media;
     int crossings;

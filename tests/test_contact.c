@@ -8,8 +8,9 @@
 
 #include "ray_fixture.h"
 
-/* Contact: where two boundaries are one crossing, and where a gap between them is seen. The limit is that of the manual: 16 DBL_EPSILON times
- * the sum, over both solids, of the ray's start counted from the solid, the way to the crossing, and the solid's extent. */
+/* Contact: where two boundaries are one crossing, and where a gap between them is seen. The limit is that of the
+ * manual: 16 DBL_EPSILON times the sum, over both solids, of the ray's start counted from the solid, the way to the
+ * crossing, and the solid's extent. */
 
 /* Below y = 0 and above it, a gap apart; and perhaps a solid far away. */
 static arrangement *halves(double gap, double x, bool upper_wins, bool far_solid)

@@ -9,10 +9,13 @@
 
 #include "law_judge.h"
 
-/* What must hold in every scene: random scenes under changes that the image must not show (law_pairs.h). LAWS_SCENES and LAWS_SEED choose how
- * many scenes and which; `make laws` tries a million. A scene that breaks a law is printed as a scene file, with as few solids as show it. */
+/* What must hold in every scene: random scenes under changes that the image must not show (law_pairs.h). LAWS_SCENES
+ * and LAWS_SEED choose how many scenes and which; `make laws` tries a million. A scene that breaks a law is printed as
+ * a scene file, with as few solids as show it. */
 
-typedef struct tally { long scenes, skipped, broken, asked, tried; } tally;
+typedef struct tally {
+    long scenes, skipped, broken, asked, tried;
+} tally;
 
 static long number_from(const char *name, long fallback)
 {
@@ -73,8 +76,8 @@ static tally try_law(law which, judge *j)
     return sum;
 }
 
-/* A law over all scenes; at most this share of them skipped. Of the scenes that are asked whether a ray crosses the part that a law alters, at least a
- * quarter do: 500 of 10 000 scenes. */
+/* A law over all scenes; at most this share of them skipped. Of the scenes that are asked whether a ray crosses the
+ * part that a law alters, at least a quarter do: 500 of 10 000 scenes. */
 static void law_holds(law which, double skipped_at_most)
 {
     judge j = judge_open();

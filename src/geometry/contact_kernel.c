@@ -1,26 +1,31 @@
-/* Contact: which boundaries are at one place.
+/* Contact: which boundaries lie at one place.
  *
- * Two boundaries that a ray crosses at t1 and t2 are in contact when these distances are equal within the boundaries' own error bounds at these
- * crossings: |t1 - t2| <= e1 / cos1 + e2 / cos2. e is the bound on a point's error across its surface (surface_kernel.c); the cosine carries it
- * over to the ray. Nothing else enters: no other solid, no extent of the scene. The narrowest gap that is seen is therefore e1 + e2, the sum of
- * both surfaces' 16 DBL_EPSILON (|start| + |way| + extent): 2e-14 to 1.4e-13 scene units in the scene of the rod.
+ * Two boundaries that a ray crosses at t1 and t2 are in contact when these distances are equal within the boundaries'
+ * own error bounds at these crossings: |t1 - t2| <= e1 / cos1 + e2 / cos2. e is the bound on a point's error across its
+ * surface (surface_kernel.c); the cosine carries it over to the ray. Nothing else enters: no other solid, no extent of
+ * the scene. The narrowest gap that is seen is therefore e1 + e2, the sum of both surfaces' 16 DBL_EPSILON (|start| +
+ * |path| + extent): 2e-14 to 1.4e-13 scene units in the scene of the rod.
  *
- * Crossings in contact are one crossing: the sets before and behind it are those before the first and behind the last of them. So faces that
- * coincide by their numbers, whatever rounding made of these, enclose no film of another medium. */
+ * Crossings in contact are one crossing: the sets before and behind it are those before the first and behind the last
+ * of them. Faces that coincide by their numbers, whatever rounding made of these, enclose no film of another medium. */
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"
 
 /* What column k crosses, and how far along the ray that crossing may be wrong. */
-typedef struct crossing { int of; double t, bound, cosine; } crossing; /* of: which primitive */
+typedef struct crossing {
+    int of; /* a primitive */
+    double t, bound, cosine;
+} crossing;
 
 static ray_batch ray_of(const ray_batch *rays, int i, const uint64_t *inside)
 {
-    return (ray_batch){1,           &rays->ox[i], &rays->oy[i], &rays->oz[i],    &rays->dx[i],
-                       &rays->dy[i], &rays->dz[i], &rays->start[i], inside};
+    return (ray_batch){
+        1, &rays->ox[i], &rays->oy[i], &rays->oz[i], &rays->dx[i], &rays->dy[i], &rays->dz[i], &rays->start[i], inside};
 }
 
-/* -d . n of the first point; for a shadow ray not a cosine but one times its length, which carries a distance over to its t. */
+/* -d . n at the point: the cosine of incidence, for a shadow ray times its length, so that a distance divided by it is
+ * one in t. */
 static double facing(const surface_batch *point, const ray_batch *one)
 {
     const double along = one->dx[0] * point->nx[0] + one->dy[0] * point->ny[0] + one->dz[0] * point->nz[0];
@@ -37,7 +42,8 @@ static crossing crossing_of(const arrangement *a, const ray_batch *rays, int i, 
     return (crossing){p, t, point.error[0] / cosine, cosine};
 }
 
-/* A mesh's point is as good as its triangle, but where on the ray it is depends on the ray too. */
+/* A point on a mesh is as exact as its triangle; the distance along the ray depends on the ray's start and length, too.
+ */
 static double mesh_error(const arrangement *a, const ray_batch *rays, int i, int p, double t)
 {
     const double start = magnitude(rays->ox[i]) + magnitude(rays->oy[i]) + magnitude(rays->oz[i]);
@@ -56,7 +62,8 @@ static crossing mesh_crossing_of(const arrangement *a, const ray_batch *rays, in
     return (crossing){p, hit->t, mesh_error(a, rays, i, p, hit->t) / cosine, cosine};
 }
 
-/* No contact is wider: half of what is filtered by at the least, whatever else is in the scene. It acts only where a ray grazes within 1e-7 rad. */
+/* The widest contact: half of the filter, which is never narrower, whatever else is in the scene. It acts where a ray
+ * grazes within 1e-7 rad. */
 static double widest_contact(const arrangement *a, const ray_batch *rays, int i, const crossing *c, int other)
 {
     const double extent = greater(a->primitives[c->of].extent, a->primitives[other].extent);
@@ -82,8 +89,8 @@ static void set_bit(uint64_t *set, int bit, bool on)
     *set = (*set & ~((uint64_t)1 << bit)) | (uint64_t)on << bit;
 }
 
-static void cross_mesh_of_owner(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits,
-                                double low, double high)
+static void cross_mesh_of_owner(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
+                                forest_hit *mesh_hits, double low, double high)
 {
     const int primitive_of_owner = a->bodies[c->surface[k]].outside;
     const forest_hit own = KERNEL(mesh_hit_between)(a, rays, k, s, primitive_of_owner, c->inside_before[k], low, high);
@@ -94,10 +101,10 @@ static void cross_mesh_of_owner(const arrangement *a, const ray_batch *rays, int
     c->crossed[k] = primitive_of_owner;
 }
 
-/* Of several boundaries at column k's crossing that of the body whose surface it is counts: its normal, its frame and its colours are what is
- * seen. Those of meshes lie within `reach`. */
-static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c, forest_hit *mesh_hits,
-                             const crossing *at, double reach)
+/* Of several boundaries in contact at column k's crossing, the one of the body that owns the surface is crossed: its
+ * normal, frame and colours are seen. A mesh's lies within `reach`. */
+static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
+                             forest_hit *mesh_hits, const crossing *at, double reach)
 {
     const body *owner = &a->bodies[c->surface[k]];
     const int pieces[2] = {owner->outside, owner->hollow};
@@ -121,32 +128,35 @@ static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k,
     }
 }
 
-/* The meshes among the near boundaries, all within one distance, which it returns: that of the least exact of them. */
-static double merge_meshes(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c, const crossing *at)
+/* Merges the near meshes' boundaries within one distance, the one of the least exact of them, and returns it. */
+static double merge_meshes(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
+                           const crossing *at)
 {
     const int i = s->ray[k];
     const uint64_t near = s->near[k] & a->meshes->primitives;
     double reach = 0.0;
     for (int p = 0; p < a->primitive_count; p++)
         if (near >> p & 1)
-            reach = greater(reach, lesser(at->bound + mesh_error(a, rays, i, p, at->t) / at->cosine, widest_contact(a, rays, i, at, p)));
+            reach = greater(reach, lesser(at->bound + mesh_error(a, rays, i, p, at->t) / at->cosine,
+                                          widest_contact(a, rays, i, at, p)));
     const double low = at->t - reach, high = at->t + reach;
     KERNEL(mesh_sets_closely)(a, rays, k, s, c->before[k], near, low, high, &c->inside_before[k], &c->inside_after[k]);
     s->meshes->until[k] = greater(s->meshes->until[k], high);
     return reach;
 }
 
-void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c, forest_hit *mesh_hits)
+void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
+                            forest_hit *mesh_hits)
 {
     const int i = s->ray[k], crossed = (int)c->crossed[k];
-    const crossing at = is_mesh(a, crossed)
-                            ? mesh_crossing_of(a, rays, i, &mesh_hits[k])
-                            : crossing_of(a, rays, i, crossed, c->t[k], c->t[k] != s->in[crossed][k]);
+    const crossing at = is_mesh(a, crossed) ? mesh_crossing_of(a, rays, i, &mesh_hits[k])
+                                            : crossing_of(a, rays, i, crossed, c->t[k], c->t[k] != s->in[crossed][k]);
     const uint64_t meshes = a->meshes ? a->meshes->primitives : 0;
     for (int p = 0; p < a->primitive_count; p++) {
         if (!((s->near[k] & ~meshes) >> p & 1))
             continue;
-        const int entry = side_of(a, rays, i, &at, p, s->in[p][k], false), exit = side_of(a, rays, i, &at, p, s->out[p][k], true);
+        const int entry = side_of(a, rays, i, &at, p, s->in[p][k], false),
+                  exit = side_of(a, rays, i, &at, p, s->out[p][k], true);
         set_bit(&c->inside_before[k], p, entry < 0 && exit >= 0);
         set_bit(&c->inside_after[k], p, entry <= 0 && exit > 0);
     }

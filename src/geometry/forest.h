@@ -43,8 +43,8 @@ typedef struct forest {
 typedef struct forest_ray {
     vec3 origin, direction;
     double t_min, t_max;
-    double tie;              /* of cross: a front and a back of one mesh that are not farther apart are at one place ... */
-    double tie_by_extent;    /* ... nor this share of the mesh's extent more */
+    double tie;              /* of cross: a front and a back of one mesh that are no farther apart are at one place ... */
+    double tie_by_extent;    /* ... and this share of the mesh's extent is added to it */
     int64_t start;           /* face that it starts on, at its origin or where it was passed on; or FACE_NONE */
     int64_t before;          /* rank of the medium that it is in: meshes under it are hidden */
     uint64_t inside;         /* primitives that it is in */

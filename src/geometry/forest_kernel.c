@@ -6,7 +6,8 @@
 
 #define TREES KERNEL(hierarchy_kernels)
 
-/* The last crossings of each mesh's fronts and backs on the path, whichever triangles; and the meshes that were crossed at another face than `but`. */
+/* The last crossings of each mesh's fronts and backs on the path, whichever triangles; and the meshes that were crossed
+ * at another face than `but`. */
 typedef struct crossings {
     double front[PRIMITIVES_MAX], back[PRIMITIVES_MAX], t_min;
     int64_t but;

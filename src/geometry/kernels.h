@@ -13,8 +13,8 @@ void KERNEL(intervals_of)(const arrangement *a, const ray_batch *rays, uint64_t 
 
 void KERNEL(surface_points)(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points);
 
-/* A share of the distance and of the scene geometry's extent: boundaries within it of a crossing are compared with it one by one (contact_kernel.c).
- * It filters and decides nothing: a contact is never wider than half of it. */
+/* A share of the distance and of the scene geometry's extent: boundaries within it of a crossing are compared with the
+ * crossing one by one (contact_kernel.c). It filters and decides nothing: a contact is never wider than half of it. */
 #define BOUNDARY_CLOSE 0x1p-24
 
 /* Share of all magnitudes that a point is computed from by which it may be wrong: see surface_kernel.c. */
@@ -31,7 +31,7 @@ static inline double steps_per_unit(const ray_batch *rays, int i)
     return 1.0 / sqrt(rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i]);
 }
 
-/* Which of the boundaries in s->near[k] are at column k's crossing, and the sets and ranks on both sides of it when they are. */
+/* Decides which boundaries of s->near[k] are in contact with column k's crossing; sets and ranks on both sides follow. */
 void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c, forest_hit *mesh_hits);
 
 /* The next crossings of meshes, where they come before those that c has, for the first n columns; then the meshes' bits in
@@ -39,8 +39,8 @@ void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, 
 void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, forest_hit *hits);
 void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, const forest_hit *hits);
 
-/* The bits of the wanted meshes in the sets just before low and just behind high, between which column k, in the medium of that rank, crosses
- * something. */
+/* The bits of the wanted meshes in the sets just before low and just behind high, between which column k, in the medium of
+ * that rank, crosses something. */
 void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, uint64_t wanted, double low,
                                double high, uint64_t *before, uint64_t *after);
 

@@ -17,7 +17,8 @@ static forest_ray ray_of_column(const ray_batch *rays, int k, const ray_scratch 
                         .t_min = m->from[k], .t_max = HUGE_VAL, .start = m->last[k], .before = 0, .inside = s->inside[k]};
 }
 
-/* A front and a back of one mesh within this share of the distance and of the mesh's own extent are at one place, well above rounding. */
+/* A front and a back of one mesh within this share of the distance and of the mesh's own extent are at one place: well
+ * above rounding. */
 #define ONE_PLACE 0x1p-40
 
 static double close_to(const ray_scratch *s, int k, double t)
@@ -48,8 +49,8 @@ void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ra
     }
 }
 
-/* The meshes with a boundary close to column k's crossing, other than the one that is crossed there. One mesh alone that is not hidden was asked
- * already, as far as that. */
+/* The meshes with a boundary close to column k's crossing, other than the one that is crossed there. A single mesh that is
+ * not hidden was already looked for that far. */
 static uint64_t near_meshes(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, const hit_batch *c, const forest_hit *hit)
 {
     const bool on_mesh = f->primitives >> c->crossed[k] & 1;

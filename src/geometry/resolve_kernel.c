@@ -5,7 +5,8 @@
  * that happens below rank b before it has no effect. So one pass over the bodies finds it.
  *
  * If the media on both sides are equal it is no interface: the crossing is marked as done in the intervals (the ray is not started anew) and the
- * next change is sought, for those rays alone. Where another boundary lies near the crossing, contact_kernel.c decides whether they are one. */
+ * next change is sought, for those rays alone. Where another boundary lies near the crossing, contact_kernel.c decides
+ * whether they are one. */
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"
@@ -71,8 +72,8 @@ static void next_of_hollow(int n, int64_t rank, int64_t outside, int64_t hollow,
     }
 }
 
-/* Adds `many` primitives from the one numbered first to the sets just before and just behind t, and to the set of those whose interval reaches
- * in between; the first call starts the sets. */
+/* Adds `many` primitives from the one numbered first to the sets just before and just behind t, and to the set of those
+ * whose interval reaches in between; the first call starts the sets. */
 ALWAYS_INLINE void sets_around(int n, int first, int many, ray_scratch *restrict s, hit_batch *restrict c)
 {
     /* VECTORISE */
@@ -139,8 +140,9 @@ static void mark_attention(const arrangement *a, int n, const ray_scratch *restr
     for (int i = 0; i < n; i++) {
         const int64_t met = -(int64_t)(c->crossed[i] >= 0);
         const uint64_t changed = c->inside_before[i] ^ c->inside_after[i];
-        /* 0 where all of these are the one bit that is crossed; gcc vectorises shifts of variables to the right alone */
-        const uint64_t others = (s->near[i] ^ changed) | (changed & (changed - 1)) | ((changed >> (uint64_t)(c->crossed[i] & met)) ^ 1);
+        /* 0 where all of these are the one bit that is crossed; gcc vectorises variable shifts to the right only */
+        const uint64_t shifted = changed >> (uint64_t)(c->crossed[i] & met);
+        const uint64_t others = (s->near[i] ^ changed) | (changed & (changed - 1)) | (shifted ^ 1);
         attention[i] = (~mask_same((int64_t)others, 0) | mask_same(c->before[i], c->after[i]) | doubt) & met;
     }
 }
@@ -417,7 +419,7 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
         for (int k = 0; k < n; k++) {
             if (s->ways)
                 note_stretch(k, 1.0, s, c);
-            if (a->bodies[c->before[k]].opaque) /* it sets out within one, as from the wall around an eye in there */
+            if (a->bodies[c->before[k]].opaque) /* it sets out within an opaque solid, in which the eye is */
                 transmitted[s->ray[k]] = 0.0;
             if (c->crossed[k] < 0 || c->t[k] >= 1.0)
                 continue;

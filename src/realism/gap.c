@@ -1,8 +1,10 @@
-/* An empty gap between the vessel's medium and an opaque surface of radiance 1, seen from within the medium: 1 - R below the critical angle, and nothing
- * beyond it, however narrow the gap; light that would cross in contact is reflected. With a solid far away, which no ray meets, the same.
+/* An empty gap between the vessel's medium and an opaque surface of radiance 1, seen from within the medium: the
+ * radiance is 1 - R below the critical angle and 0 beyond it, however narrow the gap (in contact it would be 1). A far
+ * solid that no ray meets changes neither.
  *
- * Depth 1, so that nothing comes back from the medium's other face. Tolerance: some film units, 5.7e-14 each, and near the critical angle,
- * where R has an infinite slope, the root of a rounding times the angle's distance from it, a degree at the least. */
+ * Depth 1, so that nothing comes back from the medium's other face. Tolerance: some film units, 5.7e-14 each, and near
+ * the critical angle, where R has an infinite slope, the root of a rounding times the angle's distance from it, a
+ * degree at the least. */
 #include "realism/metrics.h"
 
 #include <math.h>
@@ -61,14 +63,17 @@ status realism_gap(const metrics *m, diagnostic *why)
     static const char *const names[] = {"gap.empty", "gap.far_solid"};
     static const char *const what[] = {"radiance through an empty gap of 1e-7; of the angles 0 to 85 degrees the worst",
                                        "through a gap of 0.001, with a solid 100000 away that no ray meets"};
-    const bool fresnel = !scene_has_constant_shares(&m->traced->render) && m->traced->render.transmission == TRANSMISSION_REFRACT;
+    const bool fresnel =
+        !scene_has_constant_shares(&m->traced->render) && m->traced->render.transmission == TRANSMISSION_REFRACT;
     status code = STATUS_OK;
     for (int far_solid = 0; far_solid < 2 && code == STATUS_OK; far_solid++) {
         const bool third = !far_solid || m->at.liquid >= 0;
         worst_pair worst = {NAN, NAN, false};
         if (fresnel && third)
             code = measure(m, far_solid ? wide : narrow, far_solid, &worst, why);
-        const char *line = !fresnel ? "constant shares know no critical angle" : !third ? "an empty vessel's scene has no third solid" : what[far_solid];
+        const char *line = !fresnel ? "constant shares know no critical angle"
+                           : !third ? "an empty vessel's scene has no third solid"
+                                    : what[far_solid];
         metrics_add(m, (realism_value){names[far_solid], line, "", worst.measured, worst.theory, GAP_TOLERANCE});
     }
     return code;
