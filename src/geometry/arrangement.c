@@ -122,7 +122,7 @@ static status plant_meshes(arrangement *a, const body_source *sources, const int
     for (int r = 1; r <= a->body_count; r++) {
         const body_source *source = &sources[order[r - 1]];
         if (source->shape->kind == SHAPE_MESH)
-            planted[count++] = (forest_source){source->shape, source->tree, a->bodies[r].outside, r, a->primitives[a->bodies[r].outside].extent};
+            planted[count++] = (forest_source){source->shape, source->tree, a->bodies[r].outside, r};
     }
     return count > 0 ? forest_build(planted, count, &a->meshes, why) : STATUS_OK;
 }

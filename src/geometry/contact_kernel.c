@@ -12,10 +12,10 @@
 
 #include "base/lanes.h"
 
-/* What column k crosses, and how far along the ray that crossing may be wrong. */
+/* What column k crosses, its error bound along the ray, and how far the solid or copy extends. */
 typedef struct crossing {
     int of; /* a primitive */
-    double t, bound, cosine;
+    double t, bound, extent;
 } crossing;
 
 static ray_batch ray_of(const ray_batch *rays, int i, const uint64_t *inside)
@@ -38,36 +38,35 @@ static crossing crossing_of(const arrangement *a, const ray_batch *rays, int i, 
     const ray_batch one = ray_of(rays, i, &inside);
     surface_batch point;
     KERNEL(surface_points)(&a->primitives[p], &one, &t, p, &point);
-    const double cosine = facing(&point, &one);
-    return (crossing){p, t, point.error[0] / cosine, cosine};
+    return (crossing){p, t, point.error[0] / facing(&point, &one), a->primitives[p].extent};
 }
 
-/* A point on a mesh is as exact as its triangle; the distance along the ray depends on the ray's start and length, too.
- */
-static double mesh_error(const arrangement *a, const ray_batch *rays, int i, int p, double t)
-{
-    const double start = magnitude(rays->ox[i]) + magnitude(rays->oy[i]) + magnitude(rays->oz[i]);
-    const double step = magnitude(rays->dx[i]) + magnitude(rays->dy[i]) + magnitude(rays->dz[i]);
-    return POINT_ERROR * (start + magnitude(t) * step + a->primitives[p].extent);
-}
-
+/* A point on a mesh is as exact as its triangle; the distance along the ray depends on the ray's start and length, too. */
 static crossing mesh_crossing_of(const arrangement *a, const ray_batch *rays, int i, const forest_hit *hit)
 {
     const uint64_t inside = 0;
     const ray_batch one = ray_of(rays, i, &inside);
     surface_batch point;
     forest_surface(a->meshes, &one, hit, false, &point, NULL);
-    const int p = mesh_face_primitive(hit->face);
-    const double cosine = facing(&point, &one);
-    return (crossing){p, hit->t, mesh_error(a, rays, i, p, hit->t) / cosine, cosine};
+    const forest_part *part = &a->meshes->parts[a->meshes->by_primitive[mesh_face_primitive(hit->face)]];
+    const vec3 o = forest_origin(part, mesh_face_copy(hit->face));
+    const double start = magnitude(rays->ox[i] - o.x) + magnitude(rays->oy[i] - o.y) + magnitude(rays->oz[i] - o.z);
+    const double step = magnitude(rays->dx[i]) + magnitude(rays->dy[i]) + magnitude(rays->dz[i]);
+    const double error = point.error[0] + POINT_ERROR * (start + magnitude(hit->t) * step);
+    return (crossing){part->primitive, hit->t, error / facing(&point, &one), forest_extent(a->meshes, hit->face)};
 }
 
-/* The widest contact: half of the filter, which is never narrower, whatever else is in the scene. It acts where a ray
- * grazes within 1e-7 rad. */
-static double widest_contact(const arrangement *a, const ray_batch *rays, int i, const crossing *c, int other)
+/* Upper limit of a contact: half the filter's window or less, whatever else is in the scene. It acts where a ray grazes
+ * within 1e-7 rad. */
+static double widest_contact(const ray_batch *rays, int i, const crossing *c, double extent)
 {
-    const double extent = greater(a->primitives[c->of].extent, a->primitives[other].extent);
-    return 0.5 * BOUNDARY_CLOSE * (c->t + extent * steps_per_unit(rays, i));
+    return 0.5 * BOUNDARY_CLOSE * (c->t + greater(c->extent, extent) * steps_per_unit(rays, i));
+}
+
+static bool in_contact(const ray_batch *rays, int i, const crossing *c, const crossing *other)
+{
+    const double apart = magnitude(other->t - c->t);
+    return apart <= widest_contact(rays, i, c, other->extent) && apart <= c->bound + other->bound;
 }
 
 /* Where a primitive's boundary at t lies: -1 before the crossing, 0 in contact with it, 1 behind it. */
@@ -75,10 +74,9 @@ static int side_of(const arrangement *a, const ray_batch *rays, int i, const cro
 {
     if (p == c->of && t == c->t)
         return 0;
-    const double apart = magnitude(t - c->t);
-    if (apart <= widest_contact(a, rays, i, c, p)) {
+    if (magnitude(t - c->t) <= widest_contact(rays, i, c, a->primitives[p].extent)) {
         const crossing other = crossing_of(a, rays, i, p, t, leaving);
-        if (apart <= c->bound + other.bound)
+        if (in_contact(rays, i, c, &other))
             return 0;
     }
     return t < c->t ? -1 : 1;
@@ -89,30 +87,75 @@ static void set_bit(uint64_t *set, int bit, bool on)
     *set = (*set & ~((uint64_t)1 << bit)) | (uint64_t)on << bit;
 }
 
-static void cross_mesh_of_owner(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
-                                forest_hit *mesh_hits, double low, double high)
+/* A mesh's boundaries in contact with a crossing, and the distance of the farthest from it; negative for none. */
+typedef struct mesh_contact {
+    const arrangement *a;
+    const ray_batch *rays;
+    int ray;
+    const crossing *at;
+    double reach;
+} mesh_contact;
+
+static void take_contact(void *context, const forest_hit *hit)
 {
-    const int primitive_of_owner = a->bodies[c->surface[k]].outside;
-    const forest_hit own = KERNEL(mesh_hit_between)(a, rays, k, s, primitive_of_owner, c->inside_before[k], low, high);
+    mesh_contact *m = context;
+    const crossing other = mesh_crossing_of(m->a, m->rays, m->ray, hit);
+    if (in_contact(m->rays, m->ray, m->at, &other))
+        m->reach = greater(m->reach, magnitude(hit->t - m->at->t));
+}
+
+/* How far mesh p's boundaries in contact lie from the crossing at most, and a little more; negative for none. */
+static double mesh_reach(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, const crossing *at,
+                         int p)
+{
+    mesh_contact m = {a, rays, s->ray[k], at, -1.0};
+    KERNEL(mesh_each_near)(a, rays, k, s, p, at->t, take_contact, &m);
+    return m.reach < 0.0 ? m.reach : m.reach + 0.5 * at->bound;
+}
+
+/* The sets on both sides of the crossing as to the meshes with other boundaries near it. */
+static void merge_meshes(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
+                         const crossing *at)
+{
+    for (int p = 0; p < a->primitive_count; p++) {
+        const uint64_t bit = (uint64_t)1 << p;
+        if (!(s->meshes->near[k] & bit))
+            continue;
+        const double contact = mesh_reach(a, rays, k, s, at, p), reach = greater(contact, 0.5 * at->bound);
+        KERNEL(mesh_sets_closely)(a, rays, k, s, c->before[k], bit, at->t - reach, at->t + reach, &c->inside_before[k],
+                                  &c->inside_after[k]);
+        if (contact >= 0.0) /* else one of two boundaries at one place would be met again, without the other */
+            s->meshes->until[k] = greater(s->meshes->until[k], at->t + reach);
+    }
+}
+
+static void cross_mesh_of_owner(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
+                                forest_hit *mesh_hits, const crossing *at)
+{
+    const int p = a->bodies[c->surface[k]].outside;
+    const double reach = s->meshes->near[k] >> p & 1 ? mesh_reach(a, rays, k, s, at, p) : -1.0;
+    if (reach < 0.0)
+        return;
+    const forest_hit own =
+        KERNEL(mesh_hit_between)(a, rays, k, s, p, c->inside_before[k], at->t - reach, at->t + reach);
     if (own.face == FACE_NONE)
         return;
     mesh_hits[k] = own;
     c->t[k] = own.t;
-    c->crossed[k] = primitive_of_owner;
+    c->crossed[k] = p;
 }
 
 /* Of several boundaries in contact at column k's crossing, the one of the body that owns the surface is crossed: its
- * normal, frame and colours are seen. A mesh's lies within `reach`. */
+ * normal, frame and colours are seen. */
 static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
-                             forest_hit *mesh_hits, const crossing *at, double reach)
+                             forest_hit *mesh_hits, const crossing *at)
 {
     const body *owner = &a->bodies[c->surface[k]];
     const int pieces[2] = {owner->outside, owner->hollow};
     if (c->surface[k] == 0 || at->of == owner->outside || at->of == owner->hollow)
         return;
     if (is_mesh(a, owner->outside)) {
-        if (reach > 0.0)
-            cross_mesh_of_owner(a, rays, k, s, c, mesh_hits, at->t - reach, at->t + reach);
+        cross_mesh_of_owner(a, rays, k, s, c, mesh_hits, at);
         return;
     }
     for (int piece = 0; piece < 2 && pieces[piece] >= 0; piece++) {
@@ -126,23 +169,6 @@ static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k,
             }
         }
     }
-}
-
-/* Merges the near meshes' boundaries within one distance, the one of the least exact of them, and returns it. */
-static double merge_meshes(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
-                           const crossing *at)
-{
-    const int i = s->ray[k];
-    const uint64_t near = s->near[k] & a->meshes->primitives;
-    double reach = 0.0;
-    for (int p = 0; p < a->primitive_count; p++)
-        if (near >> p & 1)
-            reach = greater(reach, lesser(at->bound + mesh_error(a, rays, i, p, at->t) / at->cosine,
-                                          widest_contact(a, rays, i, at, p)));
-    const double low = at->t - reach, high = at->t + reach;
-    KERNEL(mesh_sets_closely)(a, rays, k, s, c->before[k], near, low, high, &c->inside_before[k], &c->inside_after[k]);
-    s->meshes->until[k] = greater(s->meshes->until[k], high);
-    return reach;
 }
 
 void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
@@ -160,8 +186,9 @@ void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, 
         set_bit(&c->inside_before[k], p, entry < 0 && exit >= 0);
         set_bit(&c->inside_after[k], p, entry <= 0 && exit > 0);
     }
-    const double reach = s->near[k] & meshes ? merge_meshes(a, rays, k, s, c, &at) : 0.0;
+    if (a->meshes)
+        merge_meshes(a, rays, k, s, c, &at);
     c->after[k] = arrangement_rank(a, c->inside_after[k]);
     c->surface[k] = arrangement_surface(a, (int)c->before[k], (int)c->after[k]);
-    cross_the_owners(a, rays, k, s, c, mesh_hits, &at, reach);
+    cross_the_owners(a, rays, k, s, c, mesh_hits, &at);
 }

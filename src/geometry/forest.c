@@ -14,6 +14,13 @@ vec3 forest_origin(const forest_part *p, uint32_t copy)
     return vec3_add(p->origin, mat3_apply(p->rotation, offset));
 }
 
+double forest_extent(const forest *f, int64_t face)
+{
+    const forest_part *p = &f->parts[f->by_primitive[mesh_face_primitive(face)]];
+    const vec3 o = forest_origin(p, mesh_face_copy(face));
+    return fmax(fabs(o.x), fmax(fabs(o.y), fabs(o.z))) + p->reach;
+}
+
 vec3 forest_vertex_point(const forest_part *p, uint32_t copy, uint32_t vertex)
 {
     const vec3 v = p->triangles->vertices[vertex];
@@ -51,7 +58,7 @@ static forest_part part_of(const forest_source *source, size_t first_instance)
                          .scaled = scale.x != 1.0 || scale.y != 1.0 || scale.z != 1.0, .rotation = rotation_from_deg(turn), .scale = scale,
                          .origin = shape->position, .spacing = shape->spacing,
                          .copies = {(uint32_t)copies.x, (uint32_t)copies.y, (uint32_t)copies.z}, .first_instance = first_instance,
-                         .reach = largest_coordinate(shape->mesh, scale), .extent = source->extent};
+                         .reach = largest_coordinate(shape->mesh, scale)};
 }
 
 static size_t instances_of(const forest_part *p)

@@ -22,7 +22,6 @@ typedef struct forest_part {
     uint32_t copies[3];
     size_t first_instance;
     double reach;            /* largest coordinate of the mesh in its frame, scaled */
-    double extent;           /* largest coordinate of all its copies in the world */
 } forest_part;
 
 typedef struct forest {
@@ -67,7 +66,6 @@ typedef struct forest_source {
     const solid_shape *shape;
     const hierarchy *tree;
     int primitive, rank;
-    double extent;           /* the primitive's */
 } forest_source;
 
 status forest_build(const forest_source *sources, int count, forest **out, diagnostic *why);
@@ -75,6 +73,9 @@ void forest_destroy(forest *f);
 
 /* Origin of a copy's frame in the world. */
 vec3 forest_origin(const forest_part *p, uint32_t copy);
+
+/* How far the copy with that face reaches from the world's origin at most: a bound on each of its coordinates. */
+double forest_extent(const forest *f, int64_t face);
 
 /* The set of meshes that contain a point, by the side of the nearest surface in a fixed direction. */
 uint64_t forest_inside(const forest *f, vec3 point);
@@ -97,6 +98,8 @@ void forest_surface(const forest *f, const ray_batch *rays, const forest_hit *hi
 vec3 forest_vertex_normal(const forest_part *p, uint32_t vertex);
 vec3 forest_vertex_point(const forest_part *p, uint32_t copy, uint32_t vertex);
 
+typedef void forest_found(void *context, const forest_hit *hit);
+
 /* The kernels, one set for each instruction set; the same bits from all. */
 typedef struct forest_kernels {
     /* The next crossing that matters: of a mesh that the ray is in, where it leaves; of one that it is not in and that the medium
@@ -106,8 +109,8 @@ typedef struct forest_kernels {
     void (*any)(const forest *f, const forest_ray *rays, int count, bool *blocked);
     /* The set behind all crossings of wanted meshes in t_min < t <= t_max; bits of skins that were crossed are set. */
     uint64_t (*cross)(const forest *f, const forest_ray *ray);
-    /* The wanted meshes that are crossed in t_min < t <= t_max at another face than `but`, whatever hides them. */
-    uint64_t (*among)(const forest *f, const forest_ray *ray, int64_t but);
+    /* Calls found for every crossing of wanted meshes in t_min < t <= t_max, whatever hides them, in no order. */
+    void (*each)(const forest *f, const forest_ray *ray, forest_found *found, void *context);
 } forest_kernels;
 
 extern const forest_kernels forest_kernels_sse2, forest_kernels_avx2, forest_kernels_avx512;

@@ -6,22 +6,21 @@
 
 #define TREES KERNEL(hierarchy_kernels)
 
-/* The last crossings of each mesh's fronts and backs on the path, whichever triangles; and the meshes that were crossed
- * at another face than `but`. */
-typedef struct crossings {
-    double front[PRIMITIVES_MAX], back[PRIMITIVES_MAX], t_min;
-    int64_t but;
-    uint64_t met;
+/* Every crossing that a path has with the copies that it asks. */
+typedef struct visit {
+    forest_found *found;
+    void *context;
+    double t_min;
     int primitive;           /* of the copy that is asked */
     uint32_t copy;
-} crossings;
+} visit;
 
 /* What one way down asks each copy that it comes by. */
 typedef struct quest {
     const forest *f;
     const forest_ray *ray;
     bool any, blocked;       /* any: whatever is first met; nothing is hidden */
-    crossings *all;          /* every crossing, and nothing is hidden; else NULL */
+    visit *all;              /* every crossing, and nothing is hidden; else NULL */
     double t_max;
     double beyond;           /* how far from its start it looks at skins */
     forest_hit *best;
@@ -46,7 +45,7 @@ static double beyond_start(const forest *f, const forest_ray *ray)
                c = forest_vertex_point(p, copy, tri.corner[2]);
     const vec3 n = vec3_cross(vec3_sub(b, a), vec3_sub(c, a)), d = ray->direction, o = ray->origin;
     const double across = fabs(vec3_dot(n, d)), length = vec3_length(n);
-    const double error = 0x1p-48 * (fabs(o.x) + fabs(o.y) + fabs(o.z) + p->reach) * length;
+    const double error = POINT_ERROR * (fabs(o.x) + fabs(o.y) + fabs(o.z) + p->reach) * length;
     const double least = 1e-6 * length * vec3_length(d);
     return error / greater(across, least);
 }
@@ -91,14 +90,12 @@ static void take(quest *q, const forest_part *p, uint32_t copy, const mesh_hit *
 
 static void note_crossing(void *context, const mesh_hit *hit)
 {
-    crossings *all = context;
-    double *last = hit->facing == FACING_FRONT ? all->front : all->back;
-    if (!(hit->t > all->t_min))
+    const visit *v = context;
+    if (!(hit->t > v->t_min))
         return;
-    if (mesh_face_number(all->primitive, all->copy, hit->triangle) != all->but)
-        all->met |= (uint64_t)1 << all->primitive;
-    if (hit->t > last[all->primitive])
-        last[all->primitive] = hit->t;
+    const int64_t face = mesh_face_number(v->primitive, v->copy, hit->triangle);
+    const forest_hit found = {hit->t, hit->u, hit->v, face, hit->facing};
+    v->found(v->context, &found);
 }
 
 static const forest_part *part_of_instance(const forest *f, size_t instance)
@@ -224,31 +221,55 @@ static void any(const forest *f, const forest_ray *rays, int count, bool *blocke
     }
 }
 
-static void look_at_all(const forest *f, const forest_ray *ray, int64_t but, crossings *last)
+static void each(const forest *f, const forest_ray *ray, forest_found *found, void *context)
 {
+    visit v = {.found = found, .context = context, .t_min = ray->t_min};
     quest q = quest_of(f, ray);
     q.any = true;
-    q.all = last;
-    last->t_min = ray->t_min;
-    last->but = but;
-    last->met = 0;
-    for (int i = 0; i < f->part_count; i++)
-        last->front[f->parts[i].primitive] = last->back[f->parts[i].primitive] = -HUGE_VAL;
+    q.all = &v;
     ask(&q);
 }
 
-/* Is a ray that has gone all its way in a closed mesh? What was crossed last says so: fronts lead in, backs lead out. Where both are at one
- * place, at a silhouette or between two copies that touch, it is in what it was in before. */
-static bool is_in(const forest *f, const forest_ray *ray, const crossings *all, const forest_part *p)
+/* The last crossings of each mesh's fronts and backs on the path, whichever triangles, and how far those copies extend. */
+typedef struct last_crossings {
+    const forest *f;
+    double front[PRIMITIVES_MAX], back[PRIMITIVES_MAX], front_extent[PRIMITIVES_MAX], back_extent[PRIMITIVES_MAX];
+} last_crossings;
+
+static void take_last(void *context, const forest_hit *hit)
 {
-    const int number = p->primitive;
+    last_crossings *last = context;
+    const int p = mesh_face_primitive(hit->face);
+    const bool front = hit->facing == FACING_FRONT;
+    double *t = front ? &last->front[p] : &last->back[p];
+    if (!(hit->t > *t))
+        return;
+    *t = hit->t;
+    *(front ? &last->front_extent[p] : &last->back_extent[p]) = forest_extent(last->f, hit->face);
+}
+
+static void look_at_all(const forest *f, const forest_ray *ray, last_crossings *last)
+{
+    last->f = f;
+    for (int i = 0; i < f->part_count; i++) {
+        const int p = f->parts[i].primitive;
+        last->front[p] = last->back[p] = -HUGE_VAL;
+        last->front_extent[p] = last->back_extent[p] = 0.0;
+    }
+    each(f, ray, take_last, last);
+}
+
+/* Is a ray at the end of its path in a closed mesh? What was crossed last says so: fronts lead in, backs lead out. Where both are at one
+ * place, at a silhouette or between two copies that touch, it is in what it was in before. */
+static bool is_in(const forest *f, const forest_ray *ray, const last_crossings *all, int number)
+{
     const uint64_t bit = (uint64_t)1 << number;
-    const double tie = ray->tie + ray->tie_by_extent * p->extent;
-    crossings again;
+    last_crossings again;
     forest_ray shorter = *ray;
     shorter.wanted = bit;
-    for (const crossings *last = all;;) {
+    for (const last_crossings *last = all;;) {
         const double front = last->front[number], back = last->back[number], first = lesser(front, back);
+        const double tie = ray->tie + ray->tie_by_extent * greater(last->front_extent[number], last->back_extent[number]);
         if (greater(front, back) < 0.0 && front == back) /* nothing was crossed */
             return (ray->inside & bit) != 0;
         if (front - back > tie || back - front > tie)
@@ -256,7 +277,7 @@ static bool is_in(const forest *f, const forest_ray *ray, const crossings *all, 
         shorter.t_max = first - tie;
         if (!(shorter.t_max > ray->t_min))
             return (ray->inside & bit) != 0;
-        look_at_all(f, &shorter, FACE_NONE, &again);
+        look_at_all(f, &shorter, &again);
         last = &again;
     }
 }
@@ -264,26 +285,19 @@ static bool is_in(const forest *f, const forest_ray *ray, const crossings *all, 
 static uint64_t cross(const forest *f, const forest_ray *ray)
 {
     uint64_t set = ray->inside;
-    crossings last;
-    look_at_all(f, ray, FACE_NONE, &last);
+    last_crossings last;
+    look_at_all(f, ray, &last);
     for (int i = 0; i < f->part_count; i++) {
         const forest_part *p = &f->parts[i];
         const uint64_t bit = (uint64_t)1 << p->primitive;
         if (!(ray->wanted & bit))
             continue;
         if (p->closed)
-            set = is_in(f, ray, &last, p) ? set | bit : set & ~bit;
+            set = is_in(f, ray, &last, p->primitive) ? set | bit : set & ~bit;
         else if (last.front[p->primitive] >= 0.0 || last.back[p->primitive] >= 0.0)
             set |= bit;
     }
     return set;
 }
 
-static uint64_t among(const forest *f, const forest_ray *ray, int64_t but)
-{
-    crossings all;
-    look_at_all(f, ray, but, &all);
-    return all.met;
-}
-
-const forest_kernels KERNEL(forest_kernels) = {nearest, any, cross, among};
+const forest_kernels KERNEL(forest_kernels) = {nearest, any, cross, each};

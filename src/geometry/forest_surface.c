@@ -82,7 +82,7 @@ static void surface_at(const forest *f, const ray_batch *rays, const forest_hit 
     s->px[i] = at.x, s->py[i] = at.y, s->pz[i] = at.z;
     s->nx[i] = n.x, s->ny[i] = n.y, s->nz[i] = n.z;
     s->cos_i[i] = greater(-vec3_dot(d, n), 1e-12);
-    s->error[i] = 0x1p-48 * (fabs(o.x) + fabs(o.y) + fabs(o.z) + p->reach);
+    s->error[i] = POINT_ERROR * (fabs(o.x) + fabs(o.y) + fabs(o.z) + p->reach);
     s->face[i] = hit->face;
     if (!more)
         return;

@@ -5,7 +5,6 @@
 #include "base/kernel.h"
 #include "geometry/forest.h"
 #include "geometry/rays.h"
-#include <float.h>
 #include <math.h>
 
 /* scratch->in and out of every wanted primitive (a set) for every ray; scratch->slack is not touched. */
@@ -17,9 +16,7 @@ void KERNEL(surface_points)(const primitive *p, const ray_batch *rays, const dou
  * crossing one by one (contact_kernel.c). It filters and decides nothing: a contact is never wider than half of it. */
 #define BOUNDARY_CLOSE 0x1p-24
 
-/* Share of all magnitudes that a point is computed from by which it may be wrong: see surface_kernel.c. */
-#define POINT_ERROR (16.0 * DBL_EPSILON)
-
+/* A primitive of a mesh? */
 static inline bool is_mesh(const arrangement *a, int p)
 {
     return a->meshes && (a->meshes->primitives >> p & 1);
@@ -43,6 +40,10 @@ void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_s
  * that rank, crosses something. */
 void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, uint64_t wanted, double low,
                                double high, uint64_t *before, uint64_t *after);
+
+/* Calls found for the crossings of mesh p that are close to t on column k (BOUNDARY_CLOSE), whatever hides them. */
+void KERNEL(mesh_each_near)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int p, double t,
+                            forest_found *found, void *context);
 
 /* Where column k crosses the mesh of a bit in low <= t <= high, from the set `before`; its face is FACE_NONE where it does not. */
 forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit, uint64_t before, double low,

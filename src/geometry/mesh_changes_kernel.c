@@ -41,7 +41,8 @@ void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ra
     FOREST.nearest(f, asked, n, hits);
     for (int k = 0; k < n; k++) {
         const bool met = hits[k].face != FACE_NONE;
-        s->meshes->near[k] = met && c->crossed[k] >= 0 && fabs(c->t[k] - hits[k].t) <= close_to(s, k, hits[k].t);
+        const bool near = met && c->crossed[k] >= 0 && fabs(c->t[k] - hits[k].t) <= close_to(s, k, hits[k].t);
+        s->meshes->near[k] = near ? (uint64_t)1 << mesh_face_primitive(hits[k].face) : 0;
         if (met && hits[k].t < c->t[k]) {
             c->t[k] = hits[k].t;
             c->crossed[k] = mesh_face_primitive(hits[k].face);
@@ -49,19 +50,31 @@ void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ra
     }
 }
 
-/* The meshes with a boundary close to column k's crossing, other than the one that is crossed there. A single mesh that is
- * not hidden was already looked for that far. */
+/* The meshes of the crossings that are found, but for those of the copy with that face: a mesh's own parts do not touch. */
+typedef struct others { int64_t face; uint64_t set; } others;
+
+static void take_others(void *context, const forest_hit *hit)
+{
+    others *o = context;
+    const int p = mesh_face_primitive(hit->face);
+    if (o->face == FACE_NONE || p != mesh_face_primitive(o->face) || mesh_face_copy(hit->face) != mesh_face_copy(o->face))
+        o->set |= (uint64_t)1 << p;
+}
+
+/* The meshes with a boundary close to column k's crossing. A single mesh that is not hidden was already looked for that far. */
 static uint64_t near_meshes(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, const hit_batch *c, const forest_hit *hit)
 {
     const bool on_mesh = f->primitives >> c->crossed[k] & 1;
     if (f->instance_count == 1 && (on_mesh || f->lowest >= c->before[k]))
-        return s->meshes->near[k] && !on_mesh ? f->primitives : 0;
+        return on_mesh ? 0 : s->meshes->near[k];
     const double close = close_to(s, k, c->t[k]);
     forest_ray ray = ray_of_column(rays, k, s);
     ray.t_min = c->t[k] - close;
     ray.t_max = c->t[k] + close;
     ray.wanted = f->primitives;
-    return FOREST.among(f, &ray, on_mesh ? hit->face : FACE_NONE);
+    others o = {on_mesh ? hit->face : FACE_NONE, 0};
+    FOREST.each(f, &ray, take_others, &o);
+    return o.set;
 }
 
 /* The set at t, where the ray has been in the medium of that rank all the way from where it was looked at last: of the meshes that are hidden
@@ -92,9 +105,8 @@ void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_s
             const bool leaves = (f->closed & bit) && hits[k].facing == FACING_BACK;
             c->inside_after[k] = leaves ? c->inside_after[k] & ~bit : c->inside_after[k] | bit;
         }
-        const uint64_t near = near_meshes(f, rays, k, s, c, &hits[k]);
-        s->near[k] = (s->near[k] & ~f->primitives) | near | (bit & f->primitives);
-        s->meshes->near[k] = near != 0; /* of the crossed mesh's own too, of which the sets may know nothing */
+        s->meshes->near[k] = near_meshes(f, rays, k, s, c, &hits[k]);
+        s->near[k] = (s->near[k] & ~f->primitives) | s->meshes->near[k] | (bit & f->primitives);
     }
 }
 
@@ -109,6 +121,16 @@ void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int 
     ray.inside = *before;
     ray.wanted = wanted;
     *after = (*after & ~wanted) | (FOREST.cross(a->meshes, &ray) & wanted);
+}
+
+void KERNEL(mesh_each_near)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int p, double t, forest_found *found,
+                            void *context)
+{
+    forest_ray ray = ray_of_column(rays, k, s);
+    ray.t_min = t - close_to(s, k, t);
+    ray.t_max = t + close_to(s, k, t);
+    ray.wanted = (uint64_t)1 << p;
+    FOREST.each(a->meshes, &ray, found, context);
 }
 
 forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit, uint64_t before, double low,

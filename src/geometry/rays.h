@@ -4,11 +4,15 @@
 #define CUVETTE_GEOMETRY_RAYS_H
 
 #include "geometry/arrangement.h"
+#include <float.h>
 #include <stdint.h>
 
 /* Rows are a cache line longer than a batch: rows of exactly 1024 bytes would all fall into the same few sets of the
  * first-level cache and drive one another out. */
 enum { BATCH = 128, LANES_MAX = 8 /* doubles in the widest vector */, ROW = BATCH + LANES_MAX };
+
+/* A computed point may be off by this share of the sum of all magnitudes that it is computed from: see surface_kernel.c. */
+#define POINT_ERROR (16.0 * DBL_EPSILON)
 
 /* A view of up to BATCH rays. Directions of rays that look for their nearest interface are unit vectors; a shadow
  * ray's reaches from its start to the light. start is the face that the ray starts on, or FACE_NONE; that
@@ -46,7 +50,7 @@ typedef struct mesh_scratch {
     double from[ROW];        /* how far a column has been followed */
     double until[ROW];       /* the sets behind a column's hit are those here: beyond its error bound, if another boundary lies close to it */
     int64_t last[ROW];       /* the mesh face where that was, or where the ray starts */
-    bool near[ROW];          /* a mesh's nearest crossing lies close to another boundary */
+    uint64_t near[ROW];      /* meshes with a boundary close to the column's crossing, other than that of the copy that is crossed */
 } mesh_scratch;
 
 /* Of convex solids no batch has more. Rays through many meshes may: then what there is is handed over to `full`, which empties the list. */

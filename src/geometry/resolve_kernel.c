@@ -174,10 +174,14 @@ static void next_changes(const arrangement *a, const ray_batch *rays, int n, ray
     mark_attention(a, n, s, c, s->attention);
     for (int k = 0; a->meshes && k < n; k++) {
         s->attention[k] |= -(int64_t)(c->crossed[k] >= 0 && s->meshes->near[k]);
-        s->meshes->until[k] = c->t[k];
-        /* Through an edge a front and a back are at one place: the second crossing there is the last, or they would follow one another for ever. */
-        if (c->crossed[k] >= 0 && c->t[k] <= s->meshes->from[k])
-            s->meshes->until[k] += POINT_ERROR * (c->t[k] + a->primitives[c->crossed[k]].extent * steps_per_unit(rays, s->ray[k]));
+        s->meshes->until[k] = greater(c->t[k], s->meshes->from[k]);
+        /* Through an edge a front and a back are at one place: the second crossing there is the last, or they would follow
+         * one another for ever. */
+        if (c->crossed[k] >= 0 && c->t[k] <= s->meshes->from[k]) {
+            const bool on_mesh = is_mesh(a, (int)c->crossed[k]);
+            const double extent = on_mesh ? forest_extent(a->meshes, mesh_hits[k].face) : a->primitives[c->crossed[k]].extent;
+            s->meshes->until[k] += POINT_ERROR * (c->t[k] + extent * steps_per_unit(rays, s->ray[k]));
+        }
     }
 }
 
@@ -296,23 +300,33 @@ static void nearest(const arrangement *a, const ray_batch *rays, ray_scratch *s,
         hits->inside_after[i] &= ~a->meshes->skins; /* nothing is ever in a skin */
 }
 
-/* Does the way from 0 to 1 touch the body's matter? For shadow rays, whatever hides it. */
-static void touching(const body *b, int n, const ray_scratch *s, int64_t *restrict touched)
+/* Does the path from 0 to 1 go through the body's matter, whatever hides it? Where the ends of a piece of it lie within the
+ * filter's window they may be in contact: then, and where the body is doubtful, it is undecided. */
+static void touching(const arrangement *a, const body *b, bool doubtful, int n, const double *restrict steps,
+                     const ray_scratch *restrict s, int64_t *restrict blocked, int64_t *restrict undecided)
 {
     const double *restrict in = s->in[b->outside], *restrict out = s->out[b->outside];
+    const double extent = a->primitives[b->outside].extent;
+    const int64_t certain = ~mask_of(doubtful);
     if (b->hollow < 0) {
         /* VECTORISE */
-        for (int i = 0; i < n; i++)
-            touched[i] |= mask_less(in[i], 1.0) & mask_less(0.0, out[i]);
+        for (int i = 0; i < n; i++) {
+            const int64_t met = mask_less(in[i], 1.0) & mask_less(0.0, out[i]);
+            blocked[i] |= met & certain & mask_less(BOUNDARY_CLOSE * (1.0 + extent * steps[i]), out[i] - in[i]);
+            undecided[i] |= met;
+        }
         return;
     }
     const double *restrict hollow_in = s->in[b->hollow], *restrict hollow_out = s->out[b->hollow];
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
-        double first_out = lesser(out[i], hollow_in[i]), second_in = greater(in[i], hollow_out[i]);
-        int64_t first = mask_less(in[i], lesser(first_out, 1.0)) & mask_less(0.0, first_out);
-        int64_t second = mask_less(second_in, lesser(out[i], 1.0)) & mask_less(0.0, out[i]);
-        touched[i] |= first | second;
+        const double thin = BOUNDARY_CLOSE * (1.0 + extent * steps[i]);
+        const double first_out = lesser(out[i], hollow_in[i]), second_in = greater(in[i], hollow_out[i]);
+        const int64_t first = mask_less(in[i], lesser(first_out, 1.0)) & mask_less(0.0, first_out);
+        const int64_t second = mask_less(second_in, lesser(out[i], 1.0)) & mask_less(0.0, out[i]);
+        const int64_t thick = (first & mask_less(thin, first_out - in[i])) | (second & mask_less(thin, out[i] - second_in));
+        blocked[i] |= thick & certain;
+        undecided[i] |= first | second;
     }
 }
 
@@ -342,8 +356,11 @@ static void first_sight(const arrangement *a, const ray_batch *rays, int solid_s
 {
     const int n = rays->count;
     const int64_t everywhere = mask_of(a->bodies[0].absorbs);
-    for (int i = 0; i < n; i++)
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
         s->blocked[i] = 0, s->undecided[i] = everywhere;
+        s->low[i] = steps_per_unit(rays, i);
+    }
     uint64_t sure = 0, unsure = 0; /* meshes */
     bool hidden = false; /* can a clear body of a higher rank hide this one? */
     for (int r = a->body_count; r >= 1; r--) {
@@ -352,7 +369,7 @@ static void first_sight(const arrangement *a, const ray_batch *rays, int solid_s
         if (casts && is_mesh(a, b->outside))
             *(doubtful ? &unsure : &sure) |= (uint64_t)1 << b->outside;
         else if (casts)
-            touching(b, n, s, doubtful ? s->undecided : s->blocked);
+            touching(a, b, doubtful, n, s->low, s, s->blocked, s->undecided);
         hidden |= !b->opaque;
     }
     if (sure)
@@ -419,7 +436,7 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
         for (int k = 0; k < n; k++) {
             if (s->ways)
                 note_stretch(k, 1.0, s, c);
-            if (a->bodies[c->before[k]].opaque) /* it sets out within an opaque solid, in which the eye is */
+            if (a->bodies[c->before[k]].opaque) /* the ray starts in an opaque solid */
                 transmitted[s->ray[k]] = 0.0;
             if (c->crossed[k] < 0 || c->t[k] >= 1.0)
                 continue;
