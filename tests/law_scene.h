@@ -16,7 +16,7 @@ enum {
 typedef struct law_solid {
     int number;        /* its name, whatever its place */
     solid_shape shape; /* a mesh's frame and scale; its triangles are read from its name */
-    const char *mesh;  /* "cube", "ball", "ring"; NULL for all other shapes */
+    const char *mesh;  /* "cube", "ball", "ring", "hills"; NULL for all other shapes */
     int64_t priority;
     bool opaque;
     double ior, transparency, reflectivity, specular, checker;
@@ -48,6 +48,7 @@ static const struct {
     {"cube", "{generate: box, size: [1, 1, 1]}", 0.87},
     {"ball", "{generate: icosphere, level: 1}", 1.0},
     {"ring", "{generate: torus, around: 8, tube: 6}", 1.4},
+    {"hills", "{generate: terrain, around: 3, tube: 3, size: [1, 0.3, 1]}", 0.8}, /* open: a surface, not a body */
 };
 
 /* 1e-12 .. 1, as many of each power of ten; a part of them 0. */
@@ -62,6 +63,27 @@ static inline vec3 in_frame_of(const solid_shape *s, double x, double y, double 
     return vec3_add(s->position, mat3_apply(rotation_from_deg(s->rotation_deg), vec3_make(x, y, z)));
 }
 
+static inline bool is_mesh_named(const law_solid *s, const char *name)
+{
+    return s->mesh && strcmp(s->mesh, name) == 0;
+}
+
+static inline double mesh_size(const law_solid *s)
+{
+    for (size_t k = 0; k < COUNT(law_meshes); k++)
+        if (is_mesh_named(s, law_meshes[k].name))
+            return 2.0 * law_meshes[k].reach;
+    return 0.0;
+}
+
+/* A few copies that touch, if they are cubes, or stand a gap apart. */
+static inline void copy_mesh(law_solid *s, uint64_t *seed)
+{
+    const double gap = random_gap(seed), step = is_mesh_named(s, "cube") ? 1.0 : mesh_size(s) + 1e-12;
+    s->shape.copies = vec3_make(1.0 + random_below(seed, 3), 1.0 + random_below(seed, 2), 1.0 + random_below(seed, 2));
+    s->shape.spacing = vec3_add(vec3_scale(s->shape.scale, step), vec3_make(gap, gap, gap));
+}
+
 static inline void place_mesh(law_solid *s, uint64_t *seed)
 {
     s->mesh = law_meshes[random_below(seed, (int)COUNT(law_meshes))].name;
@@ -71,6 +93,17 @@ static inline void place_mesh(law_solid *s, uint64_t *seed)
     s->shape.scale.x = random_real(seed, 0.2, 1.2);
     s->shape.scale.y = random_below(seed, 2) ? s->shape.scale.x : random_real(seed, 0.2, 1.2);
     s->shape.scale.z = s->shape.scale.x;
+    const int size = random_below(seed, 8);
+    if (is_mesh_named(s, "cube") && size < 2) { /* a thin plate, or a large block below all */
+        const double power = size ? random_real(seed, -12.0, 0.0) : random_real(seed, 0.0, 4.0);
+        s->shape.scale.y = pow(10.0, power);
+        if (size == 0) {
+            s->shape.scale.x = s->shape.scale.z = s->shape.scale.y;
+            s->shape.position.y = -0.5 * s->shape.scale.y - 0.3;
+            s->shape.rotation_deg = vec3_make(0.0, 0.0, 0.0);
+        }
+    } else if (size == 2)
+        copy_mesh(s, seed);
 }
 
 /* Half the height of a solid along its own y, and where its middle is; 0 for those that have no flat top. */
@@ -78,7 +111,7 @@ static inline double flat_half(const law_solid *s, double *middle)
 {
     *middle = s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP ? 0.5 * s->shape.height : 0.0;
     if (s->mesh)
-        return strcmp(s->mesh, "cube") == 0 ? 0.5 * s->shape.scale.y : 0.0;
+        return is_mesh_named(s, "cube") ? 0.5 * s->shape.scale.y : 0.0;
     return s->shape.kind == SHAPE_BOX ? 0.5 * s->shape.size.y : *middle;
 }
 
@@ -135,12 +168,13 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     if (shape->kind == SHAPE_PLANE)
         shape->position = in_frame_of(&base->shape, 0.0, step, 0.0);
     shape->scale = vec3_scale(shape->scale, 1.0 + step);
+    shape->spacing = vec3_scale(shape->spacing, 1.0 + step);
 }
 
 static inline void random_surface(law_solid *s, const law_scene *w, uint64_t *seed)
 {
     const double indices[] = {w->outside_ior, 1.33, 1.5, random_real(seed, 1.0, 2.5)};
-    s->opaque = random_below(seed, 5) == 0;
+    s->opaque = random_below(seed, 5) == 0 || is_mesh_named(s, "hills"); /* an open surface has no medium */
     s->priority = random_below(seed, 6) - 2;
     s->ior = indices[random_below(seed, 4)];
     s->transparency = random_below(seed, 3) ? 1.0 : random_real(seed, 0.2, 1.0);
@@ -221,6 +255,8 @@ static inline void write_solid(scene_text *t, const law_solid *s, bool flat)
         add_vector(t, "scale", s->shape.scale);
         add_vector(t, "position", s->shape.position);
         add_vector(t, "rotation", s->shape.rotation_deg);
+        add_vector(t, "copies", s->shape.copies);
+        add_vector(t, "spacing", s->shape.spacing);
     } else
         add_shape(t, &s->shape);
     add(t, "}\n");
@@ -229,7 +265,7 @@ static inline void write_solid(scene_text *t, const law_solid *s, bool flat)
 static inline bool has_mesh(const law_scene *w, const char *name)
 {
     for (int i = 0; i < w->solid_count; i++)
-        if (w->solid[i].mesh && strcmp(w->solid[i].mesh, name) == 0)
+        if (is_mesh_named(&w->solid[i], name))
             return true;
     return false;
 }
@@ -286,7 +322,12 @@ static inline ball ball_around(const law_solid *s)
     case SHAPE_BOX: return (ball){shape->position, 0.5 * vec3_length(shape->size)};
     case SHAPE_CYLINDER:
     case SHAPE_CUP: return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0), hypot(0.5 * shape->height, wide)};
-    case SHAPE_MESH: return (ball){shape->position, 1.45 * fmax(shape->scale.x, fmax(shape->scale.y, shape->scale.z))};
+    case SHAPE_MESH: {
+        const vec3 n = shape->copies, step = shape->spacing;
+        const vec3 far = vec3_make((n.x - 1.0) * step.x, (n.y - 1.0) * step.y, (n.z - 1.0) * step.z);
+        const vec3 half = vec3_scale(shape->scale, 0.5 * mesh_size(s));
+        return (ball){shape->position, 1.01 * vec3_length(half) + vec3_length(far)};
+    }
     case SHAPE_PLANE:
     case SHAPE_COUNT: break;
     }

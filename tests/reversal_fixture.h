@@ -4,12 +4,12 @@
 
 #include "probe_fixture.h"
 
-/* Light's way is the same there and back (Hecht, 4.5: Fermat's principle and reversibility; 4.10: Stokes's relations),
- * and so is the share of power that goes along it: R and T = n_t cos_t / (n_i cos_i) |t|^2 of an interface are the same
- * from either side. Radiance is another matter: it grows by (n_t / n_i)^2 on the way into a medium, L / n^2 stays
- * (Nicodemus, Applied Optics 2, 1963; Veach 1997, 5.2). The tracer's throughput is one of power: between an eye in a
- * medium a and a sky in a medium b it leaves out the factor (n_a / n_b)^2, which is 1 where both are of one medium.
- * Were the factor in it, there and back would differ by its square. */
+/* A path of light is the same in both directions (Hecht, 4.5: Fermat's principle and reversibility; 4.10: Stokes's
+ * relations), and so is the share of power that goes along it: R and T = n_t cos_t / (n_i cos_i) |t|^2 of an interface
+ * are the same from either side. Radiance is another matter: it grows by (n_t / n_i)^2 on the way into a medium, L /
+ * n^2 stays (Nicodemus, Applied Optics 2, 1963; Veach 1997, 5.2). The tracer's throughput is one of power: between an
+ * eye in a medium a and a sky in a medium b it leaves out the factor (n_a / n_b)^2, which is 1 where both are of one
+ * medium. Were the factor in it, there and back would differ by its square. */
 
 /* Curved surfaces are a billiard, where a rounding grows with every bounce (to 1e-7 after sixty), and near grazing with
  * the square of 1/cos. A reflectance next to nothing is a difference of almost equal numbers. */
@@ -49,7 +49,7 @@ static inline double share_of(const ray_hit *h, ray_kind next)
 typedef struct reversal {
     bool used, same_surfaces, reflected, other_media;
     int crossings;
-    double farthest, unequal, unlike_closed_form, direction;
+    double farthest, unequal, from_closed_form, direction;
 } reversal;
 
 static inline double unequal_throughput(const ray_node *there, const ray_node *back, int n)
@@ -59,7 +59,7 @@ static inline double unequal_throughput(const ray_node *there, const ray_node *b
         /* the first stretch of either path is not part of the other; absorption between is */
         const double forth = there[n].throughput[c] / there[0].hit.transmittance[c];
         const double other = back[n].throughput[c] / back[0].hit.transmittance[c];
-        worst = fmax(worst, fabs(forth / other - 1.0));
+        worst = fabs(forth / other - 1.0) <= worst ? worst : fabs(forth / other - 1.0); /* also what is no number */
     }
     return worst;
 }
@@ -91,7 +91,7 @@ static inline reversal there_and_back(stage *g, vec3 origin, vec3 direction, int
     if (!r.same_surfaces)
         return r;
     r.unequal = unequal_throughput(there, path->node, n) - SWAY * r.farthest;
-    r.unlike_closed_form = fabs(there[n].throughput[1] / (kept * known) - 1.0);
+    r.from_closed_form = fabs(there[n].throughput[1] / (kept * known) - 1.0);
     r.direction = apart(path->node[n].direction, vec3_scale(there[0].direction, -1.0));
     return r;
 }

@@ -14,7 +14,7 @@ static void take(tally *sum, reversal r)
 {
     if (!r.used)
         return;
-    assert_true(r.same_surfaces && r.unlike_closed_form <= 1e-9 && r.direction <= 1e-9);
+    assert_true(r.same_surfaces && r.from_closed_form <= 1e-9 && r.direction <= 1e-9);
     sum->farthest = fmax(sum->farthest, r.farthest);
     sum->unequal = fmax(sum->unequal, r.unequal);
     sum->ways++;
