@@ -277,7 +277,7 @@ static inline bool add_same(law_scene *w, uint64_t *seed)
     vec3 best = {0.0, 0.0, 0.0};
     double space = 0.0;
     for (int k = 0; k < 400 && space < (k < 40 ? 0.4 : 0.02); k++) {
-        const vec3 at = random_point(seed, k < 8 ? 1.0 : k < 100 ? 3.0 : 12.0);
+        const vec3 at = random_point(seed, k < 8 ? 1.0 : k < 100 ? 3.0 : k < 250 ? 12.0 : 2e4);
         const double around = room_around(w, at);
         if (around > space)
             best = at, space = around;
