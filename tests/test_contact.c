@@ -9,7 +9,7 @@
 #include "ray_fixture.h"
 
 /* Contact: where two boundaries are one crossing, and where a gap between them is seen. The limit is that of the
- * manual: 16 DBL_EPSILON times the sum, over both solids, of the ray's start counted from the solid, the way to the
+ * manual: 16 DBL_EPSILON times the sum, over both solids, of the ray's start counted from the solid, the path to the
  * crossing, and the solid's extent. */
 
 /* Below y = 0 and above it, a gap apart; and perhaps a solid far away. */
@@ -127,6 +127,41 @@ static void a_film_in_contact_is_entered(void **state)
     }
 }
 
+/* Two discs of clear glass above one another, all turned: the light of a shadow ray that passes 2 or 4 interfaces. */
+static double light_through_discs(double gap, const vec3 *turn_deg)
+{
+    const mat3 turn = rotation_from_deg(*turn_deg);
+    solid_shape shapes[2] = {
+        {.kind = SHAPE_CYLINDER, .position = {0.0, 0.0, 0.0}, .radius = 2.0, .height = 1.0, .m = 1.0},
+        {.kind = SHAPE_CYLINDER, .position = {0.0, -1.0 - gap, 0.0}, .radius = 2.0, .height = 1.0, .m = 1.0},
+    };
+    body_source sources[2];
+    for (int i = 0; i < 2; i++) {
+        shapes[i].position = mat3_apply(turn, shapes[i].position);
+        shapes[i].rotation_deg = *turn_deg;
+        sources[i] = (body_source){.shape = &shapes[i], .priority = i, .medium = i + 1, .clearness = 0.5, .solid = i};
+    }
+    arrangement *a = NULL;
+    assert_int_equal(arrangement_build(sources, 2, 0, &a, NULL), STATUS_OK);
+    const vec3 from = mat3_apply(turn, vec3_make(0.1, 3.0, 0.2)), to = mat3_apply(turn, vec3_make(0.6, -4.0, -0.3));
+    const double light = light_through(a, (one_ray){from, vec3_sub(to, from), FACE_NONE, 0}, 0);
+    arrangement_destroy(a);
+    return light;
+}
+
+/* In and out of each disc, or from one into the other: 0.5 a time. A shadow ray's direction is no unit vector. */
+static void shadow_rays_see_the_same_gaps(void **state)
+{
+    (void)state;
+    const vec3 turns[] = {{0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}, {90.0, 0.0, 45.0}};
+    for (size_t k = 0; k < sizeof turns / sizeof *turns; k++) {
+        for (double gap = 1e-12; gap < 0.5; gap *= 10.0)
+            assert_true(light_through_discs(gap, &turns[k]) == 0.0625);
+        for (double gap = 0.0; gap < 1e-14; gap += 2e-15)
+            assert_true(light_through_discs(gap, &turns[k]) == 0.125);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -134,6 +169,7 @@ int main(void)
         cmocka_unit_test(both_sides_of_the_limit_whichever_solid_wins),
         cmocka_unit_test(a_solid_far_away_moves_the_limit_by_nothing),
         cmocka_unit_test(a_film_in_contact_is_entered),
+        cmocka_unit_test(shadow_rays_see_the_same_gaps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -265,7 +265,7 @@ static void branch(tracer *t, int depth, bool opaque)
     COUNT(t->counters.refract += (uint64_t)refracted);
 }
 
-/* A checker's cells lie in the frame of the solid whose surface it is, also where another solid's face lays it bare. */
+/* A checker's cells lie in the frame of the solid whose surface it is, also where another solid's face exposes it. */
 static void color(tracer *t, int rank, const primitive *surface)
 {
     const plan *p = t->target.scene;

@@ -295,7 +295,7 @@ static const param table[] = {
      .offset = offsetof(solid, shape.scale)},
     {PARAM_SOLID, "copies", PARAM_VECTOR, "", 1, 100000, false, "1,1,1", "how often a mesh stands along each of its own axes", NULL, ON_MESH,
      .offset = offsetof(solid, shape.copies)},
-    {PARAM_SOLID, "spacing", PARAM_VECTOR, "scene units", -FAR, FAR, false, "1,1,1", "from copy to copy along its own axes, after scale",
+    {PARAM_SOLID, "spacing", PARAM_VECTOR, "scene units", -FAR, FAR, false, "1,1,1", "from copy to copy along its own axes, after scale; copies may touch, not overlap",
      NULL, ON_MESH, .offset = offsetof(solid, shape.spacing)},
     {PARAM_SOLID, "shading", PARAM_CHOICE, "", 0, 0, false, "smooth",
      "of a mesh: by its triangles, by normals between its vertices, or light between them", shading_words, ON_MESH,
