@@ -157,7 +157,9 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     solid_shape *shape = &s->shape;
     const double wall = random_gap(seed), least = fmin(fmin(shape->radius, shape->height),
                                                        shape->kind == SHAPE_BOX ? smallest(shape->size) : 1.0);
-    const double step = random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
+    /* scaled, only these keep their distance all over */
+    const bool even = !s->mesh || is_mesh_named(s, "cube") || is_mesh_named(s, "ball");
+    const double step = !even ? 0.0 : random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
     shape->radius += step;
     shape->inner_radius += 0.5 * step;
     shape->size = vec3_add(shape->size, vec3_make(2.0 * step, 2.0 * step, 2.0 * step));

@@ -10,7 +10,8 @@
 typedef struct visit {
     forest_found *found;
     void *context;
-    double t_min;
+    const forest *f;
+    const forest_ray *ray;
     int primitive;           /* of the copy that is asked */
     uint32_t copy;
 } visit;
@@ -32,6 +33,24 @@ static vec3 direction_in(const forest_part *p, vec3 d)
     return p->scaled ? vec3_make(turned.x / p->scale.x, turned.y / p->scale.y, turned.z / p->scale.z) : turned;
 }
 
+/* An error across a face's triangle, along the ray. */
+static double along_ray(const forest *f, const forest_ray *ray, int64_t face, double error)
+{
+    const forest_part *p = &f->parts[f->by_primitive[mesh_face_primitive(face)]];
+    const uint32_t copy = mesh_face_copy(face);
+    const mesh_triangle tri = p->triangles->triangles[mesh_face_triangle(face)];
+    const vec3 a = forest_vertex_point(p, copy, tri.corner[0]), b = forest_vertex_point(p, copy, tri.corner[1]),
+               c = forest_vertex_point(p, copy, tri.corner[2]);
+    const vec3 n = vec3_cross(vec3_sub(b, a), vec3_sub(c, a)), d = ray->direction;
+    const double length = vec3_length(n), least = 1e-6 * length * vec3_length(d);
+    return error * length / greater(fabs(vec3_dot(n, d)), least);
+}
+
+static double sum_of_magnitudes(vec3 v)
+{
+    return fabs(v.x) + fabs(v.y) + fabs(v.z);
+}
+
 /* A ray that starts on a mesh may lie on either side of it by rounding, and of a skin at the same place: of skins it sees those beyond
  * its point's error bound. */
 static double beyond_start(const forest *f, const forest_ray *ray)
@@ -39,15 +58,21 @@ static double beyond_start(const forest *f, const forest_ray *ray)
     if (!f->skins || !is_mesh_face(ray->start))
         return 0.0;
     const forest_part *p = &f->parts[f->by_primitive[mesh_face_primitive(ray->start)]];
-    const uint32_t copy = mesh_face_copy(ray->start);
-    const mesh_triangle tri = p->triangles->triangles[mesh_face_triangle(ray->start)];
-    const vec3 a = forest_vertex_point(p, copy, tri.corner[0]), b = forest_vertex_point(p, copy, tri.corner[1]),
-               c = forest_vertex_point(p, copy, tri.corner[2]);
-    const vec3 n = vec3_cross(vec3_sub(b, a), vec3_sub(c, a)), d = ray->direction, o = ray->origin;
-    const double across = fabs(vec3_dot(n, d)), length = vec3_length(n);
-    const double error = POINT_ERROR * (fabs(o.x) + fabs(o.y) + fabs(o.z) + p->reach) * length;
-    const double least = 1e-6 * length * vec3_length(d);
-    return error / greater(across, least);
+    return along_ray(f, ray, ray->start, POINT_ERROR * (sum_of_magnitudes(ray->origin) + p->reach));
+}
+
+/* Where a ray that starts on a surface crosses a mesh at its start, within the crossing's error bound, the two were in
+ * contact there, and the ray's set already says on which side of the mesh it is. The bound; 0 for all other crossings. */
+static double at_start(const forest *f, const forest_ray *ray, const forest_hit *hit)
+{
+    const forest_part *p = &f->parts[f->by_primitive[mesh_face_primitive(hit->face)]];
+    const double reach = p->reach + sum_of_magnitudes(ray->origin);
+    if (ray->start == FACE_NONE || ray->t_min > 0.0 || hit->t * sum_of_magnitudes(ray->direction) > 0x1p-20 * reach)
+        return 0.0;
+    const vec3 o = forest_origin(p, mesh_face_copy(hit->face));
+    const double all = sum_of_magnitudes(vec3_sub(ray->origin, o)) + sum_of_magnitudes(o) + p->reach;
+    const double bound = along_ray(f, ray, hit->face, POINT_ERROR * all);
+    return hit->t <= bound ? bound : 0.0;
 }
 
 static quest quest_of(const forest *f, const forest_ray *ray)
@@ -91,11 +116,12 @@ static void take(quest *q, const forest_part *p, uint32_t copy, const mesh_hit *
 static void note_crossing(void *context, const mesh_hit *hit)
 {
     const visit *v = context;
-    if (!(hit->t > v->t_min))
+    if (!(hit->t > v->ray->t_min))
         return;
     const int64_t face = mesh_face_number(v->primitive, v->copy, hit->triangle);
     const forest_hit found = {hit->t, hit->u, hit->v, face, hit->facing};
-    v->found(v->context, &found);
+    if (at_start(v->f, v->ray, &found) == 0.0)
+        v->found(v->context, &found);
 }
 
 static const forest_part *part_of_instance(const forest *f, size_t instance)
@@ -175,16 +201,28 @@ static void nearest_of_copy(const forest *f, size_t instance, const forest_ray *
     }
 }
 
+static void nearest_one(const forest *f, const forest_ray *ray, forest_hit *hit)
+{
+    *hit = (forest_hit){.t = HUGE_VAL, .face = FACE_NONE};
+    quest q = quest_of(f, ray);
+    q.best = hit;
+    ask(&q);
+}
+
 static void nearest(const forest *f, const forest_ray *rays, int count, forest_hit *hits)
 {
     for (int i = 0; i < count; i++)
         hits[i] = (forest_hit){.t = HUGE_VAL, .face = FACE_NONE};
     for (size_t instance = 0; f->instance_count <= FEW_COPIES && instance < f->instance_count; instance++)
         nearest_of_copy(f, instance, rays, count, hits);
-    for (int i = 0; f->instance_count > FEW_COPIES && i < count; i++) {
-        quest q = quest_of(f, &rays[i]);
-        q.best = &hits[i];
-        ask(&q);
+    for (int i = 0; i < count; i++) {
+        if (f->instance_count > FEW_COPIES)
+            nearest_one(f, &rays[i], &hits[i]);
+        forest_ray later = rays[i];
+        for (double bound; hits[i].face != FACE_NONE && (bound = at_start(f, &rays[i], &hits[i])) > later.t_min;) {
+            later.t_min = bound;
+            nearest_one(f, &later, &hits[i]);
+        }
     }
 }
 
@@ -223,7 +261,7 @@ static void any(const forest *f, const forest_ray *rays, int count, bool *blocke
 
 static void each(const forest *f, const forest_ray *ray, forest_found *found, void *context)
 {
-    visit v = {.found = found, .context = context, .t_min = ray->t_min};
+    visit v = {.found = found, .context = context, .f = f, .ray = ray};
     quest q = quest_of(f, ray);
     q.any = true;
     q.all = &v;
