@@ -158,7 +158,7 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     const double wall = random_gap(seed), least = fmin(fmin(shape->radius, shape->height),
                                                        shape->kind == SHAPE_BOX ? smallest(shape->size) : 1.0);
     /* scaled, only these keep their distance all over */
-    const bool even = !s->mesh || is_mesh_named(s, "cube") || is_mesh_named(s, "ball");
+    const bool even = !is_mesh_named(s, "ring");
     const double step = !even ? 0.0 : random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
     shape->radius += step;
     shape->inner_radius += 0.5 * step;
@@ -196,7 +196,7 @@ static inline law_solid random_solid(const law_scene *w, int number, uint64_t *s
     const int relation = random_below(seed, 8);
     if (base && relation < 3 && flat_half(base, &middle) > 0.0)
         stack_on(&s, base, seed);
-    else if (base && relation < 5)
+    else if (base && relation < 5 && !is_mesh_named(base, "hills")) /* two open surfaces at one place: either is seen */
         nest_in(&s, base, seed);
     else if (random_below(seed, 8) == 0)
         place_mesh(&s, seed);
