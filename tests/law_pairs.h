@@ -379,7 +379,11 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
     switch (which) {
     case LAW_UNMET: add_unmet(&p->b, &seed); break;
     case LAW_ORDER: permute(&p->b, &seed); break;
-    case LAW_SCALE: p->exponent = random_below(&seed, 41) - 20; break;
+    case LAW_SCALE:
+        take_blocks_away(&p->a); /* 2^20 times as large, they were beyond MESH_FAR */
+        p->b = p->a;
+        p->exponent = random_below(&seed, 41) - 20;
+        break;
     case LAW_MOTION:
         for (int i = 0; i < p->a.solid_count; i++)
             p->a.solid[i].checker = 0.0;

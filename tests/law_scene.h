@@ -157,9 +157,7 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     solid_shape *shape = &s->shape;
     const double wall = random_gap(seed), least = fmin(fmin(shape->radius, shape->height),
                                                        shape->kind == SHAPE_BOX ? smallest(shape->size) : 1.0);
-    /* scaled, only these keep their distance all over */
-    const bool even = !is_mesh_named(s, "ring");
-    const double step = !even ? 0.0 : random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
+    const double step = random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
     shape->radius += step;
     shape->inner_radius += 0.5 * step;
     shape->size = vec3_add(shape->size, vec3_make(2.0 * step, 2.0 * step, 2.0 * step));
@@ -169,8 +167,13 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     }
     if (shape->kind == SHAPE_PLANE)
         shape->position = in_frame_of(&base->shape, 0.0, step, 0.0);
-    shape->scale = vec3_scale(shape->scale, 1.0 + step);
-    shape->spacing = vec3_scale(shape->spacing, 1.0 + step);
+    if (is_mesh_named(s, "cube")) {
+        shape->scale = vec3_add(shape->scale, vec3_make(2.0 * step, 2.0 * step, 2.0 * step));
+        shape->spacing = vec3_add(shape->spacing, vec3_make(2.0 * step, 2.0 * step, 2.0 * step));
+    } else if (is_mesh_named(s, "ball") && step > 1e-9) { /* scaled, its wall is not even: wide, or none */
+        shape->scale = vec3_scale(shape->scale, 1.0 + step);
+        shape->spacing = vec3_scale(shape->spacing, 1.0 + step);
+    }
 }
 
 static inline void random_surface(law_solid *s, const law_scene *w, uint64_t *seed)
