@@ -63,8 +63,8 @@ static const char *solid_hint(const scene *s, const solid *owner, char text[HINT
 static double reach(const solid_shape *shape)
 {
     switch (shape->kind) {
-    case SHAPE_CYLINDER: return hypot(shape->radius * fmax(1.0, 1.0 / shape->m), shape->height);
-    case SHAPE_CUP: return hypot(shape->radius, shape->height);
+    case SHAPE_CYLINDER:
+    case SHAPE_CUP: return hypot(shape->radius * fmax(1.0, 1.0 / shape->m), shape->height);
     case SHAPE_BOX: return 0.5 * vec3_length(shape->size);
     case SHAPE_SPHERE: return shape->radius;
     case SHAPE_MESH:
