@@ -192,7 +192,7 @@ typedef struct cuvette_triangles {
 CUVETTE_API cuvette_status cuvette_scene_add_triangles(cuvette_scene *scene, const char *name, const cuvette_triangles *triangles,
                                                        cuvette_diagnostic *why);
 
-/* A texture: of a PNG, JPEG or PFM file, NAME.file; or of linear RGB floats of the caller's, which are copied, row by row from the top
+/* A texture: of a PNG, JPEG, PFM or 24-bit BMP file, NAME.file; or of linear RGB floats of the caller's, which are copied, row by row from the top
  * (repeated, trilinear). A material's or a solid's parameter `texture` names it. What was handed over as arrays is in the scene's
  * clones, but in no file that is written; setting a parameter of it lets go of it. */
 CUVETTE_API cuvette_status cuvette_scene_add_texture(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);

@@ -167,7 +167,7 @@ _cuvette()
         if [[ $current == -* ]]; then
             _cuvette_words --diff --json --help --usage --version
         else
-            _cuvette_files 'png|jpg|jpeg|pfm'
+            _cuvette_files 'png|jpg|jpeg|pfm|bmp'
         fi
         ;;
     realism)

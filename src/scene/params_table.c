@@ -183,7 +183,7 @@ static const param table[] = {
     COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
           "linear colour of a gradient at the horizon and below"),
     {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
-     "PNG, JPEG or PFM file, from the scene file's folder; makes the kind picture", NULL, ON_ALL,
+     "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder; makes the kind picture", NULL, ON_ALL,
      .offset = offsetof(background, picture_path)},
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of Phong's sum"),
 
@@ -232,13 +232,13 @@ static const param table[] = {
     {PARAM_MESH, "threads", PARAM_INT, "", 1, 1024, false, "1", "that move a slime; at most one for each 4096 masses is started", NULL, ON_SLIME,
      .offset = offsetof(mesh_entry, slime.threads), .is_how = true},
 
-    {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "", "PNG, JPEG or PFM file, from the scene file's folder", NULL, ON_ALL,
+    {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "", "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder", NULL, ON_ALL,
      .offset = offsetof(texture_entry, path)},
     CHOICE(PARAM_TEXTURE, texture_entry, filter, filter_words, "trilinear",
            "one texel, the four around the point, or these of two of a pyramid of smaller pictures"),
     CHOICE(PARAM_TEXTURE, texture_entry, wrap_u, wrap_words, "repeat", "what lies to the left and right of the picture"),
     CHOICE(PARAM_TEXTURE, texture_entry, wrap_v, wrap_words, "repeat", "what lies above and below it"),
-    CHOICE(PARAM_TEXTURE, texture_entry, space, space_words, "srgb", "what a PNG or JPEG file's numbers are: coded light, or light"),
+    CHOICE(PARAM_TEXTURE, texture_entry, space, space_words, "srgb", "what a PNG, JPEG or BMP file's numbers are: coded light, or light"),
 
     CHOICE(PARAM_LIGHT, light, kind, light_words, "point",
            "shines all around, within a cone, or in a cone from full on its axis to nothing at its edge, linear in the angle's cosine"),
