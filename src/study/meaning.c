@@ -140,6 +140,6 @@ bool meaning_difference(const meaning *there, const meaning *here, char *text, s
     if (!differs(there, here, &name) && !differs(here, there, &name))
         return false;
     const char *a = value_of(there, name), *b = value_of(here, name);
-    snprintf(text, size, "%.120s is %.80s there, and %.80s here", name, a ? a : "not said", b ? b : "not said");
+    snprintf(text, size, "%.120s is %.80s there, and %.80s here", name, a ? a : "not set", b ? b : "not set");
     return true;
 }
