@@ -120,6 +120,19 @@ static void the_first_definition_tells_differences(void **state)
     study_destroy(s);
 }
 
+/* Nothing that its program could not have set is of the first definition. */
+static void the_first_definition_ends_with_its_parameters(void **state)
+{
+    (void)state;
+    study *s = read_study(old_study);
+    uint64_t hash;
+    assert_int_equal(scene_set_assignment(s->base, "ball.tint_distance=2", NULL), STATUS_OK);
+    assert_false(definition_v1(s, &hash));
+    assert_int_equal(scene_set_assignment(s->base, "ball.tint_distance=1", NULL), STATUS_OK);
+    assert_true(definition_v1(s, &hash));
+    study_destroy(s);
+}
+
 /* --- what a definition is made of --- */
 
 static bool is_path_of(const scene *s, const char *name, place *at)
@@ -536,6 +549,7 @@ int main(void)
         cmocka_unit_test(the_reference_run_is_read),
         cmocka_unit_test(rows_of_the_first_definition_are_read),
         cmocka_unit_test(the_first_definition_tells_differences),
+        cmocka_unit_test(the_first_definition_ends_with_its_parameters),
         cmocka_unit_test(defaults_enter_no_definition),
         CASE(order_and_defaults_are_the_same_meaning),
         CASE(objects_count),
