@@ -23,8 +23,8 @@ typedef struct manifest_study {
     uint64_t files;                 /* of what the scene's files held; has_files: it is recorded */
 } manifest_study;
 
-/* Below root (base/below.h). STATUS_BAD_INPUT when it is damaged or tells less than that. manifest_study_free releases.
- * */
+/* Below root (base/below.h). STATUS_BAD_INPUT when it is damaged or tells less than that. manifest_study_free
+ * releases. */
 status manifest_read(const char *path, const char *root, manifest_study *out, diagnostic *why);
 void manifest_study_free(manifest_study *m);
 
