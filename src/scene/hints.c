@@ -5,8 +5,6 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { HINT_MAX = 256 };
-
 static bool is_lit(const material *m)
 {
     return m->diffuse > 0.0 || m->specular > 0.0;
@@ -33,30 +31,35 @@ static bool is_inside_medium(const scene *s, const solid *bubble)
     return false;
 }
 
-/* What the solid seems to lack, or NULL; text is room for it. */
-static const char *solid_hint(const scene *s, const solid *owner, char text[HINT_MAX])
+/* What a clear solid seems to lack. */
+static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    const char *problem = NULL;
-    if (m->transparency > 0.0 && s->render.integrator == INTEGRATOR_ZBUFFER) {
+    if (s->render.integrator == INTEGRATOR_ZBUFFER) {
         if (m->ambient == 0.0 && m->diffuse == 0.0) {
-            problem = "is transparent, and the depth buffer draws its surface: black but for highlights; set its diffuse";
+            note_give(taker, owner->name, "diffuse", "set its diffuse",
+                      "%s is transparent, and the depth buffer draws its surface: black but for highlights", owner->name);
         }
-    } else if (m->transparency > 0.0) {
-        if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !is_inside_medium(s, owner)) {
-            problem = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m)
-                          ? "is transparent with the index of what is around it: it bends no light; set its ior"
-                          : "is transparent with the index of what is around it: it is invisible; set its ior";
-        }
+    } else if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !is_inside_medium(s, owner)) {
+        const bool seen = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m);
+        note_give(taker, owner->name, "ior", "set its ior", "%s is transparent with the index of what is around it: it %s", owner->name,
+                  seen ? "bends no light" : "is invisible");
+    }
+}
+
+/* What the solid seems to lack. */
+static void hint_at_solid(const scene *s, const solid *owner, const note_taker *taker)
+{
+    const material *m = &owner->surface;
+    if (m->transparency > 0.0) {
+        hint_at_clear(s, owner, taker);
     } else if (m->medium != MEDIUM_IOR || m->ior != 1.0) {
-        problem = "has a refractive index but is opaque; set its transparency";
+        note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
+                  "%s has a refractive index but is opaque", owner->name);
     } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner)) {
-        problem = "is neither transparent, nor diffuse, nor lit: it is black; set its diffuse";
+        note_give(taker, owner->name, "diffuse", "set its diffuse", "%s is neither transparent, nor diffuse, nor lit: it is black",
+                  owner->name);
     }
-    if (problem) {
-        snprintf(text, HINT_MAX, "%s %s", owner->name, problem);
-    }
-    return problem ? text : NULL;
 }
 
 /* A radius about the position that the solid does not reach beyond. */
@@ -111,86 +114,80 @@ static const solid *find_cover(const scene *s, const solid *hidden)
     return inside >= ENOUGH ? cover : NULL;
 }
 
-static void hint_at_cover(const scene *s, const solid *hidden, void (*note)(void *context, const char *text), void *context)
+static void hint_at_cover(const scene *s, const solid *hidden, const note_taker *taker)
 {
     const solid *cover = find_cover(s, hidden);
+    char remedy[NOTE_TEXT_MAX];
     if (cover) {
-        char text[HINT_MAX];
-        snprintf(text, HINT_MAX, "%s lies wholly inside %s, which wins there and hides it; give %s the higher priority",
-                 hidden->name, cover->name, hidden->name);
-        note(context, text);
+        snprintf(remedy, sizeof remedy, "give %s the higher priority", hidden->name);
+        note_give(taker, hidden->name, "priority", remedy, "%s lies wholly inside %s, which wins there and hides it", hidden->name,
+                  cover->name);
     }
 }
 
 /* A law that is used outside the wavelengths where its medium was measured. */
-static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law,
-                          void (*note)(void *context, const char *text), void *context)
+static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law, const note_taker *taker)
 {
+    static const char remedy[] = "keep to these wavelengths, or give coefficients that reach further";
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
     const double low_nm = spectral ? VISIBLE_LOW_NM : s->render.lambda_nm, high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
     if (dispersion_covers(&law->law, low_nm, high_nm)) {
         return;
     }
-    char text[HINT_MAX];
     if (law->law.kind == DISPERSION_TABLE) {
-        snprintf(text, HINT_MAX, "%s: its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond", where,
-                 law->law.coefficient[0], law->law.coefficient[law->law.count - 2]);
+        note_give(taker, where, "coefficients", remedy, "its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond",
+                  law->law.coefficient[0], law->law.coefficient[law->law.count - 2]);
     } else {
-        snprintf(text, HINT_MAX, "%s: %s was measured from %g to %g nm only, and is extrapolated beyond", where, name, law->law.low_nm,
-                 law->law.high_nm);
+        note_give(taker, where, "medium", remedy, "%s was measured from %g to %g nm only, and is extrapolated beyond", name, law->law.low_nm,
+                  law->law.high_nm);
     }
-    note(context, text);
 }
 
 /* What is set and does nothing. */
-static void hint_at_idle(const solid *owner, void (*note)(void *context, const char *text), void *context)
+static void hint_at_idle(const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    char text[HINT_MAX];
     if (m->transparency == 0.0 && material_absorbs(m)) {
-        snprintf(text, HINT_MAX, "%s absorbs but is opaque; set its transparency", owner->name);
-        note(context, text);
+        note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m", "set its transparency",
+                  "%s absorbs but is opaque", owner->name);
     }
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE)) {
-        snprintf(text, HINT_MAX, "%s has coefficients but no law for them; set its medium to cauchy, sellmeier or table", owner->name);
-        note(context, text);
+        note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
+                  "%s has coefficients but no law for them", owner->name);
     }
 }
 
-static void hint_at_lights(const scene *s, void (*note)(void *context, const char *text), void *context)
+static void hint_at_lights(const scene *s, const note_taker *taker)
 {
     const bool path = s->render.integrator == INTEGRATOR_PATH;
     bool clear = false;
-    char text[HINT_MAX];
     for (size_t i = 0; i < s->solid_count; i++) {
         clear |= s->solids[i].visible && s->solids[i].surface.transparency > 0.0;
     }
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
         if (lamp->radius > 0.0 && !path) {
-            snprintf(text, HINT_MAX, "%s is lit as a point: its radius shows with render.integrator=path", lamp->name);
-            note(context, text);
+            note_give(taker, lamp->name, "radius", "set render.integrator=path, where its radius shows", "%s is lit as a point", lamp->name);
         } else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0) {
-            snprintf(text, HINT_MAX, "%s is a point, which random paths cannot find through clear solids: no caustics; give it a radius "
-                                     "and a reach", lamp->name);
-            note(context, text);
+            note_give(taker, lamp->name, "radius", "give it a radius and a reach",
+                      "%s is a point, which random paths cannot find through clear solids: no caustics", lamp->name);
         }
     }
 }
 
-void scene_range_hints(const scene *s, void (*note)(void *context, const char *text), void *context)
+void scene_range_hints(const scene *s, const note_taker *taker)
 {
     index_law law = surrounding_index_law(&s->background);
-    hint_at_range(s, "background", surrounding_words[s->background.medium], &law, note, context);
+    hint_at_range(s, "background", surrounding_words[s->background.medium], &law, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         if (one->visible && one->surface.transparency > 0.0 && material_index_law(&one->surface, "", &law, NULL) == STATUS_OK) {
-            hint_at_range(s, one->name, medium_words[one->surface.medium], &law, note, context);
+            hint_at_range(s, one->name, medium_words[one->surface.medium], &law, taker);
         }
     }
 }
 
-void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context)
+void scene_hints(const scene *s, const note_taker *taker)
 {
     size_t visible = 0, lit = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -198,22 +195,18 @@ void scene_hints(const scene *s, void (*note)(void *context, const char *text), 
         lit += s->solids[i].visible && is_lit(&s->solids[i].surface);
     }
     if (visible == 0) {
-        note(context, "no visible solids: the picture shows the background alone; add solids:");
+        note_give(taker, "solids", NULL, "add solids:", "no visible solids: the picture shows the background alone");
     }
     if (lit > 0 && s->light_count == 0) {
-        note(context, "no lights: opaque surfaces are dark but for their ambient light; add lights:");
+        note_give(taker, "lights", NULL, "add lights:", "no lights: opaque surfaces are dark but for their ambient light");
     }
-    hint_at_lights(s, note, context);
+    hint_at_lights(s, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
-        char text[HINT_MAX];
-        const char *hint = s->solids[i].visible ? solid_hint(s, &s->solids[i], text) : NULL;
-        if (hint) {
-            note(context, hint);
-        }
         if (s->solids[i].visible) {
-            hint_at_idle(&s->solids[i], note, context);
-            hint_at_cover(s, &s->solids[i], note, context);
+            hint_at_solid(s, &s->solids[i], taker);
+            hint_at_idle(&s->solids[i], taker);
+            hint_at_cover(s, &s->solids[i], taker);
         }
     }
-    scene_range_hints(s, note, context);
+    scene_range_hints(s, taker);
 }
