@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define RAYS_MAX 700000.0    /* of all images: some ten milliseconds */
+#define RAYS_MAX 400000.0    /* of all images: some ten milliseconds */
+#define MESH_RAY 10.0        /* rays that one among triangles costs */
 #define CHANGED_PIXELS 0.05  /* share of the pixels ... */
 #define CHANGED_VALUE 0.05   /* ... that change by more than this share of the brighter */
 #define SETTLED_PIXELS 0.002 /* fewer changed: deeper images are taken to be the same */
@@ -73,12 +74,12 @@ static double changed_share(const film *a, const film *b)
 /* The deepest image: *settled says that deeper ones would be the same, or nearly. */
 static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, diagnostic *why)
 {
-    const double before = p->spent;
+    const double most = p->made->solids->meshes ? RAYS_MAX / MESH_RAY : RAYS_MAX;
     status code = trace_image(p, 0, why);
     int still = 0;
     *last = 0;
     for (int d = 1; code == STATUS_OK && d <= DEEPER_MAX && depth + d <= COUNTERS_DEPTH_MAX; d++) {
-        if (p->spent - before > RAYS_MAX)
+        if (p->spent > most)
             return code;
         p->made->render.depth = depth + d;
         code = trace_image(p, d, why);
@@ -97,14 +98,15 @@ static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, d
 static void note_depth(const lint_room *room, const depth_probe *p, int depth, int last, bool settled)
 {
     const double share = changed_share(p->image[0], p->image[last]);
-    if (share <= CHANGED_PIXELS)
+    const double pixels = (double)p->image[0]->width * p->image[0]->height;
+    if (share <= CHANGED_PIXELS + 2.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / pixels)) /* the probe may be off by chance */
         return;
     int enough = 1;
     while (enough < last && changed_share(p->image[enough], p->image[last]) > CHANGED_PIXELS)
         enough++;
     char remedy[NOTE_TEXT_MAX];
     snprintf(remedy, sizeof remedy, "set render.depth=%d%s", depth + enough, settled || enough < last ? "" : " or more");
-    note_give(room->taker, "render", "depth", remedy, "a depth of %d is too small: more changes %.0f %% of the pixels by more than 5 %%", depth,
+    note_give(room->taker, "render", "depth", remedy, "a depth of %d is too small: more changes about %.0f %% of the pixels by more than 5 %%", depth,
               100.0 * share);
 }
 

@@ -5,15 +5,23 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { PROBE_PIXELS = 3072 };
+enum { PROBE_PIXELS = 2400, PROBE_PIXELS_MESHES = 800 };
+
+static bool has_meshes(const scene *s)
+{
+    bool any = false;
+    for (size_t i = 0; i < s->solid_count; i++)
+        any |= s->solids[i].visible && s->solids[i].shape.kind == SHAPE_MESH;
+    return any;
+}
 
 /* As small as the probe image is to be, of the same shape. */
-static void shrink(render_settings *r)
+static void shrink(render_settings *r, double most)
 {
     const double pixels = (double)r->width * (double)r->height;
-    if (pixels <= PROBE_PIXELS)
+    if (pixels <= most)
         return;
-    const double scale = sqrt(PROBE_PIXELS / pixels);
+    const double scale = sqrt(most / pixels);
     r->width = (int64_t)fmax(1.0, round((double)r->width * scale));
     r->height = (int64_t)fmax(1.0, round((double)r->height * scale));
 }
@@ -36,7 +44,7 @@ static scene *small_copy(const scene *s)
     if (!copy)
         return NULL;
     render_settings *r = &copy->render;
-    shrink(r);
+    shrink(r, has_meshes(s) ? PROBE_PIXELS_MESHES : PROBE_PIXELS);
     r->samples = 1;
     r->spectrum = SPECTRUM_RGB;
     r->polarisation = 0;

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { LATTICE_LEAST = 8, LATTICE_MOST = 48, LINES_MAX = 200000 };
+enum { LATTICE_LEAST = 8, LATTICE_MOST = 32, LINES_MAX = 200000 };
 #define GAP_SHARE 1e-3       /* of the thinner neighbour: a gap under it is a narrow one */
 #define PATCH_SHARE 0.25     /* of the thinner neighbour: a narrow gap is as wide as that at the least */
 #define OVERLAP_SHARE 1e-6   /* of the thinner neighbour: what overlaps less only touches */
