@@ -1,4 +1,5 @@
 #include "scene/cover.h"
+#include "scene/camera.h"
 
 #include <math.h>
 
@@ -160,19 +161,55 @@ static bool contains_all(const solid_shape *c, const covered *h)
     return false;
 }
 
-/* Both of one scene. */
-static bool wins(const solid *winner, const solid *loser)
+bool scene_wins(const solid *winner, const solid *loser)
 {
     return winner != loser && winner->visible &&
            (winner->priority > loser->priority || (winner->priority == loser->priority && winner < loser));
 }
 
+static covered measured(const scene *s, const solid *owner)
+{
+    const mesh_entry *entry = owner->shape.kind == SHAPE_MESH ? scene_find_mesh(s, owner->mesh) : NULL;
+    return (covered){&owner->shape, entry ? entry->data : NULL, rotation_from_deg(owner->shape.rotation_deg)};
+}
+
 const solid *scene_cover(const scene *s, const solid *hidden)
 {
-    const mesh_entry *entry = hidden->shape.kind == SHAPE_MESH ? scene_find_mesh(s, hidden->mesh) : NULL;
-    const covered h = {&hidden->shape, entry ? entry->data : NULL, rotation_from_deg(hidden->shape.rotation_deg)};
+    const covered h = measured(s, hidden);
     for (size_t i = 0; i < s->solid_count; i++)
-        if (wins(&s->solids[i], hidden) && contains_all(&s->solids[i].shape, &h))
+        if (scene_wins(&s->solids[i], hidden) && contains_all(&s->solids[i].shape, &h))
             return &s->solids[i];
     return NULL;
+}
+
+/* The most of direction . p, of a plane along its own normal too. */
+static double limit_along(const covered *h, vec3 direction)
+{
+    if (h->shape->kind != SHAPE_PLANE)
+        return farthest_along(h, direction);
+    const vec3 up = axis_of(&h->turn, 1);
+    return vec3_dot(up, direction) >= 1.0 - COVER_SLACK ? vec3_dot(direction, h->shape->position) : INFINITY;
+}
+
+static bool apart_along(const covered *a, const covered *b, vec3 d)
+{
+    const vec3 back = vec3_scale(d, -1.0);
+    return limit_along(a, d) <= -limit_along(b, back) || limit_along(b, d) <= -limit_along(a, back);
+}
+
+bool scene_apart(const scene *s, const solid *a, const solid *b)
+{
+    const covered one = measured(s, a), two = measured(s, b);
+    bool apart = false;
+    for (int k = 0; k < 3 && !apart; k++)
+        apart = apart_along(&one, &two, vec3_make(k == 0, k == 1, k == 2)) || apart_along(&one, &two, axis_of(&one.turn, k)) ||
+                apart_along(&one, &two, axis_of(&two.turn, k));
+    return apart;
+}
+
+bool scene_is_behind_camera(const scene *s, const solid *owner)
+{
+    const camera_frame view = camera_frame_of(s);
+    const covered h = measured(s, owner);
+    return limit_along(&h, view.forward) < vec3_dot(view.forward, view.eye);
 }

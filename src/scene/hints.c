@@ -32,6 +32,19 @@ static bool is_inside_medium(const scene *s, const solid *bubble)
     return false;
 }
 
+/* Does it cut away from another one, so that one of the surroundings' index shows by what is missing there? */
+static bool cuts_another(const scene *s, const solid *cutter)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *other = &s->solids[i];
+        const bool seen = other->surface.transparency == 0.0 || !is_like_surroundings(s, &other->surface);
+        if (other->visible && seen && scene_wins(cutter, other) && !scene_apart(s, cutter, other)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* What a clear solid seems to lack. */
 static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
 {
@@ -41,7 +54,7 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
             note_give(taker, owner->name, "diffuse", "set its diffuse",
                       "%s is transparent, and the depth buffer draws its surface: black but for highlights", owner->name);
         }
-    } else if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !is_inside_medium(s, owner)) {
+    } else if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
         const bool seen = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m);
         note_give(taker, owner->name, "ior", "set its ior", "%s is transparent with the index of what is around it: it %s", owner->name,
                   seen ? "bends no light" : "is invisible");
@@ -82,7 +95,8 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_taker *
     } else if (m->medium != MEDIUM_IOR || m->ior != 1.0) {
         note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
                   "%s has a refractive index but is opaque", owner->name);
-    } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner)) {
+    } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner) &&
+               !scene_is_behind_camera(s, owner)) { /* a black board behind the eye keeps reflections dark */
         note_give(taker, owner->name, "diffuse", "set its diffuse", "%s is neither transparent, nor diffuse, nor lit: it is black",
                   owner->name);
     }

@@ -55,6 +55,7 @@ function items(lab) {
   const behind = lab.wanted > picture.generation || !picture.final;
   return [
     element('span', {class: behind ? 'lamp busy' : 'lamp', role: 'img', 'aria-label': behind ? 'rendering' : 'final', title: behind ? 'rendering' : 'final picture'}),
+    noted ? notesButton(noted, lab) : null,
     fact('pass', picture.passes ? `${picture.pass} of ${picture.passes}` : String(picture.pass)),
     fact('size', picture.width === picture.full_width ? `${picture.full_width} × ${picture.full_height}`
       : `${picture.width} × ${picture.height} of ${picture.full_width} × ${picture.full_height}`),
@@ -63,7 +64,6 @@ function items(lab) {
     rays && wall ? fact('rays/s', count(rays / wall)) : null,
     Number.isFinite(picture.noise) ? fact('noise', digits(picture.noise, 3), 'standard error of random paths') : null,
     picture.film_hash ? fact('film', hash(picture.film_hash, lab), 'hash of the film; click to copy') : null,
-    noted ? notesButton(noted, lab) : null,
     fact('generation', String(picture.generation), state && state.generation > picture.generation ? `the scene is at ${state.generation}` : null),
   ];
 }
