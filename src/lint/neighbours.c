@@ -149,6 +149,15 @@ static int patch_step(const pair *p, int axis)
     return (int)fmin(p->lattice, fmax(1.0, ceil(0.5 * PATCH_SHARE * p->thinner / apart)));
 }
 
+/* The narrowest of an axis' gaps. */
+static double narrowest(const pair *p)
+{
+    double least = HUGE_VAL;
+    for (int i = 0; i < p->lattice * p->lattice; i++)
+        least = p->gap[i] > 0.0F ? fmin(least, p->gap[i]) : least;
+    return least;
+}
+
 /* The width of the gap along an axis; 0 for none. */
 static double find_patch(const pair *p, int axis)
 {
@@ -156,7 +165,7 @@ static double find_patch(const pair *p, int axis)
     for (int i = step_u; i < p->lattice - step_u; i++)
         for (int j = step_v; j < p->lattice - step_v; j++)
             if (p->gap[i * p->lattice + j] > 0.0F && is_patch(p, axis, i, j, step_u, step_v))
-                return p->gap[i * p->lattice + j];
+                return narrowest(p);
     return 0.0;
 }
 
@@ -173,7 +182,7 @@ static void note_gap(const pair *p, double gap)
     const neighbour *thin = p->a->thickness <= p->b->thickness ? p->a : p->b;
     const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said, *second = first == p->a->said ? p->b->said : p->a->said;
     note_give(p->room->taker, second->name, NULL, "let them touch exactly, or overlap, where the higher priority wins; or set them further apart",
-              "between %s and %s is a gap of %.3g, less than a thousandth of the thickness of %s (%.3g): light sees a film there", first->name,
+              "between %s and %s is a gap of about %.2g, less than a thousandth of the thickness of %s (%.3g): light sees a film there", first->name,
               second->name, gap, thin->said->name, thin->thickness);
 }
 
