@@ -36,11 +36,17 @@ static bool is_in(const body *b, uint64_t inside)
     return (inside >> b->outside & 1) && !(b->hollow >= 0 && (inside >> b->hollow & 1));
 }
 
+/* How deep an overlap is at the least. */
+static double deep_enough(const pair *p)
+{
+    return fmax(OVERLAP_SHARE * p->thinner, CONTACT_SHARE * p->extent);
+}
+
 /* Are both at the point, and so far about it? */
 static bool overlap_at(const pair *p, vec3 point)
 {
     const arrangement *a = p->room->made->solids;
-    const double far = OVERLAP_SHARE * p->thinner;
+    const double far = deep_enough(p);
     for (int i = 0; i < 6; i++) {
         vec3 at = point;
         *component(&at, i / 2) += i % 2 ? far : -far;
@@ -77,7 +83,7 @@ static bool spans_overlap(const pair *p, const line *l, const line_spans *a, con
     for (int i = 0; i < a->count; i++)
         for (int k = 0; k < b->count; k++) {
             const double in = fmax(a->in[i], b->in[k]), out = fmin(a->out[i], b->out[k]);
-            if (out - in > 2.0 * OVERLAP_SHARE * p->thinner && isfinite(in) && isfinite(out) && overlap_at(p, line_at(l, 0.5 * (in + out))))
+            if (out - in > 2.0 * deep_enough(p) && isfinite(in) && isfinite(out) && overlap_at(p, line_at(l, 0.5 * (in + out))))
                 return true;
         }
     return false;
