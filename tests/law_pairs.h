@@ -214,6 +214,7 @@ static inline void cut(law_pair *p, uint64_t *seed)
     if (s->opaque || s->checker > 0.0 || (s->shape.kind != SHAPE_BOX && s->shape.kind != SHAPE_CYLINDER))
         *s = clear_box(w, s->number, seed);
     s->number = LAW_ADDED + 1; /* so that no shrinking takes it away */
+    s->reflectivity = 0.0; /* where coated pieces meet, their coating is seen */
     w->solid[at] = *s;
     insert_solid(w, at + 1, *s);
     law_solid *first = &w->solid[at], *second = &w->solid[at + 1];
@@ -266,6 +267,7 @@ static inline law_solid of_the_surroundings(const law_scene *w, uint64_t *seed)
     s.opaque = false;
     s.ior = w->outside_ior;
     s.absorb_per_m = w->outside_absorb_per_m;
+    s.tint = vec3_make(1.0, 1.0, 1.0);
     s.reflectivity = s.checker = 0.0;
     return s;
 }
@@ -350,12 +352,17 @@ static const char *const fresnel_settings[] = {
     "depth: 3, shadows: opaque, samples: 4",
 };
 
-/* Without large blocks: where one is near, gaps of 1e-12 are not resolved, or only from some places. */
+/* Without large blocks: where one is near, gaps of 1e-12 are not resolved, or only from some places. What stood on one comes down. */
 static inline void take_blocks_away(law_scene *w)
 {
-    for (int i = 0; i < w->solid_count; i++)
-        if (w->solid[i].mesh && w->solid[i].shape.scale.x > 2.0)
-            w->solid[i].shape.scale = vec3_make(0.5, 0.5, 0.5), w->solid[i].shape.position.y = -0.55;
+    for (int i = 0; i < w->solid_count; i++) {
+        solid_shape *shape = &w->solid[i].shape;
+        const double away = vec3_length(shape->position);
+        if (w->solid[i].mesh && shape->scale.x > 2.0)
+            shape->scale = vec3_make(0.5, 0.5, 0.5), shape->position = vec3_make(0.0, -0.55, 0.0);
+        else if (away > 20.0)
+            shape->position = vec3_scale(shape->position, 1.0 / away);
+    }
 }
 
 /* false where the law cannot be tried on such a scene. */
