@@ -37,9 +37,11 @@ static void what_is_forgotten_is_hinted_at(void **state)
     expect_hints("{}", none);
     expect_hints("solids: {ball: {shape: sphere, visible: no}}", none);
     expect_hints("solids: {ball: {shape: sphere, diffuse: 1}, egg: {shape: sphere, specular: 1, radius: 2}}",
-                 "no lights: opaque surfaces are dark but for their ambient light; add lights:\n");
+                 "no lights: opaque surfaces are dark but for their ambient and emitted light; add lights:\n");
     expect_hints(LIT "solids: {ball: {shape: sphere}}",
                  "ball is neither transparent, nor diffuse, nor lit: it is black; set its diffuse\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, emission: 0.5}}", "");
+    expect_hints("render: {integrator: path}\nsolids: {ball: {shape: sphere, diffuse: 1}, egg: {shape: sphere, emission: 1, radius: 2}}", "");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1}}",
                  "ball is transparent with the index of what is around it: it is invisible; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, specular: 0.5}}",

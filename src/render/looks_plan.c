@@ -34,6 +34,7 @@ static surface_look face_look_of(const scene *s, const material *own, const char
         l.surface.diffuse = given->diffuse;
         l.surface.ambient = own->ambient > 0.0 ? own->ambient : 0.1;
         l.surface.specular = given->specular;
+        l.surface.emission = given->emission > 0.0 ? given->emission : own->emission;
         l.surface.shininess = given->shininess;
         l.picture = given->picture;
     }

@@ -203,8 +203,7 @@ static void cut(tracer *t, int k, const continuation *c)
     COUNT(t->counters.cut_depth_throughput[0] += counters_cut_units(r));
     COUNT(t->counters.cut_depth_throughput[1] += counters_cut_units(gr));
     COUNT(t->counters.cut_depth_throughput[2] += counters_cut_units(b));
-    if (t->target.scene->render.beyond == BEYOND_SKY)
-        shading_expose_sky(t, g->ticket[k], c->direction, r, gr, b);
+    shading_expose_beyond(t, g->ticket[k], c->direction, r, gr, b);
 }
 
 static void go_on(tracer *t, int k, int depth, const continuation *c)

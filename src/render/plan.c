@@ -1,6 +1,6 @@
 #include "render/plan.h"
 
-#include "base/elementary.h"
+#include "render/sky.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -204,6 +204,8 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     else
         p->eye_inside = arrangement_inside(p->solids, p->view.eye);
     p->sky = &s->background;
+    if (s->render.beyond == BEYOND_MEAN)
+        p->sky_mean = sky_mean(p->sky);
     p->lights = s->lights;
     p->light_count = (int)s->light_count;
     p->solid_shadows = s->render.shadows == SHADOWS_OPAQUE;

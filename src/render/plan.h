@@ -39,6 +39,7 @@ typedef struct plan {
     render_settings render;
     bool solid_shadows;         /* every solid blocks a light: it is asked for, or what comes through is found by random paths */
     const background *sky;
+    vec3 sky_mean;              /* over all directions; worked out where render.beyond is mean */
     const light *lights;
     light_cone *cones;          /* by light; of a point light it means nothing */
     int light_count;

@@ -96,6 +96,8 @@ void shading_expose(tracer *t, int64_t ticket, double r, double g, double b);
 
 /* Adds what the sky sends along a direction, weighted. */
 void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb);
+/* What a branch that the depth limit cuts off brings: render.beyond. */
+void shading_expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb);
 
 /* Local light of the lights and the ambient, weighted, of the gathered group. */
 void local_light(tracer *t, int rank);

@@ -50,7 +50,7 @@ static const char *solid_hint(const scene *s, const solid *owner, char text[HINT
         }
     } else if (m->medium != MEDIUM_IOR || m->ior != 1.0) {
         problem = "has a refractive index but is opaque; set its transparency";
-    } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner)) {
+    } else if (m->ambient == 0.0 && m->emission == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner)) {
         problem = "is neither transparent, nor diffuse, nor lit: it is black; set its diffuse";
     }
     if (problem) {
@@ -192,16 +192,18 @@ void scene_range_hints(const scene *s, void (*note)(void *context, const char *t
 
 void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context)
 {
-    size_t visible = 0, lit = 0;
+    size_t visible = 0, lit = 0, shining = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
         visible += s->solids[i].visible != 0;
         lit += s->solids[i].visible && is_lit(&s->solids[i].surface);
+        shining += s->solids[i].visible && s->solids[i].surface.emission > 0.0;
     }
     if (visible == 0) {
         note(context, "no visible solids: the picture shows the background alone; add solids:");
     }
-    if (lit > 0 && s->light_count == 0) {
-        note(context, "no lights: opaque surfaces are dark but for their ambient light; add lights:");
+    const bool emitters_light = shining > 0 && s->render.integrator == INTEGRATOR_PATH;
+    if (lit > 0 && s->light_count == 0 && !emitters_light) {
+        note(context, "no lights: opaque surfaces are dark but for their ambient and emitted light; add lights:");
     }
     hint_at_lights(s, note, context);
     for (size_t i = 0; i < s->solid_count; i++) {

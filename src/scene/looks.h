@@ -10,7 +10,7 @@ typedef struct face_look {
     char name[SCENE_NAME_MAX + 1]; /* cut off where it is longer; "" for none */
     bool given;             /* the file says something; else the solid's own surface counts */
     vec3 color;             /* linear RGB, at most 1 */
-    double diffuse, specular, shininess;
+    double diffuse, specular, shininess, emission;
     const texture *picture; /* one owner of it; NULL for none */
 } face_look;
 
