@@ -177,7 +177,7 @@ void arrangement_surroundings_absorb(arrangement *a)
     a->bodies[0].absorbs = a->absorbs = true;
 }
 
-static bool primitive_contains(const primitive *p, vec3 point)
+bool primitive_contains(const primitive *p, vec3 point)
 {
     vec3 q = mat3_apply_transposed(p->rotation, vec3_sub(point, p->origin));
     switch (p->kind) {

@@ -89,6 +89,9 @@ void arrangement_surroundings_absorb(arrangement *a);
 /* The set of primitives that contain a point, bit by bit, by the primitives' own definitions (surfaces included). */
 uint64_t arrangement_inside(const arrangement *a, vec3 point);
 
+/* Does it contain the point? No mesh does here. */
+bool primitive_contains(const primitive *p, vec3 point);
+
 /* The rank of the body whose surface an interface between two ranks is: an opaque body's if either is opaque (the one behind, if
  * both are), else that of the higher rank. */
 int arrangement_surface(const arrangement *a, int before, int after);

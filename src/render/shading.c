@@ -274,13 +274,17 @@ static void branch(tracer *t, int depth, bool opaque)
     const material *m = &t->look->surface;
     group *g = &t->gathered;
     branch_group *b = &t->branches;
-    if (opaque && m->reflectivity == 0.0)
+    if (opaque && (m->reflectivity == 0.0 || t->target.depths))
         return;
     shading_branches(t, opaque);
     if (!opaque)
         COUNT(t->counters.total_internal += (uint64_t)b->total);
     if (depth == t->depth_limit) {
         cut_branches(t);
+        return;
+    }
+    if (t->target.depths) {
+        drawn_branches(t, depth);
         return;
     }
     int reflected = put_children_in_line(t, depth + 1, b->rx, b->ry, b->rz, b->reflect, g->inside_before);

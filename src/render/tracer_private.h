@@ -25,6 +25,7 @@ typedef struct drawn_work {
     zbuffer_square square;
     int x[ROW], y[ROW];
     uint32_t number[ROW];
+    double vx[ROW], vy[ROW], vz[ROW]; /* and the straight view's direction there, of a frame with layers */
     vec3 at[ROW];            /* of the gathered group: where a texture is looked up that runs straight across the picture */
 } drawn_work;
 
@@ -88,7 +89,8 @@ int mesh_next_look(const tracer *t, int *list, int count, int *slot);
 void texture_colors(tracer *t, const primitive *surface);
 
 /* zbuffer_shading.c: t->hits of a batch of camera rays, as drawn; texture points or coordinates of the gathered group straight across the picture. */
-void drawn_hits(tracer *t, const ray_queue *q, int first, const ray_batch *rays);
+void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
+void drawn_branches(tracer *t, int depth);
 void drawn_straighten(tracer *t, const int *list);
 
 /* Adds radiance to a ticket's pixel. Of a spectral film the three channels are one: radiance at the ticket's wavelength. */
@@ -114,6 +116,7 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
 void absorption_spare_sky(tracer *t);
 void absorption_begin(tracer *t, const int64_t *tickets, int count);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
+double absorption_left(double optical_depth);
 
 /* spectral.c: the gathered group's indices, colours and light at each ray's wavelength. */
 void spectral_indices(tracer *t, const int *list);

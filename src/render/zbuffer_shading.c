@@ -53,12 +53,17 @@ static void note_nothing(tracer *t, int i)
     t->hits.surface[i] = 0;
 }
 
-static void note_hit(tracer *t, int i, const screen_triangle *s, vec3 d)
+static met met_by(const zbuffer *z, const screen_triangle *s, vec3 d)
+{
+    const drawn_part *p = &z->parts[s->part];
+    return p->plane ? met_plane(&z->scene->solids->primitives[p->met], &z->scene->view, d) : met_triangle(p, s, &z->scene->view, d);
+}
+
+static void note_hit(tracer *t, int i, const screen_triangle *s, met m)
 {
     const zbuffer *z = t->target.depths;
     const drawn_part *p = &z->parts[s->part];
     const primitive *surface = &z->scene->solids->primitives[p->met];
-    const met m = p->plane ? met_plane(surface, &z->scene->view, d) : met_triangle(p, s, &z->scene->view, d);
     hit_batch *h = &t->hits;
     h->t[i] = m.t;
     h->crossed[i] = p->met;
@@ -70,22 +75,98 @@ static void note_hit(tracer *t, int i, const screen_triangle *s, vec3 d)
     t->meshes->scratch.hit[i] = (forest_hit){m.t, m.u, m.v, face, m.leaving ? FACING_BACK : FACING_FRONT};
 }
 
-void drawn_hits(tracer *t, const ray_queue *q, int first, const ray_batch *rays)
+/* The straight views of a batch, whose directions may be bent: through the points of the grid. */
+static void straight_views(tracer *t, int count)
+{
+    const zbuffer *z = t->target.depths;
+    const camera_frame *view = &z->scene->view;
+    drawn_work *w = t->drawn;
+    double u[ROW], v[ROW];
+    for (int i = 0; i < count; i++) {
+        u[i] = (w->x[i] + 0.5) / z->units_x - view->half_width;
+        v[i] = view->half_height - (w->y[i] + 0.5) / z->units_y;
+    }
+    t->shade->camera(view, count, u, v, w->vx, w->vy, w->vz);
+}
+
+/* The straight way to a layer goes through one medium, which takes its share of the light. */
+static void dim(const plan *p, ray_queue *q, int at, int rank, double length)
+{
+    if (rank == 0 || !p->solids->bodies[rank].absorbs)
+        return;
+    const vec3 a = p->absorption[rank];
+    q->wr[at] *= absorption_left(a.x * length), q->wg[at] *= absorption_left(a.y * length), q->wb[at] *= absorption_left(a.z * length);
+}
+
+/* The ray number `at`, which goes on from the layer before or from the eye, meets the next one of its point's list: where the straight view does, but
+ * along its own direction, as if it had set out towards that place. */
+static void note_layer(tracer *t, ray_queue *q, int at, int i, const drawn_layer *l)
+{
+    const zbuffer *z = t->target.depths;
+    const vec3 from = vec3_make(q->ox[at], q->oy[at], q->oz[at]), bent = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
+    if (l->number == 0) {
+        const double for_ever = 1e100;
+        note_nothing(t, i);
+        dim(z->scene, q, at, l->before, for_ever);
+        return;
+    }
+    const screen_triangle *s = &z->triangles[l->number - 1];
+    const vec3 view = vec3_make(t->drawn->vx[i], t->drawn->vy[i], t->drawn->vz[i]);
+    met m = met_by(z, s, view);
+    const vec3 place = vec3_add(z->scene->view.eye, vec3_scale(view, m.t));
+    m.t = greater(vec3_dot(vec3_sub(place, from), view), 0.0);
+    m.leaving = l->ends ? m.leaving : l->leaving;
+    const vec3 set_out = vec3_sub(place, vec3_scale(bent, m.t));
+    q->ox[at] = set_out.x, q->oy[at] = set_out.y, q->oz[at] = set_out.z;
+    note_hit(t, i, s, m);
+    t->hits.before[i] = l->before;
+    t->hits.after[i] = l->after;
+    t->hits.surface[i] = arrangement_surface(z->scene->solids, l->before, l->after);
+    dim(z->scene, q, at, l->before, m.t);
+}
+
+/* All rays of a depth have passed as many layers. */
+void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
     const zbuffer *z = t->target.depths;
     drawn_work *w = t->drawn;
+    uint32_t seen[ROW];
+    for (int i = 0; i < rays->count; i++)
+        seen[i] = z->seen[point_of(z, q->ticket[first + i], &w->x[i], &w->y[i])];
+    if (z->layered)
+        straight_views(t, rays->count);
     for (int i = 0; i < rays->count; i++) {
-        const uint32_t seen = z->seen[point_of(z, q->ticket[first + i], &w->x[i], &w->y[i])];
         t->hits.before[i] = t->hits.after[i] = 0;
         t->hits.inside_before[i] = t->hits.inside_after[i] = 0;
         if (t->meshes)
             t->meshes->scratch.hit[i].face = FACE_NONE;
-        w->number[i] = seen - 1;
-        if (seen)
-            note_hit(t, i, &z->triangles[seen - 1], vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]));
-        else
+        if (z->layered && seen[i] & SEEN_LAYERS) {
+            const uint32_t place = (seen[i] & ~SEEN_LAYERS) + (uint32_t)depth;
+            const drawn_layer *l = &z->blocks[place / BLOCK_LAYERS][place % BLOCK_LAYERS];
+            w->number[i] = l->number - 1;
+            note_layer(t, q, first + i, i, l);
+            continue;
+        }
+        w->number[i] = seen[i] - 1;
+        if (seen[i]) {
+            const screen_triangle *s = &z->triangles[seen[i] - 1];
+            note_hit(t, i, s, met_by(z, s, vec3_make(rays->dx[i], rays->dy[i], rays->dz[i])));
+        } else {
             note_nothing(t, i);
+        }
     }
+}
+
+/* What a clear surface does with the view: the sky's light along the reflected direction, and on to the next layer with what is left. */
+void drawn_branches(tracer *t, int depth)
+{
+    const group *g = &t->gathered;
+    const branch_group *b = &t->branches;
+    for (int i = 0; i < g->count; i++)
+        if (b->reflect[i] > 0.0)
+            shading_expose_sky(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * b->reflect[i], g->wg[i] * b->reflect[i],
+                               g->wb[i] * b->reflect[i]);
+    put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
 }
 
 /* Weights straight across the picture, of the polygon that the planes left: not what they are in space, unless all corners are equally far. */
