@@ -182,7 +182,8 @@ void local_light(tracer *t, int rank)
             continue;
         }
         for (int i = 0; i < t->gathered.count; i++)
-            expose(t, t->gathered.ticket[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
+            if (t->lit.shows[i])
+                expose(t, t->gathered.ticket[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
     }
 }
 

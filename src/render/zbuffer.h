@@ -28,7 +28,7 @@ status zbuffer_sort(zbuffer *z, diagnostic *why);
 
 /* What drawing needs for itself: one for each thread that draws. */
 enum { SQUARE_POINTS = 64 /* across */ };
-typedef struct drawn_fragment { double nearness; uint32_t number; int32_t next; } drawn_fragment; /* next of the same point, or -1 */
+typedef struct drawn_fragment { double nearness; uint32_t number; int32_t next, part; } drawn_fragment; /* next of the same point, or -1 */
 typedef struct zbuffer_square {
     double nearness[SQUARE_POINTS * SQUARE_POINTS];
     int32_t newest[SQUARE_POINTS * SQUARE_POINTS]; /* by point: fragment, or -1 */

@@ -38,7 +38,7 @@ void zbuffer_add_fragment(zbuffer *z, zbuffer_square *s, int point, double nearn
         atomic_store(&z->out_of_memory, true);
         return;
     }
-    s->fragments[s->count] = (drawn_fragment){nearness, number, s->newest[point]};
+    s->fragments[s->count] = (drawn_fragment){nearness, number, s->newest[point], z->triangles[number].part};
     s->newest[point] = (int32_t)s->count++;
 }
 
@@ -84,15 +84,10 @@ static int collect(zbuffer *z, zbuffer_square *s, int point)
 
 typedef struct layer_list { int count; drawn_layer layer[LAYERS_MAX]; } layer_list;
 
-static const primitive *met_by(const zbuffer *z, uint32_t number)
-{
-    return &z->scene->solids->primitives[z->parts[z->triangles[number].part].met];
-}
-
 /* Sets of bodies have the bit r - 1 for the rank r: the medium is that of the highest. */
-static uint64_t bit_of(const zbuffer *z, uint32_t number)
+static uint64_t bit_of(const zbuffer *z, const drawn_fragment *f)
 {
-    return (uint64_t)1 << (met_by(z, number)->rank - 1);
+    return (uint64_t)1 << (z->parts[f->part].at.rank - 1);
 }
 
 static int highest(uint64_t inside)
@@ -107,7 +102,7 @@ static int cross(const zbuffer *z, const drawn_fragment *f, int count, uint64_t 
 {
     int n = 0;
     do {
-        const uint64_t bit = bit_of(z, f[n].number);
+        const uint64_t bit = bit_of(z, &f[n]);
         *inside = z->skins & bit ? *inside | bit : *inside ^ bit;
         n++;
     } while (n < count && f[0].nearness - f[n].nearness <= TOGETHER * f[0].nearness);
@@ -121,11 +116,10 @@ static drawn_layer layer_of(const zbuffer *z, const drawn_fragment *f, int count
     const int rank = arrangement_surface(a, before, after);
     int chosen = 0;
     for (int k = count - 1; k >= 0; k--)
-        chosen = met_by(z, f[k].number)->rank == rank ? k : chosen;
-    const uint32_t number = f[chosen].number;
-    const primitive *met = met_by(z, number);
-    const bool was_in = inside & bit_of(z, number), hollow = a->bodies[met->rank].hollow == z->parts[z->triangles[number].part].met;
-    return (drawn_layer){number + 1, (uint8_t)before, (uint8_t)after, was_in != hollow, a->bodies[rank].opaque};
+        chosen = z->parts[f[k].part].at.rank == rank ? k : chosen;
+    const drawn_fragment *c = &f[chosen];
+    const bool was_in = inside & bit_of(z, c), hollow = a->bodies[z->parts[c->part].at.rank].hollow == z->parts[c->part].met;
+    return (drawn_layer){c->number + 1, (uint8_t)before, (uint8_t)after, was_in != hollow, a->bodies[rank].opaque};
 }
 
 /* Every layer but the last is a clear interface, no more of them than the depth limit lets through; the last one is what ends the view. */
@@ -149,7 +143,7 @@ static void list_layers(const zbuffer *z, const drawn_fragment *f, int count, ui
         k += together;
     }
     if (l->count < most) {
-        const int after = base ? met_by(z, base - 1)->rank : before;
+        const int after = base ? z->parts[z->triangles[base - 1].part].at.rank : before;
         l->layer[l->count++] = (drawn_layer){base, (uint8_t)before, (uint8_t)after, false, true};
     }
 }

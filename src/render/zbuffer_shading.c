@@ -3,13 +3,16 @@
 #include "render/zbuffer_private.h"
 
 #include "base/lanes.h"
+#include <string.h>
 
 /* The point of the grid that a ray goes through. */
 static size_t point_of(const zbuffer *z, int64_t ticket, int *x, int *y)
 {
-    const int64_t pixel = ticket_pixel(ticket), sample = ticket_sample(ticket), width = z->width / z->points;
-    *x = (int)(pixel % width * z->points + sample % z->points);
-    *y = (int)(pixel / width * z->points + sample / z->points);
+    const uint32_t pixel = (uint32_t)ticket_pixel(ticket), sample = (uint32_t)ticket_sample(ticket); /* short divisions are faster */
+    const uint32_t points = (uint32_t)z->points, width = (uint32_t)z->scene->render.width;
+    const uint32_t row = pixel / width, line = points == 1 ? 0 : sample / points;
+    *x = (int)((pixel - row * width) * points + sample - line * points);
+    *y = (int)(row * points + line);
     return (size_t)*y * (size_t)z->width + (size_t)*x;
 }
 
@@ -81,12 +84,20 @@ static void straight_views(tracer *t, int count)
     const zbuffer *z = t->target.depths;
     const camera_frame *view = &z->scene->view;
     drawn_work *w = t->drawn;
+    const double across = 1.0 / z->units_x, down = 1.0 / z->units_y;
     double u[ROW], v[ROW];
     for (int i = 0; i < count; i++) {
-        u[i] = (w->x[i] + 0.5) / z->units_x - view->half_width;
-        v[i] = view->half_height - (w->y[i] + 0.5) / z->units_y;
+        u[i] = (w->x[i] + 0.5) * across - view->half_width;
+        v[i] = view->half_height - (w->y[i] + 0.5) * down;
     }
     t->shade->camera(view, count, u, v, w->vx, w->vy, w->vz);
+}
+
+/* A camera ray's own direction. */
+static void first_views(tracer *t, const ray_batch *rays)
+{
+    const size_t bytes = (size_t)rays->count * sizeof(double);
+    memcpy(t->drawn->vx, rays->dx, bytes), memcpy(t->drawn->vy, rays->dy, bytes), memcpy(t->drawn->vz, rays->dz, bytes);
 }
 
 /* The straight way to a layer goes through one medium, which takes its share of the light. */
@@ -133,7 +144,9 @@ void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *
     uint32_t seen[ROW];
     for (int i = 0; i < rays->count; i++)
         seen[i] = z->seen[point_of(z, q->ticket[first + i], &w->x[i], &w->y[i])];
-    if (z->layered)
+    if (depth == 0)
+        first_views(t, rays);
+    else
         straight_views(t, rays->count);
     for (int i = 0; i < rays->count; i++) {
         t->hits.before[i] = t->hits.after[i] = 0;
@@ -150,7 +163,7 @@ void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *
         w->number[i] = seen[i] - 1;
         if (seen[i]) {
             const screen_triangle *s = &z->triangles[seen[i] - 1];
-            note_hit(t, i, s, met_by(z, s, vec3_make(rays->dx[i], rays->dy[i], rays->dz[i])));
+            note_hit(t, i, s, met_by(z, s, vec3_make(w->vx[i], w->vy[i], w->vz[i])));
         } else {
             note_nothing(t, i);
         }
