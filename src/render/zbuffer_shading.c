@@ -49,6 +49,13 @@ static met met_triangle(const drawn_part *p, const screen_triangle *s, const cam
     return (met){vec3_dot(at, d), u, v, size < 0.0};
 }
 
+/* The same by the plane of inverse depths, where neither weights nor sides are wanted. */
+static met met_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
+{
+    const double near = lesser(greater(s->a * (x + 0.5) + (s->b * (y + 0.5) + s->c), s->least), s->most);
+    return (met){.t = 1.0 / (near * vec3_dot(z->scene->view.forward, d))};
+}
+
 static void note_nothing(tracer *t, int i)
 {
     t->hits.t[i] = HUGE_VAL;
@@ -123,7 +130,7 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, const drawn_layer
     }
     const screen_triangle *s = &z->triangles[l->number - 1];
     const vec3 view = vec3_make(t->drawn->vx[i], t->drawn->vy[i], t->drawn->vz[i]);
-    met m = met_by(z, s, view);
+    met m = l->ends || !z->parts[s->part].own ? met_by(z, s, view) : met_depth(z, s, t->drawn->x[i], t->drawn->y[i], view);
     const vec3 place = vec3_add(z->scene->view.eye, vec3_scale(view, m.t));
     m.t = greater(vec3_dot(vec3_sub(place, from), view), 0.0);
     m.leaving = l->ends ? m.leaving : l->leaving;
