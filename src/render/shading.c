@@ -329,6 +329,8 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
         mesh_surface(t, rank, list);
     else
         t->geometry->surface(surface, &rays, g->t, met, &g->points);
+    if (t->target.depths)
+        drawn_bend(t, list);
     const int owner = p->solids->bodies[rank].solid;
     COUNT(t->counters.hits[owner] += (uint64_t)count);
     if (depth == 0)

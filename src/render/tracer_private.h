@@ -25,6 +25,7 @@ typedef struct drawn_work {
     zbuffer_square square;
     int x[ROW], y[ROW];
     uint32_t number[ROW];
+    bool straight[ROW];      /* it meets a curved surface and looks straight on */
     double vx[ROW], vy[ROW], vz[ROW]; /* and the straight view's direction there, of a frame with layers */
     vec3 at[ROW];            /* of the gathered group: where a texture is looked up that runs straight across the picture */
 } drawn_work;
@@ -90,6 +91,7 @@ void texture_colors(tracer *t, const primitive *surface);
 
 /* zbuffer_shading.c: t->hits of a batch of camera rays, as drawn; texture points or coordinates of the gathered group straight across the picture. */
 void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
+void drawn_bend(tracer *t, const int *list);
 void drawn_branches(tracer *t, int depth);
 void drawn_straighten(tracer *t, const int *list);
 

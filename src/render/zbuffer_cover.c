@@ -114,4 +114,5 @@ void zbuffer_find_layers(zbuffer *z)
         const bool skin = a->meshes && a->meshes->skins >> a->bodies[r].outside & 1;
         z->skins |= skin ? bit : 0;
     }
+    z->eye_index = z->scene->ior[z->eye_inside ? 64 - __builtin_clzll(z->eye_inside) : 0];
 }

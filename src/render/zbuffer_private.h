@@ -53,7 +53,8 @@ typedef struct screen_triangle {
     double least, most;   /* within what its corners have */
     uint32_t triangle, copy;
     uint16_t part;
-    uint16_t piece;       /* of the polygon that the planes left */
+    uint8_t piece;        /* of the polygon that the planes left */
+    bool curved;          /* a piece of a curved surface; only known of layers */
 } screen_triangle;
 
 /* Triangles of one part, numbered through its copies, and what came of them. */
@@ -76,6 +77,7 @@ struct zbuffer {
     uint64_t layered;       /* bit r - 1: the body of rank r is drawn as layers; 0 where there is nothing to see through */
     uint64_t eye_inside;    /* those that the eye is in */
     uint64_t skins;         /* those that are open meshes */
+    double eye_index;       /* refractive index where the eye is */
     int first_layered_part;
     size_t first_layered;   /* triangle */
     drawn_layer **blocks;   /* of lists of layers */

@@ -121,7 +121,8 @@ static void dim(const plan *p, ray_queue *q, int at, int rank, double length)
 static void note_layer(tracer *t, ray_queue *q, int at, int i, const drawn_layer *l)
 {
     const zbuffer *z = t->target.depths;
-    const vec3 from = vec3_make(q->ox[at], q->oy[at], q->oz[at]), bent = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
+    const vec3 from = vec3_make(q->ox[at], q->oy[at], q->oz[at]);
+    t->drawn->straight[i] = false;
     if (l->number == 0) {
         const double for_ever = 1e100;
         note_nothing(t, i);
@@ -134,7 +135,10 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, const drawn_layer
     const vec3 place = vec3_add(z->scene->view.eye, vec3_scale(view, m.t));
     m.t = greater(vec3_dot(vec3_sub(place, from), view), 0.0);
     m.leaving = l->ends ? m.leaving : l->leaving;
-    const vec3 set_out = vec3_sub(place, vec3_scale(bent, m.t));
+    t->drawn->straight[i] = s->curved;
+    if (s->curved)
+        q->dx[at] = view.x, q->dy[at] = view.y, q->dz[at] = view.z;
+    const vec3 set_out = vec3_sub(place, vec3_scale(vec3_make(q->dx[at], q->dy[at], q->dz[at]), m.t));
     q->ox[at] = set_out.x, q->oy[at] = set_out.y, q->oz[at] = set_out.z;
     note_hit(t, i, s, m);
     t->hits.before[i] = l->before;
@@ -168,12 +172,37 @@ void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *
             continue;
         }
         w->number[i] = seen[i] - 1;
+        w->straight[i] = false;
         if (seen[i]) {
             const screen_triangle *s = &z->triangles[seen[i] - 1];
             note_hit(t, i, s, met_by(z, s, vec3_make(w->vx[i], w->vy[i], w->vz[i])));
         } else {
             note_nothing(t, i);
         }
+    }
+}
+
+/* At a curved surface the straight view does not meet what a bent ray would: where it leaves a ball near its outline, the normal is another than where
+ * the ray does, and light that came in would not get out. So the view is bent there as between the surface and one like it that it came in
+ * by: the part along the surface is as n sin is, the same in all layers. */
+void drawn_bend(tracer *t, const int *list)
+{
+    const zbuffer *z = t->target.depths;
+    group *g = &t->gathered;
+    if (!z->layered || z->scene->render.transmission == TRANSMISSION_SIMPLE)
+        return;
+    for (int k = 0; k < g->count; k++) {
+        const double eta = z->eye_index / g->n_from[k], cosine = g->points.cos_i[k];
+        if (!t->drawn->straight[list[k]] || eta == 1.0)
+            continue;
+        const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
+        const vec3 along = vec3_scale(vec3_add(vec3_make(g->dx[k], g->dy[k], g->dz[k]), vec3_scale(n, cosine)), eta);
+        const double sine2 = vec3_dot(along, along);
+        if (sine2 >= 1.0)
+            continue;
+        g->points.cos_i[k] = sqrt(1.0 - sine2);
+        const vec3 d = vec3_sub(along, vec3_scale(n, g->points.cos_i[k]));
+        g->dx[k] = d.x, g->dy[k] = d.y, g->dz[k] = d.z;
     }
 }
 
