@@ -250,7 +250,8 @@ static const param table[] = {
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which intensity holds, less with the square of the distance; 0 for the same everywhere"),
 
-    COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1", "linear colour of ambient, diffuse and emitted light"),
+    COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1",
+          "linear colour of ambient, diffuse and emitted light; inside a clear solid what is left of light after tint_distance"),
     REAL(PARAM_MATERIAL, material, ambient, "", 0, 1, "0", "k_a of Phong's sum"),
     REAL(PARAM_MATERIAL, material, diffuse, "", 0, 1, "0", "k_d of Phong's sum"),
     REAL(PARAM_MATERIAL, material, specular, "", 0, 1, "0", "k_s of Phong's sum"),
@@ -258,7 +259,8 @@ static const param table[] = {
          "n of Phong's sum: the larger, the smaller the highlight"),
     REAL(PARAM_MATERIAL, material, emission, "", 0, BRIGHT, "0", "k_e of Phong's sum: the surface sends out k_e times its colour, without a lamp"),
     REAL(PARAM_MATERIAL, material, reflectivity, "", 0, 1, "0",
-         "share reflected by an opaque surface; by every surface under constant weights or simple transmission"),
+         "share reflected by an opaque surface; by every surface under constant weights or simple transmission; under Fresnel's a clear "
+         "surface's coating: R + (1 - R) reflectivity"),
     REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0",
          "share of the refracted light that passes; 0 is opaque"),
     REAL(PARAM_MATERIAL, material, ior, "", 0.1, 1e9, "1",
@@ -270,6 +272,8 @@ static const param table[] = {
     COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "absorption coefficient of Beer and Lambert by channel, 1/m"),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
          "the same by wavelength, as nm,1/m,nm,1/m..; takes the place of absorb_per_m"),
+    POSITIVE(PARAM_MATERIAL, material, tint_distance, "scene units", FAR, "1",
+             "way inside a clear solid after which white light has its color; beside what absorb_per_m takes"),
     {PARAM_MATERIAL, "texture", PARAM_WORD, "", 0, 0, false, "", "name of a texture, whose colour multiplies color", NULL, ON_ALL,
      .offset = offsetof(material, texture)},
     REAL(PARAM_MATERIAL, material, texture_size, "scene units", 0, FAR, "0",
