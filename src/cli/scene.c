@@ -136,7 +136,12 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
             diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         return result;
     }
-    scene_input_note_hints(s);
+    isa level = ISA_SSE2;
+    result = scene_input_isa(&level, why);
+    if (result == STATUS_OK)
+        result = scene_input_lint(s, level, NULL, why);
+    if (result != STATUS_OK)
+        return result;
     printf("%s: right; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n", request->path ? request->path : "--new",
            s->mesh_count, s->texture_count, s->material_count, s->light_count, s->solid_count);
     return STATUS_OK;
