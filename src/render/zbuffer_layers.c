@@ -119,32 +119,43 @@ static drawn_layer layer_of(const zbuffer *z, const drawn_fragment *f, int count
         chosen = z->parts[f[k].part].at.rank == rank ? k : chosen;
     const drawn_fragment *c = &f[chosen];
     const bool was_in = inside & bit_of(z, c), hollow = a->bodies[z->parts[c->part].at.rank].hollow == z->parts[c->part].met;
-    return (drawn_layer){c->number + 1, (uint8_t)before, (uint8_t)after, was_in != hollow, a->bodies[rank].opaque};
+    return (drawn_layer){c->number + 1, (uint8_t)before, (uint8_t)after, was_in != hollow, a->bodies[rank].opaque, false};
 }
 
-/* Every layer but the last is a clear interface, no more of them than the depth limit lets through; the last one is what ends the view. */
+static bool absorb_alike(const plan *p, int before, int after)
+{
+    const vec3 a = p->absorption[before], b = p->absorption[after];
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* Every layer but the last is a clear interface, no more of them than the depth limit lets through, or is passed; the last one is what ends the view. */
 static void list_layers(const zbuffer *z, const drawn_fragment *f, int count, uint32_t base, layer_list *l)
 {
     const arrangement *a = z->scene->solids;
     const int most = (int)z->scene->render.depth + 1;
     uint64_t inside = z->eye_inside;
     int before = highest(inside);
+    int interfaces = 0;
     l->count = 0;
-    for (int k = 0; k < count && l->count < most;) {
+    for (int k = 0; k < count && interfaces < most;) {
         uint64_t behind = inside;
         const int together = cross(z, f + k, count - k, &behind), after = highest(behind);
         if (a->bodies[before].medium != a->bodies[after].medium) {
             l->layer[l->count++] = layer_of(z, f + k, together, inside, before, after);
+            interfaces++;
             if (l->layer[l->count - 1].ends)
                 return;
+        } else if (l->count < LAYERS_MAX - most && !absorb_alike(z->scene, before, after)) {
+            l->layer[l->count] = layer_of(z, f + k, together, inside, before, after);
+            l->layer[l->count++].passed = true;
         }
         inside = behind & ~z->skins;
         before = highest(inside);
         k += together;
     }
-    if (l->count < most) {
+    if (interfaces < most) {
         const int after = base ? z->parts[z->triangles[base - 1].part].at.rank : before;
-        l->layer[l->count++] = (drawn_layer){base, (uint8_t)before, (uint8_t)after, false, true};
+        l->layer[l->count++] = (drawn_layer){base, (uint8_t)before, (uint8_t)after, false, true, false};
     }
 }
 

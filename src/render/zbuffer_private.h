@@ -18,7 +18,7 @@ enum {
     SQUARE_PIXELS = 32,   /* at most: fewer where pixels have more points than two by two */
     POLYGON_MAX = 8,      /* a triangle's corners and one for each plane that cuts it */
     CHUNK_TRIANGLES = 4096,
-    LAYERS_MAX = 65,      /* of a point: one more than the largest render.depth */
+    LAYERS_MAX = 160,     /* of a point: more than the largest render.depth */
     BLOCK_LAYERS = 1 << 16,
     BLOCKS_MAX = 1 << 15
 };
@@ -30,6 +30,7 @@ typedef struct drawn_layer {
     uint8_t before, after; /* ranks of the media */
     bool leaving;         /* the primitive; of the last one its triangle says so */
     bool ends;            /* it is opaque, or the sky */
+    bool passed;          /* no interface: two media of one index meet that absorb differently */
 } drawn_layer;
 
 /* A point in the camera's frame, right, up, forward; distance 0 is a direction, infinitely far. */

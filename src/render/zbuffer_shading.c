@@ -116,38 +116,62 @@ static void dim(const plan *p, ray_queue *q, int at, int rank, double length)
     q->wr[at] *= absorption_left(a.x * length), q->wg[at] *= absorption_left(a.y * length), q->wb[at] *= absorption_left(a.z * length);
 }
 
-/* The ray number `at`, which goes on from the layer before or from the eye, meets the next one of its point's list: where the straight view does, but
- * along its own direction, as if it had set out towards that place. */
-static void note_layer(tracer *t, ray_queue *q, int at, int i, const drawn_layer *l)
+static const drawn_layer *layer_at(const zbuffer *z, uint32_t place)
+{
+    return &z->blocks[place / BLOCK_LAYERS][place % BLOCK_LAYERS];
+}
+
+static met met_layer(const tracer *t, int i, const drawn_layer *l)
 {
     const zbuffer *z = t->target.depths;
-    const vec3 from = vec3_make(q->ox[at], q->oy[at], q->oz[at]);
+    const drawn_work *w = t->drawn;
+    const screen_triangle *s = &z->triangles[l->number - 1];
+    const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
+    met m = l->ends || !z->parts[s->part].own ? met_by(z, s, view) : met_depth(z, s, w->x[i], w->y[i], view);
+    m.leaving = l->ends ? m.leaving : l->leaving;
+    return m;
+}
+
+/* The ray number `at` meets the next interface of its point's list, at `place` or behind what is passed: where the straight view does, but along its
+ * own direction, as if it had set out towards that point. Where its list goes on it takes along as its set. */
+static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
+{
+    const zbuffer *z = t->target.depths;
+    const plan *p = z->scene;
+    const drawn_layer *l = layer_at(z, place);
+    const vec3 view = vec3_make(t->drawn->vx[i], t->drawn->vy[i], t->drawn->vz[i]);
+    double passed = vec3_dot(vec3_sub(vec3_make(q->ox[at], q->oy[at], q->oz[at]), p->view.eye), view);
     t->drawn->straight[i] = false;
+    for (; l->passed; l = layer_at(z, ++place)) {
+        const double end = greater(met_layer(t, i, l).t, passed);
+        dim(p, q, at, l->before, end - passed);
+        passed = end;
+    }
+    t->drawn->number[i] = l->number - 1;
     if (l->number == 0) {
         const double for_ever = 1e100;
         note_nothing(t, i);
-        dim(z->scene, q, at, l->before, for_ever);
+        dim(p, q, at, l->before, for_ever);
         return;
     }
+    met m = met_layer(t, i, l);
+    const vec3 point = vec3_add(p->view.eye, vec3_scale(view, m.t));
+    const double length = greater(m.t - passed, 0.0);
     const screen_triangle *s = &z->triangles[l->number - 1];
-    const vec3 view = vec3_make(t->drawn->vx[i], t->drawn->vy[i], t->drawn->vz[i]);
-    met m = l->ends || !z->parts[s->part].own ? met_by(z, s, view) : met_depth(z, s, t->drawn->x[i], t->drawn->y[i], view);
-    const vec3 place = vec3_add(z->scene->view.eye, vec3_scale(view, m.t));
-    m.t = greater(vec3_dot(vec3_sub(place, from), view), 0.0);
-    m.leaving = l->ends ? m.leaving : l->leaving;
     t->drawn->straight[i] = s->curved;
     if (s->curved)
         q->dx[at] = view.x, q->dy[at] = view.y, q->dz[at] = view.z;
-    const vec3 set_out = vec3_sub(place, vec3_scale(vec3_make(q->dx[at], q->dy[at], q->dz[at]), m.t));
+    m.t = length;
+    const vec3 set_out = vec3_sub(point, vec3_scale(vec3_make(q->dx[at], q->dy[at], q->dz[at]), length));
     q->ox[at] = set_out.x, q->oy[at] = set_out.y, q->oz[at] = set_out.z;
     note_hit(t, i, s, m);
     t->hits.before[i] = l->before;
     t->hits.after[i] = l->after;
-    t->hits.surface[i] = arrangement_surface(z->scene->solids, l->before, l->after);
-    dim(z->scene, q, at, l->before, m.t);
+    t->hits.surface[i] = arrangement_surface(p->solids, l->before, l->after);
+    t->hits.inside_after[i] = place + 1;
+    dim(p, q, at, l->before, length);
 }
 
-/* All rays of a depth have passed as many layers. */
 void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
     const zbuffer *z = t->target.depths;
@@ -165,10 +189,7 @@ void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *
         if (t->meshes)
             t->meshes->scratch.hit[i].face = FACE_NONE;
         if (z->layered && seen[i] & SEEN_LAYERS) {
-            const uint32_t place = (seen[i] & ~SEEN_LAYERS) + (uint32_t)depth;
-            const drawn_layer *l = &z->blocks[place / BLOCK_LAYERS][place % BLOCK_LAYERS];
-            w->number[i] = l->number - 1;
-            note_layer(t, q, first + i, i, l);
+            note_layer(t, q, first + i, i, depth == 0 ? seen[i] & ~SEEN_LAYERS : (uint32_t)q->inside[first + i]);
             continue;
         }
         w->number[i] = seen[i] - 1;
