@@ -53,7 +53,7 @@ static status add(zbuffer *z, const body *b, int met, diagnostic *why)
     const primitive *p = &a->primitives[met];
     drawn_part *part = &z->parts[z->part_count];
     vec3 scale = vec3_make(1.0, 1.0, 1.0);
-    *part = (drawn_part){.met = met, .nearest = nearest_depth(p, z->scene->view.eye)};
+    *part = (drawn_part){.met = met, .hollow = met == b->hollow, .nearest = nearest_depth(p, z->scene->view.eye)};
     status code = STATUS_OK;
     switch (p->kind) {
     case PRIMITIVE_HALFSPACE: part->plane = true; break;

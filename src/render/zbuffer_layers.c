@@ -110,16 +110,15 @@ static int cross(const zbuffer *z, const drawn_fragment *f, int count, uint64_t 
 }
 
 /* Of the surfaces that are crossed together that of the body whose surface it is. */
-static drawn_layer layer_of(const zbuffer *z, const drawn_fragment *f, int count, uint64_t inside, int before, int after)
+static inline drawn_layer layer_of(const zbuffer *z, const drawn_fragment *f, int count, uint64_t inside, int before, int after)
 {
-    const arrangement *a = z->scene->solids;
-    const int rank = arrangement_surface(a, before, after);
-    int chosen = 0;
-    for (int k = count - 1; k >= 0; k--)
-        chosen = z->parts[f[k].part].at.rank == rank ? k : chosen;
-    const drawn_fragment *c = &f[chosen];
-    const bool was_in = inside & bit_of(z, c), hollow = a->bodies[z->parts[c->part].at.rank].hollow == z->parts[c->part].met;
-    return (drawn_layer){c->number + 1, (uint8_t)before, (uint8_t)after, was_in != hollow, a->bodies[rank].opaque, false};
+    const int rank = arrangement_surface(z->scene->solids, before, after);
+    const drawn_fragment *c = f;
+    for (int k = 1; k < count && z->parts[c->part].at.rank != rank; k++)
+        c = z->parts[f[k].part].at.rank == rank ? &f[k] : c;
+    const drawn_part *p = &z->parts[c->part];
+    return (drawn_layer){.number = c->number + 1, .before = (uint8_t)before, .after = (uint8_t)after, .surface = (uint8_t)rank,
+                         .leaving = ((inside & bit_of(z, c)) != 0) != p->hollow, .ends = z->scene->solids->bodies[rank].opaque};
 }
 
 static bool absorb_alike(const plan *p, int before, int after)
@@ -155,7 +154,7 @@ static void list_layers(const zbuffer *z, const drawn_fragment *f, int count, ui
     }
     if (interfaces < most) {
         const int after = base ? z->parts[z->triangles[base - 1].part].at.rank : before;
-        l->layer[l->count++] = (drawn_layer){base, (uint8_t)before, (uint8_t)after, false, true, false};
+        l->layer[l->count++] = (drawn_layer){.number = base, .before = (uint8_t)before, .after = (uint8_t)after, .surface = (uint8_t)after, .ends = true};
     }
 }
 

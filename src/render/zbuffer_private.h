@@ -28,9 +28,10 @@ enum {
 typedef struct drawn_layer {
     uint32_t number;      /* of the triangle and 1; 0: the sky */
     uint8_t before, after; /* ranks of the media */
-    bool leaving;         /* the primitive; of the last one its triangle says so */
-    bool ends;            /* it is opaque, or the sky */
-    bool passed;          /* no interface: two media of one index meet that absorb differently */
+    uint8_t surface;      /* rank of the body whose surface it is */
+    bool leaving : 1;     /* the primitive; of the last one its triangle says so */
+    bool ends : 1;        /* it is opaque, or the sky */
+    bool passed : 1;      /* no interface: two media of one index meet that absorb differently */
 } drawn_layer;
 
 /* A point in the camera's frame, right, up, forward; distance 0 is a direction, infinitely far. */
@@ -44,6 +45,7 @@ typedef struct drawn_part {
     forest_part at;
     int met;              /* primitive */
     double nearest;       /* depth that is drawn; by the part's own extent, so that no other solid shows in it */
+    bool hollow;          /* of a cup */
     bool plane;           /* four triangles from the foot of the eye's perpendicular to the horizon */
     mesh *own;            /* an analytic solid's triangles; NULL for a mesh */
 } drawn_part;

@@ -121,7 +121,7 @@ static const drawn_layer *layer_at(const zbuffer *z, uint32_t place)
     return &z->blocks[place / BLOCK_LAYERS][place % BLOCK_LAYERS];
 }
 
-static met met_layer(const tracer *t, int i, const drawn_layer *l)
+static inline met met_layer(const tracer *t, int i, const drawn_layer *l)
 {
     const zbuffer *z = t->target.depths;
     const drawn_work *w = t->drawn;
@@ -167,7 +167,7 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     note_hit(t, i, s, m);
     t->hits.before[i] = l->before;
     t->hits.after[i] = l->after;
-    t->hits.surface[i] = arrangement_surface(p->solids, l->before, l->after);
+    t->hits.surface[i] = l->surface;
     t->hits.inside_after[i] = place + 1;
     dim(p, q, at, l->before, length);
 }
