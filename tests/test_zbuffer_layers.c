@@ -210,6 +210,28 @@ static void nothing_is_lost_between_layers(void **state)
     scene_destroy(s);
 }
 
+/* How far the preview of the rod lies from Whitted's picture: black glass was at 0.2. */
+static void the_rod_is_close_to_what_rays_show(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=400 render.height=300 render.depth=4");
+    render_result *traced = render(s);
+    set(s, "render.integrator=zbuffer");
+    render_result *drawn = render(s);
+    image *a = NULL, *b = NULL;
+    image_comparison c;
+    assert_int_equal(film_image(traced->picture, &a, NULL), STATUS_OK);
+    assert_int_equal(film_image(drawn->picture, &b, NULL), STATUS_OK);
+    assert_int_equal(image_compare(a, b, &c, NULL), STATUS_OK);
+    print_message("rod: FLIP %.3f\n", c.flip);
+    assert_true(c.flip < 0.12);
+    image_destroy(a);
+    image_destroy(b);
+    render_result_destroy(traced);
+    render_result_destroy(drawn);
+    scene_destroy(s);
+}
+
 static uint64_t hash_of(const scene *s, isa level)
 {
     render_result *r = render_at(s, level, NULL);
@@ -250,6 +272,7 @@ int main(void)
         cmocka_unit_test(the_depth_limit_ends_the_view),
         cmocka_unit_test(what_goes_straight_is_seen_as_traced),
         cmocka_unit_test(nothing_is_lost_between_layers),
+        cmocka_unit_test(the_rod_is_close_to_what_rays_show),
         cmocka_unit_test(layers_depend_on_no_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
