@@ -45,6 +45,7 @@ typedef struct body {
     int64_t medium;      /* equal numbers are equal media */
     bool opaque;
     double clearness;    /* share of light that a shadow ray keeps at each of its interfaces; 0 when opaque */
+    const double *face_clearness; /* the same by slot of a mesh whose faces differ, of which clearness is the least; borrowed; else NULL */
     bool absorbs;        /* its medium takes light away with length */
     int solid;           /* index of the solid it came from */
 } body;
@@ -75,6 +76,7 @@ typedef struct body_source {
     int64_t medium;
     bool opaque;
     double clearness;
+    const double *face_clearness; /* by slot; borrowed, or NULL */
     bool absorbs;
     int solid;
 } body_source;

@@ -236,7 +236,7 @@ void path_group(tracer *t, int depth, int rank)
 {
     const plan *p = t->target.scene;
     const material *m = &t->look->surface;
-    const bool opaque = p->solids->bodies[rank].opaque, lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
+    const bool opaque = surface_is_opaque(t, rank), lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
     local_light(t, rank); /* of points; spheres follow */
     for (int k = 0; lit && k < t->gathered.count; k++)
         for (int lamp = 0; lamp < p->light_count; lamp++)

@@ -90,7 +90,8 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
     solid_shape *shapes = calloc(s->solid_count + 1, sizeof *shapes);
     p->own_trees = calloc(s->solid_count + 1, sizeof(hierarchy *));
     p->own_tree_count = s->solid_count;
-    if (!sources || !shapes || !p->own_trees) {
+    p->clearness = calloc(s->solid_count + 1, sizeof *p->clearness);
+    if (!sources || !shapes || !p->own_trees || !p->clearness) {
         free(sources);
         free(shapes);
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
@@ -101,12 +102,14 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
         const solid *one = &s->solids[i];
         if (!one->visible)
             continue;
+        double clearness;
+        if (!body_clearness_make(s, one, &clearness, &p->clearness[i]))
+            code = diagnose(why, STATUS_FAILURE, "", "out of memory");
         sources[count] = (body_source){.shape = &one->shape, .priority = one->priority, .medium = medium_of(s, laws, i),
-                                             .opaque = material_is_opaque(&one->surface),
-                                             .clearness = one->surface.transparency *
-                                                          (1.0 - material_coating(&one->surface, &s->render)),
+                                             .opaque = looks_opaque(s, one), .clearness = clearness,
+                                             .face_clearness = p->clearness[i],
                                              .absorbs = material_dims(&one->surface), .solid = i};
-        if (one->shape.kind == SHAPE_MESH)
+        if (code == STATUS_OK && one->shape.kind == SHAPE_MESH)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
     }
@@ -228,6 +231,9 @@ void plan_destroy(plan *p)
     for (size_t i = 0; p->own_trees && i < p->own_tree_count; i++)
         hierarchy_destroy(p->own_trees[i]);
     free(p->own_trees);
+    for (size_t i = 0; p->clearness && i < p->own_tree_count; i++)
+        free(p->clearness[i]);
+    free(p->clearness);
     free(p->materials);
     free(p->mirrors);
     free(p->ior);

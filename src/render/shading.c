@@ -344,7 +344,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
     }
     local_light(t, rank);
     if (t->branching)
-        branch(t, depth, p->solids->bodies[rank].opaque);
+        branch(t, depth, surface_is_opaque(t, rank));
 }
 
 void shading_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)

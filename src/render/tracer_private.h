@@ -103,6 +103,12 @@ void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, do
 /* What a branch that the depth limit cuts off brings: render.beyond. */
 void shading_expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb);
 
+/* Does no light pass the surface of that rank's body with the tracer's look? */
+static inline bool surface_is_opaque(const tracer *t, int rank)
+{
+    return t->target.scene->solids->bodies[rank].opaque || t->look->surface.transparency == 0.0;
+}
+
 /* Local light of the lights and the ambient, weighted, of the gathered group. */
 void local_light(tracer *t, int rank);
 

@@ -133,16 +133,20 @@ static void hint_at_range(const scene *s, const char *where, const char *name, c
 }
 
 /* What is set and does nothing. */
-static void hint_at_idle(const solid *owner, const note_taker *taker)
+static void hint_at_idle(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    if (m->transparency == 0.0 && material_absorbs(m)) {
+    if (m->transparency == 0.0 && material_absorbs(m) && looks_opaque(s, owner)) {
         note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m", "set its transparency",
                   "%s absorbs but is opaque", owner->name);
     }
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE)) {
         note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
                   "%s has coefficients but no law for them", owner->name);
+    }
+    if (looks_waste(s, owner)) {
+        note_give(taker, owner->name, "transparency", "set it for the whole solid, or set render.transmission to simple",
+                  "the transparency and reflectivity of the faces of %s have no effect: where light is bent they belong to the solid", owner->name);
     }
 }
 
@@ -195,7 +199,7 @@ void scene_hints(const scene *s, const note_taker *taker)
     for (size_t i = 0; i < s->solid_count; i++) {
         if (s->solids[i].visible) {
             hint_at_solid(s, &s->solids[i], taker);
-            hint_at_idle(&s->solids[i], taker);
+            hint_at_idle(s, &s->solids[i], taker);
             hint_at_cover(s, &s->solids[i], taker);
         }
     }

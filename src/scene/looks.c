@@ -68,7 +68,7 @@ static void emit(face_look *look, const imported_material *m)
 /* A material file has a colour for each term where Phong's sum here has a coefficient: the brightest channel. */
 static face_look look_of(const imported_material *m)
 {
-    face_look look = {.given = m->given, .diffuse = 1.0, .shininess = m->shininess};
+    face_look look = {.given = m->given, .diffuse = 1.0, .shininess = m->shininess, .opacity = m->opacity};
     snprintf(look.name, sizeof look.name, "%s", m->name ? m->name : "");
     look.color = vec3_make(at_most_one(m->color[0]), at_most_one(m->color[1]), at_most_one(m->color[2]));
     /* A file that gives a highlight no exponent means none: to the power of 0 it would cover everything. */
