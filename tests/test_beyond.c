@@ -7,7 +7,8 @@
 
 #include "path_fixture.h"
 
-/* What branches bring that the depth limit cuts off: nothing, the sky behind them, or the sky's mean (render.beyond). */
+/* What branches bring that the depth limit cuts off: nothing, the sky behind them, or the sky's mean (render.beyond).
+ * */
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
@@ -58,7 +59,9 @@ static void random_paths_that_are_cut_bring_it(void **state)
     scene *s = scene_from(mirror);
     set_all(s, "render.integrator=path render.paths=16 render.roulette=off");
     expect_mean(s, 0.8, 1e-10);
-    set_all(s, "ground.reflectivity=0 ground.diffuse=0.5"); /* a matte ground sends paths to all sides: the mean needs no chance */
+    set_all(
+        s,
+        "ground.reflectivity=0 ground.diffuse=0.5"); /* a matte ground sends paths to all sides: the mean needs no chance */
     expect_mean(s, 0.5, 1e-10);
     scene_destroy(s);
 }
@@ -100,8 +103,10 @@ static void it_changes_no_count(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cut_branch_brings_the_mean_of_the_sky), cmocka_unit_test(both_branches_bring_it),
-        cmocka_unit_test(random_paths_that_are_cut_bring_it),      cmocka_unit_test(spectral_films_bring_it),
+        cmocka_unit_test(a_cut_branch_brings_the_mean_of_the_sky),
+        cmocka_unit_test(both_branches_bring_it),
+        cmocka_unit_test(random_paths_that_are_cut_bring_it),
+        cmocka_unit_test(spectral_films_bring_it),
         cmocka_unit_test(it_changes_no_count),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

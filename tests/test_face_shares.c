@@ -27,15 +27,46 @@ static void put(const char *name, const char *text)
     fclose(f);
 }
 
-/* A sheet of two triangles, the left one clear, and a cube whose front and back let half and a quarter through; the rest of it is opaque. */
+/* A sheet of two triangles, the left one clear, and a cube whose front and back let half and a quarter through; the
+ * rest of it is opaque. */
 static int make_files(void **state)
 {
     (void)state;
     assert_non_null(mkdtemp(folder));
-    put("m.mtl", "newmtl left\nKd 0 0 0\nd 0.25\nnewmtl right\nKd 0 0 0\nKe 0.5 0.5 0.5\nnewmtl half\nKd 0 0 0\nd 0.5\nnewmtl quarter\nKd 0 0 0\nTr 0.25\n");
-    put("sheet.obj", "mtllib m.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl left\nf 1 4 3\nusemtl right\nf 1 3 2\n");
-    put("cube.obj", "mtllib m.mtl\nv -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
-                    "usemtl half\nf 1 4 3 2\nusemtl quarter\nf 5 6 7 8\nusemtl right\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    put("m.mtl",
+        "n"
+        "e"
+        "w"
+        "m"
+        "t"
+        "l"
+        " "
+        "l"
+        "e"
+        "f"
+        "t"
+        "\"
+        "n"
+        "K"
+        "d"
+        " "
+        "0"
+        " "
+        "0"
+        " "
+        "0"
+        "\"
+        "n"
+        "d"
+        " "
+        "0"
+        "."
+        "25\nnewmtl right\nKd 0 0 0\nKe 0.5 0.5 0.5\nnewmtl half\nKd 0 0 0\nd 0.5\nnewmtl quarter\nKd 0 0 0\nTr 0.25\n");
+    put("sheet.obj",
+        "mtllib m.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl left\nf 1 4 3\nusemtl right\nf 1 3 2\n");
+    put("cube.obj",
+        "mtllib m.mtl\nv -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+        "usemtl half\nf 1 4 3 2\nusemtl quarter\nf 5 6 7 8\nusemtl right\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
     return 0;
 }
 
@@ -55,11 +86,14 @@ static int remove_files(void **state)
 static scene *view(const char *more, const char *assignments)
 {
     char text[2048];
-    snprintf(text, sizeof text,
-             "render: {width: 1, height: 1, depth: 8, paths: 8, transmission: simple}\ncamera: {position: [-0.4, 0.5, -4], yaw_deg: 0, fov_deg: 0.01}\n"
-             "background: {color: [0.5, 0.5, 0.5], ambient: [0, 0, 0]}\n"
-             "meshes: {sheet: {file: %s/sheet.obj}, cube: {file: %s/cube.obj}}\n%s"
-             "  wall: {shape: box, emission: 2, size: [40, 40, 1], position: [0, 0, 20]}\n", folder, folder, more);
+    snprintf(
+        text, sizeof text,
+        "render: {width: 1, height: 1, depth: 8, paths: 8, transmission: simple}\ncamera: {position: [-0.4, 0.5, "
+        "-4], yaw_deg: 0, fov_deg: 0.01}\n"
+        "background: {color: [0.5, 0.5, 0.5], ambient: [0, 0, 0]}\n"
+        "meshes: {sheet: {file: %s/sheet.obj}, cube: {file: %s/cube.obj}}\n%s"
+        "  wall: {shape: box, emission: 2, size: [40, 40, 1], position: [0, 0, 20]}\n",
+        folder, folder, more);
     scene *s = scene_from(text);
     diagnostic why = {0};
     set_all(s, assignments);
@@ -77,12 +111,13 @@ static void expect_seen(scene *s, double wanted, double tolerance)
 static void each_face_lets_through_its_own_share(void **state)
 {
     (void)state;
-    static const char *const integrators[] = {"render.integrator=whitted", "render.integrator=zbuffer", "render.integrator=path"};
+    static const char *const integrators[] = {"render.integrator=whitted", "render.integrator=zbuffer",
+                                              "render.integrator=path"};
     for (size_t k = 0; k < COUNT(integrators); k++) {
         scene *s = view("solids:\n  pane: {shape: mesh, mesh: sheet}\n", integrators[k]);
         expect_seen(s, 0.75 * 2.0, 1e-9);
         set(s, "camera.position=0.4,-0.5,-4");
-        expect_seen(s, 0.5, 1e-9); /* opaque, and shines */
+        expect_seen(s, 0.5, 1e-9);       /* opaque, and shines */
         set(s, "pane.transparency=0.5"); /* of faces that say nothing */
         expect_seen(s, 0.5 + 0.5 * 2.0, k == 2 ? 1e-9 : 1e-9);
         set_all(s, "camera.position=-0.4,0.5,-4 pane.transparency=0 render.transmission=refract");
@@ -101,7 +136,9 @@ static void each_face_lets_through_its_own_share(void **state)
 static void each_face_reflects_its_own_share(void **state)
 {
     (void)state;
-    static const char solids[] = "materials: {left: {transparency: 0.6, reflectivity: 0.3}}\nsolids:\n  pane: {shape: mesh, mesh: sheet, transparency: 0.9}\n";
+    static const char solids[] =
+        "materials: {left: {transparency: 0.6, reflectivity: 0.3}}\nsolids:\n  pane: {shape: mesh, mesh: sheet, "
+        "transparency: 0.9}\n";
     scene *s = view(solids, "");
     expect_seen(s, 0.6 * 2.0 + 0.3 * 0.5, 1e-9);
     set(s, "render.integrator=zbuffer");
@@ -123,8 +160,9 @@ static void each_face_reflects_its_own_share(void **state)
 static void shadows_know_the_faces(void **state)
 {
     (void)state;
-    static const char solids[] = "lights: {lamp: {position: [0, 0, -100]}}\nsolids:\n  pane: {shape: mesh, mesh: sheet}\n"
-                                 "  screen: {shape: box, diffuse: 1, size: [4, 4, 1], position: [0, 0, 2.5], priority: 1}\n";
+    static const char solids[] =
+        "lights: {lamp: {position: [0, 0, -100]}}\nsolids:\n  pane: {shape: mesh, mesh: sheet}\n"
+        "  screen: {shape: box, diffuse: 1, size: [4, 4, 1], position: [0, 0, 2.5], priority: 1}\n";
     scene *s = view(solids, "camera.position=-0.4,0.5,1");
     const double clear = 0.75, away = 102.0;
     const double n_l = away / sqrt(away * away + 0.4 * 0.4 + 0.5 * 0.5);
@@ -137,7 +175,8 @@ static void shadows_know_the_faces(void **state)
     expect_seen(s, 0.0, 0.0);
     scene_destroy(s);
     s = view("lights: {lamp: {position: [0, 0, -100]}}\nsolids:\n  block: {shape: mesh, mesh: cube}\n"
-             "  screen: {shape: box, diffuse: 1, size: [4, 4, 1], position: [0, 0, 2.5], priority: 1}\n", "camera.position=-0.4,0.5,1.5");
+             "  screen: {shape: box, diffuse: 1, size: [4, 4, 1], position: [0, 0, 2.5], priority: 1}\n",
+             "camera.position=-0.4,0.5,1.5");
     expect_seen(s, 0.5 * 0.25 * n_l, 1e-6);
     scene_destroy(s);
 }
@@ -158,15 +197,18 @@ static void a_note_says_whose_they_are(void **state)
     assert_string_equal(said, "");
     set(s, "render.transmission=refract");
     scene_hints(s, &taker);
-    assert_non_null(strstr(said, "pane.transparency: the transparency and reflectivity of the faces of pane have no effect"));
+    assert_non_null(
+        strstr(said, "pane.transparency: the transparency and reflectivity of the faces of pane have no effect"));
     scene_destroy(s);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_face_lets_through_its_own_share), cmocka_unit_test(each_face_reflects_its_own_share),
-        cmocka_unit_test(shadows_know_the_faces),               cmocka_unit_test(a_note_says_whose_they_are),
+        cmocka_unit_test(each_face_lets_through_its_own_share),
+        cmocka_unit_test(each_face_reflects_its_own_share),
+        cmocka_unit_test(shadows_know_the_faces),
+        cmocka_unit_test(a_note_says_whose_they_are),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);
 }

@@ -344,7 +344,8 @@ static void faces_look_like_their_materials(void **state)
     rmdir(folder);
 }
 
-/* A file's Ke: as bright as it says in its brightest channel, in the surface's colour, or in its own where the surface is black; else the solid's. */
+/* A file's Ke: as bright as it says in its brightest channel, in the surface's colour, or in its own where the surface
+ * is black; else the solid's. */
 static void faces_shine_as_their_materials_say(void **state)
 {
     (void)state;
@@ -360,7 +361,10 @@ static void faces_shine_as_their_materials_say(void **state)
     assert_non_null(f);
     fputs("newmtl left\nKd 0.25 0.5 0\nKe 3 3 1\nnewmtl right\nKd 0 0 0\nKe 4 2 1\n", f);
     fclose(f);
-    snprintf(text, sizeof text, "background: {ambient: [0, 0, 0]}\nmeshes: {two: {file: %s}}\nsolids: {sheet: {shape: mesh, mesh: two, emission: 9}}\n", path);
+    snprintf(
+        text, sizeof text,
+        "background: {ambient: [0, 0, 0]}\nmeshes: {two: {file: %s}}\nsolids: {sheet: {shape: mesh, mesh: two, emission: 9}}\n",
+        path);
     stage g = stage_with_meshes(text, "");
     const double *left = stage_ray(&g, vec3_make(-0.5, 0.5, -3.0), vec3_make(0, 0, 1))->radiance;
     assert_true(fabs(left[0] - 1.5) < 1e-9 && fabs(left[1] - 3.0) < 1e-9 && left[2] == 0.0);

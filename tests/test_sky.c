@@ -99,7 +99,8 @@ static void a_picture_closes_behind_and_ends_at_the_poles(void **state)
     image_destroy(picture);
 }
 
-/* The mean over the sphere, by the midpoint rule on each part between texels' middles, where the interpolation is smooth. */
+/* The mean over the sphere, by the midpoint rule on each part between texels' middles, where the interpolation is
+ * smooth. */
 static vec3 mean_by_quadrature(const background *sky, int parts)
 {
     vec3 sum = {0.0, 0.0, 0.0};
@@ -107,7 +108,8 @@ static vec3 mean_by_quadrature(const background *sky, int parts)
     for (int j = 0; j < parts; j++) {
         const double latitude = (j + 0.5) / parts * 180.0 - 90.0, weight = cos(latitude * 3.141592653589793 / 180.0);
         for (int i = 0; i < 2 * parts; i++)
-            sum = vec3_add(sum, vec3_scale(sky_radiance(sky, towards((i + 0.5) / (2 * parts) * 360.0 - 180.0, latitude)), weight));
+            sum = vec3_add(
+                sum, vec3_scale(sky_radiance(sky, towards((i + 0.5) / (2 * parts) * 360.0 - 180.0, latitude)), weight));
         weights += 2.0 * parts * weight;
     }
     return vec3_scale(sum, 1.0 / weights);

@@ -45,7 +45,8 @@ typedef struct body {
     int64_t medium;      /* equal numbers are equal media */
     bool opaque;
     double clearness;    /* share of light that a shadow ray keeps at each of its interfaces; 0 when opaque */
-    const double *face_clearness; /* the same by slot of a mesh whose faces differ, of which clearness is the least; borrowed; else NULL */
+    const double *face_clearness; /* the same by slot of a mesh whose faces differ, clearness being the least;
+                                   * borrowed, or NULL */
     bool absorbs;        /* its medium takes light away with length */
     int solid;           /* index of the solid it came from */
 } body;

@@ -388,7 +388,8 @@ static int slot_met(const arrangement *a, const body *met, const hit_batch *c, c
 }
 
 /* One interface on the way of the shadow ray in column k: what of the light it lets through. */
-static double let_through(const arrangement *a, int solid_shadows, const hit_batch *c, const forest_hit *mesh_hits, int k)
+static double let_through(const arrangement *a, int solid_shadows, const hit_batch *c, const forest_hit *mesh_hits,
+                          int k)
 {
     const body *before = &a->bodies[c->before[k]], *after = &a->bodies[c->after[k]];
     if (solid_shadows || after->opaque || before->opaque)

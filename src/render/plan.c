@@ -105,10 +105,14 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
         double clearness;
         if (!body_clearness_make(s, one, &clearness, &p->clearness[i]))
             code = diagnose(why, STATUS_FAILURE, "", "out of memory");
-        sources[count] = (body_source){.shape = &one->shape, .priority = one->priority, .medium = medium_of(s, laws, i),
-                                             .opaque = looks_opaque(s, one), .clearness = clearness,
-                                             .face_clearness = p->clearness[i],
-                                             .absorbs = material_dims(&one->surface), .solid = i};
+        sources[count] = (body_source){.shape = &one->shape,
+                                       .priority = one->priority,
+                                       .medium = medium_of(s, laws, i),
+                                       .opaque = looks_opaque(s, one),
+                                       .clearness = clearness,
+                                       .face_clearness = p->clearness[i],
+                                       .absorbs = material_dims(&one->surface),
+                                       .solid = i};
         if (code == STATUS_OK && one->shape.kind == SHAPE_MESH)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;

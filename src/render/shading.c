@@ -100,7 +100,8 @@ void shading_expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr,
         expose_beyond(t, ticket, direction, wr, wg, wb);
 }
 
-/* Light that needs no lamp: ambient, which random paths find by themselves, and emitted; of a spectral film as daylight, white's spectrum. */
+/* Light that needs no lamp: ambient, which random paths find by themselves, and emitted; of a spectral film as
+ * daylight, white's spectrum. */
 static void expose_own_light(tracer *t, const material *m)
 {
     const group *g = &t->gathered;
@@ -202,13 +203,16 @@ static void cut_branches(tracer *t)
     }
     if (p->render.beyond == BEYOND_BLACK)
         return;
-    const bool uniform = p->sky->kind == BACKGROUND_UNIFORM || p->render.beyond == BEYOND_MEAN; /* then directions do not matter */
+    const bool uniform =
+        p->sky->kind == BACKGROUND_UNIFORM || p->render.beyond == BEYOND_MEAN; /* then directions do not matter */
     for (int i = 0; i < g->count; i++) {
         const double first = uniform ? b->reflect[i] + b->refract[i] : b->reflect[i], second = uniform ? 0.0 : b->refract[i];
         if (first > 0.0)
-            expose_beyond(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first, g->wg[i] * first, g->wb[i] * first);
+            expose_beyond(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first, g->wg[i] * first,
+                          g->wb[i] * first);
         if (second > 0.0)
-            expose_beyond(t, g->ticket[i], vec3_make(b->tx[i], b->ty[i], b->tz[i]), g->wr[i] * second, g->wg[i] * second, g->wb[i] * second);
+            expose_beyond(t, g->ticket[i], vec3_make(b->tx[i], b->ty[i], b->tz[i]), g->wr[i] * second,
+                          g->wg[i] * second, g->wb[i] * second);
     }
 }
 

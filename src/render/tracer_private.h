@@ -25,7 +25,7 @@ typedef struct drawn_work {
     zbuffer_square square;
     int x[ROW], y[ROW];
     uint32_t number[ROW];
-    bool straight[ROW];      /* it meets a curved surface and looks straight on */
+    bool straight[ROW];               /* it meets a curved surface and looks straight on */
     double vx[ROW], vy[ROW], vz[ROW]; /* and the straight view's direction there, of a frame with layers */
     vec3 at[ROW];            /* of the gathered group: where a texture is looked up that runs straight across the picture */
 } drawn_work;

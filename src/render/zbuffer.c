@@ -177,8 +177,9 @@ size_t zbuffer_triangles(const zbuffer *z)
 size_t zbuffer_bytes(const zbuffer *z)
 {
     const size_t squares = (size_t)z->across * (size_t)z->down;
-    return (size_t)z->width * (size_t)z->height * sizeof *z->seen + atomic_load(&z->layer_count) * sizeof(drawn_layer) + z->triangle_count * sizeof *z->triangles +
-           z->first[squares] * sizeof *z->listed + (squares + 1) * sizeof *z->first;
+    return (size_t)z->width * (size_t)z->height * sizeof *z->seen + atomic_load(&z->layer_count) * sizeof(drawn_layer) +
+           z->triangle_count * sizeof *z->triangles + z->first[squares] * sizeof *z->listed +
+           (squares + 1) * sizeof *z->first;
 }
 
 bool zbuffer_failed(const zbuffer *z)

@@ -1,5 +1,5 @@
-/* Which solids are drawn as layers: clear ones, through which the view goes on, and opaque ones that a clear one of a higher rank may hide a
- * piece of. Of all others the nearest surface is all that shows. */
+/* Which solids are drawn as layers: clear ones, through which the view goes on, and opaque ones that a clear one of a
+ * higher rank may hide a piece of. Of all others the nearest surface is all that shows. */
 #include "render/zbuffer_private.h"
 
 #include "base/elementary.h"
@@ -7,7 +7,8 @@
 static bounds3 box_around(const primitive *p, const arrangement *a)
 {
     vec3 low, high;
-    const forest_part *part = p->kind == PRIMITIVE_MESH ? &a->meshes->parts[a->meshes->by_primitive[p->first_face / FACES_MAX]] : NULL;
+    const forest_part *part =
+        p->kind == PRIMITIVE_MESH ? &a->meshes->parts[a->meshes->by_primitive[p->first_face / FACES_MAX]] : NULL;
     switch (p->kind) {
     case PRIMITIVE_BOX: low = vec3_scale(p->half, -1.0), high = p->half; break;
     case PRIMITIVE_CYLINDER:
@@ -15,16 +16,21 @@ static bounds3 box_around(const primitive *p, const arrangement *a)
         low = vec3_make(-high.x, p->bottom, -high.z);
         break;
     case PRIMITIVE_MESH: {
-        const vec3 s = part->scale, steps = vec3_make(part->spacing.x * (part->copies[0] - 1), part->spacing.y * (part->copies[1] - 1),
-                                                      part->spacing.z * (part->copies[2] - 1));
+        const vec3 s = part->scale,
+                   steps = vec3_make(part->spacing.x * (part->copies[0] - 1), part->spacing.y * (part->copies[1] - 1),
+                                     part->spacing.z * (part->copies[2] - 1));
         const bounds3 b = part->triangles->bounds;
-        low = vec3_make(b.low.x * s.x + fmin(steps.x, 0.0), b.low.y * s.y + fmin(steps.y, 0.0), b.low.z * s.z + fmin(steps.z, 0.0));
-        high = vec3_make(b.high.x * s.x + fmax(steps.x, 0.0), b.high.y * s.y + fmax(steps.y, 0.0), b.high.z * s.z + fmax(steps.z, 0.0));
+        low = vec3_make(b.low.x * s.x + fmin(steps.x, 0.0), b.low.y * s.y + fmin(steps.y, 0.0),
+                        b.low.z * s.z + fmin(steps.z, 0.0));
+        high = vec3_make(b.high.x * s.x + fmax(steps.x, 0.0), b.high.y * s.y + fmax(steps.y, 0.0),
+                         b.high.z * s.z + fmax(steps.z, 0.0));
         break;
     }
     case PRIMITIVE_SPHERE:
     case PRIMITIVE_HALFSPACE: /* which has none */
-    default: low = vec3_make(-p->radius, -p->radius, -p->radius), high = vec3_make(p->radius, p->radius, p->radius); break;
+    default:
+        low = vec3_make(-p->radius, -p->radius, -p->radius), high = vec3_make(p->radius, p->radius, p->radius);
+        break;
     }
     bounds3 world = {vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL), vec3_make(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL)};
     for (int k = 0; k < 8; k++) {
@@ -40,7 +46,8 @@ static bounds3 box_around(const primitive *p, const arrangement *a)
 static bool dips_into(const primitive *half, bounds3 b)
 {
     const vec3 n = vec3_make(half->rotation.row[0].y, half->rotation.row[1].y, half->rotation.row[2].y);
-    const vec3 lowest = vec3_make(n.x > 0.0 ? b.low.x : b.high.x, n.y > 0.0 ? b.low.y : b.high.y, n.z > 0.0 ? b.low.z : b.high.z);
+    const vec3 lowest =
+        vec3_make(n.x > 0.0 ? b.low.x : b.high.x, n.y > 0.0 ? b.low.y : b.high.y, n.z > 0.0 ? b.low.z : b.high.z);
     return vec3_dot(n, vec3_sub(lowest, half->origin)) <= 0.0;
 }
 
@@ -52,7 +59,8 @@ static bool may_touch(const primitive *p, const primitive *q, const arrangement 
         return p->kind == PRIMITIVE_HALFSPACE ? dips_into(p, box_around(q, a)) : dips_into(q, box_around(p, a));
     }
     const bounds3 b = box_around(p, a), c = box_around(q, a);
-    return b.low.x <= c.high.x && c.low.x <= b.high.x && b.low.y <= c.high.y && c.low.y <= b.high.y && b.low.z <= c.high.z && c.low.z <= b.high.z;
+    return b.low.x <= c.high.x && c.low.x <= b.high.x && b.low.y <= c.high.y && c.low.y <= b.high.y &&
+           b.low.z <= c.high.z && c.low.z <= b.high.z;
 }
 
 static bool is_layered(const arrangement *a, int rank)
@@ -60,12 +68,14 @@ static bool is_layered(const arrangement *a, int rank)
     const body *b = &a->bodies[rank];
     bool layered = !b->opaque;
     for (int r = rank + 1; r <= a->body_count && !layered; r++)
-        layered = !a->bodies[r].opaque && may_touch(&a->primitives[b->outside], &a->primitives[a->bodies[r].outside], a);
+        layered =
+            !a->bodies[r].opaque && may_touch(&a->primitives[b->outside], &a->primitives[a->bodies[r].outside], a);
     return layered;
 }
 
-/* Is the eye in one of the mesh's copies? By the solid angle that the triangles fill (van Oosterom and Strackee, "The solid angle of a plane
- * triangle", IEEE Trans. Biomed. Eng. 30(2), 1983): all of it or none. A drawn frame has no hierarchy to ask. */
+/* Is the eye in one of the mesh's copies? By the solid angle that the triangles fill (van Oosterom and Strackee, "The
+ * solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983): all of it or none. A drawn frame has no
+ * hierarchy to ask. */
 static bool eye_in_mesh(const forest_part *p, vec3 eye)
 {
     for (uint32_t copy = 0; copy < p->copies[0] * p->copies[1] * p->copies[2]; copy++) {
@@ -77,7 +87,8 @@ static bool eye_in_mesh(const forest_part *p, vec3 eye)
         double turns = 0.0;
         for (size_t k = 0; k < p->triangles->triangle_count; k++) {
             const mesh_triangle tri = p->triangles->triangles[k];
-            const vec3 a = zbuffer_vertex(p, o, tri.corner[0]), b = zbuffer_vertex(p, o, tri.corner[1]), c = zbuffer_vertex(p, o, tri.corner[2]);
+            const vec3 a = zbuffer_vertex(p, o, tri.corner[0]), b = zbuffer_vertex(p, o, tri.corner[1]),
+                       c = zbuffer_vertex(p, o, tri.corner[2]);
             const double la = vec3_length(a), lb = vec3_length(b), lc = vec3_length(c);
             const double below = la * lb * lc + vec3_dot(a, b) * lc + vec3_dot(b, c) * la + vec3_dot(c, a) * lb;
             turns += elementary_atan2_deg(vec3_dot(a, vec3_cross(b, c)), below) / 360.0;

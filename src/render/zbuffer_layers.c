@@ -1,5 +1,6 @@
-/* What one sees through: of each point of the grid the surfaces before the nearest opaque one, in the order of their depth (Carpenter, "The
- * A-buffer, an antialiased hidden surface method", SIGGRAPH 1984), and of them those where the medium changes, by priority as for rays. */
+/* What one sees through: of each point of the grid the surfaces before the nearest opaque one, in the order of their
+ * depth (Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984), and of them those where the
+ * medium changes, by priority as for rays. */
 #include "render/zbuffer_private.h"
 
 #include <stdlib.h>
@@ -82,7 +83,10 @@ static int collect(zbuffer *z, zbuffer_square *s, int point)
     return count;
 }
 
-typedef struct layer_list { int count; drawn_layer layer[LAYERS_MAX]; } layer_list;
+typedef struct layer_list {
+    int count;
+    drawn_layer layer[LAYERS_MAX];
+} layer_list;
 
 /* Sets of bodies have the bit r - 1 for the rank r: the medium is that of the highest. */
 static uint64_t bit_of(const zbuffer *z, const drawn_fragment *f)
@@ -95,9 +99,9 @@ static int highest(uint64_t inside)
     return inside ? 64 - __builtin_clzll(inside) : 0;
 }
 
-/* Crosses what lies together at the front of the column: each surface leads into its body or out of it, whatever way its triangle looks, so
- * that near an outline, where front and back are as near, their order does not matter. What is drawn of a cup's outside and of its hollow bounds its matter.
- * Returns how many there were. */
+/* Crosses what lies together at the front of the column: each surface leads into its body or out of it, whatever way
+ * its triangle looks, so that near an outline, where front and back are as near, their order does not matter. What is
+ * drawn of a cup's outside and of its hollow bounds its matter. Returns how many there were. */
 static int cross(const zbuffer *z, const drawn_fragment *f, int count, uint64_t *inside)
 {
     int n = 0;
@@ -110,15 +114,20 @@ static int cross(const zbuffer *z, const drawn_fragment *f, int count, uint64_t 
 }
 
 /* Of the surfaces that are crossed together that of the body whose surface it is. */
-static inline drawn_layer layer_of(const zbuffer *z, const drawn_fragment *f, int count, uint64_t inside, int before, int after)
+static inline drawn_layer layer_of(const zbuffer *z, const drawn_fragment *f, int count, uint64_t inside, int before,
+                                   int after)
 {
     const int rank = arrangement_surface(z->scene->solids, before, after);
     const drawn_fragment *c = f;
     for (int k = 1; k < count && z->parts[c->part].at.rank != rank; k++)
         c = z->parts[f[k].part].at.rank == rank ? &f[k] : c;
     const drawn_part *p = &z->parts[c->part];
-    return (drawn_layer){.number = c->number + 1, .before = (uint8_t)before, .after = (uint8_t)after, .surface = (uint8_t)rank,
-                         .leaving = ((inside & bit_of(z, c)) != 0) != p->hollow, .ends = z->scene->solids->bodies[rank].opaque};
+    return (drawn_layer){.number = c->number + 1,
+                         .before = (uint8_t)before,
+                         .after = (uint8_t)after,
+                         .surface = (uint8_t)rank,
+                         .leaving = ((inside & bit_of(z, c)) != 0) != p->hollow,
+                         .ends = z->scene->solids->bodies[rank].opaque};
 }
 
 static bool absorb_alike(const plan *p, int before, int after)
@@ -127,7 +136,8 @@ static bool absorb_alike(const plan *p, int before, int after)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Every layer but the last is a clear interface, no more of them than the depth limit lets through, or is passed; the last one is what ends the view. */
+/* Every layer but the last is a clear interface, no more of them than the depth limit lets through, or is passed; the
+ * last one is what ends the view. */
 static void list_layers(const zbuffer *z, const drawn_fragment *f, int count, uint32_t base, layer_list *l)
 {
     const arrangement *a = z->scene->solids;
@@ -154,7 +164,11 @@ static void list_layers(const zbuffer *z, const drawn_fragment *f, int count, ui
     }
     if (interfaces < most) {
         const int after = base ? z->parts[z->triangles[base - 1].part].at.rank : before;
-        l->layer[l->count++] = (drawn_layer){.number = base, .before = (uint8_t)before, .after = (uint8_t)after, .surface = (uint8_t)after, .ends = true};
+        l->layer[l->count++] = (drawn_layer){.number = base,
+                                             .before = (uint8_t)before,
+                                             .after = (uint8_t)after,
+                                             .surface = (uint8_t)after,
+                                             .ends = true};
     }
 }
 

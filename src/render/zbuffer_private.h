@@ -76,8 +76,9 @@ struct zbuffer {
     double units_x, units_y; /* of the grid, in one of x / z and y / z */
     double reach_x, reach_y; /* largest of |x| / z and |y| / z */
     int part_count;
-    drawn_part parts[PRIMITIVES_MAX]; /* the highest rank first, so that of equally near triangles the one with the lower number is drawn; layers last */
-    uint64_t layered;       /* bit r - 1: the body of rank r is drawn as layers; 0 where there is nothing to see through */
+    drawn_part parts[PRIMITIVES_MAX]; /* the highest rank first, so that of equally near triangles the one with the
+                                       * lower number is drawn; layers last */
+    uint64_t layered;       /* bit r - 1: the body of rank r is drawn as layers; 0: there is nothing to see through */
     uint64_t eye_inside;    /* those that the eye is in */
     uint64_t skins;         /* those that are open meshes */
     double eye_index;       /* refractive index where the eye is */

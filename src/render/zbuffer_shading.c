@@ -8,7 +8,8 @@
 /* The point of the grid that a ray goes through. */
 static size_t point_of(const zbuffer *z, int64_t ticket, int *x, int *y)
 {
-    const uint32_t pixel = (uint32_t)ticket_pixel(ticket), sample = (uint32_t)ticket_sample(ticket); /* short divisions are faster */
+    const uint32_t pixel = (uint32_t)ticket_pixel(ticket),
+                   sample = (uint32_t)ticket_sample(ticket); /* short divisions are faster */
     const uint32_t points = (uint32_t)z->points, width = (uint32_t)z->scene->render.width;
     const uint32_t row = pixel / width, line = points == 1 ? 0 : sample / points;
     *x = (int)((pixel - row * width) * points + sample - line * points);
@@ -66,7 +67,8 @@ static void note_nothing(tracer *t, int i)
 static met met_by(const zbuffer *z, const screen_triangle *s, vec3 d)
 {
     const drawn_part *p = &z->parts[s->part];
-    return p->plane ? met_plane(&z->scene->solids->primitives[p->met], &z->scene->view, d) : met_triangle(p, s, &z->scene->view, d);
+    return p->plane ? met_plane(&z->scene->solids->primitives[p->met], &z->scene->view, d)
+                    : met_triangle(p, s, &z->scene->view, d);
 }
 
 static void note_hit(tracer *t, int i, const screen_triangle *s, met m)
@@ -113,7 +115,8 @@ static void dim(const plan *p, ray_queue *q, int at, int rank, double length)
     if (rank == 0 || !p->solids->bodies[rank].absorbs)
         return;
     const vec3 a = p->absorption[rank];
-    q->wr[at] *= absorption_left(a.x * length), q->wg[at] *= absorption_left(a.y * length), q->wb[at] *= absorption_left(a.z * length);
+    q->wr[at] *= absorption_left(a.x * length), q->wg[at] *= absorption_left(a.y * length),
+        q->wb[at] *= absorption_left(a.z * length);
 }
 
 static const drawn_layer *layer_at(const zbuffer *z, uint32_t place)
@@ -132,8 +135,9 @@ static inline met met_layer(const tracer *t, int i, const drawn_layer *l)
     return m;
 }
 
-/* The ray number `at` meets the next interface of its point's list, at `place` or behind what is passed: where the straight view does, but along its
- * own direction, as if it had set out towards that point. Where its list goes on it takes along as its set. */
+/* The ray number `at` meets the next interface of its point's list, at `place` or behind what is passed: where the
+ * straight view does, but along its own direction, as if it had set out towards that point. Where its list goes on it
+ * takes along as its set. */
 static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 {
     const zbuffer *z = t->target.depths;
@@ -203,9 +207,10 @@ void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *
     }
 }
 
-/* At a curved surface the straight view does not meet what a bent ray would: where it leaves a ball near its outline, the normal is another than where
- * the ray does, and light that came in would not get out. So the view is bent there as between the surface and one like it that it came in
- * by: the part along the surface is as n sin is, the same in all layers. */
+/* At a curved surface the straight view does not meet what a bent ray would: where it leaves a ball near its outline,
+ * the normal is another than where the ray does, and light that came in would not get out. So the view is bent there as
+ * between the surface and one like it that it came in by: the part along the surface is as n sin is, the same in all
+ * layers. */
 void drawn_bend(tracer *t, const int *list)
 {
     const zbuffer *z = t->target.depths;
@@ -227,15 +232,16 @@ void drawn_bend(tracer *t, const int *list)
     }
 }
 
-/* What a clear surface does with the view: the sky's light along the reflected direction, and on to the next layer with what is left. */
+/* What a clear surface does with the view: the sky's light along the reflected direction, and on to the next layer with
+ * what is left. */
 void drawn_branches(tracer *t, int depth)
 {
     const group *g = &t->gathered;
     const branch_group *b = &t->branches;
     for (int i = 0; i < g->count; i++)
         if (b->reflect[i] > 0.0)
-            shading_expose_sky(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * b->reflect[i], g->wg[i] * b->reflect[i],
-                               g->wb[i] * b->reflect[i]);
+            shading_expose_sky(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * b->reflect[i],
+                               g->wg[i] * b->reflect[i], g->wb[i] * b->reflect[i]);
     put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
 }
 

@@ -243,9 +243,10 @@ static status check_faces(const scene *s, const solid *owner, diagnostic *why)
         const material m = looks_face(s, owner, &owner->surface, slot).surface;
         const char *name = scene_find_mesh(s, owner->mesh)->data->slot_names[slot];
         if (m.reflectivity + m.transparency > 1.0 + 1e-12) {
-            return diagnose(why, STATUS_BAD_INPUT, "lower one of them, or set render.transmission to refract",
-                            "%.80s: under simple transmission its faces of %.80s have reflectivity %g + transparency %g, more than 1", owner->name,
-                            name && name[0] ? name : "no material", m.reflectivity, m.transparency);
+            return diagnose(
+                why, STATUS_BAD_INPUT, "lower one of them, or set render.transmission to refract",
+                "%.80s: under simple transmission its faces of %.80s have reflectivity %g + transparency %g, more than 1",
+                owner->name, name && name[0] ? name : "no material", m.reflectivity, m.transparency);
         }
     }
     return STATUS_OK;

@@ -50,8 +50,8 @@ static double brightest(vec3 color)
     return fmax(color.x, fmax(color.y, color.z));
 }
 
-/* Emitted light has the surface's colour here, and is as bright in its brightest channel as the file says; a lamp whose surface is black has
- * the light's own colour. */
+/* Emitted light has the surface's colour here, and is as bright in its brightest channel as the file says; a lamp whose
+ * surface is black has the light's own colour. */
 static void emit(face_look *look, const imported_material *m)
 {
     const vec3 sent = vec3_make(m->emissive[0], m->emissive[1], m->emissive[2]);

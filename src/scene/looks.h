@@ -24,14 +24,17 @@ void looks_release(const face_looks *l);
 bool looks_by_face(const scene *s, const solid *owner);
 
 /* What one kind of face of a solid looks like; the picture is borrowed. */
-typedef struct surface_look { material surface; const texture *picture; } surface_look;
+typedef struct surface_look {
+    material surface;
+    const texture *picture;
+} surface_look;
 
 /* How many slots say so; 0 where one material does. */
 int looks_slots(const scene *s, const solid *owner);
 
-/* The look of a slot's faces, of a solid with slots whose own material, as it is traced, is own: that of the scene's material of the slot's name, else
- * the file's, else own. Under simple transmission with its own transparency (MTL's d or Tr, glTF's alpha; own's where the file says 1) and
- * reflectivity; else with the solid's. */
+/* The look of a slot's faces, of a solid with slots whose own material, as it is traced, is own: that of the scene's
+ * material of the slot's name, else the file's, else own. Under simple transmission with its own transparency (MTL's d
+ * or Tr, glTF's alpha; own's where the file says 1) and reflectivity; else with the solid's. */
 surface_look looks_face(const scene *s, const solid *owner, const material *own, int slot);
 /* That of a solid without slots. */
 surface_look looks_whole(const scene *s, const material *own);

@@ -45,8 +45,8 @@ static void dress(surface_look *l, const material *own, const face_look *given)
     l->picture = given->picture;
 }
 
-/* Where light is bent, what the body is made of is the solid's own, and a face's look changes what an opaque surface sends back. Where light goes straight
- * on, a face lets through and reflects what its own material says. */
+/* Where light is bent, what the body is made of is the solid's own, and a face's look changes what an opaque surface
+ * sends back. Where light goes straight on, a face lets through and reflects what its own material says. */
 surface_look looks_face(const scene *s, const solid *owner, const material *own, int slot)
 {
     const material *named;
@@ -59,7 +59,9 @@ surface_look looks_face(const scene *s, const solid *owner, const material *own,
         dress(&l, own, given);
     }
     if (s->render.transmission == TRANSMISSION_SIMPLE) {
-        l.surface.transparency = named ? named->transparency : given && given->opacity < 1.0 ? 1.0 - given->opacity : own->transparency;
+        l.surface.transparency = named                           ? named->transparency
+                                 : given && given->opacity < 1.0 ? 1.0 - given->opacity
+                                                                 : own->transparency;
         return l;
     }
     l.surface.transparency = own->transparency;
@@ -98,7 +100,8 @@ bool looks_waste(const scene *s, const solid *owner)
         const face_look *given;
         find_look(s, owner, slot, &named, &given);
         const bool clear = !material_is_opaque(own);
-        if ((named && (named->transparency != own->transparency || (clear && named->reflectivity != own->reflectivity))) ||
+        if ((named &&
+             (named->transparency != own->transparency || (clear && named->reflectivity != own->reflectivity))) ||
             (!named && given && given->opacity < 1.0 && 1.0 - given->opacity != own->transparency)) {
             return true;
         }

@@ -143,14 +143,14 @@ static bool within(const double *values, int count, double low, double high)
 
 static status check_numbers(const imported_material *m, diagnostic *why)
 {
-    const char *wrong = !within(m->color, 3, 0, COLOR_MAX)         ? "diffuse colour"
-                        : !within(m->ambient, 3, 0, COLOR_MAX)     ? "ambient colour"
-                        : !within(m->specular, 3, 0, COLOR_MAX)    ? "specular colour"
-                        : !within(m->emissive, 3, 0, COLOR_MAX)    ? "emitted colour"
-                        : !within(&m->shininess, 1, 0, COLOR_MAX)  ? "shininess"
-                        : !within(&m->opacity, 1, 0, 1)            ? "opacity"
-                        : !within(&m->ior, 1, 0, COLOR_MAX)        ? "index of refraction"
-                                                                   : NULL;
+    const char *wrong = !within(m->color, 3, 0, COLOR_MAX)        ? "diffuse colour"
+                        : !within(m->ambient, 3, 0, COLOR_MAX)    ? "ambient colour"
+                        : !within(m->specular, 3, 0, COLOR_MAX)   ? "specular colour"
+                        : !within(m->emissive, 3, 0, COLOR_MAX)   ? "emitted colour"
+                        : !within(&m->shininess, 1, 0, COLOR_MAX) ? "shininess"
+                        : !within(&m->opacity, 1, 0, 1)           ? "opacity"
+                        : !within(&m->ior, 1, 0, COLOR_MAX)       ? "index of refraction"
+                                                                  : NULL;
     return !wrong ? STATUS_OK
                   : diagnose(why, STATUS_BAD_INPUT, "correct the material", "material '%s': its %s is out of range",
                              m->name ? m->name : "", wrong);

@@ -94,7 +94,7 @@ typedef struct background {
 typedef struct material {
     vec3 color;             /* C, linear RGB; of a clear solid also the share of light left after tint_distance inside */
     double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
-    double emission;        /* k_e: the surface sends out k_e C by itself, to all sides */
+    double emission;                              /* k_e: the surface sends out k_e C by itself, to all sides */
     double reflectivity;    /* constant weights, simple transmission, and opaque materials; a clear one's coating under fresnel weights */
     double transparency;    /* 0 = opaque; else share of the refracted light that passes an interface */
     double ior;             /* relative to vacuum, where medium is MEDIUM_IOR */
