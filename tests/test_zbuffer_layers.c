@@ -234,21 +234,9 @@ static void nothing_is_lost_between_layers(void **state)
     (void)state;
     scene *s = loaded(
         clear_scene,
-        "r"
-        "e"
-        "n"
-        "d"
-        "e"
-        "r"
-        "."
-        "i"
-        "n"
-        "t"
-        "e"
-        "g"
-        "r"
-        "ator=zbuffer ground.visible=off rod.visible=off crate.visible=off clear.absorb_per_m=0,0,0 clear.color=1,1,1 "
-        "clear.transparency=1 clear.specular=0 clear.diffuse=0 background.kind=uniform background.color=1,1,1");
+        "render.integrator=zbuffer ground.visible=off rod.visible=off crate.visible=off "
+        "clear.absorb_per_m=0,0,0 clear.color=1,1,1 clear.transparency=1 clear.specular=0 clear.diffuse=0 "
+        "background.kind=uniform background.color=1,1,1");
     set_all(s, "ring.ior=1.8 water.ior=1.33 can.ior=0.8");
     for (int depth = 0; depth <= 12; depth += 3) {
         s->render.depth = depth;
