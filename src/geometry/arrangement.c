@@ -94,7 +94,7 @@ static void add_body(arrangement *a, int rank, const body_source *source)
     body *b = &a->bodies[rank];
     *b = (body){.outside = a->primitive_count, .hollow = n == 2 ? a->primitive_count + 1 : -1, .medium = source->medium,
                 .opaque = source->opaque, .clearness = source->opaque ? 0.0 : source->clearness,
-                .absorbs = source->absorbs && !source->opaque, .solid = source->solid};
+                .absorbs = source->absorbs && !source->opaque, .reflects = source->reflects && !source->opaque, .solid = source->solid};
     a->absorbs |= b->absorbs;
     for (int k = 0; k < n; k++) {
         parts[k].rank = rank;

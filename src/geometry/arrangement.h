@@ -46,6 +46,7 @@ typedef struct body {
     bool opaque;
     double clearness;    /* share of light that a shadow ray keeps at each of its interfaces; 0 when opaque */
     bool absorbs;        /* its medium takes light away with length */
+    bool reflects;       /* its surface reflects by the angle, so that shadow rays note where they cross it: see ray_crossings */
     int solid;           /* index of the solid it came from */
 } body;
 
@@ -64,7 +65,7 @@ typedef struct arrangement {
 /* Can a body take light away from a shadow ray by itself? With solid_shadows every body does. */
 static inline bool body_casts_shadow(const body *b, bool solid_shadows)
 {
-    return b->opaque || solid_shadows || b->clearness < 1.0 || b->absorbs;
+    return b->opaque || solid_shadows || b->clearness < 1.0 || b->absorbs || b->reflects;
 }
 
 /* What arrangement_build wants to know of a solid. */
@@ -75,7 +76,7 @@ typedef struct body_source {
     int64_t medium;
     bool opaque;
     double clearness;
-    bool absorbs;
+    bool absorbs, reflects;
     int solid;
 } body_source;
 

@@ -103,7 +103,8 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
         sources[count] = (body_source){.shape = &one->shape, .priority = one->priority, .medium = medium_of(s, laws, i),
                                              .opaque = material_is_opaque(&one->surface),
                                              .clearness = one->surface.transparency,
-                                             .absorbs = material_absorbs(&one->surface), .solid = i};
+                                             .absorbs = material_absorbs(&one->surface),
+                                             .reflects = p->basic && !scene_has_constant_shares(&s->render), .solid = i};
         if (one->shape.kind == SHAPE_MESH)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
@@ -187,6 +188,8 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     index_law *laws = calloc(s->solid_count + 1, sizeof *laws);
     status code = p && laws ? laws_of(s, laws, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK)
+        p->basic = scene_has_basic_radiance(&s->render);
+    if (code == STATUS_OK)
         code = arrange(s, laws, p, why);
     if (code == STATUS_OK)
         code = fill_ranks(s, laws, p, why);
@@ -203,6 +206,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         p->render.shadows = SHADOWS_OFF;
     else
         p->eye_inside = arrangement_inside(p->solids, p->view.eye);
+    p->eye_rank = arrangement_rank(p->solids, p->eye_inside);
     p->sky = &s->background;
     p->lights = s->lights;
     p->light_count = (int)s->light_count;
