@@ -54,6 +54,11 @@ static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
     write_number(out, "R_p", h->R_p);
     write_number(out, "R", h->R);
     fprintf(out, ",\"tir\":%s", h->tir ? "true" : "false");
+    write_number(out, "T", h->T);
+    fputs(",\"radiance_factor\":{\"classic\":", out);
+    json_write_real(out, h->gain_classic);
+    write_number(out, "basic", h->gain_basic);
+    fputc('}', out);
     write_number(out, "path_length", h->path_length_m);
     write_list(out, "transmittance", h->transmittance, 3);
     write_number(out, "error_bound", h->error_bound);
@@ -77,6 +82,8 @@ static bool write_extras(const traced *t, FILE *out, const ray_node *node)
         good = write_word(out, "light", t->s->lights[node->light].name);
         write_number(out, "light_distance", node->light_distance);
     }
+    if (node->kind == RAY_SHADOW)
+        write_number(out, "let_through", node->let_through);
     write_list(out, "brought", node->brought, 3);
     return good;
 }
@@ -126,6 +133,7 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
         fputc(']', out);
     }
     write_number(out, "lambda_nm", tree->lambda_nm);
+    fprintf(out, ",\"carries\":\"%s\"", scene_has_basic_radiance(&t->s->render) ? "basic" : "classic");
     fputs("}\n", out);
     return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
 }
