@@ -238,6 +238,7 @@ static void panes_shade_by_fresnel_on_both_faces(void **state)
     assert_true(fabs(shaded(pane, "") - 0.8 * T * T) < 1e-9);
     assert_true(fabs(shaded(leaning, "") - 0.8 * 0.96 * 0.96) < 1e-9); /* head-on */
     assert_true(fabs(shaded(pane, "pane.transparency=0.7071067811865476") - 0.8 * half) < 1e-9);
+    assert_true(fabs(shaded(pane, "pane.reflectivity=0.3") - 0.8 * T * T * 0.49) < 1e-9); /* a coating on both faces */
     assert_true(fabs(shaded(pane, "render.radiance=classic") - 0.8) < 1e-9);
     assert_true(fabs(shaded(pane, "render.weights=constant") - 0.8) < 1e-9);
     assert_true(fabs(shaded(pane, "render.transmission=simple") - 0.8) < 1e-9);

@@ -43,7 +43,8 @@ static const char *solid_hint(const scene *s, const solid *owner, char text[HINT
             problem = "is transparent, and the depth buffer draws its surface: black but for highlights; set its diffuse";
         }
     } else if (m->transparency > 0.0) {
-        if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !is_inside_medium(s, owner)) {
+        if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !material_tints(m) && m->reflectivity == 0.0 &&
+            !is_inside_medium(s, owner)) {
             problem = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m)
                           ? "is transparent with the index of what is around it: it bends no light; set its ior"
                           : "is transparent with the index of what is around it: it is invisible; set its ior";
