@@ -10,9 +10,9 @@
 #include "probe_fixture.h"
 #include "realism/theory.h"
 
-/* render.radiance: basic. L / n^2 is handed on along a ray, but for what is reflected and absorbed: Nicodemus, "Radiance", American Journal of
- * Physics 31 (1963); Veach, Robust Monte Carlo Methods for Light Transport Simulation (1997), 5.2. Reflectances are those of
- * realism/theory.h, sines and tangents of angles, not the tracer's. */
+/* render.radiance: basic. L / n^2 is handed on along a ray, but for what is reflected and absorbed: Nicodemus,
+ * "Radiance", American Journal of Physics 31 (1963); Veach, Robust Monte Carlo Methods for Light Transport Simulation
+ * (1997), 5.2. Reflectances are those of realism/theory.h, sines and tangents of angles, not the tracer's. */
 
 #define NEAR 1e-10
 
@@ -39,8 +39,8 @@ static const char diver[] = "background: {color: [1, 1, 1]}\n"
 static scene *diver_at(double degrees, double n, double n_around, const char *settings)
 {
     char pose[256];
-    snprintf(pose, sizeof pose, "water.ior=%g background.ior=%g camera.position=0,0.5,0 camera.target=%.17g,%.17g,0", n, n_around,
-             sin(degrees * DEGREE), 0.5 + cos(degrees * DEGREE));
+    snprintf(pose, sizeof pose, "water.ior=%g background.ior=%g camera.position=0,0.5,0 camera.target=%.17g,%.17g,0", n,
+             n_around, sin(degrees * DEGREE), 0.5 + cos(degrees * DEGREE));
     scene *s = scene_from(diver);
     set_all(s, pose);
     set_all(s, settings);
@@ -50,7 +50,9 @@ static scene *diver_at(double degrees, double n, double n_around, const char *se
 static void the_sky_from_under_water_has_the_square_of_the_index(void **state)
 {
     (void)state;
-    static const struct { double n, n_around; } media[] = {{1.333, 1.0}, {1.5, 1.0}, {1.8, 1.2}, {1.0, 1.5}, {1.0, 1.0}};
+    static const struct {
+        double n, n_around;
+    } media[] = {{1.333, 1.0}, {1.5, 1.0}, {1.8, 1.2}, {1.0, 1.5}, {1.0, 1.0}};
     static const char *const ways[] = {"", "render.polarisation=on", "render.samples=4"};
     for (size_t k = 0; k < COUNT(media); k++)
         for (int degrees = 0; degrees <= 80; degrees += 8)
@@ -74,12 +76,15 @@ static void random_paths_see_the_same_sky(void **state)
     }
 }
 
-/* Of a dispersive medium each wavelength has its own index: a film of X, Y and Z summed over them. Straight up R is ((n - 1) / (n + 1))^2,
- * and of a white sky, which has daylight's spectrum, the observer sees the sum of n^2 T D65 y over the sum of D65 y in luminance. */
+/* Of a dispersive medium each wavelength has its own index: a film of X, Y and Z summed over them. Straight up R is
+ * ((n - 1) / (n + 1))^2, and of a white sky, which has daylight's spectrum, the observer sees the sum of n^2 T D65 y
+ * over the sum of D65 y in luminance. */
 static void each_wavelength_has_its_own_square(void **state)
 {
     (void)state;
-    scene *s = diver_at(0.0, 1.5, 1.0, "water.medium=cauchy water.coefficients=1.3,0.06 render.spectrum=spectral render.wavelengths=400");
+    scene *s =
+        diver_at(0.0, 1.5, 1.0,
+                 "water.medium=cauchy water.coefficients=1.3,0.06 render.spectrum=spectral render.wavelengths=400");
     const vec3 classic = look(s);
     set(s, "render.radiance=basic");
     const vec3 basic = look(s);
@@ -102,22 +107,28 @@ static void each_wavelength_has_its_own_square(void **state)
 
 /* --- a closed furnace */
 
-static const char furnace[] = "background: {color: [1, 1, 1]}\n"
-                              "camera: {position: [0.3, 1.9, -4.5], target: [0, 1, 0], fov_deg: 40}\n"
-                              "render: {width: 12, height: 9, depth: 6, radiance: basic}\n"
-                              "solids:\n"
-                              "  ground: {shape: plane, transparency: 1, ior: 1.3, rotation: [4, 0, -7]}\n"
-                              "  block: {shape: box, transparency: 1, ior: 1.7, position: [0.3, 0.9, 0.1], rotation: [20, 30, 10], "
-                              "size: [1.8, 1.1, 0.7], priority: 4}\n"
-                              "  bead: {shape: sphere, transparency: 1, ior: 2.42, position: [0.2, 0.9, 0], radius: 0.4, priority: 6}\n";
+static const char furnace[] =
+    "background: {color: [1, 1, 1]}\n"
+    "camera: {position: [0.3, 1.9, -4.5], target: [0, 1, 0], fov_deg: 40}\n"
+    "render: {width: 12, height: 9, depth: 6, radiance: basic}\n"
+    "solids:\n"
+    "  ground: {shape: plane, transparency: 1, ior: 1.3, rotation: [4, 0, -7]}\n"
+    "  block: {shape: box, transparency: 1, ior: 1.7, position: [0.3, 0.9, 0.1], rotation: [20, 30, 10], "
+    "size: [1.8, 1.1, 0.7], priority: 4}\n"
+    "  bead: {shape: sphere, transparency: 1, ior: 2.42, position: [0.2, 0.9, 0], radius: 0.4, priority: 6}\n";
 
-/* Light of one L / n^2 everywhere shows nothing of what it goes through: n_eye^2 in every pixel, in units of the surroundings'. */
+/* Light of one L / n^2 everywhere shows nothing of what it goes through: n_eye^2 in every pixel, in units of the
+ * surroundings'. */
 static void a_furnace_shows_nothing_but_the_eyes_own_medium(void **state)
 {
     (void)state;
-    static const char *const ways[] = {"", "render.polarisation=on", "render.integrator=path render.paths=16", "render.depth=1"};
-    static const struct { const char *pose; double n; } eyes[] = {{"", 1.0}, {"camera.position=0.25,0.9,0.01", 2.42},
-                                                                    {"camera.position=0,-3,0 background.ior=1.2", 1.3 / 1.2}};
+    static const char *const ways[] = {"", "render.polarisation=on", "render.integrator=path render.paths=16",
+                                       "render.depth=1"};
+    static const struct {
+        const char *pose;
+        double n;
+    } eyes[] = {
+        {"", 1.0}, {"camera.position=0.25,0.9,0.01", 2.42}, {"camera.position=0,-3,0 background.ior=1.2", 1.3 / 1.2}};
     for (size_t w = 0; w < COUNT(ways); w++)
         for (size_t k = 0; k < COUNT(eyes); k++) {
             scene *s = scene_from(furnace);
@@ -141,12 +152,14 @@ static const char pond[] = "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\n
                            "  water: {shape: box, size: [1e4, 2, 1e4], transparency: 1, ior: 1.5}\n"
                            "  floor: {shape: plane, priority: 9}\n";
 
-/* From a place 2 above the floor, which is 1 under water, along a ray at that angle; *at: where on the floor that leads. */
+/* From a place 2 above the floor, which is 1 under water, along a ray at that angle; *at: where on the floor that
+ * leads. */
 static scene *pond_from_above(double degrees, double n, const char *settings, double *at)
 {
     char pose[256];
     const double a = degrees * DEGREE;
-    snprintf(pose, sizeof pose, "water.ior=%.17g camera.position=0,2,0 camera.target=%.17g,%.17g,0", n, sin(a), 2.0 - cos(a));
+    snprintf(pose, sizeof pose, "water.ior=%.17g camera.position=0,2,0 camera.target=%.17g,%.17g,0", n, sin(a),
+             2.0 - cos(a));
     scene *s = scene_from(pond);
     set_all(s, pose);
     set_all(s, settings);
@@ -187,19 +200,23 @@ static void in_one_medium_nothing_changes(void **state)
     }
 }
 
-/* E_straight T, T by the straight line's angle on the side of the lower index: for a lamp above, and for one whose light goes from water up. */
+/* E_straight T, T by the straight line's angle on the side of the lower index: for a lamp above, and for one whose
+ * light goes from water up. */
 static void a_lamp_lights_the_floor_through_the_surface(void **state)
 {
     (void)state;
     for (int degrees = 0; degrees <= 60; degrees += 15) {
         double at;
-        scene *s = pond_from_above(degrees, 1.5, "lamp.intensity=1 floor.diffuse=0.5 water.absorb_per_m=0.2,0.2,0.2", &at);
-        const double across = hypot(9.0 - at, 3.0), angle = atan2(across, 40.0), T = through(degrees * DEGREE, 1.0, 1.5);
+        scene *s =
+            pond_from_above(degrees, 1.5, "lamp.intensity=1 floor.diffuse=0.5 water.absorb_per_m=0.2,0.2,0.2", &at);
+        const double across = hypot(9.0 - at, 3.0), angle = atan2(across, 40.0),
+                     T = through(degrees * DEGREE, 1.0, 1.5);
         const double length = 1.0 / cos(angle) + 1.0 / cos(asin(sin(degrees * DEGREE) / 1.5));
         const double E = 0.5 * cos(angle) * through(angle, 1.0, 1.5) * exp(-0.2 * length);
         assert_true(fabs(see(s) - T * E / 2.25) < 1e-9);
         set(s, "render.shadows=off");
-        assert_true(fabs(see(s) - T * 0.5 * cos(angle) / 2.25 * exp(-0.2 / cos(asin(sin(degrees * DEGREE) / 1.5)))) < 1e-9);
+        assert_true(fabs(see(s) - T * 0.5 * cos(angle) / 2.25 * exp(-0.2 / cos(asin(sin(degrees * DEGREE) / 1.5)))) <
+                    1e-9);
         set_all(s, "render.shadows=attenuated render.radiance=classic");
         assert_true(fabs(see(s) - T * 0.5 * cos(angle) * exp(-0.2 * length)) < 1e-9);
         scene_destroy(s);
@@ -233,8 +250,9 @@ static void panes_shade_by_fresnel_on_both_faces(void **state)
     (void)state;
     const double angle = atan(0.75), T = through(angle, 1.0, 1.5), half = 0.5 * T * T;
     const char *const pane = "pane: {shape: box, position: [9, 12, 0], size: [4, 0.5, 4], transparency: 1, ior: 1.5}";
-    const char *const leaning = "pane: {shape: box, position: [9, 12, 0], rotation: [0, 0, -36.86989764584402], size: [4, 0.5, 4], "
-                                "transparency: 1, ior: 1.5}";
+    const char *const leaning =
+        "pane: {shape: box, position: [9, 12, 0], rotation: [0, 0, -36.86989764584402], size: [4, 0.5, 4], "
+        "transparency: 1, ior: 1.5}";
     assert_true(fabs(shaded(pane, "") - 0.8 * T * T) < 1e-9);
     assert_true(fabs(shaded(leaning, "") - 0.8 * 0.96 * 0.96) < 1e-9); /* head-on */
     assert_true(fabs(shaded(pane, "pane.transparency=0.7071067811865476") - 0.8 * half) < 1e-9);
@@ -247,17 +265,21 @@ static void panes_shade_by_fresnel_on_both_faces(void **state)
     assert_true(shaded(pane, "render.shadows=opaque") == 0.0);
 }
 
-/* Round surfaces: the ray meets a sphere of radius r at a distance b from its middle, at sin i = b / r, and leaves it at the same angle. */
+/* Round surfaces: the ray meets a sphere of radius r at a distance b from its middle, at sin i = b / r, and leaves it
+ * at the same angle. */
 static void spheres_and_cylinders_shade_by_the_angle_of_the_straight_ray(void **state)
 {
     (void)state;
     for (double b = 0.0; b < 0.95; b += 0.2) {
         char text[256];
         const double x = 9.0 + 0.8 * b, y = 12.0 - 0.6 * b, T = through(asin(b), 1.0, 1.4);
-        snprintf(text, sizeof text, "ball: {shape: sphere, radius: 1, position: [%.17g, %.17g, 0], transparency: 1, ior: 1.4}", x, y);
+        snprintf(text, sizeof text,
+                 "ball: {shape: sphere, radius: 1, position: [%.17g, %.17g, 0], transparency: 1, ior: 1.4}", x, y);
         assert_true(fabs(shaded(text, "") - 0.8 * T * T) < 1e-9);
-        snprintf(text, sizeof text, "rod: {shape: cylinder, radius: 1, height: 4, rotation: [90, 0, 0], position: [%.17g, %.17g, -2], "
-                                    "transparency: 1, ior: 1.4}", x, y);
+        snprintf(text, sizeof text,
+                 "rod: {shape: cylinder, radius: 1, height: 4, rotation: [90, 0, 0], position: [%.17g, %.17g, -2], "
+                 "transparency: 1, ior: 1.4}",
+                 x, y);
         assert_true(fabs(shaded(text, "") - 0.8 * T * T) < 1e-9);
     }
 }
@@ -267,8 +289,9 @@ static void each_interface_counts_once_with_its_own_indices(void **state)
 {
     (void)state;
     const double angle = atan(0.75), T = through(angle, 1.0, 1.5), inner = through(0.0, 1.33, 1.5);
-    const char *const two = "pane: {shape: box, position: [9, 12, 0], size: [8, 4, 4], transparency: 1, ior: 1.5}\n"
-                            "  drop: {shape: sphere, radius: 1, position: [9, 12, 0], transparency: 1, ior: 1.33, priority: 1}";
+    const char *const two =
+        "pane: {shape: box, position: [9, 12, 0], size: [8, 4, 4], transparency: 1, ior: 1.5}\n"
+        "  drop: {shape: sphere, radius: 1, position: [9, 12, 0], transparency: 1, ior: 1.33, priority: 1}";
     assert_true(fabs(shaded(two, "") - 0.8 * T * T * inner * inner) < 1e-9);
     assert_true(fabs(shaded(two, "drop.ior=1.5") - 0.8 * T * T) < 1e-9);
     assert_true(fabs(shaded(two, "drop.ior=1 pane.ior=1") - 0.8) < 1e-9);
@@ -279,7 +302,8 @@ static void meshes_shade_like_the_solids_that_they_are(void **state)
 {
     (void)state;
     char text[2048];
-    snprintf(text, sizeof text, window, "pane: {shape: mesh, mesh: block, position: [9, 12, 0], scale: [4, 0.5, 4], transparency: 1, ior: 1.5}");
+    snprintf(text, sizeof text, window,
+             "pane: {shape: mesh, mesh: block, position: [9, 12, 0], scale: [4, 0.5, 4], transparency: 1, ior: 1.5}");
     char whole[4096];
     snprintf(whole, sizeof whole, "meshes: {block: {generate: box}}\n%s", text);
     scene *s = scene_from(whole);
@@ -293,7 +317,8 @@ static void meshes_shade_like_the_solids_that_they_are(void **state)
 
 /* --- Whitted's rays beside random paths */
 
-/* A dark floor 1 under water, a lamp 500 above, which the water does not mirror into the eye. Whitted's lamp is its point. */
+/* A dark floor 1 under water, a lamp 500 above, which the water does not mirror into the eye. Whitted's lamp is its
+ * point. */
 static const char dark_floor[] = "background: {color: [0, 0, 0]}\n"
                                  "render: {width: 16, height: 16, depth: 3, beyond: black, radiance: basic}\n"
                                  "camera: {position: [0, 200, 80], target: [0, 0, 0], fov_deg: 0.2}\n"
@@ -329,7 +354,8 @@ static void trees_and_paths_agree_on_a_dark_floor_under_water(void **state)
         const double paths = mean_of(s);
         set_all(s, "render.radiance=classic");
         assert_true(n == 1.0 || mean_of(s) == paths); /* eye and lamp are in one medium */
-        print_message("n %g: Whitted's over the paths' light %.4f with basic radiance, %.4f with classic\n", n, tree / paths, classic / paths);
+        print_message("n %g: Whitted's over the paths' light %.4f with basic radiance, %.4f with classic\n", n,
+                      tree / paths, classic / paths);
         assert_true(fabs(tree / wanted - 1.0) < 1e-3);
         assert_true(fabs(tree / paths - 1.0) <= 0.01);
         scene_destroy(s);
@@ -340,7 +366,9 @@ static void trees_and_paths_agree_on_a_dark_floor_under_water(void **state)
 static void a_shining_sphere_counts_by_the_medium_that_it_shines_into(void **state)
 {
     (void)state;
-    const char *const lamp = "render.integrator=path render.paths=4096 lamp.position=0,0.4,0 lamp.intensity=1 lamp.reach=0.2 lamp.radius=0.2";
+    const char *const lamp =
+        "render.integrator=path render.paths=4096 lamp.position=0,0.4,0 "
+        "lamp.intensity=1 lamp.reach=0.2 lamp.radius=0.2";
     double unused;
     scene *s = pond_from_above(0.0, 1.5, lamp, &unused);
     expect_estimate(look_by_chance(s, 0), 0.96 / 2.25);
@@ -365,7 +393,8 @@ static uint64_t hash_of(const char *settings)
 static void without_refraction_the_film_is_the_classic_one(void **state)
 {
     (void)state;
-    static const char *const straight[] = {"vessel.ior=1 liquid.ior=1", "render.transmission=simple clear.transparency=0.9", "render.integrator=zbuffer"};
+    static const char *const straight[] = {
+        "vessel.ior=1 liquid.ior=1", "render.transmission=simple clear.transparency=0.9", "render.integrator=zbuffer"};
     for (size_t k = 0; k < COUNT(straight); k++) {
         char basic[128];
         snprintf(basic, sizeof basic, "%s render.radiance=basic", straight[k]);
@@ -377,26 +406,31 @@ static void without_refraction_the_film_is_the_classic_one(void **state)
 static void the_film_is_the_same_for_any_threads(void **state)
 {
     (void)state;
-    static const char *const ways[] = {"", "camera.position=0,1.2,0", "render.spectrum=spectral", "render.integrator=path render.paths=16"};
+    static const char *const ways[] = {"", "camera.position=0,1.2,0", "render.spectrum=spectral",
+                                       "render.integrator=path render.paths=16"};
     for (size_t k = 0; k < COUNT(ways); k++) {
         char one[160], many[160];
         snprintf(one, sizeof one, "render.radiance=basic render.threads=1 %s", ways[k]);
-        snprintf(many, sizeof many, "render.radiance=basic render.threads=5 render.schedule=tiles render.tile=7 %s", ways[k]);
+        snprintf(many, sizeof many, "render.radiance=basic render.threads=5 render.schedule=tiles render.tile=7 %s",
+                 ways[k]);
         assert_true(hash_of(one) == hash_of(many));
     }
 }
 
-/* Which rays are followed does not depend on what they carry: throughputs are shares of the camera ray, in any medium. */
+/* Which rays are followed does not depend on what they carry: throughputs are shares of the camera ray, in any
+ * medium. */
 static void the_same_rays_are_followed(void **state)
 {
     (void)state;
     need_counters();
-    scene *s = rod_scene("render.width=80 render.height=60 render.depth=8 render.min_weight=0.01 camera.position=0.2,1.2,0.3");
+    scene *s =
+        rod_scene("render.width=80 render.height=60 render.depth=8 render.min_weight=0.01 camera.position=0.2,1.2,0.3");
     render_result *classic = render(s);
     set(s, "render.radiance=basic");
     render_result *basic = render(s);
     assert_true(classic->counters.cut_weight > 100 && classic->counters.cut_weight == basic->counters.cut_weight);
-    assert_true(classic->counters.refract == basic->counters.refract && classic->counters.reflect == basic->counters.reflect);
+    assert_true(classic->counters.refract == basic->counters.refract &&
+                classic->counters.reflect == basic->counters.reflect);
     render_result_destroy(classic);
     render_result_destroy(basic);
     scene_destroy(s);
@@ -413,12 +447,14 @@ static void a_tree_says_what_each_refraction_does_to_radiance(void **state)
         worked(probe_ray(g.probe, vec3_make(0.0, 0.5, 0.0), vec3_make(0.3, 1.0, 0.0), &g.tree, &why), &why);
         const double angle = atan(0.3), T = 0.9 * through(angle, 1.5, 1.0);
         const ray_hit *h = &g.tree.node[0].hit;
-        assert_true(fabs(h->T - T) < 1e-14 && fabs(h->gain_classic - T) < 1e-14 && fabs(h->gain_basic - 2.25 * T) < 1e-14);
+        assert_true(fabs(h->T - T) < 1e-14 && fabs(h->gain_classic - T) < 1e-14 &&
+                    fabs(h->gain_basic - 2.25 * T) < 1e-14);
         assert_true(fabs(g.tree.radiance[0] - (settings ? h->gain_basic : h->gain_classic)) < 1e-12);
         set(g.setting, "render.radiance=basic");
         stage_look(&g);
     }
-    worked(probe_ray(g.probe, vec3_make(0.0, 0.5, 0.0), vec3_make(1.0, 1.0, 0.0), &g.tree, &why), &why); /* beyond the critical angle */
+    worked(probe_ray(g.probe, vec3_make(0.0, 0.5, 0.0), vec3_make(1.0, 1.0, 0.0), &g.tree, &why),
+           &why); /* beyond the critical angle */
     assert_true(g.tree.node[0].hit.tir && g.tree.node[0].hit.gain_basic == 0.0);
     stage_close(&g);
 }

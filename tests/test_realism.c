@@ -165,7 +165,8 @@ static void metrics_without_meaning_are_named_as_such(void **state)
     for (int i = 0; i < r.count; i++)
         assert_true(realism_is_defined(&r.value[i]));
     r = measured_against(empty, empty);
-    const char *const none[] = {"water_line.break", "critical.liquid", "fresnel.wall", "radiance.sky_under_water", "absorption.slope"};
+    const char *const none[] = {"water_line.break", "critical.liquid", "fresnel.wall", "radiance.sky_under_water",
+                                "absorption.slope"};
     for (size_t i = 0; i < COUNT(none); i++) {
         assert_false(realism_is_defined(value(&r, none[i])));
         assert_false(realism_passes(value(&r, none[i])));
@@ -204,8 +205,8 @@ static void an_index_that_is_off_by_a_millionth_fails(void **state)
     const char *const of_glass[] = {"edges.left", "edges.right", "edges.magnification", "lens", "critical.vessel", "critical.wall", "fresnel.vessel",
                                     "fresnel.wall", "slab", "gap", "reversal"};
     expect_failures("", "vessel.ior=1.500001", of_glass, COUNT(of_glass));
-    const char *const of_water[] = {"edges", "water_line", "lens", "critical.liquid", "critical.wall", "fresnel.liquid", "fresnel.wall", "radiance",
-                                    "reversal"};
+    const char *const of_water[] = {"edges",          "water_line",   "lens",     "critical.liquid", "critical.wall",
+                                    "fresnel.liquid", "fresnel.wall", "radiance", "reversal"};
     expect_failures("", "liquid.ior=1.330001", of_water, COUNT(of_water));
     const char *const of_empty[] = {"edges.left", "edges.right", "edges.magnification", "lens", "critical", "fresnel", "slab", "gap", "reversal"};
     expect_failures("vessel.ior=2.4 liquid.visible=off", "vessel.ior=2.400001", of_empty, COUNT(of_empty));

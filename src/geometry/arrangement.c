@@ -92,9 +92,14 @@ static void add_body(arrangement *a, int rank, const body_source *source)
     int n = primitives_of(source->shape, parts);
     a->opaque_ranks |= (uint64_t)source->opaque << (rank - 1);
     body *b = &a->bodies[rank];
-    *b = (body){.outside = a->primitive_count, .hollow = n == 2 ? a->primitive_count + 1 : -1, .medium = source->medium,
-                .opaque = source->opaque, .clearness = source->opaque ? 0.0 : source->clearness,
-                .absorbs = source->absorbs && !source->opaque, .reflects = source->reflects && !source->opaque, .solid = source->solid};
+    *b = (body){.outside = a->primitive_count,
+                .hollow = n == 2 ? a->primitive_count + 1 : -1,
+                .medium = source->medium,
+                .opaque = source->opaque,
+                .clearness = source->opaque ? 0.0 : source->clearness,
+                .absorbs = source->absorbs && !source->opaque,
+                .reflects = source->reflects && !source->opaque,
+                .solid = source->solid};
     a->absorbs |= b->absorbs;
     for (int k = 0; k < n; k++) {
         parts[k].rank = rank;

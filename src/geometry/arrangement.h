@@ -46,7 +46,7 @@ typedef struct body {
     bool opaque;
     double clearness;    /* share of light that a shadow ray keeps at each of its interfaces; 0 when opaque */
     bool absorbs;        /* its medium takes light away with length */
-    bool reflects;       /* its surface reflects by the angle, so that shadow rays note where they cross it: see ray_crossings */
+    bool reflects;       /* by the angle: shadow rays note where they cross its surface (see ray_crossings) */
     int solid;           /* index of the solid it came from */
 } body;
 

@@ -69,14 +69,14 @@ typedef struct ray_ways {
 /* An interface that a shadow ray crosses straight on. */
 typedef struct ray_crossing {
     int ray, primitive;
-    int before, after;       /* ranks */
+    int before, after; /* ranks */
     double t;
-    uint64_t inside;         /* primitives that the ray is in just before it */
-    forest_hit mesh;         /* where the primitive is a mesh */
+    uint64_t inside; /* primitives that the ray is in just before it */
+    forest_hit mesh; /* where the primitive is a mesh */
 } ray_crossing;
 
-/* The interfaces of each shadow ray of a batch that is not blocked before them, for who wants more of them than the bodies' clearness. As
- * with ray_ways, a full list is handed over to `full`, which empties it. */
+/* The interfaces of each shadow ray of a batch that is not blocked before them, for who wants more of them than the
+ * bodies' clearness. As with ray_ways, a full list is handed over to `full`, which empties it. */
 enum { CROSSINGS_MAX = BATCH * 8 };
 typedef struct ray_crossings {
     int count;

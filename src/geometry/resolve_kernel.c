@@ -394,8 +394,12 @@ static void note_crossing(const arrangement *a, int k, ray_scratch *s, const hit
     if (x->count == CROSSINGS_MAX)
         x->full(x->context);
     const int met = (int)c->crossed[k];
-    x->crossings[x->count++] = (ray_crossing){.ray = s->ray[k], .primitive = met, .before = (int)c->before[k], .after = (int)c->after[k],
-                                              .t = c->t[k], .inside = c->inside_before[k],
+    x->crossings[x->count++] = (ray_crossing){.ray = s->ray[k],
+                                              .primitive = met,
+                                              .before = (int)c->before[k],
+                                              .after = (int)c->after[k],
+                                              .t = c->t[k],
+                                              .inside = c->inside_before[k],
                                               .mesh = is_mesh(a, met) ? mesh_hits[k] : (forest_hit){.face = FACE_NONE}};
 }
 

@@ -1,8 +1,9 @@
-/* Radiance across the liquid's flat surface with render.radiance: basic. L / n^2 is handed on but for what is reflected (Nicodemus 1963), so
- * that from within the liquid a sky of radiance 1 is (n / n_0)^2 T, and a floor of radiance 1 in the liquid is T (n_0 / n)^2 from above. A lamp
- * above lights that floor through the surface with T of its own straight line, and the square of the index only on the way back.
+/* Radiance across the liquid's flat surface with render.radiance: basic. L / n^2 is handed on but for what is
+ * reflected (Nicodemus 1963), so that from within the liquid a sky of radiance 1 is (n / n_0)^2 T, and a floor of
+ * radiance 1 in the liquid is T (n_0 / n)^2 from above. A lamp above lights that floor through the surface with T of
+ * its own straight line, and the square of the index only on the way back.
  *
- * Tolerance: as of gap.c; some film units and, near the critical angle, the root of a rounding. */
+ * * Tolerance: as of gap.c; some film units and, near the critical angle, the root of a rounding. */
 #include "realism/metrics.h"
 
 #include "scene/edit.h"
@@ -105,9 +106,11 @@ static status measure(const metrics *m, look which, worst_pair *worst, diagnosti
 
 status realism_radiance(const metrics *m, diagnostic *why)
 {
-    static const char *const names[] = {"radiance.sky_under_water", "radiance.floor_under_water", "radiance.lamp_under_water"};
-    static const char *const what[] = {"a sky of 1 from within the liquid, with render.radiance basic; of the angles 0 to 85 degrees the worst",
-                                       "a floor of radiance 1 in the liquid, from above it", "the same floor, matte, by a lamp above it"};
+    static const char *const names[] = {"radiance.sky_under_water", "radiance.floor_under_water",
+                                        "radiance.lamp_under_water"};
+    static const char *const what[] = {
+        "a sky of 1 from within the liquid, with render.radiance basic; of the angles 0 to 85 degrees the worst",
+        "a floor of radiance 1 in the liquid, from above it", "the same floor, matte, by a lamp above it"};
     const bool fresnel = !scene_has_constant_shares(&m->traced->render);
     status code = STATUS_OK;
     for (int k = 0; k < LOOKS && code == STATUS_OK; k++) {
@@ -115,7 +118,9 @@ status realism_radiance(const metrics *m, diagnostic *why)
         const bool defined = fresnel && m->at.liquid >= 0;
         if (defined)
             code = measure(m, (look)k, &worst, why);
-        const char *line = m->at.liquid < 0 ? "there is no liquid" : !fresnel ? "constant shares know no angle" : what[k];
+        const char *line = m->at.liquid < 0 ? "there is no liquid"
+                           : !fresnel       ? "constant shares know no angle"
+                                            : what[k];
         metrics_add(m, (realism_value){names[k], line, "", worst.measured, worst.theory, RADIANCE_TOLERANCE});
     }
     return code;

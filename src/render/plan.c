@@ -101,12 +101,15 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
         const solid *one = &s->solids[i];
         if (!one->visible)
             continue;
-        sources[count] = (body_source){.shape = &one->shape, .priority = one->priority, .medium = medium_of(s, laws, i),
-                                             .opaque = material_is_opaque(&one->surface),
-                                             .clearness = one->surface.transparency *
-                                                          (1.0 - material_coating(&one->surface, &s->render)),
-                                             .absorbs = material_dims(&one->surface),
-                                             .reflects = p->basic && !scene_has_constant_shares(&s->render), .solid = i};
+        sources[count] =
+            (body_source){.shape = &one->shape,
+                          .priority = one->priority,
+                          .medium = medium_of(s, laws, i),
+                          .opaque = material_is_opaque(&one->surface),
+                          .clearness = one->surface.transparency * (1.0 - material_coating(&one->surface, &s->render)),
+                          .absorbs = material_dims(&one->surface),
+                          .reflects = p->basic && !scene_has_constant_shares(&s->render),
+                          .solid = i};
         if (one->shape.kind == SHAPE_MESH)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;

@@ -103,7 +103,8 @@ static void hang(ray_tree *tree, int parent, size_t child)
     *link = (int)child;
 }
 
-/* What radiance from beyond the interface is multiplied by. Under simple transmission nothing is bent, and no index comes in. */
+/* What radiance from beyond the interface is multiplied by. Under simple transmission nothing is bent, and no index
+ * comes in. */
 static void read_gain(const probe *p, int rank, ray_hit *h)
 {
     const render_settings *r = &p->scene->render;

@@ -1,13 +1,15 @@
-/* Basic radiance (render.radiance). Where light is refracted from a medium of index n_1 into one of n_2 its cone of directions narrows or
- * widens: n^2 cos(theta) dA d(omega) stays as it is, and so, but for what is reflected, does L / n^2 (Nicodemus, "Radiance", American Journal
- * of Physics 31, 1963; Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997, 5.2). A ray's throughput is its share of L / n^2:
- * no interface puts an index into it. Indices come in where light is sent out, in a medium of index n, and where the eye takes it, in one of
- * n_eye: radiance L there counts (n_eye / n)^2 times. The eye's factor is taken at that end too, so that throughputs, which limits on a ray's
- * weight compare, are shares of the camera ray whatever the eye stands in.
+/* Basic radiance (render.radiance). Where light is refracted from a medium of index n_1 into one of n_2 its cone of
+ * directions narrows or widens: n^2 cos(theta) dA d(omega) stays as it is, and so, but for what is reflected, does
+ * L / n^2 (Nicodemus, "Radiance", American Journal of Physics 31, 1963; Veach, Robust Monte Carlo Methods for Light
+ * Transport Simulation, 1997, 5.2). A ray's throughput is its share of L / n^2: no interface puts an index into it.
+ * Indices come in where light is sent out, in a medium of index n, and where the eye takes it, in one of n_eye:
+ * radiance L there counts (n_eye / n)^2 times. The eye's factor is taken at that end too, so that throughputs, which
+ * limits on a ray's weight compare, are shares of the camera ray whatever the eye stands in.
  *
- * A shadow ray carries irradiance, in which the square of the index cancels against the solid angle: E = E_straight T, with each interface's
- * unpolarised transmittance. It is straight where light is bent. Its angle at an interface is taken on the side of the lower index: there it
- * is the true one for a lamp far above water, and for a pane in air on both of its faces; and no angle there is beyond the critical one. */
+ * A shadow ray carries irradiance, in which the square of the index cancels against the solid angle: E = E_straight
+ * T, with each interface's unpolarised transmittance. It is straight where light is bent. Its angle at an interface
+ * is taken on the side of the lower index: there it is the true one for a lamp far above water, and for a pane in air
+ * on both of its faces; and no angle there is beyond the critical one. */
 #include "render/tracer_private.h"
 
 #include "optics/interface.h"
@@ -51,7 +53,7 @@ typedef struct straight_rays {
     int64_t start[ROW];
     uint64_t inside[ROW];
     forest_hit mesh[ROW];
-    int64_t number[ROW];     /* in the list of crossings */
+    int64_t number[ROW]; /* in the list of crossings */
     int count;
 } straight_rays;
 
@@ -84,7 +86,8 @@ static void cross_surface(tracer *t, int met, straight_rays *s)
     const primitive *surface = &p->solids->primitives[met];
     const ray_batch rays = {s->count, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, s->start, s->inside};
     if (surface->kind == PRIMITIVE_MESH)
-        forest_surface(p->solids->meshes, &rays, s->mesh, p->looks[surface->rank].shading == SHADING_SMOOTH, &w->points, &w->on_mesh);
+        forest_surface(p->solids->meshes, &rays, s->mesh, p->looks[surface->rank].shading == SHADING_SMOOTH, &w->points,
+                       &w->on_mesh);
     else
         t->geometry->surface(surface, &rays, s->t, met, &w->points);
     for (int k = 0; k < s->count; k++) {
@@ -94,7 +97,8 @@ static void cross_surface(tracer *t, int met, straight_rays *s)
     s->count = 0;
 }
 
-/* Empties the list of crossings: surfaces a primitive at a time, the product in the order along each ray, whatever else is in the batch. */
+/* Empties the list of crossings: surfaces a primitive at a time, the product in the order along each ray, whatever
+ * else is in the batch. */
 static void take_crossings(void *context)
 {
     tracer *t = context;

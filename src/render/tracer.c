@@ -65,7 +65,8 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     const render_settings *r = &target->scene->render;
     t->depth_limit = (int)r->depth;
     t->branching = r->integrator == INTEGRATOR_WHITTED && r->lighting == LIGHTING_WHITTED;
-    t->by_ticket = r->integrator == INTEGRATOR_PATH || r->spectrum == SPECTRUM_SPECTRAL || target->depths || target->scene->basic;
+    t->by_ticket =
+        r->integrator == INTEGRATOR_PATH || r->spectrum == SPECTRUM_SPECTRAL || target->depths || target->scene->basic;
     /* Of a spectral film a camera ray is one for each wavelength, each with its part of the weight. */
     t->least_weight = r->spectrum == SPECTRUM_SPECTRAL ? r->min_weight / (double)r->wavelengths : r->min_weight;
     int shadows_at_once = BATCH * (target->scene->light_count + 1);
@@ -190,7 +191,8 @@ static void trace_batch(tracer *t, int depth)
     for (int k = 0; k < t->listed[none]; k++) {
         const int i = t->list[none][k], at = first + i;
         if (random_paths && t->met_light[i] >= 0)
-            path_expose_light(t, q->ticket[at], t->met_light[i], (int)t->hits.before[i], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
+            path_expose_light(t, q->ticket[at], t->met_light[i], (int)t->hits.before[i],
+                              vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
         else
             shading_expose_sky(t, q->ticket[at], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
     }

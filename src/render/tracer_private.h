@@ -127,8 +127,9 @@ void absorption_spare_sky(tracer *t);
 void absorption_begin(tracer *t, const int64_t *tickets, int count);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
 
-/* radiance.c: how much of what is sent out into the medium of a rank reaches an eye as radiance, (n_eye / n)^2; the gathered group's throughput
- * times that, and back again; and the transmittances of the interfaces that a batch of shadow rays crosses, taken from t->transmitted. */
+/* radiance.c: how much of what is sent out into the medium of a rank reaches an eye as radiance, (n_eye / n)^2; the
+ * gathered group's throughput times that, and back again; and the transmittances of the interfaces that a batch of
+ * shadow rays crosses, taken from t->transmitted. */
 double radiance_share(const plan *p, int64_t ticket, int rank);
 void radiance_weigh(tracer *t);
 void radiance_weigh_back(tracer *t);

@@ -37,6 +37,16 @@ static bool write_medium(const traced *t, FILE *out, const char *key, int medium
     return good;
 }
 
+/* What the refraction does to radiance, under each render.radiance. */
+static void write_factors(FILE *out, const ray_hit *h)
+{
+    write_number(out, "T", h->T);
+    fputs(",\"radiance_factor\":{\"classic\":", out);
+    json_write_real(out, h->gain_classic);
+    write_number(out, "basic", h->gain_basic);
+    fputc('}', out);
+}
+
 static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
 {
     fputc('{', out);
@@ -54,11 +64,6 @@ static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
     write_number(out, "R_p", h->R_p);
     write_number(out, "R", h->R);
     fprintf(out, ",\"tir\":%s", h->tir ? "true" : "false");
-    write_number(out, "T", h->T);
-    fputs(",\"radiance_factor\":{\"classic\":", out);
-    json_write_real(out, h->gain_classic);
-    write_number(out, "basic", h->gain_basic);
-    fputc('}', out);
     write_number(out, "path_length", h->path_length_m);
     write_list(out, "transmittance", h->transmittance, 3);
     write_number(out, "error_bound", h->error_bound);
@@ -67,6 +72,7 @@ static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
         fputc(',', out);
         good = write_word(out, "surface_of", t->s->solids[h->face_solid].name) && good;
     }
+    write_factors(out, h);
     fputc('}', out);
     return good;
 }
@@ -82,9 +88,9 @@ static bool write_extras(const traced *t, FILE *out, const ray_node *node)
         good = write_word(out, "light", t->s->lights[node->light].name);
         write_number(out, "light_distance", node->light_distance);
     }
+    write_list(out, "brought", node->brought, 3);
     if (node->kind == RAY_SHADOW)
         write_number(out, "let_through", node->let_through);
-    write_list(out, "brought", node->brought, 3);
     return good;
 }
 

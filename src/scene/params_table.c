@@ -137,7 +137,7 @@ static const param table[] = {
            "at clear surfaces light is bent by Snell's law; or it goes straight on, with each material's constants as weights"),
     CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky", "what a ray beyond the last depth brings back"),
     CHOICE(PARAM_RENDER, render_settings, radiance, radiance_words, "classic",
-           "what a ray carries: radiance as if no medium changed it (Whitted), or L / n^2, which refraction leaves as it is"),
+           "what rays carry: radiance as if no medium changed it (Whitted), or L / n^2, which refraction keeps"),
     CHOICE(PARAM_RENDER, render_settings, shadows, shadows_words, "attenuated",
            "what stands in a light's way: nothing, every solid, or each by what it lets straight through; no caustics"),
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",

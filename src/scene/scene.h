@@ -247,11 +247,12 @@ static inline bool scene_has_constant_shares(const render_settings *r)
     return r->weights == WEIGHTS_CONSTANT || r->transmission == TRANSMISSION_SIMPLE;
 }
 
-/* Do rays carry basic radiance, L / n^2? Only light that is bent changes its solid angle: under simple transmission nothing is, and what is
- * drawn with a depth buffer sees through no surface. */
+/* Do rays carry basic radiance, L / n^2? Only light that is bent changes its solid angle: under simple transmission
+ * nothing is, and what is drawn with a depth buffer sees through no surface. */
 static inline bool scene_has_basic_radiance(const render_settings *r)
 {
-    return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT && r->integrator != INTEGRATOR_ZBUFFER;
+    return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT &&
+           r->integrator != INTEGRATOR_ZBUFFER;
 }
 
 /* Index of the solid of that name, or -1. */
