@@ -377,6 +377,21 @@ static void a_shining_sphere_counts_by_the_medium_that_it_shines_into(void **sta
     scene_destroy(s);
 }
 
+/* Direct light of a sphere on a floor in one medium, pi L (r / d)^2 cos theta, is sent out there: T / n^2 of it
+ * reaches an eye in air. */
+static void a_sphere_lights_its_own_medium(void **state)
+{
+    (void)state;
+    double at;
+    scene *s = pond_from_above(20.0, 1.5, "render.integrator=path render.paths=16384 lamp.intensity=1 lamp.reach=0.2", &at);
+    char lamp[128];
+    snprintf(lamp, sizeof lamp, "lamp.radius=0.05 lamp.position=%.17g,0.4,0 floor.diffuse=0.5", at + 0.3);
+    set_all(s, lamp);
+    const double lit = 0.5 * (0.04 / 0.25) * 0.8, T = through(20.0 * DEGREE, 1.0, 1.5);
+    expect_estimate(look_by_chance(s, 0), T / 2.25 * lit);
+    scene_destroy(s);
+}
+
 /* --- what stays as it is */
 
 static uint64_t hash_of(const char *settings)
@@ -475,6 +490,7 @@ int main(void)
         cmocka_unit_test(meshes_shade_like_the_solids_that_they_are),
         cmocka_unit_test(trees_and_paths_agree_on_a_dark_floor_under_water),
         cmocka_unit_test(a_shining_sphere_counts_by_the_medium_that_it_shines_into),
+        cmocka_unit_test(a_sphere_lights_its_own_medium),
         cmocka_unit_test(without_refraction_the_film_is_the_classic_one),
         cmocka_unit_test(the_film_is_the_same_for_any_threads),
         cmocka_unit_test(the_same_rays_are_followed),
