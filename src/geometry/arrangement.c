@@ -99,6 +99,7 @@ static void add_body(arrangement *a, int rank, const body_source *source)
                 .clearness = source->opaque ? 0.0 : source->clearness,
                 .face_clearness = source->opaque ? NULL : source->face_clearness,
                 .absorbs = source->absorbs && !source->opaque,
+                .reflects = source->reflects && !source->opaque,
                 .solid = source->solid};
     a->absorbs |= b->absorbs;
     for (int k = 0; k < n; k++) {

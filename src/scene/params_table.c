@@ -11,6 +11,7 @@ static const char *const sample_counts[] = {"1", "4", "9", "16", "25", "36", "49
 static const char *const weights_words[] = {"fresnel", "constant", NULL};
 static const char *const transmission_words[] = {"refract", "simple", NULL};
 static const char *const beyond_words[] = {"sky", "black", "mean", NULL};
+static const char *const radiance_words[] = {"classic", "basic", NULL};
 static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
 static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynamic", NULL};
 static const char *const pin_words[] = {"none", "compact", "scatter", NULL};
@@ -136,6 +137,8 @@ static const param table[] = {
            "at clear surfaces light is bent by Snell's law; or it goes straight on, with each material's constants as weights"),
     CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky",
            "what a ray beyond the last depth brings back: the sky behind it, nothing, or the mean of the sky over all directions"),
+    CHOICE(PARAM_RENDER, render_settings, radiance, radiance_words, "classic",
+            "what rays carry: radiance as if no medium changed it (Whitted), or L / n^2, which refraction keeps"),
     CHOICE(PARAM_RENDER, render_settings, shadows, shadows_words, "attenuated",
            "what stands in a light's way: nothing, every solid, or each by what it lets straight through; no caustics"),
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",
