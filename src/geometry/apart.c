@@ -37,11 +37,11 @@ static double reach_along(const solid_shape *s, vec3 d)
     return vec3_dot(s->position, d) + reach_in_own_frame(s, mat3_apply_transposed(turn, d));
 }
 
-/* Does a plane across d lie between them, a behind it? The slack is far above what the sums round, and far below a gap that one draws. */
+/* Does a plane across d lie between them, a behind it? */
 static bool parted_along(const solid_shape *a, const solid_shape *b, vec3 d)
 {
     const double below = reach_along(a, d), above = -reach_along(b, vec3_scale(d, -1.0));
-    return below + 1e-9 * (1.0 + fabs(below)) < above;
+    return below <= above && below < HUGE_VAL && above > -HUGE_VAL;
 }
 
 static bool parted_by_axes_of(const solid_shape *frame, const solid_shape *a, const solid_shape *b)

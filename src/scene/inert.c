@@ -26,6 +26,16 @@ inert_remedy inert_set(const char *format, ...)
     return r;
 }
 
+bool inert_same(const inert_case *c, const char *format, ...)
+{
+    char assignment[NOTE_TEXT_MAX];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(assignment, sizeof assignment, format, arguments);
+    va_end(arguments);
+    return c->witness->same && c->witness->same(c->witness->context, assignment);
+}
+
 bool inert_by_name(const inert_row *rows, const inert_case *c)
 {
     for (; rows->name; rows++) {
@@ -52,9 +62,11 @@ static bool ask_group(const inert_case *c)
     return false;
 }
 
-bool inert_ask(const scene *s, const char *path, const ray_counters *frame, inert_answer *out)
+bool inert_ask(const scene *s, const char *path, const inert_witness *witness, inert_answer *out)
 {
-    inert_case c = {.s = s, .frame = frame && frame->camera > 0 ? frame : NULL, .out = out};
+    static const inert_witness nobody = {.frame = NULL};
+    inert_case c = {.s = s, .witness = witness ? witness : &nobody, .out = out};
+    c.frame = c.witness->frame && c.witness->frame->camera > 0 ? c.witness->frame : NULL;
     *out = (inert_answer){.rule = ""};
     if (place_find(s, path, &c.at, NULL) != STATUS_OK || c.at.row->is_how) {
         return false;

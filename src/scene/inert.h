@@ -12,8 +12,14 @@ typedef struct inert_answer {
     scene_note note;   /* its place is the path; where a value makes the parameter act, the remedy has it as PATH=VALUE */
 } inert_answer;
 
-/* Is the parameter without effect? frame: the counters of a frame of this scene, which tell what its rays met, or NULL.
- * False also for a path that leads nowhere. */
-bool inert_ask(const scene *s, const char *path, const ray_counters *frame, inert_answer *out);
+/* Who can tell what a frame of the scene shows, for conditions that its file does not hold: a renderer. Both are optional. */
+typedef struct inert_witness {
+    const ray_counters *frame;                                /* of a frame of this scene */
+    bool (*same)(void *context, const char *assignment);      /* does the film stay as it is with this PATH=VALUE? False when unsure */
+    void *context;
+} inert_witness;
+
+/* Is the parameter without effect? witness may be NULL. False also for a path that leads nowhere. */
+bool inert_ask(const scene *s, const char *path, const inert_witness *witness, inert_answer *out);
 
 #endif

@@ -59,6 +59,15 @@ static bool horizon(const inert_case *c)
            inert_say(c, "no-gradient", "set background.kind=gradient", "the background is no gradient");
 }
 
+/* A gradient between equal colours is uniform; a picture must be named. */
+static bool kind(const inert_case *c)
+{
+    const background *b = &c->s->background;
+    const bool flat = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
+    return flat && b->kind != BACKGROUND_PICTURE && !b->picture_path[0] &&
+           inert_say(c, "flat-gradient", "set background.horizon=0.5,0.4,0.3", "horizon is the color, too: a gradient between them is uniform");
+}
+
 static bool ambient(const inert_case *c)
 {
     const scene *s = c->s;
@@ -93,7 +102,7 @@ static bool surrounding_index(const inert_case *c)
 bool inert_background(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"color", background_color}, {"horizon", horizon}, {"ambient", ambient}, {"ior", surrounding_index}, {"medium", surrounding_index},
+        {"kind", kind}, {"color", background_color}, {"horizon", horizon}, {"ambient", ambient}, {"ior", surrounding_index}, {"medium", surrounding_index},
         {NULL, NULL},
     };
     return inert_by_name(rows, c);

@@ -58,6 +58,15 @@ static bool shininess_rule(const inert_case *c)
            specular_rule(c);
 }
 
+/* Weights are not negative: a film that is the same with all of the light mirrored shows nothing of it with less. */
+static bool mirrors_black(const inert_case *c)
+{
+    const background *sky = &c->s->background;
+    const bool dark = sky->kind == BACKGROUND_UNIFORM && is_black(sky->color);
+    return dark && c->m->transparency == 0.0 && c->m->reflectivity < 1.0 && inert_same(c, "%s.reflectivity=1", c->name) &&
+           inert_say(c, "mirrors-black", "set background.color=0.5,0.5,0.5", "all that it could mirror in this image is black");
+}
+
 static bool reflectivity_rule(const inert_case *c)
 {
     const scene *s = c->s;
@@ -71,6 +80,9 @@ static bool reflectivity_rule(const inert_case *c)
     }
     if (material_is_mirror(c->m) && !scene_has_constant_shares(&s->render)) {
         return inert_say(c, "mirror", set_on(c, "transparency=0").text, "its index makes it a mirror already");
+    }
+    if (mirrors_black(c)) {
+        return true;
     }
     const bool fresnel = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
     return fresnel && inert_say(c, "fresnel", inert_set("render.weights=constant and %s.transparency=0.1", c->name).text,

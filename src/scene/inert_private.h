@@ -11,6 +11,7 @@ typedef struct inert_case {
     place at;
     const char *name;          /* of the path's object: "render", "lamp", "glass" */
     const ray_counters *frame; /* or NULL */
+    const inert_witness *witness; /* never NULL */
     const solid *owner;        /* of a surface: the solid that has it, visible */
     const material *m;         /* its surface */
     inert_answer *out;
@@ -21,6 +22,9 @@ typedef struct inert_row { const char *name; inert_rule *rule; } inert_row;
 
 /* The rule of the parameter in a list that ends with a NULL name; false where it has none. */
 bool inert_by_name(const inert_row *rows, const inert_case *c);
+
+/* The witness says that the film stays as it is. */
+bool inert_same(const inert_case *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Fills the answer and returns true. */
 bool inert_say(const inert_case *c, const char *rule, const char *remedy, const char *text, ...) __attribute__((format(printf, 4, 5)));

@@ -11,6 +11,12 @@ static bool path_only(const inert_case *c)
     return !is_path(c->s) && inert_say(c, "path-only", "set render.integrator=path", "only the path integrator draws by chance");
 }
 
+/* The spectral film's wavelengths are drawn, too: render/spectra.c. */
+static bool seed(const inert_case *c)
+{
+    return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
+}
+
 /* Faint paths end by chance after the third surface: render/path.c. */
 static bool roulette(const inert_case *c)
 {
@@ -63,9 +69,9 @@ static bool beyond(const inert_case *c)
     if (is_dark_beyond(&sky)) {
         return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black, too");
     }
-    const int64_t *cut = c->frame ? c->frame->cut_depth_throughput : NULL;
-    return cut && !is_path(s) && cut[0] + cut[1] + cut[2] == 0 &&
-           inert_say(c, "nothing-cut", "set render.depth=1", "no ray that render.depth cuts off carries as much as 1e-11 of a camera ray's light");
+    /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both has no cut ray. */
+    return s->render.beyond != BEYOND_BLACK && inert_same(c, "render.beyond=black") &&
+           inert_say(c, "nothing-cut", "set render.depth=1", "no ray that render.depth cuts off carries light that the film resolves");
 }
 
 /* Highlights and branches are all that the lighting model chooses. */
@@ -201,7 +207,7 @@ bool inert_render(const inert_case *c)
 {
     static const inert_row rows[] = {
         {"depth", no_tree}, {"beyond", beyond}, {"lighting", lighting}, {"weights", weights}, {"transmission", no_clear},
-        {"shadows", shadows}, {"min_weight", min_weight}, {"paths", path_only}, {"roulette", roulette}, {"seed", path_only},
+        {"shadows", shadows}, {"min_weight", min_weight}, {"paths", path_only}, {"roulette", roulette}, {"seed", seed},
         {"polarisation", polarisation}, {"wavelengths", wavelengths}, {"lambda_nm", lambda}, {"unit_m", unit}, {"texturing", texturing},
         {NULL, NULL},
     };

@@ -13,16 +13,39 @@ static solid_shape shape_of(const scene *s, const solid *one)
     return shape;
 }
 
+static bool is_opaque_pair(const solid *a, const solid *b)
+{
+    return a->surface.transparency == 0.0 && b->surface.transparency == 0.0;
+}
+
+/* Neither the eye nor light sees what of two solids is inside both, where both are opaque: from outside they are their union, and each
+ * point of that has one owner, unless faces of both lie in one another. An eye inside would see it. */
+static bool meets_unseen(const scene *s, const solid_shape *a, const solid_shape *b)
+{
+    const solid_shape eye = {.kind = SHAPE_SPHERE, .position = s->camera.position};
+    const bool outside = solid_shapes_apart(a, &eye) && solid_shapes_apart(b, &eye);
+    return outside && !solid_shapes_may_share_faces(a, b);
+}
+
 static bool priority_rule(const inert_case *c)
 {
     const scene *s = c->s;
     const solid_shape own = shape_of(s, c->owner);
+    const solid *hidden = NULL;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         const solid_shape shape = shape_of(s, one);
-        if (one != c->owner && one->visible && !solid_shapes_apart(&own, &shape)) {
+        if (one == c->owner || !one->visible || solid_shapes_apart(&own, &shape)) {
+            continue;
+        }
+        if (!is_opaque_pair(c->owner, one) || !meets_unseen(s, &own, &shape)) {
             return false;
         }
+        hidden = one;
+    }
+    if (hidden) {
+        return inert_say(c, "both-opaque", inert_set("%s.transparency=0.9 and %s.ior=1.3", hidden->name, hidden->name).text,
+                         "%s overlaps %s, but both are opaque: nothing sees into them", c->name, hidden->name);
     }
     return inert_say(c, "apart", "move it into another solid", "no other visible solid overlaps %s", c->name);
 }
@@ -55,7 +78,8 @@ static bool spacing_rule(const inert_case *c)
 static bool mesh_shading(const inert_case *c)
 {
     const scene *s = c->s;
-    if (is_lit_by_lamps(s, c->m) || may_look_by_face(s, c->owner) || (follows_rays(s) && sends_rays_on(s, c->owner))) {
+    const bool textured = c->m->texture[0] && shows_color(s, c->m); /* a texel's footprint depends on the normal */
+    if (textured || is_lit_by_lamps(s, c->m) || may_look_by_face(s, c->owner) || (follows_rays(s) && sends_rays_on(s, c->owner))) {
         return false;
     }
     const inert_remedy remedy = shining_lights(s) > 0 ? inert_set("%s.diffuse=0.7", c->name) : lamp_remedy(s);
