@@ -17,20 +17,21 @@ static const acts_small acts_smaller[] = {
     {"soup", "soup.count=500"},
     {"vessel-mesh", "cup.around=32"},
     {"rainbow", "render.wavelengths=8 render.samples=1"},
-    {"prism", "render.wavelengths=8"},
+    {"prism", "render.wavelengths=4 render.width=300 render.height=150"},
+    {"plates", "render.width=120 render.height=90"},
     {"solids", "render.samples=1"},
 };
 
-/* Heights of the films, tried one after another until a value shows: a slit may lie between the rays of a small film. 0: as shipped. */
+/* Heights of the films, tried one after another until a value shows: a slit may lie between the rays of a small film. */
 enum { ACTS_SIZES = 3 };
-static const int acts_heights[ACTS_SIZES] = {48, 240, 0};
+static const int acts_heights[ACTS_SIZES] = {48, 120, 240};
 
 typedef struct acts {
     scene *s;               /* as shipped, but for acts_smaller */
     renderer *r;
     uint64_t base[ACTS_SIZES];
     bool has_base[ACTS_SIZES];
-    ray_counters counters;  /* of the film as shipped, once it is there */
+    ray_counters counters;  /* of the largest film, once it is there */
 } acts;
 
 static inline bool acts_set_all(scene *s, const char *assignments, diagnostic *why)
@@ -46,7 +47,7 @@ static inline bool acts_set_all(scene *s, const char *assignments, diagnostic *w
 static inline bool acts_resize(scene *s, int height)
 {
     char text[80];
-    if (height == 0 || s->render.height <= height)
+    if (s->render.height <= height)
         return true;
     snprintf(text, sizeof text, "render.width=%d render.height=%d", (int)(s->render.width * height / s->render.height), height);
     return acts_set_all(s, text, NULL);
@@ -134,13 +135,13 @@ static inline acts_outcome acts_try(acts *a, const char *path, const acts_values
     return o;
 }
 
-/* What a renderer tells inert_ask of the film as shipped. */
+/* What a renderer tells inert_ask of the largest film. */
 static inline bool acts_same(void *context, const char *assignment)
 {
     acts *a = context;
     scene *s = scene_clone(a->s);
     uint64_t hash;
-    const bool same = s && acts_base(a, ACTS_SIZES - 1) && scene_set_assignment(s, assignment, NULL) == STATUS_OK &&
+    const bool same = s && acts_base(a, ACTS_SIZES - 1) && acts_resize(s, acts_heights[ACTS_SIZES - 1]) && scene_set_assignment(s, assignment, NULL) == STATUS_OK &&
                       acts_hash(a->r, s, &hash, NULL, NULL) && hash == a->base[ACTS_SIZES - 1];
     scene_destroy(s);
     return same;

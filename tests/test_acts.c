@@ -176,7 +176,7 @@ static const condition conditions[] = {
     {"rod", "render.lighting=phong", "rod.reflectivity", "no-tree", true},
     {"rod", "render.lighting=lambert", "rod.specular", "lambert", true},
     {"rod", "clear.transparency=0", "render.weights", "no-clear", true},
-    {"rod", "clear.transparency=0", "render.polarisation", "no-clear", true},
+    {"rod", "clear.transparency=0 rod.reflectivity=0.5", "render.polarisation", "no-clear", true},
     {"rod", "clear.transparency=0", "background.ior", "no-clear", true},
     {"rod", "render.transmission=simple clear.transparency=0.9", "render.weights", "simple", true},
     {"rod", "render.transmission=simple clear.transparency=0.9", "background.ior", "straight", true},
