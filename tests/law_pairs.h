@@ -214,6 +214,7 @@ static inline void cut(law_pair *p, uint64_t *seed)
     if (s->opaque || s->checker > 0.0 || (s->shape.kind != SHAPE_BOX && s->shape.kind != SHAPE_CYLINDER))
         *s = clear_box(w, s->number, seed);
     s->number = LAW_ADDED + 1; /* so that no shrinking takes it away */
+    s->reflectivity = 0.0; /* where coated pieces meet, their coating is seen */
     w->solid[at] = *s;
     insert_solid(w, at + 1, *s);
     law_solid *first = &w->solid[at], *second = &w->solid[at + 1];
@@ -266,6 +267,7 @@ static inline law_solid of_the_surroundings(const law_scene *w, uint64_t *seed)
     s.opaque = false;
     s.ior = w->outside_ior;
     s.absorb_per_m = w->outside_absorb_per_m;
+    s.tint = vec3_make(1.0, 1.0, 1.0);
     s.reflectivity = s.checker = 0.0;
     return s;
 }

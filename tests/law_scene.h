@@ -20,7 +20,8 @@ typedef struct law_solid {
     int64_t priority;
     bool opaque;
     double ior, transparency, reflectivity, specular, checker;
-    vec3 absorb_per_m;
+    vec3 absorb_per_m, tint; /* of a clear solid, light's color after tint_distance inside */
+    double tint_distance;
 } law_solid;
 
 typedef struct law_light {
@@ -176,6 +177,20 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     }
 }
 
+/* Of clear solids; shares that are constants must add up to 1 at most. */
+static inline void random_coat(law_solid *s, const law_scene *w, uint64_t *seed)
+{
+    const bool constant = strstr(w->settings, "constant") != NULL;
+    s->tint = vec3_make(1.0, 1.0, 1.0);
+    s->tint_distance = 1.0;
+    if (random_below(seed, 4) == 0) {
+        s->tint = vec3_make(random_real(seed, 0.2, 1.0), 1.0, random_real(seed, 0.2, 1.0));
+        s->tint_distance = random_real(seed, 0.3, 3.0);
+    }
+    if (random_below(seed, 4) == 0)
+        s->reflectivity = random_real(seed, 0.0, constant ? 1.0 - s->transparency : 0.6);
+}
+
 static inline void random_surface(law_solid *s, const law_scene *w, uint64_t *seed)
 {
     const double indices[] = {w->outside_ior, 1.33, 1.5, random_real(seed, 1.0, 2.5)};
@@ -189,6 +204,8 @@ static inline void random_surface(law_solid *s, const law_scene *w, uint64_t *se
     s->absorb_per_m = vec3_make(0.0, 0.0, 0.0);
     if (random_below(seed, 3) == 0)
         s->absorb_per_m = vec3_make(random_real(seed, 0.0, 0.8), 0.0, random_real(seed, 0.0, 0.8));
+    if (!s->opaque)
+        random_coat(s, w, seed);
 }
 
 static inline law_solid random_solid(const law_scene *w, int number, uint64_t *seed)
@@ -245,6 +262,8 @@ static inline void write_material(scene_text *t, const law_solid *s)
         add(t, "ambient: 0.2, diffuse: 0.5, color: [0.9, 0.5, 0.2], ");
     else
         add(t, "ior: %.17g, transparency: %.17g, ", s->ior, s->transparency);
+    if (s->tint.x < 1.0 && !s->opaque)
+        add(t, "color: [%.17g, %.17g, %.17g], tint_distance: %.17g, ", s->tint.x, s->tint.y, s->tint.z, s->tint_distance);
     if (s->checker > 0.0)
         add(t, "checker: %.17g, checker_color: [0.1, 0.3, 0.9], ", s->checker);
     if (vec3_dot(s->absorb_per_m, s->absorb_per_m) > 0.0 && !s->opaque)

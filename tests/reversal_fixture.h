@@ -34,12 +34,12 @@ static inline bool is_tame(const ray_tree *way)
     return way->node[way->count - 1].end == RAY_END_SKY;
 }
 
-/* T of power by Hecht's eqs. 4.61, 4.32 and 4.38, the mean of both polarisations; R under a reflection. */
-static inline double share_of(const ray_hit *h, ray_kind next)
+/* T of power by Hecht's eqs. 4.61, 4.32 and 4.38, the mean of both polarisations, and what a coating leaves of it; R under a reflection. */
+static inline double share_of(const ray_hit *h, double coating, ray_kind next)
 {
     const double a = h->n_from * h->cos_i, b = h->n_to * h->cos_t;
     const double t_s = 2.0 * a / (a + b), t_p = 2.0 * a / (h->n_to * h->cos_i + h->n_from * h->cos_t);
-    const double T = h->tir ? 0.0 : 0.5 * b / a * (t_s * t_s + t_p * t_p);
+    const double T = h->tir ? 0.0 : 0.5 * b / a * (t_s * t_s + t_p * t_p) * (1.0 - coating);
     return next == RAY_REFRACT ? T : 1.0 - T;
 }
 
@@ -85,7 +85,7 @@ static inline reversal there_and_back(stage *g, vec3 origin, vec3 direction, int
         const ray_hit *h = &there[j].hit, *same = &path->node[n - 1 - j].hit;
         r.farthest = fmax(r.farthest, apart(h->point, same->point));
         r.same_surfaces = h->face_solid == same->face_solid && there[j + 1].kind == path->node[n - j].kind;
-        known *= share_of(h, there[j + 1].kind);
+        known *= share_of(h, g->setting->solids[h->solid].surface.reflectivity, there[j + 1].kind);
         kept *= h->transmittance[1];
     }
     if (!r.same_surfaces)

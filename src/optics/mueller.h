@@ -156,6 +156,14 @@ static inline stokes analyser_refract(stokes row, vec3 d, vec3 n, double cos_i, 
     return analyser_across(row, d, n, refracted, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
 }
 
+/* Of a coating that sends back a share 1 of the light that would pass, unpolarised: its matrix has the first row of refraction's and no
+ * other, so that what comes back and what passes add up whatever the polarisation. To be scaled by the coating's share. */
+static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to, vec3 reflected)
+{
+    const stokes intensity = {row.i, 0.0, 0.0, 0.0};
+    return analyser_across(intensity, d, n, reflected, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
+}
+
 /* To be scaled by the mirror's reflectance. */
 static inline stokes analyser_mirror(stokes row, vec3 d, vec3 n, vec3 reflected)
 {

@@ -102,11 +102,23 @@ theory_shells setup_shells(const setup *at)
     return c;
 }
 
+void arrange_bare(scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        material *m = &s->solids[i].surface;
+        if (material_is_opaque(m))
+            continue;
+        m->color = vec3_make(1.0, 1.0, 1.0);
+        m->reflectivity -= material_coating(m, &s->render);
+    }
+}
+
 scene *arrange_empty(const scene *s)
 {
     scene *copy = scene_clone(s);
     if (!copy)
         return NULL;
+    arrange_bare(copy);
     for (size_t i = 0; i < copy->solid_count; i++)
         copy->solids[i].visible = 0;
     for (size_t i = 0; i < copy->light_count; i++)

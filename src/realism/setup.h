@@ -21,7 +21,10 @@ status setup_read(const scene *s, setup *out, diagnostic *why);
 
 theory_shells setup_shells(const setup *at);
 
-/* A copy without solids or lights in sight, and with settings that trace every ray of a way. What an interface does with light
+/* Takes off what the closed forms know nothing of: clear solids' tints, and their coatings under Fresnel's weights. */
+void arrange_bare(scene *s);
+
+/* A bare copy without solids or lights in sight, and with settings that trace every ray of a way. What an interface does with light
  * (render.weights) and the media stay as they are. */
 scene *arrange_empty(const scene *s);
 

@@ -3,6 +3,7 @@
  * every interface takes the mean of both, as renderers do. */
 #include "realism/metrics.h"
 
+#include "realism/setup.h"
 #include "realism/theory.h"
 #include <math.h>
 
@@ -63,6 +64,7 @@ static status look_through(const metrics *m, double *straight, double *whole, do
     trial t;
     scene *s = scene_clone(m->traced);
     if (s) {
+        arrange_bare(s);
         s->render.depth = STACK_DEPTH;
         s->render.min_weight = 0.0;
     }

@@ -11,18 +11,19 @@ static bool laws_match(const scene *s, const index_law *a, const index_law *b)
     return s->render.spectrum == SPECTRUM_SPECTRAL ? index_laws_equal(a, b) : index_law_at(a, lambda_nm) == index_law_at(b, lambda_nm);
 }
 
-/* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface; with constant shares, as
- * in the report, every surface reflects whatever its index. laws: by solid, [solid_count] the surroundings'. */
+/* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface unless it is coated; with constant
+ * shares, as in the report, every surface reflects whatever its index. laws: by solid, [solid_count] the surroundings'. */
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
-    if (material_is_opaque(m) || scene_has_constant_shares(&s->render))
+    if (material_is_opaque(m) || scene_has_constant_shares(&s->render) || material_coating(m, &s->render) > 0.0)
         return solid_index + 1;
     if (laws_match(s, &laws[solid_index], &laws[s->solid_count]))
         return 0;
     for (int i = 0; i < solid_index; i++) {
         const solid *other = &s->solids[i];
-        if (other->visible && !material_is_opaque(&other->surface) && laws_match(s, &laws[i], &laws[solid_index]))
+        if (other->visible && !material_is_opaque(&other->surface) && material_coating(&other->surface, &s->render) == 0.0 &&
+            laws_match(s, &laws[i], &laws[solid_index]))
             return i + 1;
     }
     return solid_index + 1;
@@ -102,8 +103,9 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
             continue;
         sources[count] = (body_source){.shape = &one->shape, .priority = one->priority, .medium = medium_of(s, laws, i),
                                              .opaque = material_is_opaque(&one->surface),
-                                             .clearness = one->surface.transparency,
-                                             .absorbs = material_absorbs(&one->surface), .solid = i};
+                                             .clearness = one->surface.transparency *
+                                                          (1.0 - material_coating(&one->surface, &s->render)),
+                                             .absorbs = material_dims(&one->surface), .solid = i};
         if (one->shape.kind == SHAPE_MESH)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
@@ -173,7 +175,7 @@ static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnos
         p->materials[r] = material_of(s, p, solid_index);
         if (!body_look_make(s, &s->solids[solid_index], p->materials[r], &p->looks[r]))
             return diagnose(why, STATUS_FAILURE, "", "out of memory");
-        p->absorption[r] = vec3_scale(material_absorption(p->materials[r]), s->render.unit_m);
+        p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
     }
     p->absorption[0] = vec3_scale(s->background.absorb_per_m, s->render.unit_m);
     if (s->render.spectrum == SPECTRUM_SPECTRAL && !(p->spectral = spectra_create(s, p->materials, p->laws, ranks)))

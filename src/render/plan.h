@@ -32,7 +32,7 @@ typedef struct plan {
     material *mirrors;          /* by solid: clear materials whose index makes them mirrors, as opaque ones */
     double *ior;                /* by rank; [0] is the surrounding medium's; at render.lambda_nm */
     index_law *laws;            /* by rank: what ior was taken from */
-    vec3 *absorption;           /* by rank: Beer and Lambert's coefficients by channel, in 1 / scene unit */
+    vec3 *absorption;           /* by rank: Beer and Lambert's coefficients and tints, by channel, in 1 / scene unit */
     spectra *spectral;          /* of a spectral film, else NULL */
     camera_frame view;
     uint64_t eye_inside;        /* the set of primitives that the camera stands in */

@@ -4,6 +4,7 @@
 #include "render/tracer_private.h"
 
 #include "optics/mueller.h"
+#include "scene/medium.h"
 
 void polarised_gather(tracer *t, const ray_queue *q, int first, const int *list)
 {
@@ -12,6 +13,11 @@ void polarised_gather(tracer *t, const ray_queue *q, int first, const int *list)
         const int at = first + list[k];
         p->q[k] = q->sq[at], p->u[k] = q->su[at], p->v[k] = q->sv[at];
     }
+}
+
+static stokes stokes_add(stokes a, stokes b, double times)
+{
+    return (stokes){a.i + times * b.i, a.q + times * b.q, a.u + times * b.u, a.v + times * b.v};
 }
 
 /* The share of unpolarised light, at least 0, and the rest relative to it. */
@@ -28,6 +34,7 @@ void polarised_branches(tracer *t, const material *m, bool opaque)
     const group *g = &t->gathered;
     branch_group *b = &t->branches;
     polar_group *p = &t->polar;
+    const double coating = material_coating(m, &t->target.scene->render);
     for (int k = 0; k < g->count; k++) {
         const stokes row = {1.0, p->q[k], p->u[k], p->v[k]};
         const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
@@ -38,11 +45,13 @@ void polarised_branches(tracer *t, const material *m, bool opaque)
             b->reflect[k] = m->reflectivity * take_apart(analyser_mirror(row, d, n, reflected), &p->rq[k], &p->ru[k], &p->rv[k]);
             continue;
         }
-        const stokes r = analyser_reflect(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected);
+        stokes r = analyser_reflect(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected);
+        if (coating > 0.0)
+            r = stokes_add(r, analyser_coating(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected), coating);
         b->reflect[k] = take_apart(r, &p->rq[k], &p->ru[k], &p->rv[k]);
         if (b->refract[k] == 0.0) /* total reflection: there is no direction */
             continue;
         const stokes s = analyser_refract(row, d, n, cos_i, g->n_from[k], g->n_to[k], refracted);
-        b->refract[k] = m->transparency * take_apart(s, &p->tq[k], &p->tu[k], &p->tv[k]);
+        b->refract[k] = m->transparency * (1.0 - coating) * take_apart(s, &p->tq[k], &p->tu[k], &p->tv[k]);
     }
 }

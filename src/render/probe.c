@@ -1,6 +1,7 @@
 #include "render/probe.h"
 
 #include "optics/interface.h"
+#include "scene/medium.h"
 #include "render/probe_private.h"
 #include <stdlib.h>
 #include <string.h>
@@ -35,6 +36,19 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
     return STATUS_OK;
 }
 
+/* By channel, or of a spectral film at the one wavelength. */
+static vec3 tint_of(const probe *p, const material *m)
+{
+    vec3 share = m->color;
+    if (!material_tints(m))
+        return vec3_make(0.0, 0.0, 0.0);
+    if (p->spectral) {
+        const lifted color = lift_reflectance((const double[3]){share.x, share.y, share.z});
+        share.x = share.y = share.z = lifted_reflectance(&color, p->scene->render.lambda_nm);
+    }
+    return vec3_make(material_tint(m, share.x), material_tint(m, share.y), material_tint(m, share.z));
+}
+
 void probe_one_wavelength(probe *p)
 {
     const render_settings *r = &p->scene->render;
@@ -47,7 +61,7 @@ void probe_one_wavelength(probe *p)
         if (m->absorb_spectrum.count == 0 && !p->spectral)
             continue;
         const double a = material_absorption_at(m, r->lambda_nm) * r->unit_m;
-        p->scene->absorption[rank] = vec3_make(a, a, a);
+        p->scene->absorption[rank] = vec3_add(vec3_make(a, a, a), tint_of(p, m));
     }
 }
 

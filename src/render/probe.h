@@ -33,7 +33,7 @@ typedef struct ray_hit {
     int from, to;            /* media before and behind it */
     double n_from, n_to;
     double cos_i, cos_t;     /* cos_t is 0 under total internal reflection */
-    double R_s, R_p, R;      /* power reflectances of the interface; of an opaque surface or under simple transmission,
+    double R_s, R_p, R;      /* power reflectances of the interface with its coating; of an opaque surface or under simple transmission,
                               * its reflectivity */
     bool tir;
     double path_length_m;    /* length of the ray up to here in metres: t render.unit_m */

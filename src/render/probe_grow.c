@@ -3,6 +3,7 @@
 #include "render/probe_private.h"
 
 #include "optics/interface.h"
+#include "scene/medium.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -122,6 +123,8 @@ static bool read_hit(const probe *p, ray_node *node)
                    .R_s = f.R_s, .R_p = f.R_p, .R = f.R, .tir = f.total != 0, .error_bound = s->error[0]};
     h->face = is_mesh_face(s->face[0]) ? (int)mesh_face_triangle(s->face[0])
                                        : (int)(s->face[0] % FACES_MAX) + (crossed == bounded->hollow ? FACES_MAX : 0);
+    const double coating = owner->opaque ? 0.0 : material_coating(&t->look->surface, &p->scene->render);
+    h->R_s += (1.0 - h->R_s) * coating, h->R_p += (1.0 - h->R_p) * coating, h->R += (1.0 - h->R) * coating;
     if (owner->opaque) {
         h->R_s = h->R_p = h->R = t->look->surface.reflectivity;
         h->cos_t = 0.0;

@@ -48,7 +48,8 @@ typedef struct shade_kernels {
     void (*direct)(const material *m, const light *lamp, const group *g, lit_group *lit);
     /* What a cone leaves of that light. */
     void (*spot)(const light_cone *c, bool soft, const group *g, lit_group *lit);
-    /* Reflected and refracted directions with Fresnel's weights at a clear surface. */
+    /* Reflected and refracted directions with Fresnel's weights at a clear surface, and its coating, which sends back a share of what
+     * would pass: R' = R + (1 - R) reflectivity. */
     void (*fresnel_branches)(const material *m, const group *g, branch_group *b);
     /* The same with the material's constant weights; opaque surfaces too. */
     void (*constant_branches)(const material *m, bool opaque, const group *g, branch_group *b);

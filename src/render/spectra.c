@@ -69,6 +69,8 @@ static body_spectrum body_at(const lifted_scene *l, size_t rank, double lambda_n
     b.color = lifted_reflectance(&l->color[rank], lambda_nm);
     b.checker_color = lifted_reflectance(&l->checker_color[rank], lambda_nm);
     b.absorption = material_absorption_at(l->materials[rank], lambda_nm) * l->s->render.unit_m;
+    if (material_tints(l->materials[rank]))
+        b.absorption += material_tint(l->materials[rank], b.color);
     return b;
 }
 

@@ -23,7 +23,7 @@ typedef struct spectral_row {
     double basis[SKY_BASIS_COUNT]; /* white, cyan, magenta, yellow, red, green, blue: of a sky picture's texels */
 } spectral_row;
 
-/* A body at one wavelength; absorption: in 1 / scene unit. */
+/* A body at one wavelength; absorption: and tint, in 1 / scene unit. */
 typedef struct body_spectrum { double color, checker_color, index, absorption; } body_spectrum;
 
 typedef struct spectra {

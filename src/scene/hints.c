@@ -40,7 +40,8 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
             note_give(taker, owner->name, "diffuse", "set its diffuse",
                       "%s is transparent, and the depth buffer draws its surface: black but for highlights", owner->name);
         }
-    } else if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !is_inside_medium(s, owner)) {
+    } else if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !material_tints(m) && m->reflectivity == 0.0 &&
+               !is_inside_medium(s, owner)) {
         const bool seen = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m);
         note_give(taker, owner->name, "ior", "set its ior", "%s is transparent with the index of what is around it: it %s", owner->name,
                   seen ? "bends no light" : "is invisible");

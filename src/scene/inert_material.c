@@ -9,10 +9,44 @@ static inert_remedy set_on(const inert_case *c, const char *assignment)
     return inert_set("%s.%s", c->name, assignment);
 }
 
+static bool is_open(const inert_case *c)
+{
+    const mesh_entry *m = c->owner->shape.kind == SHAPE_MESH ? scene_find_mesh(c->s, c->owner->mesh) : NULL;
+    return m && m->data && !m->data->closed;
+}
+
+static bool opaque_rule(const inert_case *c)
+{
+    if (c->m->transparency > 0.0) {
+        return false;
+    }
+    const inert_remedy remedy = is_open(c) ? (inert_remedy){"give it a closed mesh and a transparency"} : set_on(c, "transparency=0.9");
+    return inert_say(c, "opaque", remedy.text, "the solid is opaque");
+}
+
+static bool absorption_rule(const inert_case *c)
+{
+    return opaque_rule(c) ||
+           (material_is_mirror(c->m) && inert_say(c, "mirror", set_on(c, "ior=1.5").text, "its index makes it a mirror that no light passes"));
+}
+
 static bool no_color(const inert_case *c)
 {
     return !shows_color(c->s, c->m) &&
            inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text, "no ambient or diffuse light shows this surface's colour");
+}
+
+/* A clear solid has a tint, too. */
+static bool color_rule(const inert_case *c)
+{
+    return material_is_opaque(c->m) && no_color(c);
+}
+
+static bool tint_distance_rule(const inert_case *c)
+{
+    const vec3 white = c->m->color;
+    return absorption_rule(c) || (white.x == 1.0 && white.y == 1.0 && white.z == 1.0 &&
+                                  inert_say(c, "no-tint", set_on(c, "color=0.9,0.7,0.5").text, "color is white, which tints nothing"));
 }
 
 static bool is_black_surface(const inert_case *c)
@@ -70,6 +104,11 @@ static bool mirrors_black(const inert_case *c)
 static bool reflectivity_rule(const inert_case *c)
 {
     const scene *s = c->s;
+    /* The coating of a clear surface keeps light from shadow rays, too. */
+    const bool coats = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
+    if (coats) {
+        return false;
+    }
     if (!follows_rays(s)) {
         const bool whitted = s->render.integrator == INTEGRATOR_WHITTED;
         return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : "set render.integrator=whitted",
@@ -81,27 +120,7 @@ static bool reflectivity_rule(const inert_case *c)
     if (material_is_mirror(c->m) && !scene_has_constant_shares(&s->render)) {
         return inert_say(c, "mirror", set_on(c, "transparency=0").text, "its index makes it a mirror already");
     }
-    if (mirrors_black(c)) {
-        return true;
-    }
-    const bool fresnel = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
-    return fresnel && inert_say(c, "fresnel", inert_set("render.weights=constant and %s.transparency=0.1", c->name).text,
-                                "Fresnel's equations give what a clear surface reflects");
-}
-
-static bool is_open(const inert_case *c)
-{
-    const mesh_entry *m = c->owner->shape.kind == SHAPE_MESH ? scene_find_mesh(c->s, c->owner->mesh) : NULL;
-    return m && m->data && !m->data->closed;
-}
-
-static bool opaque_rule(const inert_case *c)
-{
-    if (c->m->transparency > 0.0) {
-        return false;
-    }
-    const inert_remedy remedy = is_open(c) ? (inert_remedy){"give it a closed mesh and a transparency"} : set_on(c, "transparency=0.9");
-    return inert_say(c, "opaque", remedy.text, "the solid is opaque");
+    return mirrors_black(c);
 }
 
 static bool coefficients_rule(const inert_case *c)
@@ -112,12 +131,6 @@ static bool coefficients_rule(const inert_case *c)
                          "medium %s takes no coefficients", medium_words[law]);
     }
     return opaque_rule(c);
-}
-
-static bool absorption_rule(const inert_case *c)
-{
-    return opaque_rule(c) ||
-           (material_is_mirror(c->m) && inert_say(c, "mirror", set_on(c, "ior=1.5").text, "its index makes it a mirror that no light passes"));
 }
 
 static bool absorb_per_m_rule(const inert_case *c)
@@ -176,7 +189,7 @@ static bool unseen(const inert_case *c)
 /* Faces that look as a file says take from the solid's own surface what makes it clear, and little else. */
 static bool is_of_body(const inert_case *c)
 {
-    static const char *const of_body[] = {"ior", "medium", "coefficients", "absorb_per_m", "absorb_spectrum", NULL};
+    static const char *const of_body[] = {"ior", "medium", "coefficients", "absorb_per_m", "absorb_spectrum", "tint_distance", NULL};
     for (size_t i = 0; of_body[i]; i++) {
         if (strcmp(of_body[i], c->at.row->name) == 0) {
             return true;
@@ -188,9 +201,9 @@ static bool is_of_body(const inert_case *c)
 bool inert_surface(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"color", no_color}, {"ambient", ambient_rule}, {"diffuse", diffuse_rule}, {"specular", specular_rule}, {"shininess", shininess_rule},
+        {"color", color_rule}, {"ambient", ambient_rule}, {"diffuse", diffuse_rule}, {"specular", specular_rule}, {"shininess", shininess_rule},
         {"reflectivity", reflectivity_rule}, {"ior", opaque_rule}, {"medium", opaque_rule}, {"coefficients", coefficients_rule}, {"absorb_per_m", absorb_per_m_rule},
-        {"absorb_spectrum", absorption_rule}, {"texture", texture_rule}, {"texture_size", texture_size_rule}, {"checker", checker_rule},
+        {"absorb_spectrum", absorption_rule}, {"tint_distance", tint_distance_rule}, {"texture", texture_rule}, {"texture_size", texture_size_rule}, {"checker", checker_rule},
         {"checker_color", checker_color_rule}, {NULL, NULL},
     };
     if (may_look_by_face(c->s, c->owner) && !is_of_body(c)) {

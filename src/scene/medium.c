@@ -1,5 +1,7 @@
 #include "scene/medium.h"
 
+#include "base/elementary_inline.h"
+#include <float.h>
 #include <string.h>
 
 #define NAME(name) name,
@@ -145,6 +147,39 @@ bool material_absorbs(const material *m)
         }
     }
     return m->absorb_spectrum.count == 0 && absorbs(m->absorb_per_m);
+}
+
+bool material_tints(const material *m)
+{
+    return !material_is_opaque(m) && (m->color.x < 1.0 || m->color.y < 1.0 || m->color.z < 1.0);
+}
+
+double material_tint(const material *m, double share)
+{
+    const double black = 1e9, ln_2 = 0.69314718055994530942;
+    if (share >= 1.0) {
+        return 0.0;
+    }
+    return (share > DBL_MIN ? -ln_2 * elementary_log2_inline(share) : black) / m->tint_distance;
+}
+
+bool material_dims(const material *m)
+{
+    return material_absorbs(m) || material_tints(m);
+}
+
+vec3 material_extinction(const material *m, double unit_m)
+{
+    const vec3 absorbed = vec3_scale(material_absorption(m), unit_m);
+    if (!material_tints(m)) {
+        return absorbed;
+    }
+    return vec3_add(absorbed, vec3_make(material_tint(m, m->color.x), material_tint(m, m->color.y), material_tint(m, m->color.z)));
+}
+
+double material_coating(const material *m, const render_settings *r)
+{
+    return material_is_opaque(m) || scene_has_constant_shares(r) ? 0.0 : m->reflectivity;
 }
 
 status material_absorption_check(const material *m, const char *label, diagnostic *why)

@@ -46,6 +46,17 @@ const char *surrounding_medium_name(const background *b);
 vec3 material_absorption(const material *m);
 double material_absorption_at(const material *m, double lambda_nm);
 bool material_absorbs(const material *m);
+/* What a clear material's colour takes: light has its colour after tint_distance, so the share left over a way d is
+ * color^(d / tint_distance), Beer and Lambert's law with -ln(color) / tint_distance. A channel that is 0 leaves nothing. White takes nothing. */
+bool material_tints(const material *m);
+/* That coefficient in 1 / scene unit, of a channel or wavelength at which the colour is share, 0..1. */
+double material_tint(const material *m, double share);
+/* Does light inside a clear solid of it become less? */
+bool material_dims(const material *m);
+/* By channel in 1 / scene unit, absorption and tint; of an opaque material nothing is asked. */
+vec3 material_extinction(const material *m, double unit_m);
+/* Share of the light that would pass which a clear surface's coating sends back: 0 where shares are constants, which say all. */
+double material_coating(const material *m, const render_settings *r);
 double surrounding_absorption_at(const background *b, double lambda_nm);
 bool surroundings_absorb(const background *b);
 

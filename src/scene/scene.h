@@ -92,15 +92,16 @@ typedef struct background {
 /* Fields mean what Phong's sum I = k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n and the weights
  * rule say. */
 typedef struct material {
-    vec3 color;             /* C, linear RGB */
+    vec3 color;             /* C, linear RGB; of a clear solid also the share of light left after tint_distance inside */
     double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
-    double reflectivity;    /* constant weights, simple transmission, and opaque materials under fresnel weights */
+    double reflectivity;    /* constant weights, simple transmission, and opaque materials; a clear one's coating under fresnel weights */
     double transparency;    /* 0 = opaque; else share of the refracted light that passes an interface */
     double ior;             /* relative to vacuum, where medium is MEDIUM_IOR */
     int64_t medium;         /* see scene/medium.h */
     number_list coefficients; /* of the medium's own law of dispersion */
     vec3 absorb_per_m;      /* Beer and Lambert's coefficient by channel */
     number_list absorb_spectrum; /* the same by wavelength: nm, 1/m, nm, 1/m ...; takes the place of absorb_per_m unless empty */
+    double tint_distance;   /* scene units; tint and absorption add up */
     char texture[SCENE_NAME_MAX + 1]; /* its colour is times color; "" for none */
     double texture_size;    /* scene units of one repetition on solids that are no meshes; 0: one a face */
     double checker;         /* edge of the checker cells in the solid's own frame; 0 = none */

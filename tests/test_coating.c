@@ -1,0 +1,190 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "probe_fixture.h"
+
+/* reflectivity of a clear surface under Fresnel's weights is a coating: of the light that would pass, that share comes back.
+ * R' = R + (1 - R) reflectivity, T' = (1 - R) (1 - reflectivity), from both sides. Closed forms: Hecht, Optics, 5th ed., 4.6.2, and for
+ * sheets the series of reflections between two faces (9.6.1, of intensities). */
+
+static const vec3 level = {0.0, 0.0, 0.0};
+
+static stage coated(const char *shape, double ior, double reflectivity, int depth, const char *assignments)
+{
+    char more[160];
+    scene_text text = scene_begin(1.0, depth);
+    snprintf(more, sizeof more, "reflectivity: %.17g, %s", reflectivity, shape);
+    add_clear(&text, "glass", ior, 0, vec3_make(0.0, 0.0, 0.0), level, more);
+    return stage_of(text.at, assignments);
+}
+
+static double share_of(const ray_tree *tree, ray_kind kind)
+{
+    const ray_node *child = child_of(tree, &tree->node[0], kind);
+    return child ? child->throughput[0] : 0.0;
+}
+
+static void a_coating_sends_back_a_share_of_what_would_pass(void **state)
+{
+    (void)state;
+    static const double coatings[] = {0.0, 0.1, 0.5, 0.99, 1.0};
+    for (size_t k = 0; k < COUNT(coatings); k++) {
+        stage g = coated("shape: plane", 1.5, coatings[k], 1, "");
+        for (double angle = 0.0; angle < 1.5; angle += 0.1) {
+            const double R = reflectance_of_angles(angle, 1.0, 1.5).mean, wanted = R + (1.0 - R) * coatings[k];
+            const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 1.0, 0.0), vec3_make(sin(angle), -cos(angle), 0.0));
+            assert_true(fabs(share_of(tree, RAY_REFLECT) - wanted) <= 1e-13);
+            assert_true(fabs(share_of(tree, RAY_REFRACT) - (1.0 - wanted)) <= 1e-13);
+            assert_true(fabs(tree->node[0].hit.R - wanted) <= 1e-13);
+            tree = stage_ray(&g, vec3_make(0.0, -1.0, 0.0), vec3_make(sin(angle), cos(angle), 0.0)); /* from within */
+            const bool total = 1.5 * sin(angle) >= 1.0;
+            const double inner = total ? 1.0 : reflectance_of_angles(angle, 1.5, 1.0).mean;
+            assert_true(fabs(share_of(tree, RAY_REFLECT) - (inner + (1.0 - inner) * coatings[k])) <= 1e-12);
+            assert_true(fabs(share_of(tree, RAY_REFRACT) - (1.0 - inner) * (1.0 - coatings[k])) <= 1e-12);
+        }
+        stage_close(&g);
+    }
+}
+
+/* A sheet of the index around it, coated on both faces: r + (1 - r)^2 r (1 + r^2 + ..) = 2 r / (1 + r) comes back, and
+ * (1 - r) / (1 + r) passes. Without its coating it is no interface. */
+static void a_sheet_of_air_with_coated_faces_is_a_half_mirror(void **state)
+{
+    (void)state;
+    for (double r = 0.0; r <= 0.9; r += 0.3) {
+        stage g = coated("shape: box, size: [50, 0.1, 50]", 1.0, r, 60, "render.beyond=black");
+        const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 1.0, 0.0), vec3_make(0.6, -0.8, 0.0));
+        double through = 0.0, back = 0.0;
+        for (size_t i = 0; i < tree->count; i++)
+            if (tree->node[i].end == RAY_END_SKY)
+                *(tree->node[i].direction.y < 0.0 ? &through : &back) += tree->node[i].throughput[0];
+        assert_true(fabs(through - (1.0 - r) / (1.0 + r)) <= 0.01 * pow(r, 40.0) + 1e-12);
+        assert_true(fabs(back - 2.0 * r / (1.0 + r)) <= 0.01 * pow(r, 40.0) + 1e-12);
+        if (r == 0.0)
+            assert_int_equal((int)tree->count, 1);
+        stage_close(&g);
+    }
+}
+
+/* R' + T' = 1, so that nothing is lost, whatever a ray's tree: a sphere in a sky of 1 is 1 but for what the depth cuts off. */
+static void coated_media_lose_nothing(void **state)
+{
+    (void)state;
+    stage g = coated("shape: sphere, radius: 1", 1.7, 0.35, 9, "render.beyond=black");
+    for (double h = -0.97; h < 1.0; h += 0.0713) {
+        const ray_tree *tree = stage_ray(&g, vec3_make(h, 0.2, -4.0), vec3_make(0.0, 0.0, 1.0));
+        assert_true(fabs(tree->radiance[0] + tree_cut(tree, 0) - 1.0) <= 1e-11);
+    }
+    stage_close(&g);
+}
+
+/* Where two solids are in contact, the surface is that of the higher priority, and so is its coating. */
+static void a_coating_is_the_surface_owners(void **state)
+{
+    (void)state;
+    for (int above_wins = 0; above_wins < 2; above_wins++) {
+        scene_text text = scene_begin(1.0, 1);
+        add_clear(&text, "above", 1.5, above_wins ? 2 : 0, vec3_make(0.0, 0.5, 0.0), level, "shape: box, size: [9, 1, 9], reflectivity: 0.25");
+        add_clear(&text, "below", 1.5, 1, vec3_make(0.0, -0.5, 0.0), level, "shape: box, size: [9, 1, 9], reflectivity: 0.5");
+        stage g = stage_of(text.at, "");
+        const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 0.5, 0.0), vec3_make(0.0, -1.0, 0.0));
+        assert_true(fabs(share_of(tree, RAY_REFLECT) - (above_wins ? 0.25 : 0.5)) <= 1e-13);
+        stage_close(&g);
+    }
+}
+
+static void constant_shares_know_no_coating(void **state)
+{
+    (void)state;
+    static const char *const rules[] = {"glass.transparency=0.5 render.weights=constant", "glass.transparency=0.5 render.transmission=simple"};
+    for (size_t k = 0; k < COUNT(rules); k++) {
+        stage g = coated("shape: plane", 1.5, 0.25, 1, rules[k]);
+        const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 1.0, 0.0), vec3_make(0.6, -0.8, 0.0));
+        assert_true(share_of(tree, RAY_REFLECT) == 0.25 && share_of(tree, RAY_REFRACT) == 0.5);
+        stage_close(&g);
+    }
+}
+
+/* A light's straight way keeps (1 - reflectivity) at each face, beside its transparency. */
+static void a_coated_pane_shades(void **state)
+{
+    (void)state;
+    static const char lit_ground[] =
+        "background: {color: [0, 0, 0]}\n"
+        "render: {width: 1, height: 1}\n"
+        "lights: {lamp: {position: [0, 4, 0]}}\n"
+        "solids:\n"
+        "  ground: {shape: plane, diffuse: 1}\n"
+        "  pane: {shape: box, transparency: 0.9, reflectivity: 0.25, ior: 1.5, position: [0, 2, 0], size: [50, 0.5, 50]}\n";
+    stage g = stage_of(lit_ground, "");
+    const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 1.0, 0.0), vec3_make(0.0, -1.0, 0.0));
+    assert_true(fabs(tree->radiance[0] - pow(0.9 * 0.75, 2.0)) <= 1e-12);
+    stage_close(&g);
+    g = stage_of(lit_ground, "pane.ior=1 pane.transparency=1"); /* coated air casts a shadow too */
+    tree = stage_ray(&g, vec3_make(0.0, 1.0, 0.0), vec3_make(0.0, -1.0, 0.0));
+    assert_true(fabs(tree->radiance[0] - 0.75 * 0.75) <= 1e-12);
+    stage_close(&g);
+}
+
+/* A corner of two media that are black inside, so that light comes back by both faces alone: at an angle a from the floor, at 90 - a from
+ * the wall. A coating makes light unpolarised: of s and p alike half of what it sends back. The light goes from the sky to the
+ * one, then to the other, then to the eye. */
+static double floor_then_wall(reflectance first, double first_coating, reflectance second, double second_coating)
+{
+    const double made = 0.5 * (1.0 - first.mean) * first_coating, s = 0.5 * first.s + made, p = 0.5 * first.p + made;
+    return second.s * s + second.p * p + second_coating * ((1.0 - second.s) * s + (1.0 - second.p) * p);
+}
+
+static void a_coating_reflects_unpolarised(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 4; which++) {
+        const double on_floor = which & 1 ? 0.3 : 0.0, on_wall = which & 2 ? 0.6 : 0.0;
+        scene_text text = scene_begin(1.0, 2);
+        char more[96];
+        snprintf(more, sizeof more, "shape: plane, absorb_per_m: [1e9, 1e9, 1e9], reflectivity: %g", on_floor);
+        add_clear(&text, "floor", 1.5, 0, vec3_make(0.0, 0.0, 0.0), level, more);
+        snprintf(more, sizeof more, "shape: plane, absorb_per_m: [1e9, 1e9, 1e9], reflectivity: %g", on_wall);
+        add_clear(&text, "wall", 1.9, 0, vec3_make(5.0, 0.0, 0.0), vec3_make(0.0, 0.0, 90.0), more);
+        stage g = stage_of(text.at, "render.polarisation=on");
+        for (double angle = 0.2; angle < 1.4; angle += 0.15) {
+            const vec3 to = vec3_make(sin(angle), -cos(angle), 0.0), from = vec3_scale(to, -1.0);
+            const ray_tree *tree = stage_ray(&g, vec3_add(vec3_make(0.0, 0.0, 0.0), from), to);
+            const reflectance floor = reflectance_of_angles(angle, 1.0, 1.5), wall = reflectance_of_angles(0.5 * M_PI - angle, 1.0, 1.9);
+            /* The eye looks at the floor first, so the wall's light comes to it. */
+            assert_true(fabs(tree->radiance[0] - floor_then_wall(wall, on_wall, floor, on_floor)) <= 1e-12);
+        }
+        stage_close(&g);
+    }
+}
+
+/* Random paths take the coated branches by chance: the mean over many is the tree's. */
+static void random_paths_agree(void **state)
+{
+    (void)state;
+    stage g = coated("shape: box, size: [50, 0.1, 50]", 1.0, 0.5, 40, "render.integrator=path render.paths=65536");
+    set_all(g.setting, "camera.position=0,3,0 camera.target=0,0,0 camera.fov_deg=0.001 background.kind=gradient background.color=1,1,1 "
+                       "background.horizon=0,0,0"); /* below the horizon the sky is black: what comes back alone is seen */
+    const double back = 2.0 * 0.5 / 1.5, sigma = sqrt(back * (1.0 - back) / 65536.0);
+    assert_true(fabs(look(g.setting).x - back) <= 5.0 * sigma);
+    stage_close(&g);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_coating_sends_back_a_share_of_what_would_pass),
+        cmocka_unit_test(a_sheet_of_air_with_coated_faces_is_a_half_mirror),
+        cmocka_unit_test(coated_media_lose_nothing),
+        cmocka_unit_test(a_coating_is_the_surface_owners),
+        cmocka_unit_test(constant_shares_know_no_coating),
+        cmocka_unit_test(a_coated_pane_shades),
+        cmocka_unit_test(a_coating_reflects_unpolarised),
+        cmocka_unit_test(random_paths_agree),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
