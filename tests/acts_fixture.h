@@ -38,9 +38,12 @@ static inline bool acts_set_all(scene *s, const char *assignments, diagnostic *w
 {
     char text[NOTE_TEXT_MAX], *rest = text;
     snprintf(text, sizeof text, "%s", assignments);
-    for (char *word; (word = strtok_r(rest, " ", &rest));)
+    for (char *word; (word = strtok_r(rest, " ", &rest));) {
+        const size_t length = strlen(word);
+        word[length - 1] = word[length - 1] == ',' ? 0 : word[length - 1];
         if (strchr(word, '=') && scene_set_assignment(s, word, why) != STATUS_OK)
             return false;
+    }
     return true;
 }
 

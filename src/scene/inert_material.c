@@ -101,13 +101,32 @@ static bool mirrors_black(const inert_case *c)
            inert_say(c, "mirrors-black", "set background.color=0.5,0.5,0.5", "all that it could mirror in this image is black");
 }
 
+static bool say_unseen(const inert_case *c)
+{
+    int64_t highest = c->owner->priority;
+    for (size_t i = 0; i < c->s->solid_count; i++) {
+        const solid *one = &c->s->solids[i];
+        highest = one->visible && one->priority > highest ? one->priority : highest;
+    }
+    const inert_remedy higher = inert_set("%s.priority=%lld, or move it or the camera", c->owner->name, (long long)highest + 1);
+    return inert_say(c, "unseen", highest > c->owner->priority ? higher.text : "move it, or the camera", "no ray of this image meets a surface of %s",
+                     c->owner->name);
+}
+
+/* The coating of a clear solid, whose faces are those of solids that win over it. Two probes, because a coating makes a medium one of its own. */
+static bool unseen_coating(const inert_case *c)
+{
+    return c->frame && c->frame->hits[c->owner - c->s->solids] == 0 && shining_lights(c->s) == 0 && inert_same(c, "%s.reflectivity=0.5", c->name) &&
+           inert_same(c, "%s.reflectivity=1", c->name) && say_unseen(c);
+}
+
 static bool reflectivity_rule(const inert_case *c)
 {
     const scene *s = c->s;
     /* The coating of a clear surface keeps light from shadow rays, too. */
     const bool coats = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
     if (coats) {
-        return false;
+        return unseen_coating(c);
     }
     if (!follows_rays(s)) {
         const bool whitted = s->render.integrator == INTEGRATOR_WHITTED;
@@ -182,8 +201,7 @@ static bool unseen(const inert_case *c)
     for (size_t i = 0; sent_back[i] && !found; i++) {
         found = strcmp(sent_back[i], c->at.row->name) == 0;
     }
-    return found && c->frame && c->m->transparency == 0.0 && c->frame->hits[c->owner - c->s->solids] == 0 &&
-           inert_say(c, "unseen", "move it, or the camera", "no ray of this image meets the solid");
+    return found && c->frame && c->m->transparency == 0.0 && c->frame->hits[c->owner - c->s->solids] == 0 && say_unseen(c);
 }
 
 /* Faces that look as a file says take from the solid's own surface what makes it clear, and little else. */

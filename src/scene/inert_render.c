@@ -98,9 +98,13 @@ static bool lighting(const inert_case *c)
            inert_say(c, "no-highlight", mirror_remedy(s).text, "nothing visible has a highlight, reflects or refracts");
 }
 
+/* A plane alone shows little of what a clear solid does. */
 static inert_remedy clear_remedy(const scene *s)
 {
     const solid *first = first_visible(s);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        first = first->shape.kind == SHAPE_PLANE && s->solids[i].visible ? &s->solids[i] : first;
+    }
     return first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name) : (inert_remedy){"add a solid"};
 }
 
