@@ -103,6 +103,11 @@ void scene_input_note_hints(const scene *s)
     scene_hints(s, &printer);
 }
 
+status scene_input_lint(const scene *s, isa level, const lint_filter *varies, diagnostic *why)
+{
+    return lint_scene_but(s, level, varies, &printer, why);
+}
+
 void scene_input_note_tree(const scene *s)
 {
     const bool path = s->render.integrator == INTEGRATOR_PATH, drawn = s->render.integrator == INTEGRATOR_ZBUFFER;

@@ -5,6 +5,7 @@
 #define CUVETTE_CLI_SCENE_INPUT_H
 
 #include "base/isa.h"
+#include "lint/lint.h"
 #include "scene/scene.h"
 
 typedef struct scene_change {
@@ -46,6 +47,9 @@ void scene_input_note_tree(const scene *s);
 
 /* Notes on what looks wrong in the scene (scene/hints.h), on standard error. */
 void scene_input_note_hints(const scene *s);
+
+/* All notes of the linter (lint/lint.h) on a loaded scene; those whose place varies are left out. varies may be NULL. */
+status scene_input_lint(const scene *s, isa level, const lint_filter *varies, diagnostic *why);
 
 /* isa_choose, located. */
 status scene_input_isa(isa *level, diagnostic *why);

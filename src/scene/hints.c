@@ -1,4 +1,5 @@
 #include "scene/hints.h"
+#include "scene/cover.h"
 #include "scene/looks.h"
 #include "scene/medium.h"
 
@@ -31,6 +32,19 @@ static bool is_inside_medium(const scene *s, const solid *bubble)
     return false;
 }
 
+/* Does it cut away from another one, so that one of the surroundings' index shows by what is missing there? */
+static bool cuts_another(const scene *s, const solid *cutter)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *other = &s->solids[i];
+        const bool seen = other->surface.transparency == 0.0 || !is_like_surroundings(s, &other->surface);
+        if (other->visible && seen && scene_wins(cutter, other) && !scene_apart(s, cutter, other)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* What a clear solid seems to lack. */
 static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
 {
@@ -41,83 +55,57 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
                       "%s is transparent, and the depth buffer draws its surface: black but for highlights", owner->name);
         }
     } else if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !material_tints(m) && m->reflectivity == 0.0 &&
-               !is_inside_medium(s, owner)) {
+               !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
         const bool seen = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m);
         note_give(taker, owner->name, "ior", "set its ior", "%s is transparent with the index of what is around it: it %s", owner->name,
                   seen ? "bends no light" : "is invisible");
     }
 }
 
+/* Of no clear matter the index of visible light reaches that: germanium's and silicon's are 4 to 5. */
+#define INDEX_MOST 5.0
+
+/* An index of a mirror, on what reflects nothing of its own. Above MIRROR_IOR a clear solid is a mirror indeed. True if there is a note. */
+static bool hint_at_index(const scene *s, const solid *owner, const note_taker *taker)
+{
+    const material *m = &owner->surface;
+    index_law law;
+    if (m->reflectivity > 0.0 || material_is_mirror(m) || material_index_law(m, "", &law, NULL) != STATUS_OK) {
+        return false;
+    }
+    const double index = index_law_at(&law, s->render.lambda_nm);
+    if (!(index > INDEX_MOST)) {
+        return false;
+    }
+    note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium",
+              m->transparency > 0.0 ? "set its ior between 1 and 5; for a mirror set its reflectivity, and its transparency to 0"
+                                    : "for a mirror set its reflectivity; the index of an opaque solid has no effect",
+              "%s has a refractive index of %.4g, which no clear matter has, and a reflectivity of 0", owner->name, index);
+    return true;
+}
+
 /* What the solid seems to lack. */
 static void hint_at_solid(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
+    if (hint_at_index(s, owner, taker)) {
+        return;
+    }
     if (m->transparency > 0.0) {
         hint_at_clear(s, owner, taker);
     } else if (m->medium != MEDIUM_IOR || m->ior != 1.0) {
         note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
                   "%s has a refractive index but is opaque", owner->name);
-    } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner)) {
+    } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner) &&
+               !scene_is_behind_camera(s, owner)) { /* a black board behind the eye keeps reflections dark */
         note_give(taker, owner->name, "diffuse", "set its diffuse", "%s is neither transparent, nor diffuse, nor lit: it is black",
                   owner->name);
     }
 }
 
-/* A radius about the position that the solid does not reach beyond. */
-static double reach(const solid_shape *shape)
-{
-    switch (shape->kind) {
-    case SHAPE_CYLINDER: return hypot(shape->radius * fmax(1.0, 1.0 / shape->m), shape->height);
-    case SHAPE_CUP: return hypot(shape->radius, shape->height);
-    case SHAPE_BOX: return 0.5 * vec3_length(shape->size);
-    case SHAPE_SPHERE: return shape->radius;
-    case SHAPE_MESH:
-    case SHAPE_PLANE:
-    case SHAPE_COUNT: break;
-    }
-    return INFINITY;
-}
-
-/* Both of one scene. */
-static bool wins(const solid *winner, const solid *loser)
-{
-    return winner != loser && winner->visible &&
-           (winner->priority > loser->priority || (winner->priority == loser->priority && winner < loser));
-}
-
-/* The solid that holds all of another and wins there, so that nothing of the other is met; NULL if there is none. Looks at
- * points of a grid, turned so that no face of a box lies along it, and says nothing when too few of them are inside. */
-static const solid *find_cover(const scene *s, const solid *hidden)
-{
-    enum { STEPS = 24, ENOUGH = 20 };
-    const double radius = reach(&hidden->shape);
-    const mat3 turn = rotation_from_deg(vec3_make(11.0, 23.0, 37.0));
-    const solid *cover = NULL;
-    size_t inside = 0;
-    for (int i = 0; i < STEPS * STEPS * STEPS && isfinite(radius); i++) {
-        const double u = (i % STEPS + 0.5) / STEPS, v = (i / STEPS % STEPS + 0.5) / STEPS,
-                     w = (i / STEPS / STEPS + 0.5) / STEPS;
-        const vec3 offset = mat3_apply(turn, vec3_make(2 * u - 1, 2 * v - 1, 2 * w - 1));
-        const vec3 point = vec3_add(hidden->shape.position, vec3_scale(offset, radius));
-        if (!solid_shape_contains(&hidden->shape, point)) {
-            continue;
-        }
-        inside++;
-        for (size_t k = 0; !cover && k < s->solid_count; k++) {
-            if (wins(&s->solids[k], hidden) && solid_shape_contains(&s->solids[k].shape, point)) {
-                cover = &s->solids[k];
-            }
-        }
-        if (!cover || !solid_shape_contains(&cover->shape, point)) {
-            return NULL;
-        }
-    }
-    return inside >= ENOUGH ? cover : NULL;
-}
-
 static void hint_at_cover(const scene *s, const solid *hidden, const note_taker *taker)
 {
-    const solid *cover = find_cover(s, hidden);
+    const solid *cover = scene_cover(s, hidden);
     char remedy[NOTE_TEXT_MAX];
     if (cover) {
         snprintf(remedy, sizeof remedy, "give %s the higher priority", hidden->name);
