@@ -43,6 +43,8 @@ function alias() {
     if (study == "triangles") return $4 == "off" ? study "/empty" : study "/" $2 "/" $3 + 0
     if (study == "coverage") return study "/" $2 "/" sprintf("%.0f", value("first_hits.model") / 1000)
     if (study == "hidden") return study "/" $2 + 0 "/" $6
+    if (study == "shading")
+        return study "/" ($2 + 0 < 100 ? "few" : "many") "/" ($5 == "off" ? $4 : "shadows") "/" ($7 + 0 ? $6 : "unlit")
     if (study == "texture") return study "/" $2 "/" $3 "/" $4
     if (study == "slime-step") return study "/" $2 + 0 "/" $3 "/" $6 + 0
     if (study == "build") return study "/" $2 "/" $3 + 0 "/" $4 "/" $7 + 0
@@ -141,6 +143,27 @@ value("n") > 0 {
         set(key "/step", digits(step_of[key] * 1e6))
         set(key "/simulated", $5 > value("motion_s") ? digits($5 / value("motion_s")) : significant($5 / value("motion_s")))
     }
+    # What a shading costs: its frame less the one without light. Rays to the light are none of it, so that a frame with shadows has the
+    # cost of the one without. Of Phong's the part that is more than flat shading's is that of its normals.
+    if (study == "shading") {
+        light_of[key] = cpu
+        split(key, part, "/")
+        frames = study "/" part[2] "/" (part[3] == "shadows" ? "whitted" : part[3])
+        if ($7 + 0) {
+            shading_cost = light_of[frames "/" part[4]] - light_of[frames "/unlit"]
+            set(key "/cost", digits(shading_cost * 1e3))
+            set(key "/share", sprintf("%.1f", shading_cost / cpu * 100))
+            cost_of[key] = shading_cost
+            if (part[4] == "smooth") {
+                if (least_phong == "" || shading_cost / cpu < least_phong) least_phong = shading_cost / cpu
+                if (shading_cost / cpu > most_phong) most_phong = shading_cost / cpu
+            }
+            # Corners of the mesh, each of which Gouraud's own method would light once.
+            if (part[4] == "gouraud" && part[3] == "zbuffer")
+                set(study "/" part[2] "/points-corner", value("first_hits.model") > 10 * $2 * $3 ? \
+                    sprintf("%.0f", value("first_hits.model") / ($2 * $3)) : significant(value("first_hits.model") / ($2 * $3)))
+        }
+    }
     if (study == "sectors") {
         if ($4 == 1) one[$2, $3] = wall
         if (one[$2, $3]) set(key "/speedup", digits(one[$2, $3] / wall))
@@ -194,6 +217,12 @@ END {
         ratio("slime-step/" level "/speedup", step_of, "slime-step/" level "/euler/1", "slime-step/" level "/euler/2")
         ratio("slime-step/" level "/implicit-speedup", step_of, "slime-step/" level "/implicit/1", "slime-step/" level "/implicit/2")
     }
+    if (least_phong != "") {
+        set("shading/least-phong", sprintf("%.0f", least_phong * 100))
+        set("shading/most-phong", sprintf("%.0f", most_phong * 100))
+    }
+    for (k in cost_of)
+        if (sub(/\/gouraud$/, "", k)) ratio(k "/gouraud-phong", cost_of, k "/gouraud", k "/smooth")
     split("zbuffer raycast whitted", method, " ")
     for (i in method) ratio("hidden/" method[i] "/more", cpu_of, "hidden/6/" method[i], "hidden/3/" method[i])
     for (pair in wall_of) {

@@ -1,4 +1,4 @@
-# One scene under three models of light and by random paths; under each picture its time and its distance from the last.
+# One scene under three models of light and by random paths, where table 2 of the rod's report has words (Gouraud's model is in shading.gp); under each picture its time and its distance from the last.
 # needs: tables/lighting.tsv lighting/images/*.png lighting/references/*.png
 width = 1000; height = 880
 load "plots/style.gp"

@@ -352,12 +352,17 @@ static const char *const fresnel_settings[] = {
     "depth: 3, shadows: opaque, samples: 4",
 };
 
-/* Without large blocks: where one is near, gaps of 1e-12 are not resolved, or only from some places. */
+/* Without large blocks: where one is near, gaps of 1e-12 are not resolved, or only from some places. What stood on one comes down. */
 static inline void take_blocks_away(law_scene *w)
 {
-    for (int i = 0; i < w->solid_count; i++)
-        if (w->solid[i].mesh && w->solid[i].shape.scale.x > 2.0)
-            w->solid[i].shape.scale = vec3_make(0.5, 0.5, 0.5), w->solid[i].shape.position.y = -0.55;
+    for (int i = 0; i < w->solid_count; i++) {
+        solid_shape *shape = &w->solid[i].shape;
+        const double away = vec3_length(shape->position);
+        if (w->solid[i].mesh && shape->scale.x > 2.0)
+            shape->scale = vec3_make(0.5, 0.5, 0.5), shape->position = vec3_make(0.0, -0.55, 0.0);
+        else if (away > 20.0)
+            shape->position = vec3_scale(shape->position, 1.0 / away);
+    }
 }
 
 /* false where the law cannot be tried on such a scene. */

@@ -76,7 +76,7 @@ static inline reversal there_and_back(stage *g, vec3 origin, vec3 direction, int
     memcpy(there, path->node, (size_t)(n + 1) * sizeof *there);
     const ray_node *last = &there[n];
     r = (reversal){.used = true, .same_surfaces = true, .crossings = n, .other_media = there[0].n != last->n};
-    r.reflected = reflect_at >= 0 && reflect_at < n;
+    r.reflected = reflect_at >= 0 && reflect_at < n && there[reflect_at + 1].kind == RAY_REFLECT; /* equal indices reflect nothing */
     const vec3 end = vec3_add(last->origin, vec3_scale(last->direction, 3.0));
     path = stage_way(g, end, vec3_scale(last->direction, -1.0), r.reflected ? n - 1 - reflect_at : -1);
     r.same_surfaces = (int)path->count > n;

@@ -340,7 +340,7 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
         {"lens.visible=noo", "lens.visible: no choice 'noo'; give one of: off, on"},
         {"render.shadows=no", "render.shadows: no choice 'no'; give one of: off, opaque, attenuated"},
         {"glass.radius=2", "glass has no parameter 'radius'; glass has color, ambient, diffuse, specular, shininess, "
-                           "reflectivity, transparency, ior, medium, coefficients, absorb_per_m, absorb_spectrum, texture, texture_size, checker, "
+                           "reflectivity, transparency, ior, medium, coefficients, absorb_per_m, absorb_spectrum, tint_distance, texture, texture_size, checker, "
                            "checker_color"},
         {"lamp.position.w=2", "lamp.position has no element 'w'; the elements are .x, .y and .z"},
         {"lamp.color.x=2", "lamp.color has no element 'x'; the elements are .r, .g and .b"},

@@ -107,3 +107,16 @@ char *param_value_text(const param *row, int element, const void *field)
     }
     return NULL;
 }
+
+char *param_default_text(const param *row)
+{
+    param_value value;
+    if (param_value_parse(row, -1, row->name, row->fallback, &value, NULL) != STATUS_OK) {
+        return NULL;
+    }
+    char *text = param_value_text(row, -1, &value);
+    if (row->type == PARAM_PATH) {
+        free(value.path);
+    }
+    return text;
+}

@@ -28,6 +28,9 @@ char *param_value_text(const param *row, int element, const void *field);
 /* "give an integer 0..64": what would be right for the row, or for one element of a vector; returns text. */
 char *param_remedy(const param *row, bool one_element, char *text, size_t size);
 
+/* The row's default, as param_value_text gives it; fresh memory, NULL when that is out. */
+char *param_default_text(const param *row);
+
 /* Gives every field of the group's rows in *base its default. Path fields must be NULL or text of their own. */
 status param_set_defaults(param_group group, void *base, diagnostic *why);
 

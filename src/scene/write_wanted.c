@@ -5,20 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The text of a row's default, as param_value_text gives it; fresh memory, NULL when that is out. */
-static char *default_text(const param *row)
-{
-    param_value value;
-    if (param_value_parse(row, -1, row->name, row->fallback, &value, NULL) != STATUS_OK) {
-        return NULL;
-    }
-    char *text = param_value_text(row, -1, &value);
-    if (row->type == PARAM_PATH) {
-        free(value.path);
-    }
-    return text;
-}
-
 static bool is_material_row(const param *row, size_t offset)
 {
     return row->group == PARAM_MATERIAL && row->offset == offset;
@@ -59,11 +45,11 @@ static char *implied_text(const scene *s, const place *at)
 {
     const int index = at->group == PARAM_SOLID && at->row->group == PARAM_MATERIAL ? s->solids[at->index].material_index : -1;
     if (index < 0) {
-        return default_text(at->row);
+        return param_default_text(at->row);
     }
     const place there = {.row = at->row, .group = PARAM_MATERIAL, .index = (size_t)index, .element = -1};
     const material *m = &s->materials[index].value;
-    return is_without_effect(s, &there) ? default_text(at->row) : param_value_text(at->row, -1, (const char *)m + at->row->offset);
+    return is_without_effect(s, &there) ? param_default_text(at->row) : param_value_text(at->row, -1, (const char *)m + at->row->offset);
 }
 
 /* A camera is known to look along its angles by there being one. */

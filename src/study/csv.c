@@ -86,8 +86,7 @@ void csv_line_free(csv_line *line)
     *line = (csv_line){0};
 }
 
-/* Cuts the fields of one line apart, in place; returns how many, or 0 when quotes are wrong. fields may be NULL. */
-static size_t split_line(char *text, char **fields)
+size_t csv_split(char *text, char **fields)
 {
     size_t count = 0;
     for (char *read = text;; read++) {
@@ -164,7 +163,7 @@ static status split_all(csv *table, const char *path, diagnostic *why)
     table->header = calloc(table->column_count, sizeof *table->header);
     if (!table->header)
         return no_memory(why);
-    table->column_count = split_line(table->split, table->header);
+    table->column_count = csv_split(table->split, table->header);
     if (table->column_count == 0)
         return damaged(path, 1, why);
     table->fields = calloc(table->row_count * table->column_count + 1, sizeof *table->fields);
@@ -181,7 +180,7 @@ static status split_all(csv *table, const char *path, diagnostic *why)
         char **fields = malloc(commas * sizeof *fields);
         if (!fields)
             return no_memory(why);
-        bool right = split_line(text, fields) == table->column_count;
+        bool right = csv_split(text, fields) == table->column_count;
         if (right)
             memcpy(table->fields + row * table->column_count, fields, table->column_count * sizeof *fields);
         free(fields);
@@ -240,7 +239,7 @@ int csv_column(const csv *table, const char *name)
 
 const char *csv_field(const csv *table, size_t row, int column)
 {
-    return table->fields[row * table->column_count + (size_t)column];
+    return column >= 0 ? table->fields[row * table->column_count + (size_t)column] : "NA";
 }
 
 double csv_field_real(const csv *table, size_t row, int column)

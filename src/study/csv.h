@@ -40,8 +40,12 @@ status csv_read(const char *path, csv **out, diagnostic *why);
 status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why);
 void csv_destroy(csv *table);
 
+/* Cuts the fields of one line without its newline apart, in place; returns how many, or 0 when quotes are wrong. fields may be NULL. */
+size_t csv_split(char *line, char **fields);
+
 /* Index of the column of that name, or -1. */
 int csv_column(const csv *table, const char *name);
+/* "NA" for a column that the file does not have. */
 const char *csv_field(const csv *table, size_t row, int column);
 /* The field as a number; NaN for NA and what is no number. */
 double csv_field_real(const csv *table, size_t row, int column);

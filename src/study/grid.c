@@ -1,6 +1,7 @@
 #include "study/grid.h"
 #include "base/hash.h"
 #include "scene/params.h"
+#include "study/meaning.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -177,41 +178,15 @@ static void hash_text(uint64_t *hash, const char *text)
     *hash = hash_bytes(*hash, text, strlen(text) + 1);
 }
 
-static void hash_integer(uint64_t *hash, int64_t value)
-{
-    *hash = hash_words(*hash, &value, 1);
-}
-
-typedef struct param_hash {
-    uint64_t value;
-    bool without_how;
-} param_hash;
-
-static status hash_param(void *context, const char *path, const param *row, const char *value)
-{
-    param_hash *hash = context;
-    if (hash->without_how && row->is_how)
-        return STATUS_OK;
-    hash_text(&hash->value, path);
-    hash_text(&hash->value, value);
-    return STATUS_OK;
-}
-
 status grid_hash_scene(uint64_t *hash, const scene *of, bool without_how)
 {
-    param_hash params = {*hash, without_how};
-    status code = scene_each_param(of, hash_param, &params);
-    if (code != STATUS_OK)
-        return code;
-    *hash = params.value;
-    /* What the parameters do not say. */
-    hash_integer(hash, of->camera.aimed);
-    for (size_t i = 0; i < of->solid_count; i++) {
-        hash_integer(hash, of->solids[i].shape.kind);
-        hash_integer(hash, of->solids[i].material_index);
-    }
+    meaning said = {0};
+    const status code = meaning_of_scene(&said, of, without_how);
+    const int64_t word = (int64_t)meaning_hash(&said);
+    meaning_free(&said);
+    *hash = hash_words(*hash, &word, 1);
     grid_hash_files(hash, of);
-    return STATUS_OK;
+    return code;
 }
 
 void grid_hash_point(uint64_t *hash, const study_point *point)
@@ -224,21 +199,16 @@ void grid_hash_point(uint64_t *hash, const study_point *point)
 
 status grid_definition(const study *s, uint64_t *hash, diagnostic *why)
 {
+    meaning said = {0};
     status code = scene_load_files(s->base, why); /* what is computed follows from the parameters */
-    if (code != STATUS_OK)
-        return code;
-    *hash = HASH_START;
-    hash_text(hash, s->name);
-    code = grid_hash_scene(hash, s->base, false);
-    if (code != STATUS_OK)
-        return code;
-    for (size_t axis = 0; axis < s->axis_count; axis++) {
-        hash_integer(hash, (int64_t)s->axes[axis].count);
-        for (size_t i = 0; i < s->axes[axis].count; i++)
-            grid_hash_point(hash, &s->axes[axis].points[i]);
-    }
+    if (code == STATUS_OK && meaning_of_study(&said, s) != STATUS_OK)
+        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+    const int64_t word = (int64_t)meaning_hash(&said);
+    meaning_free(&said);
+    *hash = hash_words(HASH_START, &word, 1);
+    grid_hash_files(hash, s->base);
     *hash = hash_finish(*hash);
-    return STATUS_OK;
+    return code;
 }
 
 void grid_put_values(const study *s, size_t cell, FILE *out)

@@ -19,14 +19,15 @@ status grid_check_cells(const study *s, diagnostic *why);
 /* Finds the film of each point (study_point.film). */
 void axis_find_films(study_axis *axis);
 
-/* The fingerprint of what a row means: name, scene, fixed parameters, grid. Loads the scene's files, whose
+/* The fingerprint of what a row means (study/meaning.h). Loads the scene's files, whose
  * contents count too. */
 status grid_definition(const study *s, uint64_t *hash, diagnostic *why);
 
 /* Goes into a fingerprint: all of a scene that makes its picture, with or without the parameters that are how a frame is
  * computed (param.is_how); the paths and values of a point. The scene's files must have been loaded. */
 status grid_hash_scene(uint64_t *hash, const scene *of, bool without_how);
-/* The part of it that the parameters do not say: the sky's picture, textures, meshes and what their files say of their faces. */
+/* The part of it that the parameters do not say: the sky's picture, textures, meshes and what their files say of their faces. A scene
+ * without files leaves the fingerprint as it was. */
 void grid_hash_files(uint64_t *hash, const scene *of);
 void grid_hash_point(uint64_t *hash, const study_point *point);
 

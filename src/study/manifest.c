@@ -1,9 +1,11 @@
 #include "study/manifest.h"
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "measure/clock.h"
 #include "measure/usage.h"
+#include "study/grid.h"
 #include "study/provenance.h"
 #include "study/rows.h"
 #include <fcntl.h>
@@ -35,7 +37,6 @@
 #define TEXT_OF_(x) #x
 #define TEXT_OF(x) TEXT_OF_(x)
 
-enum { MANIFEST_BYTES_MAX = 64 << 20 };
 static const double load_sample_s = 0.2;
 
 /* Takes over fresh text; null when there is none or it is not UTF-8. */
@@ -95,12 +96,22 @@ static json_t *machine_facts(const topology *machine)
                      "hwloc_xml", taken(xml));
 }
 
+static json_t *hash_text(uint64_t value)
+{
+    return json_sprintf("%016" PRIx64, value);
+}
+
+static json_t *files_hash(const study *s)
+{
+    uint64_t hash = HASH_START;
+    grid_hash_files(&hash, s->base);
+    return hash_text(hash);
+}
+
 static json_t *study_facts(const study *s)
 {
-    char hash[NUMBER_TEXT_MAX];
-    snprintf(hash, sizeof hash, "%016" PRIx64, s->definition_hash);
-    return json_pack("{s:s, s:o, s:s, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title),
-                     "definition", hash, "cells", (json_int_t)study_cell_count(s), "file", borrowed(file_name(s->path)),
+    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title),
+                     "definition", hash_text(s->definition_hash), "files", files_hash(s), "cells", (json_int_t)study_cell_count(s), "file", borrowed(file_name(s->path)),
                      "text", borrowed(s->text), "scene_file", borrowed(file_name(s->scene_path)), "scene_text",
                      borrowed(s->scene_text));
 }

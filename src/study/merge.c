@@ -1,4 +1,5 @@
 #include "base/file.h"
+#include "study/csv_layout.h"
 #include "study/row_files.h"
 #include "study/table.h"
 #include <stdlib.h>
@@ -9,20 +10,66 @@ static status no_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
+/* The rows of one file, from `from` on; those of a file with other columns under their names. */
+static status write_rows(FILE *out, const row_files *files, size_t from, size_t to, const char *header, diagnostic *why)
+{
+    const csv *of = files->rows[from].table;
+    char *own = strndup(of->raw, of->start[0]);
+    csv_layout *layout = NULL;
+    csv_line placed = {0};
+    status code = own ? csv_layout_create(own, header, &layout, why) : no_memory(why);
+    for (size_t i = from; code == STATUS_OK && i < to; i++) {
+        const size_t row = files->rows[i].row, start = of->start[row], size = of->start[row + 1] - start;
+        if (strcmp(own, header) == 0) {
+            fwrite(of->raw + start, 1, size, out);
+        } else if ((code = csv_layout_place(layout, of->raw + start, size, &placed, why)) == STATUS_OK) {
+            fwrite(placed.text, 1, placed.size, out);
+            placed.size = 0;
+        }
+    }
+    csv_line_free(&placed);
+    csv_layout_destroy(layout);
+    free(own);
+    return code;
+}
+
+/* The header with what columns any of the files has besides; fresh memory, or NULL. */
+static char *joined_header(const row_files *files, const char *header)
+{
+    char *all = strdup(header);
+    for (size_t i = 0; all && i < files->count; i++) {
+        const csv *of = files->tables[i];
+        size_t added;
+        char *own = of->header ? strndup(of->raw, of->start[0]) : strdup(header);
+        char *more = own ? csv_header_extend(all, own, &added) : NULL;
+        free(own);
+        free(all);
+        all = more;
+    }
+    return all;
+}
+
 /* All rows of one kind into rows.csv, workers.csv or compare.csv, line by line as they are. */
 static status write_joined(const row_files *files, const char *path, const char *header, diagnostic *why)
 {
     file_writer writer;
-    status code = file_writer_open(&writer, path, why);
-    if (code != STATUS_OK)
+    char *all = joined_header(files, header);
+    status code = all ? file_writer_open(&writer, path, why) : no_memory(why);
+    if (code != STATUS_OK) {
+        free(all);
         return code;
-    fputs(header, writer.stream);
-    for (size_t i = 0; i < files->row_count; i++) {
-        const row_ref *ref = &files->rows[i];
-        size_t from = ref->table->start[ref->row];
-        fwrite(ref->table->raw + from, 1, ref->table->start[ref->row + 1] - from, writer.stream);
     }
-    return file_writer_commit(&writer, why);
+    fputs(all, writer.stream);
+    for (size_t from = 0, to; code == STATUS_OK && from < files->row_count; from = to) {
+        for (to = from; to < files->row_count && files->rows[to].table == files->rows[from].table; to++) {
+        }
+        code = write_rows(writer.stream, files, from, to, all, why);
+    }
+    free(all);
+    if (code == STATUS_OK)
+        return file_writer_commit(&writer, why);
+    file_writer_abandon(&writer);
+    return code;
 }
 
 /* Every file is locked meanwhile, so that no row is written into one that is being replaced. */

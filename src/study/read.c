@@ -290,7 +290,7 @@ static status read_root(study *s, const document *d, const study_guard *guard, d
     if (code == STATUS_OK)
         code = grid_definition(s, &s->definition_hash, why);
     if (code == STATUS_OK)
-        s->compare_hash = reference_definition(s);
+        s->compare_hash = reference_definition(s, s->definition_hash);
     return code;
 }
 

@@ -59,10 +59,10 @@ status reference_check(const study *s, diagnostic *why)
     return code;
 }
 
-uint64_t reference_definition(const study *s)
+uint64_t reference_definition(const study *s, uint64_t definition)
 {
-    int64_t definition = (int64_t)s->definition_hash;
-    uint64_t hash = hash_words(HASH_START, &definition, 1);
+    const int64_t word = (int64_t)definition;
+    uint64_t hash = hash_words(HASH_START, &word, 1);
     grid_hash_point(&hash, &s->reference);
     return hash_finish(hash);
 }

@@ -18,8 +18,8 @@ typedef struct reference {
 /* Checks every cell's reference: a scene that can be rendered, as large as the cell's. Errors are located in the study file. */
 status reference_check(const study *s, diagnostic *why);
 
-/* The fingerprint of the study's definition and its reference; s->definition_hash is there. */
-uint64_t reference_definition(const study *s);
+/* The fingerprint of a definition of the study and of its reference. */
+uint64_t reference_definition(const study *s, uint64_t definition);
 
 /* The scene of the cell's reference; pictures are not loaded. */
 status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why);

@@ -53,12 +53,18 @@ static int compare_keys(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static bool same_line(const row_ref *a, const row_ref *b)
+/* Has every column of a the same value in b? */
+static bool has_values(const row_ref *a, const row_ref *b)
 {
-    size_t from_a = a->table->start[a->row], from_b = b->table->start[b->row];
-    size_t size = a->table->start[a->row + 1] - from_a;
-    return size == b->table->start[b->row + 1] - from_b &&
-           memcmp(a->table->raw + from_a, b->table->raw + from_b, size) == 0;
+    for (size_t i = 0; i < a->table->column_count; i++)
+        if (strcmp(csv_field(a->table, a->row, (int)i), csv_field(b->table, b->row, csv_column(b->table, a->table->header[i]))) != 0)
+            return false;
+    return true;
+}
+
+static bool same_row(const row_ref *a, const row_ref *b)
+{
+    return has_values(a, b) && has_values(b, a);
 }
 
 status row_check_drop_twins(row_files *files, diagnostic *why)
@@ -75,7 +81,7 @@ status row_check_drop_twins(row_files *files, diagnostic *why)
         row_ref *b = sorted[i];
         if (a->cell != b->cell || a->repetition != b->repetition || a->worker != b->worker) {
             kept = i;
-        } else if (same_line(a, b) && a->table != b->table) {
+        } else if (same_row(a, b) && a->table != b->table) {
             b->table = NULL;
         } else {
             for (size_t f = 0; f < files->count; f++)
@@ -92,4 +98,23 @@ status row_check_drop_twins(row_files *files, diagnostic *why)
             files->rows[kept++] = files->rows[i];
     files->row_count = kept;
     return code;
+}
+
+/* What a row must have to be one; the rest is "NA" where it is missing. */
+static const char *const needed[][10] = {
+    [ROWS] = {"study", "definition", "cell", "repetition", "warmup", "film_hash", "film_expected", "marked", "wall_s"},
+    [WORKER_ROWS] = {"study", "definition", "cell", "repetition", "warmup", "worker"},
+    [COMPARE_ROWS] = {"study", "definition", "cell", "film_hash"},
+};
+
+status row_check_columns(const csv *table, const char *path, row_kind kind, diagnostic *why)
+{
+    for (size_t i = 0; needed[kind][i]; i++) {
+        if (csv_column(table, needed[kind][i]) >= 0)
+            continue;
+        diagnostic_locate(why, path, 1, 1);
+        return diagnose(why, STATUS_BAD_INPUT, "move the file away, or choose another folder with --results",
+                        "the rows have no column %s, without which nobody knows what they are of", needed[kind][i]);
+    }
+    return STATUS_OK;
 }

@@ -1,12 +1,12 @@
 #include "study/row_files.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "study/accepted.h"
 #include "study/compare_rows.h"
 #include "study/row_check.h"
 #include "study/rows.h"
 #include <dirent.h>
 #include <errno.h>
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -124,14 +124,14 @@ static status open_files(row_files *files, const study *s, const char *folder, r
     return code;
 }
 
-static status another_definition(const char *path, long line, row_kind kind, const char *what, diagnostic *why)
+static status another_definition(const char *path, long line, row_kind kind, const char *reason, diagnostic *why)
 {
     diagnostic_locate(why, path, line, 1);
     return diagnose(why, STATUS_BAD_INPUT,
                     kind == COMPARE_ROWS
                         ? "move this file away: pictures are compared anew, and nothing is measured again"
                         : "move this folder away, choose another with --results, or give the study another name",
-                    "%s", what);
+                    "these rows are of another definition%s%s", reason[0] ? ": " : "", reason);
 }
 
 /* A whole number from 0 to highest in the column of that name. */
@@ -140,19 +140,14 @@ static bool field_integer(const csv *table, size_t row, const char *name, int64_
     return number_parse_int(csv_field(table, row, csv_column(table, name)), out) && *out >= 0 && *out <= highest;
 }
 
-static status read_row(const study *s, row_ref *ref, const char *path, row_kind kind, diagnostic *why)
+static status read_row(const study *s, row_ref *ref, const char *path, row_kind kind, accepted *known, diagnostic *why)
 {
-    char definition[NUMBER_TEXT_MAX];
-    snprintf(definition, sizeof definition, "%016" PRIx64, kind == COMPARE_ROWS ? s->compare_hash : s->definition_hash);
-    long line = (long)ref->row + 2;
-    if (strcmp(csv_field(ref->table, ref->row, csv_column(ref->table, "definition")), definition) != 0 ||
-        strcmp(csv_field(ref->table, ref->row, csv_column(ref->table, "study")), s->name) != 0)
-        return another_definition(
-            path, line, kind,
-            kind == COMPARE_ROWS
-                ? "these rows are of another definition: the study, its scene or its reference has changed since"
-                : "these rows are of another definition: the study or its scene has changed since",
-            why);
+    const long line = (long)ref->row + 2;
+    const char *definition = csv_field(ref->table, ref->row, csv_column(ref->table, "definition"));
+    if (strcmp(csv_field(ref->table, ref->row, csv_column(ref->table, "study")), s->name) != 0)
+        return another_definition(path, line, kind, "they are of another study", why);
+    if (!accepted_has(known, definition, kind == COMPARE_ROWS))
+        return another_definition(path, line, kind, accepted_why_not(known), why);
     int64_t cell, repetition = 0, warmup = 0, worker = 0;
     if (!field_integer(ref->table, ref->row, "cell", (int64_t)study_cell_count(s) - 1, &cell) ||
         (kind != COMPARE_ROWS && (!field_integer(ref->table, ref->row, "repetition", INT32_MAX, &repetition) ||
@@ -169,29 +164,26 @@ static status read_row(const study *s, row_ref *ref, const char *path, row_kind 
     return STATUS_OK;
 }
 
-static status read_rows(row_files *files, const study *s, row_kind kind, diagnostic *why)
+static status read_rows(row_files *files, const study *s, const char *folder, row_kind kind, diagnostic *why)
 {
+    accepted known;
+    accepted_start(&known, s, folder);
     size_t total = 0;
     for (size_t i = 0; i < files->count; i++)
         total += files->tables[i]->row_count;
     files->rows = malloc((total + 1) * sizeof *files->rows);
-    char *header = row_file_header(s, kind);
-    status code = files->rows && header ? STATUS_OK : no_memory(why);
+    status code = files->rows ? STATUS_OK : no_memory(why);
     for (size_t i = 0; code == STATUS_OK && i < files->count; i++) {
         const csv *table = files->tables[i];
         if (!table->header)
             continue;
-        size_t length = strlen(header);
-        if (table->whole < length || memcmp(table->raw, header, length) != 0)
-            code = another_definition(files->paths[i], 1, kind,
-                                      "these columns are not the study's: it or the program has changed since", why);
+        code = row_check_columns(table, files->paths[i], kind, why);
         for (size_t row = 0; code == STATUS_OK && row < table->row_count; row++) {
             row_ref *ref = &files->rows[files->row_count++];
             *ref = (row_ref){.table = table, .row = row};
-            code = read_row(s, ref, files->paths[i], kind, why);
+            code = read_row(s, ref, files->paths[i], kind, &known, why);
         }
     }
-    free(header);
     return code;
 }
 
@@ -202,7 +194,7 @@ static status load(const study *s, const char *results, row_kind kind, row_files
     char *folder = study_folder(s, results);
     status code = files && folder ? open_files(files, s, folder, kind, why) : no_memory(why);
     if (code == STATUS_OK)
-        code = read_rows(files, s, kind, why);
+        code = read_rows(files, s, folder, kind, why);
     free(folder);
     if (code != STATUS_OK) {
         row_files_destroy(files);

@@ -31,7 +31,8 @@ char *row_file_path(const char *folder, row_kind kind, long shard, long shards);
 /* The header line of that kind of file; fresh memory, or NULL. */
 char *row_file_header(const study *s, row_kind kind);
 
-/* STATUS_BAD_INPUT when a file is damaged, is of another definition or has other columns, or when one repetition
+/* Columns are known by their names; those of another version of the program are read too. STATUS_BAD_INPUT when a file is damaged or lacks a
+ * column that says of what its rows are, when rows mean something else than the study does (study/accepted.h), or when one repetition
  * stands in two files with different values. Worker rows whose repetition has no row (a process was killed between
  * the two) are left out. */
 status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why);

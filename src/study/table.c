@@ -1,5 +1,6 @@
 #include "study/table.h"
 #include "base/text.h"
+#include "study/table_columns.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
@@ -10,8 +11,10 @@
 #include <unistd.h>
 
 struct table {
-    char *path;
+    char *path, *header;
     int fd;
+    bool settled;       /* the file has all columns of header, and layout is known */
+    csv_layout *layout; /* from header's columns to the file's; NULL when they are the same */
 };
 
 static status failed(const char *path, const char *doing, int error, diagnostic *why)
@@ -150,11 +153,20 @@ static status lock(table *t, diagnostic *why)
     }
 }
 
+static status append(table *t, const char *lines, size_t size, diagnostic *why)
+{
+    if (append_all(t->fd, lines, size) != 0)
+        return failed(t->path, "writing a row", errno, why);
+    return STATUS_OK;
+}
+
 status table_open(const char *path, const char *header, table **out, diagnostic *why)
 {
     *out = NULL;
     table *t = calloc(1, sizeof *t);
-    if (!t || !(t->path = strdup(path))) {
+    if (!t || !(t->path = strdup(path)) || !(t->header = strdup(header))) {
+        if (t)
+            free(t->path);
         free(t);
         return failed(path, "opening", ENOMEM, why);
     }
@@ -165,8 +177,9 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
     if (code == STATUS_OK)
         code = table_set_aside(t, end, why);
     if (code == STATUS_OK && end == 0) {
-        code = table_append(t, header, strlen(header), why);
+        code = append(t, header, strlen(header), why);
         flush_folder(path);
+        t->settled = true;
     }
     if (code != STATUS_OK) {
         table_close(t);
@@ -176,11 +189,31 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
     return STATUS_OK;
 }
 
+/* Before the first row only, so that who has none to add leaves a file as it is. */
+static status settle(table *t, diagnostic *why)
+{
+    bool replaced = false;
+    status code = table_columns_settle(t->path, t->header, &t->layout, &replaced, why);
+    if (code == STATUS_OK && replaced) {
+        flush_folder(t->path);
+        close(t->fd);
+        code = lock(t, why);
+    }
+    t->settled = code == STATUS_OK;
+    return code;
+}
+
 status table_append(table *t, const char *lines, size_t size, diagnostic *why)
 {
-    if (append_all(t->fd, lines, size) != 0)
-        return failed(t->path, "writing a row", errno, why);
-    return STATUS_OK;
+    csv_line placed = {0};
+    status code = t->settled ? STATUS_OK : settle(t, why);
+    if (code != STATUS_OK || !t->layout)
+        return code == STATUS_OK ? append(t, lines, size, why) : code;
+    code = csv_layout_place(t->layout, lines, size, &placed, why);
+    if (code == STATUS_OK)
+        code = append(t, placed.text, placed.size, why);
+    csv_line_free(&placed);
+    return code;
 }
 
 void table_close(table *t)
@@ -189,6 +222,8 @@ void table_close(table *t)
         return;
     if (t->fd >= 0)
         close(t->fd);
+    csv_layout_destroy(t->layout);
+    free(t->header);
     free(t->path);
     free(t);
 }

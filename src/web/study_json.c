@@ -124,14 +124,18 @@ status study_json_summary(const study *s, const char *results, json_t **out, dia
     return code;
 }
 
-static json_t *row_json(const csv *table, char *const *fields)
+/* The columns' names; or of a row, of whatever file, the fields in these columns. */
+static json_t *row_json(const csv *columns, const row_ref *of)
 {
     json_t *row = json_array();
-    for (size_t i = 0; i < table->column_count; i++)
-        if (json_array_append_new(row, json_of_text(fields[i])) != 0) {
+    for (size_t i = 0; i < columns->column_count; i++) {
+        const char *name = columns->header[i];
+        const char *text = of ? csv_field(of->table, of->row, of->table == columns ? (int)i : csv_column(of->table, name)) : name;
+        if (json_array_append_new(row, json_of_text(text)) != 0) {
             json_decref(row);
             return NULL;
         }
+    }
     return row;
 }
 
@@ -142,13 +146,13 @@ status study_json_rows(const study *s, const char *results, size_t from, json_t 
     status code = row_files_read(s, results, ROWS, &files, why);
     if (code != STATUS_OK)
         return code;
-    const csv *first = files->count ? files->tables[0] : NULL;
-    json_t *columns = first && first->header ? row_json(first, first->header) : json_array(), *rows = json_array();
+    const csv *first = NULL;
+    for (size_t i = 0; !first && i < files->count; i++)
+        first = files->tables[i]->header ? files->tables[i] : NULL;
+    json_t *columns = first ? row_json(first, NULL) : json_array(), *rows = json_array();
     bool bad = !columns || !rows;
-    for (size_t i = from; !bad && i < files->row_count && i - from < STUDY_JSON_ROWS_MAX; i++) {
-        const csv *table = files->rows[i].table;
-        bad |= json_array_append_new(rows, row_json(table, table->fields + files->rows[i].row * table->column_count)) != 0;
-    }
+    for (size_t i = from; !bad && i < files->row_count && i - from < STUDY_JSON_ROWS_MAX; i++)
+        bad |= json_array_append_new(rows, row_json(first, &files->rows[i])) != 0;
     if (!bad) {
         *out = table_json(columns, rows, files->row_count);
     } else {

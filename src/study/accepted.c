@@ -1,0 +1,108 @@
+#include "study/accepted.h"
+#include "base/hash.h"
+#include "base/text.h"
+#include "study/definition_v1.h"
+#include "study/grid.h"
+#include "study/manifest.h"
+#include "study/meaning.h"
+#include "study/recorded.h"
+#include "study/reference.h"
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+void accepted_start(accepted *a, const study *s, const char *folder)
+{
+    *a = (accepted){.s = s, .folder = folder};
+}
+
+static void accept(accepted *a, uint64_t definition)
+{
+    a->older[a->count++] = definition;
+}
+
+/* Do the recorded texts mean what the study means? The difference goes into why_not. */
+static bool means_the_same(accepted *a, const manifest_study *recorded)
+{
+    diagnostic why = {.what = ""};
+    study *then = NULL;
+    meaning there = {0}, here = {0};
+    bool same = false;
+    if (recorded_study(a->s, recorded->text, recorded->scene_text, &then, &why) != STATUS_OK)
+        snprintf(a->why_not, sizeof a->why_not, "the manifest's study cannot be read by this program: %.200s", why.what);
+    else if (meaning_of_study(&there, then) == STATUS_OK && meaning_of_study(&here, a->s) == STATUS_OK)
+        same = !meaning_difference(&there, &here, a->why_not, sizeof a->why_not);
+    meaning_free(&there);
+    meaning_free(&here);
+    study_destroy(then);
+    return same;
+}
+
+/* Did the files that the scene names hold the same? Their names do not say. */
+static bool files_are_the_same(accepted *a, const manifest_study *recorded)
+{
+    uint64_t now = HASH_START;
+    grid_hash_files(&now, a->s->base);
+    if (now == HASH_START || (recorded->has_files && recorded->files == now))
+        return true;
+    snprintf(a->why_not, sizeof a->why_not, "%s",
+             recorded->has_files ? "a mesh, texture, sky or script that the scene names holds something else now"
+                                 : "the manifest does not say what the scene's meshes, textures, sky and scripts held");
+    return false;
+}
+
+static void look_into_manifest(accepted *a, const char *path)
+{
+    manifest_study recorded;
+    diagnostic why = {.what = ""};
+    if (access(path, F_OK) != 0) {
+        snprintf(a->why_not, sizeof a->why_not, "no manifest.json beside them says what they mean");
+        return;
+    }
+    if (manifest_read(path, a->s->base->limits.root, &recorded, &why) != STATUS_OK) {
+        snprintf(a->why_not, sizeof a->why_not, "%.300s", why.what);
+        return;
+    }
+    if (means_the_same(a, &recorded) && files_are_the_same(a, &recorded)) {
+        accept(a, recorded.definition);
+        snprintf(a->why_not, sizeof a->why_not, "they carry another than the manifest.json beside them records");
+    }
+    manifest_study_free(&recorded);
+}
+
+static void look(accepted *a)
+{
+    uint64_t earlier;
+    a->looked = true;
+    if (definition_v1(a->s, &earlier))
+        accept(a, earlier);
+    char *path = text_format("%s/manifest.json", a->folder);
+    if (path)
+        look_into_manifest(a, path);
+    free(path);
+}
+
+static bool is(const accepted *a, const char *text, uint64_t definition, bool of_comparison)
+{
+    char own[17];
+    snprintf(own, sizeof own, "%016" PRIx64, of_comparison ? reference_definition(a->s, definition) : definition);
+    return strcmp(own, text) == 0;
+}
+
+bool accepted_has(accepted *a, const char *definition, bool of_comparison)
+{
+    if (is(a, definition, a->s->definition_hash, of_comparison))
+        return true;
+    if (!a->looked)
+        look(a);
+    for (size_t i = 0; i < a->count; i++)
+        if (is(a, definition, a->older[i], of_comparison))
+            return true;
+    return false;
+}
+
+const char *accepted_why_not(const accepted *a)
+{
+    return a->why_not;
+}

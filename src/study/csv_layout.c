@@ -1,0 +1,108 @@
+#include "study/csv_layout.h"
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct names { char *text, **name; size_t count; } names;
+
+struct csv_layout {
+    size_t from_count, to_count;
+    int *source; /* of each column of `to`: which one of `from`, or -1 */
+};
+
+static status no_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
+static void names_free(names *n)
+{
+    free(n->text);
+    free(n->name);
+}
+
+/* Of a line, with or without its newline. False when memory is out or quotes are wrong. */
+static bool names_split(const char *line, size_t size, names *out)
+{
+    size -= size > 0 && line[size - 1] == '\n';
+    size_t most = 1;
+    for (size_t i = 0; i < size; i++)
+        most += line[i] == ',';
+    *out = (names){.text = strndup(line, size), .name = malloc(most * sizeof *out->name)};
+    out->count = out->text && out->name ? csv_split(out->text, out->name) : 0;
+    return out->count > 0;
+}
+
+static int find(const names *in, const char *name)
+{
+    for (size_t i = 0; i < in->count; i++)
+        if (strcmp(in->name[i], name) == 0)
+            return (int)i;
+    return -1;
+}
+
+status csv_layout_create(const char *from, const char *to, csv_layout **out, diagnostic *why)
+{
+    names own = {0}, other = {0};
+    *out = NULL;
+    csv_layout *l = calloc(1, sizeof *l);
+    if (l && names_split(from, strlen(from), &own) && names_split(to, strlen(to), &other)) {
+        *l = (csv_layout){own.count, other.count, malloc(other.count * sizeof *l->source)};
+        for (size_t i = 0; l->source && i < other.count; i++)
+            l->source[i] = find(&own, other.name[i]);
+    }
+    names_free(&own);
+    names_free(&other);
+    if (!l || !l->source) {
+        csv_layout_destroy(l);
+        return no_memory(why);
+    }
+    *out = l;
+    return STATUS_OK;
+}
+
+void csv_layout_destroy(csv_layout *l)
+{
+    if (l)
+        free(l->source);
+    free(l);
+}
+
+status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv_line *out, diagnostic *why)
+{
+    for (size_t at = 0; at < size;) {
+        const char *newline = memchr(lines + at, '\n', size - at);
+        const size_t length = newline ? (size_t)(newline - lines) - at + 1 : size - at;
+        names fields;
+        const bool right = names_split(lines + at, length, &fields) && fields.count == l->from_count;
+        for (size_t i = 0; right && i < l->to_count; i++)
+            csv_text(out, l->source[i] >= 0 ? fields.name[l->source[i]] : NULL);
+        csv_end(out);
+        names_free(&fields);
+        if (!right || out->failed)
+            return no_memory(why);
+        at += length;
+    }
+    return STATUS_OK;
+}
+
+char *csv_header_extend(const char *header, const char *more, size_t *added)
+{
+    names own = {0}, other = {0};
+    csv_line line = {0};
+    *added = 0;
+    bool right = names_split(header, strlen(header), &own) && names_split(more, strlen(more), &other);
+    for (size_t i = 0; right && i < own.count; i++)
+        csv_text(&line, own.name[i]);
+    for (size_t i = 0; right && i < other.count; i++)
+        if (find(&own, other.name[i]) < 0) {
+            csv_text(&line, other.name[i]);
+            ++*added;
+        }
+    csv_end(&line);
+    names_free(&own);
+    names_free(&other);
+    if (right && !line.failed)
+        return line.text;
+    csv_line_free(&line);
+    return NULL;
+}

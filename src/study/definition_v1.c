@@ -1,0 +1,123 @@
+#include "study/definition_v1.h"
+#include "base/hash.h"
+#include "scene/params_value.h"
+#include "study/grid.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* The parameters of that program. Never to be added to: what is not here came later. */
+static const char *const names[PARAM_GROUP_COUNT] = {
+    [PARAM_RENDER] = "width height depth samples integrator lighting weights transmission beyond shadows min_weight paths roulette seed "
+                     "polarisation spectrum wavelengths lambda_nm unit_m threads pool schedule tile pin accel build_threads keep rebuild "
+                     "texturing",
+    [PARAM_CAMERA] = "position target yaw_deg pitch_deg fov_deg",
+    [PARAM_BACKGROUND] = "kind color horizon picture ambient ior medium absorb_per_m",
+    [PARAM_MESH] = "generate file count level major minor around tube profile crease_deg size depth seed time_s script radius position "
+                   "velocity mass_kg stiffness bending through damping pressure gravity ground ground_y restitution friction integrator "
+                   "dt_s adaptive threads",
+    [PARAM_TEXTURE] = "file filter wrap_u wrap_v space",
+    [PARAM_LIGHT] = "kind position target half_angle_deg color intensity radius reach",
+    [PARAM_MATERIAL] = "color ambient diffuse specular shininess reflectivity transparency ior medium coefficients absorb_per_m "
+                       "absorb_spectrum texture texture_size checker checker_color",
+    [PARAM_SOLID] = "position rotation priority visible",
+};
+
+/* Its shapes by their numbers, and what each had besides. */
+static const struct { shape_kind kind; const char *names; } shapes[] = {
+    {SHAPE_PLANE, ""},        {SHAPE_CYLINDER, "radius height m"}, {SHAPE_CUP, "radius height inner_radius floor"},
+    {SHAPE_BOX, "size"},      {SHAPE_SPHERE, "radius"},            {SHAPE_MESH, "mesh scale copies spacing shading"},
+};
+
+typedef struct visit_state { const scene *of; uint64_t hash; bool later; } visit_state;
+
+static bool is_word_of(const char *word, const char *words)
+{
+    const size_t length = strlen(word);
+    for (const char *at = words; (at = strstr(at, word)); at += length)
+        if ((at == words || at[-1] == ' ') && (at[length] == 0 || at[length] == ' '))
+            return true;
+    return false;
+}
+
+/* The number of its shape then, or -1. */
+static int shape_number(const solid *of)
+{
+    for (int i = 0; i < (int)(sizeof shapes / sizeof *shapes); i++)
+        if (shapes[i].kind == of->shape.kind)
+            return i;
+    return -1;
+}
+
+static bool was_there(const scene *of, const char *path, const param *row)
+{
+    if (is_word_of(row->name, names[row->group]))
+        return true;
+    if (row->group != PARAM_SOLID)
+        return false;
+    for (size_t i = 0; i < of->solid_count; i++) {
+        const size_t length = strlen(of->solids[i].name);
+        if (strncmp(path, of->solids[i].name, length) == 0 && path[length] == '.') {
+            const int number = shape_number(&of->solids[i]);
+            return number >= 0 && is_word_of(row->name, shapes[number].names);
+        }
+    }
+    return false;
+}
+
+static bool is_default(const param *row, const char *value)
+{
+    char *usual = param_default_text(row);
+    const bool same = usual && strcmp(usual, value) == 0;
+    free(usual);
+    return same;
+}
+
+static void hash_text(uint64_t *hash, const char *text)
+{
+    *hash = hash_bytes(*hash, text, strlen(text) + 1);
+}
+
+static void hash_integer(uint64_t *hash, int64_t value)
+{
+    *hash = hash_words(*hash, &value, 1);
+}
+
+static status hash_param(void *context, const char *path, const param *row, const char *value)
+{
+    visit_state *state = context;
+    if (was_there(state->of, path, row)) {
+        hash_text(&state->hash, path);
+        hash_text(&state->hash, value);
+    } else {
+        state->later |= !is_default(row, value);
+    }
+    return STATUS_OK;
+}
+
+static void hash_axis(uint64_t *hash, const study_axis *axis)
+{
+    hash_integer(hash, (int64_t)axis->count);
+    for (size_t i = 0; i < axis->count; i++)
+        grid_hash_point(hash, &axis->points[i]);
+}
+
+bool definition_v1(const study *s, uint64_t *hash)
+{
+    visit_state state = {.of = s->base, .hash = HASH_START};
+    hash_text(&state.hash, s->name);
+    if (scene_each_param(s->base, hash_param, &state) != STATUS_OK || state.later)
+        return false;
+    hash_integer(&state.hash, s->base->camera.aimed);
+    for (size_t i = 0; i < s->base->solid_count; i++) {
+        const int number = shape_number(&s->base->solids[i]);
+        if (number < 0)
+            return false;
+        hash_integer(&state.hash, number);
+        hash_integer(&state.hash, s->base->solids[i].material_index);
+    }
+    grid_hash_files(&state.hash, s->base);
+    for (size_t axis = 0; axis < s->axis_count; axis++)
+        hash_axis(&state.hash, &s->axes[axis]);
+    *hash = hash_finish(state.hash);
+    return true;
+}

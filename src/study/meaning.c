@@ -1,0 +1,145 @@
+#include "study/meaning.h"
+#include "base/hash.h"
+#include "base/text.h"
+#include "scene/params_path.h"
+#include "scene/params_value.h"
+#include "study/grid.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Takes over both texts. */
+static status add(meaning *m, char *name, char *value)
+{
+    if (m->count == m->capacity) {
+        const size_t capacity = 2 * m->capacity + 64;
+        meaning_item *grown = realloc(m->items, capacity * sizeof *grown);
+        if (grown) {
+            m->items = grown;
+            m->capacity = capacity;
+        }
+    }
+    if (!name || !value || m->count == m->capacity) {
+        free(name);
+        free(value);
+        return STATUS_FAILURE;
+    }
+    m->items[m->count++] = (meaning_item){name, value};
+    return STATUS_OK;
+}
+
+typedef struct visit_state { meaning *into; bool without_how; } visit_state;
+
+static status add_param(void *context, const char *path, const param *row, const char *value)
+{
+    visit_state *state = context;
+    if (state->without_how && row->is_how)
+        return STATUS_OK;
+    char *usual = param_default_text(row);
+    status code = STATUS_FAILURE;
+    if (usual)
+        code = strcmp(usual, value) == 0 ? STATUS_OK : add(state->into, strdup(path), strdup(value));
+    free(usual);
+    return code;
+}
+
+/* Every object is named in its place: one whose parameters all are at their defaults is there, too. */
+static status add_objects(meaning *m, const scene *of, param_group group)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; code == STATUS_OK && i < place_group_size(of, group); i++)
+        code = add(m, text_format("%s %zu", param_group_name(group), i), strdup(place_group_name(of, group, i)));
+    return code;
+}
+
+static status add_solid(meaning *m, const scene *of, const solid *owner)
+{
+    status code = add(m, text_format("shape of %s", owner->name), strdup(shape_name(owner->shape.kind)));
+    if (code == STATUS_OK && owner->material_index >= 0)
+        code = add(m, text_format("material of %s", owner->name), strdup(of->materials[owner->material_index].name));
+    return code;
+}
+
+status meaning_of_scene(meaning *m, const scene *of, bool without_how)
+{
+    static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE, PARAM_LIGHT, PARAM_MATERIAL, PARAM_SOLID};
+    visit_state state = {m, without_how};
+    status code = scene_each_param(of, add_param, &state);
+    if (code == STATUS_OK)
+        code = add(m, strdup("the camera's direction"), strdup(of->camera.aimed ? "its target" : "its angles"));
+    for (size_t i = 0; code == STATUS_OK && i < sizeof groups / sizeof *groups; i++)
+        code = add_objects(m, of, groups[i]);
+    for (size_t i = 0; code == STATUS_OK && i < of->solid_count; i++)
+        code = add_solid(m, of, &of->solids[i]);
+    return code;
+}
+
+static status add_axis(meaning *m, const study_axis *axis, size_t number)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; code == STATUS_OK && i < axis->count; i++)
+        for (size_t k = 0; code == STATUS_OK && k < axis->points[i].count; k++)
+            code = add(m, text_format("%s of point %zu on axis %zu", axis->points[i].paths[k], i, number),
+                       strdup(axis->points[i].values[k]));
+    return code;
+}
+
+status meaning_of_study(meaning *m, const study *s)
+{
+    status code = add(m, strdup("the study's name"), strdup(s->name));
+    if (code == STATUS_OK)
+        code = meaning_of_scene(m, s->base, false);
+    for (size_t axis = 0; code == STATUS_OK && axis < s->axis_count; axis++)
+        code = add_axis(m, &s->axes[axis], axis);
+    return code;
+}
+
+void meaning_free(meaning *m)
+{
+    for (size_t i = 0; i < m->count; i++) {
+        free(m->items[i].name);
+        free(m->items[i].value);
+    }
+    free(m->items);
+    *m = (meaning){0};
+}
+
+uint64_t meaning_hash(const meaning *m)
+{
+    uint64_t sum = 0;
+    for (size_t i = 0; i < m->count; i++) {
+        const meaning_item *item = &m->items[i];
+        const uint64_t name = hash_bytes(HASH_START, item->name, strlen(item->name) + 1);
+        sum += hash_finish(hash_bytes(name, item->value, strlen(item->value) + 1));
+    }
+    return sum;
+}
+
+static const char *value_of(const meaning *m, const char *name)
+{
+    for (size_t i = 0; i < m->count; i++)
+        if (strcmp(m->items[i].name, name) == 0)
+            return m->items[i].value;
+    return NULL;
+}
+
+static bool differs(const meaning *from, const meaning *other, const char **name)
+{
+    for (size_t i = 0; i < from->count; i++) {
+        const char *value = value_of(other, from->items[i].name);
+        *name = from->items[i].name;
+        if (!value || strcmp(value, from->items[i].value) != 0)
+            return true;
+    }
+    return false;
+}
+
+bool meaning_difference(const meaning *there, const meaning *here, char *text, size_t size)
+{
+    const char *name;
+    if (!differs(there, here, &name) && !differs(here, there, &name))
+        return false;
+    const char *a = value_of(there, name), *b = value_of(here, name);
+    snprintf(text, size, "%.120s is %.80s there, and %.80s here", name, a ? a : "not set", b ? b : "not set");
+    return true;
+}

@@ -1,0 +1,567 @@
+/* Rows outlive versions: what other versions of the program wrote, under other columns and definitions, stays readable, and what cannot be
+ * verified to mean the same does not. tests/old-rows holds rows of before definitions left out what is at its default. */
+#include "study_fixture.h"
+#include "base/hash.h"
+#include "scene/params_path.h"
+#include "scene/params_value.h"
+#include "study/csv.h"
+#include "study/definition_v1.h"
+#include "study/grid.h"
+#include "study/meaning.h"
+#include "study/row_files.h"
+#include "study/summary.h"
+#include <dirent.h>
+#include <inttypes.h>
+
+static const char study_text[] = "study: test\n"
+                                 "scene: scene.yaml\n"
+                                 "grid: [{render.depth: [0, 2]}]\n"
+                                 "reference: {render.depth: 2}\n"
+                                 "repetitions: 2\n"
+                                 "warmups: 0\n"
+                                 "keep: {workers: on}\n";
+static const char longer_text[] = "study: test\n"
+                                  "scene: scene.yaml\n"
+                                  "grid: [{render.depth: [0, 2]}]\n"
+                                  "reference: {render.depth: 2}\n"
+                                  "repetitions: 4\n"
+                                  "warmups: 0\n"
+                                  "keep: {workers: on}\n";
+static const char rows_name[] = "results/test/rows.csv", workers_name[] = "results/test/workers.csv",
+                  compare_name[] = "results/test/compare.csv", manifest_name[] = "results/test/manifest.json";
+
+static char *summary_of(const study *s, const char *results)
+{
+    char *text = NULL, said[DIAGNOSTIC_TEXT_MAX];
+    size_t size;
+    diagnostic why = {0};
+    FILE *out = open_memstream(&text, &size);
+    if (study_summary(s, results, out, &why) != STATUS_OK)
+        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+    fclose(out);
+    return text;
+}
+
+static study *read_study(const char *path)
+{
+    char said[DIAGNOSTIC_TEXT_MAX];
+    diagnostic why = {0};
+    study *s = NULL;
+    if (study_read(path, &s, &why) != STATUS_OK)
+        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+    return s;
+}
+
+/* --- rows that are there --- */
+
+static void the_reference_run_is_read(void **state)
+{
+    (void)state;
+    size_t read = 0;
+    DIR *folder = opendir("results/reference");
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        char path[400];
+        snprintf(path, sizeof path, "results/reference/%.100s/rows.csv", entry->d_name);
+        if (access(path, F_OK) != 0)
+            continue;
+        snprintf(path, sizeof path, "experiments/%.100s.study", entry->d_name);
+        study *s = read_study(path);
+        char *text = summary_of(s, "results/reference");
+        assert_int_equal(fixture_count(text, "\n"), study_cell_count(s) + 1);
+        free(text);
+        study_destroy(s);
+        read++;
+    }
+    closedir(folder);
+    assert_true(read >= 34); /* as many as there were when definitions changed */
+}
+
+static const char old_study[] = "tests/old-rows/old-rows.study", old_results[] = "tests/old-rows/results";
+
+/* All shapes, files and a slime of the first definition, and the summary that its own program made. */
+static void rows_of_the_first_definition_are_read(void **state)
+{
+    (void)state;
+    study *s = read_study(old_study);
+    char *text = summary_of(s, old_results), *expected = calloc(1, 1 << 18);
+    FILE *file = fopen("tests/old-rows/summary.tsv", "r");
+    assert_non_null(file);
+    assert_true(fread(expected, 1, (1 << 18) - 1, file) > 0);
+    fclose(file);
+    assert_string_equal(text, expected);
+    row_files *workers = NULL;
+    assert_int_equal(row_files_read(s, old_results, WORKER_ROWS, &workers, NULL), STATUS_OK);
+    assert_int_equal(workers->row_count, 12);
+    row_files_destroy(workers);
+    free(expected);
+    free(text);
+    study_destroy(s);
+}
+
+/* The first definition counted every parameter: what differs by one of them is not taken for the same. */
+static void the_first_definition_tells_differences(void **state)
+{
+    (void)state;
+    study *s = read_study(old_study);
+    uint64_t first, other;
+    assert_true(definition_v1(s, &first));
+    assert_int_equal(first, UINT64_C(0x8255f381ce08f9e0));
+    static const char *const changes[] = {"rod.m=0.9", "vessel.floor=0.2", "toy.priority=3", "render.seed=2", "lamp.reach=1"};
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+        scene *before = s->base;
+        assert_non_null(s->base = scene_clone(before));
+        assert_int_equal(scene_set_assignment(s->base, changes[i], NULL), STATUS_OK);
+        assert_true(definition_v1(s, &other));
+        assert_int_not_equal(other, first);
+        scene_destroy(s->base);
+        s->base = before;
+    }
+    study_destroy(s);
+}
+
+/* Nothing that its program could not have set is of the first definition. */
+static void the_first_definition_ends_with_its_parameters(void **state)
+{
+    (void)state;
+    study *s = read_study(old_study);
+    uint64_t hash;
+    assert_int_equal(scene_set_assignment(s->base, "ball.tint_distance=2", NULL), STATUS_OK);
+    assert_false(definition_v1(s, &hash));
+    assert_int_equal(scene_set_assignment(s->base, "ball.tint_distance=1", NULL), STATUS_OK);
+    assert_true(definition_v1(s, &hash));
+    study_destroy(s);
+}
+
+/* --- what a definition is made of --- */
+
+static bool is_path_of(const scene *s, const char *name, place *at)
+{
+    return strchr(name, '.') && !strchr(name, ' ') && place_find(s, name, at, NULL) == STATUS_OK;
+}
+
+/* A parameter that a later version adds is at its default in every scene of before. */
+static void defaults_enter_no_definition(void **state)
+{
+    (void)state;
+    study *s = read_study(old_study);
+    meaning said = {0};
+    assert_int_equal(meaning_of_study(&said, s), STATUS_OK);
+    size_t paths = 0, shapes = 0;
+    for (size_t i = 0; i < said.count; i++) {
+        place at;
+        const char *name = said.items[i].name, *value = said.items[i].value;
+        shapes += strncmp(name, "shape of ", 9) == 0 && strspn(value, "0123456789") == 0;
+        if (!is_path_of(s->base, name, &at))
+            continue;
+        char *usual = param_default_text(at.row);
+        if (strcmp(usual, value) == 0)
+            fail_msg("%s is at its default, and counts", name);
+        free(usual);
+        paths++;
+    }
+    assert_true(paths > 40);
+    assert_int_equal(shapes, s->base->solid_count);
+    meaning_free(&said);
+    study_destroy(s);
+}
+
+/* Of a parameter that stands anywhere in the table, and whose default is said or not. */
+static void order_and_defaults_are_the_same_meaning(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: x\nscene: scene.yaml\n");
+    study *other = fixture_study(f, "study: x\nscene: scene.yaml\nset: {ball.visible: on, lamp.intensity: 1, render.samples: 1}\n");
+    assert_int_equal(s->definition_hash, other->definition_hash);
+    meaning said = {0};
+    assert_int_equal(meaning_of_study(&said, s), STATUS_OK);
+    const uint64_t hash = meaning_hash(&said);
+    const meaning_item first = said.items[0];
+    said.items[0] = said.items[said.count - 1];
+    said.items[said.count - 1] = first;
+    assert_int_equal(meaning_hash(&said), hash);
+    char *const value = said.items[0].value;
+    said.items[0].value = said.items[1].value;
+    said.items[1].value = value;
+    assert_int_not_equal(meaning_hash(&said), hash);
+    meaning_free(&said);
+    study_destroy(s);
+    study_destroy(other);
+}
+
+/* The order of solids decides between equal priorities, and a solid all at its defaults is there. */
+static void objects_count(void **state)
+{
+    const fixture *f = *state;
+    static const char *const scenes[] = {
+        "solids:\n  a: {shape: sphere, radius: 2}\n  b: {shape: sphere, radius: 2}\n",
+        "solids:\n  b: {shape: sphere, radius: 2}\n  a: {shape: sphere, radius: 2}\n",
+        "solids:\n  a: {shape: sphere, radius: 2}\n  b: {shape: cylinder, radius: 2}\n",
+        "solids:\n  a: {shape: sphere, radius: 2}\n",
+        "lights: {l: {}}\nsolids:\n  a: {shape: sphere, radius: 2}\n",
+        "materials: {m: {}}\nsolids:\n  a: {shape: sphere, radius: 2, material: m}\n",
+        "camera: {target: [0, 1, 0]}\nsolids:\n  a: {shape: sphere, radius: 2}\n",
+        "camera: {yaw_deg: 0}\nsolids:\n  a: {shape: sphere, radius: 2}\n",
+    };
+    enum { COUNT = sizeof scenes / sizeof *scenes };
+    uint64_t hash[COUNT];
+    for (size_t i = 0; i < COUNT; i++) {
+        fixture_write(f, "scene.yaml", scenes[i]);
+        study *s = fixture_study(f, "study: x\nscene: scene.yaml\n");
+        hash[i] = s->definition_hash;
+        for (size_t k = 0; k < i; k++)
+            if (hash[k] == hash[i] && !(k == 3 && i == 6)) /* a target is what a camera has by default */
+                fail_msg("scenes %zu and %zu have one definition", k, i);
+        study_destroy(s);
+    }
+}
+
+/* --- other columns --- */
+
+static size_t split(char *line, char **fields)
+{
+    size_t count = csv_split(line, fields);
+    assert_true(count > 0 && count < 200);
+    return count;
+}
+
+/* The file's columns in the opposite order, `without` taken out, `with` put in front. */
+static void rearrange(const fixture *f, const char *name, const char *without, const char *with)
+{
+    char *text = fixture_text(f, name), *rest = text;
+    csv_line out = {0};
+    size_t left_out = SIZE_MAX;
+    for (char *line; (line = strsep(&rest, "\n")) && *line;) {
+        char *fields[200];
+        const bool header = !out.text;
+        const size_t count = split(line, fields);
+        for (size_t i = 0; header && without && i < count; i++)
+            left_out = strcmp(fields[i], without) == 0 ? i : left_out;
+        if (with)
+            csv_text(&out, header ? with : "a, \"b\"");
+        for (size_t i = count; i > 0; i--)
+            if (i - 1 != left_out)
+                csv_text(&out, fields[i - 1]);
+        csv_end(&out);
+    }
+    assert_true(!without || left_out != SIZE_MAX);
+    fixture_write(f, name, out.text);
+    csv_line_free(&out);
+    free(text);
+}
+
+/* Summaries under a permuted header, with one column less and one more; a missing one is not known. */
+static void columns_are_known_by_name(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    char *before = summary_of(s, f->results);
+    rearrange(f, rows_name, NULL, NULL);
+    rearrange(f, compare_name, NULL, "of another version");
+    rearrange(f, workers_name, "pu", NULL);
+    char *after = summary_of(s, f->results);
+    assert_string_equal(after, before);
+    free(after);
+    rearrange(f, rows_name, "motion_steps", "of another version");
+    rearrange(f, compare_name, "ssim", NULL);
+    after = summary_of(s, f->results);
+    const size_t columns = fixture_count(before, "\t");
+    assert_int_equal(fixture_count(after, "\t"), columns);
+    assert_int_equal(fixture_count(after, "\tNA"), fixture_count(before, "\tNA") + 4); /* two columns of two cells */
+    free(after);
+    free(before);
+    study_destroy(s);
+}
+
+static csv *table_of(const fixture *f, const char *name)
+{
+    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    diagnostic why = {0};
+    csv *table = NULL;
+    fixture_path(f, name, path);
+    if (csv_read(path, &table, &why) != STATUS_OK)
+        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+    return table;
+}
+
+static void expect(const csv *table, size_t row, const char *column, const char *value)
+{
+    assert_true(csv_column(table, column) >= 0);
+    assert_string_equal(csv_field(table, row, csv_column(table, column)), value);
+}
+
+/* A study goes on in a file of other columns: none is lost, none is ragged, and old rows keep what they said. */
+static void a_study_goes_on_under_other_columns(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    study_destroy(s);
+    rearrange(f, rows_name, "imbalance", "of another version");
+    rearrange(f, workers_name, "waiting_s", NULL);
+    char *before = fixture_text(f, rows_name);
+    s = fixture_study(f, longer_text);
+    assert_int_equal(fixture_run(f, s), 4);
+    csv *rows = table_of(f, rows_name), *workers = table_of(f, workers_name);
+    assert_int_equal(rows->row_count, 8);
+    assert_int_equal(workers->row_count, 8);
+    char *line = before + strcspn(before, "\n") + 1;
+    for (size_t i = 0; i < 8; i++) {
+        expect(rows, i, "of another version", i < 4 ? "a, \"b\"" : "NA");
+        expect(rows, i, "study", "test");
+        assert_int_equal(strcmp(csv_field(rows, i, csv_column(rows, "imbalance")), "NA") == 0, i < 4);
+        assert_int_equal(strcmp(csv_field(workers, i, csv_column(workers, "waiting_s")), "NA") == 0, i < 4);
+        assert_true(csv_field_real(rows, i, csv_column(rows, "rays_camera")) == 24 * 18);
+        assert_true(csv_field_real(rows, i, csv_column(rows, "order")) == (double)i);
+        if (i < 4) /* old rows are there as they were, and only went on */
+            assert_memory_equal(rows->raw + rows->start[i], line, strcspn(line, "\n"));
+        line += i < 4 ? strcspn(line, "\n") + 1 : 0;
+    }
+    size_t ran;
+    study_options options = {.results = f->results};
+    assert_int_equal(study_run(s, &options, &ran, NULL), STATUS_OK);
+    assert_int_equal(ran, 0);
+    csv_destroy(rows);
+    csv_destroy(workers);
+    free(before);
+    study_destroy(s);
+}
+
+/* Who adds no row leaves the file as it is. */
+static void a_complete_study_is_left_alone(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    rearrange(f, rows_name, "imbalance", NULL);
+    char *before = fixture_text(f, rows_name);
+    assert_int_equal(fixture_run(f, s), 0);
+    char *after = fixture_text(f, rows_name);
+    assert_string_equal(after, before);
+    free(before);
+    free(after);
+    study_destroy(s);
+}
+
+/* Shards of different versions, the rows of one of them in two files with different columns. */
+static void shards_of_other_columns_are_joined(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    for (long shard = 0; shard < 2; shard++) {
+        study_options options = {.results = f->results, .shard = shard, .shards = 2};
+        assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_OK);
+    }
+    rearrange(f, "results/test/rows.shard-1-of-2.csv", "imbalance", "of another version");
+    size_t rows = 0;
+    for (int again = 0; again < 2; again++) {
+        assert_int_equal(study_merge(s, f->results, &rows, NULL), STATUS_OK);
+        assert_int_equal(rows, 4);
+        csv *joined = table_of(f, rows_name);
+        assert_int_equal(joined->row_count, 4);
+        for (size_t i = 0; i < 4; i++) {
+            const bool other = strcmp(csv_field(joined, i, csv_column(joined, "imbalance")), "NA") == 0;
+            expect(joined, i, "of another version", other ? "a, \"b\"" : "NA");
+            expect(joined, i, "study", "test");
+        }
+        csv_destroy(joined);
+    }
+    study_destroy(s);
+}
+
+static diagnostic refusal_of(const fixture *f, const study *s)
+{
+    diagnostic why = {0};
+    study_options options = {.results = f->results};
+    size_t ran;
+    study_progress progress;
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(study_run(s, &options, &ran, &why), STATUS_BAD_INPUT);
+    assert_int_equal(ran, 0);
+    return why;
+}
+
+static void columns_that_a_row_needs_are_named(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    rearrange(f, rows_name, "repetition", NULL);
+    diagnostic why = refusal_of(f, s);
+    assert_non_null(strstr(why.what, "no column repetition"));
+    assert_non_null(strstr(why.remedy, "--results"));
+    assert_int_equal(why.line, 1);
+    study_destroy(s);
+}
+
+/* --- other definitions --- */
+
+/* Puts `with` in the place of every `what`, which must be as long. */
+static void replace(const fixture *f, const char *name, const char *what, const char *with)
+{
+    char *text = fixture_text(f, name);
+    assert_true(strstr(text, what) != NULL && strlen(what) == strlen(with));
+    for (char *at = text; (at = strstr(at, what)); at += strlen(with))
+        memcpy(at, with, strlen(with));
+    fixture_write(f, name, text);
+    free(text);
+}
+
+static const char unknown[] = "0123456789abcdef";
+
+/* Makes a run that of a program with other definitions: in all rows, and in the manifest. */
+static void make_old(const fixture *f, const study *s)
+{
+    char own[17], compared[17], unknown_compared[17];
+    snprintf(own, sizeof own, "%016" PRIx64, s->definition_hash);
+    replace(f, rows_name, own, unknown);
+    replace(f, workers_name, own, unknown);
+    replace(f, manifest_name, own, unknown);
+    /* A comparison's is made of the definition and of the reference. */
+    const int64_t words[] = {(int64_t)UINT64_C(0x0123456789abcdef)};
+    uint64_t hash = hash_words(HASH_START, words, 1);
+    grid_hash_point(&hash, &s->reference);
+    snprintf(unknown_compared, sizeof unknown_compared, "%016" PRIx64, hash_finish(hash));
+    snprintf(compared, sizeof compared, "%016" PRIx64, s->compare_hash);
+    replace(f, compare_name, compared, unknown_compared);
+}
+
+/* The manifest's texts mean the same: the rows are read, and the study goes on. */
+static void recorded_texts_that_mean_the_same_are_believed(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    char *before = summary_of(s, f->results);
+    make_old(f, s);
+    study_destroy(s);
+    /* Said in other words since. */
+    char *scene_text = malloc(sizeof fixture_scene + 100);
+    sprintf(scene_text, "# the same\n%s", fixture_scene);
+    fixture_write(f, "scene.yaml", scene_text);
+    free(scene_text);
+    s = fixture_study(f, study_text);
+    char *after = summary_of(s, f->results);
+    assert_string_equal(after, before);
+    study_destroy(s);
+    s = fixture_study(f, longer_text);
+    assert_int_equal(fixture_run(f, s), 4);
+    csv *rows = table_of(f, rows_name), *compared = table_of(f, compare_name);
+    assert_int_equal(rows->row_count, 8);
+    assert_int_equal(compared->row_count, 2); /* nothing was compared anew */
+    csv_destroy(rows);
+    csv_destroy(compared);
+    free(before);
+    free(after);
+    study_destroy(s);
+}
+
+static void expect_refusal(const fixture *f, const study *s, const char *word)
+{
+    diagnostic why = refusal_of(f, s);
+    if (!strstr(why.what, "another definition") || !strstr(why.what, word))
+        fail_msg("'%s' does not speak of '%s'", why.what, word);
+    assert_non_null(strstr(why.remedy, "--results"));
+    assert_non_null(strstr(why.file, "rows.csv"));
+}
+
+static void what_cannot_be_verified_is_refused(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    make_old(f, s);
+    char *manifest = fixture_text(f, manifest_name);
+    replace(f, manifest_name, "radius: 1, ", "radius: 2, ");
+    expect_refusal(f, s, "ball.radius is 2 there, and not set here");
+    fixture_write(f, manifest_name, manifest);
+    replace(f, manifest_name, "[0, 2]", "[0, 1]");
+    expect_refusal(f, s, "render.depth of point 1 on axis 0 is 1 there, and 2 here");
+    fixture_write(f, manifest_name, manifest);
+    replace(f, manifest_name, "tile: 8", "tilt: 8");
+    expect_refusal(f, s, "cannot be read");
+    fixture_write(f, manifest_name, manifest);
+    replace(f, manifest_name, unknown, "0123456789abcdee");
+    expect_refusal(f, s, "another than the manifest.json beside them");
+    fixture_write(f, manifest_name, "{\"study\": {}}");
+    expect_refusal(f, s, "does not say");
+    fixture_write(f, manifest_name, "no json");
+    expect_refusal(f, s, "does not say");
+    char path[400];
+    fixture_path(f, manifest_name, path);
+    assert_int_equal(unlink(path), 0);
+    expect_refusal(f, s, "no manifest.json");
+    free(manifest);
+    study_destroy(s);
+}
+
+/* Comparisons against another reference are refused, with the rows' own definition accepted. */
+static void comparisons_know_their_reference(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    make_old(f, s);
+    study_destroy(s);
+    s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 2]}]\nreference: {render.depth: 3}\nrepetitions: 2\n");
+    diagnostic why = {0};
+    FILE *out = fopen("/dev/null", "w");
+    assert_int_equal(study_summary(s, f->results, out, &why), STATUS_BAD_INPUT);
+    fclose(out);
+    assert_non_null(strstr(why.file, "compare.csv"));
+    assert_non_null(strstr(why.remedy, "compared anew"));
+    study_destroy(s);
+}
+
+/* Of what files held only their fingerprint tells, which the manifest must have. */
+static void contents_of_files_are_verified(void **state)
+{
+    const fixture *f = *state;
+    static const char first[] = "PF\n1 1\n1.0\n000000000000", other[] = "PF\n1 1\n1.0\n0000AAAA1111";
+    char *scene_text = malloc(sizeof fixture_scene + 200);
+    sprintf(scene_text, "%stextures: {spots: {file: spots.pfm}}\n", fixture_scene);
+    fixture_write(f, "scene.yaml", scene_text);
+    fixture_write(f, "spots.pfm", first);
+    study *s = fixture_study(f, study_text);
+    fixture_run(f, s);
+    make_old(f, s);
+    char *text = summary_of(s, f->results);
+    free(text);
+    study_destroy(s);
+    fixture_write(f, "spots.pfm", other);
+    s = fixture_study(f, study_text);
+    expect_refusal(f, s, "holds something else now");
+    study_destroy(s);
+    fixture_write(f, "spots.pfm", first);
+    s = fixture_study(f, study_text);
+    replace(f, manifest_name, "\"files\"", "\"filed\"");
+    expect_refusal(f, s, "does not say what the scene's meshes");
+    study_destroy(s);
+    free(scene_text);
+}
+
+#define CASE(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_reference_run_is_read),
+        cmocka_unit_test(rows_of_the_first_definition_are_read),
+        cmocka_unit_test(the_first_definition_tells_differences),
+        cmocka_unit_test(the_first_definition_ends_with_its_parameters),
+        cmocka_unit_test(defaults_enter_no_definition),
+        CASE(order_and_defaults_are_the_same_meaning),
+        CASE(objects_count),
+        CASE(columns_are_known_by_name),
+        CASE(a_study_goes_on_under_other_columns),
+        CASE(a_complete_study_is_left_alone),
+        CASE(shards_of_other_columns_are_joined),
+        CASE(columns_that_a_row_needs_are_named),
+        CASE(recorded_texts_that_mean_the_same_are_believed),
+        CASE(what_cannot_be_verified_is_refused),
+        CASE(comparisons_know_their_reference),
+        CASE(contents_of_files_are_verified),
+    };
+    return cmocka_run_group_tests_name("study_old_rows", tests, NULL, NULL);
+}
