@@ -1,5 +1,6 @@
 /* Why a material's parameter does nothing on the solids that have it. */
 #include "scene/inert_private.h"
+#include "scene/cover.h"
 #include "scene/medium.h"
 
 #include <string.h>
@@ -92,12 +93,14 @@ static bool shininess_rule(const inert_case *c)
            specular_rule(c);
 }
 
-/* Weights are not negative: a film that is the same with all of the light mirrored shows nothing of it with less. */
+/* Weights are not negative: a film that is the same with all of the light mirrored shows nothing of it with less. A coating takes from
+ * what passes as it adds to what is reflected; that both change nothing at one half and at one leaves black on both ways. */
 static bool mirrors_black(const inert_case *c)
 {
     const background *sky = &c->s->background;
-    const bool dark = sky->kind == BACKGROUND_UNIFORM && is_black(sky->color);
-    return dark && c->m->transparency == 0.0 && c->m->reflectivity < 1.0 && inert_same(c, "%s.reflectivity=1", c->name) &&
+    const bool dark = sky->kind == BACKGROUND_UNIFORM && is_black(sky->color), clear = !material_is_opaque(c->m);
+    return dark && c->m->reflectivity < 1.0 && !(clear && shining_lights(c->s) > 0) && inert_same(c, "%s.reflectivity=1", c->name) &&
+           (!clear || inert_same(c, "%s.reflectivity=0.5", c->name)) &&
            inert_say(c, "mirrors-black", "set background.color=0.5,0.5,0.5", "all that it could mirror in this image is black");
 }
 
@@ -113,20 +116,13 @@ static bool say_unseen(const inert_case *c)
                      c->owner->name);
 }
 
-/* The coating of a clear solid, whose faces are those of solids that win over it. Two probes, because a coating makes a medium one of its own. */
-static bool unseen_coating(const inert_case *c)
-{
-    return c->frame && c->frame->hits[c->owner - c->s->solids] == 0 && shining_lights(c->s) == 0 && inert_same(c, "%s.reflectivity=0.5", c->name) &&
-           inert_same(c, "%s.reflectivity=1", c->name) && say_unseen(c);
-}
-
 static bool reflectivity_rule(const inert_case *c)
 {
     const scene *s = c->s;
     /* The coating of a clear surface keeps light from shadow rays, too. */
     const bool coats = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
     if (coats) {
-        return unseen_coating(c);
+        return mirrors_black(c);
     }
     if (!follows_rays(s)) {
         const bool whitted = s->render.integrator == INTEGRATOR_WHITTED;
@@ -216,6 +212,14 @@ static bool is_of_body(const inert_case *c)
     return false;
 }
 
+/* Wholly inside a solid that wins there: nothing of it is met. */
+static bool covered(const inert_case *c)
+{
+    const solid *cover = scene_cover(c->s, c->owner);
+    return cover && inert_say(c, "covered", inert_set("%s.priority=%lld", c->owner->name, (long long)cover->priority + 1).text,
+                              "%s lies wholly inside %s, which wins there", c->owner->name, cover->name);
+}
+
 bool inert_surface(const inert_case *c)
 {
     static const inert_row rows[] = {
@@ -227,7 +231,7 @@ bool inert_surface(const inert_case *c)
     if (may_look_by_face(c->s, c->owner) && !is_of_body(c)) {
         return false;
     }
-    return inert_by_name(rows, c) || unseen(c);
+    return inert_by_name(rows, c) || covered(c) || unseen(c);
 }
 
 /* A face of a mesh file may name the material. */

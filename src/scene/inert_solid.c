@@ -1,6 +1,7 @@
 /* Why a solid's parameter does nothing in a scene. */
 #include "scene/inert_private.h"
-#include "geometry/apart.h"
+#include "geometry/shared_faces.h"
+#include "scene/cover.h"
 
 #include <string.h>
 
@@ -20,25 +21,23 @@ static bool is_opaque_pair(const solid *a, const solid *b)
 
 /* Neither the eye nor light sees what of two solids is inside both, where both are opaque: from outside they are their union, and each
  * point of that has one owner, unless faces of both lie in one another. An eye inside would see it. */
-static bool meets_unseen(const scene *s, const solid_shape *a, const solid_shape *b)
+static bool meets_unseen(const scene *s, const solid *a, const solid *b)
 {
-    const solid_shape eye = {.kind = SHAPE_SPHERE, .position = s->camera.position};
-    const bool outside = solid_shapes_apart(a, &eye) && solid_shapes_apart(b, &eye);
-    return outside && !solid_shapes_may_share_faces(a, b);
+    const solid eye = {.shape = {.kind = SHAPE_SPHERE, .position = s->camera.position}};
+    const solid_shape of_a = shape_of(s, a), of_b = shape_of(s, b);
+    return scene_apart(s, a, &eye) && scene_apart(s, b, &eye) && !solid_shapes_may_share_faces(&of_a, &of_b);
 }
 
 static bool priority_rule(const inert_case *c)
 {
     const scene *s = c->s;
-    const solid_shape own = shape_of(s, c->owner);
     const solid *hidden = NULL;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        const solid_shape shape = shape_of(s, one);
-        if (one == c->owner || !one->visible || solid_shapes_apart(&own, &shape)) {
+        if (one == c->owner || !one->visible || scene_apart(s, c->owner, one)) {
             continue;
         }
-        if (!is_opaque_pair(c->owner, one) || !meets_unseen(s, &own, &shape)) {
+        if (!is_opaque_pair(c->owner, one) || !meets_unseen(s, c->owner, one)) {
             return false;
         }
         hidden = one;

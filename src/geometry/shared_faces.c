@@ -1,5 +1,4 @@
-/* Faces of two solids in one plane. */
-#include "geometry/apart.h"
+#include "geometry/shared_faces.h"
 
 #include <math.h>
 
