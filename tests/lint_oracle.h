@@ -1,6 +1,7 @@
-/* Is a note of the linter true? Found without the linter's lines, boxes and intervals: solids contain points by their definitions in quadruple
- * precision (solid_reference.h), meshes by their solid angle (van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983), and what lies
- * along random lines is asked at the middle of each piece between two crossings. Ownership: the scene is borrowed. */
+/* Is a note of the linter true? Found without the linter's lines, boxes and intervals: solids contain points by
+ * their definitions in quadruple precision (solid_reference.h), meshes by their solid angle (van Oosterom and
+ * Strackee, IEEE Trans. Biomed. Eng. 30, 1983), and what lies along random lines is asked at the middle of each
+ * piece between two crossings. Ownership: the scene is borrowed. */
 #ifndef CUVETTE_TESTS_LINT_ORACLE_H
 #define CUVETTE_TESTS_LINT_ORACLE_H
 
@@ -10,7 +11,10 @@
 
 enum { ORACLE_CROSSINGS_MAX = 512, ORACLE_LINES = 2000 };
 
-typedef struct oracle { const scene *s; uint64_t seed; } oracle;
+typedef struct oracle {
+    const scene *s;
+    uint64_t seed;
+} oracle;
 
 static inline const mesh *oracle_mesh(const oracle *o, const solid *x)
 {
@@ -51,7 +55,8 @@ static inline bool mesh_holds(const oracle *o, const solid *x, quad3 point)
     for (int copy = 0; m->closed && copy < copy_count(&x->shape); copy++) {
         double turns = 0.0;
         for (size_t t = 0; t < m->triangle_count; t++)
-            turns += solid_angle(quad3_sub(mesh_corner(&x->shape, m, t, 0, copy), p), quad3_sub(mesh_corner(&x->shape, m, t, 1, copy), p),
+            turns += solid_angle(quad3_sub(mesh_corner(&x->shape, m, t, 0, copy), p),
+                                 quad3_sub(mesh_corner(&x->shape, m, t, 1, copy), p),
                                  quad3_sub(mesh_corner(&x->shape, m, t, 2, copy), p));
         if (turns > 0.5)
             return true;
@@ -78,7 +83,10 @@ static inline const solid *oracle_winner(const oracle *o, quad3 point)
 
 /* --- along lines --- */
 
-typedef struct crossing_list { int count; quad t[ORACLE_CROSSINGS_MAX]; } crossing_list;
+typedef struct crossing_list {
+    int count;
+    quad t[ORACLE_CROSSINGS_MAX];
+} crossing_list;
 
 static inline void add_mesh_crossings(const oracle *o, const solid *x, const reference_line *world, crossing_list *out)
 {
@@ -87,14 +95,16 @@ static inline void add_mesh_crossings(const oracle *o, const solid *x, const ref
     for (int copy = 0; copy < copy_count(&x->shape); copy++)
         for (size_t i = 0; i < m->triangle_count; i++) {
             const quad3 a = mesh_corner(&x->shape, m, i, 0, copy);
-            const quad3 u = quad3_sub(mesh_corner(&x->shape, m, i, 1, copy), a), v = quad3_sub(mesh_corner(&x->shape, m, i, 2, copy), a);
+            const quad3 u = quad3_sub(mesh_corner(&x->shape, m, i, 1, copy), a),
+                        v = quad3_sub(mesh_corner(&x->shape, m, i, 2, copy), a);
             const quad3 n = quad3_cross(u, v);
             const quad down = quad3_dot(n, l.d);
             if (down == 0 || out->count == ORACLE_CROSSINGS_MAX)
                 continue;
             const quad t = quad3_dot(n, quad3_sub(a, l.o)) / down;
             const quad3 at = quad3_sub(reference_at(&l, t), a);
-            const quad n2 = quad3_dot(n, n), alpha = quad3_dot(quad3_cross(at, v), n) / n2, beta = quad3_dot(quad3_cross(u, at), n) / n2;
+            const quad n2 = quad3_dot(n, n), alpha = quad3_dot(quad3_cross(at, v), n) / n2,
+                       beta = quad3_dot(quad3_cross(u, at), n) / n2;
             if (alpha >= 0 && beta >= 0 && alpha + beta <= 1)
                 out->t[out->count++] = t;
         }
@@ -119,7 +129,8 @@ static inline vec3 oracle_corner(oracle *o, const solid *x)
 {
     const solid_shape *s = &x->shape;
     const mesh *m = oracle_mesh(o, x);
-    const double in = 1.0 - 0.02 * random_real(&o->seed, 0.0, 1.0), turn = random_real(&o->seed, 0.0, 360.0) * M_PI / 180.0;
+    const double in = 1.0 - 0.02 * random_real(&o->seed, 0.0, 1.0),
+                 turn = random_real(&o->seed, 0.0, 360.0) * M_PI / 180.0;
     const vec3 half = vec3_scale(s->size, 0.5 * in);
     vec3 p = {0.0, 0.0, 0.0};
     if (m) {
@@ -137,7 +148,8 @@ static inline vec3 oracle_corner(oracle *o, const solid *x)
     return vec3_add(s->position, mat3_apply(rotation_from_deg(s->rotation_deg), p));
 }
 
-/* A line through a random point of the smaller one's ball or near a corner of one, along an axis of the world's or of one of the two. */
+/* A line through a random point of the smaller one's ball or near a corner of one, along an axis of the world's or
+ * of one of the two. */
 static inline reference_line oracle_line(oracle *o, const solid *a, const solid *b)
 {
     const ball p = ball_of(a), q = ball_of(b), small = p.radius < q.radius ? p : q;

@@ -38,9 +38,11 @@ static void what_is_forgotten_is_hinted_at(void **state)
     expect_hints("{}", none);
     expect_hints("solids: {ball: {shape: sphere, visible: no}}", none);
     expect_hints("solids: {ball: {shape: sphere, diffuse: 1}, egg: {shape: sphere, specular: 1, radius: 2}}",
-                 "lights: no lights: opaque surfaces are dark but for their ambient light; add lights:\n");
+                 "lights: no lights: opaque surfaces are dark but for their ambient and emitted light; add lights:\n");
     expect_hints(LIT "solids: {ball: {shape: sphere}}",
                  "ball.diffuse: ball is neither transparent, nor diffuse, nor lit: it is black; set its diffuse\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, emission: 0.5}}", "");
+    expect_hints("render: {integrator: path}\nsolids: {ball: {shape: sphere, diffuse: 1}, egg: {shape: sphere, emission: 1, radius: 2}}", "");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1}}",
                  "ball.ior: ball is transparent with the index of what is around it: it is invisible; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, specular: 0.5}}",
@@ -87,8 +89,10 @@ static void what_has_no_effect_is_hinted_at(void **state)
 static void what_a_depth_buffer_cannot_show_is_hinted_at(void **state)
 {
     (void)state;
-    expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, specular: 1}}",
-                 "ball.diffuse: ball is transparent, and the depth buffer draws its surface: black but for highlights; set its diffuse\n");
+    expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, specular: 1}}", "");
+    expect_hints(LIT "render: {integrator: zbuffer, lighting: phong}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, specular: 1}}",
+                 "render.lighting: ball is transparent, and without reflected and refracted light its surface is black but for highlights; set "
+                 "render.lighting to whitted\n");
     expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, diffuse: 0.2}}", "");
     expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
 }

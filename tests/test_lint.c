@@ -1,6 +1,7 @@
-/* The linter: each note shows where its mistake is and not in the nearest scene that is right; shipped scenes have no note that is not true; on
- * random legal scenes every note is true by an oracle of its own (lint_oracle.h). LINT_SCENES, LINT_SEED and LINT_FIRST: how many, and which. Run
- * from the repository root. tests/notes.sh has ten scenes that a student would write. */
+/* The linter: each note shows where its mistake is and not in the nearest scene that is right; shipped scenes have
+ * no note that is not true; on random legal scenes every note is true by an oracle of its own (lint_oracle.h).
+ * LINT_SCENES, LINT_SEED and LINT_FIRST: how many, and which. Run from the repository root. tests/notes.sh has ten
+ * scenes that a student would write. */
 #include <limits.h>
 #include <math.h>
 #include <setjmp.h>
@@ -16,7 +17,10 @@
 
 enum { NOTES_MAX = 64 };
 
-typedef struct note_list { int count; scene_note note[NOTES_MAX]; } note_list;
+typedef struct note_list {
+    int count;
+    scene_note note[NOTES_MAX];
+} note_list;
 
 static void keep_note(void *context, const scene_note *note)
 {
@@ -43,12 +47,21 @@ static note_list lint_text(const char *text)
     return all;
 }
 
-#define ROOM                                                                                                                        \
-    "render: {width: 64, height: 48, depth: 12}\nbackground: {color: [0.5, 0.7, 0.9]}\nlights: {lamp: {position: [4, 7, -5]}}\n"            \
-    "camera: {position: [0, 1, -8], target: [0, 1, 0]}\nmeshes: {block: {generate: box, size: [1, 1, 1]}, ball: {generate: icosphere, level: 3}}\n" \
+#define STAGE                                                                            \
+    "render: {width: 64, height: 48, depth: 12}\nbackground: {color: [0.5, 0.7, 0.9]}\n" \
+    "lights: {lamp: {position: [4, 7, -5]}}\n"                                           \
     "materials: {glass: {transparency: 1, ior: 1.5}, water: {transparency: 1, ior: 1.33}, clay: {diffuse: 0.8}}\n"
 
-typedef struct lint_case { const char *scene, *place, *words; /* place NULL: no note */ } lint_case;
+#define ROOM                                                    \
+    STAGE "camera: {position: [0, 1, -8], target: [0, 1, 0]}\n" \
+          "meshes: {block: {generate: box, size: [1, 1, 1]}, ball: {generate: icosphere, level: 3}}\n"
+
+/* For cameras of their own. */
+#define HALL STAGE "meshes: {block: {generate: box, size: [2, 2, 2]}}\n"
+
+typedef struct lint_case {
+    const char *scene, *place, *words; /* place NULL: no note */
+} lint_case;
 
 static void try_cases(const lint_case *cases, size_t count)
 {
@@ -56,11 +69,13 @@ static void try_cases(const lint_case *cases, size_t count)
         char text[2000];
         snprintf(text, sizeof text, ROOM "%s\n", cases[i].scene);
         const note_list all = lint_text(text);
-        const bool right = cases[i].place ? all.count == 1 && strcmp(all.note[0].place, cases[i].place) == 0 && strstr(all.note[0].text, cases[i].words)
+        const bool right = cases[i].place ? all.count == 1 && strcmp(all.note[0].place, cases[i].place) == 0 &&
+                                                strstr(all.note[0].text, cases[i].words)
                                           : all.count == 0;
         if (!right)
-            fail_msg("%s\n%d notes, wanted: %s\n%s: %s", cases[i].scene, all.count, cases[i].place ? cases[i].place : "none",
-                     all.count ? all.note[0].place : "", all.count ? all.note[0].text : "");
+            fail_msg("%s\n%d notes, wanted: %s\n%s: %s", cases[i].scene, all.count,
+                     cases[i].place ? cases[i].place : "none", all.count ? all.note[0].place : "",
+                     all.count ? all.note[0].text : "");
     }
 }
 #define TRY(cases) try_cases(cases, sizeof cases / sizeof *cases)
@@ -70,22 +85,43 @@ static void overlaps_of_equal_priority(void **state)
     (void)state;
     static const char note[] = "overlap with equal priority and different media";
     static const lint_case cases[] = {
-        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [0.9, 0, 0]}}", "b.priority", note},
-        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [0.9, 0, 0], priority: 1}}", NULL, ""},
-        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1, 0, 0]}}", NULL, ""}, /* they touch */
-        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: glass, position: [0.9, 0, 0]}}", NULL, ""}, /* one medium */
-        {"solids: {a: {shape: box, material: clay}, b: {shape: box, material: clay, position: [0.9, 0, 0], color: [1, 0, 0]}}", NULL, ""},
-        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: clay, position: [0.9, 0, 0]}}", "b.priority", note},
-        {"solids: {a: {shape: sphere, material: glass}, b: {shape: cylinder, material: water, radius: 0.3, height: 3, rotation: [20, 0, 40]}}", "b.priority", note},
-        {"solids: {a: {shape: sphere, material: glass}, b: {shape: sphere, material: water, position: [0, 2, 0]}}", NULL, ""}, /* they touch */
-        {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: sphere, material: water, position: [1.2, 0, 0]}}", "b.priority", note},
-        {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: sphere, material: water, position: [1.5, 0, 0]}}", NULL, ""},
-        {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: mesh, mesh: ball, material: water, position: [1.2, 0.3, 0]}}", "b.priority", note},
+        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [0.9, 0, 0]}}",
+         "b.priority", note},
+        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [0.9, 0, 0], "
+         "priority: 1}}",
+         NULL, ""},
+        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1, 0, 0]}}", NULL,
+         ""}, /* they touch */
+        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: glass, position: [0.9, 0, 0]}}", NULL,
+         ""}, /* one medium */
+        {"solids: {a: {shape: box, material: clay}, b: {shape: box, material: clay, position: [0.9, 0, 0], color: "
+         "[1, 0, 0]}}",
+         NULL, ""},
+        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: clay, position: [0.9, 0, 0]}}",
+         "b.priority", note},
+        {"solids: {a: {shape: sphere, material: glass}, b: {shape: cylinder, material: water, radius: 0.3, height: "
+         "3, rotation: [20, 0, 40]}}",
+         "b.priority", note},
+        {"solids: {a: {shape: sphere, material: glass}, b: {shape: sphere, material: water, position: [0, 2, 0]}}",
+         NULL, ""}, /* they touch */
+        {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: sphere, material: water, position: "
+         "[1.2, 0, 0]}}",
+         "b.priority", note},
+        {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: sphere, material: water, position: "
+         "[1.5, 0, 0]}}",
+         NULL, ""},
+        {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: mesh, mesh: ball, material: water, "
+         "position: [1.2, 0.3, 0]}}",
+         "b.priority", note},
         {"solids: {a: {shape: plane, material: water}, b: {shape: sphere, material: glass}}", "b.priority", note},
-        {"solids: {a: {shape: plane, material: clay}, b: {shape: sphere, material: glass, position: [0, 1, 0]}}", NULL, ""},
-        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: glass, position: [0.9, 0, 0], absorb_per_m: [1, 0, 0]}}", "b.priority", note},
+        {"solids: {a: {shape: plane, material: clay}, b: {shape: sphere, material: glass, position: [0, 1, 0]}}", NULL,
+         ""},
+        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: glass, position: [0.9, 0, 0], "
+         "absorb_per_m: [1, 0, 0]}}",
+         "b.priority", note},
         {"solids: {a: {shape: cup, material: glass, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1}, "
-         "b: {shape: cylinder, material: water, radius: 0.9, height: 1.5, position: [0, 0.1, 0]}}", NULL, ""}, /* in contact all around */
+         "b: {shape: cylinder, material: water, radius: 0.9, height: 1.5, position: [0, 0.1, 0]}}",
+         NULL, ""}, /* in contact all around */
     };
     TRY(cases);
 }
@@ -95,24 +131,41 @@ static void narrow_gaps(void **state)
     (void)state;
     static const char note[] = "is a gap of about";
     static const lint_case cases[] = {
-        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1.0001, 0, 0]}}", "b", note},
-        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1.0011, 0, 0]}}", NULL, ""}, /* wide enough */
-        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1, 0, 0]}}", NULL, ""},      /* in contact */
-        {"solids: {a: {shape: box, material: clay}, b: {shape: box, material: clay, position: [1.0001, 0, 0]}}", NULL, ""},   /* nobody sees it */
-        {"solids: {a: {shape: plane, material: clay}, b: {shape: box, material: glass, position: [0, 0.5001, 0]}}", "b", note},
-        {"solids: {a: {shape: plane, material: clay}, b: {shape: sphere, material: glass, position: [0, 1.0001, 0]}}", NULL, ""}, /* in one place alone */
-        {"solids: {a: {shape: plane, material: clay}, b: {shape: cylinder, material: glass, position: [1, 1.0001, 0], rotation: [0, 0, 90]}}", NULL, ""},
+        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1.0001, 0, 0]}}", "b",
+         note},
+        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1.0011, 0, 0]}}", NULL,
+         ""}, /* wide enough */
+        {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1, 0, 0]}}", NULL,
+         ""}, /* in contact */
+        {"solids: {a: {shape: box, material: clay}, b: {shape: box, material: clay, position: [1.0001, 0, 0]}}", NULL,
+         ""}, /* nobody sees it */
+        {"solids: {a: {shape: plane, material: clay}, b: {shape: box, material: glass, position: [0, 0.5001, 0]}}", "b",
+         note},
+        {"solids: {a: {shape: plane, material: clay}, b: {shape: sphere, material: glass, position: [0, 1.0001, 0]}}",
+         NULL, ""}, /* in one place alone */
+        {"solids: {a: {shape: plane, material: clay}, b: {shape: cylinder, material: glass, position: [1, 1.0001, "
+         "0], rotation: [0, 0, 90]}}",
+         NULL, ""},
         {"solids: {a: {shape: cup, material: glass, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1}, "
-         "b: {shape: cylinder, material: water, radius: 0.9, height: 1.5, position: [0, 0.10005, 0]}}", "b", note},
+         "b: {shape: cylinder, material: water, radius: 0.9, height: 1.5, position: [0, 0.10005, 0]}}",
+         "b", note},
         {"solids: {a: {shape: cup, material: glass, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1}, "
-         "b: {shape: cylinder, material: water, radius: 0.89995, height: 1.5, position: [0, 0.1, 0]}}", "b", note},
+         "b: {shape: cylinder, material: water, radius: 0.89995, height: 1.5, position: [0, 0.1, 0]}}",
+         "b", note},
         {"solids: {a: {shape: cup, material: glass, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1}, "
-         "b: {shape: cylinder, material: water, radius: 0.8995, height: 1.5, position: [0, 0.1005, 0]}}", NULL, ""},
-        {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: box, material: water, position: [0, 1.0001, 0]}}", "b", note},
-        {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: box, material: water, position: [0, 1, 0]}}", NULL, ""},
+         "b: {shape: cylinder, material: water, radius: 0.8995, height: 1.5, position: [0, 0.1005, 0]}}",
+         NULL, ""},
+        {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: box, material: water, position: [0, "
+         "1.0001, 0]}}",
+         "b", note},
+        {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: box, material: water, position: [0, "
+         "1, 0]}}",
+         NULL, ""},
         /* a third solid fills it */
-        {"solids: {a: {shape: box, material: glass, priority: 1}, b: {shape: box, material: water, position: [1.0001, 0, 0], priority: 1}, "
-         "c: {shape: box, material: clay, position: [0.5, 0, 0], size: [0.5, 3, 3]}}", NULL, ""},
+        {"solids: {a: {shape: box, material: glass, priority: 1}, b: {shape: box, material: water, position: "
+         "[1.0001, 0, 0], priority: 1}, "
+         "c: {shape: box, material: clay, position: [0.5, 0, 0], size: [0.5, 3, 3]}}",
+         NULL, ""},
     };
     TRY(cases);
 }
@@ -126,43 +179,50 @@ static void indices_of_mirrors(void **state)
         {"solids: {a: {shape: sphere, material: glass, ior: 4.9}}", NULL, ""},
         {"solids: {a: {shape: sphere, material: glass, ior: 20000}}", NULL, ""}, /* a mirror, by definition */
         {"solids: {a: {shape: sphere, material: clay, ior: 50}}", "a.ior", note},
-        {"solids: {a: {shape: sphere, material: clay, ior: 50, reflectivity: 0.8}}", "a.ior", "has a refractive index but is opaque"},
+        {"solids: {a: {shape: sphere, material: clay, ior: 50, reflectivity: 0.8}}", "a.ior",
+         "has a refractive index but is opaque"},
         {"solids: {a: {shape: sphere, material: clay, ior: 1.5}}", "a.ior", "has a refractive index but is opaque"},
         {"solids: {a: {shape: sphere, material: clay, reflectivity: 0.8}}", NULL, ""},
     };
     TRY(cases);
 }
 
-#undef ROOM
-#define ROOM                                                                                                                  \
-    "render: {width: 64, height: 48, depth: 12}\nbackground: {color: [0.5, 0.7, 0.9]}\nlights: {lamp: {position: [4, 7, -5]}}\n" \
-    "meshes: {block: {generate: box, size: [2, 2, 2]}}\n"                                                                      \
-    "materials: {glass: {transparency: 1, ior: 1.5}, water: {transparency: 1, ior: 1.33}, clay: {diffuse: 0.8}}\n"
-
 static void cameras_that_see_nothing(void **state)
 {
     (void)state;
-    static const struct { const char *eye, *solids, *words; } cases[] = {
+    static const struct {
+        const char *eye, *solids, *words;
+    } cases[] = {
         {"0, 1, 0", "a: {shape: box, material: clay, size: [4, 4, 4]}", "is inside a, which is opaque"},
         {"0, 1, -3", "a: {shape: box, material: clay, size: [4, 4, 4]}", NULL},
         {"0, 1, 0", "a: {shape: box, material: water, size: [4, 4, 4]}", NULL}, /* a diver */
-        {"0, 1, 0", "a: {shape: box, material: clay, size: [4, 4, 4]}, b: {shape: sphere, material: glass, radius: 1.5, priority: 1}", NULL},
+        {"0, 1, 0",
+         "a: {shape: box, material: clay, size: [4, 4, 4]}, b: {shape: sphere, material: glass, radius: 1.5, "
+         "priority: 1}",
+         NULL},
         {"0, -1, -3", "a: {shape: plane, material: clay}", "is under the surface of a"},
-        {"0, 0, -3", "a: {shape: plane, material: clay}, b: {shape: sphere, material: clay, position: [0, 1, 0]}", NULL}, /* on it */
+        {"0, 0, -3", "a: {shape: plane, material: clay}, b: {shape: sphere, material: clay, position: [0, 1, 0]}",
+         NULL}, /* on it */
         {"0, -1, -3", "a: {shape: plane, material: water}", NULL},
-        {"0.95, 1, 0", "a: {shape: cup, material: glass, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1}", "is inside the wall of a"},
+        {"0.95, 1, 0", "a: {shape: cup, material: glass, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1}",
+         "is inside the wall of a"},
         {"0.8, 1, 0", "a: {shape: cup, material: glass, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1}", NULL},
         {"0.1, 0.2, 0", "a: {shape: mesh, mesh: block, material: clay}", "is inside a, which is opaque"},
-        {"0.1, 0.2, 0", "a: {shape: mesh, mesh: block, material: clay, visible: off}, b: {shape: sphere, material: clay, position: [0, 0, 9]}", NULL},
+        {"0.1, 0.2, 0",
+         "a: {shape: mesh, mesh: block, material: clay, visible: off}, b: {shape: sphere, material: clay, position: "
+         "[0, 0, 9]}",
+         NULL},
         {"0.1, 0.2, -1.1", "a: {shape: mesh, mesh: block, material: clay}", NULL},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[2000];
-        snprintf(text, sizeof text, ROOM "camera: {position: [%s], target: [0.3, 0.9, 9]}\nsolids: {%s}\n", cases[i].eye, cases[i].solids);
+        snprintf(text, sizeof text, HALL "camera: {position: [%s], target: [0.3, 0.9, 9]}\nsolids: {%s}\n",
+                 cases[i].eye, cases[i].solids);
         const note_list all = lint_text(text);
         int found = 0;
         for (int k = 0; k < all.count; k++)
-            found += strcmp(all.note[k].place, "camera.position") == 0 && (!cases[i].words || strstr(all.note[k].text, cases[i].words));
+            found += strcmp(all.note[k].place, "camera.position") == 0 &&
+                     (!cases[i].words || strstr(all.note[k].text, cases[i].words));
         if (found != (cases[i].words != NULL))
             fail_msg("%s, eye %s: %d", cases[i].solids, cases[i].eye, found);
     }
@@ -174,10 +234,14 @@ static void depths_that_show(void **state)
     (void)state;
     for (int depth = 0; depth <= 8; depth++) {
         char text[2000];
-        snprintf(text, sizeof text, "render: {width: 200, height: 150, depth: %d}\nbackground: {color: [0.1, 0.1, 0.1], ambient: [1, 1, 1]}\n"
-                 "camera: {position: [0, 0, -6], target: [0, 0, 0]}\nsolids:\n  p: {shape: box, transparency: 1, ior: 1.5, size: [4, 4, 0.1]}\n"
-                 "  q: {shape: box, transparency: 1, ior: 1.5, size: [4, 4, 0.1], position: [0, 0, 1]}\n"
-                 "  board: {shape: box, size: [9, 9, 0.1], position: [0, 0, 4], ambient: 1}\n", depth);
+        snprintf(
+            text, sizeof text,
+            "render: {width: 200, height: 150, depth: %d}\nbackground: {color: [0.1, 0.1, 0.1], ambient: [1, 1, 1]}\n"
+            "camera: {position: [0, 0, -6], target: [0, 0, 0]}\nsolids:\n  p: {shape: box, transparency: 1, ior: "
+            "1.5, size: [4, 4, 0.1]}\n"
+            "  q: {shape: box, transparency: 1, ior: 1.5, size: [4, 4, 0.1], position: [0, 0, 1]}\n"
+            "  board: {shape: box, size: [9, 9, 0.1], position: [0, 0, 4], ambient: 1}\n",
+            depth);
         const note_list all = lint_text(text);
         assert_int_equal(all.count, depth < 4);
         if (depth < 4) {
@@ -191,7 +255,10 @@ static void depths_that_show(void **state)
 static void what_sticks_out_by_a_hair_is_not_hidden(void **state)
 {
     (void)state;
-    static const struct { const char *solid; bool hidden; } cases[] = {
+    static const struct {
+        const char *solid;
+        bool hidden;
+    } cases[] = {
         {"shape: cylinder, radius: 100, height: 1, position: [0, -0.99, 0]", false},
         {"shape: cylinder, radius: 100, height: 0.02, position: [0, 0.01, 0]", false},
         {"shape: cylinder, radius: 100, height: 1, position: [0, -1, 0]", true},
@@ -204,10 +271,13 @@ static void what_sticks_out_by_a_hair_is_not_hidden(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[2000];
-        snprintf(text, sizeof text, ROOM "camera: {position: [0, 3, -8], target: [0, 0, 0]}\n"
-                 "solids: {ground: {shape: plane, material: clay}, x: {diffuse: 0.5, %s}}\n", cases[i].solid);
+        snprintf(text, sizeof text,
+                 HALL "camera: {position: [0, 3, -8], target: [0, 0, 0]}\n"
+                      "solids: {ground: {shape: plane, material: clay}, x: {diffuse: 0.5, %s}}\n",
+                 cases[i].solid);
         const note_list all = lint_text(text);
-        const bool noted = all.count == 1 && strcmp(all.note[0].place, "x.priority") == 0 && strstr(all.note[0].text, "wholly inside ground");
+        const bool noted = all.count == 1 && strcmp(all.note[0].place, "x.priority") == 0 &&
+                           strstr(all.note[0].text, "wholly inside ground");
         if (noted != cases[i].hidden || all.count > 1)
             fail_msg("%s: %d notes", cases[i].solid, all.count);
     }
@@ -216,10 +286,22 @@ static void what_sticks_out_by_a_hair_is_not_hidden(void **state)
 static void shipped_scenes_have_true_notes_alone(void **state)
 {
     (void)state;
-    static const struct { const char *name, *place; } cases[] = {
-        {"absorber", NULL}, {"chequer", NULL}, {"models", NULL}, {"plates", NULL}, {"prism", "prism.medium"}, /* extrapolated below 390 nm */
-        {"rainbow", NULL}, {"rod-from-inside", NULL}, {"rod-leaning", "render.depth"}, {"rod", "render.depth"}, {"slime", NULL}, {"solids", NULL},
-        {"soup", NULL}, {"vessel-mesh", "render.depth"},
+    static const struct {
+        const char *name, *place;
+    } cases[] = {
+        {"absorber", NULL},
+        {"chequer", NULL},
+        {"models", NULL},
+        {"plates", NULL},
+        {"prism", "prism.medium"}, /* extrapolated below 390 nm */
+        {"rainbow", NULL},
+        {"rod-from-inside", NULL},
+        {"rod-leaning", "render.depth"},
+        {"rod", "render.depth"},
+        {"slime", NULL},
+        {"solids", NULL},
+        {"soup", NULL},
+        {"vessel-mesh", "render.depth"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char path[100];
@@ -230,7 +312,8 @@ static void shipped_scenes_have_true_notes_alone(void **state)
         worked(scene_load(s, &why), &why);
         const note_list all = lint(s);
         if (all.count != (cases[i].place != NULL) || (cases[i].place && strcmp(all.note[0].place, cases[i].place) != 0))
-            fail_msg("%s: %d notes, %s: %s", path, all.count, all.count ? all.note[0].place : "", all.count ? all.note[0].text : "");
+            fail_msg("%s: %d notes, %s: %s", path, all.count, all.count ? all.note[0].place : "",
+                     all.count ? all.note[0].text : "");
         if (strcmp(cases[i].name, "rod") == 0)
             assert_string_equal(all.note[0].remedy, "set render.depth=7");
         scene_destroy(s);
@@ -291,7 +374,8 @@ static double changed_share(judge *j, scene *s, int depth)
         double most = 1.0 / 255.0, apart_by = 0.0;
         for (int c = 0; c < 3; c++) {
             const int w = (int)s->render.width;
-            const double a = fmin(1.0, film_value(r[0]->picture, i % w, i / w, c)), b = fmin(1.0, film_value(r[1]->picture, i % w, i / w, c));
+            const double a = fmin(1.0, film_value(r[0]->picture, i % w, i / w, c)),
+                         b = fmin(1.0, film_value(r[1]->picture, i % w, i / w, c));
             most = fmax(most, fmax(a, b));
             apart_by = fmax(apart_by, fabs(a - b));
         }
@@ -321,7 +405,8 @@ static bool camera_is_lost(const oracle *o, const char *text)
     const bool under = sscanf(text, "the camera is under the surface of %63[^,]", name) == 1;
     if (!under && sscanf(text, "the camera is inside %63[^,]", name) != 1)
         return false;
-    return winner == named(o->s, name) && winner->surface.transparency == 0.0 && under == (winner->shape.kind == SHAPE_PLANE);
+    return winner == named(o->s, name) && winner->surface.transparency == 0.0 &&
+           under == (winner->shape.kind == SHAPE_PLANE);
 }
 
 static bool is_true(oracle *o, judge *j, scene *s, const scene_note *n, tallies *t)
@@ -361,7 +446,8 @@ static bool is_noted(const note_list *all, const char *a, const char *b)
 {
     for (int i = 0; i < all->count; i++) {
         char one[SCENE_NAME_MAX + 1], two[SCENE_NAME_MAX + 1];
-        if ((strstr(all->note[i].text, "overlap with") && sscanf(all->note[i].text, "%63s and %63s", one, two) == 2) || sscanf(all->note[i].text, "%63s lies wholly inside %63[^,]", one, two) == 2)
+        if ((strstr(all->note[i].text, "overlap with") && sscanf(all->note[i].text, "%63s and %63s", one, two) == 2) ||
+            sscanf(all->note[i].text, "%63s lies wholly inside %63[^,]", one, two) == 2)
             if ((!strcmp(one, a) && !strcmp(two, b)) || (!strcmp(one, b) && !strcmp(two, a)))
                 return true;
     }
@@ -376,7 +462,8 @@ static void count_unseen(oracle *o, const scene *s, const note_list *all, tallie
             const solid *a = &s->solids[i], *b = &s->solids[k];
             const bool clear = a->surface.transparency > 0.0 || b->surface.transparency > 0.0;
             const bool planes = a->shape.kind == SHAPE_PLANE && b->shape.kind == SHAPE_PLANE;
-            const bool one_index = a->surface.transparency > 0.0 && b->surface.transparency > 0.0 && a->surface.ior == b->surface.ior;
+            const bool one_index =
+                a->surface.transparency > 0.0 && b->surface.transparency > 0.0 && a->surface.ior == b->surface.ior;
             if (a->priority != b->priority || !clear || one_index || planes || !oracle_overlap(o, a, b, 20, 1e-4))
                 continue;
             t->pairs++;
@@ -415,7 +502,8 @@ static void try_scene(judge *j, long number, long seed, tallies *t)
         if (is_true(&o, j, s, &all.note[i], t))
             continue;
         if (t->untrue++ < 5) {
-            print_message("not true, LINT_SEED=%ld scene %ld: %s: %s\n", seed, number, all.note[i].place, all.note[i].text);
+            print_message("not true, LINT_SEED=%ld scene %ld: %s: %s\n", seed, number, all.note[i].place,
+                          all.note[i].text);
             print_lines(law_text(&w).at);
         }
     }
@@ -428,16 +516,22 @@ static void notes_on_random_scenes_are_true(void **state)
     (void)state;
     const char *count = getenv("LINT_SCENES"), *from = getenv("LINT_SEED"), *first = getenv("LINT_FIRST");
     const char *laws = getenv("LAWS_SCENES"); /* fewer under instruments */
-    const long scenes = count ? strtol(count, NULL, 10) : laws ? strtol(laws, NULL, 10) / 10 : 1000, seed = from ? strtol(from, NULL, 10) : 1;
+    const long scenes = count  ? strtol(count, NULL, 10)
+                        : laws ? strtol(laws, NULL, 10) / 10
+                               : 1000,
+               seed = from ? strtol(from, NULL, 10) : 1;
     tallies t = {0};
     judge j = judge_open();
     for (long number = first ? strtol(first, NULL, 10) : 0; t.scenes < scenes; number++)
         try_scene(&j, number, seed, &t);
     judge_close(&j);
-    print_message("%ld random legal scenes (%ld more were not legal), %ld without a note; %ld notes: overlaps %ld, gaps %ld, covered %ld, "
-                  "camera %ld, index %ld, depth %ld, others %ld; not true: %ld; overlapping pairs %ld, of which without a note %ld\n",
-                  t.scenes, t.skipped, t.silent, t.notes, t.overlaps, t.gaps, t.covers, t.cameras, t.indices, t.depths, t.others, t.untrue, t.pairs,
-                  t.unseen);
+    print_message(
+        "%ld random legal scenes (%ld more were not legal), %ld without a note; %ld notes: overlaps %ld, gaps %ld, "
+        "covered %ld, "
+        "camera %ld, index %ld, depth %ld, others %ld; not true: %ld; overlapping pairs %ld, of which without a "
+        "note %ld\n",
+        t.scenes, t.skipped, t.silent, t.notes, t.overlaps, t.gaps, t.covers, t.cameras, t.indices, t.depths, t.others,
+        t.untrue, t.pairs, t.unseen);
     assert_int_equal(t.untrue, 0);
     assert_true(t.overlaps > 0 && t.gaps > 0 && t.covers > 0 && t.cameras > 0 && t.depths > 0);
     assert_true(50 * t.unseen <= t.pairs);

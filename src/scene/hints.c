@@ -49,14 +49,14 @@ static bool cuts_another(const scene *s, const solid *cutter)
 static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    if (s->render.integrator == INTEGRATOR_ZBUFFER) {
-        if (m->ambient == 0.0 && m->diffuse == 0.0) {
-            note_give(taker, owner->name, "diffuse", "set its diffuse",
-                      "%s is transparent, and the depth buffer draws its surface: black but for highlights", owner->name);
+    const bool seen = m->transparency < 1.0 || m->ambient > 0.0 || m->emission > 0.0 || is_lit(m) || material_absorbs(m);
+    if (s->render.integrator == INTEGRATOR_ZBUFFER && s->render.lighting != LIGHTING_WHITTED) {
+        if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0) {
+            note_give(taker, "render", "lighting", "set render.lighting to whitted",
+                      "%s is transparent, and without reflected and refracted light its surface is black but for highlights", owner->name);
         }
     } else if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !material_tints(m) && m->reflectivity == 0.0 &&
                !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
-        const bool seen = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m);
         note_give(taker, owner->name, "ior", "set its ior", "%s is transparent with the index of what is around it: it %s", owner->name,
                   seen ? "bends no light" : "is invisible");
     }
@@ -96,7 +96,7 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_taker *
     } else if (m->medium != MEDIUM_IOR || m->ior != 1.0) {
         note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
                   "%s has a refractive index but is opaque", owner->name);
-    } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner) &&
+    } else if (m->ambient == 0.0 && m->emission == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner) &&
                !scene_is_behind_camera(s, owner)) { /* a black board behind the eye keeps reflections dark */
         note_give(taker, owner->name, "diffuse", "set its diffuse", "%s is neither transparent, nor diffuse, nor lit: it is black",
                   owner->name);
@@ -133,16 +133,20 @@ static void hint_at_range(const scene *s, const char *where, const char *name, c
 }
 
 /* What is set and does nothing. */
-static void hint_at_idle(const solid *owner, const note_taker *taker)
+static void hint_at_idle(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    if (m->transparency == 0.0 && material_absorbs(m)) {
+    if (m->transparency == 0.0 && material_absorbs(m) && looks_opaque(s, owner)) {
         note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m", "set its transparency",
                   "%s absorbs but is opaque", owner->name);
     }
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE)) {
         note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
                   "%s has coefficients but no law for them", owner->name);
+    }
+    if (looks_waste(s, owner)) {
+        note_give(taker, owner->name, "transparency", "set it for the whole solid, or set render.transmission to simple",
+                  "the transparency and reflectivity of the faces of %s have no effect: where light is bent they belong to the solid", owner->name);
     }
 }
 
@@ -178,22 +182,24 @@ void scene_range_hints(const scene *s, const note_taker *taker)
 
 void scene_hints(const scene *s, const note_taker *taker)
 {
-    size_t visible = 0, lit = 0;
+    size_t visible = 0, lit = 0, shining = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
         visible += s->solids[i].visible != 0;
         lit += s->solids[i].visible && is_lit(&s->solids[i].surface);
+        shining += s->solids[i].visible && s->solids[i].surface.emission > 0.0;
     }
     if (visible == 0) {
         note_give(taker, "solids", NULL, "add solids:", "no visible solids: the picture shows the background alone");
     }
-    if (lit > 0 && s->light_count == 0) {
-        note_give(taker, "lights", NULL, "add lights:", "no lights: opaque surfaces are dark but for their ambient light");
+    const bool emitters_light = shining > 0 && s->render.integrator == INTEGRATOR_PATH;
+    if (lit > 0 && s->light_count == 0 && !emitters_light) {
+        note_give(taker, "lights", NULL, "add lights:", "no lights: opaque surfaces are dark but for their ambient and emitted light");
     }
     hint_at_lights(s, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
         if (s->solids[i].visible) {
             hint_at_solid(s, &s->solids[i], taker);
-            hint_at_idle(&s->solids[i], taker);
+            hint_at_idle(s, &s->solids[i], taker);
             hint_at_cover(s, &s->solids[i], taker);
         }
     }
