@@ -219,9 +219,11 @@ bool scene_apart(const scene *s, const solid *a, const solid *b)
     const covered one = measured(s, a), two = measured(s, b);
     bool apart = false;
     for (int k = 0; k < 3 && !apart; k++)
-        apart = apart_along(&one, &two, vec3_make(k == 0, k == 1, k == 2)) ||
-                apart_along(&one, &two, axis_of(&one.turn, k)) || apart_along(&one, &two, axis_of(&two.turn, k));
-    return apart;
+        apart = apart_along(&one, &two, vec3_make(k == 0, k == 1, k == 2)) || apart_along(&one, &two, axis_of(&one.turn, k)) ||
+                apart_along(&one, &two, axis_of(&two.turn, k));
+    const vec3 between = vec3_sub(b->shape.position, a->shape.position), level = vec3_make(between.x, 0.0, between.z);
+    return apart || (vec3_length(between) > 0.0 && apart_along(&one, &two, vec3_normalize(between))) ||
+           (vec3_length(level) > 0.0 && apart_along(&one, &two, vec3_normalize(level)));
 }
 
 bool scene_is_behind_camera(const scene *s, const solid *owner)
