@@ -364,6 +364,9 @@ static const char *const all_settings[] = {
     "integrator: raycast",
     "depth: 6, integrator: path, paths: 3",
     "integrator: zbuffer",
+    "depth: 5, radiance: basic",
+    "depth: 4, spectrum: spectral, wavelengths: 3, radiance: basic",
+    "depth: 6, integrator: path, paths: 3, radiance: basic",
 };
 
 /* Of surfaces that reflect by Fresnel's equations alone: a crossing between equal media is no interface then. */
@@ -372,6 +375,8 @@ static const char *const fresnel_settings[] = {
     "depth: 5, beyond: black, polarisation: on",
     "depth: 6, shadows: off",
     "depth: 3, shadows: opaque, samples: 4",
+    "depth: 5, radiance: basic",
+    "depth: 4, beyond: black, polarisation: on, radiance: basic",
 };
 
 /* Without large blocks: where one is near, gaps of 1e-12 are not resolved, or only from some places. What stood on one comes down. */

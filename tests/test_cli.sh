@@ -320,15 +320,15 @@ done
 # --- realism
 run realism "$scene"
 check "realism succeeds" silent_success
-check "realism passes on the rod scene" is "$(tail -1 out)" "32 of 32 pass"
+check "realism passes on the rod scene" is "$(tail -1 out)" "35 of 35 pass"
 run realism "$scene" --set liquid.visible=off --csv
-check "realism --csv has a line a metric" is "$(wc -l <out)" 33
+check "realism --csv has a line a metric" is "$(wc -l <out)" 36
 check "what is not defined is NA, with its reason" grep -q '^absorption.slope,none,NA,NA,NA,.*"there is no liquid"$' out
 run realism "$scene" --set render.weights=constant --set clear.reflectivity=0.1 --set clear.transparency=0.9
 check "constant shares fail, and that is no error" silent_success
 check "and are named" grep -q '^FAIL  fresnel.vessel ' out
 run realism "$scene" --json
-check "realism --json" is "$(json schema defined passed)" "$(lines 1 32 32)"
+check "realism --json" is "$(json schema defined passed)" "$(lines 1 35 35)"
 run realism "$scene" --curve depth
 check "a curve is CSV of three columns" is "$(awk -F'","|,' 'END {print NR, NF}' out)" "18 3"
 run realism "$scene" --curve dept

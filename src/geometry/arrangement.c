@@ -92,9 +92,15 @@ static void add_body(arrangement *a, int rank, const body_source *source)
     int n = primitives_of(source->shape, parts);
     a->opaque_ranks |= (uint64_t)source->opaque << (rank - 1);
     body *b = &a->bodies[rank];
-    *b = (body){.outside = a->primitive_count, .hollow = n == 2 ? a->primitive_count + 1 : -1, .medium = source->medium,
-                .opaque = source->opaque, .clearness = source->opaque ? 0.0 : source->clearness,
-                .absorbs = source->absorbs && !source->opaque, .solid = source->solid};
+    *b = (body){.outside = a->primitive_count,
+                .hollow = n == 2 ? a->primitive_count + 1 : -1,
+                .medium = source->medium,
+                .opaque = source->opaque,
+                .clearness = source->opaque ? 0.0 : source->clearness,
+                .face_clearness = source->opaque ? NULL : source->face_clearness,
+                .absorbs = source->absorbs && !source->opaque,
+                .reflects = source->reflects && !source->opaque,
+                .solid = source->solid};
     a->absorbs |= b->absorbs;
     for (int k = 0; k < n; k++) {
         parts[k].rank = rank;
@@ -177,7 +183,7 @@ void arrangement_surroundings_absorb(arrangement *a)
     a->bodies[0].absorbs = a->absorbs = true;
 }
 
-static bool primitive_contains(const primitive *p, vec3 point)
+bool primitive_contains(const primitive *p, vec3 point)
 {
     vec3 q = mat3_apply_transposed(p->rotation, vec3_sub(point, p->origin));
     switch (p->kind) {

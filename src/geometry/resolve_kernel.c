@@ -378,13 +378,40 @@ static void first_sight(const arrangement *a, const ray_batch *rays, int solid_s
         KERNEL(mesh_shadows)(a, rays, unsure, s->undecided, s->blocked);
 }
 
+/* The slot of the mesh that column k crosses; 0 where another body's surface bounds it. */
+static int slot_met(const arrangement *a, const body *met, const hit_batch *c, const forest_hit *mesh_hits, int k)
+{
+    if (c->crossed[k] != met->outside || mesh_hits[k].face == FACE_NONE)
+        return 0;
+    const mesh *m = a->meshes->parts[a->meshes->by_primitive[met->outside]].triangles;
+    return m->slots ? m->slots[mesh_face_triangle(mesh_hits[k].face)] : 0;
+}
+
 /* One interface on the way of the shadow ray in column k: what of the light it lets through. */
-static double let_through(const arrangement *a, int solid_shadows, const hit_batch *c, int k)
+static double let_through(const arrangement *a, int solid_shadows, const hit_batch *c, const forest_hit *mesh_hits,
+                          int k)
 {
     const body *before = &a->bodies[c->before[k]], *after = &a->bodies[c->after[k]];
     if (solid_shadows || after->opaque || before->opaque)
         return 0.0;
-    return c->before[k] > c->after[k] ? before->clearness : after->clearness;
+    const body *met = c->before[k] > c->after[k] ? before : after;
+    return met->face_clearness ? met->face_clearness[slot_met(a, met, c, mesh_hits, k)] : met->clearness;
+}
+
+/* The interface that the shadow ray in column k crosses. */
+static void note_crossing(const arrangement *a, int k, ray_scratch *s, const hit_batch *c, const forest_hit *mesh_hits)
+{
+    ray_crossings *x = s->crossings;
+    if (x->count == CROSSINGS_MAX)
+        x->full(x->context);
+    const int met = (int)c->crossed[k];
+    x->crossings[x->count++] = (ray_crossing){.ray = s->ray[k],
+                                              .primitive = met,
+                                              .before = (int)c->before[k],
+                                              .after = (int)c->after[k],
+                                              .t = c->t[k],
+                                              .inside = c->inside_before[k],
+                                              .mesh = is_mesh(a, met) ? mesh_hits[k] : (forest_hit){.face = FACE_NONE}};
 }
 
 /* Moves the undecided columns to the front; returns how many. */
@@ -420,6 +447,8 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
     const uint64_t wanted = first_sight_primitives(a, solid_shadows);
     if (s->ways)
         s->ways->count = 0;
+    if (s->crossings)
+        s->crossings->count = 0;
     KERNEL(intervals_of)(a, rays, wanted, s);
     first_sight(a, rays, solid_shadows, s);
     for (int i = 0; i < rays->count; i++)
@@ -440,8 +469,11 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
                 transmitted[s->ray[k]] = 0.0;
             if (c->crossed[k] < 0 || c->t[k] >= 1.0)
                 continue;
-            if (!s->attention[k] || is_interface(a, rays, k, s, c, again))
-                transmitted[s->ray[k]] *= let_through(a, solid_shadows, c, k);
+            if (!s->attention[k] || is_interface(a, rays, k, s, c, again)) {
+                transmitted[s->ray[k]] *= let_through(a, solid_shadows, c, again, k);
+                if (s->crossings && transmitted[s->ray[k]] > 0.0)
+                    note_crossing(a, k, s, c, again);
+            }
             if (transmitted[s->ray[k]] > 0.0)
                 pass_on(a, k, left++, s, c, again);
         }

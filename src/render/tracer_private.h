@@ -25,8 +25,22 @@ typedef struct drawn_work {
     zbuffer_square square;
     int x[ROW], y[ROW];
     uint32_t number[ROW];
+    bool straight[ROW];               /* it meets a curved surface and looks straight on */
+    double vx[ROW], vy[ROW], vz[ROW]; /* and the straight view's direction there, of a frame with layers */
     vec3 at[ROW];            /* of the gathered group: where a texture is looked up that runs straight across the picture */
 } drawn_work;
+
+/* What basic radiance needs, once a scene of it has been traced. */
+typedef struct radiance_work {
+    ray_crossings crossings;
+    ray_batch rays;          /* the shadow rays that crossings are noted of, ... */
+    const int64_t *tickets;  /* ... their tickets, ... */
+    double through[ROW];     /* ... and the product of the interfaces' transmittances, by ray */
+    double kept[CROSSINGS_MAX]; /* transmittances, by crossing */
+    double wr[ROW], wg[ROW], wb[ROW]; /* the gathered group's throughput, while what its surface sends out is weighed */
+    surface_batch points;
+    mesh_points on_mesh;
+} radiance_work;
 
 struct tracer {
     const geometry_kernels *geometry;
@@ -58,6 +72,8 @@ struct tracer {
     bool on_mesh;            /* the gathered group met one */
     int met_light[ROW];      /* of random paths: the light that a ray ran into, or -1 */
     drawn_work *drawn;       /* once a frame has been drawn; NULL before */
+    radiance_work *basic;    /* of a plan with basic radiance; NULL in others */
+    radiance_work *basic_memory; /* once one has been traced */
     bool straight;           /* the frame is drawn, its textures straight across the picture */
 };
 
@@ -88,7 +104,9 @@ int mesh_next_look(const tracer *t, int *list, int count, int *slot);
 void texture_colors(tracer *t, const primitive *surface);
 
 /* zbuffer_shading.c: t->hits of a batch of camera rays, as drawn; texture points or coordinates of the gathered group straight across the picture. */
-void drawn_hits(tracer *t, const ray_queue *q, int first, const ray_batch *rays);
+void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
+void drawn_bend(tracer *t, const int *list);
+void drawn_branches(tracer *t, int depth);
 void drawn_straighten(tracer *t, const int *list);
 
 /* Adds radiance to a ticket's pixel. Of a spectral film the three channels are one: radiance at the ticket's wavelength. */
@@ -96,6 +114,14 @@ void shading_expose(tracer *t, int64_t ticket, double r, double g, double b);
 
 /* Adds what the sky sends along a direction, weighted. */
 void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb);
+/* What a branch that the depth limit cuts off brings: render.beyond. */
+void shading_expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb);
+
+/* Does no light pass the surface of that rank's body with the tracer's look? */
+static inline bool surface_is_opaque(const tracer *t, int rank)
+{
+    return t->target.scene->solids->bodies[rank].opaque || t->look->surface.transparency == 0.0;
+}
 
 /* Local light of the lights and the ambient, weighted, of the gathered group. */
 void local_light(tracer *t, int rank);
@@ -112,6 +138,16 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
 void absorption_spare_sky(tracer *t);
 void absorption_begin(tracer *t, const int64_t *tickets, int count);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
+double absorption_left(double optical_depth);
+
+/* radiance.c: how much of what is sent out into the medium of a rank reaches an eye as radiance, (n_eye / n)^2; the
+ * gathered group's throughput times that, and back again; and the transmittances of the interfaces that a batch of
+ * shadow rays crosses, taken from t->transmitted. */
+double radiance_share(const plan *p, int64_t ticket, int rank);
+void radiance_weigh(tracer *t);
+void radiance_weigh_back(tracer *t);
+void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *tickets);
+void radiance_end_shadows(tracer *t);
 
 /* spectral.c: the gathered group's indices, colours and light at each ray's wavelength. */
 void spectral_indices(tracer *t, const int *list);
@@ -126,7 +162,7 @@ void polarised_branches(tracer *t, const material *m, bool opaque);
  * lights that rays of a batch run into before they hit anything. */
 void path_group(tracer *t, int depth, int rank);
 void path_meet_lights(tracer *t, const ray_queue *q, int first, int count);
-void path_expose_light(tracer *t, int64_t ticket, int lamp, vec3 direction, double wr, double wg, double wb);
+void path_expose_light(tracer *t, int64_t ticket, int lamp, int rank, vec3 direction, double wr, double wg, double wb);
 
 /* Shades rays list[0 .. count-1] of the batch at `first` in the queue of a depth, all of which met primitive `met` as the surface of the
  * body of that rank: local light, shadow rays and children put in line. */

@@ -15,7 +15,7 @@
  *                                       two of one gesture and path (default: the newer takes the place of the older)
  *   lab.refresh()                       asks for state and scene anew
  *   lab.start()                         opens the stream of events
- *   lab.say(text), lab.fail(error)      set by main.js */
+ *   lab.say(text, remedy), lab.fail(error), lab.notes      set by main.js */
 
 import {createApi} from './api.js';
 
@@ -111,6 +111,10 @@ export function createLab() {
   lab.change = createQueue(api.post);
   lab.set = (values, gesture) => lab.change('/api/set', {set: values}, {
     gesture, merge: (waiting, newer) => ({set: {...waiting.set, ...newer.set}}),
+  }).then((reply) => {
+    const [first] = reply.notes || []; /* what was set and does nothing */
+    if (first) lab.say(`Note: ${first.place}: ${first.text}`, first.remedy);
+    return reply;
   });
   return lab;
 
