@@ -160,7 +160,8 @@ value("n") > 0 {
             }
             # Corners of the mesh, each of which Gouraud's own method would light once.
             if (part[4] == "gouraud" && part[3] == "zbuffer")
-                set(study "/" part[2] "/points-corner", significant(value("first_hits.model") / ($2 * $3)))
+                set(study "/" part[2] "/points-corner", value("first_hits.model") > 10 * $2 * $3 ? \
+                    sprintf("%.0f", value("first_hits.model") / ($2 * $3)) : significant(value("first_hits.model") / ($2 * $3)))
         }
     }
     if (study == "sectors") {

@@ -105,8 +105,8 @@ CUVETTE_API cuvette_status cuvette_scene_write(const cuvette_scene *scene, const
 CUVETTE_API cuvette_status cuvette_scene_write_text(const cuvette_scene *scene, char *text, size_t size, size_t *length,
                                                     cuvette_diagnostic *why);
 
-/* Calls note with one line of text, which lasts for the call, for each thing that is allowed and still looks wrong: a black solid, no light,
- * what has no effect. */
+/* Calls note with one line of text, "PLACE: WHAT; REMEDY", which lasts for the call, for each thing that is allowed and still looks wrong: a
+ * black solid, no light, what has no effect. PLACE is a parameter's path or an object's name. */
 CUVETTE_API cuvette_status cuvette_scene_hints(const cuvette_scene *scene, void (*note)(void *context, const char *text), void *context,
                                                cuvette_diagnostic *why);
 

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 check() {
     (cd "$1" && find . -name '*.[ch]' -printf '%P\n' | sort | xargs awk '
         BEGIN {
-            split("base 0 optics 1 geometry 1 measure 1 softbody 2 image 2 scene 3 render 4 realism 4.5 study 5 report 5.5 engine 6 web 6.5 cli 7 mpi 7 import 7", word)
+            split("base 0 optics 1 geometry 1 measure 1 softbody 2 image 2 scene 3 render 4 realism 4.5 lint 4.5 study 5 report 5.5 engine 6 web 6.5 cli 7 mpi 7 import 7", word)
             for (i = 1; i in word; i += 2) floor[word[i]] = word[i + 1]
         }
         function room(path) { return path ~ /\// ? substr(path, 1, index(path, "/") - 1) : "engine" }

@@ -13,9 +13,10 @@
 #define LIT "lights: {lamp: {}}\n"
 
 /* All the lines, each with its newline. */
-static void append_line(void *context, const char *text)
+static void append_line(void *context, const scene_note *note)
 {
-    char *all = context;
+    char *all = context, text[NOTE_LINE_MAX];
+    note_line(note, text, sizeof text);
     assert_true(text[0] && !strchr(text, '\n') && strlen(all) + strlen(text) < 900);
     strcat(strcat(all, text), "\n");
 }
@@ -25,7 +26,7 @@ static void expect_hints(const char *file, const char *hints)
     scene *s;
     char all[1000] = "";
     assert_int_equal(scene_read_text("t.yaml", file, strlen(file), &s, NULL), STATUS_OK);
-    scene_hints(s, append_line, all);
+    scene_hints(s, &(note_taker){append_line, all});
     assert_string_equal(all, hints);
     scene_destroy(s);
 }
@@ -33,22 +34,24 @@ static void expect_hints(const char *file, const char *hints)
 static void what_is_forgotten_is_hinted_at(void **state)
 {
     (void)state;
-    static const char none[] = "no visible solids: the picture shows the background alone; add solids:\n";
+    static const char none[] = "solids: no visible solids: the picture shows the background alone; add solids:\n";
     expect_hints("{}", none);
     expect_hints("solids: {ball: {shape: sphere, visible: no}}", none);
     expect_hints("solids: {ball: {shape: sphere, diffuse: 1}, egg: {shape: sphere, specular: 1, radius: 2}}",
-                 "no lights: opaque surfaces are dark but for their ambient light; add lights:\n");
+                 "lights: no lights: opaque surfaces are dark but for their ambient and emitted light; add lights:\n");
     expect_hints(LIT "solids: {ball: {shape: sphere}}",
-                 "ball is neither transparent, nor diffuse, nor lit: it is black; set its diffuse\n");
+                 "ball.diffuse: ball is neither transparent, nor diffuse, nor lit: it is black; set its diffuse\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, emission: 0.5}}", "");
+    expect_hints("render: {integrator: path}\nsolids: {ball: {shape: sphere, diffuse: 1}, egg: {shape: sphere, emission: 1, radius: 2}}", "");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1}}",
-                 "ball is transparent with the index of what is around it: it is invisible; set its ior\n");
+                 "ball.ior: ball is transparent with the index of what is around it: it is invisible; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, specular: 0.5}}",
-                 "ball is transparent with the index of what is around it: it bends no light; set its ior\n");
+                 "ball.ior: ball is transparent with the index of what is around it: it bends no light; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 0.5}}",
-                 "ball is transparent with the index of what is around it: it bends no light; set its ior\n");
+                 "ball.ior: ball is transparent with the index of what is around it: it bends no light; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, ior: 1.5}, egg: {shape: sphere, diffuse: 1, ior: 0.9, radius: 2}}",
-                 "ball has a refractive index but is opaque; set its transparency\n"
-                 "egg has a refractive index but is opaque; set its transparency\n");
+                 "ball.ior: ball has a refractive index but is opaque; set its transparency\n"
+                 "egg.ior: egg has a refractive index but is opaque; set its transparency\n");
 }
 
 static void a_law_beyond_its_measurements_is_hinted_at(void **state)
@@ -56,38 +59,40 @@ static void a_law_beyond_its_measurements_is_hinted_at(void **state)
     (void)state;
     expect_hints("solids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}", "");
     expect_hints("render: {lambda_nm: 450}\nsolids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}",
-                 "drop: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond\n");
+                 "drop.medium: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond; keep to these wavelengths, or give coefficients that reach further\n");
     expect_hints("render: {spectrum: spectral}\nsolids: {drop: {shape: sphere, transparency: 1, medium: water}}", "");
     expect_hints("render: {spectrum: spectral}\nsolids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}",
-                 "drop: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond\n");
+                 "drop.medium: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond; keep to these wavelengths, or give coefficients that reach further\n");
     expect_hints("render: {lambda_nm: 450}\nbackground: {medium: ethanol}\nsolids: {drop: {shape: sphere, transparency: 1, ior: 1.5}}",
-                 "background: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond\n");
+                 "background.medium: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond; keep to these wavelengths, or give coefficients that reach further\n");
     expect_hints("background: {medium: water}\nsolids: {drop: {shape: sphere, transparency: 1, medium: water}}",
-                 "drop is transparent with the index of what is around it: it is invisible; set its ior\n");
+                 "drop.ior: drop is transparent with the index of what is around it: it is invisible; set its ior\n");
 }
 
 static void what_has_no_effect_is_hinted_at(void **state)
 {
     (void)state;
     expect_hints("render: {lambda_nm: 700}\nsolids: {drop: {shape: sphere, transparency: 1, medium: table, coefficients: [450, 1.34, 650, 1.33]}}",
-                 "drop: its table of indices reaches from 450 to 650 nm only, and keeps its ends' indices beyond\n");
+                 "drop.coefficients: its table of indices reaches from 450 to 650 nm only, and keeps its ends' indices beyond; keep to these wavelengths, or give coefficients that reach further\n");
     expect_hints("solids: {drop: {shape: sphere, transparency: 1, ior: 1.3, coefficients: [1.5, 0.004]}}",
-                 "drop has coefficients but no law for them; set its medium to cauchy, sellmeier or table\n");
+                 "drop.coefficients: drop has coefficients but no law for them; set its medium to cauchy, sellmeier or table\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, diffuse: 1, absorb_per_m: [1, 0, 0]}}",
-                 "ball absorbs but is opaque; set its transparency\n");
+                 "ball.absorb_per_m: ball absorbs but is opaque; set its transparency\n");
     static const char lit[] = "lights: {lamp: {radius: 1, reach: 5}}\nsolids: {ball: {shape: sphere, diffuse: 1}}";
-    expect_hints(lit, "lamp is lit as a point: its radius shows with render.integrator=path\n");
+    expect_hints(lit, "lamp.radius: lamp is lit as a point; set render.integrator=path, where its radius shows\n");
     expect_hints("render: {integrator: path}\nlights: {lamp: {radius: 1, reach: 5}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
     expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5}}",
-                 "lamp is a point, which random paths cannot find through clear solids: no caustics; give it a radius and a reach\n");
+                 "lamp.radius: lamp is a point, which random paths cannot find through clear solids: no caustics; give it a radius and a reach\n");
     expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
 }
 
 static void what_a_depth_buffer_cannot_show_is_hinted_at(void **state)
 {
     (void)state;
-    expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, specular: 1}}",
-                 "ball is transparent, and the depth buffer draws its surface: black but for highlights; set its diffuse\n");
+    expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, specular: 1}}", "");
+    expect_hints(LIT "render: {integrator: zbuffer, lighting: phong}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, specular: 1}}",
+                 "render.lighting: ball is transparent, and without reflected and refracted light its surface is black but for highlights; set "
+                 "render.lighting to whitted\n");
     expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, diffuse: 0.2}}", "");
     expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
 }
@@ -119,7 +124,7 @@ static void what_is_hidden_is_hinted_at(void **state)
         char file[300];
         snprintf(file, sizeof file, "%s%s", shell, cases[i].solid);
         expect_hints(file, cases[i].hidden
-                               ? "x lies wholly inside shell, which wins there and hides it; give x the higher priority\n"
+                               ? "x.priority: x lies wholly inside shell, which wins there and hides it; give x the higher priority\n"
                                : "");
     }
 }
@@ -145,7 +150,7 @@ static void the_projects_scenes_lack_nothing(void **state)
         scene *s;
         snprintf(path, sizeof path, "experiments/scenes/%s.yaml", names[i]);
         assert_int_equal(scene_read(path, &s, NULL), STATUS_OK);
-        scene_hints(s, append_line, all);
+        scene_hints(s, &(note_taker){append_line, all});
         assert_string_equal(all, "");
         scene_destroy(s);
     }

@@ -66,8 +66,9 @@ static void obj_with_two_materials(void **state)
 {
     (void)state;
     put_text("paint.png", "a picture");
-    put_text("two.mtl", "newmtl red\nKa 0.125 0 0\nKd 1 0.25 0.5\nKs 0.75 0.75 0.75\nNs 40\nmap_Kd paint.png\n"
-                        "newmtl glass\nKd 0.5 0.5 0.5\nd 0.25\nNi 1.5\nnewmtl unused\nKd 0 0 0\n");
+    put_text("two.mtl",
+             "newmtl red\nKa 0.125 0 0\nKd 1 0.25 0.5\nKs 0.75 0.75 0.75\nNs 40\nKe 3 0.5 0\nmap_Kd paint.png\n"
+             "newmtl glass\nKd 0.5 0.5 0.5\nd 0.25\nNi 1.5\nnewmtl unused\nKd 0 0 0\n");
     mesh_import *got = read_text("two.obj", "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 1 2.5 0\nv 0 2.5 -0.125\nv 7 7 7\n"
                                             "vt 0 0\nvt 1 0\nvt 1 0.75\nvt 0.0625 1\n"
                                             "usemtl red\nf 1/1 2/2 3/3\nusemtl glass\nf 1/1 3/3 4/4\n");
@@ -88,6 +89,7 @@ static void obj_with_two_materials(void **state)
     assert_true(red->given && glass->given);
     assert_true(red->color[0] == 1 && red->color[1] == 0.25 && red->color[2] == 0.5);
     assert_true(red->ambient[0] == 0.125 && red->specular[2] == 0.75 && red->shininess == 40 && red->opacity == 1);
+    assert_true(red->emissive[0] == 3 && red->emissive[1] == 0.5 && red->emissive[2] == 0 && glass->emissive[0] == 0);
     assert_true(glass->opacity == 0.25 && glass->ior == 1.5);
     assert_null(glass->texture);
     char *picture = in_folder("paint.png");

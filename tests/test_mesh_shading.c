@@ -344,6 +344,45 @@ static void faces_look_like_their_materials(void **state)
     rmdir(folder);
 }
 
+/* A file's Ke: as bright as it says in its brightest channel, in the surface's colour, or in its own where the surface
+ * is black; else the solid's. */
+static void faces_shine_as_their_materials_say(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/cuvette-shine-XXXXXX", path[64], library[64], text[1024];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/two.obj", folder);
+    snprintf(library, sizeof library, "%s/two.mtl", folder);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fputs("mtllib two.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl left\nf 1 4 3\nusemtl right\nf 1 3 2\n", f);
+    fclose(f);
+    f = fopen(library, "w");
+    assert_non_null(f);
+    fputs("newmtl left\nKd 0.25 0.5 0\nKe 3 3 1\nnewmtl right\nKd 0 0 0\nKe 4 2 1\n", f);
+    fclose(f);
+    snprintf(
+        text, sizeof text,
+        "background: {ambient: [0, 0, 0]}\nmeshes: {two: {file: %s}}\nsolids: {sheet: {shape: mesh, mesh: two, emission: 9}}\n",
+        path);
+    stage g = stage_with_meshes(text, "");
+    const double *left = stage_ray(&g, vec3_make(-0.5, 0.5, -3.0), vec3_make(0, 0, 1))->radiance;
+    assert_true(fabs(left[0] - 1.5) < 1e-9 && fabs(left[1] - 3.0) < 1e-9 && left[2] == 0.0);
+    const double *right = stage_ray(&g, vec3_make(0.5, -0.5, -3.0), vec3_make(0, 0, 1))->radiance;
+    assert_true(fabs(right[0] - 4.0) < 1e-9 && fabs(right[1] - 2.0) < 1e-9 && fabs(right[2] - 1.0) < 1e-9);
+    stage_close(&g);
+    f = fopen(library, "w");
+    assert_non_null(f);
+    fputs("newmtl left\nKd 0.25 0.5 0\nnewmtl right\nKd 1 1 1\n", f);
+    fclose(f);
+    g = stage_with_meshes(text, "");
+    assert_true(fabs(stage_ray(&g, vec3_make(-0.5, 0.5, -3.0), vec3_make(0, 0, 1))->radiance[1] - 4.5) < 1e-9);
+    stage_close(&g);
+    unlink(path);
+    unlink(library);
+    rmdir(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -357,6 +396,7 @@ int main(void)
         cmocka_unit_test(an_open_dielectric_names_its_hole),
         cmocka_unit_test(spectral_films_refuse_textures_and_faces),
         cmocka_unit_test(faces_look_like_their_materials),
+        cmocka_unit_test(faces_shine_as_their_materials_say),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -96,7 +96,7 @@ static void ranges_read_like_a_manual(void **state)
         const char *name, *text;
     } cases[] = {
         {PARAM_RENDER, "width", "integer 1..65536"},
-        {PARAM_RENDER, "beyond", "one of: sky, black"},
+        {PARAM_RENDER, "beyond", "one of: sky, black, mean"},
         {PARAM_RENDER, "samples", "one of: 1, 4, 9, 16, 25, 36, 49, 64"},
         {PARAM_RENDER, "min_weight", "number 0..1"},
         {PARAM_CAMERA, "fov_deg", "number > 0, at most 179"},
@@ -339,7 +339,7 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
         {"lens.visible=of", "lens.visible: no choice 'of'; give one of: off, on"},
         {"lens.visible=noo", "lens.visible: no choice 'noo'; give one of: off, on"},
         {"render.shadows=no", "render.shadows: no choice 'no'; give one of: off, opaque, attenuated"},
-        {"glass.radius=2", "glass has no parameter 'radius'; glass has color, ambient, diffuse, specular, shininess, "
+        {"glass.radius=2", "glass has no parameter 'radius'; glass has color, ambient, diffuse, specular, shininess, emission, "
                            "reflectivity, transparency, ior, medium, coefficients, absorb_per_m, absorb_spectrum, tint_distance, texture, texture_size, checker, "
                            "checker_color"},
         {"lamp.position.w=2", "lamp.position has no element 'w'; the elements are .x, .y and .z"},

@@ -99,6 +99,61 @@ static void a_picture_closes_behind_and_ends_at_the_poles(void **state)
     image_destroy(picture);
 }
 
+/* The mean over the sphere, by the midpoint rule on each part between texels' middles, where the interpolation is
+ * smooth. */
+static vec3 mean_by_quadrature(const background *sky, int parts)
+{
+    vec3 sum = {0.0, 0.0, 0.0};
+    double weights = 0.0;
+    for (int j = 0; j < parts; j++) {
+        const double latitude = (j + 0.5) / parts * 180.0 - 90.0, weight = cos(latitude * 3.141592653589793 / 180.0);
+        for (int i = 0; i < 2 * parts; i++)
+            sum = vec3_add(
+                sum, vec3_scale(sky_radiance(sky, towards((i + 0.5) / (2 * parts) * 360.0 - 180.0, latitude)), weight));
+        weights += 2.0 * parts * weight;
+    }
+    return vec3_scale(sum, 1.0 / weights);
+}
+
+static void the_mean_weighs_solid_angles_alike(void **state)
+{
+    (void)state;
+    const background plain = {.kind = BACKGROUND_UNIFORM, .color = {0.1, 0.2, 0.3}, .horizon = {1.0, 1.0, 1.0}};
+    expect_radiance(sky_mean(&plain), 0.1, 0.2, 0.3);
+    const background rising = {.kind = BACKGROUND_GRADIENT, .color = {1.0, 0.0, 0.5}, .horizon = {0.0, 1.0, 0.5}};
+    expect_radiance(sky_mean(&rising), 0.25, 0.75, 0.5);
+    const vec3 seen = mean_by_quadrature(&rising, 200);
+    assert_near(seen.x, 0.25, 1e-4);
+    image *picture = numbered();
+    const background panorama = {.kind = BACKGROUND_PICTURE, .picture = picture};
+    const vec3 mean = sky_mean(&panorama), close = mean_by_quadrature(&panorama, 400);
+    assert_near(mean.x, 3.5, 1e-12);
+    assert_near(mean.y, 1.5, 1e-12); /* rows alike above and below */
+    assert_near(mean.z, 0.5, 1e-12);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            picture->pixel[(y * WIDTH + x) * 3 + 1] = (float)(y * y); /* and now not */
+    assert_near(sky_mean(&panorama).y, mean_by_quadrature(&panorama, 400).y, 2e-5);
+    assert_near(close.x, 3.5, 1e-9);
+    image_destroy(picture);
+}
+
+/* One row is the same all over; of two, each has a half. */
+static void pictures_of_few_rows_have_a_mean(void **state)
+{
+    (void)state;
+    for (int height = 1; height <= 3; height++) {
+        image *picture = NULL;
+        assert_int_equal(image_create(1, height, &picture, NULL), STATUS_OK);
+        for (int y = 0; y < height; y++)
+            for (int c = 0; c < 3; c++)
+                picture->pixel[y * 3 + c] = c == 1 ? (float)y : 2.0f;
+        const background sky = {.kind = BACKGROUND_PICTURE, .picture = picture};
+        expect_radiance(sky_mean(&sky), 2.0, 0.5 * (height - 1), 2.0);
+        image_destroy(picture);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -106,6 +161,8 @@ int main(void)
         cmocka_unit_test(a_gradient_rises_with_the_sine_of_the_height),
         cmocka_unit_test(a_picture_is_met_texel_by_texel),
         cmocka_unit_test(a_picture_closes_behind_and_ends_at_the_poles),
+        cmocka_unit_test(the_mean_weighs_solid_angles_alike),
+        cmocka_unit_test(pictures_of_few_rows_have_a_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -92,7 +92,7 @@ static vec3 patch_color(size_t k)
     return vec3_make(srgb_decode(patches[k][0] / 255.0), srgb_decode(patches[k][1] / 255.0), srgb_decode(patches[k][2] / 255.0));
 }
 
-/* Lit by ambient light alone; then by a white lamp. */
+/* Lit by ambient light alone, shining by itself, then lit by a white lamp. */
 static void check_color_checker(const char *lit_by, int wavelengths, double limit)
 {
     scene *s = scene_from("render: {width: 12, height: 12, depth: 0}\n"
@@ -119,6 +119,7 @@ static void the_color_checker_looks_as_in_rgb(void **state)
     (void)state;
     check_color_checker("patch.ambient=1", 32, 1.0);
     check_color_checker("patch.ambient=1", 256, 0.05);
+    check_color_checker("patch.emission=1", 256, 0.05);
     check_color_checker("patch.diffuse=0.8 lamp.intensity=0.7", 256, 0.05);
 }
 

@@ -132,7 +132,7 @@ status command_animate(int argc, char **argv, diagnostic *why)
     if (result == STATUS_OK)
         result = read_scene(&request, in_files ? &names : NULL, &s, why);
     if (result == STATUS_OK && !request.json)
-        scene_input_note_hints(s);
+        result = scene_input_lint(s, level, NULL, why);
     if (result == STATUS_OK)
         result = make(&request, in_files ? &names : NULL, level, s, why);
     scene_destroy(s);

@@ -182,7 +182,7 @@ status command_render(int argc, char **argv, diagnostic *why)
     if (result == STATUS_OK)
         result = load_scene(&request, &s, why);
     if (result == STATUS_OK && !request.json)
-        scene_input_note_hints(s);
+        result = scene_input_lint(s, level, NULL, why);
     if (result == STATUS_OK)
         result = render_and_write(&request, s, level, why);
     scene_destroy(s);

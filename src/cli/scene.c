@@ -23,7 +23,7 @@ enum { KEY_NEW = 0x100, KEY_CHECK, KEY_LIST, KEY_ALL, OPTION_MAX = 16 };
 
 static const struct argp_option plain_options[] = {
     {"new", KEY_NEW, NULL, 0, "begin with an empty scene in place of a file", 0},
-    {"check", KEY_CHECK, NULL, 0, "only say whether the scene is right, its files too", 0},
+    {"check", KEY_CHECK, NULL, 0, "only say whether the scene is right, its files too, and what looks wrong in it", 0},
     {"list", KEY_LIST, NULL, 0, "only list its objects: kind, name, and of a solid shape and material", 0},
     {"all", KEY_ALL, NULL, 0, "write every parameter, not only what differs from the defaults", 0},
     {"output", 'o', "FILE", 0, "write there: .yaml or .yml, which may be the scene itself; standard output when not said", 0},
@@ -136,7 +136,12 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
             diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         return result;
     }
-    scene_input_note_hints(s);
+    isa level = ISA_SSE2;
+    result = scene_input_isa(&level, why);
+    if (result == STATUS_OK)
+        result = scene_input_lint(s, level, NULL, why);
+    if (result != STATUS_OK)
+        return result;
     printf("%s: right; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n", request->path ? request->path : "--new",
            s->mesh_count, s->texture_count, s->material_count, s->light_count, s->solid_count);
     return STATUS_OK;

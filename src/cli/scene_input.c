@@ -89,15 +89,23 @@ status scene_input_isa(isa *level, diagnostic *why)
     return result;
 }
 
-static void print_note(void *context, const char *text)
+static void print_note(void *context, const scene_note *note)
 {
     (void)context;
-    terminal_note(text);
+    char line[NOTE_LINE_MAX];
+    terminal_note(note_line(note, line, sizeof line));
 }
+
+static const note_taker printer = {print_note, NULL};
 
 void scene_input_note_hints(const scene *s)
 {
-    scene_hints(s, print_note, NULL);
+    scene_hints(s, &printer);
+}
+
+status scene_input_lint(const scene *s, isa level, const lint_filter *varies, diagnostic *why)
+{
+    return lint_scene_but(s, level, varies, &printer, why);
 }
 
 void scene_input_note_tree(const scene *s)
@@ -106,7 +114,7 @@ void scene_input_note_tree(const scene *s)
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
     scene one_lambda = *s; /* borrows what s owns */
     one_lambda.render.spectrum = SPECTRUM_RGB;
-    scene_range_hints(&one_lambda, print_note, NULL);
+    scene_range_hints(&one_lambda, &printer);
     char text[160];
     if (!path && !drawn && !spectral)
         return;

@@ -1,5 +1,6 @@
 #include "base/text_writer.h"
 #include "cli/cli.h"
+#include "cli/scene_input.h"
 #include "cli/study_request.h"
 #include "cli/study_table.h"
 #include "cli/terminal.h"
@@ -38,6 +39,63 @@ static bool stop_asked(void *context)
     return terminal_stop_asked();
 }
 
+/* Is the path the place, or a part of it, or the other way round? */
+static bool is_part(const char *place, const char *path)
+{
+    const size_t length = strlen(place);
+    return strncmp(place, path, length) == 0 && (path[length] == '\0' || path[length] == '.');
+}
+
+/* A solid's parameter as its material's. */
+static bool is_of_material(const scene *s, const char *place, const char *path)
+{
+    const char *dot = strchr(place, '.');
+    char name[SCENE_NAME_MAX + 1], whole[NOTE_PLACE_MAX];
+    if (!dot || (size_t)(dot - place) >= sizeof name)
+        return false;
+    snprintf(name, sizeof name, "%.*s", (int)(dot - place), place);
+    const int solid_index = scene_find_solid(s, name);
+    if (solid_index < 0 || s->solids[solid_index].material_index < 0)
+        return false;
+    snprintf(whole, sizeof whole, "%s%s", s->materials[s->solids[solid_index].material_index].name, dot);
+    return is_part(whole, path);
+}
+
+static bool varies(void *context, const char *place)
+{
+    const study *s = context;
+    for (size_t a = 0; a < s->axis_count; a++)
+        for (size_t i = 0; i < s->axes[a].points[0].count; i++) {
+            const char *path = s->axes[a].points[0].paths[i];
+            if (is_part(place, path) || is_part(path, place) || is_of_material(s->base, place, path))
+                return true;
+        }
+    return false;
+}
+
+/* Notes on the scene with the fixed parameters, before anything is measured. Slimes are not moved for them. */
+static status lint(const study *s, const study_request *request, diagnostic *why)
+{
+    study_progress progress;
+    isa level = ISA_SSE2;
+    status result = study_status(s, request->results, &progress, why);
+    if (result != STATUS_OK || progress.cells_done == progress.cells)
+        return result;
+    result = scene_input_isa(&level, why);
+    scene *base = scene_clone(s->base);
+    if (result == STATUS_OK && !base)
+        result = diagnose(why, STATUS_FAILURE, "", "out of memory");
+    bool moves = false;
+    for (size_t i = 0; result == STATUS_OK && i < base->mesh_count; i++)
+        moves |= base->meshes[i].source == MESH_SLIME;
+    if (result == STATUS_OK)
+        result = moves ? scene_load_files(base, why) : scene_load(base, why);
+    if (result == STATUS_OK)
+        result = scene_input_lint(base, level, &(lint_filter){varies, (void *)(uintptr_t)s}, why);
+    scene_destroy(base);
+    return result;
+}
+
 static status run_one(const study *s, const study_request *request, diagnostic *why)
 {
     FILE *terminal = !request->quiet && terminal_is_smart(STDERR_FILENO) ? stderr : NULL;
@@ -47,7 +105,9 @@ static status run_one(const study *s, const study_request *request, diagnostic *
                                    .progress = terminal,
                                    .stop = stop_asked};
     size_t rows = 0;
-    status result = study_run(s, &options, &rows, why);
+    status result = request->quiet ? STATUS_OK : lint(s, request, why);
+    if (result == STATUS_OK)
+        result = study_run(s, &options, &rows, why);
     if (result == STATUS_INTERRUPTED) {
         diagnose(why, STATUS_INTERRUPTED, study_keeps_files(s) ? "run it again to go on; pictures are made at the end" : "run it again to go on",
                  "interrupted; its %zu new rows are kept", rows);

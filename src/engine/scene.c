@@ -167,18 +167,20 @@ cuvette_status cuvette_scene_check(const cuvette_scene *s, cuvette_diagnostic *w
     return engine_report(engine_check(s, &inner), &inner, why);
 }
 
-typedef struct note_taker {
+typedef struct host_call {
     void (*note)(void *context, const char *text);
     void *context;
     float_environment *host; /* the caller's, for the caller's function */
-} note_taker;
+} host_call;
 
-static void take_note(void *context, const char *text)
+static void call_host(void *context, const scene_note *note)
 {
-    const note_taker *t = context;
-    float_environment_leave(t->host);
-    t->note(t->context, text);
-    float_environment_enter(t->host);
+    const host_call *h = context;
+    char line[NOTE_LINE_MAX];
+    note_line(note, line, sizeof line);
+    float_environment_leave(h->host);
+    h->note(h->context, line);
+    float_environment_enter(h->host);
 }
 
 cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *context, const char *text), void *context,
@@ -193,7 +195,7 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
     diagnostic inner = {.line = 0};
     if (!copy)
         return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
-    scene_hints(copy, take_note, &(note_taker){note, context, &host});
+    scene_hints(copy, &(note_taker){call_host, &(host_call){note, context, &host}});
     scene_destroy(copy);
     return CUVETTE_OK;
 }

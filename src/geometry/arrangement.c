@@ -97,6 +97,7 @@ static void add_body(arrangement *a, int rank, const body_source *source)
                 .medium = source->medium,
                 .opaque = source->opaque,
                 .clearness = source->opaque ? 0.0 : source->clearness,
+                .face_clearness = source->opaque ? NULL : source->face_clearness,
                 .absorbs = source->absorbs && !source->opaque,
                 .reflects = source->reflects && !source->opaque,
                 .solid = source->solid};
@@ -182,7 +183,7 @@ void arrangement_surroundings_absorb(arrangement *a)
     a->bodies[0].absorbs = a->absorbs = true;
 }
 
-static bool primitive_contains(const primitive *p, vec3 point)
+bool primitive_contains(const primitive *p, vec3 point)
 {
     vec3 q = mat3_apply_transposed(p->rotation, vec3_sub(point, p->origin));
     switch (p->kind) {

@@ -45,6 +45,8 @@ typedef struct body {
     int64_t medium;      /* equal numbers are equal media */
     bool opaque;
     double clearness;    /* share of light that a shadow ray keeps at each of its interfaces; 0 when opaque */
+    const double *face_clearness; /* the same by slot of a mesh whose faces differ, clearness being the least;
+                                   * borrowed, or NULL */
     bool absorbs;        /* its medium takes light away with length */
     bool reflects;       /* by the angle: shadow rays note where they cross its surface (see ray_crossings) */
     int solid;           /* index of the solid it came from */
@@ -76,6 +78,7 @@ typedef struct body_source {
     int64_t medium;
     bool opaque;
     double clearness;
+    const double *face_clearness; /* by slot; borrowed, or NULL */
     bool absorbs, reflects;
     int solid;
 } body_source;
@@ -89,6 +92,9 @@ void arrangement_surroundings_absorb(arrangement *a);
 
 /* The set of primitives that contain a point, bit by bit, by the primitives' own definitions (surfaces included). */
 uint64_t arrangement_inside(const arrangement *a, vec3 point);
+
+/* Does it contain the point? No mesh does here. */
+bool primitive_contains(const primitive *p, vec3 point);
 
 /* The rank of the body whose surface an interface between two ranks is: an opaque body's if either is opaque (the one behind, if
  * both are), else that of the higher rank. */

@@ -378,13 +378,24 @@ static void first_sight(const arrangement *a, const ray_batch *rays, int solid_s
         KERNEL(mesh_shadows)(a, rays, unsure, s->undecided, s->blocked);
 }
 
+/* The slot of the mesh that column k crosses; 0 where another body's surface bounds it. */
+static int slot_met(const arrangement *a, const body *met, const hit_batch *c, const forest_hit *mesh_hits, int k)
+{
+    if (c->crossed[k] != met->outside || mesh_hits[k].face == FACE_NONE)
+        return 0;
+    const mesh *m = a->meshes->parts[a->meshes->by_primitive[met->outside]].triangles;
+    return m->slots ? m->slots[mesh_face_triangle(mesh_hits[k].face)] : 0;
+}
+
 /* One interface on the way of the shadow ray in column k: what of the light it lets through. */
-static double let_through(const arrangement *a, int solid_shadows, const hit_batch *c, int k)
+static double let_through(const arrangement *a, int solid_shadows, const hit_batch *c, const forest_hit *mesh_hits,
+                          int k)
 {
     const body *before = &a->bodies[c->before[k]], *after = &a->bodies[c->after[k]];
     if (solid_shadows || after->opaque || before->opaque)
         return 0.0;
-    return c->before[k] > c->after[k] ? before->clearness : after->clearness;
+    const body *met = c->before[k] > c->after[k] ? before : after;
+    return met->face_clearness ? met->face_clearness[slot_met(a, met, c, mesh_hits, k)] : met->clearness;
 }
 
 /* The interface that the shadow ray in column k crosses. */
@@ -459,7 +470,7 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
             if (c->crossed[k] < 0 || c->t[k] >= 1.0)
                 continue;
             if (!s->attention[k] || is_interface(a, rays, k, s, c, again)) {
-                transmitted[s->ray[k]] *= let_through(a, solid_shadows, c, k);
+                transmitted[s->ray[k]] *= let_through(a, solid_shadows, c, again, k);
                 if (s->crossings && transmitted[s->ray[k]] > 0.0)
                     note_crossing(a, k, s, c, again);
             }

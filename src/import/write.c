@@ -36,6 +36,7 @@ static mesh_wire_material describe(const request *asked, const struct aiScene *s
     const struct aiMaterial *material = scene->mMaterials[index];
     mesh_wire_material m = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1};
     float alpha = 1, unused;
+    double strength = 1; /* glTF's KHR_materials_emissive_strength */
     *name = *texture = (struct aiString){0};
     if (aiGetMaterialString(material, AI_MATKEY_NAME, name) != aiReturn_SUCCESS) {
         *name = (struct aiString){0}; /* which it leaves undefined */
@@ -43,6 +44,11 @@ static mesh_wire_material describe(const request *asked, const struct aiScene *s
     get_color(material, "$clr.diffuse", m.diffuse, &alpha);
     get_color(material, "$clr.ambient", m.ambient, &unused);
     get_color(material, "$clr.specular", m.specular, &unused);
+    get_color(material, "$clr.emissive", m.emissive, &unused);
+    get_number(material, "$mat.emissiveIntensity", &strength);
+    for (int c = 0; c < 3; c++) {
+        m.emissive[c] *= strength;
+    }
     get_number(material, "$mat.shininess", &m.shininess);
     get_number(material, "$mat.refracti", &m.ior);
     m.opacity = (double)alpha;

@@ -14,7 +14,7 @@ static vec3 coefficients(const plan *p, int rank, int64_t ticket)
     return vec3_make(a, a, a);
 }
 
-static double share_left(double optical_depth)
+double absorption_left(double optical_depth)
 {
     return elementary_exp2_inline(-LOG2_E * optical_depth);
 }
@@ -61,7 +61,7 @@ static void absorption_shares(tracer *t, int count)
     add_depths(t);
     for (int i = 0; i < count; i++)
         for (int c = 0; c < 3; c++)
-            t->kept[c][i] = t->kept[c][i] > 0.0 ? share_left(t->kept[c][i]) : 1.0;
+            t->kept[c][i] = t->kept[c][i] > 0.0 ? absorption_left(t->kept[c][i]) : 1.0;
 }
 
 /* A way to the sky has no length to be dimmed over: its light is given where it arrives, at the surface that it goes on from. */

@@ -37,8 +37,13 @@ void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
     const int64_t cells = cells_across(r);
     const int at = q->count;
     for (int k = 0; k < count; k++) {
-        const int64_t x = x0 + (first + k) / each, ray = (first + k) % each, s = point_of(r, cells, ray);
-        const double sx = ((double)(s % cells) + 0.5) / (double)cells, sy = ((double)(s / cells) + 0.5) / (double)cells;
+        int64_t x = x0 + first + k, ray = 0;
+        double sx = 0.5, sy = 0.5;
+        if (each > 1) { /* else nothing needs to be divided */
+            x = x0 + (first + k) / each, ray = (first + k) % each;
+            const int64_t s = point_of(r, cells, ray);
+            sx = ((double)(s % cells) + 0.5) / (double)cells, sy = ((double)(s / cells) + 0.5) / (double)cells;
+        }
         u[k] = ((double)x + sx) * across - p->view.half_width;
         v[k] = p->view.half_height - (y + sy) * down;
         const int i = at + k;

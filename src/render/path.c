@@ -205,8 +205,7 @@ static void cut(tracer *t, int k, const continuation *c)
     COUNT(t->counters.cut_depth_throughput[0] += counters_cut_units(r));
     COUNT(t->counters.cut_depth_throughput[1] += counters_cut_units(gr));
     COUNT(t->counters.cut_depth_throughput[2] += counters_cut_units(b));
-    if (t->target.scene->render.beyond == BEYOND_SKY)
-        shading_expose_sky(t, g->ticket[k], c->direction, r, gr, b);
+    shading_expose_beyond(t, g->ticket[k], c->direction, r, gr, b);
 }
 
 static void go_on(tracer *t, int k, int depth, const continuation *c)
@@ -239,7 +238,7 @@ void path_group(tracer *t, int depth, int rank)
 {
     const plan *p = t->target.scene;
     const material *m = &t->look->surface;
-    const bool opaque = p->solids->bodies[rank].opaque, lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
+    const bool opaque = surface_is_opaque(t, rank), lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
     local_light(t, rank); /* of points; spheres follow */
     if (t->basic)
         radiance_weigh(t);

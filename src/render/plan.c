@@ -1,6 +1,6 @@
 #include "render/plan.h"
 
-#include "base/elementary.h"
+#include "render/sky.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,7 +90,8 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
     solid_shape *shapes = calloc(s->solid_count + 1, sizeof *shapes);
     p->own_trees = calloc(s->solid_count + 1, sizeof(hierarchy *));
     p->own_tree_count = s->solid_count;
-    if (!sources || !shapes || !p->own_trees) {
+    p->clearness = calloc(s->solid_count + 1, sizeof *p->clearness);
+    if (!sources || !shapes || !p->own_trees || !p->clearness) {
         free(sources);
         free(shapes);
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
@@ -101,16 +102,19 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
         const solid *one = &s->solids[i];
         if (!one->visible)
             continue;
-        sources[count] =
-            (body_source){.shape = &one->shape,
-                          .priority = one->priority,
-                          .medium = medium_of(s, laws, i),
-                          .opaque = material_is_opaque(&one->surface),
-                          .clearness = one->surface.transparency * (1.0 - material_coating(&one->surface, &s->render)),
-                          .absorbs = material_dims(&one->surface),
-                          .reflects = p->basic && !scene_has_constant_shares(&s->render),
-                          .solid = i};
-        if (one->shape.kind == SHAPE_MESH)
+        double clearness;
+        if (!body_clearness_make(s, one, &clearness, &p->clearness[i]))
+            code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+        sources[count] = (body_source){.shape = &one->shape,
+                                       .priority = one->priority,
+                                       .medium = medium_of(s, laws, i),
+                                       .opaque = looks_opaque(s, one),
+                                       .clearness = clearness,
+                                       .face_clearness = p->clearness[i],
+                                       .absorbs = material_dims(&one->surface),
+                                       .reflects = p->basic && !scene_has_constant_shares(&s->render),
+                                       .solid = i};
+        if (code == STATUS_OK && one->shape.kind == SHAPE_MESH)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
     }
@@ -213,6 +217,8 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         p->eye_inside = arrangement_inside(p->solids, p->view.eye);
     p->eye_rank = arrangement_rank(p->solids, p->eye_inside);
     p->sky = &s->background;
+    if (s->render.beyond == BEYOND_MEAN)
+        p->sky_mean = sky_mean(p->sky);
     p->lights = s->lights;
     p->light_count = (int)s->light_count;
     p->solid_shadows = s->render.shadows == SHADOWS_OPAQUE;
@@ -233,6 +239,9 @@ void plan_destroy(plan *p)
     for (size_t i = 0; p->own_trees && i < p->own_tree_count; i++)
         hierarchy_destroy(p->own_trees[i]);
     free(p->own_trees);
+    for (size_t i = 0; p->clearness && i < p->own_tree_count; i++)
+        free(p->clearness[i]);
+    free(p->clearness);
     free(p->materials);
     free(p->mirrors);
     free(p->ior);

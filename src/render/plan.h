@@ -9,11 +9,9 @@
 #include "render/light_cone.h"
 #include "render/spectra.h"
 #include "scene/camera.h"
+#include "scene/looks.h"
 #include "scene/medium.h"
 #include "scene/scene.h"
-
-/* What one kind of face of a body looks like. */
-typedef struct surface_look { material surface; const texture *picture; } surface_look;
 
 /* By a mesh's slots, or one for all. */
 typedef struct body_look {
@@ -28,6 +26,7 @@ typedef struct plan {
     body_look *looks;           /* by rank; [0] is empty */
     hierarchy **own_trees;      /* of a plan that does not keep them with the meshes; by solid */
     size_t own_tree_count;
+    double **clearness; /* by solid: of its faces by slot, or NULL; as many as own_trees */
     mesh_report meshes;
     material *mirrors;          /* by solid: clear materials whose index makes them mirrors, as opaque ones */
     double *ior;                /* by rank; [0] is the surrounding medium's; at render.lambda_nm */
@@ -41,6 +40,7 @@ typedef struct plan {
     render_settings render;
     bool solid_shadows;         /* every solid blocks a light: it is asked for, or what comes through is found by random paths */
     const background *sky;
+    vec3 sky_mean; /* over all directions; worked out where render.beyond is mean */
     const light *lights;
     light_cone *cones;          /* by light; of a point light it means nothing */
     int light_count;
@@ -52,5 +52,8 @@ void plan_destroy(plan *p);
 
 /* Fills *out for a body of that solid, whose own surface is that material; false when memory is out. For plan.c. */
 bool body_look_make(const scene *s, const solid *owner, const material *surface, body_look *out);
+/* What a shadow ray keeps at its surface: the least, and by slot where faces differ, else NULL; *by_slot is the
+ * caller's. False when memory is out. */
+bool body_clearness_make(const scene *s, const solid *owner, double *least, double **by_slot);
 
 #endif

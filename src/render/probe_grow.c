@@ -105,10 +105,10 @@ static void hang(ray_tree *tree, int parent, size_t child)
 
 /* What radiance from beyond the interface is multiplied by. Under simple transmission nothing is bent, and no index
  * comes in. */
-static void read_gain(const probe *p, int rank, ray_hit *h)
+static void read_gain(const probe *p, ray_hit *h)
 {
     const render_settings *r = &p->scene->render;
-    const material *m = p->scene->materials[rank];
+    const material *m = &p->rays->look->surface;
     if (h->opaque || h->tir)
         return;
     h->T = m->transparency * (scene_has_constant_shares(r) ? 1.0 : 1.0 - h->R);
@@ -129,27 +129,40 @@ static bool read_hit(const probe *p, ray_node *node)
     const int crossed = (int)t->hits.crossed[0], rank = (int)t->hits.surface[0];
     const body *owner = &a->bodies[rank], *bounded = &a->bodies[a->primitives[crossed].rank];
     const fresnel f = fresnel_dielectric(s->cos_i[0], g->n_from[0], g->n_to[0]);
+    const bool opaque = surface_is_opaque(t, rank);
     ray_hit *h = &node->hit;
-    *h = (ray_hit){.solid = owner->solid, .face_solid = bounded->solid, .opaque = owner->opaque, .t = t->hits.t[0],
-                   .point = vec3_make(s->px[0], s->py[0], s->pz[0]), .normal = vec3_make(s->nx[0], s->ny[0], s->nz[0]),
-                   .from = a->bodies[t->hits.before[0]].solid, .to = a->bodies[t->hits.after[0]].solid,
-                   .n_from = g->n_from[0], .n_to = g->n_to[0], .cos_i = s->cos_i[0], .cos_t = f.cos_t,
-                   .R_s = f.R_s, .R_p = f.R_p, .R = f.R, .tir = f.total != 0, .error_bound = s->error[0]};
+    *h = (ray_hit){.solid = owner->solid,
+                   .face_solid = bounded->solid,
+                   .opaque = opaque,
+                   .t = t->hits.t[0],
+                   .point = vec3_make(s->px[0], s->py[0], s->pz[0]),
+                   .normal = vec3_make(s->nx[0], s->ny[0], s->nz[0]),
+                   .from = a->bodies[t->hits.before[0]].solid,
+                   .to = a->bodies[t->hits.after[0]].solid,
+                   .n_from = g->n_from[0],
+                   .n_to = g->n_to[0],
+                   .cos_i = s->cos_i[0],
+                   .cos_t = f.cos_t,
+                   .R_s = f.R_s,
+                   .R_p = f.R_p,
+                   .R = f.R,
+                   .tir = f.total != 0,
+                   .error_bound = s->error[0]};
     h->face = is_mesh_face(s->face[0]) ? (int)mesh_face_triangle(s->face[0])
                                        : (int)(s->face[0] % FACES_MAX) + (crossed == bounded->hollow ? FACES_MAX : 0);
-    const double coating = owner->opaque ? 0.0 : material_coating(&t->look->surface, &p->scene->render);
+    const double coating = opaque ? 0.0 : material_coating(&t->look->surface, &p->scene->render);
     h->R_s += (1.0 - h->R_s) * coating, h->R_p += (1.0 - h->R_p) * coating, h->R += (1.0 - h->R) * coating;
-    if (owner->opaque) {
+    if (opaque) {
         h->R_s = h->R_p = h->R = t->look->surface.reflectivity;
         h->cos_t = 0.0;
         h->tir = false;
     }
-    if (!owner->opaque && p->scene->render.transmission == TRANSMISSION_SIMPLE) {
-        h->R_s = h->R_p = h->R = p->scene->materials[rank]->reflectivity;
+    if (!opaque && p->scene->render.transmission == TRANSMISSION_SIMPLE) {
+        h->R_s = h->R_p = h->R = t->look->surface.reflectivity;
         h->cos_t = h->cos_i;
         h->tir = false;
     }
-    read_gain(p, rank, h);
+    read_gain(p, h);
     h->path_length_m = h->t * p->scene->render.unit_m;
     for (int c = 0; c < 3; c++)
         h->transmittance[c] = a->absorbs ? t->kept[c][0] : 1.0;
@@ -202,7 +215,7 @@ static void read_branches(const probe *p, int depth, branches *out)
 {
     const tracer *t = p->rays;
     const int rank = (int)t->hits.surface[0];
-    const bool opaque = p->scene->solids->bodies[rank].opaque;
+    const bool opaque = surface_is_opaque(t, rank);
     int queued = 0;
     out->count = 0;
     if (!t->branching || (opaque && t->look->surface.reflectivity == 0.0))

@@ -340,6 +340,9 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         if (code == STATUS_OK) {
             const bool in_range = film_add_layers(result->picture, result->variance);
             code = collect(f, in_range, result, why);
+            if (code == STATUS_OK && depths && zbuffer_failed(depths))
+                code = diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer clear solids",
+                                "out of memory for the layers of clear solids");
         }
         for (int i = 0; i < count; i++)
             free(desks[i].events.event);

@@ -82,18 +82,46 @@ void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, do
     expose_at(t, ticket, wr * l.x, wg * l.y, wb * l.z);
 }
 
-static void expose_ambient(tracer *t, const material *m)
+/* What lies beyond the depth limit, along a branch that it cuts off. */
+static void expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+{
+    const plan *p = t->target.scene;
+    if (p->render.beyond != BEYOND_MEAN) {
+        shading_expose_sky(t, ticket, direction, wr, wg, wb);
+        return;
+    }
+    vec3 l = p->sky_mean;
+    if (p->spectral)
+        l.x = l.y = l.z = spectra_sky_mean(spectra_row(p->spectral, ticket), p->sky, p->sky_mean);
+    if (p->basic)
+        l = vec3_scale(l, radiance_share(p, ticket, 0));
+    expose(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+}
+
+void shading_expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+{
+    if (t->target.scene->render.beyond != BEYOND_BLACK)
+        expose_beyond(t, ticket, direction, wr, wg, wb);
+}
+
+/* Light that needs no lamp: ambient, which random paths find by themselves, and emitted; of a spectral film as
+ * daylight, white's spectrum. */
+static void expose_own_light(tracer *t, const material *m)
 {
     const group *g = &t->gathered;
     const plan *p = t->target.scene;
+    const double k_a = p->render.integrator == INTEGRATOR_PATH ? 0.0 : m->ambient, k_e = m->emission;
+    if (k_a == 0.0 && k_e == 0.0)
+        return;
     if (p->spectral) {
         for (int i = 0; i < g->count; i++) {
-            const double a = m->ambient * spectra_row(p->spectral, g->ticket[i])->ambient * g->cr[i];
+            const spectral_row *row = spectra_row(p->spectral, g->ticket[i]);
+            const double a = (k_a * row->ambient + k_e * row->basis[SKY_BASIS_WHITE]) * g->cr[i];
             expose(t, g->ticket[i], g->wr[i] * a, g->wg[i] * a, g->wb[i] * a);
         }
         return;
     }
-    vec3 a = vec3_scale(p->sky->ambient, m->ambient);
+    const vec3 a = vec3_add(vec3_scale(p->sky->ambient, k_a), vec3_make(k_e, k_e, k_e));
     for (int i = 0; i < g->count; i++)
         expose(t, g->ticket[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
 }
@@ -148,8 +176,7 @@ static void send_out(tracer *t, int rank)
         dull.specular = 0.0;
         m = &dull;
     }
-    if (m->ambient > 0.0 && p->render.integrator != INTEGRATOR_PATH)
-        expose_ambient(t, m);
+    expose_own_light(t, m);
     if (m->diffuse == 0.0 && m->specular == 0.0)
         return;
     for (int k = 0; k < p->light_count; k++) {
@@ -161,7 +188,8 @@ static void send_out(tracer *t, int rank)
             continue;
         }
         for (int i = 0; i < t->gathered.count; i++)
-            expose(t, t->gathered.ticket[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
+            if (t->lit.shows[i])
+                expose(t, t->gathered.ticket[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
     }
 }
 
@@ -189,13 +217,16 @@ static void cut_branches(tracer *t)
     }
     if (p->render.beyond == BEYOND_BLACK)
         return;
-    const bool uniform = p->sky->kind == BACKGROUND_UNIFORM; /* then directions do not matter */
+    const bool uniform =
+        p->sky->kind == BACKGROUND_UNIFORM || p->render.beyond == BEYOND_MEAN; /* then directions do not matter */
     for (int i = 0; i < g->count; i++) {
         const double first = uniform ? b->reflect[i] + b->refract[i] : b->reflect[i], second = uniform ? 0.0 : b->refract[i];
         if (first > 0.0)
-            shading_expose_sky(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first, g->wg[i] * first, g->wb[i] * first);
+            expose_beyond(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first, g->wg[i] * first,
+                          g->wb[i] * first);
         if (second > 0.0)
-            shading_expose_sky(t, g->ticket[i], vec3_make(b->tx[i], b->ty[i], b->tz[i]), g->wr[i] * second, g->wg[i] * second, g->wb[i] * second);
+            expose_beyond(t, g->ticket[i], vec3_make(b->tx[i], b->ty[i], b->tz[i]), g->wr[i] * second,
+                          g->wg[i] * second, g->wb[i] * second);
     }
 }
 
@@ -262,13 +293,17 @@ static void branch(tracer *t, int depth, bool opaque)
     const material *m = &t->look->surface;
     group *g = &t->gathered;
     branch_group *b = &t->branches;
-    if (opaque && m->reflectivity == 0.0)
+    if (opaque && (m->reflectivity == 0.0 || t->target.depths))
         return;
     shading_branches(t, opaque);
     if (!opaque)
         COUNT(t->counters.total_internal += (uint64_t)b->total);
     if (depth == t->depth_limit) {
         cut_branches(t);
+        return;
+    }
+    if (t->target.depths) {
+        drawn_branches(t, depth);
         return;
     }
     int reflected = put_children_in_line(t, depth + 1, b->rx, b->ry, b->rz, b->reflect, g->inside_before);
@@ -312,6 +347,8 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
         mesh_surface(t, rank, list);
     else
         t->geometry->surface(surface, &rays, g->t, met, &g->points);
+    if (t->target.depths)
+        drawn_bend(t, list);
     const int owner = p->solids->bodies[rank].solid;
     COUNT(t->counters.hits[owner] += (uint64_t)count);
     if (depth == 0)
@@ -325,7 +362,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
     }
     local_light(t, rank);
     if (t->branching)
-        branch(t, depth, p->solids->bodies[rank].opaque);
+        branch(t, depth, surface_is_opaque(t, rank));
 }
 
 void shading_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)

@@ -46,3 +46,42 @@ vec3 sky_radiance(const background *sky, vec3 direction)
     }
     return sky->color;
 }
+
+/* What a row of texels weighs in the mean: the integral of its interpolation, a hat from the row above to the row
+ * below, times the sine of the polar angle. With rows h apart that is sin(angle) 2 (1 - cos h) / h; a row next to a
+ * pole holds up to the pole: 1 - 2 cos h sin(h / 2) / h. All of them add up to 2. */
+static double row_weight(int y, int height)
+{
+    const double h_deg = 180.0 / height, h = 3.141592653589793 / height;
+    double sin_h, cos_h, sin_half, cos_half, sine, cosine;
+    if (height == 1)
+        return 2.0;
+    elementary_sincos_deg(h_deg, &sin_h, &cos_h);
+    elementary_sincos_deg(0.5 * h_deg, &sin_half, &cos_half);
+    if (y == 0 || y == height - 1)
+        return 1.0 - 2.0 * cos_h * sin_half / h;
+    elementary_sincos_deg((y + 0.5) * h_deg, &sine, &cosine);
+    return sine * 4.0 * sin_half * sin_half / h;
+}
+
+static vec3 picture_mean(const image *picture)
+{
+    vec3 mean = {0.0, 0.0, 0.0};
+    for (int y = 0; y < picture->height; y++) {
+        vec3 row = {0.0, 0.0, 0.0};
+        for (int x = 0; x < picture->width; x++)
+            row = vec3_add(row, picture_texel(picture, x, y));
+        mean = vec3_add(mean, vec3_scale(row, 0.5 * row_weight(y, picture->height) / picture->width));
+    }
+    return mean;
+}
+
+vec3 sky_mean(const background *sky)
+{
+    switch ((background_kind)sky->kind) {
+    case BACKGROUND_UNIFORM: return sky->color;
+    case BACKGROUND_GRADIENT: return mix(sky->horizon, sky->color, 0.25);
+    case BACKGROUND_PICTURE: return sky->picture ? picture_mean(sky->picture) : sky->color;
+    }
+    return sky->color;
+}

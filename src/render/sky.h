@@ -8,4 +8,8 @@
 /* direction: unit vector. */
 vec3 sky_radiance(const background *sky, vec3 direction);
 
+/* Its mean over all directions, each solid angle counting alike: of a gradient (3 horizon + zenith) / 4, since the mean
+ * of max(0, sin(elevation)) over the sphere is 1/4; of a picture, of its texels as they are interpolated. */
+vec3 sky_mean(const background *sky);
+
 #endif

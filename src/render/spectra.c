@@ -185,3 +185,13 @@ double spectra_sky(const spectral_row *row, const background *sky, vec3 directio
     }
     return row->sky;
 }
+
+double spectra_sky_mean(const spectral_row *row, const background *sky, vec3 mean)
+{
+    switch ((background_kind)sky->kind) {
+    case BACKGROUND_UNIFORM: break;
+    case BACKGROUND_GRADIENT: return 0.75 * row->horizon + 0.25 * row->sky;
+    case BACKGROUND_PICTURE: return texel_at(row, mean);
+    }
+    return row->sky;
+}

@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 
 /* A number of wavelengths that puts each of the observer's 5 nm into 50 of them. */
-enum { SPECTRA_COUNT = 10 * (OBSERVER_HIGH_NM - OBSERVER_LOW_NM), SKY_BASIS_COUNT = 7 };
+enum { SPECTRA_COUNT = 10 * (OBSERVER_HIGH_NM - OBSERVER_LOW_NM), SKY_BASIS_COUNT = 7, SKY_BASIS_WHITE = 0 };
 
 /* Offsets that the wavelengths of a pixel can have, and from how many wavelengths on their sum is made good. */
 enum { SPECTRA_OFFSETS = 256, SPECTRA_WHITE_FROM = 8 };
@@ -63,7 +63,8 @@ static inline double spectra_light(const spectra *p, int64_t ticket, int lamp)
     return p->lights[(size_t)ticket_wavelength(ticket) * p->light_count + (size_t)lamp];
 }
 
-/* Radiance of the sky. */
+/* Radiance of the sky; its mean over all directions, of which sky_mean has the colour. */
 double spectra_sky(const spectral_row *row, const background *sky, vec3 direction);
+double spectra_sky_mean(const spectral_row *row, const background *sky, vec3 mean);
 
 #endif

@@ -31,6 +31,8 @@ void tracer_destroy(tracer *t)
     free(t->waiting);
     free(t->ways);
     free(t->meshes);
+    if (t->drawn)
+        zbuffer_square_release(&t->drawn->square);
     free(t->drawn);
     free(t->basic_memory);
     queue_destroy(&t->shadows);
@@ -64,7 +66,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     t->target = *target;
     const render_settings *r = &target->scene->render;
     t->depth_limit = (int)r->depth;
-    t->branching = r->integrator == INTEGRATOR_WHITTED && r->lighting == LIGHTING_WHITTED;
+    t->branching = (r->integrator == INTEGRATOR_WHITTED || target->depths) && r->lighting == LIGHTING_WHITTED;
     t->by_ticket =
         r->integrator == INTEGRATOR_PATH || r->spectrum == SPECTRUM_SPECTRAL || target->depths || target->scene->basic;
     /* Of a spectral film a camera ray is one for each wavelength, each with its part of the weight. */
@@ -80,8 +82,10 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     if (target->scene->solids->meshes && !t->meshes && !(t->meshes = malloc(sizeof *t->meshes)))
         return false;
     t->scratch.meshes = t->meshes ? &t->meshes->scratch : NULL;
-    if (target->depths && !t->drawn && !(t->drawn = malloc(sizeof *t->drawn)))
+    if (target->depths && !t->drawn && !(t->drawn = calloc(1, sizeof *t->drawn)))
         return false;
+    if (t->drawn)
+        zbuffer_square_begin(&t->drawn->square);
     t->straight = target->depths && r->texturing == TEXTURING_AFFINE;
     const bool absorbs = target->scene->solids->absorbs && !target->depths;
     if (absorbs && !t->ways && !(t->ways = malloc(sizeof *t->ways)))
@@ -168,14 +172,15 @@ static void trace_batch(tracer *t, int depth)
     ray_queue *q = &t->waiting[depth];
     int first;
     const ray_batch rays = queue_take(q, &first);
-    COUNT(t->counters.by_depth[depth] += (uint64_t)rays.count);
+    if (depth == 0 || !t->target.depths) /* what is seen behind a layer is no other ray */
+        COUNT(t->counters.by_depth[depth] += (uint64_t)rays.count);
     if (depth == 0)
         COUNT(t->counters.camera += (uint64_t)rays.count);
     if (t->scratch.ways)
         absorption_begin(t, q->ticket + first, rays.count);
     const int64_t began_ns = visibility_begins(t);
     if (t->target.depths)
-        drawn_hits(t, q, first, &rays);
+        drawn_hits(t, q, first, depth, &rays);
     else
         t->geometry->nearest(p->solids, &rays, &t->scratch, &t->hits);
     visibility_ends(t, began_ns);
@@ -243,7 +248,7 @@ void tracer_run_batch(tracer *t, int depth)
     depth < 0 ? trace_shadows(t) : trace_batch(t, depth);
     double share = (double)(clock_wall_ns() - began) / count;
     for (int i = first; i < first + count; i++) {
-        if (target->pixel_rays)
+        if (target->pixel_rays && !(target->depths && depth > 0))
             target->pixel_rays[ticket_pixel(q->ticket[i])] += 1.0;
         if (target->pixel_ns)
             target->pixel_ns[ticket_pixel(q->ticket[i])] += share;

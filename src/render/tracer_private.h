@@ -25,6 +25,8 @@ typedef struct drawn_work {
     zbuffer_square square;
     int x[ROW], y[ROW];
     uint32_t number[ROW];
+    bool straight[ROW];               /* it meets a curved surface and looks straight on */
+    double vx[ROW], vy[ROW], vz[ROW]; /* and the straight view's direction there, of a frame with layers */
     vec3 at[ROW];            /* of the gathered group: where a texture is looked up that runs straight across the picture */
 } drawn_work;
 
@@ -102,7 +104,9 @@ int mesh_next_look(const tracer *t, int *list, int count, int *slot);
 void texture_colors(tracer *t, const primitive *surface);
 
 /* zbuffer_shading.c: t->hits of a batch of camera rays, as drawn; texture points or coordinates of the gathered group straight across the picture. */
-void drawn_hits(tracer *t, const ray_queue *q, int first, const ray_batch *rays);
+void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
+void drawn_bend(tracer *t, const int *list);
+void drawn_branches(tracer *t, int depth);
 void drawn_straighten(tracer *t, const int *list);
 
 /* Adds radiance to a ticket's pixel. Of a spectral film the three channels are one: radiance at the ticket's wavelength. */
@@ -110,6 +114,14 @@ void shading_expose(tracer *t, int64_t ticket, double r, double g, double b);
 
 /* Adds what the sky sends along a direction, weighted. */
 void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb);
+/* What a branch that the depth limit cuts off brings: render.beyond. */
+void shading_expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb);
+
+/* Does no light pass the surface of that rank's body with the tracer's look? */
+static inline bool surface_is_opaque(const tracer *t, int rank)
+{
+    return t->target.scene->solids->bodies[rank].opaque || t->look->surface.transparency == 0.0;
+}
 
 /* Local light of the lights and the ambient, weighted, of the gathered group. */
 void local_light(tracer *t, int rank);
@@ -126,6 +138,7 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
 void absorption_spare_sky(tracer *t);
 void absorption_begin(tracer *t, const int64_t *tickets, int count);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
+double absorption_left(double optical_depth);
 
 /* radiance.c: how much of what is sent out into the medium of a rank reaches an eye as radiance, (n_eye / n)^2; the
  * gathered group's throughput times that, and back again; and the transmittances of the interfaces that a batch of

@@ -67,7 +67,10 @@ status zbuffer_create(const plan *p, zbuffer **out, diagnostic *why)
     }
     z->seen = malloc((size_t)z->width * (size_t)z->height * sizeof *z->seen);
     z->first = calloc((size_t)z->across * (size_t)z->down + 1, sizeof *z->first);
-    status code = z->seen && z->first ? zbuffer_cut(z, why) : no_memory(why);
+    zbuffer_find_layers(z);
+    if (z->layered)
+        z->blocks = calloc(BLOCKS_MAX, sizeof(drawn_layer *));
+    status code = z->seen && z->first && (z->blocks || !z->layered) ? zbuffer_cut(z, why) : no_memory(why);
     if (code == STATUS_OK && !make_chunks(z))
         code = no_memory(why);
     if (code != STATUS_OK) {
@@ -86,6 +89,9 @@ void zbuffer_destroy(zbuffer *z)
         free(z->chunks[k].made);
     for (int k = 0; k < z->part_count; k++)
         mesh_release(z->parts[k].own);
+    for (size_t k = 0; z->blocks && k < BLOCKS_MAX; k++)
+        free(z->blocks[k]);
+    free(z->blocks);
     free(z->chunks);
     free(z->triangles);
     free(z->first);
@@ -100,11 +106,14 @@ static bool join_chunks(zbuffer *z)
     for (size_t k = 0; k < z->chunk_count; k++)
         z->triangle_count += z->chunks[k].made_count;
     z->triangles = malloc((z->triangle_count + 1) * sizeof *z->triangles);
-    if (!z->triangles || z->triangle_count >= UINT32_MAX)
+    if (!z->triangles || z->triangle_count >= SEEN_LAYERS - 1)
         return false;
     size_t at = 0;
+    z->first_layered = z->triangle_count;
     for (size_t k = 0; k < z->chunk_count; k++) {
         chunk *c = &z->chunks[k];
+        if (c->part == z->first_layered_part && at < z->first_layered)
+            z->first_layered = at;
         if (c->made_count)
             memcpy(z->triangles + at, c->made, c->made_count * sizeof *c->made);
         at += c->made_count;
@@ -168,6 +177,12 @@ size_t zbuffer_triangles(const zbuffer *z)
 size_t zbuffer_bytes(const zbuffer *z)
 {
     const size_t squares = (size_t)z->across * (size_t)z->down;
-    return (size_t)z->width * (size_t)z->height * sizeof *z->seen + z->triangle_count * sizeof *z->triangles +
-           z->first[squares] * sizeof *z->listed + (squares + 1) * sizeof *z->first;
+    return (size_t)z->width * (size_t)z->height * sizeof *z->seen + atomic_load(&z->layer_count) * sizeof(drawn_layer) +
+           z->triangle_count * sizeof *z->triangles + z->first[squares] * sizeof *z->listed +
+           (squares + 1) * sizeof *z->first;
+}
+
+bool zbuffer_failed(const zbuffer *z)
+{
+    return atomic_load(&z->out_of_memory);
 }

@@ -53,7 +53,7 @@ static status add(zbuffer *z, const body *b, int met, diagnostic *why)
     const primitive *p = &a->primitives[met];
     drawn_part *part = &z->parts[z->part_count];
     vec3 scale = vec3_make(1.0, 1.0, 1.0);
-    *part = (drawn_part){.met = met, .nearest = nearest_depth(p, z->scene->view.eye)};
+    *part = (drawn_part){.met = met, .hollow = met == b->hollow, .nearest = nearest_depth(p, z->scene->view.eye)};
     status code = STATUS_OK;
     switch (p->kind) {
     case PRIMITIVE_HALFSPACE: part->plane = true; break;
@@ -79,15 +79,27 @@ static status add(zbuffer *z, const body *b, int met, diagnostic *why)
     return code;
 }
 
-status zbuffer_cut(zbuffer *z, diagnostic *why)
+/* Those whose rank's bit is set. */
+static status add_bodies(zbuffer *z, uint64_t ranks, diagnostic *why)
 {
     const arrangement *a = z->scene->solids;
     status code = STATUS_OK;
     for (int rank = a->body_count; rank >= 1 && code == STATUS_OK; rank--) {
         const body *b = &a->bodies[rank];
+        if (!(ranks >> (rank - 1) & 1))
+            continue;
         code = add(z, b, b->outside, why);
         if (code == STATUS_OK && b->hollow >= 0)
             code = add(z, b, b->hollow, why);
     }
+    return code;
+}
+
+status zbuffer_cut(zbuffer *z, diagnostic *why)
+{
+    status code = add_bodies(z, ~z->layered, why);
+    z->first_layered_part = z->part_count;
+    if (code == STATUS_OK)
+        code = add_bodies(z, z->layered, why);
     return code;
 }

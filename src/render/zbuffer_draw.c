@@ -56,14 +56,21 @@ static void draw_triangle(zbuffer *z, uint32_t number, const window *w, zbuffer_
         return;
     edge e[3] = {edge_between(t, 0, 1, b.x0, b.y0), edge_between(t, 1, 2, b.x0, b.y0), edge_between(t, 2, 0, b.x0, b.y0)};
     const double a = t->a, least = t->least, most = t->most;
+    const bool layered = number >= z->first_layered;
     for (int y = b.y0; y < b.y1; y++) {
         int64_t from = 0, to = b.x1 - b.x0 - 1;
         for (int k = 0; k < 3; k++)
             narrow(&e[k], &from, &to);
         const double row = t->b * (y + 0.5) + t->c;
-        double *nearness = square->nearness + (y - w->y0) * (w->x1 - w->x0) - w->x0 + b.x0;
+        const int row_at = (y - w->y0) * (w->x1 - w->x0) - w->x0 + b.x0;
+        double *nearness = square->nearness + row_at;
         uint32_t *seen = z->seen + (size_t)y * (size_t)z->width + b.x0;
-        for (int64_t k = from; k <= to; k++) {
+        for (int64_t k = from; k <= to && layered; k++) {
+            const double near = lesser(greater(a * ((double)(b.x0 + k) + 0.5) + row, least), most);
+            if (near > nearness[k])
+                zbuffer_add_fragment(z, square, row_at + (int)k, near, number);
+        }
+        for (int64_t k = from; k <= to && !layered; k++) {
             const double near = lesser(greater(a * ((double)(b.x0 + k) + 0.5) + row, least), most);
             if (near > nearness[k]) {
                 nearness[k] = near;
@@ -81,11 +88,16 @@ static void draw_square(zbuffer *z, int x, int y, const window *w, zbuffer_squar
     const int points = (w->x1 - w->x0) * (w->y1 - w->y0);
     for (int k = 0; k < points; k++)
         square->nearness[k] = -1.0; /* what is infinitely far is nearer than nothing */
+    for (int k = 0; k < points && z->layered; k++)
+        square->newest[k] = -1;
+    square->count = 0;
     for (int row = w->y0; row < w->y1; row++)
         for (int k = w->x0; k < w->x1; k++)
             z->seen[(size_t)row * (size_t)z->width + (size_t)k] = 0;
     for (size_t k = z->first[at]; k < z->first[at + 1]; k++)
         draw_triangle(z, z->listed[k], w, square);
+    if (z->layered)
+        zbuffer_resolve(z, w->x0, w->y0, w->x1, w->y1, square);
 }
 
 void zbuffer_draw(zbuffer *z, const span *piece, zbuffer_square *square)

@@ -17,8 +17,22 @@ enum {
                            * stay under 2^63 */
     SQUARE_PIXELS = 32,   /* at most: fewer where pixels have more points than two by two */
     POLYGON_MAX = 8,      /* a triangle's corners and one for each plane that cuts it */
-    CHUNK_TRIANGLES = 4096
+    CHUNK_TRIANGLES = 4096,
+    LAYERS_MAX = 160,     /* of a point: more than the largest render.depth */
+    BLOCK_LAYERS = 1 << 16,
+    BLOCKS_MAX = 1 << 15
 };
+#define SEEN_LAYERS 0x80000000U /* of zbuffer.seen: the rest is where the point's list begins */
+
+/* What is seen at a point, one behind the other: see zbuffer_layers.c. */
+typedef struct drawn_layer {
+    uint32_t number;      /* of the triangle and 1; 0: the sky */
+    uint8_t before, after; /* ranks of the media */
+    uint8_t surface;      /* rank of the body whose surface it is */
+    bool leaving : 1;     /* the primitive; of the last one its triangle says so */
+    bool ends : 1;        /* it is opaque, or the sky */
+    bool passed : 1;      /* no interface: two media of one index meet that absorb differently */
+} drawn_layer;
 
 /* A point in the camera's frame, right, up, forward; distance 0 is a direction, infinitely far. */
 typedef struct clip_corner {
@@ -31,6 +45,7 @@ typedef struct drawn_part {
     forest_part at;
     int met;              /* primitive */
     double nearest;       /* depth that is drawn; by the part's own extent, so that no other solid shows in it */
+    bool hollow;          /* of a cup */
     bool plane;           /* four triangles from the foot of the eye's perpendicular to the horizon */
     mesh *own;            /* an analytic solid's triangles; NULL for a mesh */
 } drawn_part;
@@ -41,7 +56,8 @@ typedef struct screen_triangle {
     double least, most;   /* within what its corners have */
     uint32_t triangle, copy;
     uint16_t part;
-    uint16_t piece;       /* of the polygon that the planes left */
+    uint8_t piece;        /* of the polygon that the planes left */
+    bool curved;          /* a piece of a curved surface; only known of layers */
 } screen_triangle;
 
 /* Triangles of one part, numbered through its copies, and what came of them. */
@@ -60,7 +76,17 @@ struct zbuffer {
     double units_x, units_y; /* of the grid, in one of x / z and y / z */
     double reach_x, reach_y; /* largest of |x| / z and |y| / z */
     int part_count;
-    drawn_part parts[PRIMITIVES_MAX]; /* the highest rank first, so that of equally near triangles the one with the lower number is drawn */
+    drawn_part parts[PRIMITIVES_MAX]; /* the highest rank first, so that of equally near triangles the one with the
+                                       * lower number is drawn; layers last */
+    uint64_t layered;       /* bit r - 1: the body of rank r is drawn as layers; 0: there is nothing to see through */
+    uint64_t eye_inside;    /* those that the eye is in */
+    uint64_t skins;         /* those that are open meshes */
+    double eye_index;       /* refractive index where the eye is */
+    int first_layered_part;
+    size_t first_layered;   /* triangle */
+    drawn_layer **blocks;   /* of lists of layers */
+    atomic_uint next_block;
+    atomic_size_t layer_count;
     chunk *chunks;
     size_t chunk_count;
     atomic_size_t next_chunk;
@@ -73,8 +99,15 @@ struct zbuffer {
     uint32_t *seen;         /* by point of the grid: number of the triangle there and 1; 0 for none */
 };
 
+/* zbuffer_cover.c: fills layered and eye_inside. */
+void zbuffer_find_layers(zbuffer *z);
+
 /* zbuffer_bodies.c */
 status zbuffer_cut(zbuffer *z, diagnostic *why);
+
+/* zbuffer_layers.c: a point of a layered triangle; and all points of a window once its triangles are drawn. */
+void zbuffer_add_fragment(zbuffer *z, zbuffer_square *s, int point, double nearness, uint32_t number);
+void zbuffer_resolve(zbuffer *z, int x0, int y0, int x1, int y1, zbuffer_square *s);
 
 /* zbuffer_clip.c: the triangle's corners as seen from the camera; what the planes leave of it, in order; where a corner is on the grid. */
 void zbuffer_corners(const zbuffer *z, const drawn_part *p, uint32_t copy, uint32_t triangle, clip_corner out[POLYGON_MAX]);

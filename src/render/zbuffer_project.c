@@ -78,6 +78,18 @@ static bool is_beside(const zbuffer *z, const clip_corner *c)
     return left || right || below || above || behind;
 }
 
+/* Do the normals at its corners differ? A mesh that is shaded flat is what it is. */
+static bool is_curved(const zbuffer *z, const drawn_part *p, uint32_t triangle)
+{
+    const mesh *m = p->at.triangles;
+    if (p->plane || !m->normals || (!p->own && z->scene->looks[p->at.rank].shading == SHADING_FLAT))
+        return false;
+    const mesh_triangle tri = m->triangles[triangle];
+    const vec3 n = m->normals[tri.corner[0]];
+    const double least = 1.0 - 1e-9;
+    return !(vec3_dot(n, m->normals[tri.corner[1]]) > least && vec3_dot(n, m->normals[tri.corner[2]]) > least);
+}
+
 static void project_triangle(const zbuffer *z, chunk *c, const drawn_part *p, uint32_t copy, uint32_t triangle)
 {
     clip_corner polygon[POLYGON_MAX];
@@ -86,6 +98,7 @@ static void project_triangle(const zbuffer *z, chunk *c, const drawn_part *p, ui
     zbuffer_corners(z, p, copy, triangle, polygon);
     if (is_beside(z, polygon) || !depth_plane(z, p, polygon, &t))
         return;
+    t.curved = c->part >= z->first_layered_part && is_curved(z, p, triangle);
     const int count = zbuffer_clip(z, p, polygon);
     t.least = HUGE_VAL, t.most = 0.0;
     for (int k = 0; k < count; k++) {
@@ -99,7 +112,7 @@ static void project_triangle(const zbuffer *z, chunk *c, const drawn_part *p, ui
         const int at[3] = {0, k, k + 1};
         for (int j = 0; j < 3; j++)
             piece.x[j] = x[at[j]], piece.y[j] = y[at[j]];
-        piece.piece = (uint16_t)k;
+        piece.piece = (uint8_t)k;
         put(c, z, &piece);
     }
 }

@@ -1,5 +1,6 @@
 #include "scene/check.h"
 #include "base/counters.h"
+#include "scene/looks.h"
 #include "scene/medium.h"
 #include "scene/params.h"
 #include "scene/slime.h"
@@ -234,6 +235,23 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     return code == STATUS_OK ? check_closed(s, owner, m, why) : code;
 }
 
+/* The same sum for each kind of face that has shares of its own. */
+static status check_faces(const scene *s, const solid *owner, diagnostic *why)
+{
+    const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? looks_slots(s, owner) : 0;
+    for (int slot = 0; slot < slots; slot++) {
+        const material m = looks_face(s, owner, &owner->surface, slot).surface;
+        const char *name = scene_find_mesh(s, owner->mesh)->data->slot_names[slot];
+        if (m.reflectivity + m.transparency > 1.0 + 1e-12) {
+            return diagnose(
+                why, STATUS_BAD_INPUT, "lower one of them, or set render.transmission to refract",
+                "%.80s: under simple transmission its faces of %.80s have reflectivity %g + transparency %g, more than 1",
+                owner->name, name && name[0] ? name : "no material", m.reflectivity, m.transparency);
+        }
+    }
+    return STATUS_OK;
+}
+
 status check_solid(const scene *s, const solid *owner, diagnostic *why)
 {
     diagnostic shape = {.what = ""};
@@ -263,7 +281,7 @@ status check_solid(const scene *s, const solid *owner, diagnostic *why)
                         "%.80s: under %s reflectivity %g + transparency %g is more than 1", owner->name,
                         simple ? "simple transmission" : "constant weights", owner->surface.reflectivity, owner->surface.transparency);
     }
-    return STATUS_OK;
+    return check_faces(s, owner, why);
 }
 
 status check_limits(const scene *s, diagnostic *why)

@@ -1,11 +1,10 @@
 #include "scene/hints.h"
+#include "scene/cover.h"
 #include "scene/looks.h"
 #include "scene/medium.h"
 
 #include <math.h>
 #include <stdio.h>
-
-enum { HINT_MAX = 256 };
 
 static bool is_lit(const material *m)
 {
@@ -33,188 +32,176 @@ static bool is_inside_medium(const scene *s, const solid *bubble)
     return false;
 }
 
-/* What the solid seems to lack, or NULL; text is room for it. */
-static const char *solid_hint(const scene *s, const solid *owner, char text[HINT_MAX])
+/* Does it cut away from another one, so that one of the surroundings' index shows by what is missing there? */
+static bool cuts_another(const scene *s, const solid *cutter)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *other = &s->solids[i];
+        const bool seen = other->surface.transparency == 0.0 || !is_like_surroundings(s, &other->surface);
+        if (other->visible && seen && scene_wins(cutter, other) && !scene_apart(s, cutter, other)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What a clear solid seems to lack. */
+static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    const char *problem = NULL;
-    if (m->transparency > 0.0 && s->render.integrator == INTEGRATOR_ZBUFFER) {
-        if (m->ambient == 0.0 && m->diffuse == 0.0) {
-            problem = "is transparent, and the depth buffer draws its surface: black but for highlights; set its diffuse";
+    const bool seen = m->transparency < 1.0 || m->ambient > 0.0 || m->emission > 0.0 || is_lit(m) || material_absorbs(m);
+    if (s->render.integrator == INTEGRATOR_ZBUFFER && s->render.lighting != LIGHTING_WHITTED) {
+        if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0) {
+            note_give(taker, "render", "lighting", "set render.lighting to whitted",
+                      "%s is transparent, and without reflected and refracted light its surface is black but for highlights", owner->name);
         }
-    } else if (m->transparency > 0.0) {
-        if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !material_tints(m) && m->reflectivity == 0.0 &&
-            !is_inside_medium(s, owner)) {
-            problem = m->transparency < 1.0 || m->ambient > 0.0 || is_lit(m)
-                          ? "is transparent with the index of what is around it: it bends no light; set its ior"
-                          : "is transparent with the index of what is around it: it is invisible; set its ior";
-        }
+    } else if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !material_tints(m) && m->reflectivity == 0.0 &&
+               !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
+        note_give(taker, owner->name, "ior", "set its ior", "%s is transparent with the index of what is around it: it %s", owner->name,
+                  seen ? "bends no light" : "is invisible");
+    }
+}
+
+/* Of no clear matter the index of visible light reaches that: germanium's and silicon's are 4 to 5. */
+#define INDEX_MOST 5.0
+
+/* An index of a mirror, on what reflects nothing of its own. Above MIRROR_IOR a clear solid is a mirror indeed. True if there is a note. */
+static bool hint_at_index(const scene *s, const solid *owner, const note_taker *taker)
+{
+    const material *m = &owner->surface;
+    index_law law;
+    if (m->reflectivity > 0.0 || material_is_mirror(m) || material_index_law(m, "", &law, NULL) != STATUS_OK) {
+        return false;
+    }
+    const double index = index_law_at(&law, s->render.lambda_nm);
+    if (!(index > INDEX_MOST)) {
+        return false;
+    }
+    note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium",
+              m->transparency > 0.0 ? "set its ior between 1 and 5; for a mirror set its reflectivity, and its transparency to 0"
+                                    : "for a mirror set its reflectivity; the index of an opaque solid has no effect",
+              "%s has a refractive index of %.4g, which no clear matter has, and a reflectivity of 0", owner->name, index);
+    return true;
+}
+
+/* What the solid seems to lack. */
+static void hint_at_solid(const scene *s, const solid *owner, const note_taker *taker)
+{
+    const material *m = &owner->surface;
+    if (hint_at_index(s, owner, taker)) {
+        return;
+    }
+    if (m->transparency > 0.0) {
+        hint_at_clear(s, owner, taker);
     } else if (m->medium != MEDIUM_IOR || m->ior != 1.0) {
-        problem = "has a refractive index but is opaque; set its transparency";
-    } else if (m->ambient == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner)) {
-        problem = "is neither transparent, nor diffuse, nor lit: it is black; set its diffuse";
+        note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
+                  "%s has a refractive index but is opaque", owner->name);
+    } else if (m->ambient == 0.0 && m->emission == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner) &&
+               !scene_is_behind_camera(s, owner)) { /* a black board behind the eye keeps reflections dark */
+        note_give(taker, owner->name, "diffuse", "set its diffuse", "%s is neither transparent, nor diffuse, nor lit: it is black",
+                  owner->name);
     }
-    if (problem) {
-        snprintf(text, HINT_MAX, "%s %s", owner->name, problem);
-    }
-    return problem ? text : NULL;
 }
 
-/* A radius about the position that the solid does not reach beyond. */
-static double reach(const solid_shape *shape)
+static void hint_at_cover(const scene *s, const solid *hidden, const note_taker *taker)
 {
-    switch (shape->kind) {
-    case SHAPE_CYLINDER: return hypot(shape->radius * fmax(1.0, 1.0 / shape->m), shape->height);
-    case SHAPE_CUP: return hypot(shape->radius, shape->height);
-    case SHAPE_BOX: return 0.5 * vec3_length(shape->size);
-    case SHAPE_SPHERE: return shape->radius;
-    case SHAPE_MESH:
-    case SHAPE_PLANE:
-    case SHAPE_COUNT: break;
-    }
-    return INFINITY;
-}
-
-/* Both of one scene. */
-static bool wins(const solid *winner, const solid *loser)
-{
-    return winner != loser && winner->visible &&
-           (winner->priority > loser->priority || (winner->priority == loser->priority && winner < loser));
-}
-
-/* The solid that holds all of another and wins there, so that nothing of the other is met; NULL if there is none. Looks at
- * points of a grid, turned so that no face of a box lies along it, and says nothing when too few of them are inside. */
-static const solid *find_cover(const scene *s, const solid *hidden)
-{
-    enum { STEPS = 24, ENOUGH = 20 };
-    const double radius = reach(&hidden->shape);
-    const mat3 turn = rotation_from_deg(vec3_make(11.0, 23.0, 37.0));
-    const solid *cover = NULL;
-    size_t inside = 0;
-    for (int i = 0; i < STEPS * STEPS * STEPS && isfinite(radius); i++) {
-        const double u = (i % STEPS + 0.5) / STEPS, v = (i / STEPS % STEPS + 0.5) / STEPS,
-                     w = (i / STEPS / STEPS + 0.5) / STEPS;
-        const vec3 offset = mat3_apply(turn, vec3_make(2 * u - 1, 2 * v - 1, 2 * w - 1));
-        const vec3 point = vec3_add(hidden->shape.position, vec3_scale(offset, radius));
-        if (!solid_shape_contains(&hidden->shape, point)) {
-            continue;
-        }
-        inside++;
-        for (size_t k = 0; !cover && k < s->solid_count; k++) {
-            if (wins(&s->solids[k], hidden) && solid_shape_contains(&s->solids[k].shape, point)) {
-                cover = &s->solids[k];
-            }
-        }
-        if (!cover || !solid_shape_contains(&cover->shape, point)) {
-            return NULL;
-        }
-    }
-    return inside >= ENOUGH ? cover : NULL;
-}
-
-static void hint_at_cover(const scene *s, const solid *hidden, void (*note)(void *context, const char *text), void *context)
-{
-    const solid *cover = find_cover(s, hidden);
+    const solid *cover = scene_cover(s, hidden);
+    char remedy[NOTE_TEXT_MAX];
     if (cover) {
-        char text[HINT_MAX];
-        snprintf(text, HINT_MAX, "%s lies wholly inside %s, which wins there and hides it; give %s the higher priority",
-                 hidden->name, cover->name, hidden->name);
-        note(context, text);
+        snprintf(remedy, sizeof remedy, "give %s the higher priority", hidden->name);
+        note_give(taker, hidden->name, "priority", remedy, "%s lies wholly inside %s, which wins there and hides it", hidden->name,
+                  cover->name);
     }
 }
 
 /* A law that is used outside the wavelengths where its medium was measured. */
-static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law,
-                          void (*note)(void *context, const char *text), void *context)
+static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law, const note_taker *taker)
 {
+    static const char remedy[] = "keep to these wavelengths, or give coefficients that reach further";
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
     const double low_nm = spectral ? VISIBLE_LOW_NM : s->render.lambda_nm, high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
     if (dispersion_covers(&law->law, low_nm, high_nm)) {
         return;
     }
-    char text[HINT_MAX];
     if (law->law.kind == DISPERSION_TABLE) {
-        snprintf(text, HINT_MAX, "%s: its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond", where,
-                 law->law.coefficient[0], law->law.coefficient[law->law.count - 2]);
+        note_give(taker, where, "coefficients", remedy, "its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond",
+                  law->law.coefficient[0], law->law.coefficient[law->law.count - 2]);
     } else {
-        snprintf(text, HINT_MAX, "%s: %s was measured from %g to %g nm only, and is extrapolated beyond", where, name, law->law.low_nm,
-                 law->law.high_nm);
+        note_give(taker, where, "medium", remedy, "%s was measured from %g to %g nm only, and is extrapolated beyond", name, law->law.low_nm,
+                  law->law.high_nm);
     }
-    note(context, text);
 }
 
 /* What is set and does nothing. */
-static void hint_at_idle(const solid *owner, void (*note)(void *context, const char *text), void *context)
+static void hint_at_idle(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    char text[HINT_MAX];
-    if (m->transparency == 0.0 && material_absorbs(m)) {
-        snprintf(text, HINT_MAX, "%s absorbs but is opaque; set its transparency", owner->name);
-        note(context, text);
+    if (m->transparency == 0.0 && material_absorbs(m) && looks_opaque(s, owner)) {
+        note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m", "set its transparency",
+                  "%s absorbs but is opaque", owner->name);
     }
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE)) {
-        snprintf(text, HINT_MAX, "%s has coefficients but no law for them; set its medium to cauchy, sellmeier or table", owner->name);
-        note(context, text);
+        note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
+                  "%s has coefficients but no law for them", owner->name);
+    }
+    if (looks_waste(s, owner)) {
+        note_give(taker, owner->name, "transparency", "set it for the whole solid, or set render.transmission to simple",
+                  "the transparency and reflectivity of the faces of %s have no effect: where light is bent they belong to the solid", owner->name);
     }
 }
 
-static void hint_at_lights(const scene *s, void (*note)(void *context, const char *text), void *context)
+static void hint_at_lights(const scene *s, const note_taker *taker)
 {
     const bool path = s->render.integrator == INTEGRATOR_PATH;
     bool clear = false;
-    char text[HINT_MAX];
     for (size_t i = 0; i < s->solid_count; i++) {
         clear |= s->solids[i].visible && s->solids[i].surface.transparency > 0.0;
     }
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
         if (lamp->radius > 0.0 && !path) {
-            snprintf(text, HINT_MAX, "%s is lit as a point: its radius shows with render.integrator=path", lamp->name);
-            note(context, text);
+            note_give(taker, lamp->name, "radius", "set render.integrator=path, where its radius shows", "%s is lit as a point", lamp->name);
         } else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0) {
-            snprintf(text, HINT_MAX, "%s is a point, which random paths cannot find through clear solids: no caustics; give it a radius "
-                                     "and a reach", lamp->name);
-            note(context, text);
+            note_give(taker, lamp->name, "radius", "give it a radius and a reach",
+                      "%s is a point, which random paths cannot find through clear solids: no caustics", lamp->name);
         }
     }
 }
 
-void scene_range_hints(const scene *s, void (*note)(void *context, const char *text), void *context)
+void scene_range_hints(const scene *s, const note_taker *taker)
 {
     index_law law = surrounding_index_law(&s->background);
-    hint_at_range(s, "background", surrounding_words[s->background.medium], &law, note, context);
+    hint_at_range(s, "background", surrounding_words[s->background.medium], &law, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         if (one->visible && one->surface.transparency > 0.0 && material_index_law(&one->surface, "", &law, NULL) == STATUS_OK) {
-            hint_at_range(s, one->name, medium_words[one->surface.medium], &law, note, context);
+            hint_at_range(s, one->name, medium_words[one->surface.medium], &law, taker);
         }
     }
 }
 
-void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context)
+void scene_hints(const scene *s, const note_taker *taker)
 {
-    size_t visible = 0, lit = 0;
+    size_t visible = 0, lit = 0, shining = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
         visible += s->solids[i].visible != 0;
         lit += s->solids[i].visible && is_lit(&s->solids[i].surface);
+        shining += s->solids[i].visible && s->solids[i].surface.emission > 0.0;
     }
     if (visible == 0) {
-        note(context, "no visible solids: the picture shows the background alone; add solids:");
+        note_give(taker, "solids", NULL, "add solids:", "no visible solids: the picture shows the background alone");
     }
-    if (lit > 0 && s->light_count == 0) {
-        note(context, "no lights: opaque surfaces are dark but for their ambient light; add lights:");
+    const bool emitters_light = shining > 0 && s->render.integrator == INTEGRATOR_PATH;
+    if (lit > 0 && s->light_count == 0 && !emitters_light) {
+        note_give(taker, "lights", NULL, "add lights:", "no lights: opaque surfaces are dark but for their ambient and emitted light");
     }
-    hint_at_lights(s, note, context);
+    hint_at_lights(s, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
-        char text[HINT_MAX];
-        const char *hint = s->solids[i].visible ? solid_hint(s, &s->solids[i], text) : NULL;
-        if (hint) {
-            note(context, hint);
-        }
         if (s->solids[i].visible) {
-            hint_at_idle(&s->solids[i], note, context);
-            hint_at_cover(s, &s->solids[i], note, context);
+            hint_at_solid(s, &s->solids[i], taker);
+            hint_at_idle(s, &s->solids[i], taker);
+            hint_at_cover(s, &s->solids[i], taker);
         }
     }
-    scene_range_hints(s, note, context);
+    scene_range_hints(s, taker);
 }

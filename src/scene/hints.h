@@ -2,15 +2,16 @@
 #ifndef CUVETTE_SCENE_HINTS_H
 #define CUVETTE_SCENE_HINTS_H
 
-#include "scene/scene.h"
+#include "scene/note.h"
 
-/* Calls note with one line of text, without a full stop, for each: no visible solid; no light where something would
- * be lit; a visible solid that is black, that is transparent and bends no light, that is opaque and has a refractive
- * index, or that lies wholly inside another one that wins there; what is set and has no effect; then those of scene_range_hints. The
- * text lasts for the call. A scene may be meant so: these are hints, not errors. */
-void scene_hints(const scene *s, void (*note)(void *context, const char *text), void *context);
+/* Gives a note for each: no visible solid; no light where something would be lit; a visible solid that is black,
+ * that is transparent and bends no light, that is opaque and has a refractive index, or that lies wholly inside
+ * another one that wins there; what is set and has no effect; then those of scene_range_hints. A scene may be meant
+ * so: these are notes, not errors. */
+void scene_hints(const scene *s, const note_taker *taker);
 
-/* The same for each medium, the surroundings' too, whose index is extrapolated beyond the wavelengths where it was measured. */
-void scene_range_hints(const scene *s, void (*note)(void *context, const char *text), void *context);
+/* The same for each medium, the surroundings' too, whose index is extrapolated beyond the wavelengths where it was
+ * measured. */
+void scene_range_hints(const scene *s, const note_taker *taker);
 
 #endif

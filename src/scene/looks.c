@@ -1,9 +1,12 @@
 #include "scene/looks.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define EMISSION_MAX 1e4 /* as in the parameter table */
 
 struct face_looks {
     atomic_int owners;
@@ -42,16 +45,37 @@ static status read_picture(const mesh_import *imported, int slot, const char *ro
     return code;
 }
 
+static double brightest(vec3 color)
+{
+    return fmax(color.x, fmax(color.y, color.z));
+}
+
+/* Emitted light has the surface's colour here, and is as bright in its brightest channel as the file says; a lamp whose
+ * surface is black has the light's own colour. */
+static void emit(face_look *look, const imported_material *m)
+{
+    const vec3 sent = vec3_make(m->emissive[0], m->emissive[1], m->emissive[2]);
+    if (!(brightest(sent) > 0.0)) {
+        return;
+    }
+    if (brightest(look->color) == 0.0) {
+        look->color = vec3_scale(sent, 1.0 / brightest(sent));
+        look->diffuse = 0.0;
+    }
+    look->emission = fmin(brightest(sent) / brightest(look->color), EMISSION_MAX);
+}
+
 /* A material file has a colour for each term where Phong's sum here has a coefficient: the brightest channel. */
 static face_look look_of(const imported_material *m)
 {
-    face_look look = {.given = m->given, .diffuse = 1.0, .shininess = m->shininess};
+    face_look look = {.given = m->given, .diffuse = 1.0, .shininess = m->shininess, .opacity = m->opacity};
     snprintf(look.name, sizeof look.name, "%s", m->name ? m->name : "");
     look.color = vec3_make(at_most_one(m->color[0]), at_most_one(m->color[1]), at_most_one(m->color[2]));
     /* A file that gives a highlight no exponent means none: to the power of 0 it would cover everything. */
     for (int c = 0; c < 3 && m->shininess > 0.0; c++) {
         look.specular = m->specular[c] > look.specular ? at_most_one(m->specular[c]) : look.specular;
     }
+    emit(&look, m);
     return look;
 }
 

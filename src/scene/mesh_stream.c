@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-_Static_assert(sizeof(mesh_wire_header) == 40 && sizeof(mesh_wire_material) == 12 * 8 + 16, "no padding");
+_Static_assert(sizeof(mesh_wire_header) == 40 && sizeof(mesh_wire_material) == 15 * 8 + 16, "no padding");
 _Static_assert(sizeof(vec3) == 24 && sizeof(mesh_uv) == 16 && sizeof(mesh_triangle) == 12, "arrays travel as they lie");
 
 #define COLOR_MAX 1e6 /* of a colour's part, an exponent or an index: more is a mistake in the file */
@@ -143,13 +143,14 @@ static bool within(const double *values, int count, double low, double high)
 
 static status check_numbers(const imported_material *m, diagnostic *why)
 {
-    const char *wrong = !within(m->color, 3, 0, COLOR_MAX)         ? "diffuse colour"
-                        : !within(m->ambient, 3, 0, COLOR_MAX)     ? "ambient colour"
-                        : !within(m->specular, 3, 0, COLOR_MAX)    ? "specular colour"
-                        : !within(&m->shininess, 1, 0, COLOR_MAX)  ? "shininess"
-                        : !within(&m->opacity, 1, 0, 1)            ? "opacity"
-                        : !within(&m->ior, 1, 0, COLOR_MAX)        ? "index of refraction"
-                                                                   : NULL;
+    const char *wrong = !within(m->color, 3, 0, COLOR_MAX)        ? "diffuse colour"
+                        : !within(m->ambient, 3, 0, COLOR_MAX)    ? "ambient colour"
+                        : !within(m->specular, 3, 0, COLOR_MAX)   ? "specular colour"
+                        : !within(m->emissive, 3, 0, COLOR_MAX)   ? "emitted colour"
+                        : !within(&m->shininess, 1, 0, COLOR_MAX) ? "shininess"
+                        : !within(&m->opacity, 1, 0, 1)           ? "opacity"
+                        : !within(&m->ior, 1, 0, COLOR_MAX)       ? "index of refraction"
+                                                                  : NULL;
     return !wrong ? STATUS_OK
                   : diagnose(why, STATUS_BAD_INPUT, "correct the material", "material '%s': its %s is out of range",
                              m->name ? m->name : "", wrong);
@@ -170,6 +171,7 @@ static status read_material(const mesh_source *source, imported_material *m, dia
     memcpy(m->color, record.diffuse, sizeof m->color);
     memcpy(m->ambient, record.ambient, sizeof m->ambient);
     memcpy(m->specular, record.specular, sizeof m->specular);
+    memcpy(m->emissive, record.emissive, sizeof m->emissive);
     m->shininess = record.shininess;
     m->opacity = record.opacity;
     m->ior = record.ior;

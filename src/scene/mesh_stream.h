@@ -29,6 +29,7 @@ typedef struct imported_material {
     double color[3];       /* diffuse: MTL Kd, glTF baseColorFactor */
     double ambient[3];     /* Ka */
     double specular[3];    /* Ks */
+    double emissive[3];    /* Ke; glTF emissiveFactor */
     double shininess;      /* Phong's exponent: Ns */
     double opacity;        /* 0 to 1: d, or 1 - Tr; glTF's alpha */
     double ior;            /* 1 or more: Ni */

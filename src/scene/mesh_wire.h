@@ -16,7 +16,7 @@
 
 #define MESH_WIRE_MAGIC "CUVMESH\n"
 #define MESH_WIRE_END "\nMESHEND"
-enum { MESH_WIRE_VERSION = 1, MESH_WIRE_TEXT_MAX = 1024 };
+enum { MESH_WIRE_VERSION = 2, MESH_WIRE_TEXT_MAX = 1024 };
 enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 };              /* header's flags */
 enum { MESH_WIRE_GIVEN = 1, MESH_WIRE_TEXTURE_INSIDE = 2 };     /* material's flags */
 
@@ -29,7 +29,7 @@ typedef struct mesh_wire_header {
 
 /* As the file gives them, linear RGB. */
 typedef struct mesh_wire_material {
-    double diffuse[3], ambient[3], specular[3], shininess, opacity, ior;
+    double diffuse[3], ambient[3], specular[3], emissive[3], shininess, opacity, ior;
     uint32_t flags, name_length, texture_length, reserved;
 } mesh_wire_material;
 

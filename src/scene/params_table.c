@@ -10,7 +10,7 @@ static const char *const off_on[] = {"off", "on", NULL};
 static const char *const sample_counts[] = {"1", "4", "9", "16", "25", "36", "49", "64", NULL};
 static const char *const weights_words[] = {"fresnel", "constant", NULL};
 static const char *const transmission_words[] = {"refract", "simple", NULL};
-static const char *const beyond_words[] = {"sky", "black", NULL};
+static const char *const beyond_words[] = {"sky", "black", "mean", NULL};
 static const char *const radiance_words[] = {"classic", "basic", NULL};
 static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
 static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynamic", NULL};
@@ -135,7 +135,8 @@ static const param table[] = {
            "share of the reflected and refracted branch: Fresnel's equations, or each material's constants"),
     CHOICE(PARAM_RENDER, render_settings, transmission, transmission_words, "refract",
            "at clear surfaces light is bent by Snell's law; or it goes straight on, with each material's constants as weights"),
-    CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky", "what a ray beyond the last depth brings back"),
+    CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky",
+           "what a ray beyond the last depth brings back: the sky behind it, nothing, or the mean of the sky over all directions"),
     CHOICE(PARAM_RENDER, render_settings, radiance, radiance_words, "classic",
            "what rays carry: radiance as if no medium changed it (Whitted), or L / n^2, which refraction keeps"),
     CHOICE(PARAM_RENDER, render_settings, shadows, shadows_words, "attenuated",
@@ -254,12 +255,14 @@ static const param table[] = {
          "distance at which intensity holds, less with the square of the distance; 0 for the same everywhere"),
 
     COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1",
-          "linear colour of ambient and diffuse light; inside a clear solid what is left of light after tint_distance"),
+          "linear colour of ambient, diffuse and emitted light; inside a clear solid what is left of light after tint_distance"),
     REAL(PARAM_MATERIAL, material, ambient, "", 0, 1, "0", "k_a of Phong's sum"),
     REAL(PARAM_MATERIAL, material, diffuse, "", 0, 1, "0", "k_d of Phong's sum"),
     REAL(PARAM_MATERIAL, material, specular, "", 0, 1, "0", "k_s of Phong's sum"),
     REAL(PARAM_MATERIAL, material, shininess, "", 0, 100000, "80",
          "n of Phong's sum: the larger, the smaller the highlight"),
+    REAL(PARAM_MATERIAL, material, emission, "", 0, BRIGHT, "0",
+         "k_e of Phong's sum: the surface sends out k_e times its colour, without a lamp"),
     REAL(PARAM_MATERIAL, material, reflectivity, "", 0, 1, "0",
          "share reflected by an opaque surface; by every surface under constant weights or simple transmission; under Fresnel's a clear "
          "surface's coating: R + (1 - R) reflectivity"),

@@ -17,7 +17,7 @@
 
 typedef enum weights_rule { WEIGHTS_FRESNEL, WEIGHTS_CONSTANT } weights_rule;
 typedef enum transmission_rule { TRANSMISSION_REFRACT, TRANSMISSION_SIMPLE } transmission_rule;
-typedef enum beyond_rule { BEYOND_SKY, BEYOND_BLACK } beyond_rule;
+typedef enum beyond_rule { BEYOND_SKY, BEYOND_BLACK, BEYOND_MEAN } beyond_rule;
 typedef enum radiance_rule { RADIANCE_CLASSIC, RADIANCE_BASIC } radiance_rule;
 typedef enum shadow_rule { SHADOWS_OFF, SHADOWS_OPAQUE, SHADOWS_ATTENUATED } shadow_rule;
 typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SCHEDULE_DYNAMIC } schedule_rule;
@@ -91,11 +91,12 @@ typedef struct background {
     vec3 absorb_per_m;      /* of what surrounds all solids, by channel, along ways that end at a surface or a light */
 } background;
 
-/* Fields mean what Phong's sum I = k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n and the weights
+/* Fields mean what Phong's sum I = k_e C + k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n and the weights
  * rule say. */
 typedef struct material {
     vec3 color;             /* C, linear RGB; of a clear solid also the share of light left after tint_distance inside */
     double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
+    double emission;                              /* k_e: the surface sends out k_e C by itself, to all sides */
     double reflectivity;    /* constant weights, simple transmission, and opaque materials; a clear one's coating under fresnel weights */
     double transparency;    /* 0 = opaque; else share of the refracted light that passes an interface */
     double ior;             /* relative to vacuum, where medium is MEDIUM_IOR */
@@ -248,7 +249,7 @@ static inline bool scene_has_constant_shares(const render_settings *r)
 }
 
 /* Do rays carry basic radiance, L / n^2? Only light that is bent changes its solid angle: under simple transmission
- * nothing is, and what is drawn with a depth buffer sees through no surface. */
+ * nothing is, nor in what is drawn with a depth buffer. */
 static inline bool scene_has_basic_radiance(const render_settings *r)
 {
     return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT &&

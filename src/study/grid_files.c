@@ -19,11 +19,17 @@ static void hash_texture(uint64_t *hash, const texture *t)
         *hash = texture_hash(t, *hash);
 }
 
-/* What a later version reads of a face goes in only where it is not at its default: the fingerprints that rows carry must stay. */
+/* What a later version reads of a face goes in only where it is not at its default: the fingerprints that rows carry
+ * must stay. */
 static void hash_look(uint64_t *hash, const face_look *l)
 {
     const double numbers[] = {l->given, l->color.x, l->color.y, l->color.z, l->diffuse, l->specular, l->shininess};
     hash_array(hash, numbers, sizeof numbers / sizeof *numbers, sizeof *numbers);
+    const double later[] = {l->emission, 1.0 - l->opacity};
+    for (size_t i = 0; i < sizeof later / sizeof *later; i++) {
+        const double numbered[] = {(double)i, later[i]};
+        hash_array(hash, later[i] != 0.0 ? numbered : NULL, 2, sizeof *numbered);
+    }
     hash_texture(hash, l->picture);
 }
 

@@ -139,7 +139,8 @@ static status open_desk(lab *l, diagnostic *why)
 static status join_routes(lab *l, size_t *count, diagnostic *why)
 {
     const lab_routes *const tables[] = {&desk_routes,    &picture_routes, &trace_routes, &compare_routes,
-                                        &edit_routes, &file_routes,    &slime_routes, &study_routes};
+                                        &edit_routes, &file_routes,    &slime_routes, &study_routes,
+                                        &note_routes};
     *count = 0;
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
         *count += tables[i]->count;

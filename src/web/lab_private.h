@@ -30,7 +30,7 @@ struct lab {
 
 /* One table for each api_*.c; context is filled in by lab.c. */
 typedef struct lab_routes { const http_route *routes; size_t count; } lab_routes;
-extern const lab_routes desk_routes, picture_routes, trace_routes, compare_routes, edit_routes, file_routes, slime_routes, study_routes;
+extern const lab_routes desk_routes, picture_routes, trace_routes, compare_routes, edit_routes, file_routes, slime_routes, study_routes, note_routes;
 
 /* Sends an event to all pages; takes value. From any thread, at any time. */
 void lab_publish(lab *l, const char *event, json_t *value);

@@ -6,6 +6,7 @@ import {createView} from './view.js';
 import {createPanels} from './panels.js';
 import {createHead} from './head.js';
 import {createStatus} from './status.js';
+import {createNotes} from './notes.js';
 import {createBanner} from './banner.js';
 import {createKeys} from './keys.js';
 import {orbitTool} from './tool_orbit.js';
@@ -21,6 +22,7 @@ async function start() {
   const lab = createLab();
   window.lab = lab;
   createStatus(at('status'), at('live'), lab);
+  lab.notes = createNotes(lab);
   createBanner(at('banner'), [at('head'), at('desk')], lab);
   lab.view = createView(at('view'), lab);
   orbitTool(lab);

@@ -28,7 +28,7 @@ export function createStatus(root, live, lab) {
     requestAnimationFrame(() => { live.textContent = [words, remedy].filter(Boolean).join('. '); });
     timer = setTimeout(clear, kind === 'error' ? 3 * LINGER_MS : LINGER_MS);
   }
-  lab.say = (words) => tell(words, 'info');
+  lab.say = (words, remedy) => tell(words, 'info', remedy);
   lab.fail = (error) => {
     if (error.status === 0 || error.status === 401) return;
     if (!error.status) console.error(error);
@@ -40,7 +40,7 @@ export function createStatus(root, live, lab) {
     replace(facts, items(lab));
   };
   const soon = () => { frame ||= requestAnimationFrame(draw); };
-  for (const name of ['picture', 'state', 'connection', 'news']) lab.on(name, soon);
+  for (const name of ['picture', 'state', 'connection', 'news', 'notes']) lab.on(name, soon);
   draw();
 }
 
@@ -48,12 +48,14 @@ const fact = (name, value, title) => element('span', {class: 'fact', title}, ele
   element('span', {class: 'fact-value'}, value));
 
 function items(lab) {
+  const noted = lab.notes?.count() || 0;
   const {picture, state} = lab;
   if (!picture) return [element('span', {class: 'fact', text: lab.connected === 'open' ? 'No picture yet' : 'Connecting …'})];
   const {rays, wall_s: wall} = picture;
   const behind = lab.wanted > picture.generation || !picture.final;
   return [
     element('span', {class: behind ? 'lamp busy' : 'lamp', role: 'img', 'aria-label': behind ? 'rendering' : 'final', title: behind ? 'rendering' : 'final picture'}),
+    noted ? notesButton(noted, lab) : null,
     fact('pass', picture.passes ? `${picture.pass} of ${picture.passes}` : String(picture.pass)),
     fact('size', picture.width === picture.full_width ? `${picture.full_width} × ${picture.full_height}`
       : `${picture.width} × ${picture.height} of ${picture.full_width} × ${picture.full_height}`),
@@ -65,6 +67,10 @@ function items(lab) {
     fact('generation', String(picture.generation), state && state.generation > picture.generation ? `the scene is at ${state.generation}` : null),
   ];
 }
+
+const notesButton = (noted, lab) => element('button', {
+  type: 'button', class: 'fact notes-button', title: 'what looks wrong in the scene', onclick: () => lab.notes.show(),
+}, icon('warning'), element('span', {text: noted === 1 ? '1 note' : `${noted} notes`}));
 
 const hash = (words, lab) => element('button', {
   type: 'button', class: 'hash', 'aria-label': `copy film hash ${words}`,

@@ -15,7 +15,7 @@
  *                                       two of one gesture and path (default: the newer takes the place of the older)
  *   lab.refresh()                       asks for state and scene anew
  *   lab.start()                         opens the stream of events
- *   lab.say(text), lab.fail(error)      set by main.js */
+ *   lab.say(text, remedy), lab.fail(error), lab.notes      set by main.js */
 
 import {createApi} from './api.js';
 

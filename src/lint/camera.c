@@ -1,0 +1,38 @@
+#include "lint/parts.h"
+
+#include <math.h>
+
+#define CAMERA_CLOSE 1e-9 /* share of the scene's extent: a camera so close to a surface is not inside */
+
+/* The rank of the medium at the camera, and so far about it; -1 where it is not one. */
+static int medium_about(const plan *made)
+{
+    const vec3 eye = made->view.eye;
+    const double far = CAMERA_CLOSE * fmax(1.0, fmax(fabs(eye.x), fmax(fabs(eye.y), fabs(eye.z))));
+    const int rank = arrangement_rank(made->solids, arrangement_inside(made->solids, eye));
+    for (int i = 0; i < 6; i++) {
+        const double by = i % 2 ? far : -far;
+        const vec3 at = vec3_add(eye, vec3_make(i / 2 == 0 ? by : 0.0, i / 2 == 1 ? by : 0.0, i / 2 == 2 ? by : 0.0));
+        if (arrangement_rank(made->solids, arrangement_inside(made->solids, at)) != rank)
+            return -1;
+    }
+    return rank;
+}
+
+void lint_camera(const lint_room *room)
+{
+    const int rank = medium_about(room->made);
+    if (rank <= 0)
+        return;
+    const solid *around = lint_solid(room, rank);
+    const bool opaque = room->made->solids->bodies[rank].opaque;
+    if (opaque && around->shape.kind == SHAPE_PLANE)
+        note_give(room->taker, "camera", "position", "move the camera to the other side of the plane",
+                  "the camera is under the surface of %s, which is opaque", around->name);
+    else if (opaque)
+        note_give(room->taker, "camera", "position", "move the camera out of it",
+                  "the camera is inside %s, which is opaque", around->name);
+    else if (around->shape.kind == SHAPE_CUP)
+        note_give(room->taker, "camera", "position", "move the camera out of the wall, into the vessel or away from it",
+                  "the camera is inside the wall of %s", around->name);
+}

@@ -1,0 +1,135 @@
+/* A small image of the scene at its depth limit and deeper, until that changes nothing any more or enough rays are
+ * spent. */
+#include "lint/parts.h"
+#include "render/tracer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define RAYS_MAX 400000.0    /* of all images: some ten milliseconds */
+#define MESH_RAY 10.0        /* rays that one among triangles costs */
+#define CHANGED_PIXELS 0.05  /* share of the pixels ... */
+#define CHANGED_VALUE 0.05   /* ... that change by more than this share of the brighter */
+#define SETTLED_PIXELS 0.002 /* fewer changed: deeper images are taken to be the same */
+#define DARK (1.0 / 255.0)   /* what is darker is shown as black */
+enum { DEEPER_MAX = 24 };
+
+typedef struct depth_probe {
+    plan *made;
+    tracer *rays;
+    film *image[DEEPER_MAX + 1]; /* by depth over the scene's */
+    double *pixel_rays;
+    double spent;
+} depth_probe;
+
+static status trace_image(depth_probe *p, int deeper, diagnostic *why)
+{
+    const render_settings *r = &p->made->render;
+    const span whole = {0, 0, (int)r->width, (int)r->height};
+    const size_t pixels = (size_t)(r->width * r->height);
+    atomic_uint_fast64_t begun = 0;
+    const atomic_bool stop = false;
+    const status code = film_create(whole.x1, whole.y1, 1, FILM_RGB, &p->image[deeper], why);
+    if (code != STATUS_OK)
+        return code;
+    const tracer_target target = {p->made, p->image[deeper], p->pixel_rays, NULL, NULL};
+    for (size_t i = 0; i < pixels; i++)
+        p->pixel_rays[i] = 0.0;
+    if (!tracer_begin(p->rays, &target))
+        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+    tracer_span(p->rays, &whole, &begun, &stop);
+    tracer_finish(p->rays, &stop);
+    for (size_t i = 0; i < pixels; i++)
+        p->spent += p->pixel_rays[i];
+    return STATUS_OK;
+}
+
+/* What is beyond white is shown as white. */
+static double shown(const film *f, int x, int y, int channel)
+{
+    return fmin(1.0, film_value(f, x, y, channel));
+}
+
+static bool pixel_changes(const film *a, const film *b, int x, int y)
+{
+    double brightest = DARK, change = 0.0;
+    for (int c = 0; c < 3; c++) {
+        const double one = shown(a, x, y, c), two = shown(b, x, y, c);
+        brightest = fmax(brightest, fmax(one, two));
+        change = fmax(change, fabs(one - two));
+    }
+    return change > CHANGED_VALUE * brightest;
+}
+
+/* The share of pixels that change. */
+static double changed_share(const film *a, const film *b)
+{
+    size_t changed = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++)
+            changed += pixel_changes(a, b, x, y);
+    return (double)changed / ((double)a->width * a->height);
+}
+
+/* The deepest image: *settled says that deeper ones would be the same, or nearly. */
+static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, diagnostic *why)
+{
+    const double most = p->made->solids->meshes ? RAYS_MAX / MESH_RAY : RAYS_MAX;
+    status code = trace_image(p, 0, why);
+    int still = 0;
+    *last = 0;
+    for (int d = 1; code == STATUS_OK && d <= DEEPER_MAX && depth + d <= COUNTERS_DEPTH_MAX; d++) {
+        if (p->spent > most)
+            return code;
+        p->made->render.depth = depth + d;
+        code = trace_image(p, d, why);
+        if (code != STATUS_OK)
+            return code;
+        *last = d;
+        still = changed_share(p->image[d - 1], p->image[d]) <= SETTLED_PIXELS ? still + 1 : 0;
+        if (still == 2) {
+            *settled = true;
+            return code;
+        }
+    }
+    return code;
+}
+
+static void note_depth(const lint_room *room, const depth_probe *p, int depth, int last, bool settled)
+{
+    const double share = changed_share(p->image[0], p->image[last]);
+    const double pixels = (double)p->image[0]->width * p->image[0]->height;
+    if (share <= CHANGED_PIXELS +
+                     2.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / pixels)) /* the probe may be off by chance */
+        return;
+    int enough = 1;
+    while (enough < last && changed_share(p->image[enough], p->image[last]) > CHANGED_PIXELS)
+        enough++;
+    char remedy[NOTE_TEXT_MAX];
+    snprintf(remedy, sizeof remedy, "set render.depth=%d%s", depth + enough,
+             settled || enough < last ? "" : " or more");
+    note_give(room->taker, "render", "depth", remedy,
+              "a depth of %d is too small: more changes about %.0f %% of the pixels by more than 5 %%", depth,
+              100.0 * share);
+}
+
+status lint_depth(const lint_room *room, diagnostic *why)
+{
+    const int depth = (int)room->made->render.depth;
+    const render_settings *r = &room->made->render;
+    depth_probe p = {.made = room->made, .rays = tracer_create(room->level)};
+    p.pixel_rays = calloc((size_t)(r->width * r->height), sizeof *p.pixel_rays);
+    int last = 0;
+    bool settled = false;
+    status code = p.rays && p.pixel_rays ? look_deeper(&p, depth, &last, &settled, why)
+                                         : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK && last > 0 && !tracer_overflowed(p.rays))
+        note_depth(room, &p, depth, last, settled);
+    room->made->render.depth = depth;
+    for (int d = 0; d <= DEEPER_MAX; d++)
+        film_destroy(p.image[d]);
+    tracer_destroy(p.rays);
+    free(p.pixel_rays);
+    return code;
+}

@@ -1,0 +1,102 @@
+#include "lint/lint.h"
+
+#include "lint/parts.h"
+#include "scene/hints.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { PROBE_PIXELS = 2400, PROBE_PIXELS_MESHES = 800 };
+
+static bool has_meshes(const scene *s)
+{
+    bool any = false;
+    for (size_t i = 0; i < s->solid_count; i++)
+        any |= s->solids[i].visible && s->solids[i].shape.kind == SHAPE_MESH;
+    return any;
+}
+
+/* As small as the probe image is to be, of the same shape. */
+static void shrink(render_settings *r, double most)
+{
+    const double pixels = (double)r->width * (double)r->height;
+    if (pixels <= most)
+        return;
+    const double scale = sqrt(most / pixels);
+    r->width = (int64_t)fmax(1.0, round((double)r->width * scale));
+    r->height = (int64_t)fmax(1.0, round((double)r->height * scale));
+}
+
+static bool is_loaded(const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (s->solids[i].visible && s->solids[i].shape.kind == SHAPE_MESH) {
+            const mesh_entry *m = scene_find_mesh(s, s->solids[i].mesh);
+            if (!m || !m->data)
+                return false;
+        }
+    return s->background.kind != BACKGROUND_PICTURE || s->background.picture;
+}
+
+/* A hierarchy that is kept is the one that a frame would build at its first use; else the linter builds its own. */
+static scene *small_copy(const scene *s)
+{
+    scene *copy = scene_clone(s);
+    if (!copy)
+        return NULL;
+    render_settings *r = &copy->render;
+    shrink(r, has_meshes(s) ? PROBE_PIXELS_MESHES : PROBE_PIXELS);
+    r->samples = 1;
+    r->spectrum = SPECTRUM_RGB;
+    r->polarisation = 0;
+    r->integrator = INTEGRATOR_WHITTED;
+    if (r->accel != HIERARCHY_BVH) {
+        r->accel = HIERARCHY_BVH;
+        r->keep = 0;
+    }
+    return copy;
+}
+
+static bool follows_rays(const render_settings *r)
+{
+    return r->integrator == INTEGRATOR_WHITTED;
+}
+
+static status lint_traced(const scene *s, isa level, const note_taker *taker, diagnostic *why)
+{
+    scene *copy = small_copy(s);
+    lint_room room = {.of = s, .level = level, .taker = taker};
+    status code = copy ? plan_build(copy, &room.made, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK)
+        code = lint_neighbours(&room, why);
+    if (code == STATUS_OK)
+        lint_camera(&room);
+    if (code == STATUS_OK && follows_rays(&s->render))
+        code = lint_depth(&room, why);
+    plan_destroy(room.made);
+    scene_destroy(copy);
+    return code;
+}
+
+status lint_scene(const scene *s, isa level, const note_taker *taker, diagnostic *why)
+{
+    scene_hints(s, taker);
+    return is_loaded(s) ? lint_traced(s, level, taker, why) : STATUS_OK;
+}
+
+typedef struct filtered {
+    const lint_filter *filter;
+    const note_taker *taker;
+} filtered;
+
+static void take_filtered(void *context, const scene_note *note)
+{
+    const filtered *f = context;
+    if (!f->filter->varies(f->filter->context, note->place))
+        f->taker->take(f->taker->context, note);
+}
+
+status lint_scene_but(const scene *s, isa level, const lint_filter *filter, const note_taker *taker, diagnostic *why)
+{
+    filtered f = {filter, taker};
+    return lint_scene(s, level, filter ? &(note_taker){take_filtered, &f} : taker, why);
+}

@@ -1,0 +1,330 @@
+/* Pairs of solids along a lattice of lines through the region that both reach. What a line shows is tried again by
+ * points around it before it becomes a note: a touch is no overlap, and one narrow place of two curved surfaces is
+ * no gap. */
+#include "lint/lines.h"
+#include "lint/parts.h"
+#include "scene/cover.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { LATTICE_LEAST = 8, LATTICE_MOST = 32, LINES_MAX = 200000 };
+#define GAP_SHARE 1e-3      /* of the thinner neighbour: a gap under it is a narrow one */
+#define PATCH_SHARE 0.25    /* of the thinner neighbour: a narrow gap is as wide as that at the least */
+#define OVERLAP_SHARE 1e-6  /* of the thinner neighbour: what overlaps less only touches */
+#define CONTACT_SHARE 1e-12 /* of the coordinates: surfaces that are closer are in contact */
+
+typedef struct neighbour {
+    const body *of;
+    const solid *said;
+    bounds3 box;
+    double thickness;
+    int rank;
+} neighbour;
+
+typedef struct pair {
+    const lint_room *room;
+    const neighbour *a, *b;
+    vec3 low, high; /* the region that both reach, and gaps around it */
+    double thinner, extent;
+    int lattice;         /* lines along an edge */
+    bool overlaps, gaps; /* what is looked for */
+    float *gap;          /* by line of one axis: of its narrow gap, 0 for none; lattice * lattice */
+    double *middle;      /* where that is on the line */
+} pair;
+
+static double *component(vec3 *v, int axis)
+{
+    return axis == 0 ? &v->x : axis == 1 ? &v->y : &v->z;
+}
+
+static bool is_in(const body *b, uint64_t inside)
+{
+    return (inside >> b->outside & 1) && !(b->hollow >= 0 && (inside >> b->hollow & 1));
+}
+
+/* How deep an overlap is at the least. */
+static double deep_enough(const pair *p)
+{
+    return fmax(OVERLAP_SHARE * p->thinner, CONTACT_SHARE * p->extent);
+}
+
+/* Are both at the point, and so far about it? */
+static bool overlap_at(const pair *p, vec3 point)
+{
+    const arrangement *a = p->room->made->solids;
+    const double far = deep_enough(p);
+    for (int i = 0; i < 6; i++) {
+        vec3 at = point;
+        *component(&at, i / 2) += i % 2 ? far : -far;
+        const uint64_t inside = arrangement_inside(a, at);
+        if (!is_in(p->a->of, inside) || !is_in(p->b->of, inside))
+            return false;
+    }
+    return true;
+}
+
+static line lattice_line(const pair *p, int axis, int i, int j)
+{
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    vec3 low = p->low, high = p->high;
+    line l = {low, {0.0, 0.0, 0.0}};
+    /* not at round shares, where edges are */
+    *component(&l.origin, u) += (*component(&high, u) - *component(&low, u)) * (i + 0.4871) / p->lattice;
+    *component(&l.origin, v) += (*component(&high, v) - *component(&low, v)) * (j + 0.5237) / p->lattice;
+    vec3 first = p->a->box.low, second = p->b->box.low;
+    const double before =
+        fmin(isfinite(*component(&first, axis)) ? *component(&first, axis) : *component(&low, axis),
+             isfinite(*component(&second, axis)) ? *component(&second, axis) : *component(&low, axis));
+    *component(&l.origin, axis) = before - 0.01 * (*component(&high, axis) - before) - p->thinner * GAP_SHARE;
+    *component(&l.direction, axis) = 1.0;
+    return l;
+}
+
+static vec3 line_at(const line *l, double t)
+{
+    return vec3_add(l->origin, vec3_scale(l->direction, t));
+}
+
+static bool spans_overlap(const pair *p, const line *l, const line_spans *a, const line_spans *b)
+{
+    for (int i = 0; i < a->count; i++)
+        for (int k = 0; k < b->count; k++) {
+            const double in = fmax(a->in[i], b->in[k]), out = fmin(a->out[i], b->out[k]);
+            if (out - in > 2.0 * deep_enough(p) && isfinite(in) && isfinite(out) &&
+                overlap_at(p, line_at(l, 0.5 * (in + out))))
+                return true;
+        }
+    return false;
+}
+
+/* The narrowest gap from a span of one to a span of the other, wide enough to be one; 0 for none. */
+static double spans_gap(const pair *p, const line_spans *a, const line_spans *b, double *middle)
+{
+    double best = GAP_SHARE * p->thinner;
+    bool found = false;
+    for (int i = 0; i < a->count; i++)
+        for (int k = 0; k < b->count; k++) {
+            const bool first = a->out[i] <= b->in[k];
+            const double from = first ? a->out[i] : b->out[k], to = first ? b->in[k] : a->in[i];
+            if (to - from < best && to - from > CONTACT_SHARE * p->extent) {
+                best = to - from;
+                *middle = 0.5 * (from + to);
+                found = true;
+            }
+        }
+    return found ? best : 0.0;
+}
+
+/* Looks along all lines of an axis; true where they overlap. */
+static bool look_along(const pair *p, int axis)
+{
+    const arrangement *a = p->room->made->solids;
+    for (int i = 0; i < p->lattice; i++)
+        for (int j = 0; j < p->lattice; j++) {
+            const line l = lattice_line(p, axis, i, j);
+            line_spans one, two;
+            float *gap = &p->gap[i * p->lattice + j];
+            *gap = 0.0F;
+            if (!line_through(a, p->a->of, &l, &one) || one.count == 0 || !line_through(a, p->b->of, &l, &two) ||
+                two.count == 0)
+                continue;
+            if (p->overlaps && spans_overlap(p, &l, &one, &two))
+                return true;
+            if (p->gaps)
+                *gap = (float)spans_gap(p, &one, &two, &p->middle[i * p->lattice + j]);
+        }
+    return false;
+}
+
+/* Is the gap narrow on the line and on eight around it, a patch as wide as is wanted, and nothing else in it? */
+static bool is_patch(const pair *p, int axis, int i, int j, int step_u, int step_v)
+{
+    const arrangement *a = p->room->made->solids;
+    for (int di = -1; di <= 1; di++)
+        for (int dj = -1; dj <= 1; dj++) {
+            const int at_i = i + di * step_u, at_j = j + dj * step_v;
+            if (at_i < 0 || at_j < 0 || at_i >= p->lattice || at_j >= p->lattice ||
+                p->gap[at_i * p->lattice + at_j] == 0.0F)
+                return false;
+        }
+    for (int di = -1; di <= 1; di++)
+        for (int dj = -1; dj <= 1; dj++) {
+            const int at_i = i + di * step_u, at_j = j + dj * step_v;
+            const line l = lattice_line(p, axis, at_i, at_j);
+            if (arrangement_rank(a, arrangement_inside(a, line_at(&l, p->middle[at_i * p->lattice + at_j]))) != 0)
+                return false;
+        }
+    return true;
+}
+
+/* How many lines to either side a patch reaches. */
+static int patch_step(const pair *p, int axis)
+{
+    vec3 size = vec3_sub(p->high, p->low);
+    const double apart = *component(&size, axis) / p->lattice;
+    return (int)fmin(p->lattice, fmax(1.0, ceil(0.5 * PATCH_SHARE * p->thinner / apart)));
+}
+
+/* The narrowest of an axis' gaps. */
+static double narrowest(const pair *p)
+{
+    double least = HUGE_VAL;
+    for (int i = 0; i < p->lattice * p->lattice; i++)
+        least = p->gap[i] > 0.0F ? fmin(least, p->gap[i]) : least;
+    return least;
+}
+
+/* The width of the gap along an axis; 0 for none. */
+static double find_patch(const pair *p, int axis)
+{
+    const int step_u = patch_step(p, (axis + 1) % 3), step_v = patch_step(p, (axis + 2) % 3);
+    for (int i = step_u; i < p->lattice - step_u; i++)
+        for (int j = step_v; j < p->lattice - step_v; j++)
+            if (p->gap[i * p->lattice + j] > 0.0F && is_patch(p, axis, i, j, step_u, step_v))
+                return narrowest(p);
+    return 0.0;
+}
+
+static void note_overlap(const pair *p)
+{
+    const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said,
+                *second = first == p->a->said ? p->b->said : p->a->said;
+    note_give(
+        p->room->taker, second->name, "priority", "give the one that displaces the other the higher priority",
+        "%s and %s overlap with equal priority and different media: %s wins there only because it is listed first",
+        first->name, second->name, first->name);
+}
+
+static void note_gap(const pair *p, double gap)
+{
+    const neighbour *thin = p->a->thickness <= p->b->thickness ? p->a : p->b;
+    const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said,
+                *second = first == p->a->said ? p->b->said : p->a->said;
+    note_give(
+        p->room->taker, second->name, NULL,
+        "let them touch exactly, or overlap, where the higher priority wins; or set them further apart",
+        "between %s and %s is a gap of about %.2g, less than a thousandth of the thickness of %s (%.3g): light sees "
+        "a film there",
+        first->name, second->name, gap, thin->said->name, thin->thickness);
+}
+
+/* Two half-spaces share a region unless they face away from each other. */
+static bool planes_overlap(const pair *p)
+{
+    const primitive *a = &p->room->made->solids->primitives[p->a->of->outside],
+                    *b = &p->room->made->solids->primitives[p->b->of->outside];
+    const vec3 up_a = vec3_make(a->rotation.row[0].y, a->rotation.row[1].y, a->rotation.row[2].y);
+    const vec3 up_b = vec3_make(b->rotation.row[0].y, b->rotation.row[1].y, b->rotation.row[2].y);
+    const double apart = vec3_dot(vec3_sub(b->origin, a->origin), up_a);
+    return vec3_dot(up_a, up_b) > -1.0 + 1e-9 || apart < -OVERLAP_SHARE * fmax(1.0, fmax(a->extent, b->extent));
+}
+
+static void look_at_pair(pair *p)
+{
+    bool overlap = false;
+    double gap = 0.0;
+    if (isfinite(p->high.x - p->low.x)) {
+        for (int axis = 0; axis < 3 && !overlap; axis++) {
+            overlap = look_along(p, axis);
+            if (!overlap && p->gaps && gap == 0.0)
+                gap = find_patch(p, axis);
+        }
+    } else {
+        overlap = p->overlaps && planes_overlap(p);
+    }
+    if (overlap)
+        note_overlap(p);
+    else if (gap > 0.0)
+        note_gap(p, gap);
+}
+
+/* Is the medium another one, or does it absorb otherwise? */
+static bool media_differ(const plan *made, const neighbour *a, const neighbour *b)
+{
+    const vec3 off = vec3_sub(made->absorption[a->rank], made->absorption[b->rank]);
+    return a->of->medium != b->of->medium || off.x != 0.0 || off.y != 0.0 || off.z != 0.0;
+}
+
+/* Does an interface with what is around all show, on a clear solid or an opaque one? */
+static bool shows(const body *b)
+{
+    return b->opaque || b->medium != 0;
+}
+
+static bool is_covered(const lint_room *room, const neighbour *a, const neighbour *b)
+{
+    return scene_cover(room->of, a->said) == b->said || scene_cover(room->of, b->said) == a->said;
+}
+
+/* False: there is nothing to look for. */
+static bool prepare_pair(const lint_room *room, const neighbour *a, const neighbour *b, pair *p)
+{
+    if (a->of->opaque && b->of->opaque)
+        return false; /* what lies inside them is not seen */
+    *p = (pair){.room = room, .a = a, .b = b, .thinner = fmin(a->thickness, b->thickness)};
+    if (!isfinite(p->thinner))
+        p->thinner = 1.0;
+    const double pad = GAP_SHARE * p->thinner;
+    p->low = vec3_make(fmax(a->box.low.x, b->box.low.x) - pad, fmax(a->box.low.y, b->box.low.y) - pad,
+                       fmax(a->box.low.z, b->box.low.z) - pad);
+    p->high = vec3_make(fmin(a->box.high.x, b->box.high.x) + pad, fmin(a->box.high.y, b->box.high.y) + pad,
+                        fmin(a->box.high.z, b->box.high.z) + pad);
+    p->extent = fmax(fmax(fmax(fabs(p->low.x), fabs(p->low.y)), fmax(fabs(p->low.z), fabs(p->high.x))),
+                     fmax(fabs(p->high.y), fabs(p->high.z)));
+    p->overlaps = a->said->priority == b->said->priority && media_differ(room->made, a, b);
+    p->gaps = shows(a->of) && shows(b->of);
+    return (p->overlaps || p->gaps) && p->low.x < p->high.x && p->low.y < p->high.y && p->low.z < p->high.z;
+}
+
+static size_t count_pairs(const lint_room *room, const neighbour *all, int count)
+{
+    size_t pairs = 0;
+    pair p;
+    for (int i = 0; i < count; i++)
+        for (int k = i + 1; k < count; k++)
+            pairs += prepare_pair(room, &all[i], &all[k], &p);
+    return pairs;
+}
+
+static void look_at_all(const lint_room *room, const neighbour *all, int count, float *gap, double *middle)
+{
+    const size_t pairs = count_pairs(room, all, count);
+    for (int i = 0; i < count; i++)
+        for (int k = i + 1; k < count; k++) {
+            pair p;
+            if (!prepare_pair(room, &all[i], &all[k], &p) || (p.overlaps && is_covered(room, &all[i], &all[k])))
+                continue;
+            p.lattice = (int)fmax(LATTICE_LEAST, fmin(LATTICE_MOST, sqrt(LINES_MAX / (3.0 * (double)pairs))));
+            p.gap = gap;
+            p.middle = middle;
+            look_at_pair(&p);
+        }
+}
+
+status lint_neighbours(const lint_room *room, diagnostic *why)
+{
+    const arrangement *a = room->made->solids;
+    neighbour *all = calloc((size_t)a->body_count + 1, sizeof *all);
+    float *gap = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *gap);
+    double *middle = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *middle);
+    const bool there = all && gap && middle;
+    int count = 0;
+    for (int rank = 1; there && rank <= a->body_count; rank++) {
+        const body *b = &a->bodies[rank];
+        const solid *said = lint_solid(room, rank);
+        solid_shape shape = said->shape;
+        if (shape.kind == SHAPE_MESH) {
+            shape.mesh = scene_find_mesh(room->of, said->mesh)->data;
+            if (!shape.mesh->closed)
+                continue; /* it contains nothing */
+        }
+        all[count++] = (neighbour){b, said, bounds_of_body(a, b), shape_thickness(&shape), rank};
+    }
+    if (there)
+        look_at_all(room, all, count, gap, middle);
+    free(all);
+    free(gap);
+    free(middle);
+    return there ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+}

@@ -1,0 +1,321 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "image/compare.h"
+#include "render_fixture.h"
+
+/* What the depth buffer shows behind clear solids: against Fresnel's and Beer's formulas along one view, against
+ * Whitted's rays where nothing bends them, and the furnace. */
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+static const double sky = 0.7, wall = 3.0;
+
+/* An eye that looks along +z, at a wall that shines. */
+#define VIEW                                                           \
+    "render: {width: 1, height: 1, depth: 16, integrator: zbuffer}\n"  \
+    "camera: {position: [0, 0, -10], target: [0, 0, 0], fov_deg: 1}\n" \
+    "background: {color: [0.7, 0.7, 0.7], ambient: [0, 0, 0]}\n"       \
+    "solids:\n  wall: {shape: box, emission: 3, size: [40, 40, 1], position: [0, 0, 20], priority: 9}\n"
+
+static double seen_in(const char *solids, const char *assignments)
+{
+    char text[2048];
+    snprintf(text, sizeof text, "%s%s", VIEW, solids);
+    scene *s = scene_from(text);
+    set_all(s, assignments);
+    const double seen = look(s).x;
+    scene_destroy(s);
+    return seen;
+}
+
+/* Hecht, Optics, 4.6.3: at normal incidence. */
+static double head_on(double n, double m)
+{
+    return (n - m) * (n - m) / ((n + m) * (n + m));
+}
+
+/* Fresnel's equations for unpolarised light. */
+static double oblique(double cosine, double n, double m)
+{
+    const double sine = n / m * sqrt(1.0 - cosine * cosine), t = sqrt(1.0 - sine * sine);
+    const double rs = (n * cosine - m * t) / (n * cosine + m * t), rp = (m * cosine - n * t) / (m * cosine + n * t);
+    return 0.5 * (rs * rs + rp * rp);
+}
+
+static double behind(double reflectance, double rest)
+{
+    return reflectance * sky + (1.0 - reflectance) * rest;
+}
+
+static void a_slab_reflects_and_absorbs(void **state)
+{
+    (void)state;
+    const double r = head_on(1.0, 1.5), left = exp(-0.3 * 2.0);
+    static const char slab[] =
+        "  slab: {shape: box, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0, 0], size: [4, 4, 2]}\n";
+    assert_near(seen_in(slab, ""), behind(r, left * behind(r, wall)), 1e-9);
+    assert_near(seen_in(slab, "wall.visible=off"), behind(r, left * sky), 1e-9);
+    assert_near(seen_in(slab, "slab.transparency=0.5"),
+                r * sky + 0.5 * (1.0 - r) * left * (r * sky + 0.5 * (1.0 - r) * wall), 1e-9);
+    assert_near(seen_in(slab, "slab.emission=0.25"), 0.25 + r * sky + (1.0 - r) * left * (0.25 + behind(r, wall)),
+                1e-9);
+    /* turned by 30 degrees: the same angle at both faces, and a straight way through */
+    const double c = sqrt(0.75), turned = oblique(c, 1.0, 1.5), longer = exp(-0.3 * 2.0 / c);
+    assert_near(seen_in(slab, "slab.rotation=0,30,0"), behind(turned, longer * behind(turned, wall)), 1e-9);
+    assert_near(
+        seen_in(slab, "slab.rotation=0,30,0 render.transmission=simple slab.reflectivity=0.2 slab.transparency=0.8"),
+        0.2 * sky + 0.8 * longer * (0.2 * sky + 0.8 * wall), 1e-9);
+    assert_near(seen_in(slab, "render.weights=constant slab.reflectivity=0.1 slab.transparency=0.6"),
+                0.1 * sky + 0.6 * left * (0.1 * sky + 0.6 * wall), 1e-9);
+}
+
+/* A ball, a can and a mesh on their axis are slabs, too. */
+static void curved_solids_are_slabs_on_their_axis(void **state)
+{
+    (void)state;
+    const double r = head_on(1.0, 1.5), expected = behind(r, exp(-0.3 * 2.0) * behind(r, wall));
+    assert_near(seen_in("  ball: {shape: sphere, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0, 0]}\n", ""),
+                expected, 1e-3);
+    assert_near(
+        seen_in(
+            "  can: {shape: cylinder, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0, 0], height: 4, "
+            "position: [0, -2, 0]}\n",
+            ""),
+        expected, 1e-3);
+}
+
+/* The wall's index wins where both are; nothing is between them; equal ones are one. */
+static void the_higher_priority_is_seen_where_solids_overlap(void **state)
+{
+    (void)state;
+    static const char both[] =
+        "  glass: {shape: box, transparency: 1, ior: 1.5, absorb_per_m: [0.1, 0, 0], size: [4, 4, 2], priority: 2}\n"
+        "  water: {shape: box, transparency: 1, ior: 1.25, absorb_per_m: [0.4, 0, 0], size: [4, 4, 2], "
+        "position: [0, 0, 1.5], priority: 1}\n";
+    const double a = head_on(1.0, 1.5), b = head_on(1.5, 1.25), c = head_on(1.25, 1.0);
+    assert_near(seen_in(both, ""), behind(a, exp(-0.2) * behind(b, exp(-0.4 * 1.5) * behind(c, wall))), 1e-9);
+    assert_near(seen_in(both, "water.priority=3"),
+                behind(a, exp(-0.1 * 1.5) * behind(b, exp(-0.4 * 2.0) * behind(c, wall))), 1e-9);
+    assert_near(seen_in(both, "water.ior=1.5"), behind(a, exp(-0.2 - 0.4 * 1.5) * behind(a, wall)), 1e-9);
+    assert_near(seen_in(both, "water.position=0,0,2"), behind(a, exp(-0.2) * behind(b, exp(-0.8) * behind(c, wall))),
+                1e-9); /* in contact */
+    static const char vessel[] =
+        "  cup: {shape: cup, transparency: 1, ior: 1.5, radius: 2, inner_radius: 1.5, height: 4, floor: 0.2, "
+        "position: [0, -2, 0], priority: 2}\n"
+        "  water: {shape: cylinder, transparency: 1, ior: 1.25, radius: 1.75, height: 3, position: [0, -1.9, 0], "
+        "priority: 1}\n";
+    assert_near(seen_in(vessel, ""), behind(a, behind(b, behind(b, behind(a, wall)))), 1e-3);
+    const double air = behind(a, behind(a, behind(a, behind(a, wall))));
+    assert_near(seen_in(vessel, "water.visible=off"), air, 1e-3);
+}
+
+/* An opaque solid shows before, within and behind a clear one, and not where a clear one of higher priority is. */
+static void opaque_solids_among_clear_ones(void **state)
+{
+    (void)state;
+    static const char block[] =
+        "  glass: {shape: box, transparency: 1, ior: 1.5, absorb_per_m: [0.1, 0, 0], size: [4, 4, 4], priority: 2}\n"
+        "  brick: {shape: box, emission: 1, size: [1, 1, 1], priority: 3}\n";
+    const double a = head_on(1.0, 1.5);
+    assert_near(seen_in(block, ""), behind(a, exp(-0.1 * 1.5)), 1e-9);
+    assert_near(seen_in(block, "brick.priority=1"), behind(a, exp(-0.4) * behind(a, wall)), 1e-9);
+    assert_near(seen_in(block, "brick.priority=1 brick.position=0,0,2"), behind(a, exp(-0.4)),
+                1e-9); /* the brick begins where the glass ends */
+    assert_near(seen_in(block, "brick.position=0,0,-3"), 1.0, 1e-9);
+}
+
+/* From within: the way to the surface absorbs; beyond the critical angle, asin(1 / 1.5) = 41.8 degrees, the sky is
+ * mirrored. */
+static void the_eye_in_a_clear_solid(void **state)
+{
+    (void)state;
+    static const char around[] =
+        "  block: {shape: box, transparency: 1, ior: 1.5, absorb_per_m: [0.05, 0, 0], size: [60, 60, 24]}\n";
+    const double a = head_on(1.5, 1.0);
+    assert_near(seen_in(around, ""), exp(-0.05 * 22.0) * behind(a, wall), 1e-9);
+    assert_near(seen_in(around, "block.rotation=0,30,0 wall.visible=off"),
+                exp(-0.05 * (12.0 / sqrt(0.75) + 10.0)) * sky, 1e-9);
+    assert_near(seen_in(around, "block.size=24,24,24 block.rotation=0,44,0 wall.emission=0"),
+                exp(-0.05 * (12.0 / cos(44.0 * 3.141592653589793 / 180.0) + 10.0)) * sky, 1e-9);
+    assert_near(seen_in(around, "wall.position=0,0,5"), exp(-0.05 * 14.5) * wall, 1e-9);
+}
+
+static void the_depth_limit_ends_the_view(void **state)
+{
+    (void)state;
+    static const char slab[] = "  slab: {shape: box, transparency: 1, ior: 1.5, size: [4, 4, 2]}\n";
+    const double a = head_on(1.0, 1.5);
+    assert_near(seen_in(slab, "render.depth=0"), sky, 1e-9);
+    assert_near(seen_in(slab, "render.depth=0 render.beyond=black"), 0.0, 0.0);
+    assert_near(seen_in(slab, "render.depth=1 render.beyond=black"), a * sky, 1e-9);
+    assert_near(seen_in(slab, "render.depth=2 render.beyond=black"), behind(a, behind(a, wall)), 1e-9);
+    assert_near(seen_in(slab, "render.lighting=phong"), 0.0, 0.0); /* no branches: its surface */
+}
+
+static const char clear_scene[] =
+    "render: {width: 160, height: 120, depth: 24, shadows: off}\n"
+    "camera: {position: [0, 2.5, -7], target: [0, 0.8, 0], fov_deg: 40}\n"
+    "background: {kind: gradient, color: [0.1, 0.2, 0.3], ambient: [0.5, 0.6, 0.7]}\n"
+    "lights: {lamp: {position: [4, 7, -5]}}\n"
+    "meshes: {donut: {generate: torus, major: 0.6, minor: 0.25}, ball: {generate: icosphere, level: 4}}\n"
+    "materials:\n"
+    "  tiles: {diffuse: 0.7, ambient: 0.1, checker: 0.5, color: [0.8, 0.8, 0.8], checker_color: [0.2, 0.3, 0.4]}\n"
+    "  clear: {transparency: 0.9, specular: 0.3, diffuse: 0.1, color: [0.9, 0.8, 0.7], ior: 1.5}\n"
+    "solids:\n"
+    "  ground: {shape: plane, material: tiles}\n"
+    "  ring: {shape: mesh, mesh: donut, material: clear, position: [-2.2, 0.6, 0], rotation: [70, 20, 0], "
+    "absorb_per_m: [0.2, 1, 2], priority: 4}\n"
+    "  bubble: {shape: mesh, mesh: ball, material: clear, position: [-1.6, 0.6, 0.4], scale: [0.7, 0.6, 0.5], "
+    "absorb_per_m: [1, 0.2, 0], priority: 1}\n"
+    "  cup: {shape: cup, material: clear, radius: 0.9, inner_radius: 0.7, height: 1.6, floor: 0.2, "
+    "position: [0.2, 0.1, -0.5], rotation: [-10, 0, 5],\n"
+    "    absorb_per_m: [0.1, 0.3, 0.1], priority: 3}\n"
+    "  water: {shape: cylinder, material: clear, radius: 0.8, height: 1, position: [0.2, -0.3, -0.5], "
+    "absorb_per_m: [2, 0.5, 0.2], priority: 2}\n"
+    "  rod: {shape: box, material: tiles, size: [0.2, 2, 0.2], position: [0.3, 1, -0.4], rotation: [0, 0, 20], "
+    "priority: 5}\n"
+    "  can: {shape: cylinder, material: clear, radius: 0.6, height: 1.2, m: 2, position: [2, 0.2, 0.5], "
+    "rotation: [0, 30, 20], absorb_per_m: [0.1, 1, 0.4]}\n"
+    "  crate: {shape: box, material: tiles, size: [1, 1, 1], position: [2.3, 0.2, 0.9], rotation: [10, 40, 5], "
+    "priority: -1}\n";
+
+static scene *loaded(const char *text, const char *assignments)
+{
+    scene *s = scene_from(text);
+    diagnostic why = {0};
+    set_all(s, assignments);
+    worked(scene_load(s, &why), &why);
+    return s;
+}
+
+/* Where light goes straight on and surfaces reflect nothing, rays see the same, but for outlines. */
+static void what_goes_straight_is_seen_as_traced(void **state)
+{
+    (void)state;
+    static const char *const variants[] = {"",
+                                           "render.samples=4",
+                                           "ground.priority=3",
+                                           "camera.position=0.2,0.8,-0.55 camera.target=2,0.6,0.5",
+                                           "camera.position=-1.6,0.7,0.3 camera.target=2,0.6,0.5",
+                                           "water.priority=7 can.priority=-3",
+                                           "ring.shading=flat bubble.shading=gouraud",
+                                           "camera.position=-2.2,0.9,-4 camera.target=-2,0.5,3"};
+    for (size_t v = 0; v < COUNT(variants); v++) {
+        scene *s = loaded(clear_scene, variants[v]);
+        set_all(s, "clear.ior=1 render.transmission=simple");
+        render_result *traced = render(s);
+        set(s, "render.integrator=zbuffer");
+        render_result *drawn = render(s);
+        int beyond = 0;
+        for (int at = 0; at < 160 * 120; at++) {
+            double most = 0.0;
+            for (int c = 0; c < 3; c++)
+                most = fmax(most, fabs(film_value(traced->picture, at % 160, at / 160, c) -
+                                       film_value(drawn->picture, at % 160, at / 160, c)));
+            beyond += most > 0.01;
+        }
+        if (beyond > 160 * 120 / 100)
+            fail_msg("%s: %d pixels differ", variants[v], beyond);
+        render_result_destroy(traced);
+        render_result_destroy(drawn);
+        scene_destroy(s);
+    }
+}
+
+/* R + T = 1 at every layer: under a sky of 1 clear solids of any index are not seen. */
+static void nothing_is_lost_between_layers(void **state)
+{
+    (void)state;
+    scene *s = loaded(
+        clear_scene,
+        "render.integrator=zbuffer ground.visible=off rod.visible=off crate.visible=off "
+        "clear.absorb_per_m=0,0,0 clear.color=1,1,1 clear.transparency=1 clear.specular=0 clear.diffuse=0 "
+        "background.kind=uniform background.color=1,1,1");
+    set_all(s, "ring.ior=1.8 water.ior=1.33 can.ior=0.8");
+    for (int depth = 0; depth <= 12; depth += 3) {
+        s->render.depth = depth;
+        render_result *r = render(s);
+        for (int at = 0; at < 160 * 120; at++)
+            for (int c = 0; c < 3; c++)
+                assert_near(film_value(r->picture, at % 160, at / 160, c), 1.0, 1e-9);
+        render_result_destroy(r);
+    }
+    scene_destroy(s);
+}
+
+/* How far the preview of the rod lies from Whitted's picture: black glass was at 0.2. */
+static void the_rod_is_close_to_what_rays_show(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=400 render.height=300 render.depth=4");
+    render_result *traced = render(s);
+    set(s, "render.integrator=zbuffer");
+    render_result *drawn = render(s);
+    image *a = NULL, *b = NULL;
+    image_comparison c;
+    assert_int_equal(film_image(traced->picture, &a, NULL), STATUS_OK);
+    assert_int_equal(film_image(drawn->picture, &b, NULL), STATUS_OK);
+    assert_int_equal(image_compare(a, b, &c, NULL), STATUS_OK);
+    print_message("rod: FLIP %.3f\n", c.flip);
+    assert_true(c.flip < 0.12);
+    image_destroy(a);
+    image_destroy(b);
+    render_result_destroy(traced);
+    render_result_destroy(drawn);
+    scene_destroy(s);
+}
+
+static uint64_t hash_of(const scene *s, isa level)
+{
+    render_result *r = render_at(s, level, NULL);
+    const uint64_t hash = film_hash(r->picture);
+    render_result_destroy(r);
+    return hash;
+}
+
+static void layers_depend_on_no_order(void **state)
+{
+    (void)state;
+    static const char *const how[] = {"render.threads=2",
+                                      "render.threads=7 render.schedule=columns",
+                                      "render.threads=7 render.schedule=rows render.pool=off",
+                                      "render.threads=2 render.schedule=tiles render.tile=8",
+                                      "render.threads=1 render.schedule=tiles render.tile=1",
+                                      "render.threads=64 render.schedule=dynamic render.tile=50",
+                                      "render.keep=off render.accel=none"};
+    scene *s = loaded(clear_scene, "render.integrator=zbuffer");
+    for (int samples = 1; samples <= 4; samples += 3) {
+        set(s, samples == 1 ? "render.samples=1" : "render.samples=4");
+        const uint64_t wanted = hash_of(s, ISA_SSE2);
+        for (int level = ISA_AVX2; level <= (int)isa_best(); level++)
+            assert_true(hash_of(s, (isa)level) == wanted);
+        for (size_t h = 0; h < COUNT(how); h++) {
+            set_all(s, how[h]);
+            assert_true(hash_of(s, isa_best()) == wanted);
+        }
+    }
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_slab_reflects_and_absorbs),
+        cmocka_unit_test(curved_solids_are_slabs_on_their_axis),
+        cmocka_unit_test(the_higher_priority_is_seen_where_solids_overlap),
+        cmocka_unit_test(opaque_solids_among_clear_ones),
+        cmocka_unit_test(the_eye_in_a_clear_solid),
+        cmocka_unit_test(the_depth_limit_ends_the_view),
+        cmocka_unit_test(what_goes_straight_is_seen_as_traced),
+        cmocka_unit_test(nothing_is_lost_between_layers),
+        cmocka_unit_test(the_rod_is_close_to_what_rays_show),
+        cmocka_unit_test(layers_depend_on_no_order),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
