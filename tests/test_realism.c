@@ -83,7 +83,7 @@ static void a_pond_looks_shallower_by_its_index(void **state)
 static void the_view_is_that_of_the_tracer(void **state)
 {
     (void)state;
-    scene *s = rod_scene("camera.position=2,3,-5 camera.target=-0.3,1,0.4");
+    scene *s = rod_scene("camera.position=2,3,-5 camera.target=-0.3,1,0.4 camera.roll_deg=-70");
     probe *p = NULL;
     diagnostic why = {0};
     worked(probe_create(s, isa_best(), &p, &why), &why);
@@ -248,7 +248,7 @@ static void refuses_scenes_without_a_vessel_a_rod_or_a_common_axis(void **state)
     (void)state;
     static const struct { const char *change, *what; } wrong[] = {
         {"vessel.visible=off", "'vessel'"},     {"rod.visible=off", "'rod'"},         {"liquid.radius=0.5", "wall"},
-        {"liquid.position.x=0.01", "wall"},     {"liquid.m=1.1", "round"},            {"vessel.rotation.x=5", "turned"},
+        {"liquid.position.x=0.01", "wall"},     {"liquid.m=1.1", "round"},            {"vessel.m=1.1", "elliptic"}, {"vessel.rotation.x=5", "turned"},
         {"vessel.transparency=0", "opaque"},    {"rod.transparency=1", "not opaque"}, {"rod.priority=1", "displaced"},
         {"liquid.position.y=0.5", "floor"},     {"liquid.priority=9", "displaces"},
     };
