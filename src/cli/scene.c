@@ -1,4 +1,5 @@
 #include "cli/cli.h"
+#include "cli/inert_notes.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_edits.h"
@@ -108,6 +109,9 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
         diagnostic_locate(why, request->path ? request->path : "--new", 0, 0); /* for checks that have no line to name */
         result = scene_check(*out, why);
     }
+    for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
+        if (strcmp(request->edits[i].edit->option, "--set") == 0)
+            inert_note_assignment(*out, request->edits[i].text);
     return result;
 }
 

@@ -13,8 +13,8 @@ const solid *scene_cover(const scene *s, const solid *hidden);
 /* Does the first win where both are? Both are solids of one scene. */
 bool scene_wins(const solid *winner, const solid *loser);
 
-/* Are two solids known to share no region? By their reach along their own axes and the world's; two that lie askew
- * may be apart and not be known to be. */
+/* Are two solids known to share no region? By their reach along their own axes, the world's, and the line
+ * between them; two that lie askew may be apart and not be known to be. */
 bool scene_apart(const scene *s, const solid *a, const solid *b);
 
 /* Does the solid lie wholly behind the camera, so that it is seen in reflections at most? */
