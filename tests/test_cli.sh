@@ -320,15 +320,15 @@ done
 # --- realism
 run realism "$scene"
 check "realism succeeds" silent_success
-check "realism passes on the rod scene" is "$(tail -1 out)" "32 of 32 pass"
+check "realism passes on the rod scene" is "$(tail -1 out)" "35 of 35 pass"
 run realism "$scene" --set liquid.visible=off --csv
-check "realism --csv has a line a metric" is "$(wc -l <out)" 33
+check "realism --csv has a line a metric" is "$(wc -l <out)" 36
 check "what is not defined is NA, with its reason" grep -q '^absorption.slope,none,NA,NA,NA,.*"there is no liquid"$' out
 run realism "$scene" --set render.weights=constant --set clear.reflectivity=0.1 --set clear.transparency=0.9
 check "constant shares fail, and that is no error" silent_success
 check "and are named" grep -q '^FAIL  fresnel.vessel ' out
 run realism "$scene" --json
-check "realism --json" is "$(json schema defined passed)" "$(lines 1 32 32)"
+check "realism --json" is "$(json schema defined passed)" "$(lines 1 35 35)"
 run realism "$scene" --curve depth
 check "a curve is CSV of three columns" is "$(awk -F'","|,' 'END {print NR, NF}' out)" "18 3"
 run realism "$scene" --curve dept
@@ -659,6 +659,15 @@ run scene built.yaml --check
 check "--check says that it is right" is "$code $(<out)" "0 built.yaml: right; meshes 0, textures 0, materials 3, lights 1, solids 4"
 run scene built.yaml --move rod=0,0.5,0 -o built.yaml
 check "a scene is changed in its place" matches "$(grep -A3 '  rod:' built.yaml | tail -1)" 'position: \[0.2, 2.601, 0\]'
+run scene built.yaml --turn all+camera=0,90,0 --scale all+camera=2 --move all+camera=1,0,0 -o whole.yaml
+check "a whole scene is turned, scaled and moved" matches "$(grep -A6 '^camera:' whole.yaml | head -3 | tr -s '\n ' ' '; grep unit_m whole.yaml)" 'position: \[-11, 5.5, .*unit_m: 0.5'
+run render built.yaml "${small[@]}" -o before.png
+run render whole.yaml "${small[@]}" -o after.png
+run compare before.png after.png
+check "with its camera it gives the same image" matches "$(<out)" 'flip  *0\.0000'
+run render built.yaml "${small[@]}" --set camera.roll_deg=180 -o after.png
+run compare before.png after.png
+check "a roll gives another" matches "$(<out)" 'flip  *0\.[0-9]*[1-9]'
 mkdir -p pictures/scenes
 cp a.png pictures/sky.png
 run scene built.yaml --set background.picture=pictures/sky.png -o pictures/scenes/moved.yaml
@@ -675,6 +684,8 @@ refused() # WHAT ERROR ARGUMENT...: one line, 2, nothing written
 refused "to delete a material in use" \
     "--delete clear: clear is the material of vessel and 1 more; give those another material first, or remove them" built.yaml --delete clear
 refused "a name that is not there" "--move rood=1,2,3: nothing in the scene is named 'rood'; did you mean 'rod'?" built.yaml --move rood=1,2,3
+refused "to scale the camera" "--scale camera=2: camera has no size of its own; scale a solid, a light, or all, solids, lights" built.yaml --scale camera=2
+refused "a factor of nothing" "--scale all=0: all cannot be scaled by 0; give a factor above 0, at most 1e9" built.yaml --scale all=0
 refused "two numbers" "--move rod=1,2: there are fewer than 3 numbers; give NAME=DX,DY,DZ" built.yaml --move rod=1,2
 refused "a shape that is none" "--add solid:x=bax: no shape 'bax'; did you mean 'box'?" built.yaml --add solid:x=bax
 refused "a solid without a shape" "--add solid:x: x has no shape; write solid:NAME=SHAPE, as solid:rod=box" built.yaml --add solid:x
@@ -709,6 +720,7 @@ check "completion offers options of trace" is "$(complete_line cuvette trace --p
 check "completion offers options of fan" is "$(complete_line cuvette fan --sp)" --spread
 check "completion offers objects of the scene" is "$(complete_line "$program" scene "$scene" --delete ve; complete_line "$program" scene "$scene" --move ro)" \
     "$(lines vessel rod=)"
+check "completion offers many objects at once" is "$(complete_line "$program" scene "$scene" --scale al)" "all="
 check "completion offers options of lab" is "$(complete_line cuvette lab --no)" --no-browser
 check "completion offers study verbs" is "$(complete_line cuvette study mer)" merge
 

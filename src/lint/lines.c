@@ -204,7 +204,7 @@ double shape_thickness(const solid_shape *shape)
     switch (shape->kind) {
     case SHAPE_PLANE: return HUGE_VAL;
     case SHAPE_CYLINDER: return fmin(shape->height, 2.0 * fmin(shape->radius, shape->radius / shape->m));
-    case SHAPE_CUP: return fmin(shape->radius - shape->inner_radius, shape->floor);
+    case SHAPE_CUP: return fmin((shape->radius - shape->inner_radius) * fmin(1.0, 1.0 / shape->m), shape->floor);
     case SHAPE_BOX: return least_of_three(shape->size);
     case SHAPE_SPHERE: return 2.0 * shape->radius;
     case SHAPE_MESH: {

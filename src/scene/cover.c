@@ -70,7 +70,7 @@ static double farthest_along(const covered *h, vec3 direction)
     const double middle = vec3_dot(direction, s->position);
     switch (s->kind) {
     case SHAPE_SPHERE: return middle + s->radius;
-    case SHAPE_CUP: return middle + fmax(0.0, s->height * d.y) + s->radius * hypot(d.x, d.z);
+    case SHAPE_CUP:
     case SHAPE_CYLINDER: return middle + fmax(0.0, s->height * d.y) + s->radius * hypot(d.x, d.z / s->m);
     case SHAPE_BOX: return most_of_box(h, along, &direction);
     case SHAPE_MESH: return most_of_mesh(h, along, &direction);
@@ -100,7 +100,7 @@ static double distance_in(const void *context, vec3 point)
 static double farthest_of_cylinder(const covered *h, const round_frame *f)
 {
     const solid_shape *s = h->shape;
-    const double wide = s->radius * (s->kind == SHAPE_CYLINDER ? fmax(1.0, 1.0 / s->m) : 1.0);
+    const double wide = s->radius * fmax(1.0, 1.0 / s->m);
     if (f->sphere) {
         const vec3 p = mat3_apply_transposed(h->turn, vec3_sub(f->origin, s->position));
         return hypot(hypot(p.x, p.z) + wide, fmax(fabs(p.y), fabs(p.y - s->height)));
@@ -149,14 +149,14 @@ static bool avoids_hollow(const covered *h, const solid_shape *cup, const mat3 *
     if (r == 0.0)
         return false;
     const vec3 out = mat3_apply(*turn, vec3_make(local.x / r, 0.0, local.z / r));
-    return is_within(farthest_along(h, vec3_scale(out, -1.0)), -vec3_dot(out, cup->position) - cup->inner_radius,
-                     cup->radius);
+    const double hollow = cup->inner_radius * hypot(local.x / r, local.z / (r * cup->m));
+    return is_within(farthest_along(h, vec3_scale(out, -1.0)), -vec3_dot(out, cup->position) - hollow, cup->radius);
 }
 
 static bool contains_all(const solid_shape *c, const covered *h)
 {
     const mat3 turn = rotation_from_deg(c->rotation_deg);
-    const round_frame frame = {c->position, turn, c->kind == SHAPE_CYLINDER ? c->m : 1.0, c->kind == SHAPE_SPHERE};
+    const round_frame frame = {c->position, turn, c->kind == SHAPE_CYLINDER || c->kind == SHAPE_CUP ? c->m : 1.0, c->kind == SHAPE_SPHERE};
     switch (c->kind) {
     case SHAPE_PLANE: {
         const vec3 up = axis_of(&turn, 1);
