@@ -378,12 +378,17 @@ for at in 40,30 37,41 5,3 44,22; do
     check "its radiance is the picture's" same_floats "$(pixel a.pfm ${at/,/ })" "$(json 'radiance[]')"
 done
 run trace "$scene" --pixel 40,30 --depth 3 --json "${small[@]}"
-check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth radiance root lambda_nm "
+check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth radiance root lambda_nm carries "
 check "schema, scene and depth" is "$(json schema scene depth)" "$(lines 1 "$scene" 3)"
 check "keys of a ray, in order" is "$(json root@keys | tr '\n' ' ')" \
     "kind depth origin direction throughput medium n hit children end brought "
 check "keys of a hit, in order" is "$(json root.hit@keys | tr '\n' ' ')" \
-    "solid surface t point normal from to cos_i cos_t R_s R_p R tir path_length transmittance error_bound opaque "
+    "solid surface t point normal from to cos_i cos_t R_s R_p R tir path_length transmittance error_bound opaque $(
+        )T radiance_factor "
+check "what a refraction does to radiance: T, and T (n1 / n2)^2" \
+    holds "($(json root.hit.radiance_factor.classic) - (1 - $(json root.hit.R))) ^ 2 < 1e-30 &&
+        ($(json root.hit.radiance_factor.basic) * 2.25 - (1 - $(json root.hit.R))) ^ 2 < 1e-30"
+check "and which of them rays carry" is "$(json carries)" classic
 check "the first ray" is "$(json root.kind root.depth root.medium root.n root.end root.hit.solid root.hit.surface root.hit.tir)" \
     "$(lines camera 0 air 1 hit vessel "outer side" false)"
 check "media on both sides" is "$(json root.hit.from.medium root.hit.to.medium root.hit.to.n)" "$(lines air vessel 1.5)"
