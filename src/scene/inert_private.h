@@ -35,6 +35,8 @@ inert_remedy inert_set(const char *format, ...) __attribute__((format(printf, 1,
 
 bool inert_render(const inert_case *c);
 bool inert_background(const inert_case *c);
+/* Of render.radiance. */
+bool inert_radiance(const inert_case *c);
 bool inert_mesh(const inert_case *c);
 bool inert_texture(const inert_case *c);
 bool inert_light(const inert_case *c);

@@ -214,7 +214,7 @@ bool inert_render(const inert_case *c)
 {
     static const inert_row rows[] = {
         {"depth", no_tree}, {"beyond", beyond}, {"lighting", lighting}, {"weights", weights}, {"transmission", no_clear},
-        {"shadows", shadows}, {"min_weight", min_weight}, {"paths", path_only}, {"roulette", roulette}, {"seed", seed},
+        {"shadows", shadows}, {"min_weight", min_weight}, {"paths", path_only}, {"roulette", roulette}, {"seed", seed}, {"radiance", inert_radiance},
         {"polarisation", polarisation}, {"wavelengths", wavelengths}, {"lambda_nm", lambda}, {"unit_m", unit}, {"texturing", texturing},
         {NULL, NULL},
     };
