@@ -53,7 +53,8 @@ bool inert_radiance(const inert_case *c)
 {
     const scene *s = c->s;
     if (s->render.integrator == INTEGRATOR_ZBUFFER) {
-        return inert_say(c, "zbuffer-radiance", "set render.integrator=whitted", "the depth buffer follows no light through a surface");
+        return inert_say(c, "zbuffer-radiance", "set render.integrator=whitted",
+                         "the depth buffer follows no light through a surface");
     }
     if (s->render.transmission == TRANSMISSION_SIMPLE) {
         return inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
@@ -63,9 +64,11 @@ bool inert_radiance(const inert_case *c)
     }
     const solid *dense = first_dense(s), *last = s->solid_count > 0 ? &s->solids[s->solid_count - 1] : NULL;
     if (!dense) {
-        const inert_remedy remedy = last ? inert_set("%s.transparency=0.9 and %s.ior=1.5", last->name, last->name) : (inert_remedy){"add a solid"};
+        const inert_remedy remedy = last ? inert_set("%s.transparency=0.9 and %s.ior=1.5", last->name, last->name)
+                                         : (inert_remedy){"add a solid"};
         return inert_say(c, "no-dense", remedy.text, "no visible clear solid has an index of its own");
     }
     return shining_lights(s) == 0 && !light_begins_in_dense(s) &&
-           inert_say(c, "light-outside", inert_set("%s.emission=0.5", dense->name).text, "all light begins and ends outside of clear solids");
+           inert_say(c, "light-outside", inert_set("%s.emission=0.5", dense->name).text,
+                     "all light begins and ends outside of clear solids");
 }
