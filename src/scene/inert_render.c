@@ -119,6 +119,44 @@ static bool weights(const inert_case *c)
                            inert_say(c, "simple", "set render.transmission=refract", "simple transmission takes the materials' constants"));
 }
 
+/* The first visible solid that light can come out of again, of those clear if that is wanted: no plane. */
+static const solid *first_body(const scene *s, bool clear)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && one->shape.kind != SHAPE_PLANE && !(clear && material_is_opaque(&one->surface))) {
+            return one;
+        }
+    }
+    return NULL;
+}
+
+/* Indices and Fresnel's shares come into light that crosses a surface on its way from where it is sent out to the eye,
+ * or to a shadow ray's start. Whether any does, a film tells. */
+static bool radiance(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (s->render.integrator == INTEGRATOR_ZBUFFER) {
+        return inert_say(c, "drawn", WHITTED, "the depth buffer bends no light");
+    }
+    const solid *any = first_body(s, false), *clear = first_body(s, true);
+    if (!first_clear(s)) {
+        const inert_remedy remedy =
+            any ? inert_set("%s.transparency=0.9 and %s.ior=1.5", any->name, any->name) : clear_remedy(s);
+        return inert_say(c, "no-clear", remedy.text, "no visible solid is transparent");
+    }
+    if (s->render.transmission == TRANSMISSION_SIMPLE) {
+        return inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
+    }
+    const inert_remedy remedy = !follows_rays(s) ? inert_set("render.integrator=whitted")
+                                : clear          ? inert_set("%s.emission=0.5", clear->name)
+                                                 : clear_remedy(s);
+    return inert_same(c, "render.radiance=%s", s->render.radiance == RADIANCE_BASIC ? "classic" : "basic") &&
+           inert_say(c, "one-medium", remedy.text,
+                     "no light that shows is sent out where the index is not the eye's, and no shadow ray that shows "
+                     "crosses a clear surface");
+}
+
 static bool polarisation(const inert_case *c)
 {
     return no_tree(c) || no_clear(c);
@@ -211,6 +249,7 @@ bool inert_render(const inert_case *c)
 {
     static const inert_row rows[] = {
         {"depth", no_tree}, {"beyond", beyond}, {"lighting", lighting}, {"weights", weights}, {"transmission", no_clear},
+        {"radiance", radiance},
         {"shadows", shadows}, {"min_weight", min_weight}, {"paths", path_only}, {"roulette", roulette}, {"seed", seed},
         {"polarisation", polarisation}, {"wavelengths", wavelengths}, {"lambda_nm", lambda}, {"unit_m", unit}, {"texturing", texturing},
         {NULL, NULL},
