@@ -385,8 +385,10 @@ static inline void take_blocks_away(law_scene *w)
     for (int i = 0; i < w->solid_count; i++) {
         solid_shape *shape = &w->solid[i].shape;
         const double away = vec3_length(shape->position);
+        /* its top, -0.3 but for the rounding of a large block, stays where what stands on it begins: a gap of 1e-14 is not resolved either */
+        const double top = shape->position.y + 0.5 * shape->scale.y;
         if (w->solid[i].mesh && shape->scale.x > 2.0)
-            shape->scale = vec3_make(0.5, 0.5, 0.5), shape->position = vec3_make(0.0, -0.55, 0.0);
+            shape->scale = vec3_make(0.5, 0.5, 0.5), shape->position = vec3_make(0.0, (fabs(top + 0.3) < 1e-9 ? top : -0.3) - 0.25, 0.0);
         else if (away > 20.0)
             shape->position = vec3_scale(shape->position, 1.0 / away);
     }

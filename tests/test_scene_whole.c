@@ -27,7 +27,7 @@ static const char everything[] =
     "materials:\n"
     "  dull: {diffuse: 0.7, ambient: 0.1, checker: 0.31, color: [0.8, 0.3, 0.2]}\n"
     "  paper: {diffuse: 0.7, ambient: 0.1, texture: tiles}\n"
-    "  glass: {transparency: 1, ior: 1.5, absorb_per_m: [0.9, 0.2, 0.1]}\n"
+    "  glass: {transparency: 1, ior: 1.5, absorb_per_m: [0.9, 0.2, 0.1], color: [0.9, 0.6, 0.8], tint_distance: 0.7}\n"
     "solids:\n"
     "  ground: {shape: plane, material: paper, position: [0, -0.01, 0]}\n"
     "  wall: {shape: plane, material: dull, checker: 0.83, position: [0, 0, 6], rotation: [-90, 0, 0]}\n"
