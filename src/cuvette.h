@@ -105,8 +105,8 @@ CUVETTE_API cuvette_status cuvette_scene_write(const cuvette_scene *scene, const
 CUVETTE_API cuvette_status cuvette_scene_write_text(const cuvette_scene *scene, char *text, size_t size, size_t *length,
                                                     cuvette_diagnostic *why);
 
-/* Calls note with one line of text, which lasts for the call, for each thing that is allowed and still looks wrong: a black solid, no light,
- * what has no effect. */
+/* Calls note with one line of text, "PLACE: WHAT; REMEDY", which lasts for the call, for each thing that is allowed and still looks wrong: a
+ * black solid, no light, what has no effect. PLACE is a parameter's path or an object's name. */
 CUVETTE_API cuvette_status cuvette_scene_hints(const cuvette_scene *scene, void (*note)(void *context, const char *text), void *context,
                                                cuvette_diagnostic *why);
 
@@ -192,7 +192,7 @@ typedef struct cuvette_triangles {
 CUVETTE_API cuvette_status cuvette_scene_add_triangles(cuvette_scene *scene, const char *name, const cuvette_triangles *triangles,
                                                        cuvette_diagnostic *why);
 
-/* A texture: of a PNG, JPEG or PFM file, NAME.file; or of linear RGB floats of the caller's, which are copied, row by row from the top
+/* A texture: of a PNG, JPEG, PFM or 24-bit BMP file, NAME.file; or of linear RGB floats of the caller's, which are copied, row by row from the top
  * (repeated, trilinear). A material's or a solid's parameter `texture` names it. What was handed over as arrays is in the scene's
  * clones, but in no file that is written; setting a parameter of it lets go of it. */
 CUVETTE_API cuvette_status cuvette_scene_add_texture(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
@@ -202,11 +202,17 @@ CUVETTE_API cuvette_status cuvette_scene_add_pixels(cuvette_scene *scene, const 
 /* A material goes only when no solid has it. */
 CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 
-/* Adds by, three numbers in scene units, to the position of a solid, a light or "camera" (whose target goes with it, and a cone's). */
+/* Adds by, three numbers in scene units, to the position of a solid, a light or "camera" (whose target goes with it, and a cone's); or of many: the
+ * name "all" is all solids and lights, "solids" and "lights" are these alone, and such words are joined by '+', as "all+camera", unless an object
+ * has that name. */
 CUVETTE_API cuvette_status cuvette_scene_move(cuvette_scene *scene, const char *name, const double *by, cuvette_diagnostic *why);
 /* Turns a solid where it stands, or the direction of a cone of light or "camera", about the world's x axis, then y, then z (three
- * angles), on top of the rotation that it has; right-hand rule on the axes' names. */
+ * angles), on top of the rotation that it has; right-hand rule on the axes' names. Many objects ("all") turn about the origin, the camera with
+ * its roll. */
 CUVETTE_API cuvette_status cuvette_scene_turn(cuvette_scene *scene, const char *name, const double *degrees, cuvette_diagnostic *why);
+/* Multiplies all lengths of a solid or a light by a factor above 0, where it stands; or of many ("all+camera"), about the origin: with all solids their
+ * materials' lengths too, and render.unit_m is divided by the factor, so that lengths in metres, and what media absorb, stay. */
+CUVETTE_API cuvette_status cuvette_scene_scale(cuvette_scene *scene, const char *name, double factor, cuvette_diagnostic *why);
 /* Aims the camera at a point. */
 CUVETTE_API cuvette_status cuvette_scene_look_at(cuvette_scene *scene, const double *target, cuvette_diagnostic *why);
 /* The solid has that material from now on, and what it had for itself alone is gone; NULL takes the material away. */

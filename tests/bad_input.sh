@@ -168,6 +168,10 @@ printf 'PF\n2 -2\n-1.0\n' >sky.png
 sky "PFM of a negative size"
 { printf 'PF\n1 1\n-1.0\n'; printf '\x00\x00\xc0\x7f\x00\x00\xc0\x7f\x00\x00\xc0\x7f'; } >sky.png
 sky "PFM with NaN"
+{ printf 'BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x08\0'; head -c 28 /dev/zero; } >sky.png
+sky "BMP of 8 bits"
+{ printf 'BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\2\0\0\0\2\0\0\0\1\0\x18\0'; head -c 28 /dev/zero; } >sky.png
+sky "truncated BMP"
 printf 'GIF89a\1\0\1\0\0\0\0;' >sky.png
 sky "a GIF"
 rm sky.png

@@ -205,7 +205,10 @@ static inline verdict same_radiance(judge *j, const law_pair *p)
         const ray_tree plain = *stage_ray(&a, p->a.eye, d);
         a.tree = (ray_tree){.count = 0};
         const ray_tree *displaced = stage_ray(&a, vec3_add(p->a.eye, off), d);
-        const ray_tree *moved = stage_ray(&b, move_point(&p->moved, p->a.eye), move_direction(&p->moved, d));
+        const vec3 own = probe_camera_direction(b.probe, p->moved.mirrored ? LAW_WIDTH - x : x, y);
+        if (vec3_length(vec3_sub(own, move_direction(&p->moved, d))) > 1e-13) /* the camera and its roll move with the scene */
+            result = BROKEN;
+        const ray_tree *moved = stage_ray(&b, p->b.eye, own);
         const bool same = same_path(&plain, displaced);
         j->rays += same, j->rays_left_out += !same;
         for (int c = 0; c < 3 && same; c++) {

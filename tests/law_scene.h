@@ -36,6 +36,7 @@ typedef struct law_scene {
     double sky;
     bool flat; /* meshes are shaded flat */
     vec3 eye, target;
+    double roll_deg;
     int light_count, solid_count;
     law_light light[LAW_LIGHTS_MAX];
     law_solid solid[LAW_SOLIDS_MAX];
@@ -240,6 +241,8 @@ static inline law_scene random_law_scene(uint64_t *seed, const char *settings)
     w.light_count = random_below(seed, LAW_LIGHTS_MAX + 1);
     for (int i = 0; i < w.light_count; i++)
         w.light[i] = (law_light){random_point(seed, 5.0), 2.0 * i};
+    uint64_t own = *seed ^ 0x726f6c6cu; /* "roll": of a stream of its own, so that it changes nothing else of the scene */
+    w.roll_deg = random_below(&own, 3) == 0 ? random_real(&own, -180.0, 180.0) : 0.0;
     const int count = 1 + random_below(seed, 9);
     for (int i = 0; i < count; i++)
         add_solid(&w, random_solid(&w, i, seed));
@@ -315,7 +318,7 @@ static inline scene_text law_text(const law_scene *w)
     add(&t, "}\ncamera: {");
     add_vector(&t, "position", w->eye);
     add_vector(&t, "target", w->target);
-    add(&t, "fov_deg: 50}\n");
+    add(&t, "roll_deg: %.17g, fov_deg: 50}\n", w->roll_deg);
     for (int i = 0; i < w->light_count; i++) {
         add(&t, "%s  lamp%d: {", i ? "" : "lights:\n", i);
         add_vector(&t, "position", w->light[i].position);
@@ -340,7 +343,7 @@ typedef struct ball {
 static inline ball ball_around(const law_solid *s)
 {
     const solid_shape *shape = &s->shape;
-    const double wide = shape->radius * fmax(1.0, shape->kind == SHAPE_CYLINDER ? 1.0 / shape->m : 1.0);
+    const double wide = shape->radius * fmax(1.0, 1.0 / shape->m);
     switch (shape->kind) {
     case SHAPE_SPHERE: return (ball){shape->position, shape->radius};
     case SHAPE_BOX: return (ball){shape->position, 0.5 * vec3_length(shape->size)};

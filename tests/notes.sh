@@ -20,5 +20,26 @@ for scene in tests/data/lint/*.yaml; do
     sed -n '1s/^# /#   /p' "$scene"
     sed "s/^cuvette: note: /#   -> /" <<<"$notes"
 done
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+expect() { # expect NAME WANTED FOUND: how many notes on the depth
+    number=$((number + 1))
+    if [[ $(grep -c '^cuvette: note: render\.depth: ' <<<"$3") == "$2" ]]; then
+        echo "ok $number - $1"
+    else
+        echo "not ok $number - $1: wanted $2 notes"
+        sed 's/^/# /' <<<"$3"
+        failed=1
+    fi
+}
+study() { # study GRID: what running it says
+    printf 'study: t\nscene: %s\ngrid:\n  - {%s}\nrepetitions: 1\n' "$PWD/tests/data/lint/shallow.yaml" "$1" >"$folder/t.study"
+    "$cuvette" study run --results "$folder/$RANDOM" "$folder/t.study" ${2-} 2>&1
+}
+expect 'a render notes it' 1 "$("$cuvette" render tests/data/lint/shallow.yaml -o "$folder/a.png" 2>&1)"
+expect 'not beside JSON' 0 "$("$cuvette" render tests/data/lint/shallow.yaml --json 2>&1)"
+expect 'a study notes it' 1 "$(study 'render.threads: [1, 2]')"
+expect 'not one that varies it' 0 "$(study 'render.depth: [1, 2]')"
+expect 'nor a quiet one' 0 "$(study 'render.threads: [1, 2]' -q)"
 echo "1..$number"
 exit $failed

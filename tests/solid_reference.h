@@ -68,9 +68,9 @@ static inline int reference_crossings(const solid_shape *s, const reference_line
         }
         return n;
     case SHAPE_CUP:
-        n += reference_side(&l, 1, s->inner_radius, t);
+        n += reference_side(&l, s->m, s->inner_radius, t);
         n += reference_level(l.o.y, l.d.y, s->floor, t + n);
-        n += reference_side(&l, 1, s->radius, t + n);
+        n += reference_side(&l, s->m, s->radius, t + n);
         n += reference_level(l.o.y, l.d.y, 0, t + n);
         return n + reference_level(l.o.y, l.d.y, s->height, t + n);
     case SHAPE_CYLINDER:
@@ -115,8 +115,8 @@ static inline quad reference_distance(const solid_shape *s, quad3 point)
         return reference_corner(reference_corner(x, y), z);
     }
     case SHAPE_CUP: {
-        quad hollow = reference_from_cylinder(p, 1, s->inner_radius, s->floor, 1e30);
-        return quad_max(reference_from_cylinder(p, 1, s->radius, 0, s->height), -hollow);
+        quad hollow = reference_from_cylinder(p, s->m, s->inner_radius, s->floor, 1e30);
+        return quad_max(reference_from_cylinder(p, s->m, s->radius, 0, s->height), -hollow);
     }
     case SHAPE_CYLINDER: return reference_from_cylinder(p, s->m, s->radius, 0, s->height);
     case SHAPE_MESH:

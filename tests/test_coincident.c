@@ -207,10 +207,11 @@ static void a_liquid_that_fits_its_vessel_exactly(void **state)
                                    .position = {0.0, -1.0, 0.0},
                                    .radius = 1.0,
                                    .inner_radius = 0.9,
+                                   .m = k % 4 < 2 ? 1.0 : 1.6,
                                    .height = 2.0,
                                    .floor = 0.1};
-        m.shape[1] =
-            (solid_shape){.kind = SHAPE_CYLINDER, .position = {0.0, -0.9, 0.0}, .radius = 0.9, .height = 1.9, .m = 1.0};
+        m.shape[1] = (solid_shape){
+            .kind = SHAPE_CYLINDER, .position = {0.0, -0.9, 0.0}, .radius = 0.9, .height = 1.9, .m = m.shape[0].m};
         assemble(&m, turns[k / 2]);
         for (int i = 0; i < 4000; i++) {
             /* from the liquid, to a point of the wall that is well under the rim */
@@ -218,6 +219,7 @@ static void a_liquid_that_fits_its_vessel_exactly(void **state)
                 vec3_make(random_real(&seed, -0.5, 0.5), random_real(&seed, -0.6, 0.6), random_real(&seed, -0.5, 0.5));
             const double turn = random_real(&seed, 0.0, 6.2831853);
             vec3 wall = vec3_make(0.9 * cos(turn), random_real(&seed, -0.5, 0.5), 0.9 * sin(turn));
+            from.z /= m.shape[0].m, wall.z /= m.shape[0].m;
             one_ray r = {turned(from, m.turn), turned(vec3_normalize(vec3_sub(wall, from)), m.turn), FACE_NONE, 0};
             r.inside = arrangement_inside(m.solids, r.o);
             expect_media(&m, r, "210");
@@ -249,6 +251,7 @@ static void a_liquid_that_reaches_into_the_wall(void **state)
     static const int64_t media[] = {0, 1, 2, 1, 0};
     assembly m = {.count = 2, .priority = {2, 1}, .medium = {1, 2}};
     m.shape[0] = (solid_shape){.kind = SHAPE_CUP,
+                               .m = 1.0,
                                .position = {0.0, 0.001, 0.0},
                                .radius = 1.0,
                                .inner_radius = 0.9,
@@ -282,6 +285,7 @@ static void equal_media_are_no_interface(void **state)
     m.shape[0] = (solid_shape){.kind = SHAPE_SPHERE, .radius = 1.0};
     m.shape[1] = (solid_shape){.kind = SHAPE_BOX, .position = {0.5, 0.0, 0.0}, .size = {1.0, 1.0, 1.0}};
     m.shape[2] = (solid_shape){.kind = SHAPE_CUP,
+                               .m = 1.0,
                                .position = {0.0, -0.5, 0.0},
                                .radius = 1.0,
                                .inner_radius = 0.9,

@@ -242,6 +242,12 @@ static void objects_come_move_turn_and_go(void **state)
     turn(set, "rod.rotation", "0,30,0");
     const uint64_t moved = hash_of(engine, s);
     assert_true(moved == hash_of(engine, set) && moved != as_it_was);
+    fine(cuvette_scene_scale(s, "all+camera", 4.0, &why), &why);
+    assert_true(hash_of(engine, s) == moved); /* a power of two: the same bits */
+    fine(cuvette_scene_scale(s, "all+camera", 0.25, &why), &why);
+    assert_int_equal(cuvette_scene_scale(s, "all+camera", 0.0, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_scale(s, NULL, 2.0, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_scale(s, "none", 2.0, &why), CUVETTE_BAD_INPUT);
     fine(cuvette_scene_add_solid(s, "ball", "sphere", "clear", &why), &why);
     assert_int_equal((int)cuvette_scene_count(s, CUVETTE_SOLID), 5);
     assert_string_equal(cuvette_scene_name(s, CUVETTE_SOLID, 4), "ball");

@@ -280,6 +280,27 @@ static void the_scene_is_a_file_too(void **state)
     free(reply);
 }
 
+static const char *note_of(const json_t *told, const char *key)
+{
+    return json_string_value(json_object_get(json_array_get(json_object_get(told, "notes"), 0), key));
+}
+
+static void what_looks_wrong_is_noted(void **state)
+{
+    (void)state;
+    room_post(&room, "/api/set", "{\"set\": {\"render.depth\": 12}}");
+    json_t *told = room_get(&room, "/api/notes");
+    assert_int_equal(json_array_size(json_object_get(told, "notes")), 0);
+    json_decref(told);
+    room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 150}}");
+    told = room_get(&room, "/api/notes");
+    assert_int_equal(json_array_size(json_object_get(told, "notes")), 1);
+    assert_string_equal(note_of(told, "place"), "ball.ior");
+    assert_non_null(strstr(note_of(told, "text"), "index of 150"));
+    assert_non_null(strstr(note_of(told, "remedy"), "between 1 and 5"));
+    json_decref(told);
+}
+
 static void pictures_say_what_they_show(void **state)
 {
     (void)state;
@@ -371,7 +392,8 @@ int main(void)
 #define IN_A_ROOM(test) cmocka_unit_test_setup_teardown(test, open_room, close_room)
     const struct CMUnitTest cases[] = {
         IN_A_ROOM(parameters_are_set_as_by_the_option), IN_A_ROOM(wrong_values_are_refused_with_a_remedy), IN_A_ROOM(the_camera_orbits_turns_and_steps),
-        IN_A_ROOM(the_command_renders_the_same_film),   IN_A_ROOM(the_scene_is_a_file_too),                IN_A_ROOM(pictures_say_what_they_show),
+        IN_A_ROOM(the_command_renders_the_same_film),   IN_A_ROOM(the_scene_is_a_file_too),                IN_A_ROOM(what_looks_wrong_is_noted),
+        IN_A_ROOM(pictures_say_what_they_show),
         IN_A_ROOM(nobody_else_is_served),               IN_A_ROOM(no_scene_is_a_room_to_begin_with),       IN_A_ROOM(bad_starts_are_refused),
         IN_A_ROOM(a_command_of_a_file_in_another_folder),
         IN_A_ROOM(the_longest_list_is_soon_refused),

@@ -377,6 +377,12 @@ static void test_change(void **state)
     tell(r, 200, "POST", "/api/objects/beam/turn", "{\"by\": [0, 0, 30]}");
     tell(r, 200, "POST", "/api/objects/camera/move", "{\"by\": [0, 0, 1]}");
     assert_float_equal(value(r, "camera.position", 2), -5.0, 1e-12);
+    const double radius = value(r, "ball.radius", 0);
+    tell(r, 200, "POST", "/api/objects/ball/scale", "{\"factor\": 2, \"gesture\": \"b\"}");
+    tell(r, 200, "POST", "/api/objects/ball/scale", "{\"factor\": 2, \"gesture\": \"b\"}");
+    assert_true(fabs(value(r, "ball.radius", 0) - (4.0 * radius)) < 1e-12);
+    tell(r, 200, "POST", "/api/undo", "{}");
+    assert_true(fabs(value(r, "ball.radius", 0) - (radius)) < 1e-12);
     tell(r, 200, "POST", "/api/objects/ball/rename", "{\"to\": \"globe\"}");
     assert_true(has_object(r, "globe") && !has_object(r, "ball"));
     tell(r, 200, "POST", "/api/objects/globe/material", "{\"material\": \"stone\"}");
@@ -468,6 +474,29 @@ static void test_copies_of_meshes(void **state)
     assert_string_equal(hash, next);
 }
 
+static void test_whole_scene(void **state)
+{
+    const room *r = *state;
+    const double lamp = value(r, "lamp.position", 0), ball = value(r, "ball.position", 0), eye = value(r, "camera.position", 0);
+    char text[256];
+    tell(r, 200, "POST", "/api/objects/all/move", "{\"by\": [1, 0, 0]}");
+    assert_true(fabs(value(r, "lamp.position", 0) - (lamp + 1.0)) < 1e-12);
+    assert_true(fabs(value(r, "ball.position", 0) - (ball + 1.0)) < 1e-12);
+    assert_true(fabs(value(r, "camera.position", 0) - (eye)) < 1e-12);
+    assert_string_equal(told(r, "undo", text), "move all");
+    tell(r, 200, "POST", "/api/objects/solids%2Bcamera/move", "{\"by\": [-1, 0, 0]}");
+    assert_true(fabs(value(r, "lamp.position", 0) - (lamp + 1.0)) < 1e-12);
+    assert_true(fabs(value(r, "ball.position", 0) - (ball)) < 1e-12);
+    assert_true(fabs(value(r, "camera.position", 0) - (eye - 1.0)) < 1e-12);
+    tell(r, 200, "POST", "/api/objects/lights/scale", "{\"factor\": 3}");
+    assert_true(fabs(value(r, "lamp.position", 0) - (3.0 * (lamp + 1.0))) < 1e-12);
+    tell(r, 200, "POST", "/api/objects/all%2Bcamera/turn", "{\"by\": [0, 0, 90]}");
+    assert_true(fabs(value(r, "lamp.position", 1) - (3.0 * (lamp + 1.0))) < 1e-12);
+    for (int i = 0; i < 4; i++)
+        tell(r, 200, "POST", "/api/undo", "{}");
+    assert_true(fabs(value(r, "lamp.position", 0) - (lamp)) < 1e-12);
+}
+
 static void test_change_refuses(void **state)
 {
     const room *r = *state;
@@ -484,6 +513,14 @@ static void test_change_refuses(void **state)
         {400, "POST", "/api/objects/ball/move", "{}"},
         {400, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, 0], \"gesture\": 3}"},
         {400, "POST", "/api/objects/stone/move", "{\"by\": [1, 0, 0]}"},
+        {404, "POST", "/api/objects/all%2Bnone/move", "{\"by\": [1, 0, 0]}"},
+        {400, "POST", "/api/objects/all/move", "{\"by\": [1e9, 0, 0]}"},
+        {404, "DELETE", "/api/objects/all", "{}"},
+        {404, "POST", "/api/objects/all/copy", "{}"},
+        {400, "POST", "/api/objects/all/scale", "{\"factor\": 0}"},
+        {400, "POST", "/api/objects/ball/scale", "{}"},
+        {400, "POST", "/api/objects/ball/scale", "{\"factor\": \"2\"}"},
+        {400, "POST", "/api/objects/camera/scale", "{\"factor\": 2}"},
         {400, "POST", "/api/objects/background/move", "{\"by\": [1, 0, 0]}"},
         {400, "POST", "/api/objects/lamp/turn", "{\"by\": [10, 0, 0]}"},
         {400, "POST", "/api/objects/ball/turn", "{\"by\": [1e300, 0, 0]}"},
@@ -577,6 +614,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_each_solid_comes_and_shows, enter, leave),
         cmocka_unit_test_setup_teardown(test_others_come, enter, leave),
         cmocka_unit_test_setup_teardown(test_change, enter, leave),
+        cmocka_unit_test_setup_teardown(test_whole_scene, enter, leave),
         cmocka_unit_test_setup_teardown(test_copies_of_a_rod, enter, leave),
         cmocka_unit_test_setup_teardown(test_copies_of_meshes, enter, leave),
         cmocka_unit_test_setup_teardown(test_change_refuses, enter, leave),

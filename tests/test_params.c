@@ -127,7 +127,7 @@ static void an_empty_scene_is_the_defaults(void **state)
     assert_non_null(s);
     size_t count = 0;
     assert_int_equal(scene_each_param(s, same_as_fallback, &count), STATUS_OK);
-    assert_int_equal(count, 29 + 3 + 8);
+    assert_int_equal(count, 30 + 4 + 8);
     assert_int_equal(s->render.width, 800);
     assert_int_equal(s->render.shadows, SHADOWS_ATTENUATED);
     assert_int_equal(s->render.schedule, SCHEDULE_DYNAMIC);
@@ -334,7 +334,7 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
         {"lens.radius=75cm", "lens.radius: '75cm' is not a finite number; write the number alone, in scene units"},
         {"lens.ior=1,5", "lens.ior: '1,5' is not a finite number; a decimal comma? write 1.5"},
         {"camera.fov=45", "camera has no parameter 'fov'; did you mean 'camera.fov_deg'?"},
-        {"camera.5=1", "camera has no parameter '5'; camera has position, target, yaw_deg, pitch_deg, fov_deg"},
+        {"camera.5=1", "camera has no parameter '5'; camera has position, target, yaw_deg, pitch_deg, roll_deg, fov_deg"},
         {"fov=45", "nothing in the scene is named 'fov'; did you mean 'camera.fov_deg'?"},
         {"lens.visible=of", "lens.visible: no choice 'of'; give one of: off, on"},
         {"lens.visible=noo", "lens.visible: no choice 'noo'; give one of: off, on"},

@@ -83,7 +83,7 @@ static void a_pond_looks_shallower_by_its_index(void **state)
 static void the_view_is_that_of_the_tracer(void **state)
 {
     (void)state;
-    scene *s = rod_scene("camera.position=2,3,-5 camera.target=-0.3,1,0.4");
+    scene *s = rod_scene("camera.position=2,3,-5 camera.target=-0.3,1,0.4 camera.roll_deg=-70");
     probe *p = NULL;
     diagnostic why = {0};
     worked(probe_create(s, isa_best(), &p, &why), &why);
@@ -139,6 +139,7 @@ static const char *const settings[] = {
     "camera.position=3,0.5,-4 rod.rotation=0,30,0 rod.position=-0.2,2.1,0.3 vessel.inner_radius=0.7",
     "liquid.priority=3 vessel.position=0.5,0.001,0.25 liquid.position=0.5,0.051,0.25 rod.position=0.4,2.1,0.2 rod.priority=4",
     "liquid.absorb_per_m=0.7,0.2,0 render.unit_m=0.05 render.depth=0 render.samples=4",
+    "render.radiance=basic background.ior=1.1",
 };
 
 static void everything_passes_whatever_the_indices(void **state)
@@ -147,7 +148,7 @@ static void everything_passes_whatever_the_indices(void **state)
     for (size_t i = 0; i < COUNT(settings); i++) {
         scene *s = rod_scene(settings[i]);
         const realism_report r = measured_against(s, s);
-        assert_int_equal(r.count, 32);
+        assert_int_equal(r.count, 35);
         for (int k = 0; k < r.count; k++)
             if (realism_is_defined(&r.value[k]) && !realism_passes(&r.value[k]))
                 fail_msg("%s: %s is %.17g, not %.17g", settings[i], r.value[k].metric, r.value[k].measured, r.value[k].theory);
@@ -164,7 +165,8 @@ static void metrics_without_meaning_are_named_as_such(void **state)
     for (int i = 0; i < r.count; i++)
         assert_true(realism_is_defined(&r.value[i]));
     r = measured_against(empty, empty);
-    const char *const none[] = {"water_line.break", "critical.liquid", "fresnel.wall", "absorption.slope"};
+    const char *const none[] = {"water_line.break", "critical.liquid", "fresnel.wall", "radiance.sky_under_water",
+                                "absorption.slope"};
     for (size_t i = 0; i < COUNT(none); i++) {
         assert_false(realism_is_defined(value(&r, none[i])));
         assert_false(realism_passes(value(&r, none[i])));
@@ -197,13 +199,14 @@ static void an_index_that_is_off_by_a_millionth_fails(void **state)
 {
     (void)state;
     const char *const of_air[] = {"edges", "water_line", "lens", "dispersion", "critical.vessel", "critical.liquid", "fresnel.vessel",
-                                  "fresnel.liquid", "slab", "gap", "reversal"};
+                                  "fresnel.liquid", "slab", "gap", "radiance", "reversal"};
     expect_failures("", "background.ior=1.000001", of_air, COUNT(of_air));
     expect_failures("vessel.ior=1.3 liquid.ior=1.5", "background.ior=1.000001", of_air, COUNT(of_air));
     const char *const of_glass[] = {"edges.left", "edges.right", "edges.magnification", "lens", "critical.vessel", "critical.wall", "fresnel.vessel",
                                     "fresnel.wall", "slab", "gap", "reversal"};
     expect_failures("", "vessel.ior=1.500001", of_glass, COUNT(of_glass));
-    const char *const of_water[] = {"edges", "water_line", "lens", "critical.liquid", "critical.wall", "fresnel.liquid", "fresnel.wall", "reversal"};
+    const char *const of_water[] = {"edges",          "water_line",   "lens",     "critical.liquid", "critical.wall",
+                                    "fresnel.liquid", "fresnel.wall", "radiance", "reversal"};
     expect_failures("", "liquid.ior=1.330001", of_water, COUNT(of_water));
     const char *const of_empty[] = {"edges.left", "edges.right", "edges.magnification", "lens", "critical", "fresnel", "slab", "gap", "reversal"};
     expect_failures("vessel.ior=2.4 liquid.visible=off", "vessel.ior=2.400001", of_empty, COUNT(of_empty));
@@ -212,7 +215,7 @@ static void an_index_that_is_off_by_a_millionth_fails(void **state)
 static void light_that_is_kept_or_swallowed_fails(void **state)
 {
     (void)state;
-    const char *const balance[] = {"balance", "slab", "gap", "reversal.throughput"};
+    const char *const balance[] = {"balance", "slab", "gap", "radiance", "reversal.throughput"};
     expect_failures("", "clear.transparency=0.999999", balance, COUNT(balance));
     const char *const absorption[] = {"absorption", "reversal.throughput"};
     expect_failures("liquid.absorb_per_m=0.7,0,0", "liquid.absorb_per_m=0.7000007,0,0", absorption, COUNT(absorption));
@@ -245,7 +248,7 @@ static void refuses_scenes_without_a_vessel_a_rod_or_a_common_axis(void **state)
     (void)state;
     static const struct { const char *change, *what; } wrong[] = {
         {"vessel.visible=off", "'vessel'"},     {"rod.visible=off", "'rod'"},         {"liquid.radius=0.5", "wall"},
-        {"liquid.position.x=0.01", "wall"},     {"liquid.m=1.1", "round"},            {"vessel.rotation.x=5", "turned"},
+        {"liquid.position.x=0.01", "wall"},     {"liquid.m=1.1", "round"},            {"vessel.m=1.1", "elliptic"}, {"vessel.rotation.x=5", "turned"},
         {"vessel.transparency=0", "opaque"},    {"rod.transparency=1", "not opaque"}, {"rod.priority=1", "displaced"},
         {"liquid.position.y=0.5", "floor"},     {"liquid.priority=9", "displaces"},
     };

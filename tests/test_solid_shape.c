@@ -64,7 +64,6 @@ static void cup_is_wall_and_floor(void **state)
 {
     (void)state;
     solid_shape s = make(SHAPE_CUP);
-    s.m = 5; /* not its own: ignored */
     assert_true(contains(&s, 0.95, 2, 0));
     assert_true(contains(&s, 0, 0.05, 0));
     assert_true(contains(&s, 0, 0.1, 0));  /* the floor's surface */
@@ -74,6 +73,21 @@ static void cup_is_wall_and_floor(void **state)
     assert_false(contains(&s, 0, 3, 0)); /* open at the top */
     assert_false(contains(&s, 0.95, 3.01, 0));
     assert_false(contains(&s, 1.01, 1, 0));
+}
+
+/* Similar ellipses: along z all of it is 1 / m as far, its wall too. */
+static void an_elliptic_cup_is_narrower_along_z(void **state)
+{
+    (void)state;
+    solid_shape s = make(SHAPE_CUP);
+    s.m = 2;
+    assert_true(contains(&s, 0.95, 2, 0));
+    assert_false(contains(&s, 0.89, 2, 0));
+    assert_true(contains(&s, 0, 2, 0.5));
+    assert_true(contains(&s, 0, 2, 0.45)); /* the hollow's surface: 0.9 / 2 */
+    assert_false(contains(&s, 0, 2, 0.449));
+    assert_false(contains(&s, 0, 2, 0.501));
+    assert_true(contains(&s, 0, 0.05, 0));
 }
 
 static void assert_near(vec3 a, vec3 b)
@@ -155,6 +169,9 @@ static void check_refuses_what_is_no_solid(void **state)
     s = make(SHAPE_CYLINDER);
     s.m = 0;
     expect_wrong(s, "m");
+    s = make(SHAPE_CUP);
+    s.m = 0;
+    expect_wrong(s, "m");
     s = make(SHAPE_CYLINDER);
     s.height = (double)INFINITY;
     expect_wrong(s, "height");
@@ -172,6 +189,7 @@ int main(void)
         cmocka_unit_test(sphere_and_box_are_closed),
         cmocka_unit_test(cylinder_is_elliptic_and_stands_on_its_base),
         cmocka_unit_test(cup_is_wall_and_floor),
+        cmocka_unit_test(an_elliptic_cup_is_narrower_along_z),
         cmocka_unit_test(rotation_turns_by_the_right_hand_rule),
         cmocka_unit_test(rotation_is_the_product_of_its_turns),
         cmocka_unit_test(a_leaning_rod_leans),

@@ -23,8 +23,23 @@ static const solid_shape shapes[] = {
     {.kind = SHAPE_CUP,
      .position = {0.0, -0.999, 0.0},
      .radius = 1.0,
+     .m = 1.0,
      .inner_radius = 0.9,
      .height = 3.0,
+     .floor = 0.1},
+    {.kind = SHAPE_CUP,
+     .position = {-0.1, -0.6, 0.2},
+     .radius = 0.9,
+     .m = 2.5,
+     .inner_radius = 0.7,
+     .height = 1.4,
+     .floor = 0.2},
+    {.kind = SHAPE_CUP,
+     .position = {-0.1, -0.6, 0.2},
+     .radius = 0.6,
+     .m = 0.4,
+     .inner_radius = 0.55,
+     .height = 1.5,
      .floor = 0.1},
     {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
     {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
@@ -87,7 +102,7 @@ static quad3 normal_of(const solid_shape *s, int64_t face, quad3 p)
     else if (own > 0)
         n.y = own == 2 ? 1 : -1;
     else
-        n = quad3_make(p.x, 0, p.z * (s->kind == SHAPE_CYLINDER ? (quad)s->m * s->m : (quad)1));
+        n = quad3_make(p.x, 0, p.z * (quad)s->m * s->m);
     return quad3_scale(n, 1 / quad3_length(n));
 }
 
@@ -104,7 +119,7 @@ static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
     }
     case SHAPE_CUP:
         if (own == 0)
-            return quad_abs(reference_from_side(p, 1, part ? s->inner_radius : s->radius));
+            return quad_abs(reference_from_side(p, s->m, part ? s->inner_radius : s->radius));
         return quad_abs(p.y - (own == 1 ? (part ? s->floor : 0.0) : s->height));
     case SHAPE_CYLINDER:
         return own == 0 ? quad_abs(reference_from_side(p, s->m, s->radius))
@@ -118,7 +133,7 @@ static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
 /* The smallest radius of curvature. */
 static double least_radius(const solid_shape *s)
 {
-    const double m = s->kind == SHAPE_CYLINDER ? s->m : 1.0;
+    const double m = s->kind == SHAPE_CYLINDER || s->kind == SHAPE_CUP ? s->m : 1.0;
     return (s->kind == SHAPE_CUP ? s->inner_radius : s->radius) * (m > 1.0 ? 1.0 / (m * m) : m);
 }
 
@@ -130,7 +145,7 @@ static void check_point(const solid_shape *s, const arrangement *a, const refere
     expect(quad_abs(reference_distance(s, p)) <= h->error, s, line, h);
     expect(distance_to_face(s, h->face, local) <= h->error, s, line, h);
     /* put back on the surface along the radius, which leans on an ellipse */
-    const double lean = s->kind != SHAPE_CYLINDER ? 1.0 : s->m > 1.0 ? s->m : 1.0 / s->m;
+    const double lean = s->kind != SHAPE_CYLINDER && s->kind != SHAPE_CUP ? 1.0 : s->m > 1.0 ? s->m : 1.0 / s->m;
     expect(quad3_length(quad3_sub(p, reference_at(line, h->t))) <= h->error * lean, s, line, h);
     expect(quad_abs(reference_distance(s, reference_at(line, h->t))) <= h->error, s, line, h);
     /* 16 roundings of what was added up, and not more */
@@ -222,9 +237,9 @@ static vec3 place_on(const solid_shape *s, uint64_t *seed)
                       eighths[random_below(seed, 4)] * s->size.z / 2);
     else if (s->radius > 0.0 && s->height > 0.0 && random_below(seed, 3))
         p = s->kind == SHAPE_CUP && random_below(seed, 2)
-                ? vec3_make(s->inner_radius * cos(turn), level > 0.0 ? level : s->floor, s->inner_radius * sin(turn))
+                ? vec3_make(s->inner_radius * cos(turn), level > 0.0 ? level : s->floor, s->inner_radius * sin(turn) / s->m)
                 : vec3_make(s->radius * cos(turn), random_below(seed, 2) ? level : random_real(seed, 0.0, s->height),
-                            s->radius * sin(turn) / (s->kind == SHAPE_CYLINDER ? s->m : 1.0));
+                            s->radius * sin(turn) / s->m);
     return vec3_add(double_of(quad3_turn(quad3_from(p), s->rotation_deg, 0)), s->position);
 }
 
@@ -314,6 +329,54 @@ static void grazing_rays(void **state)
     for_all_shapes(grazing, 400);
 }
 
+/* The length of a line's pieces within the solid, from hit to hit. */
+static double chord(const arrangement *a, vec3 from, vec3 direction)
+{
+    one_ray r = {.o = from, .d = direction, .start = FACE_NONE};
+    double length = 0.0;
+    for (int k = 0; k < REFERENCE_CROSSINGS_MAX; k++) {
+        const one_hit h = nearest_interface(a, r);
+        if (h.crossed < 0)
+            return length;
+        length += h.before == 1 ? h.t : 0.0;
+        r = (one_ray){.o = h.point, .d = direction, .start = h.face, .inside = h.inside_after};
+    }
+    fail_msg("a line leaves no cup after %d crossings", REFERENCE_CROSSINGS_MAX);
+    return 0.0;
+}
+
+/* Cavalieri: a solid's volume is the integral of its chords over a plane across them, here by the middles of STEPS x STEPS cells. An ellipse of half
+ * axes r and r / m has the area pi r^2 / m; a cup is one such cylinder less another. */
+static void an_elliptic_cups_volume_is_that_of_its_closed_form(void **state)
+{
+    (void)state;
+    enum { STEPS = 400 };
+    const double pi = acos(-1.0), reach = 3.5, cell = 2.0 * reach / STEPS;
+    const vec3 directions[] = {{0.0, -1.0, 0.0}, {1.0, 0.0, 0.0}, {0.3, -0.5, 0.8}};
+    for (size_t k = 0; k < COUNT(shapes); k++) {
+        solid_shape s = shapes[k];
+        if (s.kind != SHAPE_CUP)
+            continue;
+        s.rotation_deg = vec3_make(17.0, -33.0, 71.0);
+        arrangement *a = arrange_one(&s);
+        const double outside = s.radius * s.radius * s.height, hollow = s.inner_radius * s.inner_radius * (s.height - s.floor);
+        for (size_t j = 0; j < COUNT(directions); j++) {
+            const vec3 d = vec3_normalize(directions[j]);
+            const vec3 u = vec3_normalize(vec3_cross(d, vec3_make(0.2, 0.4, 0.9))), v = vec3_cross(d, u);
+            const vec3 middle = vec3_add(s.position, vec3_scale(d, -10.0));
+            double volume = 0.0;
+            for (int i = 0; i < STEPS * STEPS; i++) {
+                const double x = (i % STEPS + 0.5) * cell - reach, y = (i / STEPS + 0.5) * cell - reach;
+                volume += cell * cell * chord(a, vec3_add(middle, vec3_add(vec3_scale(u, x), vec3_scale(v, y))), d);
+            }
+            const double wanted = pi / s.m * (outside - hollow);
+            if (!(fabs(volume - wanted) < 0.01 * wanted))
+                fail_msg("m %g: %.6g instead of %.6g", s.m, volume, wanted);
+        }
+        arrangement_destroy(a);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -322,6 +385,7 @@ int main(void)
         cmocka_unit_test(solids_far_from_the_origin),
         cmocka_unit_test(rays_along_the_axes),
         cmocka_unit_test(grazing_rays),
+        cmocka_unit_test(an_elliptic_cups_volume_is_that_of_its_closed_form),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* Rows outlive versions: what other versions of the program wrote, under other columns and definitions, stays readable, and what cannot be
- * verified to mean the same does not. tests/old-rows holds rows of before definitions left out what is at its default. */
+/* Rows outlive versions: what other versions of the program wrote, under other columns and definitions, stays readable,
+ * and what cannot be verified to mean the same does not. tests/old-rows holds rows of before definitions left out what
+ * is at its default. */
 #include "study_fixture.h"
 #include "base/hash.h"
 #include "scene/params_path.h"
@@ -107,7 +108,8 @@ static void the_first_definition_tells_differences(void **state)
     uint64_t first, other;
     assert_true(definition_v1(s, &first));
     assert_int_equal(first, UINT64_C(0x8255f381ce08f9e0));
-    static const char *const changes[] = {"rod.m=0.9", "vessel.floor=0.2", "toy.priority=3", "render.seed=2", "lamp.reach=1"};
+    static const char *const changes[] = {"rod.m=0.9", "vessel.floor=0.2", "toy.priority=3", "render.seed=2",
+                                          "lamp.reach=1"};
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
         scene *before = s->base;
         assert_non_null(s->base = scene_clone(before));
@@ -171,7 +173,8 @@ static void order_and_defaults_are_the_same_meaning(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, "study: x\nscene: scene.yaml\n");
-    study *other = fixture_study(f, "study: x\nscene: scene.yaml\nset: {ball.visible: on, lamp.intensity: 1, render.samples: 1}\n");
+    study *other = fixture_study(f, "study: x\nscene: scene.yaml\n"
+                                    "set: {ball.visible: on, lamp.intensity: 1, render.samples: 1}\n");
     assert_int_equal(s->definition_hash, other->definition_hash);
     meaning said = {0};
     assert_int_equal(meaning_of_study(&said, s), STATUS_OK);
@@ -504,7 +507,8 @@ static void comparisons_know_their_reference(void **state)
     fixture_run(f, s);
     make_old(f, s);
     study_destroy(s);
-    s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 2]}]\nreference: {render.depth: 3}\nrepetitions: 2\n");
+    s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 2]}]\n"
+                         "reference: {render.depth: 3}\nrepetitions: 2\n");
     diagnostic why = {0};
     FILE *out = fopen("/dev/null", "w");
     assert_int_equal(study_summary(s, f->results, out, &why), STATUS_BAD_INPUT);

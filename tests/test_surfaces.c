@@ -291,7 +291,7 @@ static void a_start_at_the_edge_is_on_one_side_or_the_other(void **state)
 static void a_cup_is_met_again_through_its_hollow(void **state)
 {
     (void)state;
-    const solid_shape s = {.kind = SHAPE_CUP, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
+    const solid_shape s = {.kind = SHAPE_CUP, .m = 1.0, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
     arrangement *a = arrange_one(&s);
     one_ray r = {.o = vec3_make(0.0, 1.0, 0.0),
                  .d = vec3_make(0.6, 0.8, 0.0),

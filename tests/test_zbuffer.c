@@ -100,7 +100,8 @@ static void round_solids_look_as_cast_but_at_outlines(void **state)
 {
     (void)state;
     static const char *const variants[] = {"", "render.samples=4", "camera.position=-0.9,4,-1.2 camera.target=-0.9,0,-1",
-                                           "camera.position=0.6,2,-0.5 camera.target=0.6,0.5,0.5"};
+                                           "camera.position=0.6,2,-0.5 camera.target=0.6,0.5,0.5", "cup.m=1.6", "cup.m=0.6 cup.inner_radius=0.5",
+                                           "camera.roll_deg=33"};
     for (size_t v = 0; v < COUNT(variants); v++) {
         const double share = share_beyond(round_scene, variants[v], 0.004);
         if (share > 0.001)

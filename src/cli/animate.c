@@ -1,5 +1,6 @@
 #include "cli/animate.h"
 #include "cli/cli.h"
+#include "cli/inert_notes.h"
 #include "report/json.h"
 #include "cli/outputs.h"
 #include "report/report.h"
@@ -133,6 +134,8 @@ status command_animate(int argc, char **argv, diagnostic *why)
         result = read_scene(&request, in_files ? &names : NULL, &s, why);
     if (result == STATUS_OK && !request.json)
         result = scene_input_lint(s, level, NULL, why);
+    if (result == STATUS_OK && !request.json)
+        inert_note_changes(s, &request.input);
     if (result == STATUS_OK)
         result = make(&request, in_files ? &names : NULL, level, s, why);
     scene_destroy(s);

@@ -49,7 +49,7 @@ static const struct argp parser = {
     .parser = take_option,
     .args_doc = "A B",
     .doc = "Say how far the pictures A and B lie apart, as a display shows them: mean squared error, peak signal-to-noise "
-           "ratio, structural similarity, FLIP, the largest difference, the pixels that differ. PNG, JPEG and PFM go "
+           "ratio, structural similarity, FLIP, the largest difference, the pixels that differ. PNG, JPEG, PFM and 24-bit BMP go "
            "together, of one size.\vFor example:\n"
            "  cuvette compare depth4.png depth8.png --diff where.png",
 };
@@ -63,7 +63,7 @@ typedef struct pair {
 static status check_request(const compare_request *request, diagnostic *why)
 {
     if (request->count < 2) {
-        diagnose(why, STATUS_BAD_INPUT, "give two PNG, JPEG or PFM files", "%s",
+        diagnose(why, STATUS_BAD_INPUT, "give two PNG, JPEG, PFM or 24-bit BMP files", "%s",
                  request->count ? "there is nothing to compare the picture with" : "no pictures are named");
         diagnostic_locate(why, "compare", 0, 0);
         return STATUS_BAD_INPUT;

@@ -25,14 +25,15 @@ _cuvette_parameters()
         awk 'NR > 1 && $1 !~ /^(LIGHT|MATERIAL|SOLID)\./ { print $1 "=" }')"
 }
 
-_cuvette_objects() # SUFFIX: what the scene on the line holds, and the camera
+_cuvette_objects() # SUFFIX WORD...: what the scene on the line holds, the camera, and these words
 {
-    local word scene=
+    local word scene= suffix=$1
+    shift
     for word in "${COMP_WORDS[@]}"; do
         [[ $word == *.@(yaml|yml) && -r $word ]] && scene=$word
     done
-    [[ -z $1 ]] || compopt -o nospace
-    _cuvette_words "$({ echo x camera; [[ $scene ]] && "${COMP_WORDS[0]}" scene "$scene" --list 2>/dev/null; } | awk -v s="$1" '{ print $2 s }')"
+    [[ -z $suffix ]] || compopt -o nospace
+    _cuvette_words "$({ printf 'x %s\n' camera "$@"; [[ $scene ]] && "${COMP_WORDS[0]}" scene "$scene" --list 2>/dev/null; } | awk -v s="$suffix" '{ print $2 s }')"
 }
 
 _cuvette_value() # OPTION: completes what follows it; false when it takes nothing
@@ -59,7 +60,8 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
     --script) _cuvette_files 'yaml|yml' ;;
     --rows) _cuvette_files 'csv' ;;
     --fps) _cuvette_words 24 25 30 30000/1001 50 60 ;;
-    --move | --turn | --rename) _cuvette_objects = ;;
+    --move | --turn | --scale) _cuvette_objects = all solids lights ;;
+    --rename) _cuvette_objects = ;;
     --delete) _cuvette_objects '' ;;
     --add)
         compopt -o nospace
@@ -119,7 +121,7 @@ _cuvette()
         ;;
     scene)
         if [[ $current == -* ]]; then
-            _cuvette_words --add --set --move --turn --rename --delete --title --new --check --list --all --output --help --usage --version
+            _cuvette_words --add --set --move --turn --scale --rename --delete --title --new --check --list --all --output --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
@@ -167,7 +169,7 @@ _cuvette()
         if [[ $current == -* ]]; then
             _cuvette_words --diff --json --help --usage --version
         else
-            _cuvette_files 'png|jpg|jpeg|pfm'
+            _cuvette_files 'png|jpg|jpeg|pfm|bmp'
         fi
         ;;
     realism)

@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "report/report.h"
+#include "cli/inert_notes.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "measure/statistics.h"
@@ -161,6 +162,8 @@ static status render_and_write(const render_request *request, const scene *s, is
         status written = write_results(request, s, level, &measured, why);
         result = written == STATUS_OK ? result : written;
     }
+    if (result == STATUS_OK && !request->json)
+        inert_note_frame(s, &request->input, level, measured.result);
     if (result == STATUS_INTERRUPTED)
         result = say_interrupted(request, &measured, why);
     frames_release(&measured);
@@ -181,8 +184,10 @@ status command_render(int argc, char **argv, diagnostic *why)
         result = scene_input_isa(&level, why);
     if (result == STATUS_OK)
         result = load_scene(&request, &s, why);
-    if (result == STATUS_OK && !request.json)
+    if (result == STATUS_OK && !request.json) {
         result = scene_input_lint(s, level, NULL, why);
+        inert_note_changes(s, &request.input);
+    }
     if (result == STATUS_OK)
         result = render_and_write(&request, s, level, why);
     scene_destroy(s);

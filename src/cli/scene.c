@@ -1,4 +1,5 @@
 #include "cli/cli.h"
+#include "cli/inert_notes.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_edits.h"
@@ -23,7 +24,7 @@ enum { KEY_NEW = 0x100, KEY_CHECK, KEY_LIST, KEY_ALL, OPTION_MAX = 16 };
 
 static const struct argp_option plain_options[] = {
     {"new", KEY_NEW, NULL, 0, "begin with an empty scene in place of a file", 0},
-    {"check", KEY_CHECK, NULL, 0, "only say whether the scene is right, its files too", 0},
+    {"check", KEY_CHECK, NULL, 0, "only say whether the scene is right, its files too, and what looks wrong in it", 0},
     {"list", KEY_LIST, NULL, 0, "only list its objects: kind, name, and of a solid shape and material", 0},
     {"all", KEY_ALL, NULL, 0, "write every parameter, not only what differs from the defaults", 0},
     {"output", 'o', "FILE", 0, "write there: .yaml or .yml, which may be the scene itself; standard output when not said", 0},
@@ -108,6 +109,9 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
         diagnostic_locate(why, request->path ? request->path : "--new", 0, 0); /* for checks that have no line to name */
         result = scene_check(*out, why);
     }
+    for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
+        if (strcmp(request->edits[i].edit->option, "--set") == 0)
+            inert_note_assignment(*out, request->edits[i].text);
     return result;
 }
 

@@ -57,6 +57,20 @@ static status apply_turn(scene *s, const scene_edit *edit, const char *text, dia
     return apply_vector(s, edit, text, why, scene_turn);
 }
 
+static status apply_scale(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
+{
+    const char *value;
+    char *name = left_of_equals(text, &value);
+    double factor;
+    if (!name)
+        return malformed(edit, text, why);
+    status result = options_reals(edit->option, value, edit->form, 1, &factor, why);
+    if (result == STATUS_OK)
+        result = scene_scale(s, name, factor, why);
+    free(name);
+    return result;
+}
+
 static status apply_rename(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
 {
     const char *new_name;
@@ -174,8 +188,11 @@ const scene_edit scene_edits[] = {
     {"--add", 0x200, "KIND:NAME[=SHAPE][,PARAM=VALUE]...",
      "add a solid, light, material, mesh or texture, as solid:rod=box,size=0.25,3,0.25", apply_add},
     {"--set", 's', "PATH=VALUE", "set a parameter, or NAME.material and NAME.shape of a solid", apply_set},
-    {"--move", 0x201, "NAME=DX,DY,DZ", "move a solid, a light or the camera", apply_move},
-    {"--turn", 0x202, "NAME=RX,RY,RZ", "turn a solid or the camera about the world's x, then y, then z axis, in degrees", apply_turn},
+    {"--move", 0x201, "NAME=DX,DY,DZ", "move a solid, a light, the camera; all, solids, lights, or words joined by +, as all+camera", apply_move},
+    {"--turn", 0x202, "NAME=RX,RY,RZ",
+     "turn a solid or the camera, where it stands, or all and so on, about the origin: about the world's x, then y, then z axis, in degrees", apply_turn},
+    {"--scale", 0x206, "NAME=FACTOR",
+     "scale a solid or a light, where it stands, or all and so on, about the origin; with all solids, lengths in metres stay (render.unit_m)", apply_scale},
     {"--rename", 0x203, "OLD=NEW", "give an object another name", apply_rename},
     {"--delete", 0x204, "NAME", "take an object away; camera, background and render go back to their defaults", apply_delete},
     {"--title", 0x205, "TEXT", "give the scene another title", apply_title},

@@ -1,6 +1,6 @@
-/* What commands that work on a scene share: SCENE, --set and its short forms, the instruction set. Mistakes are located at the
- * option that made them. Ownership: scene_input_prepare gives memory, scene_input_release takes it; words of the command line are
- * borrowed. */
+/* What commands that work on a scene share: SCENE, --set and its short forms, the instruction set. Mistakes are
+ * located at the option that made them. Ownership: scene_input_prepare gives memory, scene_input_release takes it;
+ * words of the command line are borrowed. */
 #ifndef CUVETTE_CLI_SCENE_INPUT_H
 #define CUVETTE_CLI_SCENE_INPUT_H
 
@@ -41,14 +41,15 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why);
 /* scene_load, with a line of progress while slimes move, and heard when it shall stop. */
 status scene_input_load(scene *s, diagnostic *why);
 
-/* Notes where the scene's picture is made of random paths or is spectral, since a tree of rays has all branches and one wavelength; and
- * where a medium was not measured at that. */
+/* Notes where the scene's picture is made of random paths or is spectral, since a tree of rays has all branches and
+ * one wavelength; and where a medium was not measured at that. */
 void scene_input_note_tree(const scene *s);
 
 /* Notes on what looks wrong in the scene (scene/hints.h), on standard error. */
 void scene_input_note_hints(const scene *s);
 
-/* All notes of the linter (lint/lint.h) on a loaded scene; those whose place varies are left out. varies may be NULL. */
+/* All notes of the linter (lint/lint.h) on a loaded scene; those whose place varies are left out. varies may be
+ * NULL. */
 status scene_input_lint(const scene *s, isa level, const lint_filter *varies, diagnostic *why);
 
 /* isa_choose, located. */

@@ -1,5 +1,6 @@
 #include "base/text_writer.h"
 #include "cli/cli.h"
+#include "cli/inert_notes.h"
 #include "cli/scene_input.h"
 #include "cli/study_request.h"
 #include "cli/study_table.h"
@@ -92,6 +93,8 @@ static status lint(const study *s, const study_request *request, diagnostic *why
         result = moves ? scene_load_files(base, why) : scene_load(base, why);
     if (result == STATUS_OK)
         result = scene_input_lint(base, level, &(lint_filter){varies, (void *)(uintptr_t)s}, why);
+    if (result == STATUS_OK)
+        result = inert_note_study(s, why);
     scene_destroy(base);
     return result;
 }

@@ -91,6 +91,15 @@ cuvette_status cuvette_scene_turn(cuvette_scene *s, const char *name, const doub
     return engine_report(scene_turn(s->model, name, vec3_make(degrees[0], degrees[1], degrees[2]), &inner), &inner, why);
 }
 
+cuvette_status cuvette_scene_scale(cuvette_scene *s, const char *name, double factor, cuvette_diagnostic *why)
+{
+    ENGINE_ENTER(host);
+    ENGINE_CHANGE(s, why);
+    ENGINE_NEED(name, why);
+    diagnostic inner = {.line = 0};
+    return engine_report(scene_scale(s->model, name, factor, &inner), &inner, why);
+}
+
 cuvette_status cuvette_scene_look_at(cuvette_scene *s, const double *target, cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);

@@ -23,7 +23,7 @@ static primitive cylinder_placed(const solid_shape *shape, double radius, double
 {
     primitive p = primitive_placed(shape, PRIMITIVE_CYLINDER, shape->height + radius);
     p.radius = radius;
-    p.m2 = shape->kind == SHAPE_CYLINDER ? shape->m * shape->m : 1.0;
+    p.m2 = shape->m * shape->m;
     p.bottom = bottom;
     p.top = top;
     if (p.m2 < 1.0) /* the long axis is radius / m */
@@ -99,6 +99,7 @@ static void add_body(arrangement *a, int rank, const body_source *source)
                 .clearness = source->opaque ? 0.0 : source->clearness,
                 .face_clearness = source->opaque ? NULL : source->face_clearness,
                 .absorbs = source->absorbs && !source->opaque,
+                .reflects = source->reflects && !source->opaque,
                 .solid = source->solid};
     a->absorbs |= b->absorbs;
     for (int k = 0; k < n; k++) {

@@ -48,6 +48,7 @@ typedef struct body {
     const double *face_clearness; /* the same by slot of a mesh whose faces differ, clearness being the least;
                                    * borrowed, or NULL */
     bool absorbs;        /* its medium takes light away with length */
+    bool reflects;       /* by the angle: shadow rays note where they cross its surface (see ray_crossings) */
     int solid;           /* index of the solid it came from */
 } body;
 
@@ -66,7 +67,7 @@ typedef struct arrangement {
 /* Can a body take light away from a shadow ray by itself? With solid_shadows every body does. */
 static inline bool body_casts_shadow(const body *b, bool solid_shadows)
 {
-    return b->opaque || solid_shadows || b->clearness < 1.0 || b->absorbs;
+    return b->opaque || solid_shadows || b->clearness < 1.0 || b->absorbs || b->reflects;
 }
 
 /* What arrangement_build wants to know of a solid. */
@@ -78,7 +79,7 @@ typedef struct body_source {
     bool opaque;
     double clearness;
     const double *face_clearness; /* by slot; borrowed, or NULL */
-    bool absorbs;
+    bool absorbs, reflects;
     int solid;
 } body_source;
 

@@ -66,6 +66,25 @@ typedef struct ray_ways {
     stretch stretches[STRETCHES_MAX];
 } ray_ways;
 
+/* An interface that a shadow ray crosses straight on. */
+typedef struct ray_crossing {
+    int ray, primitive;
+    int before, after; /* ranks */
+    double t;
+    uint64_t inside; /* primitives that the ray is in just before it */
+    forest_hit mesh; /* where the primitive is a mesh */
+} ray_crossing;
+
+/* The interfaces of each shadow ray of a batch that is not blocked before them, for who wants more of them than the
+ * bodies' clearness. As with ray_ways, a full list is handed over to `full`, which empties it. */
+enum { CROSSINGS_MAX = BATCH * 8 };
+typedef struct ray_crossings {
+    int count;
+    void (*full)(void *context);
+    void *context;
+    ray_crossing crossings[CROSSINGS_MAX];
+} ray_crossings;
+
 /* Intervals [in, out] by primitive and ray, and what is derived from them. Contents but ways mean nothing between calls. */
 typedef struct ray_scratch {
     double in[PRIMITIVES_MAX][ROW], out[PRIMITIVES_MAX][ROW];
@@ -79,6 +98,7 @@ typedef struct ray_scratch {
     int ray[ROW];            /* which ray of the batch a column belongs to */
     ray_ways *ways;          /* the caller's; NULL: what rays go through is not noted */
     mesh_scratch *meshes;    /* the caller's; may be NULL where there are no meshes */
+    ray_crossings *crossings; /* the caller's; NULL: interfaces of shadow rays are not noted */
 } ray_scratch;
 
 /* Points on one primitive's surface. normal is a unit vector against the ray; cos_i = -d.n, in (0, 1] for a unit vector d. error is a bound

@@ -398,6 +398,22 @@ static double let_through(const arrangement *a, int solid_shadows, const hit_bat
     return met->face_clearness ? met->face_clearness[slot_met(a, met, c, mesh_hits, k)] : met->clearness;
 }
 
+/* The interface that the shadow ray in column k crosses. */
+static void note_crossing(const arrangement *a, int k, ray_scratch *s, const hit_batch *c, const forest_hit *mesh_hits)
+{
+    ray_crossings *x = s->crossings;
+    if (x->count == CROSSINGS_MAX)
+        x->full(x->context);
+    const int met = (int)c->crossed[k];
+    x->crossings[x->count++] = (ray_crossing){.ray = s->ray[k],
+                                              .primitive = met,
+                                              .before = (int)c->before[k],
+                                              .after = (int)c->after[k],
+                                              .t = c->t[k],
+                                              .inside = c->inside_before[k],
+                                              .mesh = is_mesh(a, met) ? mesh_hits[k] : (forest_hit){.face = FACE_NONE}};
+}
+
 /* Moves the undecided columns to the front; returns how many. */
 static int keep_undecided(const arrangement *a, const ray_batch *rays, ray_scratch *s)
 {
@@ -431,6 +447,8 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
     const uint64_t wanted = first_sight_primitives(a, solid_shadows);
     if (s->ways)
         s->ways->count = 0;
+    if (s->crossings)
+        s->crossings->count = 0;
     KERNEL(intervals_of)(a, rays, wanted, s);
     first_sight(a, rays, solid_shadows, s);
     for (int i = 0; i < rays->count; i++)
@@ -451,8 +469,11 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
                 transmitted[s->ray[k]] = 0.0;
             if (c->crossed[k] < 0 || c->t[k] >= 1.0)
                 continue;
-            if (!s->attention[k] || is_interface(a, rays, k, s, c, again))
+            if (!s->attention[k] || is_interface(a, rays, k, s, c, again)) {
                 transmitted[s->ray[k]] *= let_through(a, solid_shadows, c, again, k);
+                if (s->crossings && transmitted[s->ray[k]] > 0.0)
+                    note_crossing(a, k, s, c, again);
+            }
             if (transmitted[s->ray[k]] > 0.0)
                 pass_on(a, k, left++, s, c, again);
         }

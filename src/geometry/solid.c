@@ -46,9 +46,9 @@ static status check_round(const solid_shape *shape, diagnostic *why)
     status code = check_length(shape->radius, "radius", why);
     if (code == STATUS_OK && shape->kind != SHAPE_SPHERE) {
         code = check_length(shape->height, "height", why);
-    }
-    if (code == STATUS_OK && shape->kind == SHAPE_CYLINDER) {
-        code = check_length(shape->m, "m", why);
+        if (code == STATUS_OK) {
+            code = check_length(shape->m, "m", why);
+        }
     }
     return code == STATUS_OK && shape->kind == SHAPE_CUP ? check_cup(shape, why) : code;
 }
@@ -105,7 +105,7 @@ static bool in_cylinder(vec3 p, double radius, double m, double bottom, double t
 /* The cup is closed, so its hollow is open: the hollow's own surface belongs to the cup. */
 static bool in_hollow(const solid_shape *cup, vec3 p)
 {
-    return p.x * p.x + p.z * p.z < cup->inner_radius * cup->inner_radius && p.y > cup->floor;
+    return p.x * p.x + cup->m * cup->m * p.z * p.z < cup->inner_radius * cup->inner_radius && p.y > cup->floor;
 }
 
 bool solid_shape_contains(const solid_shape *shape, vec3 point)
@@ -115,7 +115,7 @@ bool solid_shape_contains(const solid_shape *shape, vec3 point)
     switch (shape->kind) {
     case SHAPE_PLANE: return p.y <= 0.0;
     case SHAPE_CYLINDER: return in_cylinder(p, shape->radius, shape->m, 0.0, shape->height);
-    case SHAPE_CUP: return in_cylinder(p, shape->radius, 1.0, 0.0, shape->height) && !in_hollow(shape, p);
+    case SHAPE_CUP: return in_cylinder(p, shape->radius, shape->m, 0.0, shape->height) && !in_hollow(shape, p);
     case SHAPE_BOX:
         return fabs(p.x) <= shape->size.x / 2 && fabs(p.y) <= shape->size.y / 2 && fabs(p.z) <= shape->size.z / 2;
     case SHAPE_SPHERE: return vec3_dot(p, p) <= shape->radius * shape->radius;

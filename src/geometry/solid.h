@@ -4,8 +4,9 @@
  *
  *   plane     the half-space y <= 0
  *   cylinder  x^2 + m^2 z^2 <= radius^2, 0 <= y <= height (position is the centre of its base)
- *   cup       a cylinder of radius and height less one of inner_radius that stands on the floor's thickness
- *             and is open at the top (position is the centre of its base)
+ *   cup       a cylinder of radius, m and height less one of inner_radius and the same m that stands on the floor's
+ *             thickness and is open at the top (position is the centre of its base): the ellipses are similar, so that the
+ *             wall is radius - inner_radius thick along x, and 1 / m of that along z
  *   box       |x| <= size.x/2 and so on (position is its centre)
  *   sphere    x^2 + y^2 + z^2 <= radius^2
  *   mesh      a triangle mesh, each axis times scale, as often as copies says, spacing apart. A closed mesh is solid; an open

@@ -1,4 +1,4 @@
-/* The three file formats behind image.h. Writers put a picture on a stream and leave the stream's own errors to
+/* The file formats behind image.h: three that are written and read, and BMP, which is read. Writers put a picture on a stream and leave the stream's own errors to
  * whoever closes it; readers decode a whole file that lies in memory. Diagnostics are filled without the file's name.
  * Ownership: a read picture is the caller's; nothing is allocated when a status other than STATUS_OK comes back. */
 #ifndef CUVETTE_IMAGE_CODEC_H
@@ -38,5 +38,6 @@ status codec_pfm_write(const image *picture, FILE *stream, diagnostic *why);
 status codec_png_read(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why);
 status codec_jpeg_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
 status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
+status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
 
 #endif

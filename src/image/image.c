@@ -82,6 +82,7 @@ static status write_as(const image *picture, image_format format, FILE *stream, 
     case IMAGE_PNG: return codec_png_write(picture, stream, bits, fast, why);
     case IMAGE_JPEG: return codec_jpeg_write(picture, stream, why);
     case IMAGE_PFM: return codec_pfm_write(picture, stream, why);
+    case IMAGE_BMP:
     case IMAGE_UNKNOWN: break;
     }
     return diagnose(why, STATUS_BAD_INPUT, "PNG, JPEG or PFM", "unknown kind of picture");
@@ -129,7 +130,7 @@ status image_write(const image *picture, const char *path, int bits, diagnostic 
     return code;
 }
 
-/* The formats' signatures: PNG specification 5.2; JPEG's SOI and the next marker; PFM's PF or Pf. */
+/* The formats' signatures: PNG specification 5.2; JPEG's SOI and the next marker; PFM's PF or Pf; BMP's BM. */
 static image_format format_of_bytes(const unsigned char *bytes, size_t size)
 {
     if (size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0) {
@@ -137,6 +138,9 @@ static image_format format_of_bytes(const unsigned char *bytes, size_t size)
     }
     if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0) {
         return IMAGE_JPEG;
+    }
+    if (size >= 2 && memcmp(bytes, "BM", 2) == 0) {
+        return IMAGE_BMP;
     }
     bool pfm = size >= 3 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f')
                && (bytes[2] == '\n' || bytes[2] == '\r' || bytes[2] == ' ');
@@ -154,10 +158,13 @@ static status decode(const unsigned char *bytes, size_t size, image **out, int *
     case IMAGE_PFM:
         *bits = 32;
         return codec_pfm_read(bytes, size, out, why);
+    case IMAGE_BMP:
+        *bits = 8;
+        return codec_bmp_read(bytes, size, out, why);
     case IMAGE_UNKNOWN:
         break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "give a PNG, JPEG or PFM file", "%s",
+    return diagnose(why, STATUS_BAD_INPUT, "give a PNG, JPEG, PFM or 24-bit BMP file", "%s",
                     size == 0 ? "the file is empty" : "this is not a picture of a known kind");
 }
 

@@ -1,4 +1,4 @@
-/* Pictures in memory and on disk: PNG (libpng), JPEG (libjpeg-turbo), PFM (Debevec). No time stamps, the
+/* Pictures in memory and on disk: PNG (libpng), JPEG (libjpeg-turbo), PFM (Debevec); in alone: BMP. No time stamps, the
  * same bytes for the same picture; files appear whole or not at all. Ownership: image_create and
  * image_read give a picture to the caller, image_destroy releases it. */
 #ifndef CUVETTE_IMAGE_IMAGE_H
@@ -26,7 +26,7 @@ double srgb_decode(double encoded);
 
 /* Which format the ending of a file's name stands for: .png .jpg .jpeg .pfm (letter case ignored). "-" (standard
  * output) and what lies under /dev/ have no ending and are PNG. */
-typedef enum image_format { IMAGE_UNKNOWN, IMAGE_PNG, IMAGE_JPEG, IMAGE_PFM } image_format;
+typedef enum image_format { IMAGE_UNKNOWN, IMAGE_PNG, IMAGE_JPEG, IMAGE_PFM, IMAGE_BMP } image_format; /* IMAGE_BMP: for reading alone, no ending's */
 image_format image_format_of(const char *path);
 
 /* PNG at 8 or 16 bits and JPEG (quality 92, 4:4:4) are sRGB-encoded, with a PNG sRGB chunk, correctly rounded, NaN as
@@ -36,10 +36,10 @@ status image_write(const image *picture, const char *path, int bits, diagnostic 
 /* The same into fresh memory, the caller's. bits: 8 or 16. fast: a PNG is compressed with less effort, for one who waits. */
 status image_encode(const image *picture, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size, diagnostic *why);
 
-/* Reads PNG (any depth and kind; alpha is dropped after blending over black), JPEG (grey or RGB) or PFM (colour or
- * grey, either byte order, finite), told by its first bytes, not by its name; PNG and JPEG are decoded from sRGB to
- * linear. Truncated, damaged or larger than 2^28 pixels is STATUS_BAD_INPUT.
- * file_bits, when not NULL, receives 8 or 16 for PNG, 8 for JPEG and 32 for PFM. */
+/* Reads PNG (any depth and kind; alpha is dropped after blending over black), JPEG (grey or RGB), PFM (colour or
+ * grey, either byte order, finite) or BMP (24 bits, uncompressed), told by its first bytes, not by its name; PNG, JPEG and BMP are decoded
+ * from sRGB to linear. Truncated, damaged or larger than 2^28 pixels is STATUS_BAD_INPUT.
+ * file_bits, when not NULL, receives 8 or 16 for PNG, 8 for JPEG and BMP, and 32 for PFM. */
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why);
 /* The same of a file that lies below root (base/below.h). */
 status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why);

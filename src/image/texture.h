@@ -13,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What the numbers in a PNG or JPEG file stand for. image_read takes all of them for sRGB: with TEXTURE_SRGB they stay the
+/* What the numbers in a PNG, JPEG or BMP file stand for. image_read takes all of them for sRGB: with TEXTURE_SRGB they stay the
  * linear light that it made of them; with TEXTURE_LINEAR the file's own numbers (0 to 1) are restored, exactly to the file's 8 or
  * 16 bits where no alpha was blended. Pictures that were never coded (PFM, rendered) are taken as they are in both. */
 typedef enum texture_space { TEXTURE_SRGB, TEXTURE_LINEAR } texture_space;

@@ -30,7 +30,8 @@ void lint_camera(const lint_room *room)
         note_give(room->taker, "camera", "position", "move the camera to the other side of the plane",
                   "the camera is under the surface of %s, which is opaque", around->name);
     else if (opaque)
-        note_give(room->taker, "camera", "position", "move the camera out of it", "the camera is inside %s, which is opaque", around->name);
+        note_give(room->taker, "camera", "position", "move the camera out of it",
+                  "the camera is inside %s, which is opaque", around->name);
     else if (around->shape.kind == SHAPE_CUP)
         note_give(room->taker, "camera", "position", "move the camera out of the wall, into the vessel or away from it",
                   "the camera is inside the wall of %s", around->name);

@@ -1,4 +1,5 @@
-/* A small image of the scene at its depth limit and deeper, until that changes nothing any more or enough rays are spent. */
+/* A small image of the scene at its depth limit and deeper, until that changes nothing any more or enough rays are
+ * spent. */
 #include "lint/parts.h"
 #include "render/tracer.h"
 
@@ -99,14 +100,17 @@ static void note_depth(const lint_room *room, const depth_probe *p, int depth, i
 {
     const double share = changed_share(p->image[0], p->image[last]);
     const double pixels = (double)p->image[0]->width * p->image[0]->height;
-    if (share <= CHANGED_PIXELS + 2.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / pixels)) /* the probe may be off by chance */
+    if (share <= CHANGED_PIXELS +
+                     2.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / pixels)) /* the probe may be off by chance */
         return;
     int enough = 1;
     while (enough < last && changed_share(p->image[enough], p->image[last]) > CHANGED_PIXELS)
         enough++;
     char remedy[NOTE_TEXT_MAX];
-    snprintf(remedy, sizeof remedy, "set render.depth=%d%s", depth + enough, settled || enough < last ? "" : " or more");
-    note_give(room->taker, "render", "depth", remedy, "a depth of %d is too small: more changes about %.0f %% of the pixels by more than 5 %%", depth,
+    snprintf(remedy, sizeof remedy, "set render.depth=%d%s", depth + enough,
+             settled || enough < last ? "" : " or more");
+    note_give(room->taker, "render", "depth", remedy,
+              "a depth of %d is too small: more changes about %.0f %% of the pixels by more than 5 %%", depth,
               100.0 * share);
 }
 

@@ -4,7 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-typedef struct span_ends { double in, out; } span_ends;
+typedef struct span_ends {
+    double in, out;
+} span_ends;
 
 static span_ends through_slab(double y, double dy, double low, double high)
 {
@@ -25,7 +27,8 @@ static span_ends through_quadric(quadric_roots q)
 /* Of a convex primitive; in >= out where it is missed. */
 static span_ends through_primitive(const primitive *p, const line *l)
 {
-    const local_ray r = ray_to_local(p, true, l->origin.x, l->origin.y, l->origin.z, l->direction.x, l->direction.y, l->direction.z);
+    const local_ray r =
+        ray_to_local(p, true, l->origin.x, l->origin.y, l->origin.z, l->direction.x, l->direction.y, l->direction.z);
     switch (p->kind) {
     case PRIMITIVE_HALFSPACE: {
         const double t = -r.y * inverse_of_component(r.dy);
@@ -33,11 +36,13 @@ static span_ends through_primitive(const primitive *p, const line *l)
     }
     case PRIMITIVE_CYLINDER: {
         const double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, p->m2);
-        return through_both(through_quadric(cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, 0)), through_slab(r.y, r.dy, p->bottom, p->top));
+        return through_both(through_quadric(cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, 0)),
+                            through_slab(r.y, r.dy, p->bottom, p->top));
     }
     case PRIMITIVE_BOX:
         return through_both(through_slab(r.x, r.dx, -p->half.x, p->half.x),
-                            through_both(through_slab(r.y, r.dy, -p->half.y, p->half.y), through_slab(r.z, r.dz, -p->half.z, p->half.z)));
+                            through_both(through_slab(r.y, r.dy, -p->half.y, p->half.y),
+                                         through_slab(r.z, r.dz, -p->half.z, p->half.z)));
     case PRIMITIVE_SPHERE: return through_quadric(sphere_cross(p, r, 0));
     case PRIMITIVE_MESH: break;
     }
@@ -52,7 +57,11 @@ static void add_span(line_spans *s, double in, double out)
     }
 }
 
-typedef struct mesh_crossings { int count; double t[2 * SPANS_MAX]; int facing[2 * SPANS_MAX]; } mesh_crossings;
+typedef struct mesh_crossings {
+    int count;
+    double t[2 * SPANS_MAX];
+    int facing[2 * SPANS_MAX];
+} mesh_crossings;
 
 static void take_crossing(void *context, const mesh_hit *hit)
 {
@@ -68,13 +77,17 @@ static void take_crossing(void *context, const mesh_hit *hit)
     c->facing[i] = hit->facing;
 }
 
-/* Of one copy: in at a front, out at a back, and so on. From here the line is followed from its origin, which lies before the mesh. */
+/* Of one copy: in at a front, out at a back, and so on. From here the line is followed from its origin, which lies
+ * before the mesh. */
 static bool through_copy(const forest_part *p, uint32_t copy, const line *l, line_spans *out)
 {
     const vec3 o = mat3_apply_transposed(p->rotation, vec3_sub(l->origin, forest_origin(p, copy)));
     const vec3 d = mat3_apply_transposed(p->rotation, l->direction), s = p->scale;
-    const mesh_ray ray = {.origin = vec3_make(o.x / s.x, o.y / s.y, o.z / s.z), .direction = vec3_make(d.x / s.x, d.y / s.y, d.z / s.z),
-                          .t_max = HUGE_VAL, .skip = TRIANGLE_NONE, .facing = FACING_ANY};
+    const mesh_ray ray = {.origin = vec3_make(o.x / s.x, o.y / s.y, o.z / s.z),
+                          .direction = vec3_make(d.x / s.x, d.y / s.y, d.z / s.z),
+                          .t_max = HUGE_VAL,
+                          .skip = TRIANGLE_NONE,
+                          .facing = FACING_ANY};
     mesh_crossings c = {.count = 0};
     hierarchy_kernels_sse2.all(p->tree, &ray, take_crossing, &c);
     if (c.count > 2 * SPANS_MAX || c.count % 2 || out->count + c.count / 2 > SPANS_MAX)
@@ -87,7 +100,8 @@ static bool through_copy(const forest_part *p, uint32_t copy, const line *l, lin
     return true;
 }
 
-/* Copies do not overlap, and those of one line of them stand in the order of their distance only if they are looked at so. */
+/* Copies do not overlap, and those of one line of them stand in the order of their distance only if they are looked
+ * at so. */
 static void sort_spans(line_spans *s)
 {
     for (int i = 1; i < s->count; i++)
@@ -145,11 +159,15 @@ static vec3 turned_half(const mat3 *turn, vec3 half)
 static bounds3 mesh_box(const forest_part *p)
 {
     const bounds3 b = p->triangles->bounds;
-    const vec3 s = p->scale, n = vec3_make(p->copies[0] - 1.0, p->copies[1] - 1.0, p->copies[2] - 1.0), step = p->spacing;
-    const vec3 low = vec3_make(b.low.x * s.x + fmin(0.0, n.x * step.x), b.low.y * s.y + fmin(0.0, n.y * step.y), b.low.z * s.z + fmin(0.0, n.z * step.z));
-    const vec3 high = vec3_make(b.high.x * s.x + fmax(0.0, n.x * step.x), b.high.y * s.y + fmax(0.0, n.y * step.y), b.high.z * s.z + fmax(0.0, n.z * step.z));
+    const vec3 s = p->scale, n = vec3_make(p->copies[0] - 1.0, p->copies[1] - 1.0, p->copies[2] - 1.0),
+               step = p->spacing;
+    const vec3 low = vec3_make(b.low.x * s.x + fmin(0.0, n.x * step.x), b.low.y * s.y + fmin(0.0, n.y * step.y),
+                               b.low.z * s.z + fmin(0.0, n.z * step.z));
+    const vec3 high = vec3_make(b.high.x * s.x + fmax(0.0, n.x * step.x), b.high.y * s.y + fmax(0.0, n.y * step.y),
+                                b.high.z * s.z + fmax(0.0, n.z * step.z));
     const vec3 middle = vec3_scale(vec3_add(low, high), 0.5);
-    return box_about(vec3_add(p->origin, mat3_apply(p->rotation, middle)), turned_half(&p->rotation, vec3_scale(vec3_sub(high, low), 0.5)));
+    return box_about(vec3_add(p->origin, mat3_apply(p->rotation, middle)),
+                     turned_half(&p->rotation, vec3_scale(vec3_sub(high, low), 0.5)));
 }
 
 static bounds3 cylinder_box(const primitive *p)
@@ -186,7 +204,7 @@ double shape_thickness(const solid_shape *shape)
     switch (shape->kind) {
     case SHAPE_PLANE: return HUGE_VAL;
     case SHAPE_CYLINDER: return fmin(shape->height, 2.0 * fmin(shape->radius, shape->radius / shape->m));
-    case SHAPE_CUP: return fmin(shape->radius - shape->inner_radius, shape->floor);
+    case SHAPE_CUP: return fmin((shape->radius - shape->inner_radius) * fmin(1.0, 1.0 / shape->m), shape->floor);
     case SHAPE_BOX: return least_of_three(shape->size);
     case SHAPE_SPHERE: return 2.0 * shape->radius;
     case SHAPE_MESH: {

@@ -83,7 +83,10 @@ status lint_scene(const scene *s, isa level, const note_taker *taker, diagnostic
     return is_loaded(s) ? lint_traced(s, level, taker, why) : STATUS_OK;
 }
 
-typedef struct filtered { const lint_filter *filter; const note_taker *taker; } filtered;
+typedef struct filtered {
+    const lint_filter *filter;
+    const note_taker *taker;
+} filtered;
 
 static void take_filtered(void *context, const scene_note *note)
 {

@@ -1,5 +1,6 @@
-/* Pairs of solids along a lattice of lines through the region that both reach. What a line shows is tried again by points around it before it
- * becomes a note: a touch is no overlap, and one narrow place of two curved surfaces is no gap. */
+/* Pairs of solids along a lattice of lines through the region that both reach. What a line shows is tried again by
+ * points around it before it becomes a note: a touch is no overlap, and one narrow place of two curved surfaces is
+ * no gap. */
 #include "lint/lines.h"
 #include "lint/parts.h"
 #include "scene/cover.h"
@@ -8,22 +9,28 @@
 #include <stdlib.h>
 
 enum { LATTICE_LEAST = 8, LATTICE_MOST = 32, LINES_MAX = 200000 };
-#define GAP_SHARE 1e-3       /* of the thinner neighbour: a gap under it is a narrow one */
-#define PATCH_SHARE 0.25     /* of the thinner neighbour: a narrow gap is as wide as that at the least */
-#define OVERLAP_SHARE 1e-6   /* of the thinner neighbour: what overlaps less only touches */
-#define CONTACT_SHARE 1e-12  /* of the coordinates: surfaces that are closer are in contact */
+#define GAP_SHARE 1e-3      /* of the thinner neighbour: a gap under it is a narrow one */
+#define PATCH_SHARE 0.25    /* of the thinner neighbour: a narrow gap is as wide as that at the least */
+#define OVERLAP_SHARE 1e-6  /* of the thinner neighbour: what overlaps less only touches */
+#define CONTACT_SHARE 1e-12 /* of the coordinates: surfaces that are closer are in contact */
 
-typedef struct neighbour { const body *of; const solid *said; bounds3 box; double thickness; int rank; } neighbour;
+typedef struct neighbour {
+    const body *of;
+    const solid *said;
+    bounds3 box;
+    double thickness;
+    int rank;
+} neighbour;
 
 typedef struct pair {
     const lint_room *room;
     const neighbour *a, *b;
-    vec3 low, high;   /* the region that both reach, and gaps around it */
+    vec3 low, high; /* the region that both reach, and gaps around it */
     double thinner, extent;
-    int lattice;      /* lines along an edge */
+    int lattice;         /* lines along an edge */
     bool overlaps, gaps; /* what is looked for */
-    float *gap;       /* by line of one axis: of its narrow gap, 0 for none; lattice * lattice */
-    double *middle;   /* where that is on the line */
+    float *gap;          /* by line of one axis: of its narrow gap, 0 for none; lattice * lattice */
+    double *middle;      /* where that is on the line */
 } pair;
 
 static double *component(vec3 *v, int axis)
@@ -36,11 +43,17 @@ static bool is_in(const body *b, uint64_t inside)
     return (inside >> b->outside & 1) && !(b->hollow >= 0 && (inside >> b->hollow & 1));
 }
 
+/* How deep an overlap is at the least. */
+static double deep_enough(const pair *p)
+{
+    return fmax(OVERLAP_SHARE * p->thinner, CONTACT_SHARE * p->extent);
+}
+
 /* Are both at the point, and so far about it? */
 static bool overlap_at(const pair *p, vec3 point)
 {
     const arrangement *a = p->room->made->solids;
-    const double far = OVERLAP_SHARE * p->thinner;
+    const double far = deep_enough(p);
     for (int i = 0; i < 6; i++) {
         vec3 at = point;
         *component(&at, i / 2) += i % 2 ? far : -far;
@@ -60,8 +73,9 @@ static line lattice_line(const pair *p, int axis, int i, int j)
     *component(&l.origin, u) += (*component(&high, u) - *component(&low, u)) * (i + 0.4871) / p->lattice;
     *component(&l.origin, v) += (*component(&high, v) - *component(&low, v)) * (j + 0.5237) / p->lattice;
     vec3 first = p->a->box.low, second = p->b->box.low;
-    const double before = fmin(isfinite(*component(&first, axis)) ? *component(&first, axis) : *component(&low, axis),
-                               isfinite(*component(&second, axis)) ? *component(&second, axis) : *component(&low, axis));
+    const double before =
+        fmin(isfinite(*component(&first, axis)) ? *component(&first, axis) : *component(&low, axis),
+             isfinite(*component(&second, axis)) ? *component(&second, axis) : *component(&low, axis));
     *component(&l.origin, axis) = before - 0.01 * (*component(&high, axis) - before) - p->thinner * GAP_SHARE;
     *component(&l.direction, axis) = 1.0;
     return l;
@@ -77,7 +91,8 @@ static bool spans_overlap(const pair *p, const line *l, const line_spans *a, con
     for (int i = 0; i < a->count; i++)
         for (int k = 0; k < b->count; k++) {
             const double in = fmax(a->in[i], b->in[k]), out = fmin(a->out[i], b->out[k]);
-            if (out - in > 2.0 * OVERLAP_SHARE * p->thinner && isfinite(in) && isfinite(out) && overlap_at(p, line_at(l, 0.5 * (in + out))))
+            if (out - in > 2.0 * deep_enough(p) && isfinite(in) && isfinite(out) &&
+                overlap_at(p, line_at(l, 0.5 * (in + out))))
                 return true;
         }
     return false;
@@ -111,7 +126,8 @@ static bool look_along(const pair *p, int axis)
             line_spans one, two;
             float *gap = &p->gap[i * p->lattice + j];
             *gap = 0.0F;
-            if (!line_through(a, p->a->of, &l, &one) || one.count == 0 || !line_through(a, p->b->of, &l, &two) || two.count == 0)
+            if (!line_through(a, p->a->of, &l, &one) || one.count == 0 || !line_through(a, p->b->of, &l, &two) ||
+                two.count == 0)
                 continue;
             if (p->overlaps && spans_overlap(p, &l, &one, &two))
                 return true;
@@ -128,7 +144,8 @@ static bool is_patch(const pair *p, int axis, int i, int j, int step_u, int step
     for (int di = -1; di <= 1; di++)
         for (int dj = -1; dj <= 1; dj++) {
             const int at_i = i + di * step_u, at_j = j + dj * step_v;
-            if (at_i < 0 || at_j < 0 || at_i >= p->lattice || at_j >= p->lattice || p->gap[at_i * p->lattice + at_j] == 0.0F)
+            if (at_i < 0 || at_j < 0 || at_i >= p->lattice || at_j >= p->lattice ||
+                p->gap[at_i * p->lattice + at_j] == 0.0F)
                 return false;
         }
     for (int di = -1; di <= 1; di++)
@@ -171,25 +188,32 @@ static double find_patch(const pair *p, int axis)
 
 static void note_overlap(const pair *p)
 {
-    const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said, *second = first == p->a->said ? p->b->said : p->a->said;
-    note_give(p->room->taker, second->name, "priority", "give the one that displaces the other the higher priority",
-              "%s and %s overlap with equal priority and different media: %s wins there only because it is listed first", first->name, second->name,
-              first->name);
+    const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said,
+                *second = first == p->a->said ? p->b->said : p->a->said;
+    note_give(
+        p->room->taker, second->name, "priority", "give the one that displaces the other the higher priority",
+        "%s and %s overlap with equal priority and different media: %s wins there only because it is listed first",
+        first->name, second->name, first->name);
 }
 
 static void note_gap(const pair *p, double gap)
 {
     const neighbour *thin = p->a->thickness <= p->b->thickness ? p->a : p->b;
-    const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said, *second = first == p->a->said ? p->b->said : p->a->said;
-    note_give(p->room->taker, second->name, NULL, "let them touch exactly, or overlap, where the higher priority wins; or set them further apart",
-              "between %s and %s is a gap of about %.2g, less than a thousandth of the thickness of %s (%.3g): light sees a film there", first->name,
-              second->name, gap, thin->said->name, thin->thickness);
+    const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said,
+                *second = first == p->a->said ? p->b->said : p->a->said;
+    note_give(
+        p->room->taker, second->name, NULL,
+        "let them touch exactly, or overlap, where the higher priority wins; or set them further apart",
+        "between %s and %s is a gap of about %.2g, less than a thousandth of the thickness of %s (%.3g): light sees "
+        "a film there",
+        first->name, second->name, gap, thin->said->name, thin->thickness);
 }
 
 /* Two half-spaces share a region unless they face away from each other. */
 static bool planes_overlap(const pair *p)
 {
-    const primitive *a = &p->room->made->solids->primitives[p->a->of->outside], *b = &p->room->made->solids->primitives[p->b->of->outside];
+    const primitive *a = &p->room->made->solids->primitives[p->a->of->outside],
+                    *b = &p->room->made->solids->primitives[p->b->of->outside];
     const vec3 up_a = vec3_make(a->rotation.row[0].y, a->rotation.row[1].y, a->rotation.row[2].y);
     const vec3 up_b = vec3_make(b->rotation.row[0].y, b->rotation.row[1].y, b->rotation.row[2].y);
     const double apart = vec3_dot(vec3_sub(b->origin, a->origin), up_a);
@@ -242,9 +266,12 @@ static bool prepare_pair(const lint_room *room, const neighbour *a, const neighb
     if (!isfinite(p->thinner))
         p->thinner = 1.0;
     const double pad = GAP_SHARE * p->thinner;
-    p->low = vec3_make(fmax(a->box.low.x, b->box.low.x) - pad, fmax(a->box.low.y, b->box.low.y) - pad, fmax(a->box.low.z, b->box.low.z) - pad);
-    p->high = vec3_make(fmin(a->box.high.x, b->box.high.x) + pad, fmin(a->box.high.y, b->box.high.y) + pad, fmin(a->box.high.z, b->box.high.z) + pad);
-    p->extent = fmax(fmax(fmax(fabs(p->low.x), fabs(p->low.y)), fmax(fabs(p->low.z), fabs(p->high.x))), fmax(fabs(p->high.y), fabs(p->high.z)));
+    p->low = vec3_make(fmax(a->box.low.x, b->box.low.x) - pad, fmax(a->box.low.y, b->box.low.y) - pad,
+                       fmax(a->box.low.z, b->box.low.z) - pad);
+    p->high = vec3_make(fmin(a->box.high.x, b->box.high.x) + pad, fmin(a->box.high.y, b->box.high.y) + pad,
+                        fmin(a->box.high.z, b->box.high.z) + pad);
+    p->extent = fmax(fmax(fmax(fabs(p->low.x), fabs(p->low.y)), fmax(fabs(p->low.z), fabs(p->high.x))),
+                     fmax(fabs(p->high.y), fabs(p->high.z)));
     p->overlaps = a->said->priority == b->said->priority && media_differ(room->made, a, b);
     p->gaps = shows(a->of) && shows(b->of);
     return (p->overlaps || p->gaps) && p->low.x < p->high.x && p->low.y < p->high.y && p->low.z < p->high.z;

@@ -6,8 +6,8 @@
 #include "scene/note.h"
 
 typedef struct lint_room {
-    const scene *of;       /* what is looked at, as the caller has it */
-    plan *made;            /* of a copy with a small image; its depth may be turned */
+    const scene *of; /* what is looked at, as the caller has it */
+    plan *made;      /* of a copy with a small image; its depth may be turned */
     isa level;
     const note_taker *taker;
 } lint_room;

@@ -39,10 +39,12 @@ static scene *gap_scene(const scene *s, const setup *at, double gap, bool far_so
     return copy;
 }
 
-static double gap_theory(const setup *at, double angle)
+/* With basic radiance the eye, in the vessel's medium, has the square of the index too. */
+static double gap_theory(const metrics *m, double angle)
 {
-    const double n_from = at->n[SETUP_VESSEL], n_to = at->n[SETUP_OUTSIDE];
-    return n_from == n_to ? 1.0 : 1.0 - theory_fresnel(angle, n_from, n_to);
+    const double n_from = m->theory_at.n[SETUP_VESSEL], n_to = m->theory_at.n[SETUP_OUTSIDE], ratio = n_from / n_to;
+    const double gain = scene_has_basic_radiance(&m->supposed->render) ? ratio * ratio : 1.0;
+    return gain * (n_from == n_to ? 1.0 : 1.0 - theory_fresnel(angle, n_from, n_to));
 }
 
 static status measure(const metrics *m, double gap, bool far_solid, worst_pair *worst, diagnostic *why)
@@ -52,7 +54,7 @@ static status measure(const metrics *m, double gap, bool far_solid, worst_pair *
     for (int degrees = 0; degrees <= 85 && code == STATUS_OK; degrees += 5) {
         const double angle = degrees * M_PI / 180.0;
         code = probe_ray(t.p, vec3_make(0.0, 0.5, 0.0), vec3_make(sin(angle), -cos(angle), 0.0), &t.tree, why);
-        worst_take(worst, code == STATUS_OK ? t.tree.radiance[0] : NAN, gap_theory(&m->theory_at, angle));
+        worst_take(worst, code == STATUS_OK ? t.tree.radiance[0] : NAN, gap_theory(m, angle));
     }
     trial_end(&t);
     return code;

@@ -52,8 +52,9 @@ status realism_check(const scene *s, bool curves, diagnostic *why)
 
 status realism_measure_against(const scene *traced, const scene *supposed, isa level, realism_report *out, diagnostic *why)
 {
-    static status (*const of_vessel[])(const metrics *, diagnostic *) = {realism_edges, realism_water_line, realism_lens, realism_interfaces,
-                                                                   realism_balance, realism_slab, realism_gap, realism_absorption, realism_reversal};
+    static status (*const of_vessel[])(const metrics *, diagnostic *) = {
+        realism_edges, realism_water_line, realism_lens,     realism_interfaces, realism_balance,
+        realism_slab,  realism_gap,        realism_radiance, realism_absorption, realism_reversal};
     metrics m = {.traced = traced, .supposed = supposed, .level = level, .report = out};
     out->count = 0;
     for (size_t i = 0; i < sizeof arrangements / sizeof arrangements[0]; i++)

@@ -22,6 +22,7 @@ status realism_interfaces(const metrics *m, diagnostic *why);   /* interfaces.c:
 status realism_balance(const metrics *m, diagnostic *why);      /* balance.c: white furnace */
 status realism_slab(const metrics *m, diagnostic *why);         /* slab.c: convergence with depth */
 status realism_gap(const metrics *m, diagnostic *why);          /* gap.c: empty gaps, and solids far away */
+status realism_radiance(const metrics *m, diagnostic *why);     /* radiance.c: radiance across a flat surface */
 status realism_absorption(const metrics *m, diagnostic *why);   /* attenuation.c: Beer and Lambert */
 status realism_reversal(const metrics *m, diagnostic *why);     /* reversal.c: ways backwards */
 

@@ -8,6 +8,7 @@ const char *section_read(const scene *s, const setup *at, section *out)
     if (rod->rotation_deg.x != 0.0 || rod->rotation_deg.z != 0.0)
         return "the rod leans: this wants an upright one";
     *out = (section){.eye = view_of(s), .shells = setup_shells(at), .x = at->x, .z = at->z};
+    out->eye.roll = 0.0; /* as in arrange_empty */
     const double turn = rod->rotation_deg.y * M_PI / 180.0;
     for (int i = 0; i < 4; i++) {
         const double x = (i & 1 ? 0.5 : -0.5) * rod->size.x, z = (i & 2 ? 0.5 : -0.5) * rod->size.z;

@@ -40,6 +40,8 @@ static status read_vessel(const scene *s, setup *out, diagnostic *why)
     if (out->rod < 0 || s->solids[out->rod].shape.kind != SHAPE_BOX)
         return wrong(s, why, example, "there is no visible box named 'rod'");
     const solid *vessel = &s->solids[out->vessel], *rod = &s->solids[out->rod];
+    if (vessel->shape.m != 1.0)
+        return wrong(s, why, "set vessel.m to 1: the closed forms are those of a round vessel", "the vessel is elliptic");
     if (is_turned(vessel) || vessel->surface.transparency == 0.0)
         return wrong(s, why, "let it stand upright, and set its transparency above 0", "the vessel is turned or opaque");
     if (rod->surface.transparency != 0.0 || rod->priority <= vessel->priority)
@@ -130,6 +132,7 @@ scene *arrange_empty(const scene *s)
     r->samples = 1;
     r->min_weight = 0.0;
     r->depth = 16;
+    copy->camera.roll_deg = 0.0; /* edges of upright things are looked for along the image's lines */
     copy->background.absorb_per_m = vec3_make(0.0, 0.0, 0.0); /* the closed forms know no way to the vessel */
     return copy;
 }

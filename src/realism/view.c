@@ -7,7 +7,7 @@ view view_of(const scene *s)
     const struct camera *c = &s->camera;
     const double degree = M_PI / 180.0;
     view v = {.x = c->position.x, .y = c->position.y, .z = c->position.z, .yaw = c->yaw_deg * degree, .pitch = c->pitch_deg * degree,
-              .width = (double)s->render.width, .height = (double)s->render.height};
+              .roll = c->roll_deg * degree, .width = (double)s->render.width, .height = (double)s->render.height};
     if (c->aimed) {
         const double dx = c->target.x - v.x, dy = c->target.y - v.y, dz = c->target.z - v.z;
         v.yaw = atan2(dx, dz);
@@ -17,10 +17,11 @@ view view_of(const scene *s)
     return v;
 }
 
-/* The camera sees (right, up, ahead); pitch turns up and ahead, yaw then right and ahead. */
+/* The camera sees (right, up, ahead); roll turns right and up, pitch then up and ahead, yaw then right and ahead. */
 sight view_through(const view *v, double px, double py)
 {
-    const double right = (px - v->width / 2.0) / v->focal_px, up = (v->height / 2.0 - py) / v->focal_px;
+    const double across = (px - v->width / 2.0) / v->focal_px, upwards = (v->height / 2.0 - py) / v->focal_px;
+    const double right = across * cos(v->roll) + upwards * sin(v->roll), up = upwards * cos(v->roll) - across * sin(v->roll);
     const double length = sqrt(right * right + up * up + 1.0);
     const double level = cos(v->pitch) - up * sin(v->pitch);
     sight s = {.x = (right * cos(v->yaw) + level * sin(v->yaw)) / length,
@@ -36,7 +37,8 @@ bool view_place(const view *v, double x, double y, double z, double *px, double 
     const double ahead = level * cos(v->pitch) + dy * sin(v->pitch), up = dy * cos(v->pitch) - level * sin(v->pitch);
     if (!(ahead > 0.0))
         return false;
-    *px = v->width / 2.0 + v->focal_px * right / ahead;
-    *py = v->height / 2.0 - v->focal_px * up / ahead;
+    const double across = right * cos(v->roll) - up * sin(v->roll), upwards = right * sin(v->roll) + up * cos(v->roll);
+    *px = v->width / 2.0 + v->focal_px * across / ahead;
+    *py = v->height / 2.0 - v->focal_px * upwards / ahead;
     return true;
 }

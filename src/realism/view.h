@@ -8,6 +8,7 @@
 typedef struct view {
     double x, y, z;       /* of the eye */
     double yaw, pitch;    /* radians: 0 along +z, towards +x; up */
+    double roll;          /* radians: the camera's right side down */
     double width, height; /* px */
     double focal_px;      /* px that a slope of 1 makes in the picture's middle */
 } view;

@@ -86,9 +86,11 @@ void path_meet_lights(tracer *t, const ray_queue *q, int first, int count)
     }
 }
 
-void path_expose_light(tracer *t, int64_t ticket, int lamp, vec3 direction, double wr, double wg, double wb)
+void path_expose_light(tracer *t, int64_t ticket, int lamp, int rank, vec3 direction, double wr, double wg, double wb)
 {
-    const vec3 l = vec3_scale(light_color(t, lamp, ticket), radiance_along(t->target.scene, lamp, direction));
+    const plan *p = t->target.scene;
+    const double radiance = radiance_along(p, lamp, direction) * (t->basic ? radiance_share(p, ticket, rank) : 1.0);
+    const vec3 l = vec3_scale(light_color(t, lamp, ticket), radiance);
     shading_expose(t, ticket, wr * l.x, wg * l.y, wb * l.z);
 }
 
@@ -238,10 +240,14 @@ void path_group(tracer *t, int depth, int rank)
     const material *m = &t->look->surface;
     const bool opaque = surface_is_opaque(t, rank), lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
     local_light(t, rank); /* of points; spheres follow */
+    if (t->basic)
+        radiance_weigh(t);
     for (int k = 0; lit && k < t->gathered.count; k++)
         for (int lamp = 0; lamp < p->light_count; lamp++)
             if (p->lights[lamp].radius > 0.0)
                 look_for_light(t, k, m, opaque, lamp, depth);
+    if (t->basic)
+        radiance_weigh_back(t);
     shading_branches(t, opaque);
     if (!opaque)
         COUNT(t->counters.total_internal += (uint64_t)t->branches.total);

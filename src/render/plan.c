@@ -112,6 +112,7 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
                                        .clearness = clearness,
                                        .face_clearness = p->clearness[i],
                                        .absorbs = material_dims(&one->surface),
+                                       .reflects = p->basic && !scene_has_constant_shares(&s->render),
                                        .solid = i};
         if (code == STATUS_OK && one->shape.kind == SHAPE_MESH)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
@@ -196,6 +197,8 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     index_law *laws = calloc(s->solid_count + 1, sizeof *laws);
     status code = p && laws ? laws_of(s, laws, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK)
+        p->basic = scene_has_basic_radiance(&s->render);
+    if (code == STATUS_OK)
         code = arrange(s, laws, p, why);
     if (code == STATUS_OK)
         code = fill_ranks(s, laws, p, why);
@@ -212,6 +215,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
         p->render.shadows = SHADOWS_OFF;
     else
         p->eye_inside = arrangement_inside(p->solids, p->view.eye);
+    p->eye_rank = arrangement_rank(p->solids, p->eye_inside);
     p->sky = &s->background;
     if (s->render.beyond == BEYOND_MEAN)
         p->sky_mean = sky_mean(p->sky);

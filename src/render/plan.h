@@ -35,6 +35,8 @@ typedef struct plan {
     spectra *spectral;          /* of a spectral film, else NULL */
     camera_frame view;
     uint64_t eye_inside;        /* the set of primitives that the camera stands in */
+    int eye_rank;               /* and the medium there */
+    bool basic;                 /* rays carry basic radiance: see radiance.c */
     render_settings render;
     bool solid_shadows;         /* every solid blocks a light: it is asked for, or what comes through is found by random paths */
     const background *sky;

@@ -89,6 +89,7 @@ static status begin(probe *p, ray_tree *tree, diagnostic *why)
     tree->count = 0;
     tree->depth_limit = (int)p->scene->render.depth;
     tree->lambda_nm = p->scene->render.lambda_nm;
+    p->scene->eye_rank = arrangement_rank(p->scene->solids, p->scene->eye_inside);
     return tracer_begin(p->rays, &target) ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
@@ -133,8 +134,10 @@ static status begin_free(probe *p, vec3 origin, vec3 direction, ray_tree *tree, 
     status code = probe_check_ray(origin, direction, why);
     if (code == STATUS_OK)
         code = begin(p, tree, why);
-    if (code == STATUS_OK)
+    if (code == STATUS_OK) {
         *root = probe_free_ray(p, origin, direction);
+        p->scene->eye_rank = root->medium_rank; /* an eye stands where the ray starts */
+    }
     return code;
 }
 

@@ -36,6 +36,8 @@ typedef struct ray_hit {
     double R_s, R_p, R;      /* power reflectances of the interface with its coating; of an opaque surface or under simple transmission,
                               * its reflectivity */
     bool tir;
+    double T;                /* power transmittance of the surface, with coating and transparency; 0 of an opaque one */
+    double gain_classic, gain_basic; /* what radiance from beyond is multiplied by: T, and T (n_from / n_to)^2 */
     double path_length_m;    /* length of the ray up to here in metres: t render.unit_m */
     double transmittance[3]; /* share of the light that the medium lets through over it (Beer and Lambert), RGB */
     double error_bound;      /* on the point's distance from the exact one across the surface, scene units */
@@ -47,12 +49,14 @@ typedef struct ray_node {
     int depth;               /* 0: camera ray; of a shadow ray, that of the ray whose hit it leaves */
     int parent, first_child, next; /* indices in the tree; RAY_NONE */
     vec3 origin, direction;  /* unit vector; of a shadow ray, towards the light */
-    double throughput[3];    /* RGB weight at the ray's start; of a shadow ray the radiance that it brings if nothing is in the way */
+    double throughput[3];    /* RGB weight at the ray's start (with basic radiance of L / n^2); of a shadow ray the
+                              * radiance that it brings if nothing is in the way */
     double stokes[4];        /* with render.polarisation: the analyser's Stokes vector relative to its first element, in the ray's
                               * canonical frame (optics/mueller.h); else 1 0 0 0 */
     int medium;              /* in which it sets out */
     double n;
     int light;               /* of a shadow ray: index in scene.lights, else RAY_NONE */
+    double let_through;      /* of a shadow ray: share that the surfaces in its path let through; else 1 */
     double light_distance;   /* of a shadow ray: from its origin to the light */
     double brought[3];       /* radiance that this ray itself puts into the film (its children's not counted) */
     ray_hit hit;             /* when end is RAY_END_HIT */

@@ -90,7 +90,7 @@ static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind k
                                  .throughput = {r->weight[0], r->weight[1], r->weight[2]},
                                  .stokes = {1.0, r->stokes[0], r->stokes[1], r->stokes[2]},
                                  .medium = p->scene->solids->bodies[r->medium_rank].solid, .n = p->scene->ior[r->medium_rank],
-                                 .light = RAY_NONE};
+                                 .light = RAY_NONE, .let_through = 1.0};
     return STATUS_OK;
 }
 
@@ -101,6 +101,20 @@ static void hang(ray_tree *tree, int parent, size_t child)
     while (*link != RAY_NONE)
         link = &tree->node[*link].next;
     *link = (int)child;
+}
+
+/* What radiance from beyond the interface is multiplied by. Under simple transmission nothing is bent, and no index
+ * comes in. */
+static void read_gain(const probe *p, ray_hit *h)
+{
+    const render_settings *r = &p->scene->render;
+    const material *m = &p->rays->look->surface;
+    if (h->opaque || h->tir)
+        return;
+    h->T = m->transparency * (scene_has_constant_shares(r) ? 1.0 : 1.0 - h->R);
+    const double ratio = r->transmission == TRANSMISSION_SIMPLE ? 1.0 : h->n_from / h->n_to;
+    h->gain_classic = h->T;
+    h->gain_basic = ratio * ratio * h->T;
 }
 
 /* What the ray met; false for the background. */
@@ -148,6 +162,7 @@ static bool read_hit(const probe *p, ray_node *node)
         h->cos_t = h->cos_i;
         h->tir = false;
     }
+    read_gain(p, h);
     h->path_length_m = h->t * p->scene->render.unit_m;
     for (int c = 0; c < 3; c++)
         h->transmittance[c] = a->absorbs ? t->kept[c][0] : 1.0;
@@ -246,6 +261,7 @@ static status grow_shadows(probe *p, ray_tree *tree, int parent, diagnostic *why
         ray_node *node = &tree->node[at];
         run_one(p, -1, node->brought);
         node->end = t->transmitted[0] > 0.0 ? RAY_END_LIT : RAY_END_BLOCKED;
+        node->let_through = t->transmitted[0];
         node->light = light_of(p->scene, r, lamp);
         node->light_distance = vec3_length(r->direction);
         node->direction = vec3_scale(r->direction, 1.0 / node->light_distance);

@@ -66,6 +66,8 @@ static __attribute__((noinline)) void expose_sky_by_ticket(tracer *t, int64_t ti
         l.x = l.y = l.z = spectra_sky(spectra_row(p->spectral, ticket), p->sky, direction);
     else
         l = sky_radiance(p->sky, direction);
+    if (p->basic) /* the sky lies in the surroundings, wherever a ray ends that is given its light */
+        l = vec3_scale(l, radiance_share(p, ticket, 0));
     expose_by_ticket(t, ticket, wr * l.x, wg * l.y, wb * l.z);
 }
 
@@ -91,6 +93,8 @@ static void expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, 
     vec3 l = p->sky_mean;
     if (p->spectral)
         l.x = l.y = l.z = spectra_sky_mean(spectra_row(p->spectral, ticket), p->sky, p->sky_mean);
+    if (p->basic)
+        l = vec3_scale(l, radiance_share(p, ticket, 0));
     expose(t, ticket, wr * l.x, wg * l.y, wb * l.z);
 }
 
@@ -161,7 +165,8 @@ static void direct_light(tracer *t, const material *m, int lamp, int rank)
         spectral_light(t, lamp);
 }
 
-void local_light(tracer *t, int rank)
+/* All that the surface sends out by itself, weighted. */
+static void send_out(tracer *t, int rank)
 {
     const plan *p = t->target.scene;
     const material *m = &t->look->surface;
@@ -186,6 +191,15 @@ void local_light(tracer *t, int rank)
             if (t->lit.shows[i])
                 expose(t, t->gathered.ticket[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
     }
+}
+
+void local_light(tracer *t, int rank)
+{
+    if (t->basic)
+        radiance_weigh(t);
+    send_out(t, rank);
+    if (t->basic)
+        radiance_weigh_back(t);
 }
 
 /* Branches that the depth limit cuts off: counted, and given what lies beyond it. */

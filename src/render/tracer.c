@@ -14,6 +14,8 @@ tracer *tracer_create(isa level)
     t->ways = NULL;
     t->meshes = NULL;
     t->drawn = NULL;
+    t->basic = t->basic_memory = NULL;
+    t->scratch.crossings = NULL;
     t->scratch.meshes = NULL;
     t->geometry = level == ISA_AVX512 ? &geometry_kernels_avx512 : level == ISA_AVX2 ? &geometry_kernels_avx2 : &geometry_kernels_sse2;
     t->shade = level == ISA_AVX512 ? &shade_kernels_avx512 : level == ISA_AVX2 ? &shade_kernels_avx2 : &shade_kernels_sse2;
@@ -32,6 +34,7 @@ void tracer_destroy(tracer *t)
     if (t->drawn)
         zbuffer_square_release(&t->drawn->square);
     free(t->drawn);
+    free(t->basic_memory);
     queue_destroy(&t->shadows);
     free(t);
 }
@@ -64,7 +67,8 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     const render_settings *r = &target->scene->render;
     t->depth_limit = (int)r->depth;
     t->branching = (r->integrator == INTEGRATOR_WHITTED || target->depths) && r->lighting == LIGHTING_WHITTED;
-    t->by_ticket = r->integrator == INTEGRATOR_PATH || r->spectrum == SPECTRUM_SPECTRAL || target->depths;
+    t->by_ticket =
+        r->integrator == INTEGRATOR_PATH || r->spectrum == SPECTRUM_SPECTRAL || target->depths || target->scene->basic;
     /* Of a spectral film a camera ray is one for each wavelength, each with its part of the weight. */
     t->least_weight = r->spectrum == SPECTRUM_SPECTRAL ? r->min_weight / (double)r->wavelengths : r->min_weight;
     int shadows_at_once = BATCH * (target->scene->light_count + 1);
@@ -87,6 +91,10 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     if (absorbs && !t->ways && !(t->ways = malloc(sizeof *t->ways)))
         return false;
     t->scratch.ways = absorbs ? t->ways : NULL;
+    if (target->scene->basic && !t->basic_memory && !(t->basic_memory = malloc(sizeof *t->basic_memory)))
+        return false;
+    t->basic = target->scene->basic ? t->basic_memory : NULL;
+    t->scratch.crossings = t->basic ? &t->basic->crossings : NULL;
     drop_all(t);
     memset(&t->counters, 0, sizeof t->counters);
     t->visibility_ns = 0;
@@ -188,7 +196,8 @@ static void trace_batch(tracer *t, int depth)
     for (int k = 0; k < t->listed[none]; k++) {
         const int i = t->list[none][k], at = first + i;
         if (random_paths && t->met_light[i] >= 0)
-            path_expose_light(t, q->ticket[at], t->met_light[i], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
+            path_expose_light(t, q->ticket[at], t->met_light[i], (int)t->hits.before[i],
+                              vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
         else
             shading_expose_sky(t, q->ticket[at], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
     }
@@ -207,11 +216,15 @@ static void trace_shadows(tracer *t)
     COUNT(t->counters.shadow += (uint64_t)rays.count);
     if (p->solids->absorbs)
         absorption_begin(t, q->ticket + first, rays.count);
+    if (t->basic)
+        radiance_begin_shadows(t, &rays, q->ticket + first);
     const int64_t began_ns = visibility_begins(t);
     t->geometry->shadow(p->solids, &rays, p->solid_shadows, &t->scratch, t->transmitted);
     visibility_ends(t, began_ns);
     if (p->solids->absorbs)
         absorption_dim(t, q, first, rays.count);
+    if (t->basic)
+        radiance_end_shadows(t);
     for (int i = 0; i < rays.count; i++) {
         const double share = t->transmitted[i];
         const int at = first + i;

@@ -30,6 +30,18 @@ typedef struct drawn_work {
     vec3 at[ROW];            /* of the gathered group: where a texture is looked up that runs straight across the picture */
 } drawn_work;
 
+/* What basic radiance needs, once a scene of it has been traced. */
+typedef struct radiance_work {
+    ray_crossings crossings;
+    ray_batch rays;          /* the shadow rays that crossings are noted of, ... */
+    const int64_t *tickets;  /* ... their tickets, ... */
+    double through[ROW];     /* ... and the product of the interfaces' transmittances, by ray */
+    double kept[CROSSINGS_MAX]; /* transmittances, by crossing */
+    double wr[ROW], wg[ROW], wb[ROW]; /* the gathered group's throughput, while what its surface sends out is weighed */
+    surface_batch points;
+    mesh_points on_mesh;
+} radiance_work;
+
 struct tracer {
     const geometry_kernels *geometry;
     const shade_kernels *shade;
@@ -60,6 +72,8 @@ struct tracer {
     bool on_mesh;            /* the gathered group met one */
     int met_light[ROW];      /* of random paths: the light that a ray ran into, or -1 */
     drawn_work *drawn;       /* once a frame has been drawn; NULL before */
+    radiance_work *basic;    /* of a plan with basic radiance; NULL in others */
+    radiance_work *basic_memory; /* once one has been traced */
     bool straight;           /* the frame is drawn, its textures straight across the picture */
 };
 
@@ -126,6 +140,15 @@ void absorption_begin(tracer *t, const int64_t *tickets, int count);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
 double absorption_left(double optical_depth);
 
+/* radiance.c: how much of what is sent out into the medium of a rank reaches an eye as radiance, (n_eye / n)^2; the
+ * gathered group's throughput times that, and back again; and the transmittances of the interfaces that a batch of
+ * shadow rays crosses, taken from t->transmitted. */
+double radiance_share(const plan *p, int64_t ticket, int rank);
+void radiance_weigh(tracer *t);
+void radiance_weigh_back(tracer *t);
+void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *tickets);
+void radiance_end_shadows(tracer *t);
+
 /* spectral.c: the gathered group's indices, colours and light at each ray's wavelength. */
 void spectral_indices(tracer *t, const int *list);
 void spectral_colors(tracer *t, int rank);
@@ -139,7 +162,7 @@ void polarised_branches(tracer *t, const material *m, bool opaque);
  * lights that rays of a batch run into before they hit anything. */
 void path_group(tracer *t, int depth, int rank);
 void path_meet_lights(tracer *t, const ray_queue *q, int first, int count);
-void path_expose_light(tracer *t, int64_t ticket, int lamp, vec3 direction, double wr, double wg, double wb);
+void path_expose_light(tracer *t, int64_t ticket, int lamp, int rank, vec3 direction, double wr, double wg, double wb);
 
 /* Shades rays list[0 .. count-1] of the batch at `first` in the queue of a depth, all of which met primitive `met` as the surface of the
  * body of that rank: local light, shadow rays and children put in line. */

@@ -18,8 +18,8 @@ void diagram_include_solid(diagram_box *box, const section_plane *plane, const s
     const solid_shape *shape = &one->shape;
     vec3 half = vec3_make(shape->radius, shape->radius, shape->radius), middle = vec3_make(0, 0, 0);
     switch (shape->kind) {
-    case SHAPE_CYLINDER: half.z /= shape->m; /* fallthrough */
-    case SHAPE_CUP: half.y = middle.y = 0.5 * shape->height; break;
+    case SHAPE_CYLINDER:
+    case SHAPE_CUP: half.z /= shape->m, half.y = middle.y = 0.5 * shape->height; break;
     case SHAPE_BOX: half = vec3_scale(shape->size, 0.5); break;
     case SHAPE_SPHERE: break;
     case SHAPE_PLANE:

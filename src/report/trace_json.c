@@ -37,6 +37,16 @@ static bool write_medium(const traced *t, FILE *out, const char *key, int medium
     return good;
 }
 
+/* What the refraction does to radiance, under each render.radiance. */
+static void write_factors(FILE *out, const ray_hit *h)
+{
+    write_number(out, "T", h->T);
+    fputs(",\"radiance_factor\":{\"classic\":", out);
+    json_write_real(out, h->gain_classic);
+    write_number(out, "basic", h->gain_basic);
+    fputc('}', out);
+}
+
 static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
 {
     fputc('{', out);
@@ -62,6 +72,7 @@ static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
         fputc(',', out);
         good = write_word(out, "surface_of", t->s->solids[h->face_solid].name) && good;
     }
+    write_factors(out, h);
     fputc('}', out);
     return good;
 }
@@ -78,6 +89,8 @@ static bool write_extras(const traced *t, FILE *out, const ray_node *node)
         write_number(out, "light_distance", node->light_distance);
     }
     write_list(out, "brought", node->brought, 3);
+    if (node->kind == RAY_SHADOW)
+        write_number(out, "let_through", node->let_through);
     return good;
 }
 
@@ -126,6 +139,7 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
         fputc(']', out);
     }
     write_number(out, "lambda_nm", tree->lambda_nm);
+    fprintf(out, ",\"carries\":\"%s\"", scene_has_basic_radiance(&t->s->render) ? "basic" : "classic");
     fputs("}\n", out);
     return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
 }

@@ -32,7 +32,9 @@ static void write_hit(const traced *t, FILE *out, const ray_hit *h)
             fputs("none, TIR", out);
         else
             fprintf(out, "%.4f deg", angle_deg(h->cos_t));
-        fprintf(out, "  R_s %.6g R_p %.6g R %.6g", h->R_s, h->R_p, h->R);
+        fprintf(out, "  R_s %.6g R_p %.6g R %.6g T %.6g", h->R_s, h->R_p, h->R, h->T);
+        if (!h->tir)
+            fprintf(out, "  radiance x %.6g, basic x %.6g", h->gain_classic, h->gain_basic);
     }
     fputs("  transmits ", out);
     write_channels(out, h->transmittance);
@@ -46,6 +48,8 @@ static void write_line(const traced *t, FILE *out, const ray_node *node, int ind
     if (node->light >= 0)
         fprintf(out, "  to %s at %.9g", t->s->lights[node->light].name, node->light_distance);
     fprintf(out, "  %s", trace_end_words[node->end]);
+    if (node->end == RAY_END_LIT)
+        fprintf(out, ", let through %.6g", node->let_through);
     if (node->end == RAY_END_HIT)
         write_hit(t, out, &node->hit);
     if (node->brought[0] > 0.0 || node->brought[1] > 0.0 || node->brought[2] > 0.0) {

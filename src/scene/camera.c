@@ -17,7 +17,19 @@ static void aim_along_angles(const struct camera *c, camera_frame *f)
     f->right = vec3_make(cos_yaw, 0.0, -sin_yaw);
 }
 
-camera_frame camera_frame_of(const scene *s)
+/* About forward, right towards below. A roll of a multiple of 90 degrees is exact, one of 0 changes no bit. */
+static void roll(camera_frame *f, double degrees)
+{
+    if (degrees == 0.0)
+        return;
+    double sine, cosine;
+    elementary_sincos_deg(degrees, &sine, &cosine);
+    const vec3 right = f->right, up = f->up;
+    f->right = vec3_sub(vec3_scale(right, cosine), vec3_scale(up, sine));
+    f->up = vec3_add(vec3_scale(right, sine), vec3_scale(up, cosine));
+}
+
+camera_frame camera_frame_level(const scene *s)
 {
     const struct camera *c = &s->camera;
     camera_frame f;
@@ -31,5 +43,12 @@ camera_frame camera_frame_of(const scene *s)
     elementary_sincos_deg(0.5 * c->fov_deg, &sine, &cosine);
     f.half_height = sine / cosine;
     f.half_width = f.half_height * ((double)s->render.width / (double)s->render.height);
+    return f;
+}
+
+camera_frame camera_frame_of(const scene *s)
+{
+    camera_frame f = camera_frame_level(s);
+    roll(&f, s->camera.roll_deg);
     return f;
 }

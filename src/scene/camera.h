@@ -12,4 +12,7 @@ typedef struct camera_frame {
 
 camera_frame camera_frame_of(const scene *s);
 
+/* The same without the camera's roll: right is level. */
+camera_frame camera_frame_level(const scene *s);
+
 #endif

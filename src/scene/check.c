@@ -141,7 +141,7 @@ status check_camera(const scene *s, diagnostic *why)
 status check_background(const scene *s, diagnostic *why)
 {
     if (s->background.kind == BACKGROUND_PICTURE && !s->background.picture_path[0]) {
-        return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG or PFM file",
+        return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG, PFM or 24-bit BMP file",
                         "the background is a picture, but which one is not said");
     }
     return STATUS_OK;

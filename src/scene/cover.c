@@ -13,9 +13,15 @@ typedef struct covered {
 
 static vec3 axis_of(const mat3 *turn, int k)
 {
-    return vec3_make(k == 0 ? turn->row[0].x : k == 1 ? turn->row[0].y : turn->row[0].z,
-                     k == 0 ? turn->row[1].x : k == 1 ? turn->row[1].y : turn->row[1].z,
-                     k == 0 ? turn->row[2].x : k == 1 ? turn->row[2].y : turn->row[2].z);
+    return vec3_make(k == 0   ? turn->row[0].x
+                     : k == 1 ? turn->row[0].y
+                              : turn->row[0].z,
+                     k == 0   ? turn->row[1].x
+                     : k == 1 ? turn->row[1].y
+                              : turn->row[1].z,
+                     k == 0   ? turn->row[2].x
+                     : k == 1 ? turn->row[2].y
+                              : turn->row[2].z);
 }
 
 /* The most that visit gives of points whose convex hull is the box or the mesh with all copies. */
@@ -37,7 +43,8 @@ static double most_of_mesh(const covered *h, point_measure *measure, const void 
     const solid_shape *s = h->shape;
     double most = h->triangles ? -INFINITY : INFINITY;
     for (int i = 0; i < 8 && h->triangles; i++) {
-        const vec3 n = vec3_make(i & 1 ? s->copies.x - 1.0 : 0.0, i & 2 ? s->copies.y - 1.0 : 0.0, i & 4 ? s->copies.z - 1.0 : 0.0);
+        const vec3 n = vec3_make(i & 1 ? s->copies.x - 1.0 : 0.0, i & 2 ? s->copies.y - 1.0 : 0.0,
+                                 i & 4 ? s->copies.z - 1.0 : 0.0);
         const vec3 offset = vec3_make(n.x * s->spacing.x, n.y * s->spacing.y, n.z * s->spacing.z);
         if ((i & 1 && s->copies.x == 1.0) || (i & 2 && s->copies.y == 1.0) || (i & 4 && s->copies.z == 1.0))
             continue;
@@ -63,7 +70,7 @@ static double farthest_along(const covered *h, vec3 direction)
     const double middle = vec3_dot(direction, s->position);
     switch (s->kind) {
     case SHAPE_SPHERE: return middle + s->radius;
-    case SHAPE_CUP: return middle + fmax(0.0, s->height * d.y) + s->radius * hypot(d.x, d.z);
+    case SHAPE_CUP:
     case SHAPE_CYLINDER: return middle + fmax(0.0, s->height * d.y) + s->radius * hypot(d.x, d.z / s->m);
     case SHAPE_BOX: return most_of_box(h, along, &direction);
     case SHAPE_MESH: return most_of_mesh(h, along, &direction);
@@ -74,7 +81,12 @@ static double farthest_along(const covered *h, vec3 direction)
 }
 
 /* A round solid: its frame, and by how much its z counts. A sphere's y counts, too. */
-typedef struct round_frame { vec3 origin; mat3 turn; double m; bool sphere; } round_frame;
+typedef struct round_frame {
+    vec3 origin;
+    mat3 turn;
+    double m;
+    bool sphere;
+} round_frame;
 
 static double distance_in(const void *context, vec3 point)
 {
@@ -83,12 +95,12 @@ static double distance_in(const void *context, vec3 point)
     return f->sphere ? vec3_length(p) : hypot(p.x, f->m * p.z);
 }
 
-/* A cylinder's or cup's: exact around a sphere if it is round, and in a cylinder if it is round and stands along it; else too far rather than
- * too near. */
+/* A cylinder's or cup's: exact around a sphere if it is round, and in a cylinder if it is round and stands along it;
+ * else too far rather than too near. */
 static double farthest_of_cylinder(const covered *h, const round_frame *f)
 {
     const solid_shape *s = h->shape;
-    const double wide = s->radius * (s->kind == SHAPE_CYLINDER ? fmax(1.0, 1.0 / s->m) : 1.0);
+    const double wide = s->radius * fmax(1.0, 1.0 / s->m);
     if (f->sphere) {
         const vec3 p = mat3_apply_transposed(h->turn, vec3_sub(f->origin, s->position));
         return hypot(hypot(p.x, p.z) + wide, fmax(fabs(p.y), fabs(p.y - s->height)));
@@ -100,7 +112,8 @@ static double farthest_of_cylinder(const covered *h, const round_frame *f)
 static double farthest_from(const covered *h, const round_frame *f)
 {
     switch (h->shape->kind) {
-    case SHAPE_SPHERE: return distance_in(f, h->shape->position) + h->shape->radius * (f->sphere ? 1.0 : fmax(1.0, f->m));
+    case SHAPE_SPHERE:
+        return distance_in(f, h->shape->position) + h->shape->radius * (f->sphere ? 1.0 : fmax(1.0, f->m));
     case SHAPE_CYLINDER:
     case SHAPE_CUP: return farthest_of_cylinder(h, f);
     case SHAPE_BOX: return most_of_box(h, distance_in, f);
@@ -121,7 +134,8 @@ static bool is_between(const covered *h, const solid_shape *cover, const mat3 *t
 {
     const vec3 up = axis_of(turn, k);
     const double from = vec3_dot(up, cover->position), length = high - low + fabs(from);
-    return is_within(farthest_along(h, up), from + high, length) && is_within(farthest_along(h, vec3_scale(up, -1.0)), -from - low, length);
+    return is_within(farthest_along(h, up), from + high, length) &&
+           is_within(farthest_along(h, vec3_scale(up, -1.0)), -from - low, length);
 }
 
 /* Clear of the cup's hollow: below its floor, or to one side of it. */
@@ -135,13 +149,14 @@ static bool avoids_hollow(const covered *h, const solid_shape *cup, const mat3 *
     if (r == 0.0)
         return false;
     const vec3 out = mat3_apply(*turn, vec3_make(local.x / r, 0.0, local.z / r));
-    return is_within(farthest_along(h, vec3_scale(out, -1.0)), -vec3_dot(out, cup->position) - cup->inner_radius, cup->radius);
+    const double hollow = cup->inner_radius * hypot(local.x / r, local.z / (r * cup->m));
+    return is_within(farthest_along(h, vec3_scale(out, -1.0)), -vec3_dot(out, cup->position) - hollow, cup->radius);
 }
 
 static bool contains_all(const solid_shape *c, const covered *h)
 {
     const mat3 turn = rotation_from_deg(c->rotation_deg);
-    const round_frame frame = {c->position, turn, c->kind == SHAPE_CYLINDER ? c->m : 1.0, c->kind == SHAPE_SPHERE};
+    const round_frame frame = {c->position, turn, c->kind == SHAPE_CYLINDER || c->kind == SHAPE_CUP ? c->m : 1.0, c->kind == SHAPE_SPHERE};
     switch (c->kind) {
     case SHAPE_PLANE: {
         const vec3 up = axis_of(&turn, 1);
@@ -149,11 +164,13 @@ static bool contains_all(const solid_shape *c, const covered *h)
     }
     case SHAPE_SPHERE: return is_within(farthest_from(h, &frame), c->radius, c->radius);
     case SHAPE_BOX:
-        return is_between(h, c, &turn, 0, -0.5 * c->size.x, 0.5 * c->size.x) && is_between(h, c, &turn, 1, -0.5 * c->size.y, 0.5 * c->size.y) &&
+        return is_between(h, c, &turn, 0, -0.5 * c->size.x, 0.5 * c->size.x) &&
+               is_between(h, c, &turn, 1, -0.5 * c->size.y, 0.5 * c->size.y) &&
                is_between(h, c, &turn, 2, -0.5 * c->size.z, 0.5 * c->size.z);
     case SHAPE_CYLINDER:
     case SHAPE_CUP:
-        return is_between(h, c, &turn, 1, 0.0, c->height) && is_within(farthest_from(h, &frame), c->radius, c->radius) &&
+        return is_between(h, c, &turn, 1, 0.0, c->height) &&
+               is_within(farthest_from(h, &frame), c->radius, c->radius) &&
                (c->kind == SHAPE_CYLINDER || avoids_hollow(h, c, &turn));
     case SHAPE_MESH:
     case SHAPE_COUNT: break;
@@ -204,7 +221,9 @@ bool scene_apart(const scene *s, const solid *a, const solid *b)
     for (int k = 0; k < 3 && !apart; k++)
         apart = apart_along(&one, &two, vec3_make(k == 0, k == 1, k == 2)) || apart_along(&one, &two, axis_of(&one.turn, k)) ||
                 apart_along(&one, &two, axis_of(&two.turn, k));
-    return apart;
+    const vec3 between = vec3_sub(b->shape.position, a->shape.position), level = vec3_make(between.x, 0.0, between.z);
+    return apart || (vec3_length(between) > 0.0 && apart_along(&one, &two, vec3_normalize(between))) ||
+           (vec3_length(level) > 0.0 && apart_along(&one, &two, vec3_normalize(level)));
 }
 
 bool scene_is_behind_camera(const scene *s, const solid *owner)

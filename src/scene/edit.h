@@ -36,11 +36,27 @@ status scene_remove(scene *s, const char *name, diagnostic *why);
 /* Gives an object another name; what refers to it goes on doing so. */
 status scene_rename(scene *s, const char *name, const char *new_name, diagnostic *why);
 
-/* Moves a solid, a light, or "camera", by delta in scene units. The target of an aimed camera or of a cone of light moves with it: its
+/* Many objects at once, by a name that no object of the scene has: `all` is all solids and lights, `solids` and `lights` are these alone, and words
+ * are joined by '+': `all+camera` is the whole scene with its camera. */
+typedef struct scene_parts { bool solids, lights, camera; } scene_parts;
+
+/* Is it such a name? An object that is called so comes first. */
+bool scene_parts_named(const scene *s, const char *name, scene_parts *out);
+
+/* What scene_move and scene_turn do with such a name: all go by delta; all turn about the origin of the scene, a camera with its roll. When one of them
+ * would leave its range, none is changed. */
+status scene_move_parts(scene *s, scene_parts parts, vec3 delta, diagnostic *why);
+status scene_turn_parts(scene *s, scene_parts parts, vec3 degrees, diagnostic *why);
+
+/* All lengths times a factor: of one solid or light, where it stands; or of many objects (see scene_parts), about the origin. With all solids their
+ * materials' lengths are scaled, and render.unit_m is divided by the factor: lengths in metres, and what media absorb, stay. */
+status scene_scale(scene *s, const char *name, double factor, diagnostic *why);
+
+/* Moves a solid, a light, or "camera", or many objects, by delta in scene units. The target of an aimed camera or of a cone of light moves with it: its
  * direction holds. */
 status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why);
 
-/* Turns a solid, a cone of light, or "camera", in place: about the world's x axis, then y, then z, right-hand rule, on top of how it stands
+/* Turns a solid, a cone of light, or "camera", in place, or many objects about the origin: about the world's x axis, then y, then z, right-hand rule, on top of how it stands
  * already. Of the camera the direction is turned; its picture stays upright, and what it was aimed by (target or angles)
  * it is aimed by still. */
 status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why);

@@ -1,5 +1,6 @@
-/* Objects and the camera move and turn. */
+/* Objects and the camera move and turn, one by one. All together: edit_whole.c. */
 #include "scene/edit.h"
+#include "scene/edit_vector.h"
 #include "base/elementary.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -9,8 +10,7 @@
 
 typedef enum axis { AXIS_X, AXIS_Y, AXIS_Z } axis;
 
-/* Sets a vector by its path, so that its range is checked as a person's would be. */
-static status set_vector(scene *s, const char *name, const char *row, vec3 v, diagnostic *why)
+status edit_set_vector(scene *s, const char *name, const char *row, vec3 v, diagnostic *why)
 {
     char x[NUMBER_TEXT_MAX], y[NUMBER_TEXT_MAX], z[NUMBER_TEXT_MAX];
     char *path = text_format("%s.%s", name, row);
@@ -24,9 +24,9 @@ static status set_vector(scene *s, const char *name, const char *row, vec3 v, di
 static status move_camera(scene *s, vec3 delta, diagnostic *why)
 {
     const camera before = s->camera;
-    status code = set_vector(s, "camera", "position", vec3_add(before.position, delta), why);
+    status code = edit_set_vector(s, "camera", "position", vec3_add(before.position, delta), why);
     if (code == STATUS_OK && before.aimed) {
-        code = set_vector(s, "camera", "target", vec3_add(before.target, delta), why);
+        code = edit_set_vector(s, "camera", "target", vec3_add(before.target, delta), why);
     }
     if (code != STATUS_OK) {
         s->camera = before;
@@ -45,9 +45,9 @@ static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
 {
     light *l = &s->lights[index];
     const light before = *l;
-    status code = set_vector(s, l->name, "position", vec3_add(before.position, delta), why);
+    status code = edit_set_vector(s, l->name, "position", vec3_add(before.position, delta), why);
     if (code == STATUS_OK && before.kind != LIGHT_POINT) {
-        code = set_vector(s, l->name, "target", vec3_add(before.target, delta), why);
+        code = edit_set_vector(s, l->name, "target", vec3_add(before.target, delta), why);
     }
     if (code != STATUS_OK) {
         *l = before;
@@ -58,6 +58,10 @@ static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
 status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
 {
     place at;
+    scene_parts parts;
+    if (scene_parts_named(s, name, &parts)) {
+        return scene_move_parts(s, parts, delta, why);
+    }
     status code = place_find_object(s, name, &at, why);
     if (code != STATUS_OK) {
         return code;
@@ -65,7 +69,7 @@ status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
     switch (at.group) {
     case PARAM_CAMERA: return move_camera(s, delta, why);
     case PARAM_LIGHT: return move_light(s, at.index, delta, why);
-    case PARAM_SOLID: return set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
+    case PARAM_SOLID: return edit_set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
     case PARAM_RENDER:
     case PARAM_BACKGROUND:
     case PARAM_MESH:
@@ -86,8 +90,7 @@ static double wrap(double degrees)
     return rest > 180.0 ? rest - 360.0 : rest;
 }
 
-/* An angle that came out of an arc tangent, whose error is under 1e-12 degrees: a round one is what was meant. */
-static double settle(double degrees)
+double edit_settle_deg(double degrees)
 {
     double round = floor(degrees * 1e6 + 0.5) / 1e6;
     return fabs(round - degrees) < 1e-12 ? round : degrees;
@@ -112,7 +115,7 @@ static vec3 angles_of(mat3 r)
     double sz, cz;
     elementary_sincos_deg(z, &sz, &cz);
     const double cos_x = cz * r.row[1].y - sz * r.row[0].y, minus_sin_x = cz * r.row[1].z - sz * r.row[0].z;
-    return vec3_make(settle(elementary_atan2_deg(-minus_sin_x, cos_x)), settle(elementary_atan2_deg(-r.row[2].x, cos_y)), settle(z));
+    return vec3_make(edit_settle_deg(elementary_atan2_deg(-minus_sin_x, cos_x)), edit_settle_deg(elementary_atan2_deg(-r.row[2].x, cos_y)), edit_settle_deg(z));
 }
 
 static vec3 about(axis which, double degrees)
@@ -149,7 +152,7 @@ static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
     const mat3 turn = rotation_from_deg(degrees);
     camera *c = &s->camera;
     if (c->aimed) {
-        return set_vector(s, "camera", "target", vec3_add(c->position, mat3_apply(turn, vec3_sub(c->target, c->position))), why);
+        return edit_set_vector(s, "camera", "target", vec3_add(c->position, mat3_apply(turn, vec3_sub(c->target, c->position))), why);
     }
     if (degrees.x == 0.0 && degrees.z == 0.0) { /* yaw turns as y does, z towards x */
         c->yaw_deg = wrap(c->yaw_deg + degrees.y);
@@ -159,8 +162,8 @@ static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
     elementary_sincos_deg(c->yaw_deg, &sin_yaw, &cos_yaw);
     elementary_sincos_deg(c->pitch_deg, &sin_pitch, &cos_pitch);
     const vec3 d = mat3_apply(turn, vec3_make(cos_pitch * sin_yaw, sin_pitch, cos_pitch * cos_yaw));
-    c->yaw_deg = settle(elementary_atan2_deg(d.x, d.z));
-    c->pitch_deg = settle(elementary_atan2_deg(d.y, sqrt(d.x * d.x + d.z * d.z)));
+    c->yaw_deg = edit_settle_deg(elementary_atan2_deg(d.x, d.z));
+    c->pitch_deg = edit_settle_deg(elementary_atan2_deg(d.y, sqrt(d.x * d.x + d.z * d.z)));
     return STATUS_OK;
 }
 
@@ -173,18 +176,23 @@ static bool is_angle(double degrees)
 static status turn_light(scene *s, const light *l, vec3 degrees, diagnostic *why)
 {
     const vec3 way = mat3_apply(rotation_from_deg(degrees), vec3_sub(l->target, l->position));
-    return set_vector(s, l->name, "target", vec3_add(l->position, way), why);
+    return edit_set_vector(s, l->name, "target", vec3_add(l->position, way), why);
 }
 
 status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
 {
     place at;
-    status code = place_find_object(s, name, &at, why);
+    scene_parts parts;
+    const bool is_many = scene_parts_named(s, name, &parts);
+    const status code = is_many ? STATUS_OK : place_find_object(s, name, &at, why);
     if (code != STATUS_OK) {
         return code;
     }
     if (!is_angle(degrees.x) || !is_angle(degrees.y) || !is_angle(degrees.z)) {
         return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees", "%.80s cannot be turned so far", name);
+    }
+    if (is_many) {
+        return scene_turn_parts(s, parts, degrees, why);
     }
     switch (at.group) {
     case PARAM_CAMERA: return turn_camera(s, degrees, why);
@@ -193,7 +201,7 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
             return turn_light(s, &s->lights[at.index], degrees, why);
         }
         break;
-    case PARAM_SOLID: return set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
+    case PARAM_SOLID: return edit_set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
     case PARAM_RENDER:
     case PARAM_BACKGROUND:
     case PARAM_MESH:
@@ -206,5 +214,5 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
 
 status scene_look_at(scene *s, vec3 target, diagnostic *why)
 {
-    return set_vector(s, "camera", "target", target, why);
+    return edit_set_vector(s, "camera", "target", target, why);
 }

@@ -49,7 +49,7 @@ static bool cuts_another(const scene *s, const solid *cutter)
 static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    const bool seen = m->transparency < 1.0 || m->ambient > 0.0 || m->emission > 0.0 || is_lit(m);
+    const bool seen = m->transparency < 1.0 || m->ambient > 0.0 || m->emission > 0.0 || is_lit(m) || material_absorbs(m);
     if (s->render.integrator == INTEGRATOR_ZBUFFER && s->render.lighting != LIGHTING_WHITTED) {
         if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0) {
             note_give(taker, "render", "lighting", "set render.lighting to whitted",

@@ -11,6 +11,7 @@ static const char *const sample_counts[] = {"1", "4", "9", "16", "25", "36", "49
 static const char *const weights_words[] = {"fresnel", "constant", NULL};
 static const char *const transmission_words[] = {"refract", "simple", NULL};
 static const char *const beyond_words[] = {"sky", "black", "mean", NULL};
+static const char *const radiance_words[] = {"classic", "basic", NULL};
 static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
 static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynamic", NULL};
 static const char *const pin_words[] = {"none", "compact", "scatter", NULL};
@@ -136,6 +137,8 @@ static const param table[] = {
            "at clear surfaces light is bent by Snell's law; or it goes straight on, with each material's constants as weights"),
     CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky",
            "what a ray beyond the last depth brings back: the sky behind it, nothing, or the mean of the sky over all directions"),
+    CHOICE(PARAM_RENDER, render_settings, radiance, radiance_words, "classic",
+           "what rays carry: radiance as if no medium changed it (Whitted), or L / n^2, which refraction keeps"),
     CHOICE(PARAM_RENDER, render_settings, shadows, shadows_words, "attenuated",
            "what stands in a light's way: nothing, every solid, or each by what it lets straight through; no caustics"),
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",
@@ -174,6 +177,8 @@ static const param table[] = {
          "direction: 0 along +z, 90 along +x; takes the place of the target"),
     REAL(PARAM_CAMERA, camera, pitch_deg, "deg", -90, 90, "0",
          "elevation: 90 looks straight up; takes the place of the target"),
+    REAL(PARAM_CAMERA, camera, roll_deg, "deg", -360, 360, "0",
+         "turn about the direction of view: positive leans the camera to its right, and the image turns counter-clockwise"),
     POSITIVE(PARAM_CAMERA, camera, fov_deg, "deg", 179, "45", "vertical field of view"),
 
     CHOICE(PARAM_BACKGROUND, background, kind, background_words, "uniform",
@@ -182,7 +187,7 @@ static const param table[] = {
     COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
           "linear colour of a gradient at the horizon and below"),
     {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
-     "PNG, JPEG or PFM file, from the scene file's folder; makes the kind picture", NULL, ON_ALL,
+     "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder; makes the kind picture", NULL, ON_ALL,
      .offset = offsetof(background, picture_path)},
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of Phong's sum"),
 
@@ -231,13 +236,13 @@ static const param table[] = {
     {PARAM_MESH, "threads", PARAM_INT, "", 1, 1024, false, "1", "that move a slime; at most one for each 4096 masses is started", NULL, ON_SLIME,
      .offset = offsetof(mesh_entry, slime.threads), .is_how = true},
 
-    {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "", "PNG, JPEG or PFM file, from the scene file's folder", NULL, ON_ALL,
+    {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "", "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder", NULL, ON_ALL,
      .offset = offsetof(texture_entry, path)},
     CHOICE(PARAM_TEXTURE, texture_entry, filter, filter_words, "trilinear",
            "one texel, the four around the point, or these of two of a pyramid of smaller pictures"),
     CHOICE(PARAM_TEXTURE, texture_entry, wrap_u, wrap_words, "repeat", "what lies to the left and right of the picture"),
     CHOICE(PARAM_TEXTURE, texture_entry, wrap_v, wrap_words, "repeat", "what lies above and below it"),
-    CHOICE(PARAM_TEXTURE, texture_entry, space, space_words, "srgb", "what a PNG or JPEG file's numbers are: coded light, or light"),
+    CHOICE(PARAM_TEXTURE, texture_entry, space, space_words, "srgb", "what a PNG, JPEG or BMP file's numbers are: coded light, or light"),
 
     CHOICE(PARAM_LIGHT, light, kind, light_words, "point",
            "shines all around, within a cone, or in a cone from full on its axis to nothing at its edge, linear in the angle's cosine"),
@@ -291,9 +296,9 @@ static const param table[] = {
      ON_ALL, .offset = offsetof(solid, shape.rotation_deg)},
     LENGTH(radius, ON_CYLINDER | ON_CUP | ON_SPHERE, "1", "radius; of a cup, of its outside"),
     LENGTH(height, ON_CYLINDER | ON_CUP, "1", "height above the base"),
-    {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1", "ellipse x^2 + m^2 z^2 = radius^2; 1 is a circle", NULL,
-     ON_CYLINDER, .offset = offsetof(solid, shape.m)},
-    LENGTH(inner_radius, ON_CUP, "0.9", "radius of the hollow"),
+    {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1",
+     "ellipse x^2 + m^2 z^2 = radius^2, of a cup's hollow too, with inner_radius; 1 is a circle", NULL, ON_CYLINDER | ON_CUP, .offset = offsetof(solid, shape.m)},
+    LENGTH(inner_radius, ON_CUP, "0.9", "radius of the hollow; the wall is radius - inner_radius thick along x, 1/m of that along z"),
     LENGTH(floor, ON_CUP, "0.1", "thickness of the bottom"),
     {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges along x, y and z", NULL, ON_BOX,
      .offset = offsetof(solid, shape.size)},

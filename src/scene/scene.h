@@ -18,6 +18,7 @@
 typedef enum weights_rule { WEIGHTS_FRESNEL, WEIGHTS_CONSTANT } weights_rule;
 typedef enum transmission_rule { TRANSMISSION_REFRACT, TRANSMISSION_SIMPLE } transmission_rule;
 typedef enum beyond_rule { BEYOND_SKY, BEYOND_BLACK, BEYOND_MEAN } beyond_rule;
+typedef enum radiance_rule { RADIANCE_CLASSIC, RADIANCE_BASIC } radiance_rule;
 typedef enum shadow_rule { SHADOWS_OFF, SHADOWS_OPAQUE, SHADOWS_ATTENUATED } shadow_rule;
 typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SCHEDULE_DYNAMIC } schedule_rule;
 typedef enum pin_rule { PIN_RULE_NONE, PIN_RULE_COMPACT, PIN_RULE_SCATTER } pin_rule;
@@ -45,6 +46,7 @@ typedef struct render_settings {
     int64_t weights;        /* weights_rule */
     int64_t transmission;   /* transmission_rule */
     int64_t beyond;         /* beyond_rule */
+    int64_t radiance;       /* radiance_rule */
     int64_t shadows;        /* shadow_rule */
     double min_weight;      /* children with a lower throughput in every channel are not traced; 0: all are */
     int64_t paths;          /* of the path tracer, a pixel */
@@ -73,6 +75,7 @@ typedef struct camera {
     vec3 target;            /* used when aimed */
     double yaw_deg, pitch_deg; /* used when not aimed */
     int64_t aimed;          /* 1: looks at target; 0: along yaw and pitch. Set by whichever was written last */
+    double roll_deg;        /* about the direction of view, the camera's right side down: the image turns counter-clockwise */
     double fov_deg;         /* vertical */
 } camera;
 
@@ -244,6 +247,14 @@ int scene_build_threads(const render_settings *r);
 static inline bool scene_has_constant_shares(const render_settings *r)
 {
     return r->weights == WEIGHTS_CONSTANT || r->transmission == TRANSMISSION_SIMPLE;
+}
+
+/* Do rays carry basic radiance, L / n^2? Only light that is bent changes its solid angle: under simple transmission
+ * nothing is, nor in what is drawn with a depth buffer. */
+static inline bool scene_has_basic_radiance(const render_settings *r)
+{
+    return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT &&
+           r->integrator != INTEGRATOR_ZBUFFER;
 }
 
 /* Index of the solid of that name, or -1. */

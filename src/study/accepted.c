@@ -30,7 +30,8 @@ static bool means_the_same(accepted *a, const manifest_study *recorded)
     meaning there = {0}, here = {0};
     bool same = false;
     if (recorded_study(a->s, recorded->text, recorded->scene_text, &then, &why) != STATUS_OK)
-        snprintf(a->why_not, sizeof a->why_not, "the manifest's study cannot be read by this program: %.200s", why.what);
+        snprintf(a->why_not, sizeof a->why_not, "the manifest's study cannot be read by this program: %.200s",
+                 why.what);
     else if (meaning_of_study(&there, then) == STATUS_OK && meaning_of_study(&here, a->s) == STATUS_OK)
         same = !meaning_difference(&there, &here, a->why_not, sizeof a->why_not);
     meaning_free(&there);

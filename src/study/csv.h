@@ -40,7 +40,8 @@ status csv_read(const char *path, csv **out, diagnostic *why);
 status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why);
 void csv_destroy(csv *table);
 
-/* Cuts the fields of one line without its newline apart, in place; returns how many, or 0 when quotes are wrong. fields may be NULL. */
+/* Cuts the fields of one line without its newline apart, in place; returns how many, or 0 when quotes are wrong. fields
+ * may be NULL. */
 size_t csv_split(char *line, char **fields);
 
 /* Index of the column of that name, or -1. */

@@ -2,7 +2,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct names { char *text, **name; size_t count; } names;
+typedef struct names {
+    char *text, **name;
+    size_t count;
+} names;
 
 struct csv_layout {
     size_t from_count, to_count;

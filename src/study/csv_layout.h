@@ -1,5 +1,6 @@
-/* Rows under another header: columns are known by their names, so that files of other versions of the program, which have columns more,
- * fewer or in another order, are read, joined and gone on with. Ownership: csv_layout_create gives, csv_layout_destroy releases. */
+/* Rows under another header: columns are known by their names, so that files of other versions of the program, which
+ * have columns more, fewer or in another order, are read, joined and gone on with. Ownership: csv_layout_create gives,
+ * csv_layout_destroy releases. */
 #ifndef CUVETTE_STUDY_CSV_LAYOUT_H
 #define CUVETTE_STUDY_CSV_LAYOUT_H
 
@@ -14,8 +15,8 @@ void csv_layout_destroy(csv_layout *l);
 /* Whole lines, field by field in their new places; "NA" in columns that `from` does not have. */
 status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv_line *out, diagnostic *why);
 
-/* The header line with the columns of `more` that it lacks behind its own, and how many these are; fresh memory, NULL when that is out or a
- * header's quotes are wrong. */
+/* The header line with the columns of `more` that it lacks behind its own, and how many these are; fresh memory, NULL
+ * when that is out or a header's quotes are wrong. */
 char *csv_header_extend(const char *header, const char *more, size_t *added);
 
 #endif

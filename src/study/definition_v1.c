@@ -7,28 +7,39 @@
 
 /* The parameters of that program. Never to be added to: what is not here came later. */
 static const char *const names[PARAM_GROUP_COUNT] = {
-    [PARAM_RENDER] = "width height depth samples integrator lighting weights transmission beyond shadows min_weight paths roulette seed "
-                     "polarisation spectrum wavelengths lambda_nm unit_m threads pool schedule tile pin accel build_threads keep rebuild "
-                     "texturing",
+    [PARAM_RENDER] = ("width height depth samples integrator lighting weights transmission beyond shadows min_weight "
+                      "paths roulette seed polarisation spectrum wavelengths lambda_nm unit_m threads pool schedule "
+                      "tile pin accel build_threads keep rebuild texturing"),
     [PARAM_CAMERA] = "position target yaw_deg pitch_deg fov_deg",
     [PARAM_BACKGROUND] = "kind color horizon picture ambient ior medium absorb_per_m",
-    [PARAM_MESH] = "generate file count level major minor around tube profile crease_deg size depth seed time_s script radius position "
-                   "velocity mass_kg stiffness bending through damping pressure gravity ground ground_y restitution friction integrator "
-                   "dt_s adaptive threads",
+    [PARAM_MESH] = ("generate file count level major minor around tube profile crease_deg size depth seed time_s "
+                    "script radius position velocity mass_kg stiffness bending through damping pressure gravity "
+                    "ground ground_y restitution friction integrator dt_s adaptive threads"),
     [PARAM_TEXTURE] = "file filter wrap_u wrap_v space",
     [PARAM_LIGHT] = "kind position target half_angle_deg color intensity radius reach",
-    [PARAM_MATERIAL] = "color ambient diffuse specular shininess reflectivity transparency ior medium coefficients absorb_per_m "
-                       "absorb_spectrum texture texture_size checker checker_color",
+    [PARAM_MATERIAL] = ("color ambient diffuse specular shininess reflectivity transparency ior medium coefficients "
+                        "absorb_per_m absorb_spectrum texture texture_size checker checker_color"),
     [PARAM_SOLID] = "position rotation priority visible",
 };
 
 /* Its shapes by their numbers, and what each had besides. */
-static const struct { shape_kind kind; const char *names; } shapes[] = {
-    {SHAPE_PLANE, ""},        {SHAPE_CYLINDER, "radius height m"}, {SHAPE_CUP, "radius height inner_radius floor"},
-    {SHAPE_BOX, "size"},      {SHAPE_SPHERE, "radius"},            {SHAPE_MESH, "mesh scale copies spacing shading"},
+static const struct {
+    shape_kind kind;
+    const char *names;
+} shapes[] = {
+    {SHAPE_PLANE, ""},
+    {SHAPE_CYLINDER, "radius height m"},
+    {SHAPE_CUP, "radius height inner_radius floor"},
+    {SHAPE_BOX, "size"},
+    {SHAPE_SPHERE, "radius"},
+    {SHAPE_MESH, "mesh scale copies spacing shading"},
 };
 
-typedef struct visit_state { const scene *of; uint64_t hash; bool later; } visit_state;
+typedef struct visit_state {
+    const scene *of;
+    uint64_t hash;
+    bool later;
+} visit_state;
 
 static bool is_word_of(const char *word, const char *words)
 {

@@ -9,8 +9,8 @@ void study_point_free(study_point *point);
 /* Sets what a point sets, in its order. */
 status grid_set_point(scene *to, const study_point *point, diagnostic *why);
 
-/* Has one of the point's parameters been overwritten by a later one, which its row would then not tell? An error, located at
- * the point. */
+/* Has one of the point's parameters been overwritten by a later one, which its row would then not tell? An error,
+ * located at the point. */
 status grid_check_kept(const study *s, const study_point *point, const scene *setting, diagnostic *why);
 
 /* scene_check for every cell; a wrong one is located in the study file at the point of its last axis. */
@@ -23,11 +23,11 @@ void axis_find_films(study_axis *axis);
  * contents count too. */
 status grid_definition(const study *s, uint64_t *hash, diagnostic *why);
 
-/* Goes into a fingerprint: all of a scene that makes its picture, with or without the parameters that are how a frame is
- * computed (param.is_how); the paths and values of a point. The scene's files must have been loaded. */
+/* Goes into a fingerprint: all of a scene that makes its picture, with or without the parameters that are how a frame
+ * is computed (param.is_how); the paths and values of a point. The scene's files must have been loaded. */
 status grid_hash_scene(uint64_t *hash, const scene *of, bool without_how);
-/* The part of it that the parameters do not say: the sky's picture, textures, meshes and what their files say of their faces. A scene
- * without files leaves the fingerprint as it was. */
+/* The part of it that the parameters do not say: the sky's picture, textures, meshes and what their files say of their
+ * faces. A scene without files leaves the fingerprint as it was. */
 void grid_hash_files(uint64_t *hash, const scene *of);
 void grid_hash_point(uint64_t *hash, const study_point *point);
 

@@ -19,7 +19,8 @@ static void hash_texture(uint64_t *hash, const texture *t)
         *hash = texture_hash(t, *hash);
 }
 
-/* What a later version reads of a face goes in only where it is not at its default: the fingerprints that rows carry must stay. */
+/* What a later version reads of a face goes in only where it is not at its default: the fingerprints that rows carry
+ * must stay. */
 static void hash_look(uint64_t *hash, const face_look *l)
 {
     const double numbers[] = {l->given, l->color.x, l->color.y, l->color.z, l->diffuse, l->specular, l->shininess};

@@ -111,7 +111,8 @@ static json_t *files_hash(const study *s)
 static json_t *study_facts(const study *s)
 {
     return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title),
-                     "definition", hash_text(s->definition_hash), "files", files_hash(s), "cells", (json_int_t)study_cell_count(s), "file", borrowed(file_name(s->path)),
+                     "definition", hash_text(s->definition_hash), "files", files_hash(s),
+                     "cells", (json_int_t)study_cell_count(s), "file", borrowed(file_name(s->path)),
                      "text", borrowed(s->text), "scene_file", borrowed(file_name(s->scene_path)), "scene_text",
                      borrowed(s->scene_text));
 }

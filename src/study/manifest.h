@@ -19,10 +19,12 @@ status manifest_write(const study *s, const char *folder, const topology *machin
 typedef struct manifest_study {
     char *text, *scene_text;        /* of study and scene when the first run began */
     uint64_t definition;            /* that the rows of that run carry */
-    bool has_files; uint64_t files; /* fingerprint of what the scene's files held; manifests of before version 2 of the definition have none */
+    bool has_files;
+    uint64_t files;                 /* of what the scene's files held; has_files: it is recorded */
 } manifest_study;
 
-/* Below root (base/below.h). STATUS_BAD_INPUT when it is damaged or tells less than that. manifest_study_free releases. */
+/* Below root (base/below.h). STATUS_BAD_INPUT when it is damaged or tells less than that. manifest_study_free
+ * releases. */
 status manifest_read(const char *path, const char *root, manifest_study *out, diagnostic *why);
 void manifest_study_free(manifest_study *m);
 

@@ -28,7 +28,10 @@ static status add(meaning *m, char *name, char *value)
     return STATUS_OK;
 }
 
-typedef struct visit_state { meaning *into; bool without_how; } visit_state;
+typedef struct visit_state {
+    meaning *into;
+    bool without_how;
+} visit_state;
 
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {

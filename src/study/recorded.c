@@ -16,7 +16,8 @@ static status read_parts(study *s, const document *d, const char *scene_text, di
     if (!name || name->kind != NODE_SCALAR)
         return diagnose(why, STATUS_BAD_INPUT, "", "it is not a study");
     s->name = strdup(name->text);
-    status code = s->name ? scene_read_text(s->scene_path, scene_text, strlen(scene_text), &s->base, why) : no_memory(why);
+    status code =
+        s->name ? scene_read_text(s->scene_path, scene_text, strlen(scene_text), &s->base, why) : no_memory(why);
     if (code == STATUS_OK)
         code = read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why);
     return code == STATUS_OK ? read_reference(s, d, node_get(root, "reference"), why) : code;

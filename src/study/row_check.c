@@ -56,9 +56,11 @@ static int compare_keys(const void *a, const void *b)
 /* Has every column of a the same value in b? */
 static bool has_values(const row_ref *a, const row_ref *b)
 {
-    for (size_t i = 0; i < a->table->column_count; i++)
-        if (strcmp(csv_field(a->table, a->row, (int)i), csv_field(b->table, b->row, csv_column(b->table, a->table->header[i]))) != 0)
+    for (size_t i = 0; i < a->table->column_count; i++) {
+        const int there = csv_column(b->table, a->table->header[i]);
+        if (strcmp(csv_field(a->table, a->row, (int)i), csv_field(b->table, b->row, there)) != 0)
             return false;
+    }
     return true;
 }
 

@@ -4,7 +4,8 @@
 
 #include "study/row_files.h"
 
-/* Has a file the columns without which its rows cannot be told apart? Others may be missing, and there may be more, in any order. */
+/* Has a file the columns without which its rows cannot be told apart? Others may be missing, and there may be more, in
+ * any order. */
 status row_check_columns(const csv *table, const char *path, row_kind kind, diagnostic *why);
 
 /* Drops rows that stand in two files alike; two that differ, or stand in one file, are an error. */

@@ -31,10 +31,10 @@ char *row_file_path(const char *folder, row_kind kind, long shard, long shards);
 /* The header line of that kind of file; fresh memory, or NULL. */
 char *row_file_header(const study *s, row_kind kind);
 
-/* Columns are known by their names; those of another version of the program are read too. STATUS_BAD_INPUT when a file is damaged or lacks a
- * column that says of what its rows are, when rows mean something else than the study does (study/accepted.h), or when one repetition
- * stands in two files with different values. Worker rows whose repetition has no row (a process was killed between
- * the two) are left out. */
+/* Columns are known by their names; those of another version of the program are read too. STATUS_BAD_INPUT when a file
+ * is damaged or lacks a column that says of what its rows are, when rows mean something else than the study does
+ * (study/accepted.h), or when one repetition stands in two files with different values. Worker rows whose repetition
+ * has no row (a process was killed between the two) are left out. */
 status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why);
 void row_files_destroy(row_files *files);
 

@@ -44,7 +44,8 @@ typedef struct study {
     bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_timeline, keep_metrics, keep_curves, keep_motion; /* of each cell, once */
     char *text, *scene_text;          /* both files, as they were read */
     scene *base;                      /* the scene with the fixed parameters set */
-    /* Of what a row means: name, scene, fixed parameters, grid; rows that mean something else are not mixed in (study/accepted.h).
+    /* Of what a row means: name, scene, fixed parameters, grid; rows that mean something else are not
+     * mixed in (study/accepted.h).
      * Repetitions, order, title and what is kept may change, and the study goes on. */
     uint64_t definition_hash;
     uint64_t compare_hash;            /* of what a row of compare.csv means: the definition, and the reference */

@@ -27,7 +27,8 @@ static status widen(const char *path, const char *lines, const char *header, siz
     return file_writer_commit(&writer, why);
 }
 
-static status settle(const char *path, char *text, const char *header, csv_layout **layout, bool *replaced, diagnostic *why)
+static status settle(const char *path, char *text, const char *header, csv_layout **layout, bool *replaced,
+                     diagnostic *why)
 {
     char *end = strchr(text, '\n');
     char *own = end ? strndup(text, (size_t)(end - text) + 1) : NULL;

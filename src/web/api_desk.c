@@ -4,6 +4,7 @@
 #include "base/text_writer.h"
 #include "report/json.h"
 #include "report/param_rows.h"
+#include "scene/inert.h"
 #include "scene/params.h"
 #include "scene/write.h"
 #include "web/camera_moves.h"
@@ -67,9 +68,29 @@ static char *value_text(const json_t *value)
     return joined;
 }
 
+/* What is set, and notes on what of that does nothing (scene/inert.h); NULL while there are none. */
+typedef struct set_request { const json_t *values; json_t *notes; } set_request;
+
+/* A slime that moves on the page does so whatever its time_s. */
+static void note_inert(set_request *x, const scene *s)
+{
+    const char *path;
+    json_t *value;
+    json_object_foreach((json_t *)(uintptr_t)x->values, path, value)
+    {
+        inert_answer answer;
+        if (!inert_ask(s, path, NULL, &answer) || strcmp(answer.rule, "time-0") == 0)
+            continue;
+        x->notes = x->notes ? x->notes : json_array();
+        json_array_append_new(x->notes, json_pack("{s:o, s:o, s:o}", "place", json_of_text(answer.note.place), "text",
+                                                  json_of_text(answer.note.text), "remedy", json_of_text(answer.note.remedy)));
+    }
+}
+
 static status set_all(void *of, scene *s, diagnostic *why)
 {
-    const json_t *values = of;
+    set_request *x = of;
+    const json_t *values = x->values;
     const char *path;
     json_t *value;
     status code = STATUS_OK;
@@ -82,6 +103,10 @@ static status set_all(void *of, scene *s, diagnostic *why)
             code = scene_set(s, path, text, why);
         free(text);
     }
+    json_decref(x->notes);
+    x->notes = NULL;
+    if (code == STATUS_OK)
+        note_inert(x, s);
     return code;
 }
 
@@ -100,8 +125,13 @@ static void post_set(void *of, const http_request *q, http_reply *r)
         uint64_t generation = 0;
         char what[128];
         snprintf(what, sizeof what, "set %.100s", json_object_iter_key(json_object_iter(values)));
-        const status code = desk_apply(l->desk, what, gesture, set_all, values, &generation, &why);
-        lab_reply_generation(r, code, generation, &why);
+        set_request x = {values, NULL};
+        const status code = desk_apply(l->desk, what, gesture, set_all, &x, &generation, &why);
+        if (code == STATUS_OK && x.notes)
+            http_reply_json(r, 200, json_pack("{s:I, s:O}", "generation", (json_int_t)generation, "notes", x.notes));
+        else
+            lab_reply_generation(r, code, generation, &why);
+        json_decref(x.notes);
     }
     json_decref(body);
 }

@@ -12,7 +12,7 @@
 
 typedef struct edit {
     const char *name;    /* of the object; NULL for a new one */
-    bool or_camera;      /* it may be the camera, too */
+    bool or_camera;      /* it may be the camera, or many objects, too */
     const char *word;    /* its new name; its material, NULL for none; the kind of a new one */
     const char *wanted;  /* name of a new one; NULL: any */
     const char *file;    /* of a new one, as the folder names it */
@@ -20,6 +20,7 @@ typedef struct edit {
     const scene *loaded; /* of a model */
     shape_kind shape;
     vec3 by;
+    double factor;
     object_name made;    /* what came is called that; "" for nothing */
     int refused;         /* what to answer rather than 400: 404, 409; 0 */
     status (*act)(struct edit *e, scene *s, diagnostic *why);
@@ -29,6 +30,9 @@ static status change(void *context, scene *s, diagnostic *why)
 {
     edit *e = context;
     place at;
+    scene_parts parts;
+    if (e->or_camera && scene_parts_named(s, e->name, &parts))
+        return e->act(e, s, why);
     if (e->name && place_find_object(s, e->name, &at, why) != STATUS_OK) {
         e->refused = 404;
         return STATUS_BAD_INPUT;
@@ -99,6 +103,25 @@ static void move_object(void *context, const http_request *q, http_reply *r)
 static void turn_object(void *context, const http_request *q, http_reply *r)
 {
     displace(context, q, r, &(edit){.name = http_path_value(q, "name"), .or_camera = true, .act = turn_it}, "turn");
+}
+
+static status scale_it(edit *e, scene *s, diagnostic *why)
+{
+    return scene_scale(s, e->name, e->factor, why);
+}
+
+static void scale_object(void *context, const http_request *q, http_reply *r)
+{
+    json_t *body = http_body_json(q, r);
+    edit e = {.name = http_path_value(q, "name"), .or_camera = true, .act = scale_it};
+    const char *gesture = NULL;
+    if (body && !json_is_number(json_object_get(body, "factor")))
+        http_reply_error(r, 400, "'factor' is no number", "give a factor above 0");
+    else if (body && lab_take_gesture(body, &gesture, r)) {
+        e.factor = json_number_value(json_object_get(body, "factor"));
+        answer(context, &e, "scale", e.name, gesture, r);
+    }
+    json_decref(body);
 }
 
 static status rename_it(edit *e, scene *s, diagnostic *why)
@@ -267,6 +290,7 @@ static const http_route routes[] = {
     {"DELETE", "/api/objects/{name}", remove_object, NULL},
     {"POST", "/api/objects/{name}/move", move_object, NULL},
     {"POST", "/api/objects/{name}/turn", turn_object, NULL},
+    {"POST", "/api/objects/{name}/scale", scale_object, NULL},
     {"POST", "/api/objects/{name}/rename", rename_object, NULL},
     {"POST", "/api/objects/{name}/material", change_material, NULL},
     {"POST", "/api/objects/{name}/copy", copy_object, NULL},

@@ -12,8 +12,8 @@ typedef struct notes_question {
 static void take_note(void *context, const scene_note *note)
 {
     notes_question *q = context;
-    json_t *one = json_pack("{s:o, s:o, s:o}", "place", json_of_text(note->place), "text", json_of_text(note->text), "remedy",
-                            json_of_text(note->remedy));
+    json_t *one = json_pack("{s:o, s:o, s:o}", "place", json_of_text(note->place), "text", json_of_text(note->text),
+                            "remedy", json_of_text(note->remedy));
     if (q->list && json_array_append_new(q->list, one) != 0) {
         json_decref(q->list);
         q->list = NULL;

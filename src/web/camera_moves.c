@@ -2,6 +2,7 @@
 #include "scene/camera.h"
 #include "scene/edit.h"
 
+#include "base/elementary.h"
 #include <math.h>
 
 static const double pitch_max_deg = 89.5;
@@ -37,6 +38,15 @@ static void look_along(scene *s, vec3 direction, double distance)
     s->camera.pitch_deg = asin(fmin(fmax(direction.y, -1.0), 1.0)) * 180.0 / M_PI;
 }
 
+/* A turn to the image's right and up, as yaw to the right and pitch up: a rolled camera's image has its own right. */
+static void unrolled(double roll_deg, double right_deg, double up_deg, double out[2])
+{
+    double sine, cosine;
+    elementary_sincos_deg(roll_deg, &sine, &cosine);
+    out[0] = cosine * right_deg + sine * up_deg;
+    out[1] = cosine * up_deg - sine * right_deg;
+}
+
 status camera_move_apply(void *of, scene *s, diagnostic *why)
 {
     const camera_move *m = of;
@@ -44,12 +54,17 @@ status camera_move_apply(void *of, scene *s, diagnostic *why)
     const vec3 focus = focus_of(s, f.forward);
     const double distance = vec3_length(vec3_sub(focus, f.eye));
     if (m->orbit_deg[0] != 0.0 || m->orbit_deg[1] != 0.0) {
-        const vec3 direction = turned(f.forward, (const double[]){m->orbit_deg[0], -m->orbit_deg[1]});
+        double by[2];
+        unrolled(s->camera.roll_deg, m->orbit_deg[0], -m->orbit_deg[1], by);
+        const vec3 direction = turned(f.forward, by);
         s->camera.position = vec3_sub(focus, vec3_scale(direction, distance));
         look_along(s, direction, distance);
     }
-    if (m->turn_deg[0] != 0.0 || m->turn_deg[1] != 0.0)
-        look_along(s, turned(camera_frame_of(s).forward, m->turn_deg), distance);
+    if (m->turn_deg[0] != 0.0 || m->turn_deg[1] != 0.0) {
+        double by[2];
+        unrolled(s->camera.roll_deg, m->turn_deg[0], m->turn_deg[1], by);
+        look_along(s, turned(camera_frame_of(s).forward, by), distance);
+    }
     f = camera_frame_of(s);
     const vec3 step = vec3_add(vec3_scale(f.right, m->step[0]), vec3_add(vec3_scale(f.up, m->step[1]), vec3_scale(f.forward, m->step[2])));
     return scene_move(s, "camera", step, why);

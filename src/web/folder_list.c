@@ -17,7 +17,8 @@ static const char *const use_names[USE_COUNT] = {"scenes", "models", "pictures",
 
 static const struct ending { const char *text; file_use use; } endings[] = {
     {".yaml", USE_SCENE},   {".yml", USE_SCENE},    {".obj", USE_MODEL},     {".ply", USE_MODEL},   {".stl", USE_MODEL},   {".gltf", USE_MODEL},
-    {".glb", USE_MODEL},    {".png", USE_PICTURE},  {".jpg", USE_PICTURE},   {".jpeg", USE_PICTURE}, {".pfm", USE_PICTURE}, {".study", USE_STUDY},
+    {".glb", USE_MODEL},    {".png", USE_PICTURE},  {".jpg", USE_PICTURE},   {".jpeg", USE_PICTURE}, {".pfm", USE_PICTURE},
+    {".bmp", USE_PICTURE},  {".study", USE_STUDY},
 };
 
 /* Names relative to the folder, owned. */

@@ -59,7 +59,7 @@ bool spot_ball(const scene *s, const solid *of, vec3 *centre, double *radius)
     case SHAPE_CYLINDER:
     case SHAPE_CUP:
         middle.y = 0.5 * shape->height;
-        *radius = hypot(shape->radius / (shape->kind == SHAPE_CYLINDER ? fmin(shape->m, 1.0) : 1.0), middle.y);
+        *radius = hypot(shape->radius / fmin(shape->m, 1.0), middle.y);
         break;
     case SHAPE_BOX: *radius = 0.5 * vec3_length(shape->size); break;
     case SHAPE_SPHERE: *radius = shape->radius; break;
@@ -86,7 +86,7 @@ double spot_half_size(const scene *s, const solid *of, vec3 along)
     switch (shape->kind) {
     case SHAPE_CYLINDER:
     case SHAPE_CUP:
-        return 0.5 * y * shape->height + hypot(x, z) * shape->radius / (shape->kind == SHAPE_CYLINDER ? fmin(shape->m, 1.0) : 1.0);
+        return 0.5 * y * shape->height + hypot(x, z) * shape->radius / fmin(shape->m, 1.0);
     case SHAPE_SPHERE: return shape->radius;
     case SHAPE_MESH: {
         const bounds3 b = mesh_box(s, of);
@@ -121,7 +121,7 @@ static double distance_ahead(const scene *s, vec3 eye, vec3 forward)
 
 spot spot_of(const scene *s)
 {
-    const camera_frame view = camera_frame_of(s);
+    const camera_frame view = camera_frame_level(s);
     spot where = {.looked_at = s->camera.target, .right = vec3_make(1, 0, 0), .away = vec3_make(0, 0, 1)};
     if (!s->camera.aimed)
         where.looked_at = vec3_add(view.eye, vec3_scale(view.forward, distance_ahead(s, view.eye, view.forward)));

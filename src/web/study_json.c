@@ -130,8 +130,8 @@ static json_t *row_json(const csv *columns, const row_ref *of)
     json_t *row = json_array();
     for (size_t i = 0; i < columns->column_count; i++) {
         const char *name = columns->header[i];
-        const char *text = of ? csv_field(of->table, of->row, of->table == columns ? (int)i : csv_column(of->table, name)) : name;
-        if (json_array_append_new(row, json_of_text(text)) != 0) {
+        const int at = of && of->table != columns ? csv_column(of->table, name) : (int)i;
+        if (json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, at) : name)) != 0) {
             json_decref(row);
             return NULL;
         }

@@ -69,6 +69,64 @@ export const cases = {
         t.equal(await lab.value('ball.rotation'), [0, 0, 15], 'a turn about z, degrees');
     },
 
+    'the whole scene moves, turns and grows': async (t) => {
+        const lab = await t.lab('tests/shadow.yaml');
+        const screen = await t.open(lab, { width: 1920, height: 1080 });
+        await screen.actualSize();
+        await screen.showPanel('Objects');
+        await screen.page.getByText('Whole scene').click();
+        const values = async () => Promise.all(['ball.position', 'lamp.position', 'camera.position'].map((path) => lab.value(path)));
+        const [ball, lamp, eyeAt] = await values();
+        await change(screen, () => screen.button('Move all by plus x').click());
+        let now = await values();
+        t.near(now[0][0] - ball[0], 0.1, 1e-9, 'the ball moves');
+        t.near(now[1][0] - lamp[0], 0.1, 1e-9, 'and the lamp');
+        t.equal(now[2], eyeAt, 'the camera stays');
+        await change(screen, () => screen.button('Undo').click());
+        await screen.page.getByRole('checkbox', { name: 'Camera' }).check();
+        const before = await screen.pixels();
+        await change(screen, () => screen.button('Turn all by plus y').click());
+        await change(screen, () => screen.button('Scale all: larger').click());
+        now = await values();
+        t.near(Math.hypot(...now[2]), 1.1 * Math.hypot(...eyeAt), 1e-9, 'with the camera: it is farther away by the factor');
+        const after = await screen.pixels();
+        const different = before.data.filter((value, i) => Math.abs(value - after.data[i]) > 2).length;
+        t.check(different < 4 * 50, `the picture is the same: ${different} values differ`);
+        await screen.page.getByRole('checkbox', { name: 'Solids' }).uncheck();
+        await screen.page.getByRole('checkbox', { name: 'Camera' }).uncheck();
+        const [stays] = await values();
+        await change(screen, () => screen.button('Move all by minus y').click());
+        t.equal((await values())[0], stays, 'the lights alone: the ball stays');
+        await t.axe(screen, 'steps of the whole scene');
+        await t.picture(screen, 'whole-scene');
+    },
+
+    'a camera that is rolled': async (t) => {
+        const lab = await t.lab('tests/shadow.yaml');
+        const screen = await t.open(lab, { width: 1920, height: 1080 });
+        await screen.actualSize();
+        await screen.button('Camera', true).click();
+        const roll = screen.page.getByRole('spinbutton', { name: 'Roll' });
+        await roll.fill('90');
+        await change(screen, () => roll.press('Enter'));
+        const level = view.project(await lab.value('ball.position'));
+        // Roll 90 turns the picture to the left: what was to the right of the middle is above it.
+        const there = { x: 320 + (level.y - 240), y: 240 - (level.x - 320) };
+        const seen = blue(await screen.pixels());
+        t.near(seen.x, there.x, 1.5, 'the ball is seen where it is turned to, x');
+        t.near(seen.y, there.y, 1.5, 'the ball is seen where it is turned to, y');
+        await screen.chooseTool('Object');
+        await screen.clickPixel(Math.floor(there.x), Math.floor(there.y));
+        await screen.page.getByRole('heading', { name: 'ball', exact: true }).waitFor();
+        await change(screen, async () => {
+            await screen.drag(there, { x: there.x + 60, y: there.y });
+            await screen.quiet();
+        });
+        const moved = blue(await screen.pixels());
+        t.near(moved.x - seen.x, 60, 8, 'what is dragged to the right goes to the right, x');
+        t.near(moved.y - seen.y, 0, 8, 'what is dragged to the right goes to the right, y');
+    },
+
     'added, copied, renamed, dressed, removed': async (t) => {
         const lab = await t.lab('tests/shadow.yaml');
         const screen = await t.open(lab);

@@ -68,7 +68,7 @@ export function cameraBox(root, lab) {
 function createFields(root, lab) {
   let kinds = '';
   let shown = [];
-  const wanted = ['camera.position', 'camera.target', 'camera.yaw_deg', 'camera.pitch_deg', 'camera.fov_deg'];
+  const wanted = ['camera.position', 'camera.target', 'camera.yaw_deg', 'camera.pitch_deg', 'camera.roll_deg', 'camera.fov_deg'];
 
   const send = (path, value) => lab.set({[path]: value}, gesture('camera')).catch((error) => {
     lab.fail(error);
@@ -92,7 +92,7 @@ function createFields(root, lab) {
   }
 
   function plainField(row) {
-    const label = {yaw_deg: 'Yaw', pitch_deg: 'Pitch', fov_deg: 'Field of view'}[row.name] || row.name;
+    const label = {yaw_deg: 'Yaw', pitch_deg: 'Pitch', roll_deg: 'Roll', fov_deg: 'Field of view'}[row.name] || row.name;
     const part = number({label, value: row.value, unit: '°', onchange: (x) => send(row.path, x)});
     part.node.classList.add('camera-field');
     return {node: part.node, set: (value) => part.set(short(value))};

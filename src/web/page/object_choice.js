@@ -4,7 +4,7 @@
  *   choice.choose(name)                 '' lets go
  *   choice.on(f)                        f() after another is chosen, or the chosen one is no more
  *   choice.add(body)                    POST /api/objects; chooses what comes
- *   choice.move(by, gesture), choice.turn(by, gesture)      of the chosen one; those of one gesture that wait are added up
+ *   choice.move(by, gesture), choice.turn(by, gesture), choice.scale(factor, gesture)    of the chosen one; those of one gesture that wait are joined
  *   choice.copy(), choice.remove(), choice.rename(to), choice.dress(material or null)    promises of true where it was done */
 
 import {add} from './ray_vectors.js';
@@ -24,6 +24,7 @@ export function createChoice(lab) {
     dress: (material) => done(lab.change(at('material'), {material})),
     move: (by, gesture) => done(lab.change(at('move'), {by}, {gesture, merge: join})),
     turn: (by, gesture) => done(lab.change(at('turn'), {by}, {gesture, merge: join})),
+    scale: (factor, gesture) => done(lab.change(at('scale'), {factor}, {gesture, merge: (waiting, newer) => ({factor: waiting.factor * newer.factor})})),
   };
   lab.on('scene', (scene) => {
     if (choice.name && !lab.object(choice.name) && scene.generation >= since) choose('');

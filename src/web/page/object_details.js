@@ -17,7 +17,7 @@ function keyOf(control) {
 
 export function createDetails(lab, choice, files) {
   const node = element('section', {class: 'object-details', 'aria-label': 'The chosen object'});
-  const pads = createPads(lab, choice);
+  const pads = createPads(choice);
   let rows = [];
   let shown = '';
 
@@ -53,7 +53,7 @@ export function createDetails(lab, choice, files) {
   function build(object, own) {
     const focused = node.contains(document.activeElement) ? keyOf(document.activeElement) : null;
     replace(node, head(object), object.kind === 'light' ? pager(object) : null, general(object), files.forObject(object),
-      object.kind === 'solid' || object.kind === 'light' ? pads.show(object) : null, parameters(object, own));
+      object.kind === 'solid' || object.kind === 'light' ? pads.show({turns: object.kind === 'solid' || object.light !== 'point', scales: true}) : null, parameters(object, own));
     if (focused) [...node.querySelectorAll('button, input, select')].find((each) => keyOf(each) === focused)?.focus({preventScroll: true});
   }
 

@@ -1,12 +1,15 @@
-/* Exact steps: the chosen object moves and turns along the world's axes. exports: createPads(lab, choice) -> {show(object) -> node} */
+/* Exact steps: an object, or many, move and turn along the world's axes and are scaled.
+ * exports: createPads(choice, {id = 'object', many = ''}) -> {show({turns, scales}) -> node}
+ *   choice: {name, move(by, gesture), turn(by, gesture), scale(factor, gesture)}; id: where sizes of steps are kept; many: a word for the labels */
 
 import {button, element, gesture, memory, number} from './ui.js';
 
 const AXES = ['x', 'y', 'z'];
 const PAUSE_MS = 800;
 
-export function createPads(lab, choice) {
-  const steps = {length: memory.get('object.length', 0.1), angle: memory.get('object.angle', 15)};
+export function createPads(choice, {id = 'object', many = ''} = {}) {
+  const steps = {length: memory.get(`${id}.length`, 0.1), angle: memory.get(`${id}.angle`, 15), factor: memory.get(`${id}.factor`, 1.1)};
+  const named = (verb) => (many ? `${verb} ${many}` : verb);
   let last = null;
 
   /* Presses of one button that follow each other are one step of undo. */
@@ -25,19 +28,24 @@ export function createPads(lab, choice) {
     })));
   }
 
-  function field(label, size, unit, max) {
-    return number({label, value: steps[size], min: 0.0001, max, unit, onchange: (value) => {
+  function sizes(label) {
+    const to = (word, factor) => button(word, () => choice.scale(factor(), nameOf(`${choice.name} ${label} ${word}`)), {small: true, 'aria-label': `${label}: ${word.toLowerCase()}`});
+    return element('div', {class: 'pad object-pad', role: 'group', 'aria-label': label}, to('Smaller', () => 1 / steps.factor), to('Larger', () => steps.factor));
+  }
+
+  function field(label, size, unit, max, min = 0.0001) {
+    return number({label, value: steps[size], min, max, unit, onchange: (value) => {
       steps[size] = value;
-      memory.set(`object.${size}`, value);
+      memory.set(`${id}.${size}`, value);
     }}).node;
   }
 
   return {
-    show(object) {
-      const turns = object.kind === 'solid' || object.light !== 'point';
+    show({turns, scales}) {
       return element('div', {class: 'object-steps'},
-        field('Step', 'length', 'units', 1e6), pad('Move', 'length', choice.move),
-        turns ? [field('Angle', 'angle', '°', 360), pad('Turn', 'angle', choice.turn)] : null);
+        field('Step', 'length', 'units', 1e6), pad(named('Move'), 'length', choice.move),
+        turns ? [field('Angle', 'angle', '°', 360), pad(named('Turn'), 'angle', choice.turn)] : null,
+        scales ? [field('Factor', 'factor', '', 1000, 1.0001), sizes(named('Scale'))] : null);
     },
   };
 }

@@ -5,6 +5,7 @@ import {createChoice} from './object_choice.js';
 import {createDetails} from './object_details.js';
 import {createFiles} from './scene_files.js';
 import {createList} from './object_list.js';
+import {createWhole} from './object_whole.js';
 import {createMark} from './object_mark.js';
 import {objectTool} from './object_tool.js';
 
@@ -40,7 +41,7 @@ function addButtons() {
 
 function create(root, lab) {
   start(lab);
-  root.append(fileButtons(), addButtons(), createList(lab, choice).node, createDetails(lab, choice, files).node);
+  root.append(fileButtons(), addButtons(), createList(lab, choice).node, createDetails(lab, choice, files).node, createWhole(lab));
 }
 
 export const panel = {id: 'edit', title: 'Objects', css: 'panel_edit.css', start, create};

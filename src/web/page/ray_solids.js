@@ -35,7 +35,7 @@ const shapes = {
   box: (of) => [box(of('size'))],
   sphere: (of) => [ball(of('radius'))],
   cylinder: (of) => [tube(of('radius'), of('m') || 1, 0, of('height'))],
-  cup: (of) => [tube(of('radius'), 1, 0, of('height')), tube(of('inner_radius'), 1, of('floor'), of('height'))],
+  cup: (of) => [tube(of('radius'), of('m') || 1, 0, of('height')), tube(of('inner_radius'), of('m') || 1, of('floor'), of('height'))],
 };
 
 /* About x, then y, then z, as the scene says it. */

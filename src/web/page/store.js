@@ -111,6 +111,10 @@ export function createLab() {
   lab.change = createQueue(api.post);
   lab.set = (values, gesture) => lab.change('/api/set', {set: values}, {
     gesture, merge: (waiting, newer) => ({set: {...waiting.set, ...newer.set}}),
+  }).then((reply) => {
+    const [first] = reply.notes || []; /* what was set and does nothing */
+    if (first) lab.say(`Note: ${first.place}: ${first.text}`, first.remedy);
+    return reply;
   });
   return lab;
 

@@ -1,0 +1,160 @@
+#include "cli/inert_notes.h"
+#include "cli/terminal.h"
+#include "render/renderer.h"
+#include "scene/hints.h"
+#include "scene/params.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_MAX_HERE = 200 };
+
+/* The path of a change, which may stand before the value. */
+static bool path_of(const char *path, const char *text, char out[PATH_MAX_HERE])
+{
+    const size_t length = path ? strlen(path) : strcspn(text, "=");
+    if (length >= PATH_MAX_HERE)
+        return false;
+    memcpy(out, path ? path : text, length);
+    out[length] = 0;
+    return true;
+}
+
+typedef struct place_search { const char *place; bool found; } place_search;
+
+static void compare_place(void *context, const scene_note *note)
+{
+    place_search *x = context;
+    x->found |= strcmp(x->place, note->place) == 0;
+}
+
+static bool is_hinted(const scene *s, const char *path)
+{
+    place_search x = {path, false};
+    scene_hints(s, &(note_taker){compare_place, &x});
+    return x.found;
+}
+
+static void say(const inert_answer *answer)
+{
+    char line[NOTE_LINE_MAX];
+    terminal_note(note_line(&answer->note, line, sizeof line));
+}
+
+void inert_note_assignment(const scene *s, const char *assignment)
+{
+    char path[PATH_MAX_HERE];
+    inert_answer answer;
+    if (path_of(NULL, assignment, path) && inert_ask(s, path, NULL, &answer))
+        say(&answer);
+}
+
+/* Set again later on the command line. */
+static bool is_set_again(const scene_input *input, size_t at, const char *path)
+{
+    char other[PATH_MAX_HERE];
+    for (size_t i = at + 1; i < input->count; i++)
+        if (path_of(input->changes[i].path, input->changes[i].text, other) && strcmp(path, other) == 0)
+            return true;
+    return false;
+}
+
+/* A film moves its slimes: their time_s does not count. */
+static scene *in_motion(const scene *s)
+{
+    scene *moved = scene_clone(s);
+    for (size_t i = 0; moved && i < moved->mesh_count; i++)
+        if (moved->meshes[i].source == MESH_SLIME)
+            moved->meshes[i].time_s = 1.0;
+    return moved;
+}
+
+static void note_changes(const scene *s, const scene_input *input)
+{
+    for (size_t i = 0; i < input->count; i++) {
+        char path[PATH_MAX_HERE];
+        inert_answer answer;
+        if (path_of(input->changes[i].path, input->changes[i].text, path) && !is_set_again(input, i, path) &&
+            inert_ask(s, path, NULL, &answer) && !is_hinted(s, path))
+            say(&answer);
+    }
+}
+
+void inert_note_changes(const scene *s, const scene_input *input)
+{
+    scene *moved = input->from_beginning ? in_motion(s) : NULL;
+    note_changes(moved ? moved : s, input);
+    scene_destroy(moved);
+}
+
+/* --- what a frame tells --- */
+
+typedef struct frame_of { const scene *s; const render_result *frame; isa level; } frame_of;
+
+static bool is_same(void *context, const char *assignment)
+{
+    const double moment_s = 1.0;
+    const frame_of *f = context;
+    renderer *r = NULL;
+    render_result *other = NULL;
+    scene *s = f->frame->wall_s < moment_s ? scene_clone(f->s) : NULL;
+    const bool rendered = s && scene_set_assignment(s, assignment, NULL) == STATUS_OK && scene_check(s, NULL) == STATUS_OK &&
+                          scene_load(s, NULL) == STATUS_OK && renderer_create(f->level, NULL, &r, NULL) == STATUS_OK &&
+                          renderer_render(r, s, NULL, &other, NULL) == STATUS_OK;
+    const bool same = rendered && film_hash(other->picture) == film_hash(f->frame->picture);
+    if (other)
+        render_result_destroy(other);
+    if (r)
+        renderer_destroy(r);
+    scene_destroy(s);
+    return same;
+}
+
+void inert_note_frame(const scene *s, const scene_input *input, isa level, const render_result *frame)
+{
+    frame_of f = {s, frame, level};
+    const inert_witness witness = {&frame->counters, is_same, &f};
+    for (size_t i = 0; i < input->count; i++) {
+        char path[PATH_MAX_HERE];
+        inert_answer answer;
+        if (path_of(input->changes[i].path, input->changes[i].text, path) && !is_set_again(input, i, path) &&
+            !inert_ask(s, path, NULL, &answer) && inert_ask(s, path, &witness, &answer))
+            say(&answer);
+    }
+}
+
+/* --- studies --- */
+
+static status note_in_all_cells(const study *s, const char *path, diagnostic *why)
+{
+    inert_answer answer = {.rule = ""};
+    bool inert = true;
+    for (size_t cell = 0; cell < study_cell_count(s) && inert; cell++) {
+        scene *setting;
+        const status code = study_cell_scene(s, cell, &setting, why);
+        if (code != STATUS_OK)
+            return code;
+        inert = inert_ask(setting, path, NULL, &answer);
+        scene_destroy(setting);
+    }
+    if (inert)
+        say(&answer);
+    return STATUS_OK;
+}
+
+static status note_point(const study *s, const study_point *point, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; i < point->count && code == STATUS_OK; i++)
+        code = note_in_all_cells(s, point->paths[i], why);
+    return code;
+}
+
+status inert_note_study(const study *s, diagnostic *why)
+{
+    status code = note_point(s, &s->fixed, why);
+    for (size_t a = 0; a < s->axis_count && code == STATUS_OK; a++)
+        code = note_point(s, &s->axes[a].points[0], why);
+    return code;
+}

@@ -1,0 +1,113 @@
+/* Uncompressed BMP of 24 bits: a file header of 14 bytes, a header of 40 (BITMAPINFOHEADER, Windows 3) to 124 bytes (BITMAPV5HEADER), and from the
+ * file header's offset on rows of blue, green, red, each padded to a multiple of 4 bytes; from the bottom, or from the top where the height is
+ * negative. Microsoft, Windows GDI, "Bitmap Storage". Numbers are little-endian. */
+#include "image/codec.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FILE_HEADER = 14, INFO_HEADER = 40, V5_HEADER = 124, OS2_HEADER = 12, OS2_HEADER_2 = 64, OS2_HEADER_2_SHORT = 16 };
+enum { UNCOMPRESSED, RLE8, RLE4 }; /* the header's compression */
+
+#define REMEDY "save it as an uncompressed 24-bit BMP, or as PNG"
+
+static uint32_t number_at(const unsigned char *b, int bytes)
+{
+    uint32_t value = 0;
+    for (int i = 0; i < bytes; i++) {
+        value |= (uint32_t)b[i] << 8 * i;
+    }
+    return value;
+}
+
+static int64_t signed_at(const unsigned char *b)
+{
+    const int64_t value = number_at(b, 4);
+    return value >= INT64_C(0x80000000) ? value - INT64_C(0x100000000) : value;
+}
+
+/* width and height in pixels; rows from the top where the file says so. */
+typedef struct bmp_header { int64_t width, height; size_t offset, row_bytes; bool from_top; } bmp_header;
+
+/* Only what the rows below read is believed; the file's own size is often wrong, and is not looked at. */
+static status check_kind(const unsigned char *bytes, size_t size, diagnostic *why)
+{
+    const uint32_t header = size >= FILE_HEADER + 4 ? number_at(bytes + FILE_HEADER, 4) : 0;
+    if (header == OS2_HEADER || header == OS2_HEADER_2 || header == OS2_HEADER_2_SHORT) {
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is one of OS/2, which is not read");
+    }
+    if (size < FILE_HEADER + INFO_HEADER || (header <= V5_HEADER && header > size - FILE_HEADER)) {
+        return diagnose(why, STATUS_BAD_INPUT, NULL, "the BMP file is truncated: %zu bytes have no whole header", size);
+    }
+    if (header < INFO_HEADER || header > V5_HEADER) {
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the header of the BMP file is damaged: it claims to have %lu bytes", (unsigned long)header);
+    }
+    const uint32_t bits = number_at(bytes + 28, 2), compression = number_at(bytes + 30, 4);
+    if (compression == RLE8 || compression == RLE4) {
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is compressed by run lengths, which is not read");
+    }
+    if (bits != 24) {
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has %lu bits a pixel; only 24 are read", (unsigned long)bits);
+    }
+    if (compression != UNCOMPRESSED) {
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has a compression of kind %lu, which is not read", (unsigned long)compression);
+    }
+    return STATUS_OK;
+}
+
+static status read_header(const unsigned char *bytes, size_t size, bmp_header *out, diagnostic *why)
+{
+    status code = check_kind(bytes, size, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    const int64_t height = signed_at(bytes + 22);
+    *out = (bmp_header){.width = signed_at(bytes + 18), .height = height < 0 ? -height : height, .from_top = height < 0,
+                        .offset = number_at(bytes + 10, 4)};
+    code = codec_check_size(out->width, out->height, size, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    out->row_bytes = ((size_t)out->width * 3 + 3) / 4 * 4;
+    if (out->offset < FILE_HEADER + number_at(bytes + FILE_HEADER, 4) || out->offset > size) {
+        return diagnose(why, STATUS_BAD_INPUT, NULL, "the BMP file is damaged: its pixels are said to begin at byte %zu of %zu", out->offset, size);
+    }
+    /* sides are at most 65536: no overflow; the last row need not be padded */
+    const size_t needed = out->row_bytes * (size_t)(out->height - 1) + (size_t)out->width * 3;
+    if (size - out->offset < needed) {
+        return diagnose(why, STATUS_BAD_INPUT, NULL, "the BMP file is truncated: %zu bytes of pixels where %zu should be", size - out->offset, needed);
+    }
+    return STATUS_OK;
+}
+
+status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why)
+{
+    bmp_header header;
+    *out = NULL;
+    status code = read_header(bytes, size, &header, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    image *picture;
+    code = image_create((int)header.width, (int)header.height, &picture, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    float *linear = codec_decode_table(255);
+    if (!linear) {
+        image_destroy(picture);
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+    }
+    const size_t width = (size_t)header.width, height = (size_t)header.height;
+    for (size_t row = 0; row < height; row++) {
+        const unsigned char *from = bytes + header.offset + row * header.row_bytes;
+        float *pixel = picture->pixel + (header.from_top ? row : height - 1 - row) * width * 3;
+        for (size_t x = 0; x < width; x++, from += 3, pixel += 3) {
+            pixel[0] = linear[from[2]], pixel[1] = linear[from[1]], pixel[2] = linear[from[0]];
+        }
+    }
+    free(linear);
+    *out = picture;
+    return STATUS_OK;
+}

@@ -1,0 +1,127 @@
+/* Radiance across the liquid's flat surface with render.radiance: basic. L / n^2 is handed on but for what is
+ * reflected (Nicodemus 1963), so that from within the liquid a sky of radiance 1 is (n / n_0)^2 T, and a floor of
+ * radiance 1 in the liquid is T (n_0 / n)^2 from above. A lamp above lights that floor through the surface with T of
+ * its own straight line, and the square of the index only on the way back.
+ *
+ * * Tolerance: as of gap.c; some film units and, near the critical angle, the root of a rounding. */
+#include "realism/metrics.h"
+
+#include "scene/edit.h"
+#include <math.h>
+
+#define RADIANCE_TOLERANCE 1e-11
+enum { STEP_DEG = 5, LAST_DEG = 85, LAMP_HEIGHT = 40, EYE_HEIGHT = 2 };
+
+typedef enum look { LOOK_SKY, LOOK_FLOOR, LOOK_LAMP, LOOKS } look;
+
+static const vec3 lamp_place = {9.0, LAMP_HEIGHT, 3.0};
+
+/* The liquid fills 0 < y < 1, on a matte floor. */
+static scene *pond(const scene *s, const setup *at, look which)
+{
+    scene *copy = arrange_empty(s);
+    if (!copy)
+        return NULL;
+    solid *water = &copy->solids[at->liquid], *ground = &copy->solids[at->rod];
+    water->visible = 1, ground->visible = which != LOOK_SKY;
+    water->priority = 1, ground->priority = 2;
+    water->shape = (solid_shape){.kind = SHAPE_BOX, .position = {0.0, 0.0, 0.0}, .size = {1e4, 2.0, 1e4}};
+    water->surface.ambient = water->surface.diffuse = water->surface.specular = 0.0; /* no light of the surface's own */
+    water->surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
+    water->surface.absorb_spectrum.count = 0;
+    ground->shape = (solid_shape){.kind = SHAPE_PLANE};
+    ground->surface = (material){.color = {1.0, 1.0, 1.0}, .ior = 1.0};
+    *(which == LOOK_LAMP ? &ground->surface.diffuse : &ground->surface.ambient) = 1.0;
+    copy->background.ambient = vec3_make(1.0, 1.0, 1.0);
+    copy->background.kind = BACKGROUND_UNIFORM;
+    const double sky = which == LOOK_SKY ? 1.0 : 0.0;
+    copy->background.color = vec3_make(sky, sky, sky);
+    copy->render.beyond = BEYOND_BLACK;
+    copy->render.depth = 1;
+    copy->render.radiance = RADIANCE_BASIC;
+    copy->render.shadows = SHADOWS_ATTENUATED;
+    return copy;
+}
+
+/* A point of light above the surface, and no other. */
+static status hang_lamp(scene *s, diagnostic *why)
+{
+    size_t at = 0;
+    s->light_count = 0;
+    const status code = scene_add_light(s, "lamp", &at, why);
+    if (code != STATUS_OK)
+        return code;
+    light *l = &s->lights[at];
+    l->position = lamp_place;
+    l->intensity = 1.0;
+    l->color = vec3_make(1.0, 1.0, 1.0);
+    return STATUS_OK;
+}
+
+static double through(double angle, double n_from, double n_to)
+{
+    return n_from == n_to ? 1.0 : 1.0 - theory_fresnel(angle, n_from, n_to);
+}
+
+/* E at the point of the floor that a ray from (0, EYE_HEIGHT, 0) comes to. */
+static double lamp_theory(double angle, double n_around, double n_liquid)
+{
+    const double x = (EYE_HEIGHT - 1.0) * tan(angle) + tan(theory_snell(angle, n_around, n_liquid));
+    const double across = hypot(lamp_place.x - x, lamp_place.z), incidence = atan2(across, lamp_place.y);
+    return cos(incidence) * through(incidence, fmin(n_around, n_liquid), fmax(n_around, n_liquid));
+}
+
+static double theory(const setup *at, look which, double angle)
+{
+    const double n_around = at->n[SETUP_OUTSIDE], n_liquid = at->n[SETUP_LIQUID], ratio = n_liquid / n_around;
+    if (which == LOOK_SKY)
+        return ratio * ratio * through(angle, n_liquid, n_around);
+    const double T = through(angle, n_around, n_liquid);
+    if (T == 0.0) /* totally reflected from above, by an index lower than what is around */
+        return 0.0;
+    return T / (ratio * ratio) * (which == LOOK_LAMP ? lamp_theory(angle, n_around, n_liquid) : 1.0);
+}
+
+static status measure(const metrics *m, look which, worst_pair *worst, diagnostic *why)
+{
+    scene *s = pond(m->traced, &m->at, which);
+    status code = s ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    if (code == STATUS_OK && which == LOOK_LAMP)
+        code = hang_lamp(s, why);
+    if (code != STATUS_OK) {
+        scene_destroy(s);
+        return code;
+    }
+    trial t;
+    code = trial_start(&t, s, m->level, why);
+    for (int degrees = 0; degrees <= LAST_DEG && code == STATUS_OK; degrees += STEP_DEG) {
+        const double angle = degrees * M_PI / 180.0, up = which == LOOK_SKY ? 1.0 : -1.0;
+        const vec3 from = vec3_make(0.0, which == LOOK_SKY ? 0.5 : EYE_HEIGHT, 0.0);
+        code = probe_ray(t.p, from, vec3_make(sin(angle), up * cos(angle), 0.0), &t.tree, why);
+        worst_take(worst, code == STATUS_OK ? t.tree.radiance[0] : NAN, theory(&m->theory_at, which, angle));
+    }
+    trial_end(&t);
+    return code;
+}
+
+status realism_radiance(const metrics *m, diagnostic *why)
+{
+    static const char *const names[] = {"radiance.sky_under_water", "radiance.floor_under_water",
+                                        "radiance.lamp_under_water"};
+    static const char *const what[] = {
+        "a sky of 1 from within the liquid, with render.radiance basic; of the angles 0 to 85 degrees the worst",
+        "a floor of radiance 1 in the liquid, from above it", "the same floor, matte, by a lamp above it"};
+    const bool fresnel = !scene_has_constant_shares(&m->traced->render);
+    status code = STATUS_OK;
+    for (int k = 0; k < LOOKS && code == STATUS_OK; k++) {
+        worst_pair worst = {NAN, NAN, false};
+        const bool defined = fresnel && m->at.liquid >= 0;
+        if (defined)
+            code = measure(m, (look)k, &worst, why);
+        const char *line = m->at.liquid < 0 ? "there is no liquid"
+                           : !fresnel       ? "constant shares know no angle"
+                                            : what[k];
+        metrics_add(m, (realism_value){names[k], line, "", worst.measured, worst.theory, RADIANCE_TOLERANCE});
+    }
+    return code;
+}

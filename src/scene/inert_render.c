@@ -1,0 +1,222 @@
+/* Why a setting of the renderer does nothing in a scene. */
+#include "scene/inert_private.h"
+#include "scene/medium.h"
+
+#include <math.h>
+
+static const char *const WHITTED = "set render.integrator=whitted";
+
+static bool path_only(const inert_case *c)
+{
+    return !is_path(c->s) && inert_say(c, "path-only", "set render.integrator=path", "only the path integrator draws by chance");
+}
+
+/* The spectral film's wavelengths are drawn, too: render/spectra.c. */
+static bool seed(const inert_case *c)
+{
+    return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
+}
+
+/* Faint paths end by chance after the third surface: render/path.c. */
+static bool roulette(const inert_case *c)
+{
+    enum { ROULETTE_DEPTH = 3 };
+    if (path_only(c)) {
+        return true;
+    }
+    return c->s->render.depth <= ROULETTE_DEPTH &&
+           inert_say(c, "roulette-depth", "set render.depth=8", "paths may end by chance from depth %d on, and render.depth is %lld",
+                     ROULETTE_DEPTH + 1, (long long)c->s->render.depth);
+}
+
+/* The first visible solid whose surface sends rays on, or one that could. */
+static bool nothing_goes_on(const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (s->solids[i].visible && sends_rays_on(s, &s->solids[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static inert_remedy mirror_remedy(const scene *s)
+{
+    const solid *first = first_visible(s);
+    return first ? inert_set("%s.reflectivity=0.5", first->name) : (inert_remedy){"add a solid"};
+}
+
+/* No ray has children. */
+static bool no_tree(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (draws_through(s)) {
+        return false;
+    }
+    if (!follows_rays(s)) {
+        const bool whitted = s->render.integrator == INTEGRATOR_WHITTED;
+        return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : WHITTED, "no ray goes on from a surface under %s",
+                         whitted ? "this render.lighting" : "this render.integrator");
+    }
+    return nothing_goes_on(s) && inert_say(c, "no-branches", mirror_remedy(s).text, "nothing visible reflects or refracts");
+}
+
+static bool beyond(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (no_tree(c)) {
+        return true;
+    }
+    scene sky = *s; /* borrows what s owns */
+    sky.render.beyond = BEYOND_SKY;
+    if (is_dark_beyond(&sky)) {
+        return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black, too");
+    }
+    /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both has no cut ray. */
+    return s->render.beyond != BEYOND_BLACK && inert_same(c, "render.beyond=black") &&
+           inert_say(c, "nothing-cut", "set render.depth=1", "no ray that render.depth cuts off carries light that the film resolves");
+}
+
+/* Highlights and branches are all that the lighting model chooses. */
+static bool lighting(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (is_path(s)) {
+        return inert_say(c, "not-path", WHITTED, "the path integrator has one lighting model");
+    }
+    scene shiny = *s; /* borrows what s owns */
+    shiny.render.lighting = LIGHTING_PHONG;
+    bool highlight = s->render.integrator == INTEGRATOR_ZBUFFER && first_clear(s);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        highlight |= one->visible && (shows_specular(&shiny, &one->surface) || may_look_by_face(s, one));
+    }
+    if (highlight) {
+        return false;
+    }
+    if (s->render.integrator != INTEGRATOR_WHITTED) {
+        return inert_say(c, "no-highlight", WHITTED, "no lamp makes a highlight, and no ray goes on under this render.integrator");
+    }
+    return (nothing_goes_on(s) || (s->render.depth == 0 && is_dark_beyond(s))) &&
+           inert_say(c, "no-highlight", mirror_remedy(s).text, "nothing visible has a highlight, reflects or refracts");
+}
+
+/* A plane alone shows little of what a clear solid does. */
+static inert_remedy clear_remedy(const scene *s)
+{
+    const solid *first = first_visible(s);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        first = first->shape.kind == SHAPE_PLANE && s->solids[i].visible ? &s->solids[i] : first;
+    }
+    return first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name) : (inert_remedy){"add a solid"};
+}
+
+static bool no_clear(const inert_case *c)
+{
+    return !first_clear(c->s) && inert_say(c, "no-clear", clear_remedy(c->s).text, "no visible solid is transparent");
+}
+
+static bool weights(const inert_case *c)
+{
+    return no_clear(c) || (c->s->render.transmission == TRANSMISSION_SIMPLE &&
+                           inert_say(c, "simple", "set render.transmission=refract", "simple transmission takes the materials' constants"));
+}
+
+static bool polarisation(const inert_case *c)
+{
+    return no_tree(c) || no_clear(c);
+}
+
+static bool nothing_lit(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (shining_lights(s) == 0) {
+        return inert_say(c, "no-lamp", lamp_remedy(s).text, "no light shines");
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && (is_lit_by_lamps(s, &one->surface) || may_look_by_face(s, one))) {
+            return false;
+        }
+    }
+    const solid *first = first_visible(s);
+    const inert_remedy remedy = first ? inert_set("%s.diffuse=0.7", first->name) : (inert_remedy){"add a solid"};
+    return inert_say(c, "nothing-lit", remedy.text, "no lamp's light shows on anything visible");
+}
+
+static bool shadows(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (s->render.integrator == INTEGRATOR_ZBUFFER) {
+        return inert_say(c, "no-shadows", WHITTED, "the depth buffer draws no shadows");
+    }
+    return nothing_lit(c) || (only_spheres_shine(s) && inert_say(c, "spheres", WHITTED, "lights that are spheres are looked for along random paths"));
+}
+
+static bool min_weight(const inert_case *c)
+{
+    if (is_path(c->s)) {
+        return inert_say(c, "whitted-only", WHITTED, "random paths are no tree: render.roulette ends faint ones");
+    }
+    return no_tree(c) || (c->s->render.depth == 0 && inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0: no branch is followed"));
+}
+
+static bool wavelengths(const inert_case *c)
+{
+    return c->s->render.spectrum != SPECTRUM_SPECTRAL && inert_say(c, "spectral-only", "set render.spectrum=spectral", "the film is rgb");
+}
+
+static bool is_dispersive(const index_law *law)
+{
+    return law->law.kind != DISPERSION_CONSTANT || law->relative_to_air;
+}
+
+static bool lambda(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (s->render.spectrum == SPECTRUM_SPECTRAL) {
+        return inert_say(c, "rgb-only", "set render.spectrum=rgb", "the spectral film takes each wavelength's own index");
+    }
+    if (no_clear(c) || s->render.integrator == INTEGRATOR_ZBUFFER) {
+        return c->out->rule[0] != 0;
+    }
+    index_law law = surrounding_index_law(&s->background);
+    bool disperses = is_dispersive(&law);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        const bool clear = one->visible && one->surface.transparency > 0.0;
+        disperses |= clear && material_index_law(&one->surface, "", &law, NULL) == STATUS_OK && is_dispersive(&law);
+    }
+    return !disperses && inert_say(c, "no-dispersion", inert_set("%s.medium=bk7", first_clear(s)->name).text,
+                                   "no clear medium's index depends on the wavelength");
+}
+
+static bool unit(const inert_case *c)
+{
+    const scene *s = c->s;
+    bool absorbs = surroundings_absorb(&s->background);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        absorbs |= one->visible && !material_is_opaque(&one->surface) && material_absorbs(&one->surface);
+    }
+    const solid *clear = first_clear(s);
+    const inert_remedy remedy = clear ? inert_set("%s.absorb_per_m=0.2,0.4,0.8", clear->name) : inert_set("background.absorb_per_m=0.01,0.02,0.04");
+    return !absorbs && inert_say(c, "no-absorption", remedy.text, "nothing that light passes absorbs");
+}
+
+static bool texturing(const inert_case *c)
+{
+    return c->s->render.integrator != INTEGRATOR_ZBUFFER &&
+           inert_say(c, "zbuffer-only", "set render.integrator=zbuffer", "rays always meet a texture in perspective");
+}
+
+bool inert_render(const inert_case *c)
+{
+    static const inert_row rows[] = {
+        {"depth", no_tree}, {"beyond", beyond}, {"lighting", lighting}, {"weights", weights}, {"transmission", no_clear},
+        {"shadows", shadows}, {"min_weight", min_weight}, {"paths", path_only}, {"roulette", roulette}, {"seed", seed},
+        {"polarisation", polarisation}, {"wavelengths", wavelengths}, {"lambda_nm", lambda}, {"unit_m", unit}, {"texturing", texturing},
+        {NULL, NULL},
+    };
+    return inert_by_name(rows, c);
+}
