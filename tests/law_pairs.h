@@ -379,21 +379,6 @@ static const char *const fresnel_settings[] = {
     "depth: 4, beyond: black, polarisation: on, radiance: basic",
 };
 
-/* Without large blocks: where one is near, gaps of 1e-12 are not resolved, or only from some places. What stood on one comes down. */
-static inline void take_blocks_away(law_scene *w)
-{
-    for (int i = 0; i < w->solid_count; i++) {
-        solid_shape *shape = &w->solid[i].shape;
-        const double away = vec3_length(shape->position);
-        /* its top, -0.3 but for the rounding of a large block, stays where what stands on it begins: a gap of 1e-14 is not resolved either */
-        const double top = shape->position.y + 0.5 * shape->scale.y;
-        if (w->solid[i].mesh && shape->scale.x > 2.0)
-            shape->scale = vec3_make(0.5, 0.5, 0.5), shape->position = vec3_make(0.0, (fabs(top + 0.3) < 1e-9 ? top : -0.3) - 0.25, 0.0);
-        else if (away > 20.0)
-            shape->position = vec3_scale(shape->position, 1.0 / away);
-    }
-}
-
 /* false where the law cannot be tried on such a scene. */
 static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair *p)
 {
@@ -404,20 +389,17 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
         settings = "integrator: raycast";
     if (which == LAW_REVERSAL)
         settings = "depth: 16";
-    *p = (law_pair){.which = which, .a = random_law_scene(&seed, settings)};
+    const bool small = which == LAW_SCALE || which == LAW_MOTION || which == LAW_REVERSAL; /* times 2^20, a block is beyond MESH_FAR */
+    *p = (law_pair){.which = which, .a = random_law_scene(&seed, settings, small)};
     for (int i = 0; i < p->a.solid_count && which == LAW_REVERSAL; i++)
         p->a.solid[i].transparency = 1.0;
     p->a.flat = which == LAW_REVERSAL; /* interpolated normals belong to no surface: such a path cannot be reversed */
-    if (which == LAW_MOTION || which == LAW_REVERSAL)
-        take_blocks_away(&p->a);
     p->b = p->a;
     p->seed = random_bits(&seed);
     switch (which) {
     case LAW_UNMET: add_unmet(&p->b, &seed); break;
     case LAW_ORDER: permute(&p->b, &seed); break;
     case LAW_SCALE:
-        take_blocks_away(&p->a); /* 2^20 times as large, they were beyond MESH_FAR */
-        p->b = p->a;
         p->exponent = random_below(&seed, 41) - 20;
         break;
     case LAW_MOTION:
