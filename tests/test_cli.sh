@@ -39,6 +39,8 @@ small=(--set render.width=80 --set render.height=60)
 is() { [[ $1 == "$2" ]]; }
 matches() { [[ $1 =~ $2 ]]; }
 silent_success() { ((code == 0)) && [[ ! -s err ]]; }
+# At its depth of 4 the rod's scene is rightly noted on, and in no other respect.
+depth_noted() { ((code == 0)) && [[ $(wc -l <err) == 1 && $(<err) == 'cuvette: note: render.depth: '* ]]; }
 json() { ./json_get out "$@"; } # PATH...: the values there
 lines() { printf '%s\n' "$@"; }
 sum() { awk '{s += $1} END {printf "%.17g", s}'; }
@@ -66,7 +68,7 @@ check "long options may be shortened" silent_success
 
 # --- render
 run render "$scene" -o a.png "${small[@]}"
-check "render writes a picture" silent_success
+check "render writes a picture" depth_noted
 check "a .png is a PNG" magic a.png 89504e47
 check "the summary is one line" is "$(wc -l <out)" 1
 hash=$(grep -o 'film [0-9a-f]\{16\}' out | cut -d' ' -f2)
@@ -136,7 +138,7 @@ fi
 
 # --- maps and timeline
 run render "$scene" "${small[@]}" --rays rays.png --time time.png --timeline line.json --set render.threads=2
-check "maps and a timeline without a picture" silent_success
+check "maps and a timeline without a picture" depth_noted
 check "looking leaves the film alone" grep -q "film $hash" out
 check "the map of rays is a PNG with a key" is "$(($(od -An -tu1 -j22 -N2 rays.png | awk '{print $1*256+$2}') > 60))" 1
 check "the map of time is a PNG" magic time.png 89504e47
@@ -376,12 +378,17 @@ for at in 40,30 37,41 5,3 44,22; do
     check "its radiance is the picture's" same_floats "$(pixel a.pfm ${at/,/ })" "$(json 'radiance[]')"
 done
 run trace "$scene" --pixel 40,30 --depth 3 --json "${small[@]}"
-check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth radiance root lambda_nm "
+check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth radiance root lambda_nm carries "
 check "schema, scene and depth" is "$(json schema scene depth)" "$(lines 1 "$scene" 3)"
 check "keys of a ray, in order" is "$(json root@keys | tr '\n' ' ')" \
     "kind depth origin direction throughput medium n hit children end brought "
 check "keys of a hit, in order" is "$(json root.hit@keys | tr '\n' ' ')" \
-    "solid surface t point normal from to cos_i cos_t R_s R_p R tir path_length transmittance error_bound opaque "
+    "solid surface t point normal from to cos_i cos_t R_s R_p R tir path_length transmittance error_bound opaque $(
+        )T radiance_factor "
+check "what a refraction does to radiance: T, and T (n1 / n2)^2" \
+    holds "($(json root.hit.radiance_factor.classic) - (1 - $(json root.hit.R))) ^ 2 < 1e-30 &&
+        ($(json root.hit.radiance_factor.basic) * 2.25 - (1 - $(json root.hit.R))) ^ 2 < 1e-30"
+check "and which of them rays carry" is "$(json carries)" classic
 check "the first ray" is "$(json root.kind root.depth root.medium root.n root.end root.hit.solid root.hit.surface root.hit.tir)" \
     "$(lines camera 0 air 1 hit vessel "outer side" false)"
 check "media on both sides" is "$(json root.hit.from.medium root.hit.to.medium root.hit.to.n)" "$(lines air vessel 1.5)"
@@ -413,7 +420,7 @@ check "a depth buffer draws the scene: no shadow rays" is "$code $(json rays.sha
 run render "$scene" -o drawn.png "${small[@]}" --set render.integrator=zbuffer --set render.spectrum=spectral
 check "but not a spectral one" matches "$code $(<err)" '^2 cuvette: .*depth buffer.*; set render.integrator'
 run trace "$scene" --pixel 40,30 --lambda 1200 --set liquid.medium=water "${small[@]}"
-check "a medium that was not measured there is noted" matches "$(<err)" '^cuvette: note: liquid: water was measured from 182 to 1129 nm only'
+check "a medium that was not measured there is noted" matches "$(<err)" '^cuvette: note: liquid\.medium: water was measured from 182 to 1129 nm only'
 run trace "$scene" --pixel 40,30 -o tree.json "${small[@]}"
 check "-o tree.json writes JSON, and nothing else" is "$(./json_get tree.json schema) $(cat out err)" "1 "
 run trace "$scene" --pixel 40,30 -o tree.svg "${small[@]}"
@@ -518,7 +525,7 @@ refused_lab "results elsewhere" '.*results' --folder elsewhere --results results
 # --- notes
 echo 'solids: {ball: {shape: sphere, ior: 1.5}}' >odd.yaml
 run render odd.yaml -o odd.png "${small[@]}"
-check "a scene that looks wrong is noted" grep -q '^cuvette: note: ball ' err
+check "a scene that looks wrong is noted" grep -q '^cuvette: note: ball\.ior: ball ' err
 check "but rendered" is "$code" 0
 run render odd.yaml --json "${small[@]}"
 check "--json leaves notes out" silent_success
@@ -673,7 +680,7 @@ cp a.png pictures/sky.png
 run scene built.yaml --set background.picture=pictures/sky.png -o pictures/scenes/moved.yaml
 check "paths follow the file" grep -q '  picture: ../sky.png' pictures/scenes/moved.yaml
 run scene pictures/scenes/moved.yaml --check
-check "and lead to the picture" silent_success
+check "and lead to the picture" depth_noted
 refused() # WHAT ERROR ARGUMENT...: one line, 2, nothing written
 {
     local what=$1 error=$2

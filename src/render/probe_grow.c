@@ -105,10 +105,10 @@ static void hang(ray_tree *tree, int parent, size_t child)
 
 /* What radiance from beyond the interface is multiplied by. Under simple transmission nothing is bent, and no index
  * comes in. */
-static void read_gain(const probe *p, int rank, ray_hit *h)
+static void read_gain(const probe *p, ray_hit *h)
 {
     const render_settings *r = &p->scene->render;
-    const material *m = p->scene->materials[rank];
+    const material *m = &p->rays->look->surface;
     if (h->opaque || h->tir)
         return;
     h->T = m->transparency * (scene_has_constant_shares(r) ? 1.0 : 1.0 - h->R);
@@ -162,7 +162,7 @@ static bool read_hit(const probe *p, ray_node *node)
         h->cos_t = h->cos_i;
         h->tir = false;
     }
-    read_gain(p, rank, h);
+    read_gain(p, h);
     h->path_length_m = h->t * p->scene->render.unit_m;
     for (int c = 0; c < 3; c++)
         h->transmittance[c] = a->absorbs ? t->kept[c][0] : 1.0;

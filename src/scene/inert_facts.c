@@ -18,6 +18,11 @@ bool follows_rays(const scene *s)
     return is_path(s) || (s->render.integrator == INTEGRATOR_WHITTED && s->render.lighting == LIGHTING_WHITTED);
 }
 
+bool draws_through(const scene *s)
+{
+    return s->render.integrator == INTEGRATOR_ZBUFFER && s->render.lighting == LIGHTING_WHITTED && first_clear(s);
+}
+
 bool is_dark_beyond(const scene *s)
 {
     const background *b = &s->background;
@@ -68,8 +73,10 @@ const solid *first_visible(const scene *s)
 const solid *first_clear(const scene *s)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
-        if (s->solids[i].visible && s->solids[i].surface.transparency > 0.0) {
-            return &s->solids[i];
+        const solid *one = &s->solids[i];
+        const bool by_face = s->render.transmission == TRANSMISSION_SIMPLE && may_look_by_face(s, one);
+        if (one->visible && (one->surface.transparency > 0.0 || by_face)) {
+            return one;
         }
     }
     return NULL;
@@ -107,7 +114,7 @@ bool shows_color(const scene *s, const material *m)
 {
     material white = *m;
     white.color = vec3_make(1.0, 1.0, 1.0);
-    return shows_ambient(s, &white) || shows_diffuse(s, &white);
+    return m->emission > 0.0 || shows_ambient(s, &white) || shows_diffuse(s, &white);
 }
 
 bool sends_rays_on(const scene *s, const solid *owner)

@@ -124,6 +124,9 @@ static bool reflectivity_rule(const inert_case *c)
     if (coats) {
         return mirrors_black(c);
     }
+    if (s->render.integrator == INTEGRATOR_ZBUFFER && !material_is_opaque(c->m)) {
+        return false;
+    }
     if (!follows_rays(s)) {
         const bool whitted = s->render.integrator == INTEGRATOR_WHITTED;
         return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : "set render.integrator=whitted",
@@ -191,8 +194,8 @@ static bool checker_color_rule(const inert_case *c)
 /* What an opaque surface that no ray meets would send back. */
 static bool unseen(const inert_case *c)
 {
-    static const char *const sent_back[] = {"color", "ambient", "diffuse", "specular", "shininess", "reflectivity", "texture",
-                                            "texture_size", "checker", "checker_color", NULL};
+    static const char *const sent_back[] = {"color", "ambient", "diffuse", "specular", "shininess", "emission", "reflectivity",
+                                            "texture", "texture_size", "checker", "checker_color", NULL};
     bool found = false;
     for (size_t i = 0; sent_back[i] && !found; i++) {
         found = strcmp(sent_back[i], c->at.row->name) == 0;
@@ -223,12 +226,13 @@ static bool covered(const inert_case *c)
 bool inert_surface(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"color", color_rule}, {"ambient", ambient_rule}, {"diffuse", diffuse_rule}, {"specular", specular_rule}, {"shininess", shininess_rule},
+        {"color", color_rule}, {"emission", is_black_surface}, {"ambient", ambient_rule}, {"diffuse", diffuse_rule}, {"specular", specular_rule}, {"shininess", shininess_rule},
         {"reflectivity", reflectivity_rule}, {"ior", opaque_rule}, {"medium", opaque_rule}, {"coefficients", coefficients_rule}, {"absorb_per_m", absorb_per_m_rule},
         {"absorb_spectrum", absorption_rule}, {"tint_distance", tint_distance_rule}, {"texture", texture_rule}, {"texture_size", texture_size_rule}, {"checker", checker_rule},
         {"checker_color", checker_color_rule}, {NULL, NULL},
     };
-    if (may_look_by_face(c->s, c->owner) && !is_of_body(c)) {
+    const bool straight = c->s->render.transmission == TRANSMISSION_SIMPLE;
+    if (may_look_by_face(c->s, c->owner) && (straight || !is_of_body(c))) {
         return false;
     }
     return inert_by_name(rows, c) || covered(c) || unseen(c);

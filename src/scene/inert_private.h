@@ -49,6 +49,8 @@ bool is_black(vec3 color);
 bool is_path(const scene *s);
 /* Rays go on from surfaces. */
 bool follows_rays(const scene *s);
+/* The depth buffer shows what lies behind clear solids. */
+bool draws_through(const scene *s);
 /* Light from beyond the depth limit is black. */
 bool is_dark_beyond(const scene *s);
 /* Lights that shine; all of them spheres, which the path integrator alone knows. */

@@ -50,6 +50,9 @@ static inert_remedy mirror_remedy(const scene *s)
 static bool no_tree(const inert_case *c)
 {
     const scene *s = c->s;
+    if (draws_through(s)) {
+        return false;
+    }
     if (!follows_rays(s)) {
         const bool whitted = s->render.integrator == INTEGRATOR_WHITTED;
         return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : WHITTED, "no ray goes on from a surface under %s",
@@ -81,9 +84,9 @@ static bool lighting(const inert_case *c)
     if (is_path(s)) {
         return inert_say(c, "not-path", WHITTED, "the path integrator has one lighting model");
     }
-    scene shiny = *s;
+    scene shiny = *s; /* borrows what s owns */
     shiny.render.lighting = LIGHTING_PHONG;
-    bool highlight = false;
+    bool highlight = s->render.integrator == INTEGRATOR_ZBUFFER && first_clear(s);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         highlight |= one->visible && (shows_specular(&shiny, &one->surface) || may_look_by_face(s, one));

@@ -138,7 +138,7 @@ static const param table[] = {
     CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky",
            "what a ray beyond the last depth brings back: the sky behind it, nothing, or the mean of the sky over all directions"),
     CHOICE(PARAM_RENDER, render_settings, radiance, radiance_words, "classic",
-            "what rays carry: radiance as if no medium changed it (Whitted), or L / n^2, which refraction keeps"),
+           "what rays carry: radiance as if no medium changed it (Whitted), or L / n^2, which refraction keeps"),
     CHOICE(PARAM_RENDER, render_settings, shadows, shadows_words, "attenuated",
            "what stands in a light's way: nothing, every solid, or each by what it lets straight through; no caustics"),
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",

@@ -250,7 +250,7 @@ static inline bool scene_has_constant_shares(const render_settings *r)
 }
 
 /* Do rays carry basic radiance, L / n^2? Only light that is bent changes its solid angle: under simple transmission
- * nothing is, and what is drawn with a depth buffer sees through no surface. */
+ * nothing is, nor in what is drawn with a depth buffer. */
 static inline bool scene_has_basic_radiance(const render_settings *r)
 {
     return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT &&
