@@ -101,7 +101,7 @@ static void note_depth(const lint_room *room, const depth_probe *p, int depth, i
     const double share = changed_share(p->image[0], p->image[last]);
     const double pixels = (double)p->image[0]->width * p->image[0]->height;
     if (share <= CHANGED_PIXELS +
-                     2.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / pixels)) /* the probe may be off by chance */
+                     3.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / pixels)) /* the probe may be off by chance */
         return;
     int enough = 1;
     while (enough < last && changed_share(p->image[enough], p->image[last]) > CHANGED_PIXELS)
