@@ -10,7 +10,9 @@
 #include "scene/params_path.h"
 
 /* Bodies of fewer triangles, fewer wavelengths: what is tried stays what it is. */
-typedef struct acts_small { const char *scene, *assignments; } acts_small;
+typedef struct acts_small {
+    const char *scene, *assignments;
+} acts_small;
 static const acts_small acts_smaller[] = {
     {"models", "ball.level=2 torus.around=24 torus.tube=12 lathe.around=16"},
     {"slime", "toy.level=2 toy.dt_s=0.008"},
@@ -27,11 +29,11 @@ enum { ACTS_SIZES = 3 };
 static const int acts_heights[ACTS_SIZES] = {48, 120, 240};
 
 typedef struct acts {
-    scene *s;               /* as shipped, but for acts_smaller */
+    scene *s; /* as shipped, but for acts_smaller */
     renderer *r;
     uint64_t base[ACTS_SIZES];
     bool has_base[ACTS_SIZES];
-    ray_counters counters;  /* of the largest film, once it is there */
+    ray_counters counters; /* of the largest film, once it is there */
 } acts;
 
 static inline bool acts_set_all(scene *s, const char *assignments, diagnostic *why)
@@ -52,7 +54,8 @@ static inline bool acts_resize(scene *s, int height)
     char text[80];
     if (s->render.height <= height)
         return true;
-    snprintf(text, sizeof text, "render.width=%d render.height=%d", (int)(s->render.width * height / s->render.height), height);
+    snprintf(text, sizeof text, "render.width=%d render.height=%d", (int)(s->render.width * height / s->render.height),
+             height);
     return acts_set_all(s, text, NULL);
 }
 
@@ -83,8 +86,9 @@ static inline bool acts_of(scene *s, acts *out, diagnostic *why)
 {
     *out = (acts){.s = s};
     scene *small = scene_clone(s);
-    bool fine = small && renderer_create(isa_best(), NULL, &out->r, why) == STATUS_OK && scene_check(s, why) == STATUS_OK &&
-                scene_load(s, why) == STATUS_OK && acts_resize(small, acts_heights[0]);
+    bool fine = small && renderer_create(isa_best(), NULL, &out->r, why) == STATUS_OK &&
+                scene_check(s, why) == STATUS_OK && scene_load(s, why) == STATUS_OK &&
+                acts_resize(small, acts_heights[0]);
     if (fine)
         scene_borrow_meshes(small, s);
     fine = fine && acts_hash(out->r, small, &out->base[0], NULL, why);
@@ -103,7 +107,8 @@ static inline bool acts_open(const char *path, acts *out, diagnostic *why)
         return false;
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     for (size_t i = 0; i < sizeof acts_smaller / sizeof *acts_smaller; i++)
-        if (strncmp(name, acts_smaller[i].scene, strcspn(name, ".")) == 0 && acts_smaller[i].scene[strcspn(name, ".")] == 0)
+        if (strncmp(name, acts_smaller[i].scene, strcspn(name, ".")) == 0 &&
+            acts_smaller[i].scene[strcspn(name, ".")] == 0)
             if (!acts_set_all(s, acts_smaller[i].assignments, why)) {
                 scene_destroy(s);
                 return false;
@@ -112,13 +117,17 @@ static inline bool acts_open(const char *path, acts *out, diagnostic *why)
 }
 
 /* How many other values were legal, and how many of them changed the film; why says what was wrong with the last one that was refused. */
-typedef struct acts_outcome { int legal, changed; diagnostic why; } acts_outcome;
+typedef struct acts_outcome {
+    int legal, changed;
+    diagnostic why;
+} acts_outcome;
 
 static inline bool acts_base(acts *a, int size)
 {
     scene *s = a->has_base[size] ? NULL : scene_clone(a->s);
     if (s)
-        a->has_base[size] = acts_resize(s, acts_heights[size]) && acts_hash(a->r, s, &a->base[size], size == ACTS_SIZES - 1 ? &a->counters : NULL, NULL);
+        a->has_base[size] = acts_resize(s, acts_heights[size]) &&
+                            acts_hash(a->r, s, &a->base[size], size == ACTS_SIZES - 1 ? &a->counters : NULL, NULL);
     scene_destroy(s);
     return a->has_base[size];
 }
@@ -144,8 +153,9 @@ static inline bool acts_same(void *context, const char *assignment)
     acts *a = context;
     scene *s = scene_clone(a->s);
     uint64_t hash;
-    const bool same = s && acts_base(a, ACTS_SIZES - 1) && acts_resize(s, acts_heights[ACTS_SIZES - 1]) && scene_set_assignment(s, assignment, NULL) == STATUS_OK &&
-                      acts_hash(a->r, s, &hash, NULL, NULL) && hash == a->base[ACTS_SIZES - 1];
+    const bool same = s && acts_base(a, ACTS_SIZES - 1) && acts_resize(s, acts_heights[ACTS_SIZES - 1]) &&
+                      scene_set_assignment(s, assignment, NULL) == STATUS_OK && acts_hash(a->r, s, &hash, NULL, NULL) &&
+                      hash == a->base[ACTS_SIZES - 1];
     scene_destroy(s);
     return same;
 }

@@ -39,14 +39,16 @@ static inline double acts_number(const param *row, double now, int k)
 {
     const bool angle = strcmp(row->unit, "deg") == 0, share = row->lowest >= 0.0 && row->highest <= 1.0;
     const double by = angle ? 20.0 : share ? 0.3 : fmax(0.4, 0.3 * fabs(now));
-    const double others[ACTS_NUMBERS] = {now + by, now - by, now + 2.3 * by, now * 0.5, now + 0.1 * by, now - 3.7 * by, now * 3.0 + 1.0, now - 0.05 * by, row->lowest, row->highest};
+    const double others[ACTS_NUMBERS] = {now + by,       now - by,        now + 2.3 * by,  now * 0.5,   now + 0.1 * by,
+                                         now - 3.7 * by, now * 3.0 + 1.0, now - 0.05 * by, row->lowest, row->highest};
     return acts_clip(row, others[k]);
 }
 
 static inline void acts_integers(const param *row, const char *now, acts_values *v)
 {
     const int64_t n = strtoll(now, NULL, 10);
-    const double others[] = {(double)n + 1, (double)n - 1, (double)n * 2, (double)(n / 2), (double)n + 3, (double)n - 7, row->lowest, row->lowest < 0 ? row->highest : (double)n};
+    const double others[] = {(double)n + 1, (double)n - 1, (double)n * 2, (double)(n / 2),
+                             (double)n + 3, (double)n - 7, row->lowest,   row->lowest < 0 ? row->highest : (double)n};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         char text[40];
         snprintf(text, sizeof text, "%.0f", acts_clip(row, others[i]));
@@ -83,12 +85,13 @@ static inline void acts_triples(const param *row, const char *now, acts_values *
 /* A list as it is, every number times a factor; and for an empty one lists that suit what lists are used for: pairs by wavelength. */
 static inline void acts_lists(const char *now, acts_values *v)
 {
-    static const char *const pairs[] = {"400,1.3,550,1.6,700,1.7", "400,0.6,550,0.2,700,0.1", "1.5,0.01", "1.4,0.006", NULL};
+    static const char *const pairs[] = {"400,1.3,550,1.6,700,1.7", "400,0.6,550,0.2,700,0.1", "1.5,0.01", "1.4,0.006",
+                                        NULL};
     const double factors[] = {0.9, 1.1, 0.7, 1.3};
     for (size_t k = 0; k < 4; k++) {
         char text[ACTS_TEXT_MAX] = "";
         const char *at = now + (*now == '[');
-        for (char *end; ; at = end + 1) {
+        for (char *end;; at = end + 1) {
             const double x = strtod(at, &end);
             if (end == at)
                 break;
@@ -112,7 +115,8 @@ static inline void acts_words(const char *const *words, const char *now, acts_va
 /* Names that a word may be: of meshes and textures; files of the folder experiments/scenes. */
 static inline void acts_names(const scene *s, const param *row, const char *now, acts_values *v)
 {
-    static const char *const files[] = {"chequer.png", "models.jpg", "slime.jpg", "../hands/tug.yaml", "../hands/pull.yaml", NULL};
+    static const char *const files[] = {"chequer.png",       "models.jpg",         "slime.jpg",
+                                        "../hands/tug.yaml", "../hands/pull.yaml", NULL};
     if (row->type == PARAM_PATH) {
         acts_words(files, now, v);
         return;

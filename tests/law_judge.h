@@ -156,8 +156,8 @@ static inline uint64_t hits_of_added(const scene *s, const render_result *r)
     return 0;
 }
 
-/* exact: the same bits; else within 1e-11: a ray that meets a surface under 89.9 degrees carries the rounding of its place on a thousand times as
- * large. */
+/* exact: the same bits; else within 1e-11: a ray that meets a surface under 89.9 degrees carries the rounding of its
+ * place on a thousand times as large. */
 static inline verdict same_films(judge *j, const law_pair *p, bool exact)
 {
     scene *s = law_load(&p->a), *t = law_load(&p->b);

@@ -16,7 +16,6 @@ enum {
 typedef struct law_solid {
     int number;        /* its name, whatever its place */
     solid_shape shape; /* a mesh's frame and scale; its triangles are read from its name */
-    bool small;        /* a mesh that is placed is no large block */
     const char *mesh;  /* "cube", "ball", "ring", "hills"; NULL for all other shapes */
     int64_t priority;
     bool opaque;
@@ -35,8 +34,7 @@ typedef struct law_scene {
     double outside_ior;
     vec3 outside_absorb_per_m;
     double sky;
-    bool flat;  /* meshes are shaded flat */
-    bool small; /* no large blocks: where one is near, gaps of 1e-12 are not resolved, or only from some places */
+    bool flat; /* meshes are shaded flat */
     vec3 eye, target;
     double roll_deg;
     int light_count, solid_count;
@@ -102,7 +100,6 @@ static inline void place_mesh(law_solid *s, uint64_t *seed)
         const double power = size ? random_real(seed, -12.0, 0.0) : random_real(seed, 0.0, 4.0);
         s->shape.scale.y = pow(10.0, power);
         if (size == 0) {
-            s->shape.scale.y = s->small ? 0.5 : s->shape.scale.y;
             s->shape.scale.x = s->shape.scale.z = s->shape.scale.y;
             s->shape.position.y = -0.5 * s->shape.scale.y - 0.3;
             s->shape.rotation_deg = vec3_make(0.0, 0.0, 0.0);
@@ -214,7 +211,7 @@ static inline void random_surface(law_solid *s, const law_scene *w, uint64_t *se
 
 static inline law_solid random_solid(const law_scene *w, int number, uint64_t *seed)
 {
-    law_solid s = {.number = number, .small = w->small, .shape = random_shape(seed)};
+    law_solid s = {.number = number, .shape = random_shape(seed)};
     double middle;
     const law_solid *base = w->solid_count ? &w->solid[random_below(seed, w->solid_count)] : NULL;
     const int relation = random_below(seed, 8);
@@ -235,10 +232,10 @@ static inline void add_solid(law_scene *w, law_solid s)
     w->solid[w->solid_count++] = s;
 }
 
-static inline law_scene random_law_scene(uint64_t *seed, const char *settings, bool small)
+static inline law_scene random_law_scene(uint64_t *seed, const char *settings)
 {
     law_scene w = {
-        .settings = settings, .small = small, .sky = 1.0, .outside_ior = random_below(seed, 3) ? 1.0 : random_real(seed, 1.0, 2.0)};
+        .settings = settings, .sky = 1.0, .outside_ior = random_below(seed, 3) ? 1.0 : random_real(seed, 1.0, 2.0)};
     if (random_below(seed, 8) == 0)
         w.outside_absorb_per_m = vec3_make(0.1, 0.02, 0.0);
     w.light_count = random_below(seed, LAW_LIGHTS_MAX + 1);

@@ -142,7 +142,7 @@ static inline vec3 oracle_corner(oracle *o, const solid *x)
                       random_below(&o->seed, 2) ? half.z : -half.z);
     else if (s->kind == SHAPE_CYLINDER || s->kind == SHAPE_CUP)
         p = vec3_make(in * s->radius * cos(turn), random_below(&o->seed, 2) ? in * s->height : (1.0 - in) * s->height,
-                      in * s->radius * sin(turn) / (s->kind == SHAPE_CYLINDER ? s->m : 1.0));
+                      in * s->radius * sin(turn) / s->m);
     else if (s->kind == SHAPE_SPHERE)
         p = vec3_scale(random_direction(&o->seed), in * s->radius);
     return vec3_add(s->position, mat3_apply(rotation_from_deg(s->rotation_deg), p));
@@ -199,7 +199,7 @@ static inline double oracle_thickness(const solid *x)
     const solid_shape *s = &x->shape;
     switch (s->kind) {
     case SHAPE_CYLINDER: return fmin(s->height, 2.0 * fmin(s->radius, s->radius / s->m));
-    case SHAPE_CUP: return fmin(s->radius - s->inner_radius, s->floor);
+    case SHAPE_CUP: return fmin((s->radius - s->inner_radius) * fmin(1.0, 1.0 / s->m), s->floor);
     case SHAPE_BOX: return smallest(s->size);
     case SHAPE_SPHERE: return 2.0 * s->radius;
     case SHAPE_MESH: return 2.0 * ball_of(x).radius;

@@ -17,7 +17,11 @@
 enum { RULES_MAX = 300, JOBS_MAX = 96, TEXT_MAX = 1 << 14 };
 
 /* How often each condition was said of a parameter of this name, and proved by its remedy. */
-typedef struct rule_count { const char *rule, *name; int said, proved; char where[240]; } rule_count;
+typedef struct rule_count {
+    const char *rule, *name;
+    int said, proved;
+    char where[240];
+} rule_count;
 
 typedef struct account {
     const char *path;
@@ -27,12 +31,16 @@ typedef struct account {
     char text[TEXT_MAX]; /* what is bad, a line each */
 } account;
 
-typedef struct visitor { acts *a; account *out; } visitor;
+typedef struct visitor {
+    acts *a;
+    account *out;
+} visitor;
 
 static void complain(account *out, const char *path, const char *what, const char *more)
 {
     const size_t used = strlen(out->text);
-    snprintf(out->text + used, sizeof out->text - used, "# %s: %s: %s%s%s\n", out->path, path, what, more ? ": " : "", more ? more : "");
+    snprintf(out->text + used, sizeof out->text - used, "# %s: %s: %s%s%s\n", out->path, path, what, more ? ": " : "",
+             more ? more : "");
     out->bad++;
 }
 
@@ -84,7 +92,8 @@ static void judge_note(visitor *x, const char *path, const param *row, const act
     x->out->noted++;
     rule->said++;
     if (o.changed > 0)
-        complain(x->out, path, "acts, and yet a note says that it does not", note_line(&answer->note, line, sizeof line));
+        complain(x->out, path, "acts, and yet a note says that it does not",
+                 note_line(&answer->note, line, sizeof line));
     if (strcmp(answer->note.place, path) != 0 || !answer->note.text[0] || !answer->note.remedy[0])
         complain(x->out, path, "the note lacks its place, text or remedy", note_line(&answer->note, line, sizeof line));
     if (rule->proved > 0) /* once a scene is enough */
@@ -145,7 +154,12 @@ static status try_parameter(void *context, const char *path, const param *row, c
 /* --- jobs on two threads, each with an account of its own --- */
 
 typedef void job(int number, account *out);
-typedef struct bench { job *job; account *accounts; int count; atomic_int next; } bench;
+typedef struct bench {
+    job *job;
+    account *accounts;
+    int count;
+    atomic_int next;
+} bench;
 
 static account accounts[JOBS_MAX], all;
 
@@ -189,7 +203,10 @@ static void try_scene(int number, account *out)
 /* --- conditions that no shipped scene meets, and remedies that no assignment says --- */
 
 /* Under these assignments the rule is said of the parameter. works: its remedy makes the parameter act. */
-typedef struct condition { const char *scene, *assignments, *path, *rule; bool works; } condition;
+typedef struct condition {
+    const char *scene, *assignments, *path, *rule;
+    bool works;
+} condition;
 static const condition conditions[] = {
     {"rod", "lamp.intensity=0", "render.shadows", "no-lamp", true},
     {"rod", "lamp.intensity=0", "lamp.position", "dark-lamp", true},
@@ -203,15 +220,18 @@ static const condition conditions[] = {
     {"absorber", "liquid.transparency=0", "render.polarisation", "no-branches", true},
     {"rod", "rod.priority=0 rod.position=0,1,0 rod.size=0.1,0.5,0.1", "rod.color", "covered", true},
     {"rod", "lamp.color=0,0,0", "lamp.intensity", "dark-lamp", true},
-    {"rod", "tiles.diffuse=0 plastic.diffuse=0 plastic.specular=0 clear.specular=0", "lamp.position", "lights-nothing", true},
-    {"rod", "tiles.diffuse=0 plastic.diffuse=0 plastic.specular=0 clear.specular=0", "render.shadows", "nothing-lit", true},
+    {"rod", "tiles.diffuse=0 plastic.diffuse=0 plastic.specular=0 clear.specular=0", "lamp.position", "lights-nothing",
+     true},
+    {"rod", "tiles.diffuse=0 plastic.diffuse=0 plastic.specular=0 clear.specular=0", "render.shadows", "nothing-lit",
+     true},
     {"rod", "render.integrator=path render.paths=4", "render.lighting", "not-path", true},
     {"rod", "render.integrator=path render.paths=4", "render.min_weight", "whitted-only", true},
     {"rod", "render.integrator=path render.paths=4", "background.ambient", "path-ambient", true},
     {"rod", "render.integrator=path render.paths=4", "rod.ambient", "path-ambient", true},
     {"rod", "render.integrator=path render.paths=4 render.depth=3", "render.roulette", "roulette-depth", true},
     {"rod", "render.integrator=path render.paths=4 lamp.reach=8 lamp.radius=0.3", "render.shadows", "spheres", true},
-    {"rod", "render.integrator=path render.paths=4 lamp.reach=8 lamp.radius=0.3", "vessel.specular", "sphere-highlight", true},
+    {"rod", "render.integrator=path render.paths=4 lamp.reach=8 lamp.radius=0.3", "vessel.specular", "sphere-highlight",
+     true},
     {"rod", "render.depth=0", "render.min_weight", "depth-0", true},
     {"rod", "render.depth=0 render.beyond=black", "rod.reflectivity", "depth-0", true},
     {"rod", "render.lighting=phong", "rod.reflectivity", "no-tree", true},
@@ -222,6 +242,9 @@ static const condition conditions[] = {
     {"rod", "render.transmission=simple clear.transparency=0.9", "render.weights", "simple", true},
     {"rod", "render.transmission=simple clear.transparency=0.9", "background.ior", "straight", true},
     {"rod", "render.integrator=zbuffer", "render.shadows", "no-shadows", true},
+    {"rod", "render.integrator=zbuffer", "render.radiance", "zbuffer-radiance", true},
+    {"rod", "render.transmission=simple clear.transparency=0.9", "render.radiance", "straight", true},
+    {"rod", "clear.transparency=0", "render.radiance", "no-dense", true},
     {"rod", "rod.visible=off", "rod.position", "invisible", true},
     {"rod", "rod.visible=off", "plastic.color", "unused-material", true},
     {"rod", "rod.color=0,0,0", "rod.ambient", "black", true},
@@ -241,10 +264,16 @@ static const condition conditions[] = {
 };
 
 /* Where the condition of a remedy without an assignment is false: no note, and the parameter acts. */
-typedef struct counterpart { const char *rule, *scene, *path; } counterpart;
+typedef struct counterpart {
+    const char *rule, *scene, *path;
+} counterpart;
 static const counterpart counterparts[] = {
-    {"no-textures", "models", "bowl.texture"}, {"no-texture", "slime", "floor.texture_size"}, {"mesh-texture", "slime", "paving.texture_size"},
-    {"one-mesh", "models", "ring.mesh"}, {"apart", "rod", "liquid.priority"}, {"unseen", "rod", "rod.color"},
+    {"no-textures", "models", "bowl.texture"},
+    {"no-texture", "slime", "floor.texture_size"},
+    {"mesh-texture", "slime", "paving.texture_size"},
+    {"one-mesh", "models", "ring.mesh"},
+    {"apart", "rod", "liquid.priority"},
+    {"unseen", "rod", "rod.color"},
 };
 
 static bool open_with(const char *name, const char *assignments, acts *out, diagnostic *why)
@@ -340,8 +369,8 @@ static void add_account(const account *one)
 {
     if (one->tried == 0 && one->bad == 0) /* not asked for */
         return;
-    printf("# %-38s tried %4d, acting %3d, noted %3d, refused %d, marked %2d, unexplained or wrong %d\n", one->path, one->tried, one->acting,
-           one->noted, one->refused, one->marked, one->bad);
+    printf("# %-38s tried %4d, acting %3d, noted %3d, refused %d, marked %2d, unexplained or wrong %d\n", one->path,
+           one->tried, one->acting, one->noted, one->refused, one->marked, one->bad);
     printf("%s", one->text);
     all.tried += one->tried, all.acting += one->acting, all.by_one += one->by_one, all.noted += one->noted;
     all.refused += one->refused, all.marked += one->marked, all.bad += one->bad;
@@ -356,8 +385,9 @@ static void every_parameter_of_every_shipped_scene_acts_or_says_why_not(void **s
     run(try_scene, count);
     for (int i = 0; i < count; i++)
         add_account(&accounts[i]);
-    printf("# all: tried %d, acting %d (%d by one value alone), noted %d, refused with a remedy %d, marked %d, unexplained: %d\n", all.tried,
-           all.acting, all.by_one, all.noted, all.refused, all.marked, all.bad);
+    printf(
+        "# all: tried %d, acting %d (%d by one value alone), noted %d, refused with a remedy %d, marked %d, unexplained: %d\n",
+        all.tried, all.acting, all.by_one, all.noted, all.refused, all.marked, all.bad);
     globfree(&shipped);
     assert_int_equal(all.bad, 0);
 }
@@ -386,7 +416,8 @@ static void each_note_is_proved(void **state)
         const rule_count *r = &all.rules[i];
         printf("# %-16s %-16s said %3d, proved in %s\n", r->rule, r->name, r->said, r->where);
         if (r->proved == 0)
-            printf("# %s of %s is not proved: give it a remedy that is an assignment, or add it to the counterparts\n", r->rule, r->name);
+            printf("# %s of %s is not proved: give it a remedy that is an assignment, or add it to the counterparts\n",
+                   r->rule, r->name);
         unproved += r->proved == 0;
     }
     assert_int_equal(unproved, 0);
@@ -394,7 +425,9 @@ static void each_note_is_proved(void **state)
 
 /* --- other settings: whatever is noted under them does nothing --- */
 
-static const struct { const char *scene, *assignments; } settings[] = {
+static const struct {
+    const char *scene, *assignments;
+} settings[] = {
     {"rod", "render.integrator=path render.paths=2"},
     {"rod", "render.integrator=path render.paths=2 lamp.reach=8 lamp.radius=0.3"},
     {"rod", "render.integrator=raycast"},
@@ -418,7 +451,10 @@ static const struct { const char *scene, *assignments; } settings[] = {
     {"solids", "glass.emission=0.2 steel.color=0,0,0 background.ambient=0,0,0 key.intensity=0 fill.intensity=0"},
 };
 
-typedef struct truth { acts *a; account *out; } truth;
+typedef struct truth {
+    acts *a;
+    account *out;
+} truth;
 
 static status try_note(void *context, const char *path, const param *row, const char *value)
 {
@@ -432,7 +468,8 @@ static status try_note(void *context, const char *path, const param *row, const 
     v.count = v.count < 4 ? v.count : 4;
     x->out->noted++;
     if (acts_try(x->a, path, &v, 0, 1).changed > 0)
-        complain(x->out, path, "acts, and yet a note says that it does not", note_line(&answer.note, line, sizeof line));
+        complain(x->out, path, "acts, and yet a note says that it does not",
+                 note_line(&answer.note, line, sizeof line));
     return STATUS_OK;
 }
 

@@ -485,7 +485,7 @@ static void try_scene(judge *j, long number, long seed, tallies *t)
 {
     uint64_t stream = (uint64_t)seed * 0x9e3779b97f4a7c15u + (uint64_t)number;
     random_bits(&stream);
-    const law_scene w = random_law_scene(&stream, "depth: 4, threads: 1", false);
+    const law_scene w = random_law_scene(&stream, "depth: 4, threads: 1");
     scene *s = law_load(&w);
     set_all(s, "render.width=80 render.height=64");
     if (scene_check(s, NULL) != STATUS_OK) {

@@ -21,7 +21,10 @@ static bool path_of(const char *path, const char *text, char out[PATH_MAX_HERE])
     return true;
 }
 
-typedef struct place_search { const char *place; bool found; } place_search;
+typedef struct place_search {
+    const char *place;
+    bool found;
+} place_search;
 
 static void compare_place(void *context, const scene_note *note)
 {
@@ -90,7 +93,11 @@ void inert_note_changes(const scene *s, const scene_input *input)
 
 /* --- what a frame tells --- */
 
-typedef struct frame_of { const scene *s; const render_result *frame; isa level; } frame_of;
+typedef struct frame_of {
+    const scene *s;
+    const render_result *frame;
+    isa level;
+} frame_of;
 
 static bool is_same(void *context, const char *assignment)
 {
@@ -99,8 +106,9 @@ static bool is_same(void *context, const char *assignment)
     renderer *r = NULL;
     render_result *other = NULL;
     scene *s = f->frame->wall_s < moment_s ? scene_clone(f->s) : NULL;
-    const bool rendered = s && scene_set_assignment(s, assignment, NULL) == STATUS_OK && scene_check(s, NULL) == STATUS_OK &&
-                          scene_load(s, NULL) == STATUS_OK && renderer_create(f->level, NULL, &r, NULL) == STATUS_OK &&
+    const bool rendered = s && scene_set_assignment(s, assignment, NULL) == STATUS_OK &&
+                          scene_check(s, NULL) == STATUS_OK && scene_load(s, NULL) == STATUS_OK &&
+                          renderer_create(f->level, NULL, &r, NULL) == STATUS_OK &&
                           renderer_render(r, s, NULL, &other, NULL) == STATUS_OK;
     const bool same = rendered && film_hash(other->picture) == film_hash(f->frame->picture);
     if (other)

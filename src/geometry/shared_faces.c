@@ -3,7 +3,10 @@
 #include <math.h>
 
 /* The plane n.x = at, n a unit vector. */
-typedef struct flat { vec3 n; double at; } flat;
+typedef struct flat {
+    vec3 n;
+    double at;
+} flat;
 
 enum { COMPARED_MAX = 1000000 };
 

@@ -96,12 +96,19 @@ static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, d
     return code;
 }
 
+/* How far off the share may be: of pixels taken by chance, four standard errors; 0 where the image is the scene's own. */
+static double doubt(const lint_room *room, const film *small)
+{
+    const render_settings *r = &room->of->render;
+    const double pixels = (double)small->width * small->height;
+    const bool own = r->width == small->width && r->height == small->height && r->samples == 1;
+    return own ? 0.0 : 4.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / pixels);
+}
+
 static void note_depth(const lint_room *room, const depth_probe *p, int depth, int last, bool settled)
 {
     const double share = changed_share(p->image[0], p->image[last]);
-    const double pixels = (double)p->image[0]->width * p->image[0]->height;
-    if (share <= CHANGED_PIXELS +
-                     3.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / pixels)) /* the probe may be off by chance */
+    if (share <= CHANGED_PIXELS + doubt(room, p->image[0]))
         return;
     int enough = 1;
     while (enough < last && changed_share(p->image[enough], p->image[last]) > CHANGED_PIXELS)

@@ -1,5 +1,5 @@
 /* Which solids are drawn as layers: clear ones, through which the view goes on, and opaque ones that a clear one of a
- * higher rank may hide a piece of. Of all others the nearest surface is all that shows. */
+ * higher rank may hide a piece of, or the eye is in. Of all others the nearest surface is all that shows. */
 #include "render/zbuffer_private.h"
 
 #include "base/elementary.h"
@@ -117,11 +117,12 @@ void zbuffer_find_layers(zbuffer *z)
     if (!clear || z->scene->render.lighting != LIGHTING_WHITTED)
         return;
     for (int r = 1; r <= a->body_count; r++) {
-        if (!is_layered(a, r))
+        const bool holds_eye = eye_in(a, &a->bodies[r], z->scene->view.eye);
+        if (!holds_eye && !is_layered(a, r))
             continue;
         const uint64_t bit = (uint64_t)1 << (r - 1);
         z->layered |= bit;
-        z->eye_inside |= eye_in(a, &a->bodies[r], z->scene->view.eye) ? bit : 0;
+        z->eye_inside |= holds_eye ? bit : 0;
         const bool skin = a->meshes && a->meshes->skins >> a->bodies[r].outside & 1;
         z->skins |= skin ? bit : 0;
     }

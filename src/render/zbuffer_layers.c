@@ -71,7 +71,8 @@ static int collect(zbuffer *z, zbuffer_square *s, int point)
 {
     int count = 0;
     for (int32_t k = s->newest[point]; k >= 0; k = s->fragments[k].next) {
-        if (!(s->fragments[k].nearness > s->nearness[point]))
+        const double nearness = s->fragments[k].nearness;
+        if (!(nearness - s->nearness[point] > TOGETHER * nearness)) /* behind the opaque surface, or in contact with it */
             continue;
         if (!grow(&s->column, &s->column_capacity, (size_t)count + 1)) {
             atomic_store(&z->out_of_memory, true);

@@ -8,14 +8,15 @@
 #include "scene/note.h"
 
 typedef struct inert_answer {
-    const char *rule;  /* a word for the condition, constant text */
-    scene_note note;   /* its place is the path; where a value makes the parameter act, the remedy has it as PATH=VALUE */
+    const char *rule; /* a word for the condition, constant text */
+    scene_note note; /* its place is the path; where a value makes the parameter act, the remedy has it as PATH=VALUE */
 } inert_answer;
 
 /* Who can tell what a frame of the scene shows, for conditions that its file does not hold: a renderer. Both are optional. */
 typedef struct inert_witness {
-    const ray_counters *frame;                                /* of a frame of this scene */
-    bool (*same)(void *context, const char *assignment);      /* does the film stay as it is with this PATH=VALUE? False when unsure */
+    const ray_counters *frame; /* of a frame of this scene */
+    bool (*same)(void *context,
+                 const char *assignment); /* does the film stay as it is with this PATH=VALUE? False when unsure */
     void *context;
 } inert_witness;
 

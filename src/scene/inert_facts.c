@@ -26,7 +26,8 @@ bool draws_through(const scene *s)
 bool is_dark_beyond(const scene *s)
 {
     const background *b = &s->background;
-    const bool dark_sky = is_black(b->color) && (b->kind == BACKGROUND_UNIFORM || (b->kind == BACKGROUND_GRADIENT && is_black(b->horizon)));
+    const bool dark_sky = is_black(b->color) &&
+                          (b->kind == BACKGROUND_UNIFORM || (b->kind == BACKGROUND_GRADIENT && is_black(b->horizon)));
     return s->render.beyond == BEYOND_BLACK || dark_sky;
 }
 
@@ -56,7 +57,8 @@ bool only_spheres_shine(const scene *s)
 
 bool may_look_by_face(const scene *s, const solid *owner)
 {
-    const mesh_entry *m = owner->shape.kind == SHAPE_MESH && owner->material_index < 0 ? scene_find_mesh(s, owner->mesh) : NULL;
+    const mesh_entry *m =
+        owner->shape.kind == SHAPE_MESH && owner->material_index < 0 ? scene_find_mesh(s, owner->mesh) : NULL;
     return m && (m->source == MESH_FILE || m->source == MESH_ARRAYS);
 }
 

@@ -37,7 +37,8 @@ bool inert_light(const inert_case *c)
         return inert_say(c, "dark-lamp", inert_set("%s.color=1,1,1", c->name).text, "the light's color is black");
     }
     if ((strcmp(name, "target") == 0 || strcmp(name, "half_angle_deg") == 0) && l->kind == LIGHT_POINT) {
-        return inert_say(c, "point-lamp", inert_set("%s.kind=cone", c->name).text, "a point of light shines all around");
+        return inert_say(c, "point-lamp", inert_set("%s.kind=cone", c->name).text,
+                         "a point of light shines all around");
     }
     if (strcmp(name, "radius") == 0 && !is_path(c->s)) {
         const inert_remedy far = inert_set("render.integrator=path and %s.reach=8", c->name);
@@ -65,14 +66,16 @@ static bool kind(const inert_case *c)
     const background *b = &c->s->background;
     const bool flat = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
     return flat && b->kind != BACKGROUND_PICTURE && !b->picture_path[0] &&
-           inert_say(c, "flat-gradient", "set background.horizon=0.5,0.4,0.3", "horizon is the color, too: a gradient between them is uniform");
+           inert_say(c, "flat-gradient", "set background.horizon=0.5,0.4,0.3",
+                     "horizon is the color, too: a gradient between them is uniform");
 }
 
 static bool ambient(const inert_case *c)
 {
     const scene *s = c->s;
     if (is_path(s)) {
-        return inert_say(c, "path-ambient", "set render.integrator=whitted", "the path integrator has no ambient light");
+        return inert_say(c, "path-ambient", "set render.integrator=whitted",
+                         "the path integrator has no ambient light");
     }
     scene bright = *s; /* borrows what s owns */
     bright.background.ambient = vec3_make(1.0, 1.0, 1.0);
@@ -92,7 +95,8 @@ static bool surrounding_index(const inert_case *c)
     const scene *s = c->s;
     const solid *first = first_visible(s);
     if (!first_clear(s)) {
-        const inert_remedy remedy = first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name) : (inert_remedy){"add a solid"};
+        const inert_remedy remedy = first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name)
+                                          : (inert_remedy){"add a solid"};
         return inert_say(c, "no-clear", remedy.text, "no visible solid is transparent: no light is bent");
     }
     return s->render.transmission == TRANSMISSION_SIMPLE &&
@@ -102,7 +106,8 @@ static bool surrounding_index(const inert_case *c)
 bool inert_background(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"kind", kind}, {"color", background_color}, {"horizon", horizon}, {"ambient", ambient}, {"ior", surrounding_index}, {"medium", surrounding_index},
+        {"kind", kind},       {"color", background_color}, {"horizon", horizon},
+        {"ambient", ambient}, {"ior", surrounding_index},  {"medium", surrounding_index},
         {NULL, NULL},
     };
     return inert_by_name(rows, c);

@@ -21,20 +21,22 @@ static bool opaque_rule(const inert_case *c)
     if (c->m->transparency > 0.0) {
         return false;
     }
-    const inert_remedy remedy = is_open(c) ? (inert_remedy){"give it a closed mesh and a transparency"} : set_on(c, "transparency=0.9");
+    const inert_remedy remedy =
+        is_open(c) ? (inert_remedy){"give it a closed mesh and a transparency"} : set_on(c, "transparency=0.9");
     return inert_say(c, "opaque", remedy.text, "the solid is opaque");
 }
 
 static bool absorption_rule(const inert_case *c)
 {
     return opaque_rule(c) ||
-           (material_is_mirror(c->m) && inert_say(c, "mirror", set_on(c, "ior=1.5").text, "its index makes it a mirror that no light passes"));
+           (material_is_mirror(c->m) &&
+            inert_say(c, "mirror", set_on(c, "ior=1.5").text, "its index makes it a mirror that no light passes"));
 }
 
 static bool no_color(const inert_case *c)
 {
-    return !shows_color(c->s, c->m) &&
-           inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text, "no ambient or diffuse light shows this surface's colour");
+    return !shows_color(c->s, c->m) && inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text,
+                                                 "no ambient or diffuse light shows this surface's colour");
 }
 
 /* A clear solid has a tint, too. */
@@ -46,8 +48,9 @@ static bool color_rule(const inert_case *c)
 static bool tint_distance_rule(const inert_case *c)
 {
     const vec3 white = c->m->color;
-    return absorption_rule(c) || (white.x == 1.0 && white.y == 1.0 && white.z == 1.0 &&
-                                  inert_say(c, "no-tint", set_on(c, "color=0.9,0.7,0.5").text, "color is white, which tints nothing"));
+    return absorption_rule(c) ||
+           (white.x == 1.0 && white.y == 1.0 && white.z == 1.0 &&
+            inert_say(c, "no-tint", set_on(c, "color=0.9,0.7,0.5").text, "color is white, which tints nothing"));
 }
 
 static bool is_black_surface(const inert_case *c)
@@ -60,10 +63,12 @@ static bool ambient_rule(const inert_case *c)
 {
     const scene *s = c->s;
     if (is_path(s)) {
-        return inert_say(c, "path-ambient", "set render.integrator=whitted", "the path integrator has no ambient light");
+        return inert_say(c, "path-ambient", "set render.integrator=whitted",
+                         "the path integrator has no ambient light");
     }
     return is_black_surface(c) ||
-           (is_black(s->background.ambient) && inert_say(c, "dark-ambient", "set background.ambient=1,1,1", "background.ambient is black"));
+           (is_black(s->background.ambient) &&
+            inert_say(c, "dark-ambient", "set background.ambient=1,1,1", "background.ambient is black"));
 }
 
 static bool no_lamp(const inert_case *c)
@@ -84,12 +89,14 @@ static bool specular_rule(const inert_case *c)
         return inert_say(c, "lambert", "set render.lighting=phong", "Lambert's lighting has no highlights");
     }
     return no_lamp(c) || (only_spheres_shine(s) && !material_is_opaque(c->m) &&
-                          inert_say(c, "sphere-highlight", "set render.integrator=whitted", "the light itself is what a clear surface reflects"));
+                          inert_say(c, "sphere-highlight", "set render.integrator=whitted",
+                                    "the light itself is what a clear surface reflects"));
 }
 
 static bool shininess_rule(const inert_case *c)
 {
-    return (c->m->specular == 0.0 && inert_say(c, "no-specular", set_on(c, "specular=0.5").text, "specular is 0: there is no highlight")) ||
+    return (c->m->specular == 0.0 &&
+            inert_say(c, "no-specular", set_on(c, "specular=0.5").text, "specular is 0: there is no highlight")) ||
            specular_rule(c);
 }
 
@@ -99,9 +106,10 @@ static bool mirrors_black(const inert_case *c)
 {
     const background *sky = &c->s->background;
     const bool dark = sky->kind == BACKGROUND_UNIFORM && is_black(sky->color), clear = !material_is_opaque(c->m);
-    return dark && c->m->reflectivity < 1.0 && !(clear && shining_lights(c->s) > 0) && inert_same(c, "%s.reflectivity=1", c->name) &&
-           (!clear || inert_same(c, "%s.reflectivity=0.5", c->name)) &&
-           inert_say(c, "mirrors-black", "set background.color=0.5,0.5,0.5", "all that it could mirror in this image is black");
+    return dark && c->m->reflectivity < 1.0 && !(clear && shining_lights(c->s) > 0) &&
+           inert_same(c, "%s.reflectivity=1", c->name) && (!clear || inert_same(c, "%s.reflectivity=0.5", c->name)) &&
+           inert_say(c, "mirrors-black", "set background.color=0.5,0.5,0.5",
+                     "all that it could mirror in this image is black");
 }
 
 static bool say_unseen(const inert_case *c)
@@ -111,9 +119,10 @@ static bool say_unseen(const inert_case *c)
         const solid *one = &c->s->solids[i];
         highest = one->visible && one->priority > highest ? one->priority : highest;
     }
-    const inert_remedy higher = inert_set("%s.priority=%lld, or move it or the camera", c->owner->name, (long long)highest + 1);
-    return inert_say(c, "unseen", highest > c->owner->priority ? higher.text : "move it, or the camera", "no ray of this image meets a surface of %s",
-                     c->owner->name);
+    const inert_remedy higher =
+        inert_set("%s.priority=%lld, or move it or the camera", c->owner->name, (long long)highest + 1);
+    return inert_say(c, "unseen", highest > c->owner->priority ? higher.text : "move it, or the camera",
+                     "no ray of this image meets a surface of %s", c->owner->name);
 }
 
 static bool reflectivity_rule(const inert_case *c)
@@ -145,7 +154,8 @@ static bool coefficients_rule(const inert_case *c)
 {
     const int64_t law = c->m->medium;
     if (law == MEDIUM_IOR || law >= MEDIUM_CATALOGUE) {
-        return inert_say(c, "no-law", inert_set("%s.coefficients=1.5,0.004 and %s.medium=cauchy", c->name, c->name).text,
+        return inert_say(c, "no-law",
+                         inert_set("%s.coefficients=1.5,0.004 and %s.medium=cauchy", c->name, c->name).text,
                          "medium %s takes no coefficients", medium_words[law]);
     }
     return opaque_rule(c);
@@ -153,23 +163,28 @@ static bool coefficients_rule(const inert_case *c)
 
 static bool absorb_per_m_rule(const inert_case *c)
 {
-    return absorption_rule(c) || (c->m->absorb_spectrum.count > 0 &&
-                             inert_say(c, "by-spectrum", set_on(c, "absorb_spectrum=[]").text, "absorb_spectrum takes its place"));
+    return absorption_rule(c) ||
+           (c->m->absorb_spectrum.count > 0 &&
+            inert_say(c, "by-spectrum", set_on(c, "absorb_spectrum=[]").text, "absorb_spectrum takes its place"));
 }
 
 static bool texture_rule(const inert_case *c)
 {
-    return (c->s->texture_count == 0 && inert_say(c, "no-textures", "add one under textures:", "the scene has no textures")) || no_color(c);
+    return (c->s->texture_count == 0 &&
+            inert_say(c, "no-textures", "add one under textures:", "the scene has no textures")) ||
+           no_color(c);
 }
 
 static bool texture_size_rule(const inert_case *c)
 {
     if (c->owner->shape.kind == SHAPE_MESH) {
-        return inert_say(c, "mesh-texture", "set it on a solid that is no mesh", "a mesh has texture coordinates of its own");
+        return inert_say(c, "mesh-texture", "set it on a solid that is no mesh",
+                         "a mesh has texture coordinates of its own");
     }
     if (!c->m->texture[0]) {
-        const inert_remedy remedy =
-            c->s->texture_count > 0 ? inert_set("%s.texture=%s", c->name, c->s->textures[0].name) : (inert_remedy){"add one under textures:"};
+        const inert_remedy remedy = c->s->texture_count > 0
+                                        ? inert_set("%s.texture=%s", c->name, c->s->textures[0].name)
+                                        : (inert_remedy){"add one under textures:"};
         return inert_say(c, "no-texture", remedy.text, "the surface has no texture");
     }
     return no_color(c);
@@ -182,31 +197,37 @@ static bool same_vector(vec3 a, vec3 b)
 
 static bool checker_rule(const inert_case *c)
 {
-    return no_color(c) || (same_vector(c->m->color, c->m->checker_color) &&
-                           inert_say(c, "one-color", set_on(c, "checker_color=0.2,0.4,0.6").text, "checker_color is the color, too"));
+    return no_color(c) ||
+           (same_vector(c->m->color, c->m->checker_color) &&
+            inert_say(c, "one-color", set_on(c, "checker_color=0.2,0.4,0.6").text, "checker_color is the color, too"));
 }
 
 static bool checker_color_rule(const inert_case *c)
 {
-    return (c->m->checker == 0.0 && inert_say(c, "no-checker", set_on(c, "checker=0.2").text, "checker is 0: there are no cells")) || no_color(c);
+    return (c->m->checker == 0.0 &&
+            inert_say(c, "no-checker", set_on(c, "checker=0.2").text, "checker is 0: there are no cells")) ||
+           no_color(c);
 }
 
 /* What an opaque surface that no ray meets would send back. */
 static bool unseen(const inert_case *c)
 {
-    static const char *const sent_back[] = {"color", "ambient", "diffuse", "specular", "shininess", "emission", "reflectivity",
-                                            "texture", "texture_size", "checker", "checker_color", NULL};
+    static const char *const sent_back[] = {"color",        "ambient",  "diffuse",       "specular",
+                                            "shininess",    "emission", "reflectivity",  "texture",
+                                            "texture_size", "checker",  "checker_color", NULL};
     bool found = false;
     for (size_t i = 0; sent_back[i] && !found; i++) {
         found = strcmp(sent_back[i], c->at.row->name) == 0;
     }
-    return found && c->frame && c->m->transparency == 0.0 && c->frame->hits[c->owner - c->s->solids] == 0 && say_unseen(c);
+    return found && c->frame && c->m->transparency == 0.0 && c->frame->hits[c->owner - c->s->solids] == 0 &&
+           say_unseen(c);
 }
 
 /* Faces that look as a file says take from the solid's own surface what makes it clear, and little else. */
 static bool is_of_body(const inert_case *c)
 {
-    static const char *const of_body[] = {"ior", "medium", "coefficients", "absorb_per_m", "absorb_spectrum", "tint_distance", NULL};
+    static const char *const of_body[] = {"ior",           "medium", "coefficients", "absorb_per_m", "absorb_spectrum",
+                                          "tint_distance", NULL};
     for (size_t i = 0; of_body[i]; i++) {
         if (strcmp(of_body[i], c->at.row->name) == 0) {
             return true;
@@ -219,17 +240,32 @@ static bool is_of_body(const inert_case *c)
 static bool covered(const inert_case *c)
 {
     const solid *cover = scene_cover(c->s, c->owner);
-    return cover && inert_say(c, "covered", inert_set("%s.priority=%lld", c->owner->name, (long long)cover->priority + 1).text,
-                              "%s lies wholly inside %s, which wins there", c->owner->name, cover->name);
+    return cover &&
+           inert_say(c, "covered", inert_set("%s.priority=%lld", c->owner->name, (long long)cover->priority + 1).text,
+                     "%s lies wholly inside %s, which wins there", c->owner->name, cover->name);
 }
 
 bool inert_surface(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"color", color_rule}, {"emission", is_black_surface}, {"ambient", ambient_rule}, {"diffuse", diffuse_rule}, {"specular", specular_rule}, {"shininess", shininess_rule},
-        {"reflectivity", reflectivity_rule}, {"ior", opaque_rule}, {"medium", opaque_rule}, {"coefficients", coefficients_rule}, {"absorb_per_m", absorb_per_m_rule},
-        {"absorb_spectrum", absorption_rule}, {"tint_distance", tint_distance_rule}, {"texture", texture_rule}, {"texture_size", texture_size_rule}, {"checker", checker_rule},
-        {"checker_color", checker_color_rule}, {NULL, NULL},
+        {"color", color_rule},
+        {"emission", is_black_surface},
+        {"ambient", ambient_rule},
+        {"diffuse", diffuse_rule},
+        {"specular", specular_rule},
+        {"shininess", shininess_rule},
+        {"reflectivity", reflectivity_rule},
+        {"ior", opaque_rule},
+        {"medium", opaque_rule},
+        {"coefficients", coefficients_rule},
+        {"absorb_per_m", absorb_per_m_rule},
+        {"absorb_spectrum", absorption_rule},
+        {"tint_distance", tint_distance_rule},
+        {"texture", texture_rule},
+        {"texture_size", texture_size_rule},
+        {"checker", checker_rule},
+        {"checker_color", checker_color_rule},
+        {NULL, NULL},
     };
     const bool straight = c->s->render.transmission == TRANSMISSION_SIMPLE;
     if (may_look_by_face(c->s, c->owner) && (straight || !is_of_body(c))) {
@@ -251,7 +287,8 @@ static bool may_be_named_by_face(const scene *s)
 
 static bool unused(const inert_case *c, const solid *hidden)
 {
-    const inert_remedy remedy = hidden ? inert_set("%s.visible=on", hidden->name) : (inert_remedy){"give it to a visible solid"};
+    const inert_remedy remedy =
+        hidden ? inert_set("%s.visible=on", hidden->name) : (inert_remedy){"give it to a visible solid"};
     return inert_say(c, "unused-material", remedy.text, "no visible solid is of this material");
 }
 

@@ -6,7 +6,11 @@
 #include <strings.h>
 
 /* Which bodies a parameter makes, and one of them as a remedy. Of slimes alone (param.shapes) are the rows that none else has. */
-typedef struct maker_row { const char *name; unsigned makers; const char *remedy; } maker_row;
+typedef struct maker_row {
+    const char *name;
+    unsigned makers;
+    const char *remedy;
+} maker_row;
 #define MAKES(maker) (1u << (maker))
 static const maker_row maker_rows[] = {
     {"count", MAKES(MESH_SPARSE) | MAKES(MESH_DENSE) | MAKES(MESH_SPHERE), "sparse"},
@@ -68,8 +72,8 @@ static bool at_rest(const inert_case *c, const mesh_entry *m)
             return false;
         }
     }
-    return rint(m->time_s / m->slime.dt_s) < 1.0 &&
-           inert_say(c, "time-0", inert_set("%s.time_s=0.5", c->name).text, "time_s is %g: the slime has not moved yet", m->time_s);
+    return rint(m->time_s / m->slime.dt_s) < 1.0 && inert_say(c, "time-0", inert_set("%s.time_s=0.5", c->name).text,
+                                                              "time_s is %g: the slime has not moved yet", m->time_s);
 }
 
 static bool no_floor(const inert_case *c, const mesh_entry *m)
@@ -91,13 +95,15 @@ bool inert_mesh(const inert_case *c)
     }
     const bool of_slimes = c->at.row->shapes != 0 && m->source == MESH_SLIME;
     return of_slimes && ((strcmp(c->at.row->name, "dt_s") == 0 && m->time_s == 0.0 &&
-                          inert_say(c, "time-0", inert_set("%s.time_s=0.5", c->name).text, "time_s is 0: the slime has not moved yet")) ||
+                          inert_say(c, "time-0", inert_set("%s.time_s=0.5", c->name).text,
+                                    "time_s is 0: the slime has not moved yet")) ||
                          at_rest(c, m) || no_floor(c, m));
 }
 
 static bool uses_texture(const scene *s, const solid *one, const char *name)
 {
-    return one->visible && (may_look_by_face(s, one) || (strcmp(one->surface.texture, name) == 0 && shows_color(s, &one->surface)));
+    return one->visible &&
+           (may_look_by_face(s, one) || (strcmp(one->surface.texture, name) == 0 && shows_color(s, &one->surface)));
 }
 
 static bool unused_texture(const inert_case *c)
@@ -114,7 +120,8 @@ static bool unused_texture(const inert_case *c)
         bare = !has && one->visible ? one : bare;
     }
     if (dull) {
-        return inert_say(c, "unused-texture", color_remedy(s, &dull->surface, dull->name).text, "no light shows the colour of what has it");
+        return inert_say(c, "unused-texture", color_remedy(s, &dull->surface, dull->name).text,
+                         "no light shows the colour of what has it");
     }
     const inert_remedy remedy = bare ? inert_set("%s.texture=%s", bare->name, c->name) : (inert_remedy){"add a solid"};
     return inert_say(c, "unused-texture", remedy.text, "no visible solid has this texture");

@@ -9,16 +9,19 @@
 typedef struct inert_case {
     const scene *s;
     place at;
-    const char *name;          /* of the path's object: "render", "lamp", "glass" */
-    const ray_counters *frame; /* or NULL */
+    const char *name;             /* of the path's object: "render", "lamp", "glass" */
+    const ray_counters *frame;    /* or NULL */
     const inert_witness *witness; /* never NULL */
-    const solid *owner;        /* of a surface: the solid that has it, visible */
-    const material *m;         /* its surface */
+    const solid *owner;           /* of a surface: the solid that has it, visible */
+    const material *m;            /* its surface */
     inert_answer *out;
 } inert_case;
 
 typedef bool inert_rule(const inert_case *c);
-typedef struct inert_row { const char *name; inert_rule *rule; } inert_row;
+typedef struct inert_row {
+    const char *name;
+    inert_rule *rule;
+} inert_row;
 
 /* The rule of the parameter in a list that ends with a NULL name; false where it has none. */
 bool inert_by_name(const inert_row *rows, const inert_case *c);
@@ -27,14 +30,19 @@ bool inert_by_name(const inert_row *rows, const inert_case *c);
 bool inert_same(const inert_case *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Fills the answer and returns true. */
-bool inert_say(const inert_case *c, const char *rule, const char *remedy, const char *text, ...) __attribute__((format(printf, 4, 5)));
+bool inert_say(const inert_case *c, const char *rule, const char *remedy, const char *text, ...)
+    __attribute__((format(printf, 4, 5)));
 
 /* A remedy that begins with "set ". */
-typedef struct inert_remedy { char text[NOTE_TEXT_MAX]; } inert_remedy;
+typedef struct inert_remedy {
+    char text[NOTE_TEXT_MAX];
+} inert_remedy;
 inert_remedy inert_set(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 bool inert_render(const inert_case *c);
 bool inert_background(const inert_case *c);
+/* Of render.radiance. */
+bool inert_radiance(const inert_case *c);
 bool inert_mesh(const inert_case *c);
 bool inert_texture(const inert_case *c);
 bool inert_light(const inert_case *c);

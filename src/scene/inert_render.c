@@ -8,7 +8,8 @@ static const char *const WHITTED = "set render.integrator=whitted";
 
 static bool path_only(const inert_case *c)
 {
-    return !is_path(c->s) && inert_say(c, "path-only", "set render.integrator=path", "only the path integrator draws by chance");
+    return !is_path(c->s) &&
+           inert_say(c, "path-only", "set render.integrator=path", "only the path integrator draws by chance");
 }
 
 /* The spectral film's wavelengths are drawn, too: render/spectra.c. */
@@ -25,8 +26,9 @@ static bool roulette(const inert_case *c)
         return true;
     }
     return c->s->render.depth <= ROULETTE_DEPTH &&
-           inert_say(c, "roulette-depth", "set render.depth=8", "paths may end by chance from depth %d on, and render.depth is %lld",
-                     ROULETTE_DEPTH + 1, (long long)c->s->render.depth);
+           inert_say(c, "roulette-depth", "set render.depth=8",
+                     "paths may end by chance from depth %d on, and render.depth is %lld", ROULETTE_DEPTH + 1,
+                     (long long)c->s->render.depth);
 }
 
 /* The first visible solid whose surface sends rays on, or one that could. */
@@ -55,10 +57,12 @@ static bool no_tree(const inert_case *c)
     }
     if (!follows_rays(s)) {
         const bool whitted = s->render.integrator == INTEGRATOR_WHITTED;
-        return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : WHITTED, "no ray goes on from a surface under %s",
+        return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : WHITTED,
+                         "no ray goes on from a surface under %s",
                          whitted ? "this render.lighting" : "this render.integrator");
     }
-    return nothing_goes_on(s) && inert_say(c, "no-branches", mirror_remedy(s).text, "nothing visible reflects or refracts");
+    return nothing_goes_on(s) &&
+           inert_say(c, "no-branches", mirror_remedy(s).text, "nothing visible reflects or refracts");
 }
 
 static bool beyond(const inert_case *c)
@@ -74,7 +78,8 @@ static bool beyond(const inert_case *c)
     }
     /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both has no cut ray. */
     return s->render.beyond != BEYOND_BLACK && inert_same(c, "render.beyond=black") &&
-           inert_say(c, "nothing-cut", "set render.depth=1", "no ray that render.depth cuts off carries light that the film resolves");
+           inert_say(c, "nothing-cut", "set render.depth=1",
+                     "no ray that render.depth cuts off carries light that the film resolves");
 }
 
 /* Highlights and branches are all that the lighting model chooses. */
@@ -95,7 +100,8 @@ static bool lighting(const inert_case *c)
         return false;
     }
     if (s->render.integrator != INTEGRATOR_WHITTED) {
-        return inert_say(c, "no-highlight", WHITTED, "no lamp makes a highlight, and no ray goes on under this render.integrator");
+        return inert_say(c, "no-highlight", WHITTED,
+                         "no lamp makes a highlight, and no ray goes on under this render.integrator");
     }
     return (nothing_goes_on(s) || (s->render.depth == 0 && is_dark_beyond(s))) &&
            inert_say(c, "no-highlight", mirror_remedy(s).text, "nothing visible has a highlight, reflects or refracts");
@@ -108,7 +114,8 @@ static inert_remedy clear_remedy(const scene *s)
     for (size_t i = 0; i < s->solid_count; i++) {
         first = first->shape.kind == SHAPE_PLANE && s->solids[i].visible ? &s->solids[i] : first;
     }
-    return first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name) : (inert_remedy){"add a solid"};
+    return first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name)
+                 : (inert_remedy){"add a solid"};
 }
 
 static bool no_clear(const inert_case *c)
@@ -119,7 +126,8 @@ static bool no_clear(const inert_case *c)
 static bool weights(const inert_case *c)
 {
     return no_clear(c) || (c->s->render.transmission == TRANSMISSION_SIMPLE &&
-                           inert_say(c, "simple", "set render.transmission=refract", "simple transmission takes the materials' constants"));
+                           inert_say(c, "simple", "set render.transmission=refract",
+                                     "simple transmission takes the materials' constants"));
 }
 
 static bool polarisation(const inert_case *c)
@@ -150,7 +158,9 @@ static bool shadows(const inert_case *c)
     if (s->render.integrator == INTEGRATOR_ZBUFFER) {
         return inert_say(c, "no-shadows", WHITTED, "the depth buffer draws no shadows");
     }
-    return nothing_lit(c) || (only_spheres_shine(s) && inert_say(c, "spheres", WHITTED, "lights that are spheres are looked for along random paths"));
+    return nothing_lit(c) ||
+           (only_spheres_shine(s) &&
+            inert_say(c, "spheres", WHITTED, "lights that are spheres are looked for along random paths"));
 }
 
 static bool min_weight(const inert_case *c)
@@ -158,12 +168,14 @@ static bool min_weight(const inert_case *c)
     if (is_path(c->s)) {
         return inert_say(c, "whitted-only", WHITTED, "random paths are no tree: render.roulette ends faint ones");
     }
-    return no_tree(c) || (c->s->render.depth == 0 && inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0: no branch is followed"));
+    return no_tree(c) || (c->s->render.depth == 0 &&
+                          inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0: no branch is followed"));
 }
 
 static bool wavelengths(const inert_case *c)
 {
-    return c->s->render.spectrum != SPECTRUM_SPECTRAL && inert_say(c, "spectral-only", "set render.spectrum=spectral", "the film is rgb");
+    return c->s->render.spectrum != SPECTRUM_SPECTRAL &&
+           inert_say(c, "spectral-only", "set render.spectrum=spectral", "the film is rgb");
 }
 
 static bool is_dispersive(const index_law *law)
@@ -175,7 +187,8 @@ static bool lambda(const inert_case *c)
 {
     const scene *s = c->s;
     if (s->render.spectrum == SPECTRUM_SPECTRAL) {
-        return inert_say(c, "rgb-only", "set render.spectrum=rgb", "the spectral film takes each wavelength's own index");
+        return inert_say(c, "rgb-only", "set render.spectrum=rgb",
+                         "the spectral film takes each wavelength's own index");
     }
     if (no_clear(c) || s->render.integrator == INTEGRATOR_ZBUFFER) {
         return c->out->rule[0] != 0;
@@ -200,7 +213,8 @@ static bool unit(const inert_case *c)
         absorbs |= one->visible && !material_is_opaque(&one->surface) && material_absorbs(&one->surface);
     }
     const solid *clear = first_clear(s);
-    const inert_remedy remedy = clear ? inert_set("%s.absorb_per_m=0.2,0.4,0.8", clear->name) : inert_set("background.absorb_per_m=0.01,0.02,0.04");
+    const inert_remedy remedy = clear ? inert_set("%s.absorb_per_m=0.2,0.4,0.8", clear->name)
+                                      : inert_set("background.absorb_per_m=0.01,0.02,0.04");
     return !absorbs && inert_say(c, "no-absorption", remedy.text, "nothing that light passes absorbs");
 }
 
@@ -213,9 +227,22 @@ static bool texturing(const inert_case *c)
 bool inert_render(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"depth", no_tree}, {"beyond", beyond}, {"lighting", lighting}, {"weights", weights}, {"transmission", no_clear},
-        {"shadows", shadows}, {"min_weight", min_weight}, {"paths", path_only}, {"roulette", roulette}, {"seed", seed},
-        {"polarisation", polarisation}, {"wavelengths", wavelengths}, {"lambda_nm", lambda}, {"unit_m", unit}, {"texturing", texturing},
+        {"depth", no_tree},
+        {"beyond", beyond},
+        {"lighting", lighting},
+        {"weights", weights},
+        {"transmission", no_clear},
+        {"shadows", shadows},
+        {"min_weight", min_weight},
+        {"paths", path_only},
+        {"roulette", roulette},
+        {"seed", seed},
+        {"radiance", inert_radiance},
+        {"polarisation", polarisation},
+        {"wavelengths", wavelengths},
+        {"lambda_nm", lambda},
+        {"unit_m", unit},
+        {"texturing", texturing},
         {NULL, NULL},
     };
     return inert_by_name(rows, c);

@@ -43,7 +43,8 @@ static bool priority_rule(const inert_case *c)
         hidden = one;
     }
     if (hidden) {
-        return inert_say(c, "both-opaque", inert_set("%s.transparency=0.9 and %s.ior=1.3", hidden->name, hidden->name).text,
+        return inert_say(c, "both-opaque",
+                         inert_set("%s.transparency=0.9 and %s.ior=1.3", hidden->name, hidden->name).text,
                          "%s overlaps %s, but both are opaque: nothing sees into them", c->name, hidden->name);
     }
     return inert_say(c, "apart", "move it into another solid", "no other visible solid overlaps %s", c->name);
@@ -59,12 +60,14 @@ static bool is_plain(const scene *s, const material *m)
 static bool rotation_rule(const inert_case *c)
 {
     /* The depth buffer draws a sphere of triangles, which turn with it. */
-    if (c->owner->shape.kind != SHAPE_SPHERE || !is_plain(c->s, c->m) || c->s->render.integrator == INTEGRATOR_ZBUFFER) {
+    if (c->owner->shape.kind != SHAPE_SPHERE || !is_plain(c->s, c->m) ||
+        c->s->render.integrator == INTEGRATOR_ZBUFFER) {
         return false;
     }
     const inert_remedy color = color_remedy(c->s, c->m, c->name);
-    const inert_remedy remedy = shows_color(c->s, c->m) ? inert_set("%s.checker=0.2 and %s.checker_color=0.3,0.5,0.7", c->name, c->name)
-                                                        : inert_set("%s.checker=0.2 and %s", c->name, color.text + strlen("set "));
+    const inert_remedy remedy = shows_color(c->s, c->m)
+                                    ? inert_set("%s.checker=0.2 and %s.checker_color=0.3,0.5,0.7", c->name, c->name)
+                                    : inert_set("%s.checker=0.2 and %s", c->name, color.text + strlen("set "));
     return inert_say(c, "round", remedy.text, "a sphere without checker or texture looks the same from all sides");
 }
 
@@ -79,7 +82,8 @@ static bool mesh_shading(const inert_case *c)
 {
     const scene *s = c->s;
     const bool textured = c->m->texture[0] && shows_color(s, c->m); /* a texel's footprint depends on the normal */
-    if (textured || is_lit_by_lamps(s, c->m) || may_look_by_face(s, c->owner) || (follows_rays(s) && sends_rays_on(s, c->owner))) {
+    if (textured || is_lit_by_lamps(s, c->m) || may_look_by_face(s, c->owner) ||
+        (follows_rays(s) && sends_rays_on(s, c->owner))) {
         return false;
     }
     const inert_remedy remedy = shining_lights(s) > 0 ? inert_set("%s.diffuse=0.7", c->name) : lamp_remedy(s);
@@ -94,7 +98,8 @@ static bool mesh_name(const inert_case *c)
 bool inert_solid(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"priority", priority_rule}, {"rotation", rotation_rule}, {"spacing", spacing_rule}, {"shading", mesh_shading}, {"mesh", mesh_name}, {NULL, NULL},
+        {"priority", priority_rule}, {"rotation", rotation_rule}, {"spacing", spacing_rule},
+        {"shading", mesh_shading},   {"mesh", mesh_name},         {NULL, NULL},
     };
     inert_case own = *c;
     own.owner = &c->s->solids[c->at.index], own.m = &own.owner->surface;
