@@ -146,7 +146,6 @@ static inline double film_apart(const film *a, const film *b)
     return most;
 }
 
-/* exact: the same bits; else within 1e-12. */
 static inline uint64_t hits_of_added(const scene *s, const render_result *r)
 {
     char name[16];
@@ -157,6 +156,8 @@ static inline uint64_t hits_of_added(const scene *s, const render_result *r)
     return 0;
 }
 
+/* exact: the same bits; else within 1e-11: a ray that meets a surface under 89.9 degrees carries the rounding of its
+ * place on a thousand times as large. */
 static inline verdict same_films(judge *j, const law_pair *p, bool exact)
 {
     scene *s = law_load(&p->a), *t = law_load(&p->b);
@@ -165,7 +166,7 @@ static inline verdict same_films(judge *j, const law_pair *p, bool exact)
     render_result *x = law_render(j, s), *y = law_render(j, t);
     j->difference = film_apart(x->picture, y->picture);
     j->added_hits = hits_of_added(t, y);
-    const bool same = exact ? film_hash(x->picture) == film_hash(y->picture) : j->difference <= 1e-12;
+    const bool same = exact ? film_hash(x->picture) == film_hash(y->picture) : j->difference <= 1e-11;
     render_result_destroy(x);
     render_result_destroy(y);
     scene_destroy(s);

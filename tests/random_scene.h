@@ -14,8 +14,8 @@ static inline void add_shape(scene_text *t, const solid_shape *s)
     switch (s->kind) {
     case SHAPE_CYLINDER: add(t, "shape: cylinder, radius: %.17g, height: %.17g, m: %.17g", s->radius, s->height, s->m); break;
     case SHAPE_CUP:
-        add(t, "shape: cup, radius: %.17g, height: %.17g, inner_radius: %.17g, floor: %.17g, m: %.17g", s->radius, s->height, s->inner_radius,
-            s->floor, s->m);
+        add(t, "shape: cup, radius: %.17g, height: %.17g, inner_radius: %.17g, floor: %.17g, m: %.17g", s->radius,
+            s->height, s->inner_radius, s->floor, s->m);
         break;
     case SHAPE_BOX: add(t, "shape: box, size: [%.17g, %.17g, %.17g]", s->size.x, s->size.y, s->size.z); break;
     case SHAPE_SPHERE: add(t, "shape: sphere, radius: %.17g", s->radius); break;

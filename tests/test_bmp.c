@@ -11,12 +11,15 @@
 #include "render_fixture.h"
 #include <unistd.h>
 
-/* BMP files, laid out here by Microsoft's description of the format ("Bitmap Storage"), apart from the reader: same pixels as PNG, same film; what is
- * no 24-bit BMP, or damaged, is refused with one line. */
+/* BMP files, laid out here by Microsoft's description of the format ("Bitmap Storage"), apart from the reader: same
+ * pixels as PNG, same film; what is no 24-bit BMP, or damaged, is refused with one line. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
-typedef struct bmp_file { unsigned char *bytes; size_t size; } bmp_file;
+typedef struct bmp_file {
+    unsigned char *bytes;
+    size_t size;
+} bmp_file;
 
 static void put_number(unsigned char *at, uint32_t value, int bytes)
 {
@@ -33,7 +36,8 @@ static unsigned char value_at(int x, int y, int channel)
 /* gap: bytes between headers and pixels, as a palette or a profile that a reader has to pass over. */
 static bmp_file make_bmp(int width, int height, uint32_t header, uint32_t gap, bool from_top)
 {
-    const uint32_t row = ((uint32_t)width * 3 + 3) & ~3U, offset = 14 + header + gap, size = offset + row * (uint32_t)height;
+    const uint32_t row = ((uint32_t)width * 3 + 3) & ~3U, offset = 14 + header + gap,
+                   size = offset + row * (uint32_t)height;
     bmp_file f = {calloc(size, 1), size};
     assert_non_null(f.bytes);
     memset(f.bytes + 14 + header, 0xEE, size - 14 - header); /* padding is anything */
@@ -112,10 +116,24 @@ static void refused(const unsigned char *bytes, size_t size, const char *word, c
 static void other_kinds_are_refused_with_the_remedy(void **state)
 {
     (void)state;
-    static const struct { int at, bytes; uint32_t value; const char *word; } kinds[] = {
-        {28, 2, 1, "1 bits"},        {28, 2, 8, "8 bits"},     {28, 2, 16, "16 bits"},     {28, 2, 32, "32 bits"}, {30, 4, 1, "run lengths"},
-        {30, 4, 2, "run lengths"},   {30, 4, 3, "kind 3"},     {30, 4, 4, "kind 4"},       {14, 4, 12, "OS/2"},    {14, 4, 64, "OS/2"},
-        {14, 4, 16, "OS/2"},         {14, 4, 39, "39 bytes"},  {14, 4, 0xFFFFFFFFU, "4294967295 bytes"},
+    static const struct {
+        int at, bytes;
+        uint32_t value;
+        const char *word;
+    } kinds[] = {
+        {28, 2, 1, "1 bits"},
+        {28, 2, 8, "8 bits"},
+        {28, 2, 16, "16 bits"},
+        {28, 2, 32, "32 bits"},
+        {30, 4, 1, "run lengths"},
+        {30, 4, 2, "run lengths"},
+        {30, 4, 3, "kind 3"},
+        {30, 4, 4, "kind 4"},
+        {14, 4, 12, "OS/2"},
+        {14, 4, 64, "OS/2"},
+        {14, 4, 16, "OS/2"},
+        {14, 4, 39, "39 bytes"},
+        {14, 4, 0xFFFFFFFFU, "4294967295 bytes"},
     };
     for (size_t k = 0; k < COUNT(kinds); k++) {
         bmp_file f = make_bmp(4, 3, 40, 100, false);
@@ -128,10 +146,23 @@ static void other_kinds_are_refused_with_the_remedy(void **state)
 static void hostile_sizes_are_refused(void **state)
 {
     (void)state;
-    static const struct { int at; uint32_t value; const char *word; } sizes[] = {
-        {18, 0, "0 x 3"},                      {18, 0xFFFFFFFFU, "-1 x 3"},        {18, 0x7FFFFFFFU, "2147483647 x 3"}, {22, 0, "4 x 0"},
-        {22, 0x80000000U, "4 x 2147483648"},   {22, 0x7FFFFFFFU, "4 x 2147483647"}, {18, 65536, "truncated"},            {22, 65536, "truncated"},
-        {18, 65537, "65537 x 3"},              {10, 0, "begin at byte 0"},         {10, 53, "begin at byte 53"},        {10, 0xFFFFFFFFU, "begin at byte 4294967295"},
+    static const struct {
+        int at;
+        uint32_t value;
+        const char *word;
+    } sizes[] = {
+        {18, 0, "0 x 3"},
+        {18, 0xFFFFFFFFU, "-1 x 3"},
+        {18, 0x7FFFFFFFU, "2147483647 x 3"},
+        {22, 0, "4 x 0"},
+        {22, 0x80000000U, "4 x 2147483648"},
+        {22, 0x7FFFFFFFU, "4 x 2147483647"},
+        {18, 65536, "truncated"},
+        {22, 65536, "truncated"},
+        {18, 65537, "65537 x 3"},
+        {10, 0, "begin at byte 0"},
+        {10, 53, "begin at byte 53"},
+        {10, 0xFFFFFFFFU, "begin at byte 4294967295"},
         {10, 60, "truncated"},
     };
     for (size_t k = 0; k < COUNT(sizes); k++) {
@@ -189,11 +220,12 @@ static void corruptions_do_no_harm(void **state)
 static uint64_t film_with(const char *path)
 {
     char text[1024];
-    snprintf(text, sizeof text,
-             "render: {width: 32, height: 24}\nbackground: {picture: %s}\ntextures: {t: {file: %s}, l: {file: %s, space: linear}}\n"
-             "solids:\n  ball: {shape: sphere, ambient: 1, texture: t, reflectivity: 0.3, position: [-1, 1, 0]}\n"
-             "  box: {shape: box, ambient: 1, texture: l, position: [1, 1, 0], rotation: [10, 20, 0]}\n",
-             path, path, path);
+    snprintf(
+        text, sizeof text,
+        "render: {width: 32, height: 24}\nbackground: {picture: %s}\ntextures: {t: {file: %s}, l: {file: %s, space: linear}}\n"
+        "solids:\n  ball: {shape: sphere, ambient: 1, texture: t, reflectivity: 0.3, position: [-1, 1, 0]}\n"
+        "  box: {shape: box, ambient: 1, texture: l, position: [1, 1, 0], rotation: [10, 20, 0]}\n",
+        path, path, path);
     scene *s = scene_from(text);
     diagnostic why = {0};
     worked(scene_load(s, &why), &why);

@@ -11,25 +11,26 @@
 #include "render_fixture.h"
 #include "scene/camera.h"
 
-/* Camera roll against closed forms: Rodrigues' formula for the frame, and the image turned by quarters. The image of roll 90 shows at column x,
- * row y what the level one shows at column side - 1 - y, row x: it is turned counter-clockwise. */
+/* Camera roll against closed forms: Rodrigues' formula for the frame, and the image turned by quarters. The image of
+ * roll 90 shows at column x, row y what the level one shows at column side - 1 - y, row x: it is turned counter-
+ * clockwise. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 enum { SIDE = 64 };
 
-#define HEAD \
-    "render: {width: 64, height: 64, depth: 5}\n" \
-    "camera: {position: [0.25, 1, -6], yaw_deg: 0, fov_deg: 40}\n" \
-    "background: {kind: gradient, color: [0.1, 0.2, 0.9], horizon: [1, 0.8, 0.6], ambient: [0.5, 0.6, 0.7]}\n" \
-    "lights: {lamp: {position: [4, 7, -5]}}\n" \
+#define HEAD                                                                                                                \
+    "render: {width: 64, height: 64, depth: 5}\n"                                                                           \
+    "camera: {position: [0.25, 1, -6], yaw_deg: 0, fov_deg: 40}\n"                                                          \
+    "background: {kind: gradient, color: [0.1, 0.2, 0.9], horizon: [1, 0.8, 0.6], ambient: [0.5, 0.6, 0.7]}\n"              \
+    "lights: {lamp: {position: [4, 7, -5]}}\n"                                                                              \
     "materials: {dull: {diffuse: 0.7, ambient: 0.1, specular: 0.4, shininess: 40, color: [0.8, 0.3, 0.2], checker: 0.3}}\n" \
     "solids:\n"
 
-static const char room[] = HEAD
-    "  ground: {shape: plane, material: dull, checker: 1}\n"
-    "  glass: {shape: sphere, radius: 0.9, position: [-0.8, 1, -1], transparency: 1, ior: 1.5}\n"
-    "  crate: {shape: box, material: dull, position: [1.4, 0.6, 0], rotation: [0, 30, 0]}\n"
-    "  mirror: {shape: sphere, reflectivity: 1, radius: 0.6, position: [0.6, 2, 1]}\n";
+static const char room[] =
+    HEAD "  ground: {shape: plane, material: dull, checker: 1}\n"
+         "  glass: {shape: sphere, radius: 0.9, position: [-0.8, 1, -1], transparency: 1, ior: 1.5}\n"
+         "  crate: {shape: box, material: dull, position: [1.4, 0.6, 0], rotation: [0, 30, 0]}\n"
+         "  mirror: {shape: sphere, reflectivity: 1, radius: 0.6, position: [0.6, 2, 1]}\n";
 
 /* Which pixel of the level image the pixel of the rolled one shows. */
 static void level_pixel(int quarters, int x, int y, int *to_x, int *to_y)
@@ -73,15 +74,13 @@ static int pixels_beyond(const char *text, const char *settings, int quarters, d
     return pixels_of_scene_beyond(s, quarters, much);
 }
 
-/* The points of the film are turned up to rounding (1e-16 of its height). What stays is a pixel whose ray then falls on the other side of an edge. */
+/* The points of the film are turned up to rounding (1e-16 of its height). What stays is a pixel whose ray then falls
+ * on the other side of an edge. */
 static void quarters_turn_the_image(void **state)
 {
     (void)state;
-    static const char *const settings[] = {"",
-                                           "camera.position=2,3,-5 camera.target=-0.3,1,0.4",
-                                           "render.samples=4",
-                                           "render.integrator=raycast",
-                                           "render.polarisation=on"};
+    static const char *const settings[] = {"", "camera.position=2,3,-5 camera.target=-0.3,1,0.4", "render.samples=4",
+                                           "render.integrator=raycast", "render.polarisation=on"};
     for (size_t k = 0; k < COUNT(settings); k++)
         for (int quarters = 1; quarters <= 3; quarters++) {
             const int beyond = pixels_beyond(room, settings[k], quarters, 1e-9);
@@ -95,15 +94,16 @@ static void quarters_turn_the_image(void **state)
 static void paths_turn_too(void **state)
 {
     (void)state;
-    static const char mirrors[] = HEAD "  ball: {shape: sphere, reflectivity: 1, radius: 0.8, position: [-0.8, 1, -1]}\n"
-                                       "  block: {shape: box, reflectivity: 1, position: [1, 1, 1], rotation: [10, 30, 0]}\n";
+    static const char mirrors[] =
+        HEAD "  ball: {shape: sphere, reflectivity: 1, radius: 0.8, position: [-0.8, 1, -1]}\n"
+             "  block: {shape: box, reflectivity: 1, position: [1, 1, 1], rotation: [10, 30, 0]}\n";
     assert_true(pixels_beyond(mirrors, "render.integrator=path render.paths=1", 1, 1e-12) == 0);
     assert_true(pixels_beyond(mirrors, "render.integrator=path render.paths=4 render.samples=4", 3, 1e-12) == 0);
     assert_true(pixels_beyond(room, "render.integrator=path render.paths=400", 1, 0.15) < SIDE * SIDE / 50);
 }
 
-/* Triangles fill the film's grid; a point on an edge belongs to the triangle on its right or below, which is another one when the film is turned.
- * The chequered ground is textured in perspective, and straight across the image. */
+/* Triangles fill the film's grid; a point on an edge belongs to the triangle on its right or below, which is another
+ * one when the film is turned. The chequered ground is textured in perspective, and straight across the image. */
 static void the_depth_buffer_turns_too(void **state)
 {
     (void)state;
@@ -127,8 +127,8 @@ static void assert_vectors_near(vec3 a, vec3 b, double most)
     assert_true(vec3_length(vec3_sub(a, b)) <= most);
 }
 
-/* Rodrigues: v cos a + (n x v) sin a for v across n. The roll turns right towards down, which in this left-handed frame (right, up, forward) is
- * the sense of -a. */
+/* Rodrigues: v cos a + (n x v) sin a for v across n. The roll turns right towards down, which in this left-handed
+ * frame (right, up, forward) is the sense of -a. */
 static void the_frame_is_turned_about_the_view(void **state)
 {
     (void)state;
@@ -142,8 +142,10 @@ static void the_frame_is_turned_about_the_view(void **state)
         s->camera.roll_deg = random_real(&seed, -360.0, 360.0);
         const camera_frame rolled = camera_frame_of(s), again = camera_frame_level(s);
         const double a = s->camera.roll_deg * acos(-1.0) / 180.0;
-        const vec3 right = vec3_add(vec3_scale(level.right, cos(a)), vec3_scale(vec3_cross(level.forward, level.right), -sin(a)));
-        const vec3 up = vec3_add(vec3_scale(level.up, cos(a)), vec3_scale(vec3_cross(level.forward, level.up), -sin(a)));
+        const vec3 right =
+            vec3_add(vec3_scale(level.right, cos(a)), vec3_scale(vec3_cross(level.forward, level.right), -sin(a)));
+        const vec3 up =
+            vec3_add(vec3_scale(level.up, cos(a)), vec3_scale(vec3_cross(level.forward, level.up), -sin(a)));
         assert_vectors_near(rolled.right, right, 1e-14);
         assert_vectors_near(rolled.up, up, 1e-14);
         assert_memory_equal(&again, &level, sizeof level);
@@ -165,7 +167,8 @@ static void the_ray_of_a_pixel_rolls(void **state)
     diagnostic why = {0};
     worked(probe_create(s, isa_best(), &p, &why), &why);
     const camera_frame f = camera_frame_of(s);
-    const vec3 corner = vec3_add(f.forward, vec3_sub(vec3_scale(f.up, f.half_height), vec3_scale(f.right, f.half_width)));
+    const vec3 corner =
+        vec3_add(f.forward, vec3_sub(vec3_scale(f.up, f.half_height), vec3_scale(f.right, f.half_width)));
     assert_vectors_near(probe_camera_direction(p, 0.0, 0.0), vec3_normalize(corner), 1e-15);
     assert_vectors_near(probe_camera_direction(p, 400.0, 300.0), f.forward, 1e-15);
     probe_destroy(p);
@@ -175,8 +178,9 @@ static void the_ray_of_a_pixel_rolls(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quarters_turn_the_image),            cmocka_unit_test(paths_turn_too),                     cmocka_unit_test(the_depth_buffer_turns_too),
-        cmocka_unit_test(the_frame_is_turned_about_the_view), cmocka_unit_test(the_ray_of_a_pixel_rolls),
+        cmocka_unit_test(quarters_turn_the_image),    cmocka_unit_test(paths_turn_too),
+        cmocka_unit_test(the_depth_buffer_turns_too), cmocka_unit_test(the_frame_is_turned_about_the_view),
+        cmocka_unit_test(the_ray_of_a_pixel_rolls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

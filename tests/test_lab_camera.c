@@ -11,7 +11,8 @@
 #include "web/camera_moves.h"
 #include "web/lab_private.h"
 
-/* The page's camera where it is rolled: its moves follow the image, and a place of the image is the tracer's ray there. */
+/* The page's camera where it is rolled: its moves follow the image, and a place of the image is the tracer's ray
+ * there. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 

@@ -9,12 +9,13 @@
 #include "render_fixture.h"
 #include "scene/edit.h"
 
-/* A whole scene moves, turns and is scaled: with its camera the film is the same up to rounding; of its parts only those that are named change; and
- * when one of them would leave its range, nothing does. */
+/* A whole scene moves, turns and is scaled: with its camera the film is the same up to rounding; of its parts only
+ * those that are named change; and when one of them would leave its range, nothing does. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
-/* One of everything that has a length: ellipses, absorption, copies, checkers, textures of faces, of planes and by size, lights with reach, cones. */
+/* One of everything that has a length: ellipses, absorption, copies, checkers, textures of faces, of planes and by
+ * size, lights with reach, cones. */
 static const char everything[] =
     "render: {width: 60, height: 45, depth: 6, unit_m: 0.5}\n"
     "camera: {position: [1, 3, -7], target: [0, 0.8, 0], fov_deg: 40, roll_deg: 10}\n"
@@ -66,7 +67,10 @@ static int pixels_beyond(const render_result *a, const render_result *b, double 
     return beyond;
 }
 
-typedef struct change { vec3 move, turn_deg; double scale; } change;
+typedef struct change {
+    vec3 move, turn_deg;
+    double scale;
+} change;
 
 static void apply(scene *s, const char *name, const change *c)
 {
@@ -77,12 +81,8 @@ static void apply(scene *s, const char *name, const change *c)
 }
 
 static const change changes[] = {
-    {{3.3, -2.1, 0.7}, {0, 0, 0}, 1.0},
-    {{0, 0, 0}, {0, 90, 0}, 1.0},
-    {{0, 0, 0}, {33, -71, 117}, 1.0},
-    {{0, 0, 0}, {0, 0, 0}, 2.0},
-    {{0, 0, 0}, {0, 0, 0}, 0.037},
-    {{1, 2, 3}, {-17, 140, 62}, 7.3},
+    {{3.3, -2.1, 0.7}, {0, 0, 0}, 1.0}, {{0, 0, 0}, {0, 90, 0}, 1.0},  {{0, 0, 0}, {33, -71, 117}, 1.0},
+    {{0, 0, 0}, {0, 0, 0}, 2.0},        {{0, 0, 0}, {0, 0, 0}, 0.037}, {{1, 2, 3}, {-17, 140, 62}, 7.3},
     {{0, 0, 0}, {0, 0, 180}, 1.0}, /* upside down: all of it is roll */
 };
 
@@ -90,7 +90,8 @@ static const change changes[] = {
 static void with_its_camera_the_film_is_the_same(void **state)
 {
     (void)state;
-    static const char *const settings[] = {"", "camera.yaw_deg=-12 camera.pitch_deg=-15", "camera.position=0,6,0 camera.target=0,0,0 camera.roll_deg=0",
+    static const char *const settings[] = {"", "camera.yaw_deg=-12 camera.pitch_deg=-15",
+                                           "camera.position=0,6,0 camera.target=0,0,0 camera.roll_deg=0",
                                            "render.integrator=raycast render.lighting=lambert"};
     for (size_t k = 0; k < COUNT(settings); k++) {
         scene *s = whole_scene(settings[k]);
@@ -134,9 +135,13 @@ static void assert_vector(vec3 v, double x, double y, double z)
 static void only_what_is_named_changes(void **state)
 {
     (void)state;
-    const struct { const char *name; scene_parts parts; } names[] = {
-        {"all", {true, true, false}},     {"solids", {true, false, false}},        {"lights", {false, true, false}},
-        {"solids+camera", {true, false, true}}, {"camera+all", {true, true, true}}, {"lights+camera", {false, true, true}},
+    const struct {
+        const char *name;
+        scene_parts parts;
+    } names[] = {
+        {"all", {true, true, false}},       {"solids", {true, false, false}},
+        {"lights", {false, true, false}},   {"solids+camera", {true, false, true}},
+        {"camera+all", {true, true, true}}, {"lights+camera", {false, true, true}},
     };
     for (size_t k = 0; k < COUNT(names); k++) {
         const scene_parts p = names[k].parts;
@@ -148,8 +153,10 @@ static void only_what_is_named_changes(void **state)
             assert_vector(s->solids[2].shape.position, -1, 0, -1);
         assert_true(s->solids[2].shape.radius == (p.solids ? 1.6 : 0.8) && s->solids[2].shape.m == 1.5);
         assert_true(s->solids[2].shape.rotation_deg.y == (p.solids ? 110 : 20));
-        assert_true(s->materials[0].value.checker == (p.solids ? 0.62 : 0.31) && s->solids[1].surface.checker == (p.solids ? 1.66 : 0.83));
-        assert_true(s->solids[0].surface.texture_size == (p.solids ? 2.0 : 0.0) && s->solids[5].surface.texture_size == 0.0);
+        assert_true(s->materials[0].value.checker == (p.solids ? 0.62 : 0.31) &&
+                    s->solids[1].surface.checker == (p.solids ? 1.66 : 0.83));
+        assert_true(s->solids[0].surface.texture_size == (p.solids ? 2.0 : 0.0) &&
+                    s->solids[5].surface.texture_size == 0.0);
         assert_true(s->render.unit_m == (p.solids ? 0.25 : 0.5));
         if (p.lights)
             assert_vector(s->lights[1].position, -6, 8, 7);
@@ -172,7 +179,8 @@ static void one_solid_or_light_is_scaled_where_it_stands(void **state)
     assert_int_equal(scene_scale(s, "can", 3.0, NULL), STATUS_OK);
     const solid *can = &s->solids[3];
     assert_vector(can->shape.position, 0.8, 0, 0.5);
-    assert_true(fabs(can->shape.radius - 1.2) < 1e-15 && fabs(can->surface.texture_size - 2.1) < 1e-15 && s->render.unit_m == 0.5);
+    assert_true(fabs(can->shape.radius - 1.2) < 1e-15 && fabs(can->surface.texture_size - 2.1) < 1e-15 &&
+                s->render.unit_m == 0.5);
     assert_true(s->materials[1].value.texture_size == 0.0 && s->solids[5].shape.size.x == 0.5);
     assert_int_equal(scene_scale(s, "lamp", 2.0, NULL), STATUS_OK);
     assert_true(s->lights[0].reach == 18 && s->lights[1].reach == 5);
@@ -189,7 +197,8 @@ static void expect_refused(scene *s, status code, const diagnostic *why, const c
     diagnostic_text(why, said, sizeof said);
     if (code != STATUS_BAD_INPUT || !strstr(said, words))
         fail_msg("%d, '%s' instead of '%s'", (int)code, said, words);
-    assert_true(s->solids[0].shape.position.x == 0.0 && s->solids[2].shape.radius == 0.8 && s->lights[0].position.x == 4.0);
+    assert_true(s->solids[0].shape.position.x == 0.0 && s->solids[2].shape.radius == 0.8 &&
+                s->lights[0].position.x == 4.0);
     assert_true(s->materials[0].value.checker == 0.31 && s->render.unit_m == 0.5 && s->camera.position.x == 1.0);
 }
 
@@ -227,9 +236,12 @@ static void an_object_of_that_name_comes_first(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(with_its_camera_the_film_is_the_same),   cmocka_unit_test(paths_see_the_same),
-        cmocka_unit_test(only_what_is_named_changes),             cmocka_unit_test(one_solid_or_light_is_scaled_where_it_stands),
-        cmocka_unit_test(what_cannot_be_changes_nothing),         cmocka_unit_test(an_object_of_that_name_comes_first),
+        cmocka_unit_test(with_its_camera_the_film_is_the_same),
+        cmocka_unit_test(paths_see_the_same),
+        cmocka_unit_test(only_what_is_named_changes),
+        cmocka_unit_test(one_solid_or_light_is_scaled_where_it_stands),
+        cmocka_unit_test(what_cannot_be_changes_nothing),
+        cmocka_unit_test(an_object_of_that_name_comes_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,21 @@
-/* Uncompressed BMP of 24 bits: a file header of 14 bytes, a header of 40 (BITMAPINFOHEADER, Windows 3) to 124 bytes (BITMAPV5HEADER), and from the
- * file header's offset on rows of blue, green, red, each padded to a multiple of 4 bytes; from the bottom, or from the top where the height is
- * negative. Microsoft, Windows GDI, "Bitmap Storage". Numbers are little-endian. */
+/* Uncompressed BMP of 24 bits: a file header of 14 bytes, a header of 40 (BITMAPINFOHEADER, Windows 3) to 124 bytes
+ * (BITMAPV5HEADER), and from the file header's offset on rows of blue, green, red, each padded to a multiple of 4
+ * bytes; from the bottom, or from the top where the height is negative. Microsoft, Windows GDI, "Bitmap Storage".
+ * Numbers are little-endian. */
 #include "image/codec.h"
 
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FILE_HEADER = 14, INFO_HEADER = 40, V5_HEADER = 124, OS2_HEADER = 12, OS2_HEADER_2 = 64, OS2_HEADER_2_SHORT = 16 };
+enum {
+    FILE_HEADER = 14,
+    INFO_HEADER = 40,
+    V5_HEADER = 124,
+    OS2_HEADER = 12,
+    OS2_HEADER_2 = 64,
+    OS2_HEADER_2_SHORT = 16
+};
 enum { UNCOMPRESSED, RLE8, RLE4 }; /* the header's compression */
 
 #define REMEDY "save it as an uncompressed 24-bit BMP, or as PNG"
@@ -28,7 +36,11 @@ static int64_t signed_at(const unsigned char *b)
 }
 
 /* width and height in pixels; rows from the top where the file says so. */
-typedef struct bmp_header { int64_t width, height; size_t offset, row_bytes; bool from_top; } bmp_header;
+typedef struct bmp_header {
+    int64_t width, height;
+    size_t offset, row_bytes;
+    bool from_top;
+} bmp_header;
 
 /* Only what the rows below read is believed; the file's own size is often wrong, and is not looked at. */
 static status check_kind(const unsigned char *bytes, size_t size, diagnostic *why)
@@ -41,17 +53,20 @@ static status check_kind(const unsigned char *bytes, size_t size, diagnostic *wh
         return diagnose(why, STATUS_BAD_INPUT, NULL, "the BMP file is truncated: %zu bytes have no whole header", size);
     }
     if (header < INFO_HEADER || header > V5_HEADER) {
-        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the header of the BMP file is damaged: it claims to have %lu bytes", (unsigned long)header);
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY,
+                        "the header of the BMP file is damaged: it claims to have %lu bytes", (unsigned long)header);
     }
     const uint32_t bits = number_at(bytes + 28, 2), compression = number_at(bytes + 30, 4);
     if (compression == RLE8 || compression == RLE4) {
         return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is compressed by run lengths, which is not read");
     }
     if (bits != 24) {
-        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has %lu bits a pixel; only 24 are read", (unsigned long)bits);
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has %lu bits a pixel; only 24 are read",
+                        (unsigned long)bits);
     }
     if (compression != UNCOMPRESSED) {
-        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has a compression of kind %lu, which is not read", (unsigned long)compression);
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has a compression of kind %lu, which is not read",
+                        (unsigned long)compression);
     }
     return STATUS_OK;
 }
@@ -63,7 +78,9 @@ static status read_header(const unsigned char *bytes, size_t size, bmp_header *o
         return code;
     }
     const int64_t height = signed_at(bytes + 22);
-    *out = (bmp_header){.width = signed_at(bytes + 18), .height = height < 0 ? -height : height, .from_top = height < 0,
+    *out = (bmp_header){.width = signed_at(bytes + 18),
+                        .height = height < 0 ? -height : height,
+                        .from_top = height < 0,
                         .offset = number_at(bytes + 10, 4)};
     code = codec_check_size(out->width, out->height, size, why);
     if (code != STATUS_OK) {
@@ -71,12 +88,15 @@ static status read_header(const unsigned char *bytes, size_t size, bmp_header *o
     }
     out->row_bytes = ((size_t)out->width * 3 + 3) / 4 * 4;
     if (out->offset < FILE_HEADER + number_at(bytes + FILE_HEADER, 4) || out->offset > size) {
-        return diagnose(why, STATUS_BAD_INPUT, NULL, "the BMP file is damaged: its pixels are said to begin at byte %zu of %zu", out->offset, size);
+        return diagnose(why, STATUS_BAD_INPUT, NULL,
+                        "the BMP file is damaged: its pixels are said to begin at byte %zu of %zu", out->offset, size);
     }
     /* sides are at most 65536: no overflow; the last row need not be padded */
     const size_t needed = out->row_bytes * (size_t)(out->height - 1) + (size_t)out->width * 3;
     if (size - out->offset < needed) {
-        return diagnose(why, STATUS_BAD_INPUT, NULL, "the BMP file is truncated: %zu bytes of pixels where %zu should be", size - out->offset, needed);
+        return diagnose(why, STATUS_BAD_INPUT, NULL,
+                        "the BMP file is truncated: %zu bytes of pixels where %zu should be", size - out->offset,
+                        needed);
     }
     return STATUS_OK;
 }

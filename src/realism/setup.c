@@ -41,7 +41,8 @@ static status read_vessel(const scene *s, setup *out, diagnostic *why)
         return wrong(s, why, example, "there is no visible box named 'rod'");
     const solid *vessel = &s->solids[out->vessel], *rod = &s->solids[out->rod];
     if (vessel->shape.m != 1.0)
-        return wrong(s, why, "set vessel.m to 1: the closed forms are those of a round vessel", "the vessel is elliptic");
+        return wrong(s, why, "set vessel.m to 1: the closed forms are those of a round vessel",
+                     "the vessel is elliptic");
     if (is_turned(vessel) || vessel->surface.transparency == 0.0)
         return wrong(s, why, "let it stand upright, and set its transparency above 0", "the vessel is turned or opaque");
     if (rod->surface.transparency != 0.0 || rod->priority <= vessel->priority)

@@ -21,7 +21,8 @@ view view_of(const scene *s)
 sight view_through(const view *v, double px, double py)
 {
     const double across = (px - v->width / 2.0) / v->focal_px, upwards = (v->height / 2.0 - py) / v->focal_px;
-    const double right = across * cos(v->roll) + upwards * sin(v->roll), up = upwards * cos(v->roll) - across * sin(v->roll);
+    const double right = across * cos(v->roll) + upwards * sin(v->roll);
+    const double up = upwards * cos(v->roll) - across * sin(v->roll);
     const double length = sqrt(right * right + up * up + 1.0);
     const double level = cos(v->pitch) - up * sin(v->pitch);
     sight s = {.x = (right * cos(v->yaw) + level * sin(v->yaw)) / length,

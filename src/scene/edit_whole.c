@@ -1,4 +1,5 @@
-/* A whole scene moves, turns and is scaled: all its solids, lights, or both, with or without the camera. One solid or light is scaled here too. */
+/* A whole scene moves, turns and is scaled: all its solids, lights, or both, with or without the camera. One solid or
+ * light is scaled here too. */
 #include "scene/edit.h"
 #include "scene/edit_vector.h"
 #include "base/elementary.h"
@@ -13,8 +14,13 @@
 
 static bool add_word(const char *word, size_t length, scene_parts *parts)
 {
-    static const struct { const char *word; scene_parts parts; } words[] = {
-        {"all", {.solids = true, .lights = true}}, {"solids", {.solids = true}}, {"lights", {.lights = true}}, {"camera", {.camera = true}}};
+    static const struct {
+        const char *word;
+        scene_parts parts;
+    } words[] = {{"all", {.solids = true, .lights = true}},
+                 {"solids", {.solids = true}},
+                 {"lights", {.lights = true}},
+                 {"camera", {.camera = true}}};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         if (strlen(words[i].word) == length && strncmp(words[i].word, word, length) == 0) {
             parts->solids |= words[i].parts.solids;
@@ -69,9 +75,9 @@ typedef struct whole_edit {
     scene *s;
     const scene *before;
     scene_parts parts;
-    const char *only;     /* scales that solid or light alone, where it stands; NULL: the parts */
-    vec3 by;              /* of a move or turn */
-    double factor;        /* of a scale */
+    const char *only; /* scales that solid or light alone, where it stands; NULL: the parts */
+    vec3 by;          /* of a move or turn */
+    double factor;    /* of a scale */
     diagnostic *why;
     status (*act)(struct whole_edit *e);
 } whole_edit;
@@ -122,11 +128,13 @@ static status turn_light(whole_edit *e, const light *one)
     return code == STATUS_OK && one->kind != LIGHT_POINT ? turn_point(e, one->name, "target", one->target) : code;
 }
 
-/* The whole frame goes around the origin, so that the image's up does too: what is left between that and a level image is roll. */
+/* The whole frame goes around the origin, so that the image's up does too: what is left between that and a level image
+ * is roll. */
 static status turn_camera(whole_edit *e)
 {
     scene *s = e->s;
-    const vec3 eye = s->camera.position, target = s->camera.target, up = mat3_apply(rotation_from_deg(e->by), camera_frame_of(s).up);
+    const vec3 eye = s->camera.position, target = s->camera.target,
+               up = mat3_apply(rotation_from_deg(e->by), camera_frame_of(s).up);
     status code = STATUS_OK;
     if (s->camera.aimed) {
         code = turn_point(e, "camera", "target", target);
@@ -156,7 +164,8 @@ static status turn_parts(whole_edit *e)
     return e->parts.camera && code == STATUS_OK ? turn_camera(e) : code;
 }
 
-/* Lengths are the rows of the table whose unit is the scene unit, so that a new one is scaled too; and a mesh's own scale. */
+/* Lengths are the rows of the table whose unit is the scene unit, so that a new one is scaled too; and a mesh's own
+ * scale. */
 static bool is_length(const param *row)
 {
     if (row->group == PARAM_SOLID && strcmp(row->name, "scale") == 0) {
@@ -213,7 +222,8 @@ static void scale_planes(whole_edit *e)
     for (size_t i = 0; i < e->s->solid_count; i++) {
         solid *one = &e->s->solids[i];
         const bool is_wanted = e->only ? strcmp(one->name, e->only) == 0 : e->parts.solids;
-        if (is_wanted && one->shape.kind == SHAPE_PLANE && one->surface.texture[0] && one->surface.texture_size == 0.0) {
+        if (is_wanted && one->shape.kind == SHAPE_PLANE && one->surface.texture[0] &&
+            one->surface.texture_size == 0.0) {
             one->surface.texture_size = e->factor;
         }
     }
@@ -250,7 +260,8 @@ status scene_scale(scene *s, const char *name, double factor, diagnostic *why)
     whole_edit e = {.s = s, .factor = factor, .why = why, .act = scale_parts};
     place at;
     if (!(factor > 0.0 && factor <= 1e9)) {
-        return diagnose(why, STATUS_BAD_INPUT, "give a factor above 0, at most 1e9", "%.80s cannot be scaled by %g", name, factor);
+        return diagnose(why, STATUS_BAD_INPUT, "give a factor above 0, at most 1e9", "%.80s cannot be scaled by %g",
+                        name, factor);
     }
     if (scene_parts_named(s, name, &e.parts)) {
         return apply(&e);
@@ -260,7 +271,8 @@ status scene_scale(scene *s, const char *name, double factor, diagnostic *why)
         return code;
     }
     if (at.group != PARAM_SOLID && at.group != PARAM_LIGHT) {
-        return diagnose(why, STATUS_BAD_INPUT, "scale a solid, a light, or all, solids, lights", "%.80s has no size of its own", name);
+        return diagnose(why, STATUS_BAD_INPUT, "scale a solid, a light, or all, solids, lights",
+                        "%.80s has no size of its own", name);
     }
     e.only = name;
     return apply(&e);

@@ -75,7 +75,7 @@ typedef struct camera {
     vec3 target;            /* used when aimed */
     double yaw_deg, pitch_deg; /* used when not aimed */
     int64_t aimed;          /* 1: looks at target; 0: along yaw and pitch. Set by whichever was written last */
-    double roll_deg;        /* about the direction of view, the camera's right side down: the image turns counter-clockwise */
+    double roll_deg;        /* about the direction of view, right side down: the image turns counter-clockwise */
     double fov_deg;         /* vertical */
 } camera;
 
