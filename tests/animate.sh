@@ -270,7 +270,7 @@ for command in render\ --json trace\ --pixel=3,3 realism\ --json scene\ --check;
     stopped 0.5 ${command%% *} day.yaml ${command#* }
     check "nor a slime's day: $command" heard 'toy: interrupted at'
 done
-printf '%s\n' 'study: day' 'scene: day.yaml' 'grid: [{render.depth: [0]}]' 'repetitions: 1' >day.study
+printf '%s\n' 'study: day' 'scene: day.yaml' 'grid: [{camera.fov_deg: [40]}]' 'repetitions: 1' >day.study
 stopped 0.5 study run day.study --results day-results
 check "nor one in a study" heard 'interrupted; its 0 new rows'
 
