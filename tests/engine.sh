@@ -93,7 +93,7 @@ try_example() { # NAME WIDTH HEIGHT WHAT_IS_SAID: what of its words is the same 
         skip "$name as C++: no $cxx"
     fi
     empty "the shared one needs libcuvette.so.0, the static one none" \
-        "$(readelf -d "$work/$name-shared-c" | grep -q 'NEEDED.*libcuvette\.so\.0\]' || echo shared; readelf -d "$work/$name-static-c" | grep 'NEEDED.*libcuvette')"
+        "$(readelf -d "$work/$name-shared-c" | grep 'NEEDED.*libcuvette\.so\.0\]' >/dev/null || echo shared; readelf -d "$work/$name-static-c" | grep 'NEEDED.*libcuvette')"
     empty "it says what it did" "$([[ -s $work/$name-shared-c.said ]] || echo nothing)"
     for way in "${ways[@]}"; do
         empty "$name-$way makes the same picture, films and counts" \
