@@ -70,6 +70,31 @@ static void parameters_are_set_as_by_the_option(void **state)
     assert_param("render.depth", "value", 3);
 }
 
+/* How many notes came with what was set; the first's place and words, when it is asked for them. */
+static size_t notes_on(const char *body, const char *place, const char *words)
+{
+    json_t *answer = room_ask(&room, "POST", "/api/set", body, 200);
+    const json_t *notes = json_object_get(answer, "notes"), *first = json_array_get(notes, 0);
+    const size_t n = json_array_size(notes);
+    assert_true(json_integer_value(json_object_get(answer, "generation")) > 0);
+    if (place && n > 0) {
+        assert_string_equal(json_string_value(json_object_get(first, "place")), place);
+        assert_non_null(strstr(json_string_value(json_object_get(first, "text")), words));
+        assert_non_null(json_string_value(json_object_get(first, "remedy")));
+    }
+    json_decref(answer);
+    return n;
+}
+
+static void what_does_nothing_is_told_when_it_is_set(void **state)
+{
+    (void)state;
+    assert_int_equal(notes_on("{\"set\": {\"render.paths\": 7}}", "render.paths", "path integrator"), 1);
+    assert_int_equal(notes_on("{\"set\": {\"render.integrator\": \"path\", \"render.paths\": 9}}", NULL, NULL), 0);
+    assert_int_equal(notes_on("{\"set\": {\"ball.ior\": 1.4}}", NULL, NULL), 0);
+    assert_int_equal(notes_on("{\"set\": {\"ball.transparency\": 0, \"ball.ior\": 1.7}}", "ball.ior", "opaque"), 1);
+}
+
 static void assert_refused(const char *method, const char *target, const char *body, int code, const char *words)
 {
     char *text = room_refused(&room, method, target, body, code);
@@ -391,7 +416,8 @@ int main(void)
 {
 #define IN_A_ROOM(test) cmocka_unit_test_setup_teardown(test, open_room, close_room)
     const struct CMUnitTest cases[] = {
-        IN_A_ROOM(parameters_are_set_as_by_the_option), IN_A_ROOM(wrong_values_are_refused_with_a_remedy), IN_A_ROOM(the_camera_orbits_turns_and_steps),
+        IN_A_ROOM(parameters_are_set_as_by_the_option),
+        IN_A_ROOM(what_does_nothing_is_told_when_it_is_set), IN_A_ROOM(wrong_values_are_refused_with_a_remedy), IN_A_ROOM(the_camera_orbits_turns_and_steps),
         IN_A_ROOM(the_command_renders_the_same_film),   IN_A_ROOM(the_scene_is_a_file_too),                IN_A_ROOM(what_looks_wrong_is_noted),
         IN_A_ROOM(pictures_say_what_they_show),
         IN_A_ROOM(nobody_else_is_served),               IN_A_ROOM(no_scene_is_a_room_to_begin_with),       IN_A_ROOM(bad_starts_are_refused),
