@@ -9,7 +9,7 @@
 #include "geometry/bodies.h"
 #include "mesh_fixture.h"
 #include "random_stream.h"
-#include "render_fixture.h"
+#include "zbuffer_fixture.h"
 
 /* The depth buffer against the ray caster, which finds surfaces in another way, and against closed forms: what interpolating straight
  * and in perspective gives on a tilted square, and how often each point is covered. */
@@ -44,15 +44,6 @@ static const char round_scene[] = HEAD
     "  ball: {shape: sphere, material: dull, radius: 0.7, position: [2, 0.7, -0.5]}\n"
     "  marble: {shape: sphere, transparency: 1, ior: 1.5, specular: 0.9, shininess: 10, diffuse: 0.2, radius: 0.4, position: [0.8, 0.5, -2]}\n";
 
-static scene *loaded(const char *text, const char *assignments)
-{
-    scene *s = scene_from(text);
-    diagnostic why = {0};
-    set_all(s, assignments);
-    worked(scene_load(s, &why), &why);
-    return s;
-}
-
 static double difference_at(const film *a, const film *b, int x, int y)
 {
     double most = 0.0;
@@ -64,7 +55,7 @@ static double difference_at(const film *a, const film *b, int x, int y)
 /* The share of pixels that differ by more than that much between drawing and casting. */
 static double share_beyond(const char *text, const char *assignments, double much)
 {
-    scene *s = loaded(text, assignments);
+    scene *s = scene_loaded(text, assignments);
     set(s, "render.integrator=raycast");
     render_result *cast = render(s);
     set(s, "render.integrator=zbuffer");
@@ -383,49 +374,22 @@ static void boxes_have_textures_of_either_kind(void **state)
     }
 }
 
-static uint64_t hash_of(const scene *s, isa level)
-{
-    render_result *r = render_at(s, level, NULL);
-    const uint64_t hash = film_hash(r->picture);
-    render_result_destroy(r);
-    return hash;
-}
-
-static void expect_one_film(scene *s)
-{
-    static const char *const how[] = {
-        "render.threads=2", "render.threads=7 render.schedule=columns", "render.threads=7 render.schedule=rows render.pool=off",
-        "render.threads=2 render.schedule=tiles render.tile=8", "render.threads=1 render.schedule=tiles render.tile=1",
-        "render.threads=7 render.schedule=dynamic render.tile=50", "render.keep=off render.accel=none"};
-    for (int samples = 1; samples <= 4; samples += 3) {
-        set(s, samples == 1 ? "render.samples=1" : "render.samples=4");
-        const uint64_t wanted = hash_of(s, ISA_SSE2);
-        for (int level = ISA_AVX2; level <= (int)isa_best(); level++)
-            assert_true(hash_of(s, (isa)level) == wanted);
-        for (size_t h = 0; h < COUNT(how); h++) {
-            set_all(s, how[h]);
-            assert_true(hash_of(s, isa_best()) == wanted);
-        }
-    }
-    scene_destroy(s);
-}
-
 /* The last one is a texture that runs straight over triangles that the nearest depth cuts. */
 static void the_film_depends_on_no_order(void **state)
 {
     (void)state;
-    expect_one_film(loaded(flat_scene, "render.integrator=zbuffer"));
-    expect_one_film(loaded(round_scene, "render.integrator=zbuffer"));
+    one_film_only(scene_loaded(flat_scene, "render.integrator=zbuffer"));
+    one_film_only(scene_loaded(round_scene, "render.integrator=zbuffer"));
     scene *s = leaning_scene("render.texturing=affine");
     set(s, "camera.position=0.2,0.5,3.2");
-    expect_one_film(s);
+    one_film_only(s);
 }
 
 static void points_are_counted_and_no_rays_are_tested(void **state)
 {
     (void)state;
     need_counters();
-    scene *s = loaded(round_scene, "render.integrator=zbuffer render.samples=4 render.shadows=opaque render.lighting=whitted render.depth=5");
+    scene *s = scene_loaded(round_scene, "render.integrator=zbuffer render.samples=4 render.shadows=opaque render.lighting=whitted render.depth=5");
     render_result *r = render(s);
     const ray_counters *c = &r->counters;
     assert_int_equal(c->camera, 4 * 200 * 150);
@@ -447,7 +411,7 @@ static void it_knows_no_spectrum_and_no_polarisation(void **state)
     (void)state;
     static const char *const wrong[] = {"render.spectrum=spectral", "render.polarisation=on"};
     for (size_t k = 0; k < COUNT(wrong); k++) {
-        scene *s = loaded(round_scene, "render.integrator=zbuffer");
+        scene *s = scene_loaded(round_scene, "render.integrator=zbuffer");
         diagnostic why = {0};
         set(s, wrong[k]);
         assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);

@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "image/compare.h"
-#include "render_fixture.h"
+#include "zbuffer_fixture.h"
 
 /* What the depth buffer shows behind clear solids: against Fresnel's and Beer's formulas along one view, against
  * Whitted's rays where nothing bends them, and the furnace. */
@@ -185,15 +185,6 @@ static const char clear_scene[] =
     "  crate: {shape: box, material: tiles, size: [1, 1, 1], position: [2.3, 0.2, 0.9], rotation: [10, 40, 5], "
     "priority: -1}\n";
 
-static scene *loaded(const char *text, const char *assignments)
-{
-    scene *s = scene_from(text);
-    diagnostic why = {0};
-    set_all(s, assignments);
-    worked(scene_load(s, &why), &why);
-    return s;
-}
-
 /* Where light goes straight on and surfaces reflect nothing, rays see the same, but for outlines. */
 static void what_goes_straight_is_seen_as_traced(void **state)
 {
@@ -207,7 +198,7 @@ static void what_goes_straight_is_seen_as_traced(void **state)
                                            "ring.shading=flat bubble.shading=gouraud",
                                            "camera.position=-2.2,0.9,-4 camera.target=-2,0.5,3"};
     for (size_t v = 0; v < COUNT(variants); v++) {
-        scene *s = loaded(clear_scene, variants[v]);
+        scene *s = scene_loaded(clear_scene, variants[v]);
         set_all(s, "clear.ior=1 render.transmission=simple");
         render_result *traced = render(s);
         set(s, "render.integrator=zbuffer");
@@ -232,7 +223,7 @@ static void what_goes_straight_is_seen_as_traced(void **state)
 static void nothing_is_lost_between_layers(void **state)
 {
     (void)state;
-    scene *s = loaded(
+    scene *s = scene_loaded(
         clear_scene,
         "render.integrator=zbuffer ground.visible=off rod.visible=off crate.visible=off "
         "clear.absorb_per_m=0,0,0 clear.color=1,1,1 clear.transparency=1 clear.specular=0 clear.diffuse=0 "
@@ -271,36 +262,10 @@ static void the_rod_is_close_to_what_rays_show(void **state)
     scene_destroy(s);
 }
 
-static uint64_t hash_of(const scene *s, isa level)
-{
-    render_result *r = render_at(s, level, NULL);
-    const uint64_t hash = film_hash(r->picture);
-    render_result_destroy(r);
-    return hash;
-}
-
 static void layers_depend_on_no_order(void **state)
 {
     (void)state;
-    static const char *const how[] = {"render.threads=2",
-                                      "render.threads=7 render.schedule=columns",
-                                      "render.threads=7 render.schedule=rows render.pool=off",
-                                      "render.threads=2 render.schedule=tiles render.tile=8",
-                                      "render.threads=1 render.schedule=tiles render.tile=1",
-                                      "render.threads=64 render.schedule=dynamic render.tile=50",
-                                      "render.keep=off render.accel=none"};
-    scene *s = loaded(clear_scene, "render.integrator=zbuffer");
-    for (int samples = 1; samples <= 4; samples += 3) {
-        set(s, samples == 1 ? "render.samples=1" : "render.samples=4");
-        const uint64_t wanted = hash_of(s, ISA_SSE2);
-        for (int level = ISA_AVX2; level <= (int)isa_best(); level++)
-            assert_true(hash_of(s, (isa)level) == wanted);
-        for (size_t h = 0; h < COUNT(how); h++) {
-            set_all(s, how[h]);
-            assert_true(hash_of(s, isa_best()) == wanted);
-        }
-    }
-    scene_destroy(s);
+    one_film_only(scene_loaded(clear_scene, "render.integrator=zbuffer"));
 }
 
 int main(void)
