@@ -220,6 +220,31 @@ static void what_goes_straight_is_seen_as_traced(void **state)
 }
 
 /* R + T = 1 at every layer: under a sky of 1 clear solids of any index are not seen. */
+/* Of two opaque walls, one a hair behind the other, the nearer is seen, whatever clear solid makes layers of them: from
+ * outside, and by an eye in both. */
+static void a_clear_solid_nobody_sees_changes_no_order(void **state)
+{
+    (void)state;
+    static const char walls[] =
+        "render: {width: 8, height: 8, integrator: zbuffer}\n"
+        "camera: {position: [0, 0, -2], target: [0, 0, 0], fov_deg: 40}\n"
+        "solids:\n"
+        "  near: {shape: box, emission: 1, size: [4, 4, 1], priority: 1}\n"
+        "  far: {shape: box, emission: 2, size: [4, 4, 0.9999999998], priority: 2}\n";
+    static const char bead[] = "  bead: {shape: box, transparency: 1, ior: 1.5, size: [0.1, 0.1, 0.1], position: [0, 1.9, "
+                               "0.4], priority: 3}\n";
+    static const char *const eyes[] = {"camera.position=0,0,-2", "camera.position=0,0,0.1 camera.target=0,0,3"};
+    for (size_t k = 0; k < COUNT(eyes); k++) {
+        char with[2048];
+        snprintf(with, sizeof with, "%s%s", walls, bead);
+        scene *a = scene_loaded(walls, eyes[k]), *b = scene_loaded(with, eyes[k]);
+        assert_true(film_hash_at(a, isa_best()) == film_hash_at(b, isa_best()));
+        assert_near(look(a).x, k == 0 ? 1.0 : 2.0, 0.0);
+        scene_destroy(a);
+        scene_destroy(b);
+    }
+}
+
 static void nothing_is_lost_between_layers(void **state)
 {
     (void)state;
@@ -278,6 +303,7 @@ int main(void)
         cmocka_unit_test(the_eye_in_a_clear_solid),
         cmocka_unit_test(the_depth_limit_ends_the_view),
         cmocka_unit_test(what_goes_straight_is_seen_as_traced),
+        cmocka_unit_test(a_clear_solid_nobody_sees_changes_no_order),
         cmocka_unit_test(nothing_is_lost_between_layers),
         cmocka_unit_test(the_rod_is_close_to_what_rays_show),
         cmocka_unit_test(layers_depend_on_no_order),

@@ -66,19 +66,26 @@ static void sort_fragments(drawn_fragment *f, int count)
     }
 }
 
-/* The point's fragments before its nearest opaque surface, the nearest first; how many. */
+static bool is_opaque(const zbuffer *z, const drawn_fragment *f)
+{
+    return z->scene->solids->bodies[z->parts[f->part].at.rank].opaque;
+}
+
+/* The point's fragments before its nearest opaque surface, the nearest first; how many. Of two opaque ones the nearer is
+ * seen however close they are, as where nothing clear is drawn. */
 static int collect(zbuffer *z, zbuffer_square *s, int point)
 {
     int count = 0;
     for (int32_t k = s->newest[point]; k >= 0; k = s->fragments[k].next) {
-        const double nearness = s->fragments[k].nearness;
-        if (!(nearness - s->nearness[point] > TOGETHER * nearness)) /* behind the opaque surface, or in contact with it */
+        const drawn_fragment *f = &s->fragments[k];
+        const double contact = is_opaque(z, f) ? 0.0 : TOGETHER * f->nearness;
+        if (!(f->nearness - s->nearness[point] > contact)) /* behind the opaque surface, or in contact with it */
             continue;
         if (!grow(&s->column, &s->column_capacity, (size_t)count + 1)) {
             atomic_store(&z->out_of_memory, true);
             return 0;
         }
-        s->column[count++] = s->fragments[k];
+        s->column[count++] = *f;
     }
     sort_fragments(s->column, count);
     return count;
@@ -102,11 +109,16 @@ static int highest(uint64_t inside)
 
 /* Crosses what lies together at the front of the column: each surface leads into its body or out of it, whatever way
  * its triangle looks, so that near an outline, where front and back are as near, their order does not matter. What is
- * drawn of a cup's outside and of its hollow bounds its matter. Returns how many there were. */
+ * drawn of a cup's outside and of its hollow bounds its matter. Only one of them is opaque. Returns how many there
+ * were. */
 static int cross(const zbuffer *z, const drawn_fragment *f, int count, uint64_t *inside)
 {
     int n = 0;
+    bool opaque = false;
     do {
+        if (opaque && is_opaque(z, &f[n]))
+            break;
+        opaque |= is_opaque(z, &f[n]);
         const uint64_t bit = bit_of(z, &f[n]);
         *inside = z->skins & bit ? *inside | bit : *inside ^ bit;
         n++;
