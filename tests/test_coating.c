@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "optics/mueller.h"
 #include "probe_fixture.h"
 
 /* reflectivity of a clear surface under Fresnel's weights is a coating: of the light that would pass, that share comes back.
@@ -80,6 +81,39 @@ static void coated_media_lose_nothing(void **state)
         assert_true(fabs(tree->radiance[0] + tree_cut(tree, 0) - 1.0) <= 1e-11);
     }
     stage_close(&g);
+}
+
+/* Reflectances of s and p light: sin^2(a - b) / sin^2(a + b) and tan^2(a - b) / tan^2(a + b), of Fresnel's formulas in Hecht, Optics, 4.6. */
+static void reflectances(double cosine, double n, double *s, double *p, double *refracted)
+{
+    const double a = acos(cosine), b = asin(sin(a) / n);
+    *s = pow(sin(a - b) / sin(a + b), 2.0);
+    *p = pow(tan(a - b) / tan(a + b), 2.0);
+    *refracted = b;
+}
+
+/* Seen by way of a surface that polarises, all light coming from 1, a coating is off by c q (R_s - R_p) / 2: it sends light back
+ * unpolarised, which no way back does. Both surfaces have one plane of incidence, the second stands upright. */
+static void a_polarised_view_of_a_coating_is_off_by_its_polarisation(void **state)
+{
+    (void)state;
+    for (double angle = 20.0; angle < 80.0; angle += 7.0) {
+        const double a = angle * acos(-1.0) / 180.0, n = 1.7, coating = 0.35;
+        const vec3 down = vec3_make(sin(a), -cos(a), 0.0), d = vec3_make(sin(a), cos(a), 0.0);
+        double s, p, b;
+        reflectances(cos(a), 1.5, &s, &p, &b);
+        const double q = (s - p) / (s + p);
+        stokes row = analyser_reflect((stokes){1.0, 0.0, 0.0, 0.0}, down, vec3_make(0.0, 1.0, 0.0), cos(a), 1.0, 1.5, d);
+        row = (stokes){1.0, row.q / row.i, row.u / row.i, row.v / row.i};
+        reflectances(sin(a), n, &s, &p, &b);
+        const vec3 wall = vec3_make(-1.0, 0.0, 0.0), back = vec3_make(-d.x, d.y, 0.0);
+        const vec3 through = vec3_make(cos(b), sin(b), 0.0);
+        const double seen = analyser_reflect(row, d, wall, sin(a), 1.0, n, back).i +
+                            coating * analyser_coating(row, d, wall, sin(a), 1.0, n, back).i +
+                            (1.0 - coating) * analyser_refract(row, d, wall, sin(a), 1.0, n, through).i;
+        assert_true(fabs(seen - (1.0 + coating * q * (s - p) / 2.0)) <= 1e-12);
+        assert_true(fabs(seen - 1.0) > 1e-4);
+    }
 }
 
 /* Where two solids are in contact, the surface is that of the higher priority, and so is its coating. */
@@ -180,6 +214,7 @@ int main(void)
         cmocka_unit_test(a_coating_sends_back_a_share_of_what_would_pass),
         cmocka_unit_test(a_sheet_of_air_with_coated_faces_is_a_half_mirror),
         cmocka_unit_test(coated_media_lose_nothing),
+        cmocka_unit_test(a_polarised_view_of_a_coating_is_off_by_its_polarisation),
         cmocka_unit_test(a_coating_is_the_surface_owners),
         cmocka_unit_test(constant_shares_know_no_coating),
         cmocka_unit_test(a_coated_pane_shades),

@@ -53,6 +53,24 @@ static void it_adds_to_the_other_terms(void **state)
     scene_destroy(s);
 }
 
+/* A clear solid of the surroundings' index, which has no surface otherwise: k_e C at the way in, and t k_e C at the way out. */
+static void clear_solids_shine_whatever_their_index(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 3, beyond: black, paths: 64}\n"
+                          "camera: {position: [0, 0, -4], target: [0, 0, 0], fov_deg: 0.1}\n"
+                          "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
+                          "solids: {slab: {shape: box, emission: 2, transparency: 0.5}}\n");
+    expect_color(s, 3.0, 3.0, 3.0, 1e-12);
+    set(s, "render.integrator=path");
+    expect_color(s, 3.0, 3.0, 3.0, 1e-9);
+    set(s, "render.integrator=zbuffer");
+    expect_color(s, 3.0, 3.0, 3.0, 1e-12);
+    set(s, "slab.emission=0");
+    expect_color(s, 0.0, 0.0, 0.0, 0.0);
+    scene_destroy(s);
+}
+
 /* A mirror shows it, glass lets it through: R + T = 1 between two walls that shine alike. */
 static void mirrors_and_glass_hand_it_on(void **state)
 {
@@ -145,6 +163,7 @@ static void a_disc_lights_the_floor_below_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(clear_solids_shine_whatever_their_index),
         cmocka_unit_test(every_integrator_sees_it),     cmocka_unit_test(it_adds_to_the_other_terms),
         cmocka_unit_test(mirrors_and_glass_hand_it_on), cmocka_unit_test(a_furnace_of_walls_that_shine),
         cmocka_unit_test(a_furnace_at_each_wavelength), cmocka_unit_test(a_disc_lights_the_floor_below_it),

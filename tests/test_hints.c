@@ -46,8 +46,11 @@ static void what_is_forgotten_is_hinted_at(void **state)
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1}}",
                  "ball.ior: ball is transparent with the index of what is around it: it is invisible; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, specular: 0.5}}",
-                 "ball.ior: ball is transparent with the index of what is around it: it bends no light; set its ior\n");
+                 "ball.ior: ball is transparent with the index of what is around it: it is invisible; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 0.5}}",
+                 "ball.ior: ball is transparent with the index of what is around it: it is invisible; set its ior\n");
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, emission: 0.5}}", "");
+    expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, absorb_per_m: [1, 0, 0]}}",
                  "ball.ior: ball is transparent with the index of what is around it: it bends no light; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, ior: 1.5}, egg: {shape: sphere, diffuse: 1, ior: 0.9, radius: 2}}",
                  "ball.ior: ball has a refractive index but is opaque; set its transparency\n"

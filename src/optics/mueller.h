@@ -157,7 +157,9 @@ static inline stokes analyser_refract(stokes row, vec3 d, vec3 n, double cos_i, 
 }
 
 /* Of a coating that sends back a share 1 of the light that would pass, unpolarised: its matrix has the first row of refraction's and no
- * other, so that what comes back and what passes add up whatever the polarisation. To be scaled by the coating's share. */
+ * other, so that what comes back and what passes add up whatever the polarisation of the light that comes. Such a matrix is not its own
+ * reverse: an analyser whose row is (1, q) in the plane of incidence sees 1 + c q (R_s - R_p) / 2 of a surrounding light of 1. To be
+ * scaled by the coating's share c. */
 static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to, vec3 reflected)
 {
     const stokes intensity = {row.i, 0.0, 0.0, 0.0};

@@ -4,26 +4,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* No light is bent where two laws meet: at the one wavelength of an rgb film, or at all of them. */
-static bool laws_match(const scene *s, const index_law *a, const index_law *b)
+/* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface unless it is coated or shines; with
+ * constant shares, as in the report, every surface reflects whatever its index. laws: by solid, [solid_count] the surroundings'. */
+static bool shows_itself(const scene *s, const material *m)
 {
-    const double lambda_nm = s->render.lambda_nm;
-    return s->render.spectrum == SPECTRUM_SPECTRAL ? index_laws_equal(a, b) : index_law_at(a, lambda_nm) == index_law_at(b, lambda_nm);
+    return m->emission > 0.0 || material_coating(m, &s->render) > 0.0;
 }
 
-/* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface unless it is coated; with constant
- * shares, as in the report, every surface reflects whatever its index. laws: by solid, [solid_count] the surroundings'. */
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
-    if (material_is_opaque(m) || scene_has_constant_shares(&s->render) || material_coating(m, &s->render) > 0.0)
+    if (material_is_opaque(m) || scene_has_constant_shares(&s->render) || shows_itself(s, m))
         return solid_index + 1;
-    if (laws_match(s, &laws[solid_index], &laws[s->solid_count]))
+    if (index_laws_match(&s->render, &laws[solid_index], &laws[s->solid_count]))
         return 0;
     for (int i = 0; i < solid_index; i++) {
         const solid *other = &s->solids[i];
-        if (other->visible && !material_is_opaque(&other->surface) && material_coating(&other->surface, &s->render) == 0.0 &&
-            laws_match(s, &laws[i], &laws[solid_index]))
+        if (other->visible && !material_is_opaque(&other->surface) && !shows_itself(s, &other->surface) &&
+            index_laws_match(&s->render, &laws[i], &laws[solid_index]))
             return i + 1;
     }
     return solid_index + 1;

@@ -180,8 +180,8 @@ static bool is_scaled(const whole_edit *e, const char *name, const param *row)
     if (!is_length(row) || place_find_object(e->s, name, &at, NULL) != STATUS_OK) {
         return false;
     }
-    if (e->only) {
-        return strcmp(name, e->only) == 0 && strcmp(row->name, "position") != 0 && strcmp(row->name, "target") != 0;
+    if (e->only) { /* its material stays what it is, as its absorption by render.unit_m does */
+        return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 && strcmp(row->name, "position") != 0 && strcmp(row->name, "target") != 0;
     }
     return at.group == PARAM_SOLID || at.group == PARAM_MATERIAL ? e->parts.solids
            : at.group == PARAM_LIGHT                             ? e->parts.lights

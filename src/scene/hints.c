@@ -11,20 +11,13 @@ static bool is_lit(const material *m)
     return m->diffuse > 0.0 || m->specular > 0.0;
 }
 
-static bool is_like_surroundings(const scene *s, const material *m)
-{
-    index_law own, around = surrounding_index_law(&s->background);
-    return material_index_law(m, "", &own, NULL) == STATUS_OK &&
-           index_law_at(&own, s->render.lambda_nm) == index_law_at(&around, s->render.lambda_nm);
-}
-
 /* Does another medium hold the solid, so that one of the air's index is a bubble? Its position says so: the centre, or
  * that of the base. */
 static bool is_inside_medium(const scene *s, const solid *bubble)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *other = &s->solids[i];
-        if (other != bubble && other->visible && other->surface.transparency > 0.0 && !is_like_surroundings(s, &other->surface) &&
+        if (other != bubble && other->visible && other->surface.transparency > 0.0 && !material_matches_surroundings(s, &other->surface) &&
             solid_shape_contains(&other->shape, bubble->shape.position)) {
             return true;
         }
@@ -37,7 +30,7 @@ static bool cuts_another(const scene *s, const solid *cutter)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *other = &s->solids[i];
-        const bool seen = other->surface.transparency == 0.0 || !is_like_surroundings(s, &other->surface);
+        const bool seen = other->surface.transparency == 0.0 || !material_matches_surroundings(s, &other->surface);
         if (other->visible && seen && scene_wins(cutter, other) && !scene_apart(s, cutter, other)) {
             return true;
         }
@@ -49,16 +42,15 @@ static bool cuts_another(const scene *s, const solid *cutter)
 static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    const bool seen = m->transparency < 1.0 || m->ambient > 0.0 || m->emission > 0.0 || is_lit(m) || material_absorbs(m);
     if (s->render.integrator == INTEGRATOR_ZBUFFER && s->render.lighting != LIGHTING_WHITTED) {
         if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0) {
             note_give(taker, "render", "lighting", "set render.lighting to whitted",
                       "%s is transparent, and without reflected and refracted light its surface is black but for highlights", owner->name);
         }
-    } else if (!scene_has_constant_shares(&s->render) && is_like_surroundings(s, m) && !material_tints(m) && m->reflectivity == 0.0 &&
-               !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
+    } else if (!scene_has_constant_shares(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
+               m->reflectivity == 0.0 && m->emission == 0.0 && !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
         note_give(taker, owner->name, "ior", "set its ior", "%s is transparent with the index of what is around it: it %s", owner->name,
-                  seen ? "bends no light" : "is invisible");
+                  material_absorbs(m) ? "bends no light" : "is invisible");
     }
 }
 
@@ -93,7 +85,7 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_taker *
     }
     if (m->transparency > 0.0) {
         hint_at_clear(s, owner, taker);
-    } else if (m->medium != MEDIUM_IOR || m->ior != 1.0) {
+    } else if ((m->medium != MEDIUM_IOR || m->ior != 1.0) && !looks_by_face(s, owner)) {
         note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
                   "%s has a refractive index but is opaque", owner->name);
     } else if (m->ambient == 0.0 && m->emission == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner) &&

@@ -23,6 +23,21 @@ bool draws_through(const scene *s)
     return s->render.integrator == INTEGRATOR_ZBUFFER && s->render.lighting == LIGHTING_WHITTED && first_clear(s);
 }
 
+/* Shadow rays pass clear solids where shadows are attenuated. */
+bool nothing_passes(const scene *s)
+{
+    const bool lit_through = s->render.integrator != INTEGRATOR_ZBUFFER && s->render.shadows == SHADOWS_ATTENUATED &&
+                             shining_lights(s) > 0;
+    return !follows_rays(s) && !draws_through(s) && !lit_through;
+}
+
+bool say_no_tree(const inert_case *c)
+{
+    const bool whitted = c->s->render.integrator == INTEGRATOR_WHITTED;
+    return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : "set render.integrator=whitted",
+                     "no ray goes on from a surface under this render.%s", whitted ? "lighting" : "integrator");
+}
+
 bool is_dark_beyond(const scene *s)
 {
     const background *b = &s->background;

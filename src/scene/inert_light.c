@@ -1,5 +1,6 @@
 /* Why a light's or the background's parameter does nothing in a scene. */
 #include "scene/inert_private.h"
+#include "scene/medium.h"
 
 #include <string.h>
 
@@ -90,6 +91,17 @@ static bool ambient(const inert_case *c)
     return inert_say(c, "no-ambient", remedy.text, "no visible surface has an ambient term");
 }
 
+static bool some_match_surroundings(const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && !material_is_opaque(&one->surface) && material_matches_surroundings(s, &one->surface)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool surrounding_index(const inert_case *c)
 {
     const scene *s = c->s;
@@ -99,8 +111,19 @@ static bool surrounding_index(const inert_case *c)
                                           : (inert_remedy){"add a solid"};
         return inert_say(c, "no-clear", remedy.text, "no visible solid is transparent: no light is bent");
     }
-    return s->render.transmission == TRANSMISSION_SIMPLE &&
-           inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
+    if (s->render.transmission == TRANSMISSION_SIMPLE) {
+        return inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
+    }
+    return !follows_rays(s) && !draws_through(s) && !s->render.radiance && !some_match_surroundings(s) &&
+           inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
+                     "no ray goes on through a surface: all that counts is which indices are equal");
+}
+
+static bool surrounding_absorption(const inert_case *c)
+{
+    return c->s->render.integrator == INTEGRATOR_ZBUFFER &&
+           inert_say(c, "drawn-surroundings", "set render.integrator=whitted",
+                     "the depth buffer leaves out what the surroundings absorb");
 }
 
 bool inert_background(const inert_case *c)
@@ -108,6 +131,7 @@ bool inert_background(const inert_case *c)
     static const inert_row rows[] = {
         {"kind", kind},       {"color", background_color}, {"horizon", horizon},
         {"ambient", ambient}, {"ior", surrounding_index},  {"medium", surrounding_index},
+        {"absorb_per_m", surrounding_absorption},
         {NULL, NULL},
     };
     return inert_by_name(rows, c);

@@ -26,9 +26,47 @@ static bool opaque_rule(const inert_case *c)
     return inert_say(c, "opaque", remedy.text, "the solid is opaque");
 }
 
+static int clear_users(const inert_case *c)
+{
+    int count = 0;
+    for (size_t i = 0; i < c->s->solid_count; i++) {
+        const solid *one = &c->s->solids[i];
+        count += one->visible && one->material_index == (int)c->at.index && !material_is_opaque(&one->surface);
+    }
+    return count;
+}
+
+/* Between equal indices is no surface: with any other one it is as with this. */
+static bool not_bent(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (material_is_mirror(c->m)) {
+        return false;
+    }
+    if (s->render.transmission == TRANSMISSION_SIMPLE) {
+        return inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
+    }
+    const bool makes_equal = c->at.group == PARAM_MATERIAL && clear_users(c) > 1;
+    return !follows_rays(s) && !draws_through(s) && !s->render.radiance && !material_matches_surroundings(s, c->m) &&
+           !makes_equal && inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
+                     "no ray goes on through a surface: all that counts is which indices are equal");
+}
+
+static bool index_rule(const inert_case *c)
+{
+    return opaque_rule(c) || not_bent(c);
+}
+
+/* Light in the solid is that of an eye in it alone. */
+static bool unpassed(const inert_case *c)
+{
+    const solid eye = {.shape = {.kind = SHAPE_SPHERE, .position = c->s->camera.position}};
+    return nothing_passes(c->s) && scene_apart(c->s, c->owner, &eye) && say_no_tree(c);
+}
+
 static bool absorption_rule(const inert_case *c)
 {
-    return opaque_rule(c) ||
+    return opaque_rule(c) || unpassed(c) ||
            (material_is_mirror(c->m) &&
             inert_say(c, "mirror", set_on(c, "ior=1.5").text, "its index makes it a mirror that no light passes"));
 }
@@ -42,7 +80,7 @@ static bool no_color(const inert_case *c)
 /* A clear solid has a tint, too. */
 static bool color_rule(const inert_case *c)
 {
-    return material_is_opaque(c->m) && no_color(c);
+    return material_is_opaque(c->m) ? no_color(c) : !shows_color(c->s, c->m) && unpassed(c);
 }
 
 static bool tint_distance_rule(const inert_case *c)
@@ -131,15 +169,13 @@ static bool reflectivity_rule(const inert_case *c)
     /* The coating of a clear surface keeps light from shadow rays, too. */
     const bool coats = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
     if (coats) {
-        return mirrors_black(c);
+        return (!material_matches_surroundings(s, c->m) && unpassed(c)) || mirrors_black(c);
     }
     if (s->render.integrator == INTEGRATOR_ZBUFFER && !material_is_opaque(c->m)) {
         return false;
     }
     if (!follows_rays(s)) {
-        const bool whitted = s->render.integrator == INTEGRATOR_WHITTED;
-        return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : "set render.integrator=whitted",
-                         "no ray goes on from a surface under this render.%s", whitted ? "lighting" : "integrator");
+        return say_no_tree(c);
     }
     if (s->render.depth == 0 && is_dark_beyond(s)) {
         return inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0, and what lies beyond it is black");
@@ -158,7 +194,7 @@ static bool coefficients_rule(const inert_case *c)
                          inert_set("%s.coefficients=1.5,0.004 and %s.medium=cauchy", c->name, c->name).text,
                          "medium %s takes no coefficients", medium_words[law]);
     }
-    return opaque_rule(c);
+    return index_rule(c);
 }
 
 static bool absorb_per_m_rule(const inert_case *c)
@@ -209,18 +245,44 @@ static bool checker_color_rule(const inert_case *c)
            no_color(c);
 }
 
-/* What an opaque surface that no ray meets would send back. */
+static bool is_among(const inert_case *c, const char *const *names)
+{
+    while (*names && strcmp(*names, c->at.row->name) != 0) {
+        names++;
+    }
+    return *names != NULL;
+}
+
+/* What Phong's terms are of: all that a clear surface sends back of its own. */
+static const char *const of_surface[] = {"ambient", "diffuse",      "specular", "shininess",
+                                         "texture", "texture_size", "checker",  "checker_color", NULL};
+
+/* What a surface that no ray meets would send back. Light that passes a clear one on its way to another is met by none. */
 static bool unseen(const inert_case *c)
 {
-    static const char *const sent_back[] = {"color",        "ambient",  "diffuse",       "specular",
-                                            "shininess",    "emission", "reflectivity",  "texture",
-                                            "texture_size", "checker",  "checker_color", NULL};
-    bool found = false;
-    for (size_t i = 0; sent_back[i] && !found; i++) {
-        found = strcmp(sent_back[i], c->at.row->name) == 0;
+    static const char *const of_opaque[] = {"color", "emission", "reflectivity", NULL};
+    const bool sent_back = is_among(c, of_surface) || (c->m->transparency == 0.0 && is_among(c, of_opaque));
+    return sent_back && c->frame && c->frame->hits[c->owner - c->s->solids] == 0 && say_unseen(c);
+}
+
+/* A clear solid of the surroundings' index has no surface, where no other clear one has one either. */
+static bool no_interface(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (scene_has_constant_shares(&s->render) || !is_among(c, of_surface)) {
+        return false;
     }
-    return found && c->frame && c->m->transparency == 0.0 && c->frame->hits[c->owner - c->s->solids] == 0 &&
-           say_unseen(c);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        const material *m = &one->surface;
+        const bool plain = m->reflectivity == 0.0 && m->emission == 0.0 && material_matches_surroundings(s, m);
+        if (one->visible && ((!material_is_opaque(m) && !plain) || may_look_by_face(s, one))) {
+            return false;
+        }
+    }
+    return !material_is_opaque(c->m) &&
+           inert_say(c, "no-interface", set_on(c, "ior=1.5").text,
+                     "its index is that of what is around it: it has no surface");
 }
 
 /* Faces that look as a file says take from the solid's own surface what makes it clear, and little else. */
@@ -228,12 +290,7 @@ static bool is_of_body(const inert_case *c)
 {
     static const char *const of_body[] = {"ior",           "medium", "coefficients", "absorb_per_m", "absorb_spectrum",
                                           "tint_distance", NULL};
-    for (size_t i = 0; of_body[i]; i++) {
-        if (strcmp(of_body[i], c->at.row->name) == 0) {
-            return true;
-        }
-    }
-    return false;
+    return is_among(c, of_body);
 }
 
 /* Wholly inside a solid that wins there: nothing of it is met. */
@@ -255,8 +312,8 @@ bool inert_surface(const inert_case *c)
         {"specular", specular_rule},
         {"shininess", shininess_rule},
         {"reflectivity", reflectivity_rule},
-        {"ior", opaque_rule},
-        {"medium", opaque_rule},
+        {"ior", index_rule},
+        {"medium", index_rule},
         {"coefficients", coefficients_rule},
         {"absorb_per_m", absorb_per_m_rule},
         {"absorb_spectrum", absorption_rule},
@@ -271,7 +328,7 @@ bool inert_surface(const inert_case *c)
     if (may_look_by_face(c->s, c->owner) && (straight || !is_of_body(c))) {
         return false;
     }
-    return inert_by_name(rows, c) || covered(c) || unseen(c);
+    return inert_by_name(rows, c) || covered(c) || no_interface(c) || unseen(c);
 }
 
 /* A face of a mesh file may name the material. */

@@ -59,6 +59,10 @@ bool is_path(const scene *s);
 bool follows_rays(const scene *s);
 /* The depth buffer shows what lies behind clear solids. */
 bool draws_through(const scene *s);
+/* Neither rays nor the depth buffer's view nor a lamp's light pass a clear surface. */
+bool nothing_passes(const scene *s);
+/* The word of render that stops rays at surfaces, and what to set. */
+bool say_no_tree(const inert_case *c);
 /* Light from beyond the depth limit is black. */
 bool is_dark_beyond(const scene *s);
 /* Lights that shine; all of them spheres, which the path integrator alone knows. */

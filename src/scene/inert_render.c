@@ -56,10 +56,7 @@ static bool no_tree(const inert_case *c)
         return false;
     }
     if (!follows_rays(s)) {
-        const bool whitted = s->render.integrator == INTEGRATOR_WHITTED;
-        return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : WHITTED,
-                         "no ray goes on from a surface under %s",
-                         whitted ? "this render.lighting" : "this render.integrator");
+        return say_no_tree(c);
     }
     return nothing_goes_on(s) &&
            inert_say(c, "no-branches", mirror_remedy(s).text, "nothing visible reflects or refracts");
@@ -123,9 +120,22 @@ static bool no_clear(const inert_case *c)
     return !first_clear(c->s) && inert_say(c, "no-clear", clear_remedy(c->s).text, "no visible solid is transparent");
 }
 
+/* Of two words the film with the other one tells. */
+static bool same_but_for(const inert_case *c, const char *one, const char *other, bool is_one)
+{
+    const scene *s = c->s;
+    return !follows_rays(s) && !draws_through(s) && inert_same(c, "render.%s=%s", c->at.row->name, is_one ? other : one) &&
+           say_no_tree(c);
+}
+
+static bool transmission(const inert_case *c)
+{
+    return no_clear(c) || same_but_for(c, "refract", "simple", c->s->render.transmission != TRANSMISSION_SIMPLE);
+}
+
 static bool weights(const inert_case *c)
 {
-    return no_clear(c) || (c->s->render.transmission == TRANSMISSION_SIMPLE &&
+    return no_clear(c) || same_but_for(c, "fresnel", "constant", c->s->render.weights == WEIGHTS_FRESNEL) || (c->s->render.transmission == TRANSMISSION_SIMPLE &&
                            inert_say(c, "simple", "set render.transmission=refract",
                                      "simple transmission takes the materials' constants"));
 }
@@ -190,8 +200,8 @@ static bool lambda(const inert_case *c)
         return inert_say(c, "rgb-only", "set render.spectrum=rgb",
                          "the spectral film takes each wavelength's own index");
     }
-    if (no_clear(c) || s->render.integrator == INTEGRATOR_ZBUFFER) {
-        return c->out->rule[0] != 0;
+    if (no_clear(c)) {
+        return true;
     }
     index_law law = surrounding_index_law(&s->background);
     bool disperses = is_dispersive(&law);
@@ -218,10 +228,27 @@ static bool unit(const inert_case *c)
     return !absorbs && inert_say(c, "no-absorption", remedy.text, "nothing that light passes absorbs");
 }
 
+static bool shows_texture(const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && ((one->surface.texture[0] && shows_color(s, &one->surface)) || may_look_by_face(s, one))) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool texturing(const inert_case *c)
 {
-    return c->s->render.integrator != INTEGRATOR_ZBUFFER &&
-           inert_say(c, "zbuffer-only", "set render.integrator=zbuffer", "rays always meet a texture in perspective");
+    if (c->s->render.integrator != INTEGRATOR_ZBUFFER) {
+        return inert_say(c, "zbuffer-only", "set render.integrator=zbuffer", "rays always meet a texture in perspective");
+    }
+    const solid *first = first_visible(c->s);
+    const inert_remedy remedy = first && c->s->texture_count > 0
+                                    ? inert_set("%s.texture=%s", first->name, c->s->textures[0].name)
+                                    : (inert_remedy){"give a visible solid a texture"};
+    return !shows_texture(c->s) && inert_say(c, "untextured", remedy.text, "nothing visible has a texture");
 }
 
 bool inert_render(const inert_case *c)
@@ -231,7 +258,7 @@ bool inert_render(const inert_case *c)
         {"beyond", beyond},
         {"lighting", lighting},
         {"weights", weights},
-        {"transmission", no_clear},
+        {"transmission", transmission},
         {"shadows", shadows},
         {"min_weight", min_weight},
         {"paths", path_only},

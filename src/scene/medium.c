@@ -64,6 +64,19 @@ bool index_laws_equal(const index_law *a, const index_law *b)
     return true;
 }
 
+bool index_laws_match(const render_settings *r, const index_law *a, const index_law *b)
+{
+    return r->spectrum == SPECTRUM_SPECTRAL ? index_laws_equal(a, b)
+                                            : index_law_at(a, r->lambda_nm) == index_law_at(b, r->lambda_nm);
+}
+
+bool material_matches_surroundings(const scene *s, const material *m)
+{
+    index_law own;
+    const index_law around = surrounding_index_law(&s->background);
+    return material_index_law(m, "", &own, NULL) == STATUS_OK && index_laws_match(&s->render, &own, &around);
+}
+
 bool material_is_mirror(const material *m)
 {
     return m->transparency > 0.0 && m->medium == MEDIUM_IOR && m->ior > MIRROR_IOR; /* no law or catalogue reaches that */
