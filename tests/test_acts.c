@@ -323,15 +323,28 @@ static const condition conditions[] = {
 
 /* Where the condition of a remedy without an assignment is false: no note, and the parameter acts. */
 typedef struct counterpart {
-    const char *rule, *scene, *path;
+    const char *rule, *scene, *path, *assignments;
 } counterpart;
 static const counterpart counterparts[] = {
-    {"no-textures", "models", "bowl.texture"},
-    {"no-texture", "slime", "floor.texture_size"},
-    {"mesh-texture", "slime", "paving.texture_size"},
-    {"one-mesh", "models", "ring.mesh"},
-    {"apart", "rod", "liquid.priority"},
-    {"unseen", "rod", "rod.color"},
+    {"no-textures", "models", "bowl.texture", ""},
+    {"no-texture", "slime", "floor.texture_size", ""},
+    {"mesh-texture", "slime", "paving.texture_size", ""},
+    {"one-mesh", "models", "ring.mesh", ""},
+    {"apart", "rod", "liquid.priority", ""},
+    {"unseen", "rod", "rod.color", ""},
+    {"by-face", "rod", "rod.color", ""},
+    {"by-face", "rod", "rod.diffuse", ""},
+    {"by-face", "rod", "rod.specular", ""},
+    {"by-face", "rod", "rod.shininess", ""},
+    {"by-face", "slime", "floor.texture", ""},
+    {"by-face", "slime", "floor.texture_size", ""},
+    {"of-solid", "rod", "vessel.ior", ""},
+    {"of-solid", "rod", "vessel.medium", ""},
+    {"of-solid", "rod", "vessel.coefficients", "vessel.coefficients=1.5,0.004 vessel.medium=cauchy"},
+    {"of-solid", "rod", "vessel.absorb_per_m", ""},
+    {"of-solid", "rod", "vessel.absorb_spectrum", ""},
+    {"of-solid", "rod", "liquid.tint_distance", "liquid.color=0.9,0.7,0.5"},
+    {"of-solid", "rod", "vessel.transparency", ""},
 };
 
 static bool open_with(const char *name, const char *assignments, acts *out, diagnostic *why)
@@ -398,7 +411,7 @@ static void try_counterpart(int number, account *out)
     acts_values v;
     inert_answer answer;
     out->path = k->scene;
-    if (!open_with(k->scene, "", &a, &why)) {
+    if (!open_with(k->scene, k->assignments, &a, &why)) {
         complain(out, k->path, "cannot be rendered", why.what);
         return;
     }
@@ -440,6 +453,7 @@ static void every_parameter_of_every_shipped_scene_acts_or_says_why_not(void **s
 {
     (void)state;
     assert_int_equal(glob("experiments/scenes/*.yaml", 0, NULL, &shipped), 0);
+    assert_int_equal(glob("tests/data/acts/*.yaml", GLOB_APPEND, NULL, &shipped), 0);
     const int count = (int)shipped.gl_pathc;
     run(try_scene, count);
     for (int i = 0; i < count; i++)

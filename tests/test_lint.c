@@ -251,6 +251,15 @@ static void depths_that_show(void **state)
     }
 }
 
+/* A tree of 40 levels has more rays than a machine traces in a day: the linter does not try, and says nothing. */
+static void depths_that_take_too_long_are_left_alone(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.depth=40");
+    assert_int_equal(lint(s).count, 0);
+    scene_destroy(s);
+}
+
 /* A wide disc a hair above the ground was called wholly inside it. */
 static void what_sticks_out_by_a_hair_is_not_hidden(void **state)
 {
@@ -545,6 +554,7 @@ int main(void)
         cmocka_unit_test(indices_of_mirrors),
         cmocka_unit_test(cameras_that_see_nothing),
         cmocka_unit_test(depths_that_show),
+        cmocka_unit_test(depths_that_take_too_long_are_left_alone),
         cmocka_unit_test(what_sticks_out_by_a_hair_is_not_hidden),
         cmocka_unit_test(shipped_scenes_have_true_notes_alone),
         cmocka_unit_test(a_frame_is_the_same_after_the_linter),

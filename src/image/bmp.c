@@ -19,6 +19,7 @@ enum {
 enum { UNCOMPRESSED, RLE8, RLE4 }; /* the header's compression */
 
 #define REMEDY "save it as an uncompressed 24-bit BMP, or as PNG"
+#define DAMAGED "copy it again, or save it again as PNG"
 
 static uint32_t number_at(const unsigned char *b, int bytes)
 {
@@ -50,7 +51,7 @@ static status check_kind(const unsigned char *bytes, size_t size, diagnostic *wh
         return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is one of OS/2, which is not read");
     }
     if (size < FILE_HEADER + INFO_HEADER || (header <= V5_HEADER && header > size - FILE_HEADER)) {
-        return diagnose(why, STATUS_BAD_INPUT, NULL, "the BMP file is truncated: %zu bytes have no whole header", size);
+        return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is truncated: %zu bytes have no whole header", size);
     }
     if (header < INFO_HEADER || header > V5_HEADER) {
         return diagnose(why, STATUS_BAD_INPUT, REMEDY,
@@ -88,13 +89,13 @@ static status read_header(const unsigned char *bytes, size_t size, bmp_header *o
     }
     out->row_bytes = ((size_t)out->width * 3 + 3) / 4 * 4;
     if (out->offset < FILE_HEADER + number_at(bytes + FILE_HEADER, 4) || out->offset > size) {
-        return diagnose(why, STATUS_BAD_INPUT, NULL,
+        return diagnose(why, STATUS_BAD_INPUT, DAMAGED,
                         "the BMP file is damaged: its pixels are said to begin at byte %zu of %zu", out->offset, size);
     }
     /* sides are at most 65536: no overflow; the last row need not be padded */
     const size_t needed = out->row_bytes * (size_t)(out->height - 1) + (size_t)out->width * 3;
     if (size - out->offset < needed) {
-        return diagnose(why, STATUS_BAD_INPUT, NULL,
+        return diagnose(why, STATUS_BAD_INPUT, DAMAGED,
                         "the BMP file is truncated: %zu bytes of pixels where %zu should be", size - out->offset,
                         needed);
     }

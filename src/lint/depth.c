@@ -13,7 +13,7 @@
 #define CHANGED_VALUE 0.05   /* ... that change by more than this share of the brighter */
 #define SETTLED_PIXELS 0.002 /* fewer changed: deeper images are taken to be the same */
 #define DARK (1.0 / 255.0)   /* what is darker is shown as black */
-enum { DEEPER_MAX = 24 };
+enum { DEEPER_MAX = 24, SAFE_DEPTH = 8 };
 
 typedef struct depth_probe {
     plan *made;
@@ -72,13 +72,33 @@ static double changed_share(const film *a, const film *b)
     return (double)changed / ((double)a->width * a->height);
 }
 
+/* A tree may have twice as many rays with each level: images below the scene's depth limit tell beforehand that its own one would take too
+ * many. *affordable says that it does not. */
+static status climb(depth_probe *p, int depth, double most, bool *affordable, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (int d = SAFE_DEPTH; d < depth && code == STATUS_OK && p->spent <= most; d += 2) {
+        p->made->render.depth = d;
+        code = trace_image(p, 0, why);
+        film_destroy(p->image[0]);
+        p->image[0] = NULL;
+    }
+    p->made->render.depth = depth;
+    *affordable = p->spent <= most;
+    return code;
+}
+
 /* The deepest image: *settled says that deeper ones would be the same, or nearly. */
 static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, diagnostic *why)
 {
     const double most = p->made->solids->meshes ? RAYS_MAX / MESH_RAY : RAYS_MAX;
-    status code = trace_image(p, 0, why);
-    int still = 0;
+    bool affordable;
     *last = 0;
+    status code = climb(p, depth, most, &affordable, why);
+    if (code != STATUS_OK || !affordable)
+        return code;
+    code = trace_image(p, 0, why);
+    int still = 0;
     for (int d = 1; code == STATUS_OK && d <= DEEPER_MAX && depth + d <= COUNTERS_DEPTH_MAX; d++) {
         if (p->spent > most)
             return code;

@@ -62,7 +62,7 @@ status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
     if (scene_parts_named(s, name, &parts)) {
         return scene_move_parts(s, parts, delta, why);
     }
-    status code = place_find_object(s, name, &at, why);
+    status code = edit_find(s, name, &at, why);
     if (code != STATUS_OK) {
         return code;
     }
@@ -184,7 +184,7 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
     place at;
     scene_parts parts;
     const bool is_many = scene_parts_named(s, name, &parts);
-    const status code = is_many ? STATUS_OK : place_find_object(s, name, &at, why);
+    const status code = is_many ? STATUS_OK : edit_find(s, name, &at, why);
     if (code != STATUS_OK) {
         return code;
     }

@@ -10,6 +10,7 @@
 #include "scene/params_value.h"
 
 #include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 static bool add_word(const char *word, size_t length, scene_parts *parts)
@@ -49,6 +50,16 @@ bool scene_parts_named(const scene *s, const char *name, scene_parts *out)
             return true;
         }
     }
+}
+
+status edit_find(const scene *s, const char *name, place *at, diagnostic *why)
+{
+    const status code = place_find_object(s, name, at, why);
+    if (code == STATUS_BAD_INPUT && why && strncmp(why->remedy, "did you mean", 12) != 0) {
+        snprintf(why->remedy, sizeof why->remedy,
+                 "give the name of a solid or light, or of camera, solids, lights, all, or a sum as all+camera");
+    }
+    return code;
 }
 
 /* What an edit changes goes back to what it was in a clone. */
@@ -266,7 +277,7 @@ status scene_scale(scene *s, const char *name, double factor, diagnostic *why)
     if (scene_parts_named(s, name, &e.parts)) {
         return apply(&e);
     }
-    const status code = place_find_object(s, name, &at, why);
+    const status code = edit_find(s, name, &at, why);
     if (code != STATUS_OK) {
         return code;
     }

@@ -245,7 +245,7 @@ static bool checker_color_rule(const inert_case *c)
            no_color(c);
 }
 
-static bool is_among(const inert_case *c, const char *const *names)
+bool is_among(const inert_case *c, const char *const *names)
 {
     while (*names && strcmp(*names, c->at.row->name) != 0) {
         names++;
@@ -285,14 +285,6 @@ static bool no_interface(const inert_case *c)
                      "its index is that of what is around it: it has no surface");
 }
 
-/* Faces that look as a file says take from the solid's own surface what makes it clear, and little else. */
-static bool is_of_body(const inert_case *c)
-{
-    static const char *const of_body[] = {"ior",           "medium", "coefficients", "absorb_per_m", "absorb_spectrum",
-                                          "tint_distance", NULL};
-    return is_among(c, of_body);
-}
-
 /* Wholly inside a solid that wins there: nothing of it is met. */
 static bool covered(const inert_case *c)
 {
@@ -302,7 +294,7 @@ static bool covered(const inert_case *c)
                      "%s lies wholly inside %s, which wins there", c->owner->name, cover->name);
 }
 
-bool inert_surface(const inert_case *c)
+bool inert_look(const inert_case *c)
 {
     static const inert_row rows[] = {
         {"color", color_rule},
@@ -324,22 +316,12 @@ bool inert_surface(const inert_case *c)
         {"checker_color", checker_color_rule},
         {NULL, NULL},
     };
-    const bool straight = c->s->render.transmission == TRANSMISSION_SIMPLE;
-    if (may_look_by_face(c->s, c->owner) && (straight || !is_of_body(c))) {
-        return false;
-    }
     return inert_by_name(rows, c) || covered(c) || no_interface(c) || unseen(c);
 }
 
-/* A face of a mesh file may name the material. */
-static bool may_be_named_by_face(const scene *s)
+bool inert_surface(const inert_case *c)
 {
-    for (size_t i = 0; i < s->solid_count; i++) {
-        if (s->solids[i].visible && may_look_by_face(s, &s->solids[i])) {
-            return true;
-        }
-    }
-    return false;
+    return may_look_by_face(c->s, c->owner) ? inert_faces(c) : inert_look(c);
 }
 
 static bool unused(const inert_case *c, const solid *hidden)
@@ -349,24 +331,22 @@ static bool unused(const inert_case *c, const solid *hidden)
     return inert_say(c, "unused-material", remedy.text, "no visible solid is of this material");
 }
 
-/* On each visible solid that refers to it; the answer is the first one's. */
+/* On each visible solid that refers to it, and each face that is named so; the answer is the first one's. */
 bool inert_material(const inert_case *c)
 {
     const scene *s = c->s;
     const solid *hidden = NULL;
     inert_answer first = {.rule = ""}, other;
-    if (may_be_named_by_face(s)) {
-        return false;
-    }
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        if (one->material_index != (int)c->at.index) {
+        const bool by_face = may_look_by_face(s, one);
+        if (one->material_index != (int)c->at.index && !by_face) {
             continue;
         }
-        hidden = one->visible ? hidden : one;
+        hidden = one->visible || by_face ? hidden : one;
         inert_case user = *c;
         user.owner = one, user.m = &one->surface, user.out = first.rule[0] ? &other : &first;
-        if (one->visible && !inert_surface(&user)) {
+        if (one->visible && !(by_face ? inert_named_faces(&user) : inert_look(&user))) {
             return false;
         }
     }

@@ -74,9 +74,11 @@ static bool beyond(const inert_case *c)
         return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black, too");
     }
     /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both has no cut ray. */
-    return s->render.beyond != BEYOND_BLACK && inert_same(c, "render.beyond=black") &&
-           inert_say(c, "nothing-cut", "set render.depth=1",
-                     "no ray that render.depth cuts off carries light that the film resolves");
+    const bool nothing_cut = s->render.beyond != BEYOND_BLACK
+                                 ? inert_same(c, "render.beyond=black")
+                                 : inert_same(c, "render.beyond=sky") && inert_same(c, "render.beyond=mean");
+    return nothing_cut && inert_say(c, "nothing-cut", s->render.depth > 1 ? "set render.depth=1" : "set render.depth=0",
+                                    "no ray that render.depth cuts off carries light that the film resolves");
 }
 
 /* Highlights and branches are all that the lighting model chooses. */
@@ -130,6 +132,11 @@ static bool same_but_for(const inert_case *c, const char *one, const char *other
 
 static bool transmission(const inert_case *c)
 {
+    for (size_t i = 0; i < c->s->solid_count; i++) {
+        if (c->s->solids[i].visible && may_look_by_face(c->s, &c->s->solids[i])) {
+            return false; /* a file's faces may be clear where light goes straight on */
+        }
+    }
     return no_clear(c) || same_but_for(c, "refract", "simple", c->s->render.transmission != TRANSMISSION_SIMPLE);
 }
 

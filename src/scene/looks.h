@@ -29,6 +29,10 @@ typedef struct surface_look {
     const texture *picture;
 } surface_look;
 
+/* What says how a slot's faces look: the scene's material of its name, else what the file gives; both NULL where the solid's own
+ * surface does. Of a solid that looks by face. */
+void looks_source(const scene *s, const solid *owner, int slot, const material **named, const face_look **given);
+
 /* How many slots say so; 0 where one material does. */
 int looks_slots(const scene *s, const solid *owner);
 

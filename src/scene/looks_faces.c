@@ -25,13 +25,12 @@ static const mesh_entry *mesh_of(const scene *s, const solid *owner)
     return owner->shape.kind == SHAPE_MESH ? scene_find_mesh(s, owner->mesh) : NULL;
 }
 
-/* What the scene's material or the file's says of the slot; both may be NULL. */
-static void find_look(const scene *s, const solid *owner, int slot, const material **named, const face_look **given)
+void looks_source(const scene *s, const solid *owner, int slot, const material **named, const face_look **given)
 {
     const mesh_entry *m = mesh_of(s, owner);
     const char *name = m->data->slot_names[slot];
     *named = named_material_of(s, name ? name : "");
-    *given = slot < looks_count(m->looks) && looks_at(m->looks, slot)->given ? looks_at(m->looks, slot) : NULL;
+    *given = !*named && slot < looks_count(m->looks) && looks_at(m->looks, slot)->given ? looks_at(m->looks, slot) : NULL;
 }
 
 static void dress(surface_look *l, const material *own, const face_look *given)
@@ -51,7 +50,7 @@ surface_look looks_face(const scene *s, const solid *owner, const material *own,
 {
     const material *named;
     const face_look *given;
-    find_look(s, owner, slot, &named, &given);
+    looks_source(s, owner, slot, &named, &given);
     surface_look l = {*own, picture_of(s, named ? named : own)};
     if (named) {
         l.surface = *named;
@@ -98,7 +97,7 @@ bool looks_waste(const scene *s, const solid *owner)
     for (int slot = 0; slot < slots; slot++) {
         const material *named;
         const face_look *given;
-        find_look(s, owner, slot, &named, &given);
+        looks_source(s, owner, slot, &named, &given);
         const bool clear = !material_is_opaque(own);
         if ((named &&
              (named->transparency != own->transparency || (clear && named->reflectivity != own->reflectivity))) ||

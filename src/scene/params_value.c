@@ -57,7 +57,9 @@ static status not_a_number(const param *row, const char *label, const char *text
         return wrong(row, true, why, "%s: '" SHOWN "' is not a finite number", label, text);
     }
     char remedy[120];
-    if (comma) {
+    if (comma && strchr(rest + 1, ',')) {
+        snprintf(remedy, sizeof remedy, "give one number");
+    } else if (comma) {
         snprintf(remedy, sizeof remedy, "a decimal comma? write 1.5");
     } else {
         snprintf(remedy, sizeof remedy, "write the number alone%s%s", row->unit[0] ? ", in " : "", row->unit);
