@@ -57,6 +57,7 @@ export const cases = {
         const { time_s: then } = await slime(lab);
         await screen.page.getByLabel('Absorption, red', { exact: true }).press('End');
         await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 100);
+        await screen.until((time_s) => window.lab.slime.time_s > time_s, then);
         t.more((await slime(lab)).time_s, then, 'its time goes on');
         await screen.page.getByLabel('Tint', { exact: true }).fill('#ff8000');
         await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 0);
