@@ -1,5 +1,5 @@
-/* Shipped scenes, made small, and films of them with one parameter changed. Errors are told in the outcome, so that threads may use it.
- * Ownership: acts_open gives, acts_close releases. */
+/* Shipped scenes, made small, and films of them with one parameter changed. Errors are told in the outcome, so that
+ * threads may use it. Ownership: acts_open gives, acts_close releases. */
 #ifndef CUVETTE_TESTS_ACTS_FIXTURE_H
 #define CUVETTE_TESTS_ACTS_FIXTURE_H
 
@@ -24,7 +24,8 @@ static const acts_small acts_smaller[] = {
     {"solids", "render.samples=1"},
 };
 
-/* Heights of the films, tried one after another until a value shows: a slit may lie between the rays of a small film. */
+/* Heights of the films, tried one after another until a value shows: a slit may lie between the rays of a small film.
+ */
 enum { ACTS_SIZES = 3 };
 static const int acts_heights[ACTS_SIZES] = {48, 120, 240};
 
@@ -116,7 +117,8 @@ static inline bool acts_open(const char *path, acts *out, diagnostic *why)
     return acts_of(s, out, why);
 }
 
-/* How many other values were legal, and how many of them changed the film; why says what was wrong with the last one that was refused. */
+/* How many other values were legal, and how many of them changed the film; why says what was wrong with the last one
+ * that was refused. */
 typedef struct acts_outcome {
     int legal, changed;
     diagnostic why;

@@ -1,6 +1,6 @@
-/* Other legal values of a parameter, chosen by its row alone (type, range, unit): a few that lie near the value of now, and a few far
- * away, so that a parameter that acts at all shows it. A new parameter needs no line here.
- * Ownership: acts_values fills an array of the caller's. */
+/* Other legal values of a parameter, chosen by its row alone (type, range, unit): a few that lie near the value of now,
+ * and a few far away, so that a parameter that acts at all shows it. A new parameter needs no line here. Ownership:
+ * acts_values fills an array of the caller's. */
 #ifndef CUVETTE_TESTS_ACTS_VALUES_H
 #define CUVETTE_TESTS_ACTS_VALUES_H
 
@@ -82,7 +82,8 @@ static inline void acts_triples(const param *row, const char *now, acts_values *
     }
 }
 
-/* A list as it is, every number times a factor; and for an empty one lists that suit what lists are used for: pairs by wavelength. */
+/* A list as it is, every number times a factor; and for an empty one lists that suit what lists are used for: pairs by
+ * wavelength. */
 static inline void acts_lists(const char *now, acts_values *v)
 {
     static const char *const pairs[] = {"400,1.3,550,1.6,700,1.7", "400,0.6,550,0.2,700,0.1", "1.5,0.01", "1.4,0.006",

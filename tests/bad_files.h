@@ -1,4 +1,5 @@
-/* A folder of files that are wrong, and expected.txt with the one line that each is refused with: "NAME:LINE:COLUMN: what; remedy". */
+/* A folder of files that are wrong, and expected.txt with the one line that each is refused with: "NAME:LINE:COLUMN:
+ * what; remedy". */
 #ifndef CUVETTE_TESTS_BAD_FILES_H
 #define CUVETTE_TESTS_BAD_FILES_H
 

@@ -1,8 +1,9 @@
 /* bench_mesh - rays a second through the mesh hierarchies, for the rays of experiments/peers/mesh_rays.h: a camera of
  * 800 x 600 and, from each point it sees, a ray to a point light.
- *   bench_mesh [-m sparse|dense|sphere|all] [-n N,...] [-a none|sphere|octant|bvh|embree] [-k 1|128,...] [-r REPEATS] [-t BUILD_THREADS]
- * k: rays one at a time, or in batches of 128, tiles of 16 x 8 pixels. Milliseconds are of CPU time a frame, medians.
- * Prints a row for each set and k; sum is over the triangles hit and the bits of t, so that equal sums are equal hits. */
+ *   bench_mesh [-m sparse|dense|sphere|all] [-n N,...] [-a none|sphere|octant|bvh|embree] [-k 1|128,...] [-r REPEATS]
+ * [-t BUILD_THREADS] k: rays one at a time, or in batches of 128, tiles of 16 x 8 pixels. Milliseconds are of CPU time
+ * a frame, medians. Prints a row for each set and k; sum is over the triangles hit and the bits of t, so that equal
+ * sums are equal hits. */
 #include "../experiments/peers/mesh_rays.h"
 #include "base/isa.h"
 #include "geometry/bodies.h"
@@ -16,9 +17,13 @@
 enum { COLUMNS = MESH_RAYS_COLUMNS, ROWS = MESH_RAYS_ROWS };
 enum { TILE_COLUMNS = MESH_RAYS_TILE_COLUMNS, TILE_ROWS = MESH_RAYS_TILE_ROWS, TILE = TILE_COLUMNS * TILE_ROWS };
 
-static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2, &hierarchy_kernels_avx512};
+static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2,
+                                                            &hierarchy_kernels_avx512};
 
-typedef struct tally { uint64_t hits, occluded, sum; double total_t; } tally;
+typedef struct tally {
+    uint64_t hits, occluded, sum;
+    double total_t;
+} tally;
 
 /* CPU time: what others do on the machine does not count. */
 static double now_s(void)
@@ -112,7 +117,9 @@ static bool bench(const char *mode, size_t count, hierarchy_kind kind, const cha
     char text[DIAGNOSTIC_TEXT_MAX];
     status s = isa_choose(&level, &why);
     if (s == STATUS_OK)
-        s = (!strcmp(mode, "sparse") ? body_sparse : !strcmp(mode, "dense") ? body_dense : body_sphere)(count, &m, &why);
+        s = (!strcmp(mode, "sparse")  ? body_sparse
+             : !strcmp(mode, "dense") ? body_dense
+                                      : body_sphere)(count, &m, &why);
     if (s == STATUS_OK)
         s = hierarchy_build(m, kind, threads, &h, &why);
     if (s != STATUS_OK)
@@ -128,9 +135,11 @@ static bool bench(const char *mode, size_t count, hierarchy_kind kind, const cha
         qsort(seconds, (size_t)repeats, sizeof *seconds, by_value);
         const double median = seconds[repeats / 2];
         const hierarchy_report r = hierarchy_describe(h);
-        printf("%s\t%zu\t%.2f\t%d\t%d\t%.1f\t%llu\t%llu\t%.2f\t%.3f\t%016llx\t%.6f\n", mode, m->triangle_count, 1e3 * r.build_s, r.threads, atoi(k),
-               (double)r.bytes / (double)m->triangle_count, (unsigned long long)a.hits, (unsigned long long)a.occluded, 1e3 * median,
-               ((double)COLUMNS * ROWS + (double)a.hits) / median / 1e6, (unsigned long long)a.sum, a.hits ? a.total_t / (double)a.hits : 0.0);
+        printf("%s\t%zu\t%.2f\t%d\t%d\t%.1f\t%llu\t%llu\t%.2f\t%.3f\t%016llx\t%.6f\n", mode, m->triangle_count,
+               1e3 * r.build_s, r.threads, atoi(k), (double)r.bytes / (double)m->triangle_count,
+               (unsigned long long)a.hits, (unsigned long long)a.occluded, 1e3 * median,
+               ((double)COLUMNS * ROWS + (double)a.hits) / median / 1e6, (unsigned long long)a.sum,
+               a.hits ? a.total_t / (double)a.hits : 0.0);
         fflush(stdout);
     }
     hierarchy_destroy(h);
@@ -140,7 +149,9 @@ static bool bench(const char *mode, size_t count, hierarchy_kind kind, const cha
 
 int main(int count, char **words)
 {
-    static const char *const kind_names[] = {"none", "sphere", "octant", "bvh", "embree"}, *const modes[] = {"sparse", "dense", "sphere"};
+    static const char *const kind_names[] = {"none", "sphere", "octant", "bvh", "embree"}, *const modes[] = {"sparse",
+                                                                                                             "dense",
+                                                                                                             "sphere"};
     const char *mode = "all", *numbers = "10000,50000,1000000", *kind = "bvh", *sizes = "1,128";
     int repeats = 7, threads = 1, chosen = 0;
     for (int i = 1; i + 1 < count; i += 2)

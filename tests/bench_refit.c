@@ -1,9 +1,9 @@
-/* bench_refit - the time of a hierarchy's refit beside that of its build by one thread, for icospheres of levels 2 to 7 whose vertices move
- * before each. Wall time in milliseconds, medians.
- *   bench_refit [-l FIRST,LAST] [-r REPEATS]
- * Prints a row for each level. A repeat moves and refits the mesh FRAMES times, then builds a hierarchy anew beside it, so that drift of the
- * machine falls on all alike. The first refit after a build finds the caches full of that: it stands apart, as cold_ms. cost_ratio is the refitted
- * hierarchy's cost over that of the one built for the same positions, after a twist by one radian and a squash to 0.7. */
+/* bench_refit - the time of a hierarchy's refit beside that of its build by one thread, for icospheres of levels 2 to 7
+ * whose vertices move before each. Wall time in milliseconds, medians. bench_refit [-l FIRST,LAST] [-r REPEATS] Prints
+ * a row for each level. A repeat moves and refits the mesh FRAMES times, then builds a hierarchy anew beside it, so
+ * that drift of the machine falls on all alike. The first refit after a build finds the caches full of that: it stands
+ * apart, as cold_ms. cost_ratio is the refitted hierarchy's cost over that of the one built for the same positions,
+ * after a twist by one radian and a squash to 0.7. */
 #include "geometry/bodies.h"
 #include "geometry/hierarchy.h"
 
@@ -37,13 +37,17 @@ static void deform(const vec3 *from, size_t count, double phase, vec3 *to)
 {
     for (size_t i = 0; i < count; i++) {
         const double angle = phase * from[i].y, c = cos(angle), s = sin(angle);
-        to[i] = vec3_make(c * from[i].x - s * from[i].z, from[i].y * (1.0 - 0.3 * phase), s * from[i].x + c * from[i].z);
+        to[i] =
+            vec3_make(c * from[i].x - s * from[i].z, from[i].y * (1.0 - 0.3 * phase), s * from[i].x + c * from[i].z);
     }
 }
 
-typedef struct row { double move[REPEATS_MAX * FRAMES], refit[REPEATS_MAX * FRAMES], cold[REPEATS_MAX], build[REPEATS_MAX], cost_ratio; } row;
+typedef struct row {
+    double move[REPEATS_MAX * FRAMES], refit[REPEATS_MAX * FRAMES], cold[REPEATS_MAX], build[REPEATS_MAX], cost_ratio;
+} row;
 
-static status move_and_refit(mesh *m, hierarchy *h, const vec3 *positions, double *move_s, double *refit_s, diagnostic *why)
+static status move_and_refit(mesh *m, hierarchy *h, const vec3 *positions, double *move_s, double *refit_s,
+                             diagnostic *why)
 {
     const double begun = now_s();
     const status s = mesh_move(m, positions, NULL, why);
@@ -96,10 +100,10 @@ static status bench(int level, int repeats, diagnostic *why)
         s = once(m, h, positions, &r, i, why);
     }
     if (s == STATUS_OK) {
-        const double move_s = median(r.move, repeats * FRAMES), refit_s = median(r.refit, repeats * FRAMES), cold_s = median(r.cold, repeats),
-                     build_s = median(r.build, repeats);
-        printf("%d\t%zu\t%.4f\t%.4f\t%.4f\t%.4f\t%.2f\t%.4f\n", level, m->triangle_count, 1e3 * move_s, 1e3 * refit_s, 1e3 * cold_s,
-               1e3 * build_s, build_s / refit_s, r.cost_ratio);
+        const double move_s = median(r.move, repeats * FRAMES), refit_s = median(r.refit, repeats * FRAMES),
+                     cold_s = median(r.cold, repeats), build_s = median(r.build, repeats);
+        printf("%d\t%zu\t%.4f\t%.4f\t%.4f\t%.4f\t%.2f\t%.4f\n", level, m->triangle_count, 1e3 * move_s, 1e3 * refit_s,
+               1e3 * cold_s, 1e3 * build_s, build_s / refit_s, r.cost_ratio);
         fflush(stdout);
     }
     free(positions);
@@ -114,9 +118,14 @@ int main(int count, char **words)
     int first = 2, last = 7, repeats = 15;
     for (int i = 1; i + 1 < count; i += 2)
         switch (words[i][1]) {
-        case 'l': first = last = atoi(words[i + 1]); sscanf(words[i + 1], "%d,%d", &first, &last); break;
+        case 'l':
+            first = last = atoi(words[i + 1]);
+            sscanf(words[i + 1], "%d,%d", &first, &last);
+            break;
         case 'r': repeats = atoi(words[i + 1]); break;
-        default: fprintf(stderr, "bench_refit: no option %s; see the head of tests/bench_refit.c\n", words[i]); return 2;
+        default:
+            fprintf(stderr, "bench_refit: no option %s; see the head of tests/bench_refit.c\n", words[i]);
+            return 2;
         }
     if (repeats < 1 || repeats > REPEATS_MAX || first < 0 || last > BODY_LEVEL_MAX)
         return 2;

@@ -1,5 +1,6 @@
-/* libFuzzer entry: any bytes are what the importer answered. A mesh that is accepted must be sound: finite, and every index in range.
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz_mesh_stream.c; ./fuzz_mesh_stream CORPUS */
+/* libFuzzer entry: any bytes are what the importer answered. A mesh that is accepted must be sound: finite, and every
+ * index in range. clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz_mesh_stream.c; ./fuzz_mesh_stream
+ * CORPUS */
 #include "scene/mesh_stream.h"
 
 #include <math.h>
@@ -8,7 +9,10 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-typedef struct rest { const uint8_t *at; size_t size; } rest;
+typedef struct rest {
+    const uint8_t *at;
+    size_t size;
+} rest;
 
 static status take(void *context, void *bytes, size_t size, diagnostic *why)
 {
@@ -37,7 +41,8 @@ static void must(bool sound)
 static void check(const mesh_import *got)
 {
     const mesh *m = got->mesh;
-    must(m->triangle_count <= 10000 && m->vertex_count <= 10000 && got->material_count >= 1 && got->material_count == m->slot_count);
+    must(m->triangle_count <= 10000 && m->vertex_count <= 10000 && got->material_count >= 1 &&
+         got->material_count == m->slot_count);
     for (size_t t = 0; t < m->triangle_count; t++) {
         must(m->slots[t] < got->material_count);
         for (int k = 0; k < 3; k++) {

@@ -1,4 +1,5 @@
-/* Meshes and rays that make trouble for hierarchies, from fixed streams of random numbers. Ownership: a mesh is the caller's, who releases it. */
+/* Meshes and rays that make trouble for hierarchies, from fixed streams of random numbers. Ownership: a mesh is the
+ * caller's, who releases it. */
 #ifndef CUVETTE_TESTS_HIERARCHY_SCENES_H
 #define CUVETTE_TESTS_HIERARCHY_SCENES_H
 
@@ -24,7 +25,8 @@ static inline mesh *mesh_of_corners(const vec3 *corners, size_t triangles)
     return m;
 }
 
-/* Puts a coordinate where trouble is: on a coarse grid (so that corners, planes and edges coincide), in single precision, or anywhere. */
+/* Puts a coordinate where trouble is: on a coarse grid (so that corners, planes and edges coincide), in single
+ * precision, or anywhere. */
 static inline double random_coordinate(uint64_t *seed, int style, double reach)
 {
     const double v = random_real(seed, -reach, reach);
@@ -42,14 +44,16 @@ static inline mesh *random_mesh(uint64_t *seed, int triangles)
     for (int i = 0; i < triangles; i++) {
         vec3 *c = &corners[3 * i];
         const double size = random_below(seed, 4) == 0 ? reach : random_real(seed, 0.0, 0.2) * reach;
-        vec3 middle = {random_coordinate(seed, style, reach), random_coordinate(seed, style, reach), random_coordinate(seed, style, reach)};
+        vec3 middle = {random_coordinate(seed, style, reach), random_coordinate(seed, style, reach),
+                       random_coordinate(seed, style, reach)};
         for (int j = 0; j < 3; j++) {
-            const vec3 away = {random_coordinate(seed, style, size), random_coordinate(seed, style, size), random_coordinate(seed, style, size)};
+            const vec3 away = {random_coordinate(seed, style, size), random_coordinate(seed, style, size),
+                               random_coordinate(seed, style, size)};
             c[j] = vec3_add(middle, away);
         }
         switch (random_below(seed, 10)) {
-        case 0: c[2] = c[random_below(seed, 2)]; break;                                       /* two corners in one place */
-        case 1: c[2] = vec3_add(c[0], vec3_scale(vec3_sub(c[1], c[0]), 0.5)); break;            /* three in one line, nearly */
+        case 0: c[2] = c[random_below(seed, 2)]; break;                              /* two corners in one place */
+        case 1: c[2] = vec3_add(c[0], vec3_scale(vec3_sub(c[1], c[0]), 0.5)); break; /* three in one line, nearly */
         case 2: c[2] = vec3_add(c[1], vec3_scale(random_direction(seed), 1e-9 * reach)); break; /* a sliver */
         case 3: c[0].x = c[1].x = c[2].x = middle.x; break;                                     /* across the x axis */
         case 4: c[0].z = c[1].z = c[2].z = middle.z; break;
@@ -73,7 +77,8 @@ static inline mesh *random_mesh(uint64_t *seed, int triangles)
 static inline vec3 random_target(const mesh *m, uint64_t *seed)
 {
     const mesh_triangle *t = &m->triangles[random_bits(seed) % m->triangle_count];
-    const vec3 a = m->vertices[t->corner[0]], ab = vec3_sub(m->vertices[t->corner[1]], a), ac = vec3_sub(m->vertices[t->corner[2]], a);
+    const vec3 a = m->vertices[t->corner[0]], ab = vec3_sub(m->vertices[t->corner[1]], a),
+               ac = vec3_sub(m->vertices[t->corner[2]], a);
     const double u = random_real(seed, 0.0, 1.0), v = random_real(seed, 0.0, 1.0 - u);
     switch (random_below(seed, 4)) {
     case 0: return m->vertices[t->corner[random_below(seed, 3)]];
@@ -99,7 +104,9 @@ static inline mesh_ray random_ray(const mesh *m, uint64_t *seed)
     if (!(vec3_dot(d, d) > 0.0))
         d = vec3_make(0.0, 0.0, -1.0);
     r.direction = random_below(seed, 3) ? d : vec3_scale(d, random_real(seed, 1e-6, 1e6));
-    r.origin = random_below(seed, 4) ? vec3_sub(target, vec3_scale(d, random_real(seed, 0.0, 2.0) * reach / vec3_length(d))) : target;
+    r.origin = random_below(seed, 4)
+                   ? vec3_sub(target, vec3_scale(d, random_real(seed, 0.0, 2.0) * reach / vec3_length(d)))
+                   : target;
     if (random_below(seed, 8) == 0)
         r.t_min = random_real(seed, 0.0, reach);
     if (random_below(seed, 8) == 0)

@@ -1,5 +1,5 @@
-/* A client over plain sockets for tests of web/http.h. Ownership: texts are fresh memory; sockets are the caller's. A server that never answers
- * shows as a reply of "" after READ_LIMIT_S, not as a test that hangs. */
+/* A client over plain sockets for tests of web/http.h. Ownership: texts are fresh memory; sockets are the caller's. A
+ * server that never answers shows as a reply of "" after READ_LIMIT_S, not as a test that hangs. */
 #ifndef CUVETTE_TESTS_HTTP_FIXTURE_H
 #define CUVETTE_TESTS_HTTP_FIXTURE_H
 
@@ -24,7 +24,8 @@ static inline int client_connect(int port)
     const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const struct timeval limit = {.tv_sec = READ_LIMIT_S};
     setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    const struct sockaddr_in there = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    const struct sockaddr_in there = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     assert_true(fd >= 0);
     assert_int_equal(connect(fd, (const struct sockaddr *)&there, sizeof there), 0);
     return fd;
@@ -52,7 +53,9 @@ static inline char *client_read_all(int fd)
         if (room - size < 4096)
             text = realloc(text, room = 2 * room + 8192);
         const ssize_t got = recv(fd, text + size, room - size - 1, 0);
-        if (got < 0 && errno == EINTR) /* a child of the server's ended: the limit on the time keeps the call from going on by itself */
+        if (got < 0 &&
+            errno ==
+                EINTR) /* a child of the server's ended: the limit on the time keeps the call from going on by itself */
             continue;
         if (got <= 0)
             break;
@@ -74,7 +77,8 @@ static inline char *client_raw(int port, const void *bytes, size_t size)
 /* heads: further lines, each ended by \r\n; body may be NULL. */
 static inline char *client_ask_as(int port, const char *method, const char *target, const char *heads, const char *body)
 {
-    char *request = body ? text_format("%s %s HTTP/1.1\r\nConnection: close\r\nContent-Length: %zu\r\n%s\r\n%s", method, target, strlen(body), heads, body)
+    char *request = body ? text_format("%s %s HTTP/1.1\r\nConnection: close\r\nContent-Length: %zu\r\n%s\r\n%s", method,
+                                       target, strlen(body), heads, body)
                          : text_format("%s %s HTTP/1.1\r\nConnection: close\r\n%s\r\n", method, target, heads);
     char *reply = client_raw(port, request, strlen(request));
     free(request);
@@ -82,7 +86,8 @@ static inline char *client_ask_as(int port, const char *method, const char *targ
 }
 
 /* With Host and token. */
-static inline char *client_ask(const http_server *s, const char *method, const char *target, const char *heads, const char *body)
+static inline char *client_ask(const http_server *s, const char *method, const char *target, const char *heads,
+                               const char *body)
 {
     char *all = text_format("Host: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n%s", http_port(s), http_token(s), heads);
     char *reply = client_ask_as(http_port(s), method, target, all, body);

@@ -1,5 +1,5 @@
-/* json_get FILE PATH...: the values at each path of a JSON file, one a line; "-" reads standard input, no path only checks
- * the file. Fails (1) when the file is not JSON, has a key twice, or lacks a path.
+/* json_get FILE PATH...: the values at each path of a JSON file, one a line; "-" reads standard input, no path only
+ * checks the file. Fails (1) when the file is not JSON, has a key twice, or lacks a path.
  *
  *   rays.camera  threads[0].tiles  params["render.depth"]     a value: text as it is, lists and objects as JSON
  *   threads[].rays                                            of every element

@@ -1,5 +1,5 @@
-/* A laboratory in a folder of its own, for tests of web/lab.h, and a client of it. Ownership: room_open gives, room_close stops the laboratory and removes the
- * folder; texts and JSON that come back are the caller's. */
+/* A laboratory in a folder of its own, for tests of web/lab.h, and a client of it. Ownership: room_open gives,
+ * room_close stops the laboratory and removes the folder; texts and JSON that come back are the caller's. */
 #ifndef CUVETTE_TESTS_LAB_FIXTURE_H
 #define CUVETTE_TESTS_LAB_FIXTURE_H
 
@@ -16,11 +16,13 @@ typedef struct lab_room {
 } lab_room;
 
 /* A ball on a chequered floor: quick to trace, and looks otherwise when anything changes. */
-#define BALL_SCENE                                                                                                                                             \
-    "title: Ball\nrender: {width: 64, height: 48, depth: 3}\ncamera: {position: [0, 2, -6], target: [0, 1, 0]}\nbackground: {color: [0.5, 0.7, 0.9]}\n"         \
-    "materials:\n  tiles: {ambient: 0.1, diffuse: 0.7, color: [0.8, 0.8, 0.8], checker_color: [0.2, 0.3, 0.4], checker: 0.5}\n"                                                             \
-    "lights:\n  lamp: {position: [4, 7, -5]}\n"                                                                                                                \
-    "solids:\n  ground: {shape: plane, material: tiles, priority: 0}\n"                                                                                        \
+#define BALL_SCENE                                                                                               \
+    "title: Ball\nrender: {width: 64, height: 48, depth: 3}\ncamera: {position: [0, 2, -6], target: [0, 1, "     \
+    "0]}\nbackground: {color: [0.5, 0.7, 0.9]}\n"                                                                \
+    "materials:\n  tiles: {ambient: 0.1, diffuse: 0.7, color: [0.8, 0.8, 0.8], checker_color: [0.2, 0.3, 0.4], " \
+    "checker: 0.5}\n"                                                                                            \
+    "lights:\n  lamp: {position: [4, 7, -5]}\n"                                                                  \
+    "solids:\n  ground: {shape: plane, material: tiles, priority: 0}\n"                                          \
     "  ball: {shape: sphere, position: [0, 1.2, 0], radius: 1, transparency: 1, ior: 1.5, priority: 1}\n"
 
 static inline char *room_path(const lab_room *room, const char *name)
@@ -104,10 +106,12 @@ static inline json_int_t room_post(const lab_room *room, const char *target, con
 }
 
 /* A request that must be refused; the error's text, with its remedy behind a semicolon. */
-static inline char *room_refused(const lab_room *room, const char *method, const char *target, const char *body, int code)
+static inline char *room_refused(const lab_room *room, const char *method, const char *target, const char *body,
+                                 int code)
 {
     json_t *told = room_ask(room, method, target, body, code);
-    const char *error = json_string_value(json_object_get(told, "error")), *remedy = json_string_value(json_object_get(told, "remedy"));
+    const char *error = json_string_value(json_object_get(told, "error")),
+               *remedy = json_string_value(json_object_get(told, "remedy"));
     assert_non_null(error);
     assert_non_null(remedy);
     assert_true(error[0] != 0);

@@ -1,11 +1,12 @@
-/* A laboratory with a tiny study, for tests of web/studies.h and what came of studies. Include http_fixture.h's needs (cmocka) first. */
+/* A laboratory with a tiny study, for tests of web/studies.h and what came of studies. Include http_fixture.h's needs
+ * (cmocka) first. */
 #ifndef CUVETTE_TESTS_LAB_STUDY_FIXTURE_H
 #define CUVETTE_TESTS_LAB_STUDY_FIXTURE_H
 
 #include "lab_fixture.h"
 
-#define TINY(repetitions)                                                                                                                                      \
-    "study: tiny\ntitle: A tiny one\nscene: scene.yaml\nset: {render.width: 16, render.height: 12}\n"                                                         \
+#define TINY(repetitions)                                                                             \
+    "study: tiny\ntitle: A tiny one\nscene: scene.yaml\nset: {render.width: 16, render.height: 12}\n" \
     "grid:\n  - {render.depth: [0, 1, 2]}\n  - {render.threads: [1, 2]}\nrepetitions: " repetitions "\nwarmups: 1\n"
 enum { TINY_CELLS = 6 };
 #define ENDLESS TINY("100000")

@@ -156,7 +156,8 @@ static inline uint64_t hits_of_added(const scene *s, const render_result *r)
     return 0;
 }
 
-/* By how much the scene's pixels change when it is seen from some roundings of the eye's place beside, along each axis. */
+/* By how much the scene's pixels change when it is seen from some roundings of the eye's place beside, along each axis.
+ */
 static inline void add_swing(judge *j, const scene *s, const film *plain, double swing[LAW_WIDTH * LAW_HEIGHT * 3])
 {
     static const vec3 beside[] = {{2e-15, 0.0, 0.0}, {0.0, 2e-15, 0.0}, {0.0, 0.0, 2e-15}};
@@ -174,8 +175,8 @@ static inline void add_swing(judge *j, const scene *s, const film *plain, double
     }
 }
 
-/* Films within 1e-12; a pixel that is not must differ as much for eyes beside: a ray that meets a surface under 89.9 degrees
- * carries a rounding on a thousand times as large. */
+/* Films within 1e-12; a pixel that is not must differ as much for eyes beside: a ray that meets a surface under 89.9
+ * degrees carries a rounding on a thousand times as large. */
 static inline bool alike_but_for_rounding(judge *j, const scene *s, const film *a, const film *b)
 {
     double swing[LAW_WIDTH * LAW_HEIGHT * 3] = {0.0};
@@ -200,8 +201,8 @@ static inline verdict same_films(judge *j, const law_pair *p, bool exact)
     render_result *x = law_render(j, s), *y = law_render(j, t);
     j->difference = film_apart(x->picture, y->picture);
     j->added_hits = hits_of_added(t, y);
-    const bool same = exact ? film_hash(x->picture) == film_hash(y->picture)
-                            : alike_but_for_rounding(j, s, x->picture, y->picture);
+    const bool same =
+        exact ? film_hash(x->picture) == film_hash(y->picture) : alike_but_for_rounding(j, s, x->picture, y->picture);
     render_result_destroy(x);
     render_result_destroy(y);
     scene_destroy(s);
@@ -242,7 +243,8 @@ static inline verdict same_radiance(judge *j, const law_pair *p)
         a.tree = (ray_tree){.count = 0};
         const ray_tree *displaced = stage_ray(&a, vec3_add(p->a.eye, off), d);
         const vec3 own = probe_camera_direction(b.probe, p->moved.mirrored ? LAW_WIDTH - x : x, y);
-        if (vec3_length(vec3_sub(own, move_direction(&p->moved, d))) > 1e-13) /* the camera and its roll move with the scene */
+        if (vec3_length(vec3_sub(own, move_direction(&p->moved, d))) >
+            1e-13) /* the camera and its roll move with the scene */
             result = BROKEN;
         const ray_tree *moved = stage_ray(&b, p->b.eye, own);
         const bool same = same_path(&plain, displaced);

@@ -174,8 +174,8 @@ static inline void level_frame(vec3 forward, vec3 *right, vec3 *up)
     *up = vec3_cross(forward, *right);
 }
 
-/* The frame of the camera moves with the scene; its roll is what then turns the level frame to it. Of a mirrored scene the image is mirrored too:
- * the moved right is the camera's left. */
+/* The frame of the camera moves with the scene; its roll is what then turns the level frame to it. Of a mirrored scene
+ * the image is mirrored too: the moved right is the camera's left. */
 static inline void move_camera(law_scene *w, const motion *m)
 {
     const double roll = w->roll_deg * DEGREE;
@@ -236,7 +236,7 @@ static inline void cut(law_pair *p, uint64_t *seed)
     if (s->opaque || s->checker > 0.0 || (s->shape.kind != SHAPE_BOX && s->shape.kind != SHAPE_CYLINDER))
         *s = clear_box(w, s->number, seed);
     s->number = LAW_ADDED + 1; /* so that no shrinking takes it away */
-    s->reflectivity = 0.0; /* where coated pieces meet, their coating is seen */
+    s->reflectivity = 0.0;     /* where coated pieces meet, their coating is seen */
     w->solid[at] = *s;
     insert_solid(w, at + 1, *s);
     law_solid *first = &w->solid[at], *second = &w->solid[at + 1];
@@ -266,7 +266,8 @@ static inline double room_around(const law_scene *w, vec3 at)
     for (int i = 0; i < w->solid_count; i++) {
         const law_solid *s = &w->solid[i];
         const ball around = ball_around(s);
-        const bool exact = !s->mesh && !((s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP) && s->shape.m != 1.0);
+        const bool exact =
+            !s->mesh && !((s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP) && s->shape.m != 1.0);
         const double distance = exact ? (double)reference_distance(&s->shape, quad3_from(at))
                                       : vec3_length(vec3_sub(at, around.middle)) - around.radius;
         least = fmin(least, distance);
@@ -412,9 +413,7 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
     switch (which) {
     case LAW_UNMET: add_unmet(&p->b, &seed); break;
     case LAW_ORDER: permute(&p->b, &seed); break;
-    case LAW_SCALE:
-        p->exponent = random_below(&seed, 41) - 20;
-        break;
+    case LAW_SCALE: p->exponent = random_below(&seed, 41) - 20; break;
     case LAW_MOTION:
         for (int i = 0; i < p->a.solid_count; i++)
             p->a.solid[i].checker = 0.0;

@@ -241,7 +241,8 @@ static inline law_scene random_law_scene(uint64_t *seed, const char *settings)
     w.light_count = random_below(seed, LAW_LIGHTS_MAX + 1);
     for (int i = 0; i < w.light_count; i++)
         w.light[i] = (law_light){random_point(seed, 5.0), 2.0 * i};
-    uint64_t own = *seed ^ 0x726f6c6cu; /* "roll": of a stream of its own, so that it changes nothing else of the scene */
+    uint64_t own =
+        *seed ^ 0x726f6c6cu; /* "roll": of a stream of its own, so that it changes nothing else of the scene */
     w.roll_deg = random_below(&own, 3) == 0 ? random_real(&own, -180.0, 180.0) : 0.0;
     const int count = 1 + random_below(seed, 9);
     for (int i = 0; i < count; i++)
@@ -266,7 +267,8 @@ static inline void write_material(scene_text *t, const law_solid *s)
     else
         add(t, "ior: %.17g, transparency: %.17g, ", s->ior, s->transparency);
     if (s->tint.x < 1.0 && !s->opaque)
-        add(t, "color: [%.17g, %.17g, %.17g], tint_distance: %.17g, ", s->tint.x, s->tint.y, s->tint.z, s->tint_distance);
+        add(t, "color: [%.17g, %.17g, %.17g], tint_distance: %.17g, ", s->tint.x, s->tint.y, s->tint.z,
+            s->tint_distance);
     if (s->checker > 0.0)
         add(t, "checker: %.17g, checker_color: [0.1, 0.3, 0.9], ", s->checker);
     if (vec3_dot(s->absorb_per_m, s->absorb_per_m) > 0.0 && !s->opaque)

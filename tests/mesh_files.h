@@ -60,7 +60,10 @@ static void put_text(const char *name, const char *text)
 }
 
 /* Bytes that grow. */
-typedef struct bytes { unsigned char *at; size_t size, room; } bytes;
+typedef struct bytes {
+    unsigned char *at;
+    size_t size, room;
+} bytes;
 
 static inline void add(bytes *b, const void *more, size_t size)
 {
@@ -112,8 +115,10 @@ static inline bytes binary_stl(void)
 static inline bytes binary_ply(void)
 {
     bytes b = {0};
-    add_text(&b, "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                 "element face 4\nproperty list uchar int vertex_indices\nend_header\n");
+    add_text(
+        &b,
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 4\nproperty list uchar int vertex_indices\nend_header\n");
     add(&b, corners, sizeof corners);
     for (int f = 0; f < 4; f++) {
         add(&b, "\3", 1);
@@ -152,7 +157,8 @@ static inline bytes tetrahedron_glb(const char *node)
              "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"
              "{\"bufferView\":1,\"componentType\":5121,\"count\":12,\"type\":\"SCALAR\"}],"
              "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":12}],"
-             "\"buffers\":[{\"byteLength\":60}]}", node);
+             "\"buffers\":[{\"byteLength\":60}]}",
+             node);
     bytes data = {0};
     add(&data, corners, sizeof corners);
     add(&data, faces, sizeof faces);

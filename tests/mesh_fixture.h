@@ -6,7 +6,8 @@
 #include <string.h>
 
 /* An unfinished mesh of these vertices and triangles. */
-static inline mesh *mesh_of(const vec3 *vertices, size_t vertex_count, const mesh_triangle *triangles, size_t triangle_count)
+static inline mesh *mesh_of(const vec3 *vertices, size_t vertex_count, const mesh_triangle *triangles,
+                            size_t triangle_count)
 {
     mesh *m = NULL;
     if (mesh_create(vertex_count, triangle_count, false, false, false, &m, NULL) != STATUS_OK)
@@ -17,13 +18,15 @@ static inline mesh *mesh_of(const vec3 *vertices, size_t vertex_count, const mes
     return m;
 }
 
-/* Cube number c = 0, 1 ... of edges 2 half about center, fronts outwards: vertices 8 c + (x > 0) + 2 (y > 0) + 4 (z > 0), triangles from 12 c on. */
+/* Cube number c = 0, 1 ... of edges 2 half about center, fronts outwards: vertices 8 c + (x > 0) + 2 (y > 0) + 4 (z >
+ * 0), triangles from 12 c on. */
 static inline void put_cube(mesh *m, size_t c, vec3 center, double half)
 {
     static const uint32_t corners[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                                             {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
     for (size_t v = 0; v < 8; v++)
-        m->vertices[8 * c + v] = vec3_add(center, vec3_make(v & 1 ? half : -half, v & 2 ? half : -half, v & 4 ? half : -half));
+        m->vertices[8 * c + v] =
+            vec3_add(center, vec3_make(v & 1 ? half : -half, v & 2 ? half : -half, v & 4 ? half : -half));
     for (size_t t = 0; t < 12; t++)
         for (size_t k = 0; k < 3; k++)
             m->triangles[12 * c + t].corner[k] = (uint32_t)(8 * c) + corners[t][k];

@@ -1,5 +1,6 @@
-/* Rooms of overlapping solids some of which are meshes, at random, and what is where in them by definition: of a mesh by the winding number
- * of its triangles around the point, of the others by their shapes. Ownership: mesh_room_fill gives, mesh_room_empty releases. */
+/* Rooms of overlapping solids some of which are meshes, at random, and what is where in them by definition: of a mesh
+ * by the winding number of its triangles around the point, of the others by their shapes. Ownership: mesh_room_fill
+ * gives, mesh_room_empty releases. */
 #ifndef CUVETTE_TESTS_MESH_ROOM_H
 #define CUVETTE_TESTS_MESH_ROOM_H
 
@@ -16,22 +17,24 @@ typedef struct mesh_room {
     size_t count[SOLIDS_MAX];
 } mesh_room;
 
-/* Turns around a point: the sum of the triangles' solid angles over 4 pi (Van Oosterom and Strackee, "The solid angle of a plane
- * triangle", IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8). */
+/* Turns around a point: the sum of the triangles' solid angles over 4 pi (Van Oosterom and Strackee, "The solid angle
+ * of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8). */
 static inline double winding(const vec3 (*triangle)[3], size_t count, vec3 at)
 {
     double sum = 0.0;
     for (size_t i = 0; i < count; i++) {
         const vec3 a = vec3_sub(triangle[i][0], at), b = vec3_sub(triangle[i][1], at), c = vec3_sub(triangle[i][2], at);
         const double la = vec3_length(a), lb = vec3_length(b), lc = vec3_length(c);
-        sum += 2.0 * atan2(vec3_dot(a, vec3_cross(b, c)), la * lb * lc + vec3_dot(a, b) * lc + vec3_dot(b, c) * la + vec3_dot(c, a) * lb);
+        sum += 2.0 * atan2(vec3_dot(a, vec3_cross(b, c)),
+                           la * lb * lc + vec3_dot(a, b) * lc + vec3_dot(b, c) * la + vec3_dot(c, a) * lb);
     }
     return sum / (4.0 * 3.141592653589793);
 }
 
 static inline bool solid_contains(const mesh_room *m, int i, vec3 at)
 {
-    return m->body[i] ? winding((const vec3(*)[3])m->triangle[i], m->count[i], at) > 0.5 : solid_shape_contains(&m->r.shape[i], at);
+    return m->body[i] ? winding((const vec3(*)[3])m->triangle[i], m->count[i], at) > 0.5
+                      : solid_shape_contains(&m->r.shape[i], at);
 }
 
 static inline int winner_in_room(const mesh_room *m, vec3 at)
@@ -45,17 +48,20 @@ static inline int winner_in_room(const mesh_room *m, vec3 at)
 
 enum { ROOM_CROSSINGS_MAX = 512 };
 
-/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997, in quadruple precision; a hair wider than the triangle, so that
- * none is missed. */
+/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997, in quadruple precision; a
+ * hair wider than the triangle, so that none is missed. */
 static inline int triangle_event(const vec3 v[3], const reference_line *line, quad *t)
 {
-    const quad3 a = quad3_from(v[0]), e1 = quad3_sub(quad3_from(v[1]), a), e2 = quad3_sub(quad3_from(v[2]), a), s = quad3_sub(line->o, a);
-    const quad3 p = {line->d.y * e2.z - line->d.z * e2.y, line->d.z * e2.x - line->d.x * e2.z, line->d.x * e2.y - line->d.y * e2.x};
+    const quad3 a = quad3_from(v[0]), e1 = quad3_sub(quad3_from(v[1]), a), e2 = quad3_sub(quad3_from(v[2]), a),
+                s = quad3_sub(line->o, a);
+    const quad3 p = {line->d.y * e2.z - line->d.z * e2.y, line->d.z * e2.x - line->d.x * e2.z,
+                     line->d.x * e2.y - line->d.y * e2.x};
     const quad3 q = {s.y * e1.z - s.z * e1.y, s.z * e1.x - s.x * e1.z, s.x * e1.y - s.y * e1.x};
     const quad det = e1.x * p.x + e1.y * p.y + e1.z * p.z, hair = (quad)1e-12;
     if (det == 0)
         return 0;
-    const quad u = (s.x * p.x + s.y * p.y + s.z * p.z) / det, w = (line->d.x * q.x + line->d.y * q.y + line->d.z * q.z) / det;
+    const quad u = (s.x * p.x + s.y * p.y + s.z * p.z) / det,
+               w = (line->d.x * q.x + line->d.y * q.y + line->d.z * q.z) / det;
     *t = (e2.x * q.x + e2.y * q.y + e2.z * q.z) / det;
     return u >= -hair && w >= -hair && u + w <= 1 + hair && *t > 0;
 }
@@ -88,7 +94,8 @@ static inline int changes_in_room(const mesh_room *m, const reference_line *line
         const quad behind = next < n ? t[next] : t[i] + 1;
         if (t[i] - last < clear || behind - t[i] < clear)
             return -1;
-        const int before = winner_in_room(m, point_at(line, (last + t[i]) / 2)), after = winner_in_room(m, point_at(line, (t[i] + behind) / 2));
+        const int before = winner_in_room(m, point_at(line, (last + t[i]) / 2)),
+                  after = winner_in_room(m, point_at(line, (t[i] + behind) / 2));
         if (medium_of(&m->r, before) != medium_of(&m->r, after))
             out[count++] = (change){t[i], before, after};
         last = t[i];
@@ -108,8 +115,8 @@ static inline void place_triangles(mesh_room *m, int i)
     m->triangle[i] = calloc(nx * ny * nz * b->triangle_count, sizeof *m->triangle[i]);
     assert_non_null(m->triangle[i]);
     for (size_t copy = 0; copy < nx * ny * nz; copy++) {
-        const vec3 at =
-            vec3_make((double)(copy % nx) * s->spacing.x, (double)(copy / nx % ny) * s->spacing.y, (double)(copy / nx / ny) * s->spacing.z);
+        const vec3 at = vec3_make((double)(copy % nx) * s->spacing.x, (double)(copy / nx % ny) * s->spacing.y,
+                                  (double)(copy / nx / ny) * s->spacing.z);
         for (size_t k = 0; k < b->triangle_count; k++, m->count[i]++)
             for (int c = 0; c < 3; c++) {
                 const vec3 v = b->vertices[b->triangles[k].corner[c]],
@@ -162,14 +169,17 @@ static inline void mesh_room_fill(mesh_room *m, uint64_t *seed, bool on_a_grid)
         m->body[i] = random_body(seed, on_a_grid, s->size);
         s->kind = SHAPE_MESH;
         s->mesh = m->body[i];
-        s->scale = on_a_grid || random_below(seed, 2)
-                       ? vec3_make(1.0, 1.0, 1.0)
-                       : vec3_make(random_real(seed, 0.4, 1.6), random_real(seed, 0.4, 1.6), random_real(seed, 0.4, 1.6));
+        s->scale =
+            on_a_grid || random_below(seed, 2)
+                ? vec3_make(1.0, 1.0, 1.0)
+                : vec3_make(random_real(seed, 0.4, 1.6), random_real(seed, 0.4, 1.6), random_real(seed, 0.4, 1.6));
         s->copies = vec3_make(1.0 + random_below(seed, 3) % 2, 1.0, 1.0 + random_below(seed, 4) % 3 % 2);
         s->spacing = on_a_grid ? s->size : vec3_make(2.1 * s->scale.x, 1.0, 2.1 * s->scale.z);
         if (!on_a_grid)
             s->spacing = vec3_add(s->spacing, vec3_scale(s->size, 1.0));
-        assert_int_equal(hierarchy_build(m->body[i], (hierarchy_kind)random_below(seed, HIERARCHY_EMBREE), 1, &m->tree[i], NULL), STATUS_OK);
+        assert_int_equal(
+            hierarchy_build(m->body[i], (hierarchy_kind)random_below(seed, HIERARCHY_EMBREE), 1, &m->tree[i], NULL),
+            STATUS_OK);
         place_triangles(m, i);
     }
     mesh_room_arrange(m);

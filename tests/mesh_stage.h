@@ -1,4 +1,5 @@
-/* Scenes with meshes for tests: read, loaded and looked at; pictures made in memory as their textures. Ownership as in probe_fixture.h. */
+/* Scenes with meshes for tests: read, loaded and looked at; pictures made in memory as their textures. Ownership as in
+ * probe_fixture.h. */
 #ifndef CUVETTE_TESTS_MESH_STAGE_H
 #define CUVETTE_TESTS_MESH_STAGE_H
 
@@ -15,11 +16,12 @@ static inline void give_texture(scene *s, const char *name, const double *texels
         assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
         for (int y = 0; y < height; y++)
             for (int x = 0; x < 3 * width; x++)
-                picture->pixel[(size_t)(height - 1 - y) * 3 * (size_t)width + (size_t)x] = (float)texels[y * 3 * width + x];
+                picture->pixel[(size_t)(height - 1 - y) * 3 * (size_t)width + (size_t)x] =
+                    (float)texels[y * 3 * width + x];
         texture *made = NULL;
-        assert_int_equal(
-            texture_create(picture, TEXTURE_SRGB, (texture_wrap)t->wrap_u, (texture_wrap)t->wrap_v, (texture_filter)t->filter, &made, NULL),
-            STATUS_OK);
+        assert_int_equal(texture_create(picture, TEXTURE_SRGB, (texture_wrap)t->wrap_u, (texture_wrap)t->wrap_v,
+                                        (texture_filter)t->filter, &made, NULL),
+                         STATUS_OK);
         image_destroy(picture);
         t->data = made;
     }

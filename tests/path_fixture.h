@@ -1,6 +1,6 @@
-/* Pictures of random paths against what they should be: within the interval that the renderer reports. Eight layers give a
- * standard error of seven degrees of freedom; Student's t, two-sided (Abramowitz and Stegun, table 26.10). Each call
- * asserts that it worked. */
+/* Pictures of random paths against what they should be: within the interval that the renderer reports. Eight layers
+ * give a standard error of seven degrees of freedom; Student's t, two-sided (Abramowitz and Stegun, table 26.10). Each
+ * call asserts that it worked. */
 #ifndef CUVETTE_TESTS_PATH_FIXTURE_H
 #define CUVETTE_TESTS_PATH_FIXTURE_H
 
@@ -11,7 +11,9 @@
 #define T7_9999 7.885   /* 99.99% */
 #define ROUNDINGS 1e-10 /* of the film's units and of weights of 1 / paths */
 
-typedef struct estimate { double value, standard_error; } estimate;
+typedef struct estimate {
+    double value, standard_error;
+} estimate;
 
 static inline estimate estimate_at(const render_result *r, int x, int y, int channel)
 {
@@ -36,11 +38,15 @@ static inline void expect_estimate(estimate e, double wanted)
         fail_msg("%.9g +- %.2g instead of %.9g", e.value, e.standard_error, wanted);
 }
 
-/* Over many values: how many lie in their own interval of 95%, and how far the mean of all lies off in its standard errors. */
-typedef struct agreement { int count, inside; double off, variance; } agreement;
+/* Over many values: how many lie in their own interval of 95%, and how far the mean of all lies off in its standard
+ * errors. */
+typedef struct agreement {
+    int count, inside;
+    double off, variance;
+} agreement;
 
-/* unseen: how far off a value may be that shows no spread: ROUNDINGS where nothing is left to chance, else what rare events weigh
- * of which none was seen, about 10 / paths. */
+/* unseen: how far off a value may be that shows no spread: ROUNDINGS where nothing is left to chance, else what rare
+ * events weigh of which none was seen, about 10 / paths. */
 static inline void agreement_add(agreement *a, estimate e, double wanted, double unseen)
 {
     if (e.standard_error < 1e-9) {
@@ -54,7 +60,13 @@ static inline void agreement_add(agreement *a, estimate e, double wanted, double
     a->variance += e.standard_error * e.standard_error;
 }
 
-static inline double agreement_share(const agreement *a) { return (double)a->inside / a->count; }
-static inline double agreement_off(const agreement *a) { return a->off / sqrt(a->variance); }
+static inline double agreement_share(const agreement *a)
+{
+    return (double)a->inside / a->count;
+}
+static inline double agreement_off(const agreement *a)
+{
+    return a->off / sqrt(a->variance);
+}
 
 #endif

@@ -1,5 +1,5 @@
-/* Random chains of interfaces for the tests of polarised light: the ray from the eye step by step, and the light's field
- * the other way, as complex vectors in space that know no Stokes frame. Pure but for the seed. */
+/* Random chains of interfaces for the tests of polarised light: the ray from the eye step by step, and the light's
+ * field the other way, as complex vectors in space that know no Stokes frame. Pure but for the seed. */
 #ifndef CUVETTE_TESTS_POLARISED_CHAIN_H
 #define CUVETTE_TESTS_POLARISED_CHAIN_H
 
@@ -7,13 +7,33 @@
 #include "random_stream.h"
 #include <complex.h>
 
-typedef struct field { double complex x, y, z; } field;
+typedef struct field {
+    double complex x, y, z;
+} field;
 
-static inline field field_from(vec3 a, double complex k) { field f = {a.x * k, a.y * k, a.z * k}; return f; }
-static inline field field_add(field a, field b) { field f = {a.x + b.x, a.y + b.y, a.z + b.z}; return f; }
-static inline field field_scale(field a, double complex k) { field f = {a.x * k, a.y * k, a.z * k}; return f; }
-static inline double complex field_dot(field a, field b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static inline double complex field_along(field a, vec3 e) { return a.x * e.x + a.y * e.y + a.z * e.z; }
+static inline field field_from(vec3 a, double complex k)
+{
+    field f = {a.x * k, a.y * k, a.z * k};
+    return f;
+}
+static inline field field_add(field a, field b)
+{
+    field f = {a.x + b.x, a.y + b.y, a.z + b.z};
+    return f;
+}
+static inline field field_scale(field a, double complex k)
+{
+    field f = {a.x * k, a.y * k, a.z * k};
+    return f;
+}
+static inline double complex field_dot(field a, field b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+static inline double complex field_along(field a, vec3 e)
+{
+    return a.x * e.x + a.y * e.y + a.z * e.z;
+}
 static inline double field_power(field a)
 {
     return creal(a.x * conj(a.x)) + creal(a.y * conj(a.y)) + creal(a.z * conj(a.z));
@@ -24,11 +44,12 @@ static inline field field_cross(field a, field b)
     return f;
 }
 
-/* Stokes parameters of field E exp(-i omega t) in the frame (x, y), from their meaning: u compares the powers along the two
- * diagonals; v is twice E_x dE_y/dt - E_y dE_x/dt (per omega), positive when the field turns from x to y. */
+/* Stokes parameters of field E exp(-i omega t) in the frame (x, y), from their meaning: u compares the powers along the
+ * two diagonals; v is twice E_x dE_y/dt - E_y dE_x/dt (per omega), positive when the field turns from x to y. */
 static inline stokes field_stokes(field e, vec3 x, vec3 y)
 {
-    const double complex ex = field_along(e, x), ey = field_along(e, y), up = (ex + ey) / sqrt(2.0), down = (ex - ey) / sqrt(2.0);
+    const double complex ex = field_along(e, x), ey = field_along(e, y), up = (ex + ey) / sqrt(2.0),
+                         down = (ex - ey) / sqrt(2.0);
     const double px = cabs(ex) * cabs(ex), py = cabs(ey) * cabs(ey);
     /* at t = 0 the field is the amplitude's real part, its time derivative (per omega) the imaginary part */
     stokes s = {px + py, px - py, cabs(up) * cabs(up) - cabs(down) * cabs(down),
@@ -36,9 +57,11 @@ static inline stokes field_stokes(field e, vec3 x, vec3 y)
     return s;
 }
 
-/* Amplitudes by Fresnel's formulas with a complex angle of refraction; exp(-i omega t): the wave beyond total reflection
- * dies away for a positive imaginary cos_t. Born and Wolf, 7th ed., 1.5.2 and 1.5.4. */
-typedef struct amplitudes { double complex cos_t, r_s, r_p, t_s, t_p; } amplitudes;
+/* Amplitudes by Fresnel's formulas with a complex angle of refraction; exp(-i omega t): the wave beyond total
+ * reflection dies away for a positive imaginary cos_t. Born and Wolf, 7th ed., 1.5.2 and 1.5.4. */
+typedef struct amplitudes {
+    double complex cos_t, r_s, r_p, t_s, t_p;
+} amplitudes;
 
 static inline amplitudes amplitudes_at(double cos_i, double n1, double n2)
 {

@@ -1,5 +1,6 @@
-/* Scenes written line by line, and single rays through them, for tests that look through render/probe.h. Each call asserts
- * that it worked. Ownership: stage_of gives, stage_close releases; trees belong to their stage and last until its next ray. */
+/* Scenes written line by line, and single rays through them, for tests that look through render/probe.h. Each call
+ * asserts that it worked. Ownership: stage_of gives, stage_close releases; trees belong to their stage and last until
+ * its next ray. */
 #ifndef CUVETTE_TESTS_PROBE_FIXTURE_H
 #define CUVETTE_TESTS_PROBE_FIXTURE_H
 
@@ -12,7 +13,10 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define DEGREE 0.017453292519943295
 
-typedef struct scene_text { char at[16384]; size_t length; } scene_text;
+typedef struct scene_text {
+    char at[16384];
+    size_t length;
+} scene_text;
 
 __attribute__((format(printf, 2, 3))) static inline void add(scene_text *t, const char *format, ...)
 {
@@ -28,18 +32,26 @@ __attribute__((format(printf, 2, 3))) static inline void add(scene_text *t, cons
 static inline scene_text scene_begin(double surrounding_ior, int depth)
 {
     scene_text t = {.length = 0};
-    add(&t, "background: {color: [1, 1, 1], ior: %.17g}\nrender: {depth: %d, width: 1, height: 1}\nsolids:\n", surrounding_ior, depth);
+    add(&t, "background: {color: [1, 1, 1], ior: %.17g}\nrender: {depth: %d, width: 1, height: 1}\nsolids:\n",
+        surrounding_ior, depth);
     return t;
 }
 
 /* A clear solid; more: further keys, as "shape: sphere, radius: 2". */
-static inline void add_clear(scene_text *t, const char *name, double ior, int priority, vec3 position, vec3 rotation_deg, const char *more)
+static inline void add_clear(scene_text *t, const char *name, double ior, int priority, vec3 position,
+                             vec3 rotation_deg, const char *more)
 {
-    add(t, "  %s: {transparency: 1, ior: %.17g, priority: %d, position: [%.17g, %.17g, %.17g], rotation: [%.17g, %.17g, %.17g], %s}\n",
+    add(t,
+        "  %s: {transparency: 1, ior: %.17g, priority: %d, position: [%.17g, %.17g, %.17g], rotation: [%.17g, %.17g, "
+        "%.17g], %s}\n",
         name, ior, priority, position.x, position.y, position.z, rotation_deg.x, rotation_deg.y, rotation_deg.z, more);
 }
 
-typedef struct stage { scene *setting; probe *probe; ray_tree tree; } stage;
+typedef struct stage {
+    scene *setting;
+    probe *probe;
+    ray_tree tree;
+} stage;
 
 static inline void stage_look(stage *g)
 {
@@ -105,8 +117,11 @@ static inline double tree_cut(const ray_tree *tree, int channel)
     return sum;
 }
 
-/* Power reflectances from the angles alone: Hecht, Optics, 5th ed., eqs. 4.42 and 4.43, squared; at normal incidence 4.47. */
-typedef struct reflectance { double s, p, mean; } reflectance;
+/* Power reflectances from the angles alone: Hecht, Optics, 5th ed., eqs. 4.42 and 4.43, squared; at normal
+ * incidence 4.47. */
+typedef struct reflectance {
+    double s, p, mean;
+} reflectance;
 
 static inline reflectance reflectance_of_angles(double angle_i, double n_from, double n_to)
 {

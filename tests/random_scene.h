@@ -1,5 +1,5 @@
-/* Random scenes as text, from room_fixture.h's shapes: overlapping solids of all kinds, turned, their priorities shuffled and some of
- * them equal, indices shared. Ownership: values. */
+/* Random scenes as text, from room_fixture.h's shapes: overlapping solids of all kinds, turned, their priorities
+ * shuffled and some of them equal, indices shared. Ownership: values. */
 #ifndef CUVETTE_TESTS_RANDOM_SCENE_H
 #define CUVETTE_TESTS_RANDOM_SCENE_H
 
@@ -9,10 +9,12 @@
 
 static inline void add_shape(scene_text *t, const solid_shape *s)
 {
-    add(t, "position: [%.17g, %.17g, %.17g], rotation: [%.17g, %.17g, %.17g], ", s->position.x, s->position.y, s->position.z,
-        s->rotation_deg.x, s->rotation_deg.y, s->rotation_deg.z);
+    add(t, "position: [%.17g, %.17g, %.17g], rotation: [%.17g, %.17g, %.17g], ", s->position.x, s->position.y,
+        s->position.z, s->rotation_deg.x, s->rotation_deg.y, s->rotation_deg.z);
     switch (s->kind) {
-    case SHAPE_CYLINDER: add(t, "shape: cylinder, radius: %.17g, height: %.17g, m: %.17g", s->radius, s->height, s->m); break;
+    case SHAPE_CYLINDER:
+        add(t, "shape: cylinder, radius: %.17g, height: %.17g, m: %.17g", s->radius, s->height, s->m);
+        break;
     case SHAPE_CUP:
         add(t, "shape: cup, radius: %.17g, height: %.17g, inner_radius: %.17g, floor: %.17g, m: %.17g", s->radius,
             s->height, s->inner_radius, s->floor, s->m);
@@ -31,8 +33,10 @@ static inline double random_ior(uint64_t *seed, int64_t medium, double outside)
     return medium == 0 ? outside : medium == -1 ? 1.33 : medium == -2 ? 1.5 : random_real(seed, 1.0, 2.5);
 }
 
-/* Solids s0, s1, ...: every one clear, or as the room says; an opaque one reflects and shines by ambient light, together at most 1. */
-static inline void add_room(scene_text *t, uint64_t *seed, const room *m, double outside, bool all_clear, bool absorbing)
+/* Solids s0, s1, ...: every one clear, or as the room says; an opaque one reflects and shines by ambient light,
+ * together at most 1. */
+static inline void add_room(scene_text *t, uint64_t *seed, const room *m, double outside, bool all_clear,
+                            bool absorbing)
 {
     for (int i = 0; i < m->count; i++) {
         add(t, "  s%d: {priority: %d, ", i, (int)m->priority[i]);
@@ -40,7 +44,8 @@ static inline void add_room(scene_text *t, uint64_t *seed, const room *m, double
             const double mirror = random_below(seed, 2) ? random_real(seed, 0.0, 1.0) : 0.0;
             add(t, "reflectivity: %.17g, ambient: %.17g, diffuse: 0.5, ", mirror, 1.0 - mirror);
         } else {
-            add(t, "ior: %.17g, transparency: %.17g, reflectivity: 0, ", random_ior(seed, m->medium[i], outside), all_clear ? 1.0 : m->clearness[i]);
+            add(t, "ior: %.17g, transparency: %.17g, reflectivity: 0, ", random_ior(seed, m->medium[i], outside),
+                all_clear ? 1.0 : m->clearness[i]);
         }
         if (absorbing && random_below(seed, 2))
             add(t, "absorb_per_m: [%.17g, 0, %.17g], ", random_real(seed, 0.0, 0.5), random_real(seed, 0.0, 1.0));

@@ -1,4 +1,5 @@
-/* Bodies that are deformed, and what hierarchies of them are compared by. Ownership: meshes and hierarchies are the caller's. After cmocka.h. */
+/* Bodies that are deformed, and what hierarchies of them are compared by. Ownership: meshes and hierarchies are the
+ * caller's. After cmocka.h. */
 #ifndef CUVETTE_TESTS_REFIT_FIXTURE_H
 #define CUVETTE_TESTS_REFIT_FIXTURE_H
 
@@ -13,7 +14,8 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 enum { BATCH = 128, SHOWN_MAX = 4096 };
 
-static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2, &hierarchy_kernels_avx512};
+static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2,
+                                                            &hierarchy_kernels_avx512};
 
 static inline int effort(int full)
 {
@@ -77,7 +79,10 @@ static inline vec3 scatter(vec3 p, size_t vertex, uint64_t *seed)
 static inline vec3 collapse(vec3 p, size_t vertex, uint64_t *seed)
 {
     (void)vertex, (void)seed;
-    return p.x > 0.3 ? vec3_make(0.3, 0.1, -0.2) : p.x > -0.2 ? vec3_make(p.x, 0.0, 0.0) : p.y > 0.0 ? vec3_make(p.x, 0.0, p.z) : p;
+    return p.x > 0.3    ? vec3_make(0.3, 0.1, -0.2)
+           : p.x > -0.2 ? vec3_make(p.x, 0.0, 0.0)
+           : p.y > 0.0  ? vec3_make(p.x, 0.0, p.z)
+                        : p;
 }
 
 static inline vec3 far_away(vec3 p, size_t vertex, uint64_t *seed)
@@ -118,7 +123,11 @@ static inline void same_hit(const mesh_hit *a, const mesh_hit *b)
 }
 
 /* All hits of a ray, or all triangles shown to it, in a form that does not depend on their order. */
-typedef struct gathered { uint64_t sum; long count; uint32_t triangle[SHOWN_MAX]; } gathered;
+typedef struct gathered {
+    uint64_t sum;
+    long count;
+    uint32_t triangle[SHOWN_MAX];
+} gathered;
 
 static inline void gather(void *context, const mesh_hit *hit)
 {
@@ -139,7 +148,8 @@ static inline double gather_box(void *context, uint32_t triangle, double t_max)
 }
 
 /* Every triangle that is hit is shown, and none twice. */
-static inline void shows_what_is_hit(const hierarchy_kernels *kernel, const hierarchy *h, const mesh_ray *r, const gathered *hits)
+static inline void shows_what_is_hit(const hierarchy_kernels *kernel, const hierarchy *h, const mesh_ray *r,
+                                     const gathered *hits)
 {
     static gathered shown;
     uint8_t *times = calloc(h->of->triangle_count, 1);

@@ -34,7 +34,8 @@ static inline bool is_tame(const ray_tree *way)
     return way->node[way->count - 1].end == RAY_END_SKY;
 }
 
-/* T of power by Hecht's eqs. 4.61, 4.32 and 4.38, the mean of both polarisations, and what a coating leaves of it; R under a reflection. */
+/* T of power by Hecht's eqs. 4.61, 4.32 and 4.38, the mean of both polarisations, and what a coating leaves of it; R
+ * under a reflection. */
 static inline double share_of(const ray_hit *h, double coating, ray_kind next)
 {
     const double a = h->n_from * h->cos_i, b = h->n_to * h->cos_t;
@@ -76,7 +77,8 @@ static inline reversal there_and_back(stage *g, vec3 origin, vec3 direction, int
     memcpy(there, path->node, (size_t)(n + 1) * sizeof *there);
     const ray_node *last = &there[n];
     r = (reversal){.used = true, .same_surfaces = true, .crossings = n, .other_media = there[0].n != last->n};
-    r.reflected = reflect_at >= 0 && reflect_at < n && there[reflect_at + 1].kind == RAY_REFLECT; /* equal indices reflect nothing */
+    r.reflected = reflect_at >= 0 && reflect_at < n &&
+                  there[reflect_at + 1].kind == RAY_REFLECT; /* equal indices reflect nothing */
     const vec3 end = vec3_add(last->origin, vec3_scale(last->direction, 3.0));
     path = stage_way(g, end, vec3_scale(last->direction, -1.0), r.reflected ? n - 1 - reflect_at : -1);
     r.same_surfaces = (int)path->count > n;

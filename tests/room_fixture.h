@@ -27,8 +27,12 @@ static inline void room_build(room *m)
 {
     body_source sources[SOLIDS_MAX];
     for (int i = 0; i < m->count; i++)
-        sources[i] = (body_source){.shape = &m->shape[i], .priority = m->priority[i], .medium = m->medium[i],
-                                   .opaque = m->opaque[i], .clearness = m->opaque[i] ? 0.0 : m->clearness[i], .solid = i};
+        sources[i] = (body_source){.shape = &m->shape[i],
+                                   .priority = m->priority[i],
+                                   .medium = m->medium[i],
+                                   .opaque = m->opaque[i],
+                                   .clearness = m->opaque[i] ? 0.0 : m->clearness[i],
+                                   .solid = i};
     assert_int_equal(arrangement_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
 }
 

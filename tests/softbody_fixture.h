@@ -75,12 +75,14 @@ static inline softbody *point_at(vec3 position, vec3 velocity, const softbody_se
 }
 
 /* Two masses along x on a spring of length 1, drawn apart by `drawn`. */
-static inline softbody *pair_of(double m1, double m2, double k, double damping, double drawn, const softbody_settings *s)
+static inline softbody *pair_of(double m1, double m2, double k, double damping, double drawn,
+                                const softbody_settings *s)
 {
     const vec3 position[2] = {{0.0, 0.0, 0.0}, {1.0 + drawn, 0.0, 0.0}};
     const double mass_kg[2] = {m1, m2};
     const softbody_spring spring = {{0, 1}, 1.0, k, damping};
-    const softbody_net net = {.mass_count = 2, .spring_count = 1, .position = position, .mass_kg = mass_kg, .springs = &spring};
+    const softbody_net net = {
+        .mass_count = 2, .spring_count = 1, .position = position, .mass_kg = mass_kg, .springs = &spring};
     return body_of_net(&net, s);
 }
 

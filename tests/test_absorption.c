@@ -7,8 +7,9 @@
 
 #include "probe_fixture.h"
 
-/* Beer and Lambert: what is left behind a length d of a medium is exp(-a d) (Hecht, 4.8.1, eq. 4.79), at every place where light goes
- * through one: slabs with their reflections, bodies that bend nothing, and the straight way to a light. */
+/* Beer and Lambert: what is left behind a length d of a medium is exp(-a d) (Hecht, 4.8.1, eq. 4.79), at every place
+ * where light goes through one: slabs with their reflections, bodies that bend nothing, and the straight way to a
+ * light. */
 
 static const vec3 askew = {17.0, -33.0, 71.0};
 static const double a_per_m[3] = {0.7, 0.0, 2.5};
@@ -33,9 +34,9 @@ static double leaving(const ray_tree *tree, vec3 side, int channel)
     return sum;
 }
 
-/* Through: (1 - R)^2 e^-ad (1 + q + q^2 + ...) with q = R^2 e^-2ad, which is (1 - R)^2 e^-ad / (1 - q); back: R + (1 - R)^2 R e^-2ad
- * (1 + q + ...) (Born and Wolf, 7.6.1, and 14.4.1, with intensities). A depth limit of D keeps the rays of D and less: the term of
- * q^k leaves as a ray of depth 2 k + 2, or 2 k + 3. */
+/* Through: (1 - R)^2 e^-ad (1 + q + q^2 + ...) with q = R^2 e^-2ad, which is (1 - R)^2 e^-ad / (1 - q); back: R + (1 -
+ * R)^2 R e^-2ad (1 + q + ...) (Born and Wolf, 7.6.1, and 14.4.1, with intensities). A depth limit of D keeps the rays
+ * of D and less: the term of q^k leaves as a ray of depth 2 k + 2, or 2 k + 3. */
 static void a_slab_transmits_the_series_cut_at_the_depth(void **state)
 {
     (void)state;
@@ -69,7 +70,8 @@ static void a_slab_transmits_the_series_cut_at_the_depth(void **state)
 static void a_unit_is_as_long_as_the_scene_says(void **state)
 {
     (void)state;
-    static const char *const alike[] = {"", "render.unit_m=0.01 slab.absorb_per_m=70,0,250", "render.unit_m=1000 slab.absorb_per_m=0.0007,0,0.0025"};
+    static const char *const alike[] = {"", "render.unit_m=0.01 slab.absorb_per_m=70,0,250",
+                                        "render.unit_m=1000 slab.absorb_per_m=0.0007,0,0.0025"};
     for (size_t k = 0; k < COUNT(alike); k++) {
         stage g = slab(1.5, 0.4, 40, alike[k]);
         set_all(g.setting, "camera.position=0,3,0 camera.target=0,0,0 slab.rotation=0,0,0");
@@ -83,19 +85,22 @@ static void a_unit_is_as_long_as_the_scene_says(void **state)
     }
 }
 
-/* A ball in a block of liquid, both of index 1.33: no interface, but its own coefficient over its chord 2 sqrt(r^2 - h^2); the
- * liquid's over the rest. The path in metres and the transmittance are the hit's. */
+/* A ball in a block of liquid, both of index 1.33: no interface, but its own coefficient over its chord 2 sqrt(r^2 -
+ * h^2); the liquid's over the rest. The path in metres and the transmittance are the hit's. */
 static void a_body_that_bends_nothing_absorbs_all_the_same(void **state)
 {
     (void)state;
     scene_text text = scene_begin(1.0, 8);
-    add_clear(&text, "liquid", 1.33, 0, vec3_make(0.0, 0.0, 0.0), askew, "shape: box, size: [4, 2, 4], absorb_per_m: [0.3, 0, 0.1]");
-    add_clear(&text, "ball", 1.33, 1, vec3_make(0.0, 0.0, 0.0), askew, "shape: sphere, radius: 0.8, absorb_per_m: [2, 0.5, 0]");
+    add_clear(&text, "liquid", 1.33, 0, vec3_make(0.0, 0.0, 0.0), askew,
+              "shape: box, size: [4, 2, 4], absorb_per_m: [0.3, 0, 0.1]");
+    add_clear(&text, "ball", 1.33, 1, vec3_make(0.0, 0.0, 0.0), askew,
+              "shape: sphere, radius: 0.8, absorb_per_m: [2, 0.5, 0]");
     stage g = stage_of(text.at, "render.unit_m=0.5");
     const double R = reflectance_of_angles(0.0, 1.0, 1.33).mean, T2 = (1.0 - R) * (1.0 - R);
     static const double liquid[3] = {0.15, 0.0, 0.05}, ball[3] = {1.0, 0.25, 0.0}; /* a scene unit */
     for (double h = -1.0; h <= 1.0; h += 0.053) {
-        const ray_tree *tree = stage_way(&g, turned(vec3_make(h, 3.0, 0.0), askew), turned(vec3_make(0.0, -1.0, 0.0), askew), -1);
+        const ray_tree *tree =
+            stage_way(&g, turned(vec3_make(h, 3.0, 0.0), askew), turned(vec3_make(0.0, -1.0, 0.0), askew), -1);
         const double chord = fabs(h) < 0.8 ? 2.0 * sqrt(0.64 - h * h) : 0.0;
         assert_int_equal((int)tree->count, 3);
         assert_true(fabs(tree->node[1].hit.path_length_m - 1.0) <= 1e-12);
@@ -108,12 +113,14 @@ static void a_body_that_bends_nothing_absorbs_all_the_same(void **state)
     stage_close(&g);
 }
 
-/* In the open, of the surroundings' index, and seen against the sky: no hit, and yet it dims; from inside, from there on. */
+/* In the open, of the surroundings' index, and seen against the sky: no hit, and yet it dims; from inside, from there
+ * on. */
 static void a_cloud_dims_the_sky_behind_it(void **state)
 {
     (void)state;
     scene_text text = scene_begin(1.0, 4);
-    add_clear(&text, "cloud", 1.0, 0, vec3_make(0.0, 0.0, 0.0), askew, "shape: sphere, radius: 1, absorb_per_m: [0.5, 1, 2]");
+    add_clear(&text, "cloud", 1.0, 0, vec3_make(0.0, 0.0, 0.0), askew,
+              "shape: sphere, radius: 1, absorb_per_m: [0.5, 1, 2]");
     stage g = stage_of(text.at, "");
     static const double a[3] = {0.5, 1.0, 2.0};
     for (double h = -0.99; h < 1.2; h += 0.06) {
@@ -140,20 +147,22 @@ static void a_bottomless_medium_is_black(void **state)
         const vec3 d = turned(vec3_make(sin(angle), -cos(angle), 0.0), askew);
         const double R = reflectance_of_angles(angle, 1.0, 1.5).mean;
         const ray_tree *tree = stage_ray(&g, vec3_scale(d, -2.0), d);
-        assert_true(fabs(tree->radiance[0] - R) <= 1e-12 && fabs(tree->radiance[1] - 1.0) <= 1e-12 && fabs(tree->radiance[2] - R) <= 1e-12);
+        assert_true(fabs(tree->radiance[0] - R) <= 1e-12 && fabs(tree->radiance[1] - 1.0) <= 1e-12 &&
+                    fabs(tree->radiance[2] - R) <= 1e-12);
     }
     stage_close(&g);
 }
 
-/* A white ground under a lamp with a coloured pane between them: shadow rays go straight through, so that the ground shows
- * k_d (N.L) exp(-a d / cos) and, by the pane's clearness, 0.9 at each of its two faces. Phong, CACM 18(6), 1975, for N.L. */
-static const char lit_ground[] =
-    "background: {color: [0, 0, 0]}\n"
-    "render: {width: 1, height: 1}\n"
-    "lights: {lamp: {position: [0, 4, 0]}}\n"
-    "solids:\n"
-    "  ground: {shape: plane, diffuse: 1}\n"
-    "  pane: {shape: box, transparency: 0.9, ior: 1.5, position: [0, 2, 0], size: [50, 0.5, 50], absorb_per_m: [0.7, 0, 2.5]}\n";
+/* A white ground under a lamp with a coloured pane between them: shadow rays go straight through, so that the ground
+ * shows k_d (N.L) exp(-a d / cos) and, by the pane's clearness, 0.9 at each of its two faces. Phong, CACM 18(6), 1975,
+ * for N.L. */
+static const char lit_ground[] = "background: {color: [0, 0, 0]}\n"
+                                 "render: {width: 1, height: 1}\n"
+                                 "lights: {lamp: {position: [0, 4, 0]}}\n"
+                                 "solids:\n"
+                                 "  ground: {shape: plane, diffuse: 1}\n"
+                                 "  pane: {shape: box, transparency: 0.9, ior: 1.5, position: [0, 2, 0], size: [50, "
+                                 "0.5, 50], absorb_per_m: [0.7, 0, 2.5]}\n";
 
 /* The pane's thickness that lies on the light's way, its faces there, and the length of the eye's way through it. */
 static void check_lit_ground(const char *assignments, double on_the_way, double faces, double eye_way)
@@ -212,7 +221,8 @@ static void a_spectrum_of_absorption_is_read_at_the_channels_wavelengths(void **
 {
     (void)state;
     stage g = slab(1.0, 1.0, 4, "slab.absorb_spectrum=[400,1,500,3,600,5]");
-    const ray_tree *tree = stage_ray(&g, turned(vec3_make(0.0, 2.0, 0.0), askew), turned(vec3_make(0.0, -1.0, 0.0), askew));
+    const ray_tree *tree =
+        stage_ray(&g, turned(vec3_make(0.0, 2.0, 0.0), askew), turned(vec3_make(0.0, -1.0, 0.0), askew));
     const double a[3] = {5.0, 3.0 + 2.0 * 0.491, 1.0 + 2.0 * 0.643};
     for (int c = 0; c < 3; c++)
         assert_true(fabs(tree->radiance[c] - exp(-a[c])) <= 1e-12);

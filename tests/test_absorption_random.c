@@ -7,8 +7,9 @@
 
 #include "random_scene.h"
 
-/* What rays lose on their way in random scenes, against the integral of the absorption coefficient along it (Beer and Lambert; Born and
- * Wolf, 7th ed., 4.11.4): the media on the way are read from the solids' own shapes, at many points, and the borders bisected. */
+/* What rays lose on their way in random scenes, against the integral of the absorption coefficient along it (Beer and
+ * Lambert; Born and Wolf, 7th ed., 4.11.4): the media on the way are read from the solids' own shapes, at many points,
+ * and the borders bisected. */
 
 enum { STEPS = 300 };
 
@@ -35,7 +36,8 @@ static void add_depth(const scene *s, int medium, double length, double depth[3]
     depth[0] += a.x * length, depth[1] += a.y * length, depth[2] += a.z * length;
 }
 
-/* The optical depth of a straight way. A medium with the same one on both sides that lies between two of the points goes unseen. */
+/* The optical depth of a straight way. A medium with the same one on both sides that lies between two of the points
+ * goes unseen. */
 static void optical_depth(const probe *p, const scene *s, vec3 origin, vec3 direction, double length, double depth[3])
 {
     depth[0] = depth[1] = depth[2] = 0.0;
@@ -57,7 +59,10 @@ static void optical_depth(const probe *p, const scene *s, vec3 origin, vec3 dire
     add_depth(s, now, edge, depth);
 }
 
-typedef struct tally { int ways, unlike; double worst; } tally;
+typedef struct tally {
+    int ways, unlike;
+    double worst;
+} tally;
 
 static void compare(tally *sum, const double depth[3], const double kept[3])
 {
@@ -95,8 +100,10 @@ static void rays_and_shadow_rays_lose_what_the_media_on_their_way_take(void **st
         const room m = random_room(&seed, number % 4 == 0);
         const vec3 lamp = random_point(&seed, number % 2 ? 3.0 : 0.8);
         scene_text text = {.length = 0};
-        add(&text, "render: {depth: 3}\nlights: {lamp: {position: [%.17g, %.17g, %.17g], color: [1000, 1000, 1000]}}\nsolids:\n", lamp.x, lamp.y,
-            lamp.z);
+        add(&text,
+            "render: {depth: 3}\nlights: {lamp: {position: [%.17g, %.17g, %.17g], color: [1000, 1000, "
+            "1000]}}\nsolids:\n",
+            lamp.x, lamp.y, lamp.z);
         add_room(&text, &seed, &m, 1.0, true, true);
         stage g = stage_of(text.at, "");
         for (size_t k = 0; k < g.setting->solid_count; k++)

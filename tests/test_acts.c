@@ -1,7 +1,8 @@
-/* Every control acts, or says why it does not: for each shipped scene and each parameter that `cuvette params SCENE` prints, other legal
- * values change the film, or a note says why none does, or the table marks the parameter as one of how a frame is computed. A note is
- * proved by its remedy: with what it says set, the parameter changes the film. A parameter that the table gains is tried, too.
- * ACTS_SCENE=rod.yaml tries that scene alone; ACTS_VERBOSE=1 tells what acts by one value only, and which remedies do not help there. */
+/* Every control acts, or says why it does not: for each shipped scene and each parameter that `cuvette params SCENE`
+ * prints, other legal values change the film, or a note says why none does, or the table marks the parameter as one of
+ * how a frame is computed. A note is proved by its remedy: with what it says set, the parameter changes the film. A
+ * parameter that the table gains is tried, too. ACTS_SCENE=rod.yaml tries that scene alone; ACTS_VERBOSE=1 tells what
+ * acts by one value only, and which remedies do not help there. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -55,7 +56,8 @@ static rule_count *count_of(account *out, const char *rule, const char *name)
     return &out->rules[out->rule_count++];
 }
 
-/* What the remedy says is done, and what the next note says, until there is none: then the parameter changes the film. */
+/* What the remedy says is done, and what the next note says, until there is none: then the parameter changes the film.
+ */
 static bool remedy_works(const acts *a, const char *path, const param *row, const inert_answer *first)
 {
     enum { STEPS = 4 };
@@ -85,11 +87,12 @@ static bool remedy_works(const acts *a, const char *path, const param *row, cons
     return works;
 }
 
-/* An index that is no one's: where no light is bent, one above MIRROR_IOR still makes a mirror, and where no ray goes on, one that is the
- * surroundings' still makes a surface none. */
+/* An index that is no one's: where no light is bent, one above MIRROR_IOR still makes a mirror, and where no ray goes
+ * on, one that is the surroundings' still makes a surface none. */
 static void drop_special_indices(const inert_answer *answer, const param *row, acts_values *v)
 {
-    if (strcmp(row->name, "ior") != 0 || (strcmp(answer->rule, "straight") != 0 && strcmp(answer->rule, "not-bent") != 0))
+    if (strcmp(row->name, "ior") != 0 ||
+        (strcmp(answer->rule, "straight") != 0 && strcmp(answer->rule, "not-bent") != 0))
         return;
     for (int i = 0; i < v->count;) {
         const double n = strtod(v->text[i], NULL);
@@ -458,9 +461,9 @@ static void every_parameter_of_every_shipped_scene_acts_or_says_why_not(void **s
     run(try_scene, count);
     for (int i = 0; i < count; i++)
         add_account(&accounts[i]);
-    printf(
-        "# all: tried %d, acting %d (%d by one value alone), noted %d, refused with a remedy %d, marked %d, unexplained: %d\n",
-        all.tried, all.acting, all.by_one, all.noted, all.refused, all.marked, all.bad);
+    printf("# all: tried %d, acting %d (%d by one value alone), noted %d, refused with a remedy %d, marked %d, "
+           "unexplained: %d\n",
+           all.tried, all.acting, all.by_one, all.noted, all.refused, all.marked, all.bad);
     globfree(&shipped);
     assert_int_equal(all.bad, 0);
 }
@@ -475,8 +478,8 @@ static void every_parameter_acts_or_says_why_not_in_other_ways_of_making_a_pictu
     run(try_mode, count);
     for (int i = 0; i < count; i++) {
         const account *x = &accounts[i];
-        printf("# rod, %s: tried %d, acting %d (%d by one value alone), noted %d, unexplained: %d\n%s", x->path, x->tried,
-               x->acting, x->by_one, x->noted, x->bad, x->text);
+        printf("# rod, %s: tried %d, acting %d (%d by one value alone), noted %d, unexplained: %d\n%s", x->path,
+               x->tried, x->acting, x->by_one, x->noted, x->bad, x->text);
         add_rules(x);
         bad += x->bad;
     }

@@ -7,8 +7,8 @@
 
 #include "probe_fixture.h"
 
-/* A film of air between two slabs of glass, modelled on purpose, against glass in contact, which is one body. Light is incoherent
- * here: a film shows no colours, but it has two interfaces more. */
+/* A film of air between two slabs of glass, modelled on purpose, against glass in contact, which is one body. Light is
+ * incoherent here: a film shows no colours, but it has two interfaces more. */
 
 static const double GLASS = 1.5;
 /* However thin: the tracer tells boundaries apart down to their error bounds. */
@@ -22,8 +22,10 @@ static stage slabs(double outside, double thickness, const char *assignments)
     const vec3 middle = vec3_make(0.0, 0.0, 0.0);
     char thin[80];
     snprintf(thin, sizeof thin, "shape: box, size: [100, %.17g, 100]", thickness);
-    add_clear(&text, "upper", GLASS, 0, turned(vec3_make(0.0, 0.5, 0.0), askew), askew, "shape: box, size: [50, 1, 50]");
-    add_clear(&text, "lower", GLASS, 0, turned(vec3_make(0.0, -0.5, 0.0), askew), askew, "shape: box, size: [50, 1, 50]");
+    add_clear(&text, "upper", GLASS, 0, turned(vec3_make(0.0, 0.5, 0.0), askew), askew,
+              "shape: box, size: [50, 1, 50]");
+    add_clear(&text, "lower", GLASS, 0, turned(vec3_make(0.0, -0.5, 0.0), askew), askew,
+              "shape: box, size: [50, 1, 50]");
     if (thickness > 0.0)
         add_clear(&text, "film", 1.0, 1, middle, askew, thin);
     return stage_of(text.at, assignments);
@@ -64,7 +66,8 @@ static void a_film_has_two_interfaces_more(void **state)
     stage_close(&contact);
 }
 
-/* Power that goes on downwards, or back up, after all reflections within the film, from inside glass that has no other end. */
+/* Power that goes on downwards, or back up, after all reflections within the film, from inside glass that has no other
+ * end. */
 static double share_down(const ray_tree *tree, bool down)
 {
     double sum = 0.0;
@@ -74,29 +77,34 @@ static double share_down(const ray_tree *tree, bool down)
     return sum;
 }
 
-/* T (1 + R^2 + R^4 + ...) T = (1 - R) / (1 + R), for each polarisation by itself (Stokes 1862; Hecht, 8.6 for the pile of plates; Born
- * and Wolf, 7.6.1, with intensities instead of amplitudes). Without polarisation R is the mean of both at each interface. */
+/* T (1 + R^2 + R^4 + ...) T = (1 - R) / (1 + R), for each polarisation by itself (Stokes 1862; Hecht, 8.6 for the pile
+ * of plates; Born and Wolf, 7.6.1, with intensities instead of amplitudes). Without polarisation R is the mean of both
+ * at each interface. */
 static void a_film_transmits_the_series_of_its_reflections(void **state)
 {
     (void)state;
     stage plain = slabs(GLASS, films[0], ""), polarised = slabs(GLASS, films[0], "render.polarisation=on");
     for (double angle = 0.0; angle < 0.72; angle += 0.06) {
         const reflectance r = reflectance_of_angles(angle, GLASS, 1.0);
-        const double mean = (1.0 - r.mean) / (1.0 + r.mean), apart = 0.5 * ((1.0 - r.s) / (1.0 + r.s) + (1.0 - r.p) / (1.0 + r.p));
+        const double mean = (1.0 - r.mean) / (1.0 + r.mean),
+                     apart = 0.5 * ((1.0 - r.s) / (1.0 + r.s) + (1.0 - r.p) / (1.0 + r.p));
         const vec3 d = downwards(angle), from = turned(vec3_make(0.0, 0.3, 0.0), askew);
         const ray_tree *tree = stage_ray(&plain, from, d);
         const double missing = tree_cut(tree, 0), slack = 1e-12 + missing;
         assert_true(missing <= pow(r.mean, 59.0)); /* T R^59 (R + T) */
-        assert_true(fabs(share_down(tree, true) - mean) <= slack && fabs(share_down(tree, false) - (1.0 - mean)) <= slack);
+        assert_true(fabs(share_down(tree, true) - mean) <= slack &&
+                    fabs(share_down(tree, false) - (1.0 - mean)) <= slack);
         tree = stage_ray(&polarised, from, d);
         const double faint = 1e-12 + tree_cut(tree, 0);
-        assert_true(fabs(share_down(tree, true) - apart) <= faint && fabs(share_down(tree, false) - (1.0 - apart)) <= faint);
+        assert_true(fabs(share_down(tree, true) - apart) <= faint &&
+                    fabs(share_down(tree, false) - (1.0 - apart)) <= faint);
     }
     stage_close(&plain);
     stage_close(&polarised);
 }
 
-/* Beyond the critical angle, arcsin(1 / 1.5) = 41.8 degrees, the film reflects all and glass in contact is not there at all. */
+/* Beyond the critical angle, arcsin(1 / 1.5) = 41.8 degrees, the film reflects all and glass in contact is not there at
+ * all. */
 static void beyond_the_critical_angle_a_film_is_a_mirror_and_contact_is_nothing(void **state)
 {
     (void)state;

@@ -52,7 +52,8 @@ static void all_pass(const char *name, const char *assignments)
     assert_true(r.count > 0);
     for (int i = 0; i < r.count; i++)
         if (!realism_passes(&r.value[i]))
-            fail_msg("%s %s: %s is %.15g, not %.15g", name, assignments, r.value[i].metric, r.value[i].measured, r.value[i].theory);
+            fail_msg("%s %s: %s is %.15g, not %.15g", name, assignments, r.value[i].metric, r.value[i].measured,
+                     r.value[i].theory);
     scene_destroy(s);
 }
 
@@ -70,7 +71,8 @@ static void every_arrangement_passes_whatever_its_media(void **state)
     all_pass("plates", "render.polarisation=on plate1.rotation.y=75 plate2.rotation.y=75");
 }
 
-/* A 60 degree prism of n = 1.5 turns light by 2 asin(0.75) - 60 = 37.18 degrees at least (Hecht, Optics, 5th ed., 5.5.1). */
+/* A 60 degree prism of n = 1.5 turns light by 2 asin(0.75) - 60 = 37.18 degrees at least (Hecht, Optics, 5th
+ * ed., 5.5.1). */
 static void a_prism_at_least_deviation_as_in_textbooks(void **state)
 {
     (void)state;
@@ -81,7 +83,8 @@ static void a_prism_at_least_deviation_as_in_textbooks(void **state)
     scene_destroy(s);
 }
 
-/* 42.0 degrees for n = 4/3: Descartes; 42.3 for red and 40.6 for violet water, Minnaert, Light and Colour in the Outdoors. */
+/* 42.0 degrees for n = 4/3: Descartes; 42.3 for red and 40.6 for violet water, Minnaert, Light and Colour in the
+ * Outdoors. */
 static void a_drop_shows_the_rainbow_at_42_degrees(void **state)
 {
     (void)state;
@@ -96,7 +99,8 @@ static void a_drop_shows_the_rainbow_at_42_degrees(void **state)
     scene_destroy(s);
 }
 
-/* At Brewster's angle p light passes all four interfaces and s light loses 1 - (2 n / (n^2 + 1))^2 at each: Born and Wolf, 1.5.3. */
+/* At Brewster's angle p light passes all four interfaces and s light loses 1 - (2 n / (n^2 + 1))^2 at each: Born and
+ * Wolf, 1.5.3. */
 static void a_stack_polarises(void **state)
 {
     (void)state;
@@ -115,13 +119,16 @@ static void a_stack_polarises(void **state)
 static void an_index_that_is_off_fails(void **state)
 {
     (void)state;
-    static const struct { const char *scene, *traced, *supposed, *metric; } cases[] = {
+    static const struct {
+        const char *scene, *traced, *supposed, *metric;
+    } cases[] = {
         {"prism", "glass.ior=1.5", "glass.ior=1.500001", "prism.own"},
         {"rainbow", "water.ior=1.333", "water.ior=1.333001", "rainbow.own"},
         {"plates", "glass.ior=1.5", "glass.ior=1.500001", "stack.straight"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        scene *traced = scene_of(cases[i].scene, cases[i].traced), *supposed = scene_of(cases[i].scene, cases[i].supposed);
+        scene *traced = scene_of(cases[i].scene, cases[i].traced),
+              *supposed = scene_of(cases[i].scene, cases[i].supposed);
         const realism_report r = measured(traced, supposed);
         assert_false(realism_passes(value_of(&r, cases[i].metric)));
         scene_destroy(traced);

@@ -15,7 +15,8 @@
 #include <sys/wait.h>
 #include <time.h>
 
-static const mesh_limits limits = {.triangles = 1000000, .vertices = 1000000, .memory_bytes = (uint64_t)1 << 30, .wall_s = 20};
+static const mesh_limits limits = {
+    .triangles = 1000000, .vertices = 1000000, .memory_bytes = (uint64_t)1 << 30, .wall_s = 20};
 static int refusals;
 static double longest_s;
 static char slowest[64];
@@ -39,8 +40,8 @@ static void refuse_within(const char *name, const mesh_limits *within, const cha
     if (getenv("SHOW")) {
         fprintf(stderr, "%.3f s %d %s\n", took_s, (int)code, text);
     }
-    if (code != STATUS_BAD_INPUT || got || !why.what[0] || strchr(text, '\n') || strncmp(why.file, path, strlen(path)) != 0
-        || !strstr(text, pattern)) {
+    if (code != STATUS_BAD_INPUT || got || !why.what[0] || strchr(text, '\n') ||
+        strncmp(why.file, path, strlen(path)) != 0 || !strstr(text, pattern)) {
         fail_msg("%s: status %d, '%s'", name, (int)code, text);
     }
     if (took_s > longest_s) {
@@ -98,8 +99,13 @@ static void what_is_tolerated_is_a_sound_mesh(void **state)
 static void truncated_binary_files_are_refused(void **state)
 {
     (void)state;
-    struct { const char *name; bytes whole; } files[] = {
-        {"cut.stl", binary_stl()}, {"cut.ply", binary_ply()}, {"cut.glb", tetrahedron_glb("{\"mesh\":0}")},
+    struct {
+        const char *name;
+        bytes whole;
+    } files[] = {
+        {"cut.stl", binary_stl()},
+        {"cut.ply", binary_ply()},
+        {"cut.glb", tetrahedron_glb("{\"mesh\":0}")},
     };
     for (size_t f = 0; f < sizeof files / sizeof *files; f++) {
         size_t step = files[f].whole.size / 25 + 1;
@@ -161,8 +167,10 @@ static void a_ply_with_bad_lists_is_refused(void **state)
     memcpy(b.at + b.size - 4, "\xff\xff\xff\x7f", 4);
     refuse_bytes("index_binary.ply", b, "range");
     b = (bytes){0};
-    add_text(&b, "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
-                 "element face 1\nproperty list uint int vertex_indices\nend_header\n");
+    add_text(
+        &b,
+        "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uint int vertex_indices\nend_header\n");
     add(&b, corners, 12);
     add_u32(&b, 0xffffffffu);
     add(&b, corners, 48);
@@ -172,7 +180,10 @@ static void a_ply_with_bad_lists_is_refused(void **state)
 static void a_glb_with_wrong_lengths_is_refused(void **state)
 {
     (void)state;
-    static const struct { size_t at; uint32_t value; } changes[] = {
+    static const struct {
+        size_t at;
+        uint32_t value;
+    } changes[] = {
         {0, 0x12345678}, {4, 3}, {4, 0xffffffff}, {12, 0xffffffff}, {12, 0x7ffffff0}, {12, 0}, {16, 0x004e4942},
     };
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
@@ -205,7 +216,8 @@ static void deep_nesting_is_refused(void **state)
     refuse_bytes("deep_lists.gltf", repeat("", "[", "", 1000000, ""), "");
     refuse_bytes("deep_objects.gltf", repeat("", "{\"a\":", "", 1000000, ""), "");
     bytes inner = repeat("{\"asset\":{\"version\":\"2.0\"},\"extras\":", "[", "", 1000000, "");
-    bytes whole = repeat((inner.at = realloc(inner.at, inner.size + 1), inner.at[inner.size] = 0, (char *)inner.at), "]", "", 1000000, "}");
+    bytes whole = repeat((inner.at = realloc(inner.at, inner.size + 1), inner.at[inner.size] = 0, (char *)inner.at),
+                         "]", "", 1000000, "}");
     free(inner.at);
     refuse_bytes("deep_extras.gltf", whole, "");
     bytes b = {0};
@@ -290,7 +302,8 @@ static void memory_and_time_have_limits(void **state)
 static void what_is_no_file_is_refused(void **state)
 {
     (void)state;
-    char *path = in_folder("folder.stl"), *fifo = in_folder("fifo.ply"), *loop = in_folder("loop.obj"), *endless = in_folder("endless.glb");
+    char *path = in_folder("folder.stl"), *fifo = in_folder("fifo.ply"), *loop = in_folder("loop.obj"),
+         *endless = in_folder("endless.glb");
     assert_int_equal(mkdir(path, 0777), 0);
     assert_int_equal(mkfifo(fifo, 0666), 0);
     assert_int_equal(symlink("loop.obj", loop), 0);
@@ -391,8 +404,8 @@ static void all_of_it_was_bounded(void **state)
     struct rusage ours, theirs;
     getrusage(RUSAGE_SELF, &ours);
     getrusage(RUSAGE_CHILDREN, &theirs);
-    printf("# %d refusals; the longest took %.2f s (%s); at most %ld MiB in the importer, %ld MiB here\n", refusals, longest_s, slowest,
-           theirs.ru_maxrss >> 10, ours.ru_maxrss >> 10);
+    printf("# %d refusals; the longest took %.2f s (%s); at most %ld MiB in the importer, %ld MiB here\n", refusals,
+           longest_s, slowest, theirs.ru_maxrss >> 10, ours.ru_maxrss >> 10);
     assert_true(refusals >= 60);
     assert_true(longest_s < limits.wall_s + 5);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

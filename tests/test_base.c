@@ -42,8 +42,12 @@ static void diagnose_fills_and_returns(void **state)
 static void diagnostic_text_leaves_out_what_is_absent(void **state)
 {
     (void)state;
-    static const struct { const char *file; long line, column; const char *remedy, *expected; } cases[] = {
-        {"a", 1, 2, "r", "a:1:2: w; r"}, {"a", 1, 0, NULL, "a:1: w"}, {"a", 0, 5, "", "a: w"},
+    static const struct {
+        const char *file;
+        long line, column;
+        const char *remedy, *expected;
+    } cases[] = {
+        {"a", 1, 2, "r", "a:1:2: w; r"}, {"a", 1, 0, NULL, "a:1: w"},  {"a", 0, 5, "", "a: w"},
         {NULL, 0, 0, NULL, "w"},         {"", 4, 2, "r", "4:2: w; r"}, {"a", -1, -1, "r", "a: w; r"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -60,7 +64,9 @@ static void diagnostics_stay_one_line_of_valid_text(void **state)
     (void)state;
     diagnostic why = {0};
     diagnostic_locate(&why, "evil\n\x1b[2Jname", 1, 1);
-    diagnose(&why, STATUS_BAD_INPUT, "a\tb\x7f", "x\r\n\xc2\x9b" "31m \xc3\xa9");
+    diagnose(&why, STATUS_BAD_INPUT, "a\tb\x7f",
+             "x\r\n\xc2\x9b"
+             "31m \xc3\xa9");
     assert_string_equal(why.file, "evil??[2Jname");
     assert_string_equal(why.what, "x????31m \xc3\xa9");
     assert_string_equal(why.remedy, "a?b?");
@@ -116,9 +122,9 @@ static void reals_are_parsed(void **state)
 static void what_is_no_real_is_refused(void **state)
 {
     (void)state;
-    static const char *const bad[] = {"", " 1", "1 ", "1,5", "0x10", "nan", "NaN", "inf", "-infinity", "1e",
-                                      "1e+", ".", "-", "+", "1.2.3", "--1", "1e400", "-1e400", "1_000", "1f", "e5",
-                                      ".e5", "1e5.0", "\xd9\xa1"};
+    static const char *const bad[] = {"",          " 1",     "1 ",    "1,5", "0x10", "nan", "NaN",   "inf",
+                                      "-infinity", "1e",     "1e+",   ".",   "-",    "+",   "1.2.3", "--1",
+                                      "1e400",     "-1e400", "1_000", "1f",  "e5",   ".e5", "1e5.0", "\xd9\xa1"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         double value = 42;
         assert_false(number_parse_real(bad[i], &value));
@@ -135,8 +141,18 @@ static void integers_are_parsed(void **state)
     assert_true(number_parse_int("9223372036854775807", &value) && value == INT64_MAX);
     assert_true(number_parse_int("+007", &value) && value == 7);
     errno = 5;
-    static const char *const bad[] = {"", "4.0", "1e3", " 1", "1 ", "-", "0x1f", "9223372036854775808",
-                                      "-9223372036854775809", "99999999999999999999999", "1a", "++1"};
+    static const char *const bad[] = {"",
+                                      "4.0",
+                                      "1e3",
+                                      " 1",
+                                      "1 ",
+                                      "-",
+                                      "0x1f",
+                                      "9223372036854775808",
+                                      "-9223372036854775809",
+                                      "99999999999999999999999",
+                                      "1a",
+                                      "++1"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         value = 42;
         assert_false(number_parse_int(bad[i], &value));
@@ -148,11 +164,27 @@ static void integers_are_parsed(void **state)
 static void reals_are_formatted_shortest(void **state)
 {
     (void)state;
-    static const struct { double value; const char *text; } cases[] = {
-        {0.1, "0.1"}, {1e-9, "1e-09"}, {100, "100"}, {1e15, "1e+15"}, {123456, "123456"}, {-2.5, "-2.5"},
-        {1.0 / 3, "0.3333333333333333"}, {0.1 + 0.2, "0.30000000000000004"}, {5e-324, "5e-324"},
-        {DBL_MAX, "1.7976931348623157e+308"}, {0, "0"}, {-0.0, "-0"},
-        {INFINITY, "inf"}, {-INFINITY, "-inf"}, {NAN, "nan"}, {-NAN, "nan"}, {9007199254740993.0, "9007199254740992"},
+    static const struct {
+        double value;
+        const char *text;
+    } cases[] = {
+        {0.1, "0.1"},
+        {1e-9, "1e-09"},
+        {100, "100"},
+        {1e15, "1e+15"},
+        {123456, "123456"},
+        {-2.5, "-2.5"},
+        {1.0 / 3, "0.3333333333333333"},
+        {0.1 + 0.2, "0.30000000000000004"},
+        {5e-324, "5e-324"},
+        {DBL_MAX, "1.7976931348623157e+308"},
+        {0, "0"},
+        {-0.0, "-0"},
+        {INFINITY, "inf"},
+        {-INFINITY, "-inf"},
+        {NAN, "nan"},
+        {-NAN, "nan"},
+        {9007199254740993.0, "9007199254740992"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[NUMBER_TEXT_MAX];
@@ -182,7 +214,7 @@ static void numbers_ignore_the_locale(void **state)
 {
     (void)state;
     static const char *const with_comma[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "fr_FR.utf8",
-                                             "de_DE", "fr_FR", "it_IT.UTF-8"};
+                                             "de_DE",       "fr_FR",      "it_IT.UTF-8"};
     const char *found = NULL;
     for (size_t i = 0; i < sizeof with_comma / sizeof *with_comma && !found; i++) {
         found = setlocale(LC_NUMERIC, with_comma[i]);
@@ -657,8 +689,8 @@ static void minus_is_standard_output(void **state)
         free(path);
         file_writer writer;
         printf("before ");
-        bool good = file_writer_open(&writer, "-", NULL) == STATUS_OK && fputs("picture", writer.stream) >= 0
-                    && file_writer_commit(&writer, NULL) == STATUS_OK;
+        bool good = file_writer_open(&writer, "-", NULL) == STATUS_OK && fputs("picture", writer.stream) >= 0 &&
+                    file_writer_commit(&writer, NULL) == STATUS_OK;
         printf(" after");
         fflush(stdout);
         _exit(good ? 0 : 1);

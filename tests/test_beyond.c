@@ -59,9 +59,8 @@ static void random_paths_that_are_cut_bring_it(void **state)
     scene *s = scene_from(mirror);
     set_all(s, "render.integrator=path render.paths=16 render.roulette=off");
     expect_mean(s, 0.8, 1e-10);
-    set_all(
-        s,
-        "ground.reflectivity=0 ground.diffuse=0.5"); /* a matte ground sends paths to all sides: the mean needs no chance */
+    set_all(s, "ground.reflectivity=0 ground.diffuse=0.5"); /* a matte ground sends paths to all sides: the mean needs
+                                                               no chance */
     expect_mean(s, 0.5, 1e-10);
     scene_destroy(s);
 }

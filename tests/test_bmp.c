@@ -220,12 +220,12 @@ static void corruptions_do_no_harm(void **state)
 static uint64_t film_with(const char *path)
 {
     char text[1024];
-    snprintf(
-        text, sizeof text,
-        "render: {width: 32, height: 24}\nbackground: {picture: %s}\ntextures: {t: {file: %s}, l: {file: %s, space: linear}}\n"
-        "solids:\n  ball: {shape: sphere, ambient: 1, texture: t, reflectivity: 0.3, position: [-1, 1, 0]}\n"
-        "  box: {shape: box, ambient: 1, texture: l, position: [1, 1, 0], rotation: [10, 20, 0]}\n",
-        path, path, path);
+    snprintf(text, sizeof text,
+             "render: {width: 32, height: 24}\nbackground: {picture: %s}\ntextures: {t: {file: %s}, l: {file: %s, "
+             "space: linear}}\n"
+             "solids:\n  ball: {shape: sphere, ambient: 1, texture: t, reflectivity: 0.3, position: [-1, 1, 0]}\n"
+             "  box: {shape: box, ambient: 1, texture: l, position: [1, 1, 0], rotation: [10, 20, 0]}\n",
+             path, path, path);
     scene *s = scene_from(text);
     diagnostic why = {0};
     worked(scene_load(s, &why), &why);

@@ -27,15 +27,23 @@ static uint64_t float_hash(const mesh *m, size_t *bytes)
     return hash;
 }
 
-/* The hashes are those of what the peers' program embree_bench (gcc -O3 -march=native, with fused multiply-add) dumped by -d bin. */
+/* The hashes are those of what the peers' program embree_bench (gcc -O3 -march=native, with fused multiply-add) dumped
+ * by -d bin. */
 static void triangle_sets_are_the_peers_to_the_bit(void **state)
 {
     (void)state;
-    static const struct { status (*make)(size_t, mesh **, diagnostic *); size_t count, bytes; uint64_t hash; } sets[] = {
-        {body_sparse, 1, 36, UINT64_C(0xd64de1c1e91d32c2)},         {body_sparse, 100, 3600, UINT64_C(0x7eacf0a42b082d09)},
-        {body_sparse, 10000, 360000, UINT64_C(0xa2609235fbe7e590)}, {body_dense, 100, 3600, UINT64_C(0x3d6e20f701788277)},
-        {body_dense, 10000, 360000, UINT64_C(0xdd835771b80b8ee0)},  {body_sphere, 1, 720, UINT64_C(0x504b601cebf7d85d)},
-        {body_sphere, 1000, 35280, UINT64_C(0x9633bdb2308747b9)},   {body_sphere, 10000, 348480, UINT64_C(0xa35ec90e3a58af01)}};
+    static const struct {
+        status (*make)(size_t, mesh **, diagnostic *);
+        size_t count, bytes;
+        uint64_t hash;
+    } sets[] = {{body_sparse, 1, 36, UINT64_C(0xd64de1c1e91d32c2)},
+                {body_sparse, 100, 3600, UINT64_C(0x7eacf0a42b082d09)},
+                {body_sparse, 10000, 360000, UINT64_C(0xa2609235fbe7e590)},
+                {body_dense, 100, 3600, UINT64_C(0x3d6e20f701788277)},
+                {body_dense, 10000, 360000, UINT64_C(0xdd835771b80b8ee0)},
+                {body_sphere, 1, 720, UINT64_C(0x504b601cebf7d85d)},
+                {body_sphere, 1000, 35280, UINT64_C(0x9633bdb2308747b9)},
+                {body_sphere, 10000, 348480, UINT64_C(0xa35ec90e3a58af01)}};
     for (size_t k = 0; k < COUNT(sets); k++) {
         mesh *m;
         size_t bytes;
@@ -74,13 +82,14 @@ static int euler(const mesh *m)
     return (int)positions(m) - (int)m->triangle_count / 2;
 }
 
-/* Normals on the side of the fronts; and a texture that is not mirrored, which in a left-handed frame runs the other way round than the
- * vector product. */
+/* Normals on the side of the fronts; and a texture that is not mirrored, which in a left-handed frame runs the other
+ * way round than the vector product. */
 static void assert_fronts(const mesh *m)
 {
     for (size_t t = 0; t < m->triangle_count; t++) {
         const uint32_t *k = m->triangles[t].corner;
-        const vec3 a = m->vertices[k[0]], normal = vec3_cross(vec3_sub(m->vertices[k[1]], a), vec3_sub(m->vertices[k[2]], a));
+        const vec3 a = m->vertices[k[0]],
+                   normal = vec3_cross(vec3_sub(m->vertices[k[1]], a), vec3_sub(m->vertices[k[2]], a));
         const mesh_uv p = m->uvs[k[0]], q = m->uvs[k[1]], r = m->uvs[k[2]];
         for (int corner = 0; corner < 3; corner++) {
             assert_true(vec3_dot(m->normals[k[corner]], normal) > 0.0);
@@ -98,7 +107,8 @@ static void assert_sound(const mesh *m, int characteristic)
     assert_fronts(m);
 }
 
-/* Of an icosahedron in the unit sphere: edge 4 / sqrt(10 + 2 sqrt 5), area 5 sqrt 3 a^2, volume 5 (3 + sqrt 5) a^3 / 12 (Coxeter). */
+/* Of an icosahedron in the unit sphere: edge 4 / sqrt(10 + 2 sqrt 5), area 5 sqrt 3 a^2, volume 5 (3 + sqrt 5) a^3 / 12
+ * (Coxeter). */
 static void the_coarsest_icosphere_is_an_icosahedron(void **state)
 {
     (void)state;
@@ -185,7 +195,8 @@ static void a_torus_of_flat_faces_has_its_exact_volume(void **state)
         assert_int_equal(body_torus(major, minor, n, tube, &m, NULL), STATUS_OK);
         assert_int_equal(m->triangle_count, 2 * n * tube);
         assert_sound(m, 0);
-        assert_near(mesh_volume(m), n * sin(2.0 * pi / n) * major * 0.5 * tube * minor * minor * sin(2.0 * pi / tube), 1e-12);
+        assert_near(mesh_volume(m), n * sin(2.0 * pi / n) * major * 0.5 * tube * minor * minor * sin(2.0 * pi / tube),
+                    1e-12);
         mesh_release(m);
     }
 }
@@ -198,7 +209,8 @@ static void tori_converge_to_the_torus(void **state)
     for (int n = 32; n <= 256; n *= 2) {
         mesh *m;
         assert_int_equal(body_torus(2.0, 0.5, n, n / 2, &m, NULL), STATUS_OK);
-        const double volume = 2.0 * pi * pi * 2.0 * 0.25 - mesh_volume(m), area = 4.0 * pi * pi * 2.0 * 0.5 - mesh_area(m);
+        const double volume = 2.0 * pi * pi * 2.0 * 0.25 - mesh_volume(m),
+                     area = 4.0 * pi * pi * 2.0 * 0.5 - mesh_area(m);
         if (n > 32) {
             assert_near(volume_short / volume, 4.0, 0.1);
             assert_near(area_short / area, 4.0, 0.1);
@@ -219,7 +231,8 @@ static mesh *turned(const profile_point *profile, size_t count, int around, doub
 static void turned_cylinders_and_cones_are_prisms_and_pyramids(void **state)
 {
     (void)state;
-    const profile_point cylinder[] = {{0, -1}, {2, -1}, {2, 2}, {0, 2}}, cone[] = {{0, 3}, {1.5, 0}, {0, 0}}; /* the one up, the other down */
+    const profile_point cylinder[] = {{0, -1}, {2, -1}, {2, 2}, {0, 2}},
+                        cone[] = {{0, 3}, {1.5, 0}, {0, 0}}; /* the one up, the other down */
     for (int n = 3; n <= 40; n += n < 8 ? 1 : 11) {
         const double polygon = 0.5 * n * sin(2.0 * pi / n), side = 2.0 * sin(pi / n), inner = cos(pi / n);
         mesh *m = turned(cylinder, COUNT(cylinder), n, 30.0);
@@ -241,7 +254,8 @@ static void turned_cylinders_and_cones_are_prisms_and_pyramids(void **state)
 static void a_turned_ring_is_a_torus(void **state)
 {
     (void)state;
-    const profile_point up[] = {{1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 0}}, down[] = {{1, 0}, {1, 1}, {2, 1}, {2, 0}, {1, 0}};
+    const profile_point up[] = {{1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 0}},
+                        down[] = {{1, 0}, {1, 1}, {2, 1}, {2, 0}, {1, 0}};
     mesh *a = turned(up, 5, 12, 30.0), *b = turned(down, 5, 12, 180.0);
     assert_sound(a, 0);
     assert_sound(b, 0);
@@ -254,7 +268,8 @@ static void a_turned_ring_is_a_torus(void **state)
 static void creases_keep_their_edges_and_others_are_round(void **state)
 {
     (void)state;
-    const profile_point barrel[] = {{0, 0}, {1, 0}, {1.1, 1}, {1, 2}, {0, 2}}; /* turns by 90 less 5.7 degrees, 11.4, and so on */
+    const profile_point barrel[] = {
+        {0, 0}, {1, 0}, {1.1, 1}, {1, 2}, {0, 2}}; /* turns by 90 less 5.7 degrees, 11.4, and so on */
     mesh *m = turned(barrel, COUNT(barrel), 16, 30.0);
     bool round = false, flat = false, slanted = false;
     for (size_t v = 0; v < m->vertex_count; v++) {
@@ -319,7 +334,8 @@ static void a_box_has_its_volume_and_whole_textures(void **state)
     assert_near(mesh_area(m), 28.0, 1e-14);
     assert_true(m->bounds.high.x == 0.5 && m->bounds.high.y == 1.0 && m->bounds.low.z == -2.0);
     /* the side in front of a viewer at -z: the picture's lower left corner is at -x, -y */
-    assert_true(m->vertices[0].x == -0.5 && m->vertices[0].y == -1.0 && m->vertices[0].z == -2.0 && m->uvs[0].u == 0.0 && m->uvs[0].v == 0.0);
+    assert_true(m->vertices[0].x == -0.5 && m->vertices[0].y == -1.0 && m->vertices[0].z == -2.0 &&
+                m->uvs[0].u == 0.0 && m->uvs[0].v == 0.0);
     mesh_release(m);
 }
 
@@ -337,7 +353,8 @@ static void a_plane_height_field_has_its_exact_volume(void **state)
     const double slope = sqrt(1.25);
     for (size_t v = 0; v < 12; v++)
         assert_near(vec3_length(vec3_sub(m->normals[v], vec3_make(-0.5 / slope, 1.0 / slope, 0.0))), 0.0, 1e-15);
-    assert_true(m->vertices[0].x == -2.0 && m->vertices[0].z == -3.0 && m->vertices[11].x == 2.0 && m->vertices[11].z == 3.0);
+    assert_true(m->vertices[0].x == -2.0 && m->vertices[0].z == -3.0 && m->vertices[11].x == 2.0 &&
+                m->vertices[11].z == 3.0);
     mesh_release(m);
     assert_int_equal(body_height_field(heights, 3, 4, 4.0, 6.0, 0.0, &m, NULL), STATUS_OK);
     assert_false(m->closed);
@@ -352,16 +369,27 @@ static void bad_numbers_are_refused_with_a_remedy(void **state)
     (void)state;
     mesh *m = NULL;
     const double heights[4] = {0.0, 0.0, -2.0, 0.0};
-    const profile_point fine[] = {{0, 0}, {1, 0}, {0, 1}}, twice[] = {{1, 0}, {1, 0}, {0, 1}}, axis[] = {{0, 0}, {0, 1}}, minus[] = {{0, 0}, {-1, 0}};
+    const profile_point fine[] = {{0, 0}, {1, 0}, {0, 1}}, twice[] = {{1, 0}, {1, 0}, {0, 1}},
+                        axis[] = {{0, 0}, {0, 1}}, minus[] = {{0, 0}, {-1, 0}};
     diagnostic why[18] = {{.remedy = ""}};
-    const status got[] = {
-        body_sparse(0, &m, &why[0]), body_dense((size_t)MESH_TRIANGLES_MAX + 1, &m, &why[1]), body_sphere(0, &m, &why[2]),
-        body_icosphere(-1, &m, &why[3]), body_icosphere(BODY_LEVEL_MAX + 1, &m, &why[4]), body_torus(1.0, 1.0, 8, 8, &m, &why[5]),
-        body_torus((double)NAN, 0.5, 8, 8, &m, &why[6]), body_torus(1.0, 0.5, 2, 8, &m, &why[7]), body_torus(1.0, 1e-300, 8, 8, &m, &why[8]),
-        body_lathe(fine, 3, 2, 0.0, &m, &why[9]), body_lathe(fine, 3, 8, -1.0, &m, &why[10]), body_lathe(twice, 3, 8, 0.0, &m, &why[11]),
-        body_lathe(axis, 2, 8, 0.0, &m, &why[12]), body_lathe(minus, 2, 8, 0.0, &m, &why[13]),
-        body_height_field(heights, 1, 4, 1, 1, 1, &m, &why[14]), body_height_field(heights, 2, 2, 1, 1, 2.0, &m, &why[15]),
-        body_box(vec3_make(1, 0, 1), &m, &why[16]), body_box(vec3_make(1, (double)INFINITY, 1), &m, &why[17])};
+    const status got[] = {body_sparse(0, &m, &why[0]),
+                          body_dense((size_t)MESH_TRIANGLES_MAX + 1, &m, &why[1]),
+                          body_sphere(0, &m, &why[2]),
+                          body_icosphere(-1, &m, &why[3]),
+                          body_icosphere(BODY_LEVEL_MAX + 1, &m, &why[4]),
+                          body_torus(1.0, 1.0, 8, 8, &m, &why[5]),
+                          body_torus((double)NAN, 0.5, 8, 8, &m, &why[6]),
+                          body_torus(1.0, 0.5, 2, 8, &m, &why[7]),
+                          body_torus(1.0, 1e-300, 8, 8, &m, &why[8]),
+                          body_lathe(fine, 3, 2, 0.0, &m, &why[9]),
+                          body_lathe(fine, 3, 8, -1.0, &m, &why[10]),
+                          body_lathe(twice, 3, 8, 0.0, &m, &why[11]),
+                          body_lathe(axis, 2, 8, 0.0, &m, &why[12]),
+                          body_lathe(minus, 2, 8, 0.0, &m, &why[13]),
+                          body_height_field(heights, 1, 4, 1, 1, 1, &m, &why[14]),
+                          body_height_field(heights, 2, 2, 1, 1, 2.0, &m, &why[15]),
+                          body_box(vec3_make(1, 0, 1), &m, &why[16]),
+                          body_box(vec3_make(1, (double)INFINITY, 1), &m, &why[17])};
     for (size_t k = 0; k < COUNT(got); k++) {
         assert_int_equal(got[k], STATUS_BAD_INPUT);
         assert_true(why[k].what[0] && why[k].remedy[0]);

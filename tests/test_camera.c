@@ -18,12 +18,13 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 enum { SIDE = 64 };
 
-#define HEAD                                                                                                                \
-    "render: {width: 64, height: 64, depth: 5}\n"                                                                           \
-    "camera: {position: [0.25, 1, -6], yaw_deg: 0, fov_deg: 40}\n"                                                          \
-    "background: {kind: gradient, color: [0.1, 0.2, 0.9], horizon: [1, 0.8, 0.6], ambient: [0.5, 0.6, 0.7]}\n"              \
-    "lights: {lamp: {position: [4, 7, -5]}}\n"                                                                              \
-    "materials: {dull: {diffuse: 0.7, ambient: 0.1, specular: 0.4, shininess: 40, color: [0.8, 0.3, 0.2], checker: 0.3}}\n" \
+#define HEAD                                                                                                         \
+    "render: {width: 64, height: 64, depth: 5}\n"                                                                    \
+    "camera: {position: [0.25, 1, -6], yaw_deg: 0, fov_deg: 40}\n"                                                   \
+    "background: {kind: gradient, color: [0.1, 0.2, 0.9], horizon: [1, 0.8, 0.6], ambient: [0.5, 0.6, 0.7]}\n"       \
+    "lights: {lamp: {position: [4, 7, -5]}}\n"                                                                       \
+    "materials: {dull: {diffuse: 0.7, ambient: 0.1, specular: 0.4, shininess: 40, color: [0.8, 0.3, 0.2], checker: " \
+    "0.3}}\n"                                                                                                        \
     "solids:\n"
 
 static const char room[] =

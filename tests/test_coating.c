@@ -8,9 +8,9 @@
 #include "optics/mueller.h"
 #include "probe_fixture.h"
 
-/* reflectivity of a clear surface under Fresnel's weights is a coating: of the light that would pass, that share comes back.
- * R' = R + (1 - R) reflectivity, T' = (1 - R) (1 - reflectivity), from both sides. Closed forms: Hecht, Optics, 5th ed., 4.6.2, and for
- * sheets the series of reflections between two faces (9.6.1, of intensities). */
+/* reflectivity of a clear surface under Fresnel's weights is a coating: of the light that would pass, that share comes
+ * back. R' = R + (1 - R) reflectivity, T' = (1 - R) (1 - reflectivity), from both sides. Closed forms: Hecht, Optics,
+ * 5th ed., 4.6.2, and for sheets the series of reflections between two faces (9.6.1, of intensities). */
 
 static const vec3 level = {0.0, 0.0, 0.0};
 
@@ -71,7 +71,8 @@ static void a_sheet_of_air_with_coated_faces_is_a_half_mirror(void **state)
     }
 }
 
-/* R' + T' = 1, so that nothing is lost, whatever a ray's tree: a sphere in a sky of 1 is 1 but for what the depth cuts off. */
+/* R' + T' = 1, so that nothing is lost, whatever a ray's tree: a sphere in a sky of 1 is 1 but for what the depth cuts
+ * off. */
 static void coated_media_lose_nothing(void **state)
 {
     (void)state;
@@ -83,7 +84,8 @@ static void coated_media_lose_nothing(void **state)
     stage_close(&g);
 }
 
-/* Reflectances of s and p light: sin^2(a - b) / sin^2(a + b) and tan^2(a - b) / tan^2(a + b), of Fresnel's formulas in Hecht, Optics, 4.6. */
+/* Reflectances of s and p light: sin^2(a - b) / sin^2(a + b) and tan^2(a - b) / tan^2(a + b), of Fresnel's formulas in
+ * Hecht, Optics, 4.6. */
 static void reflectances(double cosine, double n, double *s, double *p, double *refracted)
 {
     const double a = acos(cosine), b = asin(sin(a) / n);
@@ -92,8 +94,9 @@ static void reflectances(double cosine, double n, double *s, double *p, double *
     *refracted = b;
 }
 
-/* Seen by way of a surface that polarises, all light coming from 1, a coating is off by c q (R_s - R_p) / 2: it sends light back
- * unpolarised, which no way back does. Both surfaces have one plane of incidence, the second stands upright. */
+/* Seen by way of a surface that polarises, all light coming from 1, a coating is off by c q (R_s - R_p) / 2: it sends
+ * light back unpolarised, which no way back does. Both surfaces have one plane of incidence, the second stands upright.
+ */
 static void a_polarised_view_of_a_coating_is_off_by_its_polarisation(void **state)
 {
     (void)state;
@@ -103,7 +106,8 @@ static void a_polarised_view_of_a_coating_is_off_by_its_polarisation(void **stat
         double s, p, b;
         reflectances(cos(a), 1.5, &s, &p, &b);
         const double q = (s - p) / (s + p);
-        stokes row = analyser_reflect((stokes){1.0, 0.0, 0.0, 0.0}, down, vec3_make(0.0, 1.0, 0.0), cos(a), 1.0, 1.5, d);
+        stokes row =
+            analyser_reflect((stokes){1.0, 0.0, 0.0, 0.0}, down, vec3_make(0.0, 1.0, 0.0), cos(a), 1.0, 1.5, d);
         row = (stokes){1.0, row.q / row.i, row.u / row.i, row.v / row.i};
         reflectances(sin(a), n, &s, &p, &b);
         const vec3 wall = vec3_make(-1.0, 0.0, 0.0), back = vec3_make(-d.x, d.y, 0.0);
@@ -122,8 +126,10 @@ static void a_coating_is_the_surface_owners(void **state)
     (void)state;
     for (int above_wins = 0; above_wins < 2; above_wins++) {
         scene_text text = scene_begin(1.0, 1);
-        add_clear(&text, "above", 1.5, above_wins ? 2 : 0, vec3_make(0.0, 0.5, 0.0), level, "shape: box, size: [9, 1, 9], reflectivity: 0.25");
-        add_clear(&text, "below", 1.5, 1, vec3_make(0.0, -0.5, 0.0), level, "shape: box, size: [9, 1, 9], reflectivity: 0.5");
+        add_clear(&text, "above", 1.5, above_wins ? 2 : 0, vec3_make(0.0, 0.5, 0.0), level,
+                  "shape: box, size: [9, 1, 9], reflectivity: 0.25");
+        add_clear(&text, "below", 1.5, 1, vec3_make(0.0, -0.5, 0.0), level,
+                  "shape: box, size: [9, 1, 9], reflectivity: 0.5");
         stage g = stage_of(text.at, "");
         const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 0.5, 0.0), vec3_make(0.0, -1.0, 0.0));
         assert_true(fabs(share_of(tree, RAY_REFLECT) - (above_wins ? 0.25 : 0.5)) <= 1e-13);
@@ -134,7 +140,8 @@ static void a_coating_is_the_surface_owners(void **state)
 static void constant_shares_know_no_coating(void **state)
 {
     (void)state;
-    static const char *const rules[] = {"glass.transparency=0.5 render.weights=constant", "glass.transparency=0.5 render.transmission=simple"};
+    static const char *const rules[] = {"glass.transparency=0.5 render.weights=constant",
+                                        "glass.transparency=0.5 render.transmission=simple"};
     for (size_t k = 0; k < COUNT(rules); k++) {
         stage g = coated("shape: plane", 1.5, 0.25, 1, rules[k]);
         const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 1.0, 0.0), vec3_make(0.6, -0.8, 0.0));
@@ -147,13 +154,13 @@ static void constant_shares_know_no_coating(void **state)
 static void a_coated_pane_shades(void **state)
 {
     (void)state;
-    static const char lit_ground[] =
-        "background: {color: [0, 0, 0]}\n"
-        "render: {width: 1, height: 1}\n"
-        "lights: {lamp: {position: [0, 4, 0]}}\n"
-        "solids:\n"
-        "  ground: {shape: plane, diffuse: 1}\n"
-        "  pane: {shape: box, transparency: 0.9, reflectivity: 0.25, ior: 1.5, position: [0, 2, 0], size: [50, 0.5, 50]}\n";
+    static const char lit_ground[] = "background: {color: [0, 0, 0]}\n"
+                                     "render: {width: 1, height: 1}\n"
+                                     "lights: {lamp: {position: [0, 4, 0]}}\n"
+                                     "solids:\n"
+                                     "  ground: {shape: plane, diffuse: 1}\n"
+                                     "  pane: {shape: box, transparency: 0.9, reflectivity: 0.25, ior: 1.5, position: "
+                                     "[0, 2, 0], size: [50, 0.5, 50]}\n";
     stage g = stage_of(lit_ground, "");
     const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 1.0, 0.0), vec3_make(0.0, -1.0, 0.0));
     assert_true(fabs(tree->radiance[0] - pow(0.9 * 0.75, 2.0)) <= 1e-12);
@@ -164,9 +171,9 @@ static void a_coated_pane_shades(void **state)
     stage_close(&g);
 }
 
-/* A corner of two media that are black inside, so that light comes back by both faces alone: at an angle a from the floor, at 90 - a from
- * the wall. A coating makes light unpolarised: of s and p alike half of what it sends back. The light goes from the sky to the
- * one, then to the other, then to the eye. */
+/* A corner of two media that are black inside, so that light comes back by both faces alone: at an angle a from the
+ * floor, at 90 - a from the wall. A coating makes light unpolarised: of s and p alike half of what it sends back. The
+ * light goes from the sky to the one, then to the other, then to the eye. */
 static double floor_then_wall(reflectance first, double first_coating, reflectance second, double second_coating)
 {
     const double made = 0.5 * (1.0 - first.mean) * first_coating, s = 0.5 * first.s + made, p = 0.5 * first.p + made;
@@ -188,7 +195,8 @@ static void a_coating_reflects_unpolarised(void **state)
         for (double angle = 0.2; angle < 1.4; angle += 0.15) {
             const vec3 to = vec3_make(sin(angle), -cos(angle), 0.0), from = vec3_scale(to, -1.0);
             const ray_tree *tree = stage_ray(&g, vec3_add(vec3_make(0.0, 0.0, 0.0), from), to);
-            const reflectance floor = reflectance_of_angles(angle, 1.0, 1.5), wall = reflectance_of_angles(0.5 * M_PI - angle, 1.0, 1.9);
+            const reflectance floor = reflectance_of_angles(angle, 1.0, 1.5),
+                              wall = reflectance_of_angles(0.5 * M_PI - angle, 1.0, 1.9);
             /* The eye looks at the floor first, so the wall's light comes to it. */
             assert_true(fabs(tree->radiance[0] - floor_then_wall(wall, on_wall, floor, on_floor)) <= 1e-12);
         }
@@ -201,8 +209,10 @@ static void random_paths_agree(void **state)
 {
     (void)state;
     stage g = coated("shape: box, size: [50, 0.1, 50]", 1.0, 0.5, 40, "render.integrator=path render.paths=65536");
-    set_all(g.setting, "camera.position=0,3,0 camera.target=0,0,0 camera.fov_deg=0.001 background.kind=gradient background.color=1,1,1 "
-                       "background.horizon=0,0,0"); /* below the horizon the sky is black: what comes back alone is seen */
+    set_all(g.setting,
+            "camera.position=0,3,0 camera.target=0,0,0 camera.fov_deg=0.001 background.kind=gradient "
+            "background.color=1,1,1 "
+            "background.horizon=0,0,0"); /* below the horizon the sky is black: what comes back alone is seen */
     const double back = 2.0 * 0.5 / 1.5, sigma = sqrt(back * (1.0 - back) / 65536.0);
     assert_true(fabs(look(g.setting).x - back) <= 5.0 * sigma);
     stage_close(&g);

@@ -37,7 +37,8 @@ static void assemble(assembly *m, vec3 turn)
     for (int i = 0; i < m->count; i++) {
         m->shape[i].rotation_deg = turn;
         m->shape[i].position = turned(m->shape[i].position, turn);
-        sources[i] = (body_source){.shape = &m->shape[i], .priority = m->priority[i], .medium = m->medium[i], .clearness = 1.0, .solid = i};
+        sources[i] = (body_source){
+            .shape = &m->shape[i], .priority = m->priority[i], .medium = m->medium[i], .clearness = 1.0, .solid = i};
     }
     assert_int_equal(arrangement_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
 }

@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The pictures: linear light k / 256 with a whole k, 0 to 256, of place, channel and variant (0 for a, 1 for b), so that
- * floats hold it exactly and another program can make the same. */
+/* The pictures: linear light k / 256 with a whole k, 0 to 256, of place, channel and variant (0 for a, 1 for b), so
+ * that floats hold it exactly and another program can make the same. */
 typedef int formula(int x, int y, int channel, int variant);
 
 static int ramp(int x, int y, int channel, int variant)
@@ -97,8 +97,8 @@ static void assert_near(double value, double expected, double within)
  *   use_sample_covariance=False, data_range=1); where a side is under 11, which it refuses, NumPy by the definition
  *   in compare_ssim.c, window by window, with central moments. The two agree to 1e-12 where both can be had.
  * flip: the authors' Python implementation (github.com/NVlabs/flip, python/flip_api.py at 313517b, compute_ldrflip),
- *   float64 in place of float32, and for its cv.filter2D SciPy 1.10.1's ndimage.correlate(mode='nearest'), both explicit
- *   two-dimensional sums. */
+ *   float64 in place of float32, and for its cv.filter2D SciPy 1.10.1's ndimage.correlate(mode='nearest'), both
+ * explicit two-dimensional sums. */
 typedef struct expectation {
     formula *of;
     int width, height;
@@ -165,8 +165,8 @@ static void a_picture_is_identical_to_itself(void **state)
     assert_true(c.flip == 0 && c.largest == 0 && c.differing_share == 0 && c.largest_x == 0 && c.largest_y == 0);
 }
 
-/* A known offset of the encoded values: mse its square, psnr by its definition; of two constants the variances are 0, so
- * that the similarity is (2 a b + C1) / (a^2 + b^2 + C1), Wang et al. eq. 6. */
+/* A known offset of the encoded values: mse its square, psnr by its definition; of two constants the variances are 0,
+ * so that the similarity is (2 a b + C1) / (a^2 + b^2 + C1), Wang et al. eq. 6. */
 static void constants_have_closed_forms(void **state)
 {
     (void)state;
@@ -181,9 +181,9 @@ static void constants_have_closed_forms(void **state)
 }
 
 /* Two greys of one lightness each: without chroma HyAB is the difference of the lightnesses; filters leave constants as
- * they are and find no features. Linear 1 and 0.18418651851 have L* 100 and 50. The distance to the power 0.7 is under the
- * knee of 0.4 times that of green and blue, (203.3016558)^0.7 by their CIELAB values (87.7362, -75.6099, 72.9812) and
- * (32.2982, 25.5781, -34.8364), Hunt-adjusted. */
+ * they are and find no features. Linear 1 and 0.18418651851 have L* 100 and 50. The distance to the power 0.7 is under
+ * the knee of 0.4 times that of green and blue, (203.3016558)^0.7 by their CIELAB values (87.7362, -75.6099, 72.9812)
+ * and (32.2982, 25.5781, -34.8364), Hunt-adjusted. */
 static void flip_of_greys_is_their_difference_of_lightness(void **state)
 {
     (void)state;

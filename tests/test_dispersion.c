@@ -48,8 +48,11 @@ static const dispersion laws[] = {
     {DISPERSION_SELLMEIER, 6, {1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, 103.560653}, 0, 0},
     {DISPERSION_SELLMEIER, 2, {1.25, -0.02}, 0, 0},
     {DISPERSION_SELLMEIER_LENGTHS, 6, {0.6961663, 0.0684043, 0.4079426, 0.1162414, 0.8974794, 9.896161}, 0, 0},
-    {DISPERSION_POLYNOMIAL, 13,
-     {2.1778, 0.0061209, 2, -0.0015004, 4, 0.023678, -2, -0.0042137, -4, 0.00073417, -6, -0.000045042, -8}, 0, 0},
+    {DISPERSION_POLYNOMIAL,
+     13,
+     {2.1778, 0.0061209, 2, -0.0015004, 4, 0.023678, -2, -0.0042137, -4, 0.00073417, -6, -0.000045042, -8},
+     0,
+     0},
     {DISPERSION_POLYNOMIAL, 5, {2.2, 0.01, 3, -0.00000005, -16}, 0, 0},
     {DISPERSION_CAUCHY_POWERS, 5, {1.5130, -0.003169, 2, 0.003962, -2}, 0, 0},
     {DISPERSION_CAUCHY_POWERS, 1, {1.5}, 0, 0},
@@ -97,8 +100,8 @@ static void tables_are_linear_between_their_points(void **state)
     (void)state;
     const dispersion table = {DISPERSION_TABLE, 6, {400.0, 1.5, 500.0, 1.25, 700.0, 1.125}, 0, 0};
     assert_int_equal(dispersion_check(&table, NULL), STATUS_OK);
-    const double wanted[][2] = {{380.0, 1.5},    {400.0, 1.5},  {425.0, 1.4375},  {450.0, 1.375}, {500.0, 1.25},
-                                {550.0, 1.21875}, {600.0, 1.1875}, {700.0, 1.125}, {780.0, 1.125}};
+    const double wanted[][2] = {{380.0, 1.5},     {400.0, 1.5},    {425.0, 1.4375}, {450.0, 1.375}, {500.0, 1.25},
+                                {550.0, 1.21875}, {600.0, 1.1875}, {700.0, 1.125},  {780.0, 1.125}};
     for (size_t k = 0; k < COUNT(wanted); k++)
         assert_true(dispersion_index(&table, wanted[k][0]) == wanted[k][1]);
     assert_near(dispersion_index(&table, nextafter(500.0, 0.0)), 1.25, 1e-12);
@@ -152,8 +155,12 @@ static void what_is_no_law_is_refused_with_a_reason(void **state)
         {{DISPERSION_CONSTANT, 0, {0}, 0, 0}, "0 numbers do not make the dispersion law 'constant'", "one number"},
         {{DISPERSION_CONSTANT, -1, {0}, 0, 0}, "-1 numbers", "one number"},
         {{DISPERSION_CONSTANT, 2, {1.5, 1.5}, 0, 0}, "2 numbers", "one number"},
-        {{DISPERSION_SELLMEIER, 3, {1.0, 0.01, 1.0}, 0, 0}, "3 numbers do not make the dispersion law 'sellmeier'", "um^2"},
-        {{DISPERSION_SELLMEIER_LENGTHS, 1, {1.0}, 0, 0}, "1 numbers do not make the dispersion law 'sellmeier-lengths'", "um"},
+        {{DISPERSION_SELLMEIER, 3, {1.0, 0.01, 1.0}, 0, 0},
+         "3 numbers do not make the dispersion law 'sellmeier'",
+         "um^2"},
+        {{DISPERSION_SELLMEIER_LENGTHS, 1, {1.0}, 0, 0},
+         "1 numbers do not make the dispersion law 'sellmeier-lengths'",
+         "um"},
         {{DISPERSION_POLYNOMIAL, 2, {2.0, 0.1}, 0, 0}, "2 numbers", "its power"},
         {{DISPERSION_CAUCHY_POWERS, 4, {1.5, 0.1, 2.0, 0.1}, 0, 0}, "4 numbers", "its power"},
         {{DISPERSION_CAUCHY, 0, {0}, 0, 0}, "0 numbers", "um^4"},

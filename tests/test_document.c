@@ -152,7 +152,8 @@ static void check_keys_names_the_nearest(void **state)
 static void a_remedy_fits_its_wrong_key(void **state)
 {
     (void)state;
-    static const char *const words[] = {"radius", "ior", "yaw_deg", "pitch_deg", "checker", "checker_color", "m", "shape", "color"};
+    static const char *const words[] = {"radius",        "ior", "yaw_deg", "pitch_deg", "checker",
+                                        "checker_color", "m",   "shape",   "color"};
     static const struct {
         const char *key, *remedy;
     } cases[] = {
@@ -163,7 +164,7 @@ static void a_remedy_fits_its_wrong_key(void **state)
         {"colour", "did you mean 'color'?"},
         {"yaw", "did you mean 'yaw_deg'?"},
         {"raduis", "did you mean 'radius'?"},
-        {"chec", "the keys here are: "}, /* begins two */
+        {"chec", "the keys here are: "},  /* begins two */
         {"alpha", "the keys here are: "}, /* transparency is no word here */
         {"io", "the keys here are: "},
         {"r", "the keys here are: "},

@@ -53,7 +53,8 @@ static void it_adds_to_the_other_terms(void **state)
     scene_destroy(s);
 }
 
-/* A clear solid of the surroundings' index, which has no surface otherwise: k_e C at the way in, and t k_e C at the way out. */
+/* A clear solid of the surroundings' index, which has no surface otherwise: k_e C at the way in, and t k_e C at the way
+ * out. */
 static void clear_solids_shine_whatever_their_index(void **state)
 {
     (void)state;
@@ -164,9 +165,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(clear_solids_shine_whatever_their_index),
-        cmocka_unit_test(every_integrator_sees_it),     cmocka_unit_test(it_adds_to_the_other_terms),
-        cmocka_unit_test(mirrors_and_glass_hand_it_on), cmocka_unit_test(a_furnace_of_walls_that_shine),
-        cmocka_unit_test(a_furnace_at_each_wavelength), cmocka_unit_test(a_disc_lights_the_floor_below_it),
+        cmocka_unit_test(every_integrator_sees_it),
+        cmocka_unit_test(it_adds_to_the_other_terms),
+        cmocka_unit_test(mirrors_and_glass_hand_it_on),
+        cmocka_unit_test(a_furnace_of_walls_that_shine),
+        cmocka_unit_test(a_furnace_at_each_wavelength),
+        cmocka_unit_test(a_disc_lights_the_floor_below_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

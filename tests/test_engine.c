@@ -12,8 +12,8 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-/* The engine as cuvette.h promises it. What it renders is compared with the renderer behind it, with film hashes that are pinned elsewhere,
- * and with closed forms; how it is installed and linked is the business of tests/engine.sh. */
+/* The engine as cuvette.h promises it. What it renders is compared with the renderer behind it, with film hashes that
+ * are pinned elsewhere, and with closed forms; how it is installed and linked is the business of tests/engine.sh. */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {
@@ -93,7 +93,8 @@ static void what_is_missing_or_wrong_is_said_and_changes_nothing(void **state)
     assert_non_null(strstr(why.remedy, "render.depth"));
     assert_int_equal(cuvette_scene_add_solid(s, "ball", "spere", NULL, &why), CUVETTE_BAD_INPUT);
     assert_non_null(strstr(why.remedy, "sphere"));
-    assert_int_equal(cuvette_scene_add_solid(s, "ball", "sphere", "glass", &why), CUVETTE_BAD_INPUT); /* no such material: no ball either */
+    assert_int_equal(cuvette_scene_add_solid(s, "ball", "sphere", "glass", &why),
+                     CUVETTE_BAD_INPUT); /* no such material: no ball either */
     assert_int_equal((int)cuvette_scene_count(s, CUVETTE_SOLID), 0);
     assert_int_equal(cuvette_query_create(NULL, NULL, &query, &why), CUVETTE_BAD_INPUT);
     cuvette_scene_destroy(s);
@@ -182,16 +183,45 @@ static void all_parameters_together_make_the_scene(void **state)
 static cuvette_scene *rod_by_calls(void)
 {
     static const char *const set[][2] = {
-        {"render.width", "80"}, {"render.height", "60"}, {"render.depth", "4"},
-        {"camera.position", "0,2.75,-6"}, {"camera.target", "0,1.5,0"}, {"camera.fov_deg", "45"}, {"background.color", "0.53,0.75,0.92"},
-        {"clear.transparency", "1"}, {"clear.specular", "0.6"}, {"clear.shininess", "80"},
-        {"tiles.color", "0.85,0.85,0.85"}, {"tiles.checker_color", "0.25,0.3,0.35"}, {"tiles.checker", "0.5"}, {"tiles.ambient", "0.1"},
-        {"tiles.diffuse", "0.7"}, {"plastic.color", "0.85,0.15,0.1"}, {"plastic.ambient", "0.1"}, {"plastic.diffuse", "0.7"},
-        {"plastic.specular", "0.5"}, {"plastic.shininess", "40"}, {"lamp.position", "4,7,-5"}, {"lamp.color", "1,1,1"}, {"lamp.intensity", "1"},
-        {"ground.priority", "0"}, {"vessel.ior", "1.5"}, {"vessel.position", "0,0.001,0"}, {"vessel.radius", "1"}, {"vessel.inner_radius", "0.9"},
-        {"vessel.height", "3"}, {"vessel.floor", "0.1"}, {"vessel.priority", "2"}, {"liquid.ior", "1.33"}, {"liquid.position", "0,0.051,0"},
-        {"liquid.radius", "0.95"}, {"liquid.height", "1.95"}, {"liquid.priority", "1"}, {"rod.position", "0.2,2.101,0"},
-        {"rod.size", "0.25,3,0.25"}, {"rod.priority", "3"},
+        {"render.width", "80"},
+        {"render.height", "60"},
+        {"render.depth", "4"},
+        {"camera.position", "0,2.75,-6"},
+        {"camera.target", "0,1.5,0"},
+        {"camera.fov_deg", "45"},
+        {"background.color", "0.53,0.75,0.92"},
+        {"clear.transparency", "1"},
+        {"clear.specular", "0.6"},
+        {"clear.shininess", "80"},
+        {"tiles.color", "0.85,0.85,0.85"},
+        {"tiles.checker_color", "0.25,0.3,0.35"},
+        {"tiles.checker", "0.5"},
+        {"tiles.ambient", "0.1"},
+        {"tiles.diffuse", "0.7"},
+        {"plastic.color", "0.85,0.15,0.1"},
+        {"plastic.ambient", "0.1"},
+        {"plastic.diffuse", "0.7"},
+        {"plastic.specular", "0.5"},
+        {"plastic.shininess", "40"},
+        {"lamp.position", "4,7,-5"},
+        {"lamp.color", "1,1,1"},
+        {"lamp.intensity", "1"},
+        {"ground.priority", "0"},
+        {"vessel.ior", "1.5"},
+        {"vessel.position", "0,0.001,0"},
+        {"vessel.radius", "1"},
+        {"vessel.inner_radius", "0.9"},
+        {"vessel.height", "3"},
+        {"vessel.floor", "0.1"},
+        {"vessel.priority", "2"},
+        {"liquid.ior", "1.33"},
+        {"liquid.position", "0,0.051,0"},
+        {"liquid.radius", "0.95"},
+        {"liquid.height", "1.95"},
+        {"liquid.priority", "1"},
+        {"rod.position", "0.2,2.101,0"},
+        {"rod.size", "0.25,3,0.25"},
+        {"rod.priority", "3"},
     };
     cuvette_diagnostic why;
     cuvette_scene *s;
@@ -274,9 +304,11 @@ static void objects_come_move_turn_and_go(void **state)
 static void a_texture_from_memory_is_seen(void **state)
 {
     (void)state;
-    static const char *const set[][2] = {{"render.width", "1"}, {"render.height", "1"}, {"render.depth", "0"}, {"camera.position", "0,0,-5"},
-                                         {"camera.target", "0,0,0"}, {"background.ambient", "1,1,1"}, {"wall.color", "1,1,1"},
-                                         {"wall.ambient", "1"}, {"wall.diffuse", "0"}, {"wall.specular", "0"}, {"wall.texture", "paint"}};
+    static const char *const set[][2] = {
+        {"render.width", "1"},         {"render.height", "1"},     {"render.depth", "0"},
+        {"camera.position", "0,0,-5"}, {"camera.target", "0,0,0"}, {"background.ambient", "1,1,1"},
+        {"wall.color", "1,1,1"},       {"wall.ambient", "1"},      {"wall.diffuse", "0"},
+        {"wall.specular", "0"},        {"wall.texture", "paint"}};
     const float texel[3] = {0.25F, 0.5F, 0.75F};
     float seen[3];
     cuvette_diagnostic why;
@@ -289,7 +321,8 @@ static void a_texture_from_memory_is_seen(void **state)
     for (size_t i = 0; i < COUNT(set); i++)
         turn(s, set[i][0], set[i][1]);
     char text[4096];
-    assert_int_equal(cuvette_scene_write_text(s, text, sizeof text, NULL, &why), CUVETTE_BAD_INPUT); /* no file would hold its pixels */
+    assert_int_equal(cuvette_scene_write_text(s, text, sizeof text, NULL, &why),
+                     CUVETTE_BAD_INPUT); /* no file would hold its pixels */
     assert_non_null(strstr(why.what, "paint"));
     fine(cuvette_scene_clone(s, &clone, &why), &why);
     cuvette_scene_destroy(s);
@@ -331,7 +364,8 @@ static void counters_and_pixels_are_the_renderers(void **state)
     for (size_t i = 0; i < COUNT(rgb); i++)
         rgb[i] = -7.0F, srgb[i] = 77;
     cuvette_request request = CUVETTE_REQUEST;
-    request.width = W, request.height = H, request.rgb = rgb, request.rgb_stride = WIDE, request.srgb = srgb, request.srgb_stride = WIDE;
+    request.width = W, request.height = H, request.rgb = rgb, request.rgb_stride = WIDE, request.srgb = srgb,
+    request.srgb_stride = WIDE;
     cuvette_frame *frame;
     fine(cuvette_engine_render(engine, s, &request, &frame, &why), &why);
     assert_true(cuvette_frame_width(frame) == W && cuvette_frame_height(frame) == H);
@@ -351,7 +385,8 @@ static void counters_and_pixels_are_the_renderers(void **state)
         }
     cuvette_counters counters = {.size = sizeof counters};
     fine(cuvette_frame_counters(frame, &counters, &why), &why);
-    assert_true(counters.camera == c->camera && counters.reflect == c->reflect && counters.refract == c->refract && counters.shadow == c->shadow);
+    assert_true(counters.camera == c->camera && counters.reflect == c->reflect && counters.refract == c->refract &&
+                counters.shadow == c->shadow);
     assert_true(counters.total_internal == c->total_internal && counters.cut_depth == c->cut_depth);
     assert_memory_equal(counters.by_depth, c->by_depth, sizeof counters.by_depth);
     assert_true(counters.cut_depth_throughput[1] == (double)c->cut_depth_throughput[1] / COUNTERS_CUT_ONE);
@@ -363,7 +398,8 @@ static void counters_and_pixels_are_the_renderers(void **state)
     }
     cuvette_statistics statistics = {.size = sizeof statistics};
     fine(cuvette_frame_statistics(frame, &statistics, &why), &why);
-    assert_true(statistics.wall_s > 0.0 && statistics.cpu_s > 0.0 && statistics.preview_s == 0.0 && statistics.threads == 2);
+    assert_true(statistics.wall_s > 0.0 && statistics.cpu_s > 0.0 && statistics.preview_s == 0.0 &&
+                statistics.threads == 2);
     assert_true(isnan(statistics.noise_rms));
     cuvette_frame_destroy(frame);
     render_result_destroy(result);
@@ -395,7 +431,8 @@ static void an_older_struct_is_filled_as_far_as_it_goes(void **state)
     fine(cuvette_frame_rgb(frame, 39, 29, 40, 30, rgb, 0, &why), &why);
     cuvette_request request = CUVETTE_REQUEST;
     request.rgb = rgb, request.width = 1, request.height = 1;
-    assert_int_equal(cuvette_engine_render(engine, s, &request, NULL, &why), CUVETTE_BAD_INPUT); /* the picture is larger */
+    assert_int_equal(cuvette_engine_render(engine, s, &request, NULL, &why),
+                     CUVETTE_BAD_INPUT); /* the picture is larger */
     request = CUVETTE_REQUEST;
     request.preview = 1;
     assert_int_equal(cuvette_engine_render(engine, s, &request, NULL, &why), CUVETTE_BAD_INPUT);
@@ -412,7 +449,7 @@ typedef struct audience {
     cuvette_scene *scene;
     int previews, pieces, calls, covered[WIDTH * HEIGHT];
     double share, first;
-    double stop_at;   /* share at which progress says no */
+    double stop_at; /* share at which progress says no */
     float rgb[3 * WIDTH * HEIGHT], seen[3 * WIDTH * HEIGHT];
 } audience;
 
@@ -431,7 +468,8 @@ static void watch_pieces(void *context, const cuvette_piece *piece)
 {
     audience *a = context;
     assert_true(pthread_equal(pthread_self(), a->thread));
-    assert_true(piece->x0 >= 0 && piece->x0 < piece->x1 && piece->x1 <= WIDTH && piece->y0 >= 0 && piece->y0 < piece->y1 && piece->y1 <= HEIGHT);
+    assert_true(piece->x0 >= 0 && piece->x0 < piece->x1 && piece->x1 <= WIDTH && piece->y0 >= 0 &&
+                piece->y0 < piece->y1 && piece->y1 <= HEIGHT);
     *(piece->coarse == 1 ? &a->pieces : &a->previews) += 1;
     assert_true(piece->coarse == 1 || (piece->coarse == 8 && a->pieces == 0));
     for (int y = piece->y0; y < piece->y1; y++)
@@ -508,7 +546,10 @@ static void progress_can_say_no_before_the_first_ray(void **state)
     cuvette_engine_destroy(engine);
 }
 
-typedef struct other_thread { cuvette_engine *engine; atomic_bool begun; } other_thread;
+typedef struct other_thread {
+    cuvette_engine *engine;
+    atomic_bool begun;
+} other_thread;
 
 static void *cancel_soon(void *context)
 {
@@ -589,7 +630,10 @@ static void what_is_in_use_is_busy(void **state)
     free(a);
 }
 
-typedef struct worker { int depth; uint64_t hash; } worker;
+typedef struct worker {
+    int depth;
+    uint64_t hash;
+} worker;
 
 static void *render_ten(void *context)
 {

@@ -13,8 +13,8 @@
 #include "cuvette.h"
 #include "engine/engine_private.h"
 
-/* Motions as cuvette.h promises them: what is rendered is the scene at its moment, what hands do is what a script says, what is picked is what rays of a
- * query meet. How bodies move is the business of tests/test_softbody.c. */
+/* Motions as cuvette.h promises them: what is rendered is the scene at its moment, what hands do is what a script says,
+ * what is picked is what rays of a query meet. How bodies move is the business of tests/test_softbody.c. */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {
@@ -35,7 +35,8 @@ static const char toys[] =
     "solids:\n"
     "  ground: {shape: plane, diffuse: 0.7, checker: 0.5}\n"
     "  jelly: {shape: mesh, mesh: toy, transparency: 0.9, ior: 1.3, priority: 1}\n"
-    "  far: {shape: mesh, mesh: drop, diffuse: 0.8, position: [1.5, 0.5, 2.5], rotation: [20, 130, -40], scale: [0.5, 1.5, 0.8], priority: 2,\n"
+    "  far: {shape: mesh, mesh: drop, diffuse: 0.8, position: [1.5, 0.5, 2.5], rotation: [20, 130, -40], scale: [0.5, "
+    "1.5, 0.8], priority: 2,\n"
     "        copies: [2, 1, 2], spacing: [1.2, 0, 1.7]}\n"
     "  near: {shape: mesh, mesh: drop, diffuse: 0.8, position: [1.5, 0.5, -1.5], priority: 3}\n"
     "  needle: {shape: mesh, mesh: pin, diffuse: 0.8, scale: [0.2, 0.2, 0.2], position: [0, 0.2, -1.5], priority: 4}\n";
@@ -204,7 +205,8 @@ static void hands_do_what_a_script_says_to_the_bit(void **state)
     unlink(path);
 }
 
-/* What the camera sees of a solid that stands elsewhere, scaled unequally, turned and copied, is what a pick finds there. */
+/* What the camera sees of a solid that stands elsewhere, scaled unequally, turned and copied, is what a pick finds
+ * there. */
 static void what_is_picked_is_what_rays_meet(void **state)
 {
     (void)state;
@@ -272,7 +274,8 @@ static void a_miss_takes_hold_of_nothing(void **state)
     cuvette_scene *s = scene_of(toys);
     cuvette_motion *m = begin(s);
     double where[3] = {1, 2, 3};
-    const cuvette_ray past = ray_of(0, 5, -6, 0, 0, 1), from_inside = ray_of(-0.6, 1.1, 0, 0, 0, 1), away = ray_of(-0.6, 1.1, -6, 0, 0, -1);
+    const cuvette_ray past = ray_of(0, 5, -6, 0, 0, 1), from_inside = ray_of(-0.6, 1.1, 0, 0, 0, 1),
+                      away = ray_of(-0.6, 1.1, -6, 0, 0, -1);
     assert_true(isinf(distance_to(m, "toy", past, where)) && where[0] == 1 && where[1] == 2 && where[2] == 3);
     assert_true(isinf(distance_to(m, "toy", from_inside, where)));
     assert_true(isinf(distance_to(m, "jelly", away, where)));
@@ -282,17 +285,20 @@ static void a_miss_takes_hold_of_nothing(void **state)
     cuvette_scene_destroy(s);
 }
 
-/* A body that is held whole goes where the hand goes: by R^T by / scale in its own frame. Half of a turn about y sends x, y, z to -x, y, -z. */
+/* A body that is held whole goes where the hand goes: by R^T by / scale in its own frame. Half of a turn about y sends
+ * x, y, z to -x, y, -z. */
 static void what_is_held_goes_with_the_hand(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
-    cuvette_scene *s = scene_of("meshes: {toy: {generate: slime, level: 3, gravity: [0, 0, 0], ground: off}}\n"
-                                "solids: {body: {shape: mesh, mesh: toy, position: [10, 2, 3], rotation: [0, 180, 0], scale: [2, 4, 2]}}\n");
+    cuvette_scene *s = scene_of(
+        "meshes: {toy: {generate: slime, level: 3, gravity: [0, 0, 0], ground: off}}\n"
+        "solids: {body: {shape: mesh, mesh: toy, position: [10, 2, 3], rotation: [0, 180, 0], scale: [2, 4, 2]}}\n");
     cuvette_motion *m = begin(s);
     const cuvette_slime before = state_of(m, "body");
     assert_true(before.masses == 642 && before.held == 0 && before.time_s == 0.0 && before.steps == 0);
-    assert_true(fabs(before.volume / (4.0 / 3.0 * 3.14159265358979) - 1.0) < 0.01 && fabs(before.volume / before.volume_at_rest - 1.0) < 1e-12);
+    assert_true(fabs(before.volume / (4.0 / 3.0 * 3.14159265358979) - 1.0) < 0.01 &&
+                fabs(before.volume / before.volume_at_rest - 1.0) < 1e-12);
     assert_true(fabs(before.high - before.low - 2.0) < 0.02 && before.kinetic == 0.0);
     double where[3];
     assert_true(fabs(distance_to(m, "body", ray_of(10, 2 + 4 * before.center[1], -7, 0, 0, 1), where) - 8.0) < 0.05);
@@ -310,7 +316,7 @@ static void what_is_held_goes_with_the_hand(void **state)
     assert_true(fabs(half.center[1] - before.center[1] - 0.125) < 1e-9);
     assert_true(fabs(half.center[2] - before.center[2] - 1.5) < 1e-9);
     assert_true(fabs(half.speed_max - sqrt(0.25 + 0.125 * 0.125 + 2.25) / 0.25) < 1e-6); /* evenly, all the way */
-    advance(m, 0.5); /* and stays */
+    advance(m, 0.5);                                                                     /* and stays */
     assert_true(state_of(m, "body").speed_max < 1e-9);
     assert_true(fabs(state_of(m, "body").center[2] - half.center[2]) < 1e-9);
     cuvette_motion_destroy(m);
@@ -347,7 +353,8 @@ static void what_is_missing_or_wrong_is_said(void **state)
     cuvette_diagnostic why;
     cuvette_scene *s = scene_of(toys), *still = scene_of("meshes: {pin: {generate: icosphere}}\n");
     cuvette_motion *m = (cuvette_motion *)&why;
-    const cuvette_ray ray = ray_of(-0.6, 1.1, -6, 0, 0, 1), nowhere = ray_of(0, 0, 0, 0, 0, 0), beyond = ray_of(2e6, 0, 0, 1, 0, 0);
+    const cuvette_ray ray = ray_of(-0.6, 1.1, -6, 0, 0, 1), nowhere = ray_of(0, 0, 0, 0, 0, 0),
+                      beyond = ray_of(2e6, 0, 0, 1, 0, 0);
     double distance;
     int hand;
     cuvette_slime body = {.size = 0};
@@ -474,7 +481,11 @@ static void a_motion_ends_when_a_slime_blows_up(void **state)
     cuvette_scene_destroy(s);
 }
 
-typedef struct watcher { cuvette_scene *s; cuvette_motion *m; int calls; } watcher;
+typedef struct watcher {
+    cuvette_scene *s;
+    cuvette_motion *m;
+    int calls;
+} watcher;
 
 static bool try_while_rendering(void *context, double share)
 {

@@ -37,9 +37,9 @@ static int make_files(void **state)
                  "newmtl half\nKd 0 0 0\nd 0.5\nnewmtl quarter\nKd 0 0 0\nTr 0.25\n");
     put("sheet.obj",
         "mtllib m.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl left\nf 1 4 3\nusemtl right\nf 1 3 2\n");
-    put("cube.obj",
-        "mtllib m.mtl\nv -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
-        "usemtl half\nf 1 4 3 2\nusemtl quarter\nf 5 6 7 8\nusemtl right\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    put("cube.obj", "mtllib m.mtl\nv -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+                    "usemtl half\nf 1 4 3 2\nusemtl quarter\nf 5 6 7 8\nusemtl right\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 "
+                    "7\nf 4 1 5 8\n");
     return 0;
 }
 
@@ -59,14 +59,13 @@ static int remove_files(void **state)
 static scene *view(const char *more, const char *assignments)
 {
     char text[2048];
-    snprintf(
-        text, sizeof text,
-        "render: {width: 1, height: 1, depth: 8, paths: 8, transmission: simple}\ncamera: {position: [-0.4, 0.5, "
-        "-4], yaw_deg: 0, fov_deg: 0.01}\n"
-        "background: {color: [0.5, 0.5, 0.5], ambient: [0, 0, 0]}\n"
-        "meshes: {sheet: {file: %s/sheet.obj}, cube: {file: %s/cube.obj}}\n%s"
-        "  wall: {shape: box, emission: 2, size: [40, 40, 1], position: [0, 0, 20]}\n",
-        folder, folder, more);
+    snprintf(text, sizeof text,
+             "render: {width: 1, height: 1, depth: 8, paths: 8, transmission: simple}\ncamera: {position: [-0.4, 0.5, "
+             "-4], yaw_deg: 0, fov_deg: 0.01}\n"
+             "background: {color: [0.5, 0.5, 0.5], ambient: [0, 0, 0]}\n"
+             "meshes: {sheet: {file: %s/sheet.obj}, cube: {file: %s/cube.obj}}\n%s"
+             "  wall: {shape: box, emission: 2, size: [40, 40, 1], position: [0, 0, 20]}\n",
+             folder, folder, more);
     scene *s = scene_from(text);
     diagnostic why = {0};
     set_all(s, assignments);

@@ -21,9 +21,11 @@ static fan follow(const scene *s, const fan_rule *rule)
     return f;
 }
 
-static const char ball_text[] = "render: {depth: 6}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, radius: 1}}\n";
+static const char ball_text[] =
+    "render: {depth: 6}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, radius: 1}}\n";
 
-/* A ball lens: f = n R / (2 (n - 1)) from its centre (Hecht 6.2, thick lens with R_1 = -R_2 = R and d = 2 R); 1.5 for glass. */
+/* A ball lens: f = n R / (2 (n - 1)) from its centre (Hecht 6.2, thick lens with R_1 = -R_2 = R and d = 2 R); 1.5 for
+ * glass. */
 static void a_thin_pencil_meets_in_a_balls_focus(void **state)
 {
     (void)state;
@@ -58,7 +60,8 @@ static void a_wide_pencil_is_turned_as_snell_says(void **state)
         const fan_ray *ray = &f.ray[k];
         const double i = asin(fabs(ray->offset)), t = asin(fabs(ray->offset) / 1.5);
         assert_true(fabs(ray->deviation_deg - 2.0 * (i - t) * 180.0 / 3.14159265358979323846) < 1e-9);
-        /* Spherical aberration: the exit ray, at distance R sin i from the centre, meets the axis at R sin i / sin(2 (i - t)). */
+        /* Spherical aberration: the exit ray, at distance R sin i from the centre, meets the axis at R sin i / sin(2 (i
+         * - t)). */
         if (k != 9)
             assert_true(fabs(ray->axis_at - 5.0 - sin(i) / sin(2.0 * (i - t))) < 1e-9);
     }
@@ -86,11 +89,13 @@ static void light_from_the_focus_leaves_parallel(void **state)
     scene_destroy(s);
 }
 
-/* A plane slab shows a point nearer: by d (1 - 1/n) for a slab of thickness d (Hecht 4.4, paraxial). Its image is virtual. */
+/* A plane slab shows a point nearer: by d (1 - 1/n) for a slab of thickness d (Hecht 4.4, paraxial). Its image is
+ * virtual. */
 static void a_slab_shifts_a_point(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {depth: 6}\nsolids: {slab: {shape: box, transparency: 1, ior: 1.5, size: [3, 50, 50]}}\n");
+    scene *s =
+        scene_from("render: {depth: 6}\nsolids: {slab: {shape: box, transparency: 1, ior: 1.5, size: [3, 50, 50]}}\n");
     const fan_rule rule = {.from = {-5, 1, 0}, .to = {5, 1, 0}, .rays = 7, .spreads = true, .spread_deg = 0.1};
     fan f = follow(s, &rule);
     assert_true(f.has_focus && f.is_virtual && fabs(f.focus.x - (-5.0 + 1.0)) < 1e-5);
@@ -100,8 +105,8 @@ static void a_slab_shifts_a_point(void **state)
     scene_destroy(s);
 }
 
-/* Outer rays that miss the ball are not of its focus. A ray that meets the axis at a = sin i / sin d, turned by d = 2 (i - t), is
- * |x - a| sin d away from x there; the sum of the squares is least at sum a sin^2 d / sum sin^2 d. */
+/* Outer rays that miss the ball are not of its focus. A ray that meets the axis at a = sin i / sin d, turned by d = 2
+ * (i - t), is |x - a| sin d away from x there; the sum of the squares is least at sum a sin^2 d / sum sin^2 d. */
 static void the_focus_is_that_of_the_rays_that_were_bent(void **state)
 {
     (void)state;
@@ -110,7 +115,8 @@ static void the_focus_is_that_of_the_rays_that_were_bent(void **state)
     fan f = follow(s, &rule);
     double weights = 0.0, moment = 0.0, squares = 0.0;
     for (int k = 1; k <= 2; k++) { /* of each side; the middle one weighs nothing */
-        const double i = asin(0.45 * k), d = 2.0 * (i - asin(0.3 * k)), weight = 2.0 * sin(d) * sin(d), at = sin(i) / sin(d);
+        const double i = asin(0.45 * k), d = 2.0 * (i - asin(0.3 * k)), weight = 2.0 * sin(d) * sin(d),
+                     at = sin(i) / sin(d);
         weights += weight, moment += weight * at, squares += weight * at * at;
     }
     const double x = moment / weights, rms = sqrt((squares - x * moment) / 5.0);
@@ -119,8 +125,9 @@ static void the_focus_is_that_of_the_rays_that_were_bent(void **state)
     scene_destroy(s);
 }
 
-/* i = asin 0.9: the two rays meet at 0.9 / sin(2 (i - t)) = 1.104 on the axis, 0.204 behind the ball. A stone beside the axis stands in
- * the way of the second from 0.177 to 0.061 before that point, and in the first one's 0.020 behind it. */
+/* i = asin 0.9: the two rays meet at 0.9 / sin(2 (i - t)) = 1.104 on the axis, 0.204 behind the ball. A stone beside
+ * the axis stands in the way of the second from 0.177 to 0.061 before that point, and in the first one's 0.020 behind
+ * it. */
 static void rays_cross_where_both_get_to(void **state)
 {
     (void)state;
@@ -131,7 +138,8 @@ static void rays_cross_where_both_get_to(void **state)
     const fan_rule rule = {.from = {-5, 0, 0}, .to = {5, 0, 0}, .rays = 2, .width = 1.8};
     fan f = follow(s, &rule);
     const double i = asin(0.9), at = 0.9 / sin(2.0 * (i - asin(0.6)));
-    assert_true(f.ray[0].leaves && fabs(f.ray[0].reach - 0.204 - 0.020) < 1e-3 && fabs(f.ray[1].reach - 0.204 + 0.177) < 1e-3);
+    assert_true(f.ray[0].leaves && fabs(f.ray[0].reach - 0.204 - 0.020) < 1e-3 &&
+                fabs(f.ray[1].reach - 0.204 + 0.177) < 1e-3);
     assert_true(f.ray[0].meets_axis && fabs(f.ray[0].axis_at - 5.0 - at) < 1e-12 && !f.ray[1].meets_axis);
     assert_int_equal(f.crossing_count, 0);
     fan_release(&f);

@@ -8,9 +8,10 @@
 #include "base/counters.h"
 #include "probe_fixture.h"
 
-/* The white furnace: under a sky of 1, with nothing opaque and nothing that absorbs, every ray brings back 1, whatever the media do to
- * its way, because each interface hands on R + T = 1 (pbrt-v4's own furnace tests; Veach, Robust Monte Carlo Methods for Light
- * Transport Simulation, 1997, 5.3.1: energy is conserved). What the depth limit cuts off is missing, to the last bit of it. */
+/* The white furnace: under a sky of 1, with nothing opaque and nothing that absorbs, every ray brings back 1, whatever
+ * the media do to its way, because each interface hands on R + T = 1 (pbrt-v4's own furnace tests; Veach, Robust Monte
+ * Carlo Methods for Light Transport Simulation, 1997, 5.3.1: energy is conserved). What the depth limit cuts off is
+ * missing, to the last bit of it. */
 
 /* Seven media, one in another and askew; the vessel's hollow and the plane's upper side are open to the sky. */
 static const char furnace[] =
@@ -19,14 +20,19 @@ static const char furnace[] =
     "render: {width: 16, height: 12, beyond: black}\n"
     "solids:\n"
     "  ground: {shape: plane, transparency: 1, ior: 1.3, position: [0, 0.1, 0], rotation: [4, 0, -7]}\n"
-    "  vessel: {shape: cup, transparency: 1, ior: 1.5, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1, priority: 3}\n"
-    "  liquid: {shape: cylinder, transparency: 1, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.4, priority: 2}\n"
-    "  block: {shape: box, transparency: 1, ior: 1.7, position: [0.3, 0.9, 0.1], rotation: [20, 30, 10], size: [0.8, 1.1, 0.7], priority: 4}\n"
-    "  core: {shape: cylinder, transparency: 1, ior: 1.2, position: [0.3, 0.4, 0.1], rotation: [0, 0, 15], radius: 0.3, height: 0.9, m: 1.4,\n"
+    "  vessel: {shape: cup, transparency: 1, ior: 1.5, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1, priority: "
+    "3}\n"
+    "  liquid: {shape: cylinder, transparency: 1, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.4, "
+    "priority: 2}\n"
+    "  block: {shape: box, transparency: 1, ior: 1.7, position: [0.3, 0.9, 0.1], rotation: [20, 30, 10], size: [0.8, "
+    "1.1, 0.7], priority: 4}\n"
+    "  core: {shape: cylinder, transparency: 1, ior: 1.2, position: [0.3, 0.4, 0.1], rotation: [0, 0, 15], radius: "
+    "0.3, height: 0.9, m: 1.4,\n"
     "    priority: 5}\n"
     "  bead: {shape: sphere, transparency: 1, ior: 2.42, position: [0.2, 0.9, 0], radius: 0.2, priority: 6}\n"
     "  bubble: {shape: sphere, transparency: 1, ior: 1, position: [-0.4, 0.8, -0.5], radius: 0.45, priority: 3}\n"
-    "  slab: {shape: box, transparency: 1, ior: 1.45, position: [-0.2, 1.3, 0.4], rotation: [0, 45, 80], size: [1.5, 0.3, 1], priority: 1}\n";
+    "  slab: {shape: box, transparency: 1, ior: 1.45, position: [-0.2, 1.3, 0.4], rotation: [0, 45, 80], size: [1.5, "
+    "0.3, 1], priority: 1}\n";
 
 enum { DEEPEST = 10 };
 
@@ -49,7 +55,8 @@ static void check_picture(const char *assignments, int depth)
             for (size_t i = 0; i < tree->count; i++)
                 cuts += tree->node[i].end == RAY_END_CUT_DEPTH;
             for (int c = 0; c < 3; c++) {
-                const double cut = tree_cut(tree, c), seen = film_value(black->picture, x, y, c), whole = film_value(sky->picture, x, y, c);
+                const double cut = tree_cut(tree, c), seen = film_value(black->picture, x, y, c),
+                             whole = film_value(sky->picture, x, y, c);
                 all_cut[c] += cut;
                 worst = fmax(worst, fmax(fabs(seen + cut - 1.0), fabs(tree->radiance[c] + cut - 1.0)));
                 worst = fmax(worst, fmax(fabs(whole - 1.0), fabs(whole - seen - cut)));
@@ -88,17 +95,20 @@ static void constant_weights_lose_nothing(void **state)
     static const char *const solids[] = {"ground", "vessel", "liquid", "block", "core", "bead", "bubble", "slab"};
     char shares[512] = "render.weights=constant";
     for (size_t k = 0; k < COUNT(solids); k++)
-        snprintf(shares + strlen(shares), sizeof shares - strlen(shares), " %s.reflectivity=0.1 %s.transparency=0.9", solids[k], solids[k]);
+        snprintf(shares + strlen(shares), sizeof shares - strlen(shares), " %s.reflectivity=0.1 %s.transparency=0.9",
+                 solids[k], solids[k]);
     for (int depth = 0; depth <= DEEPEST; depth += 2)
         check_picture(shares, depth);
 }
 
-/* From within each medium, and in surroundings that are not a vacuum: the throughput is one of power, so no n^2 comes in. */
+/* From within each medium, and in surroundings that are not a vacuum: the throughput is one of power, so no n^2 comes
+ * in. */
 static void a_camera_in_any_medium_sees_the_furnace(void **state)
 {
     (void)state;
-    static const char *const places[] = {"camera.position=0,1,0.7",     "camera.position=0.2,0.9,0.01", "camera.position=0.95,1,0",
-                                         "camera.position=-0.4,0.8,-0.5", "camera.position=0.1,-2,0.1",   "camera.position=0,1.8,0"};
+    static const char *const places[] = {"camera.position=0,1,0.7",    "camera.position=0.2,0.9,0.01",
+                                         "camera.position=0.95,1,0",   "camera.position=-0.4,0.8,-0.5",
+                                         "camera.position=0.1,-2,0.1", "camera.position=0,1.8,0"};
     for (size_t k = 0; k < COUNT(places); k++) {
         char all[128];
         snprintf(all, sizeof all, "%s camera.target=0.31,0.7,0.13%s", places[k], k % 2 ? " background.ior=1.38" : "");
@@ -123,10 +133,8 @@ static void what_is_too_faint_is_accounted_for(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fresnel_weights_lose_nothing),
-        cmocka_unit_test(polarised_light_loses_nothing),
-        cmocka_unit_test(constant_weights_lose_nothing),
-        cmocka_unit_test(a_camera_in_any_medium_sees_the_furnace),
+        cmocka_unit_test(fresnel_weights_lose_nothing),       cmocka_unit_test(polarised_light_loses_nothing),
+        cmocka_unit_test(constant_weights_lose_nothing),      cmocka_unit_test(a_camera_in_any_medium_sees_the_furnace),
         cmocka_unit_test(what_is_too_faint_is_accounted_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,7 +13,8 @@
 
 static hand_key grab(double time_s)
 {
-    return (hand_key){.time_s = time_s, .act = HAND_GRAB, .origin = {0.0, 1.0, -6.0}, .direction = {0.0, 0.0, 1.0}, .reach = 0.3};
+    return (hand_key){
+        .time_s = time_s, .act = HAND_GRAB, .origin = {0.0, 1.0, -6.0}, .direction = {0.0, 0.0, 1.0}, .reach = 0.3};
 }
 
 static hand_key move(double time_s, double x)

@@ -17,8 +17,8 @@
 static bool pixel_is(const image *picture, int x, int y, int red, int green, int blue)
 {
     const float *pixel = picture->pixel + ((size_t)y * (size_t)picture->width + (size_t)x) * 3;
-    return (int)codec_quantize(pixel[0], 255) == red && (int)codec_quantize(pixel[1], 255) == green
-           && (int)codec_quantize(pixel[2], 255) == blue;
+    return (int)codec_quantize(pixel[0], 255) == red && (int)codec_quantize(pixel[1], 255) == green &&
+           (int)codec_quantize(pixel[2], 255) == blue;
 }
 
 /* Pixels of the ink of text in a rectangle. */
@@ -56,10 +56,20 @@ static double *make_values(int width, int height, double largest)
 static void viridis_has_its_published_colors(void **state)
 {
     (void)state;
-    static const struct { double t; unsigned char rgb[3]; } cases[] = { /* matplotlib's table, rounded */
-        {0.0, {68, 1, 84}},           {23 / 255.0, {72, 33, 115}},  {51 / 255.0, {65, 68, 135}},
-        {102 / 255.0, {42, 120, 142}}, {128 / 255.0, {33, 145, 140}}, {153 / 255.0, {34, 168, 132}},
-        {204 / 255.0, {122, 209, 81}}, {252 / 255.0, {246, 230, 32}}, {1.0, {253, 231, 37}},
+    static const struct {
+        double t;
+        unsigned char rgb[3];
+    } cases[] = {
+        /* matplotlib's table, rounded */
+        {0.0, {68, 1, 84}},
+        {23 / 255.0, {72, 33, 115}},
+        {51 / 255.0, {65, 68, 135}},
+        {102 / 255.0, {42, 120, 142}},
+        {128 / 255.0, {33, 145, 140}},
+        {153 / 255.0, {34, 168, 132}},
+        {204 / 255.0, {122, 209, 81}},
+        {252 / 255.0, {246, 230, 32}},
+        {1.0, {253, 231, 37}},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         unsigned char rgb[3];
@@ -93,8 +103,8 @@ static void more_is_brighter(void **state)
     for (int i = 0; i <= 255; i++) {
         unsigned char rgb[3];
         heatmap_color(i / 255.0, rgb);
-        double luminance = 0.2126 * srgb_decode(rgb[0] / 255.0) + 0.7152 * srgb_decode(rgb[1] / 255.0)
-                           + 0.0722 * srgb_decode(rgb[2] / 255.0);
+        double luminance = 0.2126 * srgb_decode(rgb[0] / 255.0) + 0.7152 * srgb_decode(rgb[1] / 255.0) +
+                           0.0722 * srgb_decode(rgb[2] / 255.0);
         assert_true(luminance > before - 1e-3);
         before = luminance;
     }
@@ -230,7 +240,8 @@ static void whole_values_have_whole_numbers_at_the_scale(void **state)
     static const struct {
         double largest;
         const char *shown, *hidden;
-    } cases[] = {{118, "30", "29.5"}, {118, "118", "88.5"}, {3, "2", "1.5"}, {1, "1", "0.5"}, {50000, "12.5k", "12500"}};
+    } cases[] = {
+        {118, "30", "29.5"}, {118, "118", "88.5"}, {3, "2", "1.5"}, {1, "1", "0.5"}, {50000, "12.5k", "12500"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         double values[300];
         for (int x = 0; x < 300; x++) {

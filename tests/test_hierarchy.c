@@ -13,7 +13,8 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 enum { BATCH = 128 };
 
-static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2, &hierarchy_kernels_avx512};
+static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2,
+                                                            &hierarchy_kernels_avx512};
 static const hierarchy_kind own_kinds[] = {HIERARCHY_NONE, HIERARCHY_SPHERE, HIERARCHY_OCTANT, HIERARCHY_BVH};
 
 /* Work is cut where the program was built to be looked at, not to run. */
@@ -36,7 +37,11 @@ static void same_hit(const mesh_hit *a, const mesh_hit *b)
 }
 
 /* All hits of a ray in a form that does not depend on their order. */
-typedef struct gathered { uint64_t sum; long count; mesh_hit nearest; } gathered;
+typedef struct gathered {
+    uint64_t sum;
+    long count;
+    mesh_hit nearest;
+} gathered;
 
 static void gather(void *context, const mesh_hit *hit)
 {
@@ -45,7 +50,8 @@ static void gather(void *context, const mesh_hit *hit)
     memcpy(&bits, &hit->t, sizeof bits);
     g->sum += (bits ^ (uint64_t)hit->triangle << 32) * 0x9e3779b97f4a7c15u;
     g->count++;
-    if (g->nearest.triangle == TRIANGLE_NONE || hit->t < g->nearest.t || (hit->t == g->nearest.t && hit->triangle < g->nearest.triangle))
+    if (g->nearest.triangle == TRIANGLE_NONE || hit->t < g->nearest.t ||
+        (hit->t == g->nearest.t && hit->triangle < g->nearest.triangle))
         g->nearest = *hit;
 }
 
@@ -99,14 +105,15 @@ static void every_hierarchy_gives_the_same_hits(void **state)
         one_scene(&seed, 5000);
 }
 
-/* Rays as a camera, a lamp or the sun sends them: they run one way, from one point or side by side, to corners, edges and anywhere. Random ones
- * are too different to go down together. */
+/* Rays as a camera, a lamp or the sun sends them: they run one way, from one point or side by side, to corners, edges
+ * and anywhere. Random ones are too different to go down together. */
 static int rays_alike(const mesh *m, uint64_t *seed, mesh_ray *r)
 {
     const int count = 1 + random_below(seed, BATCH), how = random_below(seed, 3);
     const double reach = 1e-300 + vec3_length(vec3_sub(m->bounds.high, m->bounds.low));
     const vec3 middle = vec3_scale(vec3_add(m->bounds.low, m->bounds.high), 0.5);
-    const vec3 along = random_below(seed, 4) ? random_direction(seed) : vec3_make(0.0, random_below(seed, 2) ? 1.0 : -1.0, 0.0);
+    const vec3 along =
+        random_below(seed, 4) ? random_direction(seed) : vec3_make(0.0, random_below(seed, 2) ? 1.0 : -1.0, 0.0);
     const vec3 eye = vec3_sub(middle, vec3_scale(along, random_real(seed, 0.1, 4.0) * reach));
     for (int i = 0; i < count; i++) {
         const vec3 target = random_target(m, seed);
@@ -187,8 +194,13 @@ static void no_ray_slips_out_of(mesh *m, int rays)
         bool hit[BATCH];
         for (int i = 0; i < BATCH; i++) {
             const vec3 from = random_point(&seed, 0.3);
-            r[i] = (mesh_ray){from, random_below(&seed, 4) ? vec3_sub(random_target(m, &seed), from) : random_direction(&seed), 0.0, (double)INFINITY,
-                              TRIANGLE_NONE, FACING_BACK};
+            r[i] =
+                (mesh_ray){from,
+                           random_below(&seed, 4) ? vec3_sub(random_target(m, &seed), from) : random_direction(&seed),
+                           0.0,
+                           (double)INFINITY,
+                           TRIANGLE_NONE,
+                           FACING_BACK};
         }
         kernels[isa_best()]->any_batch(h, r, BATCH, hit);
         for (int i = 0; i < BATCH; i++)
@@ -225,10 +237,11 @@ static void no_ray_slips_through_a_closed_mesh(void **state)
     no_ray_slips_out_of(bumpy_sphere(4, 0.1, false), effort(3000000));
 }
 
-/* A triangle whose hits are known: in the plane z = 0, its front towards +z; from (0.25, 0.5, 2) downwards it is met at t = 2 with
- * weights 0.25 and 0.5 of the second and third corner. */
+/* A triangle whose hits are known: in the plane z = 0, its front towards +z; from (0.25, 0.5, 2) downwards it is met at
+ * t = 2 with weights 0.25 and 0.5 of the second and third corner. */
 static const vec3 known_corners[3] = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
-static const mesh_ray known_ray = {{0.25, 0.5, 2.0}, {0.0, 0.0, -1.0}, 0.0, (double)INFINITY, TRIANGLE_NONE, FACING_ANY};
+static const mesh_ray known_ray = {{0.25, 0.5, 2.0}, {0.0, 0.0, -1.0}, 0.0,
+                                   (double)INFINITY, TRIANGLE_NONE,    FACING_ANY};
 
 static void with_known_triangle(void (*check)(const hierarchy *h, const hierarchy_kernels *kernel))
 {
@@ -333,9 +346,19 @@ static void a_triangle_can_be_skipped_and_a_side_be_chosen(void **state)
 
 static void check_edges(const hierarchy *h, const hierarchy_kernels *kernel)
 {
-    static const struct { double x, y; bool in; } places[] = {{0.0, 0.0, true}, {1.0, 0.0, true}, {0.0, 1.0, true}, {0.5, 0.0, true}, {0.0, 0.5, true},
-        {0.5, 0.5, true},
-        {-1e-16, 0.5, false}, {0.5, -1e-16, false}, {0.5, 0.5000000000000001, false}, {1.0000000000000002, 0.0, false}};
+    static const struct {
+        double x, y;
+        bool in;
+    } places[] = {{0.0, 0.0, true},
+                  {1.0, 0.0, true},
+                  {0.0, 1.0, true},
+                  {0.5, 0.0, true},
+                  {0.0, 0.5, true},
+                  {0.5, 0.5, true},
+                  {-1e-16, 0.5, false},
+                  {0.5, -1e-16, false},
+                  {0.5, 0.5000000000000001, false},
+                  {1.0000000000000002, 0.0, false}};
     for (size_t i = 0; i < COUNT(places); i++) {
         mesh_ray r = known_ray;
         r.origin.x = places[i].x;

@@ -14,13 +14,15 @@
 /* What a walk over a tree finds. */
 typedef struct walk {
     const fixture *f;
-    uint8_t *met;  /* how many leaves each triangle is in */
+    uint8_t *met; /* how many leaves each triangle is in */
     size_t nodes, leaves, blocks;
     int depth;
     double nodes_met, leaves_met, blocks_met; /* sums of areas */
 } walk;
 
-typedef struct box { double low[3], high[3]; } box;
+typedef struct box {
+    double low[3], high[3];
+} box;
 
 static double corner_of(const mesh *m, uint32_t triangle, int corner, int axis)
 {
@@ -103,7 +105,8 @@ static box walk_node(walk *w, uint32_t number, int depth, double area)
             continue;
         }
         double child_area = half_area(&own);
-        box b = n->child[i] & CHILD_LEAF ? walk_leaf(w, n->child[i], child_area) : walk_node(w, n->child[i], depth + 1, child_area);
+        box b = n->child[i] & CHILD_LEAF ? walk_leaf(w, n->child[i], child_area)
+                                         : walk_node(w, n->child[i], depth + 1, child_area);
         for (int axis = 0; axis < 3; axis++) {
             /* encloses, and the next float inwards would not */
             assert_true(own.low[axis] <= b.low[axis] && nextafterf(n->low[axis][i], INFINITY) > b.low[axis]);
@@ -205,7 +208,7 @@ static void triangles_in_one_place_are_halved(void **state)
         fixture_set(&f, i, vec3_make(0.25, 0.5, 1.0), vec3_make(1.0, 0.5, 2.0), vec3_make(0.0, -1.0, 3.0));
     fixture_build(&f, 2);
     walk w = walk_tree(&f, 0);
-    assert_true(w.depth <= 6);          /* 8^5 leaves of four would be enough */
+    assert_true(w.depth <= 6);           /* 8^5 leaves of four would be enough */
     assert_true(w.blocks <= 100000 / 2); /* and blocks are at least half full */
     fixture_free(&f);
 }
@@ -291,15 +294,17 @@ static void triangles_that_no_ray_hits_are_left_out_and_slivers_stay(void **stat
     fixture_free(&nothing_left);
 }
 
-/* A plane of 64 x 64 squares of two triangles each. Squares can be shared out among leaves without overlap: a line that meets
- * the plane then meets one leaf, and as many nodes as there are levels; nodes of eight over leaves of two squares need four. */
+/* A plane of 64 x 64 squares of two triangles each. Squares can be shared out among leaves without overlap: a line that
+ * meets the plane then meets one leaf, and as many nodes as there are levels; nodes of eight over leaves of two squares
+ * need four. */
 static void a_plane_is_shared_out_without_overlap(void **state)
 {
     (void)state;
     fixture f = fixture_make(2 * 64 * 64, true);
     for (size_t i = 0; i < 64 * 64; i++) {
         double x = (double)(i % 64), y = (double)(i / 64);
-        vec3 a = vec3_make(x, y, 0.0), b = vec3_make(x + 1.0, y, 0.0), c = vec3_make(x + 1.0, y + 1.0, 0.0), d = vec3_make(x, y + 1.0, 0.0);
+        vec3 a = vec3_make(x, y, 0.0), b = vec3_make(x + 1.0, y, 0.0), c = vec3_make(x + 1.0, y + 1.0, 0.0),
+             d = vec3_make(x, y + 1.0, 0.0);
         fixture_set(&f, 2 * i, a, b, c);
         fixture_set(&f, 2 * i + 1, a, c, d);
     }
@@ -313,9 +318,9 @@ static void a_plane_is_shared_out_without_overlap(void **state)
     fixture_free(&f);
 }
 
-/* A thousand small triangles far apart: leaves hold those that are near each other, so that few are met. A random line through
- * the cube meets its faces' boxes in proportion to area; 4 triangles in a cell of 1/250 of the cube have (1/250)^(2/3) of its area
- * at the least, in all 6.3 leaves. */
+/* A thousand small triangles far apart: leaves hold those that are near each other, so that few are met. A random line
+ * through the cube meets its faces' boxes in proportion to area; 4 triangles in a cell of 1/250 of the cube have
+ * (1/250)^(2/3) of its area at the least, in all 6.3 leaves. */
 static void neighbours_share_leaves(void **state)
 {
     (void)state;
@@ -326,7 +331,11 @@ static void neighbours_share_leaves(void **state)
     fixture_free(&f);
 }
 
-typedef struct tally { atomic_int calls[1000]; atomic_int bad_members; int size; } tally;
+typedef struct tally {
+    atomic_int calls[1000];
+    atomic_int bad_members;
+    int size;
+} tally;
 
 static void count_call(void *context, size_t index, int member)
 {

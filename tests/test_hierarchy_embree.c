@@ -42,7 +42,8 @@ static void embree_meets_the_sphere_where_it_is(void **state)
     uint64_t seed = 77;
     for (int i = 0; i < 2000; i++) {
         vec3 origin = vec3_scale(random_direction(&seed), 3.0), target = vec3_scale(random_direction(&seed), 0.9);
-        mesh_ray ray = {origin, vec3_normalize(vec3_sub(target, origin)), 0.0, (double)INFINITY, TRIANGLE_NONE, FACING_ANY};
+        mesh_ray ray = {origin,    vec3_normalize(vec3_sub(target, origin)), 0.0, (double)INFINITY, TRIANGLE_NONE,
+                        FACING_ANY};
         mesh_hit in, out, none;
         kernel->nearest(h, &ray, &in);
         assert_true(in.triangle != TRIANGLE_NONE && in.facing == FACING_FRONT);

@@ -26,7 +26,8 @@ static void cost_is_that_of_the_areas(void **state)
     cluster(corners, 0.0);
     cluster(corners + 12, 99.0);
     mesh *m = mesh_of_corners(corners, 4), *two = mesh_of_corners(corners, 8), *empty = mesh_of_corners(corners, 0);
-    hierarchy *h = built(m, HIERARCHY_BVH), *h2 = built(two, HIERARCHY_BVH), *none = built(m, HIERARCHY_NONE), *nothing = built(empty, HIERARCHY_BVH);
+    hierarchy *h = built(m, HIERARCHY_BVH), *h2 = built(two, HIERARCHY_BVH), *none = built(m, HIERARCHY_NONE),
+              *nothing = built(empty, HIERARCHY_BVH);
     assert_true(hierarchy_cost(h) == 2.0); /* the root, and one block in a box as large */
     /* Boxes 1 x 1 x 1, half of their surface 3, twice in one of 100 x 1 x 1, half of its surface 201. */
     assert_true(fabs(hierarchy_cost(h2) - (1.0 + 2.0 * 3.0 / 201.0)) < 1e-15);
@@ -142,7 +143,8 @@ static void a_mesh_keeps_what_followed_it(void **state)
     deform(m, rest, twist, &seed);
     moves = follow(m, 1e9);
     assert_true(moves.refitted == 1 && moves.rebuilt == 2);
-    assert_true(moves.growth == hierarchy_cost(kept(m, HIERARCHY_BVH)) / rebuilt); /* over that of the last build, not of the first */
+    assert_true(moves.growth ==
+                hierarchy_cost(kept(m, HIERARCHY_BVH)) / rebuilt); /* over that of the last build, not of the first */
     free(rest);
     mesh_release(m);
 }

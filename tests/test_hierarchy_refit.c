@@ -1,4 +1,5 @@
-/* Hierarchies of meshes that move: a refitted one gives to the bit the hits of one built anew and of no hierarchy at all. */
+/* Hierarchies of meshes that move: a refitted one gives to the bit the hits of one built anew and of no hierarchy at
+ * all. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,7 +11,8 @@
 #include "geometry/hierarchy_bvh.h"
 #include "refit_fixture.h"
 
-static void (*const refit_nodes[ISA_COUNT])(hierarchy *) = {hierarchy_refit_nodes_sse2, hierarchy_refit_nodes_avx2, hierarchy_refit_nodes_avx512};
+static void (*const refit_nodes[ISA_COUNT])(hierarchy *) = {hierarchy_refit_nodes_sse2, hierarchy_refit_nodes_avx2,
+                                                            hierarchy_refit_nodes_avx512};
 static deformation *const deformations[] = {squash, twist, scatter, collapse, far_away, tiny, on_floats};
 
 static void a_refitted_hierarchy_gives_the_hits_of_a_new_one(void **state)
@@ -43,16 +45,19 @@ static void same_boxes(const bvh_node *a, const bvh_node *b, size_t count)
         assert_memory_equal(a[i].child, b[i].child, sizeof a[i].child);
         for (int axis = 0; axis < 3; axis++)
             for (int slot = 0; slot < WIDTH; slot++) /* 0 may have either sign */
-                assert_true(a[i].low[axis][slot] == b[i].low[axis][slot] && a[i].high[axis][slot] == b[i].high[axis][slot]);
+                assert_true(a[i].low[axis][slot] == b[i].low[axis][slot] &&
+                            a[i].high[axis][slot] == b[i].high[axis][slot]);
     }
 }
 
-/* Boxes and blocks of a mesh that came back are those of the build to the bit, on every instruction set; in between they were others. */
+/* Boxes and blocks of a mesh that came back are those of the build to the bit, on every instruction set; in between
+ * they were others. */
 static void there_and_back(mesh *m, deformation *way, uint64_t *seed)
 {
     vec3 *rest = copy_of_vertices(m);
     hierarchy *h = built(m, HIERARCHY_BVH);
-    const size_t node_bytes = h->node_count * sizeof *h->nodes, block_bytes = h->block_count * (h->single ? sizeof(block_single) : sizeof(block_double));
+    const size_t node_bytes = h->node_count * sizeof *h->nodes,
+                 block_bytes = h->block_count * (h->single ? sizeof(block_single) : sizeof(block_double));
     bvh_node *nodes = aligned_alloc(64, node_bytes);
     void *blocks = malloc(block_bytes);
     assert_non_null(nodes);

@@ -1,4 +1,5 @@
-/* The lab's server: who may pass, what each refusal says, bounds on bodies, rates and slow clients. Its clients are plain sockets. */
+/* The lab's server: who may pass, what each refusal says, bounds on bodies, rates and slow clients. Its clients are
+ * plain sockets. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,7 +16,8 @@ static void hello(void *context, const http_request *q, http_reply *r)
     const char *word = http_query_value(q, "word");
     http_reply_header(r, "X-Word", "one\r\nX-Evil: two");
     http_reply_header(r, "X-Good", "three");
-    http_reply_json(r, 200, json_pack("{s:s, s:s, s:s}", "hello", context, "word", word ? word : "(none)", "path", http_path(q)));
+    http_reply_json(
+        r, 200, json_pack("{s:s, s:s, s:s}", "hello", context, "word", word ? word : "(none)", "path", http_path(q)));
 }
 
 static void echo(void *context, const http_request *q, http_reply *r)
@@ -32,7 +34,8 @@ static void part(void *context, const http_request *q, http_reply *r)
 {
     (void)context;
     assert_null(http_path_value(q, "nam"));
-    http_reply_json(r, 200, json_pack("{s:s, s:s}", "name", http_path_value(q, "name"), "member", http_path_value(q, "member")));
+    http_reply_json(
+        r, 200, json_pack("{s:s, s:s}", "name", http_path_value(q, "name"), "member", http_path_value(q, "member")));
 }
 
 static void number(void *context, const http_request *q, http_reply *r)
@@ -55,8 +58,12 @@ static void slow(void *context, const http_request *q, http_reply *r)
 }
 
 static const http_route routes[] = {
-    {"GET", "/hello", hello, (void *)"you"},     {"POST", "/echo", echo, NULL},       {"GET", "/of/{name}/all/{member}", part, NULL},
-    {"PUT", "/number", number, NULL},      {"DELETE", "/number", number, NULL}, {"GET", "/nothing", nothing, NULL},
+    {"GET", "/hello", hello, (void *)"you"},
+    {"POST", "/echo", echo, NULL},
+    {"GET", "/of/{name}/all/{member}", part, NULL},
+    {"PUT", "/number", number, NULL},
+    {"DELETE", "/number", number, NULL},
+    {"GET", "/nothing", nothing, NULL},
     {"GET", "/slow", slow, (void *)"sleeper"},
 };
 
@@ -85,7 +92,8 @@ static int tear_down(void **state)
 }
 
 /* Asks, checks the code and frees. */
-static void expect(const http_server *s, int code, const char *method, const char *target, const char *heads, const char *body)
+static void expect(const http_server *s, int code, const char *method, const char *target, const char *heads,
+                   const char *body)
 {
     char *reply = client_ask(s, method, target, heads, body);
     if (reply_code(reply) != code)
@@ -112,14 +120,21 @@ static void only_the_token_lets_in(void **state)
     wrong[31] = wrong[31] == '0' ? '1' : '0';
     expect_as(s, 401, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\n", port));
     expect_as(s, 401, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n", port, wrong));
-    expect_as(s, 401, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nAuthorization: Bearer %s0\r\n", port, http_token(s)));
-    expect_as(s, 401, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nAuthorization: Bearer %.31s\r\n", port, http_token(s)));
+    expect_as(s, 401, "GET", "/hello",
+              text_format("Host: 127.0.0.1:%d\r\nAuthorization: Bearer %s0\r\n", port, http_token(s)));
+    expect_as(s, 401, "GET", "/hello",
+              text_format("Host: 127.0.0.1:%d\r\nAuthorization: Bearer %.31s\r\n", port, http_token(s)));
     expect_as(s, 401, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nAuthorization: Bearer \r\n", port));
-    expect_as(s, 401, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nAuthorization: Basic %s\r\n", port, http_token(s)));
-    expect_as(s, 401, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nCookie: cuvette_%d=%s\r\n", port, port, wrong));
-    expect_as(s, 401, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nCookie: cuvette=%s\r\n", port, http_token(s)));
-    expect_as(s, 200, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nCookie: a=b; cuvette_%d=%s\r\n", port, port, http_token(s)));
-    expect_as(s, 200, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nAuthorization: bearer %s\r\n", port, http_token(s)));
+    expect_as(s, 401, "GET", "/hello",
+              text_format("Host: 127.0.0.1:%d\r\nAuthorization: Basic %s\r\n", port, http_token(s)));
+    expect_as(s, 401, "GET", "/hello",
+              text_format("Host: 127.0.0.1:%d\r\nCookie: cuvette_%d=%s\r\n", port, port, wrong));
+    expect_as(s, 401, "GET", "/hello",
+              text_format("Host: 127.0.0.1:%d\r\nCookie: cuvette=%s\r\n", port, http_token(s)));
+    expect_as(s, 200, "GET", "/hello",
+              text_format("Host: 127.0.0.1:%d\r\nCookie: a=b; cuvette_%d=%s\r\n", port, port, http_token(s)));
+    expect_as(s, 200, "GET", "/hello",
+              text_format("Host: 127.0.0.1:%d\r\nAuthorization: bearer %s\r\n", port, http_token(s)));
     char *target = text_format("/hello?token=%s", wrong);
     expect_as(s, 401, "GET", target, text_format("Host: 127.0.0.1:%d\r\n", port));
     free(target);
@@ -131,9 +146,11 @@ static void only_the_token_lets_in(void **state)
 static void the_first_address_gives_a_cookie(void **state)
 {
     const http_server *s = *state;
-    char *target = text_format("/hello?word=a%%20b&token=%s&x", http_token(s)), *heads = text_format("Host: localhost:%d\r\n", http_port(s));
+    char *target = text_format("/hello?word=a%%20b&token=%s&x", http_token(s)),
+         *heads = text_format("Host: localhost:%d\r\n", http_port(s));
     char *reply = client_ask_as(http_port(s), "GET", target, heads, NULL);
-    char *cookie = text_format("Set-Cookie: cuvette_%d=%s; Path=/; HttpOnly; SameSite=Strict", http_port(s), http_token(s));
+    char *cookie =
+        text_format("Set-Cookie: cuvette_%d=%s; Path=/; HttpOnly; SameSite=Strict", http_port(s), http_token(s));
     assert_int_equal(reply_code(reply), 303);
     assert_true(reply_has(reply, "Location: /hello?word=a%20b&x"));
     assert_true(reply_has(reply, cookie));
@@ -150,7 +167,8 @@ static void foreign_hosts_and_origins_are_refused(void **state)
 {
     const http_server *s = *state;
     const int port = http_port(s);
-    static const char *const hosts[] = {"evil.example", "127.0.0.1", "127.0.0.1.evil.example", "127.0.0.2", "localhost.", "0.0.0.0", "[::2]"};
+    static const char *const hosts[] = {
+        "evil.example", "127.0.0.1", "127.0.0.1.evil.example", "127.0.0.2", "localhost.", "0.0.0.0", "[::2]"};
     char token[64];
     snprintf(token, sizeof token, "Authorization: Bearer %s\r\n", http_token(s));
     for (size_t i = 0; i < sizeof hosts / sizeof *hosts; i++) {
@@ -163,7 +181,13 @@ static void foreign_hosts_and_origins_are_refused(void **state)
     expect_as(s, 400, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nHost: evil.example\r\n%s", port, token));
     expect_as(s, 200, "GET", "/hello", text_format("Host: LocalHost:%d\r\n%s", port, token));
     expect_as(s, 200, "GET", "/hello", text_format("Host: [::1]:%d\r\n%s", port, token));
-    static const char *const origins[] = {"null", "http://evil.example", "http://127.0.0.1", "", "https://127.0.0.1:%d", "http://localhost:%d", "http://127.0.0.1:%d0"};
+    static const char *const origins[] = {"null",
+                                          "http://evil.example",
+                                          "http://127.0.0.1",
+                                          "",
+                                          "https://127.0.0.1:%d",
+                                          "http://localhost:%d",
+                                          "http://127.0.0.1:%d0"};
     for (size_t i = 0; i < sizeof origins / sizeof *origins; i++) {
         char origin[64];
         snprintf(origin, sizeof origin, "%.*s", (int)strcspn(origins[i], "%"), origins[i]);
@@ -171,24 +195,51 @@ static void foreign_hosts_and_origins_are_refused(void **state)
             snprintf(origin + strlen(origin), 16, "%d%s", port, strchr(origins[i], '%') + 2);
         expect_as(s, 403, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nOrigin: %s\r\n%s", port, origin, token));
     }
-    expect_as(s, 200, "GET", "/hello", text_format("Host: 127.0.0.1:%d\r\nOrigin: http://127.0.0.1:%d\r\n%s", port, port, token));
+    expect_as(s, 200, "GET", "/hello",
+              text_format("Host: 127.0.0.1:%d\r\nOrigin: http://127.0.0.1:%d\r\n%s", port, port, token));
 }
 
 static void paths_do_not_climb(void **state)
 {
-    static const char *const bad[] = {"/../etc/passwd", "/%2e%2e/etc/passwd", "/.%2E/x", "/a/..", "/a/%2e", "/.", "//evil.example", "/a//b", "/%2f", "/..%2f..%2fetc",
-                                      "/a%00", "/%00", "/a%", "/a%2", "/a%zz", "/\\evil", "/%5cevil", "/a%0d%0aX:y", "/\x7f", "/\xc3\xa9", "*", "hello",
+    static const char *const bad[] = {"/../etc/passwd",
+                                      "/%2e%2e/etc/passwd",
+                                      "/.%2E/x",
+                                      "/a/..",
+                                      "/a/%2e",
+                                      "/.",
+                                      "//evil.example",
+                                      "/a//b",
+                                      "/%2f",
+                                      "/..%2f..%2fetc",
+                                      "/a%00",
+                                      "/%00",
+                                      "/a%",
+                                      "/a%2",
+                                      "/a%zz",
+                                      "/\\evil",
+                                      "/%5cevil",
+                                      "/a%0d%0aX:y",
+                                      "/\x7f",
+                                      "/\xc3\xa9",
+                                      "*",
+                                      "hello",
                                       "http://127.0.0.1/hello"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         expect(*state, 400, "GET", bad[i], "", NULL);
-    static const char *const absent[] = {"/nobody", "/hello/", "/hell", "/hello/x", "/...", "/%252e%252e/x", "/Hello", "/page/index.html", "/lab.css/", "/of/a/all/"};
+    static const char *const absent[] = {"/nobody",   "/hello/",       "/hell",  "/hello/x",
+                                         "/...",      "/%252e%252e/x", "/Hello", "/page/index.html",
+                                         "/lab.css/", "/of/a/all/"};
     for (size_t i = 0; i < sizeof absent / sizeof *absent; i++)
         expect(*state, 404, "GET", absent[i], "", NULL);
     char nul[256];
-    const int size = snprintf(nul, sizeof nul, "GET /hello%cx HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nConnection: close\r\nAuthorization: Bearer %s\r\n\r\n", 0,
-                              http_port(*state), http_token(*state));
+    const int size = snprintf(
+        nul, sizeof nul,
+        "GET /hello%cx HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nConnection: close\r\nAuthorization: Bearer %s\r\n\r\n", 0,
+        http_port(*state), http_token(*state));
     char *reply = client_raw(http_port(*state), nul, (size_t)size);
-    assert_true(reply_code(reply) == 400 || strstr(reply_body(reply), "\"path\":\"/hello\"")); /* libmicrohttpd ends the line there: so does all else */
+    assert_true(
+        reply_code(reply) == 400 ||
+        strstr(reply_body(reply), "\"path\":\"/hello\"")); /* libmicrohttpd ends the line there: so does all else */
     free(reply);
 }
 
@@ -224,15 +275,27 @@ static void wrong_methods_are_told_the_right_ones(void **state)
 
 static void every_reply_is_guarded(void **state)
 {
-    static const struct { const char *method, *target, *heads; } asked[] = {
-        {"GET", "/", ""}, {"GET", "/hello", ""}, {"GET", "/../x", ""}, {"GET", "/none", ""}, {"GET", "/hello", "Origin: null\r\n"},
-        {"GET", "/hello", "Host: x\r\n"}, {"PUT", "/number", ""}, {"POST", "/hello", ""}, {"GET", "/nothing", ""},
+    static const struct {
+        const char *method, *target, *heads;
+    } asked[] = {
+        {"GET", "/", ""},
+        {"GET", "/hello", ""},
+        {"GET", "/../x", ""},
+        {"GET", "/none", ""},
+        {"GET", "/hello", "Origin: null\r\n"},
+        {"GET", "/hello", "Host: x\r\n"},
+        {"PUT", "/number", ""},
+        {"POST", "/hello", ""},
+        {"GET", "/nothing", ""},
     };
-    static const char *const lines[] = {
-        ("Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
-         "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"),
-        "X-Content-Type-Options: nosniff", "Referrer-Policy: no-referrer", "Cache-Control: no-store", "Cross-Origin-Opener-Policy: same-origin",
-        "Cross-Origin-Resource-Policy: same-origin"};
+    static const char *const lines[] = {("Content-Security-Policy: default-src 'none'; script-src 'self'; style-src "
+                                         "'self'; img-src 'self' blob: data:; connect-src 'self'; "
+                                         "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"),
+                                        "X-Content-Type-Options: nosniff",
+                                        "Referrer-Policy: no-referrer",
+                                        "Cache-Control: no-store",
+                                        "Cross-Origin-Opener-Policy: same-origin",
+                                        "Cross-Origin-Resource-Policy: same-origin"};
     for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
         char *reply = client_ask(*state, asked[i].method, asked[i].target, asked[i].heads, NULL);
         for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
@@ -298,8 +361,10 @@ static char *ask_in_chunks(const http_server *s, size_t size)
         end = stpcpy(end + piece, "\r\n");
     }
     stpcpy(end, "0\r\n\r\n");
-    char *request = text_format("POST /echo HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\nConnection: close\r\n"
-                                "Content-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n%s", http_port(s), http_token(s), chunks);
+    char *request =
+        text_format("POST /echo HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\nConnection: close\r\n"
+                    "Content-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n%s",
+                    http_port(s), http_token(s), chunks);
     char *reply = client_raw(http_port(s), request, strlen(request));
     free(request);
     free(chunks);
@@ -327,7 +392,8 @@ static void bodies_are_bounded(void **state)
     assert_int_equal(reply_code(reply), 413);
     free(reply);
     free(ask_in_chunks(*state, 20 * BODY_MAX)); /* cut off, and the server lives */
-    reply = client_ask(*state, "POST", "/echo", "Content-Type: application/json\r\nContent-Length: 99999999999\r\n", NULL);
+    reply =
+        client_ask(*state, "POST", "/echo", "Content-Type: application/json\r\nContent-Length: 99999999999\r\n", NULL);
     assert_int_equal(reply_code(reply), 413);
     free(reply);
     expect(*state, 200, "POST", "/echo", "Content-Type: application/json\r\n", "");
@@ -336,7 +402,8 @@ static void bodies_are_bounded(void **state)
 static void a_thousand_requests_in_a_row(void **state)
 {
     const http_server *s = *state;
-    char *request = text_format("GET /hello HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n", http_port(s), http_token(s));
+    char *request = text_format("GET /hello HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n",
+                                http_port(s), http_token(s));
     const int fd = client_connect(http_port(s));
     for (int i = 0; i < 1000; i++) {
         char reply[4096] = "";
@@ -361,7 +428,8 @@ static void floods_are_slowed(void **state)
     http_server *s = start((http_settings){.requests_per_s = 1});
     int many = 0;
     for (int i = 0; i < 500 && !many; i++) { /* who has no token holds nobody up */
-        char *heads = text_format("Host: 127.0.0.1:%d\r\n", http_port(s)), *reply = client_ask_as(http_port(s), "GET", "/hello", heads, NULL);
+        char *heads = text_format("Host: 127.0.0.1:%d\r\n", http_port(s)),
+             *reply = client_ask_as(http_port(s), "GET", "/hello", heads, NULL);
         many += reply_code(reply) == 429;
         free(reply);
         free(heads);
@@ -382,7 +450,8 @@ static void slow_clients_are_cut_off(void **state)
 {
     (void)state;
     http_server *s = start((http_settings){.timeout_s = 1});
-    const char *const halves[] = {"", "GET", "GET /hello HTTP/1.1\r\nHost: 127", "GET /hello HTTP/1.1\r\n", "POST /echo HTTP/1.1\r\nContent-Length: 10\r\n\r\nabc"};
+    const char *const halves[] = {"", "GET", "GET /hello HTTP/1.1\r\nHost: 127", "GET /hello HTTP/1.1\r\n",
+                                  "POST /echo HTTP/1.1\r\nContent-Length: 10\r\n\r\nabc"};
     int fd[5];
     for (int i = 0; i < 5; i++)
         client_send(fd[i] = client_connect(http_port(s)), halves[i], strlen(halves[i]));
@@ -429,13 +498,20 @@ static void a_port_is_had_once(void **state)
 int main(void)
 {
     const struct CMUnitTest cases[] = {
-        cmocka_unit_test(only_the_token_lets_in),        cmocka_unit_test(the_first_address_gives_a_cookie),
-        cmocka_unit_test(foreign_hosts_and_origins_are_refused), cmocka_unit_test(paths_do_not_climb),
-        cmocka_unit_test(routes_get_their_values),       cmocka_unit_test(wrong_methods_are_told_the_right_ones),
-        cmocka_unit_test(every_reply_is_guarded),        cmocka_unit_test(the_page_is_embedded),
-        cmocka_unit_test(what_changes_something_is_json), cmocka_unit_test(bodies_are_bounded),
-        cmocka_unit_test(a_thousand_requests_in_a_row),  cmocka_unit_test(floods_are_slowed),
-        cmocka_unit_test(slow_clients_are_cut_off),      cmocka_unit_test(a_port_is_had_once),
+        cmocka_unit_test(only_the_token_lets_in),
+        cmocka_unit_test(the_first_address_gives_a_cookie),
+        cmocka_unit_test(foreign_hosts_and_origins_are_refused),
+        cmocka_unit_test(paths_do_not_climb),
+        cmocka_unit_test(routes_get_their_values),
+        cmocka_unit_test(wrong_methods_are_told_the_right_ones),
+        cmocka_unit_test(every_reply_is_guarded),
+        cmocka_unit_test(the_page_is_embedded),
+        cmocka_unit_test(what_changes_something_is_json),
+        cmocka_unit_test(bodies_are_bounded),
+        cmocka_unit_test(a_thousand_requests_in_a_row),
+        cmocka_unit_test(floods_are_slowed),
+        cmocka_unit_test(slow_clients_are_cut_off),
+        cmocka_unit_test(a_port_is_had_once),
     };
     return cmocka_run_group_tests_name("http", cases, set_up, tear_down);
 }

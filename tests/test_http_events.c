@@ -1,4 +1,5 @@
-/* Streams of events: how many, who gets what, clients that are slow or leave, a server that stops while they listen. And requests of random bytes. */
+/* Streams of events: how many, who gets what, clients that are slow or leave, a server that stops while they listen.
+ * And requests of random bytes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -18,7 +19,8 @@ static void echo(void *context, const http_request *q, http_reply *r)
     http_reply_bytes(r, 200, "text/plain", copy, size);
 }
 
-static const http_route routes[] = {{"GET", "/events", http_events, NULL}, {"POST", "/a/{b}", echo, NULL}, {"GET", "/a/{b}", echo, NULL}};
+static const http_route routes[] = {
+    {"GET", "/events", http_events, NULL}, {"POST", "/a/{b}", echo, NULL}, {"GET", "/a/{b}", echo, NULL}};
 
 static http_server *start(http_settings s)
 {
@@ -33,7 +35,8 @@ static http_server *start(http_settings s)
 static int listen_to(const http_server *s, int *code)
 {
     const int fd = client_connect(http_port(s));
-    char *request = text_format("GET /events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n", http_port(s), http_token(s));
+    char *request = text_format("GET /events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n",
+                                http_port(s), http_token(s));
     client_send(fd, request, strlen(request));
     free(request);
     char head[4096] = "";
@@ -186,7 +189,8 @@ static void a_stop_leaves_nothing_behind(void **state)
     http_stop(start((http_settings){0})); /* what libraries open once */
     const int files = count_entries("/proc/self/fd"), threads = count_entries("/proc/self/task");
     http_server *s = start((http_settings){0});
-    const char *const get = "GET /a/b HTTP/1.1\r\nHost: ", *const post = "POST /a/b HTTP/1.1\r\nContent-Length: 100\r\nHost: x\r\n\r\nabc";
+    const char *const get = "GET /a/b HTTP/1.1\r\nHost: ",
+                      *const post = "POST /a/b HTTP/1.1\r\nContent-Length: 100\r\nHost: x\r\n\r\nabc";
     enum { CLIENTS = 70 }; /* more than connections: some are never accepted */
     int fd[CLIENTS], code;
     for (int i = 0; i < 10; i++)
@@ -209,8 +213,26 @@ static void a_stop_leaves_nothing_behind(void **state)
 /* A good request with some bytes changed, cut, repeated or put in. */
 static size_t mutate(uint64_t *seed, char *to, const char *good, size_t size)
 {
-    static const char *const pieces[] = {"\r\n", "\r\n\r\n", "%2e%2e/", "%00", ":", " ", "HTTP/1.1", "Content-Length: 5\r\n", "Content-Length: -1\r\n", "?token=", ";", ",", "=",
-                                         "Transfer-Encoding: chunked\r\n", "ffffffffffffffff\r\n", "0\r\n\r\n", "Expect: 100-continue\r\n", "Cookie: ", "&&", "\n"};
+    static const char *const pieces[] = {"\r\n",
+                                         "\r\n\r\n",
+                                         "%2e%2e/",
+                                         "%00",
+                                         ":",
+                                         " ",
+                                         "HTTP/1.1",
+                                         "Content-Length: 5\r\n",
+                                         "Content-Length: -1\r\n",
+                                         "?token=",
+                                         ";",
+                                         ",",
+                                         "=",
+                                         "Transfer-Encoding: chunked\r\n",
+                                         "ffffffffffffffff\r\n",
+                                         "0\r\n\r\n",
+                                         "Expect: 100-continue\r\n",
+                                         "Cookie: ",
+                                         "&&",
+                                         "\n"};
     memcpy(to, good, size);
     for (int changes = 1 + random_below(seed, 4); changes > 0 && size > 0; changes--) {
         const size_t at = (size_t)random_below(seed, (int)size), left = size - at;
@@ -233,7 +255,8 @@ static size_t mutate(uint64_t *seed, char *to, const char *good, size_t size)
     return size;
 }
 
-/* CUVETTE_HTTP_FUZZ: how many requests. Half of the connections close at once, the others say that nothing more comes and read what there is. */
+/* CUVETTE_HTTP_FUZZ: how many requests. Half of the connections close at once, the others say that nothing more comes
+ * and read what there is. */
 static void random_requests_do_no_harm(void **state)
 {
     (void)state;
@@ -242,9 +265,13 @@ static void random_requests_do_no_harm(void **state)
     http_server *s = start((http_settings){.requests_per_s = 1e9});
     char *good[3];
     const char *const host = "Host: 127.0.0.1:", *const bearer = "\r\nAuthorization: Bearer ";
-    good[0] = text_format("GET /a/b?c=d HTTP/1.1\r\n%s%d%s%s\r\nOrigin: http://127.0.0.1:%d\r\n\r\n", host, http_port(s), bearer, http_token(s), http_port(s));
-    good[1] = text_format("POST /a/b HTTP/1.1\r\n%s%d%s%s\r\nContent-Type: application/json\r\nContent-Length: 5\r\n\r\n[1,2]", host, http_port(s), bearer, http_token(s));
-    good[2] = text_format("POST /a/b HTTP/1.1\r\n%s%d\r\nCookie: cuvette_%d=%s\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n3\r\n[1,\r\n2\r\n2]\r\n0\r\n\r\n",
+    good[0] = text_format("GET /a/b?c=d HTTP/1.1\r\n%s%d%s%s\r\nOrigin: http://127.0.0.1:%d\r\n\r\n", host,
+                          http_port(s), bearer, http_token(s), http_port(s));
+    good[1] = text_format(
+        "POST /a/b HTTP/1.1\r\n%s%d%s%s\r\nContent-Type: application/json\r\nContent-Length: 5\r\n\r\n[1,2]", host,
+        http_port(s), bearer, http_token(s));
+    good[2] = text_format("POST /a/b HTTP/1.1\r\n%s%d\r\nCookie: cuvette_%d=%s\r\nContent-Type: "
+                          "application/json\r\nTransfer-Encoding: chunked\r\n\r\n3\r\n[1,\r\n2\r\n2]\r\n0\r\n\r\n",
                           host, http_port(s), http_port(s), http_token(s));
     uint64_t seed = 20;
     long answered = 0, passed = 0;

@@ -62,7 +62,10 @@ static char *in_folder(const char *name)
     return path;
 }
 
-typedef struct blob { char *bytes; size_t size; } blob;
+typedef struct blob {
+    char *bytes;
+    size_t size;
+} blob;
 
 static blob get(const char *path)
 {
@@ -127,9 +130,12 @@ static void srgb_has_its_published_values(void **state)
     assert_true(srgb_decode(0.0) == 0.0 && srgb_encode(0.0) == 0.0 && srgb_encode(1.0) == 1.0);
     assert_true(srgb_encode(-3.0) == 0.0 && srgb_encode(7.0) == 1.0 && srgb_encode(INFINITY) == 1.0);
     assert_true(srgb_encode((double)NAN) == 0.0);
-    static const struct { float linear; unsigned byte; } bytes[] = {
-        {0.5f, 188}, {0.18f, 118}, {0.25f, 137}, {0.75f, 225}, {0.1f, 89}, {0.01f, 25},
-        {0.001f, 3}, {1.0f, 255}, {0.0f, 0},
+    static const struct {
+        float linear;
+        unsigned byte;
+    } bytes[] = {
+        {0.5f, 188}, {0.18f, 118}, {0.25f, 137}, {0.75f, 225}, {0.1f, 89},
+        {0.01f, 25}, {0.001f, 3},  {1.0f, 255},  {0.0f, 0},
     };
     for (size_t i = 0; i < sizeof bytes / sizeof *bytes; i++) {
         assert_int_equal(codec_quantize(bytes[i].linear, 255), bytes[i].byte);
@@ -327,8 +333,8 @@ static void pfm_keeps_every_bit(void **state)
     image *picture, *back;
     int bits = 0;
     char *path = in_folder("a.pfm");
-    static const float values[12] = {0.0f, -0.0f, 1e-45f, 3.4e38f, -3.4e38f, 1.0f,
-                                     0.1f, 1e-10f, -5.0f, 1234567.0f, 0.5f, 2.0f};
+    static const float values[12] = {0.0f, -0.0f,  1e-45f, 3.4e38f,    -3.4e38f, 1.0f,
+                                     0.1f, 1e-10f, -5.0f,  1234567.0f, 0.5f,     2.0f};
     assert_int_equal(image_create(2, 2, &picture, NULL), STATUS_OK);
     memcpy(picture->pixel, values, sizeof values);
     assert_int_equal(image_write(picture, path, 8, NULL), STATUS_OK);
@@ -359,10 +365,19 @@ static status read_bytes(const void *bytes, size_t size, image **out, diagnostic
 static void pfm_is_read_in_either_byte_order(void **state)
 {
     (void)state;
-    static const char big[] = "PF\n1 2\n1.0\n" "\x3f\x80\0\0" "\x40\0\0\0" "\x40\x40\0\0"
-                              "\x40\x80\0\0" "\x40\xa0\0\0" "\x40\xc0\0\0";
-    static const char grey_big[] = "Pf\n2 1\n0.5\n" "\x3f\x80\0\0" "\x40\0\0\0";
-    static const char grey_little[] = "Pf\r\n2 1 -2\n" "\0\0\x80\x3f" "\0\0\0\x40";
+    static const char big[] = "PF\n1 2\n1.0\n"
+                              "\x3f\x80\0\0"
+                              "\x40\0\0\0"
+                              "\x40\x40\0\0"
+                              "\x40\x80\0\0"
+                              "\x40\xa0\0\0"
+                              "\x40\xc0\0\0";
+    static const char grey_big[] = "Pf\n2 1\n0.5\n"
+                                   "\x3f\x80\0\0"
+                                   "\x40\0\0\0";
+    static const char grey_little[] = "Pf\r\n2 1 -2\n"
+                                      "\0\0\x80\x3f"
+                                      "\0\0\0\x40";
     image *picture;
     assert_int_equal(read_bytes(big, sizeof big - 1, &picture, NULL), STATUS_OK);
     static const float expected[6] = {4, 5, 6, 1, 2, 3};
@@ -380,18 +395,39 @@ static void pfm_is_read_in_either_byte_order(void **state)
 static void bad_pfm_is_refused(void **state)
 {
     (void)state;
-#define bad(text) {text, sizeof text - 1}
-    static const struct { const char *bytes; size_t size; } cases[] = {
-        bad(""), bad("P"), bad("PF"), bad("PF\n"), bad("PF\n1"), bad("PF\n1 1"), bad("PF\n1 1\n-1.0"),
-        bad("PF\n1 1\n-1.0\n"), bad("Pf\n1 1\n-1\n\0\0\0"), bad("Pf\n1 1\n-1\n\0\0\0\0\0"),
-        bad("Pf\n0 1\n-1\n"), bad("Pf\n-1 1\n-1\n\0\0\0\0"),
-        bad("Pf\n1 1\n0\n\0\0\0\0"), bad("Pf\n1 1\nnan\n\0\0\0\0"),
-        bad("Pf\n1.0 1\n-1\n\0\0\0\0"), bad("Pf\n1 1 -1,0\n\0\0\0\0"),
+#define bad(text)             \
+    {                         \
+        text, sizeof text - 1 \
+    }
+    static const struct {
+        const char *bytes;
+        size_t size;
+    } cases[] = {
+        bad(""),
+        bad("P"),
+        bad("PF"),
+        bad("PF\n"),
+        bad("PF\n1"),
+        bad("PF\n1 1"),
+        bad("PF\n1 1\n-1.0"),
+        bad("PF\n1 1\n-1.0\n"),
+        bad("Pf\n1 1\n-1\n\0\0\0"),
+        bad("Pf\n1 1\n-1\n\0\0\0\0\0"),
+        bad("Pf\n0 1\n-1\n"),
+        bad("Pf\n-1 1\n-1\n\0\0\0\0"),
+        bad("Pf\n1 1\n0\n\0\0\0\0"),
+        bad("Pf\n1 1\nnan\n\0\0\0\0"),
+        bad("Pf\n1.0 1\n-1\n\0\0\0\0"),
+        bad("Pf\n1 1 -1,0\n\0\0\0\0"),
         bad("Pf\n65536 65536\n-1\n\0\0\0\0"),
-        bad("Pf\n65537 1\n-1\n\0\0\0\0"), bad("Pf\n99999999999999999999 1\n-1\n\0\0\0\0"),
-        bad("Pf\n4611686018427387904 4\n-1\n"), bad("Pf\n1 1\n-1\n\0\0\xc0\x7f"), bad("Pf\n1 1\n-1\n\0\0\x80\x7f"),
+        bad("Pf\n65537 1\n-1\n\0\0\0\0"),
+        bad("Pf\n99999999999999999999 1\n-1\n\0\0\0\0"),
+        bad("Pf\n4611686018427387904 4\n-1\n"),
+        bad("Pf\n1 1\n-1\n\0\0\xc0\x7f"),
+        bad("Pf\n1 1\n-1\n\0\0\x80\x7f"),
         bad("PX\n1 1\n-1\n\0\0\0\0"),
-        bad("Pf\n1 1111111111111111111111111111111111111111\n-1\n\0\0\0\0"), bad("not a picture"),
+        bad("Pf\n1 1111111111111111111111111111111111111111\n-1\n\0\0\0\0"),
+        bad("not a picture"),
     };
 #undef bad
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -406,7 +442,10 @@ static void bad_pfm_is_refused(void **state)
 
 /* ---- PNG of every kind, written by libpng itself ---- */
 
-typedef struct png_kind { int color, depth, interlace; bool transparent; } png_kind;
+typedef struct png_kind {
+    int color, depth, interlace;
+    bool transparent;
+} png_kind;
 
 enum { KIND_WIDTH = 13, KIND_HEIGHT = 11 };
 
@@ -546,8 +585,13 @@ static void png_of_every_kind_is_read(void **state)
 static void huge_png_is_refused(void **state)
 {
     (void)state;
-    static const struct { png_uint_32 width, height; } sizes[] = {
-        {70000, 1}, {1, 70000}, {65536, 65536}, {2000000000, 2000000000},
+    static const struct {
+        png_uint_32 width, height;
+    } sizes[] = {
+        {70000, 1},
+        {1, 70000},
+        {65536, 65536},
+        {2000000000, 2000000000},
     };
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         char *path = in_folder("huge.png");
@@ -596,7 +640,10 @@ static void write_bomb(const char *path, png_uint_32 side, int bits, int color, 
 static void bombs_are_refused(void **state)
 {
     (void)state;
-    static const struct { png_uint_32 side; int bits, color, interlaced; } bombs[] = {
+    static const struct {
+        png_uint_32 side;
+        int bits, color, interlaced;
+    } bombs[] = {
         {16384, 1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE},
         {8192, 1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_ADAM7},
         {4200, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE},
@@ -614,7 +661,8 @@ static void bombs_are_refused(void **state)
         assert_non_null(strstr(why.what, "claims"));
         assert_true(after.ru_maxrss - before.ru_maxrss < 64 << 10);
     }
-    write_bomb(path, 4000, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE); /* sixteen million pixels of one colour are still a picture */
+    write_bomb(path, 4000, 8, PNG_COLOR_TYPE_GRAY,
+               PNG_INTERLACE_NONE); /* sixteen million pixels of one colour are still a picture */
     image *picture;
     assert_int_equal(image_read(path, &picture, NULL, NULL), STATUS_OK);
     image_destroy(picture);
@@ -659,9 +707,13 @@ static void write_jpeg_kind(const char *path, J_COLOR_SPACE space, int channels,
 static void jpeg_of_other_kinds_is_read(void **state)
 {
     (void)state;
-    static const struct { J_COLOR_SPACE space; int channels, subsampling; bool progressive; } kinds[] = {
+    static const struct {
+        J_COLOR_SPACE space;
+        int channels, subsampling;
+        bool progressive;
+    } kinds[] = {
         {JCS_GRAYSCALE, 1, 1, false}, {JCS_GRAYSCALE, 1, 1, true}, {JCS_RGB, 3, 2, false},
-        {JCS_RGB, 3, 1, true}, {JCS_RGB, 3, 2, true},
+        {JCS_RGB, 3, 1, true},        {JCS_RGB, 3, 2, true},
     };
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         char *path = in_folder("kind.jpg");
@@ -678,18 +730,21 @@ static void jpeg_of_other_kinds_is_read(void **state)
     }
 }
 
-/* A good file whose frame header then claims another size (SOF, ITU-T T.81, B.2.2): height and width follow the precision. */
+/* A good file whose frame header then claims another size (SOF, ITU-T T.81, B.2.2): height and width follow the
+ * precision. */
 static void jpeg_that_claims_another_size_is_refused(void **state)
 {
     (void)state;
-    static const unsigned char sizes[][4] = {{0xff, 0xdc, 0xff, 0xdc}, {0x0f, 0xff, 0xff, 0xdc}, {0xff, 0xdc, 0, 40}, {0, 0, 0, 40}, {0, 30, 0, 0}};
+    static const unsigned char sizes[][4] = {
+        {0xff, 0xdc, 0xff, 0xdc}, {0x0f, 0xff, 0xff, 0xdc}, {0xff, 0xdc, 0, 40}, {0, 0, 0, 40}, {0, 30, 0, 0}};
     char *path = in_folder("size.jpg");
     for (int progressive = 0; progressive < 2; progressive++) {
         for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
             write_jpeg_kind(path, JCS_RGB, 3, progressive, 1);
             blob b = get(path);
             size_t at = 0;
-            while (at + 9 < b.size && !((unsigned char)b.bytes[at] == 0xff && (unsigned char)b.bytes[at + 1] == (progressive ? 0xc2 : 0xc0))) {
+            while (at + 9 < b.size && !((unsigned char)b.bytes[at] == 0xff &&
+                                        (unsigned char)b.bytes[at + 1] == (progressive ? 0xc2 : 0xc0))) {
                 at++;
             }
             assert_true(at + 9 < b.size);
@@ -723,14 +778,18 @@ static void cmyk_jpeg_is_refused(void **state)
 /* ---- damage ---- */
 
 /* checked: every bit is under a checksum */
-typedef struct victim { const char *name; blob file; bool checked; } victim;
+typedef struct victim {
+    const char *name;
+    blob file;
+    bool checked;
+} victim;
 
 enum { VICTIMS = 7 };
 
 static void make_victims(victim victims[VICTIMS])
 {
-    static const char *const names[VICTIMS] = {"8.png", "16.png", "interlaced.png", "baseline.jpg",
-                                                "progressive.jpg", "grey.jpg", "a.pfm"};
+    static const char *const names[VICTIMS] = {"8.png",           "16.png",   "interlaced.png", "baseline.jpg",
+                                               "progressive.jpg", "grey.jpg", "a.pfm"};
     image *picture = make_picture(19, 14);
     for (int i = 0; i < VICTIMS; i++) {
         char *path = in_folder(names[i]);

@@ -10,7 +10,8 @@
 /* Single interfaces as a ray meets them: what Fresnel's equations give, and where total reflection begins. */
 
 static const vec3 turns[] = {{0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}};
-static const double pairs[][2] = {{1.0, 1.5}, {1.5, 1.0}, {1.0, 1.33}, {1.33, 1.0}, {1.33, 1.5}, {1.5, 1.33}, {1.0, 2.42}, {2.42, 1.0}};
+static const double pairs[][2] = {{1.0, 1.5},  {1.5, 1.0},  {1.0, 1.33}, {1.33, 1.0},
+                                  {1.33, 1.5}, {1.5, 1.33}, {1.0, 2.42}, {2.42, 1.0}};
 
 static stage half_space(double outside, double inside, vec3 rotation_deg, const char *more)
 {
@@ -26,12 +27,15 @@ static const ray_tree *meet(stage *g, double angle, vec3 rotation_deg)
     return stage_ray(g, vec3_scale(d, -2.0), d);
 }
 
-/* Printed values: Hecht, Optics, 5th ed., 4.6.2 and 4.6.3 (r at normal incidence 0.2 and 4% for air and glass; polarisation angle
- * 56.3 degrees; with R_s = ((n^2 - 1) / (n^2 + 1))^2 there). The rest to four places from the sine and tangent laws by hand. */
+/* Printed values: Hecht, Optics, 5th ed., 4.6.2 and 4.6.3 (r at normal incidence 0.2 and 4% for air and glass;
+ * polarisation angle 56.3 degrees; with R_s = ((n^2 - 1) / (n^2 + 1))^2 there). The rest to four places from the sine
+ * and tangent laws by hand. */
 static void reflectances_are_those_of_the_textbook(void **state)
 {
     (void)state;
-    static const struct { double n_from, n_to, angle_deg, R_s, R_p; } known[] = {
+    static const struct {
+        double n_from, n_to, angle_deg, R_s, R_p;
+    } known[] = {
         {1.0, 1.5, 0.0, 0.0400, 0.0400},  {1.5, 1.0, 0.0, 0.0400, 0.0400},  {1.0, 1.33, 0.0, 0.0201, 0.0201},
         {1.33, 1.5, 0.0, 0.0036, 0.0036}, {1.0, 2.42, 0.0, 0.1724, 0.1724}, {1.0, 1.5, 45.0, 0.0920, 0.0085},
         {1.0, 1.5, 80.0, 0.5386, 0.2368}, {1.0, 1.5, 56.3099, 0.1479, 0.0}, {1.5, 1.0, 33.6901, 0.1479, 0.0},
@@ -44,8 +48,8 @@ static void reflectances_are_those_of_the_textbook(void **state)
     }
 }
 
-/* At 0, 45 and 80 degrees and at Brewster's angle, to 1e-12: sin^2(i - t) / sin^2(i + t), tan^2(i - t) / tan^2(i + t), which know no
- * index (Hecht, eqs. 4.42 and 4.43). The branches weigh R and 1 - R. */
+/* At 0, 45 and 80 degrees and at Brewster's angle, to 1e-12: sin^2(i - t) / sin^2(i + t), tan^2(i - t) / tan^2(i + t),
+ * which know no index (Hecht, eqs. 4.42 and 4.43). The branches weigh R and 1 - R. */
 static void reflectances_follow_the_sine_and_tangent_laws(void **state)
 {
     (void)state;
@@ -57,16 +61,19 @@ static void reflectances_follow_the_sine_and_tangent_laws(void **state)
             for (size_t a = 0; a < COUNT(angles); a++) {
                 const ray_tree *tree = meet(&g, angles[a], turns[turn]);
                 const ray_hit *h = &tree->node[0].hit;
-                const ray_node *back = child_of(tree, &tree->node[0], RAY_REFLECT), *on = child_of(tree, &tree->node[0], RAY_REFRACT);
+                const ray_node *back = child_of(tree, &tree->node[0], RAY_REFLECT),
+                               *on = child_of(tree, &tree->node[0], RAY_REFRACT);
                 if (n_from * sin(angles[a]) >= n_to) {
                     assert_true(h->tir && h->R_s == 1.0 && h->R_p == 1.0 && h->R == 1.0 && h->cos_t == 0.0 && !on);
                     assert_true(back->throughput[0] == 1.0);
                     continue;
                 }
                 const reflectance r = reflectance_of_angles(angles[a], n_from, n_to);
-                assert_true(!h->tir && fabs(h->R_s - r.s) <= 1e-12 && fabs(h->R_p - r.p) <= 1e-12 && fabs(h->R - r.mean) <= 1e-12);
+                assert_true(!h->tir && fabs(h->R_s - r.s) <= 1e-12 && fabs(h->R_p - r.p) <= 1e-12 &&
+                            fabs(h->R - r.mean) <= 1e-12);
                 assert_true(fabs(h->cos_t - sqrt(1.0 - pow(n_from / n_to * sin(angles[a]), 2.0))) <= 1e-12);
-                assert_true(fabs(back->throughput[1] - r.mean) <= 1e-12 && fabs(on->throughput[1] - (1.0 - r.mean)) <= 1e-12);
+                assert_true(fabs(back->throughput[1] - r.mean) <= 1e-12 &&
+                            fabs(on->throughput[1] - (1.0 - r.mean)) <= 1e-12);
                 assert_true(back->throughput[2] + on->throughput[2] == 1.0);
                 if (a == 2) /* tan i = n_t / n_i (Hecht, eq. 4.45): no p is reflected, and i + t is a right angle */
                     assert_true(h->R_p <= 1e-28 && fabs(vec3_dot(back->direction, on->direction)) <= 1e-14);
@@ -81,11 +88,13 @@ static void both_sides_reflect_alike(void **state)
 {
     (void)state;
     for (size_t k = 0; k + 1 < COUNT(pairs); k += 2) {
-        stage there = half_space(pairs[k][0], pairs[k][1], turns[1], ""), back = half_space(pairs[k][1], pairs[k][0], turns[1], "");
+        stage there = half_space(pairs[k][0], pairs[k][1], turns[1], ""),
+              back = half_space(pairs[k][1], pairs[k][0], turns[1], "");
         for (double angle = 0.0; angle < 1.55; angle += 0.05) {
             const ray_hit a = meet(&there, angle, turns[1])->node[0].hit;
             const ray_hit b = meet(&back, asin(pairs[k][0] / pairs[k][1] * sin(angle)), turns[1])->node[0].hit;
-            assert_true(fabs(a.R_s - b.R_s) <= 1e-13 && fabs(a.R_p - b.R_p) <= 1e-13 && fabs(a.cos_i - b.cos_t) <= 1e-13);
+            assert_true(fabs(a.R_s - b.R_s) <= 1e-13 && fabs(a.R_p - b.R_p) <= 1e-13 &&
+                        fabs(a.cos_i - b.cos_t) <= 1e-13);
         }
         stage_close(&there);
         stage_close(&back);
@@ -93,7 +102,10 @@ static void both_sides_reflect_alike(void **state)
 }
 
 /* A body of glass, and a ray inside it from which the angle of incidence follows. */
-typedef struct cell { const char *name, *shape; double offset; } cell; /* offset: of the ray's origin from the centre of a sphere of radius 1 */
+typedef struct cell {
+    const char *name, *shape;
+    double offset;
+} cell; /* offset: of the ray's origin from the centre of a sphere of radius 1 */
 static const cell cells[] = {{"box", "shape: box, size: [1, 1, 1]", 0.0}, {"sphere", "shape: sphere, radius: 1", 0.9}};
 
 /* From the box's middle the angle to its upper face is the direction's; in a sphere sin i = offset sin(direction)
@@ -102,7 +114,8 @@ static const ray_tree *meet_inside(stage *g, const cell *c, double angle_i, vec3
 {
     const bool ball = c->offset > 0.0;
     const double angle = ball ? asin(sin(angle_i) / c->offset) : angle_i;
-    const vec3 origin = vec3_make(0.0, ball ? c->offset : 0.49999, 0.0), d = vec3_make(0.6 * sin(angle), cos(angle), 0.8 * sin(angle));
+    const vec3 origin = vec3_make(0.0, ball ? c->offset : 0.49999, 0.0),
+               d = vec3_make(0.6 * sin(angle), cos(angle), 0.8 * sin(angle));
     return stage_ray(g, turned(origin, rotation_deg), turned(d, rotation_deg));
 }
 
@@ -123,12 +136,14 @@ static void total_reflection_begins_at_the_critical_angle(const cell *c, const c
                 *(meet_inside(&g, c, middle, turns[turn])->node[0].hit.tir ? &high : &low) = middle;
             }
             assert_true(fabs(0.5 * (low + high) - critical) <= 1e-9);
-            for (double above = critical + 1e-9; above < 0.97 * asin(c->offset > 0.0 ? c->offset : 1.0); above += 0.01) {
+            for (double above = critical + 1e-9; above < 0.97 * asin(c->offset > 0.0 ? c->offset : 1.0);
+                 above += 0.01) {
                 const ray_tree *tree = meet_inside(&g, c, above, turns[turn]);
                 const ray_node *root = &tree->node[0], *back = child_of(tree, root, RAY_REFLECT);
                 assert_true(root->hit.tir && !child_of(tree, root, RAY_REFRACT) && back && back->next == RAY_NONE);
                 for (int channel = 0; channel < 3; channel++)
-                    assert_true(back->throughput[channel] == root->throughput[channel] * root->hit.transmittance[channel]);
+                    assert_true(back->throughput[channel] ==
+                                root->throughput[channel] * root->hit.transmittance[channel]);
             }
             assert_false(meet_inside(&g, c, critical - 1e-9, turns[turn])->node[0].hit.tir);
             assert_non_null(child_of(&g.tree, &g.tree.node[0], RAY_REFRACT));

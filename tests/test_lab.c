@@ -1,4 +1,5 @@
-/* The laboratory's API from outside: the desk, the camera, the picture, and who is refused. Files, traces, comparisons, slimes and studies have tests of their own. */
+/* The laboratory's API from outside: the desk, the camera, the picture, and who is refused. Files, traces, comparisons,
+ * slimes and studies have tests of their own. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -50,7 +51,9 @@ static void assert_param(const char *path, const char *key, double wanted)
 static void parameters_are_set_as_by_the_option(void **state)
 {
     (void)state;
-    room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.6, \"lamp.position\": [1, 2.5, -3], \"render.beyond\": \"black\", \"render.depth\": 5}}");
+    room_post(&room, "/api/set",
+              "{\"set\": {\"ball.ior\": 1.6, \"lamp.position\": [1, 2.5, -3], \"render.beyond\": \"black\", "
+              "\"render.depth\": 5}}");
     assert_param("ball.ior", "value", 1.6);
     assert_param("ball.ior", "initial", 1.5);
     assert_param("render.depth", "value", 5);
@@ -137,10 +140,12 @@ static void wrong_values_are_refused_with_a_remedy(void **state)
 
 static vec3 vector_of(const json_t *list)
 {
-    return vec3_make(json_number_value(json_array_get(list, 0)), json_number_value(json_array_get(list, 1)), json_number_value(json_array_get(list, 2)));
+    return vec3_make(json_number_value(json_array_get(list, 0)), json_number_value(json_array_get(list, 1)),
+                     json_number_value(json_array_get(list, 2)));
 }
 
-/* As much as a body may hold is looked at once: were it copied for each number, nobody would live to hear the answer. */
+/* As much as a body may hold is looked at once: were it copied for each number, nobody would live to hear the answer.
+ */
 static void the_longest_list_is_soon_refused(void **state)
 {
     (void)state;
@@ -154,14 +159,16 @@ static void the_longest_list_is_soon_refused(void **state)
     free(body);
 }
 
-typedef struct eye { vec3 at, forward, right, target; } eye;
+typedef struct eye {
+    vec3 at, forward, right, target;
+} eye;
 
 static eye view_now(void)
 {
     json_t *state = room_get(&room, "/api/state");
     const json_t *c = json_object_get(state, "camera");
-    const eye e = {vector_of(json_object_get(c, "eye")), vector_of(json_object_get(c, "forward")), vector_of(json_object_get(c, "right")),
-                   vector_of(json_object_get(c, "target"))};
+    const eye e = {vector_of(json_object_get(c, "eye")), vector_of(json_object_get(c, "forward")),
+                   vector_of(json_object_get(c, "right")), vector_of(json_object_get(c, "target"))};
     json_decref(state);
     return e;
 }
@@ -203,16 +210,19 @@ static void the_camera_orbits_turns_and_steps(void **state)
     room_post(&room, "/api/undo", "{}");
     room_post(&room, "/api/camera", "{\"step\": [0.5, 0, 2]}");
     now = view_now();
-    assert_same_place(now.at, vec3_add(first.at, vec3_add(vec3_scale(first.right, 0.5), vec3_scale(first.forward, 2.0))));
+    assert_same_place(now.at,
+                      vec3_add(first.at, vec3_add(vec3_scale(first.right, 0.5), vec3_scale(first.forward, 2.0))));
     assert_same_place(now.forward, first.forward);
-    room_post(&room, "/api/set", "{\"set\": {\"camera.yaw_deg\": 20, \"camera.pitch_deg\": -10}}"); /* not aimed any more */
+    room_post(&room, "/api/set",
+              "{\"set\": {\"camera.yaw_deg\": 20, \"camera.pitch_deg\": -10}}"); /* not aimed any more */
     room_post(&room, "/api/camera", "{\"turn\": [5, 3]}");
     now = view_now();
     assert_near(atan2(now.forward.x, now.forward.z) * 180.0 / M_PI, 25.0);
     assert_near(asin(now.forward.y) * 180.0 / M_PI, -7.0);
 }
 
-/* The film that `cuvette render` would make of what GET /api/command says, options taken apart by hand: blanks and quotes are all there is. */
+/* The film that `cuvette render` would make of what GET /api/command says, options taken apart by hand: blanks and
+ * quotes are all there is. */
 static char *film_of_command(void)
 {
     json_t *told = room_get(&room, "/api/command");
@@ -249,7 +259,8 @@ static void the_command_renders_the_same_film(void **state)
 {
     (void)state;
     room_post(&room, "/api/set",
-              "{\"set\": {\"tiles.color\": [0.9, 0.1, 0.2], \"ground.ambient\": 0.3, \"ball.absorb_per_m\": [0.5, 0, 0.25], \"camera.yaw_deg\": 12, \"camera.pitch_deg\": -15, \"render.samples\": 4}}");
+              "{\"set\": {\"tiles.color\": [0.9, 0.1, 0.2], \"ground.ambient\": 0.3, \"ball.absorb_per_m\": [0.5, 0, "
+              "0.25], \"camera.yaw_deg\": 12, \"camera.pitch_deg\": -15, \"render.samples\": 4}}");
     room_post(&room, "/api/camera", "{\"orbit\": [3, 4], \"step\": [0.1, 0.2, 0.3]}");
     char *shown = room_film(&room), *made = film_of_command();
     assert_string_equal(shown, made);
@@ -263,7 +274,8 @@ static void a_command_of_a_file_in_another_folder(void **state)
     (void)state;
     char *inner = room_path(&room, "inner");
     assert_int_equal(mkdir(inner, 0700), 0);
-    char *png = client_ask(room.server, "GET", "/api/picture.png?wait=1", "", NULL), *path = room_path(&room, "sky.png");
+    char *png = client_ask(room.server, "GET", "/api/picture.png?wait=1", "", NULL),
+         *path = room_path(&room, "sky.png");
     const char *length = strstr(png, "Content-Length: ");
     FILE *out = fopen(path, "w");
     assert_non_null(out);
@@ -289,7 +301,8 @@ static void the_scene_is_a_file_too(void **state)
 {
     (void)state;
     room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.8}}");
-    char *reply = client_ask(room.server, "GET", "/api/scene.yaml", "", NULL), *shown = room_film(&room), *path = room_path(&room, "again.yaml");
+    char *reply = client_ask(room.server, "GET", "/api/scene.yaml", "", NULL), *shown = room_film(&room),
+         *path = room_path(&room, "again.yaml");
     room_write(&room, "again.yaml", reply_body(reply));
     scene *s;
     diagnostic why = {0};
@@ -348,9 +361,11 @@ static void pictures_say_what_they_show(void **state)
 static void nobody_else_is_served(void **state)
 {
     (void)state;
-    static const char *const targets[] = {"/", "/api/state", "/api/scene", "/api/picture.png", "/api/events", "/api/files", "/api/studies", "/api/machine"};
+    static const char *const targets[] = {"/",           "/api/state", "/api/scene",   "/api/picture.png",
+                                          "/api/events", "/api/files", "/api/studies", "/api/machine"};
     const int port = http_port(room.server);
-    char *host = text_format("Host: 127.0.0.1:%d\r\n", port), *token = text_format("Authorization: Bearer %s\r\n", http_token(room.server));
+    char *host = text_format("Host: 127.0.0.1:%d\r\n", port),
+         *token = text_format("Authorization: Bearer %s\r\n", http_token(room.server));
     char *foreign = text_format("%s%sOrigin: http://evil.example\r\nContent-Type: application/json\r\n", host, token);
     char *other_host = text_format("Host: evil.example:%d\r\n%s", port, token);
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
@@ -401,13 +416,26 @@ static void bad_starts_are_refused(void **state)
     diagnostic why = {0};
     char *broken = room_path(&room, "broken.yaml");
     room_write(&room, "broken.yaml", "solids: [\n");
-    assert_int_equal(lab_start(&(lab_settings){.folder = room.folder, .scene = broken, .results = room.results, .level = isa_best()}, &l, &why), STATUS_BAD_INPUT);
+    assert_int_equal(
+        lab_start(&(lab_settings){.folder = room.folder, .scene = broken, .results = room.results, .level = isa_best()},
+                  &l, &why),
+        STATUS_BAD_INPUT);
     assert_string_equal(why.file, broken);
     assert_true(why.line > 0);
-    assert_int_equal(lab_start(&(lab_settings){.folder = "/nowhere", .results = room.results, .level = isa_best()}, &l, &why), STATUS_BAD_INPUT);
-    assert_int_equal(lab_start(&(lab_settings){.folder = room.folder, .scene = ROD_SCENE, .results = room.results, .level = isa_best()}, &l, &why), STATUS_BAD_INPUT);
     assert_int_equal(
-        lab_start(&(lab_settings){.folder = room.folder, .results = room.results, .level = isa_best(), .port = http_port(room.server)}, &l, &why), STATUS_BAD_INPUT);
+        lab_start(&(lab_settings){.folder = "/nowhere", .results = room.results, .level = isa_best()}, &l, &why),
+        STATUS_BAD_INPUT);
+    assert_int_equal(
+        lab_start(
+            &(lab_settings){.folder = room.folder, .scene = ROD_SCENE, .results = room.results, .level = isa_best()},
+            &l, &why),
+        STATUS_BAD_INPUT);
+    assert_int_equal(lab_start(&(lab_settings){.folder = room.folder,
+                                               .results = room.results,
+                                               .level = isa_best(),
+                                               .port = http_port(room.server)},
+                               &l, &why),
+                     STATUS_BAD_INPUT);
     assert_null(l);
     free(broken);
 }
@@ -417,10 +445,16 @@ int main(void)
 #define IN_A_ROOM(test) cmocka_unit_test_setup_teardown(test, open_room, close_room)
     const struct CMUnitTest cases[] = {
         IN_A_ROOM(parameters_are_set_as_by_the_option),
-        IN_A_ROOM(what_does_nothing_is_told_when_it_is_set), IN_A_ROOM(wrong_values_are_refused_with_a_remedy), IN_A_ROOM(the_camera_orbits_turns_and_steps),
-        IN_A_ROOM(the_command_renders_the_same_film),   IN_A_ROOM(the_scene_is_a_file_too),                IN_A_ROOM(what_looks_wrong_is_noted),
+        IN_A_ROOM(what_does_nothing_is_told_when_it_is_set),
+        IN_A_ROOM(wrong_values_are_refused_with_a_remedy),
+        IN_A_ROOM(the_camera_orbits_turns_and_steps),
+        IN_A_ROOM(the_command_renders_the_same_film),
+        IN_A_ROOM(the_scene_is_a_file_too),
+        IN_A_ROOM(what_looks_wrong_is_noted),
         IN_A_ROOM(pictures_say_what_they_show),
-        IN_A_ROOM(nobody_else_is_served),               IN_A_ROOM(no_scene_is_a_room_to_begin_with),       IN_A_ROOM(bad_starts_are_refused),
+        IN_A_ROOM(nobody_else_is_served),
+        IN_A_ROOM(no_scene_is_a_room_to_begin_with),
+        IN_A_ROOM(bad_starts_are_refused),
         IN_A_ROOM(a_command_of_a_file_in_another_folder),
         IN_A_ROOM(the_longest_list_is_soon_refused),
     };

@@ -1,4 +1,5 @@
-/* A pinned picture beside the newest: numbers and map as image/compare.h has them of the same scenes, what differs between them, what is refused. */
+/* A pinned picture beside the newest: numbers and map as image/compare.h has them of the same scenes, what differs
+ * between them, what is refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -117,7 +118,8 @@ static void equal_pictures_have_no_difference(void **state)
     json_t *told = room_get(*state, "/api/compare?wait=1"), *c = json_object_get(told, "comparison");
     assert_true(json_is_null(json_object_get(c, "psnr_db")));
     assert_true(json_is_null(json_object_get(c, "largest_at")));
-    assert_true(number(c, "mse") == 0.0 && number(c, "flip") == 0.0 && number(c, "largest") == 0.0 && number(c, "differing_share") == 0.0);
+    assert_true(number(c, "mse") == 0.0 && number(c, "flip") == 0.0 && number(c, "largest") == 0.0 &&
+                number(c, "differing_share") == 0.0);
     assert_true(number(c, "ssim") == 1.0);
     assert_int_equal(json_array_size(json_object_get(told, "changed")), 0);
     assert_true(json_equal(json_object_get(told, "a"), json_object_get(told, "b")));
@@ -186,7 +188,8 @@ typedef enum shown { SHOWN_OTHER, SHOWN_COARSE, SHOWN_FINAL } shown;
 static shown shown_of(const lab_room *room, json_int_t generation)
 {
     json_t *told = room_get(room, "/api/state"), *newest = json_object_get(told, "picture");
-    const bool its = json_integer_value(json_object_get(newest, "generation")) == generation, final = json_is_true(json_object_get(newest, "final"));
+    const bool its = json_integer_value(json_object_get(newest, "generation")) == generation,
+               final = json_is_true(json_object_get(newest, "final"));
     json_decref(told);
     return !its ? SHOWN_OTHER : final ? SHOWN_FINAL : SHOWN_COARSE;
 }
@@ -194,7 +197,8 @@ static shown shown_of(const lab_room *room, json_int_t generation)
 static void a_picture_that_is_not_finished_is_not_compared(void **state)
 {
     pin(*state);
-    const json_int_t heavy = room_post(*state, "/api/set", "{\"set\": {\"render.width\": 2400, \"render.height\": 1800, \"render.samples\": 64}}");
+    const json_int_t heavy = room_post(
+        *state, "/api/set", "{\"set\": {\"render.width\": 2400, \"render.height\": 1800, \"render.samples\": 64}}");
     while (shown_of(*state, heavy) == SHOWN_OTHER)
         usleep(1000);
     refused(*state, "GET", "/api/compare", 409, "not finished yet");
@@ -211,7 +215,8 @@ static void the_pinned_picture_stays(void **state)
     pin(*state);
     change(*state, "\"render.width\": 32");
     free(room_film(*state));
-    image *a = picture_of(""), *fine = decoded(*state, "/api/pin.png?bits=16"), *plain = decoded(*state, "/api/pin.png");
+    image *a = picture_of(""), *fine = decoded(*state, "/api/pin.png?bits=16"),
+          *plain = decoded(*state, "/api/pin.png");
     image_comparison found;
     assert_int_equal(fine->coded_bits, 16);
     assert_int_equal(plain->coded_bits, 8);
@@ -227,7 +232,8 @@ static void the_pinned_picture_stays(void **state)
 
 static void wanted_change(const json_t *list, size_t at, const char *path, const char *a, const char *b)
 {
-    json_t *wanted = json_pack("{s:s, s:o, s:o}", "path", path, "a", json_loads(a, JSON_DECODE_ANY, NULL), "b", json_loads(b, JSON_DECODE_ANY, NULL));
+    json_t *wanted = json_pack("{s:s, s:o, s:o}", "path", path, "a", json_loads(a, JSON_DECODE_ANY, NULL), "b",
+                               json_loads(b, JSON_DECODE_ANY, NULL));
     char *text = json_dumps(json_array_get(list, at), 0), *wanted_text = json_dumps(wanted, 0);
     if (!json_equal(json_array_get(list, at), wanted))
         fail_msg("%s is there, and wanted is %s", text ? text : "nothing", wanted_text);
@@ -239,7 +245,8 @@ static void wanted_change(const json_t *list, size_t at, const char *path, const
 static void it_says_which_parameters_changed(void **state)
 {
     pin(*state);
-    change(*state, "\"ball.ior\": 1.7, \"lamp.position\": [1, 2, 3], \"render.threads\": 1, \"background.kind\": \"gradient\"");
+    change(*state,
+           "\"ball.ior\": 1.7, \"lamp.position\": [1, 2, 3], \"render.threads\": 1, \"background.kind\": \"gradient\"");
     change(*state, "\"ball.radius\": 0.5");
     change(*state, "\"ball.radius\": 1");
     json_t *told = room_get(*state, "/api/compare?wait=1"), *list = json_object_get(told, "changed");
@@ -271,9 +278,7 @@ static const json_t *entry(const json_t *list, const char *path)
 {
     const json_t *one;
     size_t i;
-    json_array_foreach(list, i, one)
-        if (strcmp(json_string_value(json_object_get(one, "path")), path) == 0)
-            return one;
+    json_array_foreach(list, i, one) if (strcmp(json_string_value(json_object_get(one, "path")), path) == 0) return one;
     fail_msg("%s is not among what changed", path);
     return NULL;
 }
@@ -318,7 +323,12 @@ static void what_is_let_go_of_is_gone(void **state)
     json_decref(told);
 }
 
-typedef struct asker { const lab_room *room; pthread_t thread; char *text; int rounds, code; } asker;
+typedef struct asker {
+    const lab_room *room;
+    pthread_t thread;
+    char *text;
+    int rounds, code;
+} asker;
 
 static void *ask(void *context)
 {
@@ -352,7 +362,8 @@ static void many_at_once_get_the_same(void **state)
 
 static void *ask_often(void *context)
 {
-    static const char *const targets[] = {"/api/compare", "/api/compare.png", "/api/pin.png", "/api/compare?wait=1", "/api/trace?x=30&y=20"};
+    static const char *const targets[] = {"/api/compare", "/api/compare.png", "/api/pin.png", "/api/compare?wait=1",
+                                          "/api/trace?x=30&y=20"};
     asker *a = context;
     for (int k = 0; k < a->rounds; k++) {
         char *reply = client_ask(a->room->server, "GET", targets[k % 5], "", NULL);

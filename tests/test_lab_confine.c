@@ -1,5 +1,6 @@
-/* Nothing outside of the laboratory's folder is read while a scene is loaded: not what a model's own files name, nor what a link leads to that is put there
- * between the check of the scene and its loading; and not more triangles than the laboratory's. */
+/* Nothing outside of the laboratory's folder is read while a scene is loaded: not what a model's own files name, nor
+ * what a link leads to that is put there between the check of the scene and its loading; and not more triangles than
+ * the laboratory's. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,19 +14,25 @@
 #include "web/lab_private.h"
 
 /* The laboratory's folder is above/lab. Every file is in both, but for links and scenes. */
-typedef struct room { char *above, *inside; lab_room lab; } room;
+typedef struct room {
+    char *above, *inside;
+    lab_room lab;
+} room;
 
 #define TRIANGLE "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n"
-#define GLTF(buffer, picture)                                                                                                                                  \
-    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"                                                      \
-    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]}],"                                                          \
-    "\"materials\":[{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],\"textures\":[{\"source\":0}],"                            \
-    "\"images\":[{\"uri\":\"" picture "\"}],"                                                                                                                  \
-    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                                                                  \
-    "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}],"                                                                              \
-    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":6}],"                                                    \
+#define GLTF(buffer, picture)                                                                                        \
+    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"            \
+    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]}],"                \
+    "\"materials\":[{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],\"textures\":[{" \
+    "\"source\":0}],"                                                                                                \
+    "\"images\":[{\"uri\":\"" picture "\"}],"                                                                        \
+    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                        \
+    "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}],"                                    \
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":6}],"          \
     "\"buffers\":[{\"byteLength\":42,\"uri\":\"" buffer "\"}]}"
-#define SCENE(more) "render: {width: 16, height: 12}\ncamera: {position: [0, 0, -6], target: [0, 0, 0]}\nlights: {lamp: {position: [4, 8, -6]}}\n" more
+#define SCENE(more)                                                                                                  \
+    "render: {width: 16, height: 12}\ncamera: {position: [0, 0, -6], target: [0, 0, 0]}\nlights: {lamp: {position: " \
+    "[4, 8, -6]}}\n" more
 #define BODY(file) SCENE("meshes: {body: {file: '" file "'}}\nsolids: {it: {shape: mesh, mesh: body}}\n")
 
 static void put_bytes(const room *r, const char *name, const void *bytes, size_t size)
@@ -104,7 +111,8 @@ static int enter(void **state)
     assert_int_equal(mkdir(r->inside, 0700), 0);
     put_files(r);
     snprintf(r->lab.results, sizeof r->lab.results, "%s/results", r->inside);
-    const lab_settings settings = {.folder = r->inside, .results = r->lab.results, .level = isa_best(), .threads = 2, .requests_per_s = 1e9};
+    const lab_settings settings = {
+        .folder = r->inside, .results = r->lab.results, .level = isa_best(), .threads = 2, .requests_per_s = 1e9};
     diagnostic why = {.what = ""};
     if (lab_start(&settings, &r->lab.lab, &why) != STATUS_OK)
         fail_msg("%s", why.what);
@@ -225,7 +233,9 @@ static void test_pictures_of_materials(void **state)
     put_link(r, "out.png", "../p.png");
     put_link(r, "in.png", "p.png");
     char *absolute = text_format("%s/p.png", r->above), *own = text_format("%s/p.png", r->inside);
-    const char *const bad[] = {"../p.png", "..\\p.png", "%2e%2e/p.png", "out.png", absolute}, *const good[] = {"p.png", "in.png", own};
+    const char *const bad[] = {"../p.png", "..\\p.png", "%2e%2e/p.png", "out.png", absolute}, *const good[] = {"p.png",
+                                                                                                               "in.png",
+                                                                                                               own};
     for (size_t i = 0; i < sizeof bad / sizeof *bad + sizeof good / sizeof *good; i++) {
         const bool is_bad = i < sizeof bad / sizeof *bad;
         const char *name = is_bad ? bad[i] : good[i - sizeof bad / sizeof *bad];
@@ -287,11 +297,14 @@ static void is_said_of_the_file_itself(const room *r)
 static void test_files_that_become_links(void **state)
 {
     const room *r = *state;
-    static const struct { const char *file, *scene; } cases[] = {
+    static const struct {
+        const char *file, *scene;
+    } cases[] = {
         {"p.png", SCENE("textures: {cloth: {file: p.png}}\nsolids: {it: {shape: sphere, texture: cloth}}\n")},
         {"p.png", SCENE("background: {kind: picture, picture: p.png}\n")},
         {"plain.obj", BODY("plain.obj")},
-        {"pull.yaml", SCENE("meshes: {body: {generate: slime, level: 2, time_s: 0.05, script: pull.yaml}}\nsolids: {it: {shape: mesh, mesh: body}}\n")},
+        {"pull.yaml", SCENE("meshes: {body: {generate: slime, level: 2, time_s: 0.05, script: pull.yaml}}\nsolids: "
+                            "{it: {shape: mesh, mesh: body}}\n")},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         put_files(r);
@@ -315,7 +328,8 @@ static void test_files_that_become_links(void **state)
 static void test_a_new_scene(void **state)
 {
     const room *r = *state;
-    char *change = text_format("{\"set\": {\"background.kind\": \"picture\", \"background.picture\": \"%s/p.png\"}}", r->inside);
+    char *change =
+        text_format("{\"set\": {\"background.kind\": \"picture\", \"background.picture\": \"%s/p.png\"}}", r->inside);
     for (int opened = 0; opened < 2; opened++) { /* the first one, another one */
         if (opened)
             room_post(&r->lab, "/api/open", "{\"new\": true}");
@@ -402,7 +416,7 @@ static void test_below(void **state)
     assert_true(opens(r, "a.mtl", NULL) && opens(r, "a.mtl", "") && opens(r, "a.mtl", r->above));
     assert_false(opens(r, "a.mtl", r->inside));
     assert_false(opens(r, "lab/../a.mtl", r->inside));
-    assert_false(opens(r, "lab/a.mtl", beginning)); /* which is no folder of its own */
+    assert_false(opens(r, "lab/a.mtl", beginning));     /* which is no folder of its own */
     assert_false(opens(r, "lab/to-itself", r->inside)); /* the folder itself is not below it */
     assert_false(opens(r, "lab/nothing", r->inside));
     free(beginning);
@@ -414,9 +428,13 @@ static void test_below(void **state)
 static void test_triangles_together(void **state)
 {
     const room *r = *state;
-    static const char two[] = SCENE("meshes: {one: {file: plain.obj}, two: {file: plain.obj}, more: {generate: box}}\n");
+    static const char two[] =
+        SCENE("meshes: {one: {file: plain.obj}, two: {file: plain.obj}, more: {generate: box}}\n");
     char *name = text_format("%s/any.yaml", r->inside);
-    const struct { size_t limit, kept; const char *word; } cases[] = {{0, 3, NULL}, {14, 3, NULL}, {13, 2, "14 triangles"}, {1, 1, "2 triangles"}};
+    const struct {
+        size_t limit, kept;
+        const char *word;
+    } cases[] = {{0, 3, NULL}, {14, 3, NULL}, {13, 2, "14 triangles"}, {1, 1, "2 triangles"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         scene *s = NULL;
         diagnostic why = {.what = ""};

@@ -104,7 +104,8 @@ static void each_change_is_a_generation_and_can_be_undone(void **state)
 static void what_is_refused_changes_nothing(void **state)
 {
     (void)state;
-    static const char *const bad[] = {"ball.ior=-1", "ball.nothing=1", "camera.position=0,1,0", "render.width=0", "render.width=65536"};
+    static const char *const bad[] = {"ball.ior=-1", "ball.nothing=1", "camera.position=0,1,0", "render.width=0",
+                                      "render.width=65536"};
     desk *d = open_desk(BALL_SCENE);
     apply(d, "render.height=4096");
     changes_seen = 0;
@@ -132,11 +133,14 @@ static status ask_for_much(void *of, scene *s, diagnostic *why)
 static void work_and_memory_are_bounded(void **state)
 {
     (void)state;
-    static const char *const work[] = {"render.width=4096", "render.height=4096", "render.integrator=path", "render.paths=1000000", NULL};
+    static const char *const work[] = {"render.width=4096", "render.height=4096", "render.integrator=path",
+                                       "render.paths=1000000", NULL};
     static const char *const triangles[] = {"soup.count=4000001", NULL}, *const enough[] = {"soup.count=4000000", NULL};
-    desk *d = open_desk(BALL_SCENE "  heap: {shape: mesh, mesh: soup, priority: 2}\nmeshes:\n  soup: {generate: sphere, count: 100}\n");
+    desk *d = open_desk(
+        BALL_SCENE "  heap: {shape: mesh, mesh: soup, priority: 2}\nmeshes:\n  soup: {generate: sphere, count: 100}\n");
     assert_int_equal(desk_apply(d, "x", NULL, ask_for_much, (void *)(uintptr_t)work, NULL, NULL), STATUS_BAD_INPUT);
-    assert_int_equal(desk_apply(d, "x", NULL, ask_for_much, (void *)(uintptr_t)triangles, NULL, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(desk_apply(d, "x", NULL, ask_for_much, (void *)(uintptr_t)triangles, NULL, NULL),
+                     STATUS_BAD_INPUT);
     assert_int_equal(desk_apply(d, "x", NULL, ask_for_much, (void *)(uintptr_t)enough, NULL, NULL), STATUS_OK);
     desk_destroy(d);
 }
@@ -197,14 +201,16 @@ static void resets_go_back_to_what_was_opened(void **state)
     assert_int_equal(desk_undo(d, false, NULL, NULL), STATUS_OK);
     assert_value(d, "ball.radius", "0.7");
     diagnostic why = {0};
-    worked(desk_open(d, scene_from(BALL_SCENE "  cube: {shape: box, size: [1, 1, 1], priority: 5}\n"), "other.yaml", NULL, &why), &why);
+    worked(desk_open(d, scene_from(BALL_SCENE "  cube: {shape: box, size: [1, 1, 1], priority: 5}\n"), "other.yaml",
+                     NULL, &why),
+           &why);
     apply(d, "cube.size=2,2,2");
     assert_int_equal(desk_reset(d, NULL, 0, NULL, NULL), STATUS_OK);
     assert_value(d, "cube.size", "1,1,1");
     assert_told(d, "file", "other.yaml");
     for (int i = 0; i < 3; i++)
         assert_int_equal(desk_undo(d, false, NULL, NULL), STATUS_OK);
-    assert_told(d, "file", "ball.yaml"); /* opening can be undone */
+    assert_told(d, "file", "ball.yaml");                             /* opening can be undone */
     assert_int_equal(desk_reset(d, NULL, 0, NULL, NULL), STATUS_OK); /* and resets know then what was opened before */
     assert_value(d, "ball.radius", "1");
     desk_destroy(d);
@@ -242,7 +248,8 @@ static void it_knows_what_is_saved(void **state)
 static void what_was_loaded_is_shared(void **state)
 {
     (void)state;
-    desk *d = open_desk(BALL_SCENE "  heap: {shape: mesh, mesh: soup, priority: 2}\nmeshes:\n  soup: {generate: sphere, count: 100}\n");
+    desk *d = open_desk(
+        BALL_SCENE "  heap: {shape: mesh, mesh: soup, priority: 2}\nmeshes:\n  soup: {generate: sphere, count: 100}\n");
     uint64_t generation;
     scene *s = desk_take(d, &generation);
     assert_int_equal(scene_load(s, NULL), STATUS_OK);

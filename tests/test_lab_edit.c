@@ -1,5 +1,5 @@
-/* Files and objects of a running laboratory: nothing outside of its folder is read or written, what is saved and opened again makes the same film, and objects
- * come, change and go whole or not at all. */
+/* Files and objects of a running laboratory: nothing outside of its folder is read or written, what is saved and opened
+ * again makes the same film, and objects come, change and go whole or not at all. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,16 +11,21 @@
 #include <math.h>
 #include <pthread.h>
 
-static const char small[] = "title: A ball\n"
-                            "render: {width: 48, height: 36}\n"
-                            "camera: {position: [0, 1, -6], target: [0, 1, 0]}\n"
-                            "materials: {stone: {color: [0.5, 0.5, 0.5], diffuse: 0.7, ambient: 0.2}}\n"
-                            "lights: {lamp: {position: [4, 8, -6]}, beam: {kind: cone, position: [0, 5, 0], target: [0, 0, 0]}}\n"
-                            "solids: {ground: {shape: plane, material: stone}, ball: {shape: sphere, position: [0, 1, 0], diffuse: 0.8, color: [0.8, 0.2, 0.1]}}\n";
+static const char small[] =
+    "title: A ball\n"
+    "render: {width: 48, height: 36}\n"
+    "camera: {position: [0, 1, -6], target: [0, 1, 0]}\n"
+    "materials: {stone: {color: [0.5, 0.5, 0.5], diffuse: 0.7, ambient: 0.2}}\n"
+    "lights: {lamp: {position: [4, 8, -6]}, beam: {kind: cone, position: [0, 5, 0], target: [0, 0, 0]}}\n"
+    "solids: {ground: {shape: plane, material: stone}, ball: {shape: sphere, position: [0, 1, 0], diffuse: 0.8, color: "
+    "[0.8, 0.2, 0.1]}}\n";
 static const char tetrahedron[] = "v 0 0 0\nv 20 0 0\nv 0 20 0\nv 0 0 20\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 /* The laboratory's folder is in another one, where there are files, too, which it must not reach. */
-typedef struct room { char *above, *inside; lab_room lab; } room;
+typedef struct room {
+    char *above, *inside;
+    lab_room lab;
+} room;
 
 static void put(const room *r, const char *name, const char *text)
 {
@@ -44,7 +49,12 @@ static void start(room *r)
 {
     char *ball = text_format("%s/deep/ball.yaml", r->inside);
     snprintf(r->lab.results, sizeof r->lab.results, "%s/results", r->inside);
-    const lab_settings settings = {.folder = r->inside, .scene = ball, .results = r->lab.results, .level = isa_best(), .threads = 3, .requests_per_s = 1e9};
+    const lab_settings settings = {.folder = r->inside,
+                                   .scene = ball,
+                                   .results = r->lab.results,
+                                   .level = isa_best(),
+                                   .threads = 3,
+                                   .requests_per_s = 1e9};
     diagnostic why = {.what = ""};
     if (lab_start(&settings, &r->lab.lab, &why) != STATUS_OK)
         fail_msg("%s", why.what);
@@ -64,7 +74,8 @@ static int enter(void **state)
     r->above = strdup(mkdtemp(place));
     r->inside = text_format("%s/lab", r->above);
     make_folder(r->inside);
-    char *deep = text_format("%s/deep", r->inside), *picture_path = text_format("%s/picture.png", r->inside), *outside = text_format("%s/outside.png", r->above);
+    char *deep = text_format("%s/deep", r->inside), *picture_path = text_format("%s/picture.png", r->inside),
+         *outside = text_format("%s/outside.png", r->above);
     make_folder(deep);
     image *picture = NULL;
     assert_int_equal(image_create(4, 2, &picture, NULL), STATUS_OK);
@@ -102,7 +113,8 @@ static json_t *ask(const room *r, int code, const char *method, const char *targ
 {
     json_t *reply = room_ask(&r->lab, method, target, body, code);
     if (code >= 400)
-        assert_true(json_is_string(json_object_get(reply, "error")) && json_is_string(json_object_get(reply, "remedy")));
+        assert_true(json_is_string(json_object_get(reply, "error")) &&
+                    json_is_string(json_object_get(reply, "remedy")));
     return reply;
 }
 
@@ -144,9 +156,8 @@ static json_t *find(const room *r, const char *list, const char *key, const char
 {
     json_t *all = ask(r, 200, "GET", "/api/scene", NULL), *found = NULL, *item;
     size_t i;
-    json_array_foreach(json_object_get(all, list), i, item)
-        if (strcmp(json_string_value(json_object_get(item, key)), name) == 0)
-            found = json_incref(item);
+    json_array_foreach(json_object_get(all, list), i, item) if (strcmp(json_string_value(json_object_get(item, key)),
+                                                                       name) == 0) found = json_incref(item);
     json_decref(all);
     return found;
 }
@@ -198,9 +209,20 @@ static void test_open_refuses(void **state)
     const room *r = *state;
     const json_int_t before = generation(r);
     static const char *const bad[] = {
-        "{\"file\": \"../outside.yaml\"}", "{\"file\": \"deep/../../outside.yaml\"}", "{\"file\": \"/etc/passwd\"}", "{\"file\": \"\"}", "{\"file\": 3}", "{}",
-        "[]", "{\"file\": \"deep\"}", "{\"file\": \"climbs.yaml\"}", "{\"file\": \"climbs2.yaml\"}", "{\"new\": true, \"file\": \"deep/ball.yaml\"}", "{\"new\": 1}",
-        "{\"file\": \"picture.png\"}", "{\"file\"",
+        "{\"file\": \"../outside.yaml\"}",
+        "{\"file\": \"deep/../../outside.yaml\"}",
+        "{\"file\": \"/etc/passwd\"}",
+        "{\"file\": \"\"}",
+        "{\"file\": 3}",
+        "{}",
+        "[]",
+        "{\"file\": \"deep\"}",
+        "{\"file\": \"climbs.yaml\"}",
+        "{\"file\": \"climbs2.yaml\"}",
+        "{\"new\": true, \"file\": \"deep/ball.yaml\"}",
+        "{\"new\": 1}",
+        "{\"file\": \"picture.png\"}",
+        "{\"file\"",
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         tell(r, 400, "POST", "/api/open", bad[i]);
@@ -235,9 +257,17 @@ static void test_open_and_undo(void **state)
 static void test_save(void **state)
 {
     const room *r = *state;
-    static const char *const bad[] = {"{\"file\": \"../new.yaml\"}", "{\"file\": \"/tmp/new.yaml\"}", "{\"file\": \"none/new.yaml\"}", "{\"file\": \"new.txt\"}",
-                                      "{\"file\": \"new\"}", "{\"file\": \".new.yaml\"}", "{\"file\": \"-\"}", "{\"file\": \"\"}", "{}",
-                                      "{\"file\": \"new.yaml\", \"replace\": \"yes\"}", "{\"file\": \"deep\", \"replace\": true}"};
+    static const char *const bad[] = {"{\"file\": \"../new.yaml\"}",
+                                      "{\"file\": \"/tmp/new.yaml\"}",
+                                      "{\"file\": \"none/new.yaml\"}",
+                                      "{\"file\": \"new.txt\"}",
+                                      "{\"file\": \"new\"}",
+                                      "{\"file\": \".new.yaml\"}",
+                                      "{\"file\": \"-\"}",
+                                      "{\"file\": \"\"}",
+                                      "{}",
+                                      "{\"file\": \"new.yaml\", \"replace\": \"yes\"}",
+                                      "{\"file\": \"deep\", \"replace\": true}"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         tell(r, 400, "POST", "/api/save", bad[i]);
     assert_false(is_there(r, "new.yaml"));
@@ -247,7 +277,8 @@ static void test_save(void **state)
     film(r, before);
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": false}");
-    tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": true}"); /* whose paths are now from another folder */
+    tell(r, 200, "POST", "/api/save",
+         "{\"file\": \"wrong.yaml\", \"replace\": true}"); /* whose paths are now from another folder */
     assert_string_equal(told(r, "file", text), "wrong.yaml");
     tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
     tell(r, 200, "POST", "/api/save", "{\"file\": \"deep/Another \\u00fc.yml\"}");
@@ -324,7 +355,8 @@ static void test_each_solid_comes_and_shows(void **state)
     assert_float_equal(value(r, "box.size", 0), 1.0, 1e-9);
     assert_float_equal(value(r, "box.position", 1), 0.5, 1e-9);
     assert_float_equal(value(r, "cup.position", 1), 0.0, 1e-9);
-    assert_true(hypot(value(r, "box.position", 0) - value(r, "box2.position", 0), value(r, "box.position", 2) - value(r, "box2.position", 2)) > 1.0);
+    assert_true(hypot(value(r, "box.position", 0) - value(r, "box2.position", 0),
+                      value(r, "box.position", 2) - value(r, "box2.position", 2)) > 1.0);
 }
 
 static void test_others_come(void **state)
@@ -347,13 +379,22 @@ static void test_others_come(void **state)
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"slime\"}");
     film(r, next);
     assert_string_not_equal(hash, next);
-    tell(r, 200, "POST", "/api/set", "{\"set\": {\"slime-mesh.time_s\": 0.3}}"); /* whose motion takes its time to load */
+    tell(r, 200, "POST", "/api/set",
+         "{\"set\": {\"slime-mesh.time_s\": 0.3}}"); /* whose motion takes its time to load */
     film(r, hash);
     assert_string_not_equal(hash, next);
-    static const char *const bad[] = {"{\"kind\": \"solid\"}", "{\"kind\": \"solid\", \"shape\": \"cone\"}", "{\"kind\": \"cloud\"}", "{}", "{\"kind\": 1}",
-                                      "{\"kind\": \"light\", \"name\": \"two words\"}", "{\"kind\": \"light\", \"name\": \"camera\"}", "{\"kind\": \"model\"}",
-                                      "{\"kind\": \"model\", \"file\": \"../outside.obj\"}", "{\"kind\": \"model\", \"file\": \"picture.png\"}",
-                                      "{\"kind\": \"texture\", \"file\": \"../outside.png\"}", "{\"kind\": \"texture\", \"file\": \"deep/ball.yaml\"}",
+    static const char *const bad[] = {"{\"kind\": \"solid\"}",
+                                      "{\"kind\": \"solid\", \"shape\": \"cone\"}",
+                                      "{\"kind\": \"cloud\"}",
+                                      "{}",
+                                      "{\"kind\": 1}",
+                                      "{\"kind\": \"light\", \"name\": \"two words\"}",
+                                      "{\"kind\": \"light\", \"name\": \"camera\"}",
+                                      "{\"kind\": \"model\"}",
+                                      "{\"kind\": \"model\", \"file\": \"../outside.obj\"}",
+                                      "{\"kind\": \"model\", \"file\": \"picture.png\"}",
+                                      "{\"kind\": \"texture\", \"file\": \"../outside.png\"}",
+                                      "{\"kind\": \"texture\", \"file\": \"deep/ball.yaml\"}",
                                       "{\"kind\": \"model\", \"file\": \"none.obj\"}"};
     const json_int_t before = generation(r);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
@@ -390,7 +431,8 @@ static void test_change(void **state)
     tell(r, 200, "POST", "/api/objects/globe/material", "{\"material\": null}");
     assert_string_equal(word_of(r, "globe", "material", word), "");
     assert_float_equal(value(r, "globe.diffuse", 0), 0.7, 1e-12); /* it looks as the stone did */
-    static const char *const copied[][2] = {{"globe", "globe2"}, {"lamp", "lamp2"}, {"stone", "stone2"}, {"lamp2", "lamp3"}, {"ground", "ground2"}};
+    static const char *const copied[][2] = {
+        {"globe", "globe2"}, {"lamp", "lamp2"}, {"stone", "stone2"}, {"lamp2", "lamp3"}, {"ground", "ground2"}};
     for (size_t i = 0; i < sizeof copied / sizeof *copied; i++) {
         char *target = text_format("/api/objects/%s/copy", copied[i][0]);
         json_t *reply = ask(r, 200, "POST", target, "{}");
@@ -402,12 +444,15 @@ static void test_change(void **state)
 }
 
 /* The reference scene's rod, which is long and thin, in its vessel. */
-static const char rod_scene[] = "render: {width: 40, height: 30}\ncamera: {position: [0, 2.75, -6], target: [0, 1.5, 0], fov_deg: 45}\n"
-                                "lights: {lamp: {position: [4, 7, -5]}}\n"
-                                "solids:\n  ground: {shape: plane, priority: 0}\n"
-                                "  vessel: {shape: cup, transparency: 1, ior: 1.5, position: [0, 0.001, 0], radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: 2}\n"
-                                "  liquid: {shape: cylinder, transparency: 1, ior: 1.33, position: [0, 0.051, 0], radius: 0.95, height: 1.95, priority: 1}\n"
-                                "  rod: {shape: box, diffuse: 0.7, position: [0.2, 2.101, 0], size: [0.25, 3, 0.25], priority: 3}\n";
+static const char rod_scene[] =
+    "render: {width: 40, height: 30}\ncamera: {position: [0, 2.75, -6], target: [0, 1.5, 0], fov_deg: 45}\n"
+    "lights: {lamp: {position: [4, 7, -5]}}\n"
+    "solids:\n  ground: {shape: plane, priority: 0}\n"
+    "  vessel: {shape: cup, transparency: 1, ior: 1.5, position: [0, 0.001, 0], radius: 1, inner_radius: 0.9, height: "
+    "3, floor: 0.1, priority: 2}\n"
+    "  liquid: {shape: cylinder, transparency: 1, ior: 1.33, position: [0, 0.051, 0], radius: 0.95, height: 1.95, "
+    "priority: 1}\n"
+    "  rod: {shape: box, diffuse: 0.7, position: [0.2, 2.101, 0], size: [0.25, 3, 0.25], priority: 3}\n";
 
 static double apart(const room *r, const char *a, const char *b, size_t axis)
 {
@@ -425,7 +470,8 @@ static bool is_seen(const room *r, const char *rod)
     const double length = hypot(1.25, 6.0), half_height = tan(acos(-1.0) / 8.0), half_width = half_height * 4.0 / 3.0;
     for (int corner = 0; corner < 8; corner++) {
         const double x = value(r, path, 0) + (corner & 1 ? 0.125 : -0.125);
-        const double y = value(r, path, 1) + (corner & 2 ? 1.5 : -1.5) - 2.75, z = value(r, path, 2) + (corner & 4 ? 0.125 : -0.125) + 6.0;
+        const double y = value(r, path, 1) + (corner & 2 ? 1.5 : -1.5) - 2.75,
+                     z = value(r, path, 2) + (corner & 4 ? 0.125 : -0.125) + 6.0;
         const double ahead = (6.0 * z - 1.25 * y) / length, up = (6.0 * y + 1.25 * z) / length;
         if (ahead <= 0.0 || fabs(x) > half_width * ahead || fabs(up) > half_height * ahead)
             return false;
@@ -443,7 +489,8 @@ static void test_copies_of_a_rod(void **state)
         tell(r, 200, "POST", "/api/objects/rod/copy", "{}");
         assert_true(is_seen(r, rods[i]));
         for (size_t k = 0; k < i; k++)
-            assert_true(apart(r, rods[i], rods[k], 0) > 0.25 || apart(r, rods[i], rods[k], 2) > 0.25 || apart(r, rods[i], rods[k], 1) > 3.0);
+            assert_true(apart(r, rods[i], rods[k], 0) > 0.25 || apart(r, rods[i], rods[k], 2) > 0.25 ||
+                        apart(r, rods[i], rods[k], 1) > 3.0);
     }
     assert_true(apart(r, "rod", "rod2", 0) < 0.3); /* it stands in the liquid, too */
 }
@@ -477,7 +524,8 @@ static void test_copies_of_meshes(void **state)
 static void test_whole_scene(void **state)
 {
     const room *r = *state;
-    const double lamp = value(r, "lamp.position", 0), ball = value(r, "ball.position", 0), eye = value(r, "camera.position", 0);
+    const double lamp = value(r, "lamp.position", 0), ball = value(r, "ball.position", 0),
+                 eye = value(r, "camera.position", 0);
     char text[256];
     tell(r, 200, "POST", "/api/objects/all/move", "{\"by\": [1, 0, 0]}");
     assert_true(fabs(value(r, "lamp.position", 0) - (lamp + 1.0)) < 1e-12);
@@ -501,7 +549,10 @@ static void test_change_refuses(void **state)
 {
     const room *r = *state;
     const json_int_t before = generation(r);
-    static const struct { int code; const char *method, *target, *body; } bad[] = {
+    static const struct {
+        int code;
+        const char *method, *target, *body;
+    } bad[] = {
         {404, "DELETE", "/api/objects/none", "{}"},
         {409, "DELETE", "/api/objects/stone", "{}"},
         {400, "DELETE", "/api/objects/camera", "{}"},
@@ -562,13 +613,19 @@ static void test_until_it_is_full(void **state)
     tell(r, 400, "POST", "/api/objects/ball/copy", "{}");
 }
 
-typedef struct visitor { const room *r; int number; pthread_t thread; } visitor;
+typedef struct visitor {
+    const room *r;
+    int number;
+    pthread_t thread;
+} visitor;
 
 static void *visit(void *of)
 {
     const visitor *v = of;
-    char *save = text_format("{\"file\": \"visitor%d.yaml\", \"replace\": true}", v->number), *target = text_format("/api/objects/mine%d", v->number);
-    char *body = text_format("{\"kind\": \"solid\", \"shape\": \"box\", \"name\": \"mine%d\"}", v->number), *move = text_format("%s/move", target);
+    char *save = text_format("{\"file\": \"visitor%d.yaml\", \"replace\": true}", v->number),
+         *target = text_format("/api/objects/mine%d", v->number);
+    char *body = text_format("{\"kind\": \"solid\", \"shape\": \"box\", \"name\": \"mine%d\"}", v->number),
+         *move = text_format("%s/move", target);
     for (int i = 0; i < 5; i++) {
         tell(v->r, 200, "POST", "/api/objects", body);
         tell(v->r, 200, "POST", move, "{\"by\": [0.1, 0, 0], \"gesture\": \"drag\"}");

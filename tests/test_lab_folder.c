@@ -1,4 +1,5 @@
-/* The folder of the laboratory: which names lead to files in it, what leads out, what a scene may name, and what is listed. */
+/* The folder of the laboratory: which names lead to files in it, what leads out, what a scene may name, and what is
+ * listed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +17,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-typedef struct room { char *above, *inside; folder *f; } room; /* inside is the folder; beside it lies secret.yaml */
+typedef struct room {
+    char *above, *inside;
+    folder *f;
+} room; /* inside is the folder; beside it lies secret.yaml */
 
 static void put(const char *at, const char *name, const char *text)
 {
@@ -120,9 +124,28 @@ static void test_names_that_lead_out(void **state)
     char *absolute = text_format("%s/a scene.yaml", r->inside), *longest = malloc(100001);
     memset(longest, 'a', 100000);
     longest[100000] = 0;
-    const char *const bad[] = {"", ".", "..", "/", "../secret.yaml", "sub/../../secret.yaml", "sub/../a scene.yaml", "./a scene.yaml", "sub//Kuh-\xc3\xbc.yml",
-                               "sub/", "/etc/passwd", "out.yaml", "up/secret.yaml", "up/lab/a scene.yaml/..", "gone.yaml", "gone-out.yaml", "up/new.yaml",
-                               "up/labour/secret.yaml", "../labour/secret.yaml", "a\nb.yaml", absolute, longest};
+    const char *const bad[] = {"",
+                               ".",
+                               "..",
+                               "/",
+                               "../secret.yaml",
+                               "sub/../../secret.yaml",
+                               "sub/../a scene.yaml",
+                               "./a scene.yaml",
+                               "sub//Kuh-\xc3\xbc.yml",
+                               "sub/",
+                               "/etc/passwd",
+                               "out.yaml",
+                               "up/secret.yaml",
+                               "up/lab/a scene.yaml/..",
+                               "gone.yaml",
+                               "gone-out.yaml",
+                               "up/new.yaml",
+                               "up/labour/secret.yaml",
+                               "../labour/secret.yaml",
+                               "a\nb.yaml",
+                               absolute,
+                               longest};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         if (leads(r, bad[i], true) || leads(r, bad[i], false))
             fail_msg("'%.80s' was let in", bad[i]);
@@ -248,9 +271,7 @@ static bool lists(const json_t *all, const char *use, const char *name)
 {
     size_t i;
     json_t *item;
-    json_array_foreach(json_object_get(all, use), i, item)
-        if (strcmp(json_string_value(item), name) == 0)
-            return true;
+    json_array_foreach(json_object_get(all, use), i, item) if (strcmp(json_string_value(item), name) == 0) return true;
     return false;
 }
 
@@ -272,8 +293,10 @@ static void test_list(void **state)
     link_to(r->inside, "passwd.png", "/etc/passwd");
     json_t *all = folder_tell(r->f);
     assert_string_equal(json_string_value(json_object_get(all, "folder")), "lab");
-    assert_true(lists(all, "scenes", "a scene.yaml") && lists(all, "scenes", "sub/Kuh-\xc3\xbc.yml") && lists(all, "scenes", "broken.yaml"));
-    assert_true(lists(all, "scenes", "in.yaml") && lists(all, "scripts", "sub/pull.yaml") && lists(all, "models", "sub/two/three/deep.OBJ"));
+    assert_true(lists(all, "scenes", "a scene.yaml") && lists(all, "scenes", "sub/Kuh-\xc3\xbc.yml") &&
+                lists(all, "scenes", "broken.yaml"));
+    assert_true(lists(all, "scenes", "in.yaml") && lists(all, "scripts", "sub/pull.yaml") &&
+                lists(all, "models", "sub/two/three/deep.OBJ"));
     assert_true(lists(all, "pictures", "p.jpeg") && lists(all, "studies", "q.study"));
     assert_int_equal(json_array_size(json_object_get(all, "scenes")), 4);
     assert_int_equal(json_array_size(json_object_get(all, "scripts")), 1);

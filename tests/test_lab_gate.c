@@ -12,7 +12,10 @@
 
 enum { PLACES = 2, VISITORS = 8, VISITS = 500 };
 
-typedef struct hall { gate *g; atomic_int in, most, visits, refused; } hall;
+typedef struct hall {
+    gate *g;
+    atomic_int in, most, visits, refused;
+} hall;
 
 static void *visit(void *of)
 {

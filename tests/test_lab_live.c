@@ -1,4 +1,5 @@
-/* The live slime without a server: this thread is the painter, another one has the hands. How bodies move is the business of tests/test_softbody.c. */
+/* The live slime without a server: this thread is the painter, another one has the hands. How bodies move is the
+ * business of tests/test_softbody.c. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -17,16 +18,17 @@
 #include "web/live.h"
 
 /* It lies on a floor at once and comes to rest soon. */
-static const char toys[] = "render: {width: 32, height: 24}\n"
-                           "camera: {position: [0, 0, -6], target: [0, 0, 0]}\n"
-                           "lights: {lamp: {position: [3, 6, -4]}}\n"
-                           "meshes:\n"
-                           "  pin: {generate: icosphere, level: 1}\n"
-                           "  toy: {generate: slime, level: 2, position: [0, 0, 0], ground_y: -1, damping: 0.5, dt_s: 0.0005, time_s: 0.05}\n"
-                           "materials: {jelly: {transparency: 0.9, ior: 1.3}}\n"
-                           "solids:\n"
-                           "  needle: {shape: mesh, mesh: pin, position: [0, 9, 0]}\n"
-                           "  body: {shape: mesh, mesh: toy, material: jelly, position: [1, 0, 0]}\n";
+static const char toys[] =
+    "render: {width: 32, height: 24}\n"
+    "camera: {position: [0, 0, -6], target: [0, 0, 0]}\n"
+    "lights: {lamp: {position: [3, 6, -4]}}\n"
+    "meshes:\n"
+    "  pin: {generate: icosphere, level: 1}\n"
+    "  toy: {generate: slime, level: 2, position: [0, 0, 0], ground_y: -1, damping: 0.5, dt_s: 0.0005, time_s: 0.05}\n"
+    "materials: {jelly: {transparency: 0.9, ior: 1.3}}\n"
+    "solids:\n"
+    "  needle: {shape: mesh, mesh: pin, position: [0, 9, 0]}\n"
+    "  body: {shape: mesh, mesh: toy, material: jelly, position: [1, 0, 0]}\n";
 
 static const double most_s = 0.02;
 enum { TOY = 1 };
@@ -397,7 +399,8 @@ static void a_script_plays_until_hands_are_in_its_way(void **state)
     const int file = mkstemp(path);
     assert_true(file >= 0);
     close(file);
-    put_script(path, "hands: {left: [{time_s: 0.02, grab: [-0.7, 0, -6], towards: [0, 0, 1], reach: 0.3}, {time_s: 0.1, move: [-0.8, 0, 0]}, {time_s: 0.6, release: on}]}\n");
+    put_script(path, "hands: {left: [{time_s: 0.02, grab: [-0.7, 0, -6], towards: [0, 0, 1], reach: 0.3}, {time_s: "
+                     "0.1, move: [-0.8, 0, 0]}, {time_s: 0.6, release: on}]}\n");
     char *assignment = text_format("toy.script=%s", path);
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, assignment);
@@ -411,7 +414,8 @@ static void a_script_plays_until_hands_are_in_its_way(void **state)
     live_detach(l);
     scene_destroy(s);
     free(assignment);
-    put_script(path, "hands: {left: [{time_s: 0, grab: [-0.7, 0, -6], towards: [0, 0, 1], reach: 0.3}], right: [{time_s: 0.1, grab: [7, 0, -6], towards: [0, 0, 1], reach: 0.3}]}\n");
+    put_script(path, "hands: {left: [{time_s: 0, grab: [-0.7, 0, -6], towards: [0, 0, 1], reach: 0.3}], right: "
+                     "[{time_s: 0.1, grab: [7, 0, -6], towards: [0, 0, 1], reach: 0.3}]}\n");
     assignment = text_format("toy.script=%s toy.seed=2", path);
     s = scene_with(toys, assignment);
     attach(l, s);

@@ -1,4 +1,5 @@
-/* Many pages, many changes, clients that hang or send rubbish, random requests: nothing breaks, memory stays bounded, the last change wins. */
+/* Many pages, many changes, clients that hang or send rubbish, random requests: nothing breaks, memory stays bounded,
+ * the last change wins. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -39,10 +40,12 @@ static long resident_kib(void)
     return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-/* A page: listens to events and asks for each picture that it hears of, until it has seen the final one of the wanted generation. */
+/* A page: listens to events and asks for each picture that it hears of, until it has seen the final one of the wanted
+ * generation. */
 typedef struct tab {
     pthread_t thread;
-    json_int_t wanted, seen, serial, told; /* told: generation of the latest state; wanted: atomic, 0 while it is not known */
+    json_int_t wanted, seen, serial,
+        told; /* told: generation of the latest state; wanted: atomic, 0 while it is not known */
     bool disorder;
 } tab;
 
@@ -68,7 +71,8 @@ static void *be_a_tab(void *of)
 {
     tab *t = of;
     const int fd = client_connect(http_port(room.server));
-    char *request = text_format("GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n", http_port(room.server), http_token(room.server));
+    char *request = text_format("GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n",
+                                http_port(room.server), http_token(room.server));
     client_send(fd, request, strlen(request));
     free(request);
     FILE *in = fdopen(fd, "r");
@@ -96,7 +100,8 @@ static void ten_pages_and_a_thousand_changes(void **state)
         usleep(1000);
     char change[128];
     for (int i = 0; i < CHANGES; i++) {
-        snprintf(change, sizeof change, "{\"set\": {\"ball.ior\": %.4f}, \"gesture\": \"g%d\"}", 1.0 + i * 0.001, i / 100);
+        snprintf(change, sizeof change, "{\"set\": {\"ball.ior\": %.4f}, \"gesture\": \"g%d\"}", 1.0 + i * 0.001,
+                 i / 100);
         room_post(&room, "/api/set", change);
     }
     /* The generation is told beforehand; one more change makes sure that they hear of it. */
@@ -153,7 +158,8 @@ static void who_hangs_or_raves_hinders_nobody(void **state)
     enum { HANGING = 40 };
     static const char rubbish[] = "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03 GET / HTTP/9.9\r\n\r\n\0\xff\xfe";
     int fd[HANGING];
-    char *half = text_format("POST /api/set HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\nContent-Type: application/json\r\nContent-Length: 1000\r\n\r\n{\"set\"",
+    char *half = text_format("POST /api/set HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer "
+                             "%s\r\nContent-Type: application/json\r\nContent-Length: 1000\r\n\r\n{\"set\"",
                              http_port(room.server), http_token(room.server));
     for (int i = 0; i < HANGING; i++) {
         fd[i] = client_connect(http_port(room.server));
@@ -170,7 +176,8 @@ static void who_hangs_or_raves_hinders_nobody(void **state)
     free(half);
 }
 
-/* Requests of the API, good and nearly good: %r stands for a random real, %w for a random word, %n for a small number. */
+/* Requests of the API, good and nearly good: %r stands for a random real, %w for a random word, %n for a small number.
+ */
 static const char *const targets[][3] = {
     {"GET", "/api/state", NULL},
     {"GET", "/api/scene", NULL},
@@ -221,9 +228,31 @@ static const char *const targets[][3] = {
 enum { TARGETS = sizeof targets / sizeof *targets };
 
 /* Words that mean something, words that climb, and words that are nothing. */
-static const char *const words[] = {"ball", "ground", "lamp", "tiles", "scene", "scene.yaml", "../scene.yaml", "%2e%2e%2fetc", "/etc/passwd", "..", ".", "", "box", "off", "restart",
-                                    "new", "a b", "\\u0000", "\\ud800", "caf\\u00e9", "x", "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"};
-static const char *const reals[] = {"0", "-1", "1.5", "1e300", "-1e-300", "64", "NaN", "1e999", "\"1\"", "null", "0.3333333333333333", "48", "7"};
+static const char *const words[] = {
+    "ball",
+    "ground",
+    "lamp",
+    "tiles",
+    "scene",
+    "scene.yaml",
+    "../scene.yaml",
+    "%2e%2e%2fetc",
+    "/etc/passwd",
+    "..",
+    ".",
+    "",
+    "box",
+    "off",
+    "restart",
+    "new",
+    "a b",
+    "\\u0000",
+    "\\ud800",
+    "caf\\u00e9",
+    "x",
+    "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"};
+static const char *const reals[] = {
+    "0", "-1", "1.5", "1e300", "-1e-300", "64", "NaN", "1e999", "\"1\"", "null", "0.3333333333333333", "48", "7"};
 
 static void fill(uint64_t *seed, const char *form, char *text, size_t size)
 {
@@ -296,8 +325,9 @@ static void random_requests_do_no_harm(void **state)
     if (grown_kib > 256 * 1024)
         fail_msg("%ld KiB more than after a quarter of the requests", grown_kib);
     if (wanted)
-        print_message("%ld requests: %ld good, %ld refused, %ld without an answer; memory grew by %ld KiB over the last three quarters\n", count, by_hundred[2],
-                      by_hundred[4], by_hundred[0], grown_kib);
+        print_message("%ld requests: %ld good, %ld refused, %ld without an answer; memory grew by %ld KiB over the "
+                      "last three quarters\n",
+                      count, by_hundred[2], by_hundred[4], by_hundred[0], grown_kib);
     room_post(&room, "/api/open", "{\"new\": true}");
     free(room_film(&room));
 }

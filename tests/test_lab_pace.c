@@ -42,6 +42,7 @@ static void it_has_bounds(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(it_settles_where_there_is_time), cmocka_unit_test(it_has_bounds)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(it_settles_where_there_is_time),
+                                       cmocka_unit_test(it_has_bounds)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -230,7 +230,8 @@ static void passes_fit_the_time_that_there_is(void **state)
 {
     (void)state;
     const render_settings fast = {.width = 800, .height = 600, .samples = 1};
-    const render_settings slow = {.width = 4000, .height = 3000, .samples = 64, .integrator = INTEGRATOR_PATH, .paths = 256};
+    const render_settings slow = {
+        .width = 4000, .height = 3000, .samples = 64, .integrator = INTEGRATOR_PATH, .paths = 256};
     pass_plan plan = passes_plan(&fast, 480000 / 0.03, 0.04); /* a frame takes 0.03 s */
     assert_int_equal(plan.count, 1);
     plan = passes_plan(&fast, 480000 / 0.5, 0.04);
@@ -255,22 +256,24 @@ static void what_takes_long_to_load_is_shown(void **state)
 {
     (void)state;
     studio s;
-    open_studio(&s, scene_from("render: {width: 8, height: 8}\n"
-                                  "camera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
-                                  "meshes:\n"
-                                  "  toy: {generate: slime, level: 3, position: [0, 0, 0], ground_y: -1, dt_s: 0.0005, time_s: 1}\n"
-                                  "solids:\n"
-                                  "  body: {shape: mesh, mesh: toy}\n"));
+    open_studio(
+        &s,
+        scene_from("render: {width: 8, height: 8}\n"
+                   "camera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
+                   "meshes:\n"
+                   "  toy: {generate: slime, level: 3, position: [0, 0, 0], ground_y: -1, dt_s: 0.0005, time_s: 1}\n"
+                   "solids:\n"
+                   "  body: {shape: mesh, mesh: toy}\n"));
     final_film(&s);
     close_studio(&s);
 }
 
-#define SLIME_SCENE(time_s)                                                                                                                                    \
-    "render: {width: 8, height: 8}\n"                                                                                                                          \
-    "camera: {position: [0, 0, -5], target: [0, 0, 0]}\n"                                                                                                      \
-    "meshes:\n"                                                                                                                                                \
-    "  toy: {generate: slime, level: 2, position: [0, 0, 0], ground_y: -1, time_s: " time_s "}\n"                                                              \
-    "solids:\n"                                                                                                                                                \
+#define SLIME_SCENE(time_s)                                                                       \
+    "render: {width: 8, height: 8}\n"                                                             \
+    "camera: {position: [0, 0, -5], target: [0, 0, 0]}\n"                                         \
+    "meshes:\n"                                                                                   \
+    "  toy: {generate: slime, level: 2, position: [0, 0, 0], ground_y: -1, time_s: " time_s "}\n" \
+    "solids:\n"                                                                                   \
     "  body: {shape: mesh, mesh: toy}\n"
 
 /* Does the program come to rest? Looked at again and again, since others may keep it from resting for a while. */
@@ -322,7 +325,11 @@ static void what_takes_hours_keeps_no_newer_change_back(void **state)
     close_studio(&s);
 }
 
-typedef struct looker { studio *s; atomic_bool *ends; int looks, bare; } looker;
+typedef struct looker {
+    studio *s;
+    atomic_bool *ends;
+    int looks, bare;
+} looker;
 
 static status look_at_meshes(void *of, scene *s, diagnostic *why)
 {
@@ -386,7 +393,8 @@ static void what_was_live_is_loaded_again(void **state)
     (void)state;
     enum { TURNS = 20 };
     static const char toys[] = "render: {width: 8, height: 8}\ncamera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
-                               "meshes:\n  toy: {generate: slime, level: 2, ground_y: -1, time_s: 0.001}\n  ring: {generate: torus, around: 500, tube: 100}\n"
+                               "meshes:\n  toy: {generate: slime, level: 2, ground_y: -1, time_s: 0.001}\n  ring: "
+                               "{generate: torus, around: 500, tube: 100}\n"
                                "solids:\n  body: {shape: mesh, mesh: toy}\n  hoop: {shape: mesh, mesh: ring}\n";
     const struct timespec a_moment = {.tv_nsec = 2000000};
     studio s;

@@ -1,4 +1,5 @@
-/* The slime through the laboratory's API: it plays, is grabbed in the picture, drawn and let go. What moves and how is tests/test_lab_live.c. */
+/* The slime through the laboratory's API: it plays, is grabbed in the picture, drawn and let go. What moves and how is
+ * tests/test_lab_live.c. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,11 +10,14 @@
 #include "lab_fixture.h"
 
 /* Seen from the front, in the middle of the picture; its way to its moment takes many steps. */
-#define TOY_SCENE                                                                                                                                              \
-    "render: {width: 64, height: 48, depth: 2}\ncamera: {position: [0, 0, -6], target: [0, 0, 0]}\nbackground: {color: [0.5, 0.7, 0.9]}\n"                      \
-    "lights:\n  lamp: {position: [4, 7, -5]}\n"                                                                                                                \
-    "meshes:\n  toy: {generate: slime, level: 3, position: [0, 0, 0], ground_y: -1, damping: 0.3, dt_s: 0.0005, time_s: 1}\n"                                  \
-    "solids:\n  ground: {shape: plane, position: [0, -1, 0], diffuse: 0.7}\n  body: {shape: mesh, mesh: toy, diffuse: 0.8, priority: 1}\n"
+#define TOY_SCENE                                                                                                 \
+    "render: {width: 64, height: 48, depth: 2}\ncamera: {position: [0, 0, -6], target: [0, 0, 0]}\nbackground: "  \
+    "{color: [0.5, 0.7, 0.9]}\n"                                                                                  \
+    "lights:\n  lamp: {position: [4, 7, -5]}\n"                                                                   \
+    "meshes:\n  toy: {generate: slime, level: 3, position: [0, 0, 0], ground_y: -1, damping: 0.3, dt_s: 0.0005, " \
+    "time_s: 1}\n"                                                                                                \
+    "solids:\n  ground: {shape: plane, position: [0, -1, 0], diffuse: 0.7}\n  body: {shape: mesh, mesh: toy, "    \
+    "diffuse: 0.8, priority: 1}\n"
 
 static json_t *state_of(const lab_room *room)
 {
@@ -113,7 +117,8 @@ static void a_hand_draws_it_through_the_picture(void **state)
     char *way = text_format("{\"hand\": %d, \"x\": 10, \"y\": 24, \"depth\": -0.5}", hand);
     json_decref(room_ask(&room, "POST", "/api/slime/move", way, 200));
     wait_for_time(&room, then_s + 0.4);
-    json_t *there = room_ask(&room, "POST", "/api/slime/grab", "{\"x\": 10, \"y\": 24, \"reach\": 0.01}", 200); /* now it is there */
+    json_t *there = room_ask(&room, "POST", "/api/slime/grab", "{\"x\": 10, \"y\": 24, \"reach\": 0.01}",
+                             200); /* now it is there */
     json_decref(there);
     char *let_go = text_format("{\"hand\": %d}", hand);
     json_decref(room_ask(&room, "POST", "/api/slime/release", let_go, 200));
@@ -135,15 +140,18 @@ static void what_cannot_be_asked_is_refused(void **state)
     lab_room room;
     room_open(&room, TOY_SCENE);
     free(room_film(&room)); /* it is known from its first image on */
-    static const char *const bodies[] = {"[]", "{}", "{\"do\": \"jump\"}", "{\"do\": 3}", "{\"do\": \"play\", \"preview\": \"fast\"}"};
+    static const char *const bodies[] = {"[]", "{}", "{\"do\": \"jump\"}", "{\"do\": 3}",
+                                         "{\"do\": \"play\", \"preview\": \"fast\"}"};
     for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++)
         refused(&room, "/api/slime", bodies[i], 400);
     assert_false(is(&room, "on"));
     order(&room, "{\"do\": \"play\"}");
-    static const char *const grabs[] = {"{\"x\": 1}", "{\"x\": 1e9, \"y\": 2}", "{\"x\": 32, \"y\": 24, \"reach\": -1}", "{\"x\": \"a\", \"y\": 2}"};
+    static const char *const grabs[] = {"{\"x\": 1}", "{\"x\": 1e9, \"y\": 2}", "{\"x\": 32, \"y\": 24, \"reach\": -1}",
+                                        "{\"x\": \"a\", \"y\": 2}"};
     for (size_t i = 0; i < sizeof grabs / sizeof *grabs; i++)
         refused(&room, "/api/slime/grab", grabs[i], 400);
-    static const char *const moves[] = {"{\"x\": 1, \"y\": 2}", "{\"hand\": 1.5, \"x\": 1, \"y\": 2}", "{\"hand\": 1e30, \"x\": 1, \"y\": 2}"};
+    static const char *const moves[] = {"{\"x\": 1, \"y\": 2}", "{\"hand\": 1.5, \"x\": 1, \"y\": 2}",
+                                        "{\"hand\": 1e30, \"x\": 1, \"y\": 2}"};
     for (size_t i = 0; i < sizeof moves / sizeof *moves; i++)
         refused(&room, "/api/slime/move", moves[i], 400);
     refused(&room, "/api/slime/move", "{\"hand\": 77, \"x\": 1, \"y\": 2}", 409);
@@ -163,7 +171,8 @@ static void pages_are_told_while_it_moves(void **state)
     lab_room room;
     room_open(&room, TOY_SCENE);
     const int fd = client_connect(http_port(room.server));
-    char *asked = text_format("GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n", http_port(room.server), http_token(room.server));
+    char *asked = text_format("GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n",
+                              http_port(room.server), http_token(room.server));
     client_send(fd, asked, strlen(asked));
     order(&room, "{\"do\": \"play\"}");
     char *heard = calloc(ROOM, 1);

@@ -1,4 +1,5 @@
-/* Studies in the laboratory, through its API: what there is, one that runs, is stopped and goes on, and what is refused. */
+/* Studies in the laboratory, through its API: what there is, one that runs, is stopped and goes on, and what is
+ * refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -25,7 +26,8 @@ static void studies_are_listed(void **state)
     int seen = 0;
     for (size_t i = 0; i < 4; i++) {
         const json_t *one = json_array_get(list, i), *error = json_object_get(one, "error");
-        const char *file = json_string_value(json_object_get(one, "file")), *name = json_string_value(json_object_get(one, "name"));
+        const char *file = json_string_value(json_object_get(one, "file")),
+                   *name = json_string_value(json_object_get(one, "name"));
         const char *what = json_string_value(json_object_get(error, "error"));
         assert_true(json_is_false(json_object_get(one, "running")));
         if (strcmp(file, "more/broken.study") == 0) {
@@ -89,7 +91,8 @@ static void count_cells(const lab_room *room, int counted[TINY_CELLS])
 static int open_events(const lab_room *room)
 {
     const int fd = client_connect(http_port(room->server));
-    char *request = text_format("GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n", http_port(room->server), http_token(room->server));
+    char *request = text_format("GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n",
+                                http_port(room->server), http_token(room->server));
     client_send(fd, request, strlen(request));
     free(request);
     while (http_event_clients((http_server *)(uintptr_t)room->server) == 0)
@@ -248,18 +251,21 @@ static void trouble_is_told(void **state)
 static void nothing_outside_is_read(void **state)
 {
     const lab_room *room = *state;
-    char *inside = room_path(room, "inside"), *first = room_path(room, "inside/scene.yaml"), *link = room_path(room, "inside/results/away"),
-         *away = room_path(room, "away"), *results = room_path(room, "inside/results");
+    char *inside = room_path(room, "inside"), *first = room_path(room, "inside/scene.yaml"),
+         *link = room_path(room, "inside/results/away"), *away = room_path(room, "away"),
+         *results = room_path(room, "inside/results");
     make_folder(room, "inside");
     make_folder(room, "inside/results");
     make_folder(room, "away");
     room_write(room, "inside/scene.yaml", BALL_SCENE);
     room_write(room, "inside/far.study", "study: far\nscene: ../scene.yaml\n");
-    room_write(room, "inside/sky.study", "study: sky\nscene: scene.yaml\ngrid: [{background.picture: [near.png, ../../far.png]}]\n");
+    room_write(room, "inside/sky.study",
+               "study: sky\nscene: scene.yaml\ngrid: [{background.picture: [near.png, ../../far.png]}]\n");
     room_write(room, "inside/away.study", "study: away\nscene: scene.yaml\nrepetitions: 1\n");
     assert_int_equal(symlink(away, link), 0);
     lab_room inner = {.lab = NULL};
-    const lab_settings settings = {.folder = inside, .scene = first, .results = results, .level = isa_best(), .threads = 1, .requests_per_s = 1e9};
+    const lab_settings settings = {
+        .folder = inside, .scene = first, .results = results, .level = isa_best(), .threads = 1, .requests_per_s = 1e9};
     assert_int_equal(lab_start(&settings, &inner.lab, NULL), STATUS_OK);
     inner.server = lab_server(inner.lab);
     static const char *const names[] = {"far", "sky", "away"};

@@ -25,12 +25,14 @@ static void tables_are_as_the_files(void **state)
     assert_int_equal(study_summary(s, room->results, out, NULL), STATUS_OK);
     fclose(out);
     study_destroy(s);
-    json_t *told = room_get(room, "/api/studies/tiny"), *summary = json_object_get(told, "summary"), *rows = json_object_get(summary, "rows");
+    json_t *told = room_get(room, "/api/studies/tiny"), *summary = json_object_get(told, "summary"),
+           *rows = json_object_get(summary, "rows");
     assert_int_equal(json_array_size(rows), TINY_CELLS);
     for (size_t i = 0; i <= json_array_size(rows); i++) {
         const json_t *line = i ? json_array_get(rows, i - 1) : json_object_get(summary, "columns");
         for (size_t k = 0; k < json_array_size(line); k++) {
-            char *longer = text_format("%s%s%s", joined, json_string_value(json_array_get(line, k)), k + 1 < json_array_size(line) ? "\t" : "\n");
+            char *longer = text_format("%s%s%s", joined, json_string_value(json_array_get(line, k)),
+                                       k + 1 < json_array_size(line) ? "\t" : "\n");
             free(joined);
             joined = longer;
         }
@@ -65,10 +67,12 @@ static void write_other_run(const lab_room *room)
     assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
     FILE *out = fopen(other, "w");
     fwrite(table->raw, 1, table->start[0], out);
-    const int wall = csv_column(table, "wall_s"), film = csv_column(table, "film_hash"), expected = csv_column(table, "film_expected");
+    const int wall = csv_column(table, "wall_s"), film = csv_column(table, "film_hash"),
+              expected = csv_column(table, "film_expected");
     for (size_t i = 0; i < table->row_count; i++)
         for (int k = 0; k < (int)table->column_count; k++) {
-            const bool other_film = strcmp(csv_field(table, i, csv_column(table, "cell")), "2") == 0 && (k == film || k == expected);
+            const bool other_film =
+                strcmp(csv_field(table, i, csv_column(table, "cell")), "2") == 0 && (k == film || k == expected);
             if (k == wall)
                 fprintf(out, "%.17g", 2 * csv_field_real(table, i, k));
             else
@@ -103,13 +107,15 @@ static void two_runs_are_compared(void **state)
         assert_int_equal(atoi(json_string_value(json_object_get(cell, "render.depth"))), i / 2);
         assert_true(json_real_value(json_object_get(cell, "ratio")) == 2);
         assert_int_equal(number_at(a, "n"), 6);
-        assert_true(json_number_value(json_object_get(b, "median")) == 2 * json_number_value(json_object_get(a, "median")));
+        assert_true(json_number_value(json_object_get(b, "median")) ==
+                    2 * json_number_value(json_object_get(a, "median")));
         assert_true(json_number_value(json_object_get(a, "low")) <= json_number_value(json_object_get(a, "median")));
         assert_true(json_number_value(json_object_get(a, "high")) >= json_number_value(json_object_get(a, "median")));
         assert_int_equal(json_is_true(json_object_get(cell, "same_film")), i != 2);
     }
     json_decref(told);
-    static const char *const wrong[] = {"", "?with=", "?with=nowhere", "?with=..", "?with=../tmp", "?with=/tmp", "?with=old/../old/runs", "?with=old"};
+    static const char *const wrong[] = {
+        "", "?with=", "?with=nowhere", "?with=..", "?with=../tmp", "?with=/tmp", "?with=old/../old/runs", "?with=old"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         char *target = text_format("/api/studies/tiny/compare%s", wrong[i]);
         free(room_refused(room, "GET", target, NULL, 400));
@@ -125,8 +131,9 @@ static void figures_are_drawn(void **state)
     room_write(room, "tiny.study", TINY("1"));
     free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 400)); /* there is no script */
     make_folder(room, "plots");
-    room_write(room, "plots/draw.sh", "shift; results=$1; shift 3; mkdir -p $results/figures\n"
-                                      "for f in $*; do head -n 1 $results/tables/tiny.tsv >$results/figures/$f.svg; echo drawn: $f; done\n");
+    room_write(room, "plots/draw.sh",
+               "shift; results=$1; shift 3; mkdir -p $results/figures\n"
+               "for f in $*; do head -n 1 $results/tables/tiny.tsv >$results/figures/$f.svg; echo drawn: $f; done\n");
     room_write(room, "plots/of-it.gp", "# A figure.\n# needs: other/rows.csv tables/tiny.tsv\n");
     room_write(room, "plots/not-of-it.gp", "# needs: tables/tiny-other.tsv tiny-other/images/*.png\n");
     room_write(room, "plots/tiny-not.gp", "# needs: tables/another.tsv\n");

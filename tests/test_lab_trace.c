@@ -1,4 +1,5 @@
-/* Why a pixel is as it is, asked of the laboratory: what `cuvette trace` writes of the same scene, to the byte; what is refused. */
+/* Why a pixel is as it is, asked of the laboratory: what `cuvette trace` writes of the same scene, to the byte; what is
+ * refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,10 +14,13 @@
 /* Ten panes of glass: the number of a ray's descendants doubles with the depth. */
 static char *panes(int depth)
 {
-    char *text = text_format("render: {width: 16, height: 12, depth: %d}\ncamera: {position: [0, 0.3, -6], target: [0, 0, 0]}\nsolids:\n", depth);
+    char *text = text_format(
+        "render: {width: 16, height: 12, depth: %d}\ncamera: {position: [0, 0.3, -6], target: [0, 0, 0]}\nsolids:\n",
+        depth);
     for (int i = 0; i < 10; i++) {
-        char *longer = text_format("%s  pane%d: {shape: box, size: [9, 9, 0.2], position: [0, 0, %g], transparency: 1, ior: 1.5, priority: %d}\n", text, i,
-                                   0.5 * i, i + 1);
+        char *longer = text_format("%s  pane%d: {shape: box, size: [9, 9, 0.2], position: [0, 0, %g], transparency: 1, "
+                                   "ior: 1.5, priority: %d}\n",
+                                   text, i, 0.5 * i, i + 1);
         free(text);
         text = longer;
     }
@@ -82,8 +86,10 @@ static char *written(scene *s, trace_writer *write, const char *name, int x, int
 
 static void compare_at(const lab_room *room, scene *s, int x, int y)
 {
-    static const struct { const char *kind; trace_writer *write; } kinds[] = {
-        {"", trace_write_json}, {".txt", trace_write_text}, {".svg", trace_write_drawing}};
+    static const struct {
+        const char *kind;
+        trace_writer *write;
+    } kinds[] = {{"", trace_write_json}, {".txt", trace_write_text}, {".svg", trace_write_drawing}};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         char *there = ask_at(room, kinds[i].kind, x, y), *here = written(s, kinds[i].write, "scene.yaml", x, y);
         assert_string_equal(there, here);
@@ -127,7 +133,8 @@ static void it_is_the_pixel_that_is_shown(void **state)
     scene *s = rod_scene("render.width=80 render.height=60");
     render_result *result = render(s);
     for (int c = 0; c < 3; c++)
-        assert_true(json_number_value(json_array_get(json_object_get(trace, "radiance"), (size_t)c)) == film_value(result->picture, 41, 37, c));
+        assert_true(json_number_value(json_array_get(json_object_get(trace, "radiance"), (size_t)c)) ==
+                    film_value(result->picture, 41, 37, c));
     render_result_destroy(result);
     scene_destroy(s);
     json_decref(trace);
@@ -171,7 +178,11 @@ static void a_tree_that_is_too_large_is_refused(void **state)
     free(text);
 }
 
-typedef struct asker { const lab_room *room; pthread_t thread; char *text; } asker;
+typedef struct asker {
+    const lab_room *room;
+    pthread_t thread;
+    char *text;
+} asker;
 
 static void *ask_once(void *context)
 {
@@ -212,12 +223,9 @@ static void the_scene_is_named_as_its_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_trace_is_what_the_command_writes),
-        cmocka_unit_test(it_follows_the_scene),
-        cmocka_unit_test(it_is_the_pixel_that_is_shown),
-        cmocka_unit_test(what_is_no_pixel_is_refused),
-        cmocka_unit_test(many_at_once_get_the_same),
-        cmocka_unit_test(a_tree_that_is_too_large_is_refused),
+        cmocka_unit_test(a_trace_is_what_the_command_writes), cmocka_unit_test(it_follows_the_scene),
+        cmocka_unit_test(it_is_the_pixel_that_is_shown),      cmocka_unit_test(what_is_no_pixel_is_refused),
+        cmocka_unit_test(many_at_once_get_the_same),          cmocka_unit_test(a_tree_that_is_too_large_is_refused),
         cmocka_unit_test(the_scene_is_named_as_its_file),
     };
     return cmocka_run_group_tests(tests, open_rod, close_room);

@@ -134,7 +134,8 @@ static void neighbours_of_black_and_white_come_back(void **state)
     assert_true(worst < 0.01);
 }
 
-/* Colours that no picture holds; what must hold is that nothing breaks, and nobody sees a difference (1 is just seen). */
+/* Colours that no picture holds; what must hold is that nothing breaks, and nobody sees a difference (1 is just seen).
+ */
 static void far_corners_stay_finite(void **state)
 {
     (void)state;

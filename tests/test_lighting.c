@@ -12,16 +12,18 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* The eye sees the origin of a glazed floor at V = (0, 0.6, -0.8), the lamp stands at L = (0.6, 0.8, 0), five units away: N.L =
- * 0.8, R.V = 0.48. What the floor mirrors is white sky. */
-static const char floor_scene[] = "render: {width: 1, height: 1, depth: 3}\n"
-                                  "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
-                                  "background: {color: [1, 1, 1], ambient: [0.5, 0.5, 0.5]}\n"
-                                  "lights: {lamp: {position: [3, 4, 0], intensity: 2}}\n"
-                                  "solids: {floor: {shape: plane, color: [0.9, 0.6, 0.3], ambient: 0.1, diffuse: 0.7, specular: 0.5, "
-                                  "shininess: 3, reflectivity: 0.25}}\n";
+/* The eye sees the origin of a glazed floor at V = (0, 0.6, -0.8), the lamp stands at L = (0.6, 0.8, 0), five units
+ * away: N.L = 0.8, R.V = 0.48. What the floor mirrors is white sky. */
+static const char floor_scene[] =
+    "render: {width: 1, height: 1, depth: 3}\n"
+    "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
+    "background: {color: [1, 1, 1], ambient: [0.5, 0.5, 0.5]}\n"
+    "lights: {lamp: {position: [3, 4, 0], intensity: 2}}\n"
+    "solids: {floor: {shape: plane, color: [0.9, 0.6, 0.3], ambient: 0.1, diffuse: 0.7, specular: 0.5, "
+    "shininess: 3, reflectivity: 0.25}}\n";
 
-static const double ambient = 0.1 * 0.5 * 0.9, diffuse = 0.7 * 2.0 * 0.9 * 0.8, highlight = 0.5 * 2.0 * 0.48 * 0.48 * 0.48, mirrored = 0.25;
+static const double ambient = 0.1 * 0.5 * 0.9, diffuse = 0.7 * 2.0 * 0.9 * 0.8,
+                    highlight = 0.5 * 2.0 * 0.48 * 0.48 * 0.48, mirrored = 0.25;
 
 static void each_lighting_adds_to_the_one_before(void **state)
 {
@@ -63,9 +65,12 @@ static void only_whitteds_lighting_branches(void **state)
 {
     (void)state;
     need_counters();
-    static const char *const alone[] = {"render.integrator=raycast", "render.integrator=raycast render.lighting=phong",
-                                        "render.integrator=raycast render.lighting=lambert", "render.lighting=phong",
-                                        "render.lighting=lambert", "render.lighting=lambert render.spectrum=spectral render.wavelengths=2"};
+    static const char *const alone[] = {"render.integrator=raycast",
+                                        "render.integrator=raycast render.lighting=phong",
+                                        "render.integrator=raycast render.lighting=lambert",
+                                        "render.lighting=phong",
+                                        "render.lighting=lambert",
+                                        "render.lighting=lambert render.spectrum=spectral render.wavelengths=2"};
     for (size_t k = 0; k < COUNT(alone); k++) {
         const ray_counters c = count(alone[k]);
         assert_true(c.camera >= 80 * 60 && c.shadow > 0);
@@ -91,7 +96,8 @@ static void mirrors_and_glass_are_black_without_branches(void **state)
     scene_destroy(s);
 }
 
-/* The inverse square of the distance, 1 at the light's reach; without one, the same everywhere. The lamp moves away along L. */
+/* The inverse square of the distance, 1 at the light's reach; without one, the same everywhere. The lamp moves away
+ * along L. */
 static void light_falls_off_with_the_square_of_the_distance(void **state)
 {
     (void)state;

@@ -7,11 +7,13 @@
 
 #include "probe_fixture.h"
 
-/* Spotlights: what a cone and a soft cone leave of a light, by the angle from their axis, to every integrator and film. */
+/* Spotlights: what a cone and a soft cone leave of a light, by the angle from their axis, to every integrator and film.
+ */
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* The eye sees the origin of a matte floor, on which the lamp stands at L = (0.6, 0.8, 0), five units away: N.L = 0.8. */
+/* The eye sees the origin of a matte floor, on which the lamp stands at L = (0.6, 0.8, 0), five units away: N.L = 0.8.
+ */
 static const char floor_scene[] = "render: {width: 1, height: 1, depth: 0}\n"
                                   "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
                                   "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
@@ -171,7 +173,8 @@ static void the_probe_names_the_spot_that_shines(void **state)
                        "lights:\n"
                        "  away: {kind: cone, position: [3, 4, 0], target: [9, 4, 0]}\n"
                        "  here: {kind: cone, position: [3, 4, 0], target: [0, 0, 0]}\n"
-                       "solids: {floor: {shape: plane, diffuse: 1}}\n", "");
+                       "solids: {floor: {shape: plane, diffuse: 1}}\n",
+                       "");
     const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 3.0, -4.0), vec3_make(0.0, -0.6, 0.8));
     assert_int_equal(tree->count, 2);
     assert_int_equal(tree->node[1].light, 1);
@@ -183,7 +186,8 @@ static void a_spheres_cone_is_seen_from_within_alone(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
-    set_all(s, "render.integrator=path lamp.kind=soft_cone lamp.radius=0.5 lamp.reach=2 floor.visible=off camera.position=0,0,0 "
+    set_all(s, "render.integrator=path lamp.kind=soft_cone lamp.radius=0.5 lamp.reach=2 floor.visible=off "
+               "camera.position=0,0,0 "
                "camera.target=3,4,0");
     for (double angle_deg = 0.0; angle_deg < 40.0; angle_deg += 8.0) {
         aim(s, angle_deg, 50.0);
@@ -192,20 +196,23 @@ static void a_spheres_cone_is_seen_from_within_alone(void **state)
     scene_destroy(s);
 }
 
-/* Irradiance by a sphere seen over a cap of half-angle g about w, whose radiance (1 - (1 - o.u) / q) is linear in the direction o
- * towards it (u: against the axis, q = 1 - cos a). Over the cap the integral of o is pi sin^2 g w, that of o o^T is A 1 + B w w^T
- * with 3 A + B = 2 pi (1 - cos g) and A + B = 2 pi (1 - cos^3 g) / 3. */
+/* Irradiance by a sphere seen over a cap of half-angle g about w, whose radiance (1 - (1 - o.u) / q) is linear in the
+ * direction o towards it (u: against the axis, q = 1 - cos a). Over the cap the integral of o is pi sin^2 g w, that of
+ * o o^T is A 1 + B w w^T with 3 A + B = 2 pi (1 - cos g) and A + B = 2 pi (1 - cos^3 g) / 3. */
 static void a_soft_sphere_lights_as_its_integral(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
-    set_all(s, "render.integrator=path render.paths=65536 lamp.kind=soft_cone lamp.radius=2 lamp.reach=5 lamp.half_angle_deg=70");
+    set_all(s, "render.integrator=path render.paths=65536 lamp.kind=soft_cone lamp.radius=2 lamp.reach=5 "
+               "lamp.half_angle_deg=70");
     aim(s, 30.0, 0.0);
     const double pi = acos(-1.0), c = sqrt(1.0 - 4.0 / 25.0), q = 1.0 - cos(70.0 * DEGREE);
-    const double trace = 2.0 * pi * (1.0 - c), along = 2.0 * pi * (1.0 - c * c * c) / 3.0, A = (trace - along) / 2.0, B = along - A;
+    const double trace = 2.0 * pi * (1.0 - c), along = 2.0 * pi * (1.0 - c * c * c) / 3.0, A = (trace - along) / 2.0,
+                 B = along - A;
     const vec3 n = vec3_make(0.0, 1.0, 0.0), w = vec3_make(0.6, 0.8, 0.0);
     const vec3 u = vec3_normalize(vec3_sub(s->lights[0].position, s->lights[0].target));
-    const double first = pi * 4.0 / 25.0 * vec3_dot(n, w), second = A * vec3_dot(n, u) + B * vec3_dot(n, w) * vec3_dot(w, u);
+    const double first = pi * 4.0 / 25.0 * vec3_dot(n, w),
+                 second = A * vec3_dot(n, u) + B * vec3_dot(n, w) * vec3_dot(w, u);
     const double radiance = 25.0 / 4.0, wanted = radiance / pi * ((1.0 - 1.0 / q) * first + second / q);
     assert_near(look(s).x, wanted, 0.002 * wanted);
     assert_true(fabs(wanted - irradiance * soft_share(30.0, 70.0)) > 0.005 * wanted); /* not that of a point */

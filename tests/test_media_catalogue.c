@@ -61,8 +61,8 @@ static void bk7_is_schotts_data_sheet(void **state)
 {
     (void)state;
     static const double sheet[][2] = {
-        {1060.0, 1.50669},   {1013.98, 1.50731}, {852.11, 1.50980},   {706.5188, 1.51289}, {656.2725, 1.51432},
-        {643.8469, 1.51472}, {632.8, 1.51509},   {589.2938, 1.51673}, {587.5618, 1.51680}, {546.074, 1.51872},
+        {1060.0, 1.50669},   {1013.98, 1.50731},  {852.11, 1.50980},   {706.5188, 1.51289}, {656.2725, 1.51432},
+        {643.8469, 1.51472}, {632.8, 1.51509},    {589.2938, 1.51673}, {587.5618, 1.51680}, {546.074, 1.51872},
         {486.1327, 1.52238}, {479.9914, 1.52283}, {435.8343, 1.52668}, {404.6561, 1.53024}, {365.0146, 1.53627}};
     for (size_t k = 0; k < COUNT(sheet); k++)
         assert_near(published("bk7", sheet[k][0]), sheet[k][1], 5.5e-6);
@@ -73,16 +73,16 @@ static void bk7_is_schotts_data_sheet(void **state)
 static void fused_silica_is_malitsons_table(void **state)
 {
     (void)state;
-    static const double table[][2] = {{404.656, 1.469618}, {435.835, 1.466693}, {486.133, 1.463126}, {546.074, 1.460078},
-                                      {587.561, 1.458464}, {589.262, 1.458404}, {656.272, 1.456367}, {706.519, 1.455145},
-                                      {852.111, 1.452465}, {1013.975, 1.450242}};
+    static const double table[][2] = {
+        {404.656, 1.469618}, {435.835, 1.466693}, {486.133, 1.463126}, {546.074, 1.460078}, {587.561, 1.458464},
+        {589.262, 1.458404}, {656.272, 1.456367}, {706.519, 1.455145}, {852.111, 1.452465}, {1013.975, 1.450242}};
     for (size_t k = 0; k < COUNT(table); k++)
         assert_near(published("fused-silica", table[k][0]), table[k][1], 1.1e-6);
     assert_near(dispersion_abbe_number(&the("fused-silica")->law), 67.8, 0.05);
 }
 
-/* Schott's catalogue; Handbook of Chemistry and Physics at the sodium line, 20 C (toluene by -5.7e-4 / K to 27 C). Diamond:
- * Kaye and Laby. The tolerances are what the sources differ by. */
+/* Schott's catalogue; Handbook of Chemistry and Physics at the sodium line, 20 C (toluene by -5.7e-4 / K to 27 C).
+ * Diamond: Kaye and Laby. The tolerances are what the sources differ by. */
 static void indices_of_handbooks(void **state)
 {
     (void)state;
@@ -111,7 +111,8 @@ static void air_is_edlens(void **state)
     }
 }
 
-/* Tilton and Taylor, J. Res. NBS 20, 419 (1938), give water relative to air: 1.33299 at D, 20 C; Daimon's law is absolute. */
+/* Tilton and Taylor, J. Res. NBS 20, 419 (1938), give water relative to air: 1.33299 at D, 20 C; Daimon's law is
+ * absolute. */
 static void water_relative_to_air_is_the_textbooks_1_3330(void **state)
 {
     (void)state;

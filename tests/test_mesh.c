@@ -29,7 +29,8 @@ static void bounds_are_of_vertices_that_triangles_use(void **state)
     const vec3 at[4] = {{1, 2, 3}, {4, 2, 3}, {1, 2.1, 3}, {100, 100, 100}};
     mesh *m = mesh_of(at, 4, &(mesh_triangle){{0, 1, 2}}, 1);
     assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
-    assert_true(m->bounds.low.x == 1.0 && m->bounds.high.x == 4.0 && m->bounds.high.y == 2.1 && m->bounds.high.z == 3.0);
+    assert_true(m->bounds.low.x == 1.0 && m->bounds.high.x == 4.0 && m->bounds.high.y == 2.1 &&
+                m->bounds.high.z == 3.0);
     assert_false(m->single); /* 2.1 is no float */
     mesh_release(m);
     m = mesh_of(at, 4, NULL, 0);
@@ -172,7 +173,8 @@ static void parts_of_no_direction_come_to_look_outwards(void **state)
     (void)state;
     mesh *m = cubes(3);
     for (size_t t = 0; t < 36; t++) {
-        const size_t at = t % 12; /* the first half of the first and the last, the other half and one more of the second */
+        const size_t at =
+            t % 12; /* the first half of the first and the last, the other half and one more of the second */
         if (t / 12 == 1 ? at >= 5 : at < 6)
             turn_triangle(m, t);
     }
@@ -208,7 +210,8 @@ static void many_triangles_around_one_vertex(void **state)
     m->vertices[1] = vec3_make(0, -1, 0);
     for (uint32_t k = 0; k < CORNERS; k++) {
         const uint32_t here = k + 2, next = (k + 1) % CORNERS + 2;
-        m->vertices[here] = vec3_make(cos(k * 2e-3 * 3.14159265358979 / 5.0), 0, sin(k * 2e-3 * 3.14159265358979 / 5.0));
+        m->vertices[here] =
+            vec3_make(cos(k * 2e-3 * 3.14159265358979 / 5.0), 0, sin(k * 2e-3 * 3.14159265358979 / 5.0));
         m->triangles[2 * k] = (mesh_triangle){{0, next, here}};
         m->triangles[2 * k + 1] = (mesh_triangle){{1, here, next}};
     }
@@ -283,7 +286,8 @@ static void normals_become_unit_vectors_and_missing_ones_the_triangles(void **st
     mesh_release(m);
 }
 
-/* Weighted by angle, a cube's corner looks along the diagonal however its faces are cut into triangles; by area or by number it does not. */
+/* Weighted by angle, a cube's corner looks along the diagonal however its faces are cut into triangles; by area or by
+ * number it does not. */
 static void smooth_normals_do_not_depend_on_the_cut(void **state)
 {
     (void)state;

@@ -31,13 +31,16 @@ static void copies_are_as_many_solids(void **state)
 {
     (void)state;
     scene_text a = {.length = 0}, b = {.length = 0};
-    static const char look[] = "shape: mesh, mesh: ring, transparency: 1, ior: 1.5, shading: smooth, scale: [0.5, 0.75, 0.5]";
+    static const char look[] =
+        "shape: mesh, mesh: ring, transparency: 1, ior: 1.5, shading: smooth, scale: [0.5, 0.75, 0.5]";
     add(&a,
-        "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n  rings: {%s, copies: [3, 2, 2], spacing: [1.5, 1, 2], position: [-1.5, 0, -1]}\n",
+        "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n  rings: {%s, copies: [3, 2, 2], spacing: "
+        "[1.5, 1, 2], position: [-1.5, 0, -1]}\n",
         FRAME, look);
     add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n", FRAME);
     for (int k = 0; k < 12; k++) /* one medium, as the copies are */
-        add(&b, "  r%d: {%s, position: [%g, %g, %g]}\n", k, look, -1.5 + 1.5 * (k % 3), 1.0 * (k / 3 % 2), -1.0 + 2.0 * (k / 6));
+        add(&b, "  r%d: {%s, position: [%g, %g, %g]}\n", k, look, -1.5 + 1.5 * (k % 3), 1.0 * (k / 3 % 2),
+            -1.0 + 2.0 * (k / 6));
     assert_true(hash_of(a.at, "", isa_best()) == hash_of(b.at, "", isa_best()));
 }
 
@@ -47,10 +50,13 @@ static void copies_that_touch_are_one_block(void **state)
     (void)state;
     scene_text a = {.length = 0}, b = {.length = 0};
     add(&a,
-        "%smeshes: {cube: {generate: box, size: [0.3, 0.5, 0.7]}}\nsolids:\n  wall: {shape: mesh, mesh: cube, transparency: 1, ior: 1.5,"
+        "%smeshes: {cube: {generate: box, size: [0.3, 0.5, 0.7]}}\nsolids:\n  wall: {shape: mesh, mesh: cube, "
+        "transparency: 1, ior: 1.5,"
         " copies: [4, 2, 3], spacing: [0.3, 0.5, 0.7], position: [-0.45, 0, -0.7], rotation: [0, 20, 0]}\n",
         FRAME);
-    add(&b, "%ssolids:\n  wall: {shape: box, size: [1.2, 1, 2.1], transparency: 1, ior: 1.5, position: [%.17g, 0.25, %.17g], rotation: [0, 20, 0]}\n",
+    add(&b,
+        "%ssolids:\n  wall: {shape: box, size: [1.2, 1, 2.1], transparency: 1, ior: 1.5, position: [%.17g, 0.25, "
+        "%.17g], rotation: [0, 20, 0]}\n",
         FRAME, -0.45 + turned(vec3_make(0.45, 0.0, 0.7), vec3_make(0.0, 20.0, 0.0)).x,
         -0.7 + turned(vec3_make(0.45, 0.0, 0.7), vec3_make(0.0, 20.0, 0.0)).z);
     scene *many = scene_with_meshes(a.at, ""), *one = scene_with_meshes(b.at, "");
@@ -69,7 +75,8 @@ static void placed_copies_are_transformed_vertices(void **state)
     scene_text a = {.length = 0}, b = {.length = 0};
     static const char look[] = "shape: mesh, transparency: 1, ior: 1.5, specular: 0.5, shading: smooth";
     add(&a,
-        "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring, scale: [1.25, 2, 0.75], rotation: [30, 40, 50], position: [0.2, 0.4, 0.1]}}\n",
+        "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring, scale: [1.25, 2, "
+        "0.75], rotation: [30, 40, 50], position: [0.2, 0.4, 0.1]}}\n",
         FRAME, look);
     add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring}}\n", FRAME, look);
     scene *placed = scene_with_meshes(a.at, ""), *moved = scene_with_meshes(b.at, "");
@@ -100,7 +107,8 @@ static void a_hundred_thousand_copies_are_quick_and_small(void **state)
     scene_text t = {.length = 0};
     add(&t,
         "%smeshes: {ball: {generate: icosphere, level: 3}, slab: {generate: box, size: [200, 0.1, 200]}}\nsolids:\n"
-        "  balls: {shape: mesh, mesh: ball, shading: smooth, transparency: 1, ior: 1.5, scale: [0.2, 0.2, 0.2], copies: [400, 1, 250], spacing: [0.5, 1, 0.5],"
+        "  balls: {shape: mesh, mesh: ball, shading: smooth, transparency: 1, ior: 1.5, scale: [0.2, 0.2, 0.2], "
+        "copies: [400, 1, 250], spacing: [0.5, 1, 0.5],"
         " position: [-100, 0.2, 0]}\n  floor: {shape: mesh, mesh: slab, diffuse: 0.8, position: [0, -0.05, 60]}\n",
         FRAME);
     scene *s = scene_with_meshes(t.at, "");
@@ -117,16 +125,21 @@ static void a_hundred_thousand_copies_are_quick_and_small(void **state)
 }
 
 static const char gallery[] = FRAME
-    "meshes:\n  ring: {generate: torus, around: 40, tube: 20}\n  ball: {generate: icosphere, level: 2}\n  cube: {generate: box}\n  cloud: {generate: sparse, count: 500}\n"
+    "meshes:\n  ring: {generate: torus, around: 40, tube: 20}\n  ball: {generate: icosphere, level: 2}\n  cube: "
+    "{generate: box}\n  cloud: {generate: sparse, count: 500}\n"
     "textures: {map: {file: none.png}}\n"
     "solids:\n"
     "  ground: {shape: plane, texture: map, diffuse: 0.8, ambient: 0.1, position: [0, -0.5, 0]}\n"
-    "  lens: {shape: mesh, mesh: ball, shading: smooth, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0.1, 0], position: [-1, 0.3, -0.5], priority: 2}\n"
+    "  lens: {shape: mesh, mesh: ball, shading: smooth, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0.1, 0], "
+    "position: [-1, 0.3, -0.5], priority: 2}\n"
     "  bath: {shape: box, size: [2, 0.6, 2], transparency: 0.9, ior: 1.33, position: [-0.6, -0.2, -0.2], priority: 1}\n"
-    "  loop: {shape: mesh, mesh: ring, shading: gouraud, color: [0.8, 0.3, 0.2], diffuse: 0.7, specular: 0.5, shininess: 30, scale: [0.6, 0.6, 0.6],"
+    "  loop: {shape: mesh, mesh: ring, shading: gouraud, color: [0.8, 0.3, 0.2], diffuse: 0.7, specular: 0.5, "
+    "shininess: 30, scale: [0.6, 0.6, 0.6],"
     " rotation: [60, 0, 20], position: [0.9, 0.5, 0]}\n"
-    "  crate: {shape: mesh, mesh: cube, texture: map, diffuse: 0.7, ambient: 0.1, reflectivity: 0.2, position: [0.3, 0, 0.9], rotation: [0, 30, 0]}\n"
-    "  beads: {shape: mesh, mesh: ball, transparency: 1, ior: 1.5, absorb_per_m: [0, 1, 2], scale: [0.1, 0.1, 0.1], copies: [9, 2, 9], spacing: [0.21, 0.21, 0.21], position: [0.2, -0.3, -1.5]}\n"
+    "  crate: {shape: mesh, mesh: cube, texture: map, diffuse: 0.7, ambient: 0.1, reflectivity: 0.2, position: [0.3, "
+    "0, 0.9], rotation: [0, 30, 0]}\n"
+    "  beads: {shape: mesh, mesh: ball, transparency: 1, ior: 1.5, absorb_per_m: [0, 1, 2], scale: [0.1, 0.1, 0.1], "
+    "copies: [9, 2, 9], spacing: [0.21, 0.21, 0.21], position: [0.2, -0.3, -1.5]}\n"
     "  leaves: {shape: mesh, mesh: cloud, diffuse: 0.6, position: [0, 0.9, 1.6]}\n";
 
 static void one_film_however_it_is_made(void **state)
@@ -154,10 +167,12 @@ static void light_through_very_many_media_is_the_same_in_any_batch(void **state)
     (void)state;
     scene_text t = {.length = 0};
     add(&t,
-        "background: {color: [0, 0, 0]}\nrender: {width: 24, height: 16, depth: 1}\ncamera: {position: [0, 2, -3], target: [0, 0, -1], fov_deg: 30}\n"
+        "background: {color: [0, 0, 0]}\nrender: {width: 24, height: 16, depth: 1}\ncamera: {position: [0, 2, -3], "
+        "target: [0, 0, -1], fov_deg: 30}\n"
         "lights: {lamp: {position: [0.05, 0.45, 60]}}\nmeshes: {cube: {generate: box, size: [20, 3, 0.1]}}\nsolids:\n"
         "  ground: {shape: plane, diffuse: 0.9, ambient: 0, specular: 0}\n"
-        "  slats: {shape: mesh, mesh: cube, transparency: 1, ior: 1, absorb_per_m: [0.01, 0.05, 0.1], copies: [1, 1, 200], spacing: [1, 1, 0.25], position: [0, 1, 1], priority: -1}\n");
+        "  slats: {shape: mesh, mesh: cube, transparency: 1, ior: 1, absorb_per_m: [0.01, 0.05, 0.1], copies: [1, 1, "
+        "200], spacing: [1, 1, 0.25], position: [0, 1, 1], priority: -1}\n");
     const uint64_t wanted = hash_of(t.at, "", isa_best());
     assert_true(hash_of(t.at, "render.threads=3 render.schedule=tiles render.tile=8", isa_best()) == wanted);
     assert_true(hash_of(t.at, "render.schedule=columns render.threads=24", isa_best()) == wanted);

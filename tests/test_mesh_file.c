@@ -108,7 +108,8 @@ static void textures_of_other_spellings_are_found(void **state)
         char *library = text_format("newmtl a\nmap_Kd %s\n", spellings[i]);
         put_text("spelling.mtl", library);
         free(library);
-        mesh_import *got = read_text("spelling.obj", "mtllib spelling.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+        mesh_import *got =
+            read_text("spelling.obj", "mtllib spelling.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
         assert_non_null(got->materials[0].texture);
         assert_int_equal(access(got->materials[0].texture, R_OK), 0);
         mesh_import_destroy(got);
@@ -119,7 +120,8 @@ static void textures_of_other_spellings_are_found(void **state)
 static void obj_polygons_are_triangulated(void **state)
 {
     (void)state;
-    mesh_import *got = read_text("square.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nvn 0 0 2\nf 1//1 2//1 3//1 4//1\nl 1 2\n");
+    mesh_import *got =
+        read_text("square.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nvn 0 0 2\nf 1//1 2//1 3//1 4//1\nl 1 2\n");
     assert_int_equal(got->mesh->triangle_count, 2);
     assert_int_equal(got->mesh->vertex_count, 4);
     assert_true(mesh_area(got->mesh) == 4);
@@ -143,9 +145,10 @@ static void vertices_that_nearly_coincide_stay_apart(void **state)
 static void ply_text(void **state)
 {
     (void)state;
-    mesh_import *got = read_text("a.ply", "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty float y\n"
-                                          "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                                          "0 0 0\n1.5 0 0\n1.5 0.25 0\n0 0.25 -8\n4 0 1 2 3\n");
+    mesh_import *got = read_text(
+        "a.ply", "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty float y\n"
+                 "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                 "0 0 0\n1.5 0 0\n1.5 0.25 0\n0 0.25 -8\n4 0 1 2 3\n");
     assert_int_equal(got->mesh->triangle_count, 2);
     assert_int_equal(got->mesh->vertex_count, 4);
     assert_vec3(got->mesh->vertices[3], 0, 0.25, -8);
@@ -165,8 +168,9 @@ static void ply_binary(void **state)
 static void stl_text(void **state)
 {
     (void)state;
-    mesh_import *got = read_text("a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1.25 0 0\nvertex 0 -1e3 0.5\nendloop\n"
-                                          "endfacet\nendsolid a\n");
+    mesh_import *got = read_text(
+        "a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1.25 0 0\nvertex 0 -1e3 0.5\nendloop\n"
+                 "endfacet\nendsolid a\n");
     assert_int_equal(got->mesh->triangle_count, 1);
     assert_vec3(corner(got->mesh, 0, 1), 1.25, 0, 0);
     assert_vec3(corner(got->mesh, 0, 2), 0, -1000, 0.5);
@@ -204,16 +208,20 @@ static void nodes_move_their_meshes(void **state)
     assert_tetrahedron(got, 1000);
     assert_false(got->mesh->single);
     mesh_import_destroy(got);
-    got = read_bytes("nested.glb", tetrahedron_glb("{\"children\":[1],\"translation\":[600,0,0]},{\"mesh\":0,\"translation\":[400,0,0]}"));
+    got = read_bytes(
+        "nested.glb",
+        tetrahedron_glb("{\"children\":[1],\"translation\":[600,0,0]},{\"mesh\":0,\"translation\":[400,0,0]}"));
     assert_tetrahedron(got, 1000);
     mesh_import_destroy(got);
-    got = read_bytes("twice.glb", tetrahedron_glb("{\"children\":[1,2]},{\"mesh\":0},{\"mesh\":0,\"translation\":[10,0,0]}"));
+    got = read_bytes("twice.glb",
+                     tetrahedron_glb("{\"children\":[1,2]},{\"mesh\":0},{\"mesh\":0,\"translation\":[10,0,0]}"));
     assert_int_equal(got->mesh->triangle_count, 8);
     assert_int_equal(got->mesh->vertex_count, 8);
     mesh_import_destroy(got);
 }
 
-/* A mirror turns fronts into backs, unless corners are listed the other way round with it. A quarter turn, column by column. */
+/* A mirror turns fronts into backs, unless corners are listed the other way round with it. A quarter turn, column by
+ * column. */
 static void mirrored_and_turned_nodes_keep_their_fronts(void **state)
 {
     (void)state;
@@ -225,7 +233,8 @@ static void mirrored_and_turned_nodes_keep_their_fronts(void **state)
     assert_vec3(corner(mirrored->mesh, 0, 1), -2 * (double)corners[1][0], (double)corners[1][1], (double)corners[1][2]);
     mesh_import_destroy(mirrored);
     mesh_import_destroy(plain);
-    mesh_import *turned = read_bytes("turn.glb", tetrahedron_glb("{\"mesh\":0,\"matrix\":[0,1,0,0,-1,0,0,0,0,0,1,0,5,0,0,1]}"));
+    mesh_import *turned =
+        read_bytes("turn.glb", tetrahedron_glb("{\"mesh\":0,\"matrix\":[0,1,0,0,-1,0,0,0,0,0,1,0,5,0,0,1]}"));
     assert_vec3(corner(turned->mesh, 0, 0), 5 - (double)corners[0][1], (double)corners[0][0], (double)corners[0][2]);
     mesh_import_destroy(turned);
 }
@@ -240,7 +249,8 @@ static mesh_import *one_triangle(const char *node)
         "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}],"
         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":6}],"
         "\"buffers\":[{\"byteLength\":42,\"uri\":\"data:application/octet-stream;base64,"
-        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA\"}]}", node);
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA\"}]}",
+        node);
     assert_non_null(text);
     mesh_import *got = read_text("inside.gltf", text);
     free(text);

@@ -9,8 +9,8 @@
 #include "mesh_room.h"
 #include "optics/interface.h"
 
-/* Meshes among the analytic solids, by priority, against brute force: every crossing of every triangle and shape, and between each two of them
- * the winner at the midpoint by definition. test_media.c does the same without meshes. */
+/* Meshes among the analytic solids, by priority, against brute force: every crossing of every triangle and shape, and
+ * between each two of them the winner at the midpoint by definition. test_media.c does the same without meshes. */
 
 typedef struct walks {
     int interfaces, skipped, seen_meshes, hidden_meshes;
@@ -74,8 +74,8 @@ static void mesh_boxes_with_coincident_faces_agree_with_brute_force(void **state
     assert_true(sum.interfaces > 5000 && sum.seen_meshes > 2000 && sum.skipped < 2500);
 }
 
-/* Along faces and edges there is no right answer, but there is an end: media follow one another. A ray that is started anew each time may
- * meet the two sides of an edge in turn, in one place. */
+/* Along faces and edges there is no right answer, but there is an end: media follow one another. A ray that is started
+ * anew each time may meet the two sides of an edge in turn, in one place. */
 static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
 {
     (void)state;
@@ -86,9 +86,10 @@ static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
         mesh_room_fill(&m, &seed, true);
         const arrangement *a = m.r.solids;
         for (int k = 0; k < 12; k++) {
-            const vec3 o =
-                vec3_make(0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16));
-            const vec3 d = vec3_make(random_below(&seed, 3) - 1, random_below(&seed, 3) - 1, random_below(&seed, 3) - 1);
+            const vec3 o = vec3_make(0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16),
+                                     0.125 * (random_below(&seed, 33) - 16));
+            const vec3 d =
+                vec3_make(random_below(&seed, 3) - 1, random_below(&seed, 3) - 1, random_below(&seed, 3) - 1);
             if (vec3_dot(d, d) == 0.0)
                 continue;
             one_ray r = {o, vec3_normalize(d), FACE_NONE, arrangement_inside(a, o)};
@@ -126,7 +127,8 @@ static bool is_clear_of_surfaces(const mesh_room *m, vec3 at)
     return true;
 }
 
-/* Mirrored or refracted at every interface, at random: half way to the next the ray is in the medium that its set says. */
+/* Mirrored or refracted at every interface, at random: half way to the next the ray is in the medium that its set says.
+ */
 static void walk_at_random(const mesh_room *m, one_ray r, uint64_t *seed, int *asked)
 {
     const arrangement *a = m->r.solids;
@@ -157,15 +159,18 @@ static void sets_stay_true_on_long_walks_among_meshes(void **state)
         mesh_room_fill(&m, &seed, trial % 2 == 0);
         for (int k = 0; k < 8; k++) {
             const vec3 o = random_point(&seed, 1.5);
-            walk_at_random(&m, (one_ray){o, random_direction(&seed), FACE_NONE, arrangement_inside(m.r.solids, o)}, &seed, &asked);
+            walk_at_random(&m, (one_ray){o, random_direction(&seed), FACE_NONE, arrangement_inside(m.r.solids, o)},
+                           &seed, &asked);
         }
         mesh_room_empty(&m);
     }
     assert_true(asked > 10000);
 }
 
-/* By the definition: of the light at each change of medium what the higher solid lets through, and nothing through opaque ones. */
-static double light_by_definition(const mesh_room *m, const change *changes, int count, quad end, int start, bool solid_shadows)
+/* By the definition: of the light at each change of medium what the higher solid lets through, and nothing through
+ * opaque ones. */
+static double light_by_definition(const mesh_room *m, const change *changes, int count, quad end, int start,
+                                  bool solid_shadows)
 {
     double share = is_opaque(&m->r, start) ? 0.0 : 1.0;
     for (int k = 0; k < count && changes[k].t < end; k++) {
@@ -193,7 +198,8 @@ static void shadow_rays_among_meshes_agree_with_brute_force(void **state)
                 continue;
             const one_ray r = {o, d, FACE_NONE, arrangement_inside(m.r.solids, o)};
             for (int solid = 0; solid < 2; solid++) {
-                const double wanted = light_by_definition(&m, changes, n, 1, start, solid), got = light_through(m.r.solids, r, solid);
+                const double wanted = light_by_definition(&m, changes, n, 1, start, solid),
+                             got = light_through(m.r.solids, r, solid);
                 assert_true(fabs(wanted - got) < 1e-12);
                 lit += wanted == 1.0, dark += wanted == 0.0, between += wanted > 0.0 && wanted < 1.0;
             }
@@ -250,9 +256,12 @@ static void instruction_sets_agree_to_the_bit_on_meshes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rooms_with_meshes_agree_with_brute_force),        cmocka_unit_test(mesh_boxes_with_coincident_faces_agree_with_brute_force),
-        cmocka_unit_test(rays_in_coincident_mesh_faces_come_to_an_end),    cmocka_unit_test(sets_stay_true_on_long_walks_among_meshes),
-        cmocka_unit_test(shadow_rays_among_meshes_agree_with_brute_force), cmocka_unit_test(instruction_sets_agree_to_the_bit_on_meshes),
+        cmocka_unit_test(rooms_with_meshes_agree_with_brute_force),
+        cmocka_unit_test(mesh_boxes_with_coincident_faces_agree_with_brute_force),
+        cmocka_unit_test(rays_in_coincident_mesh_faces_come_to_an_end),
+        cmocka_unit_test(sets_stay_true_on_long_walks_among_meshes),
+        cmocka_unit_test(shadow_rays_among_meshes_agree_with_brute_force),
+        cmocka_unit_test(instruction_sets_agree_to_the_bit_on_meshes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,7 +35,8 @@ static mesh *sheet(bool with_normals)
 static mesh *finished(const mesh *like, const vec3 *vertices, const vec3 *normals)
 {
     mesh *m = NULL;
-    assert_int_equal(mesh_create(like->vertex_count, like->triangle_count, normals != NULL, false, false, &m, NULL), STATUS_OK);
+    assert_int_equal(mesh_create(like->vertex_count, like->triangle_count, normals != NULL, false, false, &m, NULL),
+                     STATUS_OK);
     memcpy(m->vertices, vertices, m->vertex_count * sizeof *vertices);
     memcpy(m->triangles, like->triangles, m->triangle_count * sizeof *m->triangles);
     if (normals)
@@ -166,7 +167,8 @@ static void what_cannot_be_changes_nothing(void **state)
                 *one = bad[i];
                 diagnostic why = {0};
                 char text[DIAGNOSTIC_TEXT_MAX], name[20];
-                const status expected = part < 3 || i < 3 ? STATUS_BAD_INPUT : STATUS_OK; /* normals may be of any length */
+                const status expected =
+                    part < 3 || i < 3 ? STATUS_BAD_INPUT : STATUS_OK; /* normals may be of any length */
                 if (expected == STATUS_OK)
                     continue;
                 assert_int_equal(mesh_move(m, to, turned, &why), expected);
@@ -176,7 +178,8 @@ static void what_cannot_be_changes_nothing(void **state)
                 assert_memory_equal(m->vertices, vertices, sizeof vertices);
                 assert_memory_equal(m->normals, normals, sizeof normals);
             }
-    const vec3 far[VERTICES] = {{1e9, 1e9, 1e9}, {-1e9, 0, 0}, {0, -1e9, 0}, {0, 0, -1e9}, {0, 0, 0}}; /* the limit itself is allowed */
+    const vec3 far[VERTICES] = {
+        {1e9, 1e9, 1e9}, {-1e9, 0, 0}, {0, -1e9, 0}, {0, 0, -1e9}, {0, 0, 0}}; /* the limit itself is allowed */
     moved_as_finished(m, far, NULL);
     mesh_release(m);
 }

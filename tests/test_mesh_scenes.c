@@ -55,16 +55,20 @@ static void mesh_boxes_are_boxes(void **state)
     (void)state;
     /* without cells where an analytic box stands on it: whose cells are seen there is not settled */
     static const char *const ground[] = {
-        "  ground: {shape: plane, color: [0.8, 0.5, 0.3], checker: 0.4, checker_color: [0.1, 0.3, 0.2], diffuse: 0.8, ambient: 0.1}\n",
+        "  ground: {shape: plane, color: [0.8, 0.5, 0.3], checker: 0.4, checker_color: [0.1, 0.3, 0.2], diffuse: 0.8, "
+        "ambient: 0.1}\n",
         "  ground: {shape: plane, color: [0.8, 0.5, 0.3], diffuse: 0.8, ambient: 0.1}\n"};
     static const char *const rooms[] = {
         "  glass: {@[1.2, 0.9, 0.7], transparency: 1, ior: 1.5, specular: 0.4, position: [0, 0.5, 0]}\n",
-        "  wood: {@[1.2, 0.9, 0.7], color: [0.7, 0.4, 0.2], diffuse: 0.8, specular: 0.3, reflectivity: 0.2, position: [0, 0.5, 0], rotation: [10, 25, 5]}\n",
+        "  wood: {@[1.2, 0.9, 0.7], color: [0.7, 0.4, 0.2], diffuse: 0.8, specular: 0.3, reflectivity: 0.2, position: "
+        "[0, 0.5, 0], rotation: [10, 25, 5]}\n",
         /* partly in a liquid, with priority either way */
         "  water: {shape: cylinder, radius: 1, height: 0.6, transparency: 1, ior: 1.33, priority: 1}\n"
-        "  glass: {@[0.5, 1.6, 0.4], transparency: 1, ior: 1.5, position: [0.1, 0.95, 0], rotation: [0, 0, 20], priority: 2}\n",
+        "  glass: {@[0.5, 1.6, 0.4], transparency: 1, ior: 1.5, position: [0.1, 0.95, 0], rotation: [0, 0, 20], "
+        "priority: 2}\n",
         "  water: {shape: cylinder, radius: 1, height: 0.6, transparency: 1, ior: 1.33, priority: 3}\n"
-        "  glass: {@[0.5, 1.6, 0.4], transparency: 1, ior: 1.5, position: [0.1, 0.95, 0], rotation: [0, 0, 20], priority: 2}\n"
+        "  glass: {@[0.5, 1.6, 0.4], transparency: 1, ior: 1.5, position: [0.1, 0.95, 0], rotation: [0, 0, 20], "
+        "priority: 2}\n"
         "  stick: {@[0.1, 1.2, 0.1], diffuse: 0.7, position: [0.3, 0.8, -0.2], rotation: [20, 0, 0], priority: 1}\n",
         /* standing on the ground exactly, side by side, one in another, and flush with an analytic box */
         "  glass: {@[1, 1, 1], transparency: 1, ior: 1.5, position: [0, 0.5, 0], priority: 1}\n",
@@ -72,8 +76,10 @@ static void mesh_boxes_are_boxes(void **state)
         "  heavy: {@[1, 1, 1], transparency: 1, ior: 1.8, position: [0.5, 0.5, 0], priority: 1}\n",
         "  glass: {@[1.5, 1.5, 1.5], transparency: 1, ior: 1.5, position: [0, 0.75, 0], priority: 1}\n"
         "  core: {@[0.5, 0.5, 0.5], color: [0.2, 0.7, 0.2], diffuse: 0.8, position: [-0.5, 0.25, 0.1], priority: 2}\n",
-        "  glass: {@[1, 1, 1], transparency: 1, ior: 1.5, absorb_per_m: [0.5, 0.1, 0.2], position: [-0.5, 0.5, 0], priority: 1}\n"
-        "  flush: {shape: box, size: [1, 1, 1], diffuse: 0.8, color: [0.3, 0.3, 0.8], position: [0.5, 0.5, 0], priority: 0}\n",
+        "  glass: {@[1, 1, 1], transparency: 1, ior: 1.5, absorb_per_m: [0.5, 0.1, 0.2], position: [-0.5, 0.5, 0], "
+        "priority: 1}\n"
+        "  flush: {shape: box, size: [1, 1, 1], diffuse: 0.8, color: [0.3, 0.3, 0.8], position: [0.5, 0.5, 0], "
+        "priority: 0}\n",
     };
     for (size_t k = 0; k < COUNT(rooms); k++) {
         char solids[2048];
@@ -91,18 +97,21 @@ static void mesh_boxes_are_boxes(void **state)
     }
 }
 
-/* The ground's own cells are seen through the bottom of a block that stands on it exactly, whichever of the two surfaces comes first. */
+/* The ground's own cells are seen through the bottom of a block that stands on it exactly, whichever of the two
+ * surfaces comes first. */
 static void through_a_mesh_block_the_ground_is_the_ground(void **state)
 {
     (void)state;
-    const scene_text t =
-        with_boxes("  ground: {shape: plane, position: [0.05, 0, 0.03], color: [1, 0, 0], checker_color: [0, 1, 0], checker: 0.2, ambient: 1}\n"
-                   "  glass: {@[1.5, 1, 1.5], transparency: 1, ior: 1.5, position: [0, 0.5, 0], rotation: [0, 33, 0], priority: 1}\n",
-                   true);
+    const scene_text t = with_boxes("  ground: {shape: plane, position: [0.05, 0, 0.03], color: [1, 0, 0], "
+                                    "checker_color: [0, 1, 0], checker: 0.2, ambient: 1}\n"
+                                    "  glass: {@[1.5, 1, 1.5], transparency: 1, ior: 1.5, position: [0, 0.5, 0], "
+                                    "rotation: [0, 33, 0], priority: 1}\n",
+                                    true);
     stage g = stage_with_meshes(t.at, "background.ambient=1,1,1");
     uint64_t seed = 5;
     for (int k = 0; k < 2000; k++) {
-        const double u = (double)(random_bits(&seed) % 1000) / 1000.0 - 0.5, v = (double)(random_bits(&seed) % 1000) / 1000.0 - 0.5;
+        const double u = (double)(random_bits(&seed) % 1000) / 1000.0 - 0.5,
+                     v = (double)(random_bits(&seed) % 1000) / 1000.0 - 0.5;
         const vec3 o = vec3_make(0.3 * v, 0.7, 0.2 * u), d = vec3_make(u, -1.1, v);
         const ray_node *n = &stage_ray(&g, o, d)->node[0];
         assert_int_equal(n->hit.solid, 0);
@@ -120,14 +129,19 @@ static void through_a_mesh_block_the_ground_is_the_ground(void **state)
 static void a_mesh_of_the_liquids_own_index_is_not_seen(void **state)
 {
     (void)state;
-    static const char pool[] = "  water: {shape: box, size: [2, 1, 2], transparency: 1, ior: 1.33, position: [0, 0.5, 0], priority: 1}\n";
+    static const char pool[] =
+        "  water: {shape: box, size: [2, 1, 2], transparency: 1, ior: 1.33, position: [0, 0.5, 0], priority: 1}\n";
     char both[1024];
     snprintf(both, sizeof both,
-             "%s  lump: {shape: mesh, mesh: ring, transparency: 1, ior: 1.33, position: [0, 0.5, 0], rotation: [50, 0, 0], priority: 2}\n", pool);
+             "%s  lump: {shape: mesh, mesh: ring, transparency: 1, ior: 1.33, position: [0, 0.5, 0], rotation: [50, 0, "
+             "0], priority: 2}\n",
+             pool);
     scene_text a = {.length = 0}, b = {.length = 0};
     add(&a, "%ssolids:\n%s", FRAME, pool);
-    add(&b, "%smeshes: {ring: {generate: torus, major: 0.4, minor: 0.15, around: 40, tube: 20}}\nsolids:\n%s", FRAME, both);
-    scene *without = scene_with_meshes(a.at, "render.width=96 render.height=72"), *with = scene_with_meshes(b.at, "render.width=96 render.height=72");
+    add(&b, "%smeshes: {ring: {generate: torus, major: 0.4, minor: 0.15, around: 40, tube: 20}}\nsolids:\n%s", FRAME,
+        both);
+    scene *without = scene_with_meshes(a.at, "render.width=96 render.height=72"),
+          *with = scene_with_meshes(b.at, "render.width=96 render.height=72");
     render_result *x = render(without), *y = render(with);
     assert_true(film_hash(x->picture) == film_hash(y->picture));
     render_result_destroy(x);
@@ -136,13 +150,15 @@ static void a_mesh_of_the_liquids_own_index_is_not_seen(void **state)
     scene_destroy(with);
 }
 
-/* A glass ball in front of a sky without edges: only the ball's outline is one. Its triangles' corners lie on the sphere, so its radius is off by h^2,
- * and so are interpolated normals; flat ones by h, where h is the length of an edge, halved at each level. */
+/* A glass ball in front of a sky without edges: only the ball's outline is one. Its triangles' corners lie on the
+ * sphere, so its radius is off by h^2, and so are interpolated normals; flat ones by h, where h is the length of an
+ * edge, halved at each level. */
 static double error_at_level(int level, bool smooth, const film *wanted)
 {
     scene_text t = {.length = 0};
     add(&t,
-        "%smeshes: {triangles: {generate: icosphere, level: %d}}\nsolids:\n  ball: {shape: mesh, mesh: triangles, shading: %s, transparency: 1, ior: 1.5,"
+        "%smeshes: {triangles: {generate: icosphere, level: %d}}\nsolids:\n  ball: {shape: mesh, mesh: triangles, "
+        "shading: %s, transparency: 1, ior: 1.5,"
         " position: [0, 0.4, 0]}\n",
         FRAME, level, smooth ? "smooth" : "flat");
     scene *s = scene_with_meshes(t.at, "render.width=120 render.height=90 render.depth=6");
@@ -165,12 +181,13 @@ static void a_glass_mesh_sphere_converges_to_the_sphere(void **state)
     for (int level = 0; level < LEVELS; level++) {
         smooth[level] = error_at_level(level, true, wanted->picture);
         flat[level] = error_at_level(level, false, wanted->picture);
-        print_message("level %d: smooth %.3e (%.1f dB), flat %.3e (%.1f dB)\n", level, smooth[level], psnr(smooth[level]), flat[level],
-                      psnr(flat[level]));
+        print_message("level %d: smooth %.3e (%.1f dB), flat %.3e (%.1f dB)\n", level, smooth[level],
+                      psnr(smooth[level]), flat[level], psnr(flat[level]));
     }
     render_result_destroy(wanted);
     scene_destroy(s);
-    const double order_smooth = log2(smooth[2] / smooth[LEVELS - 1]) / (LEVELS - 3), order_flat = log2(flat[2] / flat[LEVELS - 1]) / (LEVELS - 3);
+    const double order_smooth = log2(smooth[2] / smooth[LEVELS - 1]) / (LEVELS - 3),
+                 order_flat = log2(flat[2] / flat[LEVELS - 1]) / (LEVELS - 3);
     print_message("order: smooth %.2f, flat %.2f\n", order_smooth, order_flat);
     for (int level = 1; level < LEVELS; level++)
         assert_true(smooth[level] < smooth[level - 1] && flat[level] < flat[level - 1]);

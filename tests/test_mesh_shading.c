@@ -10,10 +10,11 @@
 #include "mesh_stage.h"
 #include "random_stream.h"
 
-/* What meshes look like at points where it can be worked out: Phong's sum with flat, interpolated and corner values; textures; and what shading
- * normals must not do. */
+/* What meshes look like at points where it can be worked out: Phong's sum with flat, interpolated and corner values;
+ * textures; and what shading normals must not do. */
 
-#define DARK "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 2, shadows: off}\n"
+#define DARK \
+    "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 2, shadows: off}\n"
 
 /* A tilted square of side 2 in the plane z = 0, corners' normals leaning outwards; seen from z < 0. */
 static void give_square(scene *s, vec3 *corner, vec3 *normal)
@@ -38,7 +39,8 @@ static stage square_stage(const char *more, const char *assignments)
     scene_text t = {.length = 0};
     add(&t,
         DARK "meshes: {square: {generate: box}}\ntextures: {map: {file: none.png, filter: nearest}}\n"
-             "lights: {lamp: {position: [1.5, 2, -3], color: [1, 0.5, 0.25]}}\nsolids: {sheet: {shape: mesh, mesh: square, %s}}\n",
+             "lights: {lamp: {position: [1.5, 2, -3], color: [1, 0.5, 0.25]}}\nsolids: {sheet: {shape: mesh, mesh: "
+             "square, %s}}\n",
         more);
     stage g = {.setting = scene_from(t.at)};
     vec3 unused[8];
@@ -72,7 +74,9 @@ static void phongs_sum_at_known_points(void **state)
     scene_destroy(unused);
     for (int rule = 0; rule < 3; rule++) {
         char more[200];
-        snprintf(more, sizeof more, "color: [1, 1, 1], ambient: 0.125, diffuse: 0.5, specular: 0.25, shininess: 5, shading: %s", rules[rule]);
+        snprintf(more, sizeof more,
+                 "color: [1, 1, 1], ambient: 0.125, diffuse: 0.5, specular: 0.25, shininess: 5, shading: %s",
+                 rules[rule]);
         stage g = square_stage(more, "");
         const vec3 eye = vec3_make(0.25, -0.5, -4.0);
         for (int k = 0; k < 200; k++) {
@@ -80,17 +84,20 @@ static void phongs_sum_at_known_points(void **state)
             const vec3 at = vec3_make(x, y, 0.0);
             const ray_tree *tree = stage_ray(&g, eye, vec3_sub(at, eye));
             /* of the triangle 0 2 1 (x > y): weights of 0, 2, 1; else of 0, 2, 3 */
-            const double third = fabs(x - y) / 2.0, second = x > y ? (1.0 + y) / 2.0 : (1.0 + x) / 2.0, first = 1.0 - second - third;
+            const double third = fabs(x - y) / 2.0, second = x > y ? (1.0 + y) / 2.0 : (1.0 + x) / 2.0,
+                         first = 1.0 - second - third;
             const int other = x > y ? 1 : 3;
             double wanted;
             if (rule == 0)
                 wanted = phong(vec3_make(0, 0, -1), at, eye, 0.5, 0.25, 5.0);
             else if (rule == 1)
                 wanted = phong(
-                    vec3_normalize(vec3_add(vec3_scale(normal[0], first), vec3_add(vec3_scale(normal[2], second), vec3_scale(normal[other], third)))),
+                    vec3_normalize(vec3_add(vec3_scale(normal[0], first),
+                                            vec3_add(vec3_scale(normal[2], second), vec3_scale(normal[other], third)))),
                     at, eye, 0.5, 0.25, 5.0);
             else
-                wanted = first * phong(normal[0], corner[0], eye, 0.5, 0.25, 5.0) + second * phong(normal[2], corner[2], eye, 0.5, 0.25, 5.0) +
+                wanted = first * phong(normal[0], corner[0], eye, 0.5, 0.25, 5.0) +
+                         second * phong(normal[2], corner[2], eye, 0.5, 0.25, 5.0) +
                          third * phong(normal[other], corner[other], eye, 0.5, 0.25, 5.0);
             assert_true(fabs(tree->radiance[0] - (0.125 + wanted)) < 1e-8);
             assert_true(fabs(tree->radiance[2] - (0.125 + 0.25 * wanted)) < 1e-8);
@@ -105,10 +112,12 @@ static void light_behind_the_plane_leaves_the_ambient(void **state)
     static const char *const rules[] = {"flat", "smooth", "gouraud"};
     for (int rule = 0; rule < 3; rule++) {
         char more[200];
-        snprintf(more, sizeof more, "color: [1, 1, 1], ambient: 0.125, diffuse: 0.5, specular: 0.25, shading: %s", rules[rule]);
+        snprintf(more, sizeof more, "color: [1, 1, 1], ambient: 0.125, diffuse: 0.5, specular: 0.25, shading: %s",
+                 rules[rule]);
         stage g = square_stage(more, "lamp.position=6,1,0.001 render.shadows=attenuated");
         for (int k = 0; k < 50; k++)
-            assert_true(stage_ray(&g, vec3_make(0.1, 0.2, -3.0), vec3_make(-0.3 + 0.012 * k, 0.1, 3.0))->radiance[0] == 0.125);
+            assert_true(stage_ray(&g, vec3_make(0.1, 0.2, -3.0), vec3_make(-0.3 + 0.012 * k, 0.1, 3.0))->radiance[0] ==
+                        0.125);
         stage_close(&g);
     }
 }
@@ -118,12 +127,16 @@ static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
 {
     (void)state;
     static const char *const sheets[] = {
-        "shape: mesh, mesh: square, rotation: [31, 17, 5], ambient: 0.125, diffuse: 0.5, specular: 0, shading: flat}, second: {shape: mesh, mesh: square, rotation: [31, 17, 5], ambient: 0.125, diffuse: 0.5, specular: 0, shading: flat",
-        "shape: mesh, mesh: square, rotation: [31, 17, 5], copies: [2, 1, 1], spacing: [0, 0, 0], ambient: 0.125, diffuse: 0.5, specular: 0, shading: flat"};
+        "shape: mesh, mesh: square, rotation: [31, 17, 5], ambient: 0.125, diffuse: 0.5, specular: 0, shading: flat}, "
+        "second: {shape: mesh, mesh: square, rotation: [31, 17, 5], ambient: 0.125, diffuse: 0.5, specular: 0, "
+        "shading: flat",
+        "shape: mesh, mesh: square, rotation: [31, 17, 5], copies: [2, 1, 1], spacing: [0, 0, 0], ambient: 0.125, "
+        "diffuse: 0.5, specular: 0, shading: flat"};
     for (size_t k = 0; k < COUNT(sheets); k++) {
         scene_text t = {.length = 0};
         add(&t,
-            "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\nrender: {width: 1, height: 1}\nmeshes: {square: {generate: box}}\n"
+            "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\nrender: {width: 1, height: 1}\nmeshes: {square: "
+            "{generate: box}}\n"
             "lights: {lamp: {position: [1, 2, -30]}, behind: {position: [-2, 1, 40]}}\nsolids: {sheet: {%s}}\n",
             sheets[k]);
         stage g = {.setting = scene_from(t.at)};
@@ -132,8 +145,10 @@ static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
         stage_look(&g);
         uint64_t seed = 3;
         for (int i = 0; i < 3000; i++) {
-            const vec3 at = vec3_make(random_real(&seed, -0.6, 0.6), random_real(&seed, -0.6, 0.6), 0.0), world = turned(at, vec3_make(31, 17, 5));
-            const vec3 n = turned(vec3_make(0, 0, -1), vec3_make(31, 17, 5)), eye = vec3_make(random_real(&seed, -2, 2), 0.3, -5.0);
+            const vec3 at = vec3_make(random_real(&seed, -0.6, 0.6), random_real(&seed, -0.6, 0.6), 0.0),
+                       world = turned(at, vec3_make(31, 17, 5));
+            const vec3 n = turned(vec3_make(0, 0, -1), vec3_make(31, 17, 5)),
+                       eye = vec3_make(random_real(&seed, -2, 2), 0.3, -5.0);
             const vec3 l = vec3_normalize(vec3_sub(vec3_make(1, 2, -30), world));
             const double wanted = 0.125 + 0.5 * vec3_dot(n, l);
             assert_true(fabs(stage_ray(&g, eye, vec3_sub(world, eye))->radiance[0] - wanted) < 1e-8);
@@ -142,12 +157,14 @@ static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
     }
 }
 
-/* On a coarse smooth ball, inside and outside, mirrored rays stay on their side of the triangle and refracted ones leave it. */
+/* On a coarse smooth ball, inside and outside, mirrored rays stay on their side of the triangle and refracted ones
+ * leave it. */
 static void bent_normals_keep_rays_on_their_sides(void **state)
 {
     (void)state;
     static const char text[] =
-        "background: {color: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 8, beyond: black}\nmeshes: {rough: {generate: icosphere, level: 0}}\n"
+        "background: {color: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 8, beyond: black}\nmeshes: {rough: "
+        "{generate: icosphere, level: 0}}\n"
         "solids: {ball: {shape: mesh, mesh: rough, shading: smooth, transparency: 1, ior: 1.5}}\n";
     stage g = stage_with_meshes(text, "");
     const mesh *m = g.setting->meshes[0].data;
@@ -178,14 +195,20 @@ static void meshes_in_a_furnace_lose_nothing(void **state)
 {
     (void)state;
     static const char text[] =
-        "background: {color: [1, 1, 1]}\ncamera: {position: [0.3, 1.9, -4.5], target: [0, 0.5, 0], fov_deg: 40}\nrender: {width: 16, height: 12, beyond: black}\n"
-        "meshes: {hoop: {generate: torus, around: 20, tube: 10}, globe: {generate: icosphere, level: 2}, cube: {generate: box}}\n"
+        "background: {color: [1, 1, 1]}\ncamera: {position: [0.3, 1.9, -4.5], target: [0, 0.5, 0], fov_deg: "
+        "40}\nrender: {width: 16, height: 12, beyond: black}\n"
+        "meshes: {hoop: {generate: torus, around: 20, tube: 10}, globe: {generate: icosphere, level: 2}, cube: "
+        "{generate: box}}\n"
         "solids:\n  bath: {shape: mesh, mesh: cube, scale: [2.5, 1, 2.5], transparency: 1, ior: 1.33, priority: 1}\n"
-        "  ring: {shape: mesh, mesh: hoop, shading: smooth, transparency: 1, ior: 1.5, rotation: [20, 0, 30], position: [0, 0.4, 0], priority: 3}\n"
-        "  ball: {shape: mesh, mesh: globe, shading: smooth, transparency: 1, ior: 1.8, scale: [0.7, 0.5, 0.6], position: [0.6, 0.4, 0], priority: 2}\n"
+        "  ring: {shape: mesh, mesh: hoop, shading: smooth, transparency: 1, ior: 1.5, rotation: [20, 0, 30], "
+        "position: [0, 0.4, 0], priority: 3}\n"
+        "  ball: {shape: mesh, mesh: globe, shading: smooth, transparency: 1, ior: 1.8, scale: [0.7, 0.5, 0.6], "
+        "position: [0.6, 0.4, 0], priority: 2}\n"
         "  bubble: {shape: sphere, radius: 0.5, transparency: 1, ior: 1, position: [-0.7, 0.5, 0.1], priority: 4}\n"
-        "  beads: {shape: mesh, mesh: globe, transparency: 1, ior: 2.4, scale: [0.15, 0.15, 0.15], copies: [3, 2, 3], spacing: [0.5, 0.4, 0.5], position: [-0.6, 0.2, -0.5], priority: 5}\n";
-    static const char *const eyes[] = {"", "camera.position=0,0.1,0", "camera.position=0.9,0.5,0.05", "render.polarisation=on"};
+        "  beads: {shape: mesh, mesh: globe, transparency: 1, ior: 2.4, scale: [0.15, 0.15, 0.15], copies: [3, 2, 3], "
+        "spacing: [0.5, 0.4, 0.5], position: [-0.6, 0.2, -0.5], priority: 5}\n";
+    static const char *const eyes[] = {"", "camera.position=0,0.1,0", "camera.position=0.9,0.5,0.05",
+                                       "render.polarisation=on"};
     for (size_t k = 0; k < COUNT(eyes); k++) {
         stage g = stage_with_meshes(text, eyes[k]);
         set(g.setting, "render.depth=8");
@@ -208,7 +231,8 @@ static void absorption_over_lengths_in_meshes(void **state)
         scene_text t = {.length = 0};
         add(&t,
             "background: {color: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 3}\nmeshes: {body: %s}\n"
-            "solids: {lump: {shape: mesh, mesh: body, transparency: 1, ior: 1.25, absorb_per_m: [0.5, 1, 2], position: [0, 0, 4]}}\n",
+            "solids: {lump: {shape: mesh, mesh: body, transparency: 1, ior: 1.25, absorb_per_m: [0.5, 1, 2], position: "
+            "[0, 0, 4]}}\n",
             bodies[k]);
         stage g = stage_with_meshes(t.at, "render.unit_m=0.5 background.ior=1.25 lump.ior=1.5");
         const double length = 2.0;
@@ -227,15 +251,17 @@ static void expect_texel(const ray_tree *tree, double u, double v)
 {
     assert_int_equal(tree->node[0].end, RAY_END_HIT);
     const double column = floor((u - floor(u)) * 4.0), line = floor((v - floor(v)) * 2.0);
-    assert_true(fabs(tree->radiance[0] - (column + 0.5) / 4.0) < 1e-6 && fabs(tree->radiance[1] - (line + 0.5) / 2.0) < 1e-6);
+    assert_true(fabs(tree->radiance[0] - (column + 0.5) / 4.0) < 1e-6 &&
+                fabs(tree->radiance[1] - (line + 0.5) / 2.0) < 1e-6);
 }
 
 /* A picture in front of a viewer at -z who looks along +z begins at his left, whatever it is on. */
 static void textures_at_known_points(void **state)
 {
     (void)state;
-    static const char head[] = DARK
-        "textures: {map: {file: none.png, filter: nearest}}\nmeshes: {ball: {generate: icosphere, level: 5}, cube: {generate: box}, sheet: {generate: box}}\nsolids: {it: {ambient: 1, diffuse: 0, texture: map, ";
+    static const char head[] =
+        DARK "textures: {map: {file: none.png, filter: nearest}}\nmeshes: {ball: {generate: icosphere, level: 5}, "
+             "cube: {generate: box}, sheet: {generate: box}}\nsolids: {it: {ambient: 1, diffuse: 0, texture: map, ";
     static const struct {
         const char *shape;
         int kind;
@@ -285,8 +311,8 @@ static void an_open_dielectric_names_its_hole(void **state)
 {
     (void)state;
     char why[DIAGNOSTIC_TEXT_MAX];
-    static const char open[] =
-        DARK "meshes: {hills: {generate: terrain, around: 4, tube: 4}}\nsolids: {lens: {shape: mesh, mesh: hills, transparency: 1}}\n";
+    static const char open[] = DARK "meshes: {hills: {generate: terrain, around: 4, tube: 4}}\nsolids: {lens: {shape: "
+                                    "mesh, mesh: hills, transparency: 1}}\n";
     assert_non_null(strstr(refusal_of(open, "", why), "the edge from ("));
     assert_null(strchr(why, '\n'));
     assert_string_equal(refusal_of(open, "lens.transparency=0", why), "");
@@ -297,7 +323,8 @@ static void spectral_films_refuse_textures_and_faces(void **state)
 {
     (void)state;
     char why[DIAGNOSTIC_TEXT_MAX];
-    static const char text[] = DARK "textures: {map: {file: none.png}}\nsolids: {ball: {shape: sphere, texture: map}}\n";
+    static const char text[] =
+        DARK "textures: {map: {file: none.png}}\nsolids: {ball: {shape: sphere, texture: map}}\n";
     assert_non_null(strstr(refusal_of(text, "render.spectrum=spectral", why), "render.spectrum"));
     assert_string_equal(refusal_of(text, "", why), "");
 }
@@ -321,7 +348,8 @@ static void faces_look_like_their_materials(void **state)
     fclose(f);
     for (int k = 0; k < 3; k++) {
         snprintf(text, sizeof text,
-                 DARK "lights: {lamp: {position: [0, 0, -1000000]}}\nmeshes: {two: {file: %s}}\n%ssolids: {sheet: {shape: mesh, mesh: two%s}}\n",
+                 DARK "lights: {lamp: {position: [0, 0, -1000000]}}\nmeshes: {two: {file: %s}}\n%ssolids: {sheet: "
+                      "{shape: mesh, mesh: two%s}}\n",
                  path,
                  k == 1   ? "materials: {right: {color: [0, 1, 0], ambient: 0.5, diffuse: 0}}\n"
                  : k == 2 ? "materials: {own: {color: [0, 0, 1], diffuse: 1, ambient: 0}}\n"
@@ -334,7 +362,8 @@ static void faces_look_like_their_materials(void **state)
         if (k == 2)
             assert_true(fabs(l[2] - 1.0) < 1e-6 && l[0] == 0.0 && fabs(right[2] - 1.0) < 1e-6);
         else
-            assert_true(l[0] < l[1] && l[1] < l[2] && (k == 1 ? right[1] == 0.5 && right[0] == 0.0 : right[0] > right[1] && right[1] > right[2]));
+            assert_true(l[0] < l[1] && l[1] < l[2] &&
+                        (k == 1 ? right[1] == 0.5 && right[0] == 0.0 : right[0] > right[1] && right[1] > right[2]));
         stage_close(&g);
     }
     snprintf(text, sizeof text, DARK "meshes: {two: {file: %s}}\nsolids: {sheet: {shape: mesh, mesh: two}}\n", path);
@@ -361,10 +390,10 @@ static void faces_shine_as_their_materials_say(void **state)
     assert_non_null(f);
     fputs("newmtl left\nKd 0.25 0.5 0\nKe 3 3 1\nnewmtl right\nKd 0 0 0\nKe 4 2 1\n", f);
     fclose(f);
-    snprintf(
-        text, sizeof text,
-        "background: {ambient: [0, 0, 0]}\nmeshes: {two: {file: %s}}\nsolids: {sheet: {shape: mesh, mesh: two, emission: 9}}\n",
-        path);
+    snprintf(text, sizeof text,
+             "background: {ambient: [0, 0, 0]}\nmeshes: {two: {file: %s}}\nsolids: {sheet: {shape: mesh, mesh: two, "
+             "emission: 9}}\n",
+             path);
     stage g = stage_with_meshes(text, "");
     const double *left = stage_ray(&g, vec3_make(-0.5, 0.5, -3.0), vec3_make(0, 0, 1))->radiance;
     assert_true(fabs(left[0] - 1.5) < 1e-9 && fabs(left[1] - 3.0) < 1e-9 && left[2] == 0.0);

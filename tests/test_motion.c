@@ -8,19 +8,20 @@
 #include "render_fixture.h"
 #include "scene/motion.h"
 
-static const char toys[] = "render: {width: 64, height: 48, depth: 3}\n"
-                           "camera: {position: [0, 2, -6], target: [0, 1, 0]}\n"
-                           "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [0.9, 0.8, 0.6], ambient: [0.2, 0.2, 0.2]}\n"
-                           "lights: {lamp: {position: [3, 6, -4]}}\n"
-                           "meshes:\n"
-                           "  pin: {generate: icosphere, level: 1}\n"
-                           "  toy: {generate: slime, level: 2, position: [-0.6, 1.1, 0], radius: 0.9, time_s: 0.4}\n"
-                           "  drop: {generate: slime, level: 1, position: [1.2, 1.5, 0.3], radius: 0.5, dt_s: 0.0025, velocity: [-1, 0, 0]}\n"
-                           "solids:\n"
-                           "  ground: {shape: plane, diffuse: 0.7, ambient: 0.1, checker: 0.5}\n"
-                           "  jelly: {shape: mesh, mesh: toy, transparency: 0.9, ior: 1.3, specular: 0.5, priority: 1}\n"
-                           "  ball: {shape: mesh, mesh: drop, diffuse: 0.8, color: [0.9, 0.3, 0.2], priority: 2}\n"
-                           "  needle: {shape: mesh, mesh: pin, diffuse: 0.8, scale: [0.2, 0.2, 0.2], position: [0, 0.2, -1.5], priority: 3}\n";
+static const char toys[] =
+    "render: {width: 64, height: 48, depth: 3}\n"
+    "camera: {position: [0, 2, -6], target: [0, 1, 0]}\n"
+    "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [0.9, 0.8, 0.6], ambient: [0.2, 0.2, 0.2]}\n"
+    "lights: {lamp: {position: [3, 6, -4]}}\n"
+    "meshes:\n"
+    "  pin: {generate: icosphere, level: 1}\n"
+    "  toy: {generate: slime, level: 2, position: [-0.6, 1.1, 0], radius: 0.9, time_s: 0.4}\n"
+    "  drop: {generate: slime, level: 1, position: [1.2, 1.5, 0.3], radius: 0.5, dt_s: 0.0025, velocity: [-1, 0, 0]}\n"
+    "solids:\n"
+    "  ground: {shape: plane, diffuse: 0.7, ambient: 0.1, checker: 0.5}\n"
+    "  jelly: {shape: mesh, mesh: toy, transparency: 0.9, ior: 1.3, specular: 0.5, priority: 1}\n"
+    "  ball: {shape: mesh, mesh: drop, diffuse: 0.8, color: [0.9, 0.3, 0.2], priority: 2}\n"
+    "  needle: {shape: mesh, mesh: pin, diffuse: 0.8, scale: [0.2, 0.2, 0.2], position: [0, 0.2, -1.5], priority: 3}\n";
 
 static const double moments[] = {0.0, 0.1, 0.15, 0.15, 0.3, 0.6};
 enum { MOMENTS = sizeof moments / sizeof *moments };
@@ -87,9 +88,10 @@ static void expect_films(const char *assignments)
 static void a_film_is_that_of_the_scene_at_its_moment(void **state)
 {
     (void)state;
-    static const char *const ways[] = {
-        "render.threads=1", "render.threads=2 toy.threads=2 drop.threads=2", "render.keep=off", "render.accel=octant", "render.rebuild=1",
-        "render.rebuild=1000 render.build_threads=2", "render.integrator=zbuffer", "toy.integrator=verlet drop.integrator=implicit"};
+    static const char *const ways[] = {"render.threads=1",          "render.threads=2 toy.threads=2 drop.threads=2",
+                                       "render.keep=off",           "render.accel=octant",
+                                       "render.rebuild=1",          "render.rebuild=1000 render.build_threads=2",
+                                       "render.integrator=zbuffer", "toy.integrator=verlet drop.integrator=implicit"};
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++)
         expect_films(ways[i]);
 }
@@ -179,7 +181,8 @@ static void a_clone_does_not_move(void **state)
 static void it_goes_over_to_another_scene(void **state)
 {
     (void)state;
-    scene *s = toys_with("render.threads=1"), *other = toys_with("render.threads=1 jelly.ior=1.6 camera.fov_deg=30 drop.time_s=3");
+    scene *s = toys_with("render.threads=1"),
+          *other = toys_with("render.threads=1 jelly.ior=1.6 camera.fov_deg=30 drop.time_s=3");
     diagnostic why = {0};
     worked(scene_load(s, &why), &why);
     const mesh *own = s->meshes[1].data;
@@ -259,7 +262,8 @@ static void a_way_that_is_stopped_goes_on(void **state)
     for (int i = 0; i < 2; i++) {
         double share = -1.0;
         diagnostic why = {0};
-        assert_int_equal(scene_motion_advance_until(m, 4000.0, true, &(load_watch){leave, &share}, &why), STATUS_INTERRUPTED);
+        assert_int_equal(scene_motion_advance_until(m, 4000.0, true, &(load_watch){leave, &share}, &why),
+                         STATUS_INTERRUPTED);
         assert_true(share > 0.0 && share < 0.5); /* of two, on the way of the first */
         assert_true(s->meshes[1].data == skin && s->meshes[1].time_s == 0.0 && s->meshes[1].account.steps == 0);
         assert_memory_equal(&skin->vertices[0], &first, sizeof first);
@@ -268,7 +272,8 @@ static void a_way_that_is_stopped_goes_on(void **state)
     advance(way, far_s, true);
     assert_true(s->meshes[1].account.steps == straight->meshes[1].account.steps && s->meshes[1].time_s == far_s);
     for (int i = 1; i < 3; i++)
-        assert_memory_equal(s->meshes[i].data->vertices, straight->meshes[i].data->vertices, s->meshes[i].data->vertex_count * sizeof first);
+        assert_memory_equal(s->meshes[i].data->vertices, straight->meshes[i].data->vertices,
+                            s->meshes[i].data->vertex_count * sizeof first);
     scene_motion_destroy(m);
     scene_motion_destroy(way);
     scene_destroy(s);

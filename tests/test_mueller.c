@@ -215,8 +215,8 @@ static void a_pile_of_plates_polarises_by_its_surfaces(void **state)
         }
 }
 
-/* Two glass plates, both at Brewster's angle, their planes of incidence turned by phi: polariser and analyser after Malus
- * and Noerremberg. What comes of unpolarised light is R_s^2 cos^2(phi) / 2. Hecht, 8.2.1 and 8.6.1. */
+/* Two glass plates, both at Brewster's angle, their planes of incidence turned by phi: polariser and analyser after
+ * Malus and Noerremberg. What comes of unpolarised light is R_s^2 cos^2(phi) / 2. Hecht, 8.2.1 and 8.6.1. */
 static void two_brewster_reflections_obey_malus(void **state)
 {
     (void)state;
@@ -243,8 +243,8 @@ static double retardance_deg(mueller m)
     return atan2(m.m[2][3], m.m[2][2]) * radian_deg;
 }
 
-/* delta = delta_s - delta_p, tan(delta_s / 2) = -root / cos, tan(delta_p / 2) = -root / (n^2 cos), root = sqrt(sin^2 - n^2),
- * n < 1 the relative index. Born and Wolf, 7th ed., 1.5.4. */
+/* delta = delta_s - delta_p, tan(delta_s / 2) = -root / cos, tan(delta_p / 2) = -root / (n^2 cos), root = sqrt(sin^2 -
+ * n^2), n < 1 the relative index. Born and Wolf, 7th ed., 1.5.4. */
 static void total_reflection_retards_s_and_p_apart(void **state)
 {
     (void)state;
@@ -281,13 +281,14 @@ static void glass_retards_most_at_51_degrees(void **state)
 }
 
 /* Fresnel's rhomb: two total reflections of 45 degrees retardance each make linear light at 45 degrees to the plane of
- * incidence circular. cos^2 (sin^2 - n^2) = tan^2(22.5 deg) sin^4 is quadratic in sin^2; for 1.51 its roots are 54 deg 37'
- * and 48 deg 37'. Born and Wolf, 7th ed., 1.5.4; Hecht, 8.7. */
+ * incidence circular. cos^2 (sin^2 - n^2) = tan^2(22.5 deg) sin^4 is quadratic in sin^2; for 1.51 its roots are 54 deg
+ * 37' and 48 deg 37'. Born and Wolf, 7th ed., 1.5.4; Hecht, 8.7. */
 static void fresnels_rhomb_makes_linear_light_circular(void **state)
 {
     (void)state;
     uint64_t seed = 8;
-    const double n2 = 1.0 / (1.51 * 1.51), k2 = squared(sqrt(2.0) - 1.0), root = sqrt(squared(1.0 + n2) - 4.0 * (1.0 + k2) * n2);
+    const double n2 = 1.0 / (1.51 * 1.51), k2 = squared(sqrt(2.0) - 1.0),
+                 root = sqrt(squared(1.0 + n2) - 4.0 * (1.0 + k2) * n2);
     const double known_deg[] = {48.0 + 37.0 / 60.0, 54.0 + 37.0 / 60.0};
     for (int branch = 0; branch < 2; branch++) {
         const double sin2 = (1.0 + n2 + (branch ? root : -root)) / (2.0 * (1.0 + k2)), cos_i = sqrt(1.0 - sin2);
@@ -319,7 +320,8 @@ static void one_interface_weighs_unpolarised_light_as_fresnel_does(void **state)
         vec3 d = random_direction(&seed);
         chain_step c = chain_step_random(&seed, d, random_real(&seed, 1.0, 2.5));
         fresnel f = fresnel_dielectric(c.cos_i, c.n_from, c.n_to);
-        vec3 reflected = direction_reflect(d, c.n, c.cos_i), refracted = direction_refract(d, c.n, c.cos_i, f.eta, f.cos_t);
+        vec3 reflected = direction_reflect(d, c.n, c.cos_i),
+             refracted = direction_refract(d, c.n, c.cos_i, f.eta, f.cos_t);
         stokes row = {random_real(&seed, 0.1, 1.0), 0.0, 0.0, 0.0};
         assert_near(analyser_reflect(row, d, c.n, c.cos_i, c.n_from, c.n_to, reflected).i, row.i * f.R, 1e-15);
         assert_near(analyser_refract(row, d, c.n, c.cos_i, c.n_from, c.n_to, refracted).i, row.i * (1.0 - f.R), 1e-15);
@@ -329,7 +331,8 @@ static void one_interface_weighs_unpolarised_light_as_fresnel_does(void **state)
     }
 }
 
-/* R_s + T_s = 1 = R_p + T_p: what is reflected and what is refracted add up, however the light is polarised, and for any row. */
+/* R_s + T_s = 1 = R_p + T_p: what is reflected and what is refracted add up, however the light is polarised, and for
+ * any row. */
 static void reflected_and_refracted_add_up(void **state)
 {
     (void)state;
@@ -338,12 +341,15 @@ static void reflected_and_refracted_add_up(void **state)
         vec3 d = random_direction(&seed);
         chain_step c = chain_step_random(&seed, d, random_real(&seed, 1.0, 2.5));
         fresnel f = fresnel_dielectric(c.cos_i, c.n_from, c.n_to);
-        vec3 reflected = direction_reflect(d, c.n, c.cos_i), refracted = direction_refract(d, c.n, c.cos_i, f.eta, f.cos_t);
+        vec3 reflected = direction_reflect(d, c.n, c.cos_i),
+             refracted = direction_refract(d, c.n, c.cos_i, f.eta, f.cos_t);
         stokes s = random_light(&seed);
         assert_near(analyser_reflect(s, d, c.n, c.cos_i, c.n_from, c.n_to, reflected).i +
-                        analyser_refract(s, d, c.n, c.cos_i, c.n_from, c.n_to, refracted).i, 1.0, 2e-15);
+                        analyser_refract(s, d, c.n, c.cos_i, c.n_from, c.n_to, refracted).i,
+                    1.0, 2e-15);
         assert_near(mueller_apply(mueller_reflect(c.cos_i, c.n_from, c.n_to), s).i +
-                        mueller_apply(mueller_refract(c.cos_i, c.n_from, c.n_to), s).i, 1.0, 2e-15);
+                        mueller_apply(mueller_refract(c.cos_i, c.n_from, c.n_to), s).i,
+                    1.0, 2e-15);
     }
 }
 
@@ -414,7 +420,8 @@ static stokes chain_row(const chain_step *steps, int count, stokes row)
     return row;
 }
 
-/* The light's last step out of a medium knows its angle only through cos_t: a grazing one loses digits to the square root. */
+/* The light's last step out of a medium knows its angle only through cos_t: a grazing one loses digits to the square
+ * root. */
 static int chain_grazes(const chain_step *steps, int count)
 {
     for (int k = 0; k < count; k++)
@@ -435,14 +442,16 @@ static void the_row_sees_what_the_forward_product_brings(void **state)
         if (chain_grazes(steps, CHAIN))
             continue;
         compared++;
-        assert_near(analyser_sees(chain_row(steps, CHAIN, row), light), analyser_sees(row, forwards(steps, CHAIN, light)), 1e-12);
+        assert_near(analyser_sees(chain_row(steps, CHAIN, row), light),
+                    analyser_sees(row, forwards(steps, CHAIN, light)), 1e-12);
         assert_near(analyser_sees(chain_row(steps, CHAIN, eye), light), forwards(steps, CHAIN, light).i, 1e-12);
     }
     assert_true(compared > 8000);
 }
 
 /* At each plane the tangential parts of E and H are continuous, of light that arrives along -child, leaves along -d and
- * goes on behind the plane (a complex direction under total reflection). This pins the amplitudes' signs to Maxwell's equations. */
+ * goes on behind the plane (a complex direction under total reflection). This pins the amplitudes' signs to Maxwell's
+ * equations. */
 static void the_tests_fields_obey_maxwell_at_an_interface(void **state)
 {
     (void)state;
@@ -453,7 +462,8 @@ static void the_tests_fields_obey_maxwell_at_an_interface(void **state)
         chain_step c = chain_step_random(&seed, d, random_real(&seed, 1.0, 2.5));
         c.kind = CHAIN_REFLECT;
         c.child = direction_reflect(c.d, c.n, c.cos_i);
-        const vec3 s = vec3_normalize(vec3_cross(c.d, c.n)), arrives = vec3_scale(c.child, -1.0), leaves = vec3_scale(c.d, -1.0);
+        const vec3 s = vec3_normalize(vec3_cross(c.d, c.n)), arrives = vec3_scale(c.child, -1.0),
+                   leaves = vec3_scale(c.d, -1.0);
         const vec3 plane = vec3_add(arrives, vec3_scale(c.n, c.cos_i)); /* arrives' part in the plane */
         amplitudes a = amplitudes_at(c.cos_i, c.n_from, c.n_to);
         total += cimag(a.cos_t) > 0.0;
@@ -461,8 +471,10 @@ static void the_tests_fields_obey_maxwell_at_an_interface(void **state)
         assert_near(cabs(field_dot(on, on) - 1.0), 0.0, 1e-13);
         const double complex e_s = random_real(&seed, -1.0, 1.0) + I * random_real(&seed, -1.0, 1.0),
                              e_p = random_real(&seed, -1.0, 1.0) + I * random_real(&seed, -1.0, 1.0);
-        const field in = field_add(field_from(s, e_s), field_from(vec3_cross(c.child, s), e_p)), back = chain_field(&c, in);
-        const field beyond = field_add(field_from(s, a.t_s * e_s), field_scale(field_cross(on, field_from(s, 1.0)), -a.t_p * e_p));
+        const field in = field_add(field_from(s, e_s), field_from(vec3_cross(c.child, s), e_p)),
+                    back = chain_field(&c, in);
+        const field beyond =
+            field_add(field_from(s, a.t_s * e_s), field_scale(field_cross(on, field_from(s, 1.0)), -a.t_p * e_p));
         const field e = field_add(field_add(in, back), field_scale(beyond, -1.0));
         const field h = field_add(field_add(field_scale(field_cross(field_from(arrives, 1.0), in), c.n_from),
                                             field_scale(field_cross(field_from(leaves, 1.0), back), c.n_from)),
@@ -493,13 +505,14 @@ static void the_row_sees_what_the_field_brings(void **state)
         compared++;
         for (int k = CHAIN; k-- > 0;)
             e = chain_field(&steps[k], e);
-        assert_near(analyser_sees(chain_row(steps, CHAIN, row), light), analyser_sees(row, field_stokes(e, eye_x, eye_y)), 4e-12);
+        assert_near(analyser_sees(chain_row(steps, CHAIN, row), light),
+                    analyser_sees(row, field_stokes(e, eye_x, eye_y)), 4e-12);
     }
     assert_true(compared > 8000);
 }
 
-/* A mirror faced squarely: the field comes back turned over, so that linear light stays in its plane in space, and circular
- * light changes its hand. */
+/* A mirror faced squarely: the field comes back turned over, so that linear light stays in its plane in space, and
+ * circular light changes its hand. */
 static void a_mirror_keeps_planes_and_changes_hands(void **state)
 {
     (void)state;
@@ -524,8 +537,8 @@ static void a_mirror_keeps_planes_and_changes_hands(void **state)
     }
 }
 
-/* Towards normal incidence s and p lose their plane, but nothing jumps: rows differ from the limit by no more than the turn
- * of the canonical frames and the angle's square times Fresnel's difference. */
+/* Towards normal incidence s and p lose their plane, but nothing jumps: rows differ from the limit by no more than the
+ * turn of the canonical frames and the angle's square times Fresnel's difference. */
 static void nothing_jumps_near_normal_incidence(void **state)
 {
     (void)state;
@@ -538,13 +551,15 @@ static void nothing_jumps_near_normal_incidence(void **state)
         const stokes row = random_light(&seed);
         const double n_to = random_real(&seed, 1.0, 2.5), plane_deg = random_real(&seed, 0.0, 360.0);
         const double R = squared((1.0 - n_to) / (1.0 + n_to));
-        /* q, u, v in canonical frames of d = -n and of n, which share x: the field is turned over, y and its hand with it */
+        /* q, u, v in canonical frames of d = -n and of n, which share x: the field is turned over, y and its hand with
+         * it */
         const stokes back = {R * row.i, R * row.q, -R * row.u, -R * row.v};
         const stokes on = {(1.0 - R) * row.i, (1.0 - R) * row.q, (1.0 - R) * row.u, (1.0 - R) * row.v};
         for (size_t k = 0; k < COUNT(angles); k++) {
             vec3 x, y;
             polarisation_frame(n, &x, &y);
-            vec3 tilt = vec3_add(vec3_scale(x, cos(plane_deg / radian_deg)), vec3_scale(y, sin(plane_deg / radian_deg)));
+            vec3 tilt =
+                vec3_add(vec3_scale(x, cos(plane_deg / radian_deg)), vec3_scale(y, sin(plane_deg / radian_deg)));
             vec3 d = vec3_normalize(vec3_add(vec3_scale(n, -1.0), vec3_scale(tilt, angles[k])));
             const double cos_i = -vec3_dot(d, n);
             fresnel f = fresnel_dielectric(cos_i, 1.0, n_to);
@@ -571,7 +586,8 @@ static void s_leads_p_by_the_angles_square(void **state)
     uint64_t seed = 17;
     for (double theta = 1e-5; theta < 2e-3; theta *= 2.0)
         for (int i = 0; i < 200; i++) {
-            const double n = random_real(&seed, 1.3, 2.5), R = squared((1.0 - n) / (1.0 + n)), cos_i = 1.0 - 0.5 * theta * theta;
+            const double n = random_real(&seed, 1.3, 2.5), R = squared((1.0 - n) / (1.0 + n)),
+                         cos_i = 1.0 - 0.5 * theta * theta;
             vec3 d = random_direction(&seed), normal = normal_at(d, cos_i, random_real(&seed, 0.0, 360.0));
             vec3 s = vec3_cross(d, normal), child = direction_reflect(d, normal, cos_i);
             const double R_s = analyser_reflect(stokes_linear(d, s), d, normal, cos_i, 1.0, n, child).i;

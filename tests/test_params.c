@@ -329,19 +329,23 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
          "and the parameters of a material"},
         {"lens.n=1.5", "lens has no parameter 'n'; did you mean 'lens.ior'?"},
         {"lens.opacity=0.5", "lens has no parameter 'opacity'; did you mean 'lens.transparency'?"},
-        {"lens.material=glass", "lens has no parameter 'material'; shape and material are set in the scene file or by cuvette scene; "
-                                "for glass set lens.transparency=1 and lens.ior=1.5"},
+        {"lens.material=glass",
+         "lens has no parameter 'material'; shape and material are set in the scene file or by cuvette scene; "
+         "for glass set lens.transparency=1 and lens.ior=1.5"},
         {"lens.radius=75cm", "lens.radius: '75cm' is not a finite number; write the number alone, in scene units"},
         {"lens.ior=1,5", "lens.ior: '1,5' is not a finite number; a decimal comma? write 1.5"},
         {"camera.fov=45", "camera has no parameter 'fov'; did you mean 'camera.fov_deg'?"},
-        {"camera.5=1", "camera has no parameter '5'; camera has position, target, yaw_deg, pitch_deg, roll_deg, fov_deg"},
+        {"camera.5=1",
+         "camera has no parameter '5'; camera has position, target, yaw_deg, pitch_deg, roll_deg, fov_deg"},
         {"fov=45", "nothing in the scene is named 'fov'; did you mean 'camera.fov_deg'?"},
         {"lens.visible=of", "lens.visible: no choice 'of'; give one of: off, on"},
         {"lens.visible=noo", "lens.visible: no choice 'noo'; give one of: off, on"},
         {"render.shadows=no", "render.shadows: no choice 'no'; give one of: off, opaque, attenuated"},
-        {"glass.radius=2", "glass has no parameter 'radius'; glass has color, ambient, diffuse, specular, shininess, emission, "
-                           "reflectivity, transparency, ior, medium, coefficients, absorb_per_m, absorb_spectrum, tint_distance, texture, texture_size, checker, "
-                           "checker_color"},
+        {"glass.radius=2",
+         "glass has no parameter 'radius'; glass has color, ambient, diffuse, specular, shininess, emission, "
+         "reflectivity, transparency, ior, medium, coefficients, absorb_per_m, absorb_spectrum, tint_distance, "
+         "texture, texture_size, checker, "
+         "checker_color"},
         {"lamp.position.w=2", "lamp.position has no element 'w'; the elements are .x, .y and .z"},
         {"lamp.color.x=2", "lamp.color has no element 'x'; the elements are .r, .g and .b"},
         {"lamp.position.xy=2", "lamp.position has no element 'xy'; the elements are .x, .y and .z"},

@@ -19,10 +19,13 @@ static const char clear_scene[] =
     "background: {kind: gradient, color: [1, 0.2, 0.5], horizon: [0.1, 0.9, 0.4]}\n"
     "materials: {clear: {transparency: 1}}\n"
     "solids:\n"
-    "  vessel: {shape: cup, material: clear, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: 2}\n"
-    "  liquid: {shape: cylinder, material: clear, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.95, priority: 1}\n"
+    "  vessel: {shape: cup, material: clear, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: "
+    "2}\n"
+    "  liquid: {shape: cylinder, material: clear, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.95, "
+    "priority: 1}\n"
     "  ball: {shape: sphere, material: clear, ior: 2.4, position: [0.2, 1.2, 0.1], radius: 0.5, priority: 3}\n"
-    "  block: {shape: box, material: clear, ior: 1.6, transparency: 0.8, position: [-1.5, 0.5, -1], size: [0.8, 1, 0.8], "
+    "  block: {shape: box, material: clear, ior: 1.6, transparency: 0.8, position: [-1.5, 0.5, -1], size: [0.8, 1, "
+    "0.8], "
     "rotation: [10, 20, 30], priority: 5}\n"
     "  mirror: {shape: sphere, reflectivity: 0.9, position: [1.7, 0.5, -1], radius: 0.4, priority: 6}\n";
 
@@ -54,8 +57,8 @@ static void paths_through_clear_solids_have_the_trees_mean(void **state)
                                            "render.paths=512 render.depth=6 render.samples=4 render.beyond=sky"};
     for (size_t k = 0; k < COUNT(settings); k++) {
         const agreement a = agree(s, settings[k], 10.0 / 512.0);
-        print_message("%s: %d values, %.1f%% in their 95%% interval, mean off by %.2f standard errors\n", settings[k], a.count,
-                      100.0 * agreement_share(&a), agreement_off(&a));
+        print_message("%s: %d values, %.1f%% in their 95%% interval, mean off by %.2f standard errors\n", settings[k],
+                      a.count, 100.0 * agreement_share(&a), agreement_off(&a));
         assert_true(a.count > 500);
         assert_true(agreement_share(&a) > 0.90 && agreement_share(&a) < 0.985);
         assert_true(fabs(agreement_off(&a)) < 4.0);
@@ -64,13 +67,13 @@ static void paths_through_clear_solids_have_the_trees_mean(void **state)
 }
 
 /* Under a black sky a matte floor has no light but the lamp's, and a mirror leaves nothing to chance. */
-static const char certain_scene[] =
-    "render: {width: 32, height: 24, depth: 5, integrator: path, paths: 16}\n"
-    "camera: {position: [0.3, 2.5, -5], target: [0, 1, 0], fov_deg: 50}\n"
-    "background: {color: [0, 0, 0]}\n"
-    "lights: {lamp: {position: [3, 7, -4], intensity: 0.8, color: [1, 0.7, 0.4]}}\n"
-    "solids:\n"
-    "  floor: {shape: plane, color: [0.8, 0.5, 0.3], checker: 0.7, checker_color: [0.1, 0.2, 0.9], diffuse: 0.7, specular: 0.3}\n";
+static const char certain_scene[] = "render: {width: 32, height: 24, depth: 5, integrator: path, paths: 16}\n"
+                                    "camera: {position: [0.3, 2.5, -5], target: [0, 1, 0], fov_deg: 50}\n"
+                                    "background: {color: [0, 0, 0]}\n"
+                                    "lights: {lamp: {position: [3, 7, -4], intensity: 0.8, color: [1, 0.7, 0.4]}}\n"
+                                    "solids:\n"
+                                    "  floor: {shape: plane, color: [0.8, 0.5, 0.3], checker: 0.7, checker_color: "
+                                    "[0.1, 0.2, 0.9], diffuse: 0.7, specular: 0.3}\n";
 
 static void what_is_not_left_to_chance_is_exact(void **state)
 {
@@ -99,11 +102,14 @@ static void paths_have_highlights_under_every_lighting(void **state)
     }
     render_result_destroy(wanted);
     /* Head-on R.V is 1: k_s I C of the lamp behind the eye, and nothing else without k_d. */
-    set_all(s, "floor.diffuse=0 camera.position=0,2,0 camera.target=0,0,0 lamp.position=0,7,0 render.width=1 render.height=1");
+    set_all(
+        s,
+        "floor.diffuse=0 camera.position=0,2,0 camera.target=0,0,0 lamp.position=0,7,0 render.width=1 render.height=1");
     for (size_t k = 0; k < COUNT(rules); k++) {
         set(s, rules[k]);
         const vec3 seen = look(s);
-        assert_true(fabs(seen.x - 0.24) < ROUNDINGS && fabs(seen.y - 0.168) < ROUNDINGS && fabs(seen.z - 0.096) < ROUNDINGS);
+        assert_true(fabs(seen.x - 0.24) < ROUNDINGS && fabs(seen.y - 0.168) < ROUNDINGS &&
+                    fabs(seen.z - 0.096) < ROUNDINGS);
     }
     scene_destroy(s);
 }
@@ -115,8 +121,9 @@ static const char glossy_scene[] = "render: {width: 1, height: 1, depth: 1, inte
                                    "background: {kind: gradient, color: [1, 0.2, 0.5], horizon: [0, 0.8, 0.1]}\n"
                                    "solids: {floor: {shape: plane, color: [0.9, 0.6, 0.3], diffuse: 0.5}}\n";
 
-/* A sky of h + (s - h) cos theta lights a floor like h + 2/3 (s - h), the mean of cos theta by the cosine law; at 45 degrees
- * the mirror sees it at cos theta = 1 / sqrt 2. Which of the two a path takes tells nothing of where it goes. */
+/* A sky of h + (s - h) cos theta lights a floor like h + 2/3 (s - h), the mean of cos theta by the cosine law; at 45
+ * degrees the mirror sees it at cos theta = 1 / sqrt 2. Which of the two a path takes tells nothing of where it goes.
+ */
 static void a_matte_mirror_has_both_shares_of_the_sky(void **state)
 {
     (void)state;
@@ -127,7 +134,8 @@ static void a_matte_mirror_has_both_shares_of_the_sky(void **state)
         snprintf(assignment, sizeof assignment, "floor.reflectivity=%g", mirror);
         set(s, assignment);
         for (int c = 0; c < 3; c++) {
-            const double matte = low[c] + 2.0 / 3.0 * (high[c] - low[c]), mirrored = low[c] + sqrt(0.5) * (high[c] - low[c]);
+            const double matte = low[c] + 2.0 / 3.0 * (high[c] - low[c]),
+                         mirrored = low[c] + sqrt(0.5) * (high[c] - low[c]);
             const estimate e = look_by_chance(s, c);
             expect_estimate(e, 0.5 * color[c] * matte + mirror * mirrored);
             assert_true(e.standard_error < 0.004);
@@ -139,19 +147,21 @@ static void a_matte_mirror_has_both_shares_of_the_sky(void **state)
 /* --- a sphere's light --- */
 
 /* The eye is far away, and sees the middle of a floor past the lamp. */
-static const char lamp_scene[] = "render: {width: 1, height: 1, depth: 0, integrator: path, paths: 1024, beyond: black}\n"
-                                 "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.01}\n"
-                                 "background: {color: [0, 0, 0]}\n"
-                                 "lights: {lamp: {position: [0, 4, 0], intensity: 3, reach: 2, radius: 1}}\n"
-                                 "solids: {floor: {shape: plane, color: [0.9, 0.6, 0.3], diffuse: 0.7}}\n";
+static const char lamp_scene[] =
+    "render: {width: 1, height: 1, depth: 0, integrator: path, paths: 1024, beyond: black}\n"
+    "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.01}\n"
+    "background: {color: [0, 0, 0]}\n"
+    "lights: {lamp: {position: [0, 4, 0], intensity: 3, reach: 2, radius: 1}}\n"
+    "solids: {floor: {shape: plane, color: [0.9, 0.6, 0.3], diffuse: 0.7}}\n";
 
-/* E = pi L (r / d)^2 cos theta for a sphere that is wholly above the horizon, however large: Lambert's law of spheres (Howell,
- * Siegel and Menguc, Thermal Radiation Heat Transfer, configuration B-24). L = intensity (reach / r)^2; a matte surface
- * sends k_d C E / pi. */
+/* E = pi L (r / d)^2 cos theta for a sphere that is wholly above the horizon, however large: Lambert's law of spheres
+ * (Howell, Siegel and Menguc, Thermal Radiation Heat Transfer, configuration B-24). L = intensity (reach / r)^2; a
+ * matte surface sends k_d C E / pi. */
 static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
 {
     (void)state;
-    static const double shares[] = {0.001, 0.1, 0.4, 0.7}, cosines[] = {1.0, 0.9, 0.75, 0.45, 0.11}, distances[] = {0.5, 4.0, 11.0};
+    static const double shares[] = {0.001, 0.1, 0.4, 0.7}, cosines[] = {1.0, 0.9, 0.75, 0.45, 0.11},
+                        distances[] = {0.5, 4.0, 11.0};
     scene *s = scene_from(lamp_scene);
     agreement a = {0};
     for (size_t i = 0; i < COUNT(shares); i++)
@@ -175,8 +185,9 @@ static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
     scene_destroy(s);
 }
 
-/* Lamps in the direction (0, 0.6, 0.8), where the eye's ray is mirrored to: R.V is the cosine of the angle from the lamp's middle, so that
- * Phong's highlight is k_s times the light, 2 L times the integral of cos^n over the cosines of the cone, from sqrt(1 - s^2) to 1. */
+/* Lamps in the direction (0, 0.6, 0.8), where the eye's ray is mirrored to: R.V is the cosine of the angle from the
+ * lamp's middle, so that Phong's highlight is k_s times the light, 2 L times the integral of cos^n over the cosines of
+ * the cone, from sqrt(1 - s^2) to 1. */
 static void a_sphere_has_a_highlight(void **state)
 {
     (void)state;
@@ -199,8 +210,9 @@ static void a_sphere_has_a_highlight(void **state)
     scene_destroy(s);
 }
 
-/* In the same place, of a floor that is a mirror too: the lamp itself, of radiance L, by the mirror's share; and by the matte
- * one what Lambert's law of spheres says, once, for the path that goes on by chance does not count the lamp again. */
+/* In the same place, of a floor that is a mirror too: the lamp itself, of radiance L, by the mirror's share; and by the
+ * matte one what Lambert's law of spheres says, once, for the path that goes on by chance does not count the lamp
+ * again. */
 static void a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once(void **state)
 {
     (void)state;
@@ -219,20 +231,22 @@ static void a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once(void **stat
     scene_destroy(s);
 }
 
-/* Beside a sphere, whichever stands first, a clear pane takes a point's light; alone the point shines through by the clearness of
- * its two faces. */
+/* Beside a sphere, whichever stands first, a clear pane takes a point's light; alone the point shines through by the
+ * clearness of its two faces. */
 static void beside_a_sphere_clear_solids_block_points_of_light(void **state)
 {
     (void)state;
-    static const char *const radii[] = {"one.radius=0 two.radius=0", "one.radius=0.5 two.radius=0", "one.radius=0 two.radius=0.5"};
+    static const char *const radii[] = {"one.radius=0 two.radius=0", "one.radius=0.5 two.radius=0",
+                                        "one.radius=0 two.radius=0.5"};
     for (size_t k = 0; k < COUNT(radii); k++) {
-        scene *s = scene_from("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 8, beyond: black}\n"
-                              "camera: {position: [0, 1, 0], target: [0, 0, 0]}\n"
-                              "background: {color: [0, 0, 0]}\n"
-                              "lights: {one: {position: [0, 4, 0], reach: 4}, two: {position: [0, 4, 0], reach: 4}}\n"
-                              "solids:\n"
-                              "  floor: {shape: plane, diffuse: 0.5}\n"
-                              "  pane: {shape: box, transparency: 0.9, ior: 1.5, position: [0, 2, 0], size: [9, 0.5, 9]}\n");
+        scene *s =
+            scene_from("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 8, beyond: black}\n"
+                       "camera: {position: [0, 1, 0], target: [0, 0, 0]}\n"
+                       "background: {color: [0, 0, 0]}\n"
+                       "lights: {one: {position: [0, 4, 0], reach: 4}, two: {position: [0, 4, 0], reach: 4}}\n"
+                       "solids:\n"
+                       "  floor: {shape: plane, diffuse: 0.5}\n"
+                       "  pane: {shape: box, transparency: 0.9, ior: 1.5, position: [0, 2, 0], size: [9, 0.5, 9]}\n");
         set_all(s, radii[k]);
         const vec3 seen = look(s);
         assert_true(fabs(seen.x - (k == 0 ? 2.0 * 0.5 * 0.81 : 0.0)) < ROUNDINGS);
@@ -240,8 +254,8 @@ static void beside_a_sphere_clear_solids_block_points_of_light(void **state)
     }
 }
 
-/* A red and a green lamp in one place: had both drawn the same points, red and green would be one number. Drawn apart, the
- * variance of their difference is the sum of their variances; over 64 seeds it is between 0.5 and 1.5 of it. */
+/* A red and a green lamp in one place: had both drawn the same points, red and green would be one number. Drawn apart,
+ * the variance of their difference is the sum of their variances; over 64 seeds it is between 0.5 and 1.5 of it. */
 static void lamps_are_looked_for_apart(void **state)
 {
     (void)state;
@@ -278,8 +292,8 @@ static void the_horizon_cuts_a_lamp(void **state)
     scene_destroy(s);
 }
 
-/* A thin screen over x < 0 at height 1, the lamp over its edge at height 5: the planes through the edge that touch the lamp meet
- * the floor at x = -+1 r / sqrt(4^2 - r^2), by similar triangles. Between them is the half-shadow. */
+/* A thin screen over x < 0 at height 1, the lamp over its edge at height 5: the planes through the edge that touch the
+ * lamp meet the floor at x = -+1 r / sqrt(4^2 - r^2), by similar triangles. Between them is the half-shadow. */
 static void a_half_shadow_is_as_wide_as_similar_triangles_say(void **state)
 {
     (void)state;
@@ -315,16 +329,17 @@ static void a_half_shadow_is_as_wide_as_similar_triangles_say(void **state)
 
 /* --- caustics: the lamp is found through clear surfaces by rays that run into it --- */
 
-static const char slab_scene[] = "render: {width: 1, height: 1, depth: 24, integrator: path, paths: 262144, beyond: black}\n"
-                                 "camera: {position: [0, 0.5, -6], target: [0, 0, 0], fov_deg: 0.01}\n"
-                                 "background: {color: [0, 0, 0]}\n"
-                                 "lights: {lamp: {position: [0, 5, 0], intensity: 3, reach: 2, radius: 1.5}}\n"
-                                 "solids:\n"
-                                 "  floor: {shape: plane, diffuse: 0.01}\n"
-                                 "  slab: {shape: box, position: [0, 1, 0], size: [100, 0.01, 100], transparency: 1, ior: 1.5}\n";
+static const char slab_scene[] =
+    "render: {width: 1, height: 1, depth: 24, integrator: path, paths: 262144, beyond: black}\n"
+    "camera: {position: [0, 0.5, -6], target: [0, 0, 0], fov_deg: 0.01}\n"
+    "background: {color: [0, 0, 0]}\n"
+    "lights: {lamp: {position: [0, 5, 0], intensity: 3, reach: 2, radius: 1.5}}\n"
+    "solids:\n"
+    "  floor: {shape: plane, diffuse: 0.01}\n"
+    "  slab: {shape: box, position: [0, 1, 0], size: [100, 0.01, 100], transparency: 1, ior: 1.5}\n";
 
-/* All of a slab's inner reflections together let (1 - R) / (1 + R) pass (Born and Wolf, 7.6.1, without interference); up to 17.5
- * degrees that changes by 2e-4. The slab lifts the lamp by t (1 - 1 / n). */
+/* All of a slab's inner reflections together let (1 - R) / (1 + R) pass (Born and Wolf, 7.6.1, without interference);
+ * up to 17.5 degrees that changes by 2e-4. The slab lifts the lamp by t (1 - 1 / n). */
 static void a_slab_takes_its_reflections_from_the_lamps_light(void **state)
 {
     (void)state;
@@ -353,11 +368,12 @@ static void a_slab_takes_its_reflections_from_the_lamps_light(void **state)
 static void a_lamp_behind_a_ball_of_glass_is_as_bright_as_the_ball_lets_through(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 1, height: 1, depth: 30, integrator: path, paths: 16384, beyond: black}\n"
-                          "camera: {position: [0, 0, -6], target: [0, 0, 0], fov_deg: 0.001}\n"
-                          "background: {color: [0, 0, 0]}\n"
-                          "lights: {lamp: {position: [0, 0, 9], color: [1, 0.5, 0.25], intensity: 3, reach: 2, radius: 1}}\n"
-                          "solids: {ball: {shape: sphere, transparency: 1, ior: 2}}\n");
+    scene *s =
+        scene_from("render: {width: 1, height: 1, depth: 30, integrator: path, paths: 16384, beyond: black}\n"
+                   "camera: {position: [0, 0, -6], target: [0, 0, 0], fov_deg: 0.001}\n"
+                   "background: {color: [0, 0, 0]}\n"
+                   "lights: {lamp: {position: [0, 0, 9], color: [1, 0.5, 0.25], intensity: 3, reach: 2, radius: 1}}\n"
+                   "solids: {ball: {shape: sphere, transparency: 1, ior: 2}}\n");
     const double L = 3.0 * 4.0, R = 1.0 / 9.0;
     for (int c = 0; c < 3; c++)
         expect_estimate(look_by_chance(s, c), L / (1 << c) * (1.0 - R) / (1.0 + R));
@@ -377,8 +393,10 @@ static void every_pixel_of_a_white_furnace_is_white(void **state)
 {
     (void)state;
     scene *s = scene_from(clear_scene);
-    set_all(s, "background.kind=uniform background.color=1,1,1 block.transparency=0 block.diffuse=1 mirror.reflectivity=0.5 "
-               "mirror.diffuse=0.5 render.integrator=path render.paths=16");
+    set_all(
+        s,
+        "background.kind=uniform background.color=1,1,1 block.transparency=0 block.diffuse=1 mirror.reflectivity=0.5 "
+        "mirror.diffuse=0.5 render.integrator=path render.paths=16");
     for (int depth = 0; depth <= 20; depth += 5) {
         s->render.depth = depth;
         s->render.roulette = depth % 2;
@@ -391,7 +409,8 @@ static void every_pixel_of_a_white_furnace_is_white(void **state)
     scene_destroy(s);
 }
 
-/* A ball that is hollow: in it everything looks alike everywhere, so that light is a geometric series of the reflectance. */
+/* A ball that is hollow: in it everything looks alike everywhere, so that light is a geometric series of the
+ * reflectance. */
 static const char hollow_scene[] =
     "render: {width: 8, height: 6, depth: 60, integrator: path, paths: 64, beyond: black, shadows: opaque}\n"
     "camera: {position: [0.5, 0.4, -0.3], target: [0, 0, 5], fov_deg: 90}\n"
@@ -434,7 +453,8 @@ static agreement hollow_ball(scene *s)
     for (int i = 0; i < 48; i++)
         for (int c = 0; c < 3; c++) {
             const double rho = 0.8 / (1 << c);
-            agreement_add(&a, estimate_at(r, i % 8, i / 8, c), rho * 3.0 / 4.0 * (1.0 - pow(rho, 61.0)) / (1.0 - rho), 0.0);
+            agreement_add(&a, estimate_at(r, i % 8, i / 8, c), rho * 3.0 / 4.0 * (1.0 - pow(rho, 61.0)) / (1.0 - rho),
+                          0.0);
         }
     render_result_destroy(r);
     return a;
@@ -448,8 +468,8 @@ static uint64_t rays_of(const scene *s)
     return rays;
 }
 
-/* The wall is a mirror too, which the light from the middle does not show: of each channel goes on k_d C, and by the mirror k_r.
- * Whether a path ends does not hang on which of the two it takes. */
+/* The wall is a mirror too, which the light from the middle does not show: of each channel goes on k_d C, and by the
+ * mirror k_r. Whether a path ends does not hang on which of the two it takes. */
 static void roulette_does_not_choose_between_matte_and_mirror(void **state)
 {
     (void)state;
@@ -460,10 +480,11 @@ static void roulette_does_not_choose_between_matte_and_mirror(void **state)
     for (int i = 0; i < 48; i++)
         for (int c = 0; c < 3; c++) {
             const double matte = 0.5 / (1 << c), on = matte + 0.3;
-            agreement_add(&a, estimate_at(r, i % 8, i / 8, c), matte * 3.0 / 4.0 * (1.0 - pow(on, 61.0)) / (1.0 - on), 0.0);
+            agreement_add(&a, estimate_at(r, i % 8, i / 8, c), matte * 3.0 / 4.0 * (1.0 - pow(on, 61.0)) / (1.0 - on),
+                          0.0);
         }
-    print_message("matte mirror: %.1f%% in their 95%% interval, mean off by %.2f standard errors\n", 100.0 * agreement_share(&a),
-                  agreement_off(&a));
+    print_message("matte mirror: %.1f%% in their 95%% interval, mean off by %.2f standard errors\n",
+                  100.0 * agreement_share(&a), agreement_off(&a));
     assert_int_equal(a.count, 144);
     assert_true(agreement_share(&a) > 0.90 && fabs(agreement_off(&a)) < 4.0);
     render_result_destroy(r);
@@ -477,8 +498,8 @@ static void roulette_keeps_the_mean_and_saves_rays(void **state)
     const uint64_t all = rays_of(s);
     set_all(s, "render.roulette=on render.paths=512");
     const agreement a = hollow_ball(s);
-    print_message("roulette: %.1f%% in their 95%% interval, mean off by %.2f standard errors\n", 100.0 * agreement_share(&a),
-                  agreement_off(&a));
+    print_message("roulette: %.1f%% in their 95%% interval, mean off by %.2f standard errors\n",
+                  100.0 * agreement_share(&a), agreement_off(&a));
     assert_int_equal(a.count, 144);
     assert_true(agreement_share(&a) > 0.90 && fabs(agreement_off(&a)) < 4.0);
     set(s, "render.paths=64");
@@ -492,8 +513,8 @@ static void a_sphere_in_a_hollow_ball_is_the_same_light(void **state)
     scene *s = scene_from(hollow_scene);
     set_all(s, "lamp.radius=0.05 camera.position=0,0,-1 camera.target=0.9,0,-2");
     const agreement a = hollow_ball(s);
-    print_message("sphere: %.1f%% of %d in their 95%% interval, mean off by %.2f standard errors\n", 100.0 * agreement_share(&a),
-                  a.count, agreement_off(&a));
+    print_message("sphere: %.1f%% of %d in their 95%% interval, mean off by %.2f standard errors\n",
+                  100.0 * agreement_share(&a), a.count, agreement_off(&a));
     assert_true(agreement_share(&a) > 0.90 && fabs(agreement_off(&a)) < 4.0);
     scene_destroy(s);
 }
@@ -502,14 +523,16 @@ static void a_sphere_in_a_hollow_ball_is_the_same_light(void **state)
 static void a_lamp_in_an_absorbing_medium_is_dimmed_up_to_itself(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 1, height: 1, depth: 1, integrator: path, paths: 16, beyond: black}\n"
-                          "camera: {position: [0, 0, -3.5], target: [0, 0, 0], fov_deg: 0.001}\n"
-                          "lights: {lamp: {position: [0, 0, 0], intensity: 3, reach: 1, radius: 0.5}}\n"
-                          "solids:\n"
-                          "  stone: {shape: sphere, radius: 7}\n"
-                          "  hollow: {shape: sphere, radius: 6, transparency: 1, ior: 1, priority: 1}\n"
-                          "  liquid: {shape: sphere, radius: 1.5, transparency: 1, ior: 1, absorb_per_m: [0.3, 0.6, 0], priority: 2}\n"
-                          "  gap: {shape: box, size: [0.2, 0.2, 0.4], position: [0, 0, -1], transparency: 1, ior: 1, priority: 3, visible: off}\n");
+    scene *s = scene_from(
+        "render: {width: 1, height: 1, depth: 1, integrator: path, paths: 16, beyond: black}\n"
+        "camera: {position: [0, 0, -3.5], target: [0, 0, 0], fov_deg: 0.001}\n"
+        "lights: {lamp: {position: [0, 0, 0], intensity: 3, reach: 1, radius: 0.5}}\n"
+        "solids:\n"
+        "  stone: {shape: sphere, radius: 7}\n"
+        "  hollow: {shape: sphere, radius: 6, transparency: 1, ior: 1, priority: 1}\n"
+        "  liquid: {shape: sphere, radius: 1.5, transparency: 1, ior: 1, absorb_per_m: [0.3, 0.6, 0], priority: 2}\n"
+        "  gap: {shape: box, size: [0.2, 0.2, 0.4], position: [0, 0, -1], transparency: 1, ior: 1, priority: 3, "
+        "visible: off}\n");
     expect_estimate(look_by_chance(s, 0), 12.0 * exp(-0.3 * 1.0));
     expect_estimate(look_by_chance(s, 1), 12.0 * exp(-0.6 * 1.0));
     expect_estimate(look_by_chance(s, 2), 12.0);
@@ -537,7 +560,9 @@ static const char unsure_scene[] =
     "  stone: {shape: sphere, position: [0.8, 0.7, 0], radius: 0.7, diffuse: 0.8}\n";
 
 /* Over many seeds: each value's own variance, and the mean of the variances that were reported. */
-typedef struct spread { double own[3 * PIXELS], reported[3 * PIXELS]; } spread;
+typedef struct spread {
+    double own[3 * PIXELS], reported[3 * PIXELS];
+} spread;
 
 static void spread_over_seeds(scene *s, spread *out)
 {
@@ -557,8 +582,8 @@ static void spread_over_seeds(scene *s, spread *out)
         out->own[i] = (squares[i] - sum[i] * sum[i] / SEEDS) / (SEEDS - 1);
 }
 
-/* 39 s^2 / sigma^2 is between 16.3 and 76.1 in 99.95 of 100 cases (chi-square, two-sided), were the values normal and sigma
- * known; a few heavier tails are allowed for. */
+/* 39 s^2 / sigma^2 is between 16.3 and 76.1 in 99.95 of 100 cases (chi-square, two-sided), were the values normal and
+ * sigma known; a few heavier tails are allowed for. */
 static void check_spread(const char *settings)
 {
     scene *s = scene_from(unsure_scene);
@@ -576,8 +601,8 @@ static void check_spread(const char *settings)
         mean += d.own[i] / d.reported[i];
     }
     mean /= count;
-    print_message("%s: %d values over %d seeds: variance is %.3f of what was reported; %d outside\n", settings, count, SEEDS, mean,
-                  outside);
+    print_message("%s: %d values over %d seeds: variance is %.3f of what was reported; %d outside\n", settings, count,
+                  SEEDS, mean, outside);
     assert_true(count > 100);
     assert_true(outside <= count / 50);
     assert_true(fabs(mean - 1.0) < 0.1);
@@ -612,9 +637,13 @@ static void the_reported_standard_error_of_a_spectral_film_is_a_bound(void **sta
 static void any_number_of_paths_will_do(void **state)
 {
     (void)state;
-    static const struct { int paths; bool known; } cases[] = {{1, false}, {2, true}, {7, true}, {12, true}, {17, false}, {22, true}};
+    static const struct {
+        int paths;
+        bool known;
+    } cases[] = {{1, false}, {2, true}, {7, true}, {12, true}, {17, false}, {22, true}};
     scene *s = scene_from(clear_scene);
-    set_all(s, "background.kind=uniform background.color=1,1,1 block.transparency=1 mirror.reflectivity=1 render.integrator=path");
+    set_all(s, "background.kind=uniform background.color=1,1,1 block.transparency=1 mirror.reflectivity=1 "
+               "render.integrator=path");
     for (size_t k = 0; k < COUNT(cases); k++) {
         s->render.paths = cases[k].paths;
         render_result *r = render(s);
@@ -631,7 +660,8 @@ static void any_number_of_paths_will_do(void **state)
     scene_destroy(s);
 }
 
-/* Layers are n values of a sum; worked out by hand: 1, 2 and 6 add up to 9, their variance is 7, and that of the sum 3 x 7. */
+/* Layers are n values of a sum; worked out by hand: 1, 2 and 6 add up to 9, their variance is 7, and that of the sum 3
+ * x 7. */
 static void layers_add_up(void **state)
 {
     (void)state;

@@ -191,17 +191,18 @@ static void checkers_move_with_their_solid(void **state)
     scene_destroy(s);
 }
 
-/* On a turned flat face the coordinate across it is zero but for rounding, or on a border between cells: rounding must not choose
- * the cell. */
+/* On a turned flat face the coordinate across it is zero but for rounding, or on a border between cells: rounding must
+ * not choose the cell. */
 static void checkers_on_turned_faces_are_whole(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
-                          "background: {ambient: [1, 1, 1]}\n"
-                          "materials: {board: {ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n"
-                          "solids:\n"
-                          "  floor: {shape: plane, material: board, rotation: [10, 20, 7]}\n"
-                          "  block: {shape: box, material: board, size: [6, 1, 6], rotation: [10, 20, 7], visible: off}\n");
+    scene *s =
+        scene_from("render: {width: 1, height: 1, depth: 0}\n"
+                   "background: {ambient: [1, 1, 1]}\n"
+                   "materials: {board: {ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n"
+                   "solids:\n"
+                   "  floor: {shape: plane, material: board, rotation: [10, 20, 7]}\n"
+                   "  block: {shape: box, material: board, size: [6, 1, 6], rotation: [10, 20, 7], visible: off}\n");
     const mat3 turn = rotation_from_deg(vec3_make(10.0, 20.0, 7.0));
     for (int block = 0; block < 2; block++) {
         for (int i = -5; i < 5; i++)
@@ -219,14 +220,18 @@ static void checkers_on_turned_faces_are_whole(void **state)
     scene_destroy(s);
 }
 
-/* Each flat face lies on a border between cells of 0.5 and shows those behind it: of a box 0 under the upper faces and -1 over the lower
- * ones; of a cylinder 0 over its bottom and 1 under its top at 1. */
+/* Each flat face lies on a border between cells of 0.5 and shows those behind it: of a box 0 under the upper faces and
+ * -1 over the lower ones; of a cylinder 0 over its bottom and 1 under its top at 1. */
 static void flat_faces_show_the_cells_behind_them(void **state)
 {
     (void)state;
-    static const struct { vec3 outward; double at; int cell; } faces[] = {
-        {{1, 0, 0}, 0.5, 0},  {{0, 1, 0}, 0.5, 0},  {{0, 0, 1}, 0.5, 0},  {{-1, 0, 0}, 0.5, -1}, {{0, -1, 0}, 0.5, -1},
-        {{0, 0, -1}, 0.5, -1}, {{0, -1, 0}, 0.0, 0}, {{0, 1, 0}, 1.0, 1}}; /* the last two are the cylinder's */
+    static const struct {
+        vec3 outward;
+        double at;
+        int cell;
+    } faces[] = {{{1, 0, 0}, 0.5, 0},   {{0, 1, 0}, 0.5, 0},   {{0, 0, 1}, 0.5, 0},
+                 {{-1, 0, 0}, 0.5, -1}, {{0, -1, 0}, 0.5, -1}, {{0, 0, -1}, 0.5, -1},
+                 {{0, -1, 0}, 0.0, 0},  {{0, 1, 0}, 1.0, 1}}; /* the last two are the cylinder's */
     scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
                           "background: {ambient: [1, 1, 1]}\n"
                           "materials: {board: {ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n"
@@ -240,7 +245,9 @@ static void flat_faces_show_the_cells_behind_them(void **state)
         for (int i = -1; i <= 0; i++)
             for (int j = -1; j <= 0; j++) { /* across the face, and the cell's indices there */
                 const double a = i * 0.5 + 0.2, b = j * 0.5 + 0.3;
-                const vec3 in_face = n.x != 0.0 ? vec3_make(0.0, a, b) : n.y != 0.0 ? vec3_make(a, 0.0, b) : vec3_make(a, b, 0.0);
+                const vec3 in_face = n.x != 0.0   ? vec3_make(0.0, a, b)
+                                     : n.y != 0.0 ? vec3_make(a, 0.0, b)
+                                                  : vec3_make(a, b, 0.0);
                 s->camera.target = vec3_add(in_face, vec3_scale(n, faces[k].at));
                 s->camera.position = vec3_add(s->camera.target, n);
                 s->camera.aimed = 1;
@@ -255,10 +262,11 @@ static void flat_faces_show_the_cells_behind_them(void **state)
 static void yaw_counts_looking_down(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 8, height: 6, depth: 0}\n"
-                          "camera: {position: [0.5, 3, 0.2], pitch_deg: -90}\n"
-                          "background: {ambient: [1, 1, 1]}\n"
-                          "solids: {floor: {shape: plane, ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n");
+    scene *s = scene_from(
+        "render: {width: 8, height: 6, depth: 0}\n"
+        "camera: {position: [0.5, 3, 0.2], pitch_deg: -90}\n"
+        "background: {ambient: [1, 1, 1]}\n"
+        "solids: {floor: {shape: plane, ambient: 1, color: [1, 0, 0], checker: 0.5, checker_color: [0, 1, 0]}}\n");
     render_result *level = render_at(s, isa_best(), NULL);
     set(s, "camera.yaw_deg=180");
     render_result *turned = render_at(s, isa_best(), NULL);

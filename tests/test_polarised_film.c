@@ -14,7 +14,10 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-static double degrees(double radians) { return radians * (180.0 / acos(-1.0)); }
+static double degrees(double radians)
+{
+    return radians * (180.0 / acos(-1.0));
+}
 
 static vec3 look_with(scene *s, int64_t polarisation)
 {
@@ -23,12 +26,15 @@ static vec3 look_with(scene *s, int64_t polarisation)
 }
 
 /* Power reflectances, by Fresnel's sine and tangent laws (Born and Wolf, 1.5.2, (21a)). */
-typedef struct reflectances { double s, p; } reflectances;
+typedef struct reflectances {
+    double s, p;
+} reflectances;
 
 static reflectances reflectances_at(double incidence, double n)
 {
     const double refraction = asin(sin(incidence) / n);
-    const double s = sin(incidence - refraction) / sin(incidence + refraction), p = tan(incidence - refraction) / tan(incidence + refraction);
+    const double s = sin(incidence - refraction) / sin(incidence + refraction),
+                 p = tan(incidence - refraction) / tan(incidence + refraction);
     return (reflectances){s * s, p * p};
 }
 
@@ -39,7 +45,8 @@ static const char surface_scene[] = "render: {width: 1, height: 1, depth: 1, bey
                                     "background: {kind: gradient, color: [1, 1, 1], horizon: [0, 0, 0]}\n"
                                     "solids: {water: {shape: plane, transparency: 1, ior: 1.5}}\n";
 
-/* Unpolarised light that meets one surface comes to an eye that does not mind how it is polarised: the mean of R_s and R_p. */
+/* Unpolarised light that meets one surface comes to an eye that does not mind how it is polarised: the mean of R_s and
+ * R_p. */
 static void one_surface_reflects_the_mean(void **state)
 {
     (void)state;
@@ -60,8 +67,9 @@ static void one_surface_reflects_the_mean(void **state)
 
 /* --- two reflections --- */
 
-/* The eye sees a lake at Brewster's angle, and in it a ball of the same glass, again at Brewster's angle; a matte wall that only
- * shines of itself stands where that leads. The plane of the second reflection is turned by `turn` about the ray between. */
+/* The eye sees a lake at Brewster's angle, and in it a ball of the same glass, again at Brewster's angle; a matte wall
+ * that only shines of itself stands where that leads. The plane of the second reflection is turned by `turn` about the
+ * ray between. */
 static scene *two_mirrors(double turn, double n)
 {
     const double b = atan(n), at = 5.0, radius = 1.0;
@@ -107,14 +115,15 @@ static void two_reflections_at_brewsters_angle_obey_malus(void **state)
 /* --- the pile of plates --- */
 
 /* Two plates, inclined by 60 degrees, and a far wall that shines. */
-static const char plates_scene[] = "render: {width: 1, height: 1, depth: 5, beyond: black, shadows: off}\n"
-                                   "camera: {position: [0, 0, -50], target: [0, 0, 0], fov_deg: 0.0001}\n"
-                                   "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\n"
-                                   "materials: {glass: {transparency: 1, ior: 1.5}}\n"
-                                   "solids:\n"
-                                   "  one: {shape: box, material: glass, size: [60, 60, 0.01], rotation: [60, 0, 0]}\n"
-                                   "  two: {shape: box, material: glass, size: [60, 60, 0.01], rotation: [60, 0, 0], position: [0, 0, 0.1]}\n"
-                                   "  wall: {shape: box, ambient: 1, size: [100, 100, 1], position: [0, 0, 60]}\n";
+static const char plates_scene[] =
+    "render: {width: 1, height: 1, depth: 5, beyond: black, shadows: off}\n"
+    "camera: {position: [0, 0, -50], target: [0, 0, 0], fov_deg: 0.0001}\n"
+    "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\n"
+    "materials: {glass: {transparency: 1, ior: 1.5}}\n"
+    "solids:\n"
+    "  one: {shape: box, material: glass, size: [60, 60, 0.01], rotation: [60, 0, 0]}\n"
+    "  two: {shape: box, material: glass, size: [60, 60, 0.01], rotation: [60, 0, 0], position: [0, 0, 0.1]}\n"
+    "  wall: {shape: box, ambient: 1, size: [100, 100, 1], position: [0, 0, 60]}\n";
 
 /* Straight through four interfaces: each polarisation alone, and unpolarised at each. */
 static void straight_through_plates_each_polarisation_fares_alone(void **state)
@@ -145,21 +154,23 @@ static void straight_through_plates_each_polarisation_fares_alone(void **state)
     scene_destroy(s);
 }
 
-/* All reflections between m plates: (1 - R) / (1 + (2 m - 1) R) for each polarisation (Stokes, Proc. R. Soc. 11, 545, 1862). What
- * the depth and the weights cut off is counted, and bounds what is missing. */
+/* All reflections between m plates: (1 - R) / (1 + (2 m - 1) R) for each polarisation (Stokes, Proc. R. Soc. 11, 545,
+ * 1862). What the depth and the weights cut off is counted, and bounds what is missing. */
 static void a_pile_of_plates_is_that_of_stokes(void **state)
 {
     (void)state;
     need_counters();
     scene *s = scene_from(plates_scene);
     const reflectances R = reflectances_at(acos(-1.0) / 3.0, 1.5);
-    const double mean = 0.5 * (R.s + R.p), by_s = (1.0 - R.s) / (1.0 + 3.0 * R.s), by_p = (1.0 - R.p) / (1.0 + 3.0 * R.p);
+    const double mean = 0.5 * (R.s + R.p), by_s = (1.0 - R.s) / (1.0 + 3.0 * R.s),
+                 by_p = (1.0 - R.p) / (1.0 + 3.0 * R.p);
     set_all(s, "render.depth=40 render.min_weight=1e-7");
     for (int on = 0; on <= 1; on++) {
         const double wanted = on ? 0.5 * (by_s + by_p) : (1.0 - mean) / (1.0 + 3.0 * mean);
         s->render.polarisation = on;
         render_result *r = render(s);
-        const double cut = (double)(r->counters.cut_depth_throughput[0] + r->counters.cut_weight_throughput[0]) / COUNTERS_CUT_ONE;
+        const double cut =
+            (double)(r->counters.cut_depth_throughput[0] + r->counters.cut_weight_throughput[0]) / COUNTERS_CUT_ONE;
         const double seen = film_value(r->picture, 0, 0, 0);
         print_message("pile of plates, polarisation %d: %.7f + at most %.1e, wanted %.7f\n", on, seen, cut, wanted);
         assert_true(cut < 1e-3);
@@ -172,14 +183,15 @@ static void a_pile_of_plates_is_that_of_stokes(void **state)
 
 /* --- any way through solids, against the field --- */
 
-static const char solids_scene[] = "render: {depth: 12, polarisation: on}\n"
-                                   "materials: {clear: {transparency: 1}}\n"
-                                   "solids:\n"
-                                   "  block: {shape: box, material: clear, ior: 1.5, size: [2, 2, 2]}\n"
-                                   "  ball: {shape: sphere, material: clear, ior: 2.2, radius: 0.6, position: [0.1, -0.2, 0.3], priority: 1}\n"
-                                   "  bubble: {shape: cylinder, material: clear, ior: 1, radius: 0.3, height: 0.8, position: [0.2, -0.3, 0.2], "
-                                   "rotation: [20, 0, 30], priority: 2}\n"
-                                   "  mirror: {shape: sphere, reflectivity: 0.8, radius: 0.3, position: [-0.5, 0.4, -0.3], priority: 3}\n";
+static const char solids_scene[] =
+    "render: {depth: 12, polarisation: on}\n"
+    "materials: {clear: {transparency: 1}}\n"
+    "solids:\n"
+    "  block: {shape: box, material: clear, ior: 1.5, size: [2, 2, 2]}\n"
+    "  ball: {shape: sphere, material: clear, ior: 2.2, radius: 0.6, position: [0.1, -0.2, 0.3], priority: 1}\n"
+    "  bubble: {shape: cylinder, material: clear, ior: 1, radius: 0.3, height: 0.8, position: [0.2, -0.3, 0.2], "
+    "rotation: [20, 0, 30], priority: 2}\n"
+    "  mirror: {shape: sphere, reflectivity: 0.8, radius: 0.3, position: [-0.5, 0.4, -0.3], priority: 3}\n";
 
 /* Unpolarised light from the last ray's far end to the eye: half the powers of two fields across each other. */
 static double share_by_fields(const ray_tree *tree, size_t last)
@@ -193,8 +205,8 @@ static double share_by_fields(const ray_tree *tree, size_t last)
             const ray_node *ray = &tree->node[i];
             const bool reflected = tree->node[i + 1].kind == RAY_REFLECT;
             const enum chain_kind kind = ray->hit.opaque ? CHAIN_MIRROR : reflected ? CHAIN_REFLECT : CHAIN_REFRACT;
-            const chain_step step = {kind, ray->direction, ray->hit.normal, tree->node[i + 1].direction, ray->hit.cos_i, ray->hit.n_from,
-                                     ray->hit.n_to};
+            const chain_step step = {kind,           ray->direction,  ray->hit.normal, tree->node[i + 1].direction,
+                                     ray->hit.cos_i, ray->hit.n_from, ray->hit.n_to};
             e = field_scale(chain_field(&step, e), ray->hit.opaque ? sqrt(0.8) : 1.0);
         }
         sum += 0.5 * field_power(e);
@@ -227,7 +239,8 @@ static void the_weight_of_any_way_is_that_of_its_fields(void **state)
             compared++;
         }
     }
-    print_message("%d rays, %d total reflections, %d elliptic, %d from the mirror\n", compared, totals, circular, mirrored);
+    print_message("%d rays, %d total reflections, %d elliptic, %d from the mirror\n", compared, totals, circular,
+                  mirrored);
     assert_true(compared > 10000 && totals > 1000 && circular > 100 && mirrored > 100);
     ray_tree_release(&tree);
     probe_destroy(p);
@@ -261,16 +274,20 @@ static const char furnace_scene[] =
     "background: {kind: uniform, color: [1, 1, 1], ambient: [0, 0, 0]}\n"
     "materials: {clear: {transparency: 1}}\n"
     "solids:\n"
-    "  vessel: {shape: cup, material: clear, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: 2}\n"
-    "  liquid: {shape: cylinder, material: clear, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.95, priority: 1}\n"
+    "  vessel: {shape: cup, material: clear, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: "
+    "2}\n"
+    "  liquid: {shape: cylinder, material: clear, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.95, "
+    "priority: 1}\n"
     "  ball: {shape: sphere, material: clear, ior: 2.4, position: [0.2, 1.2, 0.1], radius: 0.5, priority: 3}\n"
     "  mirror: {shape: sphere, reflectivity: 1, position: [1.5, 0.5, -1], radius: 0.4, priority: 6}\n";
 
-/* In a white sky all is white: what each interface takes from one branch it gives to the other, in each state of polarisation. */
+/* In a white sky all is white: what each interface takes from one branch it gives to the other, in each state of
+ * polarisation. */
 static void every_pixel_of_a_white_furnace_is_white(void **state)
 {
     (void)state;
-    static const char *const eyes[] = {"0.3,2.5,-5", "0.1,0.5,-0.3", "0.2,1.25,0.1"}; /* in the air, the liquid, the ball */
+    static const char *const eyes[] = {"0.3,2.5,-5", "0.1,0.5,-0.3",
+                                       "0.2,1.25,0.1"}; /* in the air, the liquid, the ball */
     scene *s = scene_from(furnace_scene);
     for (size_t eye = 0; eye < COUNT(eyes); eye++) {
         diagnostic why = {0};
@@ -291,7 +308,8 @@ static void matched_media_are_not_there(void **state)
 {
     (void)state;
     scene *with = scene_from(furnace_scene);
-    set_all(with, "background.kind=gradient background.color=1,0.3,0.2 background.horizon=0.1,0.5,0.7 render.depth=6 ball.ior=1.33");
+    set_all(with, "background.kind=gradient background.color=1,0.3,0.2 background.horizon=0.1,0.5,0.7 render.depth=6 "
+                  "ball.ior=1.33");
     scene *without = scene_clone(with);
     set(without, "ball.visible=off");
     render_result *a = render(with), *b = render(without);

@@ -9,7 +9,8 @@
 #include "geometry/arrangement.h"
 #include "render_fixture.h"
 
-/* One ray taken apart: what the tree says is what the film holds, to the bit, and what it says of a hit is what the laws say. */
+/* One ray taken apart: what the tree says is what the film holds, to the bit, and what it says of a hit is what the
+ * laws say. */
 
 static probe *probe_of(const scene *s)
 {
@@ -66,11 +67,18 @@ static void a_tree_is_its_pixel_under_every_rule(void **state)
 {
     (void)state;
     static const char *const settings[] = {
-        "render.weights=constant clear.reflectivity=0.1 clear.transparency=0.9", "render.samples=4",
-        "render.polarisation=on", "render.polarisation=on render.samples=4 render.depth=7",
-        "liquid.absorb_per_m=1.5,0.4,0.1 vessel.absorb_per_m=0.2,0.1,0.3", "render.min_weight=0.02 render.depth=12",
-        "render.shadows=off", "render.shadows=opaque", "render.lighting=lambert", "render.integrator=raycast",
-        "background.kind=gradient liquid.ior=1", "vessel.medium=bk7 liquid.medium=water render.lambda_nm=450",
+        "render.weights=constant clear.reflectivity=0.1 clear.transparency=0.9",
+        "render.samples=4",
+        "render.polarisation=on",
+        "render.polarisation=on render.samples=4 render.depth=7",
+        "liquid.absorb_per_m=1.5,0.4,0.1 vessel.absorb_per_m=0.2,0.1,0.3",
+        "render.min_weight=0.02 render.depth=12",
+        "render.shadows=off",
+        "render.shadows=opaque",
+        "render.lighting=lambert",
+        "render.integrator=raycast",
+        "background.kind=gradient liquid.ior=1",
+        "vessel.medium=bk7 liquid.medium=water render.lambda_nm=450",
         "render.polarisation=on liquid.absorb_per_m=0.5,0.4,0.1 plastic.reflectivity=0.4 render.samples=4"};
     compare_settings(settings, sizeof settings / sizeof *settings);
 }
@@ -124,8 +132,9 @@ static void rays_fit_their_parents_and_the_laws(void **state)
     scene_destroy(s);
 }
 
-static const char slab_text[] = "render: {depth: 3, shadows: off}\n"
-                                "solids: {slab: {shape: box, transparency: 1, ior: 1.5, size: [9, 2, 9], absorb_per_m: [0.5, 0.1, 0]}}\n";
+static const char slab_text[] =
+    "render: {depth: 3, shadows: off}\n"
+    "solids: {slab: {shape: box, transparency: 1, ior: 1.5, size: [9, 2, 9], absorb_per_m: [0.5, 0.1, 0]}}\n";
 
 /* R = ((n - 1) / (n + 1))^2 at normal incidence: Hecht 4.67; light falls by exp(-a d). */
 static void a_slab_met_head_on(void **state)
@@ -224,7 +233,8 @@ static void a_ray_can_be_traced_again(void **state)
 static void a_ray_weighs_what_its_heaviest_channel_does(void **state)
 {
     (void)state;
-    static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9", "slab.absorb_per_m=9,9,0"};
+    static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9",
+                                            "slab.absorb_per_m=9,9,0"};
     for (int clear = 0; clear < 3; clear++) {
         scene *s = scene_from(slab_text);
         set_all(s, "render.depth=8 render.min_weight=0.01 background.kind=uniform background.color=1,1,1");
@@ -246,9 +256,15 @@ static void a_ray_weighs_what_its_heaviest_channel_does(void **state)
 static void faces_of_a_cups_hollow_are_told_apart(void **state)
 {
     (void)state;
-    static const struct { vec3 from, to; int face; } ways[] = {
-        {{5, 1, 0}, {0, 1, 0}, 0}, {{0, -5, 0}, {0, 0, 0}, 1}, {{0, 1, 0}, {1, 1, 0}, FACES_MAX}, {{0, 5, 0}, {0, 0, 0}, FACES_MAX + 1}};
-    scene *s = scene_from("solids: {cup: {shape: cup, transparency: 1, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1}}\n");
+    static const struct {
+        vec3 from, to;
+        int face;
+    } ways[] = {{{5, 1, 0}, {0, 1, 0}, 0},
+                {{0, -5, 0}, {0, 0, 0}, 1},
+                {{0, 1, 0}, {1, 1, 0}, FACES_MAX},
+                {{0, 5, 0}, {0, 0, 0}, FACES_MAX + 1}};
+    scene *s = scene_from("solids: {cup: {shape: cup, transparency: 1, ior: 1.5, radius: 1, inner_radius: 0.9, height: "
+                          "3, floor: 0.1}}\n");
     probe *p = probe_of(s);
     ray_tree tree = {0};
     for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
@@ -293,22 +309,26 @@ static void a_way_goes_straight_on_or_turns_back_where_told(void **state)
     ray_tree tree = {0};
     worked(probe_way(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), -1, &tree, NULL), NULL);
     assert_int_equal(tree.count, 3);
-    assert_true(tree.node[2].kind == RAY_REFRACT && tree.node[2].end == RAY_END_SKY && tree.node[2].direction.y == -1.0);
+    assert_true(tree.node[2].kind == RAY_REFRACT && tree.node[2].end == RAY_END_SKY &&
+                tree.node[2].direction.y == -1.0);
     worked(probe_way(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), 1, &tree, NULL), NULL);
     assert_int_equal(tree.count, 4);
-    assert_true(tree.node[2].kind == RAY_REFLECT && tree.node[3].kind == RAY_REFRACT && tree.node[3].direction.y == 1.0);
+    assert_true(tree.node[2].kind == RAY_REFLECT && tree.node[3].kind == RAY_REFRACT &&
+                tree.node[3].direction.y == 1.0);
     assert_true(fabs(tree.node[3].throughput[2] - 0.96 * 0.04 * 0.96) < 1e-15);
     ray_tree_release(&tree);
     probe_destroy(p);
     scene_destroy(s);
 }
 
-/* At one wavelength absorption by wavelength is that wavelength's for all channels; at 450 nm half way between the table's points. */
+/* At one wavelength absorption by wavelength is that wavelength's for all channels; at 450 nm half way between the
+ * table's points. */
 static void absorption_of_a_spectral_scene_is_that_of_its_wavelength(void **state)
 {
     (void)state;
     for (int i = 0; i < 2; i++) {
-        scene *s = scene_from("render: {depth: 1, lambda_nm: 450}\nsolids: {slab: {shape: box, transparency: 1, ior: 1.5, size: [9, 9, 2],\n"
+        scene *s = scene_from("render: {depth: 1, lambda_nm: 450}\nsolids: {slab: {shape: box, transparency: 1, ior: "
+                              "1.5, size: [9, 9, 2],\n"
                               "  absorb_spectrum: [400, 0.5, 500, 1.5]}}\n");
         set_all(s, i ? "render.spectrum=spectral" : "render.spectrum=rgb");
         diagnostic why = {0};

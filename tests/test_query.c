@@ -11,7 +11,8 @@
 #include "probe_fixture.h"
 #include "random_stream.h"
 
-/* Rays of the caller's through the engine: against closed forms of a sphere, against the trees of the probe, and alone against together. */
+/* Rays of the caller's through the engine: against closed forms of a sphere, against the trees of the probe, and alone
+ * against together. */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {
@@ -55,8 +56,9 @@ static double dot(const double *a, const double *b)
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-#define BALL "render: {width: 4, height: 4}\ncamera: {position: [0, 0, -9], target: [0, 0, 0]}\nsolids:\n" \
-             "  ball: {shape: sphere, radius: 2, position: [1, 2, 3], transparency: 1, ior: 1.5}\n"
+#define BALL                                                                                      \
+    "render: {width: 4, height: 4}\ncamera: {position: [0, 0, -9], target: [0, 0, 0]}\nsolids:\n" \
+    "  ball: {shape: sphere, radius: 2, position: [1, 2, 3], transparency: 1, ior: 1.5}\n"
 
 /* A ray that passes a sphere's centre at distance b meets it sqrt(r^2 - b^2) before and behind its nearest point. */
 static void a_sphere_is_met_where_its_equation_says(void **state)
@@ -91,7 +93,8 @@ static void a_sphere_is_met_where_its_equation_says(void **state)
         for (int k = 0; k < 3; k++)
             outward[k] = (hit.point[k] - centre[k]) / r;
         assert_true(fabs(dot(outward, outward) - 1.0) <= 1e-13 && fabs(dot(outward, hit.normal) - 1.0) <= 1e-13);
-        assert_true(hit.solid == 0 && hit.before == CUVETTE_OUTSIDE && hit.after == 0 && hit.n_before == 1.0 && hit.n_after == 1.5);
+        assert_true(hit.solid == 0 && hit.before == CUVETTE_OUTSIDE && hit.after == 0 && hit.n_before == 1.0 &&
+                    hit.n_after == 1.5);
         assert_true(hit.triangle == -1 && hit.face == 0 && hit.error >= 0.0 && hit.error < 1e-12);
 
         /* On through the ball: the chord is 2 half; its end looks back, and behind it is the outside again. */
@@ -122,7 +125,9 @@ static void make_rays(cuvette_ray *rays, size_t count)
 {
     uint64_t random = 99;
     for (size_t i = 0; i < count; i++) {
-        rays[i] = (cuvette_ray){.reach = i % 3 == 0 ? random_real(&random, 0.1, 8.0) : i % 3 == 1 ? 0.0 : (double)INFINITY};
+        rays[i] = (cuvette_ray){.reach = i % 3 == 0   ? random_real(&random, 0.1, 8.0)
+                                         : i % 3 == 1 ? 0.0
+                                                      : (double)INFINITY};
         for (int k = 0; k < 3; k++) {
             rays[i].origin[k] = random_real(&random, -4.0, 4.0);
             rays[i].direction[k] = random_real(&random, -1.0, 1.0);
@@ -189,9 +194,12 @@ static void camera_rays_meet_what_the_probe_meets(void **state)
             if (root->end != RAY_END_HIT)
                 continue;
             met++;
-            assert_true(hit.distance == root->hit.t && hit.point[0] == root->hit.point.x && hit.normal[1] == root->hit.normal.y);
-            assert_true(hit.solid == root->hit.solid && hit.before == root->hit.from && hit.after == root->hit.to && hit.face == root->hit.face);
-            assert_true(hit.n_before == root->hit.n_from && hit.n_after == root->hit.n_to && hit.error == root->hit.error_bound);
+            assert_true(hit.distance == root->hit.t && hit.point[0] == root->hit.point.x &&
+                        hit.normal[1] == root->hit.normal.y);
+            assert_true(hit.solid == root->hit.solid && hit.before == root->hit.from && hit.after == root->hit.to &&
+                        hit.face == root->hit.face);
+            assert_true(hit.n_before == root->hit.n_from && hit.n_after == root->hit.n_to &&
+                        hit.error == root->hit.error_bound);
         }
     assert_true(met > 500);
     stage_close(&g);
@@ -201,8 +209,13 @@ static void camera_rays_meet_what_the_probe_meets(void **state)
 static void a_points_medium_is_the_winners(void **state)
 {
     (void)state;
-    static const struct { double at[3]; int32_t solid; } known[] = { /* ground, vessel, liquid, rod: the scene file's order */
-        {{0.0, -1.0, 0.0}, 0}, {{0.95, 1.0, 0.0}, 1}, {{0.0, 0.075, 0.0}, 1}, {{-0.5, 1.0, 0.0}, 2}, {{0.2, 1.0, 0.0}, 3}, {{0.0, 4.0, 0.0}, -1},
+    static const struct {
+        double at[3];
+        int32_t solid;
+    } known[] = {
+        /* ground, vessel, liquid, rod: the scene file's order */
+        {{0.0, -1.0, 0.0}, 0}, {{0.95, 1.0, 0.0}, 1}, {{0.0, 0.075, 0.0}, 1},
+        {{-0.5, 1.0, 0.0}, 2}, {{0.2, 1.0, 0.0}, 3},  {{0.0, 4.0, 0.0}, -1},
     };
     cuvette_diagnostic why;
     cuvette_query *q = query_of_rod(NULL);
@@ -214,9 +227,12 @@ static void a_points_medium_is_the_winners(void **state)
     cuvette_query_destroy(q);
 }
 
-/* The cube about 0,0,0 of edge 2: corner i at the signs of its bits. Two triangles a side, counterclockwise from outside. */
-static const float cube_vertices[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1};
-static const uint32_t cube_corners[] = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+/* The cube about 0,0,0 of edge 2: corner i at the signs of its bits. Two triangles a side, counterclockwise from
+ * outside. */
+static const float cube_vertices[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1,
+                                      -1, -1, 1,  1, -1, 1,  -1, 1, 1,  1, 1, 1};
+static const uint32_t cube_corners[] = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                                        2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
 static const unsigned char cube_slots[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
 
 /* Faces look like the scene's materials of their slots' names. */
@@ -229,13 +245,21 @@ static void slots_of_arrays_take_materials_by_name(void **state)
     fine(cuvette_scene_create(&s, &why), &why);
     fine(cuvette_engine_create(NULL, &engine, &why), &why);
     const char *const names[] = {"left", "right", "below", "above", "front", "back"};
-    const cuvette_triangles t = {.size = sizeof t, .vertex_count = 8, .triangle_count = 12, .vertices_float = cube_vertices,
-                                 .corners = cube_corners, .slots = cube_slots, .slot_names = names, .slot_count = 6};
+    const cuvette_triangles t = {.size = sizeof t,
+                                 .vertex_count = 8,
+                                 .triangle_count = 12,
+                                 .vertices_float = cube_vertices,
+                                 .corners = cube_corners,
+                                 .slots = cube_slots,
+                                 .slot_names = names,
+                                 .slot_count = 6};
     fine(cuvette_scene_add_triangles(s, "cube", &t, &why), &why);
     fine(cuvette_scene_add_material(s, "front", &why), &why);
     fine(cuvette_scene_add_solid(s, "block", "mesh", NULL, &why), &why);
-    const char *const settings[][2] = {{"block.mesh", "cube"}, {"front.ambient", "1"}, {"front.color", "0.25,0.5,0.75"}, {"camera.position", "0,0,-9"},
-                                       {"camera.target", "0,0,0"}, {"render.width", "1"}, {"render.height", "1"}};
+    const char *const settings[][2] = {
+        {"block.mesh", "cube"},        {"front.ambient", "1"},     {"front.color", "0.25,0.5,0.75"},
+        {"camera.position", "0,0,-9"}, {"camera.target", "0,0,0"}, {"render.width", "1"},
+        {"render.height", "1"}};
     for (size_t i = 0; i < COUNT(settings); i++)
         fine(cuvette_scene_set(s, settings[i][0], settings[i][1], &why), &why);
     float seen[3];
@@ -257,8 +281,12 @@ static cuvette_query *query_of_cube(bool as_mesh)
     cuvette_query *q;
     fine(cuvette_scene_create(&s, &why), &why);
     if (as_mesh) {
-        cuvette_triangles t = {.size = sizeof t, .vertex_count = 8, .triangle_count = 12, .vertices_float = cube_vertices,
-                               .corners = cube_corners, .slots = cube_slots};
+        cuvette_triangles t = {.size = sizeof t,
+                               .vertex_count = 8,
+                               .triangle_count = 12,
+                               .vertices_float = cube_vertices,
+                               .corners = cube_corners,
+                               .slots = cube_slots};
         fine(cuvette_scene_add_triangles(s, "cube", &t, &why), &why);
         assert_int_equal((int)cuvette_scene_count(s, CUVETTE_MESH), 1);
         fine(cuvette_scene_add_solid(s, "block", "mesh", NULL, &why), &why);
@@ -278,9 +306,11 @@ static cuvette_query *query_of_cube(bool as_mesh)
 static void rays_through_a_scene_that_is_drawn_meet_its_meshes(void **state)
 {
     (void)state;
-    cuvette_query *q = query_of_text("render: {integrator: zbuffer}\ncamera: {position: [0, 0, -9], target: [0, 0, 0]}\n"
-                                     "meshes: {cube: {generate: box, size: [2, 2, 2]}}\n"
-                                     "solids: {block: {shape: mesh, mesh: cube, transparency: 1, ior: 1.5}}\n", NULL);
+    cuvette_query *q =
+        query_of_text("render: {integrator: zbuffer}\ncamera: {position: [0, 0, -9], target: [0, 0, 0]}\n"
+                      "meshes: {cube: {generate: box, size: [2, 2, 2]}}\n"
+                      "solids: {block: {shape: mesh, mesh: cube, transparency: 1, ior: 1.5}}\n",
+                      NULL);
     const cuvette_ray ray = {.origin = {0.1, 0.2, -9.0}, .direction = {0.0, 0.0, 1.0}};
     const cuvette_hit hit = nearest(q, &ray);
     assert_true(fabs(hit.distance - 8.0) < 1e-12 && hit.solid == 0 && hit.n_after == 1.5);
@@ -301,12 +331,14 @@ static void a_cube_of_triangles_is_met_as_a_box_is(void **state)
             ray.direction[k] = random_real(&random, -1.2, 1.2) - ray.origin[k];
         }
         const cuvette_hit a = nearest(cube, &ray), b = nearest(box, &ray);
-        assert_true(isfinite(a.distance) == isfinite(b.distance) && a.before == b.before && a.after == b.after && a.solid == b.solid);
+        assert_true(isfinite(a.distance) == isfinite(b.distance) && a.before == b.before && a.after == b.after &&
+                    a.solid == b.solid);
         if (!isfinite(a.distance))
             continue;
         met++;
         const double slope = fabs(dot(a.normal, ray.direction)) / sqrt(dot(ray.direction, ray.direction));
-        assert_true(fabs(a.distance - b.distance) * slope < 1e-14 * (1.0 + a.distance) && dot(a.normal, b.normal) > 1.0 - 1e-14);
+        assert_true(fabs(a.distance - b.distance) * slope < 1e-14 * (1.0 + a.distance) &&
+                    dot(a.normal, b.normal) > 1.0 - 1e-14);
         assert_true(a.triangle >= 0 && a.triangle / 2 == b.face && a.slot == b.face && a.copy == 0 && b.triangle == -1);
         assert_true(a.u >= 0.0 && a.v >= 0.0 && a.u + a.v <= 1.0 + 1e-15);
         cuvette_ray on = {.start = a.transmitted}, on_box = {.start = b.transmitted};
@@ -351,7 +383,10 @@ static void wrong_triangles_are_refused_and_add_nothing(void **state)
     cuvette_scene *s;
     fine(cuvette_scene_create(&s, &why), &why);
     const uint32_t beyond[] = {0, 1, 8};
-    const cuvette_triangles right = {.size = sizeof right, .vertex_count = 8, .triangle_count = 1, .vertices_float = cube_vertices,
+    const cuvette_triangles right = {.size = sizeof right,
+                                     .vertex_count = 8,
+                                     .triangle_count = 1,
+                                     .vertices_float = cube_vertices,
                                      .corners = cube_corners};
     cuvette_triangles wrong[] = {right, right, right, right};
     wrong[0].size = 0;
@@ -376,9 +411,13 @@ static void wrong_rays_are_named(void **state)
     cuvette_hit hits[3];
     fine(cuvette_query_nearest(q, rays, 0, NULL, &why), &why);
     fine(cuvette_query_nearest(q, rays, 3, hits, &why), &why);
-    const cuvette_ray wrong[] = {{.direction = {0, 0, 0}}, {.direction = {(double)NAN, 0, 0}}, {.direction = {1, 0, 0}, .origin = {2e6, 0, 0}},
-                                 {.direction = {1, 0, 0}, .reach = -1.0}, {.direction = {1, 0, 0}, .reach = (double)NAN},
-                                 {.direction = {1, 0, 0}, .start = {{1, 800, 0, 0}}}, {.direction = {1, 0, 0}, .start = {{5, 0, 0, 0}}}};
+    const cuvette_ray wrong[] = {{.direction = {0, 0, 0}},
+                                 {.direction = {(double)NAN, 0, 0}},
+                                 {.direction = {1, 0, 0}, .origin = {2e6, 0, 0}},
+                                 {.direction = {1, 0, 0}, .reach = -1.0},
+                                 {.direction = {1, 0, 0}, .reach = (double)NAN},
+                                 {.direction = {1, 0, 0}, .start = {{1, 800, 0, 0}}},
+                                 {.direction = {1, 0, 0}, .start = {{5, 0, 0, 0}}}};
     for (size_t i = 0; i < COUNT(wrong); i++) {
         unsigned char blocked[3];
         rays[2] = wrong[i];
@@ -388,12 +427,17 @@ static void wrong_rays_are_named(void **state)
     }
     cuvette_ray ray;
     assert_int_equal(cuvette_query_camera_ray(q, (double)NAN, 0.0, &ray, &why), CUVETTE_BAD_INPUT);
-    assert_int_equal(cuvette_query_medium(q, (const double[]){0, (double)INFINITY, 0}, &(int32_t){0}, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_query_medium(q, (const double[]){0, (double)INFINITY, 0}, &(int32_t){0}, &why),
+                     CUVETTE_BAD_INPUT);
     assert_int_equal(cuvette_query_nearest(q, NULL, 1, hits, &why), CUVETTE_BAD_INPUT);
     cuvette_query_destroy(q);
 }
 
-typedef struct asker { const cuvette_query *query; const cuvette_ray *rays; cuvette_hit hits[MANY]; } asker;
+typedef struct asker {
+    const cuvette_query *query;
+    const cuvette_ray *rays;
+    cuvette_hit hits[MANY];
+} asker;
 
 static void *ask(void *context)
 {

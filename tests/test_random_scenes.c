@@ -28,11 +28,12 @@ static scene_text random_scene(uint64_t *seed, int number, bool lit)
     const vec3 eye = random_point(seed, random_below(seed, 3) ? 3.0 : 0.7), target = random_point(seed, 0.5);
     scene_text t = {.length = 0};
     add(&t, "background: {color: [1, 1, 1], ior: %.17g}\nrender: {width: %d, height: %d}\n", outside, WIDTH, HEIGHT);
-    add(&t, "camera: {position: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], fov_deg: 50}\n", eye.x, eye.y, eye.z, target.x,
-        target.y, target.z);
+    add(&t, "camera: {position: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], fov_deg: 50}\n", eye.x, eye.y,
+        eye.z, target.x, target.y, target.z);
     for (int k = 0; k < 3 && lit; k++) {
         const vec3 p = random_point(seed, 4.0);
-        add(&t, "%s  lamp%d: {position: [%.17g, %.17g, %.17g], reach: %d}\n", k ? "" : "lights:\n", k, p.x, p.y, p.z, 3 * k);
+        add(&t, "%s  lamp%d: {position: [%.17g, %.17g, %.17g], reach: %d}\n", k ? "" : "lights:\n", k, p.x, p.y, p.z,
+            3 * k);
     }
     add(&t, "solids:\n");
     add_room(&t, seed, &m, outside, false, random_below(seed, 3) == 0);
@@ -56,26 +57,31 @@ static const char *fault_of(const ray_tree *tree, const ray_node *node)
     if (!is_point(node->origin) || !(fabs(vec3_length(node->direction) - 1.0) <= 1e-14))
         return "its origin or direction";
     for (int c = 0; c < 3; c++) {
-        if (!(node->throughput[c] >= 0.0 && node->brought[c] >= 0.0 && isfinite(node->throughput[c]) && isfinite(node->brought[c])))
+        if (!(node->throughput[c] >= 0.0 && node->brought[c] >= 0.0 && isfinite(node->throughput[c]) &&
+              isfinite(node->brought[c])))
             return "its throughput";
-        if (node->kind != RAY_SHADOW && node->parent != RAY_NONE && node->throughput[c] > tree->node[node->parent].throughput[c])
+        if (node->kind != RAY_SHADOW && node->parent != RAY_NONE &&
+            node->throughput[c] > tree->node[node->parent].throughput[c])
             return "more throughput than its parent";
     }
     if (node->end != RAY_END_HIT)
         return NULL;
-    if (!is_point(h->point) || !(fabs(vec3_length(h->normal) - 1.0) <= 1e-14) || !(vec3_dot(h->normal, node->direction) <= 1e-15))
+    if (!is_point(h->point) || !(fabs(vec3_length(h->normal) - 1.0) <= 1e-14) ||
+        !(vec3_dot(h->normal, node->direction) <= 1e-15))
         return "the point or normal where it hits";
     if (!(h->t >= 0.0 && h->error_bound >= 0.0 && h->error_bound <= 1e-14 * (100.0 + vec3_length(node->origin) + h->t)))
         return "the distance to its hit";
-    const double shares[] = {h->cos_i, h->cos_t, h->R_s, h->R_p, h->R, h->transmittance[0], h->transmittance[1], h->transmittance[2]};
+    const double shares[] = {
+        h->cos_i, h->cos_t, h->R_s, h->R_p, h->R, h->transmittance[0], h->transmittance[1], h->transmittance[2]};
     for (size_t k = 0; k < COUNT(shares); k++)
         if (!is_share(shares[k]))
             return "a share at its hit";
     return NULL;
 }
 
-/* Which medium is a little along a direction from a point: by the solids' own shapes. false where another boundary lies within
- * the step, so that a near and a far step do not agree, and so far out that the nearest step is lost in rounding. */
+/* Which medium is a little along a direction from a point: by the solids' own shapes. false where another boundary lies
+ * within the step, so that a near and a far step do not agree, and so far out that the nearest step is lost in
+ * rounding. */
 static bool medium_along(const probe *p, vec3 point, vec3 direction, int *medium)
 {
     *medium = probe_medium_at(p, vec3_add(point, vec3_scale(direction, 1e-8)));
@@ -83,7 +89,9 @@ static bool medium_along(const probe *p, vec3 point, vec3 direction, int *medium
            *medium == probe_medium_at(p, vec3_add(point, vec3_scale(direction, 1e-10)));
 }
 
-typedef struct census { int asked, unsure, wrong; } census;
+typedef struct census {
+    int asked, unsure, wrong;
+} census;
 
 static void ask(census *sum, const probe *p, vec3 point, vec3 direction, int believed)
 {
@@ -108,7 +116,12 @@ static void ask_media(census *sum, const probe *p, const ray_tree *tree)
     }
 }
 
-typedef struct survey { census media; size_t rays; int hits; double brightest; } survey;
+typedef struct survey {
+    census media;
+    size_t rays;
+    int hits;
+    double brightest;
+} survey;
 
 static void look_at_scene(uint64_t *seed, int number, bool lit, renderer *r, survey *sum)
 {
@@ -170,8 +183,8 @@ static void with_lights_the_probe_sees_what_the_picture_shows(void **state)
     assert_true(look_at_scenes(6, true).brightest > 1.0);
 }
 
-/* Solids on a grid, and rays from its points along axes and diagonals: through corners, along edges, within faces. Which of two media is
- * there is then open; that numbers are numbers, and that no energy is lost or made, is not. */
+/* Solids on a grid, and rays from its points along axes and diagonals: through corners, along edges, within faces.
+ * Which of two media is there is then open; that numbers are numbers, and that no energy is lost or made, is not. */
 static void rays_through_corners_and_along_edges_are_sound(void **state)
 {
     (void)state;
@@ -206,12 +219,13 @@ static void rays_through_corners_and_along_edges_are_sound(void **state)
     assert_true(worst <= 1e-9 && rays > 150000);
 }
 
-/* A ray within the plane of a face that its origin lies on leaves the solid there, or on the way: never by the face opposite. The sign
- * of a zero component says which of the two half-spaces it counts to. */
+/* A ray within the plane of a face that its origin lies on leaves the solid there, or on the way: never by the face
+ * opposite. The sign of a zero component says which of the two half-spaces it counts to. */
 static void a_ray_within_a_face_does_not_leave_by_the_opposite_one(void **state)
 {
     (void)state;
-    static const char *const shapes[] = {"shape: box, size: [1, 1, 1], position: [0, 0.5, 0]", "shape: cylinder, radius: 0.5, height: 1"};
+    static const char *const shapes[] = {"shape: box, size: [1, 1, 1], position: [0, 0.5, 0]",
+                                         "shape: cylinder, radius: 0.5, height: 1"};
     for (size_t k = 0; k < COUNT(shapes); k++) {
         scene_text text = scene_begin(1.0, 2);
         add(&text, "  body: {transparency: 1, ior: 1.5, %s}\n", shapes[k]);

@@ -31,10 +31,10 @@ static void critical_angles_of_water_glass_and_diamond(void **state)
 static void reflectances_at_known_angles(void **state)
 {
     (void)state;
-    assert_near(theory_fresnel(0.0, 1.0, 1.5), 0.04, 1e-15); /* 4% of glass at normal incidence */
+    assert_near(theory_fresnel(0.0, 1.0, 1.5), 0.04, 1e-15);        /* 4% of glass at normal incidence */
     assert_near(theory_fresnel_p(atan(1.5), 1.0, 1.5), 0.0, 1e-30); /* Brewster, 56.3 degrees */
     assert_near(theory_fresnel_s(atan(1.5), 1.0, 1.5), pow(1.25 / 3.25, 2), 1e-15); /* cos(2 Brewster)^2 */
-    assert_near(theory_fresnel(45.0 * DEGREE, 1.5, 1.0), 1.0, 0.0); /* total */
+    assert_near(theory_fresnel(45.0 * DEGREE, 1.5, 1.0), 1.0, 0.0);                 /* total */
     /* At 45 degrees R_p = R_s^2, whatever the indices. */
     assert_near(theory_fresnel_p(45.0 * DEGREE, 1.0, 1.33), pow(theory_fresnel_s(45.0 * DEGREE, 1.0, 1.33), 2), 1e-16);
 }
@@ -137,7 +137,8 @@ static const char *const settings[] = {
     "background.ior=1.4",
     "vessel.medium=bk7 liquid.medium=water background.medium=air render.lambda_nm=450",
     "camera.position=3,0.5,-4 rod.rotation=0,30,0 rod.position=-0.2,2.1,0.3 vessel.inner_radius=0.7",
-    "liquid.priority=3 vessel.position=0.5,0.001,0.25 liquid.position=0.5,0.051,0.25 rod.position=0.4,2.1,0.2 rod.priority=4",
+    "liquid.priority=3 vessel.position=0.5,0.001,0.25 liquid.position=0.5,0.051,0.25 rod.position=0.4,2.1,0.2 "
+    "rod.priority=4",
     "liquid.absorb_per_m=0.7,0.2,0 render.unit_m=0.05 render.depth=0 render.samples=4",
     "render.radiance=basic background.ior=1.1",
 };
@@ -151,7 +152,8 @@ static void everything_passes_whatever_the_indices(void **state)
         assert_int_equal(r.count, 35);
         for (int k = 0; k < r.count; k++)
             if (realism_is_defined(&r.value[k]) && !realism_passes(&r.value[k]))
-                fail_msg("%s: %s is %.17g, not %.17g", settings[i], r.value[k].metric, r.value[k].measured, r.value[k].theory);
+                fail_msg("%s: %s is %.17g, not %.17g", settings[i], r.value[k].metric, r.value[k].measured,
+                         r.value[k].theory);
         assert_true(realism_is_defined(value(&r, "edges.left")));
         scene_destroy(s);
     }
@@ -178,7 +180,8 @@ static void metrics_without_meaning_are_named_as_such(void **state)
     scene_destroy(usual), scene_destroy(empty), scene_destroy(leaning);
 }
 
-/* Measures in the scene as `changed` makes it, and asks theory about the one without. All of these must fail, and no others. */
+/* Measures in the scene as `changed` makes it, and asks theory about the one without. All of these must fail, and no
+ * others. */
 static void expect_failures(const char *base, const char *changed, const char *const *words, size_t count)
 {
     scene *s = rod_scene(base), *other = rod_scene(base);
@@ -190,7 +193,8 @@ static void expect_failures(const char *base, const char *changed, const char *c
         for (size_t k = 0; k < count; k++)
             wanted |= starts_with(v->metric, words[k]);
         if (realism_is_defined(v) && realism_passes(v) == wanted)
-            fail_msg("%s, then %s: %s %s at %.17g for %.17g", base, changed, v->metric, wanted ? "passes" : "fails", v->measured, v->theory);
+            fail_msg("%s, then %s: %s %s at %.17g for %.17g", base, changed, v->metric, wanted ? "passes" : "fails",
+                     v->measured, v->theory);
     }
     scene_destroy(s), scene_destroy(other);
 }
@@ -198,17 +202,20 @@ static void expect_failures(const char *base, const char *changed, const char *c
 static void an_index_that_is_off_by_a_millionth_fails(void **state)
 {
     (void)state;
-    const char *const of_air[] = {"edges", "water_line", "lens", "dispersion", "critical.vessel", "critical.liquid", "fresnel.vessel",
-                                  "fresnel.liquid", "slab", "gap", "radiance", "reversal"};
+    const char *const of_air[] = {
+        "edges",          "water_line",     "lens", "dispersion", "critical.vessel", "critical.liquid",
+        "fresnel.vessel", "fresnel.liquid", "slab", "gap",        "radiance",        "reversal"};
     expect_failures("", "background.ior=1.000001", of_air, COUNT(of_air));
     expect_failures("vessel.ior=1.3 liquid.ior=1.5", "background.ior=1.000001", of_air, COUNT(of_air));
-    const char *const of_glass[] = {"edges.left", "edges.right", "edges.magnification", "lens", "critical.vessel", "critical.wall", "fresnel.vessel",
-                                    "fresnel.wall", "slab", "gap", "reversal"};
+    const char *const of_glass[] = {"edges.left",    "edges.right",    "edges.magnification", "lens", "critical.vessel",
+                                    "critical.wall", "fresnel.vessel", "fresnel.wall",        "slab", "gap",
+                                    "reversal"};
     expect_failures("", "vessel.ior=1.500001", of_glass, COUNT(of_glass));
     const char *const of_water[] = {"edges",          "water_line",   "lens",     "critical.liquid", "critical.wall",
                                     "fresnel.liquid", "fresnel.wall", "radiance", "reversal"};
     expect_failures("", "liquid.ior=1.330001", of_water, COUNT(of_water));
-    const char *const of_empty[] = {"edges.left", "edges.right", "edges.magnification", "lens", "critical", "fresnel", "slab", "gap", "reversal"};
+    const char *const of_empty[] = {
+        "edges.left", "edges.right", "edges.magnification", "lens", "critical", "fresnel", "slab", "gap", "reversal"};
     expect_failures("vessel.ior=2.4 liquid.visible=off", "vessel.ior=2.400001", of_empty, COUNT(of_empty));
 }
 
@@ -246,11 +253,13 @@ static void water_in_glass_disperses_as_published(void **state)
 static void refuses_scenes_without_a_vessel_a_rod_or_a_common_axis(void **state)
 {
     (void)state;
-    static const struct { const char *change, *what; } wrong[] = {
-        {"vessel.visible=off", "'vessel'"},     {"rod.visible=off", "'rod'"},         {"liquid.radius=0.5", "wall"},
-        {"liquid.position.x=0.01", "wall"},     {"liquid.m=1.1", "round"},            {"vessel.m=1.1", "elliptic"}, {"vessel.rotation.x=5", "turned"},
-        {"vessel.transparency=0", "opaque"},    {"rod.transparency=1", "not opaque"}, {"rod.priority=1", "displaced"},
-        {"liquid.position.y=0.5", "floor"},     {"liquid.priority=9", "displaces"},
+    static const struct {
+        const char *change, *what;
+    } wrong[] = {
+        {"vessel.visible=off", "'vessel'"}, {"rod.visible=off", "'rod'"},        {"liquid.radius=0.5", "wall"},
+        {"liquid.position.x=0.01", "wall"}, {"liquid.m=1.1", "round"},           {"vessel.m=1.1", "elliptic"},
+        {"vessel.rotation.x=5", "turned"},  {"vessel.transparency=0", "opaque"}, {"rod.transparency=1", "not opaque"},
+        {"rod.priority=1", "displaced"},    {"liquid.position.y=0.5", "floor"},  {"liquid.priority=9", "displaces"},
     };
     for (size_t i = 0; i < COUNT(wrong); i++) {
         scene *s = rod_scene(wrong[i].change);

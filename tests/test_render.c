@@ -123,12 +123,13 @@ static void branches_that_weigh_too_little_are_cut(void **state)
     scene_destroy(s);
 }
 
-/* In a slab that lets one channel pass alone: a branch goes on for as long as that one weighs enough, whichever it is. R comes
- * back, and T^2 and T^2 R of the clear channel; its next branch weighs 0.96 R^2. */
+/* In a slab that lets one channel pass alone: a branch goes on for as long as that one weighs enough, whichever it is.
+ * R comes back, and T^2 and T^2 R of the clear channel; its next branch weighs 0.96 R^2. */
 static void a_branch_weighs_what_its_heaviest_channel_does(void **state)
 {
     (void)state;
-    static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9", "slab.absorb_per_m=9,9,0"};
+    static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9",
+                                            "slab.absorb_per_m=9,9,0"};
     for (int clear = 0; clear < 3; clear++) {
         scene *s = scene_from(slab_scene);
         set_all(s, "render.depth=8 render.min_weight=0.01 background.kind=uniform background.color=1,1,1");
@@ -144,8 +145,8 @@ static void a_branch_weighs_what_its_heaviest_channel_does(void **state)
 }
 
 /* In a slab of unit thickness that lets exp(-a) of each channel pass. The first branches weigh R and T; the one inside
- * makes T exp(-a) (R + T) of itself at the other side, all of which depth 1 cuts off, and a least weight of 0.5 the smaller of
- * each pair. */
+ * makes T exp(-a) (R + T) of itself at the other side, all of which depth 1 cuts off, and a least weight of 0.5 the
+ * smaller of each pair. */
 static void what_is_cut_off_is_counted_by_channel(void **state)
 {
     (void)state;
@@ -270,8 +271,8 @@ static void four_samples_are_the_mean_of_four_pixels(void **state)
     scene_destroy(fine);
 }
 
-/* Yaw turns the camera from z towards x, so that right is (cos yaw, 0, -sin yaw); pitch lifts it. A ball there is in the
- * middle of the right one of two pixels, at tan 30 degrees. */
+/* Yaw turns the camera from z towards x, so that right is (cos yaw, 0, -sin yaw); pitch lifts it. A ball there is in
+ * the middle of the right one of two pixels, at tan 30 degrees. */
 static void what_is_to_the_right_is_seen_to_the_right(void **state)
 {
     (void)state;
@@ -282,7 +283,8 @@ static void what_is_to_the_right_is_seen_to_the_right(void **state)
     for (int k = 0; k < 24; k++) {
         const double yaw_deg = 15.0 * k, pitch_deg = 20.0 * (k % 7 - 3), radian = acos(-1.0) / 180.0;
         const double yaw = yaw_deg * radian, pitch = pitch_deg * radian;
-        const vec3 forward = vec3_make(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw)), right = vec3_make(cos(yaw), 0.0, -sin(yaw));
+        const vec3 forward = vec3_make(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw)),
+                   right = vec3_make(cos(yaw), 0.0, -sin(yaw));
         s->camera.yaw_deg = yaw_deg, s->camera.pitch_deg = pitch_deg;
         s->solids[0].shape.position =
             vec3_add(s->camera.position, vec3_scale(vec3_add(forward, vec3_scale(right, tan(30.0 * radian))), 10.0));
@@ -331,16 +333,18 @@ static void first_hits_of_the_rod_scene(void **state)
     scene_destroy(s);
 }
 
-/* Neighbours leave one slab through one face, some into an opaque box, some into the open: the surface is not the same body's. */
+/* Neighbours leave one slab through one face, some into an opaque box, some into the open: the surface is not the same
+ * body's. */
 static void neighbours_may_meet_different_bodies_on_one_face(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 64, height: 2, depth: 4}\n"
-                          "camera: {position: [0, 50, 0], yaw_deg: 0, pitch_deg: -90, fov_deg: 0.05}\n"
-                          "background: {color: [0, 0, 0]}\n"
-                          "solids:\n"
-                          "  slab: {shape: box, transparency: 1, ior: 1.5, position: [0, 0.5, 0], size: [9, 1, 9], priority: 1}\n"
-                          "  half: {shape: box, ambient: 1, color: [1, 0, 0], position: [-2, -0.25, 0], size: [4, 1.5, 9]}\n");
+    scene *s = scene_from(
+        "render: {width: 64, height: 2, depth: 4}\n"
+        "camera: {position: [0, 50, 0], yaw_deg: 0, pitch_deg: -90, fov_deg: 0.05}\n"
+        "background: {color: [0, 0, 0]}\n"
+        "solids:\n"
+        "  slab: {shape: box, transparency: 1, ior: 1.5, position: [0, 0.5, 0], size: [9, 1, 9], priority: 1}\n"
+        "  half: {shape: box, ambient: 1, color: [1, 0, 0], position: [-2, -0.25, 0], size: [4, 1.5, 9]}\n");
     render_result *result = render(s);
     int lit = 0;
     for (int y = 0; y < 2; y++)

@@ -8,7 +8,10 @@
 #include "random_scene.h"
 #include "reversal_fixture.h"
 
-typedef struct tally { int ways, crossings, other_media, reflected; double farthest, unequal; } tally;
+typedef struct tally {
+    int ways, crossings, other_media, reflected;
+    double farthest, unequal;
+} tally;
 
 static void take(tally *sum, reversal r)
 {

@@ -8,8 +8,8 @@
 #include "render/ticket.h"
 #include "render_fixture.h"
 
-/* Samples of a pixel: the middles of k x k cells. One pixel sees, at z = 1, the square from -1 to 1, and in it a white wall that
- * ends at an edge: its share is that of the cells whose middle it covers. */
+/* Samples of a pixel: the middles of k x k cells. One pixel sees, at z = 1, the square from -1 to 1, and in it a white
+ * wall that ends at an edge: its share is that of the cells whose middle it covers. */
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
@@ -83,7 +83,8 @@ static void a_ticket_holds_the_last_sample_of_the_last_pixel(void **state)
     const int64_t pixel = SCENE_PIXELS_MAX - 1, sample = (int64_t)SCENE_SAMPLES_MAX * 65536 - 1, number = 3999;
     const int64_t ticket = ticket_with_wavelength(ticket_make(pixel, sample), number) | TICKET_SEES_LIGHTS;
     assert_true(ticket > 0);
-    assert_true(ticket_pixel(ticket) == pixel && ticket_sample(ticket) == sample && ticket_wavelength(ticket) == number);
+    assert_true(ticket_pixel(ticket) == pixel && ticket_sample(ticket) == sample &&
+                ticket_wavelength(ticket) == number);
 }
 
 int main(void)

@@ -1,5 +1,5 @@
-/* Edits of a scene: what is added is as a file has it, turns are rotations, and what goes wrong changes nothing. Run from the
- * repository root. */
+/* Edits of a scene: what is added is as a file has it, turns are rotations, and what goes wrong changes nothing. Run
+ * from the repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -42,8 +42,10 @@ static void what_is_added_is_as_a_file_has_it(void **state)
     assert_int_equal(sizeof shapes / sizeof *shapes, SHAPE_COUNT);
     for (int k = 0; k < SHAPE_COUNT; k++) {
         char file[300];
-        snprintf(file, sizeof file, "meshes: {body: {generate: box}}\ntextures: {wood: {file: wood.png}}\nmaterials: {stuff: {}}\n"
-                 "lights: {lamp: {}}\nsolids: {thing: {shape: %s%s}}\n", shapes[k], k == SHAPE_MESH ? ", mesh: body" : "");
+        snprintf(file, sizeof file,
+                 "meshes: {body: {generate: box}}\ntextures: {wood: {file: wood.png}}\nmaterials: {stuff: {}}\n"
+                 "lights: {lamp: {}}\nsolids: {thing: {shape: %s%s}}\n",
+                 shapes[k], k == SHAPE_MESH ? ", mesh: body" : "");
         scene *read = scene_from(file), *made = scene_create();
         size_t stuff = 9, lamp = 9, thing = 9;
         shape_kind kind;
@@ -68,17 +70,17 @@ static void what_is_added_is_as_a_file_has_it(void **state)
 }
 
 /* Does the call refuse, for that reason, and leave the scene as it was? */
-#define assert_refused(s, call, reason)                            \
-    do {                                                           \
-        char *before_ = text_of(s);                                \
-        diagnostic why = {0};                                      \
-        assert_int_equal(call, STATUS_BAD_INPUT);                  \
-        assert_string_equal(why.what, reason);                     \
-        assert_true(why.remedy[0] != 0);                           \
-        char *after_ = text_of(s);                                 \
-        assert_string_equal(before_, after_);                      \
-        free(before_);                                             \
-        free(after_);                                              \
+#define assert_refused(s, call, reason)           \
+    do {                                          \
+        char *before_ = text_of(s);               \
+        diagnostic why = {0};                     \
+        assert_int_equal(call, STATUS_BAD_INPUT); \
+        assert_string_equal(why.what, reason);    \
+        assert_true(why.remedy[0] != 0);          \
+        char *after_ = text_of(s);                \
+        assert_string_equal(before_, after_);     \
+        free(before_);                            \
+        free(after_);                             \
     } while (0)
 
 static void wrong_names_are_refused(void **state)
@@ -87,7 +89,8 @@ static void wrong_names_are_refused(void **state)
     scene *s = scene_from(small_scene);
     assert_refused(s, scene_add_light(s, "lamp", NULL, &why), "the name 'lamp' is taken");
     assert_refused(s, scene_add_material(s, "a", NULL, &why), "the name 'a' is taken");
-    assert_refused(s, scene_add_solid(s, "camera", SHAPE_BOX, NULL, &why), "the name 'camera' is a word of scene files");
+    assert_refused(s, scene_add_solid(s, "camera", SHAPE_BOX, NULL, &why),
+                   "the name 'camera' is a word of scene files");
     assert_refused(s, scene_add_solid(s, "two words", SHAPE_BOX, NULL, &why), "'two words' cannot be a name");
     assert_refused(s, scene_remove(s, "lump", &why), "nothing in the scene is named 'lump'");
     assert_refused(s, scene_rename(s, "lamp", "other", &why), "the name 'other' is taken");
@@ -124,9 +127,10 @@ static void a_material_in_use_is_not_removed(void **state)
 static void a_mesh_or_texture_in_use_is_not_removed(void **state)
 {
     (void)state;
-    scene *s = scene_from("meshes: {body: {generate: box}, spare: {generate: torus}}\n"
-                          "textures: {wood: {file: wood.png}, bark: {file: bark.png}}\nmaterials: {stuff: {texture: wood}}\n"
-                          "solids: {thing: {shape: mesh, mesh: body, texture: bark}, other: {shape: box, material: stuff}}\n");
+    scene *s =
+        scene_from("meshes: {body: {generate: box}, spare: {generate: torus}}\n"
+                   "textures: {wood: {file: wood.png}, bark: {file: bark.png}}\nmaterials: {stuff: {texture: wood}}\n"
+                   "solids: {thing: {shape: mesh, mesh: body, texture: bark}, other: {shape: box, material: stuff}}\n");
     assert_refused(s, scene_remove(s, "body", &why), "body is the mesh of thing");
     assert_refused(s, scene_remove(s, "wood", &why), "wood is the texture of stuff");
     assert_refused(s, scene_remove(s, "bark", &why), "bark is the texture of thing");
@@ -146,7 +150,8 @@ static void a_mesh_or_texture_in_use_is_not_removed(void **state)
 static void what_every_scene_has_goes_back_to_its_defaults(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {depth: 9}\ncamera: {yaw_deg: 5, fov_deg: 20}\nbackground: {picture: sky.png, ior: 1.25}\n");
+    scene *s = scene_from(
+        "render: {depth: 9}\ncamera: {yaw_deg: 5, fov_deg: 20}\nbackground: {picture: sky.png, ior: 1.25}\n");
     scene *empty = scene_create();
     assert_int_equal(scene_remove(s, "camera", NULL), STATUS_OK);
     assert_int_equal(scene_remove(s, "background", NULL), STATUS_OK);
@@ -183,7 +188,8 @@ static void a_material_is_given_whole(void **state)
     assert_int_equal(scene_put(s, "c.material", "clay", NULL), STATUS_OK); /* what it had for itself is gone */
     assert_true(s->solids[2].surface.diffuse == 0.5);
     assert_int_equal(scene_put(s, "c.material", "glass", NULL), STATUS_OK);
-    assert_true(s->solids[2].surface.ior == 1.5 && s->solids[2].surface.diffuse == 0.0 && s->solids[2].material_index == 0);
+    assert_true(s->solids[2].surface.ior == 1.5 && s->solids[2].surface.diffuse == 0.0 &&
+                s->solids[2].material_index == 0);
     assert_int_equal(scene_put(s, "c.material", "", NULL), STATUS_OK);
     assert_true(s->solids[2].surface.ior == 1.0 && s->solids[2].material_index == -1);
     assert_int_equal(scene_put(s, "c.shape", "sphere", NULL), STATUS_OK);
@@ -241,7 +247,8 @@ static void what_would_leave_the_scene_stays(void **state)
     scene *s = scene_from(small_scene);
     set_all(s, "camera.position=0,0,0 camera.target=0,0,999999");
     assert_refused(s, scene_move(s, "c", vec3_make(1e6, 0, 0), &why), "c.position.x: 1000001 is out of range");
-    assert_refused(s, scene_move(s, "lamp", vec3_make(0, (double)NAN, 0), &why), "lamp.position.y: 'nan' is not a finite number");
+    assert_refused(s, scene_move(s, "lamp", vec3_make(0, (double)NAN, 0), &why),
+                   "lamp.position.y: 'nan' is not a finite number");
     assert_refused(s, scene_move(s, "camera", vec3_make(0, 0, 2), &why), "camera.target.z: 1000001 is out of range");
     assert_refused(s, scene_turn(s, "c", vec3_make(0, (double)INFINITY, 0), &why), "c cannot be turned so far");
     assert_refused(s, scene_look_at(s, vec3_make(0, 2e6, 0), &why), "camera.target.y: 2000000 is out of range");
@@ -272,8 +279,10 @@ static void turns_are_rotations_about_the_axes_of_the_world(void **state)
     solid_shape *shape = &s->solids[0].shape;
     for (int i = 0; i < 20000; i++) {
         const bool straight = i % 2 == 0; /* upright axes, where x and z turn about one line, included */
-        const vec3 turn = vec3_make(random_angle(&seed, straight), random_angle(&seed, straight), random_angle(&seed, straight));
-        vec3 from = vec3_make(random_angle(&seed, straight), random_angle(&seed, straight), random_angle(&seed, straight));
+        const vec3 turn =
+            vec3_make(random_angle(&seed, straight), random_angle(&seed, straight), random_angle(&seed, straight));
+        vec3 from =
+            vec3_make(random_angle(&seed, straight), random_angle(&seed, straight), random_angle(&seed, straight));
         if (i % 5 == 0) /* nearly upright */
             from.y = 90.0 + random_real(&seed, -1.0, 1.0) * pow(10.0, -(double)random_below(&seed, 14));
         shape->rotation_deg = from;
@@ -284,7 +293,8 @@ static void turns_are_rotations_about_the_axes_of_the_world(void **state)
             const vec3 expected = rotated(turn, rotated(from, unit)), found = rotated(shape->rotation_deg, unit);
             assert_true(vec3_length(vec3_sub(expected, found)) < 1e-13);
         }
-        assert_true(fabs(shape->rotation_deg.x) <= 360 && fabs(shape->rotation_deg.y) <= 360 && fabs(shape->rotation_deg.z) <= 360);
+        assert_true(fabs(shape->rotation_deg.x) <= 360 && fabs(shape->rotation_deg.y) <= 360 &&
+                    fabs(shape->rotation_deg.z) <= 360);
     }
     scene_destroy(s);
 }
@@ -293,9 +303,9 @@ static void turns_keep_round_numbers_round(void **state)
 {
     (void)state;
     static const double cases[][9] = {
-        {0, 0, 0, 0, 0, -22, 0, 0, -22},    {0, 35, 0, 0, 10, 0, 0, 45, 0},     {10, 20, 30, 0, 0, 5, 10, 20, 35},
-        {10, 0, 0, 5, 0, 0, 15, 0, 0},      {0, 0, 170, 0, 0, 20, 0, 0, -170},  {10, 20, 0, 0, 30, 0, 10, 50, 0},
-        {90, 0, 0, 0, 90, 0, 90, 90, 0},    {0, 0, 90, 90, 0, 0, 90, -90, 0},   {30, 40, 50, 0, 0, 0, 30, 40, 50},
+        {0, 0, 0, 0, 0, -22, 0, 0, -22},    {0, 35, 0, 0, 10, 0, 0, 45, 0},    {10, 20, 30, 0, 0, 5, 10, 20, 35},
+        {10, 0, 0, 5, 0, 0, 15, 0, 0},      {0, 0, 170, 0, 0, 20, 0, 0, -170}, {10, 20, 0, 0, 30, 0, 10, 50, 0},
+        {90, 0, 0, 0, 90, 0, 90, 90, 0},    {0, 0, 90, 90, 0, 0, 90, -90, 0},  {30, 40, 50, 0, 0, 0, 30, 40, 50},
         {0, 0, 30, 0, 180, 0, 180, 0, 150}, {0, 350, 0, 0, 350, 0, 0, -20, 0},
     };
     scene *s = scene_from(small_scene);
@@ -344,8 +354,10 @@ static void the_camera_turns_in_place(void **state)
     scene *s = scene_from(small_scene);
     for (int i = 0; i < 2000; i++) {
         const bool aimed = i % 2 == 0;
-        set_all(s, aimed ? "camera.position=1,2,3 camera.target=2,1,5" : "camera.position=1,2,3 camera.yaw_deg=40 camera.pitch_deg=-20");
-        const vec3 turn = vec3_make(random_angle(&seed, i % 4 < 2), random_angle(&seed, i % 4 < 2), random_angle(&seed, i % 4 < 2));
+        set_all(s, aimed ? "camera.position=1,2,3 camera.target=2,1,5"
+                         : "camera.position=1,2,3 camera.yaw_deg=40 camera.pitch_deg=-20");
+        const vec3 turn =
+            vec3_make(random_angle(&seed, i % 4 < 2), random_angle(&seed, i % 4 < 2), random_angle(&seed, i % 4 < 2));
         const vec3 expected = rotated(turn, direction_of(&s->camera));
         assert_int_equal(scene_turn(s, "camera", turn, NULL), STATUS_OK);
         assert_true(vec3_length(vec3_sub(direction_of(&s->camera), expected)) < 1e-13);
@@ -374,13 +386,16 @@ static void the_rod_in_its_vessel_is_built_by_calls_alone(void **state)
     worked(scene_add_material(s, "clear", NULL, &why), &why);
     worked(scene_add_material(s, "tiles", NULL, &why), &why);
     worked(scene_add_material(s, "plastic", NULL, &why), &why);
-    set_all(s, "clear.transparency=1 clear.specular=0.6 clear.shininess=80 tiles.color=0.85,0.85,0.85 tiles.checker_color=0.25,0.3,0.35");
+    set_all(s, "clear.transparency=1 clear.specular=0.6 clear.shininess=80 tiles.color=0.85,0.85,0.85 "
+               "tiles.checker_color=0.25,0.3,0.35");
     set_all(s, "tiles.checker=0.5 tiles.ambient=0.1 tiles.diffuse=0.7 plastic.color=0.85,0.15,0.1 plastic.ambient=0.1");
-    set_all(s, "plastic.diffuse=0.7 plastic.specular=0.5 plastic.shininess=40 camera.position=0,2.75,-6 camera.target=0,1.5,0");
+    set_all(s, "plastic.diffuse=0.7 plastic.specular=0.5 plastic.shininess=40 camera.position=0,2.75,-6 "
+               "camera.target=0,1.5,0");
     worked(scene_add_light(s, "lamp", NULL, &why), &why);
     worked(scene_move(s, "lamp", vec3_make(4, -3, -5), &why), &why); /* from 0,10,0 */
     solid_with(s, "ground", SHAPE_PLANE, "tiles", "");
-    solid_with(s, "vessel", SHAPE_CUP, "clear", "vessel.ior=1.5 vessel.position=0,0.001,0 vessel.height=3 vessel.priority=2");
+    solid_with(s, "vessel", SHAPE_CUP, "clear",
+               "vessel.ior=1.5 vessel.position=0,0.001,0 vessel.height=3 vessel.priority=2");
     solid_with(s, "liquid", SHAPE_CYLINDER, "clear",
                "liquid.ior=1.33 liquid.position=0,0.051,0 liquid.radius=0.95 liquid.height=1.95 liquid.priority=1");
     solid_with(s, "rod", SHAPE_BOX, "plastic", "rod.size=0.25,3,0.25 rod.priority=3");

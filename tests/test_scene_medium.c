@@ -24,16 +24,18 @@ static void near(double got, double wanted, double tolerance)
         fail_msg("%.12f is not %.12f within %g", got, wanted, tolerance);
 }
 
-static const char three_laws[] = "materials: {glass: {transparency: 1, medium: bk7}}\n"
-                                 "solids:\n"
-                                 "  a: {shape: sphere, material: glass}\n"
-                                 "  b: {shape: sphere, material: glass, ior: 1.25}\n"
-                                 "  c: {shape: sphere, transparency: 1, medium: cauchy, coefficients: [1.5, 0.004, 0.0001]}\n"
-                                 "  d: {shape: sphere, transparency: 1, medium: table, coefficients: [400, 1.6, 600, 1.5]}\n"
-                                 "  e: {shape: sphere, transparency: 1, medium: sellmeier, coefficients: [0.5684027565, 0.005101829712, "
-                                 "0.1726177391, 0.01821153936, 0.02086189578, 0.02620722293, 0.1130748688, 10.69792721]}\n";
+static const char three_laws[] =
+    "materials: {glass: {transparency: 1, medium: bk7}}\n"
+    "solids:\n"
+    "  a: {shape: sphere, material: glass}\n"
+    "  b: {shape: sphere, material: glass, ior: 1.25}\n"
+    "  c: {shape: sphere, transparency: 1, medium: cauchy, coefficients: [1.5, 0.004, 0.0001]}\n"
+    "  d: {shape: sphere, transparency: 1, medium: table, coefficients: [400, 1.6, 600, 1.5]}\n"
+    "  e: {shape: sphere, transparency: 1, medium: sellmeier, coefficients: [0.5684027565, 0.005101829712, "
+    "0.1726177391, 0.01821153936, 0.02086189578, 0.02620722293, 0.1130748688, 10.69792721]}\n";
 
-/* Catalogue glasses are measured in air; Schott gives N-BK7 n_d = 1.51680, and dry air has n_d = 1.000277 (Ciddor 1996). */
+/* Catalogue glasses are measured in air; Schott gives N-BK7 n_d = 1.51680, and dry air has n_d = 1.000277 (Ciddor
+ * 1996). */
 static void laws_by_name_and_by_coefficients(void **state)
 {
     (void)state;
@@ -112,23 +114,28 @@ static void what_makes_no_medium_is_refused_where_it_stands(void **state)
     expect_error("solids:\n  a: {shape: sphere, medium: cauchy}\n",
                  "test.yaml:2:3: a: medium cauchy has no coefficients; give A, B in um^2, .., as 'coefficients: "
                  "[1.5046, 0.0042]'");
-    expect_error("solids:\n  a: {shape: sphere, medium: wather}\n",
-                 "test.yaml:2:30: a.medium: no choice 'wather'; did you mean 'water'? It is one of: ior, sellmeier, cauchy, table, air, "
-                 "water, ethanol, glycerol, toluene, olive-oil, bk7-liquid, fused-silica, bk7, sf11, n-sf11, soda-lime, pmma, "
-                 "sapphire, diamond");
-    expect_error("solids:\n  a: {shape: sphere, absorb_spectrum: [400, 1, 500]}\n",
-                 "test.yaml:2:3: a: absorb_spectrum is not a list of wavelengths and coefficients; write nm,1/m,nm,1/m.. with "
-                 "ascending wavelengths, as [400, 0.1, 700, 2]");
+    expect_error(
+        "solids:\n  a: {shape: sphere, medium: wather}\n",
+        "test.yaml:2:30: a.medium: no choice 'wather'; did you mean 'water'? It is one of: ior, sellmeier, cauchy, "
+        "table, air, "
+        "water, ethanol, glycerol, toluene, olive-oil, bk7-liquid, fused-silica, bk7, sf11, n-sf11, soda-lime, pmma, "
+        "sapphire, diamond");
+    expect_error(
+        "solids:\n  a: {shape: sphere, absorb_spectrum: [400, 1, 500]}\n",
+        "test.yaml:2:3: a: absorb_spectrum is not a list of wavelengths and coefficients; write nm,1/m,nm,1/m.. with "
+        "ascending wavelengths, as [400, 0.1, 700, 2]");
     expect_error("solids:\n  a: {shape: sphere, coefficients: [1, x]}\n",
                  "test.yaml:2:36: a.coefficients: 'x' is not a finite number; give a number -1000000..1000000");
     expect_error("render: {integrator: path}\nlights:\n  l: {radius: 1}\n",
-                 "test.yaml:3:3: l: a sphere's light falls off with distance, and no reach says from where; give the distance at "
+                 "test.yaml:3:3: l: a sphere's light falls off with distance, and no reach says from where; give the "
+                 "distance at "
                  "which it has its intensity, as 'reach: 8', or radius 0");
     expect_error("render: {integrator: path, polarisation: on}\n",
                  "test.yaml:1:9: the path integrator does not follow polarisation; set render.polarisation to off, or "
                  "render.integrator to whitted");
     expect_error("render: {weights: constant, polarisation: on}\n",
-                 "test.yaml:1:9: constant weights know no polarisation, which Fresnel's equations give; set render.weights to fresnel");
+                 "test.yaml:1:9: constant weights know no polarisation, which Fresnel's equations give; set "
+                 "render.weights to fresnel");
 }
 
 int main(void)

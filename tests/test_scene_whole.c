@@ -32,12 +32,16 @@ static const char everything[] =
     "solids:\n"
     "  ground: {shape: plane, material: paper, position: [0, -0.01, 0]}\n"
     "  wall: {shape: plane, material: dull, checker: 0.83, position: [0, 0, 6], rotation: [-90, 0, 0]}\n"
-    "  cup: {shape: cup, material: glass, radius: 0.8, m: 1.5, inner_radius: 0.7, height: 1, floor: 0.1, position: [-1, 0, -1], rotation: [0, 20, 0]}\n"
-    "  can: {shape: cylinder, material: paper, texture_size: 0.7, radius: 0.4, m: 0.8, height: 1.2, position: [0.8, 0, 0.5], rotation: [0, 30, 5]}\n"
+    "  cup: {shape: cup, material: glass, radius: 0.8, m: 1.5, inner_radius: 0.7, height: 1, floor: 0.1, position: "
+    "[-1, 0, -1], rotation: [0, 20, 0]}\n"
+    "  can: {shape: cylinder, material: paper, texture_size: 0.7, radius: 0.4, m: 0.8, height: 1.2, position: [0.8, 0, "
+    "0.5], rotation: [0, 30, 5]}\n"
     "  ball: {shape: sphere, material: glass, radius: 0.5, position: [0.3, 0.6, -2]}\n"
     "  box: {shape: box, material: paper, size: [0.5, 0.7, 0.6], position: [2, 0.6, 0], rotation: [10, 40, 5]}\n"
-    "  crates: {shape: mesh, mesh: cube, material: dull, copies: [2, 1, 2], spacing: [0.9, 1, 0.9], scale: [1, 1.5, 1], position: [-2.5, 0.4, 0]}\n"
-    "  ring: {shape: mesh, mesh: donut, material: glass, scale: [0.5, 0.5, 0.5], position: [-0.5, 1.8, 0.5], rotation: [60, 0, 10]}\n";
+    "  crates: {shape: mesh, mesh: cube, material: dull, copies: [2, 1, 2], spacing: [0.9, 1, 0.9], scale: [1, 1.5, "
+    "1], position: [-2.5, 0.4, 0]}\n"
+    "  ring: {shape: mesh, mesh: donut, material: glass, scale: [0.5, 0.5, 0.5], position: [-0.5, 1.8, 0.5], rotation: "
+    "[60, 0, 10]}\n";
 
 static scene *whole_scene(const char *settings)
 {

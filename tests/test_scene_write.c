@@ -1,5 +1,5 @@
-/* Scenes as text: what is written reads back as the same scene, and is written again in the same bytes. Run from the repository
- * root. */
+/* Scenes as text: what is written reads back as the same scene, and is written again in the same bytes. Run from the
+ * repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -121,12 +121,13 @@ static void every_scene_of_the_project_survives_and_makes_the_same_film(void **s
     assert_true(count >= 8);
 }
 
-static const char one_of_each[] = "meshes: {body: {generate: box}, model: {file: model.obj}, toy: {generate: slime}}\n"
-                                  "textures: {wood: {file: wood.png}, bark: {file: bark.png}}\n"
-                                  "materials: {paint: {}}\n"
-                                  "lights: {lamp: {}}\n"
-                                  "solids: {plane1: {shape: plane}, cylinder1: {shape: cylinder}, cup1: {shape: cup}, box1: {shape: box},\n"
-                                  "  sphere1: {shape: sphere}, mesh1: {shape: mesh, mesh: model}, painted: {shape: box, material: paint}}\n";
+static const char one_of_each[] =
+    "meshes: {body: {generate: box}, model: {file: model.obj}, toy: {generate: slime}}\n"
+    "textures: {wood: {file: wood.png}, bark: {file: bark.png}}\n"
+    "materials: {paint: {}}\n"
+    "lights: {lamp: {}}\n"
+    "solids: {plane1: {shape: plane}, cylinder1: {shape: cylinder}, cup1: {shape: cup}, box1: {shape: box},\n"
+    "  sphere1: {shape: sphere}, mesh1: {shape: mesh, mesh: model}, painted: {shape: box, material: paint}}\n";
 
 /* Values to try, some of which are right for a row; NULL at the end. */
 static size_t candidates(const param *row, char text[][100], size_t room)
@@ -151,15 +152,9 @@ static size_t candidates(const param *row, char text[][100], size_t room)
         snprintf(text[0], 100, "%.17g,%.17g,%.17g", low + (high - low) / 3, low + (high - low) / 7, high);
         snprintf(text[1], 100, "2,3,1"); /* where only whole numbers are right */
         return 2;
-    case PARAM_LIST:
-        snprintf(text[0], 100, "[400,0.1,500,%.17g]", 1.0 / 3.0);
-        return 1;
-    case PARAM_PATH:
-        snprintf(text[0], 100, "pictures/it's: a sky #1.png");
-        return 1;
-    case PARAM_WORD:
-        snprintf(text[0], 100, row->group == PARAM_MATERIAL ? "bark" : "body");
-        return 1;
+    case PARAM_LIST: snprintf(text[0], 100, "[400,0.1,500,%.17g]", 1.0 / 3.0); return 1;
+    case PARAM_PATH: snprintf(text[0], 100, "pictures/it's: a sky #1.png"); return 1;
+    case PARAM_WORD: snprintf(text[0], 100, row->group == PARAM_MATERIAL ? "bark" : "body"); return 1;
     case PARAM_CHOICE: break;
     }
     return 0;
@@ -207,8 +202,9 @@ static size_t carry_row(const scene *s, const char *owner, const param *row)
 static void every_parameter_survives_away_from_its_default(void **state)
 {
     (void)state;
-    static const char *const owners[] = {"render", "camera", "background", "body",    "model", "toy",   "wood",   "lamp",
-                                         "paint",  "plane1", "cylinder1",  "cup1",    "box1",  "sphere1", "mesh1", "painted"};
+    static const char *const owners[] = {"render", "camera",  "background", "body",   "model",     "toy",
+                                         "wood",   "lamp",    "paint",      "plane1", "cylinder1", "cup1",
+                                         "box1",   "sphere1", "mesh1",      "painted"};
     scene *s = scene_from(one_of_each);
     bool seen[512] = {false};
     for (size_t o = 0; o < sizeof owners / sizeof *owners; o++) {
@@ -218,8 +214,11 @@ static void every_parameter_survives_away_from_its_default(void **state)
             snprintf(path, sizeof path, "%s.%s", owners[o], param_at(i)->name);
             if (place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
                 continue;
-            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->shapes ? "toy" : at.row->type == PARAM_PATH ? "model" : "body") != 0)
-                continue; /* a file takes the place of what is generated, which a mesh that has a file is not; a slime's rows are a slime's */
+            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->shapes               ? "toy"
+                                                            : at.row->type == PARAM_PATH ? "model"
+                                                                                         : "body") != 0)
+                continue; /* a file takes the place of what is generated, which a mesh that has a file is not; a slime's
+                             rows are a slime's */
             if (at.group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
                 continue; /* one solid's will do */
             if (carry_row(s, owners[o], param_at(i)) == 0)
@@ -239,13 +238,15 @@ static void random_scenes_survive(void **state)
         scene *s = scene_from(one_of_each);
         unsigned x = seed;
         for (size_t i = 0; i < param_count(); i++) {
-            static const char *const owners[] = {"lamp", "paint", "painted", "cup1", "sphere1", "render", "camera", "background"};
+            static const char *const owners[] = {"lamp",    "paint",  "painted", "cup1",
+                                                 "sphere1", "render", "camera",  "background"};
             x = x * 1664525u + 1013904223u;
             char path[200], text[64][100];
             snprintf(path, sizeof path, "%s.%s", owners[(x >> 16) % 8], param_at(i)->name);
             size_t count = candidates(param_at(i), text, 64);
             place at;
-            if (place_find(s, path, &at, NULL) == STATUS_OK && at.row == param_at(i) && is_right(s, path, text[(x >> 20) % count]))
+            if (place_find(s, path, &at, NULL) == STATUS_OK && at.row == param_at(i) &&
+                is_right(s, path, text[(x >> 20) % count]))
                 assert_int_equal(scene_set(s, path, text[(x >> 20) % count], NULL), STATUS_OK);
         }
         assert_survives(s);
@@ -265,14 +266,16 @@ static void assert_written(scene *s, const char *expected)
 static void only_what_differs_is_written_and_a_material_is_a_reference(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {depth: 4, width: 640}\n"
-                          "lights: {lamp: {position: [0, 10, 0]}}\n"
-                          "materials: {glass: {ior: 1.5, transparency: 1}, dull: {}}\n"
-                          "solids: {a: {shape: box, material: glass, ior: 1.5, transparency: 0.1}, b: {shape: sphere, ior: 1.25}}\n");
+    scene *s = scene_from(
+        "render: {depth: 4, width: 640}\n"
+        "lights: {lamp: {position: [0, 10, 0]}}\n"
+        "materials: {glass: {ior: 1.5, transparency: 1}, dull: {}}\n"
+        "solids: {a: {shape: box, material: glass, ior: 1.5, transparency: 0.1}, b: {shape: sphere, ior: 1.25}}\n");
     assert_written(s, "render:\n  width: 640\n\n"
                       "materials:\n  glass:\n    transparency: 1\n    ior: 1.5\n  dull: {}\n\n"
                       "lights:\n  lamp: {}\n\n"
-                      "solids:\n  a:\n    shape: box\n    material: glass\n    transparency: 0.1\n  b:\n    shape: sphere\n    ior: 1.25\n");
+                      "solids:\n  a:\n    shape: box\n    material: glass\n    transparency: 0.1\n  b:\n    shape: "
+                      "sphere\n    ior: 1.25\n");
     scene_destroy(s);
 }
 
@@ -324,8 +327,10 @@ static void one_medium_is_written_where_an_index_was_set_aside(void **state)
 static void a_mesh_has_one_source(void **state)
 {
     (void)state;
-    scene *s = scene_from("meshes: {body: {file: a.obj}}\nsolids: {thing: {shape: mesh, mesh: body, scale: [1, 2, 1]}}\n");
-    assert_written(s, "meshes:\n  body:\n    file: a.obj\n\nsolids:\n  thing:\n    shape: mesh\n    mesh: body\n    scale: [1, 2, 1]\n");
+    scene *s =
+        scene_from("meshes: {body: {file: a.obj}}\nsolids: {thing: {shape: mesh, mesh: body, scale: [1, 2, 1]}}\n");
+    assert_written(s, "meshes:\n  body:\n    file: a.obj\n\nsolids:\n  thing:\n    shape: mesh\n    mesh: body\n    "
+                      "scale: [1, 2, 1]\n");
     set_all(s, "body.generate=sparse body.count=50");
     assert_written(s, "meshes:\n  body:\n    generate: sparse\n    count: 50\n\n"
                       "solids:\n  thing:\n    shape: mesh\n    mesh: body\n    scale: [1, 2, 1]\n");
@@ -351,15 +356,32 @@ static void texts_are_quoted_where_yaml_needs_it(void **state)
 {
     (void)state;
     static const char *const titles[][2] = {
-        {"Rod in a vessel", "Rod in a vessel"}, {"it's, and (so) on; 50%", "it's, and (so) on; 50%"},
-        {"yes", "\"yes\""}, {"Null", "\"Null\""}, {"2 rods", "\"2 rods\""}, {"1e3", "\"1e3\""}, {"~", "\"~\""},
-        {"rod: leaning", "\"rod: leaning\""}, {"rod #2", "\"rod #2\""}, {"rod:", "\"rod:\""}, {"- rod", "\"- rod\""},
-        {"[rod]", "\"[rod]\""}, {"say \"rod\"", "\"say \\\"rod\\\"\""}, {"back\\slash", "\"back\\\\slash\""},
-        {" before and after ", "\" before and after \""}, {"two\nlines", "\"two\\nlines\""}, {"a\ttab", "\"a\\x09tab\""},
+        {"Rod in a vessel", "Rod in a vessel"},
+        {"it's, and (so) on; 50%", "it's, and (so) on; 50%"},
+        {"yes", "\"yes\""},
+        {"Null", "\"Null\""},
+        {"2 rods", "\"2 rods\""},
+        {"1e3", "\"1e3\""},
+        {"~", "\"~\""},
+        {"rod: leaning", "\"rod: leaning\""},
+        {"rod #2", "\"rod #2\""},
+        {"rod:", "\"rod:\""},
+        {"- rod", "\"- rod\""},
+        {"[rod]", "\"[rod]\""},
+        {"say \"rod\"", "\"say \\\"rod\\\"\""},
+        {"back\\slash", "\"back\\\\slash\""},
+        {" before and after ", "\" before and after \""},
+        {"two\nlines", "\"two\\nlines\""},
+        {"a\ttab", "\"a\\x09tab\""},
         {"Brechzahl f\xc3\xbcr Gl\xc3\xa4ser", "Brechzahl f\xc3\xbcr Gl\xc3\xa4ser"},
-        {"\xe2\x80\xa8separator", "\"\\u2028separator\""}, {"next\xc2\x85line", "\"next\\x85line\""},
-        {"\xf0\x9f\x94\xac", "\xf0\x9f\x94\xac"}, {"&anchor", "\"&anchor\""}, {"!tag", "\"!tag\""}, {"%directive", "\"%directive\""},
-        {"a\x01z\x7f", "\"a\\x01z\\x7F\""}, {"\xef\xbb\xbfmark", "\"\\uFEFFmark\""},
+        {"\xe2\x80\xa8separator", "\"\\u2028separator\""},
+        {"next\xc2\x85line", "\"next\\x85line\""},
+        {"\xf0\x9f\x94\xac", "\xf0\x9f\x94\xac"},
+        {"&anchor", "\"&anchor\""},
+        {"!tag", "\"!tag\""},
+        {"%directive", "\"%directive\""},
+        {"a\x01z\x7f", "\"a\\x01z\\x7F\""},
+        {"\xef\xbb\xbfmark", "\"\\uFEFFmark\""},
     };
     for (size_t i = 0; i < sizeof titles / sizeof *titles; i++) {
         scene *s = scene_create();
@@ -375,14 +397,16 @@ static void names_that_are_words_of_yaml_are_quoted(void **state)
 {
     (void)state;
     scene *s = scene_from("materials: {no: {ambient: 1}}\nsolids: {On: {shape: sphere, material: no}}\n");
-    assert_written(s, "materials:\n  \"no\":\n    ambient: 1\n\nsolids:\n  \"On\":\n    shape: sphere\n    material: \"no\"\n");
+    assert_written(
+        s, "materials:\n  \"no\":\n    ambient: 1\n\nsolids:\n  \"On\":\n    shape: sphere\n    material: \"no\"\n");
     scene_destroy(s);
 }
 
 static void text_that_is_not_utf8_is_refused(void **state)
 {
     (void)state;
-    static const char *const wrong[] = {"\xff", "half \xc3", "\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x28\xa1"};
+    static const char *const wrong[] = {"\xff",         "half \xc3",        "\xc0\x80",
+                                        "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x28\xa1"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         scene *s = scene_create();
         char *text;
@@ -423,7 +447,8 @@ static void paths_follow_the_file_into_another_folder(void **state)
     assert_non_null(mkdtemp(root));
     assert_non_null(getcwd(here, sizeof here));
     assert_int_equal(chdir(root), 0);
-    assert_int_equal(mkdir("a", 0777) | mkdir("a/b", 0777) | mkdir("c", 0777) | mkdir("ab", 0777) | symlink("a/b", "link"), 0);
+    assert_int_equal(
+        mkdir("a", 0777) | mkdir("a/b", 0777) | mkdir("c", 0777) | mkdir("ab", 0777) | symlink("a/b", "link"), 0);
     char absolute[300];
     snprintf(absolute, sizeof absolute, "%s/c/sky.png", root);
     assert_moved("a/s.yaml", "sky.png", "a/t.yaml", "sky.png");

@@ -1,5 +1,5 @@
-/* Script files: what a good one says, and that every file of tests/bad-scripts ends in STATUS_BAD_INPUT with the one line that
- * expected.txt says. Run from the repository root. */
+/* Script files: what a good one says, and that every file of tests/bad-scripts ends in STATUS_BAD_INPUT with the one
+ * line that expected.txt says. Run from the repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -48,8 +48,8 @@ static double length_between(const section *s, int a, int b)
     return length;
 }
 
-/* Shoelace formula over the rings of a medium's area; rings of holes must run the other way for their sum, so the parts are added by
- * the even-odd rule: largest less those within it. */
+/* Shoelace formula over the rings of a medium's area; rings of holes must run the other way for their sum, so the parts
+ * are added by the even-odd rule: largest less those within it. */
 static double area_of(const section *s, int medium)
 {
     section_step step[256];
@@ -81,7 +81,8 @@ static void a_spheres_section_is_a_circle(void **state)
 {
     (void)state;
     const double distances[] = {0.0, 0.3, 0.8, -0.95};
-    scene *s = scene_from("solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, radius: 1, position: [0.11, 0.07, 0]}}\n");
+    scene *s = scene_from(
+        "solids: {ball: {shape: sphere, transparency: 1, ior: 1.5, radius: 1, position: [0.11, 0.07, 0]}}\n");
     probe *p = probe_of(s);
     for (int i = 0; i < 4; i++) {
         section_plane plane = upright;
@@ -95,7 +96,8 @@ static void a_spheres_section_is_a_circle(void **state)
                 continue;
             seen++;
             assert_true(line->a == RAY_OUTSIDE && line->b == 0 && line->end[0] == -1 && line->end[1] == -1);
-            assert_memory_equal(&out.point[line->first], &out.point[line->first + line->count - 1], sizeof(section_point));
+            assert_memory_equal(&out.point[line->first], &out.point[line->first + line->count - 1],
+                                sizeof(section_point));
             for (size_t m = 0; m < line->count; m++) {
                 const section_point at = out.point[line->first + m];
                 assert_true(fabs(hypot(at.u - 0.11, at.v - 0.07) - radius) < 1e-9);
@@ -129,8 +131,8 @@ static void a_boxs_section_has_corners(void **state)
     }
 }
 
-/* rod.yaml upright through the vessel's axis: the liquid, 1.8 wide inside, from the floor at y = 0.101 to 2.001, its wall of 0.1;
- * the rod, 0.25 wide, stands in it from 0.601 on. */
+/* rod.yaml upright through the vessel's axis: the liquid, 1.8 wide inside, from the floor at y = 0.101 to 2.001, its
+ * wall of 0.1; the rod, 0.25 wide, stands in it from 0.601 on. */
 static void a_vessels_section_shows_wall_and_floor(void **state)
 {
     (void)state;
@@ -190,13 +192,15 @@ static void a_window_without_extent_is_refused(void **state)
     scene_destroy(s);
 }
 
-/* A coat far thinner than a cell: all four sides are drawn along the same face of it, not two along the one and two along the other. */
+/* A coat far thinner than a cell: all four sides are drawn along the same face of it, not two along the one and two
+ * along the other. */
 static void a_thin_coat_is_drawn_along_one_face(void **state)
 {
     (void)state;
-    scene *s = scene_from("solids:\n"
-                          "  core: {shape: box, transparency: 1, ior: 1.5, position: [0.01, 0.02, 0], size: [2, 2, 2], priority: 1}\n"
-                          "  coat: {shape: box, transparency: 1, ior: 1.3, position: [0.01, 0.02, 0], size: [2.000002, 2.000002, 2]}\n");
+    scene *s = scene_from(
+        "solids:\n"
+        "  core: {shape: box, transparency: 1, ior: 1.5, position: [0.01, 0.02, 0], size: [2, 2, 2], priority: 1}\n"
+        "  coat: {shape: box, transparency: 1, ior: 1.3, position: [0.01, 0.02, 0], size: [2.000002, 2.000002, 2]}\n");
     probe *p = probe_of(s);
     section out = cut(p, &upright, 60);
     double least = HUGE_VAL, largest = 0.0;
@@ -224,8 +228,9 @@ static void a_thin_coat_is_drawn_along_one_face(void **state)
 static void a_mesh_has_a_section_too(void **state)
 {
     (void)state;
-    scene *s = scene_from("meshes: {block: {generate: box, size: [1.3, 0.7, 1]}}\n"
-                          "solids: {box: {shape: mesh, mesh: block, transparency: 1, ior: 1.5, position: [0.1, 0, 0]}}\n");
+    scene *s =
+        scene_from("meshes: {block: {generate: box, size: [1.3, 0.7, 1]}}\n"
+                   "solids: {box: {shape: mesh, mesh: block, transparency: 1, ior: 1.5, position: [0.1, 0, 0]}}\n");
     diagnostic why = {0};
     worked(scene_load(s, &why), &why);
     probe *p = probe_of(s);

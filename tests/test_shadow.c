@@ -56,7 +56,8 @@ static void light_enters_an_opaque_cup_from_above(void **state)
 {
     (void)state;
     room m = {.count = 1, .opaque = {1}, .medium = {1}};
-    m.shape[0] = (solid_shape){.kind = SHAPE_CUP, .m = 1.0, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
+    m.shape[0] =
+        (solid_shape){.kind = SHAPE_CUP, .m = 1.0, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
     room_build(&m);
     const vec3 floor_point = vec3_make(0.0, 0.1, 0.0);
     const uint64_t inside = arrangement_inside(m.solids, vec3_make(0.0, 0.2, 0.0));

@@ -1,9 +1,12 @@
-/* A minute of the default toy, with the recorded grab of experiments/hands/tug.yaml: it rests, is drawn out, let go, and comes back. Under its own
- * weight the toy is no sphere but a drop on a floor, so "back" is the shape of one that no hand has touched; without weight it is the sphere. */
+/* A minute of the default toy, with the recorded grab of experiments/hands/tug.yaml: it rests, is drawn out, let go,
+ * and comes back. Under its own weight the toy is no sphere but a drop on a floor, so "back" is the shape of one that
+ * no hand has touched; without weight it is the sphere. */
 #include "scene/script.h"
 #include "softbody_fixture.h"
 
-typedef struct extent { double tall, wide, nearest, farthest, turned_over; } extent;
+typedef struct extent {
+    double tall, wide, nearest, farthest, turned_over;
+} extent;
 
 /* Of the body about its centre of mass, in radii; turned_over: faces that look inwards. */
 static extent extent_of(const softbody *b)

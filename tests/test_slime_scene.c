@@ -20,7 +20,8 @@ static const char toy[] = "meshes:\n"
                           "    script: scripts/tug.yaml\n"
                           "solids: {body: {shape: mesh, mesh: toy, diffuse: 0.7}}\n";
 
-static const char falling[] = "meshes: {toy: {generate: slime, level: 2, time_s: 0.25, ground: off, velocity: [1, 2, 3]}}\n";
+static const char falling[] =
+    "meshes: {toy: {generate: slime, level: 2, time_s: 0.25, ground: off, velocity: [1, 2, 3]}}\n";
 
 static void worked(status code, const diagnostic *why)
 {
@@ -89,7 +90,8 @@ static void expect_skin(const mesh_entry *m, const hand_script *script)
     assert_memory_equal(m->data->vertices, skin->vertices, skin->vertex_count * sizeof *skin->vertices);
     assert_memory_equal(m->data->normals, skin->normals, skin->vertex_count * sizeof *skin->normals);
     assert_true(m->data->closed);
-    assert_true(m->account.time_s == account.time_s && m->account.steps == account.steps && m->account.kinetic == account.kinetic);
+    assert_true(m->account.time_s == account.time_s && m->account.steps == account.steps &&
+                m->account.kinetic == account.kinetic);
     assert_int_equal(m->account.held, account.held);
     mesh_release(skin);
 }
@@ -154,7 +156,8 @@ static void what_is_wrong_is_located_where_it_is_written(void **state)
     refused_at(f, toy, "scripts/tug.yaml", 1, 1, "empty");
     write_scripts(f, "hands:\n  left:\n    - {time_s: 0.02, grab: [9, 9, 9], towards: [0, 1, 0], reach: 1}\n");
     refused_at(f, toy, "scripts/tug.yaml", 3, 7, "");
-    refused_at(f, "meshes:\n  toy: {generate: slime, level: 2, time_s: 1, dt_s: 0.1, stiffness: 1e6}\n", "toy.yaml", 2, 19, "toy: ");
+    refused_at(f, "meshes:\n  toy: {generate: slime, level: 2, time_s: 1, dt_s: 0.1, stiffness: 1e6}\n", "toy.yaml", 2,
+               19, "toy: ");
 }
 
 static void refused_to_read(const char *text, const char *what)
@@ -258,7 +261,9 @@ static bool wait(void *context, double share_done)
 /* Days of motion, and the one who waits leaves at the first question. */
 static void a_load_that_is_stopped_leaves_the_slime_as_it_was(void **state)
 {
-    scene *s = read_scene(*state, "meshes:\n  ball: {generate: icosphere, level: 1}\n  toy: {generate: slime, level: 2, time_s: 86400}\n");
+    scene *s = read_scene(
+        *state,
+        "meshes:\n  ball: {generate: icosphere, level: 1}\n  toy: {generate: slime, level: 2, time_s: 86400}\n");
     waiting w = {.patience = 3, .in_order = true};
     diagnostic why = {0};
     assert_int_equal(scene_load_until(s, &(load_watch){wait, &w}, &why), STATUS_INTERRUPTED);
@@ -277,7 +282,8 @@ static void a_load_that_is_stopped_leaves_the_slime_as_it_was(void **state)
 /* Two slimes share the whole; who waits changes nothing. */
 static void a_load_that_is_watched_is_the_same(void **state)
 {
-    static const char two[] = "meshes:\n  a: {generate: slime, level: 4, time_s: 0.31}\n  b: {generate: slime, level: 4, time_s: 0.4, dt_s: 0.0007}\n";
+    static const char two[] = "meshes:\n  a: {generate: slime, level: 4, time_s: 0.31}\n  b: {generate: slime, level: "
+                              "4, time_s: 0.4, dt_s: 0.0007}\n";
     scene *alone = loaded(*state, two), *watched = read_scene(*state, two);
     waiting w = {.patience = INT_MAX, .in_order = true};
     diagnostic why = {0};
@@ -337,9 +343,11 @@ static void a_slime_survives_its_file_and_its_script_follows(void **state)
     assert_string_equal(script, "tug.yaml");
     worked(scene_load(s, &why), &why);
     worked(scene_load(again, &why), &why);
-    assert_memory_equal(s->meshes[0].data->vertices, again->meshes[0].data->vertices, s->meshes[0].data->vertex_count * sizeof(vec3));
+    assert_memory_equal(s->meshes[0].data->vertices, again->meshes[0].data->vertices,
+                        s->meshes[0].data->vertex_count * sizeof(vec3));
     worked(scene_write_text(s, s->path, false, &text, &why), &why);
-    assert_non_null(strstr(text, "  toy:\n    generate: slime\n    level: 2\n    time_s: 0.05\n    script: scripts/tug.yaml\n    velocity: [1, 0, 0]\n"
+    assert_non_null(strstr(text, "  toy:\n    generate: slime\n    level: 2\n    time_s: 0.05\n    script: "
+                                 "scripts/tug.yaml\n    velocity: [1, 0, 0]\n"
                                  "    stiffness: 50\n"));
     free(text);
     free(script);

@@ -4,9 +4,10 @@
 static const softbody_integrator all[] = {SOFTBODY_EULER, SOFTBODY_VERLET, SOFTBODY_IMPLICIT};
 enum { ALL = sizeof all / sizeof all[0] };
 
-/* Two masses on a spring swing with omega^2 = k / m_reduced, m_reduced = m1 m2 / (m1 + m2) (Landau and Lifshitz, Mechanics, 13 and 21). The steps of
- * an integrator swing with omega_d of their own: (2/dt) asin(omega dt / 2) of semi-implicit Euler and Verlet, atan(omega dt) / dt of backward Euler, whose
- * swing shrinks by (1 + omega^2 dt^2)^(-1/2) a step (eigenvalues of the step's matrix). After a whole number of steps the length is known. */
+/* Two masses on a spring swing with omega^2 = k / m_reduced, m_reduced = m1 m2 / (m1 + m2) (Landau and Lifshitz,
+ * Mechanics, 13 and 21). The steps of an integrator swing with omega_d of their own: (2/dt) asin(omega dt / 2) of
+ * semi-implicit Euler and Verlet, atan(omega dt) / dt of backward Euler, whose swing shrinks by (1 + omega^2
+ * dt^2)^(-1/2) a step (eigenvalues of the step's matrix). After a whole number of steps the length is known. */
 static void a_spring_swings_as_its_integrator_says(void **state)
 {
     (void)state;
@@ -18,10 +19,12 @@ static void a_spring_swings_as_its_integrator_says(void **state)
         for (long n = 1; n <= 500; n++) {
             steps_of(b, 1);
             const double t = (double)n * dt, z = omega * dt;
-            /* semi-implicit Euler begins with v_0 = 0: x_n = cos((n + 1/2) w) / cos(w / 2) in its own frequency; Verlet: cos(n w) */
-            const double theory = all[i] == SOFTBODY_EULER    ? cos(folded * (t + 0.5 * dt)) / cos(0.5 * folded * dt)
-                                  : all[i] == SOFTBODY_VERLET ? cos(folded * t)
-                                                              : cos(atan(z) * (double)n) * pow(1.0 + z * z, -0.5 * (double)n);
+            /* semi-implicit Euler begins with v_0 = 0: x_n = cos((n + 1/2) w) / cos(w / 2) in its own frequency;
+             * Verlet: cos(n w) */
+            const double theory = all[i] == SOFTBODY_EULER ? cos(folded * (t + 0.5 * dt)) / cos(0.5 * folded * dt)
+                                  : all[i] == SOFTBODY_VERLET
+                                      ? cos(folded * t)
+                                      : cos(atan(z) * (double)n) * pow(1.0 + z * z, -0.5 * (double)n);
             assert_near((pair_length(b) - 1.0) / drawn, theory, 2e-8);
         }
         softbody_destroy(b);
@@ -40,7 +43,8 @@ static double distance_from_swing(softbody_integrator integrator, double dt)
         steps_of(b, 1);
         softbody_velocities(b, v);
         const double t = (double)n * dt;
-        worst = fmax(worst, fabs((pair_length(b) - 1.0) / drawn - cos(omega * t)) + fabs((v[1].x - v[0].x) / (drawn * omega) + sin(omega * t)));
+        worst = fmax(worst, fabs((pair_length(b) - 1.0) / drawn - cos(omega * t)) +
+                                fabs((v[1].x - v[0].x) / (drawn * omega) + sin(omega * t)));
     }
     softbody_destroy(b);
     return worst;
@@ -71,7 +75,8 @@ static void damping_takes_what_it_should(void **state)
     }
 }
 
-/* -g t^2 / 2; the report's step, which adds a dt^2 where that has half of it, falls through -g t (t + dt) / 2, and so does backward Euler. */
+/* -g t^2 / 2; the report's step, which adds a dt^2 where that has half of it, falls through -g t (t + dt) / 2, and so
+ * does backward Euler. */
 static void free_fall_is_the_closed_form(void **state)
 {
     (void)state;
@@ -91,7 +96,8 @@ static void free_fall_is_the_closed_form(void **state)
     }
 }
 
-/* A mass that falls from h comes back to e^2 h; each step may take or give the height of one step at the floor's speed. */
+/* A mass that falls from h comes back to e^2 h; each step may take or give the height of one step at the floor's speed.
+ */
 static void a_bounce_comes_back_to_e2_h(void **state)
 {
     (void)state;
@@ -137,7 +143,8 @@ static void friction_stops_a_mass(void **state)
     softbody_destroy(b);
 }
 
-/* Coulomb's impulse goes with all of the speed that the floor turns round, (1 + e) v: a mass that strikes it aslant loses mu (1 + e) v along it. */
+/* Coulomb's impulse goes with all of the speed that the floor turns round, (1 + e) v: a mass that strikes it aslant
+ * loses mu (1 + e) v along it. */
 static void a_bounce_rubs_by_its_whole_turn(void **state)
 {
     (void)state;
@@ -218,7 +225,10 @@ static void stiff_springs_hold_when_they_are_helped(void **state)
 {
     (void)state;
     for (int i = 0; i < 3; i++) {
-        softbody_settings s = settings_in_space(i == 0 ? SOFTBODY_EULER : i == 1 ? SOFTBODY_VERLET : SOFTBODY_IMPLICIT, 0.01);
+        softbody_settings s = settings_in_space(i == 0   ? SOFTBODY_EULER
+                                                : i == 1 ? SOFTBODY_VERLET
+                                                         : SOFTBODY_IMPLICIT,
+                                                0.01);
         s.level = 1;
         s.stiffness = 1e5;
         s.damping = 1.0;
@@ -236,7 +246,8 @@ static void stiff_springs_hold_when_they_are_helped(void **state)
     }
 }
 
-/* A damper's rate gamma holds semi-implicit Euler to gamma dt < 2 and Verlet, which guesses the velocity, to gamma dt < 1: split steps stay under both. */
+/* A damper's rate gamma holds semi-implicit Euler to gamma dt < 2 and Verlet, which guesses the velocity, to gamma dt <
+ * 1: split steps stay under both. */
 static void split_steps_hold_strong_dampers(void **state)
 {
     (void)state;
@@ -253,7 +264,8 @@ static void split_steps_hold_strong_dampers(void **state)
     }
 }
 
-/* Backward Euler of springs that are pushed to half their length, and of a pressure a thousand times as stiff as the toy's: energy only falls. */
+/* Backward Euler of springs that are pushed to half their length, and of a pressure a thousand times as stiff as the
+ * toy's: energy only falls. */
 static void backward_euler_holds_what_is_pushed_together(void **state)
 {
     (void)state;
@@ -278,8 +290,9 @@ static void backward_euler_holds_what_is_pushed_together(void **state)
     softbody_destroy(b);
 }
 
-/* Across itself a pushed spring would push further apart what has left its line: the solver takes it for none (Choi and Ko), so that a speed across
- * stays as it is for a step, where the true stiffness, -k dt^2 > m / 2 here, would turn it round. */
+/* Across itself a pushed spring would push further apart what has left its line: the solver takes it for none (Choi and
+ * Ko), so that a speed across stays as it is for a step, where the true stiffness, -k dt^2 > m / 2 here, would turn it
+ * round. */
 static void backward_euler_leaves_out_what_would_buckle(void **state)
 {
     (void)state;
@@ -296,7 +309,8 @@ static void backward_euler_leaves_out_what_would_buckle(void **state)
     softbody_destroy(b);
 }
 
-/* What flies as a whole does not come apart, however far it goes in a step; and what is no number is said to be none. */
+/* What flies as a whole does not come apart, however far it goes in a step; and what is no number is said to be none.
+ */
 static void a_fast_body_is_no_burst_one(void **state)
 {
     (void)state;
@@ -327,11 +341,19 @@ static void no_body_begins_under_its_floor(void **state)
 static void bad_settings_are_named(void **state)
 {
     (void)state;
-    struct { const char *name; size_t offset; double value; } bad[] = {
-        {"mass_kg", offsetof(softbody_settings, mass_kg), -1.0}, {"mass_kg", offsetof(softbody_settings, mass_kg), 0.0},
-        {"dt_s", offsetof(softbody_settings, dt_s), 0.0},        {"dt_s", offsetof(softbody_settings, dt_s), NAN},
-        {"radius", offsetof(softbody_settings, radius), 0.0},    {"stiffness", offsetof(softbody_settings, stiffness), -40.0},
-        {"restitution", offsetof(softbody_settings, restitution), 1.5}, {"friction", offsetof(softbody_settings, friction), INFINITY},
+    struct {
+        const char *name;
+        size_t offset;
+        double value;
+    } bad[] = {
+        {"mass_kg", offsetof(softbody_settings, mass_kg), -1.0},
+        {"mass_kg", offsetof(softbody_settings, mass_kg), 0.0},
+        {"dt_s", offsetof(softbody_settings, dt_s), 0.0},
+        {"dt_s", offsetof(softbody_settings, dt_s), NAN},
+        {"radius", offsetof(softbody_settings, radius), 0.0},
+        {"stiffness", offsetof(softbody_settings, stiffness), -40.0},
+        {"restitution", offsetof(softbody_settings, restitution), 1.5},
+        {"friction", offsetof(softbody_settings, friction), INFINITY},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         softbody_settings s = default_toy();

@@ -1,4 +1,5 @@
-/* The toy as a whole: its net, what it conserves, its volume, its hands; and the same bits from all ways of working them out. */
+/* The toy as a whole: its net, what it conserves, its volume, its hands; and the same bits from all ways of working
+ * them out. */
 #include "softbody_fixture.h"
 
 static double sum_of_lengths(const vec3 *v, size_t count)
@@ -46,8 +47,8 @@ static void its_net_has_as_many_springs_as_euler_says(void **state)
     }
 }
 
-/* Newton's third law, each force against its counterpart and around each ring: 10^5 steps of a body that wobbles, spins and flies, damped. What
- * rounding can do: a random walk of 10^5 steps, each of some 1e-16 of all that moves. */
+/* Newton's third law, each force against its counterpart and around each ring: 10^5 steps of a body that wobbles, spins
+ * and flies, damped. What rounding can do: a random walk of 10^5 steps, each of some 1e-16 of all that moves. */
 static void momenta_stay_to_rounding(void **state)
 {
     (void)state;
@@ -67,8 +68,9 @@ static void momenta_stay_to_rounding(void **state)
     }
 }
 
-/* Backward Euler's matrix has no row that does not sum to the mass, and the solver starts from zero: momentum stays, and on a long way it does
- * not drift. Its angular momentum is not kept: the places at which forces act are those of the step's beginning. */
+/* Backward Euler's matrix has no row that does not sum to the mass, and the solver starts from zero: momentum stays,
+ * and on a long way it does not drift. Its angular momentum is not kept: the places at which forces act are those of
+ * the step's beginning. */
 static void backward_euler_keeps_momentum(void **state)
 {
     (void)state;
@@ -82,7 +84,8 @@ static void backward_euler_keeps_momentum(void **state)
     softbody_destroy(b);
 }
 
-/* Semi-implicit Euler and Verlet swing about a conserved energy (Hairer, Lubich and Wanner, IX); the swing falls with dt and dt^2. */
+/* Semi-implicit Euler and Verlet swing about a conserved energy (Hairer, Lubich and Wanner, IX); the swing falls with
+ * dt and dt^2. */
 static double energy_swing(softbody_integrator integrator, double dt)
 {
     softbody_settings s = settings_in_space(integrator, dt);
@@ -130,8 +133,8 @@ static void a_damped_toy_loses_energy(void **state)
     }
 }
 
-/* Pressure alone, on a sphere that is blown up: the force on all is p times the area around each, so the first step's speeds are p A / 3m outwards,
- * p = K (V0 - V) / V0 with V = f^3 V0. */
+/* Pressure alone, on a sphere that is blown up: the force on all is p times the area around each, so the first step's
+ * speeds are p A / 3m outwards, p = K (V0 - V) / V0 with V = f^3 V0. */
 static void pressure_pushes_along_the_area(void **state)
 {
     (void)state;
@@ -176,7 +179,8 @@ static void forces_are_the_gradient_of_the_energy(void **state)
     vec3 *at = malloc(count * sizeof *at), *still = calloc(count, sizeof *still), *v = malloc(count * sizeof *v);
     softbody_positions(b, at);
     for (size_t i = 0; i < count; i++)
-        at[i] = vec3_add(vec3_scale(at[i], 0.97), vec3_make(0.05 * sin((double)i), 0.04 * cos(3.0 * (double)i), 0.03 * sin(2.0 * (double)i)));
+        at[i] = vec3_add(vec3_scale(at[i], 0.97),
+                         vec3_make(0.05 * sin((double)i), 0.04 * cos(3.0 * (double)i), 0.03 * sin(2.0 * (double)i)));
     softbody_place(b, at, still);
     steps_of(b, 1);
     softbody_velocities(b, v);
@@ -271,7 +275,8 @@ static void hands_hold_and_let_go(void **state)
 
 static hand_key key_of(hand_act act, double time_s, vec3 by)
 {
-    return (hand_key){.time_s = time_s, .act = act, .origin = {0.0, 1.0, -6.0}, .direction = {0.0, 0.0, 1.0}, .reach = 0.2, .by = by};
+    return (hand_key){
+        .time_s = time_s, .act = act, .origin = {0.0, 1.0, -6.0}, .direction = {0.0, 0.0, 1.0}, .reach = 0.2, .by = by};
 }
 
 /* The middle of the held masses, against where it was when the hand came. */
@@ -281,7 +286,8 @@ static vec3 held_at(const softbody *b, const vec3 *first, size_t count)
     size_t held = 0;
     softbody_positions(b, at);
     for (size_t i = 0; i < count; i++)
-        if (vec3_length(vec3_sub(first[i], vec3_make(0.0, 1.0, -1.0))) < 0.15) { /* well within reach of where the ray meets the skin */
+        if (vec3_length(vec3_sub(first[i], vec3_make(0.0, 1.0, -1.0))) <
+            0.15) { /* well within reach of where the ray meets the skin */
             sum = vec3_add(sum, vec3_sub(at[i], first[i]));
             held++;
         }
@@ -290,8 +296,8 @@ static vec3 held_at(const softbody *b, const vec3 *first, size_t count)
     return vec3_scale(sum, 1.0 / (double)held);
 }
 
-/* Taken hold of at 0.01 s and drawn by 2 until 0.05 s: after each step the masses are where a straight way at one speed has them; a step in
- * which a hand is fast is split when that is asked for, the first one too. */
+/* Taken hold of at 0.01 s and drawn by 2 until 0.05 s: after each step the masses are where a straight way at one speed
+ * has them; a step in which a hand is fast is split when that is asked for, the first one too. */
 static void a_script_is_followed_to_the_step(void **state)
 {
     (void)state;
@@ -301,7 +307,8 @@ static void a_script_is_followed_to_the_step(void **state)
     s.adaptive = 1;
     softbody *b = toy_of(&s);
     hand_script *script = hand_script_create("");
-    const hand_key keys[] = {key_of(HAND_GRAB, 0.01, vec3_make(0, 0, 0)), key_of(HAND_MOVE, 0.05, vec3_make(0.0, 0.0, -2.0)),
+    const hand_key keys[] = {key_of(HAND_GRAB, 0.01, vec3_make(0, 0, 0)),
+                             key_of(HAND_MOVE, 0.05, vec3_make(0.0, 0.0, -2.0)),
                              key_of(HAND_RELEASE, 0.06, vec3_make(0, 0, 0))};
     for (int i = 0; i < 3; i++)
         assert_int_equal(hand_script_add(script, "one", &keys[i], NULL), STATUS_OK);
@@ -355,7 +362,8 @@ static void threads_and_instructions_change_no_bit(void **state)
     for (int integrator = 0; integrator < 3; integrator++) {
         vec3 *first = NULL;
         for (int run = 0; run < 5; run++) {
-            const isa levels[] = {isa_best(), isa_best(), isa_best(), ISA_SSE2, isa_best() < ISA_AVX2 ? ISA_SSE2 : ISA_AVX2};
+            const isa levels[] = {isa_best(), isa_best(), isa_best(), ISA_SSE2,
+                                  isa_best() < ISA_AVX2 ? ISA_SSE2 : ISA_AVX2};
             const int threads[] = {1, 2, 7, 3, 1};
             softbody_settings s = default_toy();
             s.level = 6; /* enough for all the threads to be started */
@@ -389,7 +397,13 @@ static void bad_nets_are_refused(void **state)
     const mesh_triangle faces[4] = {{{0, 2, 1}}, {{0, 1, 3}}, {{0, 3, 2}}, {{1, 2, 3}}};
     const softbody_spring springs[2] = {{{0, 1}, 1.0, 1.0, 0.0}, {{0, 0}, 1.0, 1.0, 0.0}};
     const softbody_settings s = settings_in_space(SOFTBODY_EULER, 0.001);
-    softbody_net net = {.mass_count = 4, .spring_count = 1, .face_count = 4, .position = at, .mass_kg = mass_kg, .springs = springs, .faces = faces};
+    softbody_net net = {.mass_count = 4,
+                        .spring_count = 1,
+                        .face_count = 4,
+                        .position = at,
+                        .mass_kg = mass_kg,
+                        .springs = springs,
+                        .faces = faces};
     softbody *b;
     assert_int_equal(softbody_create_net(&net, &s, isa_best(), &b, NULL), STATUS_OK);
     assert_near(softbody_measure(b).volume, 1.0 / 6.0, 1e-16);

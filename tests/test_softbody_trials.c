@@ -1,4 +1,5 @@
-/* The trials of a soft body's motion against their theory. Tolerances come from the methods' orders; angle is omega dt throughout. */
+/* The trials of a soft body's motion against their theory. Tolerances come from the methods' orders; angle is omega dt
+ * throughout. */
 #include "softbody_fixture.h"
 
 #include "softbody/trials.h"
@@ -31,8 +32,12 @@ static softbody_trial value_of(const softbody_trial_report *r, const char *name)
     return (softbody_trial){0};
 }
 
-/* Three integrators, level 1, 1 ms and a quarter of that: made once, since each costs as much as the slower ones of the tests. */
-typedef struct reports { softbody_settings set[3]; softbody_trial_report whole[3], quarter[3]; } reports;
+/* Three integrators, level 1, 1 ms and a quarter of that: made once, since each costs as much as the slower ones of the
+ * tests. */
+typedef struct reports {
+    softbody_settings set[3];
+    softbody_trial_report whole[3], quarter[3];
+} reports;
 static reports all;
 
 static int make_reports(void **state)
@@ -48,7 +53,10 @@ static int make_reports(void **state)
     return 0;
 }
 
-static double measured(const softbody_trial_report *r, const char *name) { return value_of(r, name).measured; }
+static double measured(const softbody_trial_report *r, const char *name)
+{
+    return value_of(r, name).measured;
+}
 static double error(const softbody_trial_report *r, const char *name)
 {
     const softbody_trial v = value_of(r, name);
@@ -60,8 +68,9 @@ static double angle_of(const softbody_settings *s)
     return sqrt(2.0 * s->stiffness * 42.0 / s->mass_kg) * s->dt_s; /* 42 masses at level 1 */
 }
 
-/* Against each integrator's own closed form to rounding: of a swing of 1e-3 the place is known to 1e-13. Against mechanics to the first term of the
- * closed form: asin and atan are x (1 + x^2 / 6) and x (1 - x^2 / 3), so periods differ by -angle^2 / 24 and angle^2 / 3. */
+/* Against each integrator's own closed form to rounding: of a swing of 1e-3 the place is known to 1e-13. Against
+ * mechanics to the first term of the closed form: asin and atan are x (1 + x^2 / 6) and x (1 - x^2 / 3), so periods
+ * differ by -angle^2 / 24 and angle^2 / 3. */
 static void a_spring_swings_as_its_integrator_says(void **state)
 {
     (void)state;
@@ -79,8 +88,8 @@ static void a_spring_swings_as_its_integrator_says(void **state)
     }
 }
 
-/* A step is 1/64 of a quarter swing, h = 0.025: an error c h^p (1 + d h) shows the order p + d h / (2 log 2), with d of about 1; verlet's next
- * term is h^2. */
+/* A step is 1/64 of a quarter swing, h = 0.025: an error c h^p (1 + d h) shows the order p + d h / (2 log 2), with d of
+ * about 1; verlet's next term is h^2. */
 static void the_order_shows(void **state)
 {
     (void)state;
@@ -102,8 +111,9 @@ static void a_fall_is_that_of_the_integrator(void **state)
     }
 }
 
-/* The floor is met up to v dt too deep, v = sqrt(2 g h), which lengthens the fall and is then taken back; and of the way up, e v / (g dt) steps, each
- * is up to g dt^2 / 2 too long or too short. So the height is off by at most e^2 v dt + e v dt / 2, and less with shorter steps. */
+/* The floor is met up to v dt too deep, v = sqrt(2 g h), which lengthens the fall and is then taken back; and of the
+ * way up, e v / (g dt) steps, each is up to g dt^2 / 2 too long or too short. So the height is off by at most e^2 v dt
+ * + e v dt / 2, and less with shorter steps. */
 static void a_bounce_has_restitution_squared(void **state)
 {
     (void)state;
@@ -117,9 +127,9 @@ static void a_bounce_has_restitution_squared(void **state)
     }
 }
 
-/* Symplectic methods' energy swings by O(dt^p) and does not drift (Hairer, Lubich, Wanner, IX.8): a quarter of the step gives 4^-p of it. Backward
- * Euler only loses: it damps every mode by omega^2 dt / 2, which is proportional to dt as long as little is lost. With damping nothing rises, but for
- * what euler's swings do in one step. */
+/* Symplectic methods' energy swings by O(dt^p) and does not drift (Hairer, Lubich, Wanner, IX.8): a quarter of the step
+ * gives 4^-p of it. Backward Euler only loses: it damps every mode by omega^2 dt / 2, which is proportional to dt as
+ * long as little is lost. With damping nothing rises, but for what euler's swings do in one step. */
 static void energy_is_kept_in_the_methods_order(void **state)
 {
     (void)state;
@@ -128,7 +138,8 @@ static void energy_is_kept_in_the_methods_order(void **state)
     assert_true(euler > 3.0 && euler < 5.5);
     assert_true(verlet > 12.0 && verlet < 22.0);
     assert_true(measured(&all.whole[1], "energy.drift") < 0.1 * measured(&all.whole[0], "energy.drift"));
-    const double lost = -log1p(measured(&all.whole[2], "energy.end")), lost_of_quarter = -log1p(measured(&all.quarter[2], "energy.end"));
+    const double lost = -log1p(measured(&all.whole[2], "energy.end")),
+                 lost_of_quarter = -log1p(measured(&all.quarter[2], "energy.end"));
     assert_true(lost > 0.0 && lost_of_quarter > lost / 6.0 && lost_of_quarter < lost / 2.5);
     for (int i = 0; i < 3; i++) {
         assert_true(fabs(measured(&all.whole[i], "energy.end")) <= measured(&all.whole[i], "energy.drift"));
@@ -137,9 +148,10 @@ static void energy_is_kept_in_the_methods_order(void **state)
     assert_true(measured(&all.whole[2], "energy.rise") == 0.0);
 }
 
-/* Forces come in pairs along their springs, and the explicit methods' steps add a multiple of them where the body lies: both momenta stay, but for
- * rounding, 1000 steps of 1e-16. Backward Euler adds forces of where the body will lie at places where it lies now: they have a torque, and angular
- * momentum is kept to the method's order; momentum to the solver's residual of 1e-10. */
+/* Forces come in pairs along their springs, and the explicit methods' steps add a multiple of them where the body lies:
+ * both momenta stay, but for rounding, 1000 steps of 1e-16. Backward Euler adds forces of where the body will lie at
+ * places where it lies now: they have a torque, and angular momentum is kept to the method's order; momentum to the
+ * solver's residual of 1e-10. */
 static void momenta_stay(void **state)
 {
     (void)state;
@@ -148,11 +160,13 @@ static void momenta_stay(void **state)
         if (i != SOFTBODY_IMPLICIT)
             assert_near(error(&all.whole[i], "angular_momentum.drift"), 0.0, 1e-13);
     }
-    const double turned = measured(&all.whole[2], "angular_momentum.drift") / measured(&all.quarter[2], "angular_momentum.drift");
+    const double turned =
+        measured(&all.whole[2], "angular_momentum.drift") / measured(&all.quarter[2], "angular_momentum.drift");
     assert_true(turned > 2.5 && turned < 5.5);
 }
 
-/* The body's weight presses it, by about m g / A over the pressure's K, of A = 2 pi r^2 at most. A larger pressure holds more of the volume. */
+/* The body's weight presses it, by about m g / A over the pressure's K, of A = 2 pi r^2 at most. A larger pressure
+ * holds more of the volume. */
 static void a_stiff_pressure_holds_the_volume(void **state)
 {
     (void)state;
@@ -178,13 +192,15 @@ static double speed_of_rest(double dt_s)
     return speed;
 }
 
-/* Of the spring to 1e-5, as trials_stable.c derives. Of the toy not below the bound, but for the bisection's 1/512; and a toy at rest, which rounding
- * alone moves, stays so with steps shorter by a tenth, and blows up with longer ones: by exp(2 acosh 1.1) = 2.4 a step. */
+/* Of the spring to 1e-5, as trials_stable.c derives. Of the toy not below the bound, but for the bisection's 1/512; and
+ * a toy at rest, which rounding alone moves, stays so with steps shorter by a tenth, and blows up with longer ones: by
+ * exp(2 acosh 1.1) = 2.4 a step. */
 static void the_longest_step_is_found(void **state)
 {
     (void)state;
     for (int i = 0; i < 2; i++) {
-        const softbody_trial spring = value_of(&all.whole[i], "stable_dt.spring_s"), toy = value_of(&all.whole[i], "stable_dt.toy_s");
+        const softbody_trial spring = value_of(&all.whole[i], "stable_dt.spring_s"),
+                             toy = value_of(&all.whole[i], "stable_dt.toy_s");
         assert_near(spring.measured, spring.theory, 1e-5 * spring.theory);
         assert_near(spring.theory, 2.0 * all.set[i].dt_s / angle_of(&all.set[i]), 1e-14);
         assert_true(toy.measured > toy.theory * (1.0 - 1.0 / 512.0));
@@ -193,7 +209,8 @@ static void the_longest_step_is_found(void **state)
     const double limit_s = measured(&all.whole[0], "stable_dt.toy_s");
     assert_true(speed_of_rest(0.9 * limit_s) < 1e-9);
     assert_true(speed_of_rest(1.1 * limit_s) == INFINITY);
-    assert_true(isnan(measured(&all.whole[2], "stable_dt.spring_s")) && isnan(measured(&all.whole[2], "stable_dt.toy_s")));
+    assert_true(isnan(measured(&all.whole[2], "stable_dt.spring_s")) &&
+                isnan(measured(&all.whole[2], "stable_dt.toy_s")));
 }
 
 static void assert_same(const softbody_trial_report *a, const softbody_trial_report *b)
@@ -204,7 +221,8 @@ static void assert_same(const softbody_trial_report *a, const softbody_trial_rep
         assert_memory_equal(&p->theory, &q->theory, sizeof p->theory);
         if (strcmp(p->unit, "s") == 0 && strncmp(p->name, "rate.", 5) == 0)
             continue;
-        if (strcmp(p->name, "rate.simulated_s_per_s") != 0 && memcmp(&p->measured, &q->measured, sizeof p->measured) != 0)
+        if (strcmp(p->name, "rate.simulated_s_per_s") != 0 &&
+            memcmp(&p->measured, &q->measured, sizeof p->measured) != 0)
             fail_msg("%s is %.17g and %.17g", p->name, p->measured, q->measured);
     }
 }

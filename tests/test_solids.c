@@ -237,7 +237,8 @@ static vec3 place_on(const solid_shape *s, uint64_t *seed)
                       eighths[random_below(seed, 4)] * s->size.z / 2);
     else if (s->radius > 0.0 && s->height > 0.0 && random_below(seed, 3))
         p = s->kind == SHAPE_CUP && random_below(seed, 2)
-                ? vec3_make(s->inner_radius * cos(turn), level > 0.0 ? level : s->floor, s->inner_radius * sin(turn) / s->m)
+                ? vec3_make(s->inner_radius * cos(turn), level > 0.0 ? level : s->floor,
+                            s->inner_radius * sin(turn) / s->m)
                 : vec3_make(s->radius * cos(turn), random_below(seed, 2) ? level : random_real(seed, 0.0, s->height),
                             s->radius * sin(turn) / s->m);
     return vec3_add(double_of(quad3_turn(quad3_from(p), s->rotation_deg, 0)), s->position);
@@ -274,8 +275,8 @@ static void from_beside(const solid_shape *s, const arrangement *a, uint64_t *se
     aim(s, a, from, vec3_sub(place_on(s, seed), from));
 }
 
-/* Ray and solid are near one another and both far from the origin: the world's coordinates are coarse there, and the error
- * bound has to know it. */
+/* Ray and solid are near one another and both far from the origin: the world's coordinates are coarse there, and the
+ * error bound has to know it. */
 static void solids_far_from_the_origin(void **state)
 {
     (void)state;
@@ -345,8 +346,8 @@ static double chord(const arrangement *a, vec3 from, vec3 direction)
     return 0.0;
 }
 
-/* Cavalieri: a solid's volume is the integral of its chords over a plane across them, here by the middles of STEPS x STEPS cells. An ellipse of half
- * axes r and r / m has the area pi r^2 / m; a cup is one such cylinder less another. */
+/* Cavalieri: a solid's volume is the integral of its chords over a plane across them, here by the middles of STEPS x
+ * STEPS cells. An ellipse of half axes r and r / m has the area pi r^2 / m; a cup is one such cylinder less another. */
 static void an_elliptic_cups_volume_is_that_of_its_closed_form(void **state)
 {
     (void)state;
@@ -359,7 +360,8 @@ static void an_elliptic_cups_volume_is_that_of_its_closed_form(void **state)
             continue;
         s.rotation_deg = vec3_make(17.0, -33.0, 71.0);
         arrangement *a = arrange_one(&s);
-        const double outside = s.radius * s.radius * s.height, hollow = s.inner_radius * s.inner_radius * (s.height - s.floor);
+        const double outside = s.radius * s.radius * s.height,
+                     hollow = s.inner_radius * s.inner_radius * (s.height - s.floor);
         for (size_t j = 0; j < COUNT(directions); j++) {
             const vec3 d = vec3_normalize(directions[j]);
             const vec3 u = vec3_normalize(vec3_cross(d, vec3_make(0.2, 0.4, 0.9))), v = vec3_cross(d, u);

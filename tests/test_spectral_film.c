@@ -30,7 +30,9 @@ static double difference_of(const double xyz[3], const double wanted_xyz[3])
 }
 
 /* Of all pixels: how different each looks from its counterpart, at most and for the picture's mean. */
-typedef struct looks { double largest, of_mean; } looks;
+typedef struct looks {
+    double largest, of_mean;
+} looks;
 
 static looks compare(const film *f, const film *wanted)
 {
@@ -74,7 +76,8 @@ static void a_white_sky_is_white(void **state)
     scene *s = scene_from("render: {width: 32, height: 32}\nbackground: {color: [1, 1, 1]}\n");
     for (size_t k = 0; k < COUNT(wavelength_counts); k++) {
         const looks l = spectral_against_rgb(s, wavelength_counts[k]);
-        print_message("white, %d wavelengths: CIEDE2000 at most %.3g, of the mean %.2g\n", wavelength_counts[k], l.largest, l.of_mean);
+        print_message("white, %d wavelengths: CIEDE2000 at most %.3g, of the mean %.2g\n", wavelength_counts[k],
+                      l.largest, l.of_mean);
         assert_true(l.largest < largest[k] && l.of_mean < largest[k] / 10.0);
     }
     scene_destroy(s);
@@ -89,7 +92,8 @@ static const unsigned char patches[24][3] = {
 
 static vec3 patch_color(size_t k)
 {
-    return vec3_make(srgb_decode(patches[k][0] / 255.0), srgb_decode(patches[k][1] / 255.0), srgb_decode(patches[k][2] / 255.0));
+    return vec3_make(srgb_decode(patches[k][0] / 255.0), srgb_decode(patches[k][1] / 255.0),
+                     srgb_decode(patches[k][2] / 255.0));
 }
 
 /* Lit by ambient light alone, shining by itself, then lit by a white lamp. */
@@ -108,8 +112,8 @@ static void check_color_checker(const char *lit_by, int wavelengths, double limi
         worst.largest = fmax(worst.largest, l.largest);
         worst.of_mean = fmax(worst.of_mean, l.of_mean);
     }
-    print_message("ColorChecker, %s, %d wavelengths: CIEDE2000 at most %.3g, of a patch's mean %.2g\n", lit_by, wavelengths, worst.largest,
-                  worst.of_mean);
+    print_message("ColorChecker, %s, %d wavelengths: CIEDE2000 at most %.3g, of a patch's mean %.2g\n", lit_by,
+                  wavelengths, worst.largest, worst.of_mean);
     assert_true(worst.largest < limit && worst.of_mean < limit / 5.0);
     scene_destroy(s);
 }
@@ -129,7 +133,8 @@ static void both_colours_of_a_checker_look_as_in_rgb(void **state)
     (void)state;
     scene *s = scene_from("render: {width: 16, height: 16, depth: 0}\n"
                           "camera: {position: [0.1, 5, 0.2], pitch_deg: -90, fov_deg: 40}\n"
-                          "solids: {patch: {shape: plane, ambient: 1, checker: 0.5, color: [0.8, 0.2, 0.1], checker_color: [0.1, 0.3, 0.7]}}\n");
+                          "solids: {patch: {shape: plane, ambient: 1, checker: 0.5, color: [0.8, 0.2, 0.1], "
+                          "checker_color: [0.1, 0.3, 0.7]}}\n");
     const looks l = spectral_against_rgb(s, 1024);
     print_message("checker: CIEDE2000 at most %.3g\n", l.largest);
     assert_true(l.largest < 0.01);
@@ -153,13 +158,13 @@ static void gradient_and_coloured_skies_look_as_in_rgb(void **state)
     scene_destroy(s);
 }
 
-/* White, grey, each primary and secondary, and two mixtures (a sum of spectra is seen as the sum of what each is seen as), side by
- * side around the horizon, each 3 texels wide. */
+/* White, grey, each primary and secondary, and two mixtures (a sum of spectra is seen as the sum of what each is seen
+ * as), side by side around the horizon, each 3 texels wide. */
 static void a_picture_sky_looks_as_in_rgb(void **state)
 {
     (void)state;
-    static const float texels[][3] = {{1, 1, 1}, {0.3F, 0.3F, 0.3F}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0},
-                                      {0.7F, 0.4F, 0.1F}, {0.2F, 0.5F, 2.0F}};
+    static const float texels[][3] = {{1, 1, 1}, {0.3F, 0.3F, 0.3F}, {1, 0, 0}, {0, 1, 0},          {0, 0, 1},
+                                      {0, 1, 1}, {1, 0, 1},          {1, 1, 0}, {0.7F, 0.4F, 0.1F}, {0.2F, 0.5F, 2.0F}};
     enum { TEXELS = sizeof texels / sizeof texels[0] };
     scene *s = scene_from("render: {width: 8, height: 8}\ncamera: {position: [0, 0, 0], fov_deg: 2}\n");
     s->background.kind = BACKGROUND_PICTURE;
@@ -187,7 +192,8 @@ static void a_picture_sky_looks_as_in_rgb(void **state)
 static void glass_of_one_index_is_as_bright_as_in_rgb(void **state)
 {
     (void)state;
-    scene *s = rod_scene("render.width=40 render.height=30 background.kind=gradient background.color=0.2,0.2,0.2 plastic.color=0.5,0.5,0.5 "
+    scene *s = rod_scene("render.width=40 render.height=30 background.kind=gradient background.color=0.2,0.2,0.2 "
+                         "plastic.color=0.5,0.5,0.5 "
                          "tiles.color=0.8,0.8,0.8 tiles.checker_color=0.3,0.3,0.3");
     const looks l = spectral_against_rgb(s, 1024);
     print_message("glass: CIEDE2000 at most %.3g, of the mean %.2g\n", l.largest, l.of_mean);
@@ -199,17 +205,20 @@ static void glass_of_one_index_is_as_bright_as_in_rgb(void **state)
 static double index_of_bk7(double lambda_nm)
 {
     const double L2 = lambda_nm * lambda_nm * 1e-6;
-    return sqrt(1.0 + 1.03961212 * L2 / (L2 - 0.00600069867) + 0.231792344 * L2 / (L2 - 0.0200179144) + 1.01046945 * L2 / (L2 - 103.560653));
+    return sqrt(1.0 + 1.03961212 * L2 / (L2 - 0.00600069867) + 0.231792344 * L2 / (L2 - 0.0200179144) +
+                1.01046945 * L2 / (L2 - 103.560653));
 }
 
-/* A block whose back is cut off by air at 30 degrees, thicker above, is a prism; far away it is black up to some height. */
+/* A block whose back is cut off by air at 30 degrees, thicker above, is a prism; far away it is black up to some
+ * height. */
 static const char prism_scene[] =
     "render: {width: 1, height: 240, depth: 2, beyond: black}\n"
     "camera: {position: [0, 0, -3], target: [0, 0, 0], fov_deg: 3}\n"
     "background: {color: [1, 1, 1], medium: air}\n"
     "solids:\n"
     "  prism: {shape: box, size: [4, 4, 2], position: [0, 0, 0.5], transparency: 1, medium: bk7}\n"
-    "  cut: {shape: box, size: [8, 8, 4], position: [0, -1, 2.2320508075688772], rotation: [30, 0, 0], transparency: 1, medium: air, priority: 1}\n"
+    "  cut: {shape: box, size: [8, 8, 4], position: [0, -1, 2.2320508075688772], rotation: [30, 0, 0], transparency: "
+    "1, medium: air, priority: 1}\n"
     "  black: {shape: box, size: [1000000, 1000000, 1000], position: [0, -500000, 1000000]}\n"
     "  behind: {shape: box, size: [10, 10, 1], position: [0, 0, -10]}\n"; /* else the first face mirrors the sky */
 
@@ -244,8 +253,8 @@ static double seen_edge(const film *f, int channel)
     return ROWS;
 }
 
-/* Glass of one index grows the same tree at each wavelength, so that as many branches are too faint at each. 64: a power of two
- * divides weights and threshold without rounding. */
+/* Glass of one index grows the same tree at each wavelength, so that as many branches are too faint at each. 64: a
+ * power of two divides weights and threshold without rounding. */
 static void what_is_too_faint_does_not_depend_on_the_number_of_wavelengths(void **state)
 {
     (void)state;
@@ -263,8 +272,8 @@ static void what_is_too_faint_does_not_depend_on_the_number_of_wavelengths(void 
     scene_destroy(s);
 }
 
-/* A white furnace is white at every pixel: what comes in is what goes out, and no pixel gets more. Dispersing glass in dispersing water,
- * for as many wavelengths as divide the table evenly and not, and for random paths. */
+/* A white furnace is white at every pixel: what comes in is what goes out, and no pixel gets more. Dispersing glass in
+ * dispersing water, for as many wavelengths as divide the table evenly and not, and for random paths. */
 static void a_spectral_furnace_is_white_in_every_pixel(void **state)
 {
     (void)state;
@@ -296,8 +305,11 @@ static void a_prism_shows_red_and_blue_apart(void **state)
     s->solids[2].shape.position.y = 1e6 * tan(edge_deg * acos(-1.0) / 180.0) - 5e5;
     s->solids[2].shape.position.z = 1e6 + 500.0;
     /* one narrow band at a time: all else is absorbed */
-    static const struct { double nm; const char *law; } bands[] = {
-        {450.0, "prism.absorb_spectrum=[444.9,1e6,445,0,455,0,455.1,1e6]"}, {650.0, "prism.absorb_spectrum=[644.9,1e6,645,0,655,0,655.1,1e6]"}};
+    static const struct {
+        double nm;
+        const char *law;
+    } bands[] = {{450.0, "prism.absorb_spectrum=[444.9,1e6,445,0,455,0,455.1,1e6]"},
+                 {650.0, "prism.absorb_spectrum=[644.9,1e6,645,0,655,0,655.1,1e6]"}};
     double rows[2];
     set_all(s, "render.spectrum=spectral render.wavelengths=512");
     for (int k = 0; k < 2; k++) {
@@ -314,7 +326,8 @@ static void a_prism_shows_red_and_blue_apart(void **state)
     set(s, "prism.absorb_spectrum=[]");
     render_result *all = render(s);
     const int between = (int)(0.5 * (rows[0] + rows[1]));
-    const double *white = (const double[3]){film_value(all->picture, 0, 0, 0), film_value(all->picture, 0, 0, 1), film_value(all->picture, 0, 0, 2)};
+    const double *white = (const double[3]){film_value(all->picture, 0, 0, 0), film_value(all->picture, 0, 0, 1),
+                                            film_value(all->picture, 0, 0, 2)};
     assert_true(fabs(white[0] - white[2]) < 0.01 && white[0] > 0.8);
     assert_true(fabs(film_value(all->picture, 0, between, 0) - film_value(all->picture, 0, between, 2)) > 0.2);
     assert_true(fabs(film_value(all->picture, 0, ROWS - 1, 1)) < 1e-12);
@@ -386,10 +399,11 @@ static void random_paths_have_the_same_colours(void **state)
 static void lamps_that_are_spheres_have_their_colour(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 6, height: 6, integrator: path, paths: 2048, depth: 0, beyond: black}\n"
-                          "camera: {position: [0, 5, -5], target: [0, 5, 0], fov_deg: 5}\n"
-                          "lights: {lamp: {position: [0, 5, 0], color: [1, 0.6, 0.2], intensity: 0.1, reach: 4, radius: 1}}\n"
-                          "solids: {floor: {shape: plane, diffuse: 0.9}}\n");
+    scene *s =
+        scene_from("render: {width: 6, height: 6, integrator: path, paths: 2048, depth: 0, beyond: black}\n"
+                   "camera: {position: [0, 5, -5], target: [0, 5, 0], fov_deg: 5}\n"
+                   "lights: {lamp: {position: [0, 5, 0], color: [1, 0.6, 0.2], intensity: 0.1, reach: 4, radius: 1}}\n"
+                   "solids: {floor: {shape: plane, diffuse: 0.9}}\n");
     looks l = spectral_against_rgb(s, 32);
     print_message("lamp: CIEDE2000 at most %.3g\n", l.largest);
     assert_true(l.largest < 0.01);
@@ -400,17 +414,19 @@ static void lamps_that_are_spheres_have_their_colour(void **state)
     scene_destroy(s);
 }
 
-/* A slab whose index is the surroundings' at render.lambda_nm, 1.4375 + 0.015625 um^2 / 0.25 um^2 = 1.5, and lower at longer
- * wavelengths, is one medium with them for no other. At 85 degrees it reflects all beyond 525 nm, where sin 85 > n / 1.5: red sees the
- * sky, sin 5 of its brightness up there, and blue the black below. */
+/* A slab whose index is the surroundings' at render.lambda_nm, 1.4375 + 0.015625 um^2 / 0.25 um^2 = 1.5, and lower at
+ * longer wavelengths, is one medium with them for no other. At 85 degrees it reflects all beyond 525 nm, where sin 85 >
+ * n / 1.5: red sees the sky, sin 5 of its brightness up there, and blue the black below. */
 static void media_alike_at_one_wavelength_are_two(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 1, height: 1, spectrum: spectral, wavelengths: 64, lambda_nm: 500, depth: 3}\n"
-                          "camera: {position: [0, 1, 0], pitch_deg: -5, fov_deg: 0.01}\n"
-                          "background: {kind: gradient, color: [1, 1, 1], horizon: [0, 0, 0], ior: 1.5}\n"
-                          "solids: {slab: {shape: box, position: [0, -500, 0], size: [1000, 1000, 1000], transparency: 1, medium: cauchy, "
-                          "coefficients: [1.4375, 0.015625]}}\n");
+    scene *s =
+        scene_from("render: {width: 1, height: 1, spectrum: spectral, wavelengths: 64, lambda_nm: 500, depth: 3}\n"
+                   "camera: {position: [0, 1, 0], pitch_deg: -5, fov_deg: 0.01}\n"
+                   "background: {kind: gradient, color: [1, 1, 1], horizon: [0, 0, 0], ior: 1.5}\n"
+                   "solids: {slab: {shape: box, position: [0, -500, 0], size: [1000, 1000, 1000], transparency: 1, "
+                   "medium: cauchy, "
+                   "coefficients: [1.4375, 0.015625]}}\n");
     const vec3 seen = look(s);
     const double sky = sin(acos(-1.0) / 36.0);
     assert_true(seen.x > 0.9 * sky && seen.z < 0.2 * sky);

@@ -127,7 +127,8 @@ static void another_depth_differs_as_the_films_do(void **state)
     assert_true(real_of(table, 0, "differing_share") == lies.differing_share);
     double sum = 0;
     for (size_t i = 0; i < 24 * 18 * 3; i++)
-        sum += ((double)shallow->pixel[i] - (double)deep->pixel[i]) * ((double)shallow->pixel[i] - (double)deep->pixel[i]);
+        sum +=
+            ((double)shallow->pixel[i] - (double)deep->pixel[i]) * ((double)shallow->pixel[i] - (double)deep->pixel[i]);
     assert_true(fabs(real_of(table, 0, "error_rms") - sqrt(sum / (24 * 18 * 3))) < 1e-15);
     image_destroy(shallow);
     image_destroy(deep);
@@ -278,7 +279,10 @@ static void a_summary_has_time_and_error_on_one_line(void **state)
     fixture_run(f, s);
     csv *table = read_table(f, "results/test/compare.csv");
     char *text = summary_of(f, s), values[400], compare[400];
-    assert_int_equal(fixture_count(text, "\treference\tmse\tpsnr_db\tssim\tflip\tlargest\tdiffering_share\terror_rms\treference_noise_rms\n"), 1);
+    assert_int_equal(
+        fixture_count(
+            text, "\treference\tmse\tpsnr_db\tssim\tflip\tlargest\tdiffering_share\terror_rms\treference_noise_rms\n"),
+        1);
     char *lines = text, *line = NULL;
     for (int i = 0; i < 2; i++)
         line = strsep(&lines, "\n");

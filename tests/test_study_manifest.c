@@ -138,10 +138,10 @@ static void commits_are_found(void **state)
     assert_null(provenance_git_commit("/", &dirty));
     assert_false(dirty);
     assert_null(provenance_git_commit("/nowhere at all", &dirty));
-    snprintf(
-        command, sizeof command,
-        "cd '%s' && git init -q . && git add scene.yaml && git -c user.name=x -c user.email=x@example.org commit -q -m x 2>/dev/null",
-        f->folder);
+    snprintf(command, sizeof command,
+             "cd '%s' && git init -q . && git add scene.yaml && git -c user.name=x -c user.email=x@example.org commit "
+             "-q -m x 2>/dev/null",
+             f->folder);
     if (system(command) != 0)
         skip();
     char *commit = provenance_git_commit(f->folder, &dirty);

@@ -17,8 +17,10 @@ static const char vessel_scene[] =
     "render: {width: 24, height: 18, depth: 2}\n"
     "camera: {position: [0, 2.75, -6], target: [0, 1.5, 0]}\n"
     "solids:\n"
-    "  vessel: {shape: cup, transparency: 1, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: 2}\n"
-    "  liquid: {shape: cylinder, transparency: 1, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.95, priority: 1}\n"
+    "  vessel: {shape: cup, transparency: 1, ior: 1.5, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1, priority: "
+    "2}\n"
+    "  liquid: {shape: cylinder, transparency: 1, ior: 1.33, position: [0, 0.05, 0], radius: 0.95, height: 1.95, "
+    "priority: 1}\n"
     "  rod: {shape: box, diffuse: 1, position: [0.2, 2.1, 0], size: [0.25, 3, 0.25], priority: 3}\n";
 
 static size_t lines_of(const char *text)
@@ -26,16 +28,21 @@ static size_t lines_of(const char *text)
     return fixture_count(text, "\n");
 }
 
-/* One line a metric with the cell's values in front, the same names whatever the cell; no frame of it changes when it is kept. */
+/* One line a metric with the cell's values in front, the same names whatever the cell; no frame of it changes when it
+ * is kept. */
 static void metrics_and_curves_lie_beside_the_pictures(void **state)
 {
     const fixture *f = *state;
     fixture_write(f, "vessel.yaml", vessel_scene);
     study *s = fixture_study(f, vessel_text);
     assert_int_equal(fixture_run(f, s), 2);
-    char *first = fixture_text(f, "results/test/images/0000-metrics.tsv"), *second = fixture_text(f, "results/test/images/0001-metrics.tsv");
-    char *curves = fixture_text(f, "results/test/images/0001-curves.tsv"), *index = fixture_text(f, "results/test/images/index.tsv");
-    assert_ptr_equal(strstr(first, "study\tcell\tliquid.ior\tmetric\tunit\tmeasured\ttheory\terror\ttolerance\tpasses\twhat\n"), first);
+    char *first = fixture_text(f, "results/test/images/0000-metrics.tsv"),
+         *second = fixture_text(f, "results/test/images/0001-metrics.tsv");
+    char *curves = fixture_text(f, "results/test/images/0001-curves.tsv"),
+         *index = fixture_text(f, "results/test/images/index.tsv");
+    assert_ptr_equal(
+        strstr(first, "study\tcell\tliquid.ior\tmetric\tunit\tmeasured\ttheory\terror\ttolerance\tpasses\twhat\n"),
+        first);
     assert_ptr_equal(strstr(curves, "study\tcell\tliquid.ior\tcurve\tx\tmeasured\ttheory\n"), curves);
     realism_report report;
     assert_int_equal(realism_measure(s->base, isa_best(), &report, NULL), STATUS_OK);
@@ -67,34 +74,38 @@ static void a_scene_without_metrics_is_refused(void **state)
     assert_false(fixture_has(f, "results"));
 }
 
-static const char slime_scene[] =
-    "render: {width: 24, height: 18, depth: 2}\n"
-    "camera: {position: [0, 1, -5], target: [0, 1, 0]}\n"
-    "meshes:\n"
-    "  toy: {generate: slime, level: 0}\n"
-    "  other: {generate: slime, level: 0, integrator: implicit}\n"
-    "  ball: {generate: icosphere}\n"
-    "solids:\n"
-    "  body: {shape: mesh, mesh: toy, diffuse: 1}\n";
+static const char slime_scene[] = "render: {width: 24, height: 18, depth: 2}\n"
+                                  "camera: {position: [0, 1, -5], target: [0, 1, 0]}\n"
+                                  "meshes:\n"
+                                  "  toy: {generate: slime, level: 0}\n"
+                                  "  other: {generate: slime, level: 0, integrator: implicit}\n"
+                                  "  ball: {generate: icosphere}\n"
+                                  "solids:\n"
+                                  "  body: {shape: mesh, mesh: toy, diffuse: 1}\n";
 
-/* A line a value of each slime, and none of other meshes; what does not depend on time is what the trials say of the cell's settings. */
+/* A line a value of each slime, and none of other meshes; what does not depend on time is what the trials say of the
+ * cell's settings. */
 static void motion_lies_beside_the_pictures(void **state)
 {
     const fixture *f = *state;
     fixture_write(f, "slime.yaml", slime_scene);
-    study *s = fixture_study(f, "study: test\nscene: slime.yaml\ngrid:\n  - {toy.integrator: [euler, verlet]}\nrepetitions: 1\nwarmups: 0\n"
-                                "keep: {motion: on}\n");
+    study *s = fixture_study(
+        f, "study: test\nscene: slime.yaml\ngrid:\n  - {toy.integrator: [euler, verlet]}\nrepetitions: 1\nwarmups: 0\n"
+           "keep: {motion: on}\n");
     assert_int_equal(fixture_run(f, s), 2);
-    char *first = fixture_text(f, "results/test/images/0000-motion.tsv"), *second = fixture_text(f, "results/test/images/0001-motion.tsv");
+    char *first = fixture_text(f, "results/test/images/0000-motion.tsv"),
+         *second = fixture_text(f, "results/test/images/0001-motion.tsv");
     char *index = fixture_text(f, "results/test/images/index.tsv");
-    assert_ptr_equal(strstr(first, "study\tcell\ttoy.integrator\tslime\tname\tunit\tmeasured\ttheory\terror\twhat\n"), first);
+    assert_ptr_equal(strstr(first, "study\tcell\ttoy.integrator\tslime\tname\tunit\tmeasured\ttheory\terror\twhat\n"),
+                     first);
     assert_int_equal(lines_of(first), 2 * SOFTBODY_TRIAL_COUNT + 1);
     assert_int_equal(fixture_count(first, "test\t0\teuler\ttoy\t"), SOFTBODY_TRIAL_COUNT);
     assert_int_equal(fixture_count(second, "test\t1\tverlet\ttoy\t"), SOFTBODY_TRIAL_COUNT);
     assert_int_equal(fixture_count(second, "test\t1\tverlet\tother\t"), SOFTBODY_TRIAL_COUNT);
     assert_int_equal(fixture_count(second, "\tother\tstable_dt.spring_s\ts\tNA\tNA\tNA\t"), 1);
     double depth, theory;
-    assert_int_equal(sscanf(strstr(first, "\ttoy\tfall.depth\t"), "\ttoy\tfall.depth\tscene units\t%lf\t%lf\t", &depth, &theory), 2);
+    assert_int_equal(
+        sscanf(strstr(first, "\ttoy\tfall.depth\t"), "\ttoy\tfall.depth\tscene units\t%lf\t%lf\t", &depth, &theory), 2);
     assert_true(fabs(theory - 4.905) < 1e-12 && fabs(depth - 4.909905) < 1e-12);
     assert_int_equal(sscanf(strstr(second, "\ttoy\tfall.depth\t"), "\ttoy\tfall.depth\tscene units\t%lf\t", &depth), 1);
     assert_true(fabs(depth - 4.905) < 1e-12);

@@ -141,9 +141,11 @@ static void what_files_hold_is_defined_too(void **state)
         {"tri.mtl", "newmtl red\nKd 1 0 0.5\n"},
         {"spots.pfm", "PF\n1 1\n1.0\n0000AAAA1111"},
     };
-    fixture_write(f, "painted.yaml", "meshes: {tri: {file: tri.obj}}\ntextures: {spots: {file: spots.pfm}}\n"
-                                     "solids: {one: {shape: mesh, mesh: tri}}\n");
-    fixture_write(f, "tri.obj", "mtllib tri.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3\n");
+    fixture_write(f, "painted.yaml",
+                  "meshes: {tri: {file: tri.obj}}\ntextures: {spots: {file: spots.pfm}}\n"
+                  "solids: {one: {shape: mesh, mesh: tri}}\n");
+    fixture_write(f, "tri.obj",
+                  "mtllib tri.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3\n");
     fixture_write(f, "tri.mtl", "newmtl red\nKd 1 0 0\n");
     fixture_write(f, "spots.pfm", "PF\n1 1\n1.0\n000000000000");
     uint64_t hash = hash_of(f, text);
@@ -260,9 +262,9 @@ static void the_studies_of_the_house(void **state)
     static const struct {
         const char *name;
         size_t cells;
-    } known[] = {{"depth", 9}, {"threads", 44}, {"ior", 4}, {"ior-grid", 25}, {"profile", 12}, {"pool", 10},
-                 {"maps", 1},  {"portrait", 1}, {"convergence", 30}, {"methods", 7}, {"lighting", 3},  {"absorption", 5},
-                 {"absorber", 11}};
+    } known[] = {{"depth", 9},    {"threads", 44},   {"ior", 4},      {"ior-grid", 25},    {"profile", 12},
+                 {"pool", 10},    {"maps", 1},       {"portrait", 1}, {"convergence", 30}, {"methods", 7},
+                 {"lighting", 3}, {"absorption", 5}, {"absorber", 11}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         char path[400], said[DIAGNOSTIC_TEXT_MAX];
         diagnostic why = {0};
@@ -285,7 +287,8 @@ static status note_open(void *context, const char *path, diagnostic *why)
 {
     guard_notes *n = context;
     assert_non_null(strstr(path, "scene.yaml"));
-    return ++n->opens == n->refuse_open ? diagnose(why, STATUS_BAD_INPUT, "stay inside", "this lies outside") : STATUS_OK;
+    return ++n->opens == n->refuse_open ? diagnose(why, STATUS_BAD_INPUT, "stay inside", "this lies outside")
+                                        : STATUS_OK;
 }
 
 static status note_load(void *context, const scene *setting, diagnostic *why)
@@ -293,14 +296,16 @@ static status note_load(void *context, const scene *setting, diagnostic *why)
     guard_notes *n = context;
     assert_null(setting->background.picture);
     n->seen_picture |= strcmp(setting->background.picture_path, "far.png") == 0;
-    return ++n->loads == n->refuse_load ? diagnose(why, STATUS_BAD_INPUT, "stay inside", "that lies outside") : STATUS_OK;
+    return ++n->loads == n->refuse_load ? diagnose(why, STATUS_BAD_INPUT, "stay inside", "that lies outside")
+                                        : STATUS_OK;
 }
 
 /* Files are named by the scene, by cells and by the reference: each is asked about before any is read. */
 static void a_guard_is_asked_first(void **state)
 {
     const fixture *f = *state;
-    const char *text = "study: test\nscene: scene.yaml\ngrid: [{background.picture: [near.png, far.png]}]\nreference: {render.depth: 3}\n";
+    const char *text = "study: test\nscene: scene.yaml\ngrid: [{background.picture: [near.png, far.png]}]\nreference: "
+                       "{render.depth: 3}\n";
     char path[400];
     fixture_write(f, "test.study", text);
     fixture_path(f, "test.study", path);
@@ -312,7 +317,9 @@ static void a_guard_is_asked_first(void **state)
         const status code = study_read_guarded(path, &guard, &s, &why);
         assert_int_equal(n.opens, 1);
         assert_int_equal(code, refused ? STATUS_BAD_INPUT : STATUS_OK);
-        assert_int_equal(n.loads, refused == 0 ? 5 : refused == 6 ? 0 : refused); /* the scene, two cells, two references */
+        assert_int_equal(n.loads, refused == 0   ? 5
+                                  : refused == 6 ? 0
+                                                 : refused); /* the scene, two cells, two references */
         assert_int_equal(refused == 0, n.seen_picture && s);
         if (refused)
             assert_string_equal(why.what, refused == 6 ? "this lies outside" : "that lies outside");

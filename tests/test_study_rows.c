@@ -26,13 +26,7 @@ static char *write_row(const study *s, const scene *setting, bool workers)
          .refract = 9,
          .shadow = 5,
          .pu = 1},
-        {.wall_s = 1,
-         .cpu_s = 0.25,
-         .start_s = 0.25,
-         .busy_s = 0.25,
-         .waiting_s = 0.75,
-         .tiles = 1,
-         .pu = -1},
+        {.wall_s = 1, .cpu_s = 0.25, .start_s = 0.25, .busy_s = 0.25, .waiting_s = 0.75, .tiles = 1, .pu = -1},
         {.wall_s = 1, .cpu_s = 0.125, .start_s = 0.5, .busy_s = 0, .waiting_s = 1, .pu = 0},
     };
     render_result frame = {.wall_s = 1, .cpu_s = 0.875, .worker_count = 3, .workers = reports};
@@ -159,8 +153,9 @@ static void columns_keep_their_order(void **state)
     free(header);
     header = row_file_header(s, WORKER_ROWS);
     assert_string_equal(
-        header, "study,definition,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays_total,"
-                "rays_camera,rays_reflect,rays_refract,rays_shadow,start_s,wall_s,cpu_s,busy_s,visibility_s,waiting_s\n");
+        header,
+        "study,definition,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays_total,"
+        "rays_camera,rays_reflect,rays_refract,rays_shadow,start_s,wall_s,cpu_s,busy_s,visibility_s,waiting_s\n");
     free(header);
     study_destroy(s);
 }

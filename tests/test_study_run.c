@@ -133,9 +133,8 @@ static void rounds_are_shuffled_blocks(void **state)
 static void without_shuffling_cells_go_in_order(void **state)
 {
     const fixture *f = *state;
-    study *s = fixture_study(
-        f,
-        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\nrepetitions: 2\nwarmups: 0\norder: {shuffle: off}\n");
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\nrepetitions: "
+                                "2\nwarmups: 0\norder: {shuffle: off}\n");
     fixture_run(f, s);
     char path[400];
     csv *table = NULL;
@@ -228,13 +227,16 @@ static bool stop_when_known(void *context)
 static void whoever_asks_is_told(void **state)
 {
     const fixture *f = *state;
-    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nset: {render.width: 200, render.height: 150}\nrepetitions: 4000\nwarmups: 0\n"
-                                "grid: [{render.depth: [0, 1, 2, 3]}]\nkeep: {image: on}\n");
+    study *s = fixture_study(
+        f,
+        "study: test\nscene: scene.yaml\nset: {render.width: 200, render.height: 150}\nrepetitions: 4000\nwarmups: 0\n"
+        "grid: [{render.depth: [0, 1, 2, 3]}]\nkeep: {image: on}\n");
     char *said = NULL;
     size_t size, ran = 0;
     FILE *terminal = open_memstream(&said, &size);
     watch w = {.stop = true, .from = pthread_self()};
-    study_options options = {.results = f->results, .progress = terminal, .stop = stop_when_known, .progressed = look, .context = &w};
+    study_options options = {
+        .results = f->results, .progress = terminal, .stop = stop_when_known, .progressed = look, .context = &w};
     assert_int_equal(study_run(s, &options, &ran, NULL), STATUS_INTERRUPTED);
     assert_true(w.calls >= 2 && w.frames_done > 0);
     assert_true(ran >= w.frames_done);
@@ -252,10 +254,12 @@ static void whoever_asks_is_told(void **state)
 static void pictures_are_told_too(void **state)
 {
     const fixture *f = *state;
-    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\ngrid: [{render.depth: [0, 1, 2, 3]}]\n");
+    study *s = fixture_study(
+        f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\ngrid: [{render.depth: [0, 1, 2, 3]}]\n");
     fixture_run(f, s);
     study_destroy(s);
-    s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\ngrid: [{render.depth: [0, 1, 2, 3]}]\nkeep: {image: on}\n");
+    s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\ngrid: [{render.depth: [0, 1, 2, "
+                         "3]}]\nkeep: {image: on}\n");
     watch w = {.calls = 1, .from = pthread_self()};
     study_options options = {.results = f->results, .progressed = look, .context = &w};
     assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_OK);
@@ -301,7 +305,8 @@ static void other_definitions_are_refused(void **state)
     fixture_run(f, s);
     study_destroy(s);
     static const char *const changed[] = {
-        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}, {render.threads: [1, 3]}]\nkeep: {workers: on}\n",
+        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}, {render.threads: [1, 3]}]\nkeep: {workers: "
+        "on}\n",
         "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\n",
     };
     static const char *const differences[] = {
@@ -337,14 +342,12 @@ static void studies_may_grow(void **state)
         f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 2\nwarmups: 0\n");
     assert_int_equal(fixture_run(f, s), 4);
     study_destroy(s);
-    s = fixture_study(
-        f,
-        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: 0\norder: {seed: 9}\n");
+    s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: "
+                         "0\norder: {seed: 9}\n");
     assert_int_equal(fixture_run(f, s), 2);
     study_destroy(s);
-    s = fixture_study(
-        f,
-        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: 0\nkeep: {image: on}\n");
+    s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 3\nwarmups: "
+                         "0\nkeep: {image: on}\n");
     assert_int_equal(fixture_run(f, s), 0);
     assert_true(fixture_has(f, "results/test/images/0001.png"));
     study_destroy(s);
@@ -406,10 +409,11 @@ static void wrong_films_are_marked(void **state)
 static void cells_of_one_film_are_compared(void **state)
 {
     const fixture *f = *state;
-    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\norder: {shuffle: off}\ngrid:\n"
-                                "  - {render.schedule: [tiles, rows]}\n"
-                                "  - {render.depth: [0, 1]}\n"
-                                "  - {render.threads: [1, 2]}\n");
+    study *s =
+        fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\norder: {shuffle: off}\ngrid:\n"
+                         "  - {render.schedule: [tiles, rows]}\n"
+                         "  - {render.depth: [0, 1]}\n"
+                         "  - {render.threads: [1, 2]}\n");
     static const size_t films[] = {0, 0, 2, 2, 0, 0, 2, 2};
     for (size_t cell = 0; cell < 8; cell++)
         assert_int_equal(study_cell_film(s, cell), films[cell]);

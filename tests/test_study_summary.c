@@ -145,9 +145,12 @@ static void columns_keep_their_order(void **state)
     write_rows(f, s, &row, 1);
     char *text = summary_of(f, s);
     static const char header[] =
-        "cell\trender.depth\tn\twall_s_median\twall_s_low\twall_s_high\twall_s_mean\twall_s_min\twall_s_max\tcpu_s_median\tcpu_s_low\t"
-        "cpu_s_high\tcpu_s_mean\tcpu_s_min\tcpu_s_max\trays_total\trays_camera\trays_reflect\trays_refract\trays_shadow\t"
-        "cut_depth_throughput\ttotal_internal\tfilm_hash\tmarked\tbusy_s_mean\tbusy_s_max\twaiting_s_mean\timbalance\tothers_share\t"
+        "cell\trender.depth\tn\twall_s_median\twall_s_low\twall_s_high\twall_s_mean\twall_s_min\twall_s_max\tcpu_s_"
+        "median\tcpu_s_low\t"
+        "cpu_s_high\tcpu_s_mean\tcpu_s_min\tcpu_s_max\trays_total\trays_camera\trays_reflect\trays_refract\trays_"
+        "shadow\t"
+        "cut_depth_throughput\ttotal_internal\tfilm_hash\tmarked\tbusy_s_mean\tbusy_s_max\twaiting_s_"
+        "mean\timbalance\tothers_share\t"
         "worker_cpu_s_sum\tpeak_rss_bytes\tnoise_rms\ttriangles\tinstances\taccel_bytes\tbuild_s\tdrawn\tdrawn_bytes\t"
         "visibility_s_sum\tmotion_steps\tmotion_s\tfirst_hits.ground\tfirst_hits.ball\n";
     assert_memory_equal(text, header, sizeof header - 1);
@@ -162,9 +165,8 @@ static void points_stay_points(void **state)
 {
     const fixture *f = *state;
     setlocale(LC_ALL, "de_DE.UTF-8");
-    study *s = fixture_study(
-        f,
-        "study: test\nscene: scene.yaml\nset: {ball.ior: 1.25}\ngrid: [{render.min_weight: [0.5, 0.25]}]\nrepetitions: 2\n");
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nset: {ball.ior: 1.25}\ngrid: [{render.min_weight: "
+                                "[0.5, 0.25]}]\nrepetitions: 2\n");
     fixture_run(f, s);
     char *text = summary_of(f, s), *rows = fixture_text(f, "results/test/rows.csv"),
          *manifest = fixture_text(f, "results/test/manifest.json");

@@ -268,8 +268,10 @@ static void is_on_one_side_or_the_other(const arrangement *a, const one_hit *h, 
 {
     (void)lean;
     const uint64_t inside = arrangement_inside(a, h->point);
-    const one_hit in = nearest_interface(a, (one_ray){h->point, vec3_normalize(vec3_sub(along, outward)), FACE_NONE, inside});
-    const one_hit out = nearest_interface(a, (one_ray){h->point, vec3_normalize(vec3_add(along, outward)), FACE_NONE, inside});
+    const one_hit in =
+        nearest_interface(a, (one_ray){h->point, vec3_normalize(vec3_sub(along, outward)), FACE_NONE, inside});
+    const one_hit out =
+        nearest_interface(a, (one_ray){h->point, vec3_normalize(vec3_add(along, outward)), FACE_NONE, inside});
     if (inside) {
         assert_true(in.before == 1 && in.t > 0.0 && (in.crossed == 0 || a->primitives[0].kind == PRIMITIVE_HALFSPACE));
         assert_true(out.crossed == 0 && out.before == 1 && out.t <= 1e-13);
@@ -291,7 +293,8 @@ static void a_start_at_the_edge_is_on_one_side_or_the_other(void **state)
 static void a_cup_is_met_again_through_its_hollow(void **state)
 {
     (void)state;
-    const solid_shape s = {.kind = SHAPE_CUP, .m = 1.0, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
+    const solid_shape s = {
+        .kind = SHAPE_CUP, .m = 1.0, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
     arrangement *a = arrange_one(&s);
     one_ray r = {.o = vec3_make(0.0, 1.0, 0.0),
                  .d = vec3_make(0.6, 0.8, 0.0),

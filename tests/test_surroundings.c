@@ -7,19 +7,21 @@
 
 #include "probe_fixture.h"
 
-/* Surroundings that absorb (Beer and Lambert: Hecht, 4.8.1, eq. 4.79): exp(-a d) over the whole way from the eye, by mirrors, to what
- * sends the light, as long as it lies outside all solids; and nothing on a way to the sky. */
+/* Surroundings that absorb (Beer and Lambert: Hecht, 4.8.1, eq. 4.79): exp(-a d) over the whole way from the eye, by
+ * mirrors, to what sends the light, as long as it lies outside all solids; and nothing on a way to the sky. */
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* The eye is 5 units from the origin of a matte floor, and so is the lamp; N.L = 0.8. What hangs over the floor is on either way. */
-static const char floor_scene[] = "render: {width: 1, height: 1, depth: 4}\n"
-                                  "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
-                                  "background: {color: [0, 0, 0], ambient: [0, 0, 0], absorb_per_m: [0.1, 0, 0.3]}\n"
-                                  "lights: {lamp: {position: [3, 4, 0]}}\n"
-                                  "solids:\n"
-                                  "  floor: {shape: plane, diffuse: 1}\n"
-                                  "  slab: {shape: box, size: [90, 0.6, 90], position: [0, 1.2, 0], transparency: 1, visible: off}\n";
+/* The eye is 5 units from the origin of a matte floor, and so is the lamp; N.L = 0.8. What hangs over the floor is on
+ * either way. */
+static const char floor_scene[] =
+    "render: {width: 1, height: 1, depth: 4}\n"
+    "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
+    "background: {color: [0, 0, 0], ambient: [0, 0, 0], absorb_per_m: [0.1, 0, 0.3]}\n"
+    "lights: {lamp: {position: [3, 4, 0]}}\n"
+    "solids:\n"
+    "  floor: {shape: plane, diffuse: 1}\n"
+    "  slab: {shape: box, size: [90, 0.6, 90], position: [0, 1.2, 0], transparency: 1, visible: off}\n";
 static const double a_per_m[3] = {0.1, 0.0, 0.3};
 
 static void expect(vec3 seen, double full, double way)
@@ -69,8 +71,8 @@ static void without_shadow_rays_the_way_to_the_light_is_free(void **state)
     scene_destroy(s);
 }
 
-/* A clear slab, 0.6 thick, is not of the surroundings: 0.6 / 0.6 = 1 unit of the eye's way, 0.6 / 0.8 = 0.75 of the lamp's. Of index 1
- * it bends nothing, and what it absorbs itself is its own. */
+/* A clear slab, 0.6 thick, is not of the surroundings: 0.6 / 0.6 = 1 unit of the eye's way, 0.6 / 0.8 = 0.75 of the
+ * lamp's. Of index 1 it bends nothing, and what it absorbs itself is its own. */
 static void what_lies_in_solids_is_not_of_the_surroundings(void **state)
 {
     (void)state;
@@ -92,15 +94,16 @@ static void what_lies_in_solids_is_not_of_the_surroundings(void **state)
     scene_destroy(s);
 }
 
-/* Between the channels' wavelengths (611.4, 549.1 and 464.3 nm) the coefficient is linear, as of absorb_per_m of a material: a slab of
- * matter around everything gives the same film. */
+/* Between the channels' wavelengths (611.4, 549.1 and 464.3 nm) the coefficient is linear, as of absorb_per_m of a
+ * material: a slab of matter around everything gives the same film. */
 static void a_spectral_film_sees_the_coefficient_by_wavelength(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
     set(s, "render.spectrum=spectral");
     const vec3 seen = look(s);
-    set_all(s, "background.absorb_per_m=0,0,0 slab.visible=on slab.size=90,90,90 slab.position=0,44,0 slab.absorb_per_m=0.1,0,0.3 floor.priority=1");
+    set_all(s, "background.absorb_per_m=0,0,0 slab.visible=on slab.size=90,90,90 slab.position=0,44,0 "
+               "slab.absorb_per_m=0.1,0,0.3 floor.priority=1");
     const vec3 wanted = look(s);
     assert_true(seen.x > 0.05);
     assert_near(seen.x, wanted.x, 1e-11);
@@ -115,11 +118,14 @@ static void the_sky_is_as_bright_as_given(void **state)
     scene *s = scene_from(floor_scene);
     set_all(s, "background.color=1,1,1 floor.diffuse=0 floor.visible=off");
     expect(look(s), 1.0, 0.0);
-    set_all(s, "floor.visible=on floor.reflectivity=0.5"); /* the way to the mirror counts, that from it to the sky does not */
+    set_all(
+        s,
+        "floor.visible=on floor.reflectivity=0.5"); /* the way to the mirror counts, that from it to the sky does not */
     expect(look(s), 0.5, 5.0);
     set(s, "render.depth=0"); /* nor beyond the last depth */
     expect(look(s), 0.5, 5.0);
-    set_all(s, "render.depth=4 slab.visible=on"); /* the slab of index 1 is left twice: no interface, no light lost to it */
+    set_all(
+        s, "render.depth=4 slab.visible=on"); /* the slab of index 1 is left twice: no interface, no light lost to it */
     expect(look(s), 0.5, 4.0);
     scene_destroy(s);
 }
@@ -149,7 +155,8 @@ static void the_refracted_way_is_dimmed_too(void **state)
     stage g = stage_of("render: {width: 1, height: 1, depth: 2, beyond: black}\n"
                        "background: {color: [0, 0, 0], ambient: [1, 1, 1], absorb_per_m: [0.1, 0, 0.3]}\n"
                        "solids:\n  pane: {shape: box, size: [9, 9, 2], transparency: 1, ior: 1.5}\n"
-                       "  wall: {shape: plane, position: [0, 0, 8], rotation: [-90, 0, 0], ambient: 1}\n", "");
+                       "  wall: {shape: plane, position: [0, 0, 8], rotation: [-90, 0, 0], ambient: 1}\n",
+                       "");
     const ray_tree *tree = stage_way(&g, vec3_make(0.0, 0.0, -4.0), vec3_make(0.0, 0.0, 1.0), -1);
     const double T2 = 0.96 * 0.96;
     assert_int_equal(tree->count, 3);
@@ -167,7 +174,8 @@ static void the_way_to_a_light_that_is_seen_is_dimmed(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
-    set_all(s, "render.integrator=path camera.position=0,0.1,0 camera.target=3,4.1,0 lamp.position=3,4.1,0 lamp.radius=0.5 lamp.reach=1");
+    set_all(s, "render.integrator=path camera.position=0,0.1,0 camera.target=3,4.1,0 lamp.position=3,4.1,0 "
+               "lamp.radius=0.5 lamp.reach=1");
     expect(look(s), 4.0, 4.5);
     scene_destroy(s);
 }
@@ -176,7 +184,8 @@ static void the_way_to_a_light_that_is_seen_is_dimmed(void **state)
 static void the_probe_takes_the_coefficient_at_its_wavelength(void **state)
 {
     (void)state;
-    stage g = stage_of(floor_scene, "render.spectrum=spectral render.lambda_nm=580.25"); /* half way from 549.1 to 611.4 */
+    stage g =
+        stage_of(floor_scene, "render.spectrum=spectral render.lambda_nm=580.25"); /* half way from 549.1 to 611.4 */
     const ray_tree *tree = stage_ray(&g, vec3_make(0.0, 3.0, -4.0), vec3_make(0.0, -0.6, 0.8));
     for (int c = 0; c < 3; c++)
         assert_near(tree->radiance[c], 0.8 * exp(-0.05 * 10.0), 1e-12);

@@ -1,4 +1,5 @@
-/* Textures against closed forms: texels at their centres, ramps between them, the box-filtered pyramid, and IEC 61966-2-1. */
+/* Textures against closed forms: texels at their centres, ramps between them, the box-filtered pyramid, and IEC
+ * 61966-2-1. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -91,7 +92,8 @@ static void texel_centres_return_the_texels_the_lowest_row_first(void **state)
                     const float *p = picture->pixel + ((height - 1 - y) * width + x) * 3;
                     vec3 c = texture_sample(t, (x + 0.5) / width, (y + 0.5) / height, 0.0);
                     /* a centre is a double exactly where the size is a power of two; else off by some 1e-16 of it */
-                    int exact = filters[f] == TEXTURE_NEAREST || ((width & (width - 1)) == 0 && (height & (height - 1)) == 0);
+                    int exact =
+                        filters[f] == TEXTURE_NEAREST || ((width & (width - 1)) == 0 && (height & (height - 1)) == 0);
                     assert_same(c, vec3_make((double)p[0], (double)p[1], (double)p[2]), exact ? 0.0 : 1e-13);
                 }
                 texture_release(t);
@@ -138,7 +140,8 @@ static void between_centres_bilinear_is_the_mean_and_nearest_changes_at_the_edge
     texture_release(t);
 }
 
-/* Texel (x, y) is 3 + 5 x - 2 y, in texels: u = (x + 1/2) / w gives 3 + 5 (u w - 1/2) - 2 (v h - 1/2) between the centres. */
+/* Texel (x, y) is 3 + 5 x - 2 y, in texels: u = (x + 1/2) / w gives 3 + 5 (u w - 1/2) - 2 (v h - 1/2) between the
+ * centres. */
 static void a_linear_ramp_is_reproduced_between_the_outer_centres_and_is_flat_beyond(void **state)
 {
     (void)state;
@@ -151,7 +154,8 @@ static void a_linear_ramp_is_reproduced_between_the_outer_centres_and_is_flat_be
     for (int i = 0; i <= 200; i++) {
         for (int j = 0; j <= 20; j++) {
             double u = i / 200.0, v = j / 20.0;
-            double x = fmin(fmax(u * width - 0.5, 0.0), width - 1.0), y = fmin(fmax(v * height - 0.5, 0.0), height - 1.0);
+            double x = fmin(fmax(u * width - 0.5, 0.0), width - 1.0),
+                   y = fmin(fmax(v * height - 0.5, 0.0), height - 1.0);
             assert_same(texture_sample(t, u, v, 0.0), vec3_make(3.0 + 5.0 * x - 2.0 * y, x, y), 1e-13);
         }
     }
@@ -159,7 +163,10 @@ static void a_linear_ramp_is_reproduced_between_the_outer_centres_and_is_flat_be
 }
 
 /* Which texel of four lies under cell k of the endless row: worked out by hand. */
-static const struct { texture_wrap wrap; int first, texels[14]; } rows[] = {
+static const struct {
+    texture_wrap wrap;
+    int first, texels[14];
+} rows[] = {
     {TEXTURE_REPEAT, -5, {3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0}},
     {TEXTURE_MIRROR, -5, {3, 3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0, 0}},
     {TEXTURE_CLAMP, -5, {0, 0, 0, 0, 0, 0, 1, 2, 3, 3, 3, 3, 3, 3}},
@@ -174,8 +181,10 @@ static void wrap_modes_lay_the_texels_out_on_either_side_of_the_seams(void **sta
         set(along_v, 0, i, i, 0, 0);
     }
     for (size_t r = 0; r < COUNT(rows); r++) {
-        texture *near_u = textured(along_u, rows[r].wrap, TEXTURE_NEAREST), *near_v = textured(along_v, rows[r].wrap, TEXTURE_NEAREST);
-        texture *soft_u = textured(along_u, rows[r].wrap, TEXTURE_BILINEAR), *soft_v = textured(along_v, rows[r].wrap, TEXTURE_BILINEAR);
+        texture *near_u = textured(along_u, rows[r].wrap, TEXTURE_NEAREST),
+                *near_v = textured(along_v, rows[r].wrap, TEXTURE_NEAREST);
+        texture *soft_u = textured(along_u, rows[r].wrap, TEXTURE_BILINEAR),
+                *soft_v = textured(along_v, rows[r].wrap, TEXTURE_BILINEAR);
         for (int k = 0; k < 14; k++) {
             double here = rows[r].texels[k], centre = (rows[r].first + k + 0.5) / 4.0;
             for (double off = -0.49; off < 0.5; off += 0.07) {
@@ -184,7 +193,8 @@ static void wrap_modes_lay_the_texels_out_on_either_side_of_the_seams(void **sta
             }
             assert_near(texture_sample(soft_u, centre, 0.9, 0.0).x, here, 0.0);
             assert_near(texture_sample(soft_v, 0.2, centre, 0.0).x, here, 0.0);
-            for (double part = 0.125; k < 13 && part < 1.0; part += 0.125) { /* on both sides of the border of two cells */
+            for (double part = 0.125; k < 13 && part < 1.0;
+                 part += 0.125) { /* on both sides of the border of two cells */
                 double expected = here + part * (rows[r].texels[k + 1] - here);
                 assert_near(texture_sample(soft_u, centre + part / 4.0, 0.0, 0.0).x, expected, 0.0);
                 assert_near(texture_sample(soft_v, 3.0, centre + part / 4.0, 0.0).x, expected, 0.0);
@@ -208,7 +218,9 @@ static void each_axis_has_a_wrap_mode_of_its_own(void **state)
     }
     for (int i = 0; i < 9; i++) {
         texture *t;
-        assert_int_equal(texture_create(picture, TEXTURE_SRGB, rows[i / 3].wrap, rows[i % 3].wrap, TEXTURE_BILINEAR, &t, NULL), STATUS_OK);
+        assert_int_equal(
+            texture_create(picture, TEXTURE_SRGB, rows[i / 3].wrap, rows[i % 3].wrap, TEXTURE_BILINEAR, &t, NULL),
+            STATUS_OK);
         for (int k = 0; k < 14 * 14; k++) {
             vec3 c = texture_sample(t, (k % 14 - 4.5) / 4.0, (k / 14 - 4.5) / 4.0, 0.0);
             assert_same(c, vec3_make(rows[i / 3].texels[k % 14], rows[i % 3].texels[k / 14], 0.0), 0.0);
@@ -256,7 +268,8 @@ static void each_level_has_half_the_size_and_the_mean_of_the_picture(void **stat
             for (int i = 0; i < w * h; i++) {
                 mean = vec3_add(mean, vec3_scale(texture_texel(t, level, i % w, i / w), 1.0 / (w * h)));
             }
-            assert_same(mean, vec3_make(sum[0], sum[1], sum[2]), 6e-8 * level + 1e-14); /* texels are floats: 2^-24 a level */
+            assert_same(mean, vec3_make(sum[0], sum[1], sum[2]),
+                        6e-8 * level + 1e-14); /* texels are floats: 2^-24 a level */
         }
         texture_release(t);
     }
@@ -294,7 +307,8 @@ static int remove_folder(void **state)
     return rmdir(folder);
 }
 
-static void write_then_read(const image *picture, const char *ending, int bits, texture_space space, texture_filter filter, texture **out)
+static void write_then_read(const image *picture, const char *ending, int bits, texture_space space,
+                            texture_filter filter, texture **out)
 {
     char path[sizeof folder + 32];
     snprintf(path, sizeof path, "%s/picture%s", folder, ending);
@@ -303,8 +317,8 @@ static void write_then_read(const image *picture, const char *ending, int bits, 
     unlink(path);
 }
 
-/* IEC 61966-2-1: half the light of white is the sRGB value 1.055 (1/2)^(1/2.4) - 0.055 = 0.7354; a picture averaged as it is coded would
- * have 1/2, the light ((0.5 + 0.055) / 1.055)^2.4 = 0.2140. */
+/* IEC 61966-2-1: half the light of white is the sRGB value 1.055 (1/2)^(1/2.4) - 0.055 = 0.7354; a picture averaged as
+ * it is coded would have 1/2, the light ((0.5 + 0.055) / 1.055)^2.4 = 0.2140. */
 static void a_checkerboard_from_far_is_half_the_light_of_white(void **state)
 {
     (void)state;
@@ -351,7 +365,8 @@ static void a_linear_picture_gives_back_the_numbers_in_its_file(void **state)
     write_then_read(steps, ".pfm", 0, TEXTURE_LINEAR, TEXTURE_NEAREST, &light);
     for (int i = 0; i < 256; i++) {
         double u = (i + 0.5) / 256;
-        assert_same(texture_sample(eight, u, 0.5, 0.0), vec3_make((double)(float)(i / 255.0), 1.0, (double)(float)(i / 255.0)), 0.0);
+        assert_same(texture_sample(eight, u, 0.5, 0.0),
+                    vec3_make((double)(float)(i / 255.0), 1.0, (double)(float)(i / 255.0)), 0.0);
         assert_near(texture_sample(sixteen, u, 0.75, 0.0).x, (double)(float)(i / 255.0), 0.0);
         assert_near(texture_sample(sixteen, u, 0.25, 0.0).x, (double)(float)((i * 251 + 3) / 65535.0), 0.0);
         assert_near(texture_sample(light, u, 0.5, 0.0).x, (double)steps->pixel[3 * i], 0.0);
@@ -478,8 +493,22 @@ static void a_plain_picture_is_plain_everywhere(void **state)
 static void no_coordinate_and_no_footprint_is_too_strange(void **state)
 {
     (void)state;
-    static const double strange[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1e308, -1e308, 1e18, -1e18, 4503599627370497.5, DBL_MIN,
-                                     -DBL_MIN,    5e-324, -5e-324, -0.0, 1.0, 0.99999999999999989, -1e-17};
+    static const double strange[] = {(double)NAN,
+                                     (double)INFINITY,
+                                     -(double)INFINITY,
+                                     1e308,
+                                     -1e308,
+                                     1e18,
+                                     -1e18,
+                                     4503599627370497.5,
+                                     DBL_MIN,
+                                     -DBL_MIN,
+                                     5e-324,
+                                     -5e-324,
+                                     -0.0,
+                                     1.0,
+                                     0.99999999999999989,
+                                     -1e-17};
     for (size_t k = 0; k < COUNT(sizes); k++) {
         image *picture = noise(sizes[k][0], sizes[k][1]);
         for (size_t i = 0; i < COUNT(wraps) * COUNT(filters); i++) {
@@ -490,7 +519,8 @@ static void no_coordinate_and_no_footprint_is_too_strange(void **state)
                 assert_true(fmin(fmin(c.x, c.y), c.z) >= 0.0 && fmax(fmax(c.x, c.y), c.z) <= 1.0);
             }
             /* as the header says */
-            vec3 origin = texture_sample(t, 0.0, 0.0, 0.0), far = texture_sample(t, wraps[i / 3] == TEXTURE_CLAMP ? 1.0 : 0.0, 0.0, 0.0);
+            vec3 origin = texture_sample(t, 0.0, 0.0, 0.0),
+                 far = texture_sample(t, wraps[i / 3] == TEXTURE_CLAMP ? 1.0 : 0.0, 0.0, 0.0);
             assert_same(texture_sample(t, (double)NAN, (double)NAN, (double)NAN), origin, 0.0);
             assert_same(texture_sample(t, (double)INFINITY, 0.0, -1.0), far, 0.0);
             texture_release(t);
@@ -506,13 +536,16 @@ static void what_is_no_number_is_refused_and_named(void **state)
     texture *t = (texture *)&t;
     diagnostic why = {0};
     picture->pixel[(2 * 5 + 3) * 3 + 1] = NAN;
-    assert_int_equal(texture_create(picture, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_NEAREST, &t, &why), STATUS_BAD_INPUT);
+    assert_int_equal(texture_create(picture, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_NEAREST, &t, &why),
+                     STATUS_BAD_INPUT);
     assert_null(t);
     assert_non_null(strstr(why.what, "column 3, row 2"));
     image nothing = {.height = 3};
-    assert_int_equal(texture_create(&nothing, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_NEAREST, &t, &why), STATUS_BAD_INPUT);
-    assert_int_equal(texture_read("/nonexistent/brick.png", TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_NEAREST, &t, &why),
+    assert_int_equal(texture_create(&nothing, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_NEAREST, &t, &why),
                      STATUS_BAD_INPUT);
+    assert_int_equal(
+        texture_read("/nonexistent/brick.png", TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_NEAREST, &t, &why),
+        STATUS_BAD_INPUT);
     assert_null(t);
     assert_string_equal(why.file, "/nonexistent/brick.png");
     image_destroy(picture);
@@ -551,7 +584,8 @@ static void a_pyramid_takes_a_third_more_memory(void **state)
 {
     (void)state;
     image *picture = noise(256, 256);
-    texture *flat = textured(picture, TEXTURE_REPEAT, TEXTURE_BILINEAR), *deep = textured(picture, TEXTURE_REPEAT, TEXTURE_TRILINEAR);
+    texture *flat = textured(picture, TEXTURE_REPEAT, TEXTURE_BILINEAR),
+            *deep = textured(picture, TEXTURE_REPEAT, TEXTURE_TRILINEAR);
     assert_int_equal(texture_levels(flat), 1);
     assert_int_equal(texture_levels(deep), 9);
     assert_true(texture_bytes(flat) >= 256 * 256 * 3 * sizeof(float));

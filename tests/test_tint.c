@@ -7,8 +7,8 @@
 
 #include "probe_fixture.h"
 
-/* Inside a clear solid light has the solid's colour after tint_distance, and by Beer and Lambert's law color^(d / tint_distance) after d
- * (Hecht, Optics, 5th ed., eq. 4.79, with -ln(color) / tint_distance as the coefficient). */
+/* Inside a clear solid light has the solid's colour after tint_distance, and by Beer and Lambert's law color^(d /
+ * tint_distance) after d (Hecht, Optics, 5th ed., eq. 4.79, with -ln(color) / tint_distance as the coefficient). */
 
 static const double color[3] = {0.8, 1.0, 0.1};
 
@@ -94,17 +94,19 @@ static void opaque_solids_tint_nothing(void **state)
 static void every_film_is_tinted(void **state)
 {
     (void)state;
-    static const char *const films[] = {"", "render.integrator=path", "render.weights=constant", "render.transmission=simple",
-                                        "render.polarisation=on"};
+    static const char *const films[] = {"", "render.integrator=path", "render.weights=constant",
+                                        "render.transmission=simple", "render.polarisation=on"};
     for (size_t k = 0; k < COUNT(films); k++) {
         stage g = pane(0.5, films[k]);
         const vec3 seen = look(g.setting);
-        assert_true(fabs(seen.x - pow(0.8, 0.5)) <= 1e-9 && fabs(seen.y - 1.0) <= 1e-9 && fabs(seen.z - pow(0.1, 0.5)) <= 1e-9);
+        assert_true(fabs(seen.x - pow(0.8, 0.5)) <= 1e-9 && fabs(seen.y - 1.0) <= 1e-9 &&
+                    fabs(seen.z - pow(0.1, 0.5)) <= 1e-9);
         stage_close(&g);
     }
 }
 
-/* A grey has one share at all wavelengths, so that its film is grey, too; of a colour the spectrum that it is lifted to counts. */
+/* A grey has one share at all wavelengths, so that its film is grey, too; of a colour the spectrum that it is lifted to
+ * counts. */
 static void a_spectral_film_is_tinted_by_the_lifted_color(void **state)
 {
     (void)state;
@@ -122,13 +124,13 @@ static void a_spectral_film_is_tinted_by_the_lifted_color(void **state)
 static void light_through_a_tinted_pane_is_tinted(void **state)
 {
     (void)state;
-    static const char lit_ground[] =
-        "background: {color: [0, 0, 0]}\n"
-        "render: {width: 1, height: 1}\n"
-        "lights: {lamp: {position: [0, 4, 0]}}\n"
-        "solids:\n"
-        "  ground: {shape: plane, diffuse: 1}\n"
-        "  pane: {shape: box, transparency: 1, ior: 1.5, color: [0.8, 1, 0.1], position: [0, 2, 0], size: [50, 0.5, 50]}\n";
+    static const char lit_ground[] = "background: {color: [0, 0, 0]}\n"
+                                     "render: {width: 1, height: 1}\n"
+                                     "lights: {lamp: {position: [0, 4, 0]}}\n"
+                                     "solids:\n"
+                                     "  ground: {shape: plane, diffuse: 1}\n"
+                                     "  pane: {shape: box, transparency: 1, ior: 1.5, color: [0.8, 1, 0.1], position: "
+                                     "[0, 2, 0], size: [50, 0.5, 50]}\n";
     stage g = stage_of(lit_ground, "");
     for (double x = 0.0; x < 6.0; x += 0.5) {
         const double n_l = 4.0 / sqrt(16.0 + x * x);

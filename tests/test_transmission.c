@@ -7,24 +7,28 @@
 
 #include "probe_fixture.h"
 
-/* How light passes clear surfaces: Whitted's sum term by term, simple transmission (straight on, the material's constants), and
- * indices so high that a surface is a mirror. */
+/* How light passes clear surfaces: Whitted's sum term by term, simple transmission (straight on, the material's
+ * constants), and indices so high that a surface is a mirror. */
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980, with all five coefficients at one point of a clear
- * pane: I = k_a I_a C + k_d I_d C + k_s I_s + k_r I_r + k_t I_t. The eye sees the origin at V = (0, 0.6, -0.8); the lamp stands at
- * L = (0.6, 0.8, 0), so N.L = 0.8 and R.V = 0.48. Reflected is the sky; behind the pane, 10 units on, lies a mirror that glows, seen through its tint. */
-static const char pane_scene[] = "render: {width: 1, height: 1, depth: 1, weights: constant}\n"
-                                 "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
-                                 "background: {color: [0.1, 0.2, 0.3], ambient: [0.5, 1, 2]}\n"
-                                 "lights: {lamp: {position: [3, 4, 0], color: [1, 0.5, 0.25], intensity: 2}}\n"
-                                 "solids:\n"
-                                 "  pane: {shape: plane, ior: 1, color: [0.9, 0.6, 0.3], tint_distance: 20, ambient: 0.1, diffuse: 0.2, specular: 0.15,\n"
-                                 "    shininess: 3, reflectivity: 0.25, transparency: 0.3}\n"
-                                 "  mirror: {shape: plane, position: [0, -6, 0], priority: 1, color: [0.4, 0.4, 0.4], ambient: 1,\n"
-                                 "    reflectivity: 0.5}\n";
-static const double sky[3] = {0.1, 0.2, 0.3}, around[3] = {0.5, 1.0, 2.0}, lamp[3] = {2.0, 1.0, 0.5}, color[3] = {0.9, 0.6, 0.3};
+/* Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980, with all five coefficients at one
+ * point of a clear pane: I = k_a I_a C + k_d I_d C + k_s I_s + k_r I_r + k_t I_t. The eye sees the origin at V = (0,
+ * 0.6, -0.8); the lamp stands at L = (0.6, 0.8, 0), so N.L = 0.8 and R.V = 0.48. Reflected is the sky; behind the pane,
+ * 10 units on, lies a mirror that glows, seen through its tint. */
+static const char pane_scene[] =
+    "render: {width: 1, height: 1, depth: 1, weights: constant}\n"
+    "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
+    "background: {color: [0.1, 0.2, 0.3], ambient: [0.5, 1, 2]}\n"
+    "lights: {lamp: {position: [3, 4, 0], color: [1, 0.5, 0.25], intensity: 2}}\n"
+    "solids:\n"
+    "  pane: {shape: plane, ior: 1, color: [0.9, 0.6, 0.3], tint_distance: 20, ambient: 0.1, diffuse: 0.2, specular: "
+    "0.15,\n"
+    "    shininess: 3, reflectivity: 0.25, transparency: 0.3}\n"
+    "  mirror: {shape: plane, position: [0, -6, 0], priority: 1, color: [0.4, 0.4, 0.4], ambient: 1,\n"
+    "    reflectivity: 0.5}\n";
+static const double sky[3] = {0.1, 0.2, 0.3}, around[3] = {0.5, 1.0, 2.0}, lamp[3] = {2.0, 1.0, 0.5},
+                    color[3] = {0.9, 0.6, 0.3};
 
 /* eye, way and behind: what is left over the ways from the eye, to the lamp, and through the pane's medium. */
 static void expect_whitteds_sum(const scene *s, const double *eye, const double *way, const double *behind)
@@ -65,16 +69,18 @@ static void whitteds_sum_is_dimmed_by_its_ways(void **state)
     scene_destroy(s);
 }
 
-/* A block of glass before a wall: under simple transmission every ray ends where it would without the block, to the bit of its
- * direction; with Snell's law somewhere else. */
+/* A block of glass before a wall: under simple transmission every ray ends where it would without the block, to the bit
+ * of its direction; with Snell's law somewhere else. */
 static void simple_transmission_goes_straight_on(void **state)
 {
     (void)state;
-    static const char block[] = "render: {width: 1, height: 1, depth: 4, transmission: %s}\n"
-                                "background: {color: [1, 1, 1], ambient: [0, 0, 0]}\n"
-                                "solids:\n  block: {shape: %s, transparency: 0.8, reflectivity: 0.1, ior: 1.5, rotation: [20, 30, 0]}\n"
-                                "  wall: {shape: plane, position: [0, 0, 6], rotation: [-90, 0, 0], ambient: 1}\n";
-    static const char *const shapes[] = {"sphere, radius: 1", "box, size: [3, 3, 1]", "cylinder, radius: 1, height: 0.7"};
+    static const char block[] =
+        "render: {width: 1, height: 1, depth: 4, transmission: %s}\n"
+        "background: {color: [1, 1, 1], ambient: [0, 0, 0]}\n"
+        "solids:\n  block: {shape: %s, transparency: 0.8, reflectivity: 0.1, ior: 1.5, rotation: [20, 30, 0]}\n"
+        "  wall: {shape: plane, position: [0, 0, 6], rotation: [-90, 0, 0], ambient: 1}\n";
+    static const char *const shapes[] = {"sphere, radius: 1", "box, size: [3, 3, 1]",
+                                         "cylinder, radius: 1, height: 0.7"};
     for (size_t k = 0; k < COUNT(shapes); k++)
         for (int simple = 0; simple <= 1; simple++) {
             char text[640];
@@ -89,7 +95,8 @@ static void simple_transmission_goes_straight_on(void **state)
             assert_true((memcmp(&last->direction, &tree->node[0].direction, sizeof last->direction) == 0) == simple);
             if (simple) {
                 assert_near(last->throughput[0], 0.64, 1e-15);
-                assert_true(tree->node[0].hit.R == 0.1 && tree->node[0].hit.cos_t == tree->node[0].hit.cos_i && !tree->node[1].hit.tir);
+                assert_true(tree->node[0].hit.R == 0.1 && tree->node[0].hit.cos_t == tree->node[0].hit.cos_i &&
+                            !tree->node[1].hit.tir);
             }
             stage_close(&g);
         }
@@ -116,8 +123,8 @@ static void simple_transmission_knows_no_total_reflection(void **state)
     scene_destroy(s);
 }
 
-/* Two media of one index are two surfaces: with k_r = 0.1 and k_t = 0.9 the first of three surfaces sends 0.1 back, the next 0.9 0.1 0.9 ...
- * A depth of 2 has the rays of up to two surfaces. */
+/* Two media of one index are two surfaces: with k_r = 0.1 and k_t = 0.9 the first of three surfaces sends 0.1 back, the
+ * next 0.9 0.1 0.9 ... A depth of 2 has the rays of up to two surfaces. */
 static void under_simple_transmission_equal_indices_are_two_surfaces(void **state)
 {
     (void)state;
@@ -125,14 +132,16 @@ static void under_simple_transmission_equal_indices_are_two_surfaces(void **stat
                        "background: {color: [1, 1, 1], ambient: [0, 0, 0]}\n"
                        "materials: {clear: {transparency: 0.9, reflectivity: 0.1, ior: 1}}\n"
                        "solids:\n  upper: {shape: box, material: clear, size: [9, 1, 9], position: [0, 0.5, 0]}\n"
-                       "  lower: {shape: box, material: clear, size: [9, 1, 9], position: [0, -0.5, 0]}\n", "");
+                       "  lower: {shape: box, material: clear, size: [9, 1, 9], position: [0, -0.5, 0]}\n",
+                       "");
     const ray_tree *tree = stage_ray(&g, vec3_make(0.1, 5.0, 0.2), vec3_make(0.0, -1.0, 0.0));
     /* straight through three surfaces; back from the first; back from the second through the first */
     assert_near(tree->radiance[0], 0.9 * 0.9 * 0.9 + 0.1 + 0.9 * 0.1 * 0.9, 1e-12);
     stage_close(&g);
 }
 
-/* Every integrator that branches: the sky through a ball, r and t of constants at two surfaces, to 1e-9 of the whole series. */
+/* Every integrator that branches: the sky through a ball, r and t of constants at two surfaces, to 1e-9 of the whole
+ * series. */
 static void simple_transmission_to_spectra_and_random_paths(void **state)
 {
     (void)state;
@@ -177,10 +186,17 @@ static const char mirror_scene[] = "render: {width: 1, height: 1, depth: 2, beyo
 static void an_index_above_ten_thousand_is_a_mirror(void **state)
 {
     (void)state;
-    static const struct { const char *settings; double share; } cases[] = {
-        {"", 1.0}, {"pane.ior=1e9", 1.0}, {"render.polarisation=on", 1.0}, {"render.polarisation=off render.spectrum=spectral", -1.0},
-        {"render.spectrum=rgb render.integrator=path", 1.0}, {"render.integrator=whitted render.weights=constant", 0.8},
-        {"render.weights=fresnel render.transmission=simple", 0.8}, {"pane.transparency=0.7", 1.0}};
+    static const struct {
+        const char *settings;
+        double share;
+    } cases[] = {{"", 1.0},
+                 {"pane.ior=1e9", 1.0},
+                 {"render.polarisation=on", 1.0},
+                 {"render.polarisation=off render.spectrum=spectral", -1.0},
+                 {"render.spectrum=rgb render.integrator=path", 1.0},
+                 {"render.integrator=whitted render.weights=constant", 0.8},
+                 {"render.weights=fresnel render.transmission=simple", 0.8},
+                 {"pane.transparency=0.7", 1.0}};
     scene *s = scene_from(mirror_scene);
     for (size_t k = 0; k < COUNT(cases); k++) {
         set_all(s, cases[k].settings);
@@ -212,14 +228,16 @@ static void an_index_of_ten_thousand_is_none_yet(void **state)
     stage_close(&g);
 }
 
-/* It is one wherever it stands in the order of priorities: under glass that reaches into it all light comes back; and it casts a shadow. */
+/* It is one wherever it stands in the order of priorities: under glass that reaches into it all light comes back; and
+ * it casts a shadow. */
 static void a_mirror_by_index_is_opaque_to_glass_and_light(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 12}\n"
                           "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
                           "background: {color: [1, 1, 1], ambient: [0, 0, 0]}\n"
-                          "solids:\n  glass: {shape: box, size: [90, 1, 90], position: [0, 0, 0], transparency: 1, ior: 1.5, priority: 1}\n"
+                          "solids:\n  glass: {shape: box, size: [90, 1, 90], position: [0, 0, 0], transparency: 1, "
+                          "ior: 1.5, priority: 1}\n"
                           "  mirror: {shape: plane, transparency: 1, ior: 20000}\n");
     render_result *r = render(s);
     assert_near(film_value(r->picture, 0, 0, 0), 1.0, 1e-12);

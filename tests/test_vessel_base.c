@@ -2,9 +2,10 @@
  *
  * POV-Ray 3.7 shows the ground there, dark; Cuvette shows the sky. In the plane x = 0 the vessel is a stack of
  * flat layers: a ray that comes down through the upright walls at elevation -e keeps sin e' = sin e / n in every layer,
- * so on the horizontal base it meets n cos e' = sqrt(n^2 - sin^2 e) > 1: total reflection, whatever e, for every n > sqrt 2
- * (and through the liquid, n = 1.33, the floor of glass below it included, since n cos e' is the same in all layers, sqrt(1.33^2 - sin^2 e)
- * = 1.266 for the ray below). It goes back up at +e', leaves through the far wall at +e, and ends in the sky. */
+ * so on the horizontal base it meets n cos e' = sqrt(n^2 - sin^2 e) > 1: total reflection, whatever e, for every n >
+ * sqrt 2 (and through the liquid, n = 1.33, the floor of glass below it included, since n cos e' is the same in all
+ * layers, sqrt(1.33^2 - sin^2 e) = 1.266 for the ray below). It goes back up at +e', leaves through the far wall at +e,
+ * and ends in the sky. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -25,7 +26,9 @@ static double reflectance(double i, double t)
     return 0.5 * (s * s + p * p);
 }
 
-typedef struct point { double y, z; } point;
+typedef struct point {
+    double y, z;
+} point;
 
 /* From p at elevation e (radians) to the plane z, or to the height y. */
 static point to_wall(point p, double e, double z)
@@ -37,8 +40,8 @@ static point to_height(point p, double e, double y)
     return (point){y, p.z + (y - p.y) / tan(e)};
 }
 
-/* The share of light on the way eye, wall, liquid, floor, base (total), floor, liquid, wall, sky. Asserts on the way that the
- * ray does go there. */
+/* The share of light on the way eye, wall, liquid, floor, base (total), floor, liquid, wall, sky. Asserts on the way
+ * that the ray does go there. */
 static double share_by_hand(double entry_y)
 {
     const double e = atan2(2.75 - entry_y, 6.0 - 1.0);
@@ -68,8 +71,9 @@ static double radiance(const char *depth, double entry_y)
     scene *s;
     diagnostic why;
     assert_int_equal(scene_read("experiments/scenes/rod.yaml", &s, &why), STATUS_OK);
-    const char *const settings[] = {"render.width=1", "render.height=1", "render.beyond=black", "background.color=1,1,1",
-                                    "ground.color=0,0,0", "ground.checker=0", "rod.visible=off", "lamp.intensity=0", depth};
+    const char *const settings[] = {"render.width=1",         "render.height=1",    "render.beyond=black",
+                                    "background.color=1,1,1", "ground.color=0,0,0", "ground.checker=0",
+                                    "rod.visible=off",        "lamp.intensity=0",   depth};
     for (size_t i = 0; i < sizeof settings / sizeof *settings; i++)
         assert_int_equal(scene_set_assignment(s, settings[i], &why), STATUS_OK);
     s->camera.target = vec3_make(0.0, entry_y, -1.0);

@@ -17,7 +17,8 @@ static const vec3 places[] = {{0.0, 0.0, 0.0}, {0.7, -1.3, 2.9}, {-11.0, 4.0, 3.
 static void snell_holds_from_either_side(void **state)
 {
     (void)state;
-    static const double pairs[][2] = {{1.0, 1.5}, {1.5, 1.0}, {1.0, 1.33}, {1.33, 1.0}, {1.33, 1.5}, {1.0, 2.42}, {2.42, 1.0}, {4.0, 0.1}};
+    static const double pairs[][2] = {{1.0, 1.5},  {1.5, 1.0},  {1.0, 1.33}, {1.33, 1.0},
+                                      {1.33, 1.5}, {1.0, 2.42}, {2.42, 1.0}, {4.0, 0.1}};
     for (size_t k = 0; k < COUNT(pairs); k++) {
         for (size_t turn = 0; turn < COUNT(turns); turn++) {
             scene_text text = scene_begin(pairs[k][0], 4);
@@ -46,18 +47,20 @@ static stage pile(const layers *l, piling how, vec3 position, vec3 rotation_deg)
     scene_text text = scene_begin(l->outside, 64);
     double top = 0.0;
     for (int k = 0; k < l->count; top -= l->thickness[k++]) {
-        const double thickness = l->thickness[k] - (how == SINGLY ? 0.0 : top), middle = (how == SINGLY ? top : 0.0) - 0.5 * thickness;
+        const double thickness = l->thickness[k] - (how == SINGLY ? 0.0 : top),
+                     middle = (how == SINGLY ? top : 0.0) - 0.5 * thickness;
         char name[16], more[120];
         snprintf(name, sizeof name, "slab%d", k);
         snprintf(more, sizeof more, "shape: box, size: [200, %.17g, 200]", thickness);
         if (l->n[k] != l->outside || how == OVERLAPPING)
-            add_clear(&text, name, l->n[k], -k, vec3_add(position, turned(vec3_make(0.0, middle, 0.0), rotation_deg)), rotation_deg, more);
+            add_clear(&text, name, l->n[k], -k, vec3_add(position, turned(vec3_make(0.0, middle, 0.0), rotation_deg)),
+                      rotation_deg, more);
     }
     return stage_of(text.at, "");
 }
 
-/* A pile of plane parallel slabs: it leaves as it came, shifted by the sum of d (tan i - tan t) (Hecht, 4.4.1), and keeps the
- * product of Fresnel's transmittances. */
+/* A pile of plane parallel slabs: it leaves as it came, shifted by the sum of d (tan i - tan t) (Hecht, 4.4.1), and
+ * keeps the product of Fresnel's transmittances. */
 static void check_pile(const layers *l, piling how)
 {
     double deep = 0.0;
@@ -83,7 +86,9 @@ static void check_pile(const layers *l, piling how)
 static void slabs_with_air_between_shift_a_ray(void **state)
 {
     (void)state;
-    const layers seven = {13, 1.0, {1.5, 1.0, 1.33, 1.0, 1.7, 1.0, 2.42, 1.0, 1.1, 1.0, 1.45, 1.0, 1.52},
+    const layers seven = {13,
+                          1.0,
+                          {1.5, 1.0, 1.33, 1.0, 1.7, 1.0, 2.42, 1.0, 1.1, 1.0, 1.45, 1.0, 1.52},
                           {0.3, 0.2, 0.5, 0.1, 0.25, 0.4, 0.2, 0.15, 0.3, 0.1, 0.35, 0.2, 0.3}};
     check_pile(&seven, SINGLY); /* 14 interfaces */
 }
@@ -91,7 +96,9 @@ static void slabs_with_air_between_shift_a_ray(void **state)
 static void slabs_in_contact_shift_a_ray(void **state)
 {
     (void)state;
-    const layers twelve = {12, 1.0, {1.5, 1.33, 1.7, 1.2, 2.42, 1.1, 1.45, 1.6, 1.36, 1.9, 1.3, 1.52},
+    const layers twelve = {12,
+                           1.0,
+                           {1.5, 1.33, 1.7, 1.2, 2.42, 1.1, 1.45, 1.6, 1.36, 1.9, 1.3, 1.52},
                            {0.3, 0.2, 0.5, 0.1, 0.25, 0.4, 0.2, 0.15, 0.3, 0.1, 0.35, 0.2}};
     check_pile(&twelve, OVERLAPPING); /* 13 interfaces */
     check_pile(&twelve, SINGLY);      /* faces that coincide but for a rounding */
@@ -104,7 +111,8 @@ static stage nest(const shells *s, bool round, double height, vec3 position, vec
         char name[16], more[120];
         const vec3 base = vec3_add(position, turned(vec3_make(0.0, -0.5 * height, 0.0), rotation_deg));
         snprintf(name, sizeof name, "shell%d", k);
-        snprintf(more, sizeof more, round ? "shape: sphere, radius: %.17g" : "shape: cylinder, radius: %.17g, height: %.17g", s->radius[k],
+        snprintf(more, sizeof more,
+                 round ? "shape: sphere, radius: %.17g" : "shape: cylinder, radius: %.17g, height: %.17g", s->radius[k],
                  height);
         add_clear(&text, name, s->n[k + 1], k, round ? position : base, rotation_deg, more);
     }
@@ -116,11 +124,13 @@ static double deviation_of(const shells *s, double offset)
 {
     double sum = 0.0;
     for (int k = 0; k < s->count; k++)
-        sum += asin(s->n[0] * offset / (s->n[k] * s->radius[k])) - asin(s->n[0] * offset / (s->n[k + 1] * s->radius[k]));
+        sum +=
+            asin(s->n[0] * offset / (s->n[k] * s->radius[k])) - asin(s->n[0] * offset / (s->n[k + 1] * s->radius[k]));
     return 2.0 * sum;
 }
 
-static const shells seven_shells = {7, {1.0, 0.93, 0.81, 0.74, 0.62, 0.5, 0.41}, {1.0, 1.5, 1.33, 1.7, 1.45, 1.6, 1.36, 2.1}};
+static const shells seven_shells = {
+    7, {1.0, 0.93, 0.81, 0.74, 0.62, 0.5, 0.41}, {1.0, 1.5, 1.33, 1.7, 1.45, 1.6, 1.36, 2.1}};
 static const shells in_water = {6, {1.1, 1.0, 0.9, 0.8, 0.7, 0.6}, {1.33, 1.5, 1.4, 1.62, 1.2, 1.1, 1.5}};
 static const shells *const nests[] = {&seven_shells, &in_water};
 enum { NESTS = 2 };
@@ -143,7 +153,8 @@ static void coaxial_cylinders_keep_bouguers_invariant(void **state)
         for (size_t turn = 0; turn < COUNT(turns); turn++) {
             stage g = nest(nests[k], false, 30.0, places[turn], turns[turn]);
             for (double share = -0.98; share < 1.0; share += 0.07) {
-                const known_way w = way_through_shells(nests[k], share * widest(nests[k], 0.0), 0.0, places[turn], turns[turn]);
+                const known_way w =
+                    way_through_shells(nests[k], share * widest(nests[k], 0.0), 0.0, places[turn], turns[turn]);
                 const ray_tree *tree = stage_way(&g, w.origin, w.direction, -1);
                 assert_true(way_error(tree, &w, 1.0) <= BOUND);
                 const double turned_by = vec3_dot(tree->node[w.count].direction, w.direction);
@@ -162,7 +173,8 @@ static void skew_rays_through_coaxial_cylinders_follow_bravais(void **state)
             stage g = nest(nests[k], false, 60.0, places[turn], turns[turn]);
             for (double d_y = -0.75; d_y < 0.8; d_y += 0.15) {
                 for (double share = -0.95; share < 1.0; share += 0.19) {
-                    const known_way w = way_through_shells(nests[k], share * widest(nests[k], d_y), d_y, places[turn], turns[turn]);
+                    const known_way w =
+                        way_through_shells(nests[k], share * widest(nests[k], d_y), d_y, places[turn], turns[turn]);
                     assert_true(way_error(stage_way(&g, w.origin, w.direction, -1), &w, 1.0) <= BOUND);
                 }
             }
@@ -193,8 +205,8 @@ static void nested_spheres_keep_the_impact_parameter(void **state)
     }
 }
 
-/* A cup of glass, filled: two coaxial shells, across it; above the liquid the inner one is air. Down through the liquid and the
- * floor: two plane layers. */
+/* A cup of glass, filled: two coaxial shells, across it; above the liquid the inner one is air. Down through the liquid
+ * and the floor: two plane layers. */
 static void a_vessel_with_its_liquid_refracts_like_shells_and_layers(void **state)
 {
     (void)state;
@@ -203,8 +215,10 @@ static void a_vessel_with_its_liquid_refracts_like_shells_and_layers(void **stat
     for (size_t turn = 0; turn < COUNT(turns); turn++) {
         const vec3 at = places[turn], up = turned(vec3_make(0.0, 1.0, 0.0), turns[turn]);
         scene_text text = scene_begin(1.0, 64);
-        add_clear(&text, "vessel", 1.5, 2, at, turns[turn], "shape: cup, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1");
-        add_clear(&text, "liquid", 1.33, 1, vec3_add(at, vec3_scale(up, 0.05)), turns[turn], "shape: cylinder, radius: 0.95, height: 1.95");
+        add_clear(&text, "vessel", 1.5, 2, at, turns[turn],
+                  "shape: cup, radius: 1, inner_radius: 0.9, height: 3, floor: 0.1");
+        add_clear(&text, "liquid", 1.33, 1, vec3_add(at, vec3_scale(up, 0.05)), turns[turn],
+                  "shape: cylinder, radius: 0.95, height: 1.95");
         stage g = stage_of(text.at, "");
         for (double share = -0.95; share < 1.0; share += 0.095) {
             known_way w = way_through_shells(&filled, share * 0.89, 0.05, vec3_add(at, up), turns[turn]);
@@ -218,8 +232,9 @@ static void a_vessel_with_its_liquid_refracts_like_shells_and_layers(void **stat
     }
 }
 
-/* Rainbows: behind k reflections inside a drop light is turned by D = 2 (i - r) + k (pi - 2 r) (Hecht, problem 4.32; van de Hulst,
- * Light Scattering by Small Particles, 12.31), and meets the surface every pi - 2 r; T R^k T of it leaves. */
+/* Rainbows: behind k reflections inside a drop light is turned by D = 2 (i - r) + k (pi - 2 r) (Hecht, problem 4.32;
+ * van de Hulst, Light Scattering by Small Particles, 12.31), and meets the surface every pi - 2 r; T R^k T of it
+ * leaves. */
 static void reflections_inside_a_drop_turn_light_like_rainbows(void **state)
 {
     (void)state;
@@ -238,7 +253,8 @@ static void reflections_inside_a_drop_turn_light_like_rainbows(void **state)
             double inside = 1.0 - share.mean;
             const ray_node *node = child_of(tree, &tree->node[0], RAY_REFRACT);
             for (int j = 0; j <= REFLECTIONS; j++) {
-                const double polar = pi - angle - (j + 1) * (pi - 2.0 * r), heading = -2.0 * (angle - r) - j * (pi - 2.0 * r);
+                const double polar = pi - angle - (j + 1) * (pi - 2.0 * r),
+                             heading = -2.0 * (angle - r) - j * (pi - 2.0 * r);
                 const vec3 point = vec3_add(at, turned(vec3_make(1.7 * cos(polar), 0.0, 1.7 * sin(polar)), turn));
                 const ray_node *out = child_of(tree, node, RAY_REFRACT);
                 assert_true(apart(node->hit.point, point) <= BOUND * 1.7);
@@ -279,11 +295,13 @@ static double deviation_through(stage *g, double apex, double angle_i)
     return atan2(d.y, d.x) - atan2(out.y, out.x); /* towards the base */
 }
 
-/* D = i + t2 - A with r + r2 = A (Hecht, 5.5.1, eqs. 5.52 to 5.54), least where both sides are alike: n = sin((A + D)/2) / sin(A/2). */
+/* D = i + t2 - A with r + r2 = A (Hecht, 5.5.1, eqs. 5.52 to 5.54), least where both sides are alike: n = sin((A +
+ * D)/2) / sin(A/2). */
 static void a_prism_deviates_least_where_both_sides_are_alike(void **state)
 {
     (void)state;
-    static const double apexes[] = {20.0 * DEGREE, 45.0 * DEGREE, 60.0 * DEGREE}, indices[][2] = {{1.5, 1.0}, {1.7, 1.0}, {1.62, 1.33}};
+    static const double apexes[] = {20.0 * DEGREE, 45.0 * DEGREE, 60.0 * DEGREE},
+                        indices[][2] = {{1.5, 1.0}, {1.7, 1.0}, {1.62, 1.33}};
     for (size_t a = 0; a < COUNT(apexes); a++) {
         for (size_t k = 0; k < COUNT(indices); k++) {
             const double apex = apexes[a], n = indices[k][0] / indices[k][1], alike = asin(n * sin(0.5 * apex));

@@ -1,4 +1,5 @@
-/* YUV4MPEG2: the header's text, the frame's bytes, and colours against Y'CbCr worked out by hand from the coefficients of BT.601 and BT.709. */
+/* YUV4MPEG2: the header's text, the frame's bytes, and colours against Y'CbCr worked out by hand from the coefficients
+ * of BT.601 and BT.709. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,7 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct stream_bytes { char *text; size_t size; } stream_bytes;
+typedef struct stream_bytes {
+    char *text;
+    size_t size;
+} stream_bytes;
 
 /* One frame of that picture. */
 static stream_bytes frame_of(const image *picture)
@@ -50,7 +54,8 @@ static void check_colour(int width, int height, double r, double g, double b, in
     image *picture = picture_of(width, height);
     fill(picture, r, g, b);
     stream_bytes frame = frame_of(picture);
-    const size_t pixels = (size_t)width * (size_t)height, chroma = (size_t)((width + 1) / 2) * (size_t)((height + 1) / 2);
+    const size_t pixels = (size_t)width * (size_t)height,
+                 chroma = (size_t)((width + 1) / 2) * (size_t)((height + 1) / 2);
     assert_int_equal(frame.size, 6 + pixels + 2 * chroma);
     assert_memory_equal(frame.text, "FRAME\n", 6);
     const unsigned char *bytes = (const unsigned char *)frame.text + 6;
@@ -64,9 +69,10 @@ static void check_colour(int width, int height, double r, double g, double b, in
     image_destroy(picture);
 }
 
-/* Y = 16 + 219 K, Cb = 128 + 224 (B - Y) / (2 (1 - K_B)), Cr = 128 + 224 (R - Y) / (2 (1 - K_R)) with B, R, Y from 0 to 1.
- * BT.601: K = 0.299, 0.587, 0.114. Red: Y 81.48, Cb 128 - 224 0.299 / 1.772 = 90.20, Cr 240. Green: Y 144.55, Cb 128 - 224 0.587 / 1.772 = 53.80,
- * Cr 128 - 224 0.587 / 1.402 = 34.21. Blue: Y 40.97, Cb 240, Cr 128 - 224 0.114 / 1.402 = 109.79. */
+/* Y = 16 + 219 K, Cb = 128 + 224 (B - Y) / (2 (1 - K_B)), Cr = 128 + 224 (R - Y) / (2 (1 - K_R)) with B, R, Y from 0
+ * to 1. BT.601: K = 0.299, 0.587, 0.114. Red: Y 81.48, Cb 128 - 224 0.299 / 1.772 = 90.20, Cr 240. Green: Y 144.55, Cb
+ * 128 - 224 0.587 / 1.772 = 53.80, Cr 128 - 224 0.587 / 1.402 = 34.21. Blue: Y 40.97, Cb 240, Cr 128 - 224 0.114
+ * / 1.402 = 109.79. */
 static void colours_of_low_pictures_are_bt601(void **state)
 {
     (void)state;
@@ -78,8 +84,9 @@ static void colours_of_low_pictures_are_bt601(void **state)
     check_colour(2, 718, 1, 0, 0, 81, 90, 240);
 }
 
-/* BT.709: K = 0.2126, 0.7152, 0.0722. Red: Y 62.56, Cb 128 - 224 0.2126 / 1.8556 = 102.34. Green: Y 172.63, Cb 128 - 224 0.7152 / 1.8556 = 41.66,
- * Cr 128 - 224 0.7152 / 1.5748 = 26.27. Blue: Y 31.81, Cr 128 - 224 0.0722 / 1.5748 = 117.73. */
+/* BT.709: K = 0.2126, 0.7152, 0.0722. Red: Y 62.56, Cb 128 - 224 0.2126 / 1.8556 = 102.34. Green: Y 172.63, Cb 128 -
+ * 224 0.7152 / 1.8556 = 41.66, Cr 128 - 224 0.7152 / 1.5748 = 26.27. Blue: Y 31.81, Cr 128 - 224 0.0722 / 1.5748 =
+ * 117.73. */
 static void colours_of_high_pictures_are_bt709(void **state)
 {
     (void)state;
@@ -90,8 +97,8 @@ static void colours_of_high_pictures_are_bt709(void **state)
     check_colour(2, 720, 0, 0, 1, 32, 240, 118);
 }
 
-/* Linear light is sRGB-coded first: 0.2140411 is the byte 127.5 of 255, so 0.214 is 127; grey of that is Y = 16 + 219 127 / 255 = 125.07. Out of
- * range is clamped, no number is black. */
+/* Linear light is sRGB-coded first: 0.2140411 is the byte 127.5 of 255, so 0.214 is 127; grey of that is Y = 16 + 219
+ * 127 / 255 = 125.07. Out of range is clamped, no number is black. */
 static void pixels_are_coded_first(void **state)
 {
     (void)state;
@@ -102,8 +109,8 @@ static void pixels_are_coded_first(void **state)
     check_colour(2, 2, no_number, no_number, no_number, 16, 128, 128);
 }
 
-/* 3 x 3: chroma 2 x 2, whose cells have 4, 2, 2 and 1 pixels. Red at 0,0; 2,0; 0,2 and 2,2 among black, so a quarter, half, half and all of the
- * red's -37.797 and +112: Cb 118.55, 109.10, 109.10, 90.20; Cr 156, 184, 184, 240. */
+/* 3 x 3: chroma 2 x 2, whose cells have 4, 2, 2 and 1 pixels. Red at 0,0; 2,0; 0,2 and 2,2 among black, so a quarter,
+ * half, half and all of the red's -37.797 and +112: Cb 118.55, 109.10, 109.10, 90.20; Cr 156, 184, 184, 240. */
 static void chroma_is_the_mean_of_what_is_there(void **state)
 {
     (void)state;
@@ -154,9 +161,12 @@ static void what_is_no_film_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_of_low_pictures_are_bt601),   cmocka_unit_test(colours_of_high_pictures_are_bt709),
-        cmocka_unit_test(pixels_are_coded_first),              cmocka_unit_test(chroma_is_the_mean_of_what_is_there),
-        cmocka_unit_test(odd_sizes_are_rounded_up),            cmocka_unit_test(the_header_is_that_of_the_format),
+        cmocka_unit_test(colours_of_low_pictures_are_bt601),
+        cmocka_unit_test(colours_of_high_pictures_are_bt709),
+        cmocka_unit_test(pixels_are_coded_first),
+        cmocka_unit_test(chroma_is_the_mean_of_what_is_there),
+        cmocka_unit_test(odd_sizes_are_rounded_up),
+        cmocka_unit_test(the_header_is_that_of_the_format),
         cmocka_unit_test(what_is_no_film_is_refused),
     };
     return cmocka_run_group_tests_name("y4m", tests, NULL, NULL);

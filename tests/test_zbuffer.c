@@ -11,38 +11,44 @@
 #include "random_stream.h"
 #include "zbuffer_fixture.h"
 
-/* The depth buffer against the ray caster, which finds surfaces in another way, and against closed forms: what interpolating straight
- * and in perspective gives on a tilted square, and how often each point is covered. */
+/* The depth buffer against the ray caster, which finds surfaces in another way, and against closed forms: what
+ * interpolating straight and in perspective gives on a tilted square, and how often each point is covered. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
-#define HEAD \
-    "render: {width: 200, height: 150, depth: 0, shadows: off, lighting: phong}\n" \
-    "camera: {position: [0, 3, -8], target: [0, 0.8, 0], fov_deg: 40}\n" \
-    "background: {kind: gradient, color: [0.1, 0.2, 0.3], ambient: [0.5, 0.6, 0.7]}\n" \
+#define HEAD                                                                                         \
+    "render: {width: 200, height: 150, depth: 0, shadows: off, lighting: phong}\n"                   \
+    "camera: {position: [0, 3, -8], target: [0, 0.8, 0], fov_deg: 40}\n"                             \
+    "background: {kind: gradient, color: [0.1, 0.2, 0.3], ambient: [0.5, 0.6, 0.7]}\n"               \
     "lights: {lamp: {position: [4, 7, -5]}, other: {position: [-6, 2, -1], color: [0.2, 0.3, 1]}}\n" \
-    "materials:\n" \
-    "  dull: {diffuse: 0.7, ambient: 0.1, specular: 0.4, shininess: 40, color: [0.8, 0.3, 0.2]}\n" \
+    "materials:\n"                                                                                   \
+    "  dull: {diffuse: 0.7, ambient: 0.1, specular: 0.4, shininess: 40, color: [0.8, 0.3, 0.2]}\n"   \
     "  tiles: {diffuse: 0.7, ambient: 0.1, checker: 0.25, color: [0.8, 0.8, 0.8], checker_color: [0.2, 0.3, 0.4]}\n"
 
 static const char flat_scene[] = HEAD
-    "meshes: {prism: {generate: lathe, around: 5, crease_deg: 0, profile: [0, 0, 0.7, 0, 0.5, 1, 0, 1]}, soup: {generate: sparse, count: 60}}\n"
+    "meshes: {prism: {generate: lathe, around: 5, crease_deg: 0, profile: [0, 0, 0.7, 0, 0.5, 1, 0, 1]}, soup: "
+    "{generate: sparse, count: 60}}\n"
     "solids:\n"
     "  ground: {shape: plane, material: tiles, checker: 1, rotation: [1, 0, 2]}\n"
-    "  crates: {shape: mesh, mesh: prism, material: dull, shading: flat, position: [-2.5, 0.3, 0], rotation: [40, 20, 0],\n"
+    "  crates: {shape: mesh, mesh: prism, material: dull, shading: flat, position: [-2.5, 0.3, 0], rotation: [40, 20, "
+    "0],\n"
     "           scale: [1, 1.5, 1], copies: [1, 1, 3], spacing: [0, 0, 2]}\n"
     "  leaves: {shape: mesh, mesh: soup, material: tiles, position: [0, 1, 0], scale: [1.5, 0.8, 1]}\n"
     "  crate: {shape: box, material: tiles, size: [0.8, 1.2, 0.6], position: [2, 0.7, 1.5], rotation: [10, 40, 5]}\n";
 
-static const char round_scene[] = HEAD
-    "meshes: {donut: {generate: torus, major: 0.6, minor: 0.25}}\n"
-    "solids:\n"
-    "  ground: {shape: plane, material: tiles, checker: 1}\n"
-    "  ring: {shape: mesh, mesh: donut, material: dull, shading: smooth, position: [-2.5, 0.5, 0], rotation: [40, 20, 0]}\n"
-    "  cup: {shape: cup, material: tiles, radius: 0.7, inner_radius: 0.6, height: 1, floor: 0.1, position: [-0.9, 0.1, -1], rotation: [-20, 0, 10]}\n"
-    "  can: {shape: cylinder, material: dull, radius: 0.5, height: 1.2, m: 2, position: [0.6, 0.1, 0.5], rotation: [0, 30, 0]}\n"
-    "  ball: {shape: sphere, material: dull, radius: 0.7, position: [2, 0.7, -0.5]}\n"
-    "  marble: {shape: sphere, transparency: 1, ior: 1.5, specular: 0.9, shininess: 10, diffuse: 0.2, radius: 0.4, position: [0.8, 0.5, -2]}\n";
+static const char round_scene[] =
+    HEAD "meshes: {donut: {generate: torus, major: 0.6, minor: 0.25}}\n"
+         "solids:\n"
+         "  ground: {shape: plane, material: tiles, checker: 1}\n"
+         "  ring: {shape: mesh, mesh: donut, material: dull, shading: smooth, position: [-2.5, 0.5, 0], rotation: [40, "
+         "20, 0]}\n"
+         "  cup: {shape: cup, material: tiles, radius: 0.7, inner_radius: 0.6, height: 1, floor: 0.1, position: [-0.9, "
+         "0.1, -1], rotation: [-20, 0, 10]}\n"
+         "  can: {shape: cylinder, material: dull, radius: 0.5, height: 1.2, m: 2, position: [0.6, 0.1, 0.5], "
+         "rotation: [0, 30, 0]}\n"
+         "  ball: {shape: sphere, material: dull, radius: 0.7, position: [2, 0.7, -0.5]}\n"
+         "  marble: {shape: sphere, transparency: 1, ior: 1.5, specular: 0.9, shininess: 10, diffuse: 0.2, radius: "
+         "0.4, position: [0.8, 0.5, -2]}\n";
 
 static double difference_at(const film *a, const film *b, int x, int y)
 {
@@ -74,10 +80,17 @@ static double share_beyond(const char *text, const char *assignments, double muc
 static void flat_solids_look_as_cast_but_at_edges(void **state)
 {
     (void)state;
-    static const char *const variants[] = {"", "render.samples=4", "render.samples=9", "render.samples=64", "crates.shading=smooth",
-                                           "crates.shading=gouraud", "render.lighting=lambert camera.yaw_deg=20",
-                                           "camera.position=-2.4,0.9,-0.8 camera.target=-2,0.5,3", "camera.position=0,30,0 camera.target=0,0,0.001",
-                                           "lamp.reach=8 camera.fov_deg=150", "camera.position=0,0.2,-3 camera.pitch_deg=60"};
+    static const char *const variants[] = {"",
+                                           "render.samples=4",
+                                           "render.samples=9",
+                                           "render.samples=64",
+                                           "crates.shading=smooth",
+                                           "crates.shading=gouraud",
+                                           "render.lighting=lambert camera.yaw_deg=20",
+                                           "camera.position=-2.4,0.9,-0.8 camera.target=-2,0.5,3",
+                                           "camera.position=0,30,0 camera.target=0,0,0.001",
+                                           "lamp.reach=8 camera.fov_deg=150",
+                                           "camera.position=0,0.2,-3 camera.pitch_deg=60"};
     for (size_t v = 0; v < COUNT(variants); v++) {
         const double share = share_beyond(flat_scene, variants[v], 1e-6);
         if (share > 0.0001)
@@ -85,13 +98,18 @@ static void flat_solids_look_as_cast_but_at_edges(void **state)
     }
 }
 
-/* Light falls on the solid itself: what is left is where the chord is seen before the arc, and outlines. A chord's height is under 2e-4 of the
- * radius; it moves a point along the surface by that over the cosine of incidence, and light by about as much. */
+/* Light falls on the solid itself: what is left is where the chord is seen before the arc, and outlines. A chord's
+ * height is under 2e-4 of the radius; it moves a point along the surface by that over the cosine of incidence, and
+ * light by about as much. */
 static void round_solids_look_as_cast_but_at_outlines(void **state)
 {
     (void)state;
-    static const char *const variants[] = {"", "render.samples=4", "camera.position=-0.9,4,-1.2 camera.target=-0.9,0,-1",
-                                           "camera.position=0.6,2,-0.5 camera.target=0.6,0.5,0.5", "cup.m=1.6", "cup.m=0.6 cup.inner_radius=0.5",
+    static const char *const variants[] = {"",
+                                           "render.samples=4",
+                                           "camera.position=-0.9,4,-1.2 camera.target=-0.9,0,-1",
+                                           "camera.position=0.6,2,-0.5 camera.target=0.6,0.5,0.5",
+                                           "cup.m=1.6",
+                                           "cup.m=0.6 cup.inner_radius=0.5",
                                            "camera.roll_deg=33"};
     for (size_t v = 0; v < COUNT(variants); v++) {
         const double share = share_beyond(round_scene, variants[v], 0.004);
@@ -104,11 +122,12 @@ static void round_solids_look_as_cast_but_at_outlines(void **state)
 static void of_two_in_one_place_the_higher_priority_is_seen(void **state)
 {
     (void)state;
-    static const char text[] = HEAD
-        "meshes: {one: {generate: box}}\n"
-        "solids:\n"
-        "  red: {shape: mesh, mesh: one, ambient: 1, color: [1, 0, 0], position: [0, 1, 0], rotation: [10, 30, 0], shading: flat}\n"
-        "  blue: {shape: mesh, mesh: one, ambient: 1, color: [0, 0, 1], position: [0, 1, 0], rotation: [10, 30, 0], shading: flat}\n";
+    static const char text[] = HEAD "meshes: {one: {generate: box}}\n"
+                                    "solids:\n"
+                                    "  red: {shape: mesh, mesh: one, ambient: 1, color: [1, 0, 0], position: [0, 1, "
+                                    "0], rotation: [10, 30, 0], shading: flat}\n"
+                                    "  blue: {shape: mesh, mesh: one, ambient: 1, color: [0, 0, 1], position: [0, 1, "
+                                    "0], rotation: [10, 30, 0], shading: flat}\n";
     assert_true(share_beyond(text, "red.priority=5 blue.priority=2", 1e-6) < 0.0001);
     assert_true(share_beyond(text, "red.priority=2 blue.priority=5", 1e-6) < 0.0001);
 }
@@ -123,16 +142,18 @@ static void give_mesh(scene *s, mesh *m)
 }
 
 /* White where anything is, black elsewhere; looks along z, and half the picture's height is as far as the depth. */
-#define WHITE(size, extra) \
-    "render: {width: " #size ", height: " #size ", depth: 0, integrator: zbuffer}\n" \
+#define WHITE(size, extra)                                                                                         \
+    "render: {width: " #size ", height: " #size ", depth: 0, integrator: zbuffer}\n"                               \
     "camera: {position: [0, 0, 0], yaw_deg: 0, fov_deg: 90}\nbackground: {color: [0, 0, 0], ambient: [1, 1, 1]}\n" \
-    "meshes: {web: {generate: box}}\n" extra "solids: {it: {shape: mesh, mesh: web, color: [1, 1, 1], ambient: 1, diffuse: 0, shading: flat"
+    "meshes: {web: {generate: box}}\n" extra                                                                       \
+    "solids: {it: {shape: mesh, mesh: web, color: [1, 1, 1], ambient: 1, diffuse: 0, shading: flat"
 
 enum { WEB = 64 };
 static const char web_scene[] = WHITE(64, "") "}}\n";
 
 /* How often each pixel is drawn when triangles are drawn one at a time. */
-static void count_cover(const vec3 *vertices, size_t vertex_count, const mesh_triangle *triangles, size_t count, int cover[WEB][WEB])
+static void count_cover(const vec3 *vertices, size_t vertex_count, const mesh_triangle *triangles, size_t count,
+                        int cover[WEB][WEB])
 {
     for (size_t t = 0; t < count; t++) {
         scene *s = scene_from(web_scene);
@@ -152,13 +173,15 @@ static vec3 seen_at(double x, double y)
     return vec3_make(2.0 * x / WEB - 1.0, 1.0 - 2.0 * y / WEB, 1.0);
 }
 
-/* Its middle and all but one of its rim's corners are middles of pixels, and eleven of its sixteen spokes lead over more of them. The rim is a
- * square of 40 by 40 pixels: 41 x 41 middles, less those on the two sides that belong to neighbours. */
+/* Its middle and all but one of its rim's corners are middles of pixels, and eleven of its sixteen spokes lead over
+ * more of them. The rim is a square of 40 by 40 pixels: 41 x 41 middles, less those on the two sides that belong to
+ * neighbours. */
 static void a_fan_covers_each_pixel_once(void **state)
 {
     (void)state;
-    static const double rim[16][2] = {{20, 0}, {20, 7}, {20, 20}, {10, 20}, {0, 20}, {-5, 20}, {-20, 20}, {-20, 10},
-                                      {-20, 0}, {-20, -3}, {-20, -20}, {-1, -20}, {0, -20}, {13, -20}, {20, -20}, {20, -20.0 / 3.0}};
+    static const double rim[16][2] = {{20, 0},   {20, 7},   {20, 20},  {10, 20},         {0, 20},    {-5, 20},
+                                      {-20, 20}, {-20, 10}, {-20, 0},  {-20, -3},        {-20, -20}, {-1, -20},
+                                      {0, -20},  {13, -20}, {20, -20}, {20, -20.0 / 3.0}};
     vec3 vertices[17];
     mesh_triangle triangles[16];
     vertices[16] = seen_at(30.5, 31.5);
@@ -192,7 +215,8 @@ static void a_crooked_web_covers_each_pixel_once(void **state)
     size_t count = 0;
     for (int j = 0; j <= N; j++) {
         for (int i = 0; i <= N; i++) {
-            const double x = 10.0 * i - 8.0 + random_real(&seed, -2.0, 2.0), y = 10.0 * j - 8.0 + random_real(&seed, -2.0, 2.0);
+            const double x = 10.0 * i - 8.0 + random_real(&seed, -2.0, 2.0),
+                         y = 10.0 * j - 8.0 + random_real(&seed, -2.0, 2.0);
             vertices[j * (N + 1) + i] = vec3_scale(seen_at(x, y), random_real(&seed, 0.01, 5.0));
         }
     }
@@ -212,8 +236,8 @@ static void a_crooked_web_covers_each_pixel_once(void **state)
                 fail_msg("pixel %d, %d is drawn %d times", x, y, cover[y][x]);
 }
 
-/* A floor from far behind the eye to z = 10, one unit under it, is seen where a ray (x, y, 1) goes down to it before that: y < -1/10,
- * and |x / y| < 50. */
+/* A floor from far behind the eye to z = 10, one unit under it, is seen where a ray (x, y, 1) goes down to it before
+ * that: y < -1/10, and |x / y| < 50. */
 static void triangles_that_reach_behind_the_eye_are_cut(void **state)
 {
     (void)state;
@@ -248,7 +272,8 @@ static const texture *ramp(void)
             pixel[2] = 0.0F;
         }
     }
-    assert_int_equal(texture_create(picture, TEXTURE_SRGB, TEXTURE_CLAMP, TEXTURE_CLAMP, TEXTURE_BILINEAR, &t, NULL), STATUS_OK);
+    assert_int_equal(texture_create(picture, TEXTURE_SRGB, TEXTURE_CLAMP, TEXTURE_CLAMP, TEXTURE_BILINEAR, &t, NULL),
+                     STATUS_OK);
     image_destroy(picture);
     return t;
 }
@@ -306,7 +331,8 @@ static bool straight(double x, double y, double uv[2])
 }
 
 /* Returns how far v is from what the other way of texturing has, at most. */
-static double expect_texture(const char *texturing, bool (*wanted)(double, double, double[2]), bool (*other)(double, double, double[2]))
+static double expect_texture(const char *texturing, bool (*wanted)(double, double, double[2]),
+                             bool (*other)(double, double, double[2]))
 {
     scene *s = leaning_scene(texturing);
     render_result *r = render(s);
@@ -315,12 +341,13 @@ static double expect_texture(const char *texturing, bool (*wanted)(double, doubl
     for (int j = 0; j < 100; j++) {
         for (int i = 0; i < 100; i++) {
             const double x = (i + 0.5) / 50.0 - 1.0, y = 1.0 - (j + 0.5) / 50.0, edge = 1.0 / 128.0;
-            double uv[2], not[2];
-            if (!wanted(x, y, uv) || !other(x, y, not) || uv[0] < edge || uv[0] > 1.0 - edge || uv[1] < edge || uv[1] > 1.0 - edge)
+            double uv[2], not [2];
+            if (!wanted(x, y, uv) || !other(x, y, not ) || uv[0] < edge || uv[0] > 1.0 - edge || uv[1] < edge ||
+                uv[1] > 1.0 - edge)
                 continue; /* the ramp is level beyond its last texels' middles */
             assert_true(fabs(film_value(r->picture, i, j, 0) - uv[0]) < 1e-6);
             assert_true(fabs(film_value(r->picture, i, j, 1) - uv[1]) < 1e-6);
-            apart = fmax(apart, fabs(uv[1] - not[1]));
+            apart = fmax(apart, fabs(uv[1] - not [1]));
             seen++;
         }
     }
@@ -343,7 +370,8 @@ static void textures_run_straight_across_the_picture(void **state)
     assert_true(expect_texture("render.texturing=affine", straight, in_perspective) > 0.2);
 }
 
-/* Where all corners are equally far both are right; elsewhere analytic solids show the difference too, and the ray caster has the right ones. */
+/* Where all corners are equally far both are right; elsewhere analytic solids show the difference too, and the ray
+ * caster has the right ones. */
 static void boxes_have_textures_of_either_kind(void **state)
 {
     (void)state;
@@ -351,7 +379,8 @@ static void boxes_have_textures_of_either_kind(void **state)
                                "camera: {position: [0, 0, -3], yaw_deg: 0}\n"
                                "background: {ambient: [1, 1, 1]}\ntextures: {ramp: {file: ramp.png}}\n"
                                "solids: {it: {shape: box, texture: ramp, ambient: 1, size: [2, 2, 2]}}\n";
-    static const char *const how[] = {"render.texturing=perspective", "render.texturing=affine", "render.integrator=raycast"};
+    static const char *const how[] = {"render.texturing=perspective", "render.texturing=affine",
+                                      "render.integrator=raycast"};
     for (int turned = 0; turned < 2; turned++) {
         scene *s = scene_from(text);
         render_result *r[3];
@@ -389,7 +418,9 @@ static void points_are_counted_and_no_rays_are_tested(void **state)
 {
     (void)state;
     need_counters();
-    scene *s = scene_loaded(round_scene, "render.integrator=zbuffer render.samples=4 render.shadows=opaque render.lighting=whitted render.depth=5");
+    scene *s = scene_loaded(
+        round_scene,
+        "render.integrator=zbuffer render.samples=4 render.shadows=opaque render.lighting=whitted render.depth=5");
     render_result *r = render(s);
     const ray_counters *c = &r->counters;
     assert_int_equal(c->camera, 4 * 200 * 150);

@@ -82,12 +82,10 @@ static void curved_solids_are_slabs_on_their_axis(void **state)
     const double r = head_on(1.0, 1.5), expected = behind(r, exp(-0.3 * 2.0) * behind(r, wall));
     assert_near(seen_in("  ball: {shape: sphere, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0, 0]}\n", ""),
                 expected, 1e-3);
-    assert_near(
-        seen_in(
-            "  can: {shape: cylinder, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0, 0], height: 4, "
-            "position: [0, -2, 0]}\n",
-            ""),
-        expected, 1e-3);
+    assert_near(seen_in("  can: {shape: cylinder, transparency: 1, ior: 1.5, absorb_per_m: [0.3, 0, 0], height: 4, "
+                        "position: [0, -2, 0]}\n",
+                        ""),
+                expected, 1e-3);
 }
 
 /* The wall's index wins where both are; nothing is between them; equal ones are one. */
@@ -225,14 +223,14 @@ static void what_goes_straight_is_seen_as_traced(void **state)
 static void a_clear_solid_nobody_sees_changes_no_order(void **state)
 {
     (void)state;
-    static const char walls[] =
-        "render: {width: 8, height: 8, integrator: zbuffer}\n"
-        "camera: {position: [0, 0, -2], target: [0, 0, 0], fov_deg: 40}\n"
-        "solids:\n"
-        "  near: {shape: box, emission: 1, size: [4, 4, 1], priority: 1}\n"
-        "  far: {shape: box, emission: 2, size: [4, 4, 0.9999999998], priority: 2}\n";
-    static const char bead[] = "  bead: {shape: box, transparency: 1, ior: 1.5, size: [0.1, 0.1, 0.1], position: [0, 1.9, "
-                               "0.4], priority: 3}\n";
+    static const char walls[] = "render: {width: 8, height: 8, integrator: zbuffer}\n"
+                                "camera: {position: [0, 0, -2], target: [0, 0, 0], fov_deg: 40}\n"
+                                "solids:\n"
+                                "  near: {shape: box, emission: 1, size: [4, 4, 1], priority: 1}\n"
+                                "  far: {shape: box, emission: 2, size: [4, 4, 0.9999999998], priority: 2}\n";
+    static const char bead[] =
+        "  bead: {shape: box, transparency: 1, ior: 1.5, size: [0.1, 0.1, 0.1], position: [0, 1.9, "
+        "0.4], priority: 3}\n";
     static const char *const eyes[] = {"camera.position=0,0,-2", "camera.position=0,0,0.1 camera.target=0,0,3"};
     for (size_t k = 0; k < COUNT(eyes); k++) {
         char with[2048];
@@ -249,10 +247,9 @@ static void nothing_is_lost_between_layers(void **state)
 {
     (void)state;
     scene *s = scene_loaded(
-        clear_scene,
-        "render.integrator=zbuffer ground.visible=off rod.visible=off crate.visible=off "
-        "clear.absorb_per_m=0,0,0 clear.color=1,1,1 clear.transparency=1 clear.specular=0 clear.diffuse=0 "
-        "background.kind=uniform background.color=1,1,1");
+        clear_scene, "render.integrator=zbuffer ground.visible=off rod.visible=off crate.visible=off "
+                     "clear.absorb_per_m=0,0,0 clear.color=1,1,1 clear.transparency=1 clear.specular=0 clear.diffuse=0 "
+                     "background.kind=uniform background.color=1,1,1");
     set_all(s, "ring.ior=1.8 water.ior=1.33 can.ior=0.8");
     for (int depth = 0; depth <= 12; depth += 3) {
         s->render.depth = depth;

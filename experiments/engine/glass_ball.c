@@ -1,5 +1,5 @@
-/* A glass ball on a chequered ground, by the engine alone: the scene from calls, the picture as it comes, into a PPM on standard output,
- * and what was traced on standard error.
+/* A glass ball on a chequered ground, by the engine alone: the scene from calls, the picture as it comes, into a PPM on
+ * standard output, and what was traced on standard error.
  *
  *   cc -o glass_ball glass_ball.c $(pkg-config --cflags --libs cuvette) && ./glass_ball >ball.ppm */
 #include <cuvette.h>
@@ -8,14 +8,29 @@
 
 enum { WIDTH = 320, HEIGHT = 240 };
 
-typedef struct setting { const char *path, *value; } setting;
+typedef struct setting {
+    const char *path, *value;
+} setting;
 
 static const setting settings[] = {
-    {"render.width", "320"},        {"render.height", "240"},   {"render.depth", "6"},         {"render.threads", "2"},
-    {"camera.position", "0,2,-6"},  {"camera.target", "0,1,0"}, {"background.color", "0.5,0.7,0.9"},
-    {"lamp.position", "4,7,-5"},    {"ground.color", "0.85,0.85,0.85"},                        {"ground.checker_color", "0.25,0.3,0.35"},
-    {"ground.checker", "0.5"},      {"ground.ambient", "0.1"},  {"ground.diffuse", "0.7"},     {"glass.transparency", "1"},
-    {"glass.medium", "bk7"},        {"glass.specular", "0.6"},  {"glass.shininess", "80"},     {"ball.position", "0,1.01,0"},
+    {"render.width", "320"},
+    {"render.height", "240"},
+    {"render.depth", "6"},
+    {"render.threads", "2"},
+    {"camera.position", "0,2,-6"},
+    {"camera.target", "0,1,0"},
+    {"background.color", "0.5,0.7,0.9"},
+    {"lamp.position", "4,7,-5"},
+    {"ground.color", "0.85,0.85,0.85"},
+    {"ground.checker_color", "0.25,0.3,0.35"},
+    {"ground.checker", "0.5"},
+    {"ground.ambient", "0.1"},
+    {"ground.diffuse", "0.7"},
+    {"glass.transparency", "1"},
+    {"glass.medium", "bk7"},
+    {"glass.specular", "0.6"},
+    {"glass.shininess", "80"},
+    {"ball.position", "0,1.01,0"},
 };
 
 /* Ends the program with the library's own words. */
@@ -82,9 +97,12 @@ int main(void)
     times.size = sizeof times;
     need(cuvette_frame_counters(frame, &rays, &why), &why);
     need(cuvette_frame_statistics(frame, &times, &why), &why);
-    fprintf(stderr, "film %016llx, %zu preview, %zu pieces, %.3f s; rays: camera %llu, reflect %llu, refract %llu, shadow %llu\n",
-            (unsigned long long)cuvette_frame_hash(frame), pieces[1], pieces[0], times.wall_s, (unsigned long long)rays.camera,
-            (unsigned long long)rays.reflect, (unsigned long long)rays.refract, (unsigned long long)rays.shadow);
+    fprintf(
+        stderr,
+        "film %016llx, %zu preview, %zu pieces, %.3f s; rays: camera %llu, reflect %llu, refract %llu, shadow %llu\n",
+        (unsigned long long)cuvette_frame_hash(frame), pieces[1], pieces[0], times.wall_s,
+        (unsigned long long)rays.camera, (unsigned long long)rays.reflect, (unsigned long long)rays.refract,
+        (unsigned long long)rays.shadow);
 
     printf("P6\n%d %d\n255\n", WIDTH, HEIGHT);
     fwrite(picture, 1, sizeof picture, stdout);

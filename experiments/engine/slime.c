@@ -1,5 +1,5 @@
-/* A slime that is taken hold of under a pixel, drawn aside and let go, by the engine alone: five moments side by side in a PPM on standard
- * output, and what became of the slime on standard error.
+/* A slime that is taken hold of under a pixel, drawn aside and let go, by the engine alone: five moments side by side
+ * in a PPM on standard output, and what became of the slime on standard error.
  *
  *   cc -o slime slime.c $(pkg-config --cflags --libs cuvette) && ./slime >slime.ppm */
 #include <cuvette.h>
@@ -9,11 +9,26 @@
 enum { WIDTH = 160, HEIGHT = 120, FRAMES = 5, ROW = 3 * WIDTH * FRAMES };
 
 static const char *const settings[][2] = {
-    {"render.width", "160"},        {"render.height", "120"},     {"render.depth", "6"},            {"render.threads", "2"},
-    {"camera.position", "0,2,-6"},  {"camera.target", "0,0.9,0"}, {"background.color", "0.5,0.7,0.9"}, {"ground.ambient", "0.1"},
-    {"lamp.position", "4,7,-5"},    {"ground.checker", "0.5"},    {"ground.diffuse", "0.8"},       {"ground.checker_color", "0.25,0.3,0.35"},
-    {"toy.generate", "slime"},      {"toy.level", "3"},           {"toy.dt_s", "0.002"},            {"body.mesh", "toy"},
-    {"body.priority", "1"},         {"body.ior", "1.2"},          {"body.transparency", "0.9"},     {"body.absorb_per_m", "2.2,0.25,1.8"},
+    {"render.width", "160"},
+    {"render.height", "120"},
+    {"render.depth", "6"},
+    {"render.threads", "2"},
+    {"camera.position", "0,2,-6"},
+    {"camera.target", "0,0.9,0"},
+    {"background.color", "0.5,0.7,0.9"},
+    {"ground.ambient", "0.1"},
+    {"lamp.position", "4,7,-5"},
+    {"ground.checker", "0.5"},
+    {"ground.diffuse", "0.8"},
+    {"ground.checker_color", "0.25,0.3,0.35"},
+    {"toy.generate", "slime"},
+    {"toy.level", "3"},
+    {"toy.dt_s", "0.002"},
+    {"body.mesh", "toy"},
+    {"body.priority", "1"},
+    {"body.ior", "1.2"},
+    {"body.transparency", "0.9"},
+    {"body.absorb_per_m", "2.2,0.25,1.8"},
 };
 
 /* Ends the program with the library's own words. */
@@ -54,7 +69,8 @@ static int grab_under(cuvette_motion *motion, const cuvette_scene *scene, double
     return hand;
 }
 
-static void render(cuvette_engine *engine, const cuvette_scene *scene, const cuvette_motion *motion, unsigned char *picture)
+static void render(cuvette_engine *engine, const cuvette_scene *scene, const cuvette_motion *motion,
+                   unsigned char *picture)
 {
     cuvette_diagnostic why;
     cuvette_frame *frame;
@@ -66,8 +82,8 @@ static void render(cuvette_engine *engine, const cuvette_scene *scene, const cuv
     slime.size = sizeof slime;
     need(cuvette_motion_state(motion, "toy", &slime, &why), &why);
     fprintf(stderr, "film %016llx at %.2f s: centre %.4f, %.4f, %.4f, volume %.4f, %llu masses held\n",
-            (unsigned long long)cuvette_frame_hash(frame), slime.time_s, slime.center[0], slime.center[1], slime.center[2],
-            slime.volume, (unsigned long long)slime.held);
+            (unsigned long long)cuvette_frame_hash(frame), slime.time_s, slime.center[0], slime.center[1],
+            slime.center[2], slime.volume, (unsigned long long)slime.held);
     cuvette_frame_destroy(frame);
 }
 

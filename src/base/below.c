@@ -11,7 +11,9 @@
 enum { FLAGS = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY };
 
 /* The name under which the system shows an open file; opening that opens the very same one. */
-typedef struct shown { char name[32]; } shown;
+typedef struct shown {
+    char name[32];
+} shown;
 
 static shown show(int fd)
 {
@@ -26,7 +28,8 @@ static bool lies_below(const char *name, const char *root)
     const size_t length = strlen(root);
     const ssize_t size = readlink(name, real, sizeof real);
     /* One that is as long as there is room may have been cut off. */
-    return size > 0 && (size_t)size < sizeof real && (size_t)size > length + 1 && memcmp(real, root, length) == 0 && real[length] == '/';
+    return size > 0 && (size_t)size < sizeof real && (size_t)size > length + 1 && memcmp(real, root, length) == 0 &&
+           real[length] == '/';
 }
 
 int below_open(const char *path, const char *root)

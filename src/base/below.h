@@ -1,6 +1,6 @@
-/* Opening files for reading only where they lie below a folder, whatever path leads there. What was opened is looked at, not the path, so that no
- * symbolic link can be changed in between. A root is the real path of the folder: from /, without links, without a slash at its end; NULL or "":
- * anywhere. Ownership: the descriptor is the caller's. */
+/* Opening files for reading only where they lie below a folder, whatever path leads there. What was opened is looked
+ * at, not the path, so that no symbolic link can be changed in between. A root is the real path of the folder: from /,
+ * without links, without a slash at its end; NULL or "": anywhere. Ownership: the descriptor is the caller's. */
 #ifndef CUVETTE_BASE_BELOW_H
 #define CUVETTE_BASE_BELOW_H
 

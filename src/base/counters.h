@@ -13,8 +13,8 @@
 #endif
 
 enum {
-    COUNTERS_DEPTH_MAX = 64,  /* render.depth is 0..64 */
-    COUNTERS_SOLID_MAX = 64   /* solids of a scene */
+    COUNTERS_DEPTH_MAX = 64, /* render.depth is 0..64 */
+    COUNTERS_SOLID_MAX = 64  /* solids of a scene */
 };
 
 /* Throughput is summed in fixed point, CUT_ONE = 1.0, so that its sum has no order. */
@@ -27,14 +27,15 @@ typedef struct ray_counters {
     uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
     int64_t cut_depth_throughput[3];           /* their throughput, RGB, in units of 1/COUNTERS_CUT_ONE */
     int64_t cut_weight_throughput[3];
-    uint64_t tests[COUNTERS_SOLID_MAX];        /* rays tested against the solid: all but shadow rays, and of these those of solids
-                                                * that can take light away by themselves (the further look at the few undecided
-                                                * shadow rays is not counted again) */
-    uint64_t hits[COUNTERS_SOLID_MAX];         /* interfaces met on the solid, not by shadow rays */
-    uint64_t first_hits[COUNTERS_SOLID_MAX];   /* camera rays whose first interface is on the solid */
+    uint64_t tests[COUNTERS_SOLID_MAX]; /* rays tested against the solid: all but shadow rays, and of these those of
+                                         * solids that can take light away by themselves (the further look at the few
+                                         * undecided shadow rays is not counted again) */
+    uint64_t hits[COUNTERS_SOLID_MAX];  /* interfaces met on the solid, not by shadow rays */
+    uint64_t first_hits[COUNTERS_SOLID_MAX]; /* camera rays whose first interface is on the solid */
 } ray_counters;
 
-/* Throughput (0 .. 1) in those units, to the nearest; by the bits of 1.5 2^52 + v, a conversion that every instruction set has. */
+/* Throughput (0 .. 1) in those units, to the nearest; by the bits of 1.5 2^52 + v, a conversion that every instruction
+ * set has. */
 static inline int64_t counters_cut_units(double throughput)
 {
     return lanes_bits(throughput * COUNTERS_CUT_ONE + 6755399441055744.0) - lanes_bits(6755399441055744.0);

@@ -59,8 +59,8 @@ double elementary_atan2_deg(double y, double x)
         return 0.0;
     double low = lesser(ax, ay), high = greater(ax, ay), t = low / high;
     const double tan_22_5 = 0.41421356237309504880, degrees = 57.295779513082320877;
-    double angle = t > tan_22_5 ? 45.0 + degrees * arctangent_series((low - high) / (low + high))
-                                : degrees * arctangent_series(t);
+    double angle =
+        t > tan_22_5 ? 45.0 + degrees * arctangent_series((low - high) / (low + high)) : degrees * arctangent_series(t);
     angle = ay > ax ? 90.0 - angle : angle;
     angle = x < 0.0 ? 180.0 - angle : angle;
     return y < 0.0 ? -angle : angle;

@@ -10,7 +10,8 @@
  * Phong's highlights raises whole exponents by squaring instead: render/shade_kernel.c states its error). */
 double elementary_pow(double x, double y);
 
-/* Sine and cosine of an angle in degrees; exact at multiples of 90. Absolute error below 3e-16, for |degrees| <= 1e6. */
+/* Sine and cosine of an angle in degrees; exact at multiples of 90. Absolute error below 3e-16, for |degrees| <= 1e6.
+ */
 void elementary_sincos_deg(double degrees, double *sine, double *cosine);
 
 /* Angle of the point (x, y) in degrees, -180..180, as atan2(y, x); 0 at the origin. Absolute error below 1e-13. */

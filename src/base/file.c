@@ -26,9 +26,12 @@ static status system_error(diagnostic *why, status code, const char *path, const
     if (error == ENOMEM)
         return no_memory(why, path);
     switch (error) {
-    case ENOSPC: case EDQUOT: remedy = "free some space or choose another disk"; break;
+    case ENOSPC:
+    case EDQUOT: remedy = "free some space or choose another disk"; break;
     case EFBIG: remedy = "raise the limit on file size"; break;
-    case EACCES: case EPERM: case EROFS: remedy = "change the permissions or choose another place"; break;
+    case EACCES:
+    case EPERM:
+    case EROFS: remedy = "change the permissions or choose another place"; break;
     case ENOENT: remedy = "check the path"; break;
     default: break;
     }

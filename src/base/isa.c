@@ -13,8 +13,8 @@ const char *isa_name(isa level)
 isa isa_best(void)
 {
     __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512vl"))
         return ISA_AVX512;
     return __builtin_cpu_supports("avx2") ? ISA_AVX2 : ISA_SSE2;
 }
@@ -34,5 +34,6 @@ status isa_choose(isa *out, diagnostic *why)
         *out = (isa)level;
         return STATUS_OK;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "one of: sse2, avx2, avx512", "CUVETTE_ISA=%s names no instruction set", wanted);
+    return diagnose(why, STATUS_BAD_INPUT, "one of: sse2, avx2, avx512", "CUVETTE_ISA=%s names no instruction set",
+                    wanted);
 }

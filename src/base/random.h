@@ -1,12 +1,15 @@
-/* Random numbers as a function of what they are for, not of when they are drawn: the counter-based generator Philox4x32-10 of
- * Random123 (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011). Pure; cannot fail. */
+/* Random numbers as a function of what they are for, not of when they are drawn: the counter-based generator
+ * Philox4x32-10 of Random123 (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
+ * Pure; cannot fail. */
 #ifndef CUVETTE_BASE_RANDOM_H
 #define CUVETTE_BASE_RANDOM_H
 
 #include <stdint.h>
 
 /* 128 random bits for a key and four counters. */
-typedef struct random_words { uint32_t word[4]; } random_words;
+typedef struct random_words {
+    uint32_t word[4];
+} random_words;
 random_words random_at(uint64_t key, uint32_t a, uint32_t b, uint32_t c, uint32_t d);
 
 /* Evenly in [0, 1), one of 2^32 values, each the middle of its stretch: never 0. */

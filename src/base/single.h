@@ -1,5 +1,5 @@
-/* Rounding to single precision, kept as a double. Not written as (double)(float)x: gcc 12 drops both conversions where it makes
- * vectors of straight-line code (-O2 and above). Pure; cannot fail. */
+/* Rounding to single precision, kept as a double. Not written as (double)(float)x: gcc 12 drops both conversions where
+ * it makes vectors of straight-line code (-O2 and above). Pure; cannot fail. */
 #ifndef CUVETTE_BASE_SINGLE_H
 #define CUVETTE_BASE_SINGLE_H
 

@@ -1,5 +1,6 @@
-/* Threads that share the work of one caller: a build, a step. A team of one starts none. Where the system gives fewer threads than were asked for, the
- * team is smaller: what it works out must not depend on its size. team_start gives, team_stop releases; for one caller at a time. */
+/* Threads that share the work of one caller: a build, a step. A team of one starts none. Where the system gives fewer
+ * threads than were asked for, the team is smaller: what it works out must not depend on its size. team_start gives,
+ * team_stop releases; for one caller at a time. */
 #ifndef CUVETTE_BASE_TEAM_H
 #define CUVETTE_BASE_TEAM_H
 

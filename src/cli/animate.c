@@ -21,7 +21,8 @@ static status set_scripts(const animate_request *request, scene *s, diagnostic *
         if (s->meshes[i].source != MESH_SLIME)
             continue;
         char *path = text_format("%s.script", s->meshes[i].name);
-        result = path ? scene_set(s, path, request->script_path, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+        result =
+            path ? scene_set(s, path, request->script_path, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
         if (result != STATUS_OK)
             diagnostic_locate(why, "--script", 0, 0);
         free(path);
@@ -54,7 +55,8 @@ static status read_scene(animate_request *request, const animate_names *names, s
     status result = scene_input_read(&request->input, out, why);
     if (result == STATUS_OK && !scene_moves(*out)) {
         diagnostic_locate(why, request->input.path, 0, 0);
-        return diagnose(why, STATUS_BAD_INPUT, "give it a mesh with 'generate: slime', or use 'cuvette render'", "nothing moves in the scene");
+        return diagnose(why, STATUS_BAD_INPUT, "give it a mesh with 'generate: slime', or use 'cuvette render'",
+                        "nothing moves in the scene");
     }
     if (result == STATUS_OK)
         result = set_scripts(request, *out, why);
@@ -70,8 +72,8 @@ static status read_scene(animate_request *request, const animate_names *names, s
 static void print_summary(const animate_request *request, const scene *s, const animate_account *a)
 {
     printf("%" PRId64 " frames of %lldx%lld pixels, %.6g a second -> %s: %" PRId64 " rendered", a->rendered + a->kept,
-           (long long)s->render.width, (long long)s->render.height, (double)request->fps_num / (double)request->fps_den, request->output,
-           a->rendered);
+           (long long)s->render.width, (long long)s->render.height, (double)request->fps_num / (double)request->fps_den,
+           request->output, a->rendered);
     if (a->rendered)
         printf(" in %.4f s each", a->wall_s / (double)a->rendered);
     printf(", %" PRId64 " kept; %.3g s of motion", a->kept, a->simulated_s);
@@ -80,18 +82,19 @@ static void print_summary(const animate_request *request, const scene *s, const 
     putchar('\n');
 }
 
-static status print_account(const animate_request *request, const scene *s, const animate_definition *d, isa level, const animate_account *a,
-                            diagnostic *why)
+static status print_account(const animate_request *request, const scene *s, const animate_definition *d, isa level,
+                            const animate_account *a, diagnostic *why)
 {
     char hash[32];
     snprintf(hash, sizeof hash, "%016" PRIx64, d->hash);
-    json_t *o = json_pack("{s:i,s:s,s:s,s:s,s:o,s:I,s:I,s:I,s:[I,I],s:o,s:o,s:I,s:o,s:o,s:o,s:o,s:o}", "schema", REPORT_SCHEMA, "version",
-                          CUVETTE_VERSION, "isa", isa_name(level), "definition", hash, "output", json_of_text(request->output), "frames",
-                          (json_int_t)(a->rendered + a->kept), "rendered", (json_int_t)a->rendered, "kept", (json_int_t)a->kept, "fps",
-                          (json_int_t)request->fps_num, (json_int_t)request->fps_den, "start_s", json_of_real(request->start_s), "simulated_s",
-                          json_of_real(a->simulated_s), "steps", (json_int_t)a->steps, "step_s", json_of_real(a->step_s), "skin_s",
-                          json_of_real(a->skin_s), "wall_s", json_of_real(a->wall_s), "wall_s_mean",
-                          json_of_real(a->rendered ? a->wall_s / (double)a->rendered : (double)NAN), "params", report_params(s));
+    json_t *o = json_pack(
+        "{s:i,s:s,s:s,s:s,s:o,s:I,s:I,s:I,s:[I,I],s:o,s:o,s:I,s:o,s:o,s:o,s:o,s:o}", "schema", REPORT_SCHEMA, "version",
+        CUVETTE_VERSION, "isa", isa_name(level), "definition", hash, "output", json_of_text(request->output), "frames",
+        (json_int_t)(a->rendered + a->kept), "rendered", (json_int_t)a->rendered, "kept", (json_int_t)a->kept, "fps",
+        (json_int_t)request->fps_num, (json_int_t)request->fps_den, "start_s", json_of_real(request->start_s),
+        "simulated_s", json_of_real(a->simulated_s), "steps", (json_int_t)a->steps, "step_s", json_of_real(a->step_s),
+        "skin_s", json_of_real(a->skin_s), "wall_s", json_of_real(a->wall_s), "wall_s_mean",
+        json_of_real(a->rendered ? a->wall_s / (double)a->rendered : (double)NAN), "params", report_params(s));
     status result = o ? json_write(stdout, o, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
     json_decref(o);
     return result;

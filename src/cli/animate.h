@@ -1,7 +1,8 @@
-/* What the parts of `cuvette animate` share: what is asked for, the names of the frames, what the film is made of, and the film itself.
- * Frames appear whole or not at all, one file each; a film that was stopped goes on: frames that are there are not rendered again, the motion is
- * computed anew up to where they end, and so the frames are, to the bit, those of a run that nobody stopped. A stream (YUV4MPEG2) begins anew.
- * Ownership: words of the command line are borrowed; *_create and *_parse give, *_release takes. Errors are located. */
+/* What the parts of `cuvette animate` share: what is asked for, the names of the frames, what the film is made of, and
+ * the film itself. Frames appear whole or not at all, one file each; a film that was stopped goes on: frames that are
+ * there are not rendered again, the motion is computed anew up to where they end, and so the frames are, to the bit,
+ * those of a run that nobody stopped. A stream (YUV4MPEG2) begins anew. Ownership: words of the command line are
+ * borrowed; *_create and *_parse give, *_release takes. Errors are located. */
 #ifndef CUVETTE_CLI_ANIMATE_H
 #define CUVETTE_CLI_ANIMATE_H
 
@@ -14,9 +15,9 @@
 /* Frame k, from 0, shows start_s + k fps_den / fps_num. */
 typedef struct animate_request {
     scene_input input;
-    const char *output;       /* a pattern, "-", or a name that ends in .y4m */
+    const char *output;        /* a pattern, "-", or a name that ends in .y4m */
     const char *script, *rows; /* NULL: not said */
-    char *script_path;        /* script as an absolute path; owned */
+    char *script_path;         /* script as an absolute path; owned */
     double start_s, duration_s;
     bool has_duration, restart, json;
     int64_t fps_num, fps_den; /* in lowest terms */
@@ -34,10 +35,10 @@ double animate_time_s(const animate_request *request, int64_t frame);
 
 /* The names of a film's frames: a pattern with exactly one integer in the form of printf, %d or %05d. */
 typedef struct animate_names {
-    const char *pattern; /* borrowed */
-    char *folder;        /* "." for none */
+    const char *pattern;  /* borrowed */
+    char *folder;         /* "." for none */
     char *before, *after; /* of the name in it, around the number */
-    int digits;          /* least number of digits */
+    int digits;           /* least number of digits */
 } animate_names;
 
 status animate_names_parse(const char *pattern, animate_names *out, diagnostic *why);
@@ -47,8 +48,9 @@ char *animate_name(const animate_names *names, int64_t frame);
 /* Which frame's name that is in its folder, or -1. */
 int64_t animate_name_frame(const animate_names *names, const char *name);
 
-/* All that changes the film's frames, by its path: parameters but for those that are how a frame is computed (param.is_how) and for names of files,
- * frames a second and start; and a fingerprint of these and of what the files hold. Its length does not count. */
+/* All that changes the film's frames, by its path: parameters but for those that are how a frame is computed
+ * (param.is_how) and for names of files, frames a second and start; and a fingerprint of these and of what the files
+ * hold. Its length does not count. */
 typedef struct animate_definition {
     json_t *parameters; /* text by path */
     uint64_t hash;
@@ -61,16 +63,21 @@ void animate_definition_release(animate_definition *d);
 /* Time of the last key of all scripts of the scene's slimes; *any: there is one. */
 status animate_script_end_s(const scene *s, bool *any, double *end_s, diagnostic *why);
 
-/* The ledger beside the frames, PATTERN.json, says of which film they are and how many it has. STATUS_BAD_INPUT where the frames there are of another
- * film or of an unknown one; restart: of a film that the ledger does not know of. count: frames of this one. */
-status animate_ledger_check(const animate_names *names, const animate_definition *d, int64_t count, bool restart, diagnostic *why);
-/* Makes folder and ledger where they are not there; a longer film is written into it. restart: removes what frames are there first. */
-status animate_ledger_begin(const animate_names *names, const animate_definition *d, int64_t count, bool restart, diagnostic *why);
+/* The ledger beside the frames, PATTERN.json, says of which film they are and how many it has. STATUS_BAD_INPUT where
+ * the frames there are of another film or of an unknown one; restart: of a film that the ledger does not know of.
+ * count: frames of this one. */
+status animate_ledger_check(const animate_names *names, const animate_definition *d, int64_t count, bool restart,
+                            diagnostic *why);
+/* Makes folder and ledger where they are not there; a longer film is written into it. restart: removes what frames are
+ * there first. */
+status animate_ledger_begin(const animate_names *names, const animate_definition *d, int64_t count, bool restart,
+                            diagnostic *why);
 /* How many frames a ledger says that its film has; -1 for what is no ledger. */
 int64_t animate_ledger_count(const char *path);
 
-/* STATUS_BAD_INPUT for files named as frames that are none of the film's known ones (known < 0: there is no ledger, and it has none), and where another
- * film's ledger has names of the first frames of this one, as many as are known or wanted. */
+/* STATUS_BAD_INPUT for files named as frames that are none of the film's known ones (known < 0: there is no ledger, and
+ * it has none), and where another film's ledger has names of the first frames of this one, as many as are known or
+ * wanted. */
 status animate_folder_check(const animate_names *names, int64_t known, int64_t wanted, diagnostic *why);
 /* Removes all frames. */
 status animate_folder_clear(const animate_names *names, diagnostic *why);
@@ -80,14 +87,15 @@ status animate_names_check(const animate_names *names, const scene *s, diagnosti
 /* What came of it. */
 typedef struct animate_account {
     int64_t rendered, kept;
-    double wall_s;              /* of the renders */
-    double step_s, skin_s;      /* of all motion, that of kept frames too */
+    double wall_s;         /* of the renders */
+    double step_s, skin_s; /* of all motion, that of kept frames too */
     double simulated_s;
     uint64_t steps;
 } animate_account;
 
-/* The film, frame by frame. names is NULL for a stream. STATUS_INTERRUPTED after a signal: the frames that are there are whole. */
-status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, isa level, scene *s,
-                    scene_motion *motion, animate_account *account, diagnostic *why);
+/* The film, frame by frame. names is NULL for a stream. STATUS_INTERRUPTED after a signal: the frames that are there
+ * are whole. */
+status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, isa level,
+                    scene *s, scene_motion *motion, animate_account *account, diagnostic *why);
 
 #endif

@@ -33,7 +33,9 @@ static bool add_request(json_t *parameters, const animate_request *request, cons
 {
     char fps[64], start[NUMBER_TEXT_MAX];
     snprintf(fps, sizeof fps, "%" PRId64 "/%" PRId64, request->fps_num, request->fps_den);
-    const char *accel = s->render.accel == HIERARCHY_EMBREE ? "embree" : "not embree"; /* whose hits are of single precision: another film */
+    const char *accel = s->render.accel == HIERARCHY_EMBREE
+                            ? "embree"
+                            : "not embree"; /* whose hits are of single precision: another film */
     return json_object_set_new(parameters, "render.accel", json_string(accel)) == 0 &&
            json_object_set_new(parameters, "--fps", json_string(fps)) == 0 &&
            json_object_set_new(parameters, "--start", json_string(number_format(request->start_s, start))) == 0;
@@ -43,7 +45,8 @@ static void hash_parameters(uint64_t *hash, json_t *parameters)
 {
     const char *path;
     json_t *value;
-    json_object_foreach(parameters, path, value) {
+    json_object_foreach(parameters, path, value)
+    {
         const char *text = json_string_value(value);
         *hash = hash_bytes(*hash, path, strlen(path) + 1);
         *hash = hash_bytes(*hash, text, strlen(text) + 1);
@@ -62,7 +65,8 @@ static void hash_solids(uint64_t *hash, const scene *s)
 status animate_define(const animate_request *request, const scene *s, animate_definition *out, diagnostic *why)
 {
     *out = (animate_definition){.parameters = json_object(), .hash = HASH_START};
-    if (!out->parameters || !add_request(out->parameters, request, s) || scene_each_param(s, add_param, out->parameters) != STATUS_OK)
+    if (!out->parameters || !add_request(out->parameters, request, s) ||
+        scene_each_param(s, add_param, out->parameters) != STATUS_OK)
         return no_memory(why);
     hash_parameters(&out->hash, out->parameters);
     hash_solids(&out->hash, s);

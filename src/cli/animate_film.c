@@ -120,8 +120,13 @@ static status render_frame(film_job *job, const char *path, diagnostic *why)
     if (ended == STATUS_OK)
         ended = write_picture(job, path, result->picture, why);
     if (ended == STATUS_OK && job->rows) {
-        const animate_row row = {.definition = job->definition, .frame = job->frame, .time_s = animate_time_s(job->request, job->frame),
-                                 .result = result, .moved = job->moved, .body = scene_motion_body(job->motion, 0), .level = job->level};
+        const animate_row row = {.definition = job->definition,
+                                 .frame = job->frame,
+                                 .time_s = animate_time_s(job->request, job->frame),
+                                 .result = result,
+                                 .moved = job->moved,
+                                 .body = scene_motion_body(job->motion, 0),
+                                 .level = job->level};
         ended = animate_rows_add(job->rows, &row, why);
     }
     if (ended == STATUS_OK) {
@@ -165,7 +170,8 @@ static status open_stream(film_job *job, diagnostic *why)
     const animate_request *request = job->request;
     status result = file_writer_open(&job->stream, request->output, why);
     if (result == STATUS_OK)
-        result = y4m_begin(job->stream.stream, (int)job->s->render.width, (int)job->s->render.height, request->fps_num, request->fps_den, why);
+        result = y4m_begin(job->stream.stream, (int)job->s->render.width, (int)job->s->render.height, request->fps_num,
+                           request->fps_den, why);
     return result;
 }
 
@@ -197,13 +203,21 @@ static status make_film(film_job *job, diagnostic *why)
     return result;
 }
 
-status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, isa level, scene *s,
-                    scene_motion *motion, animate_account *account, diagnostic *why)
+status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, isa level,
+                    scene *s, scene_motion *motion, animate_account *account, diagnostic *why)
 {
-    film_job job = {.request = request, .names = names, .definition = d->hash, .s = s, .motion = motion, .level = level,
-                    .count = animate_count(request), .account = account};
+    film_job job = {.request = request,
+                    .names = names,
+                    .definition = d->hash,
+                    .s = s,
+                    .motion = motion,
+                    .level = level,
+                    .count = animate_count(request),
+                    .account = account};
     *account = (animate_account){0};
-    status result = request->rows ? animate_rows_open(request->rows, d->hash, request->restart || !names, &job.rows, why) : STATUS_OK;
+    status result = request->rows
+                        ? animate_rows_open(request->rows, d->hash, request->restart || !names, &job.rows, why)
+                        : STATUS_OK;
     if (result == STATUS_OK && names)
         result = animate_ledger_begin(names, d, job.count, request->restart, why);
     if (result == STATUS_OK)

@@ -13,7 +13,8 @@
 
 static const char elsewhere[] = "put this film into another folder, or name its frames otherwise";
 
-static status refuse(const animate_names *names, const char *name, const char *remedy, const char *what, diagnostic *why)
+static status refuse(const animate_names *names, const char *name, const char *remedy, const char *what,
+                     diagnostic *why)
 {
     char *path = text_format("%s/%s", names->folder, name);
     diagnostic_locate(why, path ? path : name, 0, 0);
@@ -61,15 +62,17 @@ static status check_frame(const animate_names *names, DIR *in, const char *name,
     }
     char what[128];
     snprintf(what, sizeof what, "is named as a frame, but the film there has %" PRId64, known);
-    return animate_name_frame(names, name) < known ? STATUS_OK
-                                                   : refuse(names, name, "remove it yourself, or put this film into another folder", what, why);
+    return animate_name_frame(names, name) < known
+               ? STATUS_OK
+               : refuse(names, name, "remove it yourself, or put this film into another folder", what, why);
 }
 
 /* Is that a ledger of another film, one of whose frames would be one of this film's first count? */
 static bool overlaps(const animate_names *names, const char *ledger, int64_t count)
 {
     animate_names other = {.digits = 0};
-    char *path = text_format("%s/%s", names->folder, ledger), *pattern = strndup(ledger, strlen(ledger) - strlen(".json"));
+    char *path = text_format("%s/%s", names->folder, ledger),
+         *pattern = strndup(ledger, strlen(ledger) - strlen(".json"));
     const int64_t frames = path ? animate_ledger_count(path) : -1;
     bool same = false;
     if (pattern && animate_names_parse(pattern, &other, NULL) == STATUS_OK) {
@@ -137,8 +140,8 @@ static bool is_in_place(const animate_names *names, const char *path)
         return false;
     char *folder = name == path ? strdup(".") : strndup(path, (size_t)(name - path));
     struct stat theirs, ours;
-    const bool same = folder && stat(folder, &theirs) == 0 && stat(names->folder, &ours) == 0 && theirs.st_dev == ours.st_dev &&
-                      theirs.st_ino == ours.st_ino;
+    const bool same = folder && stat(folder, &theirs) == 0 && stat(names->folder, &ours) == 0 &&
+                      theirs.st_dev == ours.st_dev && theirs.st_ino == ours.st_ino;
     free(folder);
     return same;
 }

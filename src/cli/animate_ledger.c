@@ -27,12 +27,14 @@ static char *ledger_path(const animate_names *names)
     return text_format("%s.json", names->pattern);
 }
 
-static status write_ledger(const char *path, const animate_names *names, const animate_definition *d, int64_t count, diagnostic *why)
+static status write_ledger(const char *path, const animate_names *names, const animate_definition *d, int64_t count,
+                           diagnostic *why)
 {
     char hash[32];
     snprintf(hash, sizeof hash, "%016" PRIx64, d->hash);
-    json_t *ledger = json_pack("{s:s,s:o,s:I,s:s,s:O}", "version", CUVETTE_VERSION, "frames", json_of_text(names->pattern), "count",
-                               (json_int_t)count, "definition", hash, "parameters", d->parameters);
+    json_t *ledger =
+        json_pack("{s:s,s:o,s:I,s:s,s:O}", "version", CUVETTE_VERSION, "frames", json_of_text(names->pattern), "count",
+                  (json_int_t)count, "definition", hash, "parameters", d->parameters);
     file_writer file = {0};
     status result = ledger ? file_writer_open(&file, path, why) : no_memory(why);
     if (result == STATUS_OK) {
@@ -51,7 +53,8 @@ static const char *first_difference(const json_t *there, json_t *here)
 {
     const char *path;
     json_t *value;
-    json_object_foreach(here, path, value) {
+    json_object_foreach(here, path, value)
+    {
         if (!json_equal(json_object_get(there, path), value))
             return path;
     }
@@ -65,12 +68,13 @@ static status refuse_definition(const char *path, const json_t *ledger, const an
     const char *before = differs ? json_string_value(json_object_get(there, differs)) : NULL;
     char what[320];
     if (!differs)
-        snprintf(what, sizeof what, "the frames there are of another film: a file of the scene, or what it holds, is another");
+        snprintf(what, sizeof what,
+                 "the frames there are of another film: a file of the scene, or what it holds, is another");
     else if (!before)
         snprintf(what, sizeof what, "the frames there are of another film, which had no %.96s", differs);
     else
-        snprintf(what, sizeof what, "the frames there are of another film: %.96s was %.64s and is %.64s", differs, before,
-                 json_string_value(json_object_get(d->parameters, differs)));
+        snprintf(what, sizeof what, "the frames there are of another film: %.96s was %.64s and is %.64s", differs,
+                 before, json_string_value(json_object_get(d->parameters, differs)));
     return refuse(path, why, what);
 }
 
@@ -114,10 +118,12 @@ static status compare(const char *path, const animate_definition *d, bool restar
     *count = count_of(ledger);
     if (!definition || !version || *count < 0) {
         diagnostic_locate(why, path, 0, 0);
-        result = diagnose(why, STATUS_BAD_INPUT, "put this film into another folder, or remove it and the frames yourself",
-                          "is no ledger of a film");
+        result =
+            diagnose(why, STATUS_BAD_INPUT, "put this film into another folder, or remove it and the frames yourself",
+                     "is no ledger of a film");
     } else if (!restart && strcmp(version, CUVETTE_VERSION) != 0) {
-        snprintf(what, sizeof what, "the frames there are by version %.32s of the program, this is %s", version, CUVETTE_VERSION);
+        snprintf(what, sizeof what, "the frames there are by version %.32s of the program, this is %s", version,
+                 CUVETTE_VERSION);
         result = refuse(path, why, what);
     } else if (!restart && strcmp(definition, hash) != 0) {
         result = refuse_definition(path, ledger, d, why);
@@ -126,7 +132,8 @@ static status compare(const char *path, const animate_definition *d, bool restar
     return result;
 }
 
-status animate_ledger_check(const animate_names *names, const animate_definition *d, int64_t count, bool restart, diagnostic *why)
+status animate_ledger_check(const animate_names *names, const animate_definition *d, int64_t count, bool restart,
+                            diagnostic *why)
 {
     int64_t known = -1;
     char *path = ledger_path(names);
@@ -139,7 +146,8 @@ status animate_ledger_check(const animate_names *names, const animate_definition
     return result;
 }
 
-status animate_ledger_begin(const animate_names *names, const animate_definition *d, int64_t count, bool restart, diagnostic *why)
+status animate_ledger_begin(const animate_names *names, const animate_definition *d, int64_t count, bool restart,
+                            diagnostic *why)
 {
     char *path = ledger_path(names);
     status result = path ? file_make_directory(names->folder, why) : no_memory(why);

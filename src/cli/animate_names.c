@@ -60,7 +60,8 @@ status animate_names_parse(const char *pattern, animate_names *out, diagnostic *
     const char *slash = strrchr(pattern, '/'), *name = slash ? slash + 1 : pattern;
     *out = (animate_names){.pattern = pattern, .digits = -1};
     if (image_format_of(name) == IMAGE_UNKNOWN)
-        return wrong(pattern, "end it in .png, .jpg or .pfm for frames, .y4m for a film", "the ending names no format of pictures or films", why);
+        return wrong(pattern, "end it in .png, .jpg or .pfm for frames, .y4m for a film",
+                     "the ending names no format of pictures or films", why);
     if (slash && memchr(pattern, '%', (size_t)(slash - pattern)))
         return wrong(pattern, "number the files, not their folder", "a % in the folder's name", why);
     out->folder = !slash ? strdup(".") : slash == pattern ? strdup("/") : strndup(pattern, (size_t)(slash - pattern));
@@ -81,14 +82,15 @@ void animate_names_release(animate_names *names)
 
 char *animate_name(const animate_names *names, int64_t frame)
 {
-    return text_format("%s/%s%0*" PRId64 "%s", strcmp(names->folder, "/") == 0 ? "" : names->folder, names->before, names->digits, frame,
-                       names->after);
+    return text_format("%s/%s%0*" PRId64 "%s", strcmp(names->folder, "/") == 0 ? "" : names->folder, names->before,
+                       names->digits, frame, names->after);
 }
 
 int64_t animate_name_frame(const animate_names *names, const char *name)
 {
     const size_t before = strlen(names->before), after = strlen(names->after), length = strlen(name);
-    if (length <= before + after || strncmp(name, names->before, before) != 0 || strcmp(name + length - after, names->after) != 0)
+    if (length <= before + after || strncmp(name, names->before, before) != 0 ||
+        strcmp(name + length - after, names->after) != 0)
         return -1;
     const char *digits = name + before;
     const size_t count = length - before - after;

@@ -17,7 +17,9 @@ enum { FRAMES_MAX = 10000000, RATE_PART_MAX = 1000000 };
 
 static const struct argp_option options[] = {
     {"output", 'o', "PATTERN", 0,
-     "frames as pictures, numbered from 0 by one %d or %05d in the name: .png, .jpg or .pfm; or one film, .y4m (- for standard output)", 0},
+     "frames as pictures, numbered from 0 by one %d or %05d in the name: .png, .jpg or .pfm; or one film, .y4m (- for "
+     "standard output)",
+     0},
     {"script", KEY_SCRIPT, "FILE", 0, "what hands do with the slimes, for all of them", 0},
     {"duration", KEY_DURATION, "S", 0, "seconds; when not said 2 more than the script has, or 4 without one", 0},
     {"fps", KEY_FPS, "N", 0, "frames a second, as 25 (the default) or 30000/1001", 0},
@@ -66,7 +68,8 @@ static status take_rate(const char *value, animate_request *request, diagnostic 
         right = number_parse_int(whole, &num) && (!value[length] || number_parse_int(value + length + 1, &den));
     }
     if (!right || num < 1 || den < 1 || num > RATE_PART_MAX || den > RATE_PART_MAX)
-        return wrong("--fps", value, "give an integer or a fraction of integers up to 1000000, as 25 or 30000/1001", "is no rate of frames", why);
+        return wrong("--fps", value, "give an integer or a fraction of integers up to 1000000, as 25 or 30000/1001",
+                     "is no rate of frames", why);
     const int64_t divisor = common_divisor(num, den);
     request->fps_num = num / divisor;
     request->fps_den = den / divisor;
@@ -102,7 +105,8 @@ static const struct argp parser = {
     .parser = take_option,
     .args_doc = "SCENE",
     .doc = "Render a film of the scene file SCENE, whose slimes move.\v"
-           "Frame k shows the time START + k / FPS; there are DURATION times FPS of them, rounded, at least one. Frames that are there already are "
+           "Frame k shows the time START + k / FPS; there are DURATION times FPS of them, rounded, at least one. "
+           "Frames that are there already are "
            "not rendered again: a film that was stopped goes on when it is asked for again. For example:\n"
            "  cuvette animate experiments/scenes/slime.yaml -o frames/%05d.png\n"
            "  cuvette animate experiments/scenes/slime.yaml -o - | ffmpeg -i - slime.mp4",
@@ -111,7 +115,8 @@ static const struct argp parser = {
 static status check_output(const animate_request *request, diagnostic *why)
 {
     if (!request->output) {
-        diagnose(why, STATUS_BAD_INPUT, "add -o frames/%05d.png for pictures, -o NAME.y4m for a film", "nothing is asked for");
+        diagnose(why, STATUS_BAD_INPUT, "add -o frames/%05d.png for pictures, -o NAME.y4m for a film",
+                 "nothing is asked for");
         diagnostic_locate(why, "animate", 0, 0);
         return STATUS_BAD_INPUT;
     }
@@ -142,7 +147,8 @@ static status find_script(animate_request *request, diagnostic *why)
         return STATUS_OK;
     struct stat about;
     if (stat(request->script, &about) == 0 && !S_ISREG(about.st_mode))
-        return wrong("--script", request->script, "name a regular file: a script is read more than once", "is no regular file", why);
+        return wrong("--script", request->script, "name a regular file: a script is read more than once",
+                     "is no regular file", why);
     request->script_path = realpath(request->script, NULL);
     if (request->script_path)
         return STATUS_OK;
@@ -195,7 +201,8 @@ status animate_check_length(const animate_request *request, diagnostic *why)
     const double frames = request->duration_s * (double)request->fps_num / (double)request->fps_den;
     if (frames <= FRAMES_MAX && request->start_s + request->duration_s <= SECONDS_MAX)
         return STATUS_OK;
-    diagnose(why, STATUS_BAD_INPUT, "give a --duration with at most 10000000 frames, that ends within 86400 s", "the film is too long");
+    diagnose(why, STATUS_BAD_INPUT, "give a --duration with at most 10000000 frames, that ends within 86400 s",
+             "the film is too long");
     diagnostic_locate(why, "animate", 0, 0);
     return STATUS_BAD_INPUT;
 }

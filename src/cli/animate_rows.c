@@ -26,38 +26,38 @@ static void put_config(csv_line *line)
     csv_text(line, row_build_config(text));
 }
 
-/* A column's name and how it is written stand together, so that header and row cannot part. line; r: the row; c: its ray counts; m: the motion's
- * report; b: the first slime's account. */
-#define COLUMNS(X) \
-    X("definition", csv_hash(line, r->definition)) \
-    X("frame", csv_count(line, r->frame)) \
-    X("time_s", csv_real(line, r->time_s)) \
-    X("film_hash", csv_hash(line, film_hash(r->result->picture))) \
-    X("wall_s", csv_real(line, r->result->wall_s)) \
-    X("cpu_s", csv_real(line, r->result->cpu_s)) \
-    X("rays_total", csv_count(line, (int64_t)ray_counters_total(c))) \
+/* A column's name and how it is written stand together, so that header and row cannot part. line; r: the row; c: its
+ * ray counts; m: the motion's report; b: the first slime's account. */
+#define COLUMNS(X)                                                        \
+    X("definition", csv_hash(line, r->definition))                        \
+    X("frame", csv_count(line, r->frame))                                 \
+    X("time_s", csv_real(line, r->time_s))                                \
+    X("film_hash", csv_hash(line, film_hash(r->result->picture)))         \
+    X("wall_s", csv_real(line, r->result->wall_s))                        \
+    X("cpu_s", csv_real(line, r->result->cpu_s))                          \
+    X("rays_total", csv_count(line, (int64_t)ray_counters_total(c)))      \
     X("triangles", csv_count(line, (int64_t)r->result->meshes.triangles)) \
-    X("steps", csv_count(line, (int64_t)m.steps)) \
-    X("step_s", csv_real(line, m.step_s)) \
-    X("skin_s", csv_real(line, m.skin_s)) \
-    X("refitted", csv_count(line, m.hierarchies.refitted)) \
-    X("rebuilt", csv_count(line, m.hierarchies.rebuilt)) \
-    X("refit_s", csv_real(line, m.hierarchies.refit_s)) \
-    X("build_s", csv_real(line, m.hierarchies.build_s)) \
-    X("growth", csv_real(line, m.hierarchies.growth)) \
-    X("kinetic", csv_real(line, b.kinetic)) \
-    X("elastic", csv_real(line, b.elastic)) \
-    X("compression", csv_real(line, b.compression)) \
-    X("gravity", csv_real(line, b.gravity)) \
-    X("volume", csv_real(line, b.volume)) \
-    X("center_x", csv_real(line, b.center.x)) \
-    X("center_y", csv_real(line, b.center.y)) \
-    X("center_z", csv_real(line, b.center.z)) \
-    X("low", csv_real(line, b.low)) \
-    X("high", csv_real(line, b.high)) \
-    X("speed_max", csv_real(line, b.speed_max)) \
-    X("held", csv_count(line, (int64_t)b.held)) \
-    X("isa", csv_text(line, isa_name(r->level))) \
+    X("steps", csv_count(line, (int64_t)m.steps))                         \
+    X("step_s", csv_real(line, m.step_s))                                 \
+    X("skin_s", csv_real(line, m.skin_s))                                 \
+    X("refitted", csv_count(line, m.hierarchies.refitted))                \
+    X("rebuilt", csv_count(line, m.hierarchies.rebuilt))                  \
+    X("refit_s", csv_real(line, m.hierarchies.refit_s))                   \
+    X("build_s", csv_real(line, m.hierarchies.build_s))                   \
+    X("growth", csv_real(line, m.hierarchies.growth))                     \
+    X("kinetic", csv_real(line, b.kinetic))                               \
+    X("elastic", csv_real(line, b.elastic))                               \
+    X("compression", csv_real(line, b.compression))                       \
+    X("gravity", csv_real(line, b.gravity))                               \
+    X("volume", csv_real(line, b.volume))                                 \
+    X("center_x", csv_real(line, b.center.x))                             \
+    X("center_y", csv_real(line, b.center.y))                             \
+    X("center_z", csv_real(line, b.center.z))                             \
+    X("low", csv_real(line, b.low))                                       \
+    X("high", csv_real(line, b.high))                                     \
+    X("speed_max", csv_real(line, b.speed_max))                           \
+    X("held", csv_count(line, (int64_t)b.held))                           \
+    X("isa", csv_text(line, isa_name(r->level)))                          \
     X("config", put_config(line))
 
 static void put_header(csv_line *line)
@@ -103,7 +103,8 @@ static int compare_frames(const void *a, const void *b)
 }
 
 /* What rows there are, all of them of this film. */
-static status take_rows(animate_rows *rows, const char *path, const csv *there, const char *header, uint64_t definition, diagnostic *why)
+static status take_rows(animate_rows *rows, const char *path, const csv *there, const char *header, uint64_t definition,
+                        diagnostic *why)
 {
     char hash[32];
     snprintf(hash, sizeof hash, "%016" PRIx64, definition);
@@ -114,7 +115,8 @@ static status take_rows(animate_rows *rows, const char *path, const csv *there, 
     rows->there = calloc(there->row_count + 1, sizeof *rows->there);
     if (!rows->there)
         return no_memory(why);
-    const int frame = csv_column(there, "frame"), of = csv_column(there, "definition"), picture = csv_column(there, "film_hash");
+    const int frame = csv_column(there, "frame"), of = csv_column(there, "definition"),
+              picture = csv_column(there, "film_hash");
     for (size_t i = 0; i < there->row_count; i++) {
         if (strcmp(csv_field(there, i, of), hash) != 0)
             return refuse(path, "holds rows of another film", why);
@@ -131,9 +133,9 @@ static status take_rows(animate_rows *rows, const char *path, const csv *there, 
 static status open_table(const char *path, const char *header, table **out, diagnostic *why)
 {
     const status result = table_open(path, header, out, why);
-    return result == STATUS_BAD_INPUT
-               ? diagnose(why, result, "wait for it to end, or name another file by --rows", "another process is writing these rows")
-               : result;
+    return result == STATUS_BAD_INPUT ? diagnose(why, result, "wait for it to end, or name another file by --rows",
+                                                 "another process is writing these rows")
+                                      : result;
 }
 
 status animate_rows_open(const char *path, uint64_t definition, bool anew, animate_rows **out, diagnostic *why)

@@ -1,5 +1,6 @@
-/* The rows of a film, one a frame that was rendered, appended and flushed when its picture is there. results/README.md is the dictionary of their
- * columns. A file of rows is of one film. Ownership: animate_rows_open gives, animate_rows_close releases. */
+/* The rows of a film, one a frame that was rendered, appended and flushed when its picture is there. results/README.md
+ * is the dictionary of their columns. A file of rows is of one film. Ownership: animate_rows_open gives,
+ * animate_rows_close releases. */
 #ifndef CUVETTE_CLI_ANIMATE_ROWS_H
 #define CUVETTE_CLI_ANIMATE_ROWS_H
 
@@ -8,8 +9,8 @@
 
 typedef struct animate_rows animate_rows;
 
-/* Opens or makes the file. anew: the film's frames are all made again, so there may be no row yet. STATUS_BAD_INPUT for rows of another film or of
- * another kind, and where another process writes them. */
+/* Opens or makes the file. anew: the film's frames are all made again, so there may be no row yet. STATUS_BAD_INPUT for
+ * rows of another film or of another kind, and where another process writes them. */
 status animate_rows_open(const char *path, uint64_t definition, bool anew, animate_rows **out, diagnostic *why);
 void animate_rows_close(animate_rows *rows); /* NULL is allowed */
 

@@ -48,10 +48,12 @@ static const struct argp parser = {
     .options = options,
     .parser = take_option,
     .args_doc = "A B",
-    .doc = "Say how far the pictures A and B lie apart, as a display shows them: mean squared error, peak signal-to-noise "
-           "ratio, structural similarity, FLIP, the largest difference, the pixels that differ. PNG, JPEG, PFM and 24-bit BMP go "
-           "together, of one size.\vFor example:\n"
-           "  cuvette compare depth4.png depth8.png --diff where.png",
+    .doc =
+        "Say how far the pictures A and B lie apart, as a display shows them: mean squared error, peak signal-to-noise "
+        "ratio, structural similarity, FLIP, the largest difference, the pixels that differ. PNG, JPEG, PFM and 24-bit "
+        "BMP go "
+        "together, of one size.\vFor example:\n"
+        "  cuvette compare depth4.png depth8.png --diff where.png",
 };
 
 typedef struct pair {

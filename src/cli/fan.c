@@ -10,7 +10,7 @@
 typedef struct fan_request {
     scene_input input;
     const char *output;
-    size_t format;      /* index of the ending */
+    size_t format; /* index of the ending */
     fan_rule rule;
     bool has_from, has_to, has_width, whole_trees, one_wavelength;
 } fan_request;
@@ -26,7 +26,8 @@ static const struct argp_option options[] = {
     {"spread", KEY_SPREAD, "DEG", 0, "a fan from one point, of this angle", 0},
     {"plane", KEY_PLANE, "NX,NY,NZ", 0, "the normal of the rays' plane", 0},
     {"depth", KEY_DEPTH, "N", 0, "the same as --set render.depth=N", 0},
-    {"lambda", KEY_LAMBDA, "NM", 0, "one wavelength for indices and for absorption by wavelength; sets render.lambda_nm", 0},
+    {"lambda", KEY_LAMBDA, "NM", 0,
+     "one wavelength for indices and for absorption by wavelength; sets render.lambda_nm", 0},
     {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'rod.visible=off'; may be given many times", 0},
     {"tree", KEY_TREE, NULL, 0, "draw each ray's whole tree, not its refracted way alone", 0},
     {"output", 'o', "FILE", 0, "write there: .svg, a drawing, or .csv, a row a ray", 0},
@@ -51,7 +52,10 @@ static error_t take_size(fan_request *request, bool spreads, const char *value, 
     if (request->has_width || !(size >= 0.0 && size <= most)) {
         char where[512];
         snprintf(where, sizeof where, "%s %s", option, value);
-        diagnose(why, STATUS_BAD_INPUT, request->has_width ? "give one of them" : spreads ? "give 0 to 179 degrees" : "give 0 to 1e6",
+        diagnose(why, STATUS_BAD_INPUT,
+                 request->has_width ? "give one of them"
+                 : spreads          ? "give 0 to 179 degrees"
+                                    : "give 0 to 1e6",
                  request->has_width ? "--width and --spread exclude each other" : "out of range");
         diagnostic_locate(why, where, 0, 0);
         return EINVAL;
@@ -85,7 +89,9 @@ static error_t take_option(int key, char *value, struct argp_state *state)
         return 0;
     case KEY_FROM: request->has_from = true; return take_vector("--from", value, &request->rule.from, input->why);
     case KEY_TO: request->has_to = true; return take_vector("--to", value, &request->rule.to, input->why);
-    case KEY_PLANE: request->rule.has_normal = true; return take_vector("--plane", value, &request->rule.normal, input->why);
+    case KEY_PLANE:
+        request->rule.has_normal = true;
+        return take_vector("--plane", value, &request->rule.normal, input->why);
     case KEY_RAYS: return take_rays(request, value, input->why);
     case KEY_WIDTH: return take_size(request, false, value, input->why);
     case KEY_SPREAD: return take_size(request, true, value, input->why);
@@ -99,10 +105,13 @@ static const struct argp parser = {
     .options = options,
     .parser = take_option,
     .args_doc = "SCENE --from X,Y,Z --to X,Y,Z -o FILE",
-    .doc = "Send many rays through the scene side by side, or from one point, in one plane; follow each along its refracted way; and "
-           "find where neighbours cross, the caustic, and the mean focus.\vThe plane is level where --from and --to are equally "
+    .doc = "Send many rays through the scene side by side, or from one point, in one plane; follow each along its "
+           "refracted way; and "
+           "find where neighbours cross, the caustic, and the mean focus.\vThe plane is level where --from and --to "
+           "are equally "
            "high, else upright. For example:\n"
-           "  cuvette fan experiments/scenes/rod.yaml --from -3,1.5,0 --to 3,1.5,0 --width 1.6 --rays 41 --set rod.visible=off -o fan.svg",
+           "  cuvette fan experiments/scenes/rod.yaml --from -3,1.5,0 --to 3,1.5,0 --width 1.6 --rays 41 --set "
+           "rod.visible=off -o fan.svg",
 };
 
 static status check_request(fan_request *request, diagnostic *why)
@@ -140,7 +149,8 @@ static status write_fan(const fan_request *request, const fanned *t, diagnostic 
     status result = file_writer_open(&writer, request->output, why);
     if (result != STATUS_OK)
         return result;
-    result = request->format == FAN_CSV ? fan_write_csv(t, writer.stream, why) : fan_write_drawing(t, writer.stream, why);
+    result =
+        request->format == FAN_CSV ? fan_write_csv(t, writer.stream, why) : fan_write_drawing(t, writer.stream, why);
     if (result == STATUS_OK)
         return file_writer_commit(&writer, why);
     file_writer_abandon(&writer);
@@ -155,8 +165,8 @@ static void print_summary(const fan_request *request, const fan *f)
         left += f->ray[i].leaves;
     printf("%d rays, %d followed to their end, %d crossings of neighbours", f->count, left, f->crossing_count);
     if (f->has_focus)
-        printf(", %s %.6g,%.6g,%.6g (rms distance %.3g)", f->is_virtual ? "virtual mean focus" : "mean focus", fan_shown(f->focus.x),
-               fan_shown(f->focus.y), fan_shown(f->focus.z), f->focus_rms);
+        printf(", %s %.6g,%.6g,%.6g (rms distance %.3g)", f->is_virtual ? "virtual mean focus" : "mean focus",
+               fan_shown(f->focus.x), fan_shown(f->focus.y), fan_shown(f->focus.z), f->focus_rms);
     printf(" -> %s\n", request->output);
 }
 

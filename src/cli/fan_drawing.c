@@ -3,8 +3,8 @@
 #include "cli/fan_writers.h"
 #include "report/svg.h"
 
-/* Branches lighter than this are not drawn with whole trees; nor is a wider picture made for a caustic farther off than this share of
- * the rest. */
+/* Branches lighter than this are not drawn with whole trees; nor is a wider picture made for a caustic farther off than
+ * this share of the rest. */
 #define LIGHTEST 0.004
 #define FAR_OFF 0.6
 
@@ -82,12 +82,13 @@ static double crowding(const fan *f)
 
 static void draw_way(const diagram *d, const fan *f, const fan_ray *ray)
 {
-    static const char *const colors[] = {[RAY_CAMERA] = SVG_INK, [RAY_REFLECT] = SVG_VERMILLION, [RAY_REFRACT] = SVG_BLUE,
-                                         [RAY_SHADOW] = SVG_GREY};
+    static const char *const colors[] = {
+        [RAY_CAMERA] = SVG_INK, [RAY_REFLECT] = SVG_VERMILLION, [RAY_REFRACT] = SVG_BLUE, [RAY_SHADOW] = SVG_GREY};
     for (size_t k = 0; k < ray->count; k++) {
         const ray_node *node = &f->node[ray->first + k];
         const double weight = (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
-        diagram_ray(d, node->origin, end_of(d, node), colors[node->kind], crowding(f) * weight, is_cut(node) ? "0.5,3" : NULL);
+        diagram_ray(d, node->origin, end_of(d, node), colors[node->kind], crowding(f) * weight,
+                    is_cut(node) ? "0.5,3" : NULL);
     }
 }
 
@@ -101,7 +102,8 @@ static status draw_tree(const diagram *d, const fanned *t, const fan_ray *ray, d
         const ray_node *node = &tree.node[i];
         const double weight = (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
         if (node->kind != RAY_SHADOW && weight >= LIGHTEST)
-            diagram_ray(d, node->origin, end_of(d, node), colors[node->kind], crowding(t->f) * weight, is_cut(node) ? "0.5,3" : NULL);
+            diagram_ray(d, node->origin, end_of(d, node), colors[node->kind], crowding(t->f) * weight,
+                        is_cut(node) ? "0.5,3" : NULL);
     }
     ray_tree_release(&tree);
     return result;
@@ -160,14 +162,15 @@ static void draw_key(const fanned *t, FILE *out, double left, double y)
     fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"2\" fill=\"" SVG_ORANGE "\"/>\n", x + 4.0, y - 4.0);
     svg_label(out, x + 12.0, y, "start", SVG_INK, "neighbours cross (caustic)");
     x += 196.0;
-    fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" stroke=\"" SVG_PURPLE "\" stroke-width=\"1.2\"/>\n", x + 4.0, y - 4.0);
+    fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" stroke=\"" SVG_PURPLE "\" stroke-width=\"1.2\"/>\n", x + 4.0,
+            y - 4.0);
     svg_label(out, x + 13.0, y, "start", SVG_INK, "total internal reflection");
     if (!f->has_focus)
         return;
-    fprintf(out, "<path d=\"M%.2f %.2fl8 8m0 -8l-8 8\" stroke=\"" SVG_VERMILLION "\" stroke-width=\"1.8\"/>\n", left + 4.0,
-            y + DIAGRAM_ROW - 8.0);
-    snprintf(text, sizeof text, "mean focus%s: %.4g, %.4g, %.4g; rms distance %.3g", f->is_virtual ? " (virtual)" : "", fan_shown(f->focus.x),
-             fan_shown(f->focus.y), fan_shown(f->focus.z), f->focus_rms);
+    fprintf(out, "<path d=\"M%.2f %.2fl8 8m0 -8l-8 8\" stroke=\"" SVG_VERMILLION "\" stroke-width=\"1.8\"/>\n",
+            left + 4.0, y + DIAGRAM_ROW - 8.0);
+    snprintf(text, sizeof text, "mean focus%s: %.4g, %.4g, %.4g; rms distance %.3g", f->is_virtual ? " (virtual)" : "",
+             fan_shown(f->focus.x), fan_shown(f->focus.y), fan_shown(f->focus.z), f->focus_rms);
     svg_label(out, left + 21.0, y + DIAGRAM_ROW, "start", SVG_INK, text);
 }
 
@@ -175,17 +178,20 @@ static void write_caption(const fanned *t, char *text, size_t size)
 {
     const fan_rule *r = t->rule;
     char shape[64];
-    snprintf(shape, sizeof shape, r->spreads ? "a fan of %.6g degrees" : "a pencil %.6g wide", r->spreads ? r->spread_deg : r->width);
-    snprintf(text, size, "%d rays, %s, from (%.4g, %.4g, %.4g) towards (%.4g, %.4g, %.4g); %.6g nm", r->rays, shape, r->from.x, r->from.y,
-             r->from.z, r->to.x, r->to.y, r->to.z, t->s->render.lambda_nm);
+    snprintf(shape, sizeof shape, r->spreads ? "a fan of %.6g degrees" : "a pencil %.6g wide",
+             r->spreads ? r->spread_deg : r->width);
+    snprintf(text, size, "%d rays, %s, from (%.4g, %.4g, %.4g) towards (%.4g, %.4g, %.4g); %.6g nm", r->rays, shape,
+             r->from.x, r->from.y, r->from.z, r->to.x, r->to.y, r->to.z, t->s->render.lambda_nm);
 }
 
 status fan_write_drawing(const fanned *t, FILE *out, diagnostic *why)
 {
     const section_plane plane = plane_of(t->f);
     const diagram_box box = box_of(t, &plane);
-    const double width = outer_width - DIAGRAM_BEFORE - DIAGRAM_BEHIND, shape = (box.v1 - box.v0) / fmax(box.u1 - box.u0, 1e-9);
-    const double height = fmin(fmax(width * (shape + 0.04), least_height), most_height), foot = DIAGRAM_ABOVE + height + DIAGRAM_BELOW;
+    const double width = outer_width - DIAGRAM_BEFORE - DIAGRAM_BEHIND,
+                 shape = (box.v1 - box.v0) / fmax(box.u1 - box.u0, 1e-9);
+    const double height = fmin(fmax(width * (shape + 0.04), least_height), most_height),
+                 foot = DIAGRAM_ABOVE + height + DIAGRAM_BELOW;
     const double key = foot + 14.0, first = key + DIAGRAM_ROW * (t->f->has_focus ? 2.0 : 1.0);
     const double media = diagram_media_key(NULL, t->p, t->s, DIAGRAM_BEFORE, outer_width, first);
     const diagram_frame frame = {DIAGRAM_BEFORE, DIAGRAM_ABOVE, width, height};

@@ -1,5 +1,5 @@
-/* A fan of rays as CSV and as a drawing. Each writes all of it to a stream, whose errors are left in the stream. Ownership: everything
- * is borrowed. */
+/* A fan of rays as CSV and as a drawing. Each writes all of it to a stream, whose errors are left in the stream.
+ * Ownership: everything is borrowed. */
 #ifndef CUVETTE_CLI_FAN_WRITERS_H
 #define CUVETTE_CLI_FAN_WRITERS_H
 
@@ -11,7 +11,7 @@ typedef struct fanned {
     probe *p;
     const fan_rule *rule;
     const fan *f;
-    bool whole_trees;   /* drawn in place of the refracted ways alone */
+    bool whole_trees; /* drawn in place of the refracted ways alone */
 } fanned;
 
 /* A coordinate without what rounding leaves of a zero, for a line of text. */

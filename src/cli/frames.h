@@ -1,5 +1,5 @@
-/* Renders frames of one scene one after another and measures them (report/report.h). Ownership: frames_render fills *out also when it was
- * interrupted; frames_release releases what it holds. */
+/* Renders frames of one scene one after another and measures them (report/report.h). Ownership: frames_render fills
+ * *out also when it was interrupted; frames_release releases what it holds. */
 #ifndef CUVETTE_CLI_FRAMES_H
 #define CUVETTE_CLI_FRAMES_H
 

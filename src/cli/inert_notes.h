@@ -1,5 +1,5 @@
-/* Notes on parameters that a person sets and that cannot act (scene/inert.h), one line each on standard error. What the linter notes of the
- * same place is not said twice. Everything is borrowed. */
+/* Notes on parameters that a person sets and that cannot act (scene/inert.h), one line each on standard error. What the
+ * linter notes of the same place is not said twice. Everything is borrowed. */
 #ifndef CUVETTE_CLI_INERT_NOTES_H
 #define CUVETTE_CLI_INERT_NOTES_H
 
@@ -11,8 +11,8 @@
 /* Of the command line. s: as it changed it. */
 void inert_note_changes(const scene *s, const scene_input *input);
 
-/* Of the command line, too, what shows only in a frame: of s, with these counters, in that time. Renders another one where a note depends on it, if that
- * takes no more than a moment. */
+/* Of the command line, too, what shows only in a frame: of s, with these counters, in that time. Renders another one
+ * where a note depends on it, if that takes no more than a moment. */
 void inert_note_frame(const scene *s, const scene_input *input, isa level, const render_result *frame);
 
 /* Of one PATH=VALUE. */

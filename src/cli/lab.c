@@ -23,8 +23,11 @@ typedef struct lab_request {
 enum { KEY_PORT = 0x100, KEY_FOLDER, KEY_RESULTS, KEY_THREADS, KEY_NO_BROWSER };
 
 static const struct argp_option options[] = {
-    {"folder", KEY_FOLDER, "DIR", 0, "the folder whose scenes, models and studies are there, and where files are saved; nothing outside of it is read or written "
-     "(default: the working folder, or the scene's where that lies elsewhere)", 0},
+    {"folder", KEY_FOLDER, "DIR", 0,
+     "the folder whose scenes, models and studies are there, and where files are saved; nothing outside of it is read "
+     "or written "
+     "(default: the working folder, or the scene's where that lies elsewhere)",
+     0},
     {"results", KEY_RESULTS, "DIR", 0, "folder for rows of studies, within the other (default: results there)", 0},
     {"port", KEY_PORT, "N", 0, "port on 127.0.0.1 (default: any that is free)", 0},
     {"threads", KEY_THREADS, "N", 0, "threads for scenes that do not say how many (default: one a processing unit)", 0},
@@ -40,8 +43,10 @@ static error_t take_option(int key, char *value, struct argp_state *state)
     case KEY_FOLDER: request->folder = value; return 0;
     case KEY_RESULTS: request->results = value; return 0;
     case KEY_NO_BROWSER: request->no_browser = true; return 0;
-    case KEY_PORT: return options_integer("--port", value, 0, 65535, &request->port, input->why) == STATUS_OK ? 0 : EINVAL;
-    case KEY_THREADS: return options_integer("--threads", value, 1, 1024, &request->threads, input->why) == STATUS_OK ? 0 : EINVAL;
+    case KEY_PORT:
+        return options_integer("--port", value, 0, 65535, &request->port, input->why) == STATUS_OK ? 0 : EINVAL;
+    case KEY_THREADS:
+        return options_integer("--threads", value, 1, 1024, &request->threads, input->why) == STATUS_OK ? 0 : EINVAL;
     case ARGP_KEY_ARG:
         if (!request->scene) {
             request->scene = value;
@@ -58,14 +63,18 @@ static const struct argp parser = {
     .options = options,
     .parser = take_option,
     .args_doc = "[SCENE]",
-    .doc = "Open the laboratory in the browser: look at a scene and turn every parameter of it, ask a pixel why, compare, edit, play with a slime, run studies. "
-           "The page is served by this program on 127.0.0.1 alone, to those who know the token in the address that is printed.\vFor example:\n"
+    .doc = "Open the laboratory in the browser: look at a scene and turn every parameter of it, ask a pixel why, "
+           "compare, edit, play with a slime, run studies. "
+           "The page is served by this program on 127.0.0.1 alone, to those who know the token in the address that is "
+           "printed.\vFor example:\n"
            "  cuvette lab experiments/scenes/rod.yaml\n"
-           "From another machine: ssh -L 8000:127.0.0.1:8000 HOST cuvette lab --port 8000 --no-browser SCENE, and open the address that it prints here. "
+           "From another machine: ssh -L 8000:127.0.0.1:8000 HOST cuvette lab --port 8000 --no-browser SCENE, and open "
+           "the address that it prints here. "
            "Ctrl-C ends it.",
 };
 
-/* The working folder where the scene lies below it (or is not there, which is said later), otherwise the scene's own. Fresh memory. */
+/* The working folder where the scene lies below it (or is not there, which is said later), otherwise the scene's own.
+ * Fresh memory. */
 static char *choose_folder(const lab_request *request)
 {
     char *here = realpath(".", NULL), *there = request->scene ? realpath(request->scene, NULL) : NULL;
@@ -81,7 +90,8 @@ static char *choose_folder(const lab_request *request)
     return strdup(".");
 }
 
-/* In a process of its own, whose words go nowhere, and in a session of its own: the Ctrl-C that ends the laboratory is not for the browser. */
+/* In a process of its own, whose words go nowhere, and in a session of its own: the Ctrl-C that ends the laboratory is
+ * not for the browser. */
 static void open_browser(const char *address)
 {
     const pid_t child = fork();
@@ -110,7 +120,11 @@ static status run_lab(const lab_request *request, const char *folder, const char
 {
     lab *l = NULL;
     topology *machine = NULL;
-    lab_settings settings = {.folder = folder, .scene = request->scene, .results = results, .port = (int)request->port, .threads = (int)request->threads};
+    lab_settings settings = {.folder = folder,
+                             .scene = request->scene,
+                             .results = results,
+                             .port = (int)request->port,
+                             .threads = (int)request->threads};
     status code = scene_input_isa(&settings.level, why);
     if (code == STATUS_OK && settings.threads == 0 && (code = topology_create(&machine, why)) == STATUS_OK)
         settings.threads = topology_pu_count(machine);

@@ -1,5 +1,5 @@
-/* cuvette mesh: what a file or a computed body is made of, and its triangles for other programs. The body's numbers are the parameters of a
- * scene's mesh, set by the parameter table. */
+/* cuvette mesh: what a file or a computed body is made of, and its triangles for other programs. The body's numbers are
+ * the parameters of a scene's mesh, set by the parameter table. */
 #include "cli/cli.h"
 #include "report/json.h"
 #include "report/mesh_rows.h"
@@ -15,37 +15,45 @@
 #include <string.h>
 
 typedef struct mesh_request {
-    scene *around;          /* holds the one mesh */
+    scene *around; /* holds the one mesh */
     const char *file;
     bool generate;
-    mesh_format format;     /* MESH_FORMAT_COUNT: describe it */
-    const char *output;     /* NULL: standard output */
+    mesh_format format; /* MESH_FORMAT_COUNT: describe it */
+    const char *output; /* NULL: standard output */
     bool json;
 } mesh_request;
 
 enum { KEY_JSON = 0x100, KEY_FIRST_PARAMETER };
 
 /* Options that are parameters of the mesh, in the order of their keys. */
-static const struct { const char *option, *parameter; } turned[] = {
-    {"generate", "generate"}, {"count", "count"}, {"level", "level"}, {"major", "major"}, {"minor", "minor"}, {"around", "around"},
-    {"tube", "tube"}, {"profile", "profile"}, {"crease", "crease_deg"}, {"size", "size"}, {"depth", "depth"}, {"seed", "seed"},
+static const struct {
+    const char *option, *parameter;
+} turned[] = {
+    {"generate", "generate"}, {"count", "count"},   {"level", "level"}, {"major", "major"},
+    {"minor", "minor"},       {"around", "around"}, {"tube", "tube"},   {"profile", "profile"},
+    {"crease", "crease_deg"}, {"size", "size"},     {"depth", "depth"}, {"seed", "seed"},
 };
 enum { TURNED = sizeof turned / sizeof turned[0] };
 
 static const struct argp_option options[] = {
-    {"generate", KEY_FIRST_PARAMETER, "BODY", 0, "make sparse, dense, sphere, icosphere, torus, lathe, terrain or box", 0},
+    {"generate", KEY_FIRST_PARAMETER, "BODY", 0, "make sparse, dense, sphere, icosphere, torus, lathe, terrain or box",
+     0},
     {"count", KEY_FIRST_PARAMETER + 1, "N", 0, "triangles of sparse and dense, and about as many of sphere; 10000", 0},
     {"level", KEY_FIRST_PARAMETER + 2, "N", 0, "bisections of the icosphere, 0 to 11; 4", 0},
     {"major", KEY_FIRST_PARAMETER + 3, "R", 0, "distance of the torus's tube from its axis; 1", 0},
     {"minor", KEY_FIRST_PARAMETER + 4, "R", 0, "radius of the torus's tube; 0.4", 0},
-    {"around", KEY_FIRST_PARAMETER + 5, "N", 0, "segments around the axis of torus and lathe, cells of terrain along x; 64", 0},
+    {"around", KEY_FIRST_PARAMETER + 5, "N", 0,
+     "segments around the axis of torus and lathe, cells of terrain along x; 64", 0},
     {"tube", KEY_FIRST_PARAMETER + 6, "N", 0, "segments around the torus's tube, cells of terrain along z; 32", 0},
-    {"profile", KEY_FIRST_PARAMETER + 7, "R,Y,R,Y,...", 0, "radius and height of the points that lathe turns; a cylinder", 0},
+    {"profile", KEY_FIRST_PARAMETER + 7, "R,Y,R,Y,...", 0,
+     "radius and height of the points that lathe turns; a cylinder", 0},
     {"crease", KEY_FIRST_PARAMETER + 8, "DEG", 0, "lathe: a profile that turns by more keeps its edge; 30", 0},
-    {"size", KEY_FIRST_PARAMETER + 9, "X,Y,Z", 0, "edges of the box; of terrain, with the height of its hills as Y; 1,1,1", 0},
+    {"size", KEY_FIRST_PARAMETER + 9, "X,Y,Z", 0,
+     "edges of the box; of terrain, with the height of its hills as Y; 1,1,1", 0},
     {"depth", KEY_FIRST_PARAMETER + 10, "D", 0, "terrain: how deep its flat bottom lies; 0 leaves it open", 0},
     {"seed", KEY_FIRST_PARAMETER + 11, "N", 0, "terrain: which hills; 1", 0},
-    {"format", 'f', "FORMAT", 0, "write the triangles as obj, bin, pov, tachyon or ply; else by the ending of -o FILE", 0},
+    {"format", 'f', "FORMAT", 0, "write the triangles as obj, bin, pov, tachyon or ply; else by the ending of -o FILE",
+     0},
     {"output", 'o', "FILE", 0, "write there instead of to standard output", 0},
     {"json", KEY_JSON, NULL, 0, "print the description as JSON", 0},
     {0},
@@ -102,7 +110,8 @@ static const struct argp parser = {
     .options = options,
     .parser = take_option,
     .args_doc = "FILE\n--generate BODY",
-    .doc = "Read a mesh of triangles (OBJ, PLY, STL, glTF), or make one, and say what it is: its numbers, bounds, area, whether it is closed, its "
+    .doc = "Read a mesh of triangles (OBJ, PLY, STL, glTF), or make one, and say what it is: its numbers, bounds, "
+           "area, whether it is closed, its "
            "volume or its first hole. With --format, write its triangles instead.\vFor example:\n"
            "  cuvette mesh teapot.obj\n"
            "  cuvette mesh --generate torus --minor 0.4 --around 256 --tube 128\n"
@@ -114,7 +123,8 @@ static status check_request(const mesh_request *request, diagnostic *why)
 {
     status result = STATUS_OK;
     if (!request->generate && !request->file)
-        result = diagnose(why, STATUS_BAD_INPUT, "give a file, or --generate with a body, as --generate torus", "no mesh is named");
+        result = diagnose(why, STATUS_BAD_INPUT, "give a file, or --generate with a body, as --generate torus",
+                          "no mesh is named");
     else if (request->generate && request->file)
         result = diagnose(why, STATUS_BAD_INPUT, "give one of them", "a file and --generate exclude each other");
     else if (request->json && request->format != MESH_FORMAT_COUNT)
@@ -138,7 +148,8 @@ static status choose_format(mesh_request *request, diagnostic *why)
     if (strcmp(dot, ".txt") == 0)
         return STATUS_OK;
     diagnostic_locate(why, "-o", 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, "end it in .obj, .pov, .bin or .ply, give --format, or .txt for the description",
+    return diagnose(why, STATUS_BAD_INPUT,
+                    "end it in .obj, .pov, .bin or .ply, give --format, or .txt for the description",
                     "'%.80s' says no format", request->output);
 }
 
@@ -191,7 +202,8 @@ status command_mesh(int argc, char **argv, diagnostic *why)
 {
     mesh_request request = {.around = scene_create(), .format = MESH_FORMAT_COUNT};
     const mesh *m = NULL;
-    status result = request.around ? scene_add_mesh(request.around, "body", NULL, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status result = request.around ? scene_add_mesh(request.around, "body", NULL, why)
+                                   : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (result == STATUS_OK)
         result = options_parse(&parser, 0, argc, argv, &request, why);
     if (result == STATUS_OK)

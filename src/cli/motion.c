@@ -41,8 +41,10 @@ static const struct argp parser = {
     .options = options,
     .parser = take_option,
     .args_doc = "SCENE",
-    .doc = "Measure how each slime of the scene file SCENE moves with its stiffness, its integrator and its step, beside the closed forms of "
-           "mechanics: a spring's swing, a fall, a bounce, what a free body keeps, its volume, the longest stable step, and how fast it is "
+    .doc = "Measure how each slime of the scene file SCENE moves with its stiffness, its integrator and its step, "
+           "beside the closed forms of "
+           "mechanics: a spring's swing, a fall, a bounce, what a free body keeps, its volume, the longest stable "
+           "step, and how fast it is "
            "computed.\vFor example:\n"
            "  cuvette motion experiments/scenes/slime.yaml\n"
            "  cuvette motion experiments/scenes/slime.yaml --set toy.integrator=verlet --set toy.dt_s=0.0005",
@@ -119,13 +121,14 @@ static json_t *slime_object(const mesh_entry *m, const softbody_trial_report *r)
     int bad = 0;
     for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++) {
         const softbody_trial *v = &r->value[i];
-        json_t *one = json_pack("{s:s,s:o,s:o,s:o,s:s,s:s}", "name", v->name, "measured", json_of_real(v->measured), "theory",
-                                json_of_real(v->theory), "error", json_of_real(softbody_trial_error(v)), "unit", v->unit, "what", v->what);
+        json_t *one = json_pack("{s:s,s:o,s:o,s:o,s:s,s:s}", "name", v->name, "measured", json_of_real(v->measured),
+                                "theory", json_of_real(v->theory), "error", json_of_real(softbody_trial_error(v)),
+                                "unit", v->unit, "what", v->what);
         bad |= json_array_append_new(values, one);
     }
     json_t *o = bad ? NULL
-                    : json_pack("{s:s,s:I,s:s,s:o,s:O}", "name", m->name, "level", (json_int_t)m->level, "integrator", integrator_of(m), "dt_s",
-                                json_of_real(m->slime.dt_s), "values", values);
+                    : json_pack("{s:s,s:I,s:s,s:o,s:O}", "name", m->name, "level", (json_int_t)m->level, "integrator",
+                                integrator_of(m), "dt_s", json_of_real(m->slime.dt_s), "values", values);
     json_decref(values);
     return o;
 }

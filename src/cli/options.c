@@ -164,7 +164,8 @@ static status wrong_value(const char *option, const char *value, const char *for
     return STATUS_BAD_INPUT;
 }
 
-status options_reals(const char *option, const char *value, const char *form, size_t count, double *out, diagnostic *why)
+status options_reals(const char *option, const char *value, const char *form, size_t count, double *out,
+                     diagnostic *why)
 {
     char what[128];
     const char *at = value;

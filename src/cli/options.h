@@ -25,8 +25,10 @@ void options_locate(diagnostic *why, const char *program);
 status options_integer(const char *option, const char *value, int64_t lowest, int64_t highest, int64_t *out,
                        diagnostic *why);
 
-/* The value of an option as count numbers with commas between them, blanks around them allowed; form says which, as "X,Y,Z". */
-status options_reals(const char *option, const char *value, const char *form, size_t count, double *out, diagnostic *why);
+/* The value of an option as count numbers with commas between them, blanks around them allowed; form says which, as
+ * "X,Y,Z". */
+status options_reals(const char *option, const char *value, const char *form, size_t count, double *out,
+                     diagnostic *why);
 
 /* "there is no WHAT 'wrong'", with the nearest of words as the remedy, or else all of them. */
 status options_unknown_word(const char *what, const char *wrong, const char *const *words, size_t count,

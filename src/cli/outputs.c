@@ -136,10 +136,14 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
 
 status outputs_check(const outputs *o, const scene *s, diagnostic *why)
 {
-    const named_file files[] = {
-        {"-o", o->picture}, {"--rays", o->rays}, {"--time", o->time}, {"--noise", o->noise}, {"--timeline", o->timeline}};
+    const named_file files[] = {{"-o", o->picture},
+                                {"--rays", o->rays},
+                                {"--time", o->time},
+                                {"--noise", o->noise},
+                                {"--timeline", o->timeline}};
     if (o->noise && (s->render.integrator != INTEGRATOR_PATH || s->render.paths < 2))
-        return wrong(&files[3], why, "set render.integrator to path and render.paths to 16 or more", "nothing is drawn by chance");
+        return wrong(&files[3], why, "set render.integrator to path and render.paths to 16 or more",
+                     "nothing is drawn by chance");
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         status result = files[i].path ? check_file(o, files, i, s, why) : STATUS_OK;
         if (result != STATUS_OK)
@@ -161,8 +165,8 @@ status outputs_check_picture(const char *option, const char *path, const char *c
     return result;
 }
 
-status outputs_ending(const char *option, const char *path, const char *const *endings, size_t count, const char *remedy, size_t *which,
-                      diagnostic *why)
+status outputs_ending(const char *option, const char *path, const char *const *endings, size_t count,
+                      const char *remedy, size_t *which, diagnostic *why)
 {
     const named_file file = {option, path};
     for (size_t i = 0; i < count; i++)

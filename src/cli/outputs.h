@@ -8,20 +8,20 @@
 
 typedef struct outputs {
     const char *picture, *rays, *time, *noise, *timeline; /* NULL: not wanted */
-    int bits;                                     /* of a PNG picture: 8 or 16; 0 when not said */
+    int bits;                                             /* of a PNG picture: 8 or 16; 0 when not said */
 } outputs;
 
 /* Endings, folders, and no file named twice or in place of one that the scene reads (cli/scene_files.h). */
 status outputs_check(const outputs *o, const scene *s, diagnostic *why);
 
-/* The same for one picture by itself that no scene has to do with; read are the count files that are read. option is what
- * named it. */
+/* The same for one picture by itself that no scene has to do with; read are the count files that are read. option is
+ * what named it. */
 status outputs_check_picture(const char *option, const char *path, const char *const *read, size_t count,
                              diagnostic *why);
 
 /* Of a text file: which of the endings its name has, by index. remedy says what to do when it has none of them. */
-status outputs_ending(const char *option, const char *path, const char *const *endings, size_t count, const char *remedy, size_t *which,
-                      diagnostic *why);
+status outputs_ending(const char *option, const char *path, const char *const *endings, size_t count,
+                      const char *remedy, size_t *which, diagnostic *why);
 /* Its folder alone: for what may be written in place of what was read. "-" is always right. */
 status outputs_check_folder(const char *option, const char *path, diagnostic *why);
 /* Its folder, and that the scene does not read it (cli/scene_files.h). "-" is always right. */

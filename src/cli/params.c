@@ -47,11 +47,12 @@ static const struct argp parser = {
     .options = options,
     .parser = take_option,
     .args_doc = "[SCENE] [PATH-OR-WORD]",
-    .doc = "Print the table of parameters: name, default, unit, range, meaning. With a scene, its own parameters and "
-           "their values. With a path, a part of one, or a word, only those that it fits.\v"
-           "A name is what --set takes, what a scene file has under its group, and what a study sweeps. "
-           "MESH, TEXTURE, LIGHT, MATERIAL and SOLID stand for the names that a scene gives. One element of a vector is "
-           "lamp.position.x (.y .z, for colours .r .g .b).",
+    .doc =
+        "Print the table of parameters: name, default, unit, range, meaning. With a scene, its own parameters and "
+        "their values. With a path, a part of one, or a word, only those that it fits.\v"
+        "A name is what --set takes, what a scene file has under its group, and what a study sweeps. "
+        "MESH, TEXTURE, LIGHT, MATERIAL and SOLID stand for the names that a scene gives. One element of a vector is "
+        "lamp.position.x (.y .z, for colours .r .g .b).",
 };
 
 static bool ends_with(const char *text, const char *ending)

@@ -22,7 +22,9 @@ static const struct argp_option options[] = {
     {"json", KEY_JSON, NULL, 0, "print one JSON object", 0},
     {"csv", KEY_CSV, NULL, 0, "print the table as CSV, with all digits", 0},
     {"curve", KEY_CURVE, "NAME", 0,
-     "print a curve as CSV instead, x, measured, theory: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption or edges", 0},
+     "print a curve as CSV instead, x, measured, theory: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption "
+     "or edges",
+     0},
     {0},
 };
 
@@ -59,10 +61,13 @@ static const struct argp parser = {
     .options = options,
     .parser = take_option,
     .args_doc = "SCENE",
-    .doc = "Measure how far what is traced lies from textbook optics, in the scene file SCENE: a vessel (a cup), a liquid in it (a "
-           "cylinder) and a rod (a box); or a prism, a drop, or two plates. It succeeds whether the metrics pass or not.\vFor example:\n"
+    .doc = "Measure how far what is traced lies from textbook optics, in the scene file SCENE: a vessel (a cup), a "
+           "liquid in it (a "
+           "cylinder) and a rod (a box); or a prism, a drop, or two plates. It succeeds whether the metrics pass or "
+           "not.\vFor example:\n"
            "  cuvette realism experiments/scenes/rod.yaml\n"
-           "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set clear.reflectivity=0.1 --set clear.transparency=0.9\n"
+           "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set clear.reflectivity=0.1 "
+           "--set clear.transparency=0.9\n"
            "  cuvette realism experiments/scenes/prism.yaml",
 };
 
@@ -84,16 +89,18 @@ static const char *verdict(const realism_value *v)
 static void print_text(const realism_report *r)
 {
     int defined = 0, passed = 0;
-    printf("%-4s  %-24s %18s %18s %9s %9s  %-12s %s\n", "", "metric", "measured", "theory", "error", "tolerance", "unit", "what");
+    printf("%-4s  %-24s %18s %18s %9s %9s  %-12s %s\n", "", "metric", "measured", "theory", "error", "tolerance",
+           "unit", "what");
     for (int i = 0; i < r->count; i++) {
         const realism_value *v = &r->value[i];
         defined += realism_is_defined(v);
         passed += realism_passes(v);
         if (realism_is_defined(v))
-            printf("%-4s  %-24s %18.12g %18.12g %9.1e %9.1e  %-12s %s\n", verdict(v), v->metric, v->measured, v->theory, realism_error(v),
-                   v->tolerance, v->unit, v->what);
+            printf("%-4s  %-24s %18.12g %18.12g %9.1e %9.1e  %-12s %s\n", verdict(v), v->metric, v->measured, v->theory,
+                   realism_error(v), v->tolerance, v->unit, v->what);
         else
-            printf("%-4s  %-24s %18s %18s %9s %9s  %-12s %s\n", verdict(v), v->metric, "-", "-", "-", "-", v->unit, v->what);
+            printf("%-4s  %-24s %18s %18s %9s %9s  %-12s %s\n", verdict(v), v->metric, "-", "-", "-", "-", v->unit,
+                   v->what);
     }
     printf("%d of %d pass", passed, defined);
     if (defined < r->count)
@@ -127,8 +134,9 @@ static void print_csv(const realism_report *r)
 static json_t *value_object(const realism_value *v)
 {
     return json_pack("{s:s,s:s,s:o,s:o,s:o,s:o,s:s,s:s}", "metric", v->metric, "verdict", verdict(v), "measured",
-                     json_of_real(realism_is_defined(v) ? v->measured : NAN), "theory", json_of_real(v->theory), "error",
-                     json_of_real(realism_error(v)), "tolerance", json_of_real(v->tolerance), "unit", v->unit, "what", v->what);
+                     json_of_real(realism_is_defined(v) ? v->measured : NAN), "theory", json_of_real(v->theory),
+                     "error", json_of_real(realism_error(v)), "tolerance", json_of_real(v->tolerance), "unit", v->unit,
+                     "what", v->what);
 }
 
 static status print_json(const realism_request *request, const realism_report *r, diagnostic *why)

@@ -83,7 +83,8 @@ static status check_request(const render_request *request, diagnostic *why)
 {
     const outputs *files = &request->files;
     status result = scene_input_check(&request->input, why);
-    if (result != STATUS_OK || files->picture || files->rays || files->time || files->noise || files->timeline || request->json)
+    if (result != STATUS_OK || files->picture || files->rays || files->time || files->noise || files->timeline ||
+        request->json)
         return result;
     diagnose(why, STATUS_BAD_INPUT, "add -o FILE for the picture or --json for the counts", "nothing is asked for");
     diagnostic_locate(why, "render", 0, 0);
@@ -108,8 +109,8 @@ static void print_summary(const scene *s, const frames *f, const outputs *files)
     uint64_t rays = ray_counters_total(&f->result->counters);
     double wall_s = f->count ? summarize(f->wall_s, f->count).median : f->result->wall_s;
     printf("%s%lldx%lld pixels, depth %lld: %llu rays in %.3f s (%.1f million a second), film %016llx",
-           f->whole ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height, (long long)s->render.depth,
-           (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
+           f->whole ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height,
+           (long long)s->render.depth, (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
            (unsigned long long)film_hash(f->result->picture));
     if (f->result->variance)
         printf(", noise %.4f rms", render_noise_rms(f->result));

@@ -11,7 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct asked_edit { const scene_edit *edit; const char *text; } asked_edit;
+typedef struct asked_edit {
+    const scene_edit *edit;
+    const char *text;
+} asked_edit;
 
 typedef struct scene_request {
     const char *path, *output; /* NULL: none, and standard output */
@@ -27,7 +30,8 @@ static const struct argp_option plain_options[] = {
     {"check", KEY_CHECK, NULL, 0, "only say whether the scene is right, its files too, and what looks wrong in it", 0},
     {"list", KEY_LIST, NULL, 0, "only list its objects: kind, name, and of a solid shape and material", 0},
     {"all", KEY_ALL, NULL, 0, "write every parameter, not only what differs from the defaults", 0},
-    {"output", 'o', "FILE", 0, "write there: .yaml or .yml, which may be the scene itself; standard output when not said", 0},
+    {"output", 'o', "FILE", 0,
+     "write there: .yaml or .yml, which may be the scene itself; standard output when not said", 0},
     {0},
 };
 
@@ -74,7 +78,8 @@ static void make_options(struct argp_option options[OPTION_MAX])
 {
     size_t count = 0;
     for (size_t i = 0; i < scene_edit_count; i++)
-        options[count++] = (struct argp_option){scene_edits[i].option + 2, scene_edits[i].key, scene_edits[i].form, 0, scene_edits[i].purpose, 0};
+        options[count++] = (struct argp_option){
+            scene_edits[i].option + 2, scene_edits[i].key, scene_edits[i].form, 0, scene_edits[i].purpose, 0};
     memcpy(&options[count], plain_options, sizeof plain_options);
 }
 
@@ -83,7 +88,8 @@ static status check_request(const scene_request *request, diagnostic *why)
     static const char *const endings[] = {".yaml", ".yml"};
     size_t unused;
     if (!request->path && !request->begins_empty)
-        return misused(why, "name a scene file, as experiments/scenes/rod.yaml, or begin with --new", "no scene is named");
+        return misused(why, "name a scene file, as experiments/scenes/rod.yaml, or begin with --new",
+                       "no scene is named");
     if (request->path && request->begins_empty)
         return misused(why, "give one of them", "a scene file and --new exclude each other");
     if (request->only_checks && request->only_lists)
@@ -106,7 +112,8 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
         result = scene_edit_apply(*out, request->edits[i].edit, request->edits[i].text, why);
     if (result == STATUS_OK) {
-        diagnostic_locate(why, request->path ? request->path : "--new", 0, 0); /* for checks that have no line to name */
+        diagnostic_locate(why, request->path ? request->path : "--new", 0,
+                          0); /* for checks that have no line to name */
         result = scene_check(*out, why);
     }
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
@@ -123,7 +130,8 @@ static status print_list(const scene *s)
             printf("%s %s", param_group_name(groups[g]), place_group_name(s, groups[g], i));
             if (groups[g] == PARAM_SOLID) {
                 const solid *owner = &s->solids[i];
-                printf(" %s %s", shape_name(owner->shape.kind), owner->material_index < 0 ? "-" : s->materials[owner->material_index].name);
+                printf(" %s %s", shape_name(owner->shape.kind),
+                       owner->material_index < 0 ? "-" : s->materials[owner->material_index].name);
             }
             putchar('\n');
         }
@@ -146,8 +154,9 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
         result = scene_input_lint(s, level, NULL, why);
     if (result != STATUS_OK)
         return result;
-    printf("%s: right; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n", request->path ? request->path : "--new",
-           s->mesh_count, s->texture_count, s->material_count, s->light_count, s->solid_count);
+    printf("%s: right; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n",
+           request->path ? request->path : "--new", s->mesh_count, s->texture_count, s->material_count, s->light_count,
+           s->solid_count);
     return STATUS_OK;
 }
 
@@ -162,12 +171,13 @@ static status run(const scene_request *request, scene *s, diagnostic *why)
     return result == STATUS_OK ? scene_write(s, output, request->writes_all, why) : result;
 }
 
-static const char about[] =
-    "Read a scene, or begin with an empty one; change it by the options, one after another; check it, and write it in one normal "
-    "form. Only what differs from the defaults is written. Comments are not kept.\vNothing is written when something is wrong. For "
-    "example:\n"
-    "  cuvette scene rod.yaml --move rod=0,0.5,0 --turn rod=0,0,-22 -o b.yaml\n"
-    "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8";
+static const char about[] = "Read a scene, or begin with an empty one; change it by the options, one after another; "
+                            "check it, and write it in one normal "
+                            "form. Only what differs from the defaults is written. Comments are not kept.\vNothing is "
+                            "written when something is wrong. For "
+                            "example:\n"
+                            "  cuvette scene rod.yaml --move rod=0,0.5,0 --turn rod=0,0,-22 -o b.yaml\n"
+                            "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8";
 
 status command_scene(int argc, char **argv, diagnostic *why)
 {
@@ -176,7 +186,8 @@ status command_scene(int argc, char **argv, diagnostic *why)
     const struct argp parser = {.options = options, .parser = take_option, .args_doc = "[FILE]", .doc = about};
     scene_request request = {.edits = calloc((size_t)argc + 1, sizeof *request.edits)};
     scene *s = NULL;
-    status result = request.edits ? options_parse(&parser, 0, argc, argv, &request, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status result = request.edits ? options_parse(&parser, 0, argc, argv, &request, why)
+                                  : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (result == STATUS_OK)
         result = check_request(&request, why);
     if (result == STATUS_OK)

@@ -94,8 +94,8 @@ static status apply_title(scene *s, const scene_edit *edit, const char *text, di
     return scene_set_title(s, text, why);
 }
 
-/* Cuts "a=1,b=2,3,c=4" where a comma is followed by "WORD=": the commas of vectors stay. Returns where the next parameter
- * begins, NULL at the end. */
+/* Cuts "a=1,b=2,3,c=4" where a comma is followed by "WORD=": the commas of vectors stay. Returns where the next
+ * parameter begins, NULL at the end. */
 static char *cut_parameter(char *text)
 {
     for (char *comma = strchr(text, ','); comma; comma = strchr(comma + 1, ',')) {
@@ -117,7 +117,8 @@ static status put_parameter(scene *s, const char *name, char *parameter, bool wa
     if (names_material != wants_material)
         return STATUS_OK;
     if (!equals)
-        return diagnose(why, STATUS_BAD_INPUT, "write PARAMETER=VALUE after each comma", "'%.80s' has no value", parameter);
+        return diagnose(why, STATUS_BAD_INPUT, "write PARAMETER=VALUE after each comma", "'%.80s' has no value",
+                        parameter);
     snprintf(path, sizeof path, "%s.%.*s", name, (int)(length < SCENE_NAME_MAX ? length : SCENE_NAME_MAX), parameter);
     return scene_put(s, path, equals + 1, why);
 }
@@ -151,8 +152,8 @@ static status add_object(scene *s, const char *kind, const char *name, const cha
         return add_solid(s, name, shape, why);
     if (shape)
         return diagnose(why, STATUS_BAD_INPUT, "leave it out", "a %.20s has no shape", kind);
-    status (*const adders[])(scene *, const char *, size_t *, diagnostic *) = {NULL, scene_add_light, scene_add_material, scene_add_mesh,
-                                                                               scene_add_texture};
+    status (*const adders[])(scene *, const char *, size_t *, diagnostic *) = {
+        NULL, scene_add_light, scene_add_material, scene_add_mesh, scene_add_texture};
     for (size_t i = 1; i < sizeof kinds / sizeof *kinds; i++)
         if (strcmp(kind, kinds[i]) == 0)
             return adders[i](s, name, NULL, why);
@@ -188,13 +189,19 @@ const scene_edit scene_edits[] = {
     {"--add", 0x200, "KIND:NAME[=SHAPE][,PARAM=VALUE]...",
      "add a solid, light, material, mesh or texture, as solid:rod=box,size=0.25,3,0.25", apply_add},
     {"--set", 's', "PATH=VALUE", "set a parameter, or NAME.material and NAME.shape of a solid", apply_set},
-    {"--move", 0x201, "NAME=DX,DY,DZ", "move a solid, a light, the camera; all, solids, lights, or words joined by +, as all+camera", apply_move},
+    {"--move", 0x201, "NAME=DX,DY,DZ",
+     "move a solid, a light, the camera; all, solids, lights, or words joined by +, as all+camera", apply_move},
     {"--turn", 0x202, "NAME=RX,RY,RZ",
-     "turn a solid or the camera, where it stands, or all and so on, about the origin: about the world's x, then y, then z axis, in degrees", apply_turn},
+     "turn a solid or the camera, where it stands, or all and so on, about the origin: about the world's x, then y, "
+     "then z axis, in degrees",
+     apply_turn},
     {"--scale", 0x206, "NAME=FACTOR",
-     "scale a solid or a light, where it stands, or all and so on, about the origin; with all solids, lengths in metres stay (render.unit_m)", apply_scale},
+     "scale a solid or a light, where it stands, or all and so on, about the origin; with all solids, lengths in "
+     "metres stay (render.unit_m)",
+     apply_scale},
     {"--rename", 0x203, "OLD=NEW", "give an object another name", apply_rename},
-    {"--delete", 0x204, "NAME", "take an object away; camera, background and render go back to their defaults", apply_delete},
+    {"--delete", 0x204, "NAME", "take an object away; camera, background and render go back to their defaults",
+     apply_delete},
     {"--title", 0x205, "TEXT", "give the scene another title", apply_title},
 };
 const size_t scene_edit_count = sizeof scene_edits / sizeof *scene_edits;

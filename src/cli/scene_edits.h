@@ -1,5 +1,5 @@
-/* The edits of `cuvette scene`, in the order in which the command line has them. Mistakes are located at the option that made
- * them. Ownership: words of the command line are borrowed. */
+/* The edits of `cuvette scene`, in the order in which the command line has them. Mistakes are located at the option
+ * that made them. Ownership: words of the command line are borrowed. */
 #ifndef CUVETTE_CLI_SCENE_EDITS_H
 #define CUVETTE_CLI_SCENE_EDITS_H
 

@@ -1,5 +1,5 @@
-/* The files that a scene reads, as they are found from the working folder: its own, its sky, its textures, its meshes and the scripts of its slimes.
- * Not those that a mesh's file names in turn. Ownership: everything is borrowed. */
+/* The files that a scene reads, as they are found from the working folder: its own, its sky, its textures, its meshes
+ * and the scripts of its slimes. Not those that a mesh's file names in turn. Ownership: everything is borrowed. */
 #ifndef CUVETTE_CLI_SCENE_FILES_H
 #define CUVETTE_CLI_SCENE_FILES_H
 

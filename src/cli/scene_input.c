@@ -118,8 +118,11 @@ void scene_input_note_tree(const scene *s)
     char text[160];
     if (!path && !drawn && !spectral)
         return;
-    snprintf(text, sizeof text, "the scene's picture is %s%s%s; rays are here traced as Whitted did, at render.lambda_nm = %.6g",
-             path ? "made of random paths" : drawn ? "drawn into a depth buffer" : "",
+    snprintf(text, sizeof text,
+             "the scene's picture is %s%s%s; rays are here traced as Whitted did, at render.lambda_nm = %.6g",
+             path    ? "made of random paths"
+             : drawn ? "drawn into a depth buffer"
+                     : "",
              path && spectral ? " and " : "", spectral ? "spectral" : "", s->render.lambda_nm);
     terminal_note(text);
 }

@@ -9,8 +9,8 @@
 #include "scene/scene.h"
 
 typedef struct scene_change {
-    const char *option;  /* "--set" */
-    const char *path;    /* "render.depth"; NULL where the text is PATH=VALUE */
+    const char *option; /* "--set" */
+    const char *path;   /* "render.depth"; NULL where the text is PATH=VALUE */
     const char *text;
 } scene_change;
 

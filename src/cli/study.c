@@ -112,7 +112,8 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     if (result == STATUS_OK)
         result = study_run(s, &options, &rows, why);
     if (result == STATUS_INTERRUPTED) {
-        diagnose(why, STATUS_INTERRUPTED, study_keeps_files(s) ? "run it again to go on; pictures are made at the end" : "run it again to go on",
+        diagnose(why, STATUS_INTERRUPTED,
+                 study_keeps_files(s) ? "run it again to go on; pictures are made at the end" : "run it again to go on",
                  "interrupted; its %zu new rows are kept", rows);
         diagnostic_locate(why, s->path, 0, 0);
     }

@@ -82,11 +82,12 @@ static const struct argp parsers[STUDY_VERB_COUNT] = {
                      .parser = take_option,
                      .args_doc = "FILE...",
                      .doc = "Join the rows of a study's shards into its rows.csv."},
-    [STUDY_SUMMARY] = {.options = results_options,
-                       .parser = take_option,
-                       .args_doc = "FILE",
-                       .doc = "Print one line a cell: medians, 95% intervals, counts.\vOn a terminal the columns that one looks at "
-                              "first; into a file or pipe all of them, separated by tabs."},
+    [STUDY_SUMMARY] =
+        {.options = results_options,
+         .parser = take_option,
+         .args_doc = "FILE",
+         .doc = "Print one line a cell: medians, 95% intervals, counts.\vOn a terminal the columns that one looks at "
+                "first; into a file or pipe all of them, separated by tabs."},
 };
 
 static status check_files(const study_request *request, const char *program, diagnostic *why)

@@ -56,8 +56,8 @@ static bool has_column(const fields *f, const char *name)
     return strcmp(f->field[column_of(f, name)], name) == 0;
 }
 
-/* The columns from the cell to n as they are, then wall_s, cpu_s, rays and marked, and of a study with a reference how far the pictures lie
- * from it. Fresh memory. */
+/* The columns from the cell to n as they are, then wall_s, cpu_s, rays and marked, and of a study with a reference how
+ * far the pictures lie from it. Fresh memory. */
 static char *shown(const fields *f, size_t row, size_t column)
 {
     size_t plain = column_of(f, "n") + 1;

@@ -13,7 +13,7 @@ typedef enum trace_format { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_NONE } 
 
 typedef struct trace_request {
     scene_input input;
-    const char *output;   /* NULL: standard output */
+    const char *output; /* NULL: standard output */
     trace_format format;
     bool by_pixel, by_ray, one_wavelength;
     double pixel[2], ray[6];
@@ -25,7 +25,8 @@ static const struct argp_option options[] = {
     {"pixel", KEY_PIXEL, "X,Y", 0, "trace the camera rays of a pixel; 0,0 is at the top left", 0},
     {"ray", KEY_RAY, "OX,OY,OZ,DX,DY,DZ", 0, "trace the ray from a point in a direction of any length", 0},
     {"depth", KEY_DEPTH, "N", 0, "the same as --set render.depth=N", 0},
-    {"lambda", KEY_LAMBDA, "NM", 0, "one wavelength for indices and for absorption by wavelength; sets render.lambda_nm", 0},
+    {"lambda", KEY_LAMBDA, "NM", 0,
+     "one wavelength for indices and for absorption by wavelength; sets render.lambda_nm", 0},
     {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'liquid.ior=1.4'; may be given many times", 0},
     {"text", KEY_TEXT, NULL, 0, "print an indented tree, a line a ray (the default)", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object", 0},
@@ -76,7 +77,8 @@ static error_t take_option(int key, char *value, struct argp_state *state)
     case KEY_PIXEL: return take_pixel(request, value, input->why);
     case KEY_RAY:
         request->by_ray = true;
-        return options_reals("--ray", value, "OX,OY,OZ,DX,DY,DZ", 6, request->ray, input->why) == STATUS_OK ? 0 : EINVAL;
+        return options_reals("--ray", value, "OX,OY,OZ,DX,DY,DZ", 6, request->ray, input->why) == STATUS_OK ? 0
+                                                                                                            : EINVAL;
     case KEY_TEXT: return take_format(request, FORMAT_TEXT, input->why);
     case KEY_JSON: return take_format(request, FORMAT_JSON, input->why);
     case KEY_SVG: return take_format(request, FORMAT_SVG, input->why);
@@ -89,7 +91,8 @@ static const struct argp parser = {
     .options = options,
     .parser = take_option,
     .args_doc = "SCENE (--pixel X,Y | --ray OX,OY,OZ,DX,DY,DZ)",
-    .doc = "Take one ray apart: the whole tree of rays that it grows into, with media, angles, reflectances and what each brings to "
+    .doc = "Take one ray apart: the whole tree of rays that it grows into, with media, angles, reflectances and what "
+           "each brings to "
            "the picture. The tree of a pixel has the pixel's radiance, to the bit.\vFor example:\n"
            "  cuvette trace experiments/scenes/rod.yaml --pixel 400,300 --depth 3\n"
            "  cuvette trace experiments/scenes/rod.yaml --ray -3,1.5,0.4,1,0,0 -o ray.svg",
@@ -108,8 +111,8 @@ static status check_request(trace_request *request, diagnostic *why)
         return result;
     size_t which = FORMAT_TEXT;
     if (request->output && strcmp(request->output, "-") != 0)
-        result = outputs_ending("-o", request->output, endings, 3, "end it in .txt, .json or .svg, or give --text, --json or --svg", &which,
-                                why);
+        result = outputs_ending("-o", request->output, endings, 3,
+                                "end it in .txt, .json or .svg, or give --text, --json or --svg", &which, why);
     request->format = (trace_format)which;
     return result;
 }
@@ -127,8 +130,9 @@ static status load_scene(const trace_request *request, scene **out, diagnostic *
 static status grow(const trace_request *request, probe *p, ray_tree *tree, diagnostic *why)
 {
     const double *r = request->ray;
-    status result = request->by_pixel ? probe_pixel(p, (int)request->pixel[0], (int)request->pixel[1], tree, why)
-                                      : probe_ray(p, vec3_make(r[0], r[1], r[2]), vec3_make(r[3], r[4], r[5]), tree, why);
+    status result = request->by_pixel
+                        ? probe_pixel(p, (int)request->pixel[0], (int)request->pixel[1], tree, why)
+                        : probe_ray(p, vec3_make(r[0], r[1], r[2]), vec3_make(r[3], r[4], r[5]), tree, why);
     if (result == STATUS_BAD_INPUT)
         diagnostic_locate(why, request->by_pixel ? "--pixel" : "--ray", 0, 0);
     return result;

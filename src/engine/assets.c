@@ -31,7 +31,8 @@ static double element(const double *doubles, const float *floats, size_t i)
 static void copy_vectors(const double *doubles, const float *floats, size_t count, vec3 *out)
 {
     for (size_t i = 0; i < count; i++)
-        out[i] = vec3_make(element(doubles, floats, 3 * i), element(doubles, floats, 3 * i + 1), element(doubles, floats, 3 * i + 2));
+        out[i] = vec3_make(element(doubles, floats, 3 * i), element(doubles, floats, 3 * i + 1),
+                           element(doubles, floats, 3 * i + 2));
 }
 
 static status make_mesh(const cuvette_triangles *t, mesh **out, diagnostic *why)
@@ -72,15 +73,19 @@ static status make_mesh(const cuvette_triangles *t, mesh **out, diagnostic *why)
 static status check_arrays(const cuvette_triangles *t, diagnostic *why)
 {
     if (t->size < sizeof *t) /* there is no earlier version yet */
-        return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_triangles)", "the triangles' size is %zu", t->size);
+        return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_triangles)", "the triangles' size is %zu",
+                        t->size);
     if ((!t->vertices == !t->vertices_float && t->vertex_count > 0) || (!t->corners && t->triangle_count > 0))
-        return diagnose(why, STATUS_BAD_INPUT, "give vertices, as doubles or as floats, and corners", "the triangles' arrays are not all there");
+        return diagnose(why, STATUS_BAD_INPUT, "give vertices, as doubles or as floats, and corners",
+                        "the triangles' arrays are not all there");
     if ((t->normals && t->normals_float) || (t->uvs && t->uvs_float))
-        return diagnose(why, STATUS_BAD_INPUT, "give doubles or floats", "normals or texture coordinates are there twice");
+        return diagnose(why, STATUS_BAD_INPUT, "give doubles or floats",
+                        "normals or texture coordinates are there twice");
     return STATUS_OK;
 }
 
-cuvette_status cuvette_scene_add_triangles(cuvette_scene *s, const char *name, const cuvette_triangles *triangles, cuvette_diagnostic *why)
+cuvette_status cuvette_scene_add_triangles(cuvette_scene *s, const char *name, const cuvette_triangles *triangles,
+                                           cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
@@ -104,7 +109,8 @@ cuvette_status cuvette_scene_add_triangles(cuvette_scene *s, const char *name, c
     return CUVETTE_OK;
 }
 
-cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int width, int height, const float *rgb, cuvette_diagnostic *why)
+cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int width, int height, const float *rgb,
+                                        cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
@@ -114,13 +120,16 @@ cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int 
     image *picture = NULL;
     texture *made = NULL;
     size_t index = 0;
-    status code = width >= 1 && height >= 1 && width <= IMAGE_SIDE_MAX && height <= IMAGE_SIDE_MAX && width <= SCENE_PIXELS_MAX / height
-                      ? image_create(width, height, &picture, &inner)
-                      : diagnose(&inner, STATUS_BAD_INPUT, "keep both from 1 to 65536, and their product within 268435456",
-                                 "a texture cannot be %d x %d", width, height);
+    status code =
+        width >= 1 && height >= 1 && width <= IMAGE_SIDE_MAX && height <= IMAGE_SIDE_MAX &&
+                width <= SCENE_PIXELS_MAX / height
+            ? image_create(width, height, &picture, &inner)
+            : diagnose(&inner, STATUS_BAD_INPUT, "keep both from 1 to 65536, and their product within 268435456",
+                       "a texture cannot be %d x %d", width, height);
     if (code == STATUS_OK) {
         memcpy(picture->pixel, rgb, 3 * (size_t)width * (size_t)height * sizeof *rgb);
-        code = texture_create(picture, TEXTURE_LINEAR, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &made, &inner);
+        code =
+            texture_create(picture, TEXTURE_LINEAR, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &made, &inner);
     }
     image_destroy(picture);
     if (code == STATUS_OK)

@@ -57,7 +57,8 @@ static void fill_coarse(const canvas *c, const film *f, int x0, int y0, int x1, 
         }
 }
 
-void canvas_bytes(const film *f, const codec_bytes *bytes, int x0, int y0, int x1, int y1, unsigned char *srgb, size_t stride)
+void canvas_bytes(const film *f, const codec_bytes *bytes, int x0, int y0, int x1, int y1, unsigned char *srgb,
+                  size_t stride)
 {
     float rgb[3 * CHUNK];
     for (int y = y0; y < y1; y++)
@@ -80,7 +81,8 @@ void canvas_fill(const canvas *c, const film *f, int x0, int y0, int x1, int y1,
     if (r->rgb)
         film_read(f, x0, y0, x1, y1, r->rgb + (size_t)y0 * r->rgb_stride + 3 * (size_t)x0, r->rgb_stride);
     if (r->srgb)
-        canvas_bytes(f, c->bytes, x0, y0, x1, y1, r->srgb + (size_t)y0 * r->srgb_stride + 3 * (size_t)x0, r->srgb_stride);
+        canvas_bytes(f, c->bytes, x0, y0, x1, y1, r->srgb + (size_t)y0 * r->srgb_stride + 3 * (size_t)x0,
+                     r->srgb_stride);
 }
 
 void canvas_note(canvas *c, cuvette_piece piece)
@@ -119,5 +121,6 @@ status canvas_hand_out(canvas *c, diagnostic *why)
     for (size_t i = 0; i < count; i++)
         canvas_hand_piece(c, &pieces[i]);
     free(pieces);
-    return out_of_memory ? diagnose(why, STATUS_FAILURE, "", "out of memory for the list of finished pieces") : STATUS_OK;
+    return out_of_memory ? diagnose(why, STATUS_FAILURE, "", "out of memory for the list of finished pieces")
+                         : STATUS_OK;
 }

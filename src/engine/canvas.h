@@ -1,5 +1,6 @@
-/* The caller's buffers, and the pieces of them that are finished: workers fill in pieces and note them, the calling thread hands the
- * notes to the caller. Ownership: canvas_open gives memory, canvas_close takes it; film and request are borrowed. */
+/* The caller's buffers, and the pieces of them that are finished: workers fill in pieces and note them, the calling
+ * thread hands the notes to the caller. Ownership: canvas_open gives memory, canvas_close takes it; film and request
+ * are borrowed. */
 #ifndef CUVETTE_ENGINE_CANVAS_H
 #define CUVETTE_ENGINE_CANVAS_H
 
@@ -32,6 +33,7 @@ status canvas_hand_out(canvas *c, diagnostic *why);
 void canvas_hand_piece(canvas *c, const cuvette_piece *piece);
 
 /* A rectangle of the film as sRGB bytes; stride: bytes from one row to the next. */
-void canvas_bytes(const film *f, const codec_bytes *bytes, int x0, int y0, int x1, int y1, unsigned char *srgb, size_t stride);
+void canvas_bytes(const film *f, const codec_bytes *bytes, int x0, int y0, int x1, int y1, unsigned char *srgb,
+                  size_t stride);
 
 #endif

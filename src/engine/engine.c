@@ -17,11 +17,13 @@ status engine_isa(const char *name, isa *out, diagnostic *why)
         if (strcmp(isa_name((isa)level), name) != 0)
             continue;
         if ((isa)level > isa_best())
-            return diagnose(why, STATUS_BAD_INPUT, "take NULL for the best that there is", "this processor has no %s", name);
+            return diagnose(why, STATUS_BAD_INPUT, "take NULL for the best that there is", "this processor has no %s",
+                            name);
         *out = (isa)level;
         return STATUS_OK;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "take sse2, avx2, avx512, or NULL", "no instruction set is called '%.64s'", name);
+    return diagnose(why, STATUS_BAD_INPUT, "take sse2, avx2, avx512, or NULL", "no instruction set is called '%.64s'",
+                    name);
 }
 
 cuvette_status cuvette_engine_create(const char *instructions, cuvette_engine **out, cuvette_diagnostic *why)
@@ -31,7 +33,8 @@ cuvette_status cuvette_engine_create(const char *instructions, cuvette_engine **
     *out = NULL;
     diagnostic inner = {.line = 0};
     cuvette_engine *e = calloc(1, sizeof *e);
-    status code = e ? engine_isa(instructions, &e->level, &inner) : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
+    status code =
+        e ? engine_isa(instructions, &e->level, &inner) : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK)
         code = renderer_create(e->level, NULL, &e->workers, &inner);
     if (code != STATUS_OK) {
@@ -63,9 +66,9 @@ typedef struct stage {
     const cuvette_request *request;
     float_environment *host; /* the caller's, for the caller's functions */
     canvas buffers;
-    double share;      /* reported so far */
+    double share; /* reported so far */
     bool is_preview;
-    status noted;      /* of handing out pieces */
+    status noted; /* of handing out pieces */
 } stage;
 
 static bool caller_goes_on(stage *now)
@@ -110,20 +113,23 @@ static status read_request(const cuvette_request *given, const scene *s, cuvette
         return diagnose(why, STATUS_BAD_INPUT, "begin with CUVETTE_REQUEST", "a request's size is %zu", given->size);
     memcpy(out, given, sizeof *out);
     if (out->preview != 0 && (out->preview < 2 || out->preview > PREVIEW_MAX))
-        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or from 2 to 64", "a request's preview is %d", out->preview);
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or from 2 to 64", "a request's preview is %d",
+                        out->preview);
     if (!out->rgb && !out->srgb)
         return STATUS_OK;
     if (out->width != s->render.width || out->height != s->render.height)
-        return diagnose(why, STATUS_BAD_INPUT, "make the buffers as large as the picture, or set render.width and render.height",
-                        "the buffers are %d x %d, and the picture is %lld x %lld", out->width, out->height, (long long)s->render.width,
-                        (long long)s->render.height);
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "make the buffers as large as the picture, or set render.width and render.height",
+                        "the buffers are %d x %d, and the picture is %lld x %lld", out->width, out->height,
+                        (long long)s->render.width, (long long)s->render.height);
     const size_t row = 3 * (size_t)out->width;
     if (out->rgb_stride == 0)
         out->rgb_stride = row;
     if (out->srgb_stride == 0)
         out->srgb_stride = row;
     if (out->rgb_stride < row || out->srgb_stride < row)
-        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width", "a request's stride is shorter than a row");
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width",
+                        "a request's stride is shorter than a row");
     return STATUS_OK;
 }
 
@@ -177,7 +183,8 @@ static status render_frame(stage *now, const scene *s, cuvette_frame *frame, dia
     if (kept && r->piece && now->noted == STATUS_OK)
         now->noted = canvas_hand_out(&now->buffers, why);
     else if (kept && !r->piece)
-        canvas_fill(&now->buffers, frame->result->picture, 0, 0, frame->result->picture->width, frame->result->picture->height, 1);
+        canvas_fill(&now->buffers, frame->result->picture, 0, 0, frame->result->picture->width,
+                    frame->result->picture->height, 1);
     if (code == STATUS_OK && now->noted != STATUS_OK)
         code = diagnose(why, now->noted, "", "out of memory for the list of finished pieces");
     if (code == STATUS_OK)
@@ -225,8 +232,8 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
     return code;
 }
 
-cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene *s, const cuvette_request *request, cuvette_frame **out,
-                                     cuvette_diagnostic *why)
+cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene *s, const cuvette_request *request,
+                                     cuvette_frame **out, cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     if (out)
@@ -235,7 +242,9 @@ cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene
     ENGINE_NEED_SCENE(s, why);
     diagnostic inner = {.line = 0};
     if (atomic_exchange(&engine->busy, true)) {
-        engine_report(diagnose(&inner, STATUS_BAD_INPUT, "wait for it to end, or make a second engine", "the engine is rendering"), &inner, why);
+        engine_report(diagnose(&inner, STATUS_BAD_INPUT, "wait for it to end, or make a second engine",
+                               "the engine is rendering"),
+                      &inner, why);
         return CUVETTE_BUSY;
     }
     cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* every handle was made by us, none is constant */

@@ -1,5 +1,5 @@
-/* What the engine's handles hold, and how its files turn the library's errors into those of cuvette.h. Not seen from outside.
- * Ownership as cuvette.h says. */
+/* What the engine's handles hold, and how its files turn the library's errors into those of cuvette.h. Not seen from
+ * outside. Ownership as cuvette.h says. */
 #ifndef CUVETTE_ENGINE_ENGINE_PRIVATE_H
 #define CUVETTE_ENGINE_ENGINE_PRIVATE_H
 
@@ -16,13 +16,14 @@ struct cuvette_scene {
     pthread_mutex_t loading; /* held while pictures are read; afterwards they are only looked at */
     atomic_int renders;      /* under way */
     atomic_bool advancing;   /* a motion moves its slimes */
-    atomic_int owners;       /* the handle and the motions made of it: the last one frees this struct, the handle's end the model */
+    /* the handle and the motions made of it: the last one frees this struct, the handle's end the model */
+    atomic_int owners;
     uint64_t slimes_changed; /* how often what a motion holds of it has: its slimes, their number, their motion */
 };
 
 struct cuvette_engine {
     isa level;
-    topology *machine;       /* NULL until a scene wants its threads pinned */
+    topology *machine; /* NULL until a scene wants its threads pinned */
     renderer *workers;
     atomic_bool busy, cancelled;
 };
@@ -64,8 +65,8 @@ status engine_load(cuvette_scene *s, diagnostic *why);
 /* Takes over the model; destroys it when memory is out. */
 cuvette_status engine_wrap_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why);
 
-/* Copies as much of content, of `known` bytes, as the caller's struct, an older or a newer one, has room for; its own size, with which both
- * begin, stays. */
+/* Copies as much of content, of `known` bytes, as the caller's struct, an older or a newer one, has room for; its own
+ * size, with which both begin, stays. */
 cuvette_status engine_give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why);
 
 /* d / |d|, without over- or underflow on the way; a unit vector but for rounding stays as it is, to the bit. */
@@ -78,27 +79,27 @@ cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *
  * and whichever way it returns, the caller's is put back (the attribute is one of gcc and clang). The caller's
  * functions run in the caller's: around a call of one stand float_environment_leave(&host) and
  * float_environment_enter(&host). */
-#define ENGINE_ENTER(host) \
+#define ENGINE_ENTER(host)                                                    \
     float_environment host __attribute__((cleanup(float_environment_leave))); \
     float_environment_enter(&host)
 
-/* Shorthand for the beginning of a function: leaves with CUVETTE_BAD_INPUT when an argument is NULL. Where cuvette.h's name of it
- * is a type of the library, the definition has another one. */
+/* Shorthand for the beginning of a function: leaves with CUVETTE_BAD_INPUT when an argument is NULL. Where cuvette.h's
+ * name of it is a type of the library, the definition has another one. */
 #define ENGINE_NEED_NAMED(argument, name, why) \
-    do { \
-        if (!(argument)) \
-            return engine_missing(name, why); \
+    do {                                       \
+        if (!(argument))                       \
+            return engine_missing(name, why);  \
     } while (0)
 #define ENGINE_NEED(argument, why) ENGINE_NEED_NAMED(argument, #argument, why)
 #define ENGINE_NEED_SCENE(s, why) ENGINE_NEED_NAMED(s, "scene", why)
 
 /* The same for a function that changes the scene: also when it is being rendered. */
-#define ENGINE_CHANGE(s, why) \
-    do { \
-        ENGINE_NEED_SCENE(s, why); \
+#define ENGINE_CHANGE(s, why)                                        \
+    do {                                                             \
+        ENGINE_NEED_SCENE(s, why);                                   \
         const cuvette_status may_change = engine_may_change(s, why); \
-        if (may_change != CUVETTE_OK) \
-            return may_change; \
+        if (may_change != CUVETTE_OK)                                \
+            return may_change;                                       \
     } while (0)
 
 #endif

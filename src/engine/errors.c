@@ -40,8 +40,9 @@ cuvette_status engine_report(status code, const diagnostic *inner, cuvette_diagn
 cuvette_status engine_missing(const char *name, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
-    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give what cuvette.h asks for there", "the argument '%s' is NULL", name), &inner,
-                         why);
+    return engine_report(
+        diagnose(&inner, STATUS_BAD_INPUT, "give what cuvette.h asks for there", "the argument '%s' is NULL", name),
+        &inner, why);
 }
 
 cuvette_status engine_give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why)
@@ -50,8 +51,10 @@ cuvette_status engine_give_struct(const void *content, size_t known, void *out, 
     size_t size;
     memcpy(&size, out, sizeof size);
     if (size <= sizeof size || size > 65536)
-        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "set its size to the sizeof of its type before the call",
-                                      "the struct to be filled in says that it has %zu bytes", size), &inner, why);
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT,
+                                      "set its size to the sizeof of its type before the call",
+                                      "the struct to be filled in says that it has %zu bytes", size),
+                             &inner, why);
     memset((char *)out + sizeof size, 0, size - sizeof size);
     memcpy((char *)out + sizeof size, (const char *)content + sizeof size, (size < known ? size : known) - sizeof size);
     return CUVETTE_OK;

@@ -34,13 +34,16 @@ static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, siz
 {
     if (x0 < 0 || y0 < 0 || x1 > f->width || y1 > f->height || x0 >= x1 || y0 >= y1)
         return diagnose(why, STATUS_BAD_INPUT, "keep 0 <= x0 < x1 <= width, and y likewise",
-                        "no part of a picture of %d x %d lies from %d,%d to %d,%d", f->width, f->height, x0, y0, x1, y1);
+                        "no part of a picture of %d x %d lies from %d,%d to %d,%d", f->width, f->height, x0, y0, x1,
+                        y1);
     if (stride < 3 * (size_t)(x1 - x0))
-        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width", "a stride of %zu is shorter than a row", stride);
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width",
+                        "a stride of %zu is shorter than a row", stride);
     return STATUS_OK;
 }
 
-cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, float *rgb, size_t stride, cuvette_diagnostic *why)
+cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, float *rgb, size_t stride,
+                                 cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
@@ -53,8 +56,8 @@ cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int
     return engine_report(code, &inner, why);
 }
 
-cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, unsigned char *srgb, size_t stride,
-                                  cuvette_diagnostic *why)
+cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, unsigned char *srgb,
+                                  size_t stride, cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
@@ -76,7 +79,9 @@ cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path,
     ENGINE_NEED(frame, why);
     ENGINE_NEED(path, why);
     diagnostic inner = {.line = 0};
-    status code = bits == 8 || bits == 16 ? STATUS_OK : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "a picture cannot have %d bits", bits);
+    status code = bits == 8 || bits == 16
+                      ? STATUS_OK
+                      : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "a picture cannot have %d bits", bits);
     if (code == STATUS_OK)
         code = record_picture(frame->result->picture, path, bits, &inner);
     return engine_report(code, &inner, why);
@@ -90,8 +95,13 @@ cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counte
     ENGINE_NEED(frame, why);
     ENGINE_NEED(out, why);
     const ray_counters *c = &frame->result->counters;
-    cuvette_counters told = {.camera = c->camera, .reflect = c->reflect, .refract = c->refract, .shadow = c->shadow,
-                             .total_internal = c->total_internal, .cut_depth = c->cut_depth, .cut_weight = c->cut_weight};
+    cuvette_counters told = {.camera = c->camera,
+                             .reflect = c->reflect,
+                             .refract = c->refract,
+                             .shadow = c->shadow,
+                             .total_internal = c->total_internal,
+                             .cut_depth = c->cut_depth,
+                             .cut_weight = c->cut_weight};
     for (int i = 0; i < 3; i++) {
         told.cut_depth_throughput[i] = (double)c->cut_depth_throughput[i] / COUNTERS_CUT_ONE;
         told.cut_weight_throughput[i] = (double)c->cut_weight_throughput[i] / COUNTERS_CUT_ONE;
@@ -100,17 +110,20 @@ cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counte
     return engine_give_struct(&told, sizeof told, out, why);
 }
 
-cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t index, cuvette_solid_counters *out, cuvette_diagnostic *why)
+cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t index, cuvette_solid_counters *out,
+                                            cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
     ENGINE_NEED(out, why);
     diagnostic inner = {.line = 0};
     if (index >= frame->solid_count)
-        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "count them from 0", "there is no solid %zu among the scene's %zu", index,
-                                      frame->solid_count), &inner, why);
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "count them from 0",
+                                      "there is no solid %zu among the scene's %zu", index, frame->solid_count),
+                             &inner, why);
     const ray_counters *c = &frame->result->counters;
-    const cuvette_solid_counters told = {.tests = c->tests[index], .hits = c->hits[index], .first_hits = c->first_hits[index]};
+    const cuvette_solid_counters told = {
+        .tests = c->tests[index], .hits = c->hits[index], .first_hits = c->first_hits[index]};
     return engine_give_struct(&told, sizeof told, out, why);
 }
 
@@ -120,7 +133,10 @@ cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_stat
     ENGINE_NEED(frame, why);
     ENGINE_NEED(out, why);
     const render_result *r = frame->result;
-    const cuvette_statistics told = {.wall_s = r->wall_s, .cpu_s = r->cpu_s, .preview_s = frame->preview_s, .threads = r->worker_count,
+    const cuvette_statistics told = {.wall_s = r->wall_s,
+                                     .cpu_s = r->cpu_s,
+                                     .preview_s = frame->preview_s,
+                                     .threads = r->worker_count,
                                      .noise_rms = render_noise_rms(r)};
     return engine_give_struct(&told, sizeof told, out, why);
 }

@@ -66,8 +66,9 @@ static status check_alive(const cuvette_motion *m, diagnostic *why)
     if (!m->of->model)
         return diagnose(why, STATUS_BAD_INPUT, remedy, "the motion's scene is destroyed");
     if (m->of->slimes_changed != m->slimes_changed)
-        return diagnose(why, STATUS_BAD_INPUT, remedy,
-                        "the scene's slimes are no longer the motion's: one was changed, a mesh removed, or another motion made");
+        return diagnose(
+            why, STATUS_BAD_INPUT, remedy,
+            "the scene's slimes are no longer the motion's: one was changed, a mesh removed, or another motion made");
     if (m->failed)
         return diagnose(why, STATUS_BAD_INPUT, remedy, "the motion ended when an advance failed");
     return STATUS_OK;
@@ -76,7 +77,8 @@ static status check_alive(const cuvette_motion *m, diagnostic *why)
 cuvette_status motion_is_alive(const cuvette_motion *m, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
-    return atomic_load(&m->of->advancing) ? engine_is_advancing(why) : engine_report(check_alive(m, &inner), &inner, why);
+    return atomic_load(&m->of->advancing) ? engine_is_advancing(why)
+                                          : engine_report(check_alive(m, &inner), &inner, why);
 }
 
 /* What can be seen before a body has moved: the motion goes on when it is refused. */
@@ -132,7 +134,9 @@ size_t cuvette_motion_count(const cuvette_motion *motion)
 
 const char *cuvette_motion_name(const cuvette_motion *motion, size_t index)
 {
-    return index < cuvette_motion_count(motion) ? motion->of->model->meshes[scene_motion_mesh(motion->bodies, index)].name : NULL;
+    return index < cuvette_motion_count(motion)
+               ? motion->of->model->meshes[scene_motion_mesh(motion->bodies, index)].name
+               : NULL;
 }
 
 status motion_find(const cuvette_motion *m, const char *name, size_t *index, int *solid_or_none, diagnostic *why)
@@ -158,7 +162,8 @@ static void put_vector(vec3 v, double *out)
     out[0] = v.x, out[1] = v.y, out[2] = v.z;
 }
 
-cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *name, cuvette_slime *out, cuvette_diagnostic *why)
+cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *name, cuvette_slime *out,
+                                    cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(motion, why);
@@ -175,9 +180,20 @@ cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *na
         return engine_report(code, &inner, why);
     const softbody *body = scene_motion_body(motion->bodies, i);
     const softbody_account a = softbody_measure(body);
-    cuvette_slime told = {.time_s = a.time_s, .steps = a.steps, .substeps = a.substeps, .masses = softbody_mass_count(body), .held = a.held,
-                          .kinetic = a.kinetic, .elastic = a.elastic, .compression = a.compression, .gravity = a.gravity, .volume = a.volume,
-                          .volume_at_rest = a.volume_at_rest, .low = a.low, .high = a.high, .speed_max = a.speed_max};
+    cuvette_slime told = {.time_s = a.time_s,
+                          .steps = a.steps,
+                          .substeps = a.substeps,
+                          .masses = softbody_mass_count(body),
+                          .held = a.held,
+                          .kinetic = a.kinetic,
+                          .elastic = a.elastic,
+                          .compression = a.compression,
+                          .gravity = a.gravity,
+                          .volume = a.volume,
+                          .volume_at_rest = a.volume_at_rest,
+                          .low = a.low,
+                          .high = a.high,
+                          .speed_max = a.speed_max};
     put_vector(a.center, told.center);
     put_vector(a.momentum, told.momentum);
     return engine_give_struct(&told, sizeof told, out, why);

@@ -17,7 +17,8 @@ static status check_ray(const cuvette_ray *ray, diagnostic *why)
 {
     const double *o = ray->origin, *d = ray->direction, far_origin = 1e6;
     if (!(fabs(o[0]) <= far_origin && fabs(o[1]) <= far_origin && fabs(o[2]) <= far_origin))
-        return diagnose(why, STATUS_BAD_INPUT, "start within 1e6 scene units of the middle", "the ray starts too far away");
+        return diagnose(why, STATUS_BAD_INPUT, "start within 1e6 scene units of the middle",
+                        "the ray starts too far away");
     if (!is_finite(d) || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "give a finite direction that is not 0,0,0", "the ray has no direction");
     if (!(ray->reach >= 0.0))
@@ -26,14 +27,16 @@ static status check_ray(const cuvette_ray *ray, diagnostic *why)
 }
 
 /* Under which solid the ray meets the slime of that name; best->distance is infinite where it misses. */
-static status pick(const cuvette_motion *m, const char *name, const cuvette_ray *ray, size_t *slime, motion_place *best, diagnostic *why)
+static status pick(const cuvette_motion *m, const char *name, const cuvette_ray *ray, size_t *slime, motion_place *best,
+                   diagnostic *why)
 {
     int only;
     status code = motion_find(m, name, slime, &only, why);
     if (code == STATUS_OK)
         code = check_ray(ray, why);
     if (code == STATUS_OK)
-        code = scene_motion_pick(m->bodies, *slime, only < 0 ? MOTION_ANY_SOLID : only, vector_of(ray->origin), engine_unit(ray->direction), best, why);
+        code = scene_motion_pick(m->bodies, *slime, only < 0 ? MOTION_ANY_SOLID : only, vector_of(ray->origin),
+                                 engine_unit(ray->direction), best, why);
     if (code == STATUS_OK && ray->reach > 0.0 && best->distance > ray->reach)
         best->distance = INFINITY;
     return code;
@@ -45,8 +48,8 @@ static void tell(const motion_place *found, double *where)
         where[0] = found->where.x, where[1] = found->where.y, where[2] = found->where.z;
 }
 
-cuvette_status cuvette_motion_pick(const cuvette_motion *motion, const char *name, const cuvette_ray *ray, double *where, double *distance,
-                                   cuvette_diagnostic *why)
+cuvette_status cuvette_motion_pick(const cuvette_motion *motion, const char *name, const cuvette_ray *ray,
+                                   double *where, double *distance, cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(motion, why);
@@ -67,8 +70,8 @@ cuvette_status cuvette_motion_pick(const cuvette_motion *motion, const char *nam
     return CUVETTE_OK;
 }
 
-cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, const cuvette_ray *ray, double reach, int *hand, double *where,
-                                   cuvette_diagnostic *why)
+cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, const cuvette_ray *ray, double reach,
+                                   int *hand, double *where, cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(motion, why);
@@ -88,7 +91,8 @@ cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, con
     if (code == STATUS_OK)
         code = pick(motion, name, ray, &slime, &found, &inner);
     if (code == STATUS_OK && isfinite(found.distance))
-        code = scene_motion_grab(motion->bodies, slime, &found, reach, &motion->hands[slime * SOFTBODY_HANDS_MAX], &number, &inner);
+        code = scene_motion_grab(motion->bodies, slime, &found, reach, &motion->hands[slime * SOFTBODY_HANDS_MAX],
+                                 &number, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     tell(&found, where);
@@ -108,7 +112,8 @@ static cuvette_status find_hand(cuvette_motion *m, int number, motion_hand **out
     if (holds)
         *out = &m->hands[number];
     else
-        diagnose(&inner, STATUS_BAD_INPUT, "give the number that cuvette_motion_grab told", "hand %d holds nothing", number);
+        diagnose(&inner, STATUS_BAD_INPUT, "give the number that cuvette_motion_grab told", "hand %d holds nothing",
+                 number);
     return engine_report(holds ? STATUS_OK : STATUS_BAD_INPUT, &inner, why);
 }
 
@@ -123,7 +128,8 @@ cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand, const doubl
         return code;
     diagnostic inner = {.line = 0};
     if (!is_finite(by))
-        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give three finite numbers", "the hand moves to nowhere"), &inner, why);
+        return engine_report(
+            diagnose(&inner, STATUS_BAD_INPUT, "give three finite numbers", "the hand moves to nowhere"), &inner, why);
     h->to = motion_hand_way(h, vector_of(by));
     return CUVETTE_OK;
 }

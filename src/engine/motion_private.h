@@ -1,4 +1,5 @@
-/* A motion, shared by motion.c (its life and its time) and motion_hands.c (what takes hold of it). Ownership as cuvette.h says. */
+/* A motion, shared by motion.c (its life and its time) and motion_hands.c (what takes hold of it). Ownership as
+ * cuvette.h says. */
 #ifndef CUVETTE_ENGINE_MOTION_PRIVATE_H
 #define CUVETTE_ENGINE_MOTION_PRIVATE_H
 
@@ -11,7 +12,7 @@ struct cuvette_motion {
     uint64_t slimes_changed; /* the scene's when this was made */
     bool failed;             /* an advance did: a body is of no more use */
     double time_s;
-    motion_hand *hands;      /* SOFTBODY_HANDS_MAX of each slime, by the body's own numbers */
+    motion_hand *hands; /* SOFTBODY_HANDS_MAX of each slime, by the body's own numbers */
 };
 
 /* CUVETTE_OK when it can still be used, and is not under way. */

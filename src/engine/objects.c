@@ -21,7 +21,8 @@ cuvette_status cuvette_scene_add_material(cuvette_scene *s, const char *name, cu
     return engine_report(scene_add_material(s->model, name, NULL, &inner), &inner, why);
 }
 
-cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const char *shape, const char *of, cuvette_diagnostic *why)
+cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const char *shape, const char *of,
+                                       cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_CHANGE(s, why);
@@ -88,7 +89,8 @@ cuvette_status cuvette_scene_turn(cuvette_scene *s, const char *name, const doub
     ENGINE_NEED(name, why);
     ENGINE_NEED(degrees, why);
     diagnostic inner = {.line = 0};
-    return engine_report(scene_turn(s->model, name, vec3_make(degrees[0], degrees[1], degrees[2]), &inner), &inner, why);
+    return engine_report(scene_turn(s->model, name, vec3_make(degrees[0], degrees[1], degrees[2]), &inner), &inner,
+                         why);
 }
 
 cuvette_status cuvette_scene_scale(cuvette_scene *s, const char *name, double factor, cuvette_diagnostic *why)

@@ -1,4 +1,5 @@
-/* Parameters by name: everything goes through the one table's own text, so that a value set by number is the value set by its digits. */
+/* Parameters by name: everything goes through the one table's own text, so that a value set by number is the value set
+ * by its digits. */
 #include "engine/engine_private.h"
 
 #include "base/number.h"
@@ -11,7 +12,8 @@
 static bool is_slime(const scene *s, const char *path)
 {
     place at;
-    return place_find(s, path, &at, NULL) == STATUS_OK && at.group == PARAM_MESH && s->meshes[at.index].source == MESH_SLIME;
+    return place_find(s, path, &at, NULL) == STATUS_OK && at.group == PARAM_MESH &&
+           s->meshes[at.index].source == MESH_SLIME;
 }
 
 cuvette_status cuvette_scene_set(cuvette_scene *s, const char *path, const char *value, cuvette_diagnostic *why)
@@ -23,7 +25,8 @@ cuvette_status cuvette_scene_set(cuvette_scene *s, const char *path, const char 
     diagnostic inner = {.line = 0};
     const bool was_slime = is_slime(s->model, path);
     const status code = scene_set(s->model, path, value, &inner);
-    if (code == STATUS_OK && (was_slime || is_slime(s->model, path))) /* also one that has only now become one, or ceased to be one */
+    if (code == STATUS_OK &&
+        (was_slime || is_slime(s->model, path))) /* also one that has only now become one, or ceased to be one */
         s->slimes_changed++;
     return engine_report(code, &inner, why);
 }
@@ -37,7 +40,8 @@ cuvette_status cuvette_scene_set_double(cuvette_scene *s, const char *path, doub
 
 static bool is_switch(const param *row)
 {
-    return row->type == PARAM_CHOICE && strcmp(row->choices[0], "off") == 0 && strcmp(row->choices[1], "on") == 0 && !row->choices[2];
+    return row->type == PARAM_CHOICE && strcmp(row->choices[0], "off") == 0 && strcmp(row->choices[1], "on") == 0 &&
+           !row->choices[2];
 }
 
 cuvette_status cuvette_scene_set_int(cuvette_scene *s, const char *path, int64_t value, cuvette_diagnostic *why)
@@ -48,11 +52,13 @@ cuvette_status cuvette_scene_set_int(cuvette_scene *s, const char *path, int64_t
     place at;
     char text[NUMBER_TEXT_MAX];
     snprintf(text, sizeof text, "%lld", (long long)value);
-    const bool as_word = (value == 0 || value == 1) && place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row);
+    const bool as_word =
+        (value == 0 || value == 1) && place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row);
     return cuvette_scene_set(s, path, as_word ? at.row->choices[value] : text, why);
 }
 
-cuvette_status cuvette_scene_set_vector(cuvette_scene *s, const char *path, const double *values, size_t count, cuvette_diagnostic *why)
+cuvette_status cuvette_scene_set_vector(cuvette_scene *s, const char *path, const double *values, size_t count,
+                                        cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     enum { EACH = NUMBER_TEXT_MAX + 1, MOST = NUMBER_LIST_MAX + 1 };
@@ -63,7 +69,8 @@ cuvette_status cuvette_scene_set_vector(cuvette_scene *s, const char *path, cons
     if (count > MOST) /* one too many is refused by the table, in its own words */
         count = MOST;
     for (size_t i = 0; i < count; i++)
-        length += (size_t)snprintf(text + length, sizeof text - length, "%s%s", i ? "," : "", number_format(values[i], number));
+        length += (size_t)snprintf(text + length, sizeof text - length, "%s%s", i ? "," : "",
+                                   number_format(values[i], number));
     snprintf(text + length, sizeof text - length, "]");
     return cuvette_scene_set(s, path, text, why);
 }
@@ -76,7 +83,8 @@ static cuvette_status get(const cuvette_scene *s, const char *path, char **value
     return engine_report(scene_get(s->model, path, value, &inner), &inner, why);
 }
 
-cuvette_status cuvette_scene_get(const cuvette_scene *s, const char *path, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
+cuvette_status cuvette_scene_get(const cuvette_scene *s, const char *path, char *text, size_t size, size_t *length,
+                                 cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     char *value;
@@ -89,11 +97,13 @@ cuvette_status cuvette_scene_get(const cuvette_scene *s, const char *path, char 
 static cuvette_status is_no_number(const char *path, const char *value, const char *kind, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
-    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "use cuvette_scene_get, which gives text", "%.128s is '%.128s', which is no %s", path,
-                                  value, kind), &inner, why);
+    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "use cuvette_scene_get, which gives text",
+                                  "%.128s is '%.128s', which is no %s", path, value, kind),
+                         &inner, why);
 }
 
-cuvette_status cuvette_scene_get_double(const cuvette_scene *s, const char *path, double *value, cuvette_diagnostic *why)
+cuvette_status cuvette_scene_get_double(const cuvette_scene *s, const char *path, double *value,
+                                        cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     char *text;
@@ -143,8 +153,8 @@ static int parse_numbers(char *text, double numbers[NUMBER_LIST_MAX])
     return count;
 }
 
-cuvette_status cuvette_scene_get_vector(const cuvette_scene *s, const char *path, double *values, size_t room, size_t *count,
-                                        cuvette_diagnostic *why)
+cuvette_status cuvette_scene_get_vector(const cuvette_scene *s, const char *path, double *values, size_t room,
+                                        size_t *count, cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     char *text;
@@ -162,7 +172,8 @@ cuvette_status cuvette_scene_get_vector(const cuvette_scene *s, const char *path
     *count = (size_t)found;
     if ((size_t)found > room) {
         diagnostic inner = {.line = 0};
-        diagnose(&inner, STATUS_BAD_INPUT, "make room for as many as are reported", "%.128s has %d numbers", path, found);
+        diagnose(&inner, STATUS_BAD_INPUT, "make room for as many as are reported", "%.128s has %d numbers", path,
+                 found);
         return engine_report(STATUS_BAD_INPUT, &inner, why);
     }
     memcpy(values, numbers, (size_t)found * sizeof *numbers);
@@ -179,15 +190,20 @@ static status visit_one(void *context, const char *path, const param *row, const
 {
     const visitor *v = context;
     char range[1024];
-    const cuvette_parameter one = {.path = path, .value = value, .unit = row->unit, .range = param_range_text(row, range, sizeof range),
-                                   .initial = row->fallback, .meaning = row->meaning};
+    const cuvette_parameter one = {.path = path,
+                                   .value = value,
+                                   .unit = row->unit,
+                                   .range = param_range_text(row, range, sizeof range),
+                                   .initial = row->fallback,
+                                   .meaning = row->meaning};
     float_environment_leave(v->host);
     const bool goes_on = v->visit(v->context, &one);
     float_environment_enter(v->host);
     return goes_on ? STATUS_OK : STATUS_INTERRUPTED;
 }
 
-cuvette_status cuvette_scene_each_parameter(const cuvette_scene *s, bool (*visit)(void *context, const cuvette_parameter *one), void *context,
+cuvette_status cuvette_scene_each_parameter(const cuvette_scene *s,
+                                            bool (*visit)(void *context, const cuvette_parameter *one), void *context,
                                             cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);

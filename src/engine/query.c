@@ -1,5 +1,5 @@
-/* A scene made ready for rays of the caller's. A query is not changed once it is made; what a call works on (a bench) is taken from
- * a shelf and put back, so that any number of threads may ask, and a single ray costs no allocation. */
+/* A scene made ready for rays of the caller's. A query is not changed once it is made; what a call works on (a bench)
+ * is taken from a shelf and put back, so that any number of threads may ask, and a single ray costs no allocation. */
 #include "engine/query_private.h"
 
 #include <math.h>
@@ -23,7 +23,9 @@ void cuvette_query_destroy(cuvette_query *query)
 
 static const geometry_kernels *kernels_of(isa level)
 {
-    return level == ISA_AVX512 ? &geometry_kernels_avx512 : level == ISA_AVX2 ? &geometry_kernels_avx2 : &geometry_kernels_sse2;
+    return level == ISA_AVX512 ? &geometry_kernels_avx512
+           : level == ISA_AVX2 ? &geometry_kernels_avx2
+                               : &geometry_kernels_sse2;
 }
 
 static status prepare(cuvette_query *q, const scene *s, const char *instructions, diagnostic *why)
@@ -43,7 +45,8 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
     return q->model ? plan_build(q->model, &q->ready, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
-cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instructions, cuvette_query **out, cuvette_diagnostic *why)
+cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instructions, cuvette_query **out,
+                                    cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(out, why);
@@ -55,7 +58,8 @@ cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instruct
         free(q);
         return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
     }
-    status code = engine_load((cuvette_scene *)(uintptr_t)s, &inner); /* every handle was made by us, none is constant */
+    status code =
+        engine_load((cuvette_scene *)(uintptr_t)s, &inner); /* every handle was made by us, none is constant */
     if (code == STATUS_OK)
         code = prepare(q, s->model, instructions, &inner);
     if (code != STATUS_OK) {
@@ -99,14 +103,17 @@ static __attribute__((noinline)) vec3 direction_at(const plan *p, double x, doub
     return vec3_normalize(vec3_add(f->forward, vec3_add(vec3_scale(f->right, u), vec3_scale(f->up, v))));
 }
 
-cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, double y, cuvette_ray *out, cuvette_diagnostic *why)
+cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, double y, cuvette_ray *out,
+                                        cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(query, why);
     ENGINE_NEED(out, why);
     diagnostic inner = {.line = 0};
     if (!isfinite(x) || !isfinite(y))
-        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point of the picture is not finite"), &inner, why);
+        return engine_report(
+            diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point of the picture is not finite"), &inner,
+            why);
     const vec3 eye = query->ready->view.eye, d = direction_at(query->ready, x, y);
     memset(out, 0, sizeof *out);
     out->origin[0] = eye.x, out->origin[1] = eye.y, out->origin[2] = eye.z;
@@ -114,7 +121,8 @@ cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, do
     return CUVETTE_OK;
 }
 
-cuvette_status cuvette_query_medium(const cuvette_query *query, const double *point, int32_t *at, cuvette_diagnostic *why)
+cuvette_status cuvette_query_medium(const cuvette_query *query, const double *point, int32_t *at,
+                                    cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(query, why);
@@ -122,7 +130,8 @@ cuvette_status cuvette_query_medium(const cuvette_query *query, const double *po
     ENGINE_NEED_NAMED(at, "solid", why);
     diagnostic inner = {.line = 0};
     if (!(isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2])))
-        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point is not finite"), &inner, why);
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point is not finite"),
+                             &inner, why);
     const arrangement *a = query->ready->solids;
     *at = a->bodies[arrangement_rank(a, arrangement_inside(a, vec3_make(point[0], point[1], point[2])))].solid;
     return CUVETTE_OK;

@@ -28,7 +28,7 @@ typedef struct bench {
 } bench;
 
 struct cuvette_query {
-    scene *model;      /* its own copy, which the plan borrows from */
+    scene *model; /* its own copy, which the plan borrows from */
     plan *ready;
     const geometry_kernels *kernels;
     pthread_mutex_t lock;

@@ -1,4 +1,5 @@
-/* Rays of the caller's, through the tracer's own kernels: batches are filled, asked, and their hits told in the scene's terms. */
+/* Rays of the caller's, through the tracer's own kernels: batches are filled, asked, and their hits told in the scene's
+ * terms. */
 #include "engine/query_private.h"
 
 #include <math.h>
@@ -33,7 +34,8 @@ static bool is_face(const arrangement *a, uint64_t word)
     if (part < 0)
         return false;
     const forest_part *p = &a->meshes->parts[part];
-    return mesh_face_triangle(face) < p->triangles->triangle_count && mesh_face_copy(face) < p->copies[0] * p->copies[1] * p->copies[2];
+    return mesh_face_triangle(face) < p->triangles->triangle_count &&
+           mesh_face_copy(face) < p->copies[0] * p->copies[1] * p->copies[2];
 }
 
 static status check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnostic *why)
@@ -61,7 +63,8 @@ vec3 engine_unit(const double *d)
 
 static void put_ray(const cuvette_query *q, bench *b, int column, const cuvette_ray *ray, double length)
 {
-    const vec3 origin = vec3_make(ray->origin[0], ray->origin[1], ray->origin[2]), d = vec3_scale(engine_unit(ray->direction), length);
+    const vec3 origin = vec3_make(ray->origin[0], ray->origin[1], ray->origin[2]),
+               d = vec3_scale(engine_unit(ray->direction), length);
     b->ox[column] = origin.x, b->oy[column] = origin.y, b->oz[column] = origin.z;
     b->dx[column] = d.x, b->dy[column] = d.y, b->dz[column] = d.z;
     b->start[column] = ray->start.word[0] ? (int64_t)ray->start.word[1] : FACE_NONE;
@@ -173,7 +176,8 @@ static status begin(const cuvette_query *q, const cuvette_ray *rays, size_t coun
     return *out ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
 }
 
-cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_ray *rays, size_t count, cuvette_hit *hits, cuvette_diagnostic *why)
+cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_ray *rays, size_t count,
+                                     cuvette_hit *hits, cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(query, why);
@@ -204,7 +208,8 @@ static void occluded_batch(const cuvette_query *q, bench *b, int count, bool end
         blocked[b->asked[i]] = ends ? b->transmitted[i] == 0.0 : b->hits.crossed[i] >= 0;
 }
 
-static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, size_t count, bool ends, unsigned char *blocked)
+static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, size_t count, bool ends,
+                     unsigned char *blocked)
 {
     int waiting = 0;
     for (size_t i = 0; i < count; i++) {
@@ -221,8 +226,8 @@ static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, 
         occluded_batch(q, b, waiting, ends, blocked);
 }
 
-cuvette_status cuvette_query_occluded(const cuvette_query *query, const cuvette_ray *rays, size_t count, unsigned char *blocked,
-                                      cuvette_diagnostic *why)
+cuvette_status cuvette_query_occluded(const cuvette_query *query, const cuvette_ray *rays, size_t count,
+                                      unsigned char *blocked, cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(query, why);

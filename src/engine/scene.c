@@ -41,7 +41,8 @@ cuvette_status cuvette_scene_read(const char *path, cuvette_scene **out, cuvette
     return code == STATUS_OK ? engine_wrap_scene(model, out, why) : engine_report(code, &inner, why);
 }
 
-cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_t size, cuvette_scene **out, cuvette_diagnostic *why)
+cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_t size, cuvette_scene **out,
+                                       cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED(out, why);
@@ -54,7 +55,8 @@ cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_
     return code == STATUS_OK ? engine_wrap_scene(model, out, why) : engine_report(code, &inner, why);
 }
 
-/* What is loaded is looked at where it is there, so that nobody may be loading it meanwhile: renders of one scene may begin together. */
+/* What is loaded is looked at where it is there, so that nobody may be loading it meanwhile: renders of one scene may
+ * begin together. */
 static cuvette_scene *hold(const cuvette_scene *s)
 {
     cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* every handle was made by us, none is constant */
@@ -110,7 +112,9 @@ cuvette_status engine_is_advancing(cuvette_diagnostic *why)
 
 cuvette_status engine_may_change(const cuvette_scene *s, cuvette_diagnostic *why)
 {
-    return atomic_load(&s->renders) > 0 ? is_rendered(why) : atomic_load(&s->advancing) ? engine_is_advancing(why) : CUVETTE_OK;
+    return atomic_load(&s->renders) > 0 ? is_rendered(why)
+           : atomic_load(&s->advancing) ? engine_is_advancing(why)
+                                        : CUVETTE_OK;
 }
 
 /* Each says that it is there before it looks for the other: of two that begin at once at least one sees the other. */
@@ -213,7 +217,8 @@ cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *
         return CUVETTE_OK;
     diagnostic inner = {.line = 0};
     return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "make room for the length that is reported, and one more",
-                                  "the text has %zu characters, and there is room for %zu bytes", needed, size), &inner, why);
+                                  "the text has %zu characters, and there is room for %zu bytes", needed, size),
+                         &inner, why);
 }
 
 cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuvette_diagnostic *why)
@@ -228,7 +233,8 @@ cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuv
     return engine_report(code, &inner, why);
 }
 
-cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
+cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size_t size, size_t *length,
+                                        cuvette_diagnostic *why)
 {
     ENGINE_ENTER(host);
     ENGINE_NEED_SCENE(s, why);

@@ -46,12 +46,8 @@ static double mesh_extent(const solid_shape *shape)
 static int primitives_of(const solid_shape *shape, primitive out[2])
 {
     switch (shape->kind) {
-    case SHAPE_PLANE:
-        out[0] = primitive_placed(shape, PRIMITIVE_HALFSPACE, 0.0);
-        return 1;
-    case SHAPE_CYLINDER:
-        out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
-        return 1;
+    case SHAPE_PLANE: out[0] = primitive_placed(shape, PRIMITIVE_HALFSPACE, 0.0); return 1;
+    case SHAPE_CYLINDER: out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height); return 1;
     case SHAPE_CUP:
         out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
         out[1] = cylinder_placed(shape, shape->inner_radius, shape->floor, HUGE_VAL);
@@ -64,11 +60,8 @@ static int primitives_of(const solid_shape *shape, primitive out[2])
         out[0] = primitive_placed(shape, PRIMITIVE_SPHERE, shape->radius);
         out[0].radius = shape->radius;
         return 1;
-    case SHAPE_MESH:
-        out[0] = primitive_placed(shape, PRIMITIVE_MESH, mesh_extent(shape));
-        return 1;
-    case SHAPE_COUNT:
-        break;
+    case SHAPE_MESH: out[0] = primitive_placed(shape, PRIMITIVE_MESH, mesh_extent(shape)); return 1;
+    case SHAPE_COUNT: break;
     }
     return 0;
 }
@@ -133,7 +126,8 @@ static status plant_meshes(arrangement *a, const body_source *sources, const int
     return count > 0 ? forest_build(planted, count, &a->meshes, why) : STATUS_OK;
 }
 
-status arrangement_build(const body_source *sources, int count, int64_t outside_medium, arrangement **out, diagnostic *why)
+status arrangement_build(const body_source *sources, int count, int64_t outside_medium, arrangement **out,
+                         diagnostic *why)
 {
     int primitives = 0;
     for (int i = 0; i < count; i++)

@@ -1,14 +1,15 @@
 /* Solids as the kernels see them: convex primitives, and bodies ordered by priority. A body is one primitive,
  * or one less another (a cup: its outside less its hollow), so that every solid is at most two intervals on a ray.
  *
- * The medium at a point is the body of the highest rank that contains it (rank 0: none, the surrounding medium). A ray carries
- * one bit for each primitive that it is in. A closed mesh is a primitive too, though not convex; an open one is a skin, in which no ray
- * ever is. An interface is a point of the ray where the medium changes:
- * crossings that a higher body hides, or that lead into an equal medium, are none (Schmidt and Budge,
- * "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2), 2002).
+ * The medium at a point is the body of the highest rank that contains it (rank 0: none, the surrounding medium). A ray
+ * carries one bit for each primitive that it is in. A closed mesh is a primitive too, though not convex; an open one is
+ * a skin, in which no ray ever is. An interface is a point of the ray where the medium changes: crossings that a higher
+ * body hides, or that lead into an equal medium, are none (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced
+ * Images", JGT 7(2), 2002).
  *
  * Ownership: arrangement_build gives, arrangement_destroy releases; kernels borrow. Geometry knows no colour: of
- * a medium it knows a number (equal numbers, equal indices: no interface between them), whether it is opaque, and whether it absorbs. */
+ * a medium it knows a number (equal numbers, equal indices: no interface between them), whether it is opaque, and
+ * whether it absorbs. */
 #ifndef CUVETTE_GEOMETRY_ARRANGEMENT_H
 #define CUVETTE_GEOMETRY_ARRANGEMENT_H
 
@@ -23,44 +24,50 @@ enum {
     FACE_NONE = -1
 };
 
-typedef enum primitive_kind { PRIMITIVE_HALFSPACE, PRIMITIVE_CYLINDER, PRIMITIVE_BOX, PRIMITIVE_SPHERE, PRIMITIVE_MESH } primitive_kind;
+typedef enum primitive_kind {
+    PRIMITIVE_HALFSPACE,
+    PRIMITIVE_CYLINDER,
+    PRIMITIVE_BOX,
+    PRIMITIVE_SPHERE,
+    PRIMITIVE_MESH
+} primitive_kind;
 
 /* Faces: half-space 0. Cylinder 0 side, 1 bottom, 2 top. Box 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. Sphere 0.
  * Meshes number theirs otherwise: see forest.h. */
 typedef struct primitive {
     primitive_kind kind;
-    bool turned;         /* rotation is not the identity */
-    mat3 rotation;       /* local to world */
-    vec3 origin;         /* of the local frame, in the world */
-    double radius, m2;   /* cylinder x^2 + m2 z^2 <= radius^2; sphere (m2 = 1) */
-    double bottom, top;  /* of a cylinder, local y; top may be infinite */
-    vec3 half;           /* box */
+    bool turned;        /* rotation is not the identity */
+    mat3 rotation;      /* local to world */
+    vec3 origin;        /* of the local frame, in the world */
+    double radius, m2;  /* cylinder x^2 + m2 z^2 <= radius^2; sphere (m2 = 1) */
+    double bottom, top; /* of a cylinder, local y; top may be infinite */
+    vec3 half;          /* box */
     int64_t first_face;
-    int rank;            /* of its body */
-    double extent;       /* farthest finite coordinate from the world's origin, for error bounds */
+    int rank;      /* of its body */
+    double extent; /* farthest finite coordinate from the world's origin, for error bounds */
 } primitive;
 
 typedef struct body {
     int outside, hollow; /* primitives; hollow = -1 for none */
     int64_t medium;      /* equal numbers are equal media */
     bool opaque;
-    double clearness;    /* share of light that a shadow ray keeps at each of its interfaces; 0 when opaque */
+    double clearness;             /* share of light that a shadow ray keeps at each of its interfaces; 0 when opaque */
     const double *face_clearness; /* the same by slot of a mesh whose faces differ, clearness being the least;
                                    * borrowed, or NULL */
-    bool absorbs;        /* its medium takes light away with length */
-    bool reflects;       /* by the angle: shadow rays note where they cross its surface (see ray_crossings) */
-    int solid;           /* index of the solid it came from */
+    bool absorbs;                 /* its medium takes light away with length */
+    bool reflects;                /* by the angle: shadow rays note where they cross its surface (see ray_crossings) */
+    int solid;                    /* index of the solid it came from */
 } body;
 
 typedef struct arrangement {
     int primitive_count;
     primitive *primitives;
-    int body_count;      /* ranks 1 .. body_count */
-    body *bodies;        /* [0] is the surrounding medium */
-    double extent;       /* largest of the primitives' */
+    int body_count;        /* ranks 1 .. body_count */
+    body *bodies;          /* [0] is the surrounding medium */
+    double extent;         /* largest of the primitives' */
     uint64_t opaque_ranks; /* bit r - 1: the body of rank r is opaque */
-    bool distinct;       /* no two bodies are of one medium, nor is any of the surrounding one */
-    bool absorbs;        /* one of the bodies does, or the surrounding medium */
+    bool distinct;         /* no two bodies are of one medium, nor is any of the surrounding one */
+    bool absorbs;          /* one of the bodies does, or the surrounding medium */
     struct forest *meshes; /* all of them; NULL when there is none */
 } arrangement;
 
@@ -74,7 +81,7 @@ static inline bool body_casts_shadow(const body *b, bool solid_shadows)
 typedef struct body_source {
     const solid_shape *shape;
     const struct hierarchy *tree; /* over the triangles of a mesh; borrowed, like the mesh */
-    int64_t priority;    /* higher wins; of equals the one that comes first */
+    int64_t priority;             /* higher wins; of equals the one that comes first */
     int64_t medium;
     bool opaque;
     double clearness;
@@ -84,7 +91,8 @@ typedef struct body_source {
 } body_source;
 
 /* outside_medium is the medium of rank 0. STATUS_BAD_INPUT for more than PRIMITIVES_MAX primitives. */
-status arrangement_build(const body_source *sources, int count, int64_t outside_medium, arrangement **out, diagnostic *why);
+status arrangement_build(const body_source *sources, int count, int64_t outside_medium, arrangement **out,
+                         diagnostic *why);
 void arrangement_destroy(arrangement *a);
 
 /* The surrounding medium takes light away with length: then what every shadow ray goes through is noted. */
@@ -96,8 +104,8 @@ uint64_t arrangement_inside(const arrangement *a, vec3 point);
 /* Does it contain the point? No mesh does here. */
 bool primitive_contains(const primitive *p, vec3 point);
 
-/* The rank of the body whose surface an interface between two ranks is: an opaque body's if either is opaque (the one behind, if
- * both are), else that of the higher rank. */
+/* The rank of the body whose surface an interface between two ranks is: an opaque body's if either is opaque (the one
+ * behind, if both are), else that of the higher rank. */
 int arrangement_surface(const arrangement *a, int before, int after);
 
 /* The rank of the medium where a ray is in that set of primitives. */

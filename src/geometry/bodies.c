@@ -6,7 +6,8 @@ status body_end(mesh *m, bool ought_to_be_closed, mesh **out, diagnostic *why)
 {
     status result = mesh_finish(m, why);
     if (result == STATUS_OK && ought_to_be_closed && !m->closed)
-        result = diagnose(why, STATUS_BAD_INPUT, "use lengths less far apart, or fewer segments", "the body has edges too short for its size");
+        result = diagnose(why, STATUS_BAD_INPUT, "use lengths less far apart, or fewer segments",
+                          "the body has edges too short for its size");
     if (result == STATUS_OK)
         *out = m;
     else

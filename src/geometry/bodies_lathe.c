@@ -1,22 +1,25 @@
-/* A profile turned about the y axis. Its points become rows of around + 1 vertices; where it has a crease or reaches the axis in one, a point
- * has two rows, for the normals of the segment before and of the one after. */
+/* A profile turned about the y axis. Its points become rows of around + 1 vertices; where it has a crease or reaches
+ * the axis in one, a point has two rows, for the normals of the segment before and of the one after. */
 #include "geometry/bodies_parts.h"
 
 #include "base/elementary.h"
 
 #include <stdlib.h>
 
-typedef struct row { profile_point at, normal; double v; } row; /* normal: its parts away from the axis and along it */
+typedef struct row {
+    profile_point at, normal;
+    double v;
+} row; /* normal: its parts away from the axis and along it */
 
 typedef struct lathe {
     const profile_point *profile;
-    size_t count;        /* of points */
-    bool backward;       /* taken from its end to its beginning, so that the fronts look outwards */
-    bool ring;           /* it ends where it began */
+    size_t count;  /* of points */
+    bool backward; /* taken from its end to its beginning, so that the fronts look outwards */
+    bool ring;     /* it ends where it began */
     double crease_deg, length;
     row *rows;
     size_t row_count;
-    size_t *low, *high;  /* rows at the two ends of each segment */
+    size_t *low, *high; /* rows at the two ends of each segment */
 } lathe;
 
 static profile_point point_at(const lathe *l, size_t k)
@@ -41,13 +44,15 @@ static status check(const profile_point *profile, size_t count, int around, doub
     for (size_t k = 0; k < count; k++) {
         const profile_point p = profile[k];
         if (!(p.radius >= 0.0 && p.radius <= MESH_FAR && fabs(p.height) <= MESH_FAR))
-            return diagnose(why, STATUS_BAD_INPUT, "a radius is 0 to 1e9, a height -1e9 to 1e9", "point %zu of the profile is %g, %g", k, p.radius,
-                            p.height);
+            return diagnose(why, STATUS_BAD_INPUT, "a radius is 0 to 1e9, a height -1e9 to 1e9",
+                            "point %zu of the profile is %g, %g", k, p.radius, p.height);
         if (k > 0 && equal(p, profile[k - 1]))
-            return diagnose(why, STATUS_BAD_INPUT, "leave one of them out", "points %zu and %zu of the profile are one", k - 1, k);
+            return diagnose(why, STATUS_BAD_INPUT, "leave one of them out", "points %zu and %zu of the profile are one",
+                            k - 1, k);
         off_axis |= p.radius > 0.0;
     }
-    return off_axis ? STATUS_OK : diagnose(why, STATUS_BAD_INPUT, "use a radius greater than 0", "the profile lies on the axis");
+    return off_axis ? STATUS_OK
+                    : diagnose(why, STATUS_BAD_INPUT, "use a radius greater than 0", "the profile lies on the axis");
 }
 
 /* Six times the volume by 2 pi that the profile's cones enclose, from below upwards. */
@@ -73,7 +78,8 @@ static double segment(const lathe *l, size_t k, profile_point *normal)
 /* The mean of two unit normals; false if they differ by more than the crease. */
 static bool blend(const lathe *l, profile_point a, profile_point b, profile_point *mean)
 {
-    const double turn_deg = elementary_atan2_deg(a.radius * b.height - a.height * b.radius, a.radius * b.radius + a.height * b.height);
+    const double turn_deg =
+        elementary_atan2_deg(a.radius * b.height - a.height * b.radius, a.radius * b.radius + a.height * b.height);
     const double out = a.radius + b.radius, up = a.height + b.height, length = sqrt(out * out + up * up);
     if (!(fabs(turn_deg) <= l->crease_deg) || !(length > 0.0))
         return false;
@@ -129,7 +135,8 @@ static void place_rows(const lathe *l, int around, mesh *m)
     }
 }
 
-/* Triangles of the segments: one instead of two where an end is on the axis. Returns their number; triangles may be NULL. */
+/* Triangles of the segments: one instead of two where an end is on the axis. Returns their number; triangles may be
+ * NULL. */
 static size_t join_rows(const lathe *l, int around, mesh_triangle *triangles)
 {
     const uint32_t columns = (uint32_t)around + 1;
@@ -155,7 +162,8 @@ static status make(lathe *l, int around, bool closed, mesh **out, diagnostic *wh
 {
     mesh *m;
     make_rows(l);
-    status result = mesh_create(l->row_count * ((size_t)around + 1), join_rows(l, around, NULL), true, true, false, &m, why);
+    status result =
+        mesh_create(l->row_count * ((size_t)around + 1), join_rows(l, around, NULL), true, true, false, &m, why);
     if (result != STATUS_OK)
         return result;
     place_rows(l, around, m);
@@ -163,12 +171,14 @@ static status make(lathe *l, int around, bool closed, mesh **out, diagnostic *wh
     return body_end(m, closed, out, why);
 }
 
-status body_lathe(const profile_point *profile, size_t count, int around, double crease_deg, mesh **out, diagnostic *why)
+status body_lathe(const profile_point *profile, size_t count, int around, double crease_deg, mesh **out,
+                  diagnostic *why)
 {
     status result = check(profile, count, around, crease_deg, why);
     if (result != STATUS_OK)
         return result;
-    lathe l = {.profile = profile, .count = count, .crease_deg = crease_deg, .ring = equal(profile[0], profile[count - 1])};
+    lathe l = {
+        .profile = profile, .count = count, .crease_deg = crease_deg, .ring = equal(profile[0], profile[count - 1])};
     const bool closed = l.ring || (profile[0].radius == 0.0 && profile[count - 1].radius == 0.0);
     l.backward = closed && enclosed(profile, count) < 0.0;
     for (size_t k = 0; k + 1 < count; k++)

@@ -4,15 +4,15 @@
 
 #include "geometry/bodies.h"
 
-/* Finishes a made mesh and hands it over; on failure it is released. One that ought to be closed and is not has features too small for
- * doubles: STATUS_BAD_INPUT. */
+/* Finishes a made mesh and hands it over; on failure it is released. One that ought to be closed and is not has
+ * features too small for doubles: STATUS_BAD_INPUT. */
 status body_end(mesh *m, bool ought_to_be_closed, mesh **out, diagnostic *why);
 
 /* Is it a length greater than 0, not above MESH_FAR? */
 bool body_length(double x);
 
-/* Texture coordinates by direction: u = 1/2 looks along -z, towards a viewer in front, and grows to that viewer's right, +x. Longitude in
- * degrees -180..180; latitude by 1/180. */
+/* Texture coordinates by direction: u = 1/2 looks along -z, towards a viewer in front, and grows to that viewer's
+ * right, +x. Longitude in degrees -180..180; latitude by 1/180. */
 double body_longitude_deg(vec3 p);
 double body_latitude_v(vec3 p);
 /* Unit vector of longitude 360 u - 180 with u = at / around; the same bits at 0 and around. */

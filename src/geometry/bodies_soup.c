@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-/* Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014; constants of Vigna's splitmix64.c. */
+/* Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014; constants of Vigna's
+ * splitmix64.c. */
 static uint64_t splitmix64(uint64_t *state)
 {
     uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
@@ -18,8 +19,9 @@ static double draw(uint64_t *state)
     return (double)(splitmix64(state) >> 40) * 0x1p-24;
 }
 
-/* c + e x of floats rounded once to a float, as a fused multiply-add gives it. The product is exact in a double; the sum is rounded to odd,
- * after which rounding to a float is right (Boldo and Melquiond, "Emulation of a FMA and correctly rounded sums", IEEE TC 57(4), 2008). */
+/* c + e x of floats rounded once to a float, as a fused multiply-add gives it. The product is exact in a double; the
+ * sum is rounded to odd, after which rounding to a float is right (Boldo and Melquiond, "Emulation of a FMA and
+ * correctly rounded sums", IEEE TC 57(4), 2008). */
 static double fused(double c, double e, double x)
 {
     const double product = e * x;

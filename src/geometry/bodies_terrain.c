@@ -11,21 +11,25 @@ static status check(const field *f, diagnostic *why)
     if (f->columns < 2 || f->rows < 2)
         return diagnose(why, STATUS_BAD_INPUT, "use at least 2 by 2", "a field of too few heights");
     if (!body_length(f->size_x) || !body_length(f->size_z))
-        return diagnose(why, STATUS_BAD_INPUT, "use sizes greater than 0, at most 1e9", "a height field of %g by %g", f->size_x, f->size_z);
+        return diagnose(why, STATUS_BAD_INPUT, "use sizes greater than 0, at most 1e9", "a height field of %g by %g",
+                        f->size_x, f->size_z);
     if (!(f->depth >= 0.0 && f->depth <= MESH_FAR))
         return diagnose(why, STATUS_BAD_INPUT, "use 0 to 1e9", "a height field of depth %g", f->depth);
     for (size_t k = 0; k < f->columns * f->rows; k++) {
         const double height = f->heights[k];
         if (!(fabs(height) <= MESH_FAR))
-            return diagnose(why, STATUS_BAD_INPUT, "use -1e9 to 1e9", "height %g in column %zu of row %zu", height, k % f->columns, k / f->columns);
+            return diagnose(why, STATUS_BAD_INPUT, "use -1e9 to 1e9", "height %g in column %zu of row %zu", height,
+                            k % f->columns, k / f->columns);
         if (f->depth > 0.0 && !(height > -f->depth))
-            return diagnose(why, STATUS_BAD_INPUT, "use a greater depth", "height %g in column %zu of row %zu is not above the bottom at %g", height,
-                            k % f->columns, k / f->columns, -f->depth);
+            return diagnose(why, STATUS_BAD_INPUT, "use a greater depth",
+                            "height %g in column %zu of row %zu is not above the bottom at %g", height, k % f->columns,
+                            k / f->columns, -f->depth);
     }
     return STATUS_OK;
 }
 
-/* Slope of the surface along one axis at point k, by the neighbours that are there: at, of count, stand stride apart. */
+/* Slope of the surface along one axis at point k, by the neighbours that are there: at, of count, stand stride apart.
+ */
 static double slope(const field *f, size_t k, size_t at, size_t count, size_t stride, double spacing)
 {
     const size_t before = at > 0 ? stride : 0, after = at + 1 < count ? stride : 0;
@@ -39,7 +43,8 @@ static void place_top(const field *f, mesh *m, size_t *triangle)
         for (size_t column = 0; column < f->columns; column++, k++) {
             const double u = (double)column / (double)(f->columns - 1), v = (double)row / (double)(f->rows - 1);
             m->vertices[k] = vec3_make(f->size_x * (u - 0.5), f->heights[k], f->size_z * (v - 0.5));
-            m->normals[k] = vec3_make(-slope(f, k, column, f->columns, 1, step_x), 1.0, -slope(f, k, row, f->rows, f->columns, step_z));
+            m->normals[k] = vec3_make(-slope(f, k, column, f->columns, 1, step_x), 1.0,
+                                      -slope(f, k, row, f->rows, f->columns, step_z));
             m->uvs[k] = (mesh_uv){u, v};
             if (row > 0 && column > 0)
                 body_quad(m, triangle, k - f->columns - 1, k - f->columns, k, k - 1);
@@ -47,7 +52,8 @@ static void place_top(const field *f, mesh *m, size_t *triangle)
     }
 }
 
-/* Numbers of the points along a side, the four sides in turn to the right as they are seen from outside, from the front one on. */
+/* Numbers of the points along a side, the four sides in turn to the right as they are seen from outside, from the front
+ * one on. */
 static size_t along_side(const field *f, int side, size_t at)
 {
     const size_t last_column = f->columns - 1, last_row = f->rows - 1;
@@ -87,7 +93,8 @@ static void place_below(const field *f, mesh *m, size_t *triangle)
     }
 }
 
-status body_height_field(const double *heights, int columns, int rows, double size_x, double size_z, double depth, mesh **out, diagnostic *why)
+status body_height_field(const double *heights, int columns, int rows, double size_x, double size_z, double depth,
+                         mesh **out, diagnostic *why)
 {
     const field f = {heights, columns > 0 ? (size_t)columns : 0, rows > 0 ? (size_t)rows : 0, size_x, size_z, depth};
     status result = check(&f, why);
@@ -96,8 +103,9 @@ status body_height_field(const double *heights, int columns, int rows, double si
     const bool closed = depth > 0.0;
     const size_t border = 2 * (f.columns + f.rows), top = f.columns * f.rows;
     mesh *m;
-    result = mesh_create(closed ? top + 3 * border + 1 : top, 2 * (f.columns - 1) * (f.rows - 1) + (closed ? 3 * (border - 4) : 0), true, true,
-                         false, &m, why);
+    result =
+        mesh_create(closed ? top + 3 * border + 1 : top,
+                    2 * (f.columns - 1) * (f.rows - 1) + (closed ? 3 * (border - 4) : 0), true, true, false, &m, why);
     if (result != STATUS_OK)
         return result;
     size_t triangle = 0;

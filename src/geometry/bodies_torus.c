@@ -5,9 +5,11 @@
 static status check(double major, double minor, int around, int tube, diagnostic *why)
 {
     if (!body_length(major) || !body_length(minor) || !(minor < major) || !(major + minor <= MESH_FAR))
-        return diagnose(why, STATUS_BAD_INPUT, "use radii greater than 0, the tube's the smaller one", "a torus of radii %g and %g", major, minor);
+        return diagnose(why, STATUS_BAD_INPUT, "use radii greater than 0, the tube's the smaller one",
+                        "a torus of radii %g and %g", major, minor);
     if (around < 3 || tube < 3)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 3 segments", "a torus of %d segments around and %d around the tube", around, tube);
+        return diagnose(why, STATUS_BAD_INPUT, "use at least 3 segments",
+                        "a torus of %d segments around and %d around the tube", around, tube);
     return STATUS_OK;
 }
 

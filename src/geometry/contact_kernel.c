@@ -41,7 +41,8 @@ static crossing crossing_of(const arrangement *a, const ray_batch *rays, int i, 
     return (crossing){p, t, point.error[0] / facing(&point, &one), a->primitives[p].extent};
 }
 
-/* A point on a mesh is as exact as its triangle; the distance along the ray depends on the ray's start and length, too. */
+/* A point on a mesh is as exact as its triangle; the distance along the ray depends on the ray's start and length, too.
+ */
 static crossing mesh_crossing_of(const arrangement *a, const ray_batch *rays, int i, const forest_hit *hit)
 {
     const uint64_t inside = 0;
@@ -122,8 +123,8 @@ static void merge_meshes(const arrangement *a, const ray_batch *rays, int k, ray
         if (!(s->meshes->near[k] & bit))
             continue;
         const double contact = mesh_reach(a, rays, k, s, at, p), reach = greater(contact, 0.5 * at->bound);
-        KERNEL(mesh_sets_closely)(a, rays, k, s, c->before[k], bit, at->t - reach, at->t + reach, &c->inside_before[k],
-                                  &c->inside_after[k]);
+        KERNEL(mesh_sets_closely)
+        (a, rays, k, s, c->before[k], bit, at->t - reach, at->t + reach, &c->inside_before[k], &c->inside_after[k]);
         if (contact >= 0.0) /* else one of two boundaries at one place would be met again, without the other */
             s->meshes->until[k] = greater(s->meshes->until[k], at->t + reach);
     }

@@ -53,11 +53,19 @@ static forest_part part_of(const forest_source *source, size_t first_instance)
 {
     const solid_shape *shape = source->shape;
     const vec3 turn = shape->rotation_deg, scale = shape->scale, copies = shape->copies;
-    return (forest_part){.triangles = shape->mesh, .tree = source->tree, .primitive = source->primitive, .rank = source->rank,
-                         .closed = shape->mesh->closed, .turned = turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0,
-                         .scaled = scale.x != 1.0 || scale.y != 1.0 || scale.z != 1.0, .rotation = rotation_from_deg(turn), .scale = scale,
-                         .origin = shape->position, .spacing = shape->spacing,
-                         .copies = {(uint32_t)copies.x, (uint32_t)copies.y, (uint32_t)copies.z}, .first_instance = first_instance,
+    return (forest_part){.triangles = shape->mesh,
+                         .tree = source->tree,
+                         .primitive = source->primitive,
+                         .rank = source->rank,
+                         .closed = shape->mesh->closed,
+                         .turned = turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0,
+                         .scaled = scale.x != 1.0 || scale.y != 1.0 || scale.z != 1.0,
+                         .rotation = rotation_from_deg(turn),
+                         .scale = scale,
+                         .origin = shape->position,
+                         .spacing = shape->spacing,
+                         .copies = {(uint32_t)copies.x, (uint32_t)copies.y, (uint32_t)copies.z},
+                         .first_instance = first_instance,
                          .reach = largest_coordinate(shape->mesh, scale)};
 }
 
@@ -73,16 +81,20 @@ static bounds3 bounds_in_world(const forest_part *p)
     bounds3 world = {vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL), vec3_make(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL)};
     const double slack = p->reach * 0x1p-48;
     for (int k = 0; k < 8; k++) {
-        const vec3 corner = vec3_make((k & 1 ? b.high.x : b.low.x) * p->scale.x, (k & 2 ? b.high.y : b.low.y) * p->scale.y,
-                                      (k & 4 ? b.high.z : b.low.z) * p->scale.z);
+        const vec3 corner =
+            vec3_make((k & 1 ? b.high.x : b.low.x) * p->scale.x, (k & 2 ? b.high.y : b.low.y) * p->scale.y,
+                      (k & 4 ? b.high.z : b.low.z) * p->scale.z);
         const vec3 v = mat3_apply(p->rotation, corner);
-        world.low = vec3_make(fmin(world.low.x, v.x - slack), fmin(world.low.y, v.y - slack), fmin(world.low.z, v.z - slack));
-        world.high = vec3_make(fmax(world.high.x, v.x + slack), fmax(world.high.y, v.y + slack), fmax(world.high.z, v.z + slack));
+        world.low =
+            vec3_make(fmin(world.low.x, v.x - slack), fmin(world.low.y, v.y - slack), fmin(world.low.z, v.z - slack));
+        world.high = vec3_make(fmax(world.high.x, v.x + slack), fmax(world.high.y, v.y + slack),
+                               fmax(world.high.z, v.z + slack));
     }
     return world;
 }
 
-/* In the part's place in the row; a mesh without triangles has no bounds, and the triangle of zeros stays, which no tree takes in. */
+/* In the part's place in the row; a mesh without triangles has no bounds, and the triangle of zeros stays, which no
+ * tree takes in. */
 static void span_copies(forest *f, const forest_part *p)
 {
     const bounds3 box = bounds_in_world(p);
@@ -96,7 +108,8 @@ static void span_copies(forest *f, const forest_part *p)
         corner[0] = low;
         corner[1] = high;
         corner[2] = vec3_make(low.x, high.y, low.z);
-        f->proxies->triangles[at] = (mesh_triangle){{(uint32_t)(3 * at), (uint32_t)(3 * at + 1), (uint32_t)(3 * at + 2)}};
+        f->proxies->triangles[at] =
+            (mesh_triangle){{(uint32_t)(3 * at), (uint32_t)(3 * at + 1), (uint32_t)(3 * at + 2)}};
     }
 }
 
@@ -109,7 +122,8 @@ static status make_top(forest *f, diagnostic *why)
     if (code == STATUS_OK)
         code = mesh_finish(f->proxies, why);
     if (code == STATUS_BAD_INPUT)
-        code = diagnose(why, STATUS_BAD_INPUT, "scale them down, or stand them nearer", "meshes reach farther than 1e9 scene units");
+        code = diagnose(why, STATUS_BAD_INPUT, "scale them down, or stand them nearer",
+                        "meshes reach farther than 1e9 scene units");
     return code == STATUS_OK ? hierarchy_build(f->proxies, HIERARCHY_BVH, 1, &f->top, why) : code;
 }
 
@@ -145,7 +159,8 @@ status forest_build(const forest_source *sources, int count, forest **out, diagn
                 f->closed_under[rank] |= (uint64_t)1 << parts[i].primitive;
     status code = STATUS_OK;
     if (f->instance_count > SHAPE_COPIES_MAX)
-        code = diagnose(why, STATUS_BAD_INPUT, "use fewer copies", "the meshes have %zu copies together, more than 4194304", f->instance_count);
+        code = diagnose(why, STATUS_BAD_INPUT, "use fewer copies",
+                        "the meshes have %zu copies together, more than 4194304", f->instance_count);
     if (code == STATUS_OK && f->instance_count > 1)
         code = make_top(f, why);
     if (code != STATUS_OK) {
@@ -166,11 +181,15 @@ void forest_destroy(forest *f)
     free(f);
 }
 
-/* Does a back come before a front, along a direction of no axis and no diagonal? A front and a back at one place are copies that touch, or an
- * edge: what comes behind them says it. */
+/* Does a back come before a front, along a direction of no axis and no diagonal? A front and a back at one place are
+ * copies that touch, or an edge: what comes behind them says it. */
 static bool is_inside(const forest *f, uint64_t bit, double reach, vec3 point)
 {
-    forest_ray ray = {.origin = point, .direction = vec3_make(0.5396, 0.6180, 0.5716), .t_max = HUGE_VAL, .start = FACE_NONE, .wanted = bit};
+    forest_ray ray = {.origin = point,
+                      .direction = vec3_make(0.5396, 0.6180, 0.5716),
+                      .t_max = HUGE_VAL,
+                      .start = FACE_NONE,
+                      .wanted = bit};
     for (;;) {
         forest_hit back, front;
         ray.inside = bit; /* looks for backs */

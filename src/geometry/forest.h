@@ -1,8 +1,8 @@
-/* The meshes of an arrangement together: every copy of every mesh, in a hierarchy of their own above the hierarchies of their
- * triangles, so that a copy costs little and a ray looks at all of them on one way down.
+/* The meshes of an arrangement together: every copy of every mesh, in a hierarchy of their own above the hierarchies of
+ * their triangles, so that a copy costs little and a ray looks at all of them on one way down.
  *
- * A mesh's face is numbered by its primitive, copy and triangle: see mesh_face_number. Ownership: forest_build gives, forest_destroy
- * releases; meshes and their hierarchies are borrowed. */
+ * A mesh's face is numbered by its primitive, copy and triangle: see mesh_face_number. Ownership: forest_build gives,
+ * forest_destroy releases; meshes and their hierarchies are borrowed. */
 #ifndef CUVETTE_GEOMETRY_FOREST_H
 #define CUVETTE_GEOMETRY_FOREST_H
 
@@ -14,40 +14,40 @@ typedef struct forest_part {
     const mesh *triangles;
     const hierarchy *tree;
     int primitive, rank;
-    bool closed;             /* it contains points; else it is a skin */
+    bool closed; /* it contains points; else it is a skin */
     bool turned, scaled;
-    mat3 rotation;           /* its frame to the world */
+    mat3 rotation; /* its frame to the world */
     vec3 scale, origin;
     vec3 spacing;
     uint32_t copies[3];
     size_t first_instance;
-    double reach;            /* largest coordinate of the mesh in its frame, scaled */
+    double reach; /* largest coordinate of the mesh in its frame, scaled */
 } forest_part;
 
 typedef struct forest {
     int part_count;
     forest_part *parts;
     size_t instance_count;
-    mesh *proxies;           /* a triangle that spans the bounds of each instance; NULL when there is but one instance */
-    hierarchy *top;          /* over these */
-    uint64_t primitives;     /* sets: of all meshes ... */
-    uint64_t closed, skins;  /* ... and of either kind */
-    int lowest;              /* rank of the lowest mesh */
+    mesh *proxies;          /* a triangle that spans the bounds of each instance; NULL when there is but one instance */
+    hierarchy *top;         /* over these */
+    uint64_t primitives;    /* sets: of all meshes ... */
+    uint64_t closed, skins; /* ... and of either kind */
+    int lowest;             /* rank of the lowest mesh */
     uint64_t closed_under[PRIMITIVES_MAX + 1]; /* by rank: the closed meshes of lower ones */
-    int lowest_closed;       /* rank of the lowest closed mesh; INT_MAX for none */
-    int by_primitive[PRIMITIVES_MAX]; /* part, or -1 */
+    int lowest_closed;                         /* rank of the lowest closed mesh; INT_MAX for none */
+    int by_primitive[PRIMITIVES_MAX];          /* part, or -1 */
 } forest;
 
 /* Where a ray is in the order of media, and which stretch of it is asked about. */
 typedef struct forest_ray {
     vec3 origin, direction;
     double t_min, t_max;
-    double tie;              /* of cross: a front and a back of one mesh that are no farther apart are at one place ... */
-    double tie_by_extent;    /* ... and this share of the mesh's extent is added to it */
-    int64_t start;           /* face that it starts on, at its origin or where it was passed on; or FACE_NONE */
-    int64_t before;          /* rank of the medium that it is in: meshes under it are hidden */
-    uint64_t inside;         /* primitives that it is in */
-    uint64_t wanted;         /* primitives that it looks for */
+    double tie;           /* of cross: a front and a back of one mesh that are no farther apart are at one place ... */
+    double tie_by_extent; /* ... and this share of the mesh's extent is added to it */
+    int64_t start;        /* face that it starts on, at its origin or where it was passed on; or FACE_NONE */
+    int64_t before;       /* rank of the medium that it is in: meshes under it are hidden */
+    uint64_t inside;      /* primitives that it is in */
+    uint64_t wanted;      /* primitives that it looks for */
 } forest_ray;
 
 /* A mesh's faces have bit 62 set, so that no analytic solid's face number is one of them. */
@@ -56,10 +56,22 @@ static inline int64_t mesh_face_number(int bit, uint32_t copy, uint32_t triangle
 {
     return MESH_FACE | (int64_t)bit << 54 | (int64_t)copy << 32 | (int64_t)triangle;
 }
-static inline bool is_mesh_face(int64_t face) { return face > 0 && (face & MESH_FACE); }
-static inline int mesh_face_primitive(int64_t face) { return (int)(face >> 54 & 0x3f); }
-static inline uint32_t mesh_face_copy(int64_t face) { return (uint32_t)(face >> 32 & 0x3fffff); }
-static inline uint32_t mesh_face_triangle(int64_t face) { return (uint32_t)(face & 0xffffffff); }
+static inline bool is_mesh_face(int64_t face)
+{
+    return face > 0 && (face & MESH_FACE);
+}
+static inline int mesh_face_primitive(int64_t face)
+{
+    return (int)(face >> 54 & 0x3f);
+}
+static inline uint32_t mesh_face_copy(int64_t face)
+{
+    return (uint32_t)(face >> 32 & 0x3fffff);
+}
+static inline uint32_t mesh_face_triangle(int64_t face)
+{
+    return (uint32_t)(face & 0xffffffff);
+}
 
 /* What forest_build wants to know of a mesh solid. */
 typedef struct forest_source {
@@ -82,17 +94,19 @@ uint64_t forest_inside(const forest *f, vec3 point);
 
 /* Points on meshes, for what looks at surfaces. */
 typedef struct mesh_points {
-    double gx[ROW], gy[ROW], gz[ROW];   /* geometric normal, a unit vector against the ray */
-    double tu[ROW], tv[ROW];            /* texture coordinates; 0 where a mesh has none */
-    double uv_per_length[ROW];          /* how far they run in one scene unit */
+    double gx[ROW], gy[ROW], gz[ROW]; /* geometric normal, a unit vector against the ray */
+    double tu[ROW], tv[ROW];          /* texture coordinates; 0 where a mesh has none */
+    double uv_per_length[ROW];        /* how far they run in one scene unit */
     int64_t slot[ROW];
-    double weight[3][ROW];              /* of the triangle's corners */
-    uint32_t corner[3][ROW];            /* its vertices */
+    double weight[3][ROW];   /* of the triangle's corners */
+    uint32_t corner[3][ROW]; /* its vertices */
 } mesh_points;
 
-/* The points that rays hit: position, error bound, face, and a normal, which is the interpolated one where `smooth` says so and the mesh
- * has any, bent so that neither the reflection nor the surface is seen from behind (see forest_surface.c). */
-void forest_surface(const forest *f, const ray_batch *rays, const forest_hit *hits, bool smooth, surface_batch *points, mesh_points *more);
+/* The points that rays hit: position, error bound, face, and a normal, which is the interpolated one where `smooth`
+ * says so and the mesh has any, bent so that neither the reflection nor the surface is seen from behind (see
+ * forest_surface.c). */
+void forest_surface(const forest *f, const ray_batch *rays, const forest_hit *hits, bool smooth, surface_batch *points,
+                    mesh_points *more);
 
 /* A vertex's normal in the world, of the part (a unit vector; zero where the mesh has no normals), and its place. */
 vec3 forest_vertex_normal(const forest_part *p, uint32_t vertex);
@@ -102,8 +116,8 @@ typedef void forest_found(void *context, const forest_hit *hit);
 
 /* The kernels, one set for each instruction set; the same bits from all. */
 typedef struct forest_kernels {
-    /* The next crossing that matters: of a mesh that the ray is in, where it leaves; of one that it is not in and that the medium
-     * does not hide, where it enters; of a skin, either side. */
+    /* The next crossing that matters: of a mesh that the ray is in, where it leaves; of one that it is not in and that
+     * the medium does not hide, where it enters; of a skin, either side. */
     void (*nearest)(const forest *f, const forest_ray *rays, int count, forest_hit *hits);
     /* Is anything of the wanted set in the way? Closed meshes as above, whatever hides them. */
     void (*any)(const forest *f, const forest_ray *rays, int count, bool *blocked);

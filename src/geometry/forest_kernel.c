@@ -1,5 +1,5 @@
-/* Rays among all copies of all meshes. Each copy is asked in its own frame, where distances along the ray are the same, because
- * the direction is not made a unit vector there. */
+/* Rays among all copies of all meshes. Each copy is asked in its own frame, where distances along the ray are the same,
+ * because the direction is not made a unit vector there. */
 #include "base/kernel.h"
 #include "base/lanes.h"
 #include "geometry/forest.h"
@@ -12,7 +12,7 @@ typedef struct visit {
     void *context;
     const forest *f;
     const forest_ray *ray;
-    int primitive;           /* of the copy that is asked */
+    int primitive; /* of the copy that is asked */
     uint32_t copy;
 } visit;
 
@@ -20,10 +20,10 @@ typedef struct visit {
 typedef struct quest {
     const forest *f;
     const forest_ray *ray;
-    bool any, blocked;       /* any: whatever is first met; nothing is hidden */
-    visit *all;              /* every crossing, and nothing is hidden; else NULL */
+    bool any, blocked; /* any: whatever is first met; nothing is hidden */
+    visit *all;        /* every crossing, and nothing is hidden; else NULL */
     double t_max;
-    double beyond;           /* how far from its start it looks at skins */
+    double beyond; /* how far from its start it looks at skins */
     forest_hit *best;
 } quest;
 
@@ -51,8 +51,8 @@ static double sum_of_magnitudes(vec3 v)
     return fabs(v.x) + fabs(v.y) + fabs(v.z);
 }
 
-/* A ray that starts on a mesh may lie on either side of it by rounding, and of a skin at the same place: of skins it sees those beyond
- * its point's error bound. */
+/* A ray that starts on a mesh may lie on either side of it by rounding, and of a skin at the same place: of skins it
+ * sees those beyond its point's error bound. */
 static double beyond_start(const forest *f, const forest_ray *ray)
 {
     if (!f->skins || !is_mesh_face(ray->start))
@@ -62,7 +62,8 @@ static double beyond_start(const forest *f, const forest_ray *ray)
 }
 
 /* Where a ray that starts on a surface crosses a mesh at its start, within the crossing's error bound, the two were in
- * contact there, and the ray's set already says on which side of the mesh it is. The bound; 0 for all other crossings. */
+ * contact there, and the ray's set already says on which side of the mesh it is. The bound; 0 for all other crossings.
+ */
 static double at_start(const forest *f, const forest_ray *ray, const forest_hit *hit)
 {
     const forest_part *p = &f->parts[f->by_primitive[mesh_face_primitive(hit->face)]];
@@ -89,9 +90,16 @@ static bool ray_in(const quest *q, const forest_part *p, uint32_t copy, mesh_ray
     if (!(ray->wanted & bit) || (!q->any && (p->closed && within ? p->rank < ray->before : p->rank <= ray->before)))
         return false;
     const vec3 moved = vec3_sub(ray->origin, forest_origin(p, copy));
-    *local = (mesh_ray){.origin = direction_in(p, moved), .direction = direction_in(p, ray->direction), .t_min = ray->t_min, .t_max = q->t_max,
-                        .skip = TRIANGLE_NONE, .facing = !p->closed ? FACING_ANY : within ? FACING_BACK : FACING_FRONT};
-    if (is_mesh_face(ray->start) && mesh_face_primitive(ray->start) == p->primitive && mesh_face_copy(ray->start) == copy)
+    *local = (mesh_ray){.origin = direction_in(p, moved),
+                        .direction = direction_in(p, ray->direction),
+                        .t_min = ray->t_min,
+                        .t_max = q->t_max,
+                        .skip = TRIANGLE_NONE,
+                        .facing = !p->closed ? FACING_ANY
+                                  : within   ? FACING_BACK
+                                             : FACING_FRONT};
+    if (is_mesh_face(ray->start) && mesh_face_primitive(ray->start) == p->primitive &&
+        mesh_face_copy(ray->start) == copy)
         local->skip = mesh_face_triangle(ray->start);
     if (!p->closed)
         local->t_min += q->beyond;
@@ -164,7 +172,8 @@ static double come_by(void *context, uint32_t instance, double t_max)
 
 static void walk(quest *q)
 {
-    const mesh_ray ray = {.origin = q->ray->origin, .direction = q->ray->direction, .t_min = q->ray->t_min, .t_max = q->t_max};
+    const mesh_ray ray = {
+        .origin = q->ray->origin, .direction = q->ray->direction, .t_min = q->ray->t_min, .t_max = q->t_max};
     TREES.boxes(q->f->top, &ray, come_by, q);
 }
 
@@ -268,7 +277,8 @@ static void each(const forest *f, const forest_ray *ray, forest_found *found, vo
     ask(&q);
 }
 
-/* The last crossings of each mesh's fronts and backs on the path, whichever triangles, and how far those copies extend. */
+/* The last crossings of each mesh's fronts and backs on the path, whichever triangles, and how far those copies extend.
+ */
 typedef struct last_crossings {
     const forest *f;
     double front[PRIMITIVES_MAX], back[PRIMITIVES_MAX], front_extent[PRIMITIVES_MAX], back_extent[PRIMITIVES_MAX];
@@ -297,8 +307,8 @@ static void look_at_all(const forest *f, const forest_ray *ray, last_crossings *
     each(f, ray, take_last, last);
 }
 
-/* Is a ray at the end of its path in a closed mesh? What was crossed last says so: fronts lead in, backs lead out. Where both are at one
- * place, at a silhouette or between two copies that touch, it is in what it was in before. */
+/* Is a ray at the end of its path in a closed mesh? What was crossed last says so: fronts lead in, backs lead out.
+ * Where both are at one place, at a silhouette or between two copies that touch, it is in what it was in before. */
 static bool is_in(const forest *f, const forest_ray *ray, const last_crossings *all, int number)
 {
     const uint64_t bit = (uint64_t)1 << number;
@@ -307,7 +317,8 @@ static bool is_in(const forest *f, const forest_ray *ray, const last_crossings *
     shorter.wanted = bit;
     for (const last_crossings *last = all;;) {
         const double front = last->front[number], back = last->back[number], first = lesser(front, back);
-        const double tie = ray->tie + ray->tie_by_extent * greater(last->front_extent[number], last->back_extent[number]);
+        const double tie =
+            ray->tie + ray->tie_by_extent * greater(last->front_extent[number], last->back_extent[number]);
         if (greater(front, back) < 0.0 && front == back) /* nothing was crossed */
             return (ray->inside & bit) != 0;
         if (front - back > tie || back - front > tie)

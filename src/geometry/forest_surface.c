@@ -3,7 +3,9 @@
 
 #include "base/lanes.h"
 
-typedef struct corner_set { vec3 a, b, c; } corner_set; /* a triangle's corners, scaled, in the part's frame turned to the world */
+typedef struct corner_set {
+    vec3 a, b, c;
+} corner_set; /* a triangle's corners, scaled, in the part's frame turned to the world */
 
 static vec3 turned(const forest_part *p, vec3 v)
 {
@@ -16,9 +18,10 @@ static vec3 mix(vec3 a, vec3 b, vec3 c, double u, double v)
     return vec3_add(a, vec3_add(vec3_scale(vec3_sub(b, a), u), vec3_scale(vec3_sub(c, a), v)));
 }
 
-/* The interpolated normal, or one between it and the geometric one, so that a mirror there sends the ray out of the surface and not into
- * it: the halfway vector of the ray and the outgoing direction raised to just above the surface (Keller et al., "The Iray light
- * transport simulation and rendering system", 2017, A.3). All unit vectors; d . g < 0. */
+/* The interpolated normal, or one between it and the geometric one, so that a mirror there sends the ray out of the
+ * surface and not into it: the halfway vector of the ray and the outgoing direction raised to just above the surface
+ * (Keller et al., "The Iray light transport simulation and rendering system", 2017, A.3). All unit vectors; d . g < 0.
+ */
 static vec3 bent_normal(vec3 n, vec3 g, vec3 d)
 {
     const double least = 0.01;
@@ -34,7 +37,8 @@ static vec3 bent_normal(vec3 n, vec3 g, vec3 d)
 
 static vec3 smooth_normal(const forest_part *p, mesh_triangle tri, double u, double v, vec3 g, vec3 d)
 {
-    const vec3 a = forest_vertex_normal(p, tri.corner[0]), b = forest_vertex_normal(p, tri.corner[1]), c = forest_vertex_normal(p, tri.corner[2]);
+    const vec3 a = forest_vertex_normal(p, tri.corner[0]), b = forest_vertex_normal(p, tri.corner[1]),
+               c = forest_vertex_normal(p, tri.corner[2]);
     vec3 n = mix(a, b, c, u, v);
     const double length = vec3_length(n), side = vec3_dot(n, g);
     if (!(length > 1e-12) || side == 0.0)
@@ -44,9 +48,13 @@ static vec3 smooth_normal(const forest_part *p, mesh_triangle tri, double u, dou
 }
 
 /* A triangle's edges from its first corner, its normal and the length of their cross product. */
-typedef struct edge_pair { vec3 b, c, n; double area2; } edge_pair;
+typedef struct edge_pair {
+    vec3 b, c, n;
+    double area2;
+} edge_pair;
 
-/* How fast a number that is 0 at the first corner, and at_b and at_c at the others, grows across the triangle: the length of its gradient. */
+/* How fast a number that is 0 at the first corner, and at_b and at_c at the others, grows across the triangle: the
+ * length of its gradient. */
 static double steepness(const edge_pair *e, double at_b, double at_c)
 {
     const vec3 along = vec3_add(vec3_scale(vec3_cross(e->c, e->n), at_b), vec3_scale(vec3_cross(e->n, e->b), at_c));
@@ -54,7 +62,8 @@ static double steepness(const edge_pair *e, double at_b, double at_c)
 }
 
 /* Texture coordinates, and how far u or v, whichever is faster, runs in a scene unit. */
-static void texture_at(const mesh *m, mesh_triangle tri, double u, double v, const edge_pair *e, mesh_points *more, int i)
+static void texture_at(const mesh *m, mesh_triangle tri, double u, double v, const edge_pair *e, mesh_points *more,
+                       int i)
 {
     more->tu[i] = more->tv[i] = more->uv_per_length[i] = 0.0;
     if (!m->uvs)
@@ -66,13 +75,15 @@ static void texture_at(const mesh *m, mesh_triangle tri, double u, double v, con
     more->uv_per_length[i] = e->area2 > 0.0 ? greater(steepness(e, bu, cu), steepness(e, bv, cv)) : 0.0;
 }
 
-static void surface_at(const forest *f, const ray_batch *rays, const forest_hit *hit, bool smooth, int i, surface_batch *s, mesh_points *more)
+static void surface_at(const forest *f, const ray_batch *rays, const forest_hit *hit, bool smooth, int i,
+                       surface_batch *s, mesh_points *more)
 {
     const forest_part *p = &f->parts[f->by_primitive[mesh_face_primitive(hit->face)]];
     const uint32_t number = mesh_face_triangle(hit->face);
     const mesh_triangle tri = p->triangles->triangles[number];
     const vec3 *vertex = p->triangles->vertices, d = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]);
-    const vec3 a = turned(p, vertex[tri.corner[0]]), b = turned(p, vertex[tri.corner[1]]), c = turned(p, vertex[tri.corner[2]]);
+    const vec3 a = turned(p, vertex[tri.corner[0]]), b = turned(p, vertex[tri.corner[1]]),
+               c = turned(p, vertex[tri.corner[2]]);
     const vec3 o = forest_origin(p, mesh_face_copy(hit->face)), at = vec3_add(o, mix(a, b, c, hit->u, hit->v));
     vec3 g = vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
     const double area2 = vec3_length(g);
@@ -97,7 +108,8 @@ static void surface_at(const forest *f, const ray_batch *rays, const forest_hit 
     texture_at(p->triangles, tri, hit->u, hit->v, &edges, more, i);
 }
 
-void forest_surface(const forest *f, const ray_batch *rays, const forest_hit *hits, bool smooth, surface_batch *points, mesh_points *more)
+void forest_surface(const forest *f, const ray_batch *rays, const forest_hit *hits, bool smooth, surface_batch *points,
+                    mesh_points *more)
 {
     for (int i = 0; i < rays->count; i++)
         surface_at(f, rays, &hits[i], smooth, i, points, more);

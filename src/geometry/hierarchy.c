@@ -25,25 +25,22 @@ static status build_none(hierarchy *h, diagnostic *why)
         h->report.leaves = 1;
     }
     free(order);
-    return made ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use a smaller mesh", "out of memory for %zu triangles", count);
+    return made ? STATUS_OK
+                : diagnose(why, STATUS_FAILURE, "use a smaller mesh", "out of memory for %zu triangles", count);
 }
 
 static status build(hierarchy *h, int threads, diagnostic *why)
 {
     switch (h->kind) {
-    case HIERARCHY_NONE:
-        return build_none(h, why);
+    case HIERARCHY_NONE: return build_none(h, why);
     case HIERARCHY_SPHERE:
-    case HIERARCHY_OCTANT:
-        return hierarchy_build_spheres(h, why);
-    case HIERARCHY_BVH:
-        return hierarchy_build_bvh(h, threads, why);
-    case HIERARCHY_EMBREE:
-        return hierarchy_build_embree(h, threads, why);
-    case HIERARCHY_KIND_COUNT:
-        break;
+    case HIERARCHY_OCTANT: return hierarchy_build_spheres(h, why);
+    case HIERARCHY_BVH: return hierarchy_build_bvh(h, threads, why);
+    case HIERARCHY_EMBREE: return hierarchy_build_embree(h, threads, why);
+    case HIERARCHY_KIND_COUNT: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant, bvh or embree", "there is no hierarchy of kind %d", (int)h->kind);
+    return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant, bvh or embree",
+                    "there is no hierarchy of kind %d", (int)h->kind);
 }
 
 status hierarchy_build(const mesh *m, hierarchy_kind kind, int threads, hierarchy **out, diagnostic *why)
@@ -87,7 +84,8 @@ hierarchy_report hierarchy_describe(const hierarchy *h)
 
 bool hierarchy_has(hierarchy_kind kind)
 {
-    return kind >= HIERARCHY_NONE && kind < HIERARCHY_KIND_COUNT && (kind != HIERARCHY_EMBREE || hierarchy_embree_there());
+    return kind >= HIERARCHY_NONE && kind < HIERARCHY_KIND_COUNT &&
+           (kind != HIERARCHY_EMBREE || hierarchy_embree_there());
 }
 
 /* Refits a hierarchy that its mesh keeps. false: it is to be built anew. */
@@ -132,7 +130,8 @@ status hierarchy_follow(const mesh *m, double ratio, int threads, hierarchy_move
         __atomic_store_n(&m->share->hierarchies[kind], kept, __ATOMIC_RELEASE);
     }
     for (int kind = 0; kind < HIERARCHY_KIND_COUNT && s != STATUS_OK; kind++)
-        hierarchy_destroy(__atomic_exchange_n(&m->share->hierarchies[kind], NULL, __ATOMIC_ACQ_REL)); /* those left would not fit */
+        hierarchy_destroy(
+            __atomic_exchange_n(&m->share->hierarchies[kind], NULL, __ATOMIC_ACQ_REL)); /* those left would not fit */
     pthread_mutex_unlock(&m->share->mutex);
     if (out)
         *out = moves;
@@ -143,7 +142,8 @@ status hierarchy_of_mesh(const mesh *m, hierarchy_kind kind, int threads, const 
 {
     *out = NULL;
     if (kind < HIERARCHY_NONE || kind >= HIERARCHY_KIND_COUNT)
-        return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant, bvh or embree", "there is no hierarchy of kind %d", (int)kind);
+        return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant, bvh or embree",
+                        "there is no hierarchy of kind %d", (int)kind);
     hierarchy **kept = &m->share->hierarchies[kind], *h = __atomic_load_n(kept, __ATOMIC_ACQUIRE);
     status s = STATUS_OK;
     if (!h) {

@@ -1,14 +1,15 @@
-/* A ray made ready for a hierarchy's boxes, which are met in single precision, eight at a time, and never missed where a triangle in them
- * is hit: planes are single numbers rounded outwards, the ray's origin is rounded to both sides by more than it needs, and distances to near
- * planes are made smaller, to far ones larger, by more than the rounding of the three operations (Ize, "Robust BVH ray traversal",
- * JCGT 2(2), 2013). A box is left out only if it begins beyond the best hit, not at it, so that the lower number of two triangles at one
- * distance is found whichever comes first. */
+/* A ray made ready for a hierarchy's boxes, which are met in single precision, eight at a time, and never missed where
+ * a triangle in them is hit: planes are single numbers rounded outwards, the ray's origin is rounded to both sides by
+ * more than it needs, and distances to near planes are made smaller, to far ones larger, by more than the rounding of
+ * the three operations (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is left out only if it begins beyond
+ * the best hit, not at it, so that the lower number of two triangles at one distance is found whichever comes first. */
 #ifndef CUVETTE_GEOMETRY_HIERARCHY_BOXES_H
 #define CUVETTE_GEOMETRY_HIERARCHY_BOXES_H
 
 #include "geometry/hierarchy_query.h"
 
-/* The ray for boxes. Planes of a node stand in a row, low ones before high ones; near and far say which is which for this ray. */
+/* The ray for boxes. Planes of a node stand in a row, low ones before high ones; near and far say which is which for
+ * this ray. */
 typedef struct box_ray {
     float near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
     int near[3], far[3];
@@ -16,12 +17,20 @@ typedef struct box_ray {
 } box_ray;
 
 enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH }; /* children that wait on a way down */
-#define BOX_SLACK 0x1p-21f /* of 2^-24 a rounding, of which there are three */
-#define FLOAT_STEP 0x1p-22f /* more than from one float to the next but one */
+#define BOX_SLACK 0x1p-21f                            /* of 2^-24 a rounding, of which there are three */
+#define FLOAT_STEP 0x1p-22f                           /* more than from one float to the next but one */
 #define FLOAT_TINY 1e-37f
 
-ALWAYS_INLINE float float_above(double v) { const float f = (float)v; return f + (__builtin_fabsf(f) * FLOAT_STEP + FLOAT_TINY); }
-ALWAYS_INLINE float float_below(double v) { const float f = (float)v; return f - (__builtin_fabsf(f) * FLOAT_STEP + FLOAT_TINY); }
+ALWAYS_INLINE float float_above(double v)
+{
+    const float f = (float)v;
+    return f + (__builtin_fabsf(f) * FLOAT_STEP + FLOAT_TINY);
+}
+ALWAYS_INLINE float float_below(double v)
+{
+    const float f = (float)v;
+    return f - (__builtin_fabsf(f) * FLOAT_STEP + FLOAT_TINY);
+}
 
 ALWAYS_INLINE void box_ray_start(box_ray *b, const ray_query *q)
 {
@@ -66,9 +75,11 @@ ALWAYS_INLINE void slabs(const bvh_node *node, const box_ray *b, float *__restri
     const float *__restrict fx = p + b->far[0], *__restrict fy = p + b->far[1], *__restrict fz = p + b->far[2];
     /* VECTORISE */
     for (int i = 0; i < WIDTH; i++) {
-        const float x = (nx[i] - b->near_origin[0]) * b->near_inverse[0], y = (ny[i] - b->near_origin[1]) * b->near_inverse[1],
+        const float x = (nx[i] - b->near_origin[0]) * b->near_inverse[0],
+                    y = (ny[i] - b->near_origin[1]) * b->near_inverse[1],
                     z = (nz[i] - b->near_origin[2]) * b->near_inverse[2];
-        const float u = (fx[i] - b->far_origin[0]) * b->far_inverse[0], v = (fy[i] - b->far_origin[1]) * b->far_inverse[1],
+        const float u = (fx[i] - b->far_origin[0]) * b->far_inverse[0],
+                    v = (fy[i] - b->far_origin[1]) * b->far_inverse[1],
                     w = (fz[i] - b->far_origin[2]) * b->far_inverse[2];
         const float xy = x > y ? x : y, uv = u < v ? u : v;
         near[i] = xy > z ? xy : z;

@@ -1,12 +1,13 @@
 /* The parts of the builder of the hierarchy `bvh`; for src/geometry/hierarchy_bvh*.c alone.
  *
- * Triangles become references, boxes of single precision, and are split in two again and again by the binned surface-area
- * heuristic (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007): a tree of branches. Which of them become
- * leaves and how they are gathered into nodes of eight is then chosen at the least expected cost (Ylitie, Karras and Laine, "Efficient
- * incoherent ray traversal on GPUs through compressed wide BVHs", 2017, section 3.1).
+ * Triangles become references, boxes of single precision, and are split in two again and again by the binned
+ * surface-area heuristic (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007): a tree of
+ * branches. Which of them become leaves and how they are gathered into nodes of eight is then chosen at the least
+ * expected cost (Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs",
+ * 2017, section 3.1).
  *
- * The tree depends on the set of references alone, never on their order: boxes and counts of bins do not, halves are those
- * of a complete order, and a leaf's triangles are sorted. So it is the same for any number of threads. */
+ * The tree depends on the set of references alone, never on their order: boxes and counts of bins do not, halves are
+ * those of a complete order, and a leaf's triangles are sorted. So it is the same for any number of threads. */
 #ifndef CUVETTE_GEOMETRY_HIERARCHY_BVH_H
 #define CUVETTE_GEOMETRY_HIERARCHY_BVH_H
 
@@ -18,12 +19,14 @@
 /* Binary levels: SAH may use them up to where halving alone stays within. */
 enum { BRANCH_DEPTH_MAX = BVH_DEPTH_MAX - 1, LEAF_TRIANGLES_MAX = LEAF_BLOCKS_MAX * BLOCK };
 
-/* The time of a visit to a node (eight boxes), in those of the test of one block. Measured on sets of 50000 triangles: between half and
- * twice this, or with a constant for each leaf, frames take as long or longer. */
+/* The time of a visit to a node (eight boxes), in those of the test of one block. Measured on sets of 50000 triangles:
+ * between half and twice this, or with a constant for each leaf, frames take as long or longer. */
 #define COST_NODE 1.0f
 
 /* A box of four lanes, of which the first three are axes; the fourth is kept free of slow (denormal) numbers. */
-typedef struct bvh_box { float low[4] __attribute__((aligned(16))), high[4] __attribute__((aligned(16))); } bvh_box;
+typedef struct bvh_box {
+    float low[4] __attribute__((aligned(16))), high[4] __attribute__((aligned(16)));
+} bvh_box;
 
 /* A triangle's box; the fourth lane of low holds its number, see bvh_triangle. */
 typedef bvh_box bvh_ref;
@@ -40,10 +43,10 @@ typedef struct bvh_branch {
     float low[3], high[3];
     uint32_t first, count;
     struct bvh_branch *half[2]; /* NULL where it is not split */
-    float cost[WIDTH];    /* [i], i = 1..7: least cost as at most i subtrees */
-    uint8_t share[WIDTH + 1]; /* [i], i = 2..8: of i subtrees, the first half's; 0: as for i - 1 */
-    bool leaf;            /* as one subtree */
-    uint32_t depth;       /* of the nodes below and at it; with the next two found when the tree is gathered */
+    float cost[WIDTH];          /* [i], i = 1..7: least cost as at most i subtrees */
+    uint8_t share[WIDTH + 1];   /* [i], i = 2..8: of i subtrees, the first half's; 0: as for i - 1 */
+    bool leaf;                  /* as one subtree */
+    uint32_t depth;             /* of the nodes below and at it; with the next two found when the tree is gathered */
     size_t nodes, blocks, leaves;
 } bvh_branch;
 
@@ -63,8 +66,8 @@ static inline uint32_t bvh_triangle(const bvh_ref *r)
     return bits & 0x3fffffffu;
 }
 
-/* The largest float that is not above v, and the smallest not below, where |v| is 0 or at least the smallest normal float: bits that a float does
- * not have are cut off, after they were carried over where that is the way outwards. */
+/* The largest float that is not above v, and the smallest not below, where |v| is 0 or at least the smallest normal
+ * float: bits that a float does not have are cut off, after they were carried over where that is the way outwards. */
 #define BVH_CUT_LEAST 0x1p-126
 #define BVH_CUT UINT64_C(0x1fffffff)
 
@@ -84,8 +87,14 @@ static inline uint64_t bvh_sign(double v)
     return bits >> 63;
 }
 
-static inline float bvh_cut_below(double v) { return bvh_cut_float(v, bvh_sign(v)); }
-static inline float bvh_cut_above(double v) { return bvh_cut_float(v, 1 - bvh_sign(v)); }
+static inline float bvh_cut_below(double v)
+{
+    return bvh_cut_float(v, bvh_sign(v));
+}
+static inline float bvh_cut_above(double v)
+{
+    return bvh_cut_float(v, 1 - bvh_sign(v));
+}
 
 /* The same of any v. */
 static inline float bvh_float_below(double v)
@@ -161,19 +170,23 @@ typedef struct bvh_cut {
     float cost;
 } bvh_cut;
 
-/* Splits a range of at least two: reorders its references and describes the halves. depth: of the range's branch, from 0. */
+/* Splits a range of at least two: reorders its references and describes the halves. depth: of the range's branch, from
+ * 0. */
 void bvh_split(bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2]);
 /* The same by a team; for ranges so large that it pays. STATUS_FAILURE when memory is out. */
-status bvh_split_together(team *t, bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2], diagnostic *why);
+status bvh_split_together(team *t, bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2],
+                          diagnostic *why);
 
 /* The steps of a split. */
 bool bvh_may_bin(const bvh_range *range, int depth); /* false where the tree would become too deep */
 void bvh_bins_begin(bvh_bins *s, const bvh_range *range);
 void bvh_bins_fill(bvh_bins *s, const bvh_ref *refs, size_t count);
 bool bvh_cheapest(const bvh_bins *s, bvh_cut *cut); /* false where no cut is better than another */
-/* Moves the references of the first half to the front and returns their number; centers: bounds of the halves' doubled centres. */
+/* Moves the references of the first half to the front and returns their number; centers: bounds of the halves' doubled
+ * centres. */
 uint32_t bvh_part(bvh_ref *refs, size_t count, const bvh_bins *s, bvh_cut cut, bvh_box centers[2]);
-void bvh_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2], bvh_range half[2]);
+void bvh_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2],
+                bvh_range half[2]);
 /* Halves of equal counts, for where bins do not help. */
 void bvh_halve(bvh_ref *refs, const bvh_range *range, bvh_range half[2]);
 
@@ -200,7 +213,8 @@ void hierarchy_refit_nodes_sse2(hierarchy *h);
 void hierarchy_refit_nodes_avx2(hierarchy *h);
 void hierarchy_refit_nodes_avx512(hierarchy *h);
 
-/* Counts what becomes of a tree, and writes it to h; root NULL: no triangles. STATUS_FAILURE when memory is out or the tree too large. */
+/* Counts what becomes of a tree, and writes it to h; root NULL: no triangles. STATUS_FAILURE when memory is out or the
+ * tree too large. */
 status bvh_gather(hierarchy *h, bvh_branch *root, const bvh_ref *refs, team *t, diagnostic *why);
 
 #endif

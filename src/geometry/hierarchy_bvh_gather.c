@@ -71,7 +71,10 @@ static int children_of(bvh_branch *b, bool root, bvh_branch **out)
 }
 
 /* Subtrees that are counted or written by one member each, and where they go. */
-typedef struct place { bvh_branch *b; size_t node, block; } place;
+typedef struct place {
+    bvh_branch *b;
+    size_t node, block;
+} place;
 typedef struct gathering {
     hierarchy *h;
     const bvh_ref *refs;
@@ -166,8 +169,8 @@ static void write_boxes(bvh_node *n, bvh_branch *const *children, int count)
     n->child_count = (uint32_t)count;
 }
 
-/* Depth first: a node, then each child's subtree; blocks in the order of their leaves. With later: small subtrees are only noted there.
- * false when there is no memory for that. */
+/* Depth first: a node, then each child's subtree; blocks in the order of their leaves. With later: small subtrees are
+ * only noted there. false when there is no memory for that. */
 static bool write_tree(gathering *g, bvh_branch *b, bool root, size_t node, size_t block, gathering *later)
 {
     bvh_branch *children[WIDTH];

@@ -1,7 +1,8 @@
 /* One ray's way down the hierarchy `bvh`: nearest children first, farther ones wait on a stack with their distances. */
 #include "geometry/hierarchy_boxes.h"
 
-ALWAYS_INLINE void walk_down(const hierarchy *h, ray_query *q, const box_ray *ray, enum query_mode mode, bool single, uint32_t at)
+ALWAYS_INLINE void walk_down(const hierarchy *h, ray_query *q, const box_ray *ray, enum query_mode mode, bool single,
+                             uint32_t at)
 {
     const box_ray b = *ray;
     const float8 t_min = float8_all(b.t_min);

@@ -4,7 +4,8 @@
 
 bool hierarchy_refit(hierarchy *h)
 {
-    static void (*const refit[ISA_COUNT])(hierarchy *) = {hierarchy_refit_nodes_sse2, hierarchy_refit_nodes_avx2, hierarchy_refit_nodes_avx512};
+    static void (*const refit[ISA_COUNT])(hierarchy *) = {hierarchy_refit_nodes_sse2, hierarchy_refit_nodes_avx2,
+                                                          hierarchy_refit_nodes_avx512};
     isa level = ISA_SSE2;
     if (h->kind != HIERARCHY_BVH || h->referred != h->of->triangle_count || (h->single && !h->of->single))
         return false;
@@ -15,7 +16,8 @@ bool hierarchy_refit(hierarchy *h)
 
 static double half_area(const bvh_node *n, int slot)
 {
-    const double x = (double)n->high[0][slot] - (double)n->low[0][slot], y = (double)n->high[1][slot] - (double)n->low[1][slot],
+    const double x = (double)n->high[0][slot] - (double)n->low[0][slot],
+                 y = (double)n->high[1][slot] - (double)n->low[1][slot],
                  z = (double)n->high[2][slot] - (double)n->low[2][slot];
     return x * y + y * z + z * x;
 }

@@ -100,7 +100,8 @@ uint32_t bvh_part(bvh_ref *refs, size_t count, const bvh_bins *s, bvh_cut cut, b
     return lower;
 }
 
-void bvh_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2], bvh_range half[2])
+void bvh_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2],
+                bvh_range half[2])
 {
     half[0] = (bvh_range){bvh_box_empty(), centers[0], range->first, lower};
     half[1] = (bvh_range){bvh_box_empty(), centers[1], range->first + lower, range->count - lower};

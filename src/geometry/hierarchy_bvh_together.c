@@ -51,8 +51,8 @@ static void add_bins(bvh_bins *sum, const bvh_bins *s)
         }
 }
 
-/* Each piece holds its lower references, then its upper ones. Those upper ones that lie before the end of all lower ones change
- * places with the lower ones beyond it; there are as many of these as of those. */
+/* Each piece holds its lower references, then its upper ones. Those upper ones that lie before the end of all lower
+ * ones change places with the lower ones beyond it; there are as many of these as of those. */
 static void settle(const job *j, size_t pieces)
 {
     uint32_t upper = 0, lower = j->count, upper_end = 0, lower_begin = j->count; /* empty runs of either kind */

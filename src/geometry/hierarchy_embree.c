@@ -1,5 +1,6 @@
-/* Embree 3 as a yardstick: its own hierarchy and triangle test, in single precision, one ray at a time. The Makefile defines
- * CUVETTE_EMBREE where its header is there. Sides of triangles are told from the mesh's own corners, not from Embree's normal. */
+/* Embree 3 as a yardstick: its own hierarchy and triangle test, in single precision, one ray at a time. The Makefile
+ * defines CUVETTE_EMBREE where its header is there. Sides of triangles are told from the mesh's own corners, not from
+ * Embree's normal. */
 #include "geometry/hierarchy_private.h"
 
 #ifdef CUVETTE_EMBREE
@@ -35,8 +36,9 @@ static int facing_of(const mesh *m, const mesh_ray *ray, uint32_t triangle)
     return vec3_dot(normal, ray->direction) < 0.0 ? FACING_FRONT : FACING_BACK;
 }
 
-/* Refuses hits that the ray does not look for; where all are wanted it hands on each and refuses it too, so that the search goes on.
- * Single rays alone are asked for, so that what Embree hands over is laid out as one ray and one hit. */
+/* Refuses hits that the ray does not look for; where all are wanted it hands on each and refuses it too, so that the
+ * search goes on. Single rays alone are asked for, so that what Embree hands over is laid out as one ray and one hit.
+ */
 static void filter(const struct RTCFilterFunctionNArguments *p)
 {
     const query *q = (const query *)p->context;
@@ -57,9 +59,15 @@ static query start(const hierarchy *h, const mesh_ray *ray, struct RTCRay *out)
     rtcInitIntersectContext(&q.context);
     if (ray->skip != TRIANGLE_NONE || ray->facing != FACING_ANY)
         q.context.filter = filter;
-    *out = (struct RTCRay){.org_x = (float)ray->origin.x, .org_y = (float)ray->origin.y, .org_z = (float)ray->origin.z,
-                           .tnear = (float)(ray->t_min > 0.0 ? ray->t_min : 0.0), .dir_x = (float)ray->direction.x,
-                           .dir_y = (float)ray->direction.y, .dir_z = (float)ray->direction.z, .tfar = (float)ray->t_max, .mask = ~0u};
+    *out = (struct RTCRay){.org_x = (float)ray->origin.x,
+                           .org_y = (float)ray->origin.y,
+                           .org_z = (float)ray->origin.z,
+                           .tnear = (float)(ray->t_min > 0.0 ? ray->t_min : 0.0),
+                           .dir_x = (float)ray->direction.x,
+                           .dir_y = (float)ray->direction.y,
+                           .dir_z = (float)ray->direction.z,
+                           .tfar = (float)ray->t_max,
+                           .mask = ~0u};
     return q;
 }
 
@@ -101,8 +109,10 @@ void hierarchy_embree_all(const hierarchy *h, const mesh_ray *ray, mesh_visit *v
 /* Copies the mesh into buffers of Embree's own. */
 static bool fill(const mesh *m, RTCGeometry g)
 {
-    float *v = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), m->vertex_count);
-    uint32_t *corner = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof m->triangles[0], m->triangle_count);
+    float *v =
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), m->vertex_count);
+    uint32_t *corner = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof m->triangles[0],
+                                               m->triangle_count);
     if (!v || !corner)
         return false;
     for (size_t i = 0; i < m->vertex_count; i++) {
@@ -151,7 +161,8 @@ status hierarchy_build_embree(hierarchy *h, int threads, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     f->device = rtcNewDevice(wish);
     if (!f->device)
-        return diagnose(why, STATUS_FAILURE, "choose another hierarchy", "Embree finds no device (error %d)", (int)rtcGetDeviceError(NULL));
+        return diagnose(why, STATUS_FAILURE, "choose another hierarchy", "Embree finds no device (error %d)",
+                        (int)rtcGetDeviceError(NULL));
     size_t bytes = 0;
     rtcSetDeviceMemoryMonitorFunction(f->device, count_bytes, &bytes);
     bool built = commit(h, f);
@@ -200,7 +211,8 @@ void hierarchy_embree_all(const hierarchy *h, const mesh_ray *ray, mesh_visit *v
 status hierarchy_build_embree(hierarchy *h, int threads, diagnostic *why)
 {
     (void)h, (void)threads;
-    return diagnose(why, STATUS_BAD_INPUT, "install libembree-dev and build again", "this program was built without Embree");
+    return diagnose(why, STATUS_BAD_INPUT, "install libembree-dev and build again",
+                    "this program was built without Embree");
 }
 
 void hierarchy_embree_destroy(hierarchy *h)

@@ -13,19 +13,12 @@ static void walk_blocks(const hierarchy *h, ray_query *q, enum query_mode mode)
 static void walk(const hierarchy *h, ray_query *q, enum query_mode mode)
 {
     switch (h->kind) {
-    case HIERARCHY_BVH:
-        KERNEL(walk_bvh)(h, q, mode);
-        break;
+    case HIERARCHY_BVH: KERNEL(walk_bvh)(h, q, mode); break;
     case HIERARCHY_SPHERE:
-    case HIERARCHY_OCTANT:
-        KERNEL(walk_spheres)(h, q, mode);
-        break;
-    case HIERARCHY_NONE:
-        walk_blocks(h, q, mode);
-        break;
+    case HIERARCHY_OCTANT: KERNEL(walk_spheres)(h, q, mode); break;
+    case HIERARCHY_NONE: walk_blocks(h, q, mode); break;
     case HIERARCHY_EMBREE:
-    case HIERARCHY_KIND_COUNT:
-        break;
+    case HIERARCHY_KIND_COUNT: break;
     }
 }
 

@@ -1,4 +1,5 @@
-/* Vectors of eight floats and four doubles for the hierarchy kernels, in the vector extensions that gcc and clang share. Pure; cannot fail. */
+/* Vectors of eight floats and four doubles for the hierarchy kernels, in the vector extensions that gcc and clang
+ * share. Pure; cannot fail. */
 #ifndef CUVETTE_GEOMETRY_HIERARCHY_LANES_H
 #define CUVETTE_GEOMETRY_HIERARCHY_LANES_H
 
@@ -17,11 +18,17 @@ typedef int64_t int4x64 __attribute__((vector_size(32)));
 typedef int8_t int8x8 __attribute__((vector_size(8)));
 typedef int8_t int4x8 __attribute__((vector_size(4)));
 
-ALWAYS_INLINE float8 float8_all(float v) { return (float8){v, v, v, v, v, v, v, v}; }
-ALWAYS_INLINE double4 double4_all(double v) { return (double4){v, v, v, v}; }
+ALWAYS_INLINE float8 float8_all(float v)
+{
+    return (float8){v, v, v, v, v, v, v, v};
+}
+ALWAYS_INLINE double4 double4_all(double v)
+{
+    return (double4){v, v, v, v};
+}
 
-/* The set of lanes whose mask is -1, one bit a lane; lane_first is the lowest of a set that is not empty. AVX-512 narrows a vector in one
- * instruction, which makes bytes the quicker form there. */
+/* The set of lanes whose mask is -1, one bit a lane; lane_first is the lowest of a set that is not empty. AVX-512
+ * narrows a vector in one instruction, which makes bytes the quicker form there. */
 #ifdef __AVX512VL__
 ALWAYS_INLINE uint64_t lanes_of8(int8x32 mask)
 {
@@ -37,7 +44,10 @@ ALWAYS_INLINE unsigned lanes_of4(int4x64 mask)
     memcpy(&set, &bytes, sizeof set);
     return set & 0x01010101u;
 }
-ALWAYS_INLINE unsigned lane_first(uint64_t set) { return (unsigned)__builtin_ctzll(set) >> 3; }
+ALWAYS_INLINE unsigned lane_first(uint64_t set)
+{
+    return (unsigned)__builtin_ctzll(set) >> 3;
+}
 #else
 ALWAYS_INLINE uint64_t lanes_of8(int8x32 mask)
 {
@@ -50,8 +60,11 @@ ALWAYS_INLINE unsigned lanes_of4(int4x64 mask)
     mask &= (int4x64){1, 2, 4, 8};
     return (unsigned)((mask[0] | mask[2]) | (mask[1] | mask[3]));
 }
-ALWAYS_INLINE unsigned lane_first(uint64_t set) { return (unsigned)__builtin_ctzll(set); }
+ALWAYS_INLINE unsigned lane_first(uint64_t set)
+{
+    return (unsigned)__builtin_ctzll(set);
+}
 #endif
-#define LANES_LESS_FIRST(set) ((set) & ((set) - 1))
+#define LANES_LESS_FIRST(set) ((set) & ((set)-1))
 
 #endif

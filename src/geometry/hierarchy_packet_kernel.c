@@ -1,9 +1,10 @@
-/* Rays that are alike go down the hierarchy `bvh` together: whole nodes are left out for all of them by one test (of a ray that stands for
- * the least and the most of every ray's numbers: Boulos et al., "Packet-based Whitted and distribution ray tracing", GI 2007), boxes are
- * met by eight rays at a time when their turn comes, and so are triangles. Where few are left of the many, each goes on by itself.
+/* Rays that are alike go down the hierarchy `bvh` together: whole nodes are left out for all of them by one test (of a
+ * ray that stands for the least and the most of every ray's numbers: Boulos et al., "Packet-based Whitted and
+ * distribution ray tracing", GI 2007), boxes are met by eight rays at a time when their turn comes, and so are
+ * triangles. Where few are left of the many, each goes on by itself.
  *
- * A ray sees every box and triangle that it would see alone, or more; what counts as a hit is decided by the one triangle test. So the
- * hits are the same to the bit. */
+ * A ray sees every box and triangle that it would see alone, or more; what counts as a hit is decided by the one
+ * triangle test. So the hits are the same to the bit. */
 #include "geometry/hierarchy_boxes.h"
 
 enum { LANES = 8, GROUPS = TOGETHER / LANES, ALONE = 6 };
@@ -12,26 +13,34 @@ typedef double double8 __attribute__((vector_size(64)));
 typedef int64_t int8x64 __attribute__((vector_size(64)));
 
 /* Which rays: a byte a group of eight. */
-typedef struct ray_set { uint8_t bits[GROUPS]; } ray_set;
+typedef struct ray_set {
+    uint8_t bits[GROUPS];
+} ray_set;
 
 typedef struct packet {
-    _Alignas(64) float near_origin[3][TOGETHER], far_origin[3][TOGETHER], near_inverse[3][TOGETHER], far_inverse[3][TOGETHER];
+    _Alignas(64) float near_origin[3][TOGETHER], far_origin[3][TOGETHER], near_inverse[3][TOGETHER],
+        far_inverse[3][TOGETHER];
     _Alignas(64) float t_min[TOGETHER], t_best[TOGETHER];
     _Alignas(64) double origin[3][TOGETHER], shear[3][TOGETHER]; /* along the query's axes x, y, z */
     _Alignas(64) double t_limit[TOGETHER], t_start[TOGETHER];    /* each query's t_best and t_min */
-    _Alignas(64) double place[3][TOGETHER], inverse[3][TOGETHER]; /* origin and inverse direction along the scene's axes */
+    _Alignas(64) double place[3][TOGETHER],
+        inverse[3][TOGETHER]; /* origin and inverse direction along the scene's axes */
     _Alignas(64) int64_t parallel[3][TOGETHER], skip[TOGETHER], wanted[TOGETHER], best[TOGETHER], facing[TOGETHER];
     _Alignas(64) double weight_u[TOGETHER], weight_v[TOGETHER], det[TOGETHER]; /* of the best hits */
     ray_query *ray[TOGETHER];
     int count, groups;
     int near[3], far[3], axis[3];
-    box_ray all;             /* stands for all of them */
-    float t_farthest;        /* the largest t_best */
-    bool changed;            /* some t_best is less than it was when t_farthest was found */
+    box_ray all;      /* stands for all of them */
+    float t_farthest; /* the largest t_best */
+    bool changed;     /* some t_best is less than it was when t_farthest was found */
     ray_set alive;
 } packet;
 
-typedef struct waiting { uint32_t child, node, slot; float near; ray_set rays; } waiting;
+typedef struct waiting {
+    uint32_t child, node, slot;
+    float near;
+    ray_set rays;
+} waiting;
 
 static void widen(packet *p, const box_ray *b, bool first)
 {
@@ -44,10 +53,14 @@ static void widen(packet *p, const box_ray *b, bool first)
         const bool down = b->near[k] >= WIDTH * 3;
 #define LESS(a, c) ((c) < (a) ? (c) : (a))
 #define MORE(a, c) ((c) > (a) ? (c) : (a))
-        all->near_origin[k] = down ? LESS(all->near_origin[k], b->near_origin[k]) : MORE(all->near_origin[k], b->near_origin[k]);
-        all->far_origin[k] = down ? MORE(all->far_origin[k], b->far_origin[k]) : LESS(all->far_origin[k], b->far_origin[k]);
-        all->near_inverse[k] = down ? MORE(all->near_inverse[k], b->near_inverse[k]) : LESS(all->near_inverse[k], b->near_inverse[k]);
-        all->far_inverse[k] = down ? LESS(all->far_inverse[k], b->far_inverse[k]) : MORE(all->far_inverse[k], b->far_inverse[k]);
+        all->near_origin[k] =
+            down ? LESS(all->near_origin[k], b->near_origin[k]) : MORE(all->near_origin[k], b->near_origin[k]);
+        all->far_origin[k] =
+            down ? MORE(all->far_origin[k], b->far_origin[k]) : LESS(all->far_origin[k], b->far_origin[k]);
+        all->near_inverse[k] =
+            down ? MORE(all->near_inverse[k], b->near_inverse[k]) : LESS(all->near_inverse[k], b->near_inverse[k]);
+        all->far_inverse[k] =
+            down ? LESS(all->far_inverse[k], b->far_inverse[k]) : MORE(all->far_inverse[k], b->far_inverse[k]);
     }
     all->t_min = LESS(all->t_min, b->t_min);
 }
@@ -90,9 +103,15 @@ static void packet_start(packet *p, ray_query *const *rays, int count)
 }
 
 #ifdef __AVX512VL__
-ALWAYS_INLINE uint8_t bits_of8(int8x32 mask) { return (uint8_t)(lanes_of8(mask) * 0x0102040810204080u >> 56); }
+ALWAYS_INLINE uint8_t bits_of8(int8x32 mask)
+{
+    return (uint8_t)(lanes_of8(mask) * 0x0102040810204080u >> 56);
+}
 #else
-ALWAYS_INLINE uint8_t bits_of8(int8x32 mask) { return (uint8_t)lanes_of8(mask); }
+ALWAYS_INLINE uint8_t bits_of8(int8x32 mask)
+{
+    return (uint8_t)lanes_of8(mask);
+}
 #endif
 
 ALWAYS_INLINE float8 floats_at(const float *p)
@@ -103,14 +122,19 @@ ALWAYS_INLINE float8 floats_at(const float *p)
 }
 
 /* Where eight rays from number i on meet the planes of one box. */
-ALWAYS_INLINE void slabs_of_rays(const packet *p, int i, const float *restrict near_plane, const float *restrict far_plane, float *restrict near,
-                                 float *restrict far)
+ALWAYS_INLINE void slabs_of_rays(const packet *p, int i, const float *restrict near_plane,
+                                 const float *restrict far_plane, float *restrict near, float *restrict far)
 {
-    const float *restrict nox = &p->near_origin[0][i], *restrict noy = &p->near_origin[1][i], *restrict noz = &p->near_origin[2][i];
-    const float *restrict nix = &p->near_inverse[0][i], *restrict niy = &p->near_inverse[1][i], *restrict niz = &p->near_inverse[2][i];
-    const float *restrict fox = &p->far_origin[0][i], *restrict foy = &p->far_origin[1][i], *restrict foz = &p->far_origin[2][i];
-    const float *restrict fix = &p->far_inverse[0][i], *restrict fiy = &p->far_inverse[1][i], *restrict fiz = &p->far_inverse[2][i];
-    const float nx = near_plane[0], ny = near_plane[1], nz = near_plane[2], fx = far_plane[0], fy = far_plane[1], fz = far_plane[2];
+    const float *restrict nox = &p->near_origin[0][i], *restrict noy = &p->near_origin[1][i],
+                          *restrict noz = &p->near_origin[2][i];
+    const float *restrict nix = &p->near_inverse[0][i], *restrict niy = &p->near_inverse[1][i],
+                          *restrict niz = &p->near_inverse[2][i];
+    const float *restrict fox = &p->far_origin[0][i], *restrict foy = &p->far_origin[1][i],
+                          *restrict foz = &p->far_origin[2][i];
+    const float *restrict fix = &p->far_inverse[0][i], *restrict fiy = &p->far_inverse[1][i],
+                          *restrict fiz = &p->far_inverse[2][i];
+    const float nx = near_plane[0], ny = near_plane[1], nz = near_plane[2], fx = far_plane[0], fy = far_plane[1],
+                fz = far_plane[2];
     /* VECTORISE */
     for (int k = 0; k < LANES; k++) {
         const float x = (nx - nox[k]) * nix[k], y = (ny - noy[k]) * niy[k], z = (nz - noz[k]) * niz[k];
@@ -144,8 +168,8 @@ static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, con
     return count;
 }
 
-/* The farthest that any ray still looks: it only falls. Floats that are not negative are in the order of their bits, and whole numbers have
- * a largest whatever the order in which they are gone through. */
+/* The farthest that any ray still looks: it only falls. Floats that are not negative are in the order of their bits,
+ * and whole numbers have a largest whatever the order in which they are gone through. */
 static void note_farthest(packet *p)
 {
     int32_t bits[TOGETHER], farthest = 0;
@@ -158,7 +182,10 @@ static void note_farthest(packet *p)
     p->changed = false;
 }
 
-ALWAYS_INLINE double8 double8_all(double v) { return (double8){v, v, v, v, v, v, v, v}; }
+ALWAYS_INLINE double8 double8_all(double v)
+{
+    return (double8){v, v, v, v, v, v, v, v};
+}
 ALWAYS_INLINE double8 doubles_at(const double *p)
 {
     double8 v;
@@ -173,14 +200,31 @@ ALWAYS_INLINE int8x64 ints_at(const int64_t *p)
     return v;
 }
 
-ALWAYS_INLINE double8 double8_blend(int8x64 mask, double8 a, double8 b) { return (double8)((mask & (int8x64)a) | (~mask & (int8x64)b)); }
-ALWAYS_INLINE double8 double8_greater(double8 a, double8 b) { return double8_blend(a > b, a, b); }
-ALWAYS_INLINE double8 double8_lesser(double8 a, double8 b) { return double8_blend(a < b, a, b); }
-ALWAYS_INLINE double8 double8_magnitude(double8 a) { return (double8)((int8x64)a & INT64_MAX); }
-ALWAYS_INLINE int8x64 any_bits(double8 a) { return (int8x64)a; }
+ALWAYS_INLINE double8 double8_blend(int8x64 mask, double8 a, double8 b)
+{
+    return (double8)((mask & (int8x64)a) | (~mask & (int8x64)b));
+}
+ALWAYS_INLINE double8 double8_greater(double8 a, double8 b)
+{
+    return double8_blend(a > b, a, b);
+}
+ALWAYS_INLINE double8 double8_lesser(double8 a, double8 b)
+{
+    return double8_blend(a < b, a, b);
+}
+ALWAYS_INLINE double8 double8_magnitude(double8 a)
+{
+    return (double8)((int8x64)a & INT64_MAX);
+}
+ALWAYS_INLINE int8x64 any_bits(double8 a)
+{
+    return (int8x64)a;
+}
 
 /* Eight rays that the edge functions let through one triangle: weights and corners as seen by each. */
-typedef struct passed { double8 u, v, w, x[3], y[3], z[3], t; } passed;
+typedef struct passed {
+    double8 u, v, w, x[3], y[3], z[3], t;
+} passed;
 
 /* query_clamp for eight rays. */
 ALWAYS_INLINE int8x64 clamp_together(const packet *p, int i, const double (*corner)[3], double8 *t)
@@ -193,7 +237,8 @@ ALWAYS_INLINE int8x64 clamp_together(const packet *p, int i, const double (*corn
         const double8 low = double8_all(least_of(corner[k])) - o, high = double8_all(most_of(corner[k])) - o;
         const int8x64 parallel = ints_at(&p->parallel[k][i]);
         const int8x64 aside = (low > zero + PARALLEL_MARGIN) | (high < zero - PARALLEL_MARGIN);
-        const double8 one = low * inverse, two = high * inverse, in = double8_lesser(one, two), out = double8_greater(one, two);
+        const double8 one = low * inverse, two = high * inverse, in = double8_lesser(one, two),
+                      out = double8_greater(one, two);
         const double8 first = double8_greater(near, in - double8_magnitude(in) * BOX_MARGIN);
         const double8 last = double8_lesser(far, out + double8_magnitude(out) * BOX_MARGIN);
         near = double8_blend(parallel, near, first);
@@ -205,11 +250,14 @@ ALWAYS_INLINE int8x64 clamp_together(const packet *p, int i, const double (*corn
 }
 
 /* query_consider for the rays of `mask` among eight. Returns those that it accepts. */
-ALWAYS_INLINE int8x64 consider_together(packet *p, int i, int8x64 mask, const passed *h, const double (*corner)[3], uint32_t triangle)
+ALWAYS_INLINE int8x64 consider_together(packet *p, int i, int8x64 mask, const passed *h, const double (*corner)[3],
+                                        uint32_t triangle)
 {
-    const double8 zero = double8_all(0.0), limit = doubles_at(&p->t_limit[i]), start = doubles_at(&p->t_start[i]), sz = doubles_at(&p->shear[2][i]);
+    const double8 zero = double8_all(0.0), limit = doubles_at(&p->t_limit[i]), start = doubles_at(&p->t_start[i]),
+                  sz = doubles_at(&p->shear[2][i]);
     const double8 z0 = sz * h->z[0], z1 = sz * h->z[1], z2 = sz * h->z[2];
-    const double8 farthest = double8_greater(double8_greater(z0, z1), z2), nearest = double8_lesser(double8_lesser(z0, z1), z2);
+    const double8 farthest = double8_greater(double8_greater(z0, z1), z2),
+                  nearest = double8_lesser(double8_lesser(z0, z1), z2);
     mask &= ~((farthest * (1.0 + 2.0 * BOX_MARGIN) < start) | (nearest * (1.0 - 2.0 * BOX_MARGIN) > limit));
     mask &= ints_at(&p->skip[i]) != (int64_t)triangle;
     const double8 det = h->u + h->v + h->w;
@@ -224,9 +272,12 @@ ALWAYS_INLINE int8x64 consider_together(packet *p, int i, int8x64 mask, const pa
     mask &= clamp_together(p, i, corner, &t);
     mask &= (t >= start) & (t <= limit);
     const int8x64 best = ints_at(&p->best[i]), better = mask & ((t < limit) | (best > (int64_t)triangle));
-    const double8 new_limit = double8_blend(better, t, limit), u = double8_blend(better, h->v, doubles_at(&p->weight_u[i])),
-                  v = double8_blend(better, h->w, doubles_at(&p->weight_v[i])), d = double8_blend(better, det, doubles_at(&p->det[i]));
-    const int8x64 number = (better & (int64_t)triangle) | (~better & best), side = (better & facing) | (~better & ints_at(&p->facing[i]));
+    const double8 new_limit = double8_blend(better, t, limit),
+                  u = double8_blend(better, h->v, doubles_at(&p->weight_u[i])),
+                  v = double8_blend(better, h->w, doubles_at(&p->weight_v[i])),
+                  d = double8_blend(better, det, doubles_at(&p->det[i]));
+    const int8x64 number = (better & (int64_t)triangle) | (~better & best),
+                  side = (better & facing) | (~better & ints_at(&p->facing[i]));
     memcpy(&p->t_limit[i], &new_limit, sizeof new_limit);
     memcpy(&p->weight_u[i], &u, sizeof u);
     memcpy(&p->weight_v[i], &v, sizeof v);
@@ -248,7 +299,8 @@ ALWAYS_INLINE void note_limits(packet *p, int group)
 }
 
 /* One triangle, eight rays at a time. corner[axis][corner], axes the scene's. */
-static void triangle_together(packet *p, const ray_set *set, enum query_mode mode, const double (*corner)[3], uint32_t triangle)
+static void triangle_together(packet *p, const ray_set *set, enum query_mode mode, const double (*corner)[3],
+                              uint32_t triangle)
 {
     const double *cx = corner[p->axis[0]], *cy = corner[p->axis[1]], *cz = corner[p->axis[2]];
     const double8 zero = double8_all(0.0);
@@ -258,18 +310,22 @@ static void triangle_together(packet *p, const ray_set *set, enum query_mode mod
         if (!wanted)
             continue;
         const int i = g * LANES;
-        const double8 ox = doubles_at(&p->origin[0][i]), oy = doubles_at(&p->origin[1][i]), oz = doubles_at(&p->origin[2][i]),
-                      sx = doubles_at(&p->shear[0][i]), sy = doubles_at(&p->shear[1][i]);
+        const double8 ox = doubles_at(&p->origin[0][i]), oy = doubles_at(&p->origin[1][i]),
+                      oz = doubles_at(&p->origin[2][i]), sx = doubles_at(&p->shear[0][i]),
+                      sy = doubles_at(&p->shear[1][i]);
         passed h;
         for (int j = 0; j < 3; j++) {
             h.z[j] = double8_all(cz[j]) - oz;
             h.x[j] = (double8_all(cx[j]) - ox) - sx * h.z[j];
             h.y[j] = (double8_all(cy[j]) - oy) - sy * h.z[j];
         }
-        h.u = h.x[2] * h.y[1] - h.y[2] * h.x[1], h.v = h.x[0] * h.y[2] - h.y[0] * h.x[2], h.w = h.x[1] * h.y[0] - h.y[1] * h.x[0];
+        h.u = h.x[2] * h.y[1] - h.y[2] * h.x[1], h.v = h.x[0] * h.y[2] - h.y[0] * h.x[2],
+        h.w = h.x[1] * h.y[0] - h.y[1] * h.x[0];
         const int8x64 below = any_bits(h.u + zero) | any_bits(h.v + zero) | any_bits(h.w + zero);
         const int8x64 above = any_bits(zero - h.u) | any_bits(zero - h.v) | any_bits(zero - h.w);
-        const int8x64 inside = ((below & above) >= 0) & (((int8x64){wanted, wanted, wanted, wanted, wanted, wanted, wanted, wanted} & lane_bit) != 0);
+        const int8x64 inside =
+            ((below & above) >= 0) &
+            (((int8x64){wanted, wanted, wanted, wanted, wanted, wanted, wanted, wanted} & lane_bit) != 0);
         if (!bits_of8(__builtin_convertvector(inside, int8x32)))
             continue;
         /* As in query_blocks: what lies beyond the best hit without doubt. */
@@ -298,7 +354,7 @@ static void leaf_together(const hierarchy *h, packet *p, const ray_set *set, enu
             for (int k = 0; k < 3; k++)
                 for (int j = 0; j < 3; j++)
                     corner[k][j] = h->single ? (double)single->corner[j][k][lane] : exact->corner[j][k][lane];
-            triangle_together(p, set, mode, (const double (*)[3])corner, numbers[lane]);
+            triangle_together(p, set, mode, (const double(*)[3])corner, numbers[lane]);
         }
     }
     if (p->changed)
@@ -340,7 +396,7 @@ static void go_alone(const hierarchy *h, packet *p, const ray_set *set, enum que
             give_back(p, i);
             KERNEL(walk_bvh_from)(h, p->ray[i], &b, mode, child);
             take_over(p, i);
-            p->alive.bits[g] &= (uint8_t)~((mode == QUERY_ANY && p->ray[i]->best != before) << lane);
+            p->alive.bits[g] &= (uint8_t) ~((mode == QUERY_ANY && p->ray[i]->best != before) << lane);
             p->t_best[i] = p->alive.bits[g] >> lane & 1 ? float_above(p->t_limit[i]) : 0.0f;
         }
     }
@@ -348,13 +404,15 @@ static void go_alone(const hierarchy *h, packet *p, const ray_set *set, enum que
 }
 
 /* A node's children that any ray may meet, the nearest on top. */
-static int push_children(const packet *p, const bvh_node *nodes, uint32_t at, const ray_set *set, waiting *stack, int top)
+static int push_children(const packet *p, const bvh_node *nodes, uint32_t at, const ray_set *set, waiting *stack,
+                         int top)
 {
     _Alignas(32) float near[WIDTH], far[WIDTH];
     slabs(&nodes[at], &p->all, near, far);
     const float8 n = floats_at(near), f = floats_at(far);
     const int bottom = top;
-    for (uint64_t met = lanes_of8((n <= f) & (n <= float8_all(p->t_farthest)) & (f >= float8_all(p->all.t_min))); met; met = LANES_LESS_FIRST(met)) {
+    for (uint64_t met = lanes_of8((n <= f) & (n <= float8_all(p->t_farthest)) & (f >= float8_all(p->all.t_min))); met;
+         met = LANES_LESS_FIRST(met)) {
         const unsigned slot = lane_first(met);
         int place = top++;
         for (; place > bottom && stack[place - 1].near < near[slot]; place--)

@@ -1,13 +1,14 @@
 /* A ray made ready for a mesh's hierarchy, and the one triangle test that all hierarchies share.
  *
- * Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, in double precision: corners are moved so that the ray
- * starts at the origin and sheared so that it runs along an axis; signs of three edge functions then say whether it passes inside. An edge
- * function changes its sign exactly when its corners change places, and zero counts as inside, so that no ray slips between two
- * triangles that share an edge. Four triangles at a time; what is left is looked at one by one.
+ * Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, in double precision: corners are
+ * moved so that the ray starts at the origin and sheared so that it runs along an axis; signs of three edge functions
+ * then say whether it passes inside. An edge function changes its sign exactly when its corners change places, and zero
+ * counts as inside, so that no ray slips between two triangles that share an edge. Four triangles at a time; what is
+ * left is looked at one by one.
  *
- * A hit's t is never less than where the ray comes into the triangle's own box (by a margin of 2^-40): whatever a triangle seen edge-on makes of
- * it, no hierarchy that culls by boxes with a wider margin loses it. As t is only ever made larger by this, what lies beyond the best hit before lies
- * beyond it after, and need not be looked at. */
+ * A hit's t is never less than where the ray comes into the triangle's own box (by a margin of 2^-40): whatever a
+ * triangle seen edge-on makes of it, no hierarchy that culls by boxes with a wider margin loses it. As t is only ever
+ * made larger by this, what lies beyond the best hit before lies beyond it after, and need not be looked at. */
 #ifndef CUVETTE_GEOMETRY_HIERARCHY_QUERY_H
 #define CUVETTE_GEOMETRY_HIERARCHY_QUERY_H
 
@@ -17,14 +18,15 @@
 
 enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL, QUERY_BOXES };
 
-/* Components of a direction whose largest is 1..2 that are smaller than this are parallel to their plane: within reach such a ray
- * does not leave it by more than PARALLEL_MARGIN. */
+/* Components of a direction whose largest is 1..2 that are smaller than this are parallel to their plane: within reach
+ * such a ray does not leave it by more than PARALLEL_MARGIN. */
 #define PARALLEL 1e-30
 #define PARALLEL_MARGIN 1e-20
 #define ORIGIN_FAR 1e18
 #define BOX_MARGIN 0x1p-40
 
-/* t is measured along a direction whose largest component was brought into 1..2 by a power of two: exact, and far from overflow. */
+/* t is measured along a direction whose largest component was brought into 1..2 by a power of two: exact, and far from
+ * overflow. */
 typedef struct ray_query {
     double origin[3], direction[3], inverse[3];
     double shear_x, shear_y, shear_z;
@@ -33,9 +35,9 @@ typedef struct ray_query {
     double weight_u, weight_v, det; /* of the best hit */
     uint32_t skip, best;
     int wanted, best_facing;
-    mesh_visit *visit; /* QUERY_ALL */
+    mesh_visit *visit;    /* QUERY_ALL */
     box_visit *visit_box; /* QUERY_BOXES */
-    double t_start;    /* t_min as the caller has it */
+    double t_start;       /* t_min as the caller has it */
     void *context;
 } ray_query;
 
@@ -47,7 +49,8 @@ ALWAYS_INLINE bool query_start(ray_query *q, const mesh_ray *ray)
     const double mx = magnitude(d[0]), my = magnitude(d[1]), mz = magnitude(d[2]);
     const int z = mx > my ? (mx > mz ? 0 : 2) : (my > mz ? 1 : 2);
     const int64_t exponent = lanes_bits(d[z]) >> 52 & 0x7ff;
-    const double sum = o[0] + o[1] + o[2] + d[0] + d[1] + d[2], reach = greater(greater(magnitude(o[0]), magnitude(o[1])), magnitude(o[2]));
+    const double sum = o[0] + o[1] + o[2] + d[0] + d[1] + d[2],
+                 reach = greater(greater(magnitude(o[0]), magnitude(o[1])), magnitude(o[2]));
     q->best = TRIANGLE_NONE;
     if (exponent < 1 || exponent > 2045 || !(sum - sum == 0.0) || reach > ORIGIN_FAR || !(ray->t_min <= ray->t_max))
         return false;
@@ -73,7 +76,8 @@ ALWAYS_INLINE bool query_start(ray_query *q, const mesh_ray *ray)
     return q->t_min < (double)INFINITY;
 }
 
-ALWAYS_INLINE void query_hit(const ray_query *q, double t, double v, double w, double det, uint32_t triangle, int facing, mesh_hit *hit)
+ALWAYS_INLINE void query_hit(const ray_query *q, double t, double v, double w, double det, uint32_t triangle,
+                             int facing, mesh_hit *hit)
 {
     hit->t = t * q->unscale;
     hit->u = v / det;
@@ -92,11 +96,17 @@ ALWAYS_INLINE void query_finish(const ray_query *q, mesh_hit *hit)
     }
 }
 
-ALWAYS_INLINE double least_of(const double *p) { return lesser(lesser(p[0], p[1]), p[2]); }
-ALWAYS_INLINE double most_of(const double *p) { return greater(greater(p[0], p[1]), p[2]); }
+ALWAYS_INLINE double least_of(const double *p)
+{
+    return lesser(lesser(p[0], p[1]), p[2]);
+}
+ALWAYS_INLINE double most_of(const double *p)
+{
+    return greater(greater(p[0], p[1]), p[2]);
+}
 
-/* Brings t up to where the ray comes into the box around the corners; false if it never is in there, or not after t_min.
- * corner[axis][corner], from the ray's origin. */
+/* Brings t up to where the ray comes into the box around the corners; false if it never is in there, or not after
+ * t_min. corner[axis][corner], from the ray's origin. */
 ALWAYS_INLINE bool query_clamp(const ray_query *q, const double (*corner)[3], double *t)
 {
     double near = -(double)INFINITY, far = (double)INFINITY;
@@ -117,20 +127,23 @@ ALWAYS_INLINE bool query_clamp(const ray_query *q, const double (*corner)[3], do
 }
 
 /* One triangle that the edge functions let through. True if the search is over. */
-static __attribute__((noinline)) bool query_consider(ray_query *q, enum query_mode mode, const double (*corner)[3], uint32_t triangle)
+static __attribute__((noinline)) bool query_consider(ray_query *q, enum query_mode mode, const double (*corner)[3],
+                                                     uint32_t triangle)
 {
     double x[3], y[3], z[3];
     for (int j = 0; j < 3; j++)
         z[j] = q->shear_z * corner[q->z][j];
     /* Wholly behind, or beyond what was found: t lies between the corners', but for the margin. */
-    if (most_of(z) * (1.0 + 2.0 * BOX_MARGIN) < q->t_min || least_of(z) * (1.0 - 2.0 * BOX_MARGIN) > q->t_best || triangle == q->skip)
+    if (most_of(z) * (1.0 + 2.0 * BOX_MARGIN) < q->t_min || least_of(z) * (1.0 - 2.0 * BOX_MARGIN) > q->t_best ||
+        triangle == q->skip)
         return false;
     for (int j = 0; j < 3; j++) {
         x[j] = corner[q->x][j] - q->shear_x * corner[q->z][j];
         y[j] = corner[q->y][j] - q->shear_y * corner[q->z][j];
     }
     /* weights of the corners */
-    const double u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0], det = u + v + w;
+    const double u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0],
+                 det = u + v + w;
     const int facing = det > 0.0 ? FACING_FRONT : FACING_BACK;
     if (!(det > 0.0 || det < 0.0) || !(facing & q->wanted))
         return false;
@@ -171,7 +184,8 @@ ALWAYS_INLINE double4 block_load(const void *block, bool single, int corner, int
 static __attribute__((noinline)) bool query_show(ray_query *q, const hierarchy *h, size_t first, size_t count)
 {
     for (size_t i = first; i < first + count; i++) {
-        const uint32_t *numbers = h->single ? ((const block_single *)h->blocks)[i].triangle : ((const block_double *)h->blocks)[i].triangle;
+        const uint32_t *numbers =
+            h->single ? ((const block_single *)h->blocks)[i].triangle : ((const block_double *)h->blocks)[i].triangle;
         for (int lane = 0; lane < BLOCK; lane++) {
             if (lane > 0 && numbers[lane] == numbers[lane - 1])
                 continue; /* a block is filled up by repeating its last triangle */
@@ -185,14 +199,17 @@ static __attribute__((noinline)) bool query_show(ray_query *q, const hierarchy *
 }
 
 /* Tests the triangles of blocks first .. first + count - 1. True if the search is over. */
-ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mode mode, bool single, size_t first, size_t count)
+ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mode mode, bool single, size_t first,
+                                size_t count)
 {
     if (mode == QUERY_BOXES)
         return query_show(q, h, first, count);
     const size_t stride = single ? sizeof(block_single) : sizeof(block_double);
     const char *block = (const char *)h->blocks + first * stride, *end = block + count * stride;
-    const double4 ox = double4_all(q->origin[q->x]), oy = double4_all(q->origin[q->y]), oz = double4_all(q->origin[q->z]);
-    const double4 sx = double4_all(q->shear_x), sy = double4_all(q->shear_y), sz = double4_all(q->shear_z), zero = double4_all(0.0);
+    const double4 ox = double4_all(q->origin[q->x]), oy = double4_all(q->origin[q->y]),
+                  oz = double4_all(q->origin[q->z]);
+    const double4 sx = double4_all(q->shear_x), sy = double4_all(q->shear_y), sz = double4_all(q->shear_z),
+                  zero = double4_all(0.0);
     const int kx = q->x, ky = q->y, kz = q->z;
     for (; block < end; block += stride) {
         double4 x[3], y[3], z[3];
@@ -212,15 +229,17 @@ ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mod
         set = lanes_of4(((below & above) >= 0) & (t <= double4_all(q->t_best)));
         for (; set; set = LANES_LESS_FIRST(set)) {
             const unsigned lane = lane_first(set);
-            const uint32_t *numbers = single ? ((const block_single *)block)->triangle : ((const block_double *)block)->triangle;
+            const uint32_t *numbers =
+                single ? ((const block_single *)block)->triangle : ((const block_double *)block)->triangle;
             if (mode == QUERY_ALL && ((lane > 0 && numbers[lane] == numbers[lane - 1])))
                 continue; /* a block is filled up by repeating its last triangle */
             double corner[3][3];
             for (int k = 0; k < 3; k++)
                 for (int j = 0; j < 3; j++)
                     corner[k][j] = (single ? (double)((const block_single *)block)->corner[j][k][lane]
-                                           : ((const block_double *)block)->corner[j][k][lane]) - q->origin[k];
-            if (query_consider(q, mode, (const double (*)[3])corner, numbers[lane]))
+                                           : ((const block_double *)block)->corner[j][k][lane]) -
+                                   q->origin[k];
+            if (query_consider(q, mode, (const double(*)[3])corner, numbers[lane]))
                 return true;
         }
     }

@@ -1,17 +1,29 @@
-/* Boxes of a bvh from its leaves up, where its mesh has moved, the tree as it is. Nodes stand behind their parents and blocks in the order of their
- * leaves, so that one walk from the last node to the first finds every child done, and goes through both arrays about as they lie. Corners are
- * compared while they are in registers: what was just written in parts is slow to read as a vector. */
+/* Boxes of a bvh from its leaves up, where its mesh has moved, the tree as it is. Nodes stand behind their parents and
+ * blocks in the order of their leaves, so that one walk from the last node to the first finds every child done, and
+ * goes through both arrays about as they lie. Corners are compared while they are in registers: what was just written
+ * in parts is slow to read as a vector. */
 #include "geometry/hierarchy_bvh.h"
 #include "geometry/hierarchy_lanes.h"
 
 typedef uint64_t bits4 __attribute__((vector_size(32)));
 
-ALWAYS_INLINE double4 choose(int4x64 mask, double4 a, double4 b) { return (double4)((mask & (int4x64)a) | (~mask & (int4x64)b)); }
-ALWAYS_INLINE double4 lesser(double4 a, double4 b) { return choose(a < b, a, b); }
-ALWAYS_INLINE double4 greater(double4 a, double4 b) { return choose(a > b, a, b); }
+ALWAYS_INLINE double4 choose(int4x64 mask, double4 a, double4 b)
+{
+    return (double4)((mask & (int4x64)a) | (~mask & (int4x64)b));
+}
+ALWAYS_INLINE double4 lesser(double4 a, double4 b)
+{
+    return choose(a < b, a, b);
+}
+ALWAYS_INLINE double4 greater(double4 a, double4 b)
+{
+    return choose(a > b, a, b);
+}
 
 /* What the corners of a leaf reach, by axis and lane. */
-typedef struct reach { double4 low[3], high[3]; } reach;
+typedef struct reach {
+    double4 low[3], high[3];
+} reach;
 
 ALWAYS_INLINE void place(void *block, bool single, int corner, int axis, double4 at)
 {
@@ -27,8 +39,8 @@ ALWAYS_INLINE void place(void *block, bool single, int corner, int axis, double4
 ALWAYS_INLINE reach move_block(const mesh *m, void *block, bool single)
 {
     const uint32_t *numbers = single ? ((block_single *)block)->triangle : ((block_double *)block)->triangle;
-    const uint32_t *a = m->triangles[numbers[0]].corner, *b = m->triangles[numbers[1]].corner, *c = m->triangles[numbers[2]].corner,
-                   *d = m->triangles[numbers[3]].corner;
+    const uint32_t *a = m->triangles[numbers[0]].corner, *b = m->triangles[numbers[1]].corner,
+                   *c = m->triangles[numbers[2]].corner, *d = m->triangles[numbers[3]].corner;
     double4 at[3][3]; /* by axis and corner */
     for (int k = 0; k < 3; k++) {
         const vec3 *p = &m->vertices[a[k]], *q = &m->vertices[b[k]], *r = &m->vertices[c[k]], *s = &m->vertices[d[k]];
@@ -49,14 +61,16 @@ ALWAYS_INLINE reach move_block(const mesh *m, void *block, bool single)
 /* The least of each axis' lanes, in the lane of that number. */
 ALWAYS_INLINE double4 least_of_lanes(const double4 *v)
 {
-    const double4 xy = lesser(__builtin_shufflevector(v[0], v[1], 0, 4, 2, 6), __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7));
+    const double4 xy =
+        lesser(__builtin_shufflevector(v[0], v[1], 0, 4, 2, 6), __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7));
     const double4 z = lesser(v[2], __builtin_shufflevector(v[2], v[2], 1, 0, 3, 2));
     return lesser(__builtin_shufflevector(xy, z, 0, 1, 4, 5), __builtin_shufflevector(xy, z, 2, 3, 6, 7));
 }
 
 ALWAYS_INLINE double4 most_of_lanes(const double4 *v)
 {
-    const double4 xy = greater(__builtin_shufflevector(v[0], v[1], 0, 4, 2, 6), __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7));
+    const double4 xy =
+        greater(__builtin_shufflevector(v[0], v[1], 0, 4, 2, 6), __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7));
     const double4 z = greater(v[2], __builtin_shufflevector(v[2], v[2], 1, 0, 3, 2));
     return greater(__builtin_shufflevector(xy, z, 0, 1, 4, 5), __builtin_shufflevector(xy, z, 2, 3, 6, 7));
 }
@@ -71,7 +85,8 @@ ALWAYS_INLINE float4 cut(double4 v, bits4 carried)
 ALWAYS_INLINE bool any_tiny(double4 low, double4 high)
 {
     const double4 zero = double4_all(0.0), least = double4_all(BVH_CUT_LEAST), most = double4_all(-BVH_CUT_LEAST);
-    const int4x64 tiny = ((low < least) & (low > most) & (low != zero)) | ((high < least) & (high > most) & (high != zero));
+    const int4x64 tiny =
+        ((low < least) & (low > most) & (low != zero)) | ((high < least) & (high > most) & (high != zero));
     return lanes_of4(tiny) != 0;
 }
 
@@ -105,8 +120,8 @@ ALWAYS_INLINE void refit_leaf(hierarchy *h, bvh_node *n, int slot, bool single)
     write_box(n, slot, least_of_lanes(r.low), most_of_lanes(r.high));
 }
 
-/* Nodes ahead whose blocks, and whose triangles by their blocks, are asked for before they are needed: of a large mesh each lies in memory.
- * Vertices are left to the processor; asking for them too costs as much as it saves. */
+/* Nodes ahead whose blocks, and whose triangles by their blocks, are asked for before they are needed: of a large mesh
+ * each lies in memory. Vertices are left to the processor; asking for them too costs as much as it saves. */
 enum { BLOCKS_AHEAD = 8, TRIANGLES_AHEAD = 4 };
 
 ALWAYS_INLINE void fetch_blocks(const hierarchy *h, const bvh_node *n, size_t stride)
@@ -126,7 +141,8 @@ ALWAYS_INLINE void fetch_triangles(const hierarchy *h, const bvh_node *n, bool s
         if (!(n->child[slot] & CHILD_LEAF))
             continue;
         const size_t first = child_first_block(n->child[slot]);
-        const uint32_t *numbers = single ? ((const block_single *)h->blocks)[first].triangle : ((const block_double *)h->blocks)[first].triangle;
+        const uint32_t *numbers = single ? ((const block_single *)h->blocks)[first].triangle
+                                         : ((const block_double *)h->blocks)[first].triangle;
         for (int lane = 0; lane < BLOCK; lane++)
             __builtin_prefetch(&h->of->triangles[numbers[lane]]);
     }

@@ -1,5 +1,6 @@
-/* Builds the trees of spheres. `sphere` is a tree of one node. `octant` is the report's: around the triangles stands a shell; its centre
- * divides them among eight octants by their own centres, but those larger than a quarter of the shell's radius stay with it. */
+/* Builds the trees of spheres. `sphere` is a tree of one node. `octant` is the report's: around the triangles stands a
+ * shell; its centre divides them among eight octants by their own centres, but those larger than a quarter of the
+ * shell's radius stay with it. */
 #include "geometry/hierarchy_private.h"
 
 #include "base/single.h"
@@ -19,9 +20,14 @@ typedef struct spheres_build {
     bool write; /* the first pass counts, the second writes */
 } spheres_build;
 
-static double axis_of(vec3 v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
+static double axis_of(vec3 v, int k)
+{
+    return k == 0 ? v.x : k == 1 ? v.y : v.z;
+}
 
-typedef struct box { double low[3], high[3]; } box;
+typedef struct box {
+    double low[3], high[3];
+} box;
 
 static void box_of_triangle(const mesh *m, uint32_t triangle, box *b)
 {
@@ -45,7 +51,8 @@ static double radius_of(const box *b)
     return 0.5 * sqrt(square);
 }
 
-/* The shell about the boxes of triangles: the boxes, because a hit may lie anywhere in its triangle's (hierarchy_query.h). */
+/* The shell about the boxes of triangles: the boxes, because a hit may lie anywhere in its triangle's
+ * (hierarchy_query.h). */
 static void shell_of(const spheres_build *b, size_t first, size_t count, sphere_node *s)
 {
     box all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}, one;
@@ -74,7 +81,8 @@ static void shell_of(const spheres_build *b, size_t first, size_t count, sphere_
     s->radius = nextafterf((float)(sqrt(most) * (1.0 + 0x1p-40)), INFINITY);
 }
 
-/* Sorts a node's triangles by octant, those that stay first; start[i]: where octant i - 1's begin, start[0] those that stay. */
+/* Sorts a node's triangles by octant, those that stay first; start[i]: where octant i - 1's begin, start[0] those that
+ * stay. */
 static void divide(spheres_build *b, size_t first, size_t count, const sphere_node *s, size_t start[OCTANTS + 2])
 {
     size_t number[OCTANTS + 1] = {0}, at[OCTANTS + 1];
@@ -153,7 +161,8 @@ status hierarchy_build_spheres(hierarchy *h, diagnostic *why)
     if (made) {
         pass(&b, true);
         h->node_count = b.nodes;
-        h->report.bytes = b.nodes * sizeof *h->spheres + b.blocks * (h->single ? sizeof(block_single) : sizeof(block_double));
+        h->report.bytes =
+            b.nodes * sizeof *h->spheres + b.blocks * (h->single ? sizeof(block_single) : sizeof(block_double));
         h->report.nodes = b.nodes;
         h->report.depth = b.depth;
         for (size_t i = 0; i < b.nodes; i++)
@@ -162,5 +171,7 @@ status hierarchy_build_spheres(hierarchy *h, diagnostic *why)
     free(b.order);
     free(b.moved);
     free(b.octant);
-    return made ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use a smaller mesh", "out of memory for a hierarchy of %zu triangles", count);
+    return made ? STATUS_OK
+                : diagnose(why, STATUS_FAILURE, "use a smaller mesh", "out of memory for a hierarchy of %zu triangles",
+                           count);
 }

@@ -1,15 +1,19 @@
-/* The way down trees of spheres. A sphere is met if the ray's line passes it within its radius and by a margin wider than the rounding, and
- * some of what is inside lies between t_min and the best hit. */
+/* The way down trees of spheres. A sphere is met if the ray's line passes it within its radius and by a margin wider
+ * than the rounding, and some of what is inside lies between t_min and the best hit. */
 #include "geometry/hierarchy_query.h"
 
 #define SPHERE_MARGIN 0x1p-20
 
 /* Spheres that are still to be visited: of each level at most all children of one node. */
-typedef struct sphere_pending { double near; uint32_t node; } sphere_pending;
+typedef struct sphere_pending {
+    double near;
+    uint32_t node;
+} sphere_pending;
 enum { STACK = SPHERES_DEPTH_MAX * 8 };
 
-/* Distance at which the ray comes into the sphere; +inf if it is missed. The centre's distance from the line by components, as a difference of
- * squares would lose it (Haines et al., "Precision improvements for ray/sphere intersection", Ray Tracing Gems, 2019). */
+/* Distance at which the ray comes into the sphere; +inf if it is missed. The centre's distance from the line by
+ * components, as a difference of squares would lose it (Haines et al., "Precision improvements for ray/sphere
+ * intersection", Ray Tracing Gems, 2019). */
 ALWAYS_INLINE double sphere_near(const ray_query *q, double inverse_square, const sphere_node *s)
 {
     double center[3], along = 0.0, off = 0.0, reach = 0.0;
@@ -49,7 +53,8 @@ ALWAYS_INLINE void walk_spheres(const hierarchy *h, ray_query *q, enum query_mod
             return;
         const int bottom = top;
         for (uint32_t i = 0; i < s->children; i++) {
-            const sphere_pending child = {sphere_near(q, inverse_square, &h->spheres[s->first_child + i]), s->first_child + i};
+            const sphere_pending child = {sphere_near(q, inverse_square, &h->spheres[s->first_child + i]),
+                                          s->first_child + i};
             if (child.near == (double)INFINITY)
                 continue;
             int place = top++;

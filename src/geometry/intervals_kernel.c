@@ -2,13 +2,15 @@
  *
  * The set that a ray carries is trusted where arithmetic cannot tell: a ray that is inside a primitive has no entry
  * (in = -inf) and leaves it at once if its exit lies behind; a ray that is outside a convex primitive whose
- * face it starts on never meets it again; one that is outside another primitive although the interval says otherwise is at its
- * edge to within rounding: it enters now if more of the interval lies ahead than behind, else it has just left. */
+ * face it starts on never meets it again; one that is outside another primitive although the interval says otherwise is
+ * at its edge to within rounding: it enters now if more of the interval lies ahead than behind, else it has just left.
+ */
 #include "geometry/kernels.h"
 
 #include "geometry/roots.h"
 
-ALWAYS_INLINE void store_interval(double near, double far, int64_t hit, int64_t own, int64_t inside, double *in, double *out)
+ALWAYS_INLINE void store_interval(double near, double far, int64_t hit, int64_t own, int64_t inside, double *in,
+                                  double *out)
 {
     int64_t ahead = hit & ~own & mask_less(0.0, near + far);
     double outside_in = blend(ahead, greater(near, 0.0), HUGE_VAL), outside_out = blend(ahead, far, -HUGE_VAL);
@@ -27,12 +29,14 @@ ALWAYS_INLINE void halfspaces(const primitive *p, bool turned, int bit, const ra
     const int64_t first = p->first_face;
     /* VECTORISE */
     for (int i = 0; i < rays->count; i++) {
-        local_ray r = ray_to_local(p, turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        local_ray r =
+            ray_to_local(p, turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
         int64_t own = mask_same(rays->start[i], first);
         double inverse = turned ? inverse_of_component(r.dy) : s->inverse_y[i];
         double t = blend(own, 0.0, -r.y * inverse);
         int64_t down = mask_less(inverse, 0.0);
-        store_interval(blend(down, t, -HUGE_VAL), blend(down, HUGE_VAL, t), -1, own, inside_mask(rays->inside[i], bit), &in[i], &out[i]);
+        store_interval(blend(down, t, -HUGE_VAL), blend(down, HUGE_VAL, t), -1, own, inside_mask(rays->inside[i], bit),
+                       &in[i], &out[i]);
     }
 }
 
@@ -42,7 +46,8 @@ ALWAYS_INLINE void cylinders(const primitive *p, bool turned, int bit, const ray
     const int64_t first = p->first_face;
     /* VECTORISE */
     for (int i = 0; i < rays->count; i++) {
-        local_ray r = ray_to_local(p, turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        local_ray r =
+            ray_to_local(p, turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
         int64_t on_side = mask_same(rays->start[i], first), on_bottom = mask_same(rays->start[i], first + 1),
                 on_top = mask_same(rays->start[i], first + 2);
         double dx = turned ? cylinder_dx(r.dx, r.dz) : s->axial_dx[i];
@@ -64,11 +69,15 @@ ALWAYS_INLINE void boxes(const primitive *p, bool turned, int bit, const ray_bat
     const vec3 h = p->half;
     /* VECTORISE */
     for (int i = 0; i < rays->count; i++) {
-        local_ray r = ray_to_local(p, turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        local_ray r =
+            ray_to_local(p, turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
         int64_t at = rays->start[i] - first;
-        slab_roots x = slab_cross(r.x, turned ? inverse_of_component(r.dx) : s->inverse_x[i], -h.x, h.x, mask_same(at, 0), mask_same(at, 1));
-        slab_roots y = slab_cross(r.y, turned ? inverse_of_component(r.dy) : s->inverse_y[i], -h.y, h.y, mask_same(at, 2), mask_same(at, 3));
-        slab_roots z = slab_cross(r.z, turned ? inverse_of_component(r.dz) : s->inverse_z[i], -h.z, h.z, mask_same(at, 4), mask_same(at, 5));
+        slab_roots x = slab_cross(r.x, turned ? inverse_of_component(r.dx) : s->inverse_x[i], -h.x, h.x,
+                                  mask_same(at, 0), mask_same(at, 1));
+        slab_roots y = slab_cross(r.y, turned ? inverse_of_component(r.dy) : s->inverse_y[i], -h.y, h.y,
+                                  mask_same(at, 2), mask_same(at, 3));
+        slab_roots z = slab_cross(r.z, turned ? inverse_of_component(r.dz) : s->inverse_z[i], -h.z, h.z,
+                                  mask_same(at, 4), mask_same(at, 5));
         double near = greater(greater(x.in, y.in), z.in), far = lesser(lesser(x.out, y.out), z.out);
         int64_t own = mask_same(rays->start[i] & ~(int64_t)(FACES_MAX - 1), first);
         store_interval(near, far, mask_less(near, far), own, inside_mask(rays->inside[i], bit), &in[i], &out[i]);
@@ -81,7 +90,8 @@ ALWAYS_INLINE void spheres(const primitive *p, int bit, const ray_batch *rays, r
     const int64_t first = p->first_face;
     /* VECTORISE */
     for (int i = 0; i < rays->count; i++) {
-        local_ray r = ray_to_local(p, false, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        local_ray r =
+            ray_to_local(p, false, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
         int64_t own = mask_same(rays->start[i], first);
         quadric_roots q = sphere_cross(p, r, own);
         store_interval(q.in, q.out, q.hit, own, inside_mask(rays->inside[i], bit), &in[i], &out[i]);

@@ -28,28 +28,34 @@ static inline double steps_per_unit(const ray_batch *rays, int i)
     return 1.0 / sqrt(rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i]);
 }
 
-/* Decides which boundaries of s->near[k] are in contact with column k's crossing; sets and ranks on both sides follow. */
-void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c, forest_hit *mesh_hits);
+/* Decides which boundaries of s->near[k] are in contact with column k's crossing; sets and ranks on both sides follow.
+ */
+void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
+                            forest_hit *mesh_hits);
 
-/* The next crossings of meshes, where they come before those that c has, for the first n columns; then the meshes' bits in
- * c's sets and in s->near, when those of the others are there. */
-void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, forest_hit *hits);
-void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, const forest_hit *hits);
+/* The next crossings of meshes, where they come before those that c has, for the first n columns; then the meshes' bits
+ * in c's sets and in s->near, when those of the others are there. */
+void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+                          forest_hit *hits);
+void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+                       const forest_hit *hits);
 
-/* The bits of the wanted meshes in the sets just before low and just behind high, between which column k, in the medium of
- * that rank, crosses something. */
-void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, uint64_t wanted, double low,
-                               double high, uint64_t *before, uint64_t *after);
+/* The bits of the wanted meshes in the sets just before low and just behind high, between which column k, in the medium
+ * of that rank, crosses something. */
+void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank,
+                               uint64_t wanted, double low, double high, uint64_t *before, uint64_t *after);
 
 /* Calls found for the crossings of mesh p that are close to t on column k (BOUNDARY_CLOSE), whatever hides them. */
 void KERNEL(mesh_each_near)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int p, double t,
                             forest_found *found, void *context);
 
-/* Where column k crosses the mesh of a bit in low <= t <= high, from the set `before`; its face is FACE_NONE where it does not. */
-forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit, uint64_t before, double low,
-                                    double high);
+/* Where column k crosses the mesh of a bit in low <= t <= high, from the set `before`; its face is FACE_NONE where it
+ * does not. */
+forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit,
+                                    uint64_t before, double low, double high);
 
 /* Marks the shadow rays (but settled ones) that meshes of a set are in the way of. */
-void KERNEL(mesh_shadows)(const arrangement *a, const ray_batch *rays, uint64_t wanted, int64_t *marked, const int64_t *settled);
+void KERNEL(mesh_shadows)(const arrangement *a, const ray_batch *rays, uint64_t wanted, int64_t *marked,
+                          const int64_t *settled);
 
 #endif

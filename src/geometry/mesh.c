@@ -42,12 +42,15 @@ static struct mesh_share *share_create(void)
     return share;
 }
 
-status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots, mesh **out, diagnostic *why)
+status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
+                   mesh **out, diagnostic *why)
 {
     if (triangle_count > MESH_TRIANGLES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 268435456 triangles", "%zu triangles are too many", triangle_count);
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 268435456 triangles", "%zu triangles are too many",
+                        triangle_count);
     if (vertex_count > MESH_VERTICES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 536870912 vertices", "%zu vertices are too many", vertex_count);
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 536870912 vertices", "%zu vertices are too many",
+                        vertex_count);
     mesh *m = calloc(1, sizeof *m);
     if (!m)
         return out_of_memory(why);
@@ -61,7 +64,8 @@ status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals
     m->normals = with_normals ? calloc(vertices, sizeof *m->normals) : NULL;
     m->uvs = with_uvs ? calloc(vertices, sizeof *m->uvs) : NULL;
     m->slots = with_slots ? calloc(triangles, sizeof *m->slots) : NULL;
-    if (!m->share || !m->vertices || !m->triangles || (with_normals && !m->normals) || (with_uvs && !m->uvs) || (with_slots && !m->slots)) {
+    if (!m->share || !m->vertices || !m->triangles || (with_normals && !m->normals) || (with_uvs && !m->uvs) ||
+        (with_slots && !m->slots)) {
         mesh_free(m);
         return out_of_memory(why);
     }
@@ -92,10 +96,12 @@ double mesh_triangle_volume6(const mesh *m, size_t triangle, vec3 origin)
     return vec3_dot(a, vec3_cross(b, vec3_sub(m->vertices[corner[2]], origin)));
 }
 
-/* Sum of the signed tetrahedra over the triangles (divergence theorem), from the middle of the bounds, where least cancels. */
+/* Sum of the signed tetrahedra over the triangles (divergence theorem), from the middle of the bounds, where least
+ * cancels. */
 double mesh_volume(const mesh *m)
 {
-    const vec3 middle = m->triangle_count ? vec3_scale(vec3_add(m->bounds.low, m->bounds.high), 0.5) : vec3_make(0, 0, 0);
+    const vec3 middle =
+        m->triangle_count ? vec3_scale(vec3_add(m->bounds.low, m->bounds.high), 0.5) : vec3_make(0, 0, 0);
     double sum = 0.0;
     for (size_t t = 0; t < m->triangle_count; t++)
         sum += mesh_triangle_volume6(m, t, middle);

@@ -1,6 +1,6 @@
-/* What meshes add to the second pass over a batch (resolve_kernel.c): their crossings among those of the convex primitives, and the
- * bits of a ray's set that stand for them. Between two changes of medium only meshes of a lower rank can be crossed, unseen; their bits are
- * set right where the next change is. */
+/* What meshes add to the second pass over a batch (resolve_kernel.c): their crossings among those of the convex
+ * primitives, and the bits of a ray's set that stand for them. Between two changes of medium only meshes of a lower
+ * rank can be crossed, unseen; their bits are set right where the next change is. */
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"
@@ -13,8 +13,13 @@ static forest_ray ray_of_column(const ray_batch *rays, int k, const ray_scratch 
 {
     const int i = s->ray[k];
     const mesh_scratch *m = s->meshes;
-    return (forest_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]), .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]),
-                        .t_min = m->from[k], .t_max = HUGE_VAL, .start = m->last[k], .before = 0, .inside = s->inside[k]};
+    return (forest_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
+                        .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]),
+                        .t_min = m->from[k],
+                        .t_max = HUGE_VAL,
+                        .start = m->last[k],
+                        .before = 0,
+                        .inside = s->inside[k]};
 }
 
 /* A front and a back of one mesh within this share of the distance and of the mesh's own extent are at one place: well
@@ -26,7 +31,8 @@ static double close_to(const ray_scratch *s, int k, double t)
     return BOUNDARY_CLOSE * (t + s->slack[k]);
 }
 
-void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, forest_hit *hits)
+void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+                          forest_hit *hits)
 {
     const forest *f = a->meshes;
     forest_ray asked[BATCH];
@@ -50,19 +56,26 @@ void KERNEL(mesh_changes)(const arrangement *a, const ray_batch *rays, int n, ra
     }
 }
 
-/* The meshes of the crossings that are found, but for those of the copy with that face: a mesh's own parts do not touch. */
-typedef struct others { int64_t face; uint64_t set; } others;
+/* The meshes of the crossings that are found, but for those of the copy with that face: a mesh's own parts do not
+ * touch. */
+typedef struct others {
+    int64_t face;
+    uint64_t set;
+} others;
 
 static void take_others(void *context, const forest_hit *hit)
 {
     others *o = context;
     const int p = mesh_face_primitive(hit->face);
-    if (o->face == FACE_NONE || p != mesh_face_primitive(o->face) || mesh_face_copy(hit->face) != mesh_face_copy(o->face))
+    if (o->face == FACE_NONE || p != mesh_face_primitive(o->face) ||
+        mesh_face_copy(hit->face) != mesh_face_copy(o->face))
         o->set |= (uint64_t)1 << p;
 }
 
-/* The meshes with a boundary close to column k's crossing. A single mesh that is not hidden was already looked for that far. */
-static uint64_t near_meshes(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, const hit_batch *c, const forest_hit *hit)
+/* The meshes with a boundary close to column k's crossing. A single mesh that is not hidden was already looked for that
+ * far. */
+static uint64_t near_meshes(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, const hit_batch *c,
+                            const forest_hit *hit)
 {
     const bool on_mesh = f->primitives >> c->crossed[k] & 1;
     if (f->instance_count == 1 && (on_mesh || f->lowest >= c->before[k]))
@@ -77,9 +90,10 @@ static uint64_t near_meshes(const forest *f, const ray_batch *rays, int k, const
     return o.set;
 }
 
-/* The set at t, where the ray has been in the medium of that rank all the way from where it was looked at last: of the meshes that are hidden
- * there what their last crossings say. */
-static uint64_t set_at(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, double t, uint64_t set)
+/* The set at t, where the ray has been in the medium of that rank all the way from where it was looked at last: of the
+ * meshes that are hidden there what their last crossings say. */
+static uint64_t set_at(const forest *f, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, double t,
+                       uint64_t set)
 {
     if (!(f->lowest_closed < rank))
         return set;
@@ -91,14 +105,16 @@ static uint64_t set_at(const forest *f, const ray_batch *rays, int k, const ray_
     return (set & ~ray.wanted) | (FOREST.cross(f, &ray) & ray.wanted);
 }
 
-void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, const forest_hit *hits)
+void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+                       const forest_hit *hits)
 {
     const forest *f = a->meshes;
     for (int k = 0; k < n; k++) {
         if (c->crossed[k] < 0)
             continue;
         const uint64_t hidden = f->closed_under[c->before[k]];
-        c->inside_before[k] = set_at(f, rays, k, s, c->before[k], c->t[k] - close_to(s, k, c->t[k]), c->inside_before[k]);
+        c->inside_before[k] =
+            set_at(f, rays, k, s, c->before[k], c->t[k] - close_to(s, k, c->t[k]), c->inside_before[k]);
         c->inside_after[k] = (c->inside_after[k] & ~hidden) | (c->inside_before[k] & hidden);
         const uint64_t bit = (uint64_t)1 << c->crossed[k];
         if (f->primitives & bit) {
@@ -110,8 +126,8 @@ void KERNEL(mesh_sets)(const arrangement *a, const ray_batch *rays, int n, ray_s
     }
 }
 
-void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank, uint64_t wanted, double low,
-                               double high, uint64_t *before, uint64_t *after)
+void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int64_t rank,
+                               uint64_t wanted, double low, double high, uint64_t *before, uint64_t *after)
 {
     *before = (*before & ~wanted) | (set_at(a->meshes, rays, k, s, rank, low, s->inside[k]) & wanted);
     forest_ray ray = ray_of_column(rays, k, s);
@@ -123,8 +139,8 @@ void KERNEL(mesh_sets_closely)(const arrangement *a, const ray_batch *rays, int 
     *after = (*after & ~wanted) | (FOREST.cross(a->meshes, &ray) & wanted);
 }
 
-void KERNEL(mesh_each_near)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int p, double t, forest_found *found,
-                            void *context)
+void KERNEL(mesh_each_near)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int p, double t,
+                            forest_found *found, void *context)
 {
     forest_ray ray = ray_of_column(rays, k, s);
     ray.t_min = t - close_to(s, k, t);
@@ -133,8 +149,8 @@ void KERNEL(mesh_each_near)(const arrangement *a, const ray_batch *rays, int k, 
     FOREST.each(a->meshes, &ray, found, context);
 }
 
-forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit, uint64_t before, double low,
-                                    double high)
+forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, int bit,
+                                    uint64_t before, double low, double high)
 {
     forest_hit hit;
     forest_ray ray = ray_of_column(rays, k, s);
@@ -146,8 +162,10 @@ forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays,
     return hit;
 }
 
-/* Rays that a mesh of the set is in the way of, between 0 and 1: those that set out in a closed one are in it from the start. */
-void KERNEL(mesh_shadows)(const arrangement *a, const ray_batch *rays, uint64_t wanted, int64_t *marked, const int64_t *settled)
+/* Rays that a mesh of the set is in the way of, between 0 and 1: those that set out in a closed one are in it from the
+ * start. */
+void KERNEL(mesh_shadows)(const arrangement *a, const ray_batch *rays, uint64_t wanted, int64_t *marked,
+                          const int64_t *settled)
 {
     forest_ray asked[BATCH];
     bool found[BATCH];
@@ -160,8 +178,12 @@ void KERNEL(mesh_shadows)(const arrangement *a, const ray_batch *rays, uint64_t 
             continue;
         }
         asked[count] = (forest_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
-                                    .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]), .t_min = 0.0, .t_max = 1.0,
-                                    .start = rays->start[i], .inside = rays->inside[i], .wanted = wanted};
+                                    .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]),
+                                    .t_min = 0.0,
+                                    .t_max = 1.0,
+                                    .start = rays->start[i],
+                                    .inside = rays->inside[i],
+                                    .wanted = wanted};
         ray[count++] = i;
     }
     if (count == 0)

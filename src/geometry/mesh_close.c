@@ -1,10 +1,13 @@
-/* Is a mesh closed? Half-edges (a triangle's, from one corner to the next) are put in order by the lower and the higher of their two
- * positions: counted into a list for each lower one, and each list, which is short, sorted. Linear in practice. */
+/* Is a mesh closed? Half-edges (a triangle's, from one corner to the next) are put in order by the lower and the higher
+ * of their two positions: counted into a list for each lower one, and each list, which is short, sorted. Linear in
+ * practice. */
 #include "geometry/mesh_parts.h"
 
 #include <stdlib.h>
 
-typedef struct half_edge { uint32_t higher, half; } half_edge;
+typedef struct half_edge {
+    uint32_t higher, half;
+} half_edge;
 
 /* edges[start[v]] .. edges[start[v + 1] - 1] are those whose lower position is v. */
 typedef struct edge_lists {
@@ -144,7 +147,8 @@ static status orient(mesh *m, const edge_lists *lists, diagnostic *why)
         if (!mesh_orient(m, &n, &at))
             name_hole(m, at, 2);
     } else {
-        result = diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the neighbours of a mesh's triangles");
+        result = diagnose(why, STATUS_FAILURE, "use fewer triangles",
+                          "out of memory for the neighbours of a mesh's triangles");
     }
     free(mates);
     free(n.queue);

@@ -14,12 +14,14 @@ static status check_vertices(const mesh *m, diagnostic *why)
     for (size_t v = 0; v < m->vertex_count; v++) {
         const vec3 p = m->vertices[v];
         if (!within(p, MESH_FAR))
-            return diagnose(why, STATUS_BAD_INPUT, "coordinates are finite and at most 1e9", "vertex %zu lies at %g, %g, %g", v, p.x, p.y, p.z);
+            return diagnose(why, STATUS_BAD_INPUT, "coordinates are finite and at most 1e9",
+                            "vertex %zu lies at %g, %g, %g", v, p.x, p.y, p.z);
         if (m->normals && !within(m->normals[v], 0x1.fffffffffffffp1023))
-            return diagnose(why, STATUS_BAD_INPUT, "normals are finite", "vertex %zu has a normal that is no number", v);
+            return diagnose(why, STATUS_BAD_INPUT, "normals are finite", "vertex %zu has a normal that is no number",
+                            v);
         if (m->uvs && !(fabs(m->uvs[v].u) <= MESH_FAR && fabs(m->uvs[v].v) <= MESH_FAR))
-            return diagnose(why, STATUS_BAD_INPUT, "texture coordinates are finite and at most 1e9", "vertex %zu has texture coordinates %g, %g",
-                            v, m->uvs[v].u, m->uvs[v].v);
+            return diagnose(why, STATUS_BAD_INPUT, "texture coordinates are finite and at most 1e9",
+                            "vertex %zu has texture coordinates %g, %g", v, m->uvs[v].u, m->uvs[v].v);
     }
     return STATUS_OK;
 }
@@ -31,12 +33,13 @@ status mesh_check(const mesh *m, diagnostic *why)
     for (size_t t = 0; t < m->triangle_count; t++) {
         for (int k = 0; k < 3; k++) {
             if (m->triangles[t].corner[k] >= m->vertex_count)
-                return diagnose(why, STATUS_BAD_INPUT, "vertices are counted from 0", "triangle %zu names vertex %lu of %zu", t,
-                                (unsigned long)m->triangles[t].corner[k], m->vertex_count);
+                return diagnose(why, STATUS_BAD_INPUT, "vertices are counted from 0",
+                                "triangle %zu names vertex %lu of %zu", t, (unsigned long)m->triangles[t].corner[k],
+                                m->vertex_count);
         }
         if (m->slots && m->slots[t] >= m->slot_count)
-            return diagnose(why, STATUS_BAD_INPUT, "slots are counted from 0", "triangle %zu names material slot %d of %d", t, m->slots[t],
-                            m->slot_count);
+            return diagnose(why, STATUS_BAD_INPUT, "slots are counted from 0",
+                            "triangle %zu names material slot %d of %d", t, m->slots[t], m->slot_count);
     }
     return check_vertices(m, why);
 }
@@ -64,8 +67,8 @@ bool mesh_triangle_normal(const mesh *m, size_t triangle, vec3 *normal)
     vec3 b, c;
     *normal = vec3_make(0.0, 0.0, 0.0);
     /* the edges as unit vectors: the product of small ones would vanish */
-    return direction_of(vec3_sub(m->vertices[corner[1]], a), &b) && direction_of(vec3_sub(m->vertices[corner[2]], a), &c) &&
-           direction_of(vec3_cross(b, c), normal);
+    return direction_of(vec3_sub(m->vertices[corner[1]], a), &b) &&
+           direction_of(vec3_sub(m->vertices[corner[2]], a), &c) && direction_of(vec3_cross(b, c), normal);
 }
 
 void mesh_normalize(mesh *m)

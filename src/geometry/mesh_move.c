@@ -1,5 +1,5 @@
-/* A finished mesh whose vertices move, once a frame: one pass over the new positions says whether they may be and what they reach; only then are
- * they copied, so that a mesh that cannot be moved stays as it was. */
+/* A finished mesh whose vertices move, once a frame: one pass over the new positions says whether they may be and what
+ * they reach; only then are they copied, so that a mesh that cannot be moved stays as it was. */
 #include "base/single.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
@@ -61,11 +61,13 @@ static bool all_finite(const vec3 *v, size_t count)
 {
     bool finite = true;
     for (size_t i = 0; i < count; i++)
-        finite &= fabs(v[i].x) <= 0x1.fffffffffffffp1023 && fabs(v[i].y) <= 0x1.fffffffffffffp1023 && fabs(v[i].z) <= 0x1.fffffffffffffp1023;
+        finite &= fabs(v[i].x) <= 0x1.fffffffffffffp1023 && fabs(v[i].y) <= 0x1.fffffffffffffp1023 &&
+                  fabs(v[i].z) <= 0x1.fffffffffffffp1023;
     return finite;
 }
 
-/* Bounds are of the vertices that triangles use. Where they use all, which is found out once, triangles need not be looked at. */
+/* Bounds are of the vertices that triangles use. Where they use all, which is found out once, triangles need not be
+ * looked at. */
 static bool uses_every_vertex(mesh *m)
 {
     if (m->share->used == MESH_USED_UNKNOWN) {

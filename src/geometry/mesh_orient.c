@@ -1,4 +1,5 @@
-/* Neighbouring triangles of a surface agree when they run their common edge in opposite directions; flood fill makes them agree. */
+/* Neighbouring triangles of a surface agree when they run their common edge in opposite directions; flood fill makes
+ * them agree. */
 #include "geometry/mesh_parts.h"
 
 enum { UNSEEN = 2 };
@@ -16,7 +17,8 @@ static uint32_t begins(const mesh *m, const mesh_neighbours *n, uint32_t half)
     return n->same[m->triangles[half / 3].corner[half % 3]];
 }
 
-/* The connected part of triangle n->queue[first]; returns the end of its stretch of the queue, 0 if it cannot be made to agree. */
+/* The connected part of triangle n->queue[first]; returns the end of its stretch of the queue, 0 if it cannot be made
+ * to agree. */
 static size_t flood(const mesh *m, mesh_neighbours *n, size_t first, size_t *at)
 {
     size_t end = first + 1;

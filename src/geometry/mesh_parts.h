@@ -13,16 +13,18 @@ status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why);
 /* Sets m->closed or m->hole, and turns triangles that run the wrong way round. m has passed mesh_check. */
 status mesh_close(mesh *m, diagnostic *why);
 
-/* Triangles of a mesh without a hole. A half-edge 3 t + k runs from corner k of triangle t to the next one; mates[] is the one on its
- * other side, UINT32_MAX in triangles that join nothing. queue and turned have room for each triangle. */
+/* Triangles of a mesh without a hole. A half-edge 3 t + k runs from corner k of triangle t to the next one; mates[] is
+ * the one on its other side, UINT32_MAX in triangles that join nothing. queue and turned have room for each triangle.
+ */
 typedef struct mesh_neighbours {
     const uint32_t *same, *mates;
     uint32_t *queue;
     uint8_t *turned;
 } mesh_neighbours;
 
-/* Turns triangles round so that neighbours agree. False if the surface has one side only: *at is then a half-edge where it shows, and nothing
- * is turned. Where three quarters of a connected part agree, they are right; otherwise its fronts come to look outwards. */
+/* Turns triangles round so that neighbours agree. False if the surface has one side only: *at is then a half-edge where
+ * it shows, and nothing is turned. Where three quarters of a connected part agree, they are right; otherwise its fronts
+ * come to look outwards. */
 bool mesh_orient(mesh *m, mesh_neighbours *n, size_t *at);
 
 /* Exchanges the second and the third corner. */

@@ -1,4 +1,5 @@
-/* Normals by vertex, weighted by angle: Thurmer and Wuthrich, "Computing vertex normals from polygonal facets", JGT 3(1), 1998. */
+/* Normals by vertex, weighted by angle: Thurmer and Wuthrich, "Computing vertex normals from polygonal facets", JGT
+ * 3(1), 1998. */
 #include "base/elementary.h"
 #include "geometry/mesh_parts.h"
 

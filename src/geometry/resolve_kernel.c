@@ -4,9 +4,9 @@
  * that body, and where it enters one of a higher rank. The nearest of these is the next change; everything
  * that happens below rank b before it has no effect. So one pass over the bodies finds it.
  *
- * If the media on both sides are equal it is no interface: the crossing is marked as done in the intervals (the ray is not started anew) and the
- * next change is sought, for those rays alone. Where another boundary lies near the crossing, contact_kernel.c decides
- * whether they are one. */
+ * If the media on both sides are equal it is no interface: the crossing is marked as done in the intervals (the ray is
+ * not started anew) and the next change is sought, for those rays alone. Where another boundary lies near the crossing,
+ * contact_kernel.c decides whether they are one. */
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"
@@ -36,8 +36,8 @@ static void ranks_of(const arrangement *a, int n, const uint64_t *restrict set, 
 }
 
 /* Next change by a body without a hollow. */
-static void next_of_plain(int n, int64_t rank, int64_t crossed, const double *restrict in, const double *restrict out, const ray_scratch *restrict s,
-                          hit_batch *restrict c)
+static void next_of_plain(int n, int64_t rank, int64_t crossed, const double *restrict in, const double *restrict out,
+                          const ray_scratch *restrict s, hit_batch *restrict c)
 {
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
@@ -49,11 +49,12 @@ static void next_of_plain(int n, int64_t rank, int64_t crossed, const double *re
     }
 }
 
-/* Next change by a body with a hollow. Its one boundary ahead is where it is left, if the ray is in it: out of its outside or
- * into its hollow; else where it is entered: through its outside, or out of the hollow if that covers the entry. */
-static void next_of_hollow(int n, int64_t rank, int64_t outside, int64_t hollow, const double *restrict in, const double *restrict out,
-                           const double *restrict hollow_in, const double *restrict hollow_out, const ray_scratch *restrict s,
-                           hit_batch *restrict c)
+/* Next change by a body with a hollow. Its one boundary ahead is where it is left, if the ray is in it: out of its
+ * outside or into its hollow; else where it is entered: through its outside, or out of the hollow if that covers the
+ * entry. */
+static void next_of_hollow(int n, int64_t rank, int64_t outside, int64_t hollow, const double *restrict in,
+                           const double *restrict out, const double *restrict hollow_in,
+                           const double *restrict hollow_out, const ray_scratch *restrict s, hit_batch *restrict c)
 {
     const uint64_t wanted = (uint64_t)1 << outside, both = wanted | (uint64_t)1 << hollow;
     /* VECTORISE */
@@ -78,7 +79,8 @@ ALWAYS_INLINE void sets_around(int n, int first, int many, ray_scratch *restrict
 {
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
-        int64_t before = first == 0 ? 0 : (int64_t)c->inside_before[i], after = first == 0 ? 0 : (int64_t)c->inside_after[i];
+        int64_t before = first == 0 ? 0 : (int64_t)c->inside_before[i],
+                after = first == 0 ? 0 : (int64_t)c->inside_after[i];
         int64_t between = first == 0 ? 0 : (int64_t)s->near[i];
         for (int k = 0; k < many; k++) {
             const int64_t bit = (int64_t)((uint64_t)1 << (first + k));
@@ -122,18 +124,21 @@ ALWAYS_INLINE int64_t opaque_mask(uint64_t opaque_ranks, int64_t rank)
 }
 
 /* Whose surface it is: arrangement_surface. */
-static void surfaces(uint64_t opaque_ranks, int n, const int64_t *restrict before, const int64_t *restrict after, int64_t *restrict surface)
+static void surfaces(uint64_t opaque_ranks, int n, const int64_t *restrict before, const int64_t *restrict after,
+                     int64_t *restrict surface)
 {
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
-        const int64_t opaque_after = opaque_mask(opaque_ranks, after[i]), opaque_before = opaque_mask(opaque_ranks, before[i]);
+        const int64_t opaque_after = opaque_mask(opaque_ranks, after[i]),
+                      opaque_before = opaque_mask(opaque_ranks, before[i]);
         const int64_t higher = blend_int(-(int64_t)(after[i] > before[i]), after[i], before[i]);
         surface[i] = blend_int(opaque_after, after[i], blend_int(opaque_before, before[i], higher));
     }
 }
 
 /* Columns that need a second, exact check: another boundary is near, or the media are perhaps equal. */
-static void mark_attention(const arrangement *a, int n, const ray_scratch *restrict s, const hit_batch *restrict c, int64_t *restrict attention)
+static void mark_attention(const arrangement *a, int n, const ray_scratch *restrict s, const hit_batch *restrict c,
+                           int64_t *restrict attention)
 {
     const int64_t doubt = -(int64_t)!a->distinct;
     /* VECTORISE */
@@ -148,7 +153,8 @@ static void mark_attention(const arrangement *a, int n, const ray_scratch *restr
 }
 
 /* The next change of medium of the first n columns. */
-static void next_changes(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c, forest_hit *mesh_hits)
+static void next_changes(const arrangement *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+                         forest_hit *mesh_hits)
 {
     ranks_of(a, n, s->inside, c->before);
     for (int i = 0; i < n; i++) {
@@ -175,18 +181,20 @@ static void next_changes(const arrangement *a, const ray_batch *rays, int n, ray
     for (int k = 0; a->meshes && k < n; k++) {
         s->attention[k] |= -(int64_t)(c->crossed[k] >= 0 && s->meshes->near[k]);
         s->meshes->until[k] = greater(c->t[k], s->meshes->from[k]);
-        /* Through an edge a front and a back are at one place: the second crossing there is the last, or they would follow
-         * one another for ever. */
+        /* Through an edge a front and a back are at one place: the second crossing there is the last, or they would
+         * follow one another for ever. */
         if (c->crossed[k] >= 0 && c->t[k] <= s->meshes->from[k]) {
             const bool on_mesh = is_mesh(a, (int)c->crossed[k]);
-            const double extent = on_mesh ? forest_extent(a->meshes, mesh_hits[k].face) : a->primitives[c->crossed[k]].extent;
+            const double extent =
+                on_mesh ? forest_extent(a->meshes, mesh_hits[k].face) : a->primitives[c->crossed[k]].extent;
             s->meshes->until[k] += POINT_ERROR * (c->t[k] + extent * steps_per_unit(rays, s->ray[k]));
         }
     }
 }
 
 /* Is column k an interface? */
-static bool is_interface(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c, forest_hit *mesh_hits)
+static bool is_interface(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
+                         forest_hit *mesh_hits)
 {
     const uint64_t only = (uint64_t)1 << c->crossed[k];
     if (s->near[k] != only || (c->inside_before[k] ^ c->inside_after[k]) != only || (a->meshes && s->meshes->near[k]))
@@ -300,8 +308,8 @@ static void nearest(const arrangement *a, const ray_batch *rays, ray_scratch *s,
         hits->inside_after[i] &= ~a->meshes->skins; /* nothing is ever in a skin */
 }
 
-/* Does the path from 0 to 1 go through the body's matter, whatever hides it? Where the ends of a piece of it lie within the
- * filter's window they may be in contact: then, and where the body is doubtful, it is undecided. */
+/* Does the path from 0 to 1 go through the body's matter, whatever hides it? Where the ends of a piece of it lie within
+ * the filter's window they may be in contact: then, and where the body is doubtful, it is undecided. */
 static void touching(const arrangement *a, const body *b, bool doubtful, int n, const double *restrict steps,
                      const ray_scratch *restrict s, int64_t *restrict blocked, int64_t *restrict undecided)
 {
@@ -324,7 +332,8 @@ static void touching(const arrangement *a, const body *b, bool doubtful, int n, 
         const double first_out = lesser(out[i], hollow_in[i]), second_in = greater(in[i], hollow_out[i]);
         const int64_t first = mask_less(in[i], lesser(first_out, 1.0)) & mask_less(0.0, first_out);
         const int64_t second = mask_less(second_in, lesser(out[i], 1.0)) & mask_less(0.0, out[i]);
-        const int64_t thick = (first & mask_less(thin, first_out - in[i])) | (second & mask_less(thin, out[i] - second_in));
+        const int64_t thick =
+            (first & mask_less(thin, first_out - in[i])) | (second & mask_less(thin, out[i] - second_in));
         blocked[i] |= thick & certain;
         undecided[i] |= first | second;
     }
@@ -350,8 +359,8 @@ static bool any_undecided(int n, const ray_scratch *s)
     return any != 0;
 }
 
-/* First sight: blocked for certain by an opaque body that nothing clear can hide; undecided where order or attenuation matters, which
- * is everywhere if the surroundings absorb. */
+/* First sight: blocked for certain by an opaque body that nothing clear can hide; undecided where order or attenuation
+ * matters, which is everywhere if the surroundings absorb. */
 static void first_sight(const arrangement *a, const ray_batch *rays, int solid_shadows, ray_scratch *s)
 {
     const int n = rays->count;
@@ -362,7 +371,7 @@ static void first_sight(const arrangement *a, const ray_batch *rays, int solid_s
         s->low[i] = steps_per_unit(rays, i);
     }
     uint64_t sure = 0, unsure = 0; /* meshes */
-    bool hidden = false; /* can a clear body of a higher rank hide this one? */
+    bool hidden = false;           /* can a clear body of a higher rank hide this one? */
     for (int r = a->body_count; r >= 1; r--) {
         const body *b = &a->bodies[r];
         const bool doubtful = hidden || !b->opaque, casts = body_casts_shadow(b, solid_shadows);

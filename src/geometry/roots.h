@@ -2,8 +2,8 @@
  * formulas, used by the pass over all rays and again for the face of a hit. No branches; pure.
  *
  * The root of the face that a ray starts on is zero exactly, not nearly. A component of a direction that
- * is zero is taken as 1e-300, and a line along a cylinder's axis as leaning by 1e-140: the crossings that this makes lie at
- * 1e130 and beyond, which is never, without a special case. */
+ * is zero is taken as 1e-300, and a line along a cylinder's axis as leaning by 1e-140: the crossings that this makes
+ * lie at 1e130 and beyond, which is never, without a special case. */
 #ifndef CUVETTE_GEOMETRY_ROOTS_H
 #define CUVETTE_GEOMETRY_ROOTS_H
 
@@ -12,9 +12,12 @@
 #include "geometry/arrangement.h"
 #include <math.h>
 
-typedef struct local_ray { double x, y, z, dx, dy, dz; } local_ray;
+typedef struct local_ray {
+    double x, y, z, dx, dy, dz;
+} local_ray;
 
-ALWAYS_INLINE local_ray ray_to_local(const primitive *p, bool turned, double ox, double oy, double oz, double dx, double dy, double dz)
+ALWAYS_INLINE local_ray ray_to_local(const primitive *p, bool turned, double ox, double oy, double oz, double dx,
+                                     double dy, double dz)
 {
     local_ray r = {ox - p->origin.x, oy - p->origin.y, oz - p->origin.z, dx, dy, dz};
     if (turned) {
@@ -32,17 +35,24 @@ ALWAYS_INLINE double inverse_of_component(double d)
 }
 
 /* Crossings of the planes y = bottom and y = top. */
-typedef struct slab_roots { double in, out; } slab_roots;
+typedef struct slab_roots {
+    double in, out;
+} slab_roots;
 
-ALWAYS_INLINE slab_roots slab_cross(double y, double inverse_y, double low, double high, int64_t on_low, int64_t on_high)
+ALWAYS_INLINE slab_roots slab_cross(double y, double inverse_y, double low, double high, int64_t on_low,
+                                    int64_t on_high)
 {
     double a = blend(on_low, 0.0, (low - y) * inverse_y), b = blend(on_high, 0.0, (high - y) * inverse_y);
     slab_roots s = {lesser(a, b), greater(a, b)};
     return s;
 }
 
-/* Crossings of a quadric a t^2 + 2 b t + c = 0 given its reduced discriminant b^2 - a c: [in, out] and whether it is met. */
-typedef struct quadric_roots { double in, out; int64_t hit; } quadric_roots;
+/* Crossings of a quadric a t^2 + 2 b t + c = 0 given its reduced discriminant b^2 - a c: [in, out] and whether it is
+ * met. */
+typedef struct quadric_roots {
+    double in, out;
+    int64_t hit;
+} quadric_roots;
 
 /* Without a crossing the roots are not numbers and hit is 0. */
 ALWAYS_INLINE quadric_roots quadric_cross(double b, double inverse_a, double discriminant, int64_t own)
@@ -67,7 +77,8 @@ ALWAYS_INLINE double cylinder_axial(double dx, double dz, double m2)
 
 /* The endless cylinder x^2 + m2 z^2 = radius^2; dx as cylinder_dx gives it, inverse_a = 1/a. The discriminant is
  * a r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does not cancel as b^2 - a c does far from the cylinder. */
-ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, double x, double z, double dx, double dz, double a, double inverse_a, int64_t own)
+ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, double x, double z, double dx, double dz, double a,
+                                          double inverse_a, int64_t own)
 {
     double r2 = p->radius * p->radius, cross = x * dz - z * dx;
     return quadric_cross(x * dx + p->m2 * z * dz, inverse_a, a * r2 - p->m2 * (cross * cross), own);

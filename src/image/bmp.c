@@ -51,7 +51,8 @@ static status check_kind(const unsigned char *bytes, size_t size, diagnostic *wh
         return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is one of OS/2, which is not read");
     }
     if (size < FILE_HEADER + INFO_HEADER || (header <= V5_HEADER && header > size - FILE_HEADER)) {
-        return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is truncated: %zu bytes have no whole header", size);
+        return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is truncated: %zu bytes have no whole header",
+                        size);
     }
     if (header < INFO_HEADER || header > V5_HEADER) {
         return diagnose(why, STATUS_BAD_INPUT, REMEDY,

@@ -1,8 +1,8 @@
 /* FLIP, the difference that a viewer sees who alternates between two pictures: Andersson, Nilsson, Akenine-Moller,
  * Oskarsson, Astrom, Fairchild, FLIP: A Difference Evaluator for Alternating Images, Proceedings of the ACM on Computer
- * Graphics and Interactive Techniques 3(2), 2020, for low dynamic range, with the paper's constants. Its viewer sits 0.7 m
- * before a display 0.7 m and 3840 pixels wide: 67.02 pixels a degree. Its filters are sums of separable ones, so that they
- * run along rows and columns; where they reach over the border, the border pixels go on. */
+ * Graphics and Interactive Techniques 3(2), 2020, for low dynamic range, with the paper's constants. Its viewer sits
+ * 0.7 m before a display 0.7 m and 3840 pixels wide: 67.02 pixels a degree. Its filters are sums of separable ones, so
+ * that they run along rows and columns; where they reach over the border, the border pixels go on. */
 #include "image/compare_parts.h"
 
 #include "base/elementary.h"
@@ -15,7 +15,9 @@
 
 /* What a viewer gets of a picture, a plane each: the filtered opponent colours, how strong edges and points are. */
 enum { LUMINANCE, RED_GREEN, YELLOW_BLUE, EDGES, POINTS, SEEN };
-typedef struct sight { double *plane[SEEN]; } sight;
+typedef struct sight {
+    double *plane[SEEN];
+} sight;
 
 /* Planes to work in, all of one size. */
 typedef struct desk {
@@ -91,8 +93,8 @@ static void balance(convolve_taps *taps)
     }
 }
 
-/* Section 4.2: first and second derivatives of a Gaussian whose sigma is half of 0.082 degrees, the width of the edges that
- * the eye detects. */
+/* Section 4.2: first and second derivatives of a Gaussian whose sigma is half of 0.082 degrees, the width of the edges
+ * that the eye detects. */
 static void make_detectors(convolve_taps *smooth, convolve_taps *edge, convolve_taps *point)
 {
     const double sigma = 0.5 * 0.082 * PIXELS_PER_DEGREE;

@@ -1,5 +1,6 @@
-/* The colours of FLIP: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, FLIP: A Difference Evaluator for
- * Alternating Images, Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020, section 4.1. */
+/* The colours of FLIP: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, FLIP: A Difference Evaluator
+ * for Alternating Images, Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020,
+ * section 4.1. */
 #include "image/compare_parts.h"
 
 #include "base/elementary.h"
@@ -62,7 +63,8 @@ void flip_hunt_lab(const double opponent[3], double lab[3])
     lab[2] = 0.01 * lab[0] * 200.0 * (y - z);
 }
 
-/* HyAB (Abasi, Tehran, Fairchild 2020), for large distances: city blocks in lightness, Euclid in colour; to the power 0.7. */
+/* HyAB (Abasi, Tehran, Fairchild 2020), for large distances: city blocks in lightness, Euclid in colour; to the power
+ * 0.7. */
 static double hyab_power(const double a[3], const double b[3])
 {
     double d1 = a[1] - b[1], d2 = a[2] - b[2];

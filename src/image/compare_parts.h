@@ -1,5 +1,5 @@
-/* The measures behind compare.h that look at neighbours, each in a file of its own. Their pictures and planes have passed
- * compare_check. Ownership: everything is the caller's. Errors: STATUS_FAILURE without memory. */
+/* The measures behind compare.h that look at neighbours, each in a file of its own. Their pictures and planes have
+ * passed compare_check. Ownership: everything is the caller's. Errors: STATUS_FAILURE without memory. */
 #ifndef CUVETTE_IMAGE_COMPARE_PARTS_H
 #define CUVETTE_IMAGE_COMPARE_PARTS_H
 
@@ -16,8 +16,8 @@ status compare_flip(const image *a, const image *b, double *errors, diagnostic *
 
 /* Colours of linear light as FLIP sees them: relative to white, and how far apart. */
 
-/* Luminance and two opponent colours, red against green and yellow against blue: YCxCz without its scales and its offset,
- * which filters of sum 1 leave as they are. Linear in rgb, which is clamped to 0..1 first. */
+/* Luminance and two opponent colours, red against green and yellow against blue: YCxCz without its scales and its
+ * offset, which filters of sum 1 leave as they are. Linear in rgb, which is clamped to 0..1 first. */
 void flip_opponent(const float rgb[3], double opponent[3]);
 /* Back to linear light, clamped to 0..1, and from there to CIELAB with Hunt's adjustment. */
 void flip_hunt_lab(const double opponent[3], double lab[3]);

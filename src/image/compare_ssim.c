@@ -1,7 +1,8 @@
 /* Structural similarity: Wang, Bovik, Sheikh, Simoncelli, Image Quality Assessment: From Error Visibility to Structural
- * Similarity, IEEE Transactions on Image Processing 13(4), 2004: eq. 13 with the statistics of eqs. 14 to 16 under their
- * 11 x 11 Gaussian of sigma 1.5, K1 = 0.01, K2 = 0.03, L = 1, and the mean of eq. 17 over all windows that lie within the
- * picture. Along a side shorter than 11 pixels the window is as long as that side, its Gaussian centred and of sum 1. */
+ * Similarity, IEEE Transactions on Image Processing 13(4), 2004: eq. 13 with the statistics of eqs. 14 to 16 under
+ * their 11 x 11 Gaussian of sigma 1.5, K1 = 0.01, K2 = 0.03, L = 1, and the mean of eq. 17 over all windows that lie
+ * within the picture. Along a side shorter than 11 pixels the window is as long as that side, its Gaussian centred and
+ * of sum 1. */
 #include "image/compare_parts.h"
 
 #include "image/convolve.h"

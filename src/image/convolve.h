@@ -1,11 +1,13 @@
-/* Convolution of a plane of doubles with separable filters: along the rows, then along the columns. Outside the plane its
- * border pixels go on. Pure; cannot fail. Ownership: planes are the caller's, width * height values, rows from the top. */
+/* Convolution of a plane of doubles with separable filters: along the rows, then along the columns. Outside the plane
+ * its border pixels go on. Pure; cannot fail. Ownership: planes are the caller's, width * height values, rows from the
+ * top. */
 #ifndef CUVETTE_IMAGE_CONVOLVE_H
 #define CUVETTE_IMAGE_CONVOLVE_H
 
 enum { CONVOLVE_TAPS_MAX = 32 };
 
-/* weight[i] is the share of the value i - before places to the right (or below): a correlation, as filters of images are. */
+/* weight[i] is the share of the value i - before places to the right (or below): a correlation, as filters of images
+ * are. */
 typedef struct convolve_taps {
     int count, before;
     double weight[CONVOLVE_TAPS_MAX];

@@ -14,15 +14,14 @@
  * between them stay within 1/255 of the rest. */
 enum { VIRIDIS_KNOTS = 52 };
 static const unsigned char VIRIDIS[VIRIDIS_KNOTS][3] = {
-    {68, 1, 84}, {70, 8, 92}, {71, 16, 99}, {72, 23, 105}, {72, 29, 111}, {72, 36, 117},
-    {71, 42, 122}, {70, 48, 126}, {69, 55, 129}, {67, 61, 132}, {65, 66, 135}, {63, 72, 137},
-    {61, 78, 138}, {58, 83, 139}, {56, 89, 140}, {53, 94, 141}, {51, 99, 141}, {49, 104, 142},
-    {46, 109, 142}, {44, 113, 142}, {42, 118, 142}, {41, 123, 142}, {39, 128, 142}, {37, 132, 142},
-    {35, 137, 142}, {33, 142, 141}, {32, 146, 140}, {31, 151, 139}, {30, 156, 137}, {31, 161, 136},
-    {33, 165, 133}, {36, 170, 131}, {40, 174, 128}, {46, 179, 124}, {53, 183, 121}, {61, 188, 116},
-    {70, 192, 111}, {80, 196, 106}, {90, 200, 100}, {101, 203, 94}, {112, 207, 87}, {124, 210, 80},
-    {137, 213, 72}, {149, 216, 64}, {162, 218, 55}, {176, 221, 47}, {189, 223, 38}, {202, 225, 31},
-    {216, 226, 25}, {229, 228, 25}, {241, 229, 29}, {253, 231, 37},
+    {68, 1, 84},    {70, 8, 92},    {71, 16, 99},   {72, 23, 105},  {72, 29, 111},  {72, 36, 117},  {71, 42, 122},
+    {70, 48, 126},  {69, 55, 129},  {67, 61, 132},  {65, 66, 135},  {63, 72, 137},  {61, 78, 138},  {58, 83, 139},
+    {56, 89, 140},  {53, 94, 141},  {51, 99, 141},  {49, 104, 142}, {46, 109, 142}, {44, 113, 142}, {42, 118, 142},
+    {41, 123, 142}, {39, 128, 142}, {37, 132, 142}, {35, 137, 142}, {33, 142, 141}, {32, 146, 140}, {31, 151, 139},
+    {30, 156, 137}, {31, 161, 136}, {33, 165, 133}, {36, 170, 131}, {40, 174, 128}, {46, 179, 124}, {53, 183, 121},
+    {61, 188, 116}, {70, 192, 111}, {80, 196, 106}, {90, 200, 100}, {101, 203, 94}, {112, 207, 87}, {124, 210, 80},
+    {137, 213, 72}, {149, 216, 64}, {162, 218, 55}, {176, 221, 47}, {189, 223, 38}, {202, 225, 31}, {216, 226, 25},
+    {229, 228, 25}, {241, 229, 29}, {253, 231, 37},
 };
 
 static const unsigned char PAPER[3] = {255, 255, 255}, INK[3] = {34, 34, 34}, FRAME[3] = {120, 120, 120};
@@ -36,9 +35,9 @@ typedef struct key_layout {
 
 /* What the colours stand for. */
 typedef struct key_scale {
-    double end;  /* value of the last colour; the first one is 0 */
-    bool cut;    /* values above end were drawn in its colour */
-    bool whole;  /* all values are integers */
+    double end; /* value of the last colour; the first one is 0 */
+    bool cut;   /* values above end were drawn in its colour */
+    bool whole; /* all values are integers */
 } key_scale;
 
 void heatmap_color(double t, unsigned char rgb[3])
@@ -90,7 +89,10 @@ static void draw_text(const canvas *on, int x, int y, int scale, const char *tex
 /* A number of the key: four digits, and a prefix of the SI where it would be long: 0, 29.5, 118, 3.086M. */
 static void format_key(double value, double largest, char text[NUMBER_TEXT_MAX + 2])
 {
-    static const struct { double unit; const char *prefix; } prefixes[] = {
+    static const struct {
+        double unit;
+        const char *prefix;
+    } prefixes[] = {
         {1e12, "T"}, {1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"},
     };
     size_t i = 4;

@@ -48,8 +48,14 @@ image *image_share(const image *picture)
 
 image_format image_format_of(const char *path)
 {
-    static const struct { const char *ending; image_format format; } endings[] = {
-        {".png", IMAGE_PNG}, {".jpg", IMAGE_JPEG}, {".jpeg", IMAGE_JPEG}, {".pfm", IMAGE_PFM},
+    static const struct {
+        const char *ending;
+        image_format format;
+    } endings[] = {
+        {".png", IMAGE_PNG},
+        {".jpg", IMAGE_JPEG},
+        {".jpeg", IMAGE_JPEG},
+        {".pfm", IMAGE_PFM},
     };
     size_t length = strlen(path);
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
@@ -88,7 +94,8 @@ static status write_as(const image *picture, image_format format, FILE *stream, 
     return diagnose(why, STATUS_BAD_INPUT, "PNG, JPEG or PFM", "unknown kind of picture");
 }
 
-status image_encode(const image *picture, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size, diagnostic *why)
+status image_encode(const image *picture, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
+                    diagnostic *why)
 {
     char *text = NULL;
     text_writer writer;
@@ -142,27 +149,19 @@ static image_format format_of_bytes(const unsigned char *bytes, size_t size)
     if (size >= 2 && memcmp(bytes, "BM", 2) == 0) {
         return IMAGE_BMP;
     }
-    bool pfm = size >= 3 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f')
-               && (bytes[2] == '\n' || bytes[2] == '\r' || bytes[2] == ' ');
+    bool pfm = size >= 3 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f') &&
+               (bytes[2] == '\n' || bytes[2] == '\r' || bytes[2] == ' ');
     return pfm ? IMAGE_PFM : IMAGE_UNKNOWN;
 }
 
 static status decode(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why)
 {
     switch (format_of_bytes(bytes, size)) {
-    case IMAGE_PNG:
-        return codec_png_read(bytes, size, out, bits, why);
-    case IMAGE_JPEG:
-        *bits = 8;
-        return codec_jpeg_read(bytes, size, out, why);
-    case IMAGE_PFM:
-        *bits = 32;
-        return codec_pfm_read(bytes, size, out, why);
-    case IMAGE_BMP:
-        *bits = 8;
-        return codec_bmp_read(bytes, size, out, why);
-    case IMAGE_UNKNOWN:
-        break;
+    case IMAGE_PNG: return codec_png_read(bytes, size, out, bits, why);
+    case IMAGE_JPEG: *bits = 8; return codec_jpeg_read(bytes, size, out, why);
+    case IMAGE_PFM: *bits = 32; return codec_pfm_read(bytes, size, out, why);
+    case IMAGE_BMP: *bits = 8; return codec_bmp_read(bytes, size, out, why);
+    case IMAGE_UNKNOWN: break;
     }
     return diagnose(why, STATUS_BAD_INPUT, "give a PNG, JPEG, PFM or 24-bit BMP file", "%s",
                     size == 0 ? "the file is empty" : "this is not a picture of a known kind");

@@ -128,12 +128,9 @@ static void limit_scans(j_common_ptr cinfo)
 static bool choose_colors(jpeg_job *job, j_decompress_ptr cinfo)
 {
     switch (cinfo->jpeg_color_space) {
-    case JCS_GRAYSCALE:
-        cinfo->out_color_space = JCS_GRAYSCALE;
-        return true;
-    case JCS_YCbCr: case JCS_RGB:
-        cinfo->out_color_space = JCS_RGB;
-        return true;
+    case JCS_GRAYSCALE: cinfo->out_color_space = JCS_GRAYSCALE; return true;
+    case JCS_YCbCr:
+    case JCS_RGB: cinfo->out_color_space = JCS_RGB; return true;
     default:
         job->code = diagnose(job->why, STATUS_BAD_INPUT, "convert it to RGB", "the JPEG file is neither grey nor RGB");
         return false;

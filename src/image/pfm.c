@@ -35,7 +35,9 @@ status codec_pfm_write(const image *picture, FILE *stream, diagnostic *why)
     return STATUS_OK;
 }
 
-typedef struct cursor { const unsigned char *at, *end; } cursor;
+typedef struct cursor {
+    const unsigned char *at, *end;
+} cursor;
 
 static bool is_blank(unsigned char c)
 {
@@ -91,9 +93,9 @@ status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diag
     double scale;
     int channels = bytes[1] == 'F' ? 3 : 1;
     *out = NULL;
-    if (!read_word(&c, width_text) || !read_word(&c, height_text) || !read_word(&c, scale_text)
-        || !number_parse_int(width_text, &width) || !number_parse_int(height_text, &height)
-        || !number_parse_real(scale_text, &scale) || !(fabs(scale) > 0)) {
+    if (!read_word(&c, width_text) || !read_word(&c, height_text) || !read_word(&c, scale_text) ||
+        !number_parse_int(width_text, &width) || !number_parse_int(height_text, &height) ||
+        !number_parse_real(scale_text, &scale) || !(fabs(scale) > 0)) {
         return diagnose(why, STATUS_BAD_INPUT, "it gives width, height and a scale that is not zero",
                         "the header of the PFM file is damaged");
     }

@@ -11,15 +11,15 @@
 typedef struct png_job {
     png_structp png;
     png_infop info;
-    char message[256];               /* libpng's, when it gives up */
-    unsigned char *raw;              /* one row, or the whole picture when it is interlaced */
-    const unsigned char *bytes;      /* reading: the file and how much is consumed */
+    char message[256];          /* libpng's, when it gives up */
+    unsigned char *raw;         /* one row, or the whole picture when it is interlaced */
+    const unsigned char *bytes; /* reading: the file and how much is consumed */
     size_t size, used;
     image *picture;
-    float *linear;                   /* reading: sRGB decoding table */
+    float *linear; /* reading: sRGB decoding table */
     int bits;
-    bool fast;                       /* writing: a larger file, sooner */
-    status code;                     /* of what went wrong beside libpng */
+    bool fast;   /* writing: a larger file, sooner */
+    status code; /* of what went wrong beside libpng */
     diagnostic *why;
 } png_job;
 

@@ -8,15 +8,17 @@
 
 static status check(const image *picture, diagnostic *why)
 {
-    if (picture->width < 1 || picture->height < 1 || picture->width > IMAGE_SIDE_MAX || picture->height > IMAGE_SIDE_MAX) {
-        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536", "a texture of %d x %d texels is not possible",
-                        picture->width, picture->height);
+    if (picture->width < 1 || picture->height < 1 || picture->width > IMAGE_SIDE_MAX ||
+        picture->height > IMAGE_SIDE_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
+                        "a texture of %d x %d texels is not possible", picture->width, picture->height);
     }
     const size_t width = (size_t)picture->width, count = width * (size_t)picture->height;
     for (size_t i = 0; i < 3 * count; i++) {
         if (!isfinite(picture->pixel[i])) {
-            return diagnose(why, STATUS_BAD_INPUT, NULL, "the pixel in column %zu, row %zu from the top is not a finite number",
-                            i / 3 % width, i / 3 / width);
+            return diagnose(why, STATUS_BAD_INPUT, NULL,
+                            "the pixel in column %zu, row %zu from the top is not a finite number", i / 3 % width,
+                            i / 3 / width);
         }
     }
     return STATUS_OK;
@@ -71,8 +73,8 @@ static void copy_pixels(texture *t, const image *picture, int coded_bits)
     }
 }
 
-status texture_create(const image *picture, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter,
-                      texture **out, diagnostic *why)
+status texture_create(const image *picture, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
+                      texture_filter filter, texture **out, diagnostic *why)
 {
     *out = NULL;
     status code = check(picture, why);
@@ -88,7 +90,8 @@ status texture_create(const image *picture, texture_space space, texture_wrap wr
     }
     if (!t || !allocate(t, picture->width, picture->height)) {
         free(t);
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a texture of %d x %d texels", picture->width, picture->height);
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a texture of %d x %d texels", picture->width,
+                        picture->height);
     }
     copy_pixels(t, picture, space == TEXTURE_LINEAR ? picture->coded_bits : 0);
     texture_build_pyramid(t);
@@ -96,14 +99,14 @@ status texture_create(const image *picture, texture_space space, texture_wrap wr
     return STATUS_OK;
 }
 
-status texture_read(const char *path, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter,
-                    texture **out, diagnostic *why)
+status texture_read(const char *path, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
+                    texture_filter filter, texture **out, diagnostic *why)
 {
     return texture_read_below(path, NULL, space, wrap_u, wrap_v, filter, out, why);
 }
 
-status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter,
-                          texture **out, diagnostic *why)
+status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u,
+                          texture_wrap wrap_v, texture_filter filter, texture **out, diagnostic *why)
 {
     image *picture;
     *out = NULL;

@@ -1,10 +1,13 @@
-/* The pyramid of a texture: each level is the box filter of the one before, with the exact share of each texel's area where a
- * side is odd (Guthe and Heckbert, "Non-power-of-two mipmap creation", NVIDIA TR-01838-001, 2005). */
+/* The pyramid of a texture: each level is the box filter of the one before, with the exact share of each texel's area
+ * where a side is odd (Guthe and Heckbert, "Non-power-of-two mipmap creation", NVIDIA TR-01838-001, 2005). */
 #include "image/texture_parts.h"
 
-/* Which texels of a row of `from` one texel of the next smaller row covers, and what share of it each has: a texel of the
- * smaller row is n/m = 2 + 1/m texels wide when n = 2m + 1. */
-typedef struct cover { int first, count; double share[3]; } cover;
+/* Which texels of a row of `from` one texel of the next smaller row covers, and what share of it each has: a texel of
+ * the smaller row is n/m = 2 + 1/m texels wide when n = 2m + 1. */
+typedef struct cover {
+    int first, count;
+    double share[3];
+} cover;
 
 static cover cover_of(int texel_index, int from, int to)
 {
@@ -15,7 +18,8 @@ static cover cover_of(int texel_index, int from, int to)
         return (cover){.first = 2 * texel_index, .count = 2, .share = {0.5, 0.5, 0.0}};
     }
     double n = from;
-    return (cover){.first = 2 * texel_index, .count = 3, .share = {(to - texel_index) / n, to / n, (texel_index + 1) / n}};
+    return (cover){
+        .first = 2 * texel_index, .count = 3, .share = {(to - texel_index) / n, to / n, (texel_index + 1) / n}};
 }
 
 static texel mean_of(const texture_level *from, cover columns, cover rows)
@@ -40,7 +44,8 @@ void texture_build_pyramid(texture *t)
         for (int y = 0; y < to->height; y++) {
             cover rows = cover_of(y, from->height, to->height);
             for (int x = 0; x < to->width; x++) {
-                to->texels[(size_t)y * (size_t)to->width + (size_t)x] = mean_of(from, cover_of(x, from->width, to->width), rows);
+                to->texels[(size_t)y * (size_t)to->width + (size_t)x] =
+                    mean_of(from, cover_of(x, from->width, to->width), rows);
             }
         }
     }

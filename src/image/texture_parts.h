@@ -6,10 +6,15 @@
 #include "image/texture.h"
 
 /* Padded to 16 bytes: one load brings a texel, and none straddles two cache lines. */
-typedef struct texel { float r, g, b, unused; } texel;
+typedef struct texel {
+    float r, g, b, unused;
+} texel;
 
 /* Rows from below, as v runs: texels[y * width + x]. */
-typedef struct texture_level { int width, height; texel *texels; } texture_level;
+typedef struct texture_level {
+    int width, height;
+    texel *texels;
+} texture_level;
 
 struct texture {
     texture_wrap wrap_u, wrap_v;

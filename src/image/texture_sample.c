@@ -16,15 +16,16 @@ static inline double fold(double c, texture_wrap wrap)
         place = away - 2.0 * floor(0.5 * away);
         place = place > 1.0 ? 2.0 - place : place;
         break;
-    case TEXTURE_CLAMP:
-        place = c < 1.0 ? c : c >= 1.0 ? 1.0 : 0.0;
-        break;
+    case TEXTURE_CLAMP: place = c < 1.0 ? c : c >= 1.0 ? 1.0 : 0.0; break;
     }
     return place > 0.0 ? place : 0.0;
 }
 
 /* The two texels of an axis whose centres a place lies between, and how far it is from the first. */
-typedef struct between { size_t low, high; double part; } between;
+typedef struct between {
+    size_t low, high;
+    double part;
+} between;
 
 static inline between locate(double place, int size, texture_wrap wrap)
 {
@@ -71,7 +72,8 @@ static inline vec3 bilinear(const texture *t, int level, double u, double v)
     const texture_level *l = &t->level[level];
     between x = locate(u, l->width, t->wrap_u), y = locate(v, l->height, t->wrap_v);
     const texel *below = l->texels + y.low * (size_t)l->width, *above = l->texels + y.high * (size_t)l->width;
-    return mix_colors(mix_texels(below + x.low, below + x.high, x.part), mix_texels(above + x.low, above + x.high, x.part), y.part);
+    return mix_colors(mix_texels(below + x.low, below + x.high, x.part),
+                      mix_texels(above + x.low, above + x.high, x.part), y.part);
 }
 
 static inline vec3 trilinear(const texture *t, double u, double v, double footprint)

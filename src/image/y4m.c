@@ -1,5 +1,5 @@
-/* The header's text is that of y4m(5); luma and chroma are ITU-R BT.601-7, 2.5, and BT.709-6, 3 and 4, quantised to 8 bits in limited range:
- * Y' = 16 + 219 E_Y, C_B = 128 + 224 (E_B - E_Y) / (2 (1 - K_B)), C_R likewise. */
+/* The header's text is that of y4m(5); luma and chroma are ITU-R BT.601-7, 2.5, and BT.709-6, 3 and 4, quantised to 8
+ * bits in limited range: Y' = 16 + 219 E_Y, C_B = 128 + 224 (E_B - E_Y) / (2 (1 - K_B)), C_R likewise. */
 #include "image/y4m.h"
 
 #include "image/codec.h"
@@ -9,12 +9,14 @@
 enum { HIGH_DEFINITION_LINES = 720, TEN_THOUSAND = 10000 };
 
 /* Shares of red, green and blue in the luma, in ten thousandths: K_R, K_G, K_B. */
-typedef struct luma_shares { int64_t red, green, blue; } luma_shares;
+typedef struct luma_shares {
+    int64_t red, green, blue;
+} luma_shares;
 
 static luma_shares shares_for(int height)
 {
-    return height < HIGH_DEFINITION_LINES ? (luma_shares){2990, 5870, 1140}  /* BT.601 */
-                                          : (luma_shares){2126, 7152, 722};  /* BT.709 */
+    return height < HIGH_DEFINITION_LINES ? (luma_shares){2990, 5870, 1140} /* BT.601 */
+                                          : (luma_shares){2126, 7152, 722}; /* BT.709 */
 }
 
 /* The integer nearest to a / b, b > 0; halves go up. */
@@ -80,11 +82,13 @@ static void convert(const planes *p, const image *picture)
 status y4m_begin(FILE *stream, int width, int height, int64_t fps_num, int64_t fps_den, diagnostic *why)
 {
     if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536", "a film of %d x %d pixels is not possible", width, height);
+        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
+                        "a film of %d x %d pixels is not possible", width, height);
     if (fps_num < 1 || fps_den < 1)
-        return diagnose(why, STATUS_BAD_INPUT, "both parts are 1 or more", "%" PRId64 "/%" PRId64 " frames a second are not possible", fps_num,
-                        fps_den);
-    fprintf(stream, "YUV4MPEG2 W%d H%d F%" PRId64 ":%" PRId64 " Ip A1:1 C420jpeg XCOLORRANGE=LIMITED\n", width, height, fps_num, fps_den);
+        return diagnose(why, STATUS_BAD_INPUT, "both parts are 1 or more",
+                        "%" PRId64 "/%" PRId64 " frames a second are not possible", fps_num, fps_den);
+    fprintf(stream, "YUV4MPEG2 W%d H%d F%" PRId64 ":%" PRId64 " Ip A1:1 C420jpeg XCOLORRANGE=LIMITED\n", width, height,
+            fps_num, fps_den);
     return STATUS_OK;
 }
 
@@ -94,7 +98,8 @@ status y4m_frame(FILE *stream, const image *picture, diagnostic *why)
     planes p = {.wide = wide, .high = high, .chroma_wide = (wide + 1) / 2, .chroma_high = (high + 1) / 2};
     p.rgb = malloc(3 * wide * high + plane_bytes(&p));
     if (!p.rgb)
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a frame of %d x %d pixels", picture->width, picture->height);
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a frame of %d x %d pixels", picture->width,
+                        picture->height);
     p.y = p.rgb + 3 * wide * high;
     p.cb = p.y + wide * high;
     p.cr = p.cb + p.chroma_wide * p.chroma_high;

@@ -1,7 +1,8 @@
-/* YUV4MPEG2, the plain stream of frames that video encoders read (y4m(5) of mjpegtools): 4:2:0 with chroma in the middle of its four pixels
- * (C420jpeg), limited range. sRGB-coded 8-bit pixels to Y'CbCr by ITU-R BT.601 below 720 lines and BT.709 from there on, as players take it; chroma is
- * the mean of its four pixels, at odd edges of those that are there. Integer arithmetic: the same bytes everywhere.
- * Ownership: streams and pictures are borrowed. Errors of the stream are left to whoever closes it. */
+/* YUV4MPEG2, the plain stream of frames that video encoders read (y4m(5) of mjpegtools): 4:2:0 with chroma in the
+ * middle of its four pixels (C420jpeg), limited range. sRGB-coded 8-bit pixels to Y'CbCr by ITU-R BT.601 below 720
+ * lines and BT.709 from there on, as players take it; chroma is the mean of its four pixels, at odd edges of those that
+ * are there. Integer arithmetic: the same bytes everywhere. Ownership: streams and pictures are borrowed. Errors of the
+ * stream are left to whoever closes it. */
 #ifndef CUVETTE_IMAGE_Y4M_H
 #define CUVETTE_IMAGE_Y4M_H
 

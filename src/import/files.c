@@ -47,7 +47,8 @@ status files_check(const request *asked, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
     }
     if (!stream) {
-        return diagnose(why, STATUS_BAD_INPUT, "name a mesh file that can be read", "cannot open: %s", reason ? reason : "unknown error");
+        return diagnose(why, STATUS_BAD_INPUT, "name a mesh file that can be read", "cannot open: %s",
+                        reason ? reason : "unknown error");
     }
     int first = fgetc(stream);
     fclose(stream);
@@ -68,7 +69,10 @@ static size_t on_read(struct aiFile *file, char *to, size_t size, size_t count)
 
 static size_t on_write(struct aiFile *file, const char *from, size_t size, size_t count)
 {
-    (void)file; (void)from; (void)size; (void)count;
+    (void)file;
+    (void)from;
+    (void)size;
+    (void)count;
     return 0;
 }
 

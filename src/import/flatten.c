@@ -1,5 +1,5 @@
-/* Walks the nodes of a scene and puts every mesh where its node stands, in double precision. A mesh that stands where it was
- * written (no transform) keeps the very numbers of the file. */
+/* Walks the nodes of a scene and puts every mesh where its node stands, in double precision. A mesh that stands where
+ * it was written (no transform) keeps the very numbers of the file. */
 #include "import/import.h"
 
 #include <stdlib.h>
@@ -7,22 +7,25 @@
 
 enum { DEPTH_MAX = 1000 }; /* of nodes within nodes */
 
-typedef struct affine { double m[3][4]; } affine;
+typedef struct affine {
+    double m[3][4];
+} affine;
 
 typedef struct walk {
     const request *asked;
     const struct aiScene *scene;
     flat_mesh *flat;
     joiner join;
-    uint64_t triangles;                 /* counted by the first walk */
-    uint16_t slot_of[65536];            /* by material: slot + 1 */
+    uint64_t triangles;      /* counted by the first walk */
+    uint16_t slot_of[65536]; /* by material: slot + 1 */
     diagnostic *why;
     status (*visit)(struct walk *w, const struct aiMesh *mesh, const affine *place);
 } walk;
 
 static affine compose(const affine *a, const struct aiMatrix4x4 *b)
 {
-    double c[4][4] = {{b->a1, b->a2, b->a3, b->a4}, {b->b1, b->b2, b->b3, b->b4}, {b->c1, b->c2, b->c3, b->c4}, {0, 0, 0, 1}};
+    double c[4][4] = {
+        {b->a1, b->a2, b->a3, b->a4}, {b->b1, b->b2, b->b3, b->b4}, {b->c1, b->c2, b->c3, b->c4}, {0, 0, 0, 1}};
     affine product;
     for (int row = 0; row < 3; row++) {
         for (int column = 0; column < 4; column++) {
@@ -39,7 +42,8 @@ static affine compose(const affine *a, const struct aiMatrix4x4 *b)
 static status visit_node(walk *w, const struct aiNode *node, const affine *parent, int depth)
 {
     if (depth > DEPTH_MAX) {
-        return diagnose(w->why, STATUS_BAD_INPUT, "flatten it where it was made", "nodes lie more than %d deep within each other", DEPTH_MAX);
+        return diagnose(w->why, STATUS_BAD_INPUT, "flatten it where it was made",
+                        "nodes lie more than %d deep within each other", DEPTH_MAX);
     }
     affine place = compose(parent, &node->mTransformation);
     status code = STATUS_OK;
@@ -75,11 +79,14 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
     if (w->triangles == before) {
         return STATUS_OK;
     }
-    if (mesh->mMaterialIndex >= w->scene->mNumMaterials || mesh->mMaterialIndex >= sizeof w->slot_of / sizeof *w->slot_of) {
-        return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again", "a part names a material that is not there");
+    if (mesh->mMaterialIndex >= w->scene->mNumMaterials ||
+        mesh->mMaterialIndex >= sizeof w->slot_of / sizeof *w->slot_of) {
+        return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again",
+                        "a part names a material that is not there");
     }
     w->slot_of[mesh->mMaterialIndex] = 1;
-    /* An STL file's normals are the facets' own, which the triangles have already; with them no two facets would share a vertex. */
+    /* An STL file's normals are the facets' own, which the triangles have already; with them no two facets would share
+     * a vertex. */
     w->flat->with_normals |= mesh->mNormals != NULL && w->asked->kind != FILE_STL;
     w->flat->with_uvs |= mesh->mTextureCoords[0] != NULL;
     return STATUS_OK;
@@ -90,7 +97,8 @@ static status number_slots(walk *w)
     for (unsigned i = 0; i < sizeof w->slot_of / sizeof *w->slot_of; i++) {
         if (w->slot_of[i]) {
             if (w->flat->material_count == 256) {
-                return diagnose(w->why, STATUS_BAD_INPUT, "join materials that are equal", "more than 256 materials are in use");
+                return diagnose(w->why, STATUS_BAD_INPUT, "join materials that are equal",
+                                "more than 256 materials are in use");
             }
             w->flat->materials[w->flat->material_count++] = i;
             w->slot_of[i] = (uint16_t)w->flat->material_count;
@@ -107,8 +115,8 @@ static bool is_identity(const affine *a)
     return memcmp(a, &identity, sizeof identity) == 0;
 }
 
-/* How normals go with positions: the inverse transposed, up to a positive factor. It is the matrix of cofactors divided by the
- * determinant, of which only the sign matters. */
+/* How normals go with positions: the inverse transposed, up to a positive factor. It is the matrix of cofactors divided
+ * by the determinant, of which only the sign matters. */
 static affine normal_transform(const affine *a, double *determinant)
 {
     affine c = {0};
@@ -133,7 +141,10 @@ static void apply(const affine *a, struct aiVector3D v, double to[3])
     }
 }
 
-typedef struct placed { affine place, turn; bool identity, mirrored; } placed;
+typedef struct placed {
+    affine place, turn;
+    bool identity, mirrored;
+} placed;
 
 static void gather(const walk *w, const struct aiMesh *mesh, const placed *at, unsigned i, double numbers[8])
 {
@@ -167,8 +178,8 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
         const struct aiFace *face = &mesh->mFaces[f];
         for (unsigned k = 0; face->mNumIndices == 3 && k < 3; k++) {
             if (face->mIndices[k] >= mesh->mNumVertices) {
-                return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again", "a triangle names vertex %u of %u",
-                                face->mIndices[k], mesh->mNumVertices);
+                return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again",
+                                "a triangle names vertex %u of %u", face->mIndices[k], mesh->mNumVertices);
             }
             index[face->mIndices[k]] = USED;
         }
@@ -183,8 +194,8 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
         case JOINED: break;
         case JOIN_NO_MEMORY: return no_memory(w->asked, w->why);
         case JOIN_TOO_MANY:
-            return diagnose(w->why, STATUS_BAD_INPUT, "take a mesh of less detail", "more vertices than the limit of %llu",
-                            (unsigned long long)w->asked->vertices);
+            return diagnose(w->why, STATUS_BAD_INPUT, "take a mesh of less detail",
+                            "more vertices than the limit of %llu", (unsigned long long)w->asked->vertices);
         }
     }
     return STATUS_OK;
@@ -220,7 +231,8 @@ status flatten(const request *asked, const struct aiScene *scene, flat_mesh *fla
     diagnostic_locate(why, asked->path, 0, 0);
     status code = scene->mRootNode ? visit_all(&w, count_mesh) : STATUS_OK;
     if (code == STATUS_OK && w.triangles == 0) {
-        code = diagnose(why, STATUS_BAD_INPUT, "points and lines are not drawn; give it faces", "there are no triangles in this file");
+        code = diagnose(why, STATUS_BAD_INPUT, "points and lines are not drawn; give it faces",
+                        "there are no triangles in this file");
     }
     if (code == STATUS_OK) {
         code = number_slots(&w);

@@ -1,4 +1,5 @@
-/* cuvette-import FILE: see import.h. Exit codes 0, 1 (the machine failed) and 2 (the file is wrong), one line on standard error. */
+/* cuvette-import FILE: see import.h. Exit codes 0, 1 (the machine failed) and 2 (the file is wrong), one line on
+ * standard error. */
 #include "import/import.h"
 
 #include "base/float_environment.h"
@@ -14,8 +15,8 @@
 
 static file_kind kind_of(const char *path)
 {
-    static const char *const endings[] = {[FILE_OBJ] = ".obj", [FILE_PLY] = ".ply", [FILE_STL] = ".stl",
-                                          [FILE_GLTF] = ".gltf", [FILE_GLB] = ".glb"};
+    static const char *const endings[] = {
+        [FILE_OBJ] = ".obj", [FILE_PLY] = ".ply", [FILE_STL] = ".stl", [FILE_GLTF] = ".gltf", [FILE_GLB] = ".glb"};
     const char *ending = strrchr(path, '.');
     for (int kind = 0; ending && kind < FILE_UNKNOWN; kind++) {
         if (strcasecmp(ending, endings[kind]) == 0) {
@@ -28,13 +29,17 @@ static file_kind kind_of(const char *path)
 static error_t parse_option(int key, char *value, struct argp_state *state)
 {
     request *asked = state->input;
-    uint64_t *number = key == 'm' ? &asked->memory_mib : key == 's' ? &asked->seconds : key == 't' ? &asked->triangles : &asked->vertices;
+    uint64_t *number = key == 'm'   ? &asked->memory_mib
+                       : key == 's' ? &asked->seconds
+                       : key == 't' ? &asked->triangles
+                                    : &asked->vertices;
     int64_t got;
     switch (key) {
-    case 'r':
-        asked->root = value;
-        return 0;
-    case 'm': case 's': case 't': case 'v':
+    case 'r': asked->root = value; return 0;
+    case 'm':
+    case 's':
+    case 't':
+    case 'v':
         if (!number_parse_int(value, &got) || got < 1) {
             argp_error(state, "'%s' is not a number from 1", value);
         }
@@ -46,11 +51,8 @@ static error_t parse_option(int key, char *value, struct argp_state *state)
         }
         asked->path = value;
         return 0;
-    case ARGP_KEY_NO_ARGS:
-        argp_error(state, "no file is named");
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
+    case ARGP_KEY_NO_ARGS: argp_error(state, "no file is named"); return 0;
+    default: return ARGP_ERR_UNKNOWN;
     }
 }
 
@@ -59,7 +61,10 @@ static const struct argp_option options[] = {
     {.name = "seconds", .key = 's', .arg = "N", .doc = "Processor time (60)"},
     {.name = "triangles", .key = 't', .arg = "N", .doc = "Most triangles (33554432)"},
     {.name = "vertices", .key = 'v', .arg = "N", .doc = "Most vertices (67108864)"},
-    {.name = "root", .key = 'r', .arg = "FOLDER", .doc = "Only files below this folder are opened: its path from / without links"},
+    {.name = "root",
+     .key = 'r',
+     .arg = "FOLDER",
+     .doc = "Only files below this folder are opened: its path from / without links"},
     {0},
 };
 
@@ -100,11 +105,15 @@ static status convert(const request *asked, diagnostic *why)
 int main(int count, char **arguments)
 {
     static const struct argp parser = {
-        .options = options, .parser = parse_option, .args_doc = "FILE",
-        .doc = "Reads a triangle mesh (OBJ, PLY, STL, glTF, glb) and writes it to standard output, a pipe, in the form that the "
+        .options = options,
+        .parser = parse_option,
+        .args_doc = "FILE",
+        .doc = "Reads a triangle mesh (OBJ, PLY, STL, glTF, glb) and writes it to standard output, a pipe, in the form "
+               "that the "
                "program cuvette, which starts this one, reads.",
     };
-    request asked = {.memory_mib = 4096, .seconds = 60, .triangles = (uint64_t)1 << 25, .vertices = (uint64_t)1 << 26, .root = ""};
+    request asked = {
+        .memory_mib = 4096, .seconds = 60, .triangles = (uint64_t)1 << 25, .vertices = (uint64_t)1 << 26, .root = ""};
     float_environment_set();
     argp_err_exit_status = STATUS_BAD_INPUT;
     argp_parse(&parser, count, arguments, 0, NULL, &asked);

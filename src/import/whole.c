@@ -1,7 +1,7 @@
-/* Whether a PLY or STL file is as long as it says: assimp fills up what is missing with zeros or with what stood there before, reads
- * headers without an end for minutes, and asks for memory by counts that no file can hold. OBJ has no counts and no end; assimp checks
- * glTF's lengths itself.
- * PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80 bytes, a count, 50 bytes a facet; or a text from solid to endsolid. */
+/* Whether a PLY or STL file is as long as it says: assimp fills up what is missing with zeros or with what stood there
+ * before, reads headers without an end for minutes, and asks for memory by counts that no file can hold. OBJ has no
+ * counts and no end; assimp checks glTF's lengths itself. PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80
+ * bytes, a count, 50 bytes a facet; or a text from solid to endsolid. */
 #include "import/import.h"
 
 #include "base/below.h"
@@ -15,14 +15,21 @@
 
 enum { PROPERTIES_MAX = 64, WORD_MAX = 63 };
 
-typedef struct property { int count_bytes, bytes; } property; /* count_bytes: of a list's length; 0: no list */
+typedef struct property {
+    int count_bytes, bytes;
+} property; /* count_bytes: of a list's length; 0: no list */
 
 typedef struct ply {
     const char *at, *end;
     long line;
     bool ascii, big;
     diagnostic *why;
-    struct element { char name[WORD_MAX + 1]; uint64_t count; property properties[PROPERTIES_MAX]; int property_count; } elements[16];
+    struct element {
+        char name[WORD_MAX + 1];
+        uint64_t count;
+        property properties[PROPERTIES_MAX];
+        int property_count;
+    } elements[16];
     int element_count;
 } ply;
 
@@ -36,9 +43,13 @@ static status truncated(diagnostic *why, const char *what, uint64_t index, uint6
 
 static int type_bytes(const char *type)
 {
-    static const struct { const char *name; int bytes; } types[] = {
-        {"char", 1}, {"uchar", 1}, {"int8", 1}, {"uint8", 1}, {"short", 2}, {"ushort", 2}, {"int16", 2}, {"uint16", 2},
-        {"int", 4}, {"uint", 4}, {"int32", 4}, {"uint32", 4}, {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8},
+    static const struct {
+        const char *name;
+        int bytes;
+    } types[] = {
+        {"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},   {"short", 2}, {"ushort", 2},
+        {"int16", 2}, {"uint16", 2},  {"int", 4},    {"uint", 4},    {"int32", 4}, {"uint32", 4},
+        {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8},
     };
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
         if (strcmp(type, types[i].name) == 0) {
@@ -135,7 +146,8 @@ static status read_header(ply *p)
             p->ascii = strcmp(words[1], "ascii") == 0;
             p->big = strcmp(words[1], "binary_big_endian") == 0;
             format = p->ascii || p->big || strcmp(words[1], "binary_little_endian") == 0;
-            code = format ? STATUS_OK : bad_header(p, "the format is not ascii, binary_little_endian or binary_big_endian");
+            code = format ? STATUS_OK
+                          : bad_header(p, "the format is not ascii, binary_little_endian or binary_big_endian");
         } else if (strcmp(words[0], "element") == 0 && count >= 3) {
             code = take_element(p, words[1], words[2]);
         } else if (strcmp(words[0], "property") == 0 && count >= 3) {
@@ -180,7 +192,8 @@ static bool skip_bytes(ply *p, uint64_t count)
     return there;
 }
 
-/* A list's length. It has at most eight bytes, of which a float or a double makes no sense and is taken for a long list. */
+/* A list's length. It has at most eight bytes, of which a float or a double makes no sense and is taken for a long
+ * list. */
 static bool read_length(ply *p, int bytes, uint64_t *length)
 {
     if (p->end - p->at < bytes) {
@@ -205,7 +218,8 @@ static bool skip_property(ply *p, const property *of)
         }
         return skip_words(p, (uint64_t)number, NULL);
     }
-    return (!of->count_bytes || read_length(p, of->count_bytes, &length)) && skip_bytes(p, length * (uint64_t)of->bytes);
+    return (!of->count_bytes || read_length(p, of->count_bytes, &length)) &&
+           skip_bytes(p, length * (uint64_t)of->bytes);
 }
 
 static status check_ply(ply *p)
@@ -240,10 +254,12 @@ static status check_stl(const char *bytes, size_t size, diagnostic *why)
                 return STATUS_OK;
             }
         }
-        return diagnose(why, STATUS_BAD_INPUT, "the file is truncated; export it again", "the text does not end in 'endsolid'");
+        return diagnose(why, STATUS_BAD_INPUT, "the file is truncated; export it again",
+                        "the text does not end in 'endsolid'");
     }
     if (size < 84) {
-        return diagnose(why, STATUS_BAD_INPUT, "check that it is whole and what its name says", "this is not a file of the kind STL");
+        return diagnose(why, STATUS_BAD_INPUT, "check that it is whole and what its name says",
+                        "this is not a file of the kind STL");
     }
     return size > needed ? STATUS_OK : truncated(why, "facet", (size - 84) / 50, count);
 }
@@ -255,7 +271,8 @@ status check_whole(const request *asked, diagnostic *why)
     }
     struct stat about;
     int fd = below_open(asked->path, asked->root);
-    void *bytes = fd >= 0 && fstat(fd, &about) == 0 ? mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, fd, 0) : MAP_FAILED;
+    void *bytes = fd >= 0 && fstat(fd, &about) == 0 ? mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, fd, 0)
+                                                    : MAP_FAILED;
     if (fd >= 0) {
         close(fd);
     }

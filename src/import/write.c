@@ -21,17 +21,17 @@ static void get_number(const struct aiMaterial *material, const char *key, doubl
     }
 }
 
-/* assimp gives triangles without a material one of this name; in a PLY file one without a name; in a glTF file the one that it puts
- * after all others. */
+/* assimp gives triangles without a material one of this name; in a PLY file one without a name; in a glTF file the one
+ * that it puts after all others. */
 static bool is_given(const request *asked, const struct aiScene *scene, unsigned index, const struct aiString *name)
 {
     bool gltf = asked->kind == FILE_GLTF || asked->kind == FILE_GLB;
-    return !(gltf && index + 1 == scene->mNumMaterials)
-           && strcmp(name->data, AI_DEFAULT_MATERIAL_NAME) != 0 && (name->length > 0 || asked->kind != FILE_PLY);
+    return !(gltf && index + 1 == scene->mNumMaterials) && strcmp(name->data, AI_DEFAULT_MATERIAL_NAME) != 0 &&
+           (name->length > 0 || asked->kind != FILE_PLY);
 }
 
-static mesh_wire_material describe(const request *asked, const struct aiScene *scene, unsigned index, struct aiString *name,
-                                   struct aiString *texture)
+static mesh_wire_material describe(const request *asked, const struct aiScene *scene, unsigned index,
+                                   struct aiString *name, struct aiString *texture)
 {
     const struct aiMaterial *material = scene->mMaterials[index];
     mesh_wire_material m = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1};
@@ -53,7 +53,8 @@ static mesh_wire_material describe(const request *asked, const struct aiScene *s
     get_number(material, "$mat.refracti", &m.ior);
     m.opacity = (double)alpha;
     get_number(material, "$mat.opacity", &m.opacity);
-    if (aiGetMaterialTexture(material, aiTextureType_DIFFUSE, 0, texture, NULL, NULL, NULL, NULL, NULL, NULL) != aiReturn_SUCCESS) {
+    if (aiGetMaterialTexture(material, aiTextureType_DIFFUSE, 0, texture, NULL, NULL, NULL, NULL, NULL, NULL) !=
+        aiReturn_SUCCESS) {
         *texture = (struct aiString){0};
     }
     m.flags = is_given(asked, scene, index, name) ? MESH_WIRE_GIVEN : 0;
@@ -83,8 +84,12 @@ static void write_materials(const request *asked, const struct aiScene *scene, c
 status write_mesh(const request *asked, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why)
 {
     mesh_wire_header header = {
-        .magic = MESH_WIRE_MAGIC, .version = MESH_WIRE_VERSION, .vertex_count = flat->vertex_count, .triangle_count = flat->triangle_count,
-        .flags = (flat->with_normals ? MESH_WIRE_NORMALS : 0u) | (flat->with_uvs ? MESH_WIRE_UVS : 0u), .material_count = flat->material_count,
+        .magic = MESH_WIRE_MAGIC,
+        .version = MESH_WIRE_VERSION,
+        .vertex_count = flat->vertex_count,
+        .triangle_count = flat->triangle_count,
+        .flags = (flat->with_normals ? MESH_WIRE_NORMALS : 0u) | (flat->with_uvs ? MESH_WIRE_UVS : 0u),
+        .material_count = flat->material_count,
     };
     fwrite(&header, sizeof header, 1, to);
     fwrite(flat->positions, sizeof *flat->positions, flat->vertex_count, to);
@@ -101,7 +106,8 @@ status write_mesh(const request *asked, const struct aiScene *scene, const flat_
     if (fflush(to) != 0 || ferror(to)) {
         const char *reason = strerrordesc_np(errno);
         diagnostic_locate(why, NULL, 0, 0);
-        return diagnose(why, STATUS_FAILURE, "give it a pipe", "cannot write to standard output: %s", reason ? reason : "unknown error");
+        return diagnose(why, STATUS_FAILURE, "give it a pipe", "cannot write to standard output: %s",
+                        reason ? reason : "unknown error");
     }
     return STATUS_OK;
 }

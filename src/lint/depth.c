@@ -72,8 +72,8 @@ static double changed_share(const film *a, const film *b)
     return (double)changed / ((double)a->width * a->height);
 }
 
-/* A tree may have twice as many rays with each level: images below the scene's depth limit tell beforehand that its own one would take too
- * many. *affordable says that it does not. */
+/* A tree may have twice as many rays with each level: images below the scene's depth limit tell beforehand that its own
+ * one would take too many. *affordable says that it does not. */
 static status climb(depth_probe *p, int depth, double most, bool *affordable, diagnostic *why)
 {
     status code = STATUS_OK;
@@ -116,7 +116,8 @@ static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, d
     return code;
 }
 
-/* How far off the share may be: of pixels taken by chance, four standard errors; 0 where the image is the scene's own. */
+/* How far off the share may be: of pixels taken by chance, four standard errors; 0 where the image is the scene's own.
+ */
 static double doubt(const lint_room *room, const film *small)
 {
     const render_settings *r = &room->of->render;

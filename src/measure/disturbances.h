@@ -5,7 +5,8 @@
 
 typedef void (*disturbance_line)(void *context, const char *text);
 
-/* root is "" for this machine. Settings (governor, turbo, threads of one core, hypervisor, quota), then load and swap. */
+/* root is "" for this machine. Settings (governor, turbo, threads of one core, hypervisor, quota), then load and swap.
+ */
 void disturbances_of_machine(const char *root, disturbance_line line, void *context);
 
 #endif

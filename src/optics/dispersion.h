@@ -45,11 +45,12 @@ typedef struct dispersion {
 const char *dispersion_name(dispersion_kind kind);
 const char *dispersion_formula(dispersion_kind kind);
 
-/* The index at a wavelength above 0, also outside the range where the law was measured. The same bits on every machine. */
+/* The index at a wavelength above 0, also outside the range where the law was measured. The same bits on every machine.
+ */
 double dispersion_index(const dispersion *law, double lambda_nm);
 
-/* Is this a law? As many coefficients as its kind takes, all finite, powers whole, a table ascending, no resonance in the
- * visible, and there an index from 0.1 to 100 at each whole nanometre. STATUS_BAD_INPUT if not. */
+/* Is this a law? As many coefficients as its kind takes, all finite, powers whole, a table ascending, no resonance in
+ * the visible, and there an index from 0.1 to 100 at each whole nanometre. STATUS_BAD_INPUT if not. */
 status dispersion_check(const dispersion *law, diagnostic *why);
 
 /* Was it measured over all of low_nm..high_nm? Where that is not stated: yes, but for a table its own ends count. */

@@ -78,8 +78,8 @@ static status check_table(const dispersion *law, diagnostic *why)
     for (int i = 0; i < law->count; i += 2) {
         const double lambda_nm = law->coefficient[i], previous = i ? law->coefficient[i - 2] : 0.0;
         if (lambda_nm > previous && lambda_nm < 100.0)
-            return diagnose(why, STATUS_BAD_INPUT, "write them in nm, as 589.3", "a table of indices has the wavelength %s nm",
-                            number_format(lambda_nm, after));
+            return diagnose(why, STATUS_BAD_INPUT, "write them in nm, as 589.3",
+                            "a table of indices has the wavelength %s nm", number_format(lambda_nm, after));
         if (!(lambda_nm > previous))
             return diagnose(why, STATUS_BAD_INPUT, "give wavelengths above 0 in ascending order",
                             "a table of indices has %s nm after %s nm", number_format(lambda_nm, after),

@@ -11,10 +11,10 @@
 
 /* Power reflectances, for the two polarisations and unpolarised light; all in [0, 1], transmittance is 1 - R. */
 typedef struct fresnel {
-    double eta;             /* n_from / n_to */
-    double cos_t;           /* cosine of the angle of refraction; 0 under total internal reflection */
-    double R_s, R_p, R;     /* R = (R_s + R_p) / 2 */
-    int64_t total;          /* -1: total internal reflection; 0: not */
+    double eta;         /* n_from / n_to */
+    double cos_t;       /* cosine of the angle of refraction; 0 under total internal reflection */
+    double R_s, R_p, R; /* R = (R_s + R_p) / 2 */
+    int64_t total;      /* -1: total internal reflection; 0: not */
 } fresnel;
 
 /* Fresnel's equations for dielectrics; Hecht, Optics, 5th ed., 4.6.2 (eqs. 4.34 and 4.40, squared). */

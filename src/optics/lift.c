@@ -132,8 +132,8 @@ static void damped_step(const trial *at, double damping, double step[3])
     }
 }
 
-/* Levenberg and Marquardt's method, from the coefficients that the caller put into best. Never ends further away than it
- * began: a step that does not come closer (or is no number) is not taken. */
+/* Levenberg and Marquardt's method, from the coefficients that the caller put into best. Never ends further away than
+ * it began: a step that does not come closer (or is no number) is not taken. */
 static void fit(const daylight *d, const double target_f[3], trial *best)
 {
     double damping = 1e-3;

@@ -6,7 +6,8 @@
 /* Compared with https://github.com/polyanskiy/refractiveindex.info-database (CC0), at commit ff11b58. */
 #define IN_DATABASE(path) "refractiveindex.info, " path
 #define AND_AS_QUOTED "; also as the literature quotes the original"
-#define AIR_ASSUMED "The source states no reference; taken as relative to air, in which refractometers and prisms stand."
+#define AIR_ASSUMED \
+    "The source states no reference; taken as relative to air, in which refractometers and prisms stand."
 
 static const medium catalogue[] = {
     {.name = "air",
@@ -18,9 +19,12 @@ static const medium catalogue[] = {
      .note = ""},
     {.name = "water",
      .title = "distilled water",
-     .law = {DISPERSION_SELLMEIER, 8,
-             {0.5684027565, 0.005101829712, 0.1726177391, 0.01821153936, 0.02086189578, 0.02620722293, 0.1130748688, 10.69792721},
-             182.0, 1129.0},
+     .law = {DISPERSION_SELLMEIER,
+             8,
+             {0.5684027565, 0.005101829712, 0.1726177391, 0.01821153936, 0.02086189578, 0.02620722293, 0.1130748688,
+              10.69792721},
+             182.0,
+             1129.0},
      .temperature_c = 20.0,
      .source = "Daimon and Masumura, Appl. Opt. 46, 3811 (2007)",
      .verified = IN_DATABASE("main/H2O/nk/Daimon-20.0C.yml") AND_AS_QUOTED,
@@ -40,11 +44,15 @@ static const medium catalogue[] = {
      .temperature_c = 25.0,
      .source = "Rheims, Koeser and Wriedt, Meas. Sci. Technol. 8, 601 (1997)",
      .verified = IN_DATABASE("organic/C3H8O3 - glycerol/nk/Rheims.yml"),
-     .note = "Measured from 589.3 nm on: below, d and F included, it is extrapolated. Abbe refractometer. " AIR_ASSUMED},
+     .note =
+         "Measured from 589.3 nm on: below, d and F included, it is extrapolated. Abbe refractometer. " AIR_ASSUMED},
     {.name = "toluene",
      .title = "toluene",
-     .law = {DISPERSION_POLYNOMIAL, 9, {2.161659124, 0.000495188, 2.0, 0.02138179, -2.0, 0.000058838, -4.0, 0.000087632, -6.0},
-             450.0, 1551.0},
+     .law = {DISPERSION_POLYNOMIAL,
+             9,
+             {2.161659124, 0.000495188, 2.0, 0.02138179, -2.0, 0.000058838, -4.0, 0.000087632, -6.0},
+             450.0,
+             1551.0},
      .relative_to_air = true,
      .temperature_c = 27.0,
      .source = "Moutzouris et al., Appl. Phys. B 116, 617 (2013)",
@@ -57,7 +65,8 @@ static const medium catalogue[] = {
      .temperature_c = 20.0,
      .source = "Codex Alimentarius, CXS 33",
      .verified = "nothing yet",
-     .note = "The middle of the range 1.4677 to 1.4705 that the standard allows at 589.3 nm. No dispersion law of good standing "
+     .note = "The middle of the range 1.4677 to 1.4705 that the standard allows at 589.3 nm. No dispersion law of good "
+             "standing "
              "was found: constant, so not for a study of colours."},
     {.name = "bk7-liquid",
      .title = "liquid that matches BK7",
@@ -69,7 +78,11 @@ static const medium catalogue[] = {
      .note = "Its curve crosses that of bk7 near the line d, and is steeper. " AIR_ASSUMED},
     {.name = "fused-silica",
      .title = "fused silica",
-     .law = {DISPERSION_SELLMEIER_LENGTHS, 6, {0.6961663, 0.0684043, 0.4079426, 0.1162414, 0.8974794, 9.896161}, 210.0, 3710.0},
+     .law = {DISPERSION_SELLMEIER_LENGTHS,
+             6,
+             {0.6961663, 0.0684043, 0.4079426, 0.1162414, 0.8974794, 9.896161},
+             210.0,
+             3710.0},
      .relative_to_air = true,
      .temperature_c = 20.0,
      .source = "Malitson, J. Opt. Soc. Am. 55, 1205 (1965)",
@@ -77,7 +90,11 @@ static const medium catalogue[] = {
      .note = ""},
     {.name = "bk7",
      .title = "Schott N-BK7, a borosilicate crown",
-     .law = {DISPERSION_SELLMEIER, 6, {1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, 103.560653}, 300.0, 2500.0},
+     .law = {DISPERSION_SELLMEIER,
+             6,
+             {1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, 103.560653},
+             300.0,
+             2500.0},
      .relative_to_air = true,
      .temperature_c = 20.0,
      .source = "Schott, optical glass catalogue, 20 January 2017",
@@ -85,7 +102,11 @@ static const medium catalogue[] = {
      .note = ""},
     {.name = "sf11",
      .title = "Schott SF11, a lead flint",
-     .law = {DISPERSION_SELLMEIER, 6, {1.73848403, 0.0136068604, 0.311168974, 0.0615960463, 1.17490871, 121.922711}, 390.0, 2500.0},
+     .law = {DISPERSION_SELLMEIER,
+             6,
+             {1.73848403, 0.0136068604, 0.311168974, 0.0615960463, 1.17490871, 121.922711},
+             390.0,
+             2500.0},
      .relative_to_air = true,
      .temperature_c = 20.0,
      .source = "Schott, optical glass catalogue, 20 January 2017",
@@ -93,7 +114,11 @@ static const medium catalogue[] = {
      .note = ""},
     {.name = "n-sf11",
      .title = "Schott N-SF11, a flint without lead",
-     .law = {DISPERSION_SELLMEIER, 6, {1.73759695, 0.013188707, 0.313747346, 0.0623068142, 1.89878101, 155.23629}, 370.0, 2500.0},
+     .law = {DISPERSION_SELLMEIER,
+             6,
+             {1.73759695, 0.013188707, 0.313747346, 0.0623068142, 1.89878101, 155.23629},
+             370.0,
+             2500.0},
      .relative_to_air = true,
      .temperature_c = 20.0,
      .source = "Schott, optical glass catalogue, 20 January 2017",
@@ -109,9 +134,12 @@ static const medium catalogue[] = {
      .note = "Window glass differs by about 0.005 from batch to batch. " AIR_ASSUMED},
     {.name = "pmma",
      .title = "poly(methyl methacrylate), acrylic glass",
-     .law = {DISPERSION_POLYNOMIAL, 13,
-             {2.1778, 0.0061209, 2.0, -0.0015004, 4.0, 0.023678, -2.0, -0.0042137, -4.0, 0.00073417, -6.0, -0.000045042, -8.0},
-             420.0, 1620.0},
+     .law = {DISPERSION_POLYNOMIAL,
+             13,
+             {2.1778, 0.0061209, 2.0, -0.0015004, 4.0, 0.023678, -2.0, -0.0042137, -4.0, 0.00073417, -6.0, -0.000045042,
+              -8.0},
+             420.0,
+             1620.0},
      .relative_to_air = true,
      .temperature_c = 20.1,
      .source = "Beadie et al., Appl. Opt. 54, F139 (2015)",
@@ -119,7 +147,11 @@ static const medium catalogue[] = {
      .note = "Its authors state an accuracy of 2e-4. " AIR_ASSUMED},
     {.name = "sapphire",
      .title = "sapphire, ordinary ray",
-     .law = {DISPERSION_SELLMEIER_LENGTHS, 6, {1.4313493, 0.0726631, 0.65054713, 0.1193242, 5.3414021, 18.028251}, 200.0, 5000.0},
+     .law = {DISPERSION_SELLMEIER_LENGTHS,
+             6,
+             {1.4313493, 0.0726631, 0.65054713, 0.1193242, 5.3414021, 18.028251},
+             200.0,
+             5000.0},
      .relative_to_air = true,
      .temperature_c = 20.0,
      .source = "Malitson and Dodge, J. Opt. Soc. Am. 62, 1405 (1972); Dodge, CRC Handbook of Laser Science IV (1986)",
@@ -136,7 +168,8 @@ static const medium catalogue[] = {
 };
 
 #define ONE(name) +1
-static_assert(sizeof catalogue / sizeof catalogue[0] == 0 MEDIA_NAMES(ONE), "MEDIA_NAMES is the catalogue's first column");
+static_assert(sizeof catalogue / sizeof catalogue[0] == 0 MEDIA_NAMES(ONE),
+              "MEDIA_NAMES is the catalogue's first column");
 #undef ONE
 
 size_t media_count(void)

@@ -10,8 +10,21 @@
 
 /* The names, in the catalogue's order, for whoever needs them as words. */
 #define MEDIA_NAMES(X) \
-    X("air") X("water") X("ethanol") X("glycerol") X("toluene") X("olive-oil") X("bk7-liquid") X("fused-silica") X("bk7") \
-    X("sf11") X("n-sf11") X("soda-lime") X("pmma") X("sapphire") X("diamond")
+    X("air")           \
+    X("water")         \
+    X("ethanol")       \
+    X("glycerol")      \
+    X("toluene")       \
+    X("olive-oil")     \
+    X("bk7-liquid")    \
+    X("fused-silica")  \
+    X("bk7")           \
+    X("sf11")          \
+    X("n-sf11")        \
+    X("soda-lime")     \
+    X("pmma")          \
+    X("sapphire")      \
+    X("diamond")
 
 typedef struct medium {
     const char *name;     /* "fused-silica" */
@@ -29,7 +42,8 @@ const medium *media_at(size_t i); /* i < media_count() */
 const medium *media_find(const char *name);
 
 /* Index relative to vacuum. A law relative to air is multiplied by the index of dry air at 15 C and 101325 Pa; Ciddor,
- * Appl. Opt. 35, 1566 (1996). That the air of a laboratory at sea level is warmer and moist changes it by less than 4e-5. */
+ * Appl. Opt. 35, 1566 (1996). That the air of a laboratory at sea level is warmer and moist changes it by less than
+ * 4e-5. */
 double medium_index(const medium *m, double lambda_nm);
 
 #endif

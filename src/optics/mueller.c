@@ -21,8 +21,7 @@ mueller mueller_refract(double cos_i, double n_from, double n_to)
 
 mueller mueller_rotation(double cos_2a, double sin_2a)
 {
-    mueller m = {
-        {{1.0, 0.0, 0.0, 0.0}, {0.0, cos_2a, sin_2a, 0.0}, {0.0, -sin_2a, cos_2a, 0.0}, {0.0, 0.0, 0.0, 1.0}}};
+    mueller m = {{{1.0, 0.0, 0.0, 0.0}, {0.0, cos_2a, sin_2a, 0.0}, {0.0, -sin_2a, cos_2a, 0.0}, {0.0, 0.0, 0.0, 1.0}}};
     return m;
 }
 

@@ -1,22 +1,22 @@
-/* Polarised light at smooth interfaces: Stokes vectors, Mueller matrices, and what a ray that is followed backwards from
- * the eye carries instead of them. What a tracer calls for every ray is inline and without branches (+ - * / sqrt alone),
- * so that kernels and tests use the one formula. Pure; cannot fail; all values, nothing is owned.
+/* Polarised light at smooth interfaces: Stokes vectors, Mueller matrices, and what a ray that is followed backwards
+ * from the eye carries instead of them. What a tracer calls for every ray is inline and without branches (+ - * / sqrt
+ * alone), so that kernels and tests use the one formula. Pure; cannot fail; all values, nothing is owned.
  *
  * Signs. A ray runs from the eye along a unit vector d; its light travels along -d. Its frame is (x, y) with y = d x x
  * (d cross x), so x cross y = d. Of a Stokes vector in that frame
  *   i  is the intensity (radiance),
  *   q > 0: the field lies along x, q < 0: along y,
  *   u > 0: the field lies at +45 degrees, from x towards y,
- *   v > 0: the field turns from x towards y: clockwise for the eye that the light runs into, which is right-handed light
- *          in Hecht's and Born and Wolf's sense. (Of light that travels along +d the same v is left-handed.)
- * In complex amplitudes with exp(-i omega t), as in Born and Wolf: u + i v = 2 conj(E_x) E_y.
- * In an s/p frame x = s = d x n / |d x n| and y = p = d x s, for each ray its own p: at normal incidence the reflected p
- * is the other way round, r_p = -r_s, and nothing jumps. The normal n faces the ray: cos_i = -d.n >= 0; n_from is the index
- * on the side of the ray that comes from the eye, n_to the one beyond.
+ *   v > 0: the field turns from x towards y: clockwise for the eye that the light runs into, which is right-handed
+ * light in Hecht's and Born and Wolf's sense. (Of light that travels along +d the same v is left-handed.) In complex
+ * amplitudes with exp(-i omega t), as in Born and Wolf: u + i v = 2 conj(E_x) E_y. In an s/p frame x = s = d x n / |d x
+ * n| and y = p = d x s, for each ray its own p: at normal incidence the reflected p is the other way round, r_p = -r_s,
+ * and nothing jumps. The normal n faces the ray: cos_i = -d.n >= 0; n_from is the index on the side of the ray that
+ * comes from the eye, n_to the one beyond.
  *
- * Transmittance is that of power, n_t cos_t / (n_i cos_i) |t|^2 = 1 - R, the same number from either side. The factor n^2
- * that radiance takes on behind an interface is left out, as renderers commonly do: eye and lights stand in one medium,
- * where it has gone again. */
+ * Transmittance is that of power, n_t cos_t / (n_i cos_i) |t|^2 = 1 - R, the same number from either side. The factor
+ * n^2 that radiance takes on behind an interface is left out, as renderers commonly do: eye and lights stand in one
+ * medium, where it has gone again. */
 #ifndef CUVETTE_OPTICS_MUELLER_H
 #define CUVETTE_OPTICS_MUELLER_H
 
@@ -25,13 +25,17 @@
 #include "optics/interface.h"
 #include <math.h>
 
-typedef struct stokes { double i, q, u, v; } stokes;
-typedef struct mueller { double m[4][4]; } mueller; /* row: light that leaves; column: light that arrives */
+typedef struct stokes {
+    double i, q, u, v;
+} stokes;
+typedef struct mueller {
+    double m[4][4];
+} mueller; /* row: light that leaves; column: light that arrives */
 
 /* --- frames --- */
 
-/* The canonical frame of direction d, a function of d alone, so that no ray carries its frame: Duff and others, Building
- * an Orthonormal Basis, Revisited, JCGT 6(1), 2017. Where d.z changes sign it jumps. */
+/* The canonical frame of direction d, a function of d alone, so that no ray carries its frame: Duff and others,
+ * Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017. Where d.z changes sign it jumps. */
 static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
 {
     double sign = blend(mask_less(d.z, 0.0), -1.0, 1.0);
@@ -41,7 +45,9 @@ static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
 }
 
 /* A turn of the frame by an angle a, from x towards y, as Stokes vectors feel it. */
-typedef struct frame_turn { double cos_2a, sin_2a; } frame_turn;
+typedef struct frame_turn {
+    double cos_2a, sin_2a;
+} frame_turn;
 
 /* The turn that brings x of the frame (x, y) into the direction e, of any length; what e has across the frame's plane
  * does not count. No turn for an e without a part in the plane. */
@@ -83,8 +89,8 @@ static inline stokes stokes_linear(vec3 d, vec3 e)
  *   | 0    0     imag  real  |
  * A dielectric is a diattenuator (half) and, where it reflects totally, a retarder (imag). */
 typedef struct sp_response {
-    double mean, half;      /* (|r_s|^2 + |r_p|^2) / 2, (|r_s|^2 - |r_p|^2) / 2 */
-    double real, imag;      /* conj(r_s) r_p */
+    double mean, half; /* (|r_s|^2 + |r_p|^2) / 2, (|r_s|^2 - |r_p|^2) / 2 */
+    double real, imag; /* conj(r_s) r_p */
 } sp_response;
 
 /* Reflection. f is fresnel_dielectric at cos_i. Below the critical angle r_s r_p is real. Under total reflection
@@ -104,7 +110,8 @@ static inline sp_response sp_reflect(fresnel f, double cos_i)
     return r;
 }
 
-/* Refraction: t_s and t_p are positive, so that conj(t_s) t_p is the root of the powers' product. 0 under total reflection. */
+/* Refraction: t_s and t_p are positive, so that conj(t_s) t_p is the root of the powers' product. 0 under total
+ * reflection. */
 static inline sp_response sp_refract(fresnel f)
 {
     sp_response r = {1.0 - f.R, 0.5 * (f.R_p - f.R_s), sqrt((1.0 - f.R_s) * (1.0 - f.R_p)), 0.0};
@@ -145,22 +152,26 @@ static inline stokes analyser_across(stokes row, vec3 d, vec3 n, vec3 child, sp_
     return stokes_rotate(beyond, from_sp.cos_2a, -from_sp.sin_2a);
 }
 
-static inline stokes analyser_reflect(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to, vec3 reflected)
+static inline stokes analyser_reflect(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to,
+                                      vec3 reflected)
 {
     return analyser_across(row, d, n, reflected, sp_reflect(fresnel_dielectric(cos_i, n_from, n_to), cos_i));
 }
 
-/* The light goes from n_to into n_from; its transmittances are those of the way back. A row of zeros under total reflection. */
-static inline stokes analyser_refract(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to, vec3 refracted)
+/* The light goes from n_to into n_from; its transmittances are those of the way back. A row of zeros under total
+ * reflection. */
+static inline stokes analyser_refract(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to,
+                                      vec3 refracted)
 {
     return analyser_across(row, d, n, refracted, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
 }
 
-/* Of a coating that sends back a share 1 of the light that would pass, unpolarised: its matrix has the first row of refraction's and no
- * other, so that what comes back and what passes add up whatever the polarisation of the light that comes. Such a matrix is not its own
- * reverse: an analyser whose row is (1, q) in the plane of incidence sees 1 + c q (R_s - R_p) / 2 of a surrounding light of 1. To be
- * scaled by the coating's share c. */
-static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to, vec3 reflected)
+/* Of a coating that sends back a share 1 of the light that would pass, unpolarised: its matrix has the first row of
+ * refraction's and no other, so that what comes back and what passes add up whatever the polarisation of the light that
+ * comes. Such a matrix is not its own reverse: an analyser whose row is (1, q) in the plane of incidence sees 1 + c q
+ * (R_s - R_p) / 2 of a surrounding light of 1. To be scaled by the coating's share c. */
+static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to,
+                                      vec3 reflected)
 {
     const stokes intensity = {row.i, 0.0, 0.0, 0.0};
     return analyser_across(intensity, d, n, reflected, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));

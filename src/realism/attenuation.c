@@ -1,6 +1,6 @@
-/* Beer and Lambert: in the liquid alone, rays run from within to the rod over known lengths; -ln(transmittance) over length is a
- * line, whose slope is the coefficient (Hecht, Optics, 5th ed., eq. 4.78 with the power's coefficient). A liquid that
- * absorbs nothing is given coefficients for it.
+/* Beer and Lambert: in the liquid alone, rays run from within to the rod over known lengths; -ln(transmittance) over
+ * length is a line, whose slope is the coefficient (Hecht, Optics, 5th ed., eq. 4.78 with the power's coefficient). A
+ * liquid that absorbs nothing is given coefficients for it.
  *
  * Tolerance: 2.2e-16 in a transmittance, over the optical depth that the longest way has. */
 #include "realism/metrics.h"
@@ -23,7 +23,8 @@ scene *attenuation_scene(const scene *s, const setup *at)
     const double width = 0.1 * liquid->shape.radius;
     solid *rod = &copy->solids[at->rod];
     rod->visible = 1;
-    rod->shape = (solid_shape){.kind = SHAPE_BOX, .position = {width / 2.0, liquid->shape.height / 2.0, 0.0},
+    rod->shape = (solid_shape){.kind = SHAPE_BOX,
+                               .position = {width / 2.0, liquid->shape.height / 2.0, 0.0},
                                .size = {width, liquid->shape.height / 2.0, width}};
     if (!material_absorbs(&liquid->surface)) {
         const double one = 1.0 / (liquid->shape.radius * s->render.unit_m);
@@ -106,8 +107,10 @@ status realism_absorption(const metrics *m, diagnostic *why)
     double tolerance = ABSORPTION_TOLERANCE;
     const bool exists = m->theory_at.liquid >= 0 && m->at.liquid >= 0;
     const status code = exists ? compare_slopes(m, &worst, &tolerance, why) : STATUS_OK;
-    metrics_add(m, (realism_value){"absorption.slope",
-                                   exists ? "of -ln(transmittance) over length in the liquid; of three channels the worst" : "there is no liquid",
-                                   "1/m", worst.measured, worst.theory, tolerance});
+    metrics_add(m,
+                (realism_value){"absorption.slope",
+                                exists ? "of -ln(transmittance) over length in the liquid; of three channels the worst"
+                                       : "there is no liquid",
+                                "1/m", worst.measured, worst.theory, tolerance});
     return code;
 }

@@ -1,5 +1,6 @@
-/* The white furnace: under a sky of radiance 1, clear media that absorb nothing are invisible; a ray sees 1, whatever its tree, or 1
- * less what the depth limit cut off. A material that keeps light (transparency below 1) or makes some does not pass.
+/* The white furnace: under a sky of radiance 1, clear media that absorb nothing are invisible; a ray sees 1, whatever
+ * its tree, or 1 less what the depth limit cut off. A material that keeps light (transparency below 1) or makes some
+ * does not pass.
  *
  * Tolerance: half a unit of the film, 2.9e-14, for each of the up to 512 rays of a tree that end in the sky. */
 #include "realism/metrics.h"
@@ -42,13 +43,15 @@ status realism_balance(const metrics *m, diagnostic *why)
     scene *s = furnace(m->traced, &m->at);
     status code = trial_start(&t, s, m->level, why);
     for (int i = 0; i < COLUMNS * ROWS && code == STATUS_OK; i++) {
-        const double x = (i % COLUMNS + 0.5) * (double)s->render.width / COLUMNS, y = (i / COLUMNS + 0.5) * (double)s->render.height / ROWS;
+        const double x = (i % COLUMNS + 0.5) * (double)s->render.width / COLUMNS,
+                     y = (i / COLUMNS + 0.5) * (double)s->render.height / ROWS;
         code = probe_ray(t.p, s->camera.position, probe_camera_direction(t.p, x, y), &t.tree, why);
         for (int c = 0; c < 3 && code == STATUS_OK; c++)
             worst_take(&worst, seen_and_cut(&t.tree, c), 1.0);
     }
     trial_end(&t);
-    metrics_add(m, (realism_value){"balance.furnace", "radiance and what the depth cut off, in a sky of 1; of 300 rays the worst", "",
+    metrics_add(m, (realism_value){"balance.furnace",
+                                   "radiance and what the depth cut off, in a sky of 1; of 300 rays the worst", "",
                                    worst.measured, worst.theory, BALANCE_TOLERANCE});
     return code;
 }

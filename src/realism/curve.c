@@ -5,7 +5,9 @@
 
 #define DEGREE (M_PI / 180.0)
 
-typedef struct curve_words { const char *name, *x, *y; } curve_words;
+typedef struct curve_words {
+    const char *name, *x, *y;
+} curve_words;
 static const curve_words words[REALISM_CURVE_COUNT] = {
     [REALISM_CURVE_FRESNEL_S] = {"fresnel-s", "angle of incidence, deg", "reflectance across the plane of incidence"},
     [REALISM_CURVE_FRESNEL_P] = {"fresnel-p", "angle of incidence, deg", "reflectance in the plane of incidence"},
@@ -88,7 +90,8 @@ static status trace_absorption(const metrics *m, realism_points *out, diagnostic
     trial t;
     status code = trial_start(&t, attenuation_scene(m->traced, &m->at), m->level, why);
     if (code == STATUS_OK) {
-        const double a = material_absorption(&t.s->solids[m->at.liquid].surface).x, reach = attenuation_reach(&t, &m->at);
+        const double a = material_absorption(&t.s->solids[m->at.liquid].surface).x,
+                     reach = attenuation_reach(&t, &m->at);
         for (int i = 1; i <= 100 && code == STATUS_OK; i++) {
             const double length = reach * i / 100.0, length_m = length * t.s->render.unit_m;
             double kept[3] = {NAN, NAN, NAN};
@@ -129,8 +132,8 @@ status realism_trace_curve(const scene *s, isa level, realism_curve which, reali
         return code;
     const bool of_liquid = which == REALISM_CURVE_ABSORPTION || which == REALISM_CURVE_EDGES;
     if (of_liquid && m.at.liquid < 0)
-        return diagnose(why, STATUS_BAD_INPUT, "add a cylinder named 'liquid'", "the curve '%s' is of the liquid, and there is none",
-                        words[which].name);
+        return diagnose(why, STATUS_BAD_INPUT, "add a cylinder named 'liquid'",
+                        "the curve '%s' is of the liquid, and there is none", words[which].name);
     switch (which) {
     case REALISM_CURVE_FRESNEL_S:
     case REALISM_CURVE_FRESNEL_P:

@@ -1,5 +1,6 @@
-/* The first rainbow of a drop: a sphere, the first solid whose name begins with drop (experiments/scenes/rainbow.yaml). The rainbow stands
- * where rays that were reflected once inside are turned least, at the angle from the point opposite the light. */
+/* The first rainbow of a drop: a sphere, the first solid whose name begins with drop (experiments/scenes/rainbow.yaml).
+ * The rainbow stands where rays that were reflected once inside are turned least, at the angle from the point opposite
+ * the light. */
 #include "realism/metrics.h"
 
 #include "optics/media.h"
@@ -36,9 +37,16 @@ static scene *drop_alone(const scene *s, double lambda_nm)
     return copy;
 }
 
-typedef struct search { trial *t; status code; diagnostic *why; vec3 center; double radius; } search;
+typedef struct search {
+    trial *t;
+    status code;
+    diagnostic *why;
+    vec3 center;
+    double radius;
+} search;
 
-/* Angle between the way back and the way there, turned round in sign, for a ray that is aimed past the centre at `offset` radii. */
+/* Angle between the way back and the way there, turned round in sign, for a ray that is aimed past the centre at
+ * `offset` radii. */
 static double minus_turned_back(void *context, double offset)
 {
     search *s = context;
@@ -58,8 +66,9 @@ static double rainbow_angle(search *s)
     return -least_value(minus_turned_back, s, 0.4, 0.9999);
 }
 
-/* cos i = sqrt((n^2 - 1) / 3), angle 4 r - 2 i: Born and Wolf, Principles of Optics, 7th ed., 4.7 exercises; Nussenzveig, "The theory of
- * the rainbow", Scientific American 236(4), 1977. NaN for n outside 1 .. 2, where there is no such ray. */
+/* cos i = sqrt((n^2 - 1) / 3), angle 4 r - 2 i: Born and Wolf, Principles of Optics, 7th ed., 4.7 exercises;
+ * Nussenzveig, "The theory of the rainbow", Scientific American 236(4), 1977. NaN for n outside 1 .. 2, where there is
+ * no such ray. */
 static double theory_rainbow(double n)
 {
     if (!(n > 1.0 && n < 2.0))
@@ -82,7 +91,10 @@ static status at_line(const metrics *m, double lambda_nm, double *measured, doub
 
 status realism_drop(const metrics *m, diagnostic *why)
 {
-    static const struct line { const char *metric, *what; double lambda_nm; } lines[] = {
+    static const struct line {
+        const char *metric, *what;
+        double lambda_nm;
+    } lines[] = {
         {"rainbow.F", "angle of the first rainbow at the F line, 486.1 nm", LINE_HYDROGEN_F_NM},
         {"rainbow.d", "angle of the first rainbow at the d line, 587.6 nm", LINE_HELIUM_D_NM},
         {"rainbow.C", "angle of the first rainbow at the C line, 656.3 nm", LINE_HYDROGEN_C_NM},
@@ -92,7 +104,8 @@ status realism_drop(const metrics *m, diagnostic *why)
     for (int i = 0; i < 4 && code == STATUS_OK; i++) {
         double measured, theory;
         code = at_line(m, i < 3 ? lines[i].lambda_nm : m->traced->render.lambda_nm, &measured, &theory, why);
-        metrics_add(m, (realism_value){lines[i].metric, isnan(theory) ? "an index outside 1..2 makes no rainbow" : lines[i].what, "rad",
+        metrics_add(m, (realism_value){lines[i].metric,
+                                       isnan(theory) ? "an index outside 1..2 makes no rainbow" : lines[i].what, "rad",
                                        measured, theory, ANGLE_TOLERANCE});
     }
     return code;

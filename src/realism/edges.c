@@ -1,7 +1,8 @@
-/* The rod in the picture: where its edges stand, how far the filled vessel has moved them, and how much wider it makes the rod.
+/* The rod in the picture: where its edges stand, how far the filled vessel has moved them, and how much wider it makes
+ * the rod.
  *
- * Tolerance: a place in the picture is good to some 1e-12 px by bisection, and a ray's place on the rod to 1e-14 scene units,
- * which at a few hundred px a unit is as much; times the lens's own magnification of errors towards its rim. */
+ * Tolerance: a place in the picture is good to some 1e-12 px by bisection, and a ray's place on the rod to 1e-14 scene
+ * units, which at a few hundred px a unit is as much; times the lens's own magnification of errors towards its rim. */
 #include "realism/metrics.h"
 #include "realism/section.h"
 
@@ -11,7 +12,13 @@
 #define RATIO_TOLERANCE 1e-10 /* an edge's, over a rod that is some ten px wide or more */
 enum { SCAN_STEPS = 1024 };
 
-typedef struct line { trial *t; int rod; double py; status code; diagnostic *why; } line;
+typedef struct line {
+    trial *t;
+    int rod;
+    double py;
+    status code;
+    diagnostic *why;
+} line;
 
 static bool traced_sees(void *context, double x)
 {
@@ -21,7 +28,8 @@ static bool traced_sees(void *context, double x)
 }
 
 /* Edges by the tracer, in a scene that it takes over; NaN where there are none. */
-static status traced_edges(scene *taken, const metrics *m, const double range[2], double py, double edge[2], diagnostic *why)
+static status traced_edges(scene *taken, const metrics *m, const double range[2], double py, double edge[2],
+                           diagnostic *why)
 {
     trial t;
     status code = trial_start(&t, taken, m->level, why);
@@ -33,7 +41,10 @@ static status traced_edges(scene *taken, const metrics *m, const double range[2]
     return l.code;
 }
 
-typedef struct theory_line { const section *c; double py; } theory_line;
+typedef struct theory_line {
+    const section *c;
+    double py;
+} theory_line;
 
 static bool theory_sees(void *context, double x)
 {
@@ -41,8 +52,11 @@ static bool theory_sees(void *context, double x)
     return section_sees_rod(l->c, x, l->py);
 }
 
-/* The line of the picture through the axis in the middle of what is filled of the rod's height, and the theory in it. */
-typedef struct picture_line { double py, range[2], filled[2], bare[2]; } picture_line;
+/* The line of the picture through the axis in the middle of what is filled of the rod's height, and the theory in it.
+ */
+typedef struct picture_line {
+    double py, range[2], filled[2], bare[2];
+} picture_line;
 
 static const char *theory_edges(const scene *s, const setup *at, picture_line *out)
 {
@@ -51,15 +65,16 @@ static const char *theory_edges(const scene *s, const setup *at, picture_line *o
     if (none)
         return none;
     const solid_shape *rod = &s->solids[at->rod].shape;
-    const double low = fmax(at->low, rod->position.y - rod->size.y / 2.0), high = fmin(at->high, rod->position.y + rod->size.y / 2.0);
+    const double low = fmax(at->low, rod->position.y - rod->size.y / 2.0),
+                 high = fmin(at->high, rod->position.y + rod->size.y / 2.0);
     double px;
     if (!view_place(&c.eye, at->x, (low + high) / 2.0, at->z, &px, &out->py))
         return "the vessel is behind the camera";
     section_range(&c, px, out->py, out->range);
     const section bare = section_bare(&c);
     theory_line filled_line = {&c, out->py}, bare_line = {&bare, out->py};
-    if (!find_edges(theory_sees, &filled_line, out->range[0], out->range[1], SCAN_STEPS, out->filled)
-        || !find_edges(theory_sees, &bare_line, out->range[0], out->range[1], SCAN_STEPS, out->bare))
+    if (!find_edges(theory_sees, &filled_line, out->range[0], out->range[1], SCAN_STEPS, out->filled) ||
+        !find_edges(theory_sees, &bare_line, out->range[0], out->range[1], SCAN_STEPS, out->bare))
         return "both edges of the rod are not in sight through the vessel";
     for (int i = 0; i < 2; i++)
         if (!section_stays(&c, out->filled[i], out->py, low, high))
@@ -103,21 +118,24 @@ static status add_edges(const metrics *m, diagnostic *why)
     const status code = none ? STATUS_OK : measure_edges(m, &l, filled, bare, why);
     const double nothing = none ? NAN : 0.0; /* what was found on the way does not count then */
     const double tolerance = EDGE_TOLERANCE_PX;
-    metrics_add(m, (realism_value){"edges.left", none ? none : "the rod's left edge in the picture, through the filled vessel", "px",
+    metrics_add(m, (realism_value){"edges.left",
+                                   none ? none : "the rod's left edge in the picture, through the filled vessel", "px",
                                    filled[0], l.filled[0] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.right", none ? none : "the rod's right edge", "px", filled[1], l.filled[1] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.left_shift", none ? none : "how far vessel and liquid move the left edge", "px",
-                                   filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.right_shift", none ? none : "how far vessel and liquid move the right edge", "px",
-                                   filled[1] - bare[1], l.filled[1] - l.bare[1] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.magnification", none ? none : "the rod's width in the picture, by that without vessel and liquid",
+    metrics_add(m, (realism_value){"edges.right", none ? none : "the rod's right edge", "px", filled[1],
+                                   l.filled[1] + nothing, tolerance});
+    metrics_add(m, (realism_value){"edges.left_shift", none ? none : "how far vessel and liquid move the left edge",
+                                   "px", filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, tolerance});
+    metrics_add(m, (realism_value){"edges.right_shift", none ? none : "how far vessel and liquid move the right edge",
+                                   "px", filled[1] - bare[1], l.filled[1] - l.bare[1] + nothing, tolerance});
+    metrics_add(m, (realism_value){"edges.magnification",
+                                   none ? none : "the rod's width in the picture, by that without vessel and liquid",
                                    "", (filled[1] - filled[0]) / (bare[1] - bare[0]),
                                    (l.filled[1] - l.filled[0]) / (l.bare[1] - l.bare[0]) + nothing, RATIO_TOLERANCE});
     return code;
 }
 
-/* A thin round rod on the axis, seen along a level line: the tangent ray passes the axis at the rod's radius, so outside at
- * n_liquid / n_outside times it. */
+/* A thin round rod on the axis, seen along a level line: the tangent ray passes the axis at the rod's radius, so
+ * outside at n_liquid / n_outside times it. */
 static scene *round_rod(const metrics *m, double radius, double distance)
 {
     scene *s = arrange_vessel(m->traced, &m->at);
@@ -126,8 +144,11 @@ static scene *round_rod(const metrics *m, double radius, double distance)
     const double height = m->at.high - m->at.low, middle = (m->at.low + m->at.high) / 2.0;
     solid *rod = &s->solids[m->at.rod];
     rod->visible = 1;
-    rod->shape = (solid_shape){.kind = SHAPE_CYLINDER, .position = {m->at.x, m->at.low + height / 4.0, m->at.z},
-                               .radius = radius, .height = height / 2.0, .m = 1.0};
+    rod->shape = (solid_shape){.kind = SHAPE_CYLINDER,
+                               .position = {m->at.x, m->at.low + height / 4.0, m->at.z},
+                               .radius = radius,
+                               .height = height / 2.0,
+                               .m = 1.0};
     s->camera = (struct camera){.position = {m->at.x, middle, m->at.z - distance}, .fov_deg = 45.0};
     return s;
 }
@@ -153,7 +174,8 @@ static status add_round(const metrics *m, diagnostic *why)
         theory = NAN;
     }
     metrics_add(m, (realism_value){"edges.round_magnification",
-                                   visible ? "of a thin round rod on the axis: the liquid's index" : "the wall keeps its edges out of sight",
+                                   visible ? "of a thin round rod on the axis: the liquid's index"
+                                           : "the wall keeps its edges out of sight",
                                    "", (edge[1] - edge[0]) / (2.0 * radius), theory, RATIO_TOLERANCE});
     return code;
 }

@@ -1,7 +1,8 @@
 /* Single interfaces between the scene's media: where total reflection begins, and how much is reflected.
  *
- * Tolerances: the cosine of an angle near the critical one is good to 2e-16 over its slope. Reflectances are a few roundings off, but
- * rise with an infinite slope to the critical angle, before which 1e-16 in the squared cosine of refraction can be 1e-10. */
+ * Tolerances: the cosine of an angle near the critical one is good to 2e-16 over its slope. Reflectances are a few
+ * roundings off, but rise with an infinite slope to the critical angle, before which 1e-16 in the squared cosine of
+ * refraction can be 1e-10. */
 #include "realism/metrics.h"
 
 #include <math.h>
@@ -26,7 +27,10 @@ status interface_look(probe *p, ray_tree *tree, double start_y, double angle, in
     return STATUS_OK;
 }
 
-typedef struct crossing { const char *critical, *s, *p, *mean; setup_medium from, to; } crossing;
+typedef struct crossing {
+    const char *critical, *s, *p, *mean;
+    setup_medium from, to;
+} crossing;
 static const crossing crossings[] = {
     {"critical.vessel", "fresnel.vessel.s", "fresnel.vessel.p", "fresnel.vessel", SETUP_OUTSIDE, SETUP_VESSEL},
     {"critical.liquid", "fresnel.liquid.s", "fresnel.liquid.p", "fresnel.liquid", SETUP_OUTSIDE, SETUP_LIQUID},
@@ -81,7 +85,8 @@ static status add_critical(const metrics *m, int which, diagnostic *why)
             code = bisect_critical(&t, start_y, &measured, why);
         trial_end(&t);
     }
-    metrics_add(m, (realism_value){crossings[which].critical, exists ? critical_what[which] : none, "rad", measured, theory, CRITICAL_TOLERANCE});
+    metrics_add(m, (realism_value){crossings[which].critical, exists ? critical_what[which] : none, "rad", measured,
+                                   theory, CRITICAL_TOLERANCE});
     return code;
 }
 
@@ -111,12 +116,13 @@ static status add_fresnel(const metrics *m, int which, diagnostic *why)
     worst_pair worst[3] = {{NAN, NAN, false}, {NAN, NAN, false}, {NAN, NAN, false}};
     const status code = exists ? compare_shares(m, at, worst, why) : STATUS_OK;
     const char *const none = exists ? NULL : "there is no liquid";
-    metrics_add(m, (realism_value){at->s, none ? none : "reflectance across the plane of incidence; of 0 to 89.9 degrees the worst", "",
-                                   worst[0].measured, worst[0].theory, SHARE_TOLERANCE});
-    metrics_add(m, (realism_value){at->p, none ? none : "reflectance in the plane of incidence", "", worst[1].measured, worst[1].theory,
-                                   SHARE_TOLERANCE});
-    metrics_add(m, (realism_value){at->mean, none ? none : "share of a ray that is reflected", "", worst[2].measured, worst[2].theory,
-                                   SHARE_TOLERANCE});
+    metrics_add(m, (realism_value){
+                       at->s, none ? none : "reflectance across the plane of incidence; of 0 to 89.9 degrees the worst",
+                       "", worst[0].measured, worst[0].theory, SHARE_TOLERANCE});
+    metrics_add(m, (realism_value){at->p, none ? none : "reflectance in the plane of incidence", "", worst[1].measured,
+                                   worst[1].theory, SHARE_TOLERANCE});
+    metrics_add(m, (realism_value){at->mean, none ? none : "share of a ray that is reflected", "", worst[2].measured,
+                                   worst[2].theory, SHARE_TOLERANCE});
     return code;
 }
 

@@ -1,7 +1,9 @@
-/* The filled vessel as a lens for level rays: how far it turns a ray that passes beside its axis, its power, its dispersion.
+/* The filled vessel as a lens for level rays: how far it turns a ray that passes beside its axis, its power, its
+ * dispersion.
  *
- * Tolerances: an angle is good to some 1e-15, which towards the rim, where rays graze the wall, becomes some 1e-13. Power is
- * extrapolated from offsets down to a 160th of the radius: 1e-15 over that, and what the extrapolation makes of it. */
+ * Tolerances: an angle is good to some 1e-15, which towards the rim, where rays graze the wall, becomes some 1e-13.
+ * Power is extrapolated from offsets down to a 160th of the radius: 1e-15 over that, and what the extrapolation makes
+ * of it. */
 #include "realism/metrics.h"
 
 #include "optics/media.h"
@@ -20,7 +22,8 @@ status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, 
     if (code != STATUS_OK)
         return code;
     const ray_node *last = &tree->node[tree->count - 1];
-    *radians = last->end == RAY_END_SKY ? atan2(-last->direction.x, last->direction.z) : NAN; /* towards the axis, which is at -x */
+    *radians = last->end == RAY_END_SKY ? atan2(-last->direction.x, last->direction.z)
+                                        : NAN; /* towards the axis, which is at -x */
     return STATUS_OK;
 }
 
@@ -36,13 +39,14 @@ static status add_deviation(const metrics *m, trial *t, diagnostic *why)
         code = lens_deviation(t->p, &t->tree, &m->at, offset, &measured, why);
         worst_take(&worst, measured, theory_shells_deviation(&c, offset));
     }
-    metrics_add(m, (realism_value){"lens.deviation", "how far the filled vessel turns a ray; of 64 offsets from its axis the worst", "rad",
-                                   worst.measured, worst.theory, ANGLE_TOLERANCE});
+    metrics_add(m, (realism_value){"lens.deviation",
+                                   "how far the filled vessel turns a ray; of 64 offsets from its axis the worst",
+                                   "rad", worst.measured, worst.theory, ANGLE_TOLERANCE});
     return code;
 }
 
-/* The limit of deviation / offset, which is even in the offset: Richardson's extrapolation from halved offsets, as Romberg's
- * (Press and others, Numerical Recipes, 3rd ed., 4.3). */
+/* The limit of deviation / offset, which is even in the offset: Richardson's extrapolation from halved offsets, as
+ * Romberg's (Press and others, Numerical Recipes, 3rd ed., 4.3). */
 static status paraxial_power(const metrics *m, trial *t, double *power, diagnostic *why)
 {
     double value[LEVELS];
@@ -69,8 +73,10 @@ static status add_power(const metrics *m, trial *t, diagnostic *why)
     /* An error of the power is one of f, f^2 times as large. */
     const double size = fabs(theory) * c.outer;
     const bool focuses = size > 1e-4;
-    metrics_add(m, (realism_value){"lens.power", "of the filled vessel, near its axis", "1/scene unit", measured, theory, tolerance});
-    metrics_add(m, (realism_value){"lens.focal_length", focuses ? "from the vessel's axis, for rays near it" : "the vessel does not focus",
+    metrics_add(m, (realism_value){"lens.power", "of the filled vessel, near its axis", "1/scene unit", measured,
+                                   theory, tolerance});
+    metrics_add(m, (realism_value){"lens.focal_length",
+                                   focuses ? "from the vessel's axis, for rays near it" : "the vessel does not focus",
                                    "scene units", focuses ? 1.0 / measured : NAN, focuses ? 1.0 / theory : NAN,
                                    tolerance / (theory * theory)});
     return code;
@@ -114,10 +120,11 @@ static status add_dispersion(const metrics *m, diagnostic *why)
     if (code != STATUS_OK)
         return code;
     const char *none = isnan(theory[0] + theory[1] + theory[2]) ? "the ray does not get into the core" : NULL;
-    metrics_add(m, (realism_value){"dispersion.d", none ? none : "deviation half way to the rim, water in BK7, at the d line", "rad", measured[1],
-                                   theory[1], ANGLE_TOLERANCE});
-    metrics_add(m, (realism_value){"dispersion.F-C", none ? none : "the same at the F line less that at the C line", "rad",
-                                   measured[0] - measured[2], theory[0] - theory[2], ANGLE_TOLERANCE});
+    metrics_add(m, (realism_value){"dispersion.d",
+                                   none ? none : "deviation half way to the rim, water in BK7, at the d line", "rad",
+                                   measured[1], theory[1], ANGLE_TOLERANCE});
+    metrics_add(m, (realism_value){"dispersion.F-C", none ? none : "the same at the F line less that at the C line",
+                                   "rad", measured[0] - measured[2], theory[0] - theory[2], ANGLE_TOLERANCE});
     return STATUS_OK;
 }
 

@@ -50,7 +50,8 @@ status realism_check(const scene *s, bool curves, diagnostic *why)
     return setup_read(s, &unused, why);
 }
 
-status realism_measure_against(const scene *traced, const scene *supposed, isa level, realism_report *out, diagnostic *why)
+status realism_measure_against(const scene *traced, const scene *supposed, isa level, realism_report *out,
+                               diagnostic *why)
 {
     static status (*const of_vessel[])(const metrics *, diagnostic *) = {
         realism_edges, realism_water_line, realism_lens,     realism_interfaces, realism_balance,

@@ -1,6 +1,6 @@
-/* The room's inside: what all metrics share. A metric is a function that adds its values to the report; it adds the same names
- * for every scene, with theory NaN and the reason where the scene has no such thing.
- * Ownership: trial_start takes the scene over, trial_end releases all of it. */
+/* The room's inside: what all metrics share. A metric is a function that adds its values to the report; it adds the
+ * same names for every scene, with theory NaN and the reason where the scene has no such thing. Ownership: trial_start
+ * takes the scene over, trial_end releases all of it. */
 #ifndef CUVETTE_REALISM_METRICS_H
 #define CUVETTE_REALISM_METRICS_H
 
@@ -15,34 +15,40 @@ typedef struct metrics {
     realism_report *report;
 } metrics;
 
-status realism_edges(const metrics *m, diagnostic *why);        /* edges.c: the rod's edges in the picture, magnification */
-status realism_water_line(const metrics *m, diagnostic *why);   /* water_line.c: the leaning rod's break */
-status realism_lens(const metrics *m, diagnostic *why);         /* lens.c: deviation, power, dispersion */
-status realism_interfaces(const metrics *m, diagnostic *why);   /* interfaces.c: critical angles, Fresnel */
-status realism_balance(const metrics *m, diagnostic *why);      /* balance.c: white furnace */
-status realism_slab(const metrics *m, diagnostic *why);         /* slab.c: convergence with depth */
-status realism_gap(const metrics *m, diagnostic *why);          /* gap.c: empty gaps, and solids far away */
-status realism_radiance(const metrics *m, diagnostic *why);     /* radiance.c: radiance across a flat surface */
-status realism_absorption(const metrics *m, diagnostic *why);   /* attenuation.c: Beer and Lambert */
-status realism_reversal(const metrics *m, diagnostic *why);     /* reversal.c: ways backwards */
+status realism_edges(const metrics *m, diagnostic *why); /* edges.c: the rod's edges in the picture, magnification */
+status realism_water_line(const metrics *m, diagnostic *why); /* water_line.c: the leaning rod's break */
+status realism_lens(const metrics *m, diagnostic *why);       /* lens.c: deviation, power, dispersion */
+status realism_interfaces(const metrics *m, diagnostic *why); /* interfaces.c: critical angles, Fresnel */
+status realism_balance(const metrics *m, diagnostic *why);    /* balance.c: white furnace */
+status realism_slab(const metrics *m, diagnostic *why);       /* slab.c: convergence with depth */
+status realism_gap(const metrics *m, diagnostic *why);        /* gap.c: empty gaps, and solids far away */
+status realism_radiance(const metrics *m, diagnostic *why);   /* radiance.c: radiance across a flat surface */
+status realism_absorption(const metrics *m, diagnostic *why); /* attenuation.c: Beer and Lambert */
+status realism_reversal(const metrics *m, diagnostic *why);   /* reversal.c: ways backwards */
 
-/* Arrangements of their own: what they are made of, and whether a scene has it. Of m only the scenes, the level and the report count. */
+/* Arrangements of their own: what they are made of, and whether a scene has it. Of m only the scenes, the level and the
+ * report count. */
 bool prism_is_there(const scene *s);
-status realism_prism(const metrics *m, diagnostic *why);        /* prism.c: least deviation */
+status realism_prism(const metrics *m, diagnostic *why); /* prism.c: least deviation */
 bool drop_is_there(const scene *s);
-status realism_drop(const metrics *m, diagnostic *why);         /* drop.c: the first rainbow */
+status realism_drop(const metrics *m, diagnostic *why); /* drop.c: the first rainbow */
 bool stack_is_there(const scene *s);
-status realism_stack(const metrics *m, diagnostic *why);        /* stack.c: a pile of two plates */
+status realism_stack(const metrics *m, diagnostic *why); /* stack.c: a pile of two plates */
 
 void metrics_add(const metrics *m, realism_value value);
 
 /* Remembers the pair that lies furthest apart. */
-typedef struct worst_pair { double measured, theory; bool any; } worst_pair;
+typedef struct worst_pair {
+    double measured, theory;
+    bool any;
+} worst_pair;
 void worst_take(worst_pair *w, double measured, double theory);
 
 /* Points of curves, shared with curve.c. */
 status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, double *radians, diagnostic *why);
-typedef struct interface_shares { double R_s, R_p, R; } interface_shares;
+typedef struct interface_shares {
+    double R_s, R_p, R;
+} interface_shares;
 status interface_look(probe *p, ray_tree *tree, double start_y, double angle, interface_shares *out, diagnostic *why);
 status slab_measure(const metrics *m, int depth, bool polarised, double *transmitted, diagnostic *why);
 double slab_theory(const metrics *m, int depth, bool polarised);
@@ -50,7 +56,11 @@ scene *attenuation_scene(const scene *s, const setup *at);
 status edges_displacement(const metrics *m, double measured[2], double theory[2], diagnostic *why);
 
 /* A scene and the means to send rays through it. */
-typedef struct trial { scene *s; probe *p; ray_tree tree; } trial;
+typedef struct trial {
+    scene *s;
+    probe *p;
+    ray_tree tree;
+} trial;
 status trial_start(trial *t, scene *taken, isa level, diagnostic *why);
 void trial_end(trial *t);
 
@@ -58,18 +68,19 @@ void trial_end(trial *t);
 status attenuation_point(trial *t, const setup *at, double length, double transmittance[3], diagnostic *why);
 double attenuation_reach(const trial *t, const setup *at);
 
-/* Does the way from there, refracted where it can be, end on that solid without a reflection; through upright surfaces only? A
- * failure of the tracer goes to *code. */
+/* Does the way from there, refracted where it can be, end on that solid without a reflection; through upright surfaces
+ * only? A failure of the tracer goes to *code. */
 bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why);
 
 /* Index of a solid's medium relative to what surrounds all; NaN when its coefficients make no law. */
 double relative_index(const scene *s, int at, double lambda_nm);
 
-/* The least value between low and high of a function that has one minimum there: golden section (Kiefer, "Sequential minimax search for a
- * maximum", Proc. AMS 4, 1953). Flat at its minimum, the function's value is good to rounding. */
+/* The least value between low and high of a function that has one minimum there: golden section (Kiefer, "Sequential
+ * minimax search for a maximum", Proc. AMS 4, 1953). Flat at its minimum, the function's value is good to rounding. */
 double least_value(double (*f)(void *context, double x), void *context, double low, double high);
 
-/* First and last place between `from` and `to` where something is seen, each to 1e-12, the change looked for in `steps` steps. */
+/* First and last place between `from` and `to` where something is seen, each to 1e-12, the change looked for in `steps`
+ * steps. */
 typedef bool seen_at(void *context, double x);
 bool find_edges(seen_at *seen, void *context, double from, double to, int steps, double edge[2]);
 

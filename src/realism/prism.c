@@ -1,5 +1,5 @@
-/* A prism's least deviation at the F, d and C lines. The scene has solids named prism, and left and right, the half-spaces that cut
- * its two faces (experiments/scenes/prism.yaml).
+/* A prism's least deviation at the F, d and C lines. The scene has solids named prism, and left and right, the
+ * half-spaces that cut its two faces (experiments/scenes/prism.yaml).
  *
  * Least deviation is flat in the angle of incidence, so that its value is good to rounding however it is found. */
 #include "realism/metrics.h"
@@ -10,14 +10,18 @@
 #define ANGLE_TOLERANCE 1e-12 /* rad */
 
 /* point: on the left face; left, right: the prism's outward normals; up: along the left face, towards the apex. */
-typedef struct prism_faces { vec3 point, left, right, up; int body; } prism_faces;
+typedef struct prism_faces {
+    vec3 point, left, right, up;
+    int body;
+} prism_faces;
 
 bool prism_is_there(const scene *s)
 {
     return scene_find_solid(s, "prism") >= 0 && scene_find_solid(s, "left") >= 0 && scene_find_solid(s, "right") >= 0;
 }
 
-/* A half-space's matter lies under its local y; what it cuts off the prism has that as its outward normal, turned round. */
+/* A half-space's matter lies under its local y; what it cuts off the prism has that as its outward normal, turned
+ * round. */
 static vec3 outward(const solid *cut)
 {
     return vec3_scale(mat3_apply(rotation_from_deg(cut->shape.rotation_deg), vec3_make(0.0, 1.0, 0.0)), -1.0);
@@ -26,14 +30,23 @@ static vec3 outward(const solid *cut)
 static prism_faces faces_of(const scene *s)
 {
     const solid *left = &s->solids[scene_find_solid(s, "left")], *right = &s->solids[scene_find_solid(s, "right")];
-    prism_faces f = {.point = left->shape.position, .left = outward(left), .right = outward(right), .body = scene_find_solid(s, "prism")};
+    prism_faces f = {.point = left->shape.position,
+                     .left = outward(left),
+                     .right = outward(right),
+                     .body = scene_find_solid(s, "prism")};
     f.up = vec3_normalize(vec3_sub(f.right, vec3_scale(f.left, vec3_dot(f.left, f.right))));
     return f;
 }
 
-typedef struct search { trial *t; prism_faces at; status code; diagnostic *why; } search;
+typedef struct search {
+    trial *t;
+    prism_faces at;
+    status code;
+    diagnostic *why;
+} search;
 
-/* Deviation of a ray that meets the middle of the left face at an angle of incidence; NaN if it does not come through both. */
+/* Deviation of a ray that meets the middle of the left face at an angle of incidence; NaN if it does not come through
+ * both. */
 static double deviation(void *context, double incidence)
 {
     search *s = context;
@@ -43,7 +56,8 @@ static double deviation(void *context, double incidence)
     if (s->code != STATUS_OK)
         return NAN;
     const ray_tree *way = &s->t->tree;
-    if (way->count < 3 || way->node[2].kind != RAY_REFRACT || way->node[0].hit.to != s->at.body || way->node[1].hit.from != s->at.body)
+    if (way->count < 3 || way->node[2].kind != RAY_REFRACT || way->node[0].hit.to != s->at.body ||
+        way->node[1].hit.from != s->at.body)
         return NAN;
     const vec3 out = way->node[2].direction;
     const vec3 across = vec3_cross(in, out);
@@ -91,7 +105,10 @@ static status at_line(const metrics *m, double lambda_nm, double *measured, doub
 
 status realism_prism(const metrics *m, diagnostic *why)
 {
-    static const struct line { const char *metric, *what; double lambda_nm; } lines[] = {
+    static const struct line {
+        const char *metric, *what;
+        double lambda_nm;
+    } lines[] = {
         {"prism.F", "least deviation at the F line, 486.1 nm", LINE_HYDROGEN_F_NM},
         {"prism.d", "least deviation at the d line, 587.6 nm", LINE_HELIUM_D_NM},
         {"prism.C", "least deviation at the C line, 656.3 nm", LINE_HYDROGEN_C_NM},
@@ -104,7 +121,7 @@ status realism_prism(const metrics *m, diagnostic *why)
         metrics_add(m, (realism_value){lines[i].metric, lines[i].what, "rad", measured[i], theory[i], ANGLE_TOLERANCE});
     }
     if (code == STATUS_OK)
-        metrics_add(m, (realism_value){"prism.F-C", "that at the F line less that at the C line", "rad", measured[0] - measured[2],
-                                       theory[0] - theory[2], 2.0 * ANGLE_TOLERANCE});
+        metrics_add(m, (realism_value){"prism.F-C", "that at the F line less that at the C line", "rad",
+                                       measured[0] - measured[2], theory[0] - theory[2], 2.0 * ANGLE_TOLERANCE});
     return code;
 }

@@ -1,8 +1,8 @@
-/* Reversed ways: light goes back the way that it came, and an interface shares it out alike from either side (Stokes's relations;
- * Hecht, Optics, 5th ed., 4.10). Random ways through the vessel, refracted or once reflected, are traced to their end and back. The
- * way back ends on the ray that the way began with, and has the same throughput. (Radiance takes on a factor n^2 in a
- * medium; both ends lie outside, where it has gone again, and the tracer's throughput leaves it out.) Ways that graze a
- * surface are left out: errors grow there as 1 / cos.
+/* Reversed ways: light goes back the way that it came, and an interface shares it out alike from either side (Stokes's
+ * relations; Hecht, Optics, 5th ed., 4.10). Random ways through the vessel, refracted or once reflected, are traced to
+ * their end and back. The way back ends on the ray that the way began with, and has the same throughput. (Radiance
+ * takes on a factor n^2 in a medium; both ends lie outside, where it has gone again, and the tracer's throughput leaves
+ * it out.) Ways that graze a surface are left out: errors grow there as 1 / cos.
  *
  * Tolerance: 1e-16 a surface, over the cosines of up to 16 surfaces, of 0.1 at least. */
 #include "realism/metrics.h"
@@ -14,21 +14,27 @@
 #define LEAST_COSINE 0.1
 enum { WAYS = 2000, HITS_MAX = 12 };
 
-typedef struct way { vec3 from, along; int reflect_at; } way;
+typedef struct way {
+    vec3 from, along;
+    int reflect_at;
+} way;
 
 static way random_way(const setup *at, uint32_t number)
 {
     const random_words a = random_at(10, number, 0, 0, 0), b = random_at(10, number, 1, 0, 0);
     const double turn = 2.0 * M_PI * random_unit(a.word[0]), middle = (at->low + at->high) / 2.0;
-    const vec3 from = vec3_make(at->x + 3.0 * at->outer * cos(turn), middle + (random_unit(a.word[1]) - 0.3) * 3.0 * at->outer,
-                                at->z + 3.0 * at->outer * sin(turn));
+    const vec3 from =
+        vec3_make(at->x + 3.0 * at->outer * cos(turn), middle + (random_unit(a.word[1]) - 0.3) * 3.0 * at->outer,
+                  at->z + 3.0 * at->outer * sin(turn));
     const double aside = at->outer * (2.0 * random_unit(a.word[2]) - 1.0);
-    const vec3 to = vec3_make(at->x - aside * sin(turn), at->low + (at->high - at->low) * random_unit(a.word[3]), at->z + aside * cos(turn));
+    const vec3 to = vec3_make(at->x - aside * sin(turn), at->low + (at->high - at->low) * random_unit(a.word[3]),
+                              at->z + aside * cos(turn));
     const way w = {from, vec3_normalize(vec3_sub(to, from)), (int)(b.word[0] % 4) - 1};
     return w;
 }
 
-/* The way's number of surfaces; -1 when it does not leave or grazes one. Media that refract alike have none between them. */
+/* The way's number of surfaces; -1 when it does not leave or grazes one. Media that refract alike have none between
+ * them. */
 static int surfaces(const ray_tree *tree)
 {
     const int hits = (int)tree->count - 1;
@@ -49,7 +55,10 @@ static int reflected_at(const ray_tree *tree, int asked)
 }
 
 /* Of the way back: its throughput, and how far it passes from where the way began. */
-typedef struct round_trip { double forth, back, miss; bool done; } round_trip;
+typedef struct round_trip {
+    double forth, back, miss;
+    bool done;
+} round_trip;
 
 static status trace_back(trial *forth, trial *back, const setup *at, uint32_t number, round_trip *out, diagnostic *why)
 {
@@ -62,7 +71,8 @@ static status trace_back(trial *forth, trial *back, const setup *at, uint32_t nu
     const ray_node *last = &forth->tree.node[hits];
     const int asked = reflected_at(&forth->tree, w.reflect_at);
     const vec3 start = vec3_add(last->origin, vec3_scale(last->direction, 3.0 * at->outer));
-    code = probe_way(back->p, start, vec3_scale(last->direction, -1.0), asked < 0 ? -1 : hits - 1 - asked, &back->tree, why);
+    code = probe_way(back->p, start, vec3_scale(last->direction, -1.0), asked < 0 ? -1 : hits - 1 - asked, &back->tree,
+                     why);
     if (code != STATUS_OK)
         return code;
     const ray_node *home = &back->tree.node[back->tree.count - 1];
@@ -93,9 +103,10 @@ status realism_reversal(const metrics *m, diagnostic *why)
     }
     trial_end(&forth);
     trial_end(&back);
-    metrics_add(m, (realism_value){"reversal.throughput", "of ways traced back, by that of the way there; of some 1000 the worst", "",
+    metrics_add(m, (realism_value){"reversal.throughput",
+                                   "of ways traced back, by that of the way there; of some 1000 the worst", "",
                                    ratio.measured, ratio.theory, REVERSAL_TOLERANCE});
-    metrics_add(m, (realism_value){"reversal.way", "how far the way back passes from where the way began", "scene units", miss.measured,
-                                   miss.theory, REVERSAL_TOLERANCE * m->at.outer});
+    metrics_add(m, (realism_value){"reversal.way", "how far the way back passes from where the way began",
+                                   "scene units", miss.measured, miss.theory, REVERSAL_TOLERANCE * m->at.outer});
     return code;
 }

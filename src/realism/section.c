@@ -30,7 +30,10 @@ section section_bare(const section *c)
 }
 
 /* A ray from above: where it passes the axis, which way it goes, and the shells' indices for it. */
-typedef struct flat_ray { double heading, offset, steepness; theory_shells shells; } flat_ray;
+typedef struct flat_ray {
+    double heading, offset, steepness;
+    theory_shells shells;
+} flat_ray;
 
 static double flat_index(double n, double steepness)
 {

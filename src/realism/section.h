@@ -1,7 +1,7 @@
-/* Theory of the rod in the picture: whether the camera's ray through a point of the picture meets the rod behind the wall of a
- * filled vessel. Upright surfaces leave n d_y of a ray as it is, d_y the upward part of its unit direction. Seen from above, a
- * ray therefore bends at the circles as a flat one whose indices are sqrt(n^2 - (n d_y)^2): Snell's law with the part along y
- * taken off both sides. Exact. Pure; scalars only. */
+/* Theory of the rod in the picture: whether the camera's ray through a point of the picture meets the rod behind the
+ * wall of a filled vessel. Upright surfaces leave n d_y of a ray as it is, d_y the upward part of its unit direction.
+ * Seen from above, a ray therefore bends at the circles as a flat one whose indices are sqrt(n^2 - (n d_y)^2): Snell's
+ * law with the part along y taken off both sides. Exact. Pure; scalars only. */
 #ifndef CUVETTE_REALISM_SECTION_H
 #define CUVETTE_REALISM_SECTION_H
 
@@ -11,8 +11,8 @@
 typedef struct section {
     view eye;
     theory_shells shells;
-    double x, z;                      /* of the axis */
-    double corner_x[4], corner_z[4];  /* of the rod, from the axis */
+    double x, z;                     /* of the axis */
+    double corner_x[4], corner_z[4]; /* of the rod, from the axis */
 } section;
 
 /* NULL, or why theory has no answer for this scene. */

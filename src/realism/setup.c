@@ -32,7 +32,8 @@ static status index_of(const scene *s, int which, double *n, diagnostic *why)
 
 static status read_vessel(const scene *s, setup *out, diagnostic *why)
 {
-    const char *const example = "take the names and shapes of experiments/scenes/rod.yaml, prism.yaml, rainbow.yaml or plates.yaml";
+    const char *const example =
+        "take the names and shapes of experiments/scenes/rod.yaml, prism.yaml, rainbow.yaml or plates.yaml";
     out->vessel = find_visible(s, "vessel");
     out->rod = find_visible(s, "rod");
     if (out->vessel < 0 || s->solids[out->vessel].shape.kind != SHAPE_CUP)
@@ -44,9 +45,11 @@ static status read_vessel(const scene *s, setup *out, diagnostic *why)
         return wrong(s, why, "set vessel.m to 1: the closed forms are those of a round vessel",
                      "the vessel is elliptic");
     if (is_turned(vessel) || vessel->surface.transparency == 0.0)
-        return wrong(s, why, "let it stand upright, and set its transparency above 0", "the vessel is turned or opaque");
+        return wrong(s, why, "let it stand upright, and set its transparency above 0",
+                     "the vessel is turned or opaque");
     if (rod->surface.transparency != 0.0 || rod->priority <= vessel->priority)
-        return wrong(s, why, "set its transparency to 0 and its priority above the vessel's", "the rod is not opaque, or is displaced");
+        return wrong(s, why, "set its transparency to 0 and its priority above the vessel's",
+                     "the rod is not opaque, or is displaced");
     out->x = vessel->shape.position.x, out->z = vessel->shape.position.z;
     out->outer = vessel->shape.radius, out->inner = vessel->shape.inner_radius;
     out->low = vessel->shape.position.y + vessel->shape.floor;
@@ -66,8 +69,10 @@ static status read_liquid(const scene *s, setup *out, diagnostic *why)
     const solid *liquid = &s->solids[out->liquid];
     const solid_shape *shape = &liquid->shape;
     if (shape->kind != SHAPE_CYLINDER || shape->m != 1.0 || is_turned(liquid) || liquid->surface.transparency == 0.0)
-        return wrong(s, why, "make it an upright round cylinder with a transparency above 0", "the liquid is no clear round cylinder");
-    if (shape->position.x != out->x || shape->position.z != out->z || shape->radius < out->inner || shape->radius >= out->outer)
+        return wrong(s, why, "make it an upright round cylinder with a transparency above 0",
+                     "the liquid is no clear round cylinder");
+    if (shape->position.x != out->x || shape->position.z != out->z || shape->radius < out->inner ||
+        shape->radius >= out->outer)
         return wrong(s, why, "give both one axis, and the liquid a radius between the vessel's inner_radius and radius",
                      "the liquid does not reach into the vessel's wall all around");
     if (s->solids[out->rod].priority <= liquid->priority)
@@ -77,7 +82,8 @@ static status read_liquid(const scene *s, setup *out, diagnostic *why)
         out->low = fmax(s->solids[out->vessel].shape.position.y, shape->position.y);
     }
     if (shape->position.y > out->low || shape->position.y + shape->height <= out->low)
-        return wrong(s, why, "let the liquid begin within the vessel's floor and end above it", "the liquid does not stand on the floor");
+        return wrong(s, why, "let the liquid begin within the vessel's floor and end above it",
+                     "the liquid does not stand on the floor");
     out->high = fmin(out->high, shape->position.y + shape->height);
     return STATUS_OK;
 }
@@ -100,8 +106,11 @@ status setup_read(const scene *s, setup *out, diagnostic *why)
 
 theory_shells setup_shells(const setup *at)
 {
-    const theory_shells c = {.n_around = at->n[SETUP_OUTSIDE], .n_wall = at->n[SETUP_VESSEL], .n_core = at->n[SETUP_LIQUID],
-                             .outer = at->outer, .inner = at->inner};
+    const theory_shells c = {.n_around = at->n[SETUP_OUTSIDE],
+                             .n_wall = at->n[SETUP_VESSEL],
+                             .n_core = at->n[SETUP_LIQUID],
+                             .outer = at->outer,
+                             .inner = at->inner};
     return c;
 }
 

@@ -1,5 +1,5 @@
-/* What a scene's vessel, liquid and rod are, in the numbers that theory wants; and copies of a scene in which some of its media
- * stand in another arrangement. Ownership: arrange_* give a scene, or NULL when memory is out. */
+/* What a scene's vessel, liquid and rod are, in the numbers that theory wants; and copies of a scene in which some of
+ * its media stand in another arrangement. Ownership: arrange_* give a scene, or NULL when memory is out. */
 #ifndef CUVETTE_REALISM_SETUP_H
 #define CUVETTE_REALISM_SETUP_H
 
@@ -13,7 +13,7 @@ typedef struct setup {
     double n[SETUP_MEDIA];   /* at render.lambda_nm; of an empty vessel the liquid's is that of what is outside */
     double x, z;             /* of the axis */
     double outer, inner;     /* radii of the wall */
-    double low, high;        /* what is filled, y: from the floor to the liquid's surface, or of an empty vessel to its rim */
+    double low, high; /* what is filled, y: from the floor to the liquid's surface, or of an empty vessel to its rim */
 } setup;
 
 /* STATUS_BAD_INPUT when a solid is missing or not as theory needs it. */
@@ -24,14 +24,15 @@ theory_shells setup_shells(const setup *at);
 /* Takes off what the closed forms know nothing of: clear solids' tints, and their coatings under Fresnel's weights. */
 void arrange_bare(scene *s);
 
-/* A bare copy without solids or lights in sight, and with settings that trace every ray of a way. What an interface does with light
- * (render.weights) and the media stay as they are. */
+/* A bare copy without solids or lights in sight, and with settings that trace every ray of a way. What an interface
+ * does with light (render.weights) and the media stay as they are. */
 scene *arrange_empty(const scene *s);
 
 /* The vessel with its liquid alone. */
 scene *arrange_vessel(const scene *s, const setup *at);
 
-/* Two media that meet at y = 0, a ray coming from (0, *start_y, 0); one of them may be SETUP_OUTSIDE, none a missing liquid. */
+/* Two media that meet at y = 0, a ray coming from (0, *start_y, 0); one of them may be SETUP_OUTSIDE, none a missing
+ * liquid. */
 scene *arrange_interface(const scene *s, const setup *at, setup_medium from, setup_medium to, double *start_y);
 
 #endif

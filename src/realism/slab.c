@@ -1,7 +1,7 @@
-/* Convergence with depth: a slab of the vessel's medium before a surface that shines with radiance 1. A ray at 40 degrees sees
- * (1 - R)^2 (1 + R^2 + R^4 + ...), and a depth of recursion cuts that series off after a term: the first needs depth 2, each further
- * one two more. Of unpolarised light that is the series of the mean R when each interface takes the mean, and the mean of
- * the two series when rays carry their polarisation, as light does.
+/* Convergence with depth: a slab of the vessel's medium before a surface that shines with radiance 1. A ray at 40
+ * degrees sees (1 - R)^2 (1 + R^2 + R^4 + ...), and a depth of recursion cuts that series off after a term: the first
+ * needs depth 2, each further one two more. Of unpolarised light that is the series of the mean R when each interface
+ * takes the mean, and the mean of the two series when rays carry their polarisation, as light does.
  *
  * Tolerance: some film units, 5.7e-14 each, and a few roundings. */
 #include "realism/metrics.h"
@@ -38,7 +38,8 @@ status slab_measure(const metrics *m, int depth, bool polarised, double *transmi
     trial t;
     status code = trial_start(&t, slab_scene(m->traced, &m->at, depth, polarised), m->level, why);
     if (code == STATUS_OK)
-        code = probe_ray(t.p, vec3_make(0.0, 1.0, 0.0), vec3_make(sin(SLAB_ANGLE), -cos(SLAB_ANGLE), 0.0), &t.tree, why);
+        code =
+            probe_ray(t.p, vec3_make(0.0, 1.0, 0.0), vec3_make(sin(SLAB_ANGLE), -cos(SLAB_ANGLE), 0.0), &t.tree, why);
     if (code == STATUS_OK)
         *transmitted = t.tree.radiance[0];
     trial_end(&t);
@@ -51,7 +52,8 @@ double slab_theory(const metrics *m, int depth, bool polarised)
     if (n_from == n_to)
         return 1.0; /* without an interface no depth is needed */
     const double R_s = theory_fresnel_s(SLAB_ANGLE, n_from, n_to), R_p = theory_fresnel_p(SLAB_ANGLE, n_from, n_to);
-    return polarised ? (theory_slab(R_s, depth / 2) + theory_slab(R_p, depth / 2)) / 2.0 : theory_slab((R_s + R_p) / 2.0, depth / 2);
+    return polarised ? (theory_slab(R_s, depth / 2) + theory_slab(R_p, depth / 2)) / 2.0
+                     : theory_slab((R_s + R_p) / 2.0, depth / 2);
 }
 
 status realism_slab(const metrics *m, diagnostic *why)
@@ -68,8 +70,9 @@ status realism_slab(const metrics *m, diagnostic *why)
             code = slab_measure(m, depth, polarised, &measured, why);
             worst_take(&worst, measured, slab_theory(m, depth, polarised));
         }
-        metrics_add(m, (realism_value){names[polarised], exists ? what[polarised] : "constant shares know no polarisation", "", worst.measured,
-                                       worst.theory, SLAB_TOLERANCE});
+        metrics_add(m,
+                    (realism_value){names[polarised], exists ? what[polarised] : "constant shares know no polarisation",
+                                    "", worst.measured, worst.theory, SLAB_TOLERANCE});
     }
     return code;
 }

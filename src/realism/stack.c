@@ -1,6 +1,7 @@
-/* A stack of parallel plates, solids named plate1 and plate2: boxes alike, turned alike (experiments/scenes/plates.yaml). What the camera's
- * middle ray finds behind them, of white light: with polarisation s and p light each go their own way through the four interfaces, without it
- * every interface takes the mean of both, as renderers do. */
+/* A stack of parallel plates, solids named plate1 and plate2: boxes alike, turned alike
+ * (experiments/scenes/plates.yaml). What the camera's middle ray finds behind them, of white light: with polarisation s
+ * and p light each go their own way through the four interfaces, without it every interface takes the mean of both, as
+ * renderers do. */
 #include "realism/metrics.h"
 
 #include "realism/setup.h"
@@ -16,19 +17,25 @@ bool stack_is_there(const scene *s)
     return scene_find_solid(s, "plate1") >= 0 && scene_find_solid(s, "plate2") >= 0;
 }
 
-typedef struct stack { double angle, n; bool polarised; } stack;
+typedef struct stack {
+    double angle, n;
+    bool polarised;
+} stack;
 
 static bool stack_read(const scene *s, stack *out)
 {
     const solid *plate = &s->solids[scene_find_solid(s, "plate1")];
     const vec3 normal = mat3_apply(rotation_from_deg(plate->shape.rotation_deg), vec3_make(0.0, 0.0, 1.0));
-    *out = (stack){.angle = acos(fmin(fabs(normal.z), 1.0)), .polarised = s->render.polarisation != 0,
+    *out = (stack){.angle = acos(fmin(fabs(normal.z), 1.0)),
+                   .polarised = s->render.polarisation != 0,
                    .n = relative_index(s, scene_find_solid(s, "plate1"), s->render.lambda_nm)};
-    return !isnan(out->n) && s->solids[scene_find_solid(s, "plate2")].surface.transparency == 1.0 && plate->surface.transparency == 1.0;
+    return !isnan(out->n) && s->solids[scene_find_solid(s, "plate2")].surface.transparency == 1.0 &&
+           plate->surface.transparency == 1.0;
 }
 
-/* A plate of reflectance R at each face lets (1 - R) / (1 + R) through and sends the rest back; a second one behind it, with all that goes to and
- * fro between them: Stokes, "On the intensity of the light reflected from or transmitted through a pile of plates", Proc. R. Soc. 11, 1862. */
+/* A plate of reflectance R at each face lets (1 - R) / (1 + R) through and sends the rest back; a second one behind it,
+ * with all that goes to and fro between them: Stokes, "On the intensity of the light reflected from or transmitted
+ * through a pile of plates", Proc. R. Soc. 11, 1862. */
 static double through_two_plates(double R)
 {
     const double T = theory_slab_whole(R), back = 1.0 - T;
@@ -46,13 +53,15 @@ static double of_both(const stack *s, double (*through)(double R))
     return s->polarised ? 0.5 * (through(R_s) + through(R_p)) : through(0.5 * (R_s + R_p));
 }
 
-/* Sums up what ends in the sky or on a board and goes on as the eye looks: parallel faces turn nothing; and what the depth limit cut off. */
+/* Sums up what ends in the sky or on a board and goes on as the eye looks: parallel faces turn nothing; and what the
+ * depth limit cut off. */
 static void add_up(const ray_tree *tree, vec3 forward, double *through, double *cut)
 {
     *through = *cut = 0.0;
     for (size_t i = 0; i < tree->count; i++) {
         const ray_node *n = &tree->node[i];
-        if ((n->end == RAY_END_SKY || (n->end == RAY_END_HIT && n->hit.opaque)) && vec3_dot(n->direction, forward) > 1.0 - 1e-9)
+        if ((n->end == RAY_END_SKY || (n->end == RAY_END_HIT && n->hit.opaque)) &&
+            vec3_dot(n->direction, forward) > 1.0 - 1e-9)
             *through += n->throughput[0];
         else if (n->end == RAY_END_CUT_DEPTH)
             *cut += n->throughput[0];
@@ -74,7 +83,9 @@ static status look_through(const metrics *m, double *straight, double *whole, do
         code = probe_way(t.p, eye, forward, -1, &t.tree, why);
     if (code == STATUS_OK) {
         const ray_node *last = &t.tree.node[t.tree.count - 1];
-        *straight = t.tree.count == INTERFACES + 1 && (last->end == RAY_END_SKY || last->hit.opaque) ? last->throughput[0] : NAN;
+        *straight = t.tree.count == INTERFACES + 1 && (last->end == RAY_END_SKY || last->hit.opaque)
+                        ? last->throughput[0]
+                        : NAN;
         code = probe_ray(t.p, eye, forward, &t.tree, why);
     }
     if (code == STATUS_OK)
@@ -87,14 +98,16 @@ status realism_stack(const metrics *m, diagnostic *why)
 {
     stack supposed;
     if (!stack_read(m->supposed, &supposed))
-        return diagnose(why, STATUS_BAD_INPUT, "make both plates clear: transparency 1", "the plates of the stack are not clear");
+        return diagnose(why, STATUS_BAD_INPUT, "make both plates clear: transparency 1",
+                        "the plates of the stack are not clear");
     double straight, whole, cut;
     const status code = look_through(m, &straight, &whole, &cut, why);
     if (code != STATUS_OK)
         return code;
     metrics_add(m, (realism_value){"stack.straight", "what comes straight through four interfaces", "", straight,
                                    of_both(&supposed, straight_through), WEIGHT_TOLERANCE});
-    metrics_add(m, (realism_value){"stack.whole", "what comes through with all reflections; the tolerance is what depth 16 cuts off", "", whole,
-                                   of_both(&supposed, through_two_plates), cut + WEIGHT_TOLERANCE});
+    metrics_add(m, (realism_value){"stack.whole",
+                                   "what comes through with all reflections; the tolerance is what depth 16 cuts off",
+                                   "", whole, of_both(&supposed, through_two_plates), cut + WEIGHT_TOLERANCE});
     return code;
 }

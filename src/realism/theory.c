@@ -58,8 +58,8 @@ double theory_shells_reach(const theory_shells *c)
 double theory_shells_turn(const theory_shells *c, double offset)
 {
     const double invariant = c->n_around * offset;
-    return asin(offset / c->outer) - asin(invariant / (c->n_wall * c->outer))
-         + asin(invariant / (c->n_wall * c->inner)) - asin(invariant / (c->n_core * c->inner));
+    return asin(offset / c->outer) - asin(invariant / (c->n_wall * c->outer)) +
+           asin(invariant / (c->n_wall * c->inner)) - asin(invariant / (c->n_core * c->inner));
 }
 
 double theory_shells_deviation(const theory_shells *c, double offset)
@@ -69,7 +69,8 @@ double theory_shells_deviation(const theory_shells *c, double offset)
 
 double theory_shells_power(const theory_shells *c)
 {
-    return 2.0 * ((1.0 - c->n_around / c->n_wall) / c->outer + (c->n_around / c->n_wall - c->n_around / c->n_core) / c->inner);
+    return 2.0 * ((1.0 - c->n_around / c->n_wall) / c->outer +
+                  (c->n_around / c->n_wall - c->n_around / c->n_core) / c->inner);
 }
 
 /* Horizontal reach of the ray with n sin(angle) = p. */
@@ -80,7 +81,8 @@ static double reach(double p, double height, double depth, double n_above, doubl
 
 double theory_apparent_tangent(double height, double depth, double distance, double n_above, double n_below)
 {
-    double low = 0.0, high = fmin(n_above, n_below); /* reach grows from 0 to infinity, or to the end of the smaller medium's */
+    double low = 0.0,
+           high = fmin(n_above, n_below); /* reach grows from 0 to infinity, or to the end of the smaller medium's */
     if (!(height > 0.0 && depth >= 0.0))
         return NAN;
     for (int i = 0; i < 200; i++) {

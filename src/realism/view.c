@@ -6,8 +6,14 @@ view view_of(const scene *s)
 {
     const struct camera *c = &s->camera;
     const double degree = M_PI / 180.0;
-    view v = {.x = c->position.x, .y = c->position.y, .z = c->position.z, .yaw = c->yaw_deg * degree, .pitch = c->pitch_deg * degree,
-              .roll = c->roll_deg * degree, .width = (double)s->render.width, .height = (double)s->render.height};
+    view v = {.x = c->position.x,
+              .y = c->position.y,
+              .z = c->position.z,
+              .yaw = c->yaw_deg * degree,
+              .pitch = c->pitch_deg * degree,
+              .roll = c->roll_deg * degree,
+              .width = (double)s->render.width,
+              .height = (double)s->render.height};
     if (c->aimed) {
         const double dx = c->target.x - v.x, dy = c->target.y - v.y, dz = c->target.z - v.z;
         v.yaw = atan2(dx, dz);

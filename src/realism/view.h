@@ -1,5 +1,6 @@
-/* The camera in scalars: which way a point of the picture looks, and where a point of the scene lies in the picture. Pinhole
- * geometry, written apart from render/plan.c. Pictures count from their top left corner, px; lengths in scene units. Pure. */
+/* The camera in scalars: which way a point of the picture looks, and where a point of the scene lies in the picture.
+ * Pinhole geometry, written apart from render/plan.c. Pictures count from their top left corner, px; lengths in scene
+ * units. Pure. */
 #ifndef CUVETTE_REALISM_VIEW_H
 #define CUVETTE_REALISM_VIEW_H
 
@@ -16,7 +17,9 @@ typedef struct view {
 view view_of(const scene *s);
 
 /* Direction of length 1 through a point of the picture. */
-typedef struct sight { double x, y, z; } sight;
+typedef struct sight {
+    double x, y, z;
+} sight;
 sight view_through(const view *v, double px, double py);
 
 /* Where a point of the scene lies in the picture; false behind the camera. */

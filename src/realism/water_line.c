@@ -1,7 +1,7 @@
-/* The straw in the glass: a thin rod leans through a wide flat surface, and its left edge in the picture breaks there. The eye stands
- * above, not far away, so that every point below has its own angle: all of it counts, not only small angles. The break is the angle
- * between two secants of the edge, above and below. In a line of the picture the edge is the leftmost of the images of the
- * rod's four long edges, since what is seen of it is bounded by them.
+/* The straw in the glass: a thin rod leans through a wide flat surface, and its left edge in the picture breaks there.
+ * The eye stands above, not far away, so that every point below has its own angle: all of it counts, not only small
+ * angles. The break is the angle between two secants of the edge, above and below. In a line of the picture the edge is
+ * the leftmost of the images of the rod's four long edges, since what is seen of it is bounded by them.
  *
  * Tolerance: edges are good to 1e-11 px; over a secant of 50 px that is 1e-11 degrees. */
 #include "realism/metrics.h"
@@ -26,23 +26,28 @@ static scene *leaning_rod(const scene *s, const setup *at)
     solid *rod = &copy->solids[at->rod];
     rod->visible = 1;
     rod->priority = 2;
-    rod->shape = (solid_shape){.kind = SHAPE_BOX, .rotation_deg = {0.0, 0.0, -LEAN_DEG}, .size = {ROD_WIDTH, ROD_LENGTH, ROD_WIDTH}};
+    rod->shape = (solid_shape){
+        .kind = SHAPE_BOX, .rotation_deg = {0.0, 0.0, -LEAN_DEG}, .size = {ROD_WIDTH, ROD_LENGTH, ROD_WIDTH}};
     if (at->liquid >= 0) {
         solid *water = &copy->solids[at->liquid];
         water->visible = 1;
         water->priority = 1;
         water->shape = (solid_shape){.kind = SHAPE_PLANE};
     }
-    copy->camera = (struct camera){.position = {0.0, 3.0, -2.5}, .target = {0.0, 0.0, 0.0}, .aimed = 1, .fov_deg = 30.0};
+    copy->camera =
+        (struct camera){.position = {0.0, 3.0, -2.5}, .target = {0.0, 0.0, 0.0}, .aimed = 1, .fov_deg = 30.0};
     copy->render.width = 800;
     copy->render.height = 600;
     return copy;
 }
 
-typedef struct water { view eye; double n_above, n_below; } water;
+typedef struct water {
+    view eye;
+    double n_above, n_below;
+} water;
 
-/* Where a place on a long edge of the rod appears in the picture; the edge by its place in the rod's section, the place by
- * its distance along it from the middle. */
+/* Where a place on a long edge of the rod appears in the picture; the edge by its place in the rod's section, the place
+ * by its distance along it from the middle. */
 static bool edge_image(const water *w, int edge, double along, double *px, double *py)
 {
     const double lean = -LEAN_DEG * M_PI / 180.0;
@@ -52,10 +57,12 @@ static bool edge_image(const water *w, int edge, double along, double *px, doubl
         return view_place(&w->eye, x, y, z, px, py);
     const double dx = x - w->eye.x, dz = z - w->eye.z, distance = hypot(dx, dz);
     const double tangent = theory_apparent_tangent(w->eye.y, -y, distance, w->n_above, w->n_below);
-    return view_place(&w->eye, w->eye.x + tangent * dx / distance, w->eye.y - 1.0, w->eye.z + tangent * dz / distance, px, py);
+    return view_place(&w->eye, w->eye.x + tangent * dx / distance, w->eye.y - 1.0, w->eye.z + tangent * dz / distance,
+                      px, py);
 }
 
-/* Where that edge crosses a line of the picture; NaN if it does not. Its image falls from the top of the rod to its bottom. */
+/* Where that edge crosses a line of the picture; NaN if it does not. Its image falls from the top of the rod to its
+ * bottom. */
 static double crossing(const water *w, int edge, double line)
 {
     double low = -ROD_LENGTH / 2.0, high = ROD_LENGTH / 2.0, px = NAN, py = NAN;
@@ -77,7 +84,8 @@ static double crossing(const water *w, int edge, double line)
 
 static double break_deg(const double x[LINES])
 {
-    const double above = atan((x[0] - x[1]) / (line_at[1] - line_at[0])), below = atan((x[2] - x[3]) / (line_at[3] - line_at[2]));
+    const double above = atan((x[0] - x[1]) / (line_at[1] - line_at[0])),
+                 below = atan((x[2] - x[3]) / (line_at[3] - line_at[2]));
     return (above - below) * 180.0 / M_PI;
 }
 
@@ -97,12 +105,19 @@ static double theory_break(const scene *arranged, const setup *at)
     return break_deg(x);
 }
 
-typedef struct line { trial *t; int rod; double py; status code; diagnostic *why; } line;
+typedef struct line {
+    trial *t;
+    int rod;
+    double py;
+    status code;
+    diagnostic *why;
+} line;
 
 static bool traced_sees(void *context, double x)
 {
     line *l = context;
-    return trial_meets(l->t, l->t->s->camera.position, probe_camera_direction(l->t->p, x, l->py), l->rod, false, &l->code, l->why);
+    return trial_meets(l->t, l->t->s->camera.position, probe_camera_direction(l->t->p, x, l->py), l->rod, false,
+                       &l->code, l->why);
 }
 
 static status measure_break(const metrics *m, scene *arranged, double *degrees, diagnostic *why)

@@ -64,7 +64,8 @@ static void absorption_shares(tracer *t, int count)
             t->kept[c][i] = t->kept[c][i] > 0.0 ? absorption_left(t->kept[c][i]) : 1.0;
 }
 
-/* A way to the sky has no length to be dimmed over: its light is given where it arrives, at the surface that it goes on from. */
+/* A way to the sky has no length to be dimmed over: its light is given where it arrives, at the surface that it goes on
+ * from. */
 void absorption_spare_sky(tracer *t)
 {
     const plan *p = t->target.scene;

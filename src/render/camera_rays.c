@@ -15,8 +15,8 @@ static int64_t point_of(const render_settings *r, int64_t cells, int64_t ray)
     return wavelengths_inside ? ray / r->wavelengths : ray % (cells * cells);
 }
 
-/* k: how many cells a pixel has across. Fewer where there are fewer paths than samples: the first lines of cells alone would move
- * the picture. */
+/* k: how many cells a pixel has across. Fewer where there are fewer paths than samples: the first lines of cells alone
+ * would move the picture. */
 static int64_t cells_across(const render_settings *r)
 {
     const int64_t most = r->integrator == INTEGRATOR_PATH && r->paths < r->samples ? r->paths : r->samples;
@@ -32,7 +32,8 @@ void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
     const render_settings *r = &p->render;
     ray_queue *q = &t->waiting[0];
     double u[ROW], v[ROW];
-    const double across = 2.0 * p->view.half_width / (double)r->width, down = 2.0 * p->view.half_height / (double)r->height;
+    const double across = 2.0 * p->view.half_width / (double)r->width,
+                 down = 2.0 * p->view.half_height / (double)r->height;
     const int64_t each = camera_rays_a_pixel(r), flag = r->integrator == INTEGRATOR_PATH ? TICKET_SEES_LIGHTS : 0;
     const int64_t cells = cells_across(r);
     const int at = q->count;

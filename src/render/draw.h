@@ -1,5 +1,5 @@
-/* What is drawn by chance: a function of the seed, the pixel, the sample, the depth and the purpose, so that a picture does not
- * depend on who draws when (design, decision 5). Pure. */
+/* What is drawn by chance: a function of the seed, the pixel, the sample, the depth and the purpose, so that a picture
+ * does not depend on who draws when (design, decision 5). Pure. */
 #ifndef CUVETTE_RENDER_DRAW_H
 #define CUVETTE_RENDER_DRAW_H
 
@@ -10,7 +10,8 @@ enum { DRAW_WAVELENGTH, DRAW_BRANCH, DRAW_DIRECTION, DRAW_ROULETTE, DRAW_LIGHT /
 
 static inline random_words draw(int64_t seed, int64_t ticket, int depth, int purpose)
 {
-    return random_at((uint64_t)seed, (uint32_t)ticket_pixel(ticket), (uint32_t)ticket_sample(ticket), (uint32_t)depth, (uint32_t)purpose);
+    return random_at((uint64_t)seed, (uint32_t)ticket_pixel(ticket), (uint32_t)ticket_sample(ticket), (uint32_t)depth,
+                     (uint32_t)purpose);
 }
 
 #endif

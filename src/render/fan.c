@@ -27,7 +27,8 @@ static status set_axes(const fan_rule *rule, fan *f, diagnostic *why)
     const double length = vec3_length(n);
     vec3 across_axis = vec3_sub(n, vec3_scale(f->axis, vec3_dot(n, f->axis)));
     if (!(length > 0.0 && isfinite(length)) || vec3_length(across_axis) < 1e-9 * length)
-        return diagnose(why, STATUS_BAD_INPUT, "give a normal that is not along the axis", "the plane does not hold the axis");
+        return diagnose(why, STATUS_BAD_INPUT, "give a normal that is not along the axis",
+                        "the plane does not hold the axis");
     f->normal = vec3_normalize(across_axis);
     /* Seen from above, or upright: to the left of the axis or up. */
     f->across = vec3_cross(f->axis, f->normal);
@@ -101,7 +102,8 @@ static bool same_way(const fan *f, const fan_ray *a, const fan_ray *b)
     for (size_t k = 0; k < a->count; k++) {
         const ray_node *x = &f->node[a->first + k], *y = &f->node[b->first + k];
         const bool hits = x->end == RAY_END_HIT;
-        if (x->kind != y->kind || x->end != y->end || (hits && (x->hit.face_solid != y->hit.face_solid || x->hit.face != y->hit.face)))
+        if (x->kind != y->kind || x->end != y->end ||
+            (hits && (x->hit.face_solid != y->hit.face_solid || x->hit.face != y->hit.face)))
             return false;
     }
     return true;
@@ -136,7 +138,8 @@ static bool is_bent(const fan_ray *ray)
     return ray->leaves && ray->count > 1;
 }
 
-/* Solves sum (1 - d d^T) x = sum (1 - d d^T) p by Cramer's rule, p from the first exit point on, so that nothing cancels. */
+/* Solves sum (1 - d d^T) x = sum (1 - d d^T) p by Cramer's rule, p from the first exit point on, so that nothing
+ * cancels. */
 static void find_focus(fan *f)
 {
     vec3 row[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, right = {0, 0, 0}, base = {0, 0, 0};
@@ -156,7 +159,8 @@ static void find_focus(fan *f)
     if (count < 2 || det < 1e-16 * size)
         return;
     const vec3 x = vec3_scale(vec3_add(vec3_scale(vec3_cross(row[1], row[2]), right.x),
-                                       vec3_add(vec3_scale(vec3_cross(row[2], row[0]), right.y), vec3_scale(vec3_cross(row[0], row[1]), right.z))),
+                                       vec3_add(vec3_scale(vec3_cross(row[2], row[0]), right.y),
+                                                vec3_scale(vec3_cross(row[0], row[1]), right.z))),
                               1.0 / det);
     f->focus = vec3_add(base, x);
     f->has_focus = true;
@@ -178,8 +182,10 @@ static status check_rule(const fan_rule *rule, diagnostic *why)
 {
     if (rule->rays < 1 || rule->rays > FAN_RAYS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "give 1 to 100000", "%d rays are out of range", rule->rays);
-    if (rule->spreads ? !(rule->spread_deg >= 0.0 && rule->spread_deg < 180.0) : !(rule->width >= 0.0 && rule->width <= 1e6))
-        return diagnose(why, STATUS_BAD_INPUT, rule->spreads ? "give 0 to less than 180 degrees" : "give 0 to 1e6 scene units",
+    if (rule->spreads ? !(rule->spread_deg >= 0.0 && rule->spread_deg < 180.0)
+                      : !(rule->width >= 0.0 && rule->width <= 1e6))
+        return diagnose(why, STATUS_BAD_INPUT,
+                        rule->spreads ? "give 0 to less than 180 degrees" : "give 0 to 1e6 scene units",
                         "the %s is out of range", rule->spreads ? "spread" : "width");
     return STATUS_OK;
 }

@@ -23,7 +23,8 @@ status film_create(int width, int height, int layers, film_space space, film **o
         f->memory = malloc(bytes + ALIGNMENT); /* aligned_alloc would leave gaps that the next film does not fit into */
     if (!f || !f->memory) {
         free(f);
-        return diagnose(why, STATUS_FAILURE, "render a smaller picture", "out of memory for a film of %d x %d", width, height);
+        return diagnose(why, STATUS_FAILURE, "render a smaller picture", "out of memory for a film of %d x %d", width,
+                        height);
     }
     f->sum = (int64_t *)(((uintptr_t)f->memory + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
     memset(f->sum, 0, bytes); /* the pages are there before the clock starts */

@@ -25,7 +25,8 @@ static void gather_one(const ray_queue *q, int from, const hit_batch *hits, int 
     g->inside_after[k] = hits->inside_after[i];
 }
 
-void group_gather(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count, group *g)
+void group_gather(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count,
+                  group *g)
 {
     const int last = list[count - 1], before = list[0];
     g->count = count;

@@ -1,5 +1,6 @@
-/* The cone that a light's light stays in: of a spotlight's `cone` all of it up to the half-angle a from the axis, of a `soft_cone` a
- * share that falls from 1 on the axis to 0 at the half-angle, linear in the cosine: (cos t - cos a) / (1 - cos a). Pure. */
+/* The cone that a light's light stays in: of a spotlight's `cone` all of it up to the half-angle a from the axis, of a
+ * `soft_cone` a share that falls from 1 on the axis to 0 at the half-angle, linear in the cosine: (cos t - cos a) / (1
+ * - cos a). Pure. */
 #ifndef CUVETTE_RENDER_LIGHT_CONE_H
 #define CUVETTE_RENDER_LIGHT_CONE_H
 
@@ -22,7 +23,8 @@ static inline light_cone light_cone_of(const light *l)
     return (light_cone){vec3_normalize(vec3_sub(l->target, l->position)), all_around ? 3.0 : 2.0 * sine * sine};
 }
 
-/* 1 - cos t of a direction from the light, a unit vector: half the square of what it is off the axis, which does not cancel. */
+/* 1 - cos t of a direction from the light, a unit vector: half the square of what it is off the axis, which does not
+ * cancel. */
 static inline double light_cone_off(const light_cone *c, vec3 direction)
 {
     const vec3 off = vec3_sub(direction, c->axis);

@@ -1,4 +1,5 @@
-/* Rays that met meshes: where, with which normal, and what a triangle that a normal only pretends to be curved lets through. */
+/* Rays that met meshes: where, with which normal, and what a triangle that a normal only pretends to be curved lets
+ * through. */
 #include "render/tracer_private.h"
 
 #include "render/film.h"
@@ -47,8 +48,8 @@ void mesh_bound_light(tracer *t)
     }
 }
 
-/* A reflected ray stays on its side of the triangle, a refracted one leaves it; where the interpolated normal sends the refracted ray back, all
- * of the light is reflected, as at total reflection. */
+/* A reflected ray stays on its side of the triangle, a refracted one leaves it; where the interpolated normal sends the
+ * refracted ray back, all of the light is reflected, as at total reflection. */
 void mesh_bound_branches(tracer *t)
 {
     branch_group *b = &t->branches;
@@ -60,7 +61,8 @@ void mesh_bound_branches(tracer *t)
             b->refract[k] = 0.0;
         }
         if (!(vec3_dot(n, vec3_make(b->rx[k], b->ry[k], b->rz[k])) > 0.0)) {
-            const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]), r = vec3_sub(d, vec3_scale(n, 2.0 * vec3_dot(d, n)));
+            const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]),
+                       r = vec3_sub(d, vec3_scale(n, 2.0 * vec3_dot(d, n)));
             b->rx[k] = r.x, b->ry[k] = r.y, b->rz[k] = r.z;
         }
     }
@@ -79,7 +81,8 @@ static void move_to_corner(tracer *t, int corner, const forest_part *part)
     const mesh_points *m = &t->meshes->points;
     for (int k = 0; k < g->count; k++) {
         const uint32_t vertex = m->corner[corner][k];
-        const vec3 at = forest_vertex_point(part, mesh_face_copy(g->points.face[k]), vertex), o = vec3_make(g->ox[k], g->oy[k], g->oz[k]);
+        const vec3 at = forest_vertex_point(part, mesh_face_copy(g->points.face[k]), vertex),
+                   o = vec3_make(g->ox[k], g->oy[k], g->oz[k]);
         const vec3 side = geometric(t->meshes, k), way = vec3_sub(at, o);
         vec3 n = forest_vertex_normal(part, vertex);
         n = vec3_dot(n, n) > 0.0 ? n : side;
@@ -93,8 +96,8 @@ static void move_to_corner(tracer *t, int corner, const forest_part *part)
     }
 }
 
-/* Gouraud, "Continuous shading of curved surfaces" (1971): light at a triangle's corners, and between them by their weights. Shadows are the
- * point's own. */
+/* Gouraud, "Continuous shading of curved surfaces" (1971): light at a triangle's corners, and between them by their
+ * weights. Shadows are the point's own. */
 void mesh_corner_light(tracer *t, const material *m, const light *lamp, int rank)
 {
     mesh_work *w = t->meshes;
@@ -110,17 +113,19 @@ void mesh_corner_light(tracer *t, const material *m, const light *lamp, int rank
         move_to_corner(t, corner, part);
         for (int k = g->count; k < g->padded; k++) {
             copy_point(&w->corner.points, &w->points, k, g->count - 1);
-            w->corner.dx[k] = w->corner.dx[g->count - 1], w->corner.dy[k] = w->corner.dy[g->count - 1], w->corner.dz[k] = w->corner.dz[g->count - 1];
+            w->corner.dx[k] = w->corner.dx[g->count - 1], w->corner.dy[k] = w->corner.dy[g->count - 1],
+            w->corner.dz[k] = w->corner.dz[g->count - 1];
         }
         t->shade->direct(m, lamp, &w->corner, &w->corner_light);
         for (int k = 0; k < g->count; k++) {
             const double weight = w->points.weight[corner][k];
-            l->r[k] += weight * w->corner_light.r[k], l->g[k] += weight * w->corner_light.g[k], l->b[k] += weight * w->corner_light.b[k];
+            l->r[k] += weight * w->corner_light.r[k], l->g[k] += weight * w->corner_light.g[k],
+                l->b[k] += weight * w->corner_light.b[k];
         }
     }
     const double least = 0.5 / FILM_ONE;
     for (int k = 0; k < g->count; k++)
-        l->shows[k] = -(int64_t)!(l->r[k] < least && l->g[k] < least && l->b[k] < least);
+        l->shows[k] = -(int64_t) !(l->r[k] < least && l->g[k] < least && l->b[k] < least);
 }
 
 static int slot_of(const tracer *t, int i)

@@ -1,13 +1,13 @@
-/* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is drawn by chance, weighed so that the
- * mean over all paths is the whole tree's. What stands for the light's way:
- *   a clear surface  reflects or refracts with Fresnel's shares as odds, so that the weight does not change;
- *   a matte surface  is lit by every light, at a point of the light's sphere drawn evenly over the cone in which it is seen (Shirley,
- *                    Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 15(1), 1996), and sends the
- *                    path on by the cosine law, or like a mirror by its reflectivity.
- * A sphere that shines is met by rays from the eye and from clear or mirror-like surfaces alone: matte ones have looked for it
- * already. That is how light through a vessel makes caustics. Beside a sphere, points of light too are blocked by clear solids.
- * A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as bright as in Phong's sum.
- * Ambient light is left out: here it is what the sky and the other surfaces send. */
+/* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is drawn by chance,
+ * weighed so that the mean over all paths is the whole tree's. What stands for the light's way: a clear surface
+ * reflects or refracts with Fresnel's shares as odds, so that the weight does not change; a matte surface  is lit by
+ * every light, at a point of the light's sphere drawn evenly over the cone in which it is seen (Shirley, Wang and
+ * Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 15(1), 1996), and sends the path on by the
+ * cosine law, or like a mirror by its reflectivity. A sphere that shines is met by rays from the eye and from clear or
+ * mirror-like surfaces alone: matte ones have looked for it already. That is how light through a vessel makes caustics.
+ * Beside a sphere, points of light too are blocked by clear solids. A light's radiance is intensity (reach / radius)^2,
+ * so that a matte surface at its reach is as bright as in Phong's sum. Ambient light is left out: here it is what the
+ * sky and the other surfaces send. */
 #include "render/tracer_private.h"
 
 #include "base/elementary.h"
@@ -18,8 +18,8 @@
 /* Below this depth every path goes on; after it faint ones end by chance. */
 enum { ROULETTE_DEPTH = 3 };
 
-/* Radiance that a ray along a unit vector meets on a light's sphere, for a colour of 1. Of a cone each point of the sphere shines
- * into the cone alone, so that far away it is the cone of a point. */
+/* Radiance that a ray along a unit vector meets on a light's sphere, for a colour of 1. Of a cone each point of the
+ * sphere shines into the cone alone, so that far away it is the cone of a point. */
 static double radiance_along(const plan *p, int lamp, vec3 direction)
 {
     const light *l = &p->lights[lamp];
@@ -73,7 +73,8 @@ void path_meet_lights(tracer *t, const ray_queue *q, int first, int count)
             if (p->lights[k].radius == 0.0)
                 continue;
             const vec3 origin = vec3_make(q->ox[at], q->oy[at], q->oz[at]);
-            const double distance = distance_to_light(&p->lights[k], origin, vec3_make(q->dx[at], q->dy[at], q->dz[at]));
+            const double distance =
+                distance_to_light(&p->lights[k], origin, vec3_make(q->dx[at], q->dy[at], q->dz[at]));
             if (distance < nearest) {
                 nearest = distance;
                 t->met_light[i] = k;
@@ -116,18 +117,22 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
     const double distance2 = vec3_dot(way, way), share2 = l->radius * l->radius / distance2;
     if (share2 >= 1.0)
         return;
-    const double least_cos = sqrt(1.0 - share2), cap = share2 / (1.0 + least_cos); /* 1 - least_cos, without its cancellation */
+    const double least_cos = sqrt(1.0 - share2),
+                 cap = share2 / (1.0 + least_cos); /* 1 - least_cos, without its cancellation */
     const random_words drawn = draw(p->render.seed, g->ticket[k], depth, DRAW_LIGHT + lamp);
     const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
     const vec3 to = direction_about(vec3_scale(way, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
-    const double n_l = vec3_dot(n, to), radiance = radiance_along(p, lamp, to), within = l->radius * l->radius - distance2 * sine * sine;
+    const double n_l = vec3_dot(n, to), radiance = radiance_along(p, lamp, to),
+                 within = l->radius * l->radius - distance2 * sine * sine;
     if (!(n_l > 0.0) || radiance == 0.0 || !mesh_lets_out(t, k, to))
         return;
     const double reach = sqrt(distance2) * cosine - sqrt(within > 0.0 ? within : 0.0);
     /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)); Phong's highlight by the same light. */
     const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
     const double r_v = 2.0 * n_l * g->points.cos_i[k] + vec3_dot(d, to);
-    const double shine = opaque && m->specular > 0.0 && r_v > 0.0 ? m->specular * elementary_pow(r_v < 1.0 ? r_v : 1.0, m->shininess) : 0.0;
+    const double shine = opaque && m->specular > 0.0 && r_v > 0.0
+                             ? m->specular * elementary_pow(r_v < 1.0 ? r_v : 1.0, m->shininess)
+                             : 0.0;
     const double seen = 2.0 * cap * radiance, diffuse = m->diffuse * n_l;
     const vec3 color = vec3_scale(light_color(t, lamp, g->ticket[k]), seen);
     ray_queue *q = &t->shadows;
@@ -141,7 +146,11 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
 }
 
 /* A continuation: where to, through which media, with which share of each channel. */
-typedef struct continuation { vec3 direction, share; uint64_t inside; bool refracted, sees_lights; } continuation;
+typedef struct continuation {
+    vec3 direction, share;
+    uint64_t inside;
+    bool refracted, sees_lights;
+} continuation;
 
 static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
 {
@@ -160,7 +169,8 @@ static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
 static bool draw_matte(const tracer *t, const material *m, int k, int depth, double chance, continuation *c)
 {
     const group *g = &t->gathered;
-    const double brightest = fmax(g->cr[k], fmax(g->cg[k], g->cb[k])), matte = m->diffuse * brightest, mirror = m->reflectivity;
+    const double brightest = fmax(g->cr[k], fmax(g->cg[k], g->cb[k])), matte = m->diffuse * brightest,
+                 mirror = m->reflectivity;
     if (!(matte + mirror > 0.0))
         return false;
     const bool mirrored = chance * (matte + mirror) < mirror;

@@ -4,8 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface unless it is coated or shines; with
- * constant shares, as in the report, every surface reflects whatever its index. laws: by solid, [solid_count] the surroundings'. */
+/* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface unless it is coated
+ * or shines; with constant shares, as in the report, every surface reflects whatever its index. laws: by solid,
+ * [solid_count] the surroundings'. */
 static bool shows_itself(const scene *s, const material *m)
 {
     return m->emission > 0.0 || material_coating(m, &s->render) > 0.0;
@@ -27,7 +28,8 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
     return solid_index + 1;
 }
 
-/* The hierarchy of the solid's mesh: the mesh's own, or one for this frame, of which solids of one mesh share the first's. */
+/* The hierarchy of the solid's mesh: the mesh's own, or one for this frame, of which solids of one mesh share the
+ * first's. */
 static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
 {
     const hierarchy_kind kind = (hierarchy_kind)s->render.accel;
@@ -76,7 +78,8 @@ static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, 
     const status code = tree_of(s, i, p, m->data, &source->tree, why);
     bool first = true;
     for (size_t k = 0; k < i; k++)
-        first &= !(s->solids[k].visible && s->solids[k].shape.kind == SHAPE_MESH && strcmp(s->solids[k].mesh, one->mesh) == 0);
+        first &= !(s->solids[k].visible && s->solids[k].shape.kind == SHAPE_MESH &&
+                   strcmp(s->solids[k].mesh, one->mesh) == 0);
     if (code == STATUS_OK)
         report_mesh(p, m, shape, source->tree, first);
     return code;

@@ -1,5 +1,6 @@
-/* A scene made ready for tracing: solids in order of rank, materials and indices by rank, the camera's frame. Built once a
- * frame, then read by all workers. Ownership: plan_build gives, plan_destroy releases; it borrows the scene's lights and sky. */
+/* A scene made ready for tracing: solids in order of rank, materials and indices by rank, the camera's frame. Built
+ * once a frame, then read by all workers. Ownership: plan_build gives, plan_destroy releases; it borrows the scene's
+ * lights and sky. */
 #ifndef CUVETTE_RENDER_PLAN_H
 #define CUVETTE_RENDER_PLAN_H
 
@@ -28,21 +29,22 @@ typedef struct plan {
     size_t own_tree_count;
     double **clearness; /* by solid: of its faces by slot, or NULL; as many as own_trees */
     mesh_report meshes;
-    material *mirrors;          /* by solid: clear materials whose index makes them mirrors, as opaque ones */
-    double *ior;                /* by rank; [0] is the surrounding medium's; at render.lambda_nm */
-    index_law *laws;            /* by rank: what ior was taken from */
-    vec3 *absorption;           /* by rank: Beer and Lambert's coefficients and tints, by channel, in 1 / scene unit */
-    spectra *spectral;          /* of a spectral film, else NULL */
+    material *mirrors; /* by solid: clear materials whose index makes them mirrors, as opaque ones */
+    double *ior;       /* by rank; [0] is the surrounding medium's; at render.lambda_nm */
+    index_law *laws;   /* by rank: what ior was taken from */
+    vec3 *absorption;  /* by rank: Beer and Lambert's coefficients and tints, by channel, in 1 / scene unit */
+    spectra *spectral; /* of a spectral film, else NULL */
     camera_frame view;
-    uint64_t eye_inside;        /* the set of primitives that the camera stands in */
-    int eye_rank;               /* and the medium there */
-    bool basic;                 /* rays carry basic radiance: see radiance.c */
+    uint64_t eye_inside; /* the set of primitives that the camera stands in */
+    int eye_rank;        /* and the medium there */
+    bool basic;          /* rays carry basic radiance: see radiance.c */
     render_settings render;
-    bool solid_shadows;         /* every solid blocks a light: it is asked for, or what comes through is found by random paths */
+    /* every solid blocks a light: it is asked for, or what comes through is found by random paths */
+    bool solid_shadows;
     const background *sky;
     vec3 sky_mean; /* over all directions; worked out where render.beyond is mean */
     const light *lights;
-    light_cone *cones;          /* by light; of a point light it means nothing */
+    light_cone *cones; /* by light; of a point light it means nothing */
     int light_count;
 } plan;
 

@@ -1,6 +1,6 @@
-/* Polarised light on its way back to the eye: each ray carries the analyser's Stokes vector (optics/mueller.h), of which the first
- * element is in its throughput and the others, relative to that, in the queue. Light comes unpolarised from the sky, from lights
- * and from matte surfaces, so that the first element alone weighs it. */
+/* Polarised light on its way back to the eye: each ray carries the analyser's Stokes vector (optics/mueller.h), of
+ * which the first element is in its throughput and the others, relative to that, in the queue. Light comes unpolarised
+ * from the sky, from lights and from matte surfaces, so that the first element alone weighs it. */
 #include "render/tracer_private.h"
 
 #include "optics/mueller.h"
@@ -39,10 +39,12 @@ void polarised_branches(tracer *t, const material *m, bool opaque)
         const stokes row = {1.0, p->q[k], p->u[k], p->v[k]};
         const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
         const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
-        const vec3 reflected = vec3_make(b->rx[k], b->ry[k], b->rz[k]), refracted = vec3_make(b->tx[k], b->ty[k], b->tz[k]);
+        const vec3 reflected = vec3_make(b->rx[k], b->ry[k], b->rz[k]),
+                   refracted = vec3_make(b->tx[k], b->ty[k], b->tz[k]);
         const double cos_i = g->points.cos_i[k];
         if (opaque) {
-            b->reflect[k] = m->reflectivity * take_apart(analyser_mirror(row, d, n, reflected), &p->rq[k], &p->ru[k], &p->rv[k]);
+            b->reflect[k] =
+                m->reflectivity * take_apart(analyser_mirror(row, d, n, reflected), &p->rq[k], &p->ru[k], &p->rv[k]);
             continue;
         }
         stokes r = analyser_reflect(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected);

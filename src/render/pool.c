@@ -20,8 +20,8 @@ typedef struct worker {
 
 struct pool {
     worker **workers;
-    int count;               /* threads that wait */
-    int running;             /* of this run */
+    int count;   /* threads that wait */
+    int running; /* of this run */
     bool quit;
     pool_task *task;
     void *context;
@@ -179,7 +179,8 @@ static status run_fresh(pool *p, int count, void (*watch)(void *), double every_
     return missing > 0 ? no_thread(started, error, why) : STATUS_OK;
 }
 
-status pool_run(pool *p, int count, bool keep, pool_task *task, void (*watch)(void *), double every_s, void *context, diagnostic *why)
+status pool_run(pool *p, int count, bool keep, pool_task *task, void (*watch)(void *), double every_s, void *context,
+                diagnostic *why)
 {
     if (keep) {
         status code = pool_reserve(p, count, why);

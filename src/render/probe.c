@@ -107,8 +107,9 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
 {
     const render_settings *r = &p->scene->render;
     if (x < 0 || y < 0 || x >= r->width || y >= r->height)
-        return diagnose(why, STATUS_BAD_INPUT, "count pixels from 0,0 at the top left", "pixel %d,%d is outside the picture of %lld x %lld",
-                        x, y, (long long)r->width, (long long)r->height);
+        return diagnose(why, STATUS_BAD_INPUT, "count pixels from 0,0 at the top left",
+                        "pixel %d,%d is outside the picture of %lld x %lld", x, y, (long long)r->width,
+                        (long long)r->height);
     status code = begin(p, tree, why);
     if (code != STATUS_OK)
         return code;
@@ -182,7 +183,8 @@ int probe_medium_at(const probe *p, vec3 point)
         return a->bodies[arrangement_rank(a, arrangement_inside(a, point))].solid;
     for (int i = 0; i < (int)s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        if (one->visible && solid_shape_contains(&one->shape, point) && (best < 0 || one->priority > s->solids[best].priority))
+        if (one->visible && solid_shape_contains(&one->shape, point) &&
+            (best < 0 || one->priority > s->solids[best].priority))
             best = i;
     }
     return best;

@@ -1,5 +1,5 @@
-/* How a tree grows: each ray goes through the tracer alone, and what the tracer leaves in its hits, its gathered group, its branches
- * and its queues is written down. */
+/* How a tree grows: each ray goes through the tracer alone, and what the tracer leaves in its hits, its gathered group,
+ * its branches and its queues is written down. */
 #include "render/probe_private.h"
 
 #include "optics/interface.h"
@@ -12,7 +12,8 @@ status probe_check_ray(vec3 origin, vec3 direction, diagnostic *why)
 {
     const double far = 1e6;
     if (!(fabs(origin.x) <= far && fabs(origin.y) <= far && fabs(origin.z) <= far))
-        return diagnose(why, STATUS_BAD_INPUT, "start within 1e6 scene units of the middle", "the ray starts too far away");
+        return diagnose(why, STATUS_BAD_INPUT, "start within 1e6 scene units of the middle",
+                        "the ray starts too far away");
     if (!(isfinite(direction.x) && isfinite(direction.y) && isfinite(direction.z)))
         return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "the ray's direction is not finite");
     if (direction.x == 0.0 && direction.y == 0.0 && direction.z == 0.0)
@@ -37,9 +38,12 @@ ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction)
 
 static void take(const ray_queue *q, int i, ray_record *out)
 {
-    *out = (ray_record){.origin = vec3_make(q->ox[i], q->oy[i], q->oz[i]), .direction = vec3_make(q->dx[i], q->dy[i], q->dz[i]),
-                        .weight = {q->wr[i], q->wg[i], q->wb[i]}, .stokes = {q->sq[i], q->su[i], q->sv[i]},
-                        .start = q->start[i], .inside = q->inside[i]};
+    *out = (ray_record){.origin = vec3_make(q->ox[i], q->oy[i], q->oz[i]),
+                        .direction = vec3_make(q->dx[i], q->dy[i], q->dz[i]),
+                        .weight = {q->wr[i], q->wg[i], q->wb[i]},
+                        .stokes = {q->sq[i], q->su[i], q->sv[i]},
+                        .start = q->start[i],
+                        .inside = q->inside[i]};
 }
 
 void probe_take(const probe *p, int depth, int i, ray_record *out)
@@ -71,11 +75,12 @@ static void run_one(probe *p, int depth, double brought[3])
         brought[c] = (double)(p->picture->sum[c] - before[c]) / FILM_ONE;
 }
 
-static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind kind, int parent, size_t *at, diagnostic *why)
+static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind kind, int parent, size_t *at,
+                       diagnostic *why)
 {
     if (tree->count >= PROBE_NODES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "lower render.depth, or set render.min_weight", "the tree has more than %d rays",
-                        (int)PROBE_NODES_MAX);
+        return diagnose(why, STATUS_BAD_INPUT, "lower render.depth, or set render.min_weight",
+                        "the tree has more than %d rays", (int)PROBE_NODES_MAX);
     if (tree->count == tree->capacity) {
         const size_t capacity = tree->capacity ? 2 * tree->capacity : 64;
         ray_node *grown = realloc(tree->node, capacity * sizeof *grown);
@@ -85,12 +90,20 @@ static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind k
         tree->capacity = capacity;
     }
     *at = tree->count++;
-    tree->node[*at] = (ray_node){.kind = kind, .end = RAY_END_SKY, .depth = r->depth, .parent = parent, .first_child = RAY_NONE,
-                                 .next = RAY_NONE, .origin = r->origin, .direction = r->direction,
+    tree->node[*at] = (ray_node){.kind = kind,
+                                 .end = RAY_END_SKY,
+                                 .depth = r->depth,
+                                 .parent = parent,
+                                 .first_child = RAY_NONE,
+                                 .next = RAY_NONE,
+                                 .origin = r->origin,
+                                 .direction = r->direction,
                                  .throughput = {r->weight[0], r->weight[1], r->weight[2]},
                                  .stokes = {1.0, r->stokes[0], r->stokes[1], r->stokes[2]},
-                                 .medium = p->scene->solids->bodies[r->medium_rank].solid, .n = p->scene->ior[r->medium_rank],
-                                 .light = RAY_NONE, .let_through = 1.0};
+                                 .medium = p->scene->solids->bodies[r->medium_rank].solid,
+                                 .n = p->scene->ior[r->medium_rank],
+                                 .light = RAY_NONE,
+                                 .let_through = 1.0};
     return STATUS_OK;
 }
 
@@ -171,7 +184,12 @@ static bool read_hit(const probe *p, ray_node *node)
 }
 
 /* The branches of the ray just traced: records, kinds, and how those ended that were not put in line. */
-typedef struct branches { int count; ray_record record[2]; ray_kind kind[2]; ray_end end[2]; } branches;
+typedef struct branches {
+    int count;
+    ray_record record[2];
+    ray_kind kind[2];
+    ray_end end[2];
+} branches;
 
 static bool is_too_light(const double weight[3], double least)
 {
@@ -189,9 +207,12 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
     const int i = out->count++;
     ray_record *r = &out->record[i];
     *r = (ray_record){.origin = vec3_make(g->points.px[0], g->points.py[0], g->points.pz[0]),
-                      .direction = reflected ? vec3_make(b->rx[0], b->ry[0], b->rz[0]) : vec3_make(b->tx[0], b->ty[0], b->tz[0]),
-                      .weight = {g->wr[0] * share, g->wg[0] * share, g->wb[0] * share}, .start = g->points.face[0],
-                      .inside = reflected ? g->inside_before[0] : g->inside_after[0], .depth = depth + 1,
+                      .direction =
+                          reflected ? vec3_make(b->rx[0], b->ry[0], b->rz[0]) : vec3_make(b->tx[0], b->ty[0], b->tz[0]),
+                      .weight = {g->wr[0] * share, g->wg[0] * share, g->wb[0] * share},
+                      .start = g->points.face[0],
+                      .inside = reflected ? g->inside_before[0] : g->inside_after[0],
+                      .depth = depth + 1,
                       .medium_rank = (int)(reflected ? t->hits.before[0] : t->hits.after[0])};
     if (p->scene->render.polarisation) {
         const polar_group *v = &t->polar;
@@ -296,7 +317,8 @@ static status add_cut(probe *p, ray_tree *tree, int parent, const branches *b, i
     return STATUS_OK;
 }
 
-status probe_grow(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind, int parent, size_t *at, diagnostic *why)
+status probe_grow(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind, int parent, size_t *at,
+                  diagnostic *why)
 {
     status code = add_node(p, tree, ray, kind, parent, at, why);
     if (code != STATUS_OK)

@@ -6,11 +6,11 @@
 #include "render/tracer_private.h"
 
 struct probe {
-    scene *setting;  /* its own copy */
+    scene *setting; /* its own copy */
     plan *scene;
     tracer *rays;
-    film *picture;   /* one pixel */
-    bool spectral;   /* its picture would be */
+    film *picture; /* one pixel */
+    bool spectral; /* its picture would be */
 };
 
 /* A record of a queue, by itself. */
@@ -20,7 +20,7 @@ typedef struct ray_record {
     int64_t start;
     uint64_t inside;
     int depth;
-    int medium_rank;  /* it sets out in */
+    int medium_rank; /* it sets out in */
 } ray_record;
 
 status probe_check_ray(vec3 origin, vec3 direction, diagnostic *why);
@@ -30,7 +30,8 @@ ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction);
 void probe_take(const probe *p, int depth, int i, ray_record *out);
 
 /* Adds a ray and all that comes of it to the tree; *at is its index. */
-status probe_grow(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind, int parent, size_t *at, diagnostic *why);
+status probe_grow(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind, int parent, size_t *at,
+                  diagnostic *why);
 
 /* Adds a ray and of its branches one each: see probe_way. */
 status probe_follow(probe *p, ray_tree *tree, const ray_record *ray, int reflect_at, diagnostic *why);

@@ -34,8 +34,8 @@ void queue_destroy(ray_queue *q)
 ray_batch queue_take(ray_queue *q, int *first)
 {
     int from = q->count > BATCH ? (q->count - BATCH + LANES - 1) / LANES * LANES : 0;
-    ray_batch b = {q->count - from, q->ox + from,    q->oy + from,     q->oz + from,    q->dx + from,
-                   q->dy + from,    q->dz + from,    q->start + from,  q->inside + from};
+    ray_batch b = {q->count - from, q->ox + from, q->oy + from,    q->oz + from,    q->dx + from,
+                   q->dy + from,    q->dz + from, q->start + from, q->inside + from};
     q->count = from;
     *first = from;
     return b;

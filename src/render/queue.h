@@ -10,18 +10,18 @@
 typedef struct ray_queue {
     int count, capacity;
     double *ox, *oy, *oz, *dx, *dy, *dz;
-    double *wr, *wg, *wb;   /* throughput; of a shadow ray the radiance that it brings if nothing is in the way */
+    double *wr, *wg, *wb;    /* throughput; of a shadow ray the radiance that it brings if nothing is in the way */
     int64_t *start, *ticket; /* face it starts on; render/ticket.h */
     uint64_t *inside;
-    double *sq, *su, *sv;   /* with polarisation: the analyser's Stokes vector relative to its first element */
+    double *sq, *su, *sv; /* with polarisation: the analyser's Stokes vector relative to its first element */
     void *memory;
 } ray_queue;
 
 bool queue_create(ray_queue *q, int capacity);
 void queue_destroy(ray_queue *q);
 
-/* Takes a batch off the end: at most BATCH rays, as many as leave the rest a multiple of the widest vector long. The view holds
- * until rays are added. */
+/* Takes a batch off the end: at most BATCH rays, as many as leave the rest a multiple of the widest vector long. The
+ * view holds until rays are added. */
 ray_batch queue_take(ray_queue *q, int *first);
 
 /* Moves record from into record to. */

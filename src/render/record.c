@@ -28,8 +28,9 @@ static status picture_of_values(const double *values, const film *f, image **out
 status record_map(const double *values, const film *f, const char *title, const char *path, diagnostic *why)
 {
     image *picture = NULL;
-    status code = image_format_of(path) == IMAGE_PFM ? picture_of_values(values, f, &picture, why)
-                                                     : heatmap_create(values, f->width, f->height, title, &picture, why);
+    status code = image_format_of(path) == IMAGE_PFM
+                      ? picture_of_values(values, f, &picture, why)
+                      : heatmap_create(values, f->width, f->height, title, &picture, why);
     if (code == STATUS_OK)
         code = image_write(picture, path, 8, why);
     image_destroy(picture);

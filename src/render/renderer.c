@@ -16,7 +16,10 @@ struct renderer {
     tracer_set *tracers;
 };
 
-typedef struct event_list { tile_event *event; size_t count, capacity; } event_list;
+typedef struct event_list {
+    tile_event *event;
+    size_t count, capacity;
+} event_list;
 
 /* What one worker writes during a frame, on cache lines of its own. */
 typedef struct desk {
@@ -32,7 +35,7 @@ typedef struct frame {
     const render_options *options;
     const plan *scene;
     const film *picture;
-    zbuffer *depths;  /* of a frame that is drawn, else NULL */
+    zbuffer *depths; /* of a frame that is drawn, else NULL */
     schedule pieces;
     desk *desks;
     double began_s;
@@ -139,7 +142,8 @@ static void trace_pieces(frame *f, int worker, desk *d, span piece)
         d->report.tiles++;
         if (timeline)
             note_tile(f, d, worker, &piece, tile_began_s);
-    } while (!atomic_load_explicit(&f->stop, memory_order_relaxed) && schedule_next(&f->pieces, worker, d->report.tiles, &piece));
+    } while (!atomic_load_explicit(&f->stop, memory_order_relaxed) &&
+             schedule_next(&f->pieces, worker, d->report.tiles, &piece));
     tracer_finish(t, &f->stop);
     if (timeline && d->events.count > 0)
         d->events.event[d->events.count - 1].end_s = since(f);
@@ -199,13 +203,15 @@ static bool join_events(const desk *desks, int count, render_result *result)
     return true;
 }
 
-/* Rays that look for their nearest interface are tested against every visible solid, shadow rays against those that cast shadows. */
+/* Rays that look for their nearest interface are tested against every visible solid, shadow rays against those that
+ * cast shadows. */
 static void count_tests(const plan *p, ray_counters *c)
 {
     const uint64_t nearest = c->camera + c->reflect + c->refract;
     for (int r = 1; r <= p->solids->body_count; r++) {
         const body *b = &p->solids->bodies[r];
-        c->tests[b->solid] = nearest + (body_casts_shadow(b, p->solid_shadows) || p->solids->bodies[0].absorbs ? c->shadow : 0);
+        c->tests[b->solid] =
+            nearest + (body_casts_shadow(b, p->solid_shadows) || p->solids->bodies[0].absorbs ? c->shadow : 0);
     }
 }
 
@@ -230,7 +236,8 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
     if (out_of_memory)
         return diagnose(why, STATUS_FAILURE, "use fewer threads or less depth", "out of memory while tracing");
     if (misplaced)
-        return diagnose(why, STATUS_FAILURE, "set render.pin to none", "a worker cannot be bound to its processing unit");
+        return diagnose(why, STATUS_FAILURE, "set render.pin to none",
+                        "a worker cannot be bound to its processing unit");
     if (overflow)
         return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
                         "the picture is brighter than the film holds (262144 in one contribution, 524288 in a pixel)");
@@ -247,7 +254,8 @@ static double *make_map(size_t pixels)
     return map;
 }
 
-/* As many equal shares of a pixel's paths as there can be, to tell how they differ. Each has all of the pixel's points. */
+/* As many equal shares of a pixel's paths as there can be, to tell how they differ. Each has all of the pixel's points.
+ */
 static int layers_of(const scene *s)
 {
     const render_settings *r = &s->render;
@@ -310,8 +318,8 @@ static status prepare_drawing(frame *f, int count, diagnostic *why)
     return code == STATUS_OK ? zbuffer_sort(f->depths, why) : code;
 }
 
-static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, zbuffer *depths, render_result *result,
-                        diagnostic *why)
+static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, zbuffer *depths,
+                        render_result *result, diagnostic *why)
 {
     const int count = (int)s->render.threads;
     frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);

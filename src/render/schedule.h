@@ -1,12 +1,15 @@
-/* Which worker does which piece of the picture. columns and rows: one block a worker, as the report; tiles: square tiles dealt out
- * in turn; dynamic: the next tile to whoever asks. Ownership: a value; next is the only field that workers share. */
+/* Which worker does which piece of the picture. columns and rows: one block a worker, as the report; tiles: square
+ * tiles dealt out in turn; dynamic: the next tile to whoever asks. Ownership: a value; next is the only field that
+ * workers share. */
 #ifndef CUVETTE_RENDER_SCHEDULE_H
 #define CUVETTE_RENDER_SCHEDULE_H
 
 #include "scene/scene.h"
 #include <stdatomic.h>
 
-typedef struct span { int x0, y0, x1, y1; } span; /* x0 <= x < x1 */
+typedef struct span {
+    int x0, y0, x1, y1;
+} span; /* x0 <= x < x1 */
 
 typedef struct schedule {
     schedule_rule rule;

@@ -58,8 +58,8 @@ section_point section_bisect(const cutter *c, section_point a, section_point b, 
     return between(a, b, 0.5 * (low + high));
 }
 
-/* The crossing on an edge; on one that leads out of the window it is the window's own point. The lower medium's end is sought, so that
- * all edges across one thin layer find the same side of it. */
+/* The crossing on an edge; on one that leads out of the window it is the window's own point. The lower medium's end is
+ * sought, so that all edges across one thin layer find the same side of it. */
 static void cross(cutter *c, int edge, int i, int j, int i2, int j2)
 {
     const int a = label(c, i, j), b = label(c, i2, j2);
@@ -74,7 +74,8 @@ static void cross(cutter *c, int edge, int i, int j, int i2, int j2)
 
 static bool prepare(cutter *c, int cells)
 {
-    const double width = c->plane->u1 - c->plane->u0, height = c->plane->v1 - c->plane->v0, longer = width > height ? width : height;
+    const double width = c->plane->u1 - c->plane->u0, height = c->plane->v1 - c->plane->v0,
+                 longer = width > height ? width : height;
     const int across = (int)ceil(cells * width / longer), up = (int)ceil(cells * height / longer);
     const int columns = across > 0 ? across : 1, rows = up > 0 ? up : 1;
     c->nu = columns + 3, c->nv = rows + 3;
@@ -110,7 +111,8 @@ status section_cut(const probe *p, const section_plane *plane, int cells, sectio
 {
     const double width = plane->u1 - plane->u0, height = plane->v1 - plane->v0;
     if (!(width > 0.0 && height > 0.0 && isfinite(width) && isfinite(height)) || cells < 2 || cells > SECTION_CELLS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "", "a section needs an extent, and 2 to %d cells", (int)SECTION_CELLS_MAX);
+        return diagnose(why, STATUS_BAD_INPUT, "", "a section needs an extent, and 2 to %d cells",
+                        (int)SECTION_CELLS_MAX);
     out->point_count = out->line_count = 0;
     cutter c = {.p = p, .plane = plane, .out = out};
     c.failed = !prepare(&c, cells);

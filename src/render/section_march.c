@@ -6,7 +6,8 @@
 enum { HALVINGS = 9, JUNCTION_STEPS = 12 };
 #define STRAIGHT 1e-4
 
-/* Adds the points of the boundary between media a (on the left of the way from `from` to `to`) and b, both ends left out. */
+/* Adds the points of the boundary between media a (on the left of the way from `from` to `to`) and b, both ends left
+ * out. */
 static void refine(cutter *c, section_point from, section_point to, int a, int b, int halvings)
 {
     const double du = to.u - from.u, dv = to.v - from.v, length2 = du * du + dv * dv;
@@ -14,7 +15,8 @@ static void refine(cutter *c, section_point from, section_point to, int a, int b
     if (halvings == 0 || length2 < STRAIGHT * STRAIGHT * cell * cell)
         return;
     const section_point middle = between(from, to, 0.5);
-    const section_point left = {middle.u - 0.7 * dv, middle.v + 0.7 * du}, right = {middle.u + 0.7 * dv, middle.v - 0.7 * du};
+    const section_point left = {middle.u - 0.7 * dv, middle.v + 0.7 * du},
+                        right = {middle.u + 0.7 * dv, middle.v - 0.7 * du};
     if (medium_at(c, left) != a || medium_at(c, right) != b)
         return;
     const section_point on = section_bisect(c, left, right, a);
@@ -82,7 +84,8 @@ static section_point meeting_point(const cutter *c, int i, int j)
         for (int k = 0; k < 9; k++)
             seen[k / 3][k % 3] = medium_at(c, (section_point){low.u + 0.5 * du * (k % 3), low.v + 0.5 * dv * (k / 3)});
         for (int k = 0; k < 4; k++) {
-            const int x = k % 2, y = k / 2, corners[4] = {seen[y][x], seen[y][x + 1], seen[y + 1][x + 1], seen[y + 1][x]};
+            const int x = k % 2, y = k / 2,
+                      corners[4] = {seen[y][x], seen[y][x + 1], seen[y + 1][x + 1], seen[y + 1][x]};
             if (distinct(corners) > most)
                 most = distinct(corners), best = k;
         }
@@ -92,8 +95,8 @@ static section_point meeting_point(const cutter *c, int i, int j)
     return (section_point){low.u + 0.5 * du, low.v + 0.5 * dv};
 }
 
-/* A cell with corners 0 .. 3 counterclockwise and sides 0 .. 3 that follow them. A boundary that goes in through side k, between corners
- * k and k + 1, has the medium of corner k on its left. */
+/* A cell with corners 0 .. 3 counterclockwise and sides 0 .. 3 that follow them. A boundary that goes in through side
+ * k, between corners k and k + 1, has the medium of corner k on its left. */
 static void meet(cutter *c, int i, int j, const int *side, const int *corner)
 {
     section_point at = {0.0, 0.0};

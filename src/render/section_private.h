@@ -1,13 +1,14 @@
-/* The section's inside, shared by section.c (the grid), section_march.c (one cell after another) and section_chain.c (lines out of
- * pieces, areas out of lines). */
+/* The section's inside, shared by section.c (the grid), section_march.c (one cell after another) and section_chain.c
+ * (lines out of pieces, areas out of lines). */
 #ifndef CUVETTE_RENDER_SECTION_PRIVATE_H
 #define CUVETTE_RENDER_SECTION_PRIVATE_H
 
 #include "render/section.h"
 
-/* Labels of the grid's points, with a frame of SECTION_EDGE around them; the crossings on its edges; and pieces between them. */
+/* Labels of the grid's points, with a frame of SECTION_EDGE around them; the crossings on its edges; and pieces between
+ * them. */
 typedef struct piece {
-    int end[2];          /* crossings, or junctions (from `edges` on) */
+    int end[2]; /* crossings, or junctions (from `edges` on) */
     int a, b;
     size_t first, count; /* points between the ends, in the section's point list */
     bool used;
@@ -17,16 +18,16 @@ typedef struct cutter {
     const probe *p;
     const section_plane *plane;
     section *out;
-    int nu, nv;          /* points, frame included */
+    int nu, nv; /* points, frame included */
     double du, dv;
     int *label;
-    int edges;           /* how many; horizontal ones first */
+    int edges;               /* how many; horizontal ones first */
     section_point *crossing; /* by edge, then by junction */
     int junctions, junction_capacity;
-    int (*at)[2];        /* by edge: the pieces that end there, -1 for none */
+    int (*at)[2]; /* by edge: the pieces that end there, -1 for none */
     piece *pieces;
     size_t piece_count, piece_capacity;
-    bool failed;         /* out of memory */
+    bool failed; /* out of memory */
 } cutter;
 
 /* Room for one more; NULL when memory is out, and `memory` is then as it was. */

@@ -9,8 +9,9 @@
 /* Highest whole shininess that is raised by squaring. */
 enum { SHININESS_SQUARED_MAX = 4096 };
 
-/* base[i]^exponent in place. Whole exponents by squaring (relative error below exponent half-ulps); bases so small that the power is
- * under 2^-200, far below the film's unit, are zero, which keeps the squares out of the slow subnormal range. */
+/* base[i]^exponent in place. Whole exponents by squaring (relative error below exponent half-ulps); bases so small that
+ * the power is under 2^-200, far below the film's unit, are zero, which keeps the squares out of the slow subnormal
+ * range. */
 static void raise_to(double exponent, int count, double *restrict base)
 {
     const unsigned whole = exponent >= 1.0 && exponent <= SHININESS_SQUARED_MAX ? (unsigned)exponent : 0;
@@ -37,8 +38,8 @@ static void raise_to(double exponent, int count, double *restrict base)
     }
 }
 
-/* For each flat face of a primitive: which coordinate is constant there, and the one to look up the cell with instead, half a
- * cell inside; of a half-space the surface itself. Rounding across the face must not choose the cell. */
+/* For each flat face of a primitive: which coordinate is constant there, and the one to look up the cell with instead,
+ * half a cell inside; of a half-space the surface itself. Rounding across the face must not choose the cell. */
 enum { FLAT_FACES = 6 };
 typedef struct flat_faces {
     int64_t is_x[FLAT_FACES], is_y[FLAT_FACES], is_z[FLAT_FACES]; /* masks */
@@ -117,7 +118,8 @@ static void fall_off(double reach, int count, lit_group *restrict lit)
  * R = 2(N.L)N - L; both terms only where the light stands on the ray's side (N.L > 0). */
 static void direct(const material *m, const light *lamp, const group *g, lit_group *restrict lit)
 {
-    const double ir = lamp->color.x * lamp->intensity, ig = lamp->color.y * lamp->intensity, ib = lamp->color.z * lamp->intensity;
+    const double ir = lamp->color.x * lamp->intensity, ig = lamp->color.y * lamp->intensity,
+                 ib = lamp->color.z * lamp->intensity;
     const vec3 at = lamp->position;
     const double least = 0.5 / FILM_ONE;
     const double k_d = m->diffuse, k_s = m->specular;
@@ -264,12 +266,20 @@ static void append(const group *g, const double *dx, const double *dy, const dou
 {
     const surface_batch *p = &g->points;
     const int n = g->padded, at = q->count;
-    const ray_queue to = {.ox = q->ox + at, .oy = q->oy + at, .oz = q->oz + at, .dx = q->dx + at, .dy = q->dy + at, .dz = q->dz + at,
-                          .wr = q->wr + at, .wg = q->wg + at, .wb = q->wb + at};
+    const ray_queue to = {.ox = q->ox + at,
+                          .oy = q->oy + at,
+                          .oz = q->oz + at,
+                          .dx = q->dx + at,
+                          .dy = q->dy + at,
+                          .dz = q->dz + at,
+                          .wr = q->wr + at,
+                          .wg = q->wg + at,
+                          .wb = q->wb + at};
     const size_t bytes = (size_t)n * sizeof(double);
     memcpy(to.ox, p->px, bytes), memcpy(to.oy, p->py, bytes), memcpy(to.oz, p->pz, bytes);
     memcpy(to.dx, dx, bytes), memcpy(to.dy, dy, bytes), memcpy(to.dz, dz, bytes);
-    memcpy(q->start + at, p->face, bytes), memcpy(q->ticket + at, g->ticket, bytes), memcpy(q->inside + at, inside, bytes);
+    memcpy(q->start + at, p->face, bytes), memcpy(q->ticket + at, g->ticket, bytes),
+        memcpy(q->inside + at, inside, bytes);
     double *restrict wr = to.wr, *restrict wg = to.wg, *restrict wb = to.wb;
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
@@ -280,8 +290,8 @@ static void append(const group *g, const double *dx, const double *dy, const dou
     q->count += g->count;
 }
 
-static void camera_directions(const camera_frame *view, int count, const double *u, const double *v, double *restrict dx,
-                              double *restrict dy, double *restrict dz)
+static void camera_directions(const camera_frame *view, int count, const double *u, const double *v,
+                              double *restrict dx, double *restrict dy, double *restrict dz)
 {
     const camera_frame f = *view;
     /* VECTORISE */
@@ -294,5 +304,5 @@ static void camera_directions(const camera_frame *view, int count, const double 
     }
 }
 
-const shade_kernels KERNEL(shade_kernels) = {color, direct, spot, fresnel_branches, constant_branches, straight_branches,
-                                                   cut,   append, camera_directions};
+const shade_kernels KERNEL(shade_kernels) = {
+    color, direct, spot, fresnel_branches, constant_branches, straight_branches, cut, append, camera_directions};

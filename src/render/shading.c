@@ -30,8 +30,8 @@ static inline void expose_at(tracer *t, int64_t place, double r, double g, doubl
     t->overflow |= red | green | blue;
 }
 
-/* The ticket's layer and pixel; of a spectral film as what the eye makes of its wavelength. Never inline, so that the rgb film's
- * way keeps its registers. */
+/* The ticket's layer and pixel; of a spectral film as what the eye makes of its wavelength. Never inline, so that the
+ * rgb film's way keeps its registers. */
 static __attribute__((noinline)) void expose_by_ticket(tracer *t, int64_t ticket, double r, double g, double b)
 {
     const plan *p = t->target.scene;
@@ -58,7 +58,8 @@ void shading_expose(tracer *t, int64_t ticket, double r, double g, double b)
     expose(t, ticket, r, g, b);
 }
 
-static __attribute__((noinline)) void expose_sky_by_ticket(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+static __attribute__((noinline)) void expose_sky_by_ticket(tracer *t, int64_t ticket, vec3 direction, double wr,
+                                                           double wg, double wb)
 {
     const plan *p = t->target.scene;
     vec3 l;
@@ -220,7 +221,8 @@ static void cut_branches(tracer *t)
     const bool uniform =
         p->sky->kind == BACKGROUND_UNIFORM || p->render.beyond == BEYOND_MEAN; /* then directions do not matter */
     for (int i = 0; i < g->count; i++) {
-        const double first = uniform ? b->reflect[i] + b->refract[i] : b->reflect[i], second = uniform ? 0.0 : b->refract[i];
+        const double first = uniform ? b->reflect[i] + b->refract[i] : b->reflect[i],
+                     second = uniform ? 0.0 : b->refract[i];
         if (first > 0.0)
             expose_beyond(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first, g->wg[i] * first,
                           g->wb[i] * first);
@@ -255,10 +257,10 @@ static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, co
     return q->count - first;
 }
 
-/* Puts a kind of children in line: all of them at once, then the last one into each hole of those that do not exist or weigh
- * too little. Returns how many there are. */
-int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
-                                const uint64_t *inside)
+/* Puts a kind of children in line: all of them at once, then the last one into each hole of those that do not exist or
+ * weigh too little. Returns how many there are. */
+int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz,
+                         const double *weight, const uint64_t *inside)
 {
     ray_queue *q = &t->waiting[depth];
     const double least = t->least_weight;

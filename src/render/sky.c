@@ -27,7 +27,8 @@ static int clamp(int y, int height)
 /* Bilinear; longitude wraps around, latitude is clamped. */
 static vec3 picture_radiance(const image *picture, vec3 d)
 {
-    double longitude = elementary_atan2_deg(d.x, d.z), latitude = elementary_atan2_deg(d.y, sqrt(d.x * d.x + d.z * d.z));
+    double longitude = elementary_atan2_deg(d.x, d.z),
+           latitude = elementary_atan2_deg(d.y, sqrt(d.x * d.x + d.z * d.z));
     double u = (0.5 + longitude / 360.0) * picture->width - 0.5, v = (0.5 - latitude / 180.0) * picture->height - 0.5;
     double left = floor(u), top = floor(v);
     int x0 = wrap((int)left, picture->width), x1 = wrap((int)left + 1, picture->width);

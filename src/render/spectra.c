@@ -26,7 +26,8 @@ static lifted lift_surface(vec3 color)
 
 static bool lift_scene(lifted_scene *l, size_t ranks)
 {
-    static const double basis[SKY_BASIS_COUNT][3] = {{1, 1, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static const double basis[SKY_BASIS_COUNT][3] = {{1, 1, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0},
+                                                     {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const scene *s = l->s;
     l->color = calloc(ranks, sizeof *l->color);
     l->checker_color = calloc(ranks, sizeof *l->checker_color);
@@ -162,8 +163,9 @@ int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t 
     return ticket_with_wavelength(ticket, wavelength_of(sample % count, count, offset));
 }
 
-/* A texel as white, the best fitting secondary and the best fitting primary: Smits, "An RGB to Spectrum Conversion for Reflectances",
- * JGT 4(4), 1999, with the basis spectra lifted as all colours here. Linear where the order of the channels stays. */
+/* A texel as white, the best fitting secondary and the best fitting primary: Smits, "An RGB to Spectrum Conversion for
+ * Reflectances", JGT 4(4), 1999, with the basis spectra lifted as all colours here. Linear where the order of the
+ * channels stays. */
 static double texel_at(const spectral_row *row, vec3 rgb)
 {
     const double v[3] = {rgb.x, rgb.y, rgb.z};
@@ -172,7 +174,8 @@ static double texel_at(const spectral_row *row, vec3 rgb)
     if (high == low) /* a grey */
         high = (low + 1) % 3;
     const int middle = 3 - low - high;
-    return v[low] * row->basis[0] + (v[middle] - v[low]) * row->basis[1 + low] + (v[high] - v[middle]) * row->basis[4 + high];
+    return v[low] * row->basis[0] + (v[middle] - v[low]) * row->basis[1 + low] +
+           (v[high] - v[middle]) * row->basis[4 + high];
 }
 
 double spectra_sky(const spectral_row *row, const background *sky, vec3 direction)

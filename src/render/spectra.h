@@ -1,7 +1,7 @@
-/* The spectra of a scene, for films that are traced wavelength by wavelength. Light is told apart in SPECTRA_COUNT wavelengths,
- * 0.1 nm from one to the next; what a scene does at each of them (its colours lifted by optics/lift.h, its indices of
- * refraction, its absorption, and how the eye sees it) is worked out once a frame, in tables. Ownership: spectra_create
- * gives, spectra_destroy releases; the scene is borrowed during the call only. Lookups are pure. */
+/* The spectra of a scene, for films that are traced wavelength by wavelength. Light is told apart in SPECTRA_COUNT
+ * wavelengths, 0.1 nm from one to the next; what a scene does at each of them (its colours lifted by optics/lift.h, its
+ * indices of refraction, its absorption, and how the eye sees it) is worked out once a frame, in tables. Ownership:
+ * spectra_create gives, spectra_destroy releases; the scene is borrowed during the call only. Lookups are pure. */
 #ifndef CUVETTE_RENDER_SPECTRA_H
 #define CUVETTE_RENDER_SPECTRA_H
 
@@ -24,7 +24,9 @@ typedef struct spectral_row {
 } spectral_row;
 
 /* A body at one wavelength; absorption: and tint, in 1 / scene unit. */
-typedef struct body_spectrum { double color, checker_color, index, absorption; } body_spectrum;
+typedef struct body_spectrum {
+    double color, checker_color, index, absorption;
+} body_spectrum;
 
 typedef struct spectra {
     spectral_row *rows;    /* by wavelength */
@@ -41,11 +43,12 @@ void spectra_destroy(spectra *p);
 /* The wavelength of that number, in the middle of its 0.1 nm. */
 double spectra_lambda(int64_t number);
 
-/* A ticket with its wavelength. Those of one point of a pixel lie evenly over 380..780 nm, from an offset that is hashed from seed,
- * pixel and point (Cranley and Patterson, "Randomization of Number Theoretic Methods for Multiple Integration", SIAM J. Numer. Anal.
- * 13(6), 1976): the observer's curves are smooth and end at 0, where such sums err least. What is left of the error for white is
- * taken out by weights for X, Y and Z (*white), so that a white furnace is white whatever the offset; below SPECTRA_WHITE_FROM
- * wavelengths, where that would be no small change, they are 1. */
+/* A ticket with its wavelength. Those of one point of a pixel lie evenly over 380..780 nm, from an offset that is
+ * hashed from seed, pixel and point (Cranley and Patterson, "Randomization of Number Theoretic Methods for Multiple
+ * Integration", SIAM J. Numer. Anal. 13(6), 1976): the observer's curves are smooth and end at 0, where such sums err
+ * least. What is left of the error for white is taken out by weights for X, Y and Z (*white), so that a white furnace
+ * is white whatever the offset; below SPECTRA_WHITE_FROM wavelengths, where that would be no small change, they are 1.
+ */
 int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t ticket, const double **white);
 
 static inline const spectral_row *spectra_row(const spectra *p, int64_t ticket)

@@ -3,9 +3,12 @@
 
 #include "base/elementary.h"
 
-typedef struct mapped { double u, v, per_length; } mapped;
+typedef struct mapped {
+    double u, v, per_length;
+} mapped;
 
-/* Flat faces: along two of the local axes, from the face's lower left corner seen from outside; size 0 spreads one picture over it. */
+/* Flat faces: along two of the local axes, from the face's lower left corner seen from outside; size 0 spreads one
+ * picture over it. */
 static mapped on_flat(double x, double y, double width, double height, double size)
 {
     const double across = size > 0.0 ? size : width, up = size > 0.0 ? size : height;
@@ -26,8 +29,8 @@ static mapped on_box(const primitive *p, int64_t face, vec3 q, double size)
     }
 }
 
-/* Around the axis by the angle, with one picture, or as the length of the arc: to the right as seen from outside, the picture's middle in front,
- * at -z, as on the bodies of geometry/bodies.h. */
+/* Around the axis by the angle, with one picture, or as the length of the arc: to the right as seen from outside, the
+ * picture's middle in front, at -z, as on the bodies of geometry/bodies.h. */
 static mapped around(double x, double z, double radius, double v, double height, double size)
 {
     const double turn = 0.5 + elementary_atan2_deg(x, -z) / 360.0, arc = 6.283185307179586 * radius;
@@ -61,8 +64,8 @@ static mapped on_primitive(const primitive *p, int64_t face, vec3 point, double 
     return (mapped){0.0, 0.0, 0.0};
 }
 
-/* Width of a pixel at the point, across the ray: the camera's rays spread by the pixel's angle. Of a ray of a deeper level the way from the
- * eye is taken for straight; so it is too narrow there by what mirrors and lenses add. */
+/* Width of a pixel at the point, across the ray: the camera's rays spread by the pixel's angle. Of a ray of a deeper
+ * level the way from the eye is taken for straight; so it is too narrow there by what mirrors and lenses add. */
 static double pixel_width(const plan *p, vec3 point)
 {
     return 2.0 * p->view.half_height / (double)p->render.height * vec3_length(vec3_sub(point, p->view.eye));
@@ -75,8 +78,9 @@ void texture_colors(tracer *t, const primitive *surface)
     const double size = t->look->surface.texture_size;
     for (int k = 0; k < g->count; k++) {
         const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
-        const mapped m = t->on_mesh ? (mapped){t->meshes->points.tu[k], t->meshes->points.tv[k], t->meshes->points.uv_per_length[k]}
-                                    : on_primitive(surface, g->points.face[k], t->straight ? t->drawn->at[k] : point, size);
+        const mapped m =
+            t->on_mesh ? (mapped){t->meshes->points.tu[k], t->meshes->points.tv[k], t->meshes->points.uv_per_length[k]}
+                       : on_primitive(surface, g->points.face[k], t->straight ? t->drawn->at[k] : point, size);
         const double cosine = g->points.cos_i[k] > 0.05 ? g->points.cos_i[k] : 0.05;
         const vec3 c = texture_sample(t->look->picture, m.u, m.v, pixel_width(p, point) / cosine * m.per_length);
         g->cr[k] *= c.x, g->cg[k] *= c.y, g->cb[k] *= c.z;

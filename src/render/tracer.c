@@ -17,8 +17,12 @@ tracer *tracer_create(isa level)
     t->basic = t->basic_memory = NULL;
     t->scratch.crossings = NULL;
     t->scratch.meshes = NULL;
-    t->geometry = level == ISA_AVX512 ? &geometry_kernels_avx512 : level == ISA_AVX2 ? &geometry_kernels_avx2 : &geometry_kernels_sse2;
-    t->shade = level == ISA_AVX512 ? &shade_kernels_avx512 : level == ISA_AVX2 ? &shade_kernels_avx2 : &shade_kernels_sse2;
+    t->geometry = level == ISA_AVX512 ? &geometry_kernels_avx512
+                  : level == ISA_AVX2 ? &geometry_kernels_avx2
+                                      : &geometry_kernels_sse2;
+    t->shade = level == ISA_AVX512 ? &shade_kernels_avx512
+               : level == ISA_AVX2 ? &shade_kernels_avx2
+                                   : &shade_kernels_sse2;
     return t;
 }
 
@@ -117,8 +121,8 @@ bool tracer_overflowed(const tracer *t)
     return t->overflow < 0;
 }
 
-/* Rays by the primitive they met. Those that met another body's surface there (an opaque one behind a clear one's, or two in
- * one place) are listed last but one, those that met nothing last. */
+/* Rays by the primitive they met. Those that met another body's surface there (an opaque one behind a clear one's, or
+ * two in one place) are listed last but one, those that met nothing last. */
 static void sort_by_primitive(tracer *t, int count)
 {
     const arrangement *a = t->target.scene->solids;
@@ -199,7 +203,8 @@ static void trace_batch(tracer *t, int depth)
             path_expose_light(t, q->ticket[at], t->met_light[i], (int)t->hits.before[i],
                               vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
         else
-            shading_expose_sky(t, q->ticket[at], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
+            shading_expose_sky(t, q->ticket[at], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at],
+                               q->wb[at]);
     }
     for (int met = 0; met < primitives; met++)
         if (t->listed[met] > 0)
@@ -296,15 +301,18 @@ static void draw(tracer *t, const span *piece)
     zbuffer_draw(t->target.depths, piece, &t->drawn->square);
     if (!t->target.pixel_ns)
         return;
-    const double pixels = (double)(piece->x1 - piece->x0) * (double)(piece->y1 - piece->y0), share = (double)(clock_wall_ns() - began) / pixels;
+    const double pixels = (double)(piece->x1 - piece->x0) * (double)(piece->y1 - piece->y0),
+                 share = (double)(clock_wall_ns() - began) / pixels;
     for (int y = piece->y0; y < piece->y1; y++)
         for (int x = piece->x0; x < piece->x1; x++)
             t->target.pixel_ns[(int64_t)y * t->target.scene->render.width + x] += share;
 }
 
-/* Edges of the blocks of pixels whose rays fill a batch: square ones where there are meshes, in whose hierarchies rays that are close
- * together go the same way; else a row's. */
-typedef struct pixel_block { int width, height; } pixel_block;
+/* Edges of the blocks of pixels whose rays fill a batch: square ones where there are meshes, in whose hierarchies rays
+ * that are close together go the same way; else a row's. */
+typedef struct pixel_block {
+    int width, height;
+} pixel_block;
 static pixel_block block_of(const plan *p, const span *piece, int64_t each)
 {
     if (p->solids->meshes && each == 1)
@@ -342,7 +350,8 @@ void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, cons
                 if (!trace_row(t, y, left, right, each, stop))
                     return;
         }
-        atomic_fetch_add_explicit(begun, (uint64_t)(piece->x1 - piece->x0) * (uint64_t)(bottom - top), memory_order_relaxed);
+        atomic_fetch_add_explicit(begun, (uint64_t)(piece->x1 - piece->x0) * (uint64_t)(bottom - top),
+                                  memory_order_relaxed);
     }
 }
 

@@ -7,10 +7,10 @@
 struct tracer_set {
     isa level;
     pthread_mutex_t lock;
-    tracer **all, **idle;   /* idle: a stack of those that nobody holds */
+    tracer **all, **idle; /* idle: a stack of those that nobody holds */
     int capacity, count, idle_count;
     tracer_target target;
-    uint64_t frame;         /* running number; a tracer says in which one it was last begun */
+    uint64_t frame; /* running number; a tracer says in which one it was last begun */
 };
 
 tracer_set *tracer_set_create(isa level)

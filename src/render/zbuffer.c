@@ -6,7 +6,8 @@
 
 static status no_memory(diagnostic *why)
 {
-    return diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer triangles", "out of memory for the depth buffer");
+    return diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer triangles",
+                    "out of memory for the depth buffer");
 }
 
 static uint64_t triangles_of(const drawn_part *p)
@@ -25,7 +26,9 @@ static bool make_chunks(zbuffer *z)
     for (int k = 0; k < z->part_count; k++) {
         const uint64_t all = triangles_of(&z->parts[k]);
         for (uint64_t first = 0; first < all; first += CHUNK_TRIANGLES)
-            z->chunks[at++] = (chunk){.part = k, .count = (int)(all - first < CHUNK_TRIANGLES ? all - first : CHUNK_TRIANGLES), .first = first};
+            z->chunks[at++] = (chunk){.part = k,
+                                      .count = (int)(all - first < CHUNK_TRIANGLES ? all - first : CHUNK_TRIANGLES),
+                                      .first = first};
     }
     return true;
 }
@@ -62,8 +65,8 @@ status zbuffer_create(const plan *p, zbuffer **out, diagnostic *why)
     make_grid(z);
     if (z->width > 2 * REACH || z->height > 2 * REACH) {
         zbuffer_destroy(z);
-        return diagnose(why, STATUS_BAD_INPUT, "take fewer samples, or a smaller picture", "the depth buffer has at most %d points across",
-                        2 * REACH);
+        return diagnose(why, STATUS_BAD_INPUT, "take fewer samples, or a smaller picture",
+                        "the depth buffer has at most %d points across", 2 * REACH);
     }
     z->seen = malloc((size_t)z->width * (size_t)z->height * sizeof *z->seen);
     z->first = calloc((size_t)z->across * (size_t)z->down + 1, sizeof *z->first);
@@ -123,7 +126,9 @@ static bool join_chunks(zbuffer *z)
     return true;
 }
 
-typedef struct box { int x0, y0, x1, y1; } box; /* of squares, all within */
+typedef struct box {
+    int x0, y0, x1, y1;
+} box; /* of squares, all within */
 
 static int clamp(int v, int most)
 {
@@ -138,7 +143,8 @@ static box squares_of(const zbuffer *z, const screen_triangle *t)
         x0 = t->x[k] < x0 ? t->x[k] : x0, x1 = t->x[k] > x1 ? t->x[k] : x1;
         y0 = t->y[k] < y0 ? t->y[k] : y0, y1 = t->y[k] > y1 ? t->y[k] : y1;
     }
-    return (box){clamp(x0 / steps, z->across - 1), clamp(y0 / steps, z->down - 1), clamp(x1 / steps, z->across - 1), clamp(y1 / steps, z->down - 1)};
+    return (box){clamp(x0 / steps, z->across - 1), clamp(y0 / steps, z->down - 1), clamp(x1 / steps, z->across - 1),
+                 clamp(y1 / steps, z->down - 1)};
 }
 
 status zbuffer_sort(zbuffer *z, diagnostic *why)

@@ -1,23 +1,31 @@
-/* What is drawn: meshes as they are, analytic primitives as triangles on their surface. Light falls on the primitive itself, so that the
- * triangles show in outlines alone. */
+/* What is drawn: meshes as they are, analytic primitives as triangles on their surface. Light falls on the primitive
+ * itself, so that the triangles show in outlines alone. */
 #include "render/zbuffer_private.h"
 
 #include "geometry/bodies.h"
 
-/* A round edge stays within 8e-5 of its radius of the circle (1 - cos(180 deg / 256)), a sphere's outline within 2e-4 (20 4^5 triangles). */
+/* A round edge stays within 8e-5 of its radius of the circle (1 - cos(180 deg / 256)), a sphere's outline within 2e-4
+ * (20 4^5 triangles). */
 enum { AROUND = 256, SPHERE_LEVEL = 5 };
 
 static forest_part part_of(const primitive *p, const mesh *triangles, vec3 scale)
 {
-    return (forest_part){.triangles = triangles, .primitive = (int)(p->first_face / FACES_MAX), .rank = p->rank, .turned = p->turned,
-                         .scaled = scale.x != 1.0 || scale.y != 1.0 || scale.z != 1.0, .rotation = p->rotation, .scale = scale,
-                         .origin = p->origin, .copies = {1, 1, 1}};
+    return (forest_part){.triangles = triangles,
+                         .primitive = (int)(p->first_face / FACES_MAX),
+                         .rank = p->rank,
+                         .turned = p->turned,
+                         .scaled = scale.x != 1.0 || scale.y != 1.0 || scale.z != 1.0,
+                         .rotation = p->rotation,
+                         .scale = scale,
+                         .origin = p->origin,
+                         .copies = {1, 1, 1}};
 }
 
 /* A cylinder from its base to its top, or a cup's outside, whose top is a ring. */
 static status cut_cylinder(const primitive *p, double inner_radius, mesh **out, diagnostic *why)
 {
-    const profile_point profile[4] = {{0.0, p->bottom}, {p->radius, p->bottom}, {p->radius, p->top}, {inner_radius, p->top}};
+    const profile_point profile[4] = {
+        {0.0, p->bottom}, {p->radius, p->bottom}, {p->radius, p->top}, {inner_radius, p->top}};
     return body_lathe(profile, 4, AROUND, 30.0, out, why);
 }
 

@@ -1,9 +1,11 @@
-/* From a triangle to the polygon of it that stands before the eye. Corners are homogeneous, so that a plane's may be infinitely far. */
+/* From a triangle to the polygon of it that stands before the eye. Corners are homogeneous, so that a plane's may be
+ * infinitely far. */
 #include "render/zbuffer_private.h"
 
 static clip_corner in_camera(const camera_frame *view, vec3 v, double h)
 {
-    return (clip_corner){.x = vec3_dot(view->right, v), .y = vec3_dot(view->up, v), .z = vec3_dot(view->forward, v), .h = h};
+    return (clip_corner){
+        .x = vec3_dot(view->right, v), .y = vec3_dot(view->up, v), .z = vec3_dot(view->forward, v), .h = h};
 }
 
 /* From the foot of the perpendicular from the eye to the four ends of two axes. */
@@ -11,7 +13,8 @@ static void plane_corners(const zbuffer *z, const primitive *p, uint32_t triangl
 {
     const camera_frame *view = &z->scene->view;
     const mat3 r = p->rotation;
-    const vec3 across = vec3_make(r.row[0].x, r.row[1].x, r.row[2].x), up = vec3_make(r.row[0].y, r.row[1].y, r.row[2].y);
+    const vec3 across = vec3_make(r.row[0].x, r.row[1].x, r.row[2].x),
+               up = vec3_make(r.row[0].y, r.row[1].y, r.row[2].y);
     const vec3 along = vec3_make(r.row[0].z, r.row[1].z, r.row[2].z);
     const vec3 ends[4] = {across, along, vec3_scale(across, -1.0), vec3_scale(along, -1.0)};
     out[0] = in_camera(view, vec3_scale(up, vec3_dot(up, vec3_sub(p->origin, view->eye))), 1.0);
@@ -19,7 +22,8 @@ static void plane_corners(const zbuffer *z, const primitive *p, uint32_t triangl
     out[2] = in_camera(view, ends[(triangle + 1) % 4], 0.0);
 }
 
-void zbuffer_corners(const zbuffer *z, const drawn_part *p, uint32_t copy, uint32_t triangle, clip_corner out[POLYGON_MAX])
+void zbuffer_corners(const zbuffer *z, const drawn_part *p, uint32_t copy, uint32_t triangle,
+                     clip_corner out[POLYGON_MAX])
 {
     if (p->plane) {
         plane_corners(z, &z->scene->solids->primitives[p->met], triangle, out);
@@ -51,7 +55,11 @@ static double side_of(const zbuffer *z, double nearest, const clip_corner *c, in
 static clip_corner cut(const clip_corner *in, const clip_corner *out, double inner, double outer)
 {
     const double t = inner / (inner - outer);
-    clip_corner c = {in->x + t * (out->x - in->x), in->y + t * (out->y - in->y), in->z + t * (out->z - in->z), in->h + t * (out->h - in->h), {0}};
+    clip_corner c = {in->x + t * (out->x - in->x),
+                     in->y + t * (out->y - in->y),
+                     in->z + t * (out->z - in->z),
+                     in->h + t * (out->h - in->h),
+                     {0}};
     for (int j = 0; j < 3; j++)
         c.weight[j] = in->weight[j] + t * (out->weight[j] - in->weight[j]);
     return c;

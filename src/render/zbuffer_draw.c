@@ -3,16 +3,21 @@
 
 #include "base/lanes.h"
 
-typedef struct window { int x0, y0, x1, y1; } window; /* points of the grid, x0 <= x < x1 */
+typedef struct window {
+    int x0, y0, x1, y1;
+} window; /* points of the grid, x0 <= x < x1 */
 
 /* An edge's function is dx (y - ya) - dy (x - xa), in steps: not negative inside. */
-typedef struct edge { int64_t along_x, along_y, at; } edge; /* for one unit of the grid, and at the first point */
+typedef struct edge {
+    int64_t along_x, along_y, at;
+} edge; /* for one unit of the grid, and at the first point */
 
 /* A point on an edge is the triangle's whose upper or left edge it is. */
 static edge edge_between(const screen_triangle *t, int from, int to, int x, int y)
 {
     const int64_t dx = t->x[to] - t->x[from], dy = t->y[to] - t->y[from];
-    const int64_t px = (int64_t)x * SUBPIXEL + SUBPIXEL / 2 - t->x[from], py = (int64_t)y * SUBPIXEL + SUBPIXEL / 2 - t->y[from];
+    const int64_t px = (int64_t)x * SUBPIXEL + SUBPIXEL / 2 - t->x[from],
+                  py = (int64_t)y * SUBPIXEL + SUBPIXEL / 2 - t->y[from];
     const bool owns = dy < 0 || (dy == 0 && dx > 0);
     return (edge){-dy * SUBPIXEL, dx * SUBPIXEL, dx * py - dy * px - (owns ? 0 : 1)};
 }
@@ -44,8 +49,10 @@ static window box_of(const screen_triangle *t, const window *w)
         b.y0 = t->y[k] < b.y0 ? t->y[k] : b.y0, b.y1 = t->y[k] > b.y1 ? t->y[k] : b.y1;
     }
     const int half = SUBPIXEL / 2;
-    b = (window){(b.x0 + half - 1) >> 12, (b.y0 + half - 1) >> 12, ((b.x1 - half) >> 12) + 1, ((b.y1 - half) >> 12) + 1};
-    return (window){b.x0 > w->x0 ? b.x0 : w->x0, b.y0 > w->y0 ? b.y0 : w->y0, b.x1 < w->x1 ? b.x1 : w->x1, b.y1 < w->y1 ? b.y1 : w->y1};
+    b = (window){(b.x0 + half - 1) >> 12, (b.y0 + half - 1) >> 12, ((b.x1 - half) >> 12) + 1,
+                 ((b.y1 - half) >> 12) + 1};
+    return (window){b.x0 > w->x0 ? b.x0 : w->x0, b.y0 > w->y0 ? b.y0 : w->y0, b.x1 < w->x1 ? b.x1 : w->x1,
+                    b.y1 < w->y1 ? b.y1 : w->y1};
 }
 
 static void draw_triangle(zbuffer *z, uint32_t number, const window *w, zbuffer_square *square)
@@ -54,7 +61,8 @@ static void draw_triangle(zbuffer *z, uint32_t number, const window *w, zbuffer_
     const window b = box_of(t, w);
     if (b.x0 >= b.x1 || b.y0 >= b.y1)
         return;
-    edge e[3] = {edge_between(t, 0, 1, b.x0, b.y0), edge_between(t, 1, 2, b.x0, b.y0), edge_between(t, 2, 0, b.x0, b.y0)};
+    edge e[3] = {edge_between(t, 0, 1, b.x0, b.y0), edge_between(t, 1, 2, b.x0, b.y0),
+                 edge_between(t, 2, 0, b.x0, b.y0)};
     const double a = t->a, least = t->least, most = t->most;
     const bool layered = number >= z->first_layered;
     for (int y = b.y0; y < b.y1; y++) {
@@ -105,8 +113,10 @@ void zbuffer_draw(zbuffer *z, const span *piece, zbuffer_square *square)
     const int side = z->side, n = z->points;
     for (int y = piece->y0 / side; y * side < piece->y1; y++) {
         for (int x = piece->x0 / side; x * side < piece->x1; x++) {
-            const int x0 = x * side > piece->x0 ? x * side : piece->x0, x1 = (x + 1) * side < piece->x1 ? (x + 1) * side : piece->x1;
-            const int y0 = y * side > piece->y0 ? y * side : piece->y0, y1 = (y + 1) * side < piece->y1 ? (y + 1) * side : piece->y1;
+            const int x0 = x * side > piece->x0 ? x * side : piece->x0,
+                      x1 = (x + 1) * side < piece->x1 ? (x + 1) * side : piece->x1;
+            const int y0 = y * side > piece->y0 ? y * side : piece->y0,
+                      y1 = (y + 1) * side < piece->y1 ? (y + 1) * side : piece->y1;
             draw_square(z, x, y, &(window){x0 * n, y0 * n, x1 * n, y1 * n}, square);
         }
     }

@@ -71,8 +71,8 @@ static bool is_opaque(const zbuffer *z, const drawn_fragment *f)
     return z->scene->solids->bodies[z->parts[f->part].at.rank].opaque;
 }
 
-/* The point's fragments before its nearest opaque surface, the nearest first; how many. Of two opaque ones the nearer is
- * seen however close they are, as where nothing clear is drawn. */
+/* The point's fragments before its nearest opaque surface, the nearest first; how many. Of two opaque ones the nearer
+ * is seen however close they are, as where nothing clear is drawn. */
 static int collect(zbuffer *z, zbuffer_square *s, int point)
 {
     int count = 0;

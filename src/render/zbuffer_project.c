@@ -5,11 +5,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of the plane through a triangle, 1 / depth is linear in the picture (Blinn, "Hyperbolic interpolation", 1992): N.r / N.P along the ray
- * r = (x/z, y/z, 1). False when one looks along it. corners: the triangle's own. */
+/* Of the plane through a triangle, 1 / depth is linear in the picture (Blinn, "Hyperbolic interpolation", 1992): N.r /
+ * N.P along the ray r = (x/z, y/z, 1). False when one looks along it. corners: the triangle's own. */
 static bool depth_plane(const zbuffer *z, const drawn_part *p, const clip_corner *corners, screen_triangle *t)
 {
-    const vec3 a = vec3_make(corners[0].x, corners[0].y, corners[0].z), b = vec3_make(corners[1].x, corners[1].y, corners[1].z);
+    const vec3 a = vec3_make(corners[0].x, corners[0].y, corners[0].z),
+               b = vec3_make(corners[1].x, corners[1].y, corners[1].z);
     const vec3 c = vec3_make(corners[2].x, corners[2].y, corners[2].z);
     const vec3 n = p->plane ? vec3_cross(b, c) : vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
     const double k = vec3_dot(n, a);
@@ -44,7 +45,8 @@ static bool may_show(const zbuffer *z, const screen_triangle *t)
 
 static void put(chunk *c, const zbuffer *z, screen_triangle *t)
 {
-    const int64_t area = (int64_t)(t->x[1] - t->x[0]) * (t->y[2] - t->y[0]) - (int64_t)(t->y[1] - t->y[0]) * (t->x[2] - t->x[0]);
+    const int64_t area =
+        (int64_t)(t->x[1] - t->x[0]) * (t->y[2] - t->y[0]) - (int64_t)(t->y[1] - t->y[0]) * (t->x[2] - t->x[0]);
     if (area == 0 || !may_show(z, t))
         return;
     if (area < 0) {
@@ -71,8 +73,8 @@ static bool is_beside(const zbuffer *z, const clip_corner *c)
     const double wide = 0.5 * z->width / z->units_x, high = 0.5 * z->height / z->units_y;
     bool left = true, right = true, below = true, above = true, behind = true;
     for (int k = 0; k < 3; k++) {
-        left &= c[k].x < -wide * c[k].z, right &= c[k].x > wide * c[k].z;
-        below &= c[k].y < -high * c[k].z, above &= c[k].y > high * c[k].z;
+        left &= c[k].x<-wide * c[k].z, right &= c[k].x> wide * c[k].z;
+        below &= c[k].y<-high * c[k].z, above &= c[k].y> high * c[k].z;
         behind &= c[k].z < 0.0;
     }
     return left || right || below || above || behind;

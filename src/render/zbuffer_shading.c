@@ -17,7 +17,10 @@ static size_t point_of(const zbuffer *z, int64_t ticket, int *x, int *y)
     return (size_t)*y * (size_t)z->width + (size_t)*x;
 }
 
-typedef struct met { double t, u, v; bool leaving; } met;
+typedef struct met {
+    double t, u, v;
+    bool leaving;
+} met;
 
 static met met_plane(const primitive *p, const camera_frame *view, vec3 d)
 {
@@ -26,15 +29,17 @@ static met met_plane(const primitive *p, const camera_frame *view, vec3 d)
     return (met){.t = vec3_dot(n, vec3_sub(p->origin, view->eye)) / along, .leaving = along > 0.0};
 }
 
-/* Weights of the corners under the ray: what interpolating u / w, v / w and 1 / w across the picture comes to (Heckbert and Moreton,
- * "Interpolation for polygon texture mapping and shading", 1991), by the ray instead of the picture because corners may be behind the
- * eye (Moller and Trumbore, JGT 2(1), 1997). A ray that misses by what corners were rounded takes the nearest edge. */
+/* Weights of the corners under the ray: what interpolating u / w, v / w and 1 / w across the picture comes to (Heckbert
+ * and Moreton, "Interpolation for polygon texture mapping and shading", 1991), by the ray instead of the picture
+ * because corners may be behind the eye (Moller and Trumbore, JGT 2(1), 1997). A ray that misses by what corners were
+ * rounded takes the nearest edge. */
 static met met_triangle(const drawn_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
 {
     const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
     const vec3 o = vec3_sub(forest_origin(&p->at, s->copy), view->eye);
     const vec3 a = zbuffer_vertex(&p->at, o, tri.corner[0]);
-    const vec3 ab = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[1]), a), ac = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[2]), a);
+    const vec3 ab = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[1]), a),
+               ac = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[2]), a);
     const vec3 h = vec3_cross(d, ac), q = vec3_cross(ab, a);
     const double size = vec3_dot(ab, h);
     double u = -vec3_dot(a, h) / size, v = vec3_dot(d, q) / size;
@@ -245,7 +250,8 @@ void drawn_branches(tracer *t, int depth)
     put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
 }
 
-/* Weights straight across the picture, of the polygon that the planes left: not what they are in space, unless all corners are equally far. */
+/* Weights straight across the picture, of the polygon that the planes left: not what they are in space, unless all
+ * corners are equally far. */
 static void straight_weights(const zbuffer *z, const screen_triangle *s, double x, double y, double weight[3])
 {
     clip_corner polygon[POLYGON_MAX];

@@ -51,8 +51,8 @@ static void fit(diagram *d, const diagram_box *box)
     d->plane.v0 = v - 0.5 * d->frame.height / d->scale, d->plane.v1 = v + 0.5 * d->frame.height / d->scale;
 }
 
-status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, const section_plane *plane, const diagram_box *box,
-                     const diagram_frame *frame, const char *caption, diagnostic *why)
+status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, const section_plane *plane,
+                     const diagram_box *box, const diagram_frame *frame, const char *caption, diagnostic *why)
 {
     *d = (diagram){.out = out, .p = p, .s = s, .plane = *plane, .frame = *frame};
     fit(d, box);
@@ -111,8 +111,8 @@ void diagram_ray(const diagram *d, vec3 from, vec3 to, const char *color, double
     char stroke[192], dashed[64] = "";
     if (dashes)
         snprintf(dashed, sizeof dashed, " stroke-dasharray=\"%s\"", dashes);
-    snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"%.2f\" stroke-opacity=\"%.2f\"%s", color, diagram_ray_width(weight),
-             diagram_ray_opacity(weight), dashed);
+    snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"%.2f\" stroke-opacity=\"%.2f\"%s", color,
+             diagram_ray_width(weight), diagram_ray_opacity(weight), dashed);
     svg_line(d->out, diagram_x(d, a.u), diagram_y(d, a.v), diagram_x(d, b.u), diagram_y(d, b.v), stroke);
 }
 
@@ -131,9 +131,9 @@ void diagram_arrow(const diagram *d, vec3 from, vec3 to, const char *color, doub
     const double long_px = 4.0 + 3.0 * sqrt(weight), half_px = 0.36 * long_px;
     const double along_x = (b.u - a.u) / length, along_y = -(b.v - a.v) / length;
     const double x = diagram_x(d, b.u), y = diagram_y(d, b.v);
-    fprintf(d->out, "<path d=\"M%.2f %.2fL%.2f %.2fL%.2f %.2fZ\" fill=\"%s\" fill-opacity=\"%.2f\"/>\n", x + long_px * along_x,
-            y + long_px * along_y, x - half_px * along_y, y + half_px * along_x, x + half_px * along_y, y - half_px * along_x, color,
-            diagram_ray_opacity(weight));
+    fprintf(d->out, "<path d=\"M%.2f %.2fL%.2f %.2fL%.2f %.2fZ\" fill=\"%s\" fill-opacity=\"%.2f\"/>\n",
+            x + long_px * along_x, y + long_px * along_y, x - half_px * along_y, y + half_px * along_x,
+            x + half_px * along_y, y - half_px * along_x, color, diagram_ray_opacity(weight));
 }
 
 void diagram_dot(const diagram *d, vec3 at, double radius_px, const char *fill, const char *stroke)
@@ -149,6 +149,6 @@ void diagram_cross(const diagram *d, vec3 at, double radius_px, const char *stro
     const section_point p = section_project(&d->plane, at);
     const double x = diagram_x(d, p.u), y = diagram_y(d, p.v), r = radius_px;
     if (diagram_shows(d, at))
-        fprintf(d->out, "<path d=\"M%.2f %.2fL%.2f %.2fM%.2f %.2fL%.2f %.2f\" stroke=\"%s\" stroke-width=\"1.8\"/>\n", x - r, y - r, x + r,
-                y + r, x - r, y + r, x + r, y - r, stroke);
+        fprintf(d->out, "<path d=\"M%.2f %.2fL%.2f %.2fM%.2f %.2fL%.2f %.2f\" stroke=\"%s\" stroke-width=\"1.8\"/>\n",
+                x - r, y - r, x + r, y + r, x - r, y + r, x + r, y - r, stroke);
 }

@@ -56,13 +56,13 @@ void diagram_axes(const diagram *d, const char *caption)
         tick_text(k * step, text);
         svg_label(d->out, f->left - 7.0, y + 4.0, "end", SVG_INK, text);
     }
-    fprintf(d->out, "<path d=\"M%.2f %.2fV%.2fH%.2f\" stroke=\"" SVG_INK "\" stroke-width=\"0.8\"/>\n", f->left, f->top, bottom,
-            f->left + f->width);
+    fprintf(d->out, "<path d=\"M%.2f %.2fV%.2fH%.2f\" stroke=\"" SVG_INK "\" stroke-width=\"0.8\"/>\n", f->left, f->top,
+            bottom, f->left + f->width);
     name_axis(w->e_u, name, sizeof name);
     svg_label(d->out, f->left + 0.5 * f->width, bottom + 33.0, "middle", SVG_INK, name);
     name_axis(w->e_v, name, sizeof name);
-    fprintf(d->out, "<text transform=\"translate(%.2f %.2f) rotate(-90)\" text-anchor=\"middle\" fill=\"" SVG_INK "\">", f->left - 40.0,
-            f->top + 0.5 * f->height);
+    fprintf(d->out, "<text transform=\"translate(%.2f %.2f) rotate(-90)\" text-anchor=\"middle\" fill=\"" SVG_INK "\">",
+            f->left - 40.0, f->top + 0.5 * f->height);
     svg_escape(d->out, name);
     fputs("</text>\n", d->out);
     svg_label(d->out, f->left, f->top - 9.0, "start", SVG_INK, caption);

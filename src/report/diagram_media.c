@@ -147,8 +147,10 @@ double diagram_media_key(FILE *out, const probe *p, const scene *s, double left,
         if (x > left && x + width > right)
             x = left, y += DIAGRAM_ROW;
         if (out) {
-            fprintf(out, "<rect x=\"%.2f\" y=\"%.2f\" width=\"16\" height=\"10\" stroke=\"" SVG_INK
-                         "\" stroke-width=\"0.9\" stroke-opacity=\"0.65\" ", x, y - 9.0);
+            fprintf(out,
+                    "<rect x=\"%.2f\" y=\"%.2f\" width=\"16\" height=\"10\" stroke=\"" SVG_INK
+                    "\" stroke-width=\"0.9\" stroke-opacity=\"0.65\" ",
+                    x, y - 9.0);
             write_fill(out, s, i);
             fputs("/>\n", out);
             svg_label(out, x + 21.0, y, "start", SVG_INK, text);

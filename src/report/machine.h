@@ -1,5 +1,5 @@
-/* What this machine is, as far as it matters to a measurement: processors, clocks, vector instructions, and what could disturb now.
- * Ownership: machine_look fills, machine_release releases, also after an error. */
+/* What this machine is, as far as it matters to a measurement: processors, clocks, vector instructions, and what could
+ * disturb now. Ownership: machine_look fills, machine_release releases, also after an error. */
 #ifndef CUVETTE_REPORT_MACHINE_H
 #define CUVETTE_REPORT_MACHINE_H
 
@@ -20,7 +20,8 @@ typedef struct machine_account {
     json_t *disturbances; /* list of texts */
 } machine_account;
 
-/* Takes half a second, in which it watches the load of others. An instruction set that the environment asks for wrongly is STATUS_BAD_INPUT. */
+/* Takes half a second, in which it watches the load of others. An instruction set that the environment asks for wrongly
+ * is STATUS_BAD_INPUT. */
 status machine_look(machine_account *a, diagnostic *why);
 void machine_release(machine_account *a);
 

@@ -48,7 +48,8 @@ static void print_row(FILE *stream, const medium *m, double at_nm)
                 dispersion_covers(&m->law, lambda_nm, lambda_nm) ? ' ' : '*');
     }
     if (isfinite(abbe))
-        fprintf(stream, "  %5.2f%c", abbe, dispersion_covers(&m->law, LINE_HYDROGEN_F_NM, LINE_HYDROGEN_C_NM) ? ' ' : '*');
+        fprintf(stream, "  %5.2f%c", abbe,
+                dispersion_covers(&m->law, LINE_HYDROGEN_F_NM, LINE_HYDROGEN_C_NM) ? ' ' : '*');
     else
         fprintf(stream, "  %5s ", "-");
     if (at_nm > 0.0 && dispersion_covers(&m->law, at_nm, at_nm))

@@ -5,14 +5,16 @@
 /* Of the mesh's own arrays. */
 static size_t memory_bytes(const mesh *m)
 {
-    const size_t by_vertex = sizeof *m->vertices + (m->normals ? sizeof *m->normals : 0) + (m->uvs ? sizeof *m->uvs : 0);
+    const size_t by_vertex =
+        sizeof *m->vertices + (m->normals ? sizeof *m->normals : 0) + (m->uvs ? sizeof *m->uvs : 0);
     return m->vertex_count * by_vertex + m->triangle_count * (sizeof *m->triangles + (m->slots ? 1 : 0));
 }
 
 static void print_vector(FILE *stream, const char *name, vec3 v)
 {
     char x[NUMBER_TEXT_MAX], y[NUMBER_TEXT_MAX], z[NUMBER_TEXT_MAX];
-    fprintf(stream, "%-10s %s %s %s\n", name, number_format_digits(v.x, 9, x), number_format_digits(v.y, 9, y), number_format_digits(v.z, 9, z));
+    fprintf(stream, "%-10s %s %s %s\n", name, number_format_digits(v.x, 9, x), number_format_digits(v.y, 9, y),
+            number_format_digits(v.z, 9, z));
 }
 
 static void print_hole(FILE *stream, const mesh *m)
@@ -21,11 +23,11 @@ static void print_hole(FILE *stream, const mesh *m)
     if (m->triangle_count == 0 || h->sharing == 0)
         fputs("closed     no: no triangle has an area\n", stream);
     else if (h->sharing == 2)
-        fprintf(stream, "closed     no: one-sided at the edge from vertex %lu to %lu of triangle %zu\n", (unsigned long)h->from, (unsigned long)h->to,
-                h->triangle);
+        fprintf(stream, "closed     no: one-sided at the edge from vertex %lu to %lu of triangle %zu\n",
+                (unsigned long)h->from, (unsigned long)h->to, h->triangle);
     else
-        fprintf(stream, "closed     no: the edge from vertex %lu to %lu of triangle %zu is shared by %d, not 2\n", (unsigned long)h->from,
-                (unsigned long)h->to, h->triangle, h->sharing);
+        fprintf(stream, "closed     no: the edge from vertex %lu to %lu of triangle %zu is shared by %d, not 2\n",
+                (unsigned long)h->from, (unsigned long)h->to, h->triangle, h->sharing);
 }
 
 void mesh_rows_text(FILE *stream, const mesh *m)
@@ -41,8 +43,8 @@ void mesh_rows_text(FILE *stream, const mesh *m)
         fprintf(stream, "closed     yes\nvolume     %s\n", number_format_digits(mesh_volume(m), 12, number));
     else
         print_hole(stream, m);
-    fprintf(stream, "has       %s%s%s positions\n", m->normals ? " normals," : "", m->uvs ? " texture coordinates," : "",
-            m->single ? " single-precision" : " double-precision");
+    fprintf(stream, "has       %s%s%s positions\n", m->normals ? " normals," : "",
+            m->uvs ? " texture coordinates," : "", m->single ? " single-precision" : " double-precision");
     if (m->slot_count > 1)
         fprintf(stream, "materials  %d\n", m->slot_count);
     fprintf(stream, "memory     %s MB\n", number_format_digits((double)memory_bytes(m) / 1e6, 4, number));
@@ -58,15 +60,17 @@ static json_t *hole_json(const mesh *m)
     const mesh_hole *h = &m->hole;
     if (m->closed || h->sharing == 0)
         return json_null();
-    return json_pack("{s:I,s:I,s:I,s:i}", "from", (json_int_t)h->from, "to", (json_int_t)h->to, "triangle", (json_int_t)h->triangle, "sharing",
-                     h->sharing);
+    return json_pack("{s:I,s:I,s:I,s:i}", "from", (json_int_t)h->from, "to", (json_int_t)h->to, "triangle",
+                     (json_int_t)h->triangle, "sharing", h->sharing);
 }
 
 json_t *mesh_rows_json(const mesh *m)
 {
-    return json_pack("{s:i,s:I,s:I,s:o,s:o,s:o,s:b,s:o,s:o,s:b,s:b,s:b,s:i,s:I}", "schema", 1, "triangles", (json_int_t)m->triangle_count, "vertices",
-                     (json_int_t)m->vertex_count, "low", vector_json(m->bounds.low), "high", vector_json(m->bounds.high), "area",
-                     json_of_real(mesh_area(m)), "closed", m->closed, "volume", json_of_real(m->closed ? mesh_volume(m) : (double)NAN), "hole",
-                     hole_json(m), "normals", m->normals != NULL, "texture_coordinates", m->uvs != NULL, "single", m->single, "materials",
+    return json_pack("{s:i,s:I,s:I,s:o,s:o,s:o,s:b,s:o,s:o,s:b,s:b,s:b,s:i,s:I}", "schema", 1, "triangles",
+                     (json_int_t)m->triangle_count, "vertices", (json_int_t)m->vertex_count, "low",
+                     vector_json(m->bounds.low), "high", vector_json(m->bounds.high), "area",
+                     json_of_real(mesh_area(m)), "closed", m->closed, "volume",
+                     json_of_real(m->closed ? mesh_volume(m) : (double)NAN), "hole", hole_json(m), "normals",
+                     m->normals != NULL, "texture_coordinates", m->uvs != NULL, "single", m->single, "materials",
                      m->slot_count, "bytes", (json_int_t)memory_bytes(m));
 }

@@ -1,5 +1,5 @@
-/* What a mesh is, as a person and as a program read it. Ownership: the JSON is a new reference, NULL without memory. Errors of the stream are
- * left in the stream. */
+/* What a mesh is, as a person and as a program read it. Ownership: the JSON is a new reference, NULL without memory.
+ * Errors of the stream are left in the stream. */
 #ifndef CUVETTE_REPORT_MESH_ROWS_H
 #define CUVETTE_REPORT_MESH_ROWS_H
 

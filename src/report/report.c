@@ -203,8 +203,8 @@ static int add_counts(json_t *o, const scene *s, const ray_counters *c)
     return bad;
 }
 
-/* Mean variance of the film's values by channel, in the film's own space, and the root of its mean; null where nothing is drawn by
- * chance. */
+/* Mean variance of the film's values by channel, in the film's own space, and the root of its mean; null where nothing
+ * is drawn by chance. */
 static json_t *noise(const render_result *r)
 {
     double mean[3] = {0.0, 0.0, 0.0};
@@ -223,8 +223,8 @@ static json_t *meshes(const mesh_report *m)
     if (m->triangles == 0 && m->drawn == 0)
         return json_null();
     const double each = m->triangles > 0 ? (double)m->bytes / (double)m->triangles : (double)NAN;
-    json_t *o = json_pack("{s:o,s:o,s:o}", "triangles", json_of_count((int64_t)m->triangles), "instances", json_of_count((int64_t)m->instances),
-                          "accel_bytes", json_of_count((int64_t)m->bytes));
+    json_t *o = json_pack("{s:o,s:o,s:o}", "triangles", json_of_count((int64_t)m->triangles), "instances",
+                          json_of_count((int64_t)m->instances), "accel_bytes", json_of_count((int64_t)m->bytes));
     int bad = json_object_set_new(o, "bytes_per_triangle", json_of_real(each));
     bad |= json_object_set_new(o, "build_s", json_of_real(m->build_s));
     bad |= json_object_set_new(o, "drawn", json_of_count((int64_t)m->drawn));

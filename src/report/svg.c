@@ -14,10 +14,12 @@ void svg_escape(FILE *out, const char *text)
 
 void svg_begin(FILE *out, double width, double height, const char *title)
 {
-    fprintf(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                 "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\"\n"
-                 "     font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\" font-size=\"11\" fill=\"none\" "
-                 "stroke-linecap=\"round\" stroke-linejoin=\"round\">\n",
+    fprintf(out,
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 "
+            "%.0f %.0f\"\n"
+            "     font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\" font-size=\"11\" fill=\"none\" "
+            "stroke-linecap=\"round\" stroke-linejoin=\"round\">\n",
             width, height, width, height);
     if (title) {
         fputs("<title>", out);

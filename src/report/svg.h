@@ -1,5 +1,6 @@
-/* SVG 1.1 as text: decimals to a hundredth of a pixel, so that the same drawing is the same bytes; no scripts, no fonts of its
- * own. Colours are those of plots/style.gp: Okabe and Ito's. Errors of the stream are left in the stream. Ownership: nothing is kept. */
+/* SVG 1.1 as text: decimals to a hundredth of a pixel, so that the same drawing is the same bytes; no scripts, no fonts
+ * of its own. Colours are those of plots/style.gp: Okabe and Ito's. Errors of the stream are left in the stream.
+ * Ownership: nothing is kept. */
 #ifndef CUVETTE_REPORT_SVG_H
 #define CUVETTE_REPORT_SVG_H
 

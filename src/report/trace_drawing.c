@@ -6,7 +6,9 @@
 /* Rays lighter than this share of the root's are not drawn. */
 #define LIGHTEST 0.002
 
-typedef struct ray_style { const char *color, *words, *dashes; } ray_style;
+typedef struct ray_style {
+    const char *color, *words, *dashes;
+} ray_style;
 
 /* By kind; of shadow rays those whose light comes through. */
 static const ray_style styles[] = {
@@ -20,7 +22,7 @@ static const ray_style blocked = {SVG_GREY, "blocked", "5,3"};
 
 typedef struct picture {
     const traced *t;
-    double sky_length;   /* at which rays to the sky are drawn, scene units */
+    double sky_length; /* at which rays to the sky are drawn, scene units */
 } picture;
 
 static double mean(const double c[3])
@@ -110,8 +112,8 @@ static diagram_box box_of(const traced *t, const section_plane *plane)
     return box;
 }
 
-/* The plane spanned by the root's direction and the first normal; upright through the ray where there is none. Its v points up as far
- * as it can, its u the way that the ray goes. */
+/* The plane spanned by the root's direction and the first normal; upright through the ray where there is none. Its v
+ * points up as far as it can, its u the way that the ray goes. */
 static section_plane plane_of_incidence(const ray_tree *tree)
 {
     const ray_node *root = &tree->node[0];
@@ -189,8 +191,8 @@ static void draw_tree(const diagram *d, const picture *a)
         diagram_dot(d, tree->node[0].hit.point, 2.2, SVG_INK, "none");
 }
 
-static status draw_view(const picture *a, FILE *out, const section_plane *plane, const diagram_frame *frame, const char *caption,
-                        diagnostic *why)
+static status draw_view(const picture *a, FILE *out, const section_plane *plane, const diagram_frame *frame,
+                        const char *caption, diagnostic *why)
 {
     diagram d;
     picture own = *a;
@@ -203,11 +205,12 @@ static status draw_view(const picture *a, FILE *out, const section_plane *plane,
     return result;
 }
 
-static double key_line(FILE *out, double x, double y, const char *color, const char *dashes, const char *words, double width)
+static double key_line(FILE *out, double x, double y, const char *color, const char *dashes, const char *words,
+                       double width)
 {
     char stroke[160];
-    snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"1.6\"%s%s%s", color, dashes ? " stroke-dasharray=\"" : "",
-             dashes ? dashes : "", dashes ? "\"" : "");
+    snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"1.6\"%s%s%s", color,
+             dashes ? " stroke-dasharray=\"" : "", dashes ? dashes : "", dashes ? "\"" : "");
     svg_line(out, x, y - 4.0, x + 22.0, y - 4.0, stroke);
     svg_label(out, x + 28.0, y, "start", SVG_INK, words);
     return x + width;
@@ -223,7 +226,8 @@ static void draw_key(FILE *out, double left, double y)
     fprintf(out, "<path d=\"M%.2f %.2fl7 2.5l-7 2.5z\" fill=\"" SVG_GREY "\"/>\n", x, y - 6.5);
     svg_label(out, x + 13.0, y, "start", SVG_INK, "to the sky");
     x += 92.0;
-    fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3.5\" stroke=\"" SVG_PURPLE "\" stroke-width=\"1.2\"/>\n", x + 4.0, y - 4.0);
+    fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3.5\" stroke=\"" SVG_PURPLE "\" stroke-width=\"1.2\"/>\n",
+            x + 4.0, y - 4.0);
     svg_label(out, x + 13.0, y, "start", SVG_INK, "total internal reflection");
 }
 
@@ -237,7 +241,8 @@ static size_t count_drawn(const ray_tree *tree)
 
 status trace_write_drawing(const traced *t, FILE *out, diagnostic *why)
 {
-    const double side = 470.0, full = DIAGRAM_BEFORE + side + DIAGRAM_BEHIND, foot = DIAGRAM_ABOVE + side + DIAGRAM_BELOW;
+    const double side = 470.0, full = DIAGRAM_BEFORE + side + DIAGRAM_BEHIND,
+                 foot = DIAGRAM_ABOVE + side + DIAGRAM_BELOW;
     const picture a = {.t = t};
     char caption[160];
     const double media = diagram_media_key(NULL, t->p, t->s, DIAGRAM_BEFORE, 2.0 * full, foot + 36.0);
@@ -245,14 +250,17 @@ status trace_write_drawing(const traced *t, FILE *out, diagnostic *why)
     const section_plane incidence = plane_of_incidence(t->tree);
     const diagram_frame first = {DIAGRAM_BEFORE, DIAGRAM_ABOVE, side, side};
     status result = draw_view(&a, out, &incidence, &first,
-                              t->tree->node[0].end == RAY_END_HIT ? "plane of incidence of the first hit" : "upright plane through the ray", why);
+                              t->tree->node[0].end == RAY_END_HIT ? "plane of incidence of the first hit"
+                                                                  : "upright plane through the ray",
+                              why);
     const section_plane other = other_plane(t->tree, &incidence, caption, sizeof caption);
     const diagram_frame second = {full + DIAGRAM_BEFORE, DIAGRAM_ABOVE, side, side};
     if (result == STATUS_OK)
         result = draw_view(&a, out, &other, &second, caption, why);
     draw_key(out, DIAGRAM_BEFORE, foot + 14.0);
     diagram_media_key(out, t->p, t->s, DIAGRAM_BEFORE, 2.0 * full, foot + 36.0);
-    snprintf(caption, sizeof caption, "rays: %zu, depth limit %d, %.6g nm; fainter lines weigh less, %zu below %g of the first are left out",
+    snprintf(caption, sizeof caption,
+             "rays: %zu, depth limit %d, %.6g nm; fainter lines weigh less, %zu below %g of the first are left out",
              t->tree->count, t->tree->depth_limit, t->tree->lambda_nm, t->tree->count - count_drawn(t->tree), LIGHTEST);
     svg_label(out, DIAGRAM_BEFORE, media + 22.0, "start", SVG_GREY, caption);
     svg_end(out);

@@ -68,7 +68,7 @@ status trace_write_text(const traced *t, FILE *out, diagnostic *why)
         const ray_node *node = &tree->node[i];
         write_line(t, out, node, node->kind == RAY_SHADOW ? node->depth + 1 : node->depth);
     }
-    fprintf(out, "radiance %.9g %.9g %.9g  rays %zu, depth limit %d, %.6g nm\n", tree->radiance[0], tree->radiance[1], tree->radiance[2],
-            tree->count, tree->depth_limit, tree->lambda_nm);
+    fprintf(out, "radiance %.9g %.9g %.9g  rays %zu, depth limit %d, %.6g nm\n", tree->radiance[0], tree->radiance[1],
+            tree->radiance[2], tree->count, tree->depth_limit, tree->lambda_nm);
     return STATUS_OK;
 }

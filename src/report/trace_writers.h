@@ -1,5 +1,5 @@
-/* A tree of rays as text, as JSON, as a drawing. Each writes all of it to a stream, whose errors are left in the stream.
- * Ownership: everything is borrowed. */
+/* A tree of rays as text, as JSON, as a drawing. Each writes all of it to a stream, whose errors are left in the
+ * stream. Ownership: everything is borrowed. */
 #ifndef CUVETTE_REPORT_TRACE_WRITERS_H
 #define CUVETTE_REPORT_TRACE_WRITERS_H
 
@@ -13,8 +13,8 @@ typedef struct traced {
     const char *scene_path;
 } traced;
 
-extern const char *const trace_kind_words[];  /* by ray_kind */
-extern const char *const trace_end_words[];   /* by ray_end */
+extern const char *const trace_kind_words[]; /* by ray_kind */
+extern const char *const trace_end_words[];  /* by ray_end */
 
 status trace_write_text(const traced *t, FILE *out, diagnostic *why);
 /* The schema is fixed: see THE JSON TREE in the manual page. */

@@ -45,7 +45,8 @@ const texture_entry *scene_find_texture(const scene *s, const char *name)
     return NULL;
 }
 
-status asset_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code, diagnostic *why)
+status asset_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code,
+                   diagnostic *why)
 {
     if (line == 0) {
         diagnostic_locate(why, bad->file, bad->line, bad->column);
@@ -98,7 +99,9 @@ static status load_sky(scene *s, diagnostic *why)
         sky->picture = NULL;
     }
     free(path);
-    return code == STATUS_OK ? code : asset_error(s, "background.picture", sky->picture_line, sky->picture_column, &bad, code, why);
+    return code == STATUS_OK
+               ? code
+               : asset_error(s, "background.picture", sky->picture_line, sky->picture_column, &bad, code, why);
 }
 
 static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
@@ -109,8 +112,8 @@ static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
     }
     diagnostic bad = {.what = ""};
     texture *data = NULL;
-    const status code = texture_read_below(path, s->limits.root, (texture_space)t->space, (texture_wrap)t->wrap_u, (texture_wrap)t->wrap_v,
-                                           (texture_filter)t->filter, &data, &bad);
+    const status code = texture_read_below(path, s->limits.root, (texture_space)t->space, (texture_wrap)t->wrap_u,
+                                           (texture_wrap)t->wrap_v, (texture_filter)t->filter, &data, &bad);
     free(path);
     t->data = data;
     return code == STATUS_OK ? code : asset_error(s, t->name, t->path_line, t->path_column, &bad, code, why);
@@ -181,8 +184,9 @@ static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
         return STATUS_OK;
     }
     diagnostic bad = {.what = ""};
-    const status code = diagnose(&bad, STATUS_BAD_INPUT, "use smaller meshes, or fewer", "%zu triangles in all meshes are more than the limit of %zu", all,
-                                 s->limits.triangles);
+    const status code =
+        diagnose(&bad, STATUS_BAD_INPUT, "use smaller meshes, or fewer",
+                 "%zu triangles in all meshes are more than the limit of %zu", all, s->limits.triangles);
     mesh_entry_unload(m);
     return asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
 }

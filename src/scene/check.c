@@ -74,7 +74,8 @@ static size_t count_name(const scene *s, const char *name)
 
 static status name_taken(const char *name, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "meshes, textures, lights, materials and solids need different names, because paths use them",
+    return diagnose(why, STATUS_BAD_INPUT,
+                    "meshes, textures, lights, materials and solids need different names, because paths use them",
                     "the name '%s' is taken", name);
 }
 
@@ -100,9 +101,11 @@ status check_render(const scene *s, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
                         "the path integrator does not follow polarisation");
     }
-    if (s->render.integrator == INTEGRATOR_ZBUFFER && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL)) {
+    if (s->render.integrator == INTEGRATOR_ZBUFFER &&
+        (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL)) {
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
-                        "the depth buffer draws red, green and blue: it knows no %s", s->render.polarisation ? "polarisation" : "spectrum");
+                        "the depth buffer draws red, green and blue: it knows no %s",
+                        s->render.polarisation ? "polarisation" : "spectrum");
     }
     if (s->render.polarisation && s->render.weights == WEIGHTS_CONSTANT) {
         return diagnose(why, STATUS_BAD_INPUT, "set render.weights to fresnel",
@@ -118,12 +121,14 @@ status check_render(const scene *s, diagnostic *why)
 status check_light(const scene *s, const light *lamp, diagnostic *why)
 {
     if (s->render.integrator == INTEGRATOR_PATH && lamp->radius > 0.0 && lamp->reach == 0.0) {
-        return diagnose(why, STATUS_BAD_INPUT, "give the distance at which it has its intensity, as 'reach: 8', or radius 0",
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "give the distance at which it has its intensity, as 'reach: 8', or radius 0",
                         "%.80s: a sphere's light falls off with distance, and no reach says from where", lamp->name);
     }
     const vec3 axis = vec3_sub(lamp->target, lamp->position);
     if (lamp->kind != LIGHT_POINT && !(vec3_dot(axis, axis) > 0.0)) {
-        return diagnose(why, STATUS_BAD_INPUT, "move its position or its target", "%.80s: the light stands at its own target", lamp->name);
+        return diagnose(why, STATUS_BAD_INPUT, "move its position or its target",
+                        "%.80s: the light stands at its own target", lamp->name);
     }
     return STATUS_OK;
 }
@@ -150,12 +155,13 @@ status check_background(const scene *s, diagnostic *why)
 status check_mesh(const mesh_entry *m, diagnostic *why)
 {
     if (m->source == MESH_FILE && !m->path[0]) {
-        return diagnose(why, STATUS_BAD_INPUT, "give it a file, as 'file: teapot.obj', or 'generate: icosphere' and the like",
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "give it a file, as 'file: teapot.obj', or 'generate: icosphere' and the like",
                         "%.80s: where the mesh comes from is not said", m->name);
     }
     if (m->source == MESH_LATHE && m->profile.count % 2 != 0) {
-        return diagnose(why, STATUS_BAD_INPUT, "give radius, height, radius, height ..", "%.80s: the profile has an odd number of numbers",
-                        m->name);
+        return diagnose(why, STATUS_BAD_INPUT, "give radius, height, radius, height ..",
+                        "%.80s: the profile has an odd number of numbers", m->name);
     }
     return m->source == MESH_SLIME ? slime_check(m, why) : STATUS_OK;
 }
@@ -163,7 +169,8 @@ status check_mesh(const mesh_entry *m, diagnostic *why)
 status check_texture(const texture_entry *t, diagnostic *why)
 {
     if (!t->path[0] && !t->data) {
-        return diagnose(why, STATUS_BAD_INPUT, "give it a file, as 'file: wood.png'", "%.80s: the texture has no picture", t->name);
+        return diagnose(why, STATUS_BAD_INPUT, "give it a file, as 'file: wood.png'",
+                        "%.80s: the texture has no picture", t->name);
     }
     return STATUS_OK;
 }
@@ -199,7 +206,8 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
     }
     const vec3 a = data->vertices[data->hole.from], b = data->vertices[data->hole.to];
     return diagnose(why, STATUS_BAD_INPUT, "close the mesh, or make the solid opaque (transparency 0)",
-                    "%.80s is clear, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, %g) of triangle %zu is an edge of %d "
+                    "%.80s is clear, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, %g) of "
+                    "triangle %zu is an edge of %d "
                     "triangles, and not of 2",
                     owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, data->hole.sharing);
 }
@@ -211,7 +219,8 @@ static status check_colors(const scene *s, const solid *owner, const mesh_entry 
     if (s->render.spectrum != SPECTRUM_SPECTRAL || !(by_face || owner->surface.texture[0])) {
         return STATUS_OK;
     }
-    return diagnose(why, STATUS_BAD_INPUT, by_face ? "set render.spectrum to rgb, or give the solid a material" : "set render.spectrum to rgb",
+    return diagnose(why, STATUS_BAD_INPUT,
+                    by_face ? "set render.spectrum to rgb, or give the solid a material" : "set render.spectrum to rgb",
                     "%.80s: %s have no spectra", owner->name, by_face ? "materials by face" : "textures");
 }
 
@@ -226,7 +235,8 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
         return check_colors(s, owner, NULL, why);
     }
     if (!owner->mesh[0]) {
-        return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', of one in meshes", "%.80s: which mesh it is is not said", owner->name);
+        return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', of one in meshes",
+                        "%.80s: which mesh it is is not said", owner->name);
     }
     if (!m) {
         return unknown(s, PARAM_MESH, owner->name, owner->mesh, why);
@@ -243,10 +253,10 @@ static status check_faces(const scene *s, const solid *owner, diagnostic *why)
         const material m = looks_face(s, owner, &owner->surface, slot).surface;
         const char *name = scene_find_mesh(s, owner->mesh)->data->slot_names[slot];
         if (m.reflectivity + m.transparency > 1.0 + 1e-12) {
-            return diagnose(
-                why, STATUS_BAD_INPUT, "lower one of them, or set render.transmission to refract",
-                "%.80s: under simple transmission its faces of %.80s have reflectivity %g + transparency %g, more than 1",
-                owner->name, name && name[0] ? name : "no material", m.reflectivity, m.transparency);
+            return diagnose(why, STATUS_BAD_INPUT, "lower one of them, or set render.transmission to refract",
+                            "%.80s: under simple transmission its faces of %.80s have reflectivity %g + transparency "
+                            "%g, more than 1",
+                            owner->name, name && name[0] ? name : "no material", m.reflectivity, m.transparency);
         }
     }
     return STATUS_OK;
@@ -277,9 +287,11 @@ status check_solid(const scene *s, const solid *owner, diagnostic *why)
     if (scene_has_constant_shares(&s->render) && sum > 1.0 + 1e-12) {
         const bool simple = s->render.transmission == TRANSMISSION_SIMPLE;
         return diagnose(why, STATUS_BAD_INPUT,
-                        simple ? "lower one of them, or set render.transmission to refract" : "lower one of them, or set render.weights to fresnel",
+                        simple ? "lower one of them, or set render.transmission to refract"
+                               : "lower one of them, or set render.weights to fresnel",
                         "%.80s: under %s reflectivity %g + transparency %g is more than 1", owner->name,
-                        simple ? "simple transmission" : "constant weights", owner->surface.reflectivity, owner->surface.transparency);
+                        simple ? "simple transmission" : "constant weights", owner->surface.reflectivity,
+                        owner->surface.transparency);
     }
     return check_faces(s, owner, why);
 }

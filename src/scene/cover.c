@@ -156,7 +156,8 @@ static bool avoids_hollow(const covered *h, const solid_shape *cup, const mat3 *
 static bool contains_all(const solid_shape *c, const covered *h)
 {
     const mat3 turn = rotation_from_deg(c->rotation_deg);
-    const round_frame frame = {c->position, turn, c->kind == SHAPE_CYLINDER || c->kind == SHAPE_CUP ? c->m : 1.0, c->kind == SHAPE_SPHERE};
+    const round_frame frame = {c->position, turn, c->kind == SHAPE_CYLINDER || c->kind == SHAPE_CUP ? c->m : 1.0,
+                               c->kind == SHAPE_SPHERE};
     switch (c->kind) {
     case SHAPE_PLANE: {
         const vec3 up = axis_of(&turn, 1);
@@ -219,8 +220,8 @@ bool scene_apart(const scene *s, const solid *a, const solid *b)
     const covered one = measured(s, a), two = measured(s, b);
     bool apart = false;
     for (int k = 0; k < 3 && !apart; k++)
-        apart = apart_along(&one, &two, vec3_make(k == 0, k == 1, k == 2)) || apart_along(&one, &two, axis_of(&one.turn, k)) ||
-                apart_along(&one, &two, axis_of(&two.turn, k));
+        apart = apart_along(&one, &two, vec3_make(k == 0, k == 1, k == 2)) ||
+                apart_along(&one, &two, axis_of(&one.turn, k)) || apart_along(&one, &two, axis_of(&two.turn, k));
     const vec3 between = vec3_sub(b->shape.position, a->shape.position), level = vec3_make(between.x, 0.0, between.z);
     return apart || (vec3_length(between) > 0.0 && apart_along(&one, &two, vec3_normalize(between))) ||
            (vec3_length(level) > 0.0 && apart_along(&one, &two, vec3_normalize(level)));

@@ -213,8 +213,10 @@ static status read_stream(event_reader *r, node **root)
         if (type == YAML_DOCUMENT_START_EVENT && *root) {
             code = events_error(r, event.start_mark, "put it into a file of its own", "a second document begins here");
         } else if (type == YAML_STREAM_END_EVENT && !*root) {
-            code = events_error(r, (yaml_mark_t){0}, "begin a scene with keys such as solids: and lights:, a study with study:, a script with hands:",
-                                "the file is empty");
+            code = events_error(
+                r, (yaml_mark_t){0},
+                "begin a scene with keys such as solids: and lights:, a study with study:, a script with hands:",
+                "the file is empty");
         } else if (type == YAML_SCALAR_EVENT || type == YAML_SEQUENCE_START_EVENT || type == YAML_MAPPING_START_EVENT) {
             code = read_node(r, &event, 1, root);
         }

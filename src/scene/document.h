@@ -12,11 +12,11 @@ typedef enum node_kind { NODE_SCALAR, NODE_LIST, NODE_MAP } node_kind;
 
 typedef struct node {
     node_kind kind;
-    long line, column;           /* from 1 */
-    char *text;                  /* NODE_SCALAR */
+    long line, column; /* from 1 */
+    char *text;        /* NODE_SCALAR */
     bool quoted;
-    struct node **items;         /* NODE_LIST: items; NODE_MAP: values */
-    struct node **keys;          /* NODE_MAP: scalars, no two the same */
+    struct node **items; /* NODE_LIST: items; NODE_MAP: values */
+    struct node **keys;  /* NODE_MAP: scalars, no two the same */
     size_t count;
 } node;
 

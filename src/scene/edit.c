@@ -1,4 +1,5 @@
-/* Objects go and change their names. How they come is in edit_add.c, what a solid is made of is in edit_solid.c, how things move in edit_place.c. */
+/* Objects go and change their names. How they come is in edit_add.c, what a solid is made of is in edit_solid.c, how
+ * things move in edit_place.c. */
 #include "scene/edit.h"
 #include "scene/check.h"
 #include "scene/params_path.h"
@@ -31,8 +32,8 @@ static status remove_material(scene *s, size_t index, diagnostic *why)
         if (users > 1) {
             snprintf(others, sizeof others, " and %zu more", users - 1);
         }
-        return diagnose(why, STATUS_BAD_INPUT, "give those another material first, or remove them", "%.80s is the material of %.80s%s",
-                        s->materials[index].name, user, others);
+        return diagnose(why, STATUS_BAD_INPUT, "give those another material first, or remove them",
+                        "%.80s is the material of %.80s%s", s->materials[index].name, user, others);
     }
     free(s->materials[index].name);
     close_gap(s->materials, &s->material_count, sizeof *s->materials, index);
@@ -44,7 +45,8 @@ static status remove_material(scene *s, size_t index, diagnostic *why)
 
 static status in_use(const char *what, const char *name, const char *user, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "give that another one first, or remove it", "%.80s is the %s of %.80s", name, what, user);
+    return diagnose(why, STATUS_BAD_INPUT, "give that another one first, or remove it", "%.80s is the %s of %.80s",
+                    name, what, user);
 }
 
 static status remove_mesh(scene *s, size_t index, diagnostic *why)
@@ -103,9 +105,7 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
         close_gap(s->solids, &s->solid_count, sizeof *s->solids, at.index);
         return STATUS_OK;
     case PARAM_RENDER: return param_set_defaults(PARAM_RENDER, &s->render, why);
-    case PARAM_CAMERA:
-        s->camera.aimed = 1;
-        return param_set_defaults(PARAM_CAMERA, &s->camera, why);
+    case PARAM_CAMERA: s->camera.aimed = 1; return param_set_defaults(PARAM_CAMERA, &s->camera, why);
     case PARAM_BACKGROUND:
         image_destroy(s->background.picture);
         s->background.picture = NULL;
@@ -161,7 +161,8 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     }
     char **field = name_field(s, &at), *copy = NULL;
     if (!field) {
-        return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid", "the %s has no name of its own", name);
+        return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid",
+                        "the %s has no name of its own", name);
     }
     if (strcmp(name, new_name) == 0) {
         return STATUS_OK;

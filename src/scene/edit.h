@@ -38,7 +38,9 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
 
 /* Many objects at once, by a name that no object of the scene has: `all` is all solids and lights, `solids` and
  * `lights` are these alone, and words are joined by '+': `all+camera` is the whole scene with its camera. */
-typedef struct scene_parts { bool solids, lights, camera; } scene_parts;
+typedef struct scene_parts {
+    bool solids, lights, camera;
+} scene_parts;
 
 /* Is it such a name? An object that is called so comes first. */
 bool scene_parts_named(const scene *s, const char *name, scene_parts *out);

@@ -7,8 +7,9 @@
 #include <string.h>
 
 /* Every object begins with its name. */
-_Static_assert(offsetof(mesh_entry, name) == 0 && offsetof(texture_entry, name) == 0 && offsetof(named_material, name) == 0 &&
-                   offsetof(light, name) == 0 && offsetof(solid, name) == 0, "the name first");
+_Static_assert(offsetof(mesh_entry, name) == 0 && offsetof(texture_entry, name) == 0 &&
+                   offsetof(named_material, name) == 0 && offsetof(light, name) == 0 && offsetof(solid, name) == 0,
+               "the name first");
 
 /* One more element at the end of an array, which is not counted yet: all zero but for its name, which is checked. */
 static status append(const scene *s, const char *name, void **array, size_t count, size_t size, diagnostic *why)

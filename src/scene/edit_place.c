@@ -36,8 +36,8 @@ static status move_camera(scene *s, vec3 delta, diagnostic *why)
 
 static status has_no(const char *name, param_group group, const char *what, const char *remedy, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s is %s %s, which has no %s", name, group <= PARAM_BACKGROUND ? "the" : "a",
-                    param_group_name(group), what);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s is %s %s, which has no %s", name,
+                    group <= PARAM_BACKGROUND ? "the" : "a", param_group_name(group), what);
 }
 
 /* A cone goes on shining the same way. */
@@ -69,7 +69,8 @@ status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
     switch (at.group) {
     case PARAM_CAMERA: return move_camera(s, delta, why);
     case PARAM_LIGHT: return move_light(s, at.index, delta, why);
-    case PARAM_SOLID: return edit_set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
+    case PARAM_SOLID:
+        return edit_set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
     case PARAM_RENDER:
     case PARAM_BACKGROUND:
     case PARAM_MESH:
@@ -105,9 +106,10 @@ static mat3 product(mat3 a, mat3 b)
     return c;
 }
 
-/* Angles whose rotation_from_deg is r = R_z R_y R_x. The x angle is read from R_z^-1 r rather than from r's last row, so that
- * it makes up for whatever z was taken to be when the local x axis stands upright and x and z turn about one line: Herter and
- * Lott, Algorithms for decomposing 3-D orthogonal matrices into primitive rotations, Computers & Graphics 17 (1993). */
+/* Angles whose rotation_from_deg is r = R_z R_y R_x. The x angle is read from R_z^-1 r rather than from r's last row,
+ * so that it makes up for whatever z was taken to be when the local x axis stands upright and x and z turn about one
+ * line: Herter and Lott, Algorithms for decomposing 3-D orthogonal matrices into primitive rotations, Computers &
+ * Graphics 17 (1993). */
 static vec3 angles_of(mat3 r)
 {
     const double cos_y = sqrt(r.row[0].x * r.row[0].x + r.row[1].x * r.row[1].x);
@@ -115,7 +117,8 @@ static vec3 angles_of(mat3 r)
     double sz, cz;
     elementary_sincos_deg(z, &sz, &cz);
     const double cos_x = cz * r.row[1].y - sz * r.row[0].y, minus_sin_x = cz * r.row[1].z - sz * r.row[0].z;
-    return vec3_make(edit_settle_deg(elementary_atan2_deg(-minus_sin_x, cos_x)), edit_settle_deg(elementary_atan2_deg(-r.row[2].x, cos_y)), edit_settle_deg(z));
+    return vec3_make(edit_settle_deg(elementary_atan2_deg(-minus_sin_x, cos_x)),
+                     edit_settle_deg(elementary_atan2_deg(-r.row[2].x, cos_y)), edit_settle_deg(z));
 }
 
 static vec3 about(axis which, double degrees)
@@ -123,8 +126,8 @@ static vec3 about(axis which, double degrees)
     return vec3_make(which == AXIS_X ? degrees : 0.0, which == AXIS_Y ? degrees : 0.0, which == AXIS_Z ? degrees : 0.0);
 }
 
-/* The angles after one more turn about an axis of the world. z is turned last, so a turn about z only adds to it; one about y
- * or x does where the angles after it are 0. Sums keep a person's numbers as they are. */
+/* The angles after one more turn about an axis of the world. z is turned last, so a turn about z only adds to it; one
+ * about y or x does where the angles after it are 0. Sums keep a person's numbers as they are. */
 static vec3 turned(vec3 angles, axis which, double degrees)
 {
     if (degrees == 0.0) {
@@ -152,7 +155,8 @@ static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
     const mat3 turn = rotation_from_deg(degrees);
     camera *c = &s->camera;
     if (c->aimed) {
-        return edit_set_vector(s, "camera", "target", vec3_add(c->position, mat3_apply(turn, vec3_sub(c->target, c->position))), why);
+        return edit_set_vector(s, "camera", "target",
+                               vec3_add(c->position, mat3_apply(turn, vec3_sub(c->target, c->position))), why);
     }
     if (degrees.x == 0.0 && degrees.z == 0.0) { /* yaw turns as y does, z towards x */
         c->yaw_deg = wrap(c->yaw_deg + degrees.y);
@@ -189,7 +193,8 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
         return code;
     }
     if (!is_angle(degrees.x) || !is_angle(degrees.y) || !is_angle(degrees.z)) {
-        return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees", "%.80s cannot be turned so far", name);
+        return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees",
+                        "%.80s cannot be turned so far", name);
     }
     if (is_many) {
         return scene_turn_parts(s, parts, degrees, why);
@@ -201,7 +206,8 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
             return turn_light(s, &s->lights[at.index], degrees, why);
         }
         break;
-    case PARAM_SOLID: return edit_set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
+    case PARAM_SOLID:
+        return edit_set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
     case PARAM_RENDER:
     case PARAM_BACKGROUND:
     case PARAM_MESH:

@@ -192,7 +192,8 @@ static bool is_scaled(const whole_edit *e, const char *name, const param *row)
         return false;
     }
     if (e->only) { /* its material stays what it is, as its absorption by render.unit_m does */
-        return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 && strcmp(row->name, "position") != 0 && strcmp(row->name, "target") != 0;
+        return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 &&
+               strcmp(row->name, "position") != 0 && strcmp(row->name, "target") != 0;
     }
     return at.group == PARAM_SOLID || at.group == PARAM_MATERIAL ? e->parts.solids
            : at.group == PARAM_LIGHT                             ? e->parts.lights

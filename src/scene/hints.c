@@ -17,7 +17,8 @@ static bool is_inside_medium(const scene *s, const solid *bubble)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *other = &s->solids[i];
-        if (other != bubble && other->visible && other->surface.transparency > 0.0 && !material_matches_surroundings(s, &other->surface) &&
+        if (other != bubble && other->visible && other->surface.transparency > 0.0 &&
+            !material_matches_surroundings(s, &other->surface) &&
             solid_shape_contains(&other->shape, bubble->shape.position)) {
             return true;
         }
@@ -44,12 +45,15 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
     const material *m = &owner->surface;
     if (s->render.integrator == INTEGRATOR_ZBUFFER && s->render.lighting != LIGHTING_WHITTED) {
         if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0) {
-            note_give(taker, "render", "lighting", "set render.lighting to whitted",
-                      "%s is transparent, and without reflected and refracted light its surface is black but for highlights", owner->name);
+            note_give(
+                taker, "render", "lighting", "set render.lighting to whitted",
+                "%s is transparent, and without reflected and refracted light its surface is black but for highlights",
+                owner->name);
         }
     } else if (!scene_has_constant_shares(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
                m->reflectivity == 0.0 && m->emission == 0.0 && !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
-        note_give(taker, owner->name, "ior", "set its ior", "%s is transparent with the index of what is around it: it %s", owner->name,
+        note_give(taker, owner->name, "ior", "set its ior",
+                  "%s is transparent with the index of what is around it: it %s", owner->name,
                   material_absorbs(m) ? "bends no light" : "is invisible");
     }
 }
@@ -57,7 +61,8 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
 /* Of no clear matter the index of visible light reaches that: germanium's and silicon's are 4 to 5. */
 #define INDEX_MOST 5.0
 
-/* An index of a mirror, on what reflects nothing of its own. Above MIRROR_IOR a clear solid is a mirror indeed. True if there is a note. */
+/* An index of a mirror, on what reflects nothing of its own. Above MIRROR_IOR a clear solid is a mirror indeed. True if
+ * there is a note. */
 static bool hint_at_index(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
@@ -70,9 +75,11 @@ static bool hint_at_index(const scene *s, const solid *owner, const note_taker *
         return false;
     }
     note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium",
-              m->transparency > 0.0 ? "set its ior between 1 and 5; for a mirror set its reflectivity, and its transparency to 0"
-                                    : "for a mirror set its reflectivity; the index of an opaque solid has no effect",
-              "%s has a refractive index of %.4g, which no clear matter has, and a reflectivity of 0", owner->name, index);
+              m->transparency > 0.0
+                  ? "set its ior between 1 and 5; for a mirror set its reflectivity, and its transparency to 0"
+                  : "for a mirror set its reflectivity; the index of an opaque solid has no effect",
+              "%s has a refractive index of %.4g, which no clear matter has, and a reflectivity of 0", owner->name,
+              index);
     return true;
 }
 
@@ -88,10 +95,11 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_taker *
     } else if ((m->medium != MEDIUM_IOR || m->ior != 1.0) && !looks_by_face(s, owner)) {
         note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
                   "%s has a refractive index but is opaque", owner->name);
-    } else if (m->ambient == 0.0 && m->emission == 0.0 && m->reflectivity == 0.0 && !is_lit(m) && !looks_by_face(s, owner) &&
+    } else if (m->ambient == 0.0 && m->emission == 0.0 && m->reflectivity == 0.0 && !is_lit(m) &&
+               !looks_by_face(s, owner) &&
                !scene_is_behind_camera(s, owner)) { /* a black board behind the eye keeps reflections dark */
-        note_give(taker, owner->name, "diffuse", "set its diffuse", "%s is neither transparent, nor diffuse, nor lit: it is black",
-                  owner->name);
+        note_give(taker, owner->name, "diffuse", "set its diffuse",
+                  "%s is neither transparent, nor diffuse, nor lit: it is black", owner->name);
     }
 }
 
@@ -101,26 +109,29 @@ static void hint_at_cover(const scene *s, const solid *hidden, const note_taker 
     char remedy[NOTE_TEXT_MAX];
     if (cover) {
         snprintf(remedy, sizeof remedy, "give %s the higher priority", hidden->name);
-        note_give(taker, hidden->name, "priority", remedy, "%s lies wholly inside %s, which wins there and hides it", hidden->name,
-                  cover->name);
+        note_give(taker, hidden->name, "priority", remedy, "%s lies wholly inside %s, which wins there and hides it",
+                  hidden->name, cover->name);
     }
 }
 
 /* A law that is used outside the wavelengths where its medium was measured. */
-static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law, const note_taker *taker)
+static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law,
+                          const note_taker *taker)
 {
     static const char remedy[] = "keep to these wavelengths, or give coefficients that reach further";
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
-    const double low_nm = spectral ? VISIBLE_LOW_NM : s->render.lambda_nm, high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
+    const double low_nm = spectral ? VISIBLE_LOW_NM : s->render.lambda_nm,
+                 high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
     if (dispersion_covers(&law->law, low_nm, high_nm)) {
         return;
     }
     if (law->law.kind == DISPERSION_TABLE) {
-        note_give(taker, where, "coefficients", remedy, "its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond",
+        note_give(taker, where, "coefficients", remedy,
+                  "its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond",
                   law->law.coefficient[0], law->law.coefficient[law->law.count - 2]);
     } else {
-        note_give(taker, where, "medium", remedy, "%s was measured from %g to %g nm only, and is extrapolated beyond", name, law->law.low_nm,
-                  law->law.high_nm);
+        note_give(taker, where, "medium", remedy, "%s was measured from %g to %g nm only, and is extrapolated beyond",
+                  name, law->law.low_nm, law->law.high_nm);
     }
 }
 
@@ -129,16 +140,19 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_taker *t
 {
     const material *m = &owner->surface;
     if (m->transparency == 0.0 && material_absorbs(m) && looks_opaque(s, owner)) {
-        note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m", "set its transparency",
-                  "%s absorbs but is opaque", owner->name);
+        note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m",
+                  "set its transparency", "%s absorbs but is opaque", owner->name);
     }
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE)) {
         note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
                   "%s has coefficients but no law for them", owner->name);
     }
     if (looks_waste(s, owner)) {
-        note_give(taker, owner->name, "transparency", "set it for the whole solid, or set render.transmission to simple",
-                  "the transparency and reflectivity of the faces of %s have no effect: where light is bent they belong to the solid", owner->name);
+        note_give(taker, owner->name, "transparency",
+                  "set it for the whole solid, or set render.transmission to simple",
+                  "the transparency and reflectivity of the faces of %s have no effect: where light is bent they "
+                  "belong to the solid",
+                  owner->name);
     }
 }
 
@@ -152,7 +166,8 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
         if (lamp->radius > 0.0 && !path) {
-            note_give(taker, lamp->name, "radius", "set render.integrator=path, where its radius shows", "%s is lit as a point", lamp->name);
+            note_give(taker, lamp->name, "radius", "set render.integrator=path, where its radius shows",
+                      "%s is lit as a point", lamp->name);
         } else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0) {
             note_give(taker, lamp->name, "radius", "give it a radius and a reach",
                       "%s is a point, which random paths cannot find through clear solids: no caustics", lamp->name);
@@ -166,7 +181,8 @@ void scene_range_hints(const scene *s, const note_taker *taker)
     hint_at_range(s, "background", surrounding_words[s->background.medium], &law, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        if (one->visible && one->surface.transparency > 0.0 && material_index_law(&one->surface, "", &law, NULL) == STATUS_OK) {
+        if (one->visible && one->surface.transparency > 0.0 &&
+            material_index_law(&one->surface, "", &law, NULL) == STATUS_OK) {
             hint_at_range(s, one->name, medium_words[one->surface.medium], &law, taker);
         }
     }
@@ -185,7 +201,8 @@ void scene_hints(const scene *s, const note_taker *taker)
     }
     const bool emitters_light = shining > 0 && s->render.integrator == INTEGRATOR_PATH;
     if (lit > 0 && s->light_count == 0 && !emitters_light) {
-        note_give(taker, "lights", NULL, "add lights:", "no lights: opaque surfaces are dark but for their ambient and emitted light");
+        note_give(taker, "lights", NULL,
+                  "add lights:", "no lights: opaque surfaces are dark but for their ambient and emitted light");
     }
     hint_at_lights(s, taker);
     for (size_t i = 0; i < s->solid_count; i++) {

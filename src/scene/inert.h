@@ -1,6 +1,7 @@
-/* Can a parameter act in a scene as it stands? If not, a note says why, and what to set so that it does. A condition is computed from
- * what the scene says and what the renderer does with it, so that no value of the parameter changes the film while it holds; where that
- * cannot be known, nothing is said: a note that is false is worse than none. Pure; ownership: values. */
+/* Can a parameter act in a scene as it stands? If not, a note says why, and what to set so that it does. A condition is
+ * computed from what the scene says and what the renderer does with it, so that no value of the parameter changes the
+ * film while it holds; where that cannot be known, nothing is said: a note that is false is worse than none. Pure;
+ * ownership: values. */
 #ifndef CUVETTE_SCENE_INERT_H
 #define CUVETTE_SCENE_INERT_H
 
@@ -12,7 +13,8 @@ typedef struct inert_answer {
     scene_note note; /* its place is the path; where a value makes the parameter act, the remedy has it as PATH=VALUE */
 } inert_answer;
 
-/* Who can tell what a frame of the scene shows, for conditions that its file does not hold: a renderer. Both are optional. */
+/* Who can tell what a frame of the scene shows, for conditions that its file does not hold: a renderer. Both are
+ * optional. */
 typedef struct inert_witness {
     const ray_counters *frame; /* of a frame of this scene */
     bool (*same)(void *context,

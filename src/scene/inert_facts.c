@@ -1,5 +1,5 @@
-/* What a scene does with light, as far as its file says it. Each of these is what the renderer decides by, too: see render/shading.c,
- * render/path.c and render/plan.c. */
+/* What a scene does with light, as far as its file says it. Each of these is what the renderer decides by, too: see
+ * render/shading.c, render/path.c and render/plan.c. */
 #include "scene/inert_private.h"
 #include "scene/medium.h"
 
@@ -26,8 +26,8 @@ bool draws_through(const scene *s)
 /* Shadow rays pass clear solids where shadows are attenuated. */
 bool nothing_passes(const scene *s)
 {
-    const bool lit_through = s->render.integrator != INTEGRATOR_ZBUFFER && s->render.shadows == SHADOWS_ATTENUATED &&
-                             shining_lights(s) > 0;
+    const bool lit_through =
+        s->render.integrator != INTEGRATOR_ZBUFFER && s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
     return !follows_rays(s) && !draws_through(s) && !lit_through;
 }
 

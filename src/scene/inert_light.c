@@ -129,8 +129,12 @@ static bool surrounding_absorption(const inert_case *c)
 bool inert_background(const inert_case *c)
 {
     static const inert_row rows[] = {
-        {"kind", kind},       {"color", background_color}, {"horizon", horizon},
-        {"ambient", ambient}, {"ior", surrounding_index},  {"medium", surrounding_index},
+        {"kind", kind},
+        {"color", background_color},
+        {"horizon", horizon},
+        {"ambient", ambient},
+        {"ior", surrounding_index},
+        {"medium", surrounding_index},
         {"absorb_per_m", surrounding_absorption},
         {NULL, NULL},
     };

@@ -48,7 +48,8 @@ static bool not_bent(const inert_case *c)
     }
     const bool makes_equal = c->at.group == PARAM_MATERIAL && clear_users(c) > 1;
     return !follows_rays(s) && !draws_through(s) && !s->render.radiance && !material_matches_surroundings(s, c->m) &&
-           !makes_equal && inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
+           !makes_equal &&
+           inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
                      "no ray goes on through a surface: all that counts is which indices are equal");
 }
 
@@ -138,8 +139,9 @@ static bool shininess_rule(const inert_case *c)
            specular_rule(c);
 }
 
-/* Weights are not negative: a film that is the same with all of the light mirrored shows nothing of it with less. A coating takes from
- * what passes as it adds to what is reflected; that both change nothing at one half and at one leaves black on both ways. */
+/* Weights are not negative: a film that is the same with all of the light mirrored shows nothing of it with less. A
+ * coating takes from what passes as it adds to what is reflected; that both change nothing at one half and at one
+ * leaves black on both ways. */
 static bool mirrors_black(const inert_case *c)
 {
     const background *sky = &c->s->background;
@@ -254,10 +256,11 @@ bool is_among(const inert_case *c, const char *const *names)
 }
 
 /* What Phong's terms are of: all that a clear surface sends back of its own. */
-static const char *const of_surface[] = {"ambient", "diffuse",      "specular", "shininess",
-                                         "texture", "texture_size", "checker",  "checker_color", NULL};
+static const char *const of_surface[] = {"ambient",      "diffuse", "specular",      "shininess", "texture",
+                                         "texture_size", "checker", "checker_color", NULL};
 
-/* What a surface that no ray meets would send back. Light that passes a clear one on its way to another is met by none. */
+/* What a surface that no ray meets would send back. Light that passes a clear one on its way to another is met by none.
+ */
 static bool unseen(const inert_case *c)
 {
     static const char *const of_opaque[] = {"color", "emission", "reflectivity", NULL};
@@ -280,9 +283,8 @@ static bool no_interface(const inert_case *c)
             return false;
         }
     }
-    return !material_is_opaque(c->m) &&
-           inert_say(c, "no-interface", set_on(c, "ior=1.5").text,
-                     "its index is that of what is around it: it has no surface");
+    return !material_is_opaque(c->m) && inert_say(c, "no-interface", set_on(c, "ior=1.5").text,
+                                                  "its index is that of what is around it: it has no surface");
 }
 
 /* Wholly inside a solid that wins there: nothing of it is met. */

@@ -5,7 +5,8 @@
 #include <string.h>
 #include <strings.h>
 
-/* Which bodies a parameter makes, and one of them as a remedy. Of slimes alone (param.shapes) are the rows that none else has. */
+/* Which bodies a parameter makes, and one of them as a remedy. Of slimes alone (param.shapes) are the rows that none
+ * else has. */
 typedef struct maker_row {
     const char *name;
     unsigned makers;

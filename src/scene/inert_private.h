@@ -50,8 +50,8 @@ bool inert_material(const inert_case *c);
 bool inert_solid(const inert_case *c);
 /* A row of a material on c->owner. */
 bool inert_surface(const inert_case *c);
-/* The same where all of it looks as c->m; where its faces look as a mesh's file says; and a row of the scene's material that c is about on
- * those of its faces that are named so (true without an answer where there are none). */
+/* The same where all of it looks as c->m; where its faces look as a mesh's file says; and a row of the scene's material
+ * that c is about on those of its faces that are named so (true without an answer where there are none). */
 bool inert_look(const inert_case *c);
 bool inert_faces(const inert_case *c);
 bool inert_named_faces(const inert_case *c);

@@ -1,4 +1,5 @@
-/* Why basic and classic radiance are the same in a scene: all light begins and ends in a vacuum, where n^2 is 1 (render/radiance.c). */
+/* Why basic and classic radiance are the same in a scene: all light begins and ends in a vacuum, where n^2 is 1
+ * (render/radiance.c). */
 #include "scene/inert_private.h"
 #include "scene/cover.h"
 #include "scene/medium.h"

@@ -73,7 +73,8 @@ static bool beyond(const inert_case *c)
     if (is_dark_beyond(&sky)) {
         return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black, too");
     }
-    /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both has no cut ray. */
+    /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both
+     * has no cut ray. */
     const bool nothing_cut = s->render.beyond != BEYOND_BLACK
                                  ? inert_same(c, "render.beyond=black")
                                  : inert_same(c, "render.beyond=sky") && inert_same(c, "render.beyond=mean");
@@ -126,8 +127,8 @@ static bool no_clear(const inert_case *c)
 static bool same_but_for(const inert_case *c, const char *one, const char *other, bool is_one)
 {
     const scene *s = c->s;
-    return !follows_rays(s) && !draws_through(s) && inert_same(c, "render.%s=%s", c->at.row->name, is_one ? other : one) &&
-           say_no_tree(c);
+    return !follows_rays(s) && !draws_through(s) &&
+           inert_same(c, "render.%s=%s", c->at.row->name, is_one ? other : one) && say_no_tree(c);
 }
 
 static bool transmission(const inert_case *c)
@@ -142,9 +143,10 @@ static bool transmission(const inert_case *c)
 
 static bool weights(const inert_case *c)
 {
-    return no_clear(c) || same_but_for(c, "fresnel", "constant", c->s->render.weights == WEIGHTS_FRESNEL) || (c->s->render.transmission == TRANSMISSION_SIMPLE &&
-                           inert_say(c, "simple", "set render.transmission=refract",
-                                     "simple transmission takes the materials' constants"));
+    return no_clear(c) || same_but_for(c, "fresnel", "constant", c->s->render.weights == WEIGHTS_FRESNEL) ||
+           (c->s->render.transmission == TRANSMISSION_SIMPLE &&
+            inert_say(c, "simple", "set render.transmission=refract",
+                      "simple transmission takes the materials' constants"));
 }
 
 static bool polarisation(const inert_case *c)
@@ -249,7 +251,8 @@ static bool shows_texture(const scene *s)
 static bool texturing(const inert_case *c)
 {
     if (c->s->render.integrator != INTEGRATOR_ZBUFFER) {
-        return inert_say(c, "zbuffer-only", "set render.integrator=zbuffer", "rays always meet a texture in perspective");
+        return inert_say(c, "zbuffer-only", "set render.integrator=zbuffer",
+                         "rays always meet a texture in perspective");
     }
     const solid *first = first_visible(c->s);
     const inert_remedy remedy = first && c->s->texture_count > 0

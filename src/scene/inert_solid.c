@@ -19,8 +19,8 @@ static bool is_opaque_pair(const solid *a, const solid *b)
     return a->surface.transparency == 0.0 && b->surface.transparency == 0.0;
 }
 
-/* Neither the eye nor light sees what of two solids is inside both, where both are opaque: from outside they are their union, and each
- * point of that has one owner, unless faces of both lie in one another. An eye inside would see it. */
+/* Neither the eye nor light sees what of two solids is inside both, where both are opaque: from outside they are their
+ * union, and each point of that has one owner, unless faces of both lie in one another. An eye inside would see it. */
 static bool meets_unseen(const scene *s, const solid *a, const solid *b)
 {
     const solid eye = {.shape = {.kind = SHAPE_SPHERE, .position = s->camera.position}};

@@ -38,7 +38,8 @@ static status read_picture(const mesh_import *imported, int slot, const char *ro
         }
     }
     texture *picture;
-    const status code = texture_read_below(path, root, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &picture, why);
+    const status code =
+        texture_read_below(path, root, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &picture, why);
     if (code == STATUS_OK) {
         looks->look[slot].picture = picture;
     }
@@ -119,7 +120,8 @@ void looks_release(const face_looks *l)
 
 bool looks_by_face(const scene *s, const solid *owner)
 {
-    const mesh_entry *m = owner->shape.kind == SHAPE_MESH && owner->material_index < 0 ? scene_find_mesh(s, owner->mesh) : NULL;
+    const mesh_entry *m =
+        owner->shape.kind == SHAPE_MESH && owner->material_index < 0 ? scene_find_mesh(s, owner->mesh) : NULL;
     return m && m->data && (m->looks || m->data->slot_count > 1);
 }
 

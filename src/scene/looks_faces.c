@@ -30,7 +30,8 @@ void looks_source(const scene *s, const solid *owner, int slot, const material *
     const mesh_entry *m = mesh_of(s, owner);
     const char *name = m->data->slot_names[slot];
     *named = named_material_of(s, name ? name : "");
-    *given = !*named && slot < looks_count(m->looks) && looks_at(m->looks, slot)->given ? looks_at(m->looks, slot) : NULL;
+    *given =
+        !*named && slot < looks_count(m->looks) && looks_at(m->looks, slot)->given ? looks_at(m->looks, slot) : NULL;
 }
 
 static void dress(surface_look *l, const material *own, const face_look *given)

@@ -21,8 +21,10 @@ static index_law law_of_ior(double ior)
 
 status material_index_law(const material *m, const char *label, index_law *out, diagnostic *why)
 {
-    static const dispersion_kind kinds[] = {[MEDIUM_IOR] = DISPERSION_CONSTANT, [MEDIUM_SELLMEIER] = DISPERSION_SELLMEIER,
-                                            [MEDIUM_CAUCHY] = DISPERSION_CAUCHY, [MEDIUM_TABLE] = DISPERSION_TABLE};
+    static const dispersion_kind kinds[] = {[MEDIUM_IOR] = DISPERSION_CONSTANT,
+                                            [MEDIUM_SELLMEIER] = DISPERSION_SELLMEIER,
+                                            [MEDIUM_CAUCHY] = DISPERSION_CAUCHY,
+                                            [MEDIUM_TABLE] = DISPERSION_TABLE};
     if (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE) {
         *out = m->medium == MEDIUM_IOR ? law_of_ior(m->ior) : law_of_catalogue(m->medium - MEDIUM_CATALOGUE);
         return STATUS_OK;
@@ -31,10 +33,12 @@ status material_index_law(const material *m, const char *label, index_law *out, 
     memcpy(out->law.coefficient, m->coefficients.value, (size_t)m->coefficients.count * sizeof(double));
     diagnostic bad = {.what = ""};
     if (m->coefficients.count == 0) {
-        static const char *const examples[] = {[MEDIUM_SELLMEIER] = "give pairs B, C in um^2, as 'coefficients: [1.1, 0.012]'",
-                                               [MEDIUM_CAUCHY] = "give A, B in um^2, .., as 'coefficients: [1.5046, 0.0042]'",
-                                               [MEDIUM_TABLE] = "give pairs of nm and index, as 'coefficients: [450, 1.34, 650, 1.33]'"};
-        return diagnose(why, STATUS_BAD_INPUT, examples[m->medium], "%.80s: medium %s has no coefficients", label, medium_words[m->medium]);
+        static const char *const examples[] = {
+            [MEDIUM_SELLMEIER] = "give pairs B, C in um^2, as 'coefficients: [1.1, 0.012]'",
+            [MEDIUM_CAUCHY] = "give A, B in um^2, .., as 'coefficients: [1.5046, 0.0042]'",
+            [MEDIUM_TABLE] = "give pairs of nm and index, as 'coefficients: [450, 1.34, 650, 1.33]'"};
+        return diagnose(why, STATUS_BAD_INPUT, examples[m->medium], "%.80s: medium %s has no coefficients", label,
+                        medium_words[m->medium]);
     }
     status code = dispersion_check(&out->law, &bad);
     return code == STATUS_OK ? code : diagnose(why, code, bad.remedy, "%.80s: %s", label, bad.what);
@@ -79,7 +83,8 @@ bool material_matches_surroundings(const scene *s, const material *m)
 
 bool material_is_mirror(const material *m)
 {
-    return m->transparency > 0.0 && m->medium == MEDIUM_IOR && m->ior > MIRROR_IOR; /* no law or catalogue reaches that */
+    return m->transparency > 0.0 && m->medium == MEDIUM_IOR &&
+           m->ior > MIRROR_IOR; /* no law or catalogue reaches that */
 }
 
 bool material_is_opaque(const material *m)
@@ -187,7 +192,8 @@ vec3 material_extinction(const material *m, double unit_m)
     if (!material_tints(m)) {
         return absorbed;
     }
-    return vec3_add(absorbed, vec3_make(material_tint(m, m->color.x), material_tint(m, m->color.y), material_tint(m, m->color.z)));
+    return vec3_add(
+        absorbed, vec3_make(material_tint(m, m->color.x), material_tint(m, m->color.y), material_tint(m, m->color.z)));
 }
 
 double material_coating(const material *m, const render_settings *r)
@@ -203,6 +209,7 @@ status material_absorption_check(const material *m, const char *label, diagnosti
         right = list->value[i] > 0.0 && list->value[i + 1] >= 0.0 && (i == 0 || list->value[i] > list->value[i - 2]);
     }
     return right ? STATUS_OK
-                 : diagnose(why, STATUS_BAD_INPUT, "write nm,1/m,nm,1/m.. with ascending wavelengths, as [400, 0.1, 700, 2]",
+                 : diagnose(why, STATUS_BAD_INPUT,
+                            "write nm,1/m,nm,1/m.. with ascending wavelengths, as [400, 0.1, 700, 2]",
                             "%.80s: absorb_spectrum is not a list of wavelengths and coefficients", label);
 }

@@ -1,6 +1,6 @@
-/* The medium of a material or of the surroundings: which law gives its refractive index and its absorption. The choice is an
- * index into medium_words: `ior` for a plain index, the words of the laws that a scene may give coefficients for, then the
- * names of the catalogue (optics/media.h). Pure; indices are relative to vacuum, wavelengths are vacuum's. */
+/* The medium of a material or of the surroundings: which law gives its refractive index and its absorption. The choice
+ * is an index into medium_words: `ior` for a plain index, the words of the laws that a scene may give coefficients for,
+ * then the names of the catalogue (optics/media.h). Pure; indices are relative to vacuum, wavelengths are vacuum's. */
 #ifndef CUVETTE_SCENE_MEDIUM_H
 #define CUVETTE_SCENE_MEDIUM_H
 
@@ -31,8 +31,8 @@ bool index_laws_match(const render_settings *r, const index_law *a, const index_
 /* The material's index is that of the scene's surroundings. */
 bool material_matches_surroundings(const scene *s, const material *m);
 
-/* Above this index a clear material is a mirror that nothing passes: all light is reflected under Fresnel's weights (of which that is
- * the limit), with constant shares what would have been reflected and what would have passed. */
+/* Above this index a clear material is a mirror that nothing passes: all light is reflected under Fresnel's weights (of
+ * which that is the limit), with constant shares what would have been reflected and what would have passed. */
 #define MIRROR_IOR 1e4
 bool material_is_mirror(const material *m);
 /* Neither light nor a ray passes its surface. */
@@ -42,16 +42,20 @@ bool material_is_opaque(const material *m);
 const char *material_medium_name(const material *m);
 const char *surrounding_medium_name(const background *b);
 
-/* Wavelengths at which the channels of the rgb film look up a spectrum of absorption: the dominant wavelengths of the primaries
- * of sRGB. Between them, absorb_per_m is linear in wavelength for the spectral film, and constant beyond. */
-#define CHANNEL_LAMBDA_NM {611.4, 549.1, 464.3}
+/* Wavelengths at which the channels of the rgb film look up a spectrum of absorption: the dominant wavelengths of the
+ * primaries of sRGB. Between them, absorb_per_m is linear in wavelength for the spectral film, and constant beyond. */
+#define CHANNEL_LAMBDA_NM   \
+    {                       \
+        611.4, 549.1, 464.3 \
+    }
 
 /* Absorption coefficients in 1/m. */
 vec3 material_absorption(const material *m);
 double material_absorption_at(const material *m, double lambda_nm);
 bool material_absorbs(const material *m);
 /* What a clear material's colour takes: light has its colour after tint_distance, so the share left over a way d is
- * color^(d / tint_distance), Beer and Lambert's law with -ln(color) / tint_distance. A channel that is 0 leaves nothing. White takes nothing. */
+ * color^(d / tint_distance), Beer and Lambert's law with -ln(color) / tint_distance. A channel that is 0 leaves
+ * nothing. White takes nothing. */
 bool material_tints(const material *m);
 /* That coefficient in 1 / scene unit, of a channel or wavelength at which the colour is share, 0..1. */
 double material_tint(const material *m, double share);
@@ -59,7 +63,8 @@ double material_tint(const material *m, double share);
 bool material_dims(const material *m);
 /* By channel in 1 / scene unit, absorption and tint; of an opaque material nothing is asked. */
 vec3 material_extinction(const material *m, double unit_m);
-/* Share of the light that would pass which a clear surface's coating sends back: 0 where shares are constants, which say all. */
+/* Share of the light that would pass which a clear surface's coating sends back: 0 where shares are constants, which
+ * say all. */
 double material_coating(const material *m, const render_settings *r);
 double surrounding_absorption_at(const background *b, double lambda_nm);
 bool surroundings_absorb(const background *b);

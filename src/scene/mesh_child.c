@@ -54,7 +54,8 @@ static bool wait_for_bytes(mesh_child *child)
             child->late = true;
             return false;
         }
-        struct pollfd both[] = {{.fd = child->out, .events = POLLIN}, {.fd = child->err, .events = POLLIN}}; /* -1 is left out */
+        struct pollfd both[] = {{.fd = child->out, .events = POLLIN},
+                                {.fd = child->err, .events = POLLIN}}; /* -1 is left out */
         int ready = poll(both, 2, left_s < 1000 ? (int)(left_s * 1000) + 1 : 1000000);
         if (ready < 0 && errno != EINTR && errno != EAGAIN) {
             return false;
@@ -99,7 +100,9 @@ status mesh_child_read(void *context, void *bytes, size_t size, diagnostic *why)
 status mesh_child_end(void *context, diagnostic *why)
 {
     char more;
-    return take(context, &more, 1) == 0 ? STATUS_OK : diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer goes on after its end");
+    return take(context, &more, 1) == 0
+               ? STATUS_OK
+               : diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer goes on after its end");
 }
 
 /* ---- end ---- */
@@ -136,7 +139,8 @@ static int reap(mesh_child *child, bool still_wanted)
     return state;
 }
 
-/* The child's line "cuvette-import: PATH[:LINE[:COLUMN]]: what[; remedy]" taken apart again; false when that is not what it said. */
+/* The child's line "cuvette-import: PATH[:LINE[:COLUMN]]: what[; remedy]" taken apart again; false when that is not
+ * what it said. */
 static bool repeat(mesh_child *child, const char *path, diagnostic *why)
 {
     diagnostic here = {.what = ""};

@@ -76,7 +76,8 @@ status mesh_child_open(mesh_child *child, const char *path, const mesh_limits *l
     snprintf(seconds, sizeof seconds, "--seconds=%llu", (unsigned long long)whole);
     snprintf(triangles, sizeof triangles, "--triangles=%zu", limits->triangles);
     snprintf(vertices, sizeof vertices, "--vertices=%zu", limits->vertices);
-    char *name = strdup(path), *root = text_format("--root=%s", limits->root ? limits->root : ""), first[] = "cuvette-import", rest[] = "--";
+    char *name = strdup(path), *root = text_format("--root=%s", limits->root ? limits->root : ""),
+         first[] = "cuvette-import", rest[] = "--";
     if (!program || !name || !root) {
         free(program);
         free(name);
@@ -84,7 +85,8 @@ status mesh_child_open(mesh_child *child, const char *path, const mesh_limits *l
         return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
     }
     child->deadline_s = mesh_child_now_s() + limits->wall_s;
-    int error = spawn_with_pipes(child, program, (char *const[]){first, memory, seconds, triangles, vertices, root, rest, name, NULL});
+    int error = spawn_with_pipes(child, program,
+                                 (char *const[]){first, memory, seconds, triangles, vertices, root, rest, name, NULL});
     status code = STATUS_OK;
     if (error == ENOENT || error == EACCES || error == ENOEXEC || error == ENOTDIR) {
         const char *reason = strerrordesc_np(error);

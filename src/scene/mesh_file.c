@@ -13,7 +13,8 @@ static char *beside(const char *path, const char *name)
     return name[0] == '/' || !slash ? strdup(name) : text_format("%.*s%s", (int)(slash - path) + 1, path, name);
 }
 
-/* Two ways of writing a name that are not ours: \ for / (MTL files of Windows), and %20 for a blank (the URIs of glTF). */
+/* Two ways of writing a name that are not ours: \ for / (MTL files of Windows), and %20 for a blank (the URIs of glTF).
+ */
 static void respell(char *name)
 {
     char *to = name;

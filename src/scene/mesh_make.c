@@ -6,18 +6,20 @@
 #include "scene/mesh_file.h"
 #include <stdlib.h>
 
-/* Points of a grid of `cells` cells an edge, drawn by their numbers; between them a smooth blend (Perlin, "Improving noise",
- * SIGGRAPH 2002: 6 s^5 - 15 s^4 + 10 s^3). x and z in cells. 0 to 1. */
+/* Points of a grid of `cells` cells an edge, drawn by their numbers; between them a smooth blend (Perlin, "Improving
+ * noise", SIGGRAPH 2002: 6 s^5 - 15 s^4 + 10 s^3). x and z in cells. 0 to 1. */
 static double noise(int64_t seed, uint32_t octave, double x, double z)
 {
     const double cx = floor(x), cz = floor(z), s = x - cx, r = z - cz;
     double corner[2][2];
     for (int k = 0; k < 4; k++) {
-        const uint32_t across = (uint32_t)(int64_t)cx + (uint32_t)(k & 1), down = (uint32_t)(int64_t)cz + (uint32_t)(k >> 1);
+        const uint32_t across = (uint32_t)(int64_t)cx + (uint32_t)(k & 1),
+                       down = (uint32_t)(int64_t)cz + (uint32_t)(k >> 1);
         corner[k >> 1][k & 1] = random_unit(random_at((uint64_t)seed, across, down, octave, 0).word[0]);
     }
     const double u = s * s * s * (s * (s * 6.0 - 15.0) + 10.0), v = r * r * r * (r * (r * 6.0 - 15.0) + 10.0);
-    const double low = corner[0][0] + u * (corner[0][1] - corner[0][0]), high = corner[1][0] + u * (corner[1][1] - corner[1][0]);
+    const double low = corner[0][0] + u * (corner[0][1] - corner[0][0]),
+                 high = corner[1][0] + u * (corner[1][1] - corner[1][0]);
     return low + v * (high - low);
 }
 

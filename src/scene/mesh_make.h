@@ -1,5 +1,5 @@
-/* The triangles of a scene's mesh: computed from its parameters, or read from its file. Ownership: the entry becomes an owner of what
- * it is given, mesh_entry_unload lets go of it. */
+/* The triangles of a scene's mesh: computed from its parameters, or read from its file. Ownership: the entry becomes an
+ * owner of what it is given, mesh_entry_unload lets go of it. */
 #ifndef CUVETTE_SCENE_MESH_MAKE_H
 #define CUVETTE_SCENE_MESH_MAKE_H
 

@@ -15,7 +15,8 @@
 
 static const char here;
 
-/* Beside a file, or where `make install` puts it when the file is in bin, lib or lib/ARCHITECTURE; NULL if it is in none of them. */
+/* Beside a file, or where `make install` puts it when the file is in bin, lib or lib/ARCHITECTURE; NULL if it is in
+ * none of them. */
 static char *near(char *file)
 {
     static const char *const places[] = {"", "/../libexec/cuvette", "/../../libexec/cuvette"};

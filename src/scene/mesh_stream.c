@@ -13,8 +13,12 @@ _Static_assert(sizeof(vec3) == 24 && sizeof(mesh_uv) == 16 && sizeof(mesh_triang
 mesh_limits mesh_limits_complete(const mesh_limits *limits)
 {
     mesh_limits all = limits ? *limits : (mesh_limits){0};
-    all.triangles = !all.triangles ? (size_t)1 << 25 : all.triangles > MESH_TRIANGLES_MAX ? MESH_TRIANGLES_MAX : all.triangles;
-    all.vertices = !all.vertices ? (size_t)1 << 26 : all.vertices > MESH_VERTICES_MAX ? MESH_VERTICES_MAX : all.vertices;
+    all.triangles = !all.triangles                       ? (size_t)1 << 25
+                    : all.triangles > MESH_TRIANGLES_MAX ? MESH_TRIANGLES_MAX
+                                                         : all.triangles;
+    all.vertices = !all.vertices                      ? (size_t)1 << 26
+                   : all.vertices > MESH_VERTICES_MAX ? MESH_VERTICES_MAX
+                                                      : all.vertices;
     all.memory_bytes = all.memory_bytes ? all.memory_bytes : (uint64_t)4 << 30;
     all.wall_s = all.wall_s > 0 ? all.wall_s : 60;
     return all;
@@ -36,7 +40,8 @@ void mesh_import_destroy(mesh_import *imported)
 
 static status damaged(diagnostic *why, const char *what)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "check that cuvette-import is of this version", "the importer's answer is damaged: %s", what);
+    return diagnose(why, STATUS_BAD_INPUT, "check that cuvette-import is of this version",
+                    "the importer's answer is damaged: %s", what);
 }
 
 static status out_of_memory(diagnostic *why)
@@ -44,7 +49,8 @@ static status out_of_memory(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, NULL, "out of memory for the mesh");
 }
 
-static status read_header(const mesh_source *source, const mesh_limits *limits, mesh_wire_header *header, diagnostic *why)
+static status read_header(const mesh_source *source, const mesh_limits *limits, mesh_wire_header *header,
+                          diagnostic *why)
 {
     status code = source->read(source->context, header, sizeof *header, why);
     if (code != STATUS_OK) {
@@ -63,12 +69,14 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
         return damaged(why, "no triangles");
     }
     if (header->triangle_count > limits->triangles) {
-        return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail", "%llu triangles are more than the limit of %zu",
-                        (unsigned long long)header->triangle_count, limits->triangles);
+        return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail",
+                        "%llu triangles are more than the limit of %zu", (unsigned long long)header->triangle_count,
+                        limits->triangles);
     }
     if (header->vertex_count > limits->vertices) {
-        return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail", "%llu vertices are more than the limit of %zu",
-                        (unsigned long long)header->vertex_count, limits->vertices);
+        return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail",
+                        "%llu vertices are more than the limit of %zu", (unsigned long long)header->vertex_count,
+                        limits->vertices);
     }
     return STATUS_OK;
 }
@@ -76,7 +84,10 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
 /* The arrays as they come; mesh_finish checks what is in them, but for the slots, which it knows nothing of yet. */
 static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
 {
-    struct { void *bytes; size_t size; } arrays[] = {
+    struct {
+        void *bytes;
+        size_t size;
+    } arrays[] = {
         {m->vertices, m->vertex_count * sizeof *m->vertices},
         {m->normals, m->normals ? m->vertex_count * sizeof *m->normals : 0},
         {m->uvs, m->uvs ? m->vertex_count * sizeof *m->uvs : 0},
@@ -91,7 +102,8 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
     }
     for (size_t i = 0; m->uvs && i < m->vertex_count; i++) {
         if (!isfinite(m->uvs[i].u) || !isfinite(m->uvs[i].v)) {
-            return diagnose(why, STATUS_BAD_INPUT, "texture coordinates are finite", "vertex %zu has a texture coordinate that is no number", i);
+            return diagnose(why, STATUS_BAD_INPUT, "texture coordinates are finite",
+                            "vertex %zu has a texture coordinate that is no number", i);
         }
     }
     for (size_t t = 0; t < m->triangle_count; t++) {
@@ -102,7 +114,8 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Fresh text of that length in *text, or NULL for none. A 0 or another control character inside would hide what follows. */
+/* Fresh text of that length in *text, or NULL for none. A 0 or another control character inside would hide what
+ * follows. */
 static status read_text(const mesh_source *source, uint32_t length, char **text, diagnostic *why)
 {
     *text = NULL;
@@ -120,7 +133,8 @@ static status read_text(const mesh_source *source, uint32_t length, char **text,
     fresh[length] = 0;
     for (uint32_t i = 0; i < length && code == STATUS_OK; i++) {
         if ((unsigned char)fresh[i] < 0x20 || fresh[i] == 0x7f) {
-            code = diagnose(why, STATUS_BAD_INPUT, "rename it", "the name of a material or of its picture holds a control character");
+            code = diagnose(why, STATUS_BAD_INPUT, "rename it",
+                            "the name of a material or of its picture holds a control character");
         }
     }
     if (code != STATUS_OK) {
@@ -199,7 +213,8 @@ static status read_materials(const mesh_source *source, mesh_import *into, diagn
     if (code != STATUS_OK) {
         return code;
     }
-    return memcmp(end, MESH_WIRE_END, sizeof end) == 0 ? source->end(source->context, why) : damaged(why, "its end is not where it should be");
+    return memcmp(end, MESH_WIRE_END, sizeof end) == 0 ? source->end(source->context, why)
+                                                       : damaged(why, "its end is not where it should be");
 }
 
 static status read_all(const mesh_source *source, const mesh_limits *limits, mesh_import *into, diagnostic *why)

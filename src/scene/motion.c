@@ -149,7 +149,8 @@ static status advance_one(scene_motion *m, size_t i, double time_s, const load_w
     moving_slime *one = &m->slimes[i];
     const double motion_before_s = one->x.motion_s;
     turn_watch turn = {watch, i, m->count};
-    const status code = slime_advance(&one->x, m->s, motion_entry(m, one), time_s, watch ? &(load_watch){go_on_turn, &turn} : NULL, why);
+    const status code = slime_advance(&one->x, m->s, motion_entry(m, one), time_s,
+                                      watch ? &(load_watch){go_on_turn, &turn} : NULL, why);
     m->last.step_s += one->x.motion_s - motion_before_s;
     return code;
 }

@@ -58,8 +58,11 @@ static void pick_copy(const search *q, vec3 copy, motion_place *best)
     const vec3 at = vec3_add(copy, times(met, shape->scale));
     const double distance = vec3_length(vec3_sub(at, q->origin)); /* the direction is a unit vector */
     if (distance < best->distance) {
-        *best = (motion_place){.where = vec3_add(shape->position, mat3_apply(rotation_from_deg(shape->rotation_deg), at)), .on_mesh = met,
-                               .distance = distance, .solid = q->solid};
+        *best =
+            (motion_place){.where = vec3_add(shape->position, mat3_apply(rotation_from_deg(shape->rotation_deg), at)),
+                           .on_mesh = met,
+                           .distance = distance,
+                           .solid = q->solid};
     }
 }
 
@@ -81,7 +84,8 @@ static bool is_wanted(const solid *one, const char *mesh_name, int solid_or_any,
     return solid_or_any == MOTION_ANY_SOLID ? shows && one->visible : solid_or_any == (int)index;
 }
 
-status scene_motion_pick(const scene_motion *m, size_t i, int solid_or_any, vec3 origin, vec3 direction, motion_place *out, diagnostic *why)
+status scene_motion_pick(const scene_motion *m, size_t i, int solid_or_any, vec3 origin, vec3 direction,
+                         motion_place *out, diagnostic *why)
 {
     *out = (motion_place){.distance = INFINITY};
     const scene *s = m->s;
@@ -96,7 +100,10 @@ status scene_motion_pick(const scene_motion *m, size_t i, int solid_or_any, vec3
             return code;
         }
         const mat3 rotation = rotation_from_deg(shape->rotation_deg);
-        const search q = {.body = m->slimes[i].x.body, .box = entry->data->bounds, .shape = shape, .solid = k,
+        const search q = {.body = m->slimes[i].x.body,
+                          .box = entry->data->bounds,
+                          .shape = shape,
+                          .solid = k,
                           .origin = mat3_apply_transposed(rotation, vec3_sub(origin, shape->position)),
                           .direction = mat3_apply_transposed(rotation, direction)};
         pick_copies(&q, out);
@@ -104,7 +111,8 @@ status scene_motion_pick(const scene_motion *m, size_t i, int solid_or_any, vec3
     return STATUS_OK;
 }
 
-status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, double reach, motion_hand *hands, int *number, diagnostic *why)
+status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, double reach, motion_hand *hands,
+                         int *number, diagnostic *why)
 {
     const solid_shape *shape = &m->s->solids[place->solid].shape;
     const double largest = fmax(shape->scale.x, fmax(shape->scale.y, shape->scale.z));
@@ -113,9 +121,13 @@ status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, d
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
     if (taken < 0) {
-        return diagnose(why, STATUS_BAD_INPUT, "let one release what it holds", "no hand is free, or others hold all of it");
+        return diagnose(why, STATUS_BAD_INPUT, "let one release what it holds",
+                        "no hand is free, or others hold all of it");
     }
-    hands[taken] = (motion_hand){.holds = true, .rotation = rotation_from_deg(shape->rotation_deg), .scale = shape->scale, .where = place->on_mesh};
+    hands[taken] = (motion_hand){.holds = true,
+                                 .rotation = rotation_from_deg(shape->rotation_deg),
+                                 .scale = shape->scale,
+                                 .where = place->on_mesh};
     *number = taken;
     return STATUS_OK;
 }

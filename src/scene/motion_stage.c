@@ -37,7 +37,8 @@ char *motion_parameters(const scene *s, const mesh_entry *entry)
 
 static void take_given(given_slime *given, mesh_entry *entry)
 {
-    *given = (given_slime){.time_s = entry->time_s, .data = entry->data, .account = entry->account, .motion_s = entry->motion_s};
+    *given = (given_slime){
+        .time_s = entry->time_s, .data = entry->data, .account = entry->account, .motion_s = entry->motion_s};
     entry->data = NULL;
 }
 

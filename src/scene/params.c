@@ -187,8 +187,8 @@ static status visit_one(const scene *s, const place *at, param_visit *visit, voi
     return code;
 }
 
-/* Setting the camera's direction, the sky's picture or a mesh's file that is not in use would put it in use; of a slime's parameters only a
- * slime has any. */
+/* Setting the camera's direction, the sky's picture or a mesh's file that is not in use would put it in use; of a
+ * slime's parameters only a slime has any. */
 static bool is_in_use(const scene *s, const place *at)
 {
     const param *row = at->row;

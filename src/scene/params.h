@@ -1,11 +1,11 @@
 /* The parameter table: every quantity that a person may turn is declared once, in params_table.c, and scene
  * files, --set, sweep axes, CSV headers and the manual's reference are all read from it.
  *
- * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a mesh, a texture, a light, a solid
- * or a material the group is its name in the scene: `soup.count`, `lamp.intensity`, `vessel.ior`, `glass.ior`. One element of
- * a vector is `lamp.position.x` (.x .y .z, for colours .r .g .b). Setting a material's field sets it for all the
- * solids that refer to it; setting it by a solid's name sets it for that solid alone; the last one set wins.
- * Ownership: the table is constant. */
+ * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a mesh, a texture, a
+ * light, a solid or a material the group is its name in the scene: `soup.count`, `lamp.intensity`, `vessel.ior`,
+ * `glass.ior`. One element of a vector is `lamp.position.x` (.x .y .z, for colours .r .g .b). Setting a material's
+ * field sets it for all the solids that refer to it; setting it by a solid's name sets it for that solid alone; the
+ * last one set wins. Ownership: the table is constant. */
 #ifndef CUVETTE_SCENE_PARAMS_H
 #define CUVETTE_SCENE_PARAMS_H
 
@@ -22,11 +22,20 @@ typedef enum param_group {
     PARAM_SOLID,
     PARAM_GROUP_COUNT
 } param_group;
-typedef enum param_type { PARAM_INT, PARAM_REAL, PARAM_CHOICE, PARAM_VECTOR, PARAM_COLOR, PARAM_LIST, PARAM_PATH, PARAM_WORD } param_type;
+typedef enum param_type {
+    PARAM_INT,
+    PARAM_REAL,
+    PARAM_CHOICE,
+    PARAM_VECTOR,
+    PARAM_COLOR,
+    PARAM_LIST,
+    PARAM_PATH,
+    PARAM_WORD
+} param_type;
 
 typedef struct param {
     param_group group;
-    const char *name;           /* "depth"; the same word is the key in scene files */
+    const char *name; /* "depth"; the same word is the key in scene files */
     param_type type;
     const char *unit;           /* "px", "deg", "scene units", "" for ratios */
     double lowest, highest;     /* both allowed; of each element for vectors */
@@ -36,10 +45,10 @@ typedef struct param {
     const char *const *choices; /* PARAM_CHOICE: words by value, NULL at the end; switches are {"off", "on"},
                                  * and no, yes, false and true are read as these.
                                  * PARAM_INT: the only numbers allowed, or NULL */
-    unsigned shapes;            /* PARAM_SOLID geometry: bit 1 << shape_kind for the kinds that have it; PARAM_MESH: 1 << mesh_maker, only
-                                 * listed and written for those; 0 = all */
-    size_t offset;              /* within the group's struct */
-    bool is_how;                /* of how a frame is computed: the film is the same whatever it is */
+    unsigned shapes; /* PARAM_SOLID geometry: bit 1 << shape_kind for the kinds that have it; PARAM_MESH: 1 <<
+                      * mesh_maker, only listed and written for those; 0 = all */
+    size_t offset;   /* within the group's struct */
+    bool is_how;     /* of how a frame is computed: the film is the same whatever it is */
 } param;
 
 size_t param_count(void);

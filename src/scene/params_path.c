@@ -143,9 +143,9 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
     }
     const char *nearest = suggest_word(path->group, words, count);
-    char remedy[300] =
-        "a path is render.NAME, camera.NAME, background.NAME, or the name of a mesh, texture, light, material or solid, a dot "
-        "and a parameter";
+    char remedy[300] = "a path is render.NAME, camera.NAME, background.NAME, or the name of a mesh, texture, light, "
+                       "material or solid, a dot "
+                       "and a parameter";
     const param *setting = nearest || path->name ? NULL : nearest_setting(s, path->group);
     if (nearest) {
         snprintf(remedy, sizeof remedy, "did you mean '%.80s%s%.80s'?", nearest, path->name ? "." : "",
@@ -185,7 +185,8 @@ static status unknown_name(const scene *s, const place *at, const path_words *pa
     const char *nearest = suggest_word(path->name, words, count);
     if (at->group == PARAM_SOLID && (strcmp(path->name, "material") == 0 || strcmp(path->name, "shape") == 0)) {
         snprintf(remedy, sizeof remedy,
-                 "shape and material are set in the scene file or by cuvette scene; for glass set %s.transparency=1 and %s.ior=1.5",
+                 "shape and material are set in the scene file or by cuvette scene; for glass set %s.transparency=1 "
+                 "and %s.ior=1.5",
                  path->group, path->group);
     } else if (nearest) {
         snprintf(remedy, sizeof remedy, "did you mean '%s.%s'?", path->group, nearest);

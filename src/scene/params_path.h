@@ -15,7 +15,8 @@ typedef struct place {
 /* STATUS_BAD_INPUT, with the nearest right path as remedy, when path leads nowhere. */
 status place_find(const scene *s, const char *path, place *out, diagnostic *why);
 
-/* The same for a path's first word alone: an object's name, camera, background or render. Row and element say nothing. */
+/* The same for a path's first word alone: an object's name, camera, background or render. Row and element say nothing.
+ */
 status place_find_object(const scene *s, const char *name, place *out, diagnostic *why);
 
 /* Does the solid have that row (its shape has that length)? */

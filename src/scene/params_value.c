@@ -52,7 +52,8 @@ static status not_a_number(const param *row, const char *label, const char *text
 {
     const char *digits = text + strspn(text, "+-."), *rest = digits + strspn(digits, "0123456789.eE+-");
     bool comma = rest > digits && *rest == ',';
-    bool unit = rest > digits && *rest && rest[strspn(rest, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ")] == 0;
+    bool unit =
+        rest > digits && *rest && rest[strspn(rest, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ")] == 0;
     if (!comma && !unit) {
         return wrong(row, true, why, "%s: '" SHOWN "' is not a finite number", label, text);
     }
@@ -224,7 +225,8 @@ static status parse_path(const param *row, const char *label, char *text, char *
 }
 
 /* The name of another object, or nothing. */
-static status parse_word(const param *row, const char *label, const char *text, char word[SCENE_NAME_MAX + 1], diagnostic *why)
+static status parse_word(const param *row, const char *label, const char *text, char word[SCENE_NAME_MAX + 1],
+                         diagnostic *why)
 {
     if (strlen(text) > SCENE_NAME_MAX) {
         return wrong(row, false, why, "%s: the name is longer than %d bytes", label, (int)SCENE_NAME_MAX);

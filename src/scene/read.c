@@ -87,9 +87,9 @@ static status read_sections(const scene_reader *r)
         const char *name;
         status (*read)(const scene_reader *, const char *, const node *);
     } sections[] = {
-        {"title", read_title},           {"render", read_render},       {"camera", read_camera},
-        {"background", read_background}, {"meshes", read_meshes},       {"textures", read_textures},
-        {"materials", read_materials},   {"lights", read_lights},       {"solids", read_solids},
+        {"title", read_title},           {"render", read_render}, {"camera", read_camera},
+        {"background", read_background}, {"meshes", read_meshes}, {"textures", read_textures},
+        {"materials", read_materials},   {"lights", read_lights}, {"solids", read_solids},
     };
     enum { COUNT = sizeof sections / sizeof sections[0] };
     const node *root = document_root(r->file);

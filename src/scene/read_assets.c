@@ -27,7 +27,8 @@ static status read_mesh(const scene_reader *r, const node *key, const node *map)
     }
     const node *file = node_get(map, "file"), *generate = node_get(map, "generate");
     if (code == STATUS_OK && file && generate) {
-        return node_error(r->file, generate, r->why, "keep one of them", "%.80s has a file, and is generated too", key->text);
+        return node_error(r->file, generate, r->why, "keep one of them", "%.80s has a file, and is generated too",
+                          key->text);
     }
     if (code == STATUS_OK) {
         code = read_entries(r, key->text, PARAM_MESH, map);

@@ -32,8 +32,8 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
 {
     const node *shape = node_get(map, "shape");
     if (!shape) {
-        return node_error(r->file, key, r->why, "add shape: plane, cylinder, cup, box, sphere or mesh", "%s has no shape",
-                          key->text);
+        return node_error(r->file, key, r->why, "add shape: plane, cylinder, cup, box, sphere or mesh",
+                          "%s has no shape", key->text);
     }
     status code = read_expect_word(r, shape, "shape");
     return code == STATUS_OK ? read_located(r, shape, scene_shape_named(shape->text, out, r->why)) : code;
@@ -47,7 +47,8 @@ static status read_material_name(const scene_reader *r, const node *key, const n
         return STATUS_OK;
     }
     status code = read_expect_word(r, word, "material");
-    return code == STATUS_OK ? read_located(r, word, scene_give_material(r->scene, key->text, word->text, r->why)) : code;
+    return code == STATUS_OK ? read_located(r, word, scene_give_material(r->scene, key->text, word->text, r->why))
+                             : code;
 }
 
 static status read_solid(const scene_reader *r, const node *key, const node *map)

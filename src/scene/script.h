@@ -7,8 +7,9 @@
  *       - {time_s: 1.5, move: [-1.2, 0.8, 0]}                               # by then so far from where it took hold
  *       - {time_s: 2.0, release: on}
  *
- * Points are in the frame of the slime's mesh, which is the world's where its solid is neither moved, turned nor scaled.
- * Ownership: the caller releases with hand_script_destroy. Errors: STATUS_BAD_INPUT, located: file, line, column. */
+ * Points are in the frame of the slime's mesh, which is the world's where its solid is neither moved, turned nor
+ * scaled. Ownership: the caller releases with hand_script_destroy. Errors: STATUS_BAD_INPUT, located: file, line,
+ * column. */
 #ifndef CUVETTE_SCENE_SCRIPT_H
 #define CUVETTE_SCENE_SCRIPT_H
 

@@ -16,8 +16,8 @@ softbody_settings slime_settings(const mesh_entry *m)
 static status check_steps(const mesh_entry *m, double time_s, const char *remedy, diagnostic *why)
 {
     if (time_s / m->slime.dt_s > SLIME_STEPS_MAX) {
-        return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: %g s in steps of %g s are more than %g steps", m->name, time_s, m->slime.dt_s,
-                        SLIME_STEPS_MAX);
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: %g s in steps of %g s are more than %g steps", m->name,
+                        time_s, m->slime.dt_s, SLIME_STEPS_MAX);
     }
     return STATUS_OK;
 }
@@ -111,7 +111,8 @@ double slime_work(const mesh_entry *m)
 }
 
 /* A step at a time, so that a wish to stop is heard soon, however short the steps are. */
-static status advance_watched(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch, diagnostic *bad)
+static status advance_watched(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch,
+                              diagnostic *bad)
 {
     const double ask_s = 0.01, first = x->steps, last = steps_to(m, time_s);
     double asked_s = clock_wall_s();
@@ -128,13 +129,15 @@ static status advance_watched(slime *x, const scene *s, const mesh_entry *m, dou
         if (!watch->go_on(watch->context, (x->steps + 1.0 - first) / (last - first))) {
             x->steps += 1.0;
             diagnostic_locate(bad, s->path, 0, 0);
-            return diagnose(bad, STATUS_INTERRUPTED, "", "interrupted at %.6g s of the %.6g s that the slime moves", x->steps * m->slime.dt_s, time_s);
+            return diagnose(bad, STATUS_INTERRUPTED, "", "interrupted at %.6g s of the %.6g s that the slime moves",
+                            x->steps * m->slime.dt_s, time_s);
         }
     }
     return STATUS_OK;
 }
 
-status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch, diagnostic *why)
+status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch,
+                     diagnostic *why)
 {
     diagnostic bad = {.what = ""};
     const double begun_s = clock_wall_s();

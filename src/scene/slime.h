@@ -1,6 +1,6 @@
 /* The body of a slime among a scene's meshes: what its parameters and its script say, from the beginning to a moment.
- * Ownership: slime_create gives, slime_destroy releases; slime_make's mesh is the entry's. Errors: STATUS_BAD_INPUT, located: a script's in its
- * file, others where the scene file says what the mesh is, with its name. */
+ * Ownership: slime_create gives, slime_destroy releases; slime_make's mesh is the entry's. Errors: STATUS_BAD_INPUT,
+ * located: a script's in its file, others where the scene file says what the mesh is, with its name. */
 #ifndef CUVETTE_SCENE_SLIME_H
 #define CUVETTE_SCENE_SLIME_H
 
@@ -29,14 +29,16 @@ typedef struct slime {
 status slime_create(const scene *s, const mesh_entry *m, slime *out, diagnostic *why);
 void slime_destroy(slime *x);
 
-/* To the whole number of steps nearest to time_s; not backwards. watch may be NULL; its share is of this way. STATUS_INTERRUPTED leaves the body on
- * the way, and it may go on. */
-status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch, diagnostic *why);
+/* To the whole number of steps nearest to time_s; not backwards. watch may be NULL; its share is of this way.
+ * STATUS_INTERRUPTED leaves the body on the way, and it may go on. */
+status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch,
+                     diagnostic *why);
 
 /* How much there is to do to its time_s, for shares of a whole: steps times masses. */
 double slime_work(const mesh_entry *m);
 
-/* Fills the data, account and motion_s of an entry that has no data; leaves it as it was where that fails or is stopped. */
+/* Fills the data, account and motion_s of an entry that has no data; leaves it as it was where that fails or is
+ * stopped. */
 status slime_make(const scene *s, mesh_entry *m, const load_watch *watch, diagnostic *why);
 
 #endif

@@ -26,9 +26,9 @@ static const char *find(const char *word, const char *const *words, size_t count
 static const char *by_alias(const char *wrong, const char *const *words, size_t count)
 {
     static const char *const aliases[][2] = {
-        {"n", "ior"},      {"index", "ior"},      {"refractive_index", "ior"}, {"opacity", "transparency"},
-        {"type", "shape"}, {"kind", "shape"},     {"alpha", "transparency"},   {"colour", "color"},
-        {"light", "lights"}, {"objects", "solids"}, {"shapes", "solids"},      {"spheres", "solids"},
+        {"n", "ior"},        {"index", "ior"},      {"refractive_index", "ior"}, {"opacity", "transparency"},
+        {"type", "shape"},   {"kind", "shape"},     {"alpha", "transparency"},   {"colour", "color"},
+        {"light", "lights"}, {"objects", "solids"}, {"shapes", "solids"},        {"spheres", "solids"},
     };
     for (size_t i = 0; i < sizeof aliases / sizeof *aliases; i++) {
         if (strcasecmp(aliases[i][0], wrong) == 0) {

@@ -1,6 +1,6 @@
-/* Goes through the scene's parameters in the order of the table and of the scene, and writes those that a reader would not
- * find by itself: which those are is in write_wanted.c. How a text is quoted is in write_text.c, how paths follow the file in
- * write_paths.c. */
+/* Goes through the scene's parameters in the order of the table and of the scene, and writes those that a reader would
+ * not find by itself: which those are is in write_wanted.c. How a text is quoted is in write_text.c, how paths follow
+ * the file in write_paths.c. */
 #include "scene/write.h"
 #include "base/file.h"
 #include "base/text_writer.h"
@@ -17,11 +17,11 @@ typedef struct scene_writer {
     const char *path; /* of the file to be */
     bool all;
     FILE *out;
-    bool begun;           /* something stands in the file */
-    param_group group;    /* whose turn it is */
-    bool in_section;      /* its heading stands there */
+    bool begun;                      /* something stands in the file */
+    param_group group;               /* whose turn it is */
+    bool in_section;                 /* its heading stands there */
     char object[SCENE_NAME_MAX + 1]; /* the one whose heading stands there last */
-    bool empty;           /* and that has no line below it yet */
+    bool empty;                      /* and that has no line below it yet */
     diagnostic *why;
 } scene_writer;
 
@@ -154,7 +154,8 @@ static status check_sources(const scene *s, diagnostic *why)
     for (size_t i = 0; i < s->texture_count; i++) {
         if (s->textures[i].data && !s->textures[i].path[0]) {
             return diagnose(why, STATUS_BAD_INPUT, "write the picture to a file of its own, and name that",
-                            "the texture %.80s was given as pixels, which a scene file does not hold", s->textures[i].name);
+                            "the texture %.80s was given as pixels, which a scene file does not hold",
+                            s->textures[i].name);
         }
     }
     return STATUS_OK;
@@ -163,8 +164,8 @@ static status check_sources(const scene *s, diagnostic *why)
 static status put_scene(scene_writer *w)
 {
     /* What is referred to stands first, as a person would have it. */
-    static const param_group order[] = {PARAM_RENDER, PARAM_CAMERA, PARAM_BACKGROUND, PARAM_MESH,
-                                        PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT, PARAM_SOLID};
+    static const param_group order[] = {PARAM_RENDER,  PARAM_CAMERA,   PARAM_BACKGROUND, PARAM_MESH,
+                                        PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT,      PARAM_SOLID};
     _Static_assert(sizeof order / sizeof *order == PARAM_GROUP_COUNT, "every group has its section");
     if (w->s->title[0]) {
         status code = write_check_text("title", w->s->title, w->why);

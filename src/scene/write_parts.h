@@ -1,5 +1,5 @@
-/* What scene/write.c puts together: words that YAML reads back, and paths that follow their file. Ownership: fresh memory is the
- * caller's. */
+/* What scene/write.c puts together: words that YAML reads back, and paths that follow their file. Ownership: fresh
+ * memory is the caller's. */
 #ifndef CUVETTE_SCENE_WRITE_PARTS_H
 #define CUVETTE_SCENE_WRITE_PARTS_H
 
@@ -15,7 +15,8 @@ void write_word(FILE *out, const char *text);
 /* "0,1,2" or "[0,1,2]" as [0, 1, 2]. */
 void write_list(FILE *out, const char *numbers);
 
-/* path, which is relative to the folder of the file old_file, as it reads from new_file. "" stands for a file in the working folder. */
+/* path, which is relative to the folder of the file old_file, as it reads from new_file. "" stands for a file in the
+ * working folder. */
 status write_moved_path(const char *path, const char *old_file, const char *new_file, char **moved, diagnostic *why);
 
 #endif

@@ -8,7 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The folder of a file, from the root and without links; of one that is not there, as it is spelt. NULL when memory is out. */
+/* The folder of a file, from the root and without links; of one that is not there, as it is spelt. NULL when memory is
+ * out. */
 static char *real_folder(const char *file)
 {
     const char *slash = strrchr(file, '/');

@@ -38,7 +38,8 @@ status write_check_text(const char *label, const char *text, diagnostic *why)
 /* Characters that YAML 1.1 lets a file hold as they are (5.1), and that no line ends at. */
 static bool is_printable(uint32_t c)
 {
-    return (c >= 0x20 && c < 0x7f) || (c >= 0xa0 && c <= 0xfffd && c != 0x2028 && c != 0x2029 && c != 0xfeff) || c >= 0x10000;
+    return (c >= 0x20 && c < 0x7f) || (c >= 0xa0 && c <= 0xfffd && c != 0x2028 && c != 0x2029 && c != 0xfeff) ||
+           c >= 0x10000;
 }
 
 /* Words that readers of YAML 1.1 take for a switch or for nothing. */
@@ -57,10 +58,12 @@ static bool is_taken(const char *text)
 static bool is_plain(const char *text)
 {
     const char first = text[0];
-    const bool letter = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z') || first == '_' || first == '/' ||
-                        (first == '.' && (text[1] == '/' || text[1] == '.')) || (unsigned char)first >= 0x80;
+    const bool letter = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z') || first == '_' ||
+                        first == '/' || (first == '.' && (text[1] == '/' || text[1] == '.')) ||
+                        (unsigned char)first >= 0x80;
     const size_t length = strlen(text);
-    if (!letter || is_taken(text) || text[length - 1] == ' ' || text[length - 1] == ':' || strstr(text, ": ") || strstr(text, " #")) {
+    if (!letter || is_taken(text) || text[length - 1] == ' ' || text[length - 1] == ':' || strstr(text, ": ") ||
+        strstr(text, " #")) {
         return false;
     }
     uint32_t c;

@@ -21,7 +21,8 @@ static bool is_other_source(const mesh_entry *m, const param *row)
     if (row->offset == offsetof(mesh_entry, script_path)) {
         return false;
     }
-    return m->source == MESH_FILE ? row->offset == offsetof(mesh_entry, source) : row->offset == offsetof(mesh_entry, path);
+    return m->source == MESH_FILE ? row->offset == offsetof(mesh_entry, source)
+                                  : row->offset == offsetof(mesh_entry, path);
 }
 
 /* The index of a material whose medium is another's has no effect, and its file would set that medium aside. */
@@ -40,16 +41,19 @@ static bool is_without_effect(const scene *s, const place *at)
     return m->medium != MEDIUM_IOR;
 }
 
-/* The text that a reader would have for a row without its line: the material's of a solid that has one, or the default. */
+/* The text that a reader would have for a row without its line: the material's of a solid that has one, or the default.
+ */
 static char *implied_text(const scene *s, const place *at)
 {
-    const int index = at->group == PARAM_SOLID && at->row->group == PARAM_MATERIAL ? s->solids[at->index].material_index : -1;
+    const int index =
+        at->group == PARAM_SOLID && at->row->group == PARAM_MATERIAL ? s->solids[at->index].material_index : -1;
     if (index < 0) {
         return param_default_text(at->row);
     }
     const place there = {.row = at->row, .group = PARAM_MATERIAL, .index = (size_t)index, .element = -1};
     const material *m = &s->materials[index].value;
-    return is_without_effect(s, &there) ? param_default_text(at->row) : param_value_text(at->row, -1, (const char *)m + at->row->offset);
+    return is_without_effect(s, &there) ? param_default_text(at->row)
+                                        : param_value_text(at->row, -1, (const char *)m + at->row->offset);
 }
 
 /* A camera is known to look along its angles by there being one. */

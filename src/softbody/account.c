@@ -1,4 +1,5 @@
-/* What a body comes to: energies, momenta, volume; and its masses for who looks at them. Not of the steps' own code, so that it can judge them. */
+/* What a body comes to: energies, momenta, volume; and its masses for who looks at them. Not of the steps' own code, so
+ * that it can judge them. */
 #include "softbody/softbody_private.h"
 
 #include <string.h>
@@ -8,7 +9,8 @@ static double elastic_energy(const softbody *b)
     double sum = 0.0;
     for (size_t i = 0; i < b->spring_count; i++) {
         const softbody_spring *s = &b->spring_list[i];
-        const double longer = vec3_length(vec3_sub(vectors_at(b->at, s->end[1]), vectors_at(b->at, s->end[0]))) - s->rest;
+        const double longer =
+            vec3_length(vec3_sub(vectors_at(b->at, s->end[1]), vectors_at(b->at, s->end[0]))) - s->rest;
         sum += 0.5 * s->stiffness * longer * longer;
     }
     return sum;
@@ -44,7 +46,11 @@ static void add_mass(const softbody *b, size_t i, softbody_account *out)
 
 softbody_account softbody_measure(const softbody *b)
 {
-    softbody_account out = {.time_s = (double)b->steps * b->set.dt_s, .steps = b->steps, .substeps = b->substeps, .low = INFINITY, .high = -INFINITY};
+    softbody_account out = {.time_s = (double)b->steps * b->set.dt_s,
+                            .steps = b->steps,
+                            .substeps = b->substeps,
+                            .low = INFINITY,
+                            .high = -INFINITY};
     double mass = 0.0;
     for (size_t i = 0; i < b->net.count; i++) {
         add_mass(b, i, &out);

@@ -1,6 +1,7 @@
-/* A recorded hand: what is taken hold of, where it is moved to, when it is let go; so that a grab can be made again, to the bit.
- * A script holds a track for each hand. Ownership: hand_script_create gives an empty one, hand_script_add grows it, hand_script_destroy releases.
- * Times of a track never fall; between a grab and a release the hand moves in straight lines from key to key. */
+/* A recorded hand: what is taken hold of, where it is moved to, when it is let go; so that a grab can be made again, to
+ * the bit. A script holds a track for each hand. Ownership: hand_script_create gives an empty one, hand_script_add
+ * grows it, hand_script_destroy releases. Times of a track never fall; between a grab and a release the hand moves in
+ * straight lines from key to key. */
 #ifndef CUVETTE_SOFTBODY_HAND_H
 #define CUVETTE_SOFTBODY_HAND_H
 
@@ -27,7 +28,7 @@ typedef struct hand_track {
 } hand_track;
 
 typedef struct hand_script {
-    char *path;             /* of its file; "" for none */
+    char *path; /* of its file; "" for none */
     hand_track *tracks;
     size_t track_count;
 } hand_script;
@@ -36,9 +37,9 @@ typedef struct hand_script {
 hand_script *hand_script_create(const char *path);
 void hand_script_destroy(hand_script *s); /* NULL is allowed */
 
-/* One more key at the end of the hand's track, which begins with its first. STATUS_BAD_INPUT: more hands than SOFTBODY_HANDS_MAX, a time before
- * the key in front of it, a move or a release of a hand that holds nothing, a grab of one that holds something; the script is then as it was. The
- * diagnostic is not located. */
+/* One more key at the end of the hand's track, which begins with its first. STATUS_BAD_INPUT: more hands than
+ * SOFTBODY_HANDS_MAX, a time before the key in front of it, a move or a release of a hand that holds nothing, a grab of
+ * one that holds something; the script is then as it was. The diagnostic is not located. */
 status hand_script_add(hand_script *s, const char *hand, const hand_key *key, diagnostic *why);
 
 /* Time of the last key of all; 0 for none. */

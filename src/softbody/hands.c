@@ -100,16 +100,18 @@ static status take_hold(softbody *b, const hand_track *track, const hand_key *ke
     vec3 where;
     if (!softbody_pick(b, key->origin, key->direction, &where)) {
         diagnostic_locate(why, b->script->path, key->line, key->column);
-        return diagnose(why, STATUS_BAD_INPUT, "aim the ray at the slime as it lies at that time", "the hand %.80s takes hold of nothing at %g s: its ray misses the slime",
-                        track->name, key->time_s);
+        return diagnose(why, STATUS_BAD_INPUT, "aim the ray at the slime as it lies at that time",
+                        "the hand %.80s takes hold of nothing at %g s: its ray misses the slime", track->name,
+                        key->time_s);
     }
     play->hand = softbody_grab(b, where, key->reach);
     if (play->hand == HAND_NO_MEMORY)
         return diagnose(why, STATUS_FAILURE, "", "out of memory for a hand");
     if (play->hand == HAND_NONE) {
         diagnostic_locate(why, b->script->path, key->line, key->column);
-        return diagnose(why, STATUS_BAD_INPUT, "let the others go before, or give them less reach", "the hand %.80s takes hold of nothing at %g s: other hands hold all of it",
-                        track->name, key->time_s);
+        return diagnose(why, STATUS_BAD_INPUT, "let the others go before, or give them less reach",
+                        "the hand %.80s takes hold of nothing at %g s: other hands hold all of it", track->name,
+                        key->time_s);
     }
     play->where = where;
     play->from = vec3_make(0.0, 0.0, 0.0);
@@ -151,7 +153,9 @@ status softbody_play(softbody *b, diagnostic *why)
     for (size_t i = 0; b->plays && i < b->script->track_count && code == STATUS_OK; i++) {
         const hand_track *track = &b->script->tracks[i];
         track_play *play = &b->plays[i];
-        for (; code == STATUS_OK && play->next < track->key_count && step_of(b, track->keys[play->next].time_s) <= b->steps; play->next++)
+        for (; code == STATUS_OK && play->next < track->key_count &&
+               step_of(b, track->keys[play->next].time_s) <= b->steps;
+             play->next++)
             code = act(b, track, &track->keys[play->next], play, why);
         if (code == STATUS_OK && play->hand >= 0)
             softbody_hold(b, play->hand, vec3_add(play->where, offset_after(b, track, play)));

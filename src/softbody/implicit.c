@@ -1,7 +1,8 @@
-/* Backward Euler: (M + dt D + dt^2 K) dv = dt (f + f_damping) - dt^2 K v, with K and D of the springs as they lie (Baraff and Witkin, 1998,
- * equation 6), and of the pressure the part K V'V'^T / V0. With f that of springs at rest, the right side is dt f less what the same matrix without M
- * makes of v. Held masses keep their velocities. Solved by conjugate gradients from dv = 0, so that dv has the momentum of the forces (Shewchuk,
- * "An introduction to the conjugate gradient method", 1994). */
+/* Backward Euler: (M + dt D + dt^2 K) dv = dt (f + f_damping) - dt^2 K v, with K and D of the springs as they lie
+ * (Baraff and Witkin, 1998, equation 6), and of the pressure the part K V'V'^T / V0. With f that of springs at rest,
+ * the right side is dt f less what the same matrix without M makes of v. Held masses keep their velocities. Solved by
+ * conjugate gradients from dv = 0, so that dv has the momentum of the forces (Shewchuk, "An introduction to the
+ * conjugate gradient method", 1994). */
 #include "softbody/softbody_private.h"
 
 enum { ITERATIONS_MAX = 10000 };
@@ -22,8 +23,14 @@ static double dot(vectors a, vectors b, size_t begin, size_t end)
     return sum;
 }
 
-static void press_velocity(softbody *b, size_t begin, size_t end, size_t chunk) { b->sums[chunk] = dot(b->gradient, b->velocity, begin, end); }
-static void press_direction(softbody *b, size_t begin, size_t end, size_t chunk) { b->sums[chunk] = dot(b->gradient, b->direction, begin, end); }
+static void press_velocity(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    b->sums[chunk] = dot(b->gradient, b->velocity, begin, end);
+}
+static void press_direction(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    b->sums[chunk] = dot(b->gradient, b->direction, begin, end);
+}
 
 /* What the pressure's stiffness makes of a field whose product with the gradient has just been summed. */
 static double pressing(const softbody *b)
@@ -40,8 +47,10 @@ static void begin_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
     for (size_t i = begin; i < end; i++) {
         const bool free = b->inverse_mass[i] > 0.0;
         const vec3 g = vectors_at(b->gradient, i);
-        const vec3 force = vec3_add(vec3_add(vectors_at(b->force, i), vec3_scale(g, p->pressure)), vec3_scale(p->gravity, b->mass_kg[i]));
-        const vec3 right = vec3_sub(vec3_scale(force, p->dt_s), vec3_add(vectors_at(b->image, i), vec3_scale(g, b->pressing)));
+        const vec3 force = vec3_add(vec3_add(vectors_at(b->force, i), vec3_scale(g, p->pressure)),
+                                    vec3_scale(p->gravity, b->mass_kg[i]));
+        const vec3 right =
+            vec3_sub(vec3_scale(force, p->dt_s), vec3_add(vectors_at(b->image, i), vec3_scale(g, b->pressing)));
         vectors_put(b->residual, i, free ? right : vec3_make(0.0, 0.0, 0.0));
         vectors_put(b->direction, i, free ? right : vec3_make(0.0, 0.0, 0.0));
         vectors_put(b->change, i, vec3_make(0.0, 0.0, 0.0));
@@ -54,8 +63,9 @@ static void apply_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     b->kernels->resist(&b->net, b->stiff, b->direction, b->image, begin, end);
     for (size_t i = begin; i < end; i++) {
-        const vec3 sum = vec3_add(vec3_add(vectors_at(b->image, i), vec3_scale(vectors_at(b->direction, i), b->mass_kg[i])),
-                                  vec3_scale(vectors_at(b->gradient, i), b->pressing));
+        const vec3 sum =
+            vec3_add(vec3_add(vectors_at(b->image, i), vec3_scale(vectors_at(b->direction, i), b->mass_kg[i])),
+                     vec3_scale(vectors_at(b->gradient, i), b->pressing));
         vectors_put(b->image, i, b->inverse_mass[i] > 0.0 ? sum : vec3_make(0.0, 0.0, 0.0));
     }
     b->sums[chunk] = dot(b->direction, b->image, begin, end);
@@ -64,8 +74,10 @@ static void apply_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
 static void walk_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     for (size_t i = begin; i < end; i++) {
-        vectors_put(b->change, i, vec3_add(vectors_at(b->change, i), vec3_scale(vectors_at(b->direction, i), b->factor)));
-        vectors_put(b->residual, i, vec3_sub(vectors_at(b->residual, i), vec3_scale(vectors_at(b->image, i), b->factor)));
+        vectors_put(b->change, i,
+                    vec3_add(vectors_at(b->change, i), vec3_scale(vectors_at(b->direction, i), b->factor)));
+        vectors_put(b->residual, i,
+                    vec3_sub(vectors_at(b->residual, i), vec3_scale(vectors_at(b->image, i), b->factor)));
     }
     b->sums[chunk] = dot(b->residual, b->residual, begin, end);
 }
@@ -74,7 +86,8 @@ static void turn_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     (void)chunk;
     for (size_t i = begin; i < end; i++)
-        vectors_put(b->direction, i, vec3_add(vectors_at(b->residual, i), vec3_scale(vectors_at(b->direction, i), b->factor)));
+        vectors_put(b->direction, i,
+                    vec3_add(vectors_at(b->residual, i), vec3_scale(vectors_at(b->direction, i), b->factor)));
 }
 
 static void clear_chunk(softbody *b, size_t begin, size_t end, size_t chunk)

@@ -3,9 +3,11 @@
 #include "base/lanes.h"
 #include "softbody/softbody_private.h"
 
-/* gcc keeps arrays apart in a loop that are restricted parameters of its function; as locals they are not enough for it. */
+/* gcc keeps arrays apart in a loop that are restricted parameters of its function; as locals they are not enough for
+ * it. */
 #define ARRAYS3(name) double *__restrict name##x, double *__restrict name##y, double *__restrict name##z
-#define FIXED3(name) const double *__restrict name##x, const double *__restrict name##y, const double *__restrict name##z
+#define FIXED3(name) \
+    const double *__restrict name##x, const double *__restrict name##y, const double *__restrict name##z
 #define PASS3(v) v.x, v.y, v.z
 
 static void clear(vectors v, size_t begin, size_t end)
@@ -27,10 +29,13 @@ static void pack(vectors at, vectors velocity, double *state, size_t begin, size
     }
 }
 
-/* Four vertices at a time. One neighbour's state is one cache line, and four of them turned into columns cost half of what gathering numbers does. */
+/* Four vertices at a time. One neighbour's state is one cache line, and four of them turned into columns cost half of
+ * what gathering numbers does. */
 typedef double four __attribute__((vector_size(32)));
 typedef int64_t four_int __attribute__((vector_size(32)));
-typedef struct columns { four x, y, z; } columns;
+typedef struct columns {
+    four x, y, z;
+} columns;
 
 ALWAYS_INLINE four load(const double *from)
 {
@@ -41,9 +46,12 @@ ALWAYS_INLINE four load(const double *from)
 ALWAYS_INLINE columns turn(const double *a, const double *b, const double *c, const double *d)
 {
     const four p = load(a), q = load(b), r = load(c), s = load(d);
-    const four even_low = __builtin_shufflevector(p, q, 0, 4, 2, 6), even_high = __builtin_shufflevector(r, s, 0, 4, 2, 6);
-    const four odd_low = __builtin_shufflevector(p, q, 1, 5, 3, 7), odd_high = __builtin_shufflevector(r, s, 1, 5, 3, 7);
-    return (columns){__builtin_shufflevector(even_low, even_high, 0, 1, 4, 5), __builtin_shufflevector(odd_low, odd_high, 0, 1, 4, 5),
+    const four even_low = __builtin_shufflevector(p, q, 0, 4, 2, 6),
+               even_high = __builtin_shufflevector(r, s, 0, 4, 2, 6);
+    const four odd_low = __builtin_shufflevector(p, q, 1, 5, 3, 7),
+               odd_high = __builtin_shufflevector(r, s, 1, 5, 3, 7);
+    return (columns){__builtin_shufflevector(even_low, even_high, 0, 1, 4, 5),
+                     __builtin_shufflevector(odd_low, odd_high, 0, 1, 4, 5),
                      __builtin_shufflevector(even_low, even_high, 2, 3, 6, 7)};
 }
 
@@ -76,9 +84,10 @@ ALWAYS_INLINE void add_cross(columns *sum, columns a, columns b)
     sum->z += a.x * b.y - a.y * b.x;
 }
 
-/* One slot of four vertices: Hooke and damping of softbody.h, whose signs change here, since x leads to the other end. It is
- * left in *away. */
-ALWAYS_INLINE void add_spring(const springs *s, size_t at, const double *state, columns place, columns velocity, columns *force, columns *away)
+/* One slot of four vertices: Hooke and damping of softbody.h, whose signs change here, since x leads to the other end.
+ * It is left in *away. */
+ALWAYS_INLINE void add_spring(const springs *s, size_t at, const double *state, columns place, columns velocity,
+                              columns *force, columns *away)
 {
     const int32_t *other = s->other + at;
     const double *a = state + STATE * (size_t)other[0], *b = state + STATE * (size_t)other[1];
@@ -90,16 +99,18 @@ ALWAYS_INLINE void add_spring(const springs *s, size_t at, const double *state, 
     four length;
     for (int lane = 0; lane < 4; lane++)
         length[lane] = sqrt(safe[lane]);
-    const four pull = load(s->stiffness + at) * (one - load(s->rest + at) * length * inverse) + load(s->damping + at) * (dot(v, x) * inverse);
+    const four pull = load(s->stiffness + at) * (one - load(s->rest + at) * length * inverse) +
+                      load(s->damping + at) * (dot(v, x) * inverse);
     force->x += pull * x.x;
     force->y += pull * x.y;
     force->z += pull * x.z;
     *away = x;
 }
 
-/* Volume is a sixth of the sum of a . (b x c) over the faces; around a closed ring its gradient does not depend on where it is seen from. The ring's
- * neighbours are the first slots. */
-static void forces(const springs *s, const double *state, vectors at, vectors velocity, vectors force, vectors gradient, size_t begin, size_t end)
+/* Volume is a sixth of the sum of a . (b x c) over the faces; around a closed ring its gradient does not depend on
+ * where it is seen from. The ring's neighbours are the first slots. */
+static void forces(const springs *s, const double *state, vectors at, vectors velocity, vectors force, vectors gradient,
+                   size_t begin, size_t end)
 {
     for (size_t i = begin; i < end; i += 4) {
         const columns place = load_columns(at, i), speed = load_columns(velocity, i);
@@ -122,10 +133,13 @@ static void forces(const springs *s, const double *state, vectors at, vectors ve
 }
 
 /* A mass as the floor leaves it. */
-typedef struct landed { double y, u, v, w; } landed;
+typedef struct landed {
+    double y, u, v, w;
+} landed;
 
-/* What the floor makes of a mass that has come under it: the speed against it comes back as restitution says (Newton), and of the speed along it
- * friction takes at most its coefficient times that change (Coulomb's law, for the impulse of one step). */
+/* What the floor makes of a mass that has come under it: the speed against it comes back as restitution says (Newton),
+ * and of the speed along it friction takes at most its coefficient times that change (Coulomb's law, for the impulse of
+ * one step). */
 ALWAYS_INLINE landed meet_floor(const push *p, int64_t free, double y, double u, double v, double w)
 {
     const int64_t under = free & mask_less(y, p->ground_y), falls = under & mask_less(v, 0.0);
@@ -133,7 +147,8 @@ ALWAYS_INLINE landed meet_floor(const push *p, int64_t free, double y, double u,
     const double back = blend(mask_less(p->rest_speed, hit), p->restitution * hit, 0.0);
     const double along = sqrt(u * u + w * w), lost = lesser(p->friction * (hit + back), along);
     const double keep = 1.0 - lost / greater(along, 1e-300);
-    return (landed){blend(under, p->ground_y, y), blend(falls, u * keep, u), blend(falls, back, v), blend(falls, w * keep, w)};
+    return (landed){blend(under, p->ground_y, y), blend(falls, u * keep, u), blend(falls, back, v),
+                    blend(falls, w * keep, w)};
 }
 
 /* 1 for a mass that blew up: too fast, or of no number. */
@@ -142,7 +157,8 @@ ALWAYS_INLINE int64_t blew_up(const push *p, landed a)
     return 1 & ~mask_less_equal(a.u * a.u + a.v * a.v + a.w * a.w, p->speed_limit * p->speed_limit);
 }
 
-static int64_t euler_arrays(push q, const double *__restrict m, FIXED3(f), FIXED3(g), ARRAYS3(p), ARRAYS3(v), size_t begin, size_t end)
+static int64_t euler_arrays(push q, const double *__restrict m, FIXED3(f), FIXED3(g), ARRAYS3(p), ARRAYS3(v),
+                            size_t begin, size_t end)
 {
     int64_t bad = 0;
     /* VECTORISE */
@@ -163,12 +179,14 @@ static int64_t euler_arrays(push q, const double *__restrict m, FIXED3(f), FIXED
     return bad;
 }
 
-static int64_t euler(const push *p, const double *inverse_mass, vectors force, vectors area, vectors at, vectors velocity, size_t begin, size_t end)
+static int64_t euler(const push *p, const double *inverse_mass, vectors force, vectors area, vectors at,
+                     vectors velocity, size_t begin, size_t end)
 {
     return euler_arrays(*p, inverse_mass, PASS3(force), PASS3(area), PASS3(at), PASS3(velocity), begin, end);
 }
 
-static void drift(const push *p, vectors acceleration, vectors at, vectors velocity, vectors guess, size_t begin, size_t end)
+static void drift(const push *p, vectors acceleration, vectors at, vectors velocity, vectors guess, size_t begin,
+                  size_t end)
 {
     const double dt = p->dt_s, half = 0.5 * dt;
     double *const a[3] = {acceleration.x, acceleration.y, acceleration.z}, *const x[3] = {at.x, at.y, at.z};
@@ -186,8 +204,8 @@ static void drift(const push *p, vectors acceleration, vectors at, vectors veloc
     }
 }
 
-static int64_t kick_arrays(push q, const double *__restrict m, FIXED3(f), FIXED3(g), double *__restrict py, ARRAYS3(v), ARRAYS3(a), size_t begin,
-                           size_t end)
+static int64_t kick_arrays(push q, const double *__restrict m, FIXED3(f), FIXED3(g), double *__restrict py, ARRAYS3(v),
+                           ARRAYS3(a), size_t begin, size_t end)
 {
     const double half = 0.5 * q.dt_s;
     int64_t bad = 0;
@@ -210,16 +228,19 @@ static int64_t kick_arrays(push q, const double *__restrict m, FIXED3(f), FIXED3
     return bad;
 }
 
-static int64_t kick(const push *p, const double *inverse_mass, vectors force, vectors area, vectors at, vectors velocity, vectors acceleration, size_t begin,
-                    size_t end)
+static int64_t kick(const push *p, const double *inverse_mass, vectors force, vectors area, vectors at,
+                    vectors velocity, vectors acceleration, size_t begin, size_t end)
 {
-    return kick_arrays(*p, inverse_mass, PASS3(force), PASS3(area), at.y, PASS3(velocity), PASS3(acceleration), begin, end);
+    return kick_arrays(*p, inverse_mass, PASS3(force), PASS3(area), at.y, PASS3(velocity), PASS3(acceleration), begin,
+                       end);
 }
 
-/* A spring's stiffness along itself is k, across itself k (1 - l / |x|), which is left out where it would be negative: a pushed spring that
- * gives way to the side would make the matrix indefinite (Choi and Ko, "Stable but responsive cloth", SIGGRAPH 2002). */
-static void stiffen_slot(double dt, FIXED3(p), const int32_t *__restrict other, const double *__restrict rest, const double *__restrict k,
-                         const double *__restrict kd, ARRAYS3(n), double *__restrict across, double *__restrict along, size_t begin, size_t end)
+/* A spring's stiffness along itself is k, across itself k (1 - l / |x|), which is left out where it would be negative:
+ * a pushed spring that gives way to the side would make the matrix indefinite (Choi and Ko, "Stable but responsive
+ * cloth", SIGGRAPH 2002). */
+static void stiffen_slot(double dt, FIXED3(p), const int32_t *__restrict other, const double *__restrict rest,
+                         const double *__restrict k, const double *__restrict kd, ARRAYS3(n), double *__restrict across,
+                         double *__restrict along, size_t begin, size_t end)
 {
     /* VECTORISE */
     for (size_t i = begin; i < end; i++) {
@@ -240,13 +261,13 @@ static void stiffen(const springs *s, double dt_s, vectors at, stiff_slots out, 
 {
     for (int slot = 0; slot < s->slots; slot++) {
         const size_t k = (size_t)slot * s->stride;
-        stiffen_slot(dt_s, PASS3(at), s->other + k, s->rest + k, s->stiffness + k, s->damping + k, out.nx + k, out.ny + k, out.nz + k, out.across + k,
-                     out.along + k, begin, end);
+        stiffen_slot(dt_s, PASS3(at), s->other + k, s->rest + k, s->stiffness + k, s->damping + k, out.nx + k,
+                     out.ny + k, out.nz + k, out.across + k, out.along + k, begin, end);
     }
 }
 
-static void resist_slot(const int32_t *__restrict other, FIXED3(n), const double *__restrict across, const double *__restrict along, FIXED3(v),
-                        ARRAYS3(f), size_t begin, size_t end)
+static void resist_slot(const int32_t *__restrict other, FIXED3(n), const double *__restrict across,
+                        const double *__restrict along, FIXED3(v), ARRAYS3(f), size_t begin, size_t end)
 {
     /* VECTORISE */
     for (size_t i = begin; i < end; i++) {
@@ -264,11 +285,13 @@ static void resist(const springs *s, stiff_slots k, vectors field, vectors out, 
     clear(out, begin, end);
     for (int slot = 0; slot < s->slots; slot++) {
         const size_t first = (size_t)slot * s->stride;
-        resist_slot(s->other + first, k.nx + first, k.ny + first, k.nz + first, k.across + first, k.along + first, PASS3(field), PASS3(out), begin, end);
+        resist_slot(s->other + first, k.nx + first, k.ny + first, k.nz + first, k.across + first, k.along + first,
+                    PASS3(field), PASS3(out), begin, end);
     }
 }
 
-static int64_t settle_arrays(push q, const double *__restrict m, FIXED3(d), ARRAYS3(p), ARRAYS3(v), size_t begin, size_t end)
+static int64_t settle_arrays(push q, const double *__restrict m, FIXED3(d), ARRAYS3(p), ARRAYS3(v), size_t begin,
+                             size_t end)
 {
     int64_t bad = 0;
     /* VECTORISE */
@@ -286,10 +309,17 @@ static int64_t settle_arrays(push q, const double *__restrict m, FIXED3(d), ARRA
     return bad;
 }
 
-static int64_t settle(const push *p, const double *inverse_mass, vectors change, vectors at, vectors velocity, size_t begin, size_t end)
+static int64_t settle(const push *p, const double *inverse_mass, vectors change, vectors at, vectors velocity,
+                      size_t begin, size_t end)
 {
     return settle_arrays(*p, inverse_mass, PASS3(change), PASS3(at), PASS3(velocity), begin, end);
 }
 
-const softbody_kernels KERNEL(softbody_kernels) = {
-    .pack = pack, .forces = forces, .euler = euler, .drift = drift, .kick = kick, .stiffen = stiffen, .resist = resist, .settle = settle};
+const softbody_kernels KERNEL(softbody_kernels) = {.pack = pack,
+                                                   .forces = forces,
+                                                   .euler = euler,
+                                                   .drift = drift,
+                                                   .kick = kick,
+                                                   .stiffen = stiffen,
+                                                   .resist = resist,
+                                                   .settle = settle};

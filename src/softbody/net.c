@@ -1,4 +1,5 @@
-/* The toy's net: masses where an icosphere's vertices lie, springs along its edges, across its neighbouring faces, and from side to side. */
+/* The toy's net: masses where an icosphere's vertices lie, springs along its edges, across its neighbouring faces, and
+ * from side to side. */
 #include "geometry/bodies.h"
 #include "geometry/mesh_parts.h"
 #include "softbody/softbody_private.h"
@@ -6,7 +7,9 @@
 #include <stdlib.h>
 
 /* A face's side: between two masses, and the corner across from it. */
-typedef struct side { uint32_t low, high, across; } side;
+typedef struct side {
+    uint32_t low, high, across;
+} side;
 
 static int by_ends(const void *a, const void *b)
 {
@@ -21,7 +24,9 @@ static int by_ends(const void *a, const void *b)
 /* Damping goes with stiffness (Rayleigh's second term); alone it is along edges. */
 static void add_spring(const softbody_settings *s, toy_net *n, uint32_t a, uint32_t b, double stiffness)
 {
-    const double damping = s->stiffness > 0.0 ? s->damping * (stiffness / s->stiffness) : n->spring_count < 3 * n->face_count / 2 ? s->damping : 0.0;
+    const double damping = s->stiffness > 0.0                        ? s->damping * (stiffness / s->stiffness)
+                           : n->spring_count < 3 * n->face_count / 2 ? s->damping
+                                                                     : 0.0;
     const double rest = vec3_length(vec3_sub(n->position[b], n->position[a]));
     n->springs[n->spring_count++] = (softbody_spring){{a, b}, rest, stiffness, damping};
 }
@@ -46,7 +51,10 @@ static status add_edges(const softbody_settings *s, toy_net *n, diagnostic *why)
     return STATUS_OK;
 }
 
-typedef struct spot { vec3 at; uint32_t mass; } spot;
+typedef struct spot {
+    vec3 at;
+    uint32_t mass;
+} spot;
 
 static int by_place(const void *a, const void *b)
 {
@@ -58,8 +66,8 @@ static int by_place(const void *a, const void *b)
     return p.z < q.z ? -1 : p.z > q.z;
 }
 
-/* An icosphere has the opposite of each of its vertices, to the bit: it is made of the same operations with the other sign. unit: on the unit
- * sphere. */
+/* An icosphere has the opposite of each of its vertices, to the bit: it is made of the same operations with the other
+ * sign. unit: on the unit sphere. */
 static status add_diameters(const softbody_settings *s, const vec3 *unit, toy_net *n, diagnostic *why)
 {
     spot *spots = malloc(n->mass_count * sizeof *spots);
@@ -117,7 +125,8 @@ status toy_net_create(const softbody_settings *s, toy_net *out, diagnostic *why)
     out->position = malloc(sphere->vertex_count * sizeof *out->position);
     out->mass_of = malloc(sphere->vertex_count * sizeof *out->mass_of);
     out->faces = malloc(sphere->triangle_count * sizeof *out->faces);
-    out->springs = malloc(4 * sphere->triangle_count * sizeof *out->springs); /* 1.5 edges a face, as many across, and a quarter through */
+    out->springs = malloc(4 * sphere->triangle_count *
+                          sizeof *out->springs); /* 1.5 edges a face, as many across, and a quarter through */
     if (!unit || !out->position || !out->mass_of || !out->faces || !out->springs)
         code = diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
     if (code == STATUS_OK)

@@ -5,7 +5,10 @@ static status refuse(diagnostic *why, const char *name, double value, const char
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s is %g", name, value);
 }
 
-typedef struct bounded { const char *name; double value; } bounded;
+typedef struct bounded {
+    const char *name;
+    double value;
+} bounded;
 
 static status check_shape(const softbody_settings *s, diagnostic *why)
 {
@@ -13,7 +16,8 @@ static status check_shape(const softbody_settings *s, diagnostic *why)
     const double lowest[] = {1e-6, SOFTBODY_MASS_MIN_KG, SOFTBODY_DT_MIN_S};
     for (size_t i = 0; i < sizeof above / sizeof above[0]; i++)
         if (!(above[i].value >= lowest[i] && above[i].value <= 1e6))
-            return refuse(why, above[i].name, above[i].value, i == 2 ? "a number from 1e-9 on" : "a number from 1e-6 on");
+            return refuse(why, above[i].name, above[i].value,
+                          i == 2 ? "a number from 1e-9 on" : "a number from 1e-6 on");
     const bounded least[] = {{"stiffness", s->stiffness}, {"bending", s->bending},   {"through", s->through},
                              {"damping", s->damping},     {"pressure", s->pressure}, {"friction", s->friction}};
     for (size_t i = 0; i < sizeof least / sizeof least[0]; i++)
@@ -37,6 +41,7 @@ status softbody_check(const softbody_settings *s, diagnostic *why)
     if (s->threads < 1 || s->threads > 1024)
         return diagnose(why, STATUS_BAD_INPUT, "1 to 1024", "%ld threads", (long)s->threads);
     if (s->integrator < SOFTBODY_EULER || s->integrator > SOFTBODY_IMPLICIT)
-        return diagnose(why, STATUS_BAD_INPUT, "euler, verlet or implicit", "there is no integrator %ld", (long)s->integrator);
+        return diagnose(why, STATUS_BAD_INPUT, "euler, verlet or implicit", "there is no integrator %ld",
+                        (long)s->integrator);
     return check_shape(s, why);
 }

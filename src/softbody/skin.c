@@ -50,8 +50,8 @@ status softbody_skin(const softbody *b, mesh **out, diagnostic *why)
     return code;
 }
 
-/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997; fronts alone. slack: how far beyond an edge, as a share of the
- * face, still counts. */
+/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997; fronts alone. slack: how far
+ * beyond an edge, as a share of the face, still counts. */
 static bool meets(const softbody *b, const mesh_triangle *face, double slack, vec3 origin, vec3 direction, double *t)
 {
     const vec3 a = vectors_at(b->at, face->corner[0]);

@@ -28,7 +28,8 @@ void softbody_vectors_free(vectors v)
 static bool make_solver(softbody *b)
 {
     const size_t count = (size_t)b->net.slots * b->net.stride;
-    b->stiff = (stiff_slots){softbody_array(count), softbody_array(count), softbody_array(count), softbody_array(count), softbody_array(count)};
+    b->stiff = (stiff_slots){softbody_array(count), softbody_array(count), softbody_array(count), softbody_array(count),
+                             softbody_array(count)};
     vectors *const all[] = {&b->change, &b->residual, &b->direction, &b->image};
     bool made = b->stiff.nx && b->stiff.ny && b->stiff.nz && b->stiff.across && b->stiff.along;
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
@@ -45,8 +46,8 @@ static bool make_arrays(softbody *b)
     b->bad = calloc(chunks + 1, sizeof *b->bad);
     b->state = softbody_array(STATE * stride);
     bool made = b->mass_kg && b->inverse_mass && b->sums && b->bad && b->state;
-    made &= softbody_vectors(&b->at, stride) && softbody_vectors(&b->velocity, stride) && softbody_vectors(&b->force, stride) &&
-            softbody_vectors(&b->gradient, stride);
+    made &= softbody_vectors(&b->at, stride) && softbody_vectors(&b->velocity, stride) &&
+            softbody_vectors(&b->force, stride) && softbody_vectors(&b->gradient, stride);
     if (b->set.integrator == SOFTBODY_VERLET)
         made &= softbody_vectors(&b->acceleration, stride) && softbody_vectors(&b->guess, stride);
     return made && (b->set.integrator != SOFTBODY_IMPLICIT || make_solver(b));
@@ -88,9 +89,10 @@ static void fill_masses(softbody *b, const softbody_net *net)
     }
 }
 
-/* Of x'' = -omega^2 x - gamma x', semi-implicit Euler is stable where omega^2 dt^2 + 2 gamma dt < 4 (Jury's criterion for
- * lambda^2 - (2 - gamma dt - omega^2 dt^2) lambda + 1 - gamma dt). Verlet, whose damping takes a guess of the velocity, bears half as much of that:
- * without springs, trace 1 - 3/2 gamma dt and determinant -1/2 gamma dt hold it to gamma dt < 1. */
+/* Of x'' = -omega^2 x - gamma x', semi-implicit Euler is stable where omega^2 dt^2 + 2 gamma dt < 4 (Jury's criterion
+ * for lambda^2 - (2 - gamma dt - omega^2 dt^2) lambda + 1 - gamma dt). Verlet, whose damping takes a guess of the
+ * velocity, bears half as much of that: without springs, trace 1 - 3/2 gamma dt and determinant -1/2 gamma dt hold it
+ * to gamma dt < 1. */
 static double stable_dt_of(softbody_integrator integrator, double omega2, double damping)
 {
     const double gamma = integrator == SOFTBODY_VERLET ? 2.0 * damping : damping;
@@ -99,7 +101,8 @@ static double stable_dt_of(softbody_integrator integrator, double omega2, double
     return gamma > 0.0 ? 2.0 / gamma : INFINITY;
 }
 
-/* Rows of the stiffness over the mass, by Gershgorin's circles: a spring's k counts at both of its ends, and each end's sum twice. */
+/* Rows of the stiffness over the mass, by Gershgorin's circles: a spring's k counts at both of its ends, and each end's
+ * sum twice. */
 static void find_stable_dt(softbody *b)
 {
     double omega2 = 0.0, gamma = 0.0, pressed = 0.0;
@@ -119,7 +122,8 @@ static void find_stable_dt(softbody *b)
     b->stable_dt_s = stable_dt_of((softbody_integrator)b->set.integrator, omega2, gamma);
 }
 
-/* A step waits for its threads several times, which costs tens of microseconds each: with less to do than this they would only be waited for. */
+/* A step waits for its threads several times, which costs tens of microseconds each: with less to do than this they
+ * would only be waited for. */
 enum { CHUNKS_A_THREAD = 8 };
 
 static int useful_threads(const softbody *b)
@@ -139,8 +143,8 @@ static status fill(softbody *b, const softbody_net *net, diagnostic *why)
     fill_masses(b, net);
     b->size = extent_of(net);
     if (b->set.ground && softbody_measure(b).low < b->set.ground_y - 1e-9 * b->set.radius)
-        return diagnose(why, STATUS_BAD_INPUT, "raise its position, or lower ground_y", "the slime begins at %g, under its floor at %g", softbody_measure(b).low,
-                        b->set.ground_y);
+        return diagnose(why, STATUS_BAD_INPUT, "raise its position, or lower ground_y",
+                        "the slime begins at %g, under its floor at %g", softbody_measure(b).low, b->set.ground_y);
     softbody_find_forces(b, WITH_OWN);
     b->volume_at_rest = b->face_count > 0 ? softbody_volume_of_gradient(b) : 0.0;
     if (b->face_count > 0 && !(b->volume_at_rest > 0.0))
@@ -159,21 +163,25 @@ static status check_net(const softbody_net *net, diagnostic *why)
     for (size_t i = 0; i < net->spring_count; i++) {
         const softbody_spring *s = &net->springs[i];
         if (s->end[0] >= net->mass_count || s->end[1] >= net->mass_count || s->end[0] == s->end[1])
-            return diagnose(why, STATUS_BAD_INPUT, "join two of its masses", "spring %zu joins masses %lu and %lu of %zu", i, (unsigned long)s->end[0],
+            return diagnose(why, STATUS_BAD_INPUT, "join two of its masses",
+                            "spring %zu joins masses %lu and %lu of %zu", i, (unsigned long)s->end[0],
                             (unsigned long)s->end[1], net->mass_count);
         if (!(s->rest >= 0.0 && s->stiffness >= 0.0 && s->damping >= 0.0))
-            return diagnose(why, STATUS_BAD_INPUT, "they are 0 or more", "spring %zu has length %g, stiffness %g, damping %g", i, s->rest, s->stiffness,
-                            s->damping);
+            return diagnose(why, STATUS_BAD_INPUT, "they are 0 or more",
+                            "spring %zu has length %g, stiffness %g, damping %g", i, s->rest, s->stiffness, s->damping);
     }
     for (size_t i = 0; i < 3 * net->face_count; i++)
         if (net->faces[i / 3].corner[i % 3] >= net->mass_count)
-            return diagnose(why, STATUS_BAD_INPUT, "masses are counted from 0", "face %zu has a corner that is no mass", i / 3);
+            return diagnose(why, STATUS_BAD_INPUT, "masses are counted from 0", "face %zu has a corner that is no mass",
+                            i / 3);
     return STATUS_OK;
 }
 
-status softbody_create_net(const softbody_net *net, const softbody_settings *s, isa level, softbody **out, diagnostic *why)
+status softbody_create_net(const softbody_net *net, const softbody_settings *s, isa level, softbody **out,
+                           diagnostic *why)
 {
-    static const softbody_kernels *const kernels[ISA_COUNT] = {&softbody_kernels_sse2, &softbody_kernels_avx2, &softbody_kernels_avx512};
+    static const softbody_kernels *const kernels[ISA_COUNT] = {&softbody_kernels_sse2, &softbody_kernels_avx2,
+                                                               &softbody_kernels_avx512};
     *out = NULL;
     status code = softbody_check(s, why);
     if (code == STATUS_OK)
@@ -207,8 +215,13 @@ status softbody_create(const softbody_settings *s, isa level, softbody **out, di
     double *mass_kg = malloc(toy.mass_count * sizeof *mass_kg);
     for (size_t i = 0; mass_kg && i < toy.mass_count; i++)
         mass_kg[i] = s->mass_kg / (double)toy.mass_count;
-    const softbody_net net = {.mass_count = toy.mass_count, .spring_count = toy.spring_count, .face_count = toy.face_count, .position = toy.position,
-                              .mass_kg = mass_kg, .springs = toy.springs, .faces = toy.faces};
+    const softbody_net net = {.mass_count = toy.mass_count,
+                              .spring_count = toy.spring_count,
+                              .face_count = toy.face_count,
+                              .position = toy.position,
+                              .mass_kg = mass_kg,
+                              .springs = toy.springs,
+                              .faces = toy.faces};
     code = mass_kg ? softbody_create_net(&net, s, level, out, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK) {
         (*out)->mass_of = toy.mass_of;
@@ -224,7 +237,8 @@ void softbody_destroy(softbody *b)
 {
     if (!b)
         return;
-    const vectors all[] = {b->at, b->velocity, b->force, b->gradient, b->acceleration, b->guess, b->change, b->residual, b->direction, b->image};
+    const vectors all[] = {b->at,    b->velocity, b->force,    b->gradient,  b->acceleration,
+                           b->guess, b->change,   b->residual, b->direction, b->image};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         softbody_vectors_free(all[i]);
     double *const stiff[] = {b->stiff.nx, b->stiff.ny, b->stiff.nz, b->stiff.across, b->stiff.along};

@@ -17,8 +17,14 @@ static bool make_slots(springs *s)
 }
 
 /* Of a face seen from one of its corners: the next corner and the one after; has the first a spring yet? */
-typedef struct wedge { int32_t from, to; bool taken; } wedge;
-typedef struct rings { int *used; wedge *wedges; } rings; /* by vertex: how many wedges, and ring_slots of them */
+typedef struct wedge {
+    int32_t from, to;
+    bool taken;
+} wedge;
+typedef struct rings {
+    int *used;
+    wedge *wedges;
+} rings; /* by vertex: how many wedges, and ring_slots of them */
 
 static int most(const int *used, size_t count)
 {
@@ -63,11 +69,13 @@ static status find_rings(springs *s, const softbody_net *net, rings *out, diagno
     memset(out->used, 0, s->stride * sizeof *out->used);
     for (size_t i = 0; i < 3 * net->face_count; i++) {
         const uint32_t *corner = net->faces[i / 3].corner, at = corner[i % 3];
-        out->wedges[at * (size_t)s->ring_slots + (size_t)out->used[at]++] = (wedge){(int32_t)corner[(i + 1) % 3], (int32_t)corner[(i + 2) % 3], false};
+        out->wedges[at * (size_t)s->ring_slots + (size_t)out->used[at]++] =
+            (wedge){(int32_t)corner[(i + 1) % 3], (int32_t)corner[(i + 2) % 3], false};
     }
     for (size_t i = 0; i < s->count; i++)
         if (!chain(out->wedges + i * (size_t)s->ring_slots, out->used[i]))
-            return diagnose(why, STATUS_BAD_INPUT, "give a closed surface, or no faces", "the faces do not close around mass %zu", i);
+            return diagnose(why, STATUS_BAD_INPUT, "give a closed surface, or no faces",
+                            "the faces do not close around mass %zu", i);
     return STATUS_OK;
 }
 
@@ -80,7 +88,8 @@ static void fill_rings(springs *s, rings r)
     }
 }
 
-/* The slot of a vertex for its next spring: the ring's to that neighbour unless it is taken, else the next behind the ring. */
+/* The slot of a vertex for its next spring: the ring's to that neighbour unless it is taken, else the next behind the
+ * ring. */
 static int slot_of(const springs *s, rings r, uint32_t at, uint32_t other, int *behind)
 {
     wedge *own = r.wedges + at * (size_t)s->ring_slots;

@@ -5,7 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-typedef struct chunk_task { softbody *b; chunk_work *work; } chunk_task;
+typedef struct chunk_task {
+    softbody *b;
+    chunk_work *work;
+} chunk_task;
 
 static void run_chunk(void *context, size_t chunk, int member)
 {
@@ -35,15 +38,20 @@ double softbody_sum(const softbody *b)
     return sum;
 }
 
-static void pack_with(softbody *b, size_t begin, size_t end, vectors velocity) { b->kernels->pack(b->at, velocity, b->state, begin, end); }
+static void pack_with(softbody *b, size_t begin, size_t end, vectors velocity)
+{
+    b->kernels->pack(b->at, velocity, b->state, begin, end);
+}
 
-/* Volume is of degree 3 in the places, so a third of the sum of place times gradient (Euler); seen from one mass, where least cancels. */
+/* Volume is of degree 3 in the places, so a third of the sum of place times gradient (Euler); seen from one mass, where
+ * least cancels. */
 static double volume_of_chunk(const softbody *b, size_t begin, size_t end)
 {
     const double x = b->at.x[0], y = b->at.y[0], z = b->at.z[0];
     double sum = 0.0;
     for (size_t i = begin; i < end; i++)
-        sum += (b->at.x[i] - x) * b->gradient.x[i] + (b->at.y[i] - y) * b->gradient.y[i] + (b->at.z[i] - z) * b->gradient.z[i];
+        sum += (b->at.x[i] - x) * b->gradient.x[i] + (b->at.y[i] - y) * b->gradient.y[i] +
+               (b->at.z[i] - z) * b->gradient.z[i];
     return sum;
 }
 
@@ -54,12 +62,30 @@ static void find_with(softbody *b, size_t begin, size_t end, size_t chunk, vecto
 }
 
 /* With which velocities the damping is found: the body's own; verlet's guess; none, which is what `change` has then. */
-static void pack_own(softbody *b, size_t begin, size_t end, size_t chunk) { (void)chunk, pack_with(b, begin, end, b->velocity); }
-static void pack_guess(softbody *b, size_t begin, size_t end, size_t chunk) { (void)chunk, pack_with(b, begin, end, b->guess); }
-static void pack_none(softbody *b, size_t begin, size_t end, size_t chunk) { (void)chunk, pack_with(b, begin, end, b->change); }
-static void find_own(softbody *b, size_t begin, size_t end, size_t chunk) { find_with(b, begin, end, chunk, b->velocity); }
-static void find_guess(softbody *b, size_t begin, size_t end, size_t chunk) { find_with(b, begin, end, chunk, b->guess); }
-static void find_none(softbody *b, size_t begin, size_t end, size_t chunk) { find_with(b, begin, end, chunk, b->change); }
+static void pack_own(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    (void)chunk, pack_with(b, begin, end, b->velocity);
+}
+static void pack_guess(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    (void)chunk, pack_with(b, begin, end, b->guess);
+}
+static void pack_none(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    (void)chunk, pack_with(b, begin, end, b->change);
+}
+static void find_own(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    find_with(b, begin, end, chunk, b->velocity);
+}
+static void find_guess(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    find_with(b, begin, end, chunk, b->guess);
+}
+static void find_none(softbody *b, size_t begin, size_t end, size_t chunk)
+{
+    find_with(b, begin, end, chunk, b->change);
+}
 
 double softbody_volume_of_gradient(softbody *b)
 {
@@ -68,16 +94,19 @@ double softbody_volume_of_gradient(softbody *b)
 
 void softbody_find_forces(softbody *b, forces_with which)
 {
-    static chunk_work *const packs[] = {pack_own, pack_guess, pack_none}, *const finds[] = {find_own, find_guess, find_none};
+    static chunk_work *const packs[] = {pack_own, pack_guess, pack_none}, *const finds[] = {find_own, find_guess,
+                                                                                            find_none};
     softbody_for_chunks(b, packs[which]);
     softbody_for_chunks(b, finds[which]);
     const double at_rest = b->volume_at_rest;
-    b->pushing.pressure = at_rest > 0.0 ? b->set.pressure * (at_rest - softbody_volume_of_gradient(b)) / at_rest / 6.0 : 0.0;
+    b->pushing.pressure =
+        at_rest > 0.0 ? b->set.pressure * (at_rest - softbody_volume_of_gradient(b)) / at_rest / 6.0 : 0.0;
 }
 
 static void push_euler(softbody *b, size_t begin, size_t end, size_t chunk)
 {
-    b->bad[chunk] = b->kernels->euler(&b->pushing, b->inverse_mass, b->force, b->gradient, b->at, b->velocity, begin, end);
+    b->bad[chunk] =
+        b->kernels->euler(&b->pushing, b->inverse_mass, b->force, b->gradient, b->at, b->velocity, begin, end);
 }
 
 static void push_drift(softbody *b, size_t begin, size_t end, size_t chunk)
@@ -88,7 +117,8 @@ static void push_drift(softbody *b, size_t begin, size_t end, size_t chunk)
 
 static void push_kick(softbody *b, size_t begin, size_t end, size_t chunk)
 {
-    b->bad[chunk] = b->kernels->kick(&b->pushing, b->inverse_mass, b->force, b->gradient, b->at, b->velocity, b->acceleration, begin, end);
+    b->bad[chunk] = b->kernels->kick(&b->pushing, b->inverse_mass, b->force, b->gradient, b->at, b->velocity,
+                                     b->acceleration, begin, end);
 }
 
 static void push_settle(softbody *b, size_t begin, size_t end, size_t chunk)
@@ -223,14 +253,17 @@ static status blown(const softbody *b, diagnostic *why)
     double speed = 0.0;
     const size_t i = find_blown(b, &speed);
     char remedy[200], what[120];
-    snprintf(remedy, sizeof remedy, "dt_s of at most %.3g is stable at rest; or 'adaptive: on', 'integrator: implicit', softer springs, a slower hand",
+    snprintf(remedy, sizeof remedy,
+             "dt_s of at most %.3g is stable at rest; or 'adaptive: on', 'integrator: implicit', softer springs, a "
+             "slower hand",
              b->stable_dt_s);
     if (isfinite(speed))
-        snprintf(what, sizeof what, "the speed of mass %zu against the others is %.3g, over its own size in one substep", i, speed);
+        snprintf(what, sizeof what,
+                 "the speed of mass %zu against the others is %.3g, over its own size in one substep", i, speed);
     else
         snprintf(what, sizeof what, "the speed of mass %zu is no number", i < b->net.count ? i : 0);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "the slime blew up in step %llu, at %.6g s: %s", (unsigned long long)b->steps + 1,
-                    (double)(b->steps + 1) * b->set.dt_s, what);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "the slime blew up in step %llu, at %.6g s: %s",
+                    (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s, what);
 }
 
 status softbody_step(softbody *b, diagnostic *why)
@@ -243,11 +276,13 @@ status softbody_step(softbody *b, diagnostic *why)
     softbody_aim_hands(b, b->set.dt_s);
     const double count = substeps_wanted(b);
     if (!(count <= SUBSTEPS_MAX))
-        return diagnose(why, STATUS_BAD_INPUT, "a smaller dt_s, or softer springs", "step %llu, at %.6g s, would have to be split into %.3g",
-                        (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s, count);
+        return diagnose(why, STATUS_BAD_INPUT, "a smaller dt_s, or softer springs",
+                        "step %llu, at %.6g s, would have to be split into %.3g", (unsigned long long)b->steps + 1,
+                        (double)(b->steps + 1) * b->set.dt_s, count);
     for (double i = 0.0; i < count; i += 1.0) {
         if (!substep(b, b->set.dt_s / count))
-            return diagnose(why, STATUS_BAD_INPUT, "a smaller dt_s, or softer springs", "step %llu of the slime, at %.6g s, has no solution: its solver does not come to an end",
+            return diagnose(why, STATUS_BAD_INPUT, "a smaller dt_s, or softer springs",
+                            "step %llu of the slime, at %.6g s, has no solution: its solver does not come to an end",
                             (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s);
         if (has_blown(b))
             return blown(b, why);

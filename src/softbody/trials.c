@@ -5,48 +5,56 @@
 /* HLW: Hairer, Lubich, Wanner, "Geometric numerical integration", 2nd edition. */
 static const softbody_trial trial_table[SOFTBODY_TRIAL_COUNT] = {
     [SPRING_PERIOD] = {"spring.period_s", "s",
-        "two masses on one spring: period; theory 2 pi sqrt(m / 2k) (Goldstein 3.1)", NAN, NAN},
+                       "two masses on one spring: period; theory 2 pi sqrt(m / 2k) (Goldstein 3.1)", NAN, NAN},
     [SPRING_PERIOD_DISCRETE] = {"spring.period_discrete_s", "s",
-        "the same; theory the integrator's own: pi dt / asin(omega dt / 2), implicit 2 pi dt / atan(omega dt) (HLW I.1)", NAN, NAN},
+                                "the same; theory the integrator's own: pi dt / asin(omega dt / 2), implicit 2 pi dt / "
+                                "atan(omega dt) (HLW I.1)",
+                                NAN, NAN},
     [SPRING_DECAY] = {"spring.decay", "",
-        "factor of the swing in one step; theory 1, implicit 1 / sqrt(1 + (omega dt)^2) (HLW I.1)", NAN, NAN},
-    [SPRING_ORDER] = {"spring.order", "",
-        "log2 of the error with dt over that with dt / 2, after a quarter swing; theory 1, verlet 2 (HLW I.1)", NAN, NAN},
-    [FALL_DEPTH] = {"fall.depth", "scene units",
-        "fall of one mass in 1 s (whole steps); theory g t^2 / 2 (Galilei)", NAN, NAN},
+                      "factor of the swing in one step; theory 1, implicit 1 / sqrt(1 + (omega dt)^2) (HLW I.1)", NAN,
+                      NAN},
+    [SPRING_ORDER] =
+        {"spring.order", "",
+         "log2 of the error with dt over that with dt / 2, after a quarter swing; theory 1, verlet 2 (HLW I.1)", NAN,
+         NAN},
+    [FALL_DEPTH] = {"fall.depth", "scene units", "fall of one mass in 1 s (whole steps); theory g t^2 / 2 (Galilei)",
+                    NAN, NAN},
     [FALL_DEPTH_DISCRETE] = {"fall.depth_discrete", "scene units",
-        "the same; theory the integrator's own: g t (t + dt) / 2, verlet g t^2 / 2", NAN, NAN},
+                             "the same; theory the integrator's own: g t (t + dt) / 2, verlet g t^2 / 2", NAN, NAN},
     [BOUNCE_HEIGHT] = {"bounce.height", "scene units",
-        "how high a mass rises again that falls by 1; theory restitution^2 (Newton)", NAN, NAN},
+                       "how high a mass rises again that falls by 1; theory restitution^2 (Newton)", NAN, NAN},
     [BOUNCE_BODY] = {"bounce.body", "",
-        "how high the toy's centre rises again over its height at rest, of a fall by its radius", NAN, NAN},
-    [ENERGY_DRIFT] = {"energy.drift", "",
-        "free toy without damping, 1 s: largest |E - E0| / E0; theory 0", NAN, NAN},
-    [ENERGY_END] = {"energy.end", "",
-        "the same at its end: E / E0 - 1; theory 0", NAN, NAN},
+                     "how high the toy's centre rises again over its height at rest, of a fall by its radius", NAN,
+                     NAN},
+    [ENERGY_DRIFT] = {"energy.drift", "", "free toy without damping, 1 s: largest |E - E0| / E0; theory 0", NAN, NAN},
+    [ENERGY_END] = {"energy.end", "", "the same at its end: E / E0 - 1; theory 0", NAN, NAN},
     [ENERGY_RISE] = {"energy.rise", "",
-        "free toy with damping, 1 s: largest rise of E from one step to the next, over E0; theory 0", NAN, NAN},
+                     "free toy with damping, 1 s: largest rise of E from one step to the next, over E0; theory 0", NAN,
+                     NAN},
     [MOMENTUM_DRIFT] = {"momentum.drift", "",
-        "free toy that turns, 1 s: largest change of momentum over the sum of |m v|; theory 0", NAN, NAN},
+                        "free toy that turns, 1 s: largest change of momentum over the sum of |m v|; theory 0", NAN,
+                        NAN},
     [ANGULAR_MOMENTUM_DRIFT] = {"angular_momentum.drift", "",
-        "the same of angular momentum, over the sum of |m x cross v|; theory 0", NAN, NAN},
-    [VOLUME_DRIFT] = {"volume.drift", "",
-        "toy after 3 s on its floor: volume over that at rest, less 1; theory 0, for a pressure without limit", NAN, NAN},
+                                "the same of angular momentum, over the sum of |m x cross v|; theory 0", NAN, NAN},
+    [VOLUME_DRIFT] =
+        {"volume.drift", "",
+         "toy after 3 s on its floor: volume over that at rest, less 1; theory 0, for a pressure without limit", NAN,
+         NAN},
     [STABLE_SPRING] = {"stable_dt.spring_s", "s",
-        "largest dt with which the spring's swing does not grow; theory 2 / omega; none for implicit", NAN, NAN},
+                       "largest dt with which the spring's swing does not grow; theory 2 / omega; none for implicit",
+                       NAN, NAN},
     [STABLE_TOY] = {"stable_dt.toy_s", "s",
-        "the same of the free toy, 1000 steps; theory a bound from below (Gershgorin); none for implicit", NAN, NAN},
-    [RATE_SUBSTEPS] = {"rate.substeps", "",
-        "steps that each step is split into, on the floor", NAN, NAN},
-    [RATE_STEP] = {"rate.step_s", "s",
-        "wall time of a step: median of 64", NAN, NAN},
-    [RATE_SIMULATED] = {"rate.simulated_s_per_s", "",
-        "simulated over wall time", NAN, NAN},
+                    "the same of the free toy, 1000 steps; theory a bound from below (Gershgorin); none for implicit",
+                    NAN, NAN},
+    [RATE_SUBSTEPS] = {"rate.substeps", "", "steps that each step is split into, on the floor", NAN, NAN},
+    [RATE_STEP] = {"rate.step_s", "s", "wall time of a step: median of 64", NAN, NAN},
+    [RATE_SIMULATED] = {"rate.simulated_s_per_s", "", "simulated over wall time", NAN, NAN},
 };
 
 status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why)
 {
-    static status (*const all[])(const trials *) = {trials_spring, trials_fall, trials_bounce, trials_free, trials_rest, trials_stable};
+    static status (*const all[])(const trials *) = {trials_spring, trials_fall, trials_bounce,
+                                                    trials_free,   trials_rest, trials_stable};
     const trials t = {s, level, out, why};
     for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++)
         out->value[i] = trial_table[i];
@@ -121,7 +129,8 @@ status trial_swing(const trials *t, const softbody_settings *s, double swing, so
     const double half = 0.5 * (1.0 + swing), mass_kg[2] = {trial_mass_kg(s), trial_mass_kg(s)};
     const vec3 position[2] = {{-half, 0.0, 0.0}, {half, 0.0, 0.0}};
     const softbody_spring spring = {{0, 1}, 1.0, s->stiffness, 0.0};
-    const softbody_net net = {.mass_count = 2, .spring_count = 1, .position = position, .mass_kg = mass_kg, .springs = &spring};
+    const softbody_net net = {
+        .mass_count = 2, .spring_count = 1, .position = position, .mass_kg = mass_kg, .springs = &spring};
     return softbody_create_net(&net, s, t->level, out, t->why);
 }
 

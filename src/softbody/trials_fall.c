@@ -17,13 +17,17 @@ static status measure_fall(const trials *t)
         softbody_positions(b, &at);
         const double depth = held ? -at.y : NAN, exact = 0.5 * g * time_s * time_s;
         trial_put(t, FALL_DEPTH, depth, exact);
-        trial_put(t, FALL_DEPTH_DISCRETE, depth, s.integrator == SOFTBODY_VERLET ? exact : exact + 0.5 * g * time_s * s.dt_s);
+        trial_put(t, FALL_DEPTH_DISCRETE, depth,
+                  s.integrator == SOFTBODY_VERLET ? exact : exact + 0.5 * g * time_s * s.dt_s);
     }
     softbody_destroy(b);
     return code;
 }
 
-typedef struct bounce { double speed, high; bool up, done; } bounce;
+typedef struct bounce {
+    double speed, high;
+    bool up, done;
+} bounce;
 
 /* Down, up, and down again. */
 static void follow(bounce *k, double y, double speed)
@@ -53,8 +57,10 @@ static bool follow_body(const softbody *b, void *context)
     return !((bounce *)context)->done;
 }
 
-/* Time for a fall from a height and thrice as much again: a bounce is over by then, and a body has swung. It mostly ends earlier. */
-static status run_bounce(softbody *b, const softbody_settings *s, double height, trial_watch *watch, double *high, diagnostic *why)
+/* Time for a fall from a height and thrice as much again: a bounce is over by then, and a body has swung. It mostly
+ * ends earlier. */
+static status run_bounce(softbody *b, const softbody_settings *s, double height, trial_watch *watch, double *high,
+                         diagnostic *why)
 {
     const double wanted = ceil(4.0 * sqrt(2.0 * height / -s->gravity.y) / s->dt_s);
     bounce k = {0};

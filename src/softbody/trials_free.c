@@ -18,7 +18,9 @@ static status free_toy(const trials *t, double damping, const trial_field *field
     return code == STATUS_OK ? trial_stir(*out, field, t->why) : code;
 }
 
-typedef struct energies { double first, before, now, off, rise; } energies;
+typedef struct energies {
+    double first, before, now, off, rise;
+} energies;
 
 static bool watch_energy(const softbody *b, void *context)
 {
@@ -47,7 +49,10 @@ static status follow_energy(const trials *t, double damping, energies *e)
     return code;
 }
 
-typedef struct momenta { softbody_account first; double off, angular_off; } momenta;
+typedef struct momenta {
+    softbody_account first;
+    double off, angular_off;
+} momenta;
 
 static bool watch_momenta(const softbody *b, void *context)
 {
@@ -81,7 +86,8 @@ static status sizes_of(const trials *t, const softbody *b, double *speeds, doubl
 static status follow_momenta(const trials *t)
 {
     const double rate = 0.02 * body_omega(t->set), speed = rate * t->set->radius, mass_kg = trial_mass_kg(t->set);
-    const trial_field field = {rate, vec3_make(2.0 * rate, rate, 3.0 * rate), vec3_make(speed, -0.5 * speed, 0.25 * speed)};
+    const trial_field field = {rate, vec3_make(2.0 * rate, rate, 3.0 * rate),
+                               vec3_make(speed, -0.5 * speed, 0.25 * speed)};
     double speeds = 0.0, moments = 0.0;
     softbody *b;
     bool held = false;

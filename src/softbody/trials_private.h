@@ -47,14 +47,16 @@ static inline void trial_put(const trials *t, trial_name name, double measured, 
 /* The settings at the origin, at rest, without gravity, floor or split steps. */
 softbody_settings trial_alone(const trials *t);
 
-/* Of one of the toy's masses, and of two of them on a spring along an edge: omega^2 = k / (m / 2) (Goldstein, "Classical mechanics", 3.1). */
+/* Of one of the toy's masses, and of two of them on a spring along an edge: omega^2 = k / (m / 2) (Goldstein,
+ * "Classical mechanics", 3.1). */
 double trial_mass_kg(const softbody_settings *s);
 double trial_omega(const softbody_settings *s);
 
 /* How many steps make up a time, at least 1; 0 when they are more than TRIAL_STEPS_MAX. */
 uint64_t trial_steps(const softbody_settings *s, double time_s);
 
-/* Takes steps and calls watch, where there is one, after each, until it says false. *held: no step blew up, and there was one. */
+/* Takes steps and calls watch, where there is one, after each, until it says false. *held: no step blew up, and there
+ * was one. */
 typedef bool trial_watch(const softbody *b, void *context);
 status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, diagnostic *why);
 
@@ -66,11 +68,16 @@ status trial_one_mass(const trials *t, const softbody_settings *s, softbody **ou
 status trial_swing(const trials *t, const softbody_settings *s, double swing, softbody **out);
 
 /* How much longer the swing's spring is than at rest, and how fast it grows, over omega. */
-typedef struct swing_state { double q, p; } swing_state;
+typedef struct swing_state {
+    double q, p;
+} swing_state;
 swing_state trial_swing_state(const softbody *b, double omega);
 
 /* A velocity field u = wobble (x, -2 y, z), which keeps the volume at first, + turn x (place) + drift. */
-typedef struct trial_field { double wobble; vec3 turn, drift; } trial_field;
+typedef struct trial_field {
+    double wobble;
+    vec3 turn, drift;
+} trial_field;
 status trial_stir(softbody *b, const trial_field *field, diagnostic *why);
 
 status trials_spring(const trials *t);

@@ -6,7 +6,10 @@
 
 enum { TIMED = 64 };
 
-typedef struct timing { double last_s, wall_s[TIMED]; int count; } timing;
+typedef struct timing {
+    double last_s, wall_s[TIMED];
+    int count;
+} timing;
 
 static bool watch_clock(const softbody *b, void *context)
 {

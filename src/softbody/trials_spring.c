@@ -1,11 +1,17 @@
-/* A spring alone. Along its own line it is linear whatever its swing, so that its motion is that of a recurrence of second order, and the
- * integrators' closed forms hold to rounding. */
+/* A spring alone. Along its own line it is linear whatever its swing, so that its motion is that of a recurrence of
+ * second order, and the integrators' closed forms hold to rounding. */
 #include "softbody/trials_private.h"
 
 enum { SAMPLES = 64 };
-#define SWING 1e-3 /* of the length at rest: the ends do not meet even where a step near its limit makes the swing hundreds of times longer */
+#define SWING                                                                                                        \
+    1e-3 /* of the length at rest: the ends do not meet even where a step near its limit makes the swing hundreds of \
+            times longer */
 
-typedef struct recording { uint64_t stride, step; int count; double q[SAMPLES]; } recording;
+typedef struct recording {
+    uint64_t stride, step;
+    int count;
+    double q[SAMPLES];
+} recording;
 
 static bool record(const softbody *b, void *context)
 {
@@ -15,8 +21,8 @@ static bool record(const softbody *b, void *context)
     return r->count < SAMPLES;
 }
 
-/* q[n + 1] = a q[n] + b q[n - 1] by least squares (de Prony, 1795): of a sampled swing with factor r and angle phi a sample, a = 2 r cos phi and
- * b = -r^2. */
+/* q[n + 1] = a q[n] + b q[n - 1] by least squares (de Prony, 1795): of a sampled swing with factor r and angle phi a
+ * sample, a = 2 r cos phi and b = -r^2. */
 static bool fit_swing(const recording *s, double *factor, double *angle)
 {
     double aa = 0.0, ab = 0.0, bb = 0.0, ay = 0.0, by = 0.0;
@@ -33,7 +39,8 @@ static bool fit_swing(const recording *s, double *factor, double *angle)
     return det > 0.0 && b < 0.0 && fabs(a) < 2.0 * *factor;
 }
 
-/* A sample about once a radian: closer ones lie too near each other for the fit, and a swing must not turn by pi between two. */
+/* A sample about once a radian: closer ones lie too near each other for the fit, and a swing must not turn by pi
+ * between two. */
 static status measure_period(const trials *t, double omega, double *period_s, double *decay)
 {
     softbody_settings s = trial_alone(t);
@@ -52,8 +59,8 @@ static status measure_period(const trials *t, double omega, double *period_s, do
     return code;
 }
 
-/* Distance in (q, p) from where a swing is after a quarter, (0, -1) swings, when it began at (1, 0). Both count: of the semi-implicit method's places
- * alone the first order cancels when a swing starts at rest. */
+/* Distance in (q, p) from where a swing is after a quarter, (0, -1) swings, when it began at (1, 0). Both count: of the
+ * semi-implicit method's places alone the first order cancels when a swing starts at rest. */
 static status quarter_error(const trials *t, double omega, uint64_t steps, double *error)
 {
     softbody_settings s = trial_alone(t);
@@ -71,7 +78,8 @@ static status quarter_error(const trials *t, double omega, uint64_t steps, doubl
     return code;
 }
 
-/* Steps so short that the next order does not show (64 in a quarter, or dt_s if that is shorter), and so long that rounding does not (1024). */
+/* Steps so short that the next order does not show (64 in a quarter, or dt_s if that is shorter), and so long that
+ * rounding does not (1024). */
 static status measure_order(const trials *t, double omega)
 {
     const double wanted = ceil(0.5 * M_PI / omega / t->set->dt_s);
@@ -95,7 +103,10 @@ status trials_spring(const trials *t)
     if (implicit || angle < 2.0)
         code = measure_period(t, omega, &period_s, &decay);
     trial_put(t, SPRING_PERIOD, period_s, 2.0 * M_PI / omega);
-    trial_put(t, SPRING_PERIOD_DISCRETE, period_s, implicit ? 2.0 * M_PI * dt / atan(angle) : angle < 2.0 ? M_PI * dt / asin(0.5 * angle) : NAN);
+    trial_put(t, SPRING_PERIOD_DISCRETE, period_s,
+              implicit      ? 2.0 * M_PI * dt / atan(angle)
+              : angle < 2.0 ? M_PI * dt / asin(0.5 * angle)
+                            : NAN);
     trial_put(t, SPRING_DECAY, decay, implicit ? 1.0 / sqrt(1.0 + angle * angle) : angle < 2.0 ? 1.0 : NAN);
     return code == STATUS_OK ? measure_order(t, omega) : code;
 }

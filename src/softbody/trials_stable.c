@@ -8,7 +8,8 @@ enum { STEPS = 1000, LOOK = 50, WIDENINGS = 12 };
 
 typedef status holds_at(const trials *t, double dt_s, bool *holds);
 
-/* From a guess outwards until one end holds and the other does not; NaN when that is nowhere within a factor of 4096. */
+/* From a guess outwards until one end holds and the other does not; NaN when that is nowhere within a factor of 4096.
+ */
 static status find_limit(const trials *t, holds_at *try_it, double guess_s, int halvings, double *out)
 {
     double low = guess_s, high = guess_s;
@@ -34,7 +35,10 @@ static status find_limit(const trials *t, holds_at *try_it, double guess_s, int 
 #define FIRST_SWING 1e-6
 #define GROWN 1e3
 
-typedef struct swing_watch { double omega; bool grown; } swing_watch;
+typedef struct swing_watch {
+    double omega;
+    bool grown;
+} swing_watch;
 
 static bool watch_swing(const softbody *b, void *context)
 {
@@ -44,9 +48,9 @@ static bool watch_swing(const softbody *b, void *context)
     return !w->grown;
 }
 
-/* Below the limit q^2 + p^2 - omega dt q p stays (verlet: p^2 + (1 - (omega dt / 2)^2) q^2), so a swing grows by at most
- * sqrt(2 / (1 - omega dt / 2)): to a thousandfold only 2e-6 from the limit; beyond it by exp(2 acosh(omega dt / 2)) a step: to
- * that in 1000 steps from 6e-6 on. */
+/* Below the limit q^2 + p^2 - omega dt q p stays (verlet: p^2 + (1 - (omega dt / 2)^2) q^2), so a swing grows by at
+ * most sqrt(2 / (1 - omega dt / 2)): to a thousandfold only 2e-6 from the limit; beyond it by exp(2 acosh(omega dt /
+ * 2)) a step: to that in 1000 steps from 6e-6 on. */
 static status spring_holds(const trials *t, double dt_s, bool *holds)
 {
     softbody_settings s = trial_alone(t);
@@ -62,7 +66,11 @@ static status spring_holds(const trials *t, double dt_s, bool *holds)
     return code;
 }
 
-typedef struct growth { double first; int step; bool grown; } growth;
+typedef struct growth {
+    double first;
+    int step;
+    bool grown;
+} growth;
 
 static bool watch_energy(const softbody *b, void *context)
 {
@@ -83,7 +91,8 @@ static status shake(const trials *t, softbody *b)
         softbody_positions(b, at);
     for (size_t i = 0; made && i < count; i++) {
         const random_words r = random_at(1, (uint32_t)i, 0, 0, 0);
-        const vec3 off = vec3_make(random_unit(r.word[0]) - 0.5, random_unit(r.word[1]) - 0.5, random_unit(r.word[2]) - 0.5);
+        const vec3 off =
+            vec3_make(random_unit(r.word[0]) - 0.5, random_unit(r.word[1]) - 0.5, random_unit(r.word[2]) - 0.5);
         at[i] = vec3_add(at[i], vec3_scale(off, reach));
     }
     if (made)

@@ -1,5 +1,6 @@
-/* Lines of a table that is kept of each cell: study, cell and the cell's values of the grid in front, so that the tables of all cells can be strung
- * together. Tab separated, NA for what there is none of. Errors stay in the stream. */
+/* Lines of a table that is kept of each cell: study, cell and the cell's values of the grid in front, so that the
+ * tables of all cells can be strung together. Tab separated, NA for what there is none of. Errors stay in the stream.
+ */
 #ifndef CUVETTE_STUDY_CELL_TABLE_H
 #define CUVETTE_STUDY_CELL_TABLE_H
 

@@ -29,25 +29,31 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
 }
 
 /* In the last one: line, r (the row). */
-/* clang-format off */
-#define COMPARE_COLUMNS(X) \
-    X("study", "", "name of the study", csv_text(line, r->of->name)) \
-    X("definition", "", "fingerprint of scene, fixed parameters, grid and reference, 16 hex digits", csv_hash(line, r->of->compare_hash)) \
-    X("cell", "", "number of the grid point, the last axis fastest", csv_count(line, (int64_t)r->cell)) \
-    X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", row_put_axes(line, r->of, r->setting)) \
-    X("reference", "", "fingerprint of the reference's scene, 16 hex digits: its files in references/", csv_hash(line, r->against->scene_hash)) \
-    X("reference_film", "", "fingerprint of the reference's film", csv_hash(line, r->against->film_hash)) \
-    X("film_hash", "", "fingerprint of the cell's film", csv_hash(line, r->film_hash)) \
-    X("mse", "", "mean squared difference of the sRGB-encoded channels, values clamped to 0..1", csv_real(line, r->lies.mse)) \
-    X("psnr_db", "dB", "10 log10(1 / mse); NA where mse is 0 and it has no end", csv_real(line, isfinite(r->lies.psnr_db) ? r->lies.psnr_db : NAN)) \
-    X("ssim", "", "mean structural similarity of the luma, 1 for equal pictures", csv_real(line, r->lies.ssim)) \
-    X("flip", "", "mean FLIP error at 67 pixels a degree, 0 for equal pictures", csv_real(line, r->lies.flip)) \
-    X("largest", "", "largest difference of an encoded channel, 0..1", csv_real(line, r->lies.largest)) \
-    X("differing_share", "", "share of the pixels whose 8-bit encodings differ, 0..1", csv_real(line, r->lies.differing_share)) \
-    X("error_rms", "radiance", "root of the mean square of film less reference, over all pixels and channels, linear, not clamped; 1 is white", csv_real(line, r->error_rms)) \
-    X("noise_rms", "radiance", "as in rows.csv", csv_real(line, r->noise_rms)) \
+#define COMPARE_COLUMNS(X)                                                                                             \
+    X("study", "", "name of the study", csv_text(line, r->of->name))                                                   \
+    X("definition", "", "fingerprint of scene, fixed parameters, grid and reference, 16 hex digits",                   \
+      csv_hash(line, r->of->compare_hash))                                                                             \
+    X("cell", "", "number of the grid point, the last axis fastest", csv_count(line, (int64_t)r->cell))                \
+    X("<axis>", "of the parameter", "value of each parameter of the grid, in its order",                               \
+      row_put_axes(line, r->of, r->setting))                                                                           \
+    X("reference", "", "fingerprint of the reference's scene, 16 hex digits: its files in references/",                \
+      csv_hash(line, r->against->scene_hash))                                                                          \
+    X("reference_film", "", "fingerprint of the reference's film", csv_hash(line, r->against->film_hash))              \
+    X("film_hash", "", "fingerprint of the cell's film", csv_hash(line, r->film_hash))                                 \
+    X("mse", "", "mean squared difference of the sRGB-encoded channels, values clamped to 0..1",                       \
+      csv_real(line, r->lies.mse))                                                                                     \
+    X("psnr_db", "dB", "10 log10(1 / mse); NA where mse is 0 and it has no end",                                       \
+      csv_real(line, isfinite(r->lies.psnr_db) ? r->lies.psnr_db : NAN))                                               \
+    X("ssim", "", "mean structural similarity of the luma, 1 for equal pictures", csv_real(line, r->lies.ssim))        \
+    X("flip", "", "mean FLIP error at 67 pixels a degree, 0 for equal pictures", csv_real(line, r->lies.flip))         \
+    X("largest", "", "largest difference of an encoded channel, 0..1", csv_real(line, r->lies.largest))                \
+    X("differing_share", "", "share of the pixels whose 8-bit encodings differ, 0..1",                                 \
+      csv_real(line, r->lies.differing_share))                                                                         \
+    X("error_rms", "radiance",                                                                                         \
+      "root of the mean square of film less reference, over all pixels and channels, linear, not clamped; 1 is white", \
+      csv_real(line, r->error_rms))                                                                                    \
+    X("noise_rms", "radiance", "as in rows.csv", csv_real(line, r->noise_rms))                                         \
     X("reference_noise_rms", "radiance", "the same of the reference", csv_real(line, r->against->noise_rms))
-/* clang-format on */
 
 #define DESCRIBE(name, unit, meaning, put) {name, unit, meaning},
 #define PUT(name, unit, meaning, put) put;
@@ -55,9 +61,8 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
 const row_column compare_columns[] = {COMPARE_COLUMNS(DESCRIBE)};
 const size_t compare_column_count = sizeof compare_columns / sizeof compare_columns[0];
 
-const char *const compare_shown[] = {"reference", "mse",     "psnr_db",         "ssim",
-                                     "flip",      "largest", "differing_share", "error_rms",
-                                     "reference_noise_rms"};
+const char *const compare_shown[] = {
+    "reference", "mse", "psnr_db", "ssim", "flip", "largest", "differing_share", "error_rms", "reference_noise_rms"};
 const size_t compare_shown_count = sizeof compare_shown / sizeof compare_shown[0];
 
 void compare_header(csv_line *line, const study *s)

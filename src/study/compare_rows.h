@@ -1,5 +1,6 @@
-/* The rows of compare.csv: how far each cell's picture lies from its reference. Pictures depend on their scenes alone, so there
- * is one row a cell. results/README.md lists every column. Pure but for memory; a csv_line that ran out of it has failed set. */
+/* The rows of compare.csv: how far each cell's picture lies from its reference. Pictures depend on their scenes alone,
+ * so there is one row a cell. results/README.md lists every column. Pure but for memory; a csv_line that ran out of it
+ * has failed set. */
 #ifndef CUVETTE_STUDY_COMPARE_ROWS_H
 #define CUVETTE_STUDY_COMPARE_ROWS_H
 
@@ -18,10 +19,10 @@ extern const size_t compare_shown_count;
 typedef struct compare_row {
     const study *of;
     size_t cell;
-    const scene *setting;         /* the cell's scene */
+    const scene *setting; /* the cell's scene */
     const reference *against;
     uint64_t film_hash;
-    double noise_rms;             /* of the cell's frame */
+    double noise_rms; /* of the cell's frame */
     image_comparison lies;
     double error_rms;
 } compare_row;

@@ -9,7 +9,11 @@
 #include <stdint.h>
 
 /* A line under construction. Running out of memory is remembered in failed, and every later call does nothing. */
-typedef struct csv_line { char *text; size_t size, capacity; bool started, failed; } csv_line;
+typedef struct csv_line {
+    char *text;
+    size_t size, capacity;
+    bool started, failed;
+} csv_line;
 
 /* Each adds one field. Absent values are written NA: text NULL, a real that is NaN, an integer under 0 for
  * csv_count. */
@@ -23,14 +27,15 @@ void csv_line_free(csv_line *line);
 
 /* A file as it was read: its whole lines only. What lies behind the last newline is torn and not in it. */
 typedef struct csv {
-    char *raw; size_t size;   /* the file's bytes; whole is where the last newline ends */
+    char *raw;
+    size_t size; /* the file's bytes; whole is where the last newline ends */
     size_t whole;
-    char *split;              /* the same with fields cut apart; owned */
+    char *split; /* the same with fields cut apart; owned */
     size_t column_count;
-    char **header;            /* column_count names */
+    char **header; /* column_count names */
     size_t row_count;
-    char **fields;            /* row_count * column_count */
-    size_t *start;            /* where row i begins in raw; start[row_count] = whole */
+    char **fields; /* row_count * column_count */
+    size_t *start; /* where row i begins in raw; start[row_count] = whole */
 } csv;
 
 /* STATUS_OK and *out = NULL when there is no such file. A row with another number of fields than the header is

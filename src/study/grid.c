@@ -79,7 +79,8 @@ static bool is_foreign(const char *value)
 static bool have_one_film(const study_point *a, const study_point *b)
 {
     for (size_t i = 0; i < a->count; i++)
-        if (strcmp(a->values[i], b->values[i]) != 0 && (!is_how(a->paths[i]) || is_foreign(a->values[i]) || is_foreign(b->values[i])))
+        if (strcmp(a->values[i], b->values[i]) != 0 &&
+            (!is_how(a->paths[i]) || is_foreign(a->values[i]) || is_foreign(b->values[i])))
             return false;
     return true;
 }

@@ -54,8 +54,9 @@ bool study_keeps_files(const study *s)
 
 static char *kept_path(const char *folder, size_t cell, kept what)
 {
-    static const char *const endings[KEPT_COUNT] = {".png",    ".pfm",    "-rays.png",      "-rays.pfm",   "-ns.png",
-                                                    "-ns.pfm", "-timeline.json", "-metrics.tsv", "-curves.tsv", "-motion.tsv"};
+    static const char *const endings[KEPT_COUNT] = {".png",        ".pfm",       "-rays.png",      "-rays.pfm",
+                                                    "-ns.png",     "-ns.pfm",    "-timeline.json", "-metrics.tsv",
+                                                    "-curves.tsv", "-motion.tsv"};
     return text_format("%s/images/%04zu%s", folder, cell, endings[what]);
 }
 

@@ -1,6 +1,6 @@
-/* What a study keeps of each cell beside its rows: pictures, ray and time maps, timeline, realism metrics and curves, motion, in
- * results/<study>/images/. They come from a frame of their own after the rows, so that looking disturbs nothing
- * that is measured; its film must be that of the rows. Every file appears whole or not at all. */
+/* What a study keeps of each cell beside its rows: pictures, ray and time maps, timeline, realism metrics and curves,
+ * motion, in results/<study>/images/. They come from a frame of their own after the rows, so that looking disturbs
+ * nothing that is measured; its film must be that of the rows. Every file appears whole or not at all. */
 #ifndef CUVETTE_STUDY_KEEP_H
 #define CUVETTE_STUDY_KEEP_H
 

@@ -111,10 +111,9 @@ static json_t *files_hash(const study *s)
 static json_t *study_facts(const study *s)
 {
     return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title),
-                     "definition", hash_text(s->definition_hash), "files", files_hash(s),
-                     "cells", (json_int_t)study_cell_count(s), "file", borrowed(file_name(s->path)),
-                     "text", borrowed(s->text), "scene_file", borrowed(file_name(s->scene_path)), "scene_text",
-                     borrowed(s->scene_text));
+                     "definition", hash_text(s->definition_hash), "files", files_hash(s), "cells",
+                     (json_int_t)study_cell_count(s), "file", borrowed(file_name(s->path)), "text", borrowed(s->text),
+                     "scene_file", borrowed(file_name(s->scene_path)), "scene_text", borrowed(s->scene_text));
 }
 
 static void add_disturbance(void *list, const char *text)
@@ -135,12 +134,12 @@ static json_t *run_facts(const study *s, const topology *machine, isa level, lon
     json_t *is_dirty = commit ? json_boolean(dirty) : json_null();
     return json_pack("{s:o, s:i, s:i, s:o, s:o, s:s, s:o, s:o, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o}",
                      "started_utc", time_text(), "shard", (int)shard, "shards", (int)(shards > 1 ? shards : 1),
-                     "cpu_model", taken(provenance_cpu_model()), "topology", taken(topology_summary(machine)), "version",
-                     CUVETTE_VERSION, "git_commit", taken(commit), "git_dirty", is_dirty, "compiler", COMPILER, "flags",
-                     CUVETTE_COMPILER_FLAGS, "config", row_build_config(config), "isa", isa_name(level), "kernel",
-                     taken(provenance_kernel()), "governor", taken(provenance_governor()), "binding",
-                     taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances, "study_text",
-                     borrowed(s->text));
+                     "cpu_model", taken(provenance_cpu_model()), "topology", taken(topology_summary(machine)),
+                     "version", CUVETTE_VERSION, "git_commit", taken(commit), "git_dirty", is_dirty, "compiler",
+                     COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config", row_build_config(config), "isa",
+                     isa_name(level), "kernel", taken(provenance_kernel()), "governor", taken(provenance_governor()),
+                     "binding", taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances,
+                     "study_text", borrowed(s->text));
 }
 
 /* The manifest that is there, or a new one. */

@@ -17,10 +17,10 @@ status manifest_write(const study *s, const char *folder, const topology *machin
 
 /* What a manifest says of the meaning of its rows. */
 typedef struct manifest_study {
-    char *text, *scene_text;        /* of study and scene when the first run began */
-    uint64_t definition;            /* that the rows of that run carry */
+    char *text, *scene_text; /* of study and scene when the first run began */
+    uint64_t definition;     /* that the rows of that run carry */
     bool has_files;
-    uint64_t files;                 /* of what the scene's files held; has_files: it is recorded */
+    uint64_t files; /* of what the scene's files held; has_files: it is recorded */
 } manifest_study;
 
 /* Below root (base/below.h). STATUS_BAD_INPUT when it is damaged or tells less than that. manifest_study_free

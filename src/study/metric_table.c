@@ -13,7 +13,8 @@ static status check_cell(const study *s, size_t cell, diagnostic *why)
     status code = study_cell_scene(s, cell, &setting, why);
     if (code == STATUS_OK && (code = realism_check(setting, s->keep_curves, &bad)) != STATUS_OK) {
         diagnostic_locate(why, s->path, 0, 0);
-        diagnose(why, code, bad.remedy, "%s cannot be kept of cell %zu: %s", s->keep_curves ? "curves" : "metrics", cell, bad.what);
+        diagnose(why, code, bad.remedy, "%s cannot be kept of cell %zu: %s", s->keep_curves ? "curves" : "metrics",
+                 cell, bad.what);
     }
     scene_destroy(setting);
     return code;
@@ -22,7 +23,8 @@ static status check_cell(const study *s, size_t cell, diagnostic *why)
 status metric_table_check(const study *s, diagnostic *why)
 {
     status code = STATUS_OK;
-    for (size_t cell = 0; (s->keep_metrics || s->keep_curves) && code == STATUS_OK && cell < study_cell_count(s); cell++)
+    for (size_t cell = 0; (s->keep_metrics || s->keep_curves) && code == STATUS_OK && cell < study_cell_count(s);
+         cell++)
         code = check_cell(s, cell, why);
     return code;
 }
@@ -42,7 +44,8 @@ static void put_metrics(const study *s, size_t cell, const realism_report *r, FI
     }
 }
 
-status metric_table_write(const study *s, size_t cell, const scene *setting, isa level, const char *path, diagnostic *why)
+status metric_table_write(const study *s, size_t cell, const scene *setting, isa level, const char *path,
+                          diagnostic *why)
 {
     realism_report report;
     file_writer file;
@@ -55,7 +58,8 @@ status metric_table_write(const study *s, size_t cell, const scene *setting, isa
     return file_writer_commit(&file, why);
 }
 
-static status put_curve(const study *s, size_t cell, const scene *setting, isa level, realism_curve which, FILE *out, diagnostic *why)
+static status put_curve(const study *s, size_t cell, const scene *setting, isa level, realism_curve which, FILE *out,
+                        diagnostic *why)
 {
     realism_points points;
     const status code = realism_trace_curve(setting, level, which, &points, why);
@@ -70,7 +74,8 @@ static status put_curve(const study *s, size_t cell, const scene *setting, isa l
     return code;
 }
 
-status curve_table_write(const study *s, size_t cell, const scene *setting, isa level, const char *path, diagnostic *why)
+status curve_table_write(const study *s, size_t cell, const scene *setting, isa level, const char *path,
+                         diagnostic *why)
 {
     file_writer file;
     status code = file_writer_open(&file, path, why);

@@ -15,7 +15,8 @@ status motion_table_check(const study *s, diagnostic *why)
         code = study_cell_scene(s, cell, &setting, why);
         if (code == STATUS_OK && !scene_moves(setting)) {
             diagnostic_locate(why, s->path, 0, 0);
-            code = diagnose(why, STATUS_BAD_INPUT, "give a mesh 'generate: slime'", "motion cannot be kept of cell %zu: nothing moves in it", cell);
+            code = diagnose(why, STATUS_BAD_INPUT, "give a mesh 'generate: slime'",
+                            "motion cannot be kept of cell %zu: nothing moves in it", cell);
         }
         scene_destroy(setting);
     }
@@ -39,7 +40,8 @@ static status put_slime(const study *s, size_t cell, const mesh_entry *m, isa le
     return code;
 }
 
-status motion_table_write(const study *s, size_t cell, const scene *setting, isa level, const char *path, diagnostic *why)
+status motion_table_write(const study *s, size_t cell, const scene *setting, isa level, const char *path,
+                          diagnostic *why)
 {
     file_writer file;
     status code = file_writer_open(&file, path, why);

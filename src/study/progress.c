@@ -10,7 +10,7 @@ struct progress_line {
     const study_options *options;
     study_moment now; /* left_s: at the time of the last count */
     bool shown;
-    double shown_s;   /* 0: what comes next is shown at once */
+    double shown_s; /* 0: what comes next is shown at once */
 };
 
 progress_line *progress_begin(const study *s, const study_options *options)
@@ -49,7 +49,8 @@ static void count_frames(progress_line *line, const ledger *done, const size_t *
     for (size_t i = 0; i < cell_count; i++) {
         const ledger_cell *cell = &done->cells[cells[i]];
         size_t lacking = ledger_cell_done(done, cells[i]) ? 0 : (size_t)line->s->repetitions_max - cell->counted;
-        now->left_s += (double)lacking * (cell->counted ? sum(cell->wall_s, cell->counted) / (double)cell->counted : mean_s);
+        now->left_s +=
+            (double)lacking * (cell->counted ? sum(cell->wall_s, cell->counted) / (double)cell->counted : mean_s);
         now->frames_all += cell->counted + lacking;
     }
 }
@@ -64,7 +65,8 @@ static void write_line(const progress_line *line, const char *more)
     }
     double share = now->stage == STUDY_MEASURING ? now->share : 0;
     double done = now->frames_all ? ((double)now->frames_done + share) / (double)now->frames_all : 1;
-    fprintf(terminal, "\r%s: %zu of %zu frames, %d%%", line->s->name, now->frames_done, now->frames_all, (int)(100 * done));
+    fprintf(terminal, "\r%s: %zu of %zu frames, %d%%", line->s->name, now->frames_done, now->frames_all,
+            (int)(100 * done));
     if (!isnan(now->left_s))
         fprintf(terminal, ", about %ld s left", (long)(now->left_s + 0.5));
     fputs(more, terminal);

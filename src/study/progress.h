@@ -1,5 +1,6 @@
-/* How far a study is and about how long it takes: as a line on a terminal, and for whoever asked to be told (study_options). With neither every call
- * does nothing. progress_begin gives (NULL when memory is out), progress_end releases; study and options are borrowed in between. */
+/* How far a study is and about how long it takes: as a line on a terminal, and for whoever asked to be told
+ * (study_options). With neither every call does nothing. progress_begin gives (NULL when memory is out), progress_end
+ * releases; study and options are borrowed in between. */
 #ifndef CUVETTE_STUDY_PROGRESS_H
 #define CUVETTE_STUDY_PROGRESS_H
 
@@ -8,7 +9,8 @@
 typedef struct progress_line progress_line;
 
 progress_line *progress_begin(const study *s, const study_options *options);
-/* Before a cell is measured. Reckons what is left: the repetitions that cells lack at most, at the mean time of theirs so far. */
+/* Before a cell is measured. Reckons what is left: the repetitions that cells lack at most, at the mean time of theirs
+ * so far. */
 void progress_count(progress_line *line, size_t cell, const ledger *done, const size_t *cells, size_t cell_count);
 /* All of them are measured; told at once. */
 void progress_measured(progress_line *line, const ledger *done, const size_t *cells, size_t cell_count);

@@ -13,7 +13,8 @@
  *   repetitions: 10                  or {min: 6, max: 20, relative_width: 0.02}
  *   warmups: 1
  *   order: {shuffle: on, seed: 1}
- *   keep: {image: on, pfm: off, workers: off, pixel_rays: off, pixel_time: off, timeline: off, metrics: off, curves: off, motion: off}
+ *   keep: {image: on, pfm: off, workers: off, pixel_rays: off, pixel_time: off, timeline: off, metrics: off, curves:
+ * off, motion: off}
  *
  * Every path and value is tried on the scene here, so that a study that was read can be run. */
 #include "base/file.h"
@@ -176,9 +177,11 @@ static status read_order(study *s, const document *d, const node *warmups, const
 
 static status read_keep(study *s, const document *d, const node *n, diagnostic *why)
 {
-    static const char *const keys[] = {"image", "pfm", "workers", "pixel_rays", "pixel_time", "timeline", "metrics", "curves", "motion"};
-    bool *const kept[] = {&s->keep_image,    &s->keep_pfm,     &s->keep_workers, &s->keep_pixel_rays, &s->keep_pixel_time,
-                          &s->keep_timeline, &s->keep_metrics, &s->keep_curves,  &s->keep_motion};
+    static const char *const keys[] = {"image",    "pfm",     "workers", "pixel_rays", "pixel_time",
+                                       "timeline", "metrics", "curves",  "motion"};
+    bool *const kept[] = {&s->keep_image,      &s->keep_pfm,        &s->keep_workers,
+                          &s->keep_pixel_rays, &s->keep_pixel_time, &s->keep_timeline,
+                          &s->keep_metrics,    &s->keep_curves,     &s->keep_motion};
     if (!n)
         return STATUS_OK;
     if (n->kind != NODE_MAP)
@@ -294,7 +297,8 @@ static status read_root(study *s, const document *d, const study_guard *guard, d
     return code;
 }
 
-static status read_text(const char *name, const char *text, size_t size, const study_guard *guard, study **out, diagnostic *why)
+static status read_text(const char *name, const char *text, size_t size, const study_guard *guard, study **out,
+                        diagnostic *why)
 {
     *out = NULL;
     study *s = calloc(1, sizeof *s);

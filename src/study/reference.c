@@ -41,9 +41,10 @@ static status check_cell(const study *s, size_t cell, diagnostic *why)
     if (code == STATUS_OK && (code = scene_check(other, why)) != STATUS_OK)
         diagnostic_locate(why, s->path, s->reference.line, s->reference.column);
     if (code == STATUS_OK && (own->render.width != other->render.width || own->render.height != other->render.height)) {
-        code = diagnose(why, STATUS_BAD_INPUT, "let them have one size",
-                        "the reference has %" PRId64 "x%" PRId64 " pixels, the picture of cell %zu %" PRId64 "x%" PRId64, other->render.width,
-                        other->render.height, cell, own->render.width, own->render.height);
+        code =
+            diagnose(why, STATUS_BAD_INPUT, "let them have one size",
+                     "the reference has %" PRId64 "x%" PRId64 " pixels, the picture of cell %zu %" PRId64 "x%" PRId64,
+                     other->render.width, other->render.height, cell, own->render.width, own->render.height);
         diagnostic_locate(why, s->path, s->reference.line, s->reference.column);
     }
     scene_destroy(own);

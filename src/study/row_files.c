@@ -116,7 +116,8 @@ static status open_files(row_files *files, const study *s, const char *folder, r
     if (code == STATUS_OK) {
         files->paths = calloc(count + 1, sizeof *files->paths);
         files->tables = calloc(count + 1, sizeof *files->tables);
-        code = files->paths && files->tables ? add_file(files, s, row_file_path(folder, kind, 0, 1), why) : no_memory(why);
+        code =
+            files->paths && files->tables ? add_file(files, s, row_file_path(folder, kind, 0, 1), why) : no_memory(why);
     }
     for (size_t i = 0; code == STATUS_OK && i < count; i++)
         code = add_file(files, s, row_file_path(folder, kind, shards[i].shard, shards[i].shards), why);

@@ -18,10 +18,10 @@ typedef struct row_ref {
 } row_ref;
 
 typedef struct row_files {
-    char **paths;            /* rows.csv first if it is there, then the shards in order */
+    char **paths; /* rows.csv first if it is there, then the shards in order */
     csv **tables;
     size_t count;
-    row_ref *rows;           /* in the files' order */
+    row_ref *rows; /* in the files' order */
     size_t row_count;
 } row_files;
 

@@ -114,82 +114,123 @@ static void put_time(csv_line *line, const study_row *r)
 
 /* A column's name, unit, meaning and how it is written stand together, so that header, dictionary and row cannot
  * part. In the last one: line, r (the row), c (its counters), w (its workers' sum). */
-/* clang-format off */
-#define WHOSE(X) \
-    X("study", "", "name of the study", csv_text(line, r->of->name)) \
-    X("definition", "", "fingerprint of scene, fixed parameters and grid, 16 hex digits", csv_hash(line, r->of->definition_hash)) \
-    X("cell", "", "number of the grid point, the last axis fastest", csv_count(line, (int64_t)r->cell)) \
-    X("repetition", "", "running number in the cell, from 0, warm-ups counted; a continued run warms up again", csv_count(line, r->repetition)) \
-    X("warmup", "", "1: frame before the first measured one of the cell in its process; not for summaries", csv_count(line, r->warmup))
+#define WHOSE(X)                                                                                                \
+    X("study", "", "name of the study", csv_text(line, r->of->name))                                            \
+    X("definition", "", "fingerprint of scene, fixed parameters and grid, 16 hex digits",                       \
+      csv_hash(line, r->of->definition_hash))                                                                   \
+    X("cell", "", "number of the grid point, the last axis fastest", csv_count(line, (int64_t)r->cell))         \
+    X("repetition", "", "running number in the cell, from 0, warm-ups counted; a continued run warms up again", \
+      csv_count(line, r->repetition))                                                                           \
+    X("warmup", "", "1: frame before the first measured one of the cell in its process; not for summaries",     \
+      csv_count(line, r->warmup))
 
-#define ROW_COLUMNS(X) WHOSE(X) \
-    X("order", "", "running number of the row in the file that it was first written to", csv_count(line, (int64_t)r->order)) \
-    X("time_utc", "", "when the frame had ended, ISO 8601", put_time(line, r)) \
-    X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", row_put_axes(line, r->of, r->setting)) \
-    X("film_hash", "", "fingerprint of the film, 16 hex digits", csv_hash(line, r->film_hash)) \
-    X("film_expected", "", "film_hash of the first row of all cells that must have one film: they differ only in how it is made (threads, pool, schedule, tile, pin, hierarchies)", csv_hash(line, r->film_expected)) \
-    X("marked", "", "1: film_hash is not film_expected, do not trust this row", csv_count(line, r->film_hash != r->film_expected)) \
-    X("wall_s", "s", "wall time of the frame; with render.pool off, making and joining threads too", csv_real(line, r->frame->wall_s)) \
-    X("cpu_s", "s", "CPU time of the process over the same stretch", csv_real(line, r->frame->cpu_s)) \
-    X("rays_camera", "rays", "camera rays traced", csv_count(line, (int64_t)c->camera)) \
-    X("rays_reflect", "rays", "reflected rays traced", csv_count(line, (int64_t)c->reflect)) \
-    X("rays_refract", "rays", "refracted rays traced", csv_count(line, (int64_t)c->refract)) \
-    X("rays_shadow", "rays", "shadow rays traced", csv_count(line, (int64_t)c->shadow)) \
-    X("rays_total", "rays", "sum of the four kinds", csv_count(line, (int64_t)ray_counters_total(c))) \
-    X("rays_by_depth", "rays", "camera, reflected and refracted rays at depth 0;1;2;...", put_by_depth(line, c->by_depth)) \
-    X("total_internal", "", "total internal reflections", csv_count(line, (int64_t)c->total_internal)) \
-    X("cut_depth", "rays", "rays not traced because they lie beyond the last depth", csv_count(line, (int64_t)c->cut_depth)) \
+#define ROW_COLUMNS(X)                                                                                                 \
+    WHOSE(X)                                                                                                           \
+    X("order", "", "running number of the row in the file that it was first written to",                               \
+      csv_count(line, (int64_t)r->order))                                                                              \
+    X("time_utc", "", "when the frame had ended, ISO 8601", put_time(line, r))                                         \
+    X("<axis>", "of the parameter", "value of each parameter of the grid, in its order",                               \
+      row_put_axes(line, r->of, r->setting))                                                                           \
+    X("film_hash", "", "fingerprint of the film, 16 hex digits", csv_hash(line, r->film_hash))                         \
+    X("film_expected", "",                                                                                             \
+      "film_hash of the first row of all cells that must have one film: they differ only in how it is made (threads, " \
+      "pool, schedule, tile, pin, hierarchies)",                                                                       \
+      csv_hash(line, r->film_expected))                                                                                \
+    X("marked", "", "1: film_hash is not film_expected, do not trust this row",                                        \
+      csv_count(line, r->film_hash != r->film_expected))                                                               \
+    X("wall_s", "s", "wall time of the frame; with render.pool off, making and joining threads too",                   \
+      csv_real(line, r->frame->wall_s))                                                                                \
+    X("cpu_s", "s", "CPU time of the process over the same stretch", csv_real(line, r->frame->cpu_s))                  \
+    X("rays_camera", "rays", "camera rays traced", csv_count(line, (int64_t)c->camera))                                \
+    X("rays_reflect", "rays", "reflected rays traced", csv_count(line, (int64_t)c->reflect))                           \
+    X("rays_refract", "rays", "refracted rays traced", csv_count(line, (int64_t)c->refract))                           \
+    X("rays_shadow", "rays", "shadow rays traced", csv_count(line, (int64_t)c->shadow))                                \
+    X("rays_total", "rays", "sum of the four kinds", csv_count(line, (int64_t)ray_counters_total(c)))                  \
+    X("rays_by_depth", "rays", "camera, reflected and refracted rays at depth 0;1;2;...",                              \
+      put_by_depth(line, c->by_depth))                                                                                 \
+    X("total_internal", "", "total internal reflections", csv_count(line, (int64_t)c->total_internal))                 \
+    X("cut_depth", "rays", "rays not traced because they lie beyond the last depth",                                   \
+      csv_count(line, (int64_t)c->cut_depth))                                                                          \
     X("cut_depth_throughput", "rays", "their throughput, mean of RGB, summed", put_cut(line, c->cut_depth_throughput)) \
-    X("cut_weight", "rays", "rays not traced because they weigh less than render.min_weight", csv_count(line, (int64_t)c->cut_weight)) \
-    X("cut_weight_throughput", "rays", "their throughput, mean of RGB, summed", put_cut(line, c->cut_weight_throughput)) \
-    X("first_hits.<solid>", "rays", "camera rays whose first interface is on that solid", put_solids(line, r, c->first_hits)) \
-    X("hits.<solid>", "rays", "interfaces met on that solid by rays of all kinds but shadow rays", put_solids(line, r, c->hits)) \
-    X("noise_rms", "radiance", "of random paths: root of the mean square of the film's standard error, over all its values, 1 is white; else NA", csv_real(line, render_noise_rms(r->frame))) \
-    X("triangles", "", "of all meshes as they stand there, copies counted; 0 without meshes", csv_count(line, (int64_t)r->frame->meshes.triangles)) \
-    X("instances", "", "copies of meshes", csv_count(line, (int64_t)r->frame->meshes.instances)) \
-    X("accel_bytes", "B", "memory of the hierarchies over their triangles, each mesh once", csv_count(line, (int64_t)r->frame->meshes.bytes)) \
-    X("build_s", "s", "wall time of building these, for this frame (render.keep off) or before it; not in wall_s", csv_real(line, r->frame->meshes.build_s)) \
-    X("motion_steps", "", "steps and substeps of slimes from their beginnings to the moments that are shown; 0 without slimes", csv_count(line, (int64_t)r->frame->meshes.motion_steps)) \
-    X("motion_s", "s", "wall time of these, for this frame (render.keep off) or before it; not in wall_s", csv_real(line, r->frame->meshes.motion_s)) \
-    X("drawn", "", "of the depth buffer: triangles in the picture, analytic solids' too; else 0", csv_count(line, (int64_t)r->frame->meshes.drawn)) \
-    X("drawn_bytes", "B", "memory of the depth buffer and of these triangles", csv_count(line, (int64_t)r->frame->meshes.drawn_bytes)) \
-    X("workers", "", "threads of the frame", csv_count(line, r->frame->worker_count)) \
-    X("workers_with_tiles", "", "those that had a piece of the picture", csv_count(line, w.with_tiles)) \
-    X("busy_s_mean", "s", "from a worker's first piece to its last ray, 0 without a piece; mean over all workers", csv_real(line, w.busy_mean)) \
-    X("busy_s_max", "s", "the longest of them", csv_real(line, w.busy_max)) \
-    X("waiting_s_mean", "s", "wall_s less busy time, mean over all workers", csv_real(line, w.waiting_mean)) \
-    X("visibility_s_sum", "s", "of all workers' busy time, finding out what rays meet and what stands in a light's way; NA for scenes without meshes", csv_real(line, w.visibility_sum)) \
-    X("worker_cpu_s_sum", "s", "CPU time of all workers", csv_real(line, w.cpu_sum)) \
-    X("imbalance", "", "busy_s_max / busy_s_mean - 1", csv_real(line, w.imbalance)) \
-    X("peak_rss_bytes", "bytes", "highest resident memory of the process: since the frame began where Linux lets it be reset, else so far", csv_count(line, r->used.peak_rss_bytes)) \
-    X("voluntary_switches", "", "context switches by waiting, whole process, during the frame", csv_count(line, r->used.voluntary_switches)) \
-    X("involuntary_switches", "", "context switches by losing the processor", csv_count(line, r->used.involuntary_switches)) \
-    X("others_share", "", "share of the machine used by other processes meanwhile, 0..1; coarse under 0.1 s", csv_real(line, usage_others_share(&r->used))) \
-    X("cycles", "", "hardware counter of the process over the frame, user mode", csv_count(line, r->hardware.cycles)) \
-    X("instructions", "", "hardware counter", csv_count(line, r->hardware.instructions)) \
-    X("branch_misses", "", "hardware counter", csv_count(line, r->hardware.branch_misses)) \
-    X("cache_misses", "", "hardware counter", csv_count(line, r->hardware.cache_misses)) \
-    X("isa", "", "vector instructions used: sse2, avx2, avx512", put_isa_and_config(line, r, false)) \
+    X("cut_weight", "rays", "rays not traced because they weigh less than render.min_weight",                          \
+      csv_count(line, (int64_t)c->cut_weight))                                                                         \
+    X("cut_weight_throughput", "rays", "their throughput, mean of RGB, summed",                                        \
+      put_cut(line, c->cut_weight_throughput))                                                                         \
+    X("first_hits.<solid>", "rays", "camera rays whose first interface is on that solid",                              \
+      put_solids(line, r, c->first_hits))                                                                              \
+    X("hits.<solid>", "rays", "interfaces met on that solid by rays of all kinds but shadow rays",                     \
+      put_solids(line, r, c->hits))                                                                                    \
+    X("noise_rms", "radiance",                                                                                         \
+      "of random paths: root of the mean square of the film's standard error, over all its values, 1 is white; else "  \
+      "NA",                                                                                                            \
+      csv_real(line, render_noise_rms(r->frame)))                                                                      \
+    X("triangles", "", "of all meshes as they stand there, copies counted; 0 without meshes",                          \
+      csv_count(line, (int64_t)r->frame->meshes.triangles))                                                            \
+    X("instances", "", "copies of meshes", csv_count(line, (int64_t)r->frame->meshes.instances))                       \
+    X("accel_bytes", "B", "memory of the hierarchies over their triangles, each mesh once",                            \
+      csv_count(line, (int64_t)r->frame->meshes.bytes))                                                                \
+    X("build_s", "s", "wall time of building these, for this frame (render.keep off) or before it; not in wall_s",     \
+      csv_real(line, r->frame->meshes.build_s))                                                                        \
+    X("motion_steps", "",                                                                                              \
+      "steps and substeps of slimes from their beginnings to the moments that are shown; 0 without slimes",            \
+      csv_count(line, (int64_t)r->frame->meshes.motion_steps))                                                         \
+    X("motion_s", "s", "wall time of these, for this frame (render.keep off) or before it; not in wall_s",             \
+      csv_real(line, r->frame->meshes.motion_s))                                                                       \
+    X("drawn", "", "of the depth buffer: triangles in the picture, analytic solids' too; else 0",                      \
+      csv_count(line, (int64_t)r->frame->meshes.drawn))                                                                \
+    X("drawn_bytes", "B", "memory of the depth buffer and of these triangles",                                         \
+      csv_count(line, (int64_t)r->frame->meshes.drawn_bytes))                                                          \
+    X("workers", "", "threads of the frame", csv_count(line, r->frame->worker_count))                                  \
+    X("workers_with_tiles", "", "those that had a piece of the picture", csv_count(line, w.with_tiles))                \
+    X("busy_s_mean", "s", "from a worker's first piece to its last ray, 0 without a piece; mean over all workers",     \
+      csv_real(line, w.busy_mean))                                                                                     \
+    X("busy_s_max", "s", "the longest of them", csv_real(line, w.busy_max))                                            \
+    X("waiting_s_mean", "s", "wall_s less busy time, mean over all workers", csv_real(line, w.waiting_mean))           \
+    X("visibility_s_sum", "s",                                                                                         \
+      "of all workers' busy time, finding out what rays meet and what stands in a light's way; NA for scenes without " \
+      "meshes",                                                                                                        \
+      csv_real(line, w.visibility_sum))                                                                                \
+    X("worker_cpu_s_sum", "s", "CPU time of all workers", csv_real(line, w.cpu_sum))                                   \
+    X("imbalance", "", "busy_s_max / busy_s_mean - 1", csv_real(line, w.imbalance))                                    \
+    X("peak_rss_bytes", "bytes",                                                                                       \
+      "highest resident memory of the process: since the frame began where Linux lets it be reset, else so far",       \
+      csv_count(line, r->used.peak_rss_bytes))                                                                         \
+    X("voluntary_switches", "", "context switches by waiting, whole process, during the frame",                        \
+      csv_count(line, r->used.voluntary_switches))                                                                     \
+    X("involuntary_switches", "", "context switches by losing the processor",                                          \
+      csv_count(line, r->used.involuntary_switches))                                                                   \
+    X("others_share", "", "share of the machine used by other processes meanwhile, 0..1; coarse under 0.1 s",          \
+      csv_real(line, usage_others_share(&r->used)))                                                                    \
+    X("cycles", "", "hardware counter of the process over the frame, user mode", csv_count(line, r->hardware.cycles))  \
+    X("instructions", "", "hardware counter", csv_count(line, r->hardware.instructions))                               \
+    X("branch_misses", "", "hardware counter", csv_count(line, r->hardware.branch_misses))                             \
+    X("cache_misses", "", "hardware counter", csv_count(line, r->hardware.cache_misses))                               \
+    X("isa", "", "vector instructions used: sse2, avx2, avx512", put_isa_and_config(line, r, false))                   \
     X("config", "", "build: release, debug, sanitize, tsan, nocounters", put_isa_and_config(line, r, true))
 
 /* k: the worker's report. */
-#define WORKER_COLUMNS(X) WHOSE(X) \
-    X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", row_put_axes(line, r->of, r->setting)) \
-    X("worker", "", "number of the worker, from 0", csv_count(line, worker)) \
-    X("pu", "", "processing unit that it ended on (the system's number)", csv_count(line, k->pu)) \
-    X("tiles", "", "pieces of the picture that it took", csv_count(line, (int64_t)k->tiles)) \
-    X("rays_total", "rays", "rays of all kinds that it traced", csv_count(line, (int64_t)(k->camera + k->reflect + k->refract + k->shadow))) \
-    X("rays_camera", "rays", "camera rays among them", csv_count(line, (int64_t)k->camera)) \
-    X("rays_reflect", "rays", "reflected rays among them", csv_count(line, (int64_t)k->reflect)) \
-    X("rays_refract", "rays", "refracted rays among them", csv_count(line, (int64_t)k->refract)) \
-    X("rays_shadow", "rays", "shadow rays among them", csv_count(line, (int64_t)k->shadow)) \
-    X("start_s", "s", "when it began to work, after the frame's start", csv_real(line, k->start_s)) \
-    X("wall_s", "s", "from its first instruction to its last in the frame", csv_real(line, k->wall_s)) \
-    X("cpu_s", "s", "its CPU time over the same stretch", csv_real(line, k->cpu_s)) \
-    X("busy_s", "s", "from its first piece taken to its last ray traced; 0 without a piece", csv_real(line, k->busy_s)) \
-    X("visibility_s", "s", "of busy_s: finding out what rays meet and what stands in a light's way; NA for scenes without meshes", csv_real(line, k->visibility_s)) \
+#define WORKER_COLUMNS(X)                                                                                     \
+    WHOSE(X)                                                                                                  \
+    X("<axis>", "of the parameter", "value of each parameter of the grid, in its order",                      \
+      row_put_axes(line, r->of, r->setting))                                                                  \
+    X("worker", "", "number of the worker, from 0", csv_count(line, worker))                                  \
+    X("pu", "", "processing unit that it ended on (the system's number)", csv_count(line, k->pu))             \
+    X("tiles", "", "pieces of the picture that it took", csv_count(line, (int64_t)k->tiles))                  \
+    X("rays_total", "rays", "rays of all kinds that it traced",                                               \
+      csv_count(line, (int64_t)(k->camera + k->reflect + k->refract + k->shadow)))                            \
+    X("rays_camera", "rays", "camera rays among them", csv_count(line, (int64_t)k->camera))                   \
+    X("rays_reflect", "rays", "reflected rays among them", csv_count(line, (int64_t)k->reflect))              \
+    X("rays_refract", "rays", "refracted rays among them", csv_count(line, (int64_t)k->refract))              \
+    X("rays_shadow", "rays", "shadow rays among them", csv_count(line, (int64_t)k->shadow))                   \
+    X("start_s", "s", "when it began to work, after the frame's start", csv_real(line, k->start_s))           \
+    X("wall_s", "s", "from its first instruction to its last in the frame", csv_real(line, k->wall_s))        \
+    X("cpu_s", "s", "its CPU time over the same stretch", csv_real(line, k->cpu_s))                           \
+    X("busy_s", "s", "from its first piece taken to its last ray traced; 0 without a piece",                  \
+      csv_real(line, k->busy_s))                                                                              \
+    X("visibility_s", "s",                                                                                    \
+      "of busy_s: finding out what rays meet and what stands in a light's way; NA for scenes without meshes", \
+      csv_real(line, k->visibility_s))                                                                        \
     X("waiting_s", "s", "wall time of the frame less busy_s", csv_real(line, k->waiting_s))
-/* clang-format on */
 
 #define DESCRIBE(name, unit, meaning, put) {name, unit, meaning},
 #define PUT(name, unit, meaning, put) put;

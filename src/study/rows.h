@@ -12,7 +12,9 @@
 
 /* A name in angle brackets stands for as many columns as the study has of them: "<axis>" one for each path of the
  * grid, "first_hits.<solid>" one for each solid of the scene. */
-typedef struct row_column { const char *name, *unit, *meaning; } row_column;
+typedef struct row_column {
+    const char *name, *unit, *meaning;
+} row_column;
 
 extern const row_column row_columns[];
 extern const size_t row_column_count;
@@ -23,15 +25,15 @@ extern const size_t worker_column_count;
 typedef struct study_row {
     const study *of;
     size_t cell;
-    const scene *setting;          /* the cell's scene */
-    long repetition;               /* running number in the cell, warm-ups counted */
+    const scene *setting; /* the cell's scene */
+    long repetition;      /* running number in the cell, warm-ups counted */
     bool warmup;
-    size_t order;                  /* running number in the file */
-    int64_t time_ms;               /* since 1970 UTC, when the frame had ended */
+    size_t order;    /* running number in the file */
+    int64_t time_ms; /* since 1970 UTC, when the frame had ended */
     uint64_t film_hash, film_expected;
     const render_result *frame;
-    usage used;                    /* over the frame */
-    hardware_counts hardware;      /* over the frame */
+    usage used;               /* over the frame */
+    hardware_counts hardware; /* over the frame */
     isa level;
 } study_row;
 

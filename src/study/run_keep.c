@@ -1,5 +1,5 @@
-/* What is made of each cell once: its pictures and maps, and how far its picture lies from the reference. A frame of its own
- * after the rows, so that looking disturbs nothing that is measured; its film must be that of the rows. */
+/* What is made of each cell once: its pictures and maps, and how far its picture lies from the reference. A frame of
+ * its own after the rows, so that looking disturbs nothing that is measured; its film must be that of the rows. */
 #include "study/compare_rows.h"
 #include "study/keep.h"
 #include "study/row_files.h"

@@ -1,5 +1,5 @@
-/* A study while it runs: rounds of frames in study/run.c, then what is kept and compared of each cell in study/run_keep.c;
- * opened and closed by study/run_open.c. */
+/* A study while it runs: rounds of frames in study/run.c, then what is kept and compared of each cell in
+ * study/run_keep.c; opened and closed by study/run_open.c. */
 #ifndef CUVETTE_STUDY_RUN_STATE_H
 #define CUVETTE_STUDY_RUN_STATE_H
 
@@ -15,14 +15,14 @@ typedef struct run {
     const study *s;
     const study_options *options;
     char *folder;
-    size_t *cells, cell_count;   /* this shard's */
-    bool *warm;                  /* by number in the whole grid */
-    size_t *order;               /* scratch: the round's order of cells[] */
+    size_t *cells, cell_count; /* this shard's */
+    bool *warm;                /* by number in the whole grid */
+    size_t *order;             /* scratch: the round's order of cells[] */
     ledger *done;
-    bool *compared;              /* by number in the whole grid: compare.csv has its row */
-    table *rows, *workers;       /* workers: NULL unless kept */
-    table *compares;             /* NULL without a reference */
-    reference held;              /* the last one used */
+    bool *compared;        /* by number in the whole grid: compare.csv has its row */
+    table *rows, *workers; /* workers: NULL unless kept */
+    table *compares;       /* NULL without a reference */
+    reference held;        /* the last one used */
     size_t row_number, ran;
     isa level;
     topology *machine;

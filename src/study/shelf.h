@@ -1,14 +1,19 @@
-/* Meshes of the cells of a study that were measured last, so that a repetition does not make its triangles and hierarchies again.
- * Ownership: a shelf owns copies of scenes, which share their meshes; shelf_clear lets go of them. */
+/* Meshes of the cells of a study that were measured last, so that a repetition does not make its triangles and
+ * hierarchies again. Ownership: a shelf owns copies of scenes, which share their meshes; shelf_clear lets go of them.
+ */
 #ifndef CUVETTE_STUDY_SHELF_H
 #define CUVETTE_STUDY_SHELF_H
 
 #include "scene/scene.h"
 
 enum { SHELF_SCENES = 64 };
-#define SHELF_TRIANGLES 16000000u /* of all meshes together; a mesh takes some 200 bytes a triangle with its hierarchies */
+#define SHELF_TRIANGLES \
+    16000000u /* of all meshes together; a mesh takes some 200 bytes a triangle with its hierarchies */
 
-typedef struct shelf { scene *scenes[SHELF_SCENES]; size_t count; } shelf;
+typedef struct shelf {
+    scene *scenes[SHELF_SCENES];
+    size_t count;
+} shelf;
 
 /* scene_load_until, with meshes from the shelf where it has them; what had to be made is put there. */
 status shelf_load(shelf *s, scene *setting, const load_watch *watch, diagnostic *why);

@@ -13,11 +13,10 @@
 static const char *const timed[] = {"wall_s", "cpu_s"};
 static const char *const before_hash[] = {"rays_total",  "rays_camera",          "rays_reflect",  "rays_refract",
                                           "rays_shadow", "cut_depth_throughput", "total_internal"};
-static const char *const after_marked[] = {"busy_s_mean",  "busy_s_max",       "waiting_s_mean", "imbalance",
-                                           "others_share", "worker_cpu_s_sum", "peak_rss_bytes", "noise_rms",
-                                           "triangles",    "instances",        "accel_bytes",    "build_s",
-                                           "drawn",        "drawn_bytes",      "visibility_s_sum", "motion_steps",
-                                           "motion_s"};
+static const char *const after_marked[] = {
+    "busy_s_mean",    "busy_s_max",  "waiting_s_mean",   "imbalance",    "others_share", "worker_cpu_s_sum",
+    "peak_rss_bytes", "noise_rms",   "triangles",        "instances",    "accel_bytes",  "build_s",
+    "drawn",          "drawn_bytes", "visibility_s_sum", "motion_steps", "motion_s"};
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
@@ -174,7 +173,8 @@ status study_summary(const study *s, const char *results, FILE *out, diagnostic 
     status code = row_files_read(s, results, ROWS, &files, why);
     if (code == STATUS_OK && files->row_count == 0) {
         char remedy[256];
-        snprintf(remedy, sizeof remedy, "run cuvette study run %.128s first, or name the folder of its results with --results", s->path);
+        snprintf(remedy, sizeof remedy,
+                 "run cuvette study run %.128s first, or name the folder of its results with --results", s->path);
         code = diagnose(why, STATUS_FAILURE, remedy, "no rows in %s/%s", results, s->name);
         diagnostic_locate(why, s->path, 0, 0);
     }

@@ -106,7 +106,8 @@ static void get_pin_picture(void *context, const http_request *request, http_rep
     const bool fine = bits && strcmp(bits, "16") == 0;
     status code = gate_enter(l->heavy, &why);
     if (code == STATUS_OK) {
-        code = fine ? image_encode(a->linear, IMAGE_PNG, 16, true, &own, &size, &why) : picture_png(a, &shared, &size, &why);
+        code = fine ? image_encode(a->linear, IMAGE_PNG, 16, true, &own, &size, &why)
+                    : picture_png(a, &shared, &size, &why);
         gate_leave(l->heavy);
     }
     if (code != STATUS_OK)
@@ -165,8 +166,9 @@ static void get_compare(void *context, const http_request *request, http_reply *
     }
     if (code == STATUS_OK)
         http_reply_json(reply, 200,
-                        json_pack("{s:o, s:o, s:o, s:o}", "a", picture_json(a), "b", picture_json(b), "changed", changed_params(a->of, b->of),
-                                  "comparison", fits ? comparison_json(&found) : json_null()));
+                        json_pack("{s:o, s:o, s:o, s:o}", "a", picture_json(a), "b", picture_json(b), "changed",
+                                  changed_params(a->of, b->of), "comparison",
+                                  fits ? comparison_json(&found) : json_null()));
     else
         reply_failure(reply, code, &why);
     picture_release(b);

@@ -43,7 +43,9 @@ static char *item_text(const json_t *value)
     if (json_is_boolean(value))
         return strdup(json_is_true(value) ? "on" : "off");
     char text[NUMBER_TEXT_MAX];
-    return json_is_number(value) && isfinite(json_number_value(value)) ? strdup(number_format(json_number_value(value), text)) : NULL;
+    return json_is_number(value) && isfinite(json_number_value(value))
+               ? strdup(number_format(json_number_value(value), text))
+               : NULL;
 }
 
 /* As scene_set takes it; likewise. */
@@ -69,7 +71,10 @@ static char *value_text(const json_t *value)
 }
 
 /* What is set, and notes on what of that does nothing (scene/inert.h); NULL while there are none. */
-typedef struct set_request { const json_t *values; json_t *notes; } set_request;
+typedef struct set_request {
+    const json_t *values;
+    json_t *notes;
+} set_request;
 
 /* A slime that moves on the page does so whatever its time_s. */
 static void note_inert(set_request *x, const scene *s)
@@ -82,8 +87,9 @@ static void note_inert(set_request *x, const scene *s)
         if (!inert_ask(s, path, NULL, &answer) || strcmp(answer.rule, "time-0") == 0)
             continue;
         x->notes = x->notes ? x->notes : json_array();
-        json_array_append_new(x->notes, json_pack("{s:o, s:o, s:o}", "place", json_of_text(answer.note.place), "text",
-                                                  json_of_text(answer.note.text), "remedy", json_of_text(answer.note.remedy)));
+        json_array_append_new(x->notes,
+                              json_pack("{s:o, s:o, s:o}", "place", json_of_text(answer.note.place), "text",
+                                        json_of_text(answer.note.text), "remedy", json_of_text(answer.note.remedy)));
     }
 }
 
@@ -98,7 +104,8 @@ static status set_all(void *of, scene *s, diagnostic *why)
     {
         char *text = code == STATUS_OK ? value_text(value) : NULL;
         if (code == STATUS_OK && !text)
-            code = diagnose(why, STATUS_BAD_INPUT, "give a number, a text or a list of numbers", "%.200s: this is no value", path);
+            code = diagnose(why, STATUS_BAD_INPUT, "give a number, a text or a list of numbers",
+                            "%.200s: this is no value", path);
         else if (code == STATUS_OK)
             code = scene_set(s, path, text, why);
         free(text);
@@ -210,11 +217,12 @@ static void post_camera(void *of, const http_request *q, http_reply *r)
         return;
     camera_move move = {.step = {0.0, 0.0, 0.0}};
     const char *gesture;
-    if (take_pair(body, "orbit", move.orbit_deg, r) && take_pair(body, "turn", move.turn_deg, r) && lab_take_vector(body, "step", false, move.step, r) &&
-        lab_take_gesture(body, &gesture, r)) {
+    if (take_pair(body, "orbit", move.orbit_deg, r) && take_pair(body, "turn", move.turn_deg, r) &&
+        lab_take_vector(body, "step", false, move.step, r) && lab_take_gesture(body, &gesture, r)) {
         diagnostic why = {.line = 0};
         uint64_t generation = 0;
-        const status code = desk_apply(l->desk, "move the camera", gesture, camera_move_apply, &move, &generation, &why);
+        const status code =
+            desk_apply(l->desk, "move the camera", gesture, camera_move_apply, &move, &generation, &why);
         lab_reply_generation(r, code, generation, &why);
     }
     json_decref(body);
@@ -231,7 +239,8 @@ static void get_file(void *of, const http_request *q, http_reply *r)
     scene *now = desk_take(l->desk, NULL);
     if (now)
         lab_forget_threads(l, now);
-    const status code = now ? scene_write_text(now, now->path, false, &text, &why) : diagnose(&why, STATUS_FAILURE, "", "out of memory");
+    const status code = now ? scene_write_text(now, now->path, false, &text, &why)
+                            : diagnose(&why, STATUS_FAILURE, "", "out of memory");
     scene_destroy(now);
     if (code == STATUS_OK)
         http_reply_bytes(r, 200, "application/yaml; charset=utf-8", text, strlen(text));
@@ -250,7 +259,8 @@ static void get_command(void *of, const http_request *q, http_reply *r)
     json_t *told = json_object();
     const bool known = now && told && desk_tell(l->desk, told);
     const char *file = known ? json_string_value(json_object_get(told, "file")) : NULL;
-    const status code = known ? command_line(l->files, file, now, l->settings.threads, &text, &complete, &why) : diagnose(&why, STATUS_FAILURE, "", "out of memory");
+    const status code = known ? command_line(l->files, file, now, l->settings.threads, &text, &complete, &why)
+                              : diagnose(&why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK)
         http_reply_json(r, 200, json_pack("{s:o,s:b}", "command", json_of_text(text), "complete", (int)complete));
     else
@@ -261,9 +271,10 @@ static void get_command(void *of, const http_request *q, http_reply *r)
 }
 
 static const http_route routes[] = {
-    {"GET", "/api/state", get_state, NULL},        {"GET", "/api/scene", get_scene, NULL},       {"POST", "/api/set", post_set, NULL},
-    {"POST", "/api/reset", post_reset, NULL},      {"POST", "/api/undo", post_undo, NULL},       {"POST", "/api/redo", post_redo, NULL},
-    {"POST", "/api/camera", post_camera, NULL},    {"GET", "/api/scene.yaml", get_file, NULL},   {"GET", "/api/command", get_command, NULL},
-    {"GET", "/api/events", http_events, NULL},
+    {"GET", "/api/state", get_state, NULL},     {"GET", "/api/scene", get_scene, NULL},
+    {"POST", "/api/set", post_set, NULL},       {"POST", "/api/reset", post_reset, NULL},
+    {"POST", "/api/undo", post_undo, NULL},     {"POST", "/api/redo", post_redo, NULL},
+    {"POST", "/api/camera", post_camera, NULL}, {"GET", "/api/scene.yaml", get_file, NULL},
+    {"GET", "/api/command", get_command, NULL}, {"GET", "/api/events", http_events, NULL},
 };
 const lab_routes desk_routes = {routes, sizeof routes / sizeof *routes};

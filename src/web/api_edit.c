@@ -1,4 +1,5 @@
-/* Objects come, go, move, turn and change their names: POST and DELETE under /api/objects. How new ones look is in new_objects.c. */
+/* Objects come, go, move, turn and change their names: POST and DELETE under /api/objects. How new ones look is in
+ * new_objects.c. */
 #include "web/lab_private.h"
 #include "web/desk_bounds.h"
 #include "web/new_objects.h"
@@ -11,18 +12,18 @@
 #include <string.h>
 
 typedef struct edit {
-    const char *name;    /* of the object; NULL for a new one */
-    bool or_camera;      /* it may be the camera, or many objects, too */
-    const char *word;    /* its new name; its material, NULL for none; the kind of a new one */
-    const char *wanted;  /* name of a new one; NULL: any */
-    const char *file;    /* of a new one, as the folder names it */
+    const char *name;   /* of the object; NULL for a new one */
+    bool or_camera;     /* it may be the camera, or many objects, too */
+    const char *word;   /* its new name; its material, NULL for none; the kind of a new one */
+    const char *wanted; /* name of a new one; NULL: any */
+    const char *file;   /* of a new one, as the folder names it */
     const folder *files;
     const scene *loaded; /* of a model */
     shape_kind shape;
     vec3 by;
     double factor;
-    object_name made;    /* what came is called that; "" for nothing */
-    int refused;         /* what to answer rather than 400: 404, 409; 0 */
+    object_name made; /* what came is called that; "" for nothing */
+    int refused;      /* what to answer rather than 400: 404, 409; 0 */
     status (*act)(struct edit *e, scene *s, diagnostic *why);
 } edit;
 
@@ -38,8 +39,9 @@ static status change(void *context, scene *s, diagnostic *why)
         return STATUS_BAD_INPUT;
     }
     const bool is_one = !e->name || at.group >= PARAM_MESH || (e->or_camera && at.group == PARAM_CAMERA);
-    return is_one ? e->act(e, s, why) : diagnose(why, STATUS_BAD_INPUT, "name a solid, a light, a material, a mesh or a texture",
-                                                 "that cannot be done with the %.60s", e->name);
+    return is_one ? e->act(e, s, why)
+                  : diagnose(why, STATUS_BAD_INPUT, "name a solid, a light, a material, a mesh or a texture",
+                             "that cannot be done with the %.60s", e->name);
 }
 
 /* verb: with the object's name after it, for undo. Answers the generation, and the name of what came. */
@@ -215,8 +217,12 @@ static status add_model(edit *e, scene *s, diagnostic *why)
 
 static status add_object(edit *e, scene *s, diagnostic *why)
 {
-    static const struct { const char *word; status (*add)(edit *e, scene *s, diagnostic *why); } kinds[] = {
-        {"solid", add_solid}, {"light", add_light}, {"material", add_material}, {"slime", add_slime}, {"texture", add_texture}, {"model", add_model},
+    static const struct {
+        const char *word;
+        status (*add)(edit *e, scene *s, diagnostic *why);
+    } kinds[] = {
+        {"solid", add_solid}, {"light", add_light},     {"material", add_material},
+        {"slime", add_slime}, {"texture", add_texture}, {"model", add_model},
     };
     if (e->wanted && check_name_is_free(s, e->wanted, why) != STATUS_OK) {
         e->refused = 409;
@@ -225,10 +231,12 @@ static status add_object(edit *e, scene *s, diagnostic *why)
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         if (strcmp(e->word, kinds[i].word) == 0)
             return kinds[i].add(e, s, why);
-    return diagnose(why, STATUS_BAD_INPUT, "the kinds are solid, light, material, model, slime and texture", "no kind '%.60s'", e->word);
+    return diagnose(why, STATUS_BAD_INPUT, "the kinds are solid, light, material, model, slime and texture",
+                    "no kind '%.60s'", e->word);
 }
 
-/* A scene of nothing but that model or picture, which can then be read. It takes its time, and the desk is not held up by it. */
+/* A scene of nothing but that model or picture, which can then be read. It takes its time, and the desk is not held up
+ * by it. */
 static status load_alone(lab *l, const char *file, bool is_model, scene **out, diagnostic *why)
 {
     char *path = NULL;
@@ -257,8 +265,10 @@ static bool take_new(lab *l, const json_t *body, edit *e, scene **loaded, http_r
     const char *shape = NULL;
     if (!lab_take_text(body, "kind", true, &e->word, r) || !lab_take_text(body, "name", false, &e->wanted, r))
         return false;
-    const bool is_model = strcmp(e->word, "model") == 0, is_texture = strcmp(e->word, "texture") == 0, is_solid = strcmp(e->word, "solid") == 0;
-    if (!lab_take_text(body, "shape", is_solid, &shape, r) || !lab_take_text(body, "file", is_model || is_texture, &e->file, r))
+    const bool is_model = strcmp(e->word, "model") == 0, is_texture = strcmp(e->word, "texture") == 0,
+               is_solid = strcmp(e->word, "solid") == 0;
+    if (!lab_take_text(body, "shape", is_solid, &shape, r) ||
+        !lab_take_text(body, "file", is_model || is_texture, &e->file, r))
         return false;
     diagnostic why = {.what = ""};
     status code = is_solid ? scene_shape_named(shape, &e->shape, &why) : STATUS_OK;
@@ -279,7 +289,11 @@ static void add(void *context, const http_request *q, http_reply *r)
     scene *loaded = NULL;
     if (body && take_new(l, body, &e, &loaded, r)) {
         e.loaded = loaded;
-        answer(l, &e, "add", e.wanted ? e.wanted : strcmp(e.word, "solid") == 0 ? shape_name(e.shape) : e.word, NULL, r);
+        answer(l, &e, "add",
+               e.wanted                       ? e.wanted
+               : strcmp(e.word, "solid") == 0 ? shape_name(e.shape)
+                                              : e.word,
+               NULL, r);
     }
     scene_destroy(loaded);
     json_decref(body);

@@ -104,7 +104,8 @@ static void open_file(void *context, const http_request *q, http_reply *r)
 static bool is_scene_name(const char *name)
 {
     const char *ending = strrchr(name, '.');
-    return ending && (strcasecmp(ending, ".yaml") == 0 || strcasecmp(ending, ".yml") == 0) && name[0] != '.' && !strstr(name, "/.");
+    return ending && (strcasecmp(ending, ".yaml") == 0 || strcasecmp(ending, ".yml") == 0) && name[0] != '.' &&
+           !strstr(name, "/.");
 }
 
 /* Is it the file that is on the desk? */
@@ -145,7 +146,8 @@ static void save_file(void *context, const http_request *q, http_reply *r)
     }
     status code = folder_path(l->files, name, false, &path, &why);
     if (code == STATUS_OK && !is_scene_name(name))
-        code = diagnose(&why, STATUS_BAD_INPUT, "let it end in .yaml, and no part of it begin with a dot", "'%.200s' is no name for a scene", name);
+        code = diagnose(&why, STATUS_BAD_INPUT, "let it end in .yaml, and no part of it begin with a dot",
+                        "'%.200s' is no name for a scene", name);
     if (code != STATUS_OK)
         http_reply_diagnostic(r, code, &why);
     else if (!replace && access(path, F_OK) == 0 && !is_open(l, name))

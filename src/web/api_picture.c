@@ -43,7 +43,8 @@ static const picture *take(lab *l, bool final, http_reply *r)
 }
 
 /* A reply's own bytes. */
-static status encode_own(const picture *p, image_format format, int bits, unsigned char **bytes, size_t *size, diagnostic *why)
+static status encode_own(const picture *p, image_format format, int bits, unsigned char **bytes, size_t *size,
+                         diagnostic *why)
 {
     if (format != IMAGE_PNG || bits != 8)
         return image_encode(p->linear, format, bits, false, bytes, size, why);
@@ -58,7 +59,8 @@ static status encode_own(const picture *p, image_format format, int bits, unsign
 }
 
 /* Small ones, as they come while something moves, wait for nobody. */
-static status encode(lab *l, const picture *p, image_format format, int bits, unsigned char **bytes, size_t *size, diagnostic *why)
+static status encode(lab *l, const picture *p, image_format format, int bits, unsigned char **bytes, size_t *size,
+                     diagnostic *why)
 {
     const double small = 1e6; /* pixels */
     if ((double)p->width * p->height <= small)
@@ -73,7 +75,8 @@ static status encode(lab *l, const picture *p, image_format format, int bits, un
 
 static void reply_picture(lab *l, const http_request *q, http_reply *r, image_format format, const char *type)
 {
-    const char *wait = http_query_value(q, "wait"), *bits_text = http_query_value(q, "bits"), *download = http_query_value(q, "download");
+    const char *wait = http_query_value(q, "wait"), *bits_text = http_query_value(q, "bits"),
+               *download = http_query_value(q, "download");
     int64_t bits = 8;
     if (bits_text && !(number_parse_int(bits_text, &bits) && (bits == 8 || bits == 16))) {
         http_reply_error(r, 400, "a picture has no such number of bits", "give 8 or 16");

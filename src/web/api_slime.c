@@ -30,7 +30,8 @@ static bool find_word(const char *const *words, const char *word, int *index)
 }
 
 /* -1 where the key is missing. */
-static bool take_word(const json_t *given, const char *key, const char *const *words, const char *remedy, int *index, http_reply *reply)
+static bool take_word(const json_t *given, const char *key, const char *const *words, const char *remedy, int *index,
+                      http_reply *reply)
 {
     const char *word = NULL;
     *index = -1;
@@ -52,18 +53,21 @@ static bool has_slime(lab *l)
 
 static void order(lab *l, const json_t *given, http_reply *reply)
 {
-    static const char *const orders[] = {[LIVE_PLAY] = "play", [LIVE_PAUSE] = "pause", [LIVE_RESTART] = "restart", [LIVE_OFF] = "off", NULL};
+    static const char *const orders[] = {
+        [LIVE_PLAY] = "play", [LIVE_PAUSE] = "pause", [LIVE_RESTART] = "restart", [LIVE_OFF] = "off", NULL};
     static const char *const previews[] = {[LIVE_TRACED] = "traced", [LIVE_ZBUFFER] = "zbuffer", NULL};
     int what, preview;
     if (!take_word(given, "do", orders, "'do' is play, pause, restart or off", &what, reply) ||
         !take_word(given, "preview", previews, "'preview' is traced or zbuffer", &preview, reply))
         return;
     if (what < 0 && preview < 0) {
-        http_reply_error(reply, 400, "nothing is asked for", "give 'do' (play, pause, restart, off), 'preview' (traced, zbuffer) or both");
+        http_reply_error(reply, 400, "nothing is asked for",
+                         "give 'do' (play, pause, restart, off), 'preview' (traced, zbuffer) or both");
         return;
     }
     if (!has_slime(l)) {
-        http_reply_error(reply, 409, "the scene has no slime", "add one, or open a scene that has a mesh with 'generate: slime'");
+        http_reply_error(reply, 409, "the scene has no slime",
+                         "add one, or open a scene that has a mesh with 'generate: slime'");
         return;
     }
     if (preview >= 0)
@@ -103,7 +107,8 @@ static void grab(lab *l, const json_t *given, http_reply *reply)
     if (!take_place(given, &x, &y, reply) || !lab_take_number(given, "reach", false, &reach, reply))
         return;
     if (reach < 0.0) {
-        http_reply_error(reply, 400, "a hand cannot reach less than 0", "give scene units; 0 or nothing: three tenths of the slime's radius");
+        http_reply_error(reply, 400, "a hand cannot reach less than 0",
+                         "give scene units; 0 or nothing: three tenths of the slime's radius");
         return;
     }
     diagnostic why = {.what = ""};
@@ -121,10 +126,13 @@ static void grab(lab *l, const json_t *given, http_reply *reply)
     else if (hand == LIVE_MISSED)
         http_reply_error(reply, 404, "there is no slime", "grab where the slime is seen");
     else
-        http_reply_json(reply, 200, json_pack("{s:i, s:[o, o, o]}", "hand", hand, "where", json_of_real(where.x), json_of_real(where.y), json_of_real(where.z)));
+        http_reply_json(reply, 200,
+                        json_pack("{s:i, s:[o, o, o]}", "hand", hand, "where", json_of_real(where.x),
+                                  json_of_real(where.y), json_of_real(where.z)));
 }
 
-/* The way from a place to where the ray through the picture is as far from the camera, along its view, and depth farther; never behind it. */
+/* The way from a place to where the ray through the picture is as far from the camera, along its view, and depth
+ * farther; never behind it. */
 static vec3 way_to(const scene *s, double x, double y, double depth, vec3 where)
 {
     const double nearest = 0.05;
@@ -140,7 +148,8 @@ static void move(lab *l, const json_t *given, http_reply *reply)
 {
     double x, y, depth = 0.0;
     int hand;
-    if (!take_hand(given, true, &hand, reply) || !take_place(given, &x, &y, reply) || !lab_take_number(given, "depth", false, &depth, reply))
+    if (!take_hand(given, true, &hand, reply) || !take_place(given, &x, &y, reply) ||
+        !lab_take_number(given, "depth", false, &depth, reply))
         return;
     live *toy = painter_live(l->painter);
     diagnostic why = {.what = ""};
@@ -170,7 +179,8 @@ static void release(lab *l, const json_t *given, http_reply *reply)
 }
 
 /* The body that all of them have. */
-static void with_body(lab *l, const http_request *request, http_reply *reply, void (*act)(lab *l, const json_t *given, http_reply *reply))
+static void with_body(lab *l, const http_request *request, http_reply *reply,
+                      void (*act)(lab *l, const json_t *given, http_reply *reply))
 {
     json_t *given = http_body_json(request, reply);
     if (!given)

@@ -40,7 +40,8 @@ static void add_progress(const lab *l, const study *s, json_t *told)
 /* A study of the list; one that cannot be read (s NULL) has its error. */
 static json_t *study_json(const lab *l, const char *name, const char *file, const study *s, const diagnostic *why)
 {
-    json_t *told = json_pack("{s:o, s:o, s:b}", "name", json_of_text(name), "file", json_of_text(file), "running", studies_runs(l->studies, name));
+    json_t *told = json_pack("{s:o, s:o, s:b}", "name", json_of_text(name), "file", json_of_text(file), "running",
+                             studies_runs(l->studies, name));
     if (told && s && study_json_about(s, told))
         add_progress(l, s, told);
     if (told && !s)
@@ -81,7 +82,8 @@ static void get_studies(void *context, const http_request *q, http_reply *r)
     diagnostic why = {.what = ""};
     const status code = study_each(l, list_one, &list, &why);
     char *results = folder_name(l->files, l->settings.results);
-    json_t *told = json_pack("{s:o, s:O}", "results", results ? json_of_text(results) : json_null(), "studies", list.studies);
+    json_t *told =
+        json_pack("{s:o, s:O}", "results", results ? json_of_text(results) : json_null(), "studies", list.studies);
     free(results);
     json_decref(list.names);
     json_decref(list.studies);
@@ -93,7 +95,8 @@ static void get_studies(void *context, const http_request *q, http_reply *r)
         json_decref(told);
 }
 
-/* The study of the path's {name}; false with the reply set. One that is there and cannot be read gives *file all the same. */
+/* The study of the path's {name}; false with the reply set. One that is there and cannot be read gives *file all the
+ * same. */
 static status take_study(const lab *l, const http_request *q, study **s, char **file, http_reply *r, diagnostic *why)
 {
     const char *name = http_path_value(q, "name");
@@ -204,7 +207,8 @@ static void get_rows(void *context, const http_request *q, http_reply *r)
 static status take_run(const lab *l, const char *run, const study *s, char **results, diagnostic *why)
 {
     char *rows = text_format("%s/%s/rows.csv", run, s->name);
-    status code = rows ? folder_path(l->files, rows, true, results, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code =
+        rows ? folder_path(l->files, rows, true, results, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
     if (code == STATUS_OK) {
         (*results)[strlen(*results) - strlen(rows) + strlen(run)] = 0;
         code = study_check_results(l, *results, s->name, why);
@@ -259,7 +263,8 @@ static void draw(lab *l, const study *s, http_reply *r)
     bool whole;
     diagnostic why = {.what = ""};
     if (studies_is_running(l->studies)) {
-        http_reply_error(r, 409, "a study measures, and drawing would disturb it", "draw when it has ended, or stop it");
+        http_reply_error(r, 409, "a study measures, and drawing would disturb it",
+                         "draw when it has ended, or stop it");
         return;
     }
     if (!studies_begin_drawing(l->studies)) {
@@ -268,7 +273,9 @@ static void draw(lab *l, const study *s, http_reply *r)
     }
     const status code = figures_draw(l, s, &said, &whole, &why);
     studies_end_drawing(l->studies);
-    json_t *told = code == STATUS_OK ? json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said", json_of_text(said), "complete", whole) : NULL;
+    json_t *told = code == STATUS_OK ? json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said",
+                                                 json_of_text(said), "complete", whole)
+                                     : NULL;
     reply(r, code, told, &why);
     free(said);
 }

@@ -9,14 +9,16 @@ static const double pitch_max_deg = 89.5;
 
 static vec3 direction_of(double yaw_deg, double pitch_deg)
 {
-    const double yaw = yaw_deg * M_PI / 180.0, pitch = fmin(fmax(pitch_deg, -pitch_max_deg), pitch_max_deg) * M_PI / 180.0;
+    const double yaw = yaw_deg * M_PI / 180.0,
+                 pitch = fmin(fmax(pitch_deg, -pitch_max_deg), pitch_max_deg) * M_PI / 180.0;
     return vec3_make(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw));
 }
 
 /* The direction turned by yaw and pitch. */
 static vec3 turned(vec3 direction, const double by_deg[2])
 {
-    const double yaw_deg = atan2(direction.x, direction.z) * 180.0 / M_PI, pitch_deg = asin(fmin(fmax(direction.y, -1.0), 1.0)) * 180.0 / M_PI;
+    const double yaw_deg = atan2(direction.x, direction.z) * 180.0 / M_PI,
+                 pitch_deg = asin(fmin(fmax(direction.y, -1.0), 1.0)) * 180.0 / M_PI;
     return direction_of(yaw_deg + by_deg[0], pitch_deg + by_deg[1]);
 }
 
@@ -66,6 +68,7 @@ status camera_move_apply(void *of, scene *s, diagnostic *why)
         look_along(s, turned(camera_frame_of(s).forward, by), distance);
     }
     f = camera_frame_of(s);
-    const vec3 step = vec3_add(vec3_scale(f.right, m->step[0]), vec3_add(vec3_scale(f.up, m->step[1]), vec3_scale(f.forward, m->step[2])));
+    const vec3 step = vec3_add(vec3_scale(f.right, m->step[0]),
+                               vec3_add(vec3_scale(f.up, m->step[1]), vec3_scale(f.forward, m->step[2])));
     return scene_move(s, "camera", step, why);
 }

@@ -5,7 +5,8 @@
 #include "scene/scene.h"
 
 typedef struct camera_move {
-    double orbit_deg[2]; /* the camera goes to the image's left and looks further to the right; it goes up. Without roll: yaw and pitch */
+    double orbit_deg[2]; /* the camera goes to the image's left and looks further to the right; it goes up. Without
+                            roll: yaw and pitch */
     double turn_deg[2];  /* to the image's right, and up */
     double step[3];      /* right, up, forward, scene units; what is looked at moves with it */
 } camera_move;

@@ -22,7 +22,8 @@ static json_t *values_of(const scene *s)
 
 static int add_change(json_t *list, const char *path, json_t *a, json_t *b)
 {
-    return json_array_append_new(list, json_pack("{s:s, s:O?, s:O?}", "path", path, "a", a ? a : json_null(), "b", b ? b : json_null()));
+    return json_array_append_new(
+        list, json_pack("{s:s, s:O?, s:O?}", "path", path, "a", a ? a : json_null(), "b", b ? b : json_null()));
 }
 
 /* Is path a solid's, with the value that its material gives it? */
@@ -47,15 +48,15 @@ static json_t *list_changes(const scene *scene_a, const scene *scene_b, json_t *
     json_t *list = json_array(), *value;
     const char *path;
     int bad = !list;
-    json_object_foreach(b, path, value) {
+    json_object_foreach(b, path, value)
+    {
         json_t *before = json_object_get(a, path);
-        if (before && (json_equal(before, value) || (is_materials_own(scene_a, a, path) && is_materials_own(scene_b, b, path))))
+        if (before &&
+            (json_equal(before, value) || (is_materials_own(scene_a, a, path) && is_materials_own(scene_b, b, path))))
             continue;
         bad |= add_change(list, path, before, value);
     }
-    json_object_foreach(a, path, value)
-        if (!json_object_get(b, path))
-            bad |= add_change(list, path, value, NULL);
+    json_object_foreach(a, path, value) if (!json_object_get(b, path)) bad |= add_change(list, path, value, NULL);
     if (!bad)
         return list;
     json_decref(list);

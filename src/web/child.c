@@ -27,7 +27,9 @@ static int begin(child *c, char *const *arguments)
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0)
         return errno;
-    int error = fcntl(ends[0], F_SETFL, O_NONBLOCK) == 0 ? spawn_program(&c->pid, arguments[0], arguments, ends[1], ends[1], true) : errno;
+    int error = fcntl(ends[0], F_SETFL, O_NONBLOCK) == 0
+                    ? spawn_program(&c->pid, arguments[0], arguments, ends[1], ends[1], true)
+                    : errno;
     close(ends[1]);
     if (error) {
         close(ends[0]);
@@ -84,7 +86,8 @@ static int end(child *c)
     return WIFEXITED(state) ? WEXITSTATUS(state) : -1;
 }
 
-status child_run(char *const *arguments, double limit_s, const atomic_bool *stop, char **said, int *exit_code, diagnostic *why)
+status child_run(char *const *arguments, double limit_s, const atomic_bool *stop, char **said, int *exit_code,
+                 diagnostic *why)
 {
     child c = {.said = calloc(1, SAID_MAX + 1)};
     *said = c.said;
@@ -99,5 +102,7 @@ status child_run(char *const *arguments, double limit_s, const atomic_bool *stop
     }
     const bool in_time = listen_to(&c, limit_s, stop);
     *exit_code = end(&c);
-    return in_time ? STATUS_OK : diagnose(why, STATUS_INTERRUPTED, "draw fewer at a time, or from a terminal", "it took longer than %g s", limit_s);
+    return in_time ? STATUS_OK
+                   : diagnose(why, STATUS_INTERRUPTED, "draw fewer at a time, or from a terminal",
+                              "it took longer than %g s", limit_s);
 }

@@ -31,7 +31,8 @@ static bool same_solids(const scene *a, const scene *b)
 {
     bool same = a->solid_count == b->solid_count;
     for (size_t i = 0; i < a->solid_count && same; i++)
-        same = strcmp(a->solids[i].name, b->solids[i].name) == 0 && a->solids[i].shape.kind == b->solids[i].shape.kind &&
+        same = strcmp(a->solids[i].name, b->solids[i].name) == 0 &&
+               a->solids[i].shape.kind == b->solids[i].shape.kind &&
                strcmp(material_of(a, &a->solids[i]), material_of(b, &b->solids[i])) == 0;
     return same;
 }
@@ -39,8 +40,8 @@ static bool same_solids(const scene *a, const scene *b)
 /* Have they the same objects, so that parameters alone tell them apart? */
 static bool same_objects(const scene *a, const scene *b)
 {
-    bool same = same_solids(a, b) && a->light_count == b->light_count && a->material_count == b->material_count && a->mesh_count == b->mesh_count &&
-                a->texture_count == b->texture_count;
+    bool same = same_solids(a, b) && a->light_count == b->light_count && a->material_count == b->material_count &&
+                a->mesh_count == b->mesh_count && a->texture_count == b->texture_count;
     for (size_t i = 0; i < a->light_count && same; i++)
         same = strcmp(a->lights[i].name, b->lights[i].name) == 0;
     for (size_t i = 0; i < a->material_count && same; i++)
@@ -86,7 +87,8 @@ static status read_again(const folder *files, const char *file, int threads, sce
     return code;
 }
 
-/* As it reads from that file, whose folder need not be the one that its own paths start from; NULL where it cannot be. */
+/* As it reads from that file, whose folder need not be the one that its own paths start from; NULL where it cannot be.
+ */
 static scene *seen_from(const scene *s, const char *path)
 {
     if (strcmp(s->path, path) == 0)
@@ -94,7 +96,8 @@ static scene *seen_from(const scene *s, const char *path)
     scene *seen = NULL;
     char *text = NULL;
     diagnostic unsaid;
-    if (scene_write_text(s, path, false, &text, &unsaid) == STATUS_OK && scene_read_text(path, text, strlen(text), &seen, &unsaid) != STATUS_OK)
+    if (scene_write_text(s, path, false, &text, &unsaid) == STATUS_OK &&
+        scene_read_text(path, text, strlen(text), &seen, &unsaid) != STATUS_OK)
         seen = NULL;
     free(text);
     return seen;
@@ -114,7 +117,8 @@ static bool write_line(FILE *out, scene *from, const char *path, const scene *s)
     return whole;
 }
 
-status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete, diagnostic *why)
+status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,
+                    diagnostic *why)
 {
     scene *from = NULL;
     char *path = NULL;

@@ -4,9 +4,10 @@
 
 #include "web/folder.h"
 
-/* file: its name in the folder, NULL for none. *complete is false where the file is not there, or has other objects than the scene: no --set can make up
- * for that. threads: what the laboratory gives to scenes that do not say how many they want, and does not count as a difference; 0 for none. text is fresh
- * memory. */
-status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete, diagnostic *why);
+/* file: its name in the folder, NULL for none. *complete is false where the file is not there, or has other objects
+ * than the scene: no --set can make up for that. threads: what the laboratory gives to scenes that do not say how many
+ * they want, and does not count as a difference; 0 for none. text is fresh memory. */
+status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,
+                    diagnostic *why);
 
 #endif

@@ -15,7 +15,8 @@ typedef struct origin {
     int owners;
 } origin;
 
-/* One state of the desk. Those that were keep nothing that was loaded: a hundred steps of undo must not hold a hundred meshes. */
+/* One state of the desk. Those that were keep nothing that was loaded: a hundred steps of undo must not hold a hundred
+ * meshes. */
 typedef struct version {
     scene *s;
     char *file;      /* NULL: of none */
@@ -24,7 +25,10 @@ typedef struct version {
     origin *from;
 } version;
 
-typedef struct pile { version item[DESK_UNDO_MAX]; size_t count; } pile;
+typedef struct pile {
+    version item[DESK_UNDO_MAX];
+    size_t count;
+} pile;
 
 struct desk {
     pthread_mutex_t lock;
@@ -103,7 +107,8 @@ static char *copy_or_null(const char *text)
     return text ? strdup(text) : NULL;
 }
 
-status desk_create(scene *first, const char *file, const folder *files, void (*changed)(void *context), void *context, desk **out, diagnostic *why)
+status desk_create(scene *first, const char *file, const folder *files, void (*changed)(void *context), void *context,
+                   desk **out, diagnostic *why)
 {
     *out = NULL;
     status code = first ? desk_check(first, files, why) : no_memory(why);
@@ -116,7 +121,13 @@ status desk_create(scene *first, const char *file, const folder *files, void (*c
         scene_destroy(first);
         return code == STATUS_OK ? no_memory(why) : code;
     }
-    *d = (desk){.lock = PTHREAD_MUTEX_INITIALIZER, .files = files, .changed = changed, .context = context, .generation = 1, .numbers = 1, .saved_number = file ? 1 : 0};
+    *d = (desk){.lock = PTHREAD_MUTEX_INITIALIZER,
+                .files = files,
+                .changed = changed,
+                .context = context,
+                .generation = 1,
+                .numbers = 1,
+                .saved_number = file ? 1 : 0};
     d->now = (version){.s = first, .file = copy_or_null(file), .number = 1, .from = from};
     *out = d;
     return STATUS_OK;
@@ -133,9 +144,10 @@ void desk_destroy(desk *d)
     free(d);
 }
 
-/* Puts next in place of the scene, which goes to the undo pile, or is forgotten where the same gesture made it. next is the desk's from now on. from: the origin,
- * which it takes, of a scene that is opened; NULL: the one that was. */
-static status replace(desk *d, scene *next, const char *file, origin *from, const char *what, const char *gesture, diagnostic *why)
+/* Puts next in place of the scene, which goes to the undo pile, or is forgotten where the same gesture made it. next is
+ * the desk's from now on. from: the origin, which it takes, of a scene that is opened; NULL: the one that was. */
+static status replace(desk *d, scene *next, const char *file, origin *from, const char *what, const char *gesture,
+                      diagnostic *why)
 {
     char *name = copy_or_null(file), *words = strdup(what);
     if (!words || (file && !name)) {
@@ -174,7 +186,8 @@ static status finish(desk *d, status code, uint64_t *generation)
     return code;
 }
 
-status desk_apply(desk *d, const char *what, const char *gesture, desk_change *change, void *context, uint64_t *generation, diagnostic *why)
+status desk_apply(desk *d, const char *what, const char *gesture, desk_change *change, void *context,
+                  uint64_t *generation, diagnostic *why)
 {
     pthread_mutex_lock(&d->lock);
     scene *next = scene_clone(d->now.s);

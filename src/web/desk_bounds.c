@@ -30,14 +30,16 @@ static status check_bounds(const scene *s, diagnostic *why)
     for (size_t i = 0; i < s->mesh_count; i++)
         triangles += triangles_of(&s->meshes[i]);
     if (s->render.width * s->render.height > DESK_PIXELS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "render larger pictures by `cuvette render`", "%lld x %lld pixels are more than the %d of the laboratory",
-                        (long long)s->render.width, (long long)s->render.height, DESK_PIXELS_MAX);
+        return diagnose(why, STATUS_BAD_INPUT, "render larger pictures by `cuvette render`",
+                        "%lld x %lld pixels are more than the %d of the laboratory", (long long)s->render.width,
+                        (long long)s->render.height, DESK_PIXELS_MAX);
     if (passes_work(&s->render, 1, false) > DESK_WORK_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use fewer pixels, samples, paths or wavelengths, or `cuvette render`",
-                        "%.3g camera rays are more than the %.0e of the laboratory", passes_work(&s->render, 1, false), DESK_WORK_MAX);
+                        "%.3g camera rays are more than the %.0e of the laboratory", passes_work(&s->render, 1, false),
+                        DESK_WORK_MAX);
     if (triangles > DESK_TRIANGLES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use smaller meshes, or `cuvette render`", "%.0f triangles are more than the %d of the laboratory", triangles,
-                        DESK_TRIANGLES_MAX);
+        return diagnose(why, STATUS_BAD_INPUT, "use smaller meshes, or `cuvette render`",
+                        "%.0f triangles are more than the %d of the laboratory", triangles, DESK_TRIANGLES_MAX);
     return STATUS_OK;
 }
 

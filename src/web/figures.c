@@ -22,10 +22,12 @@ static char *figures_folder(const lab *l)
 }
 
 /* The path of a file in a folder that is named within the chosen one. */
-static status inner_path(const lab *l, const char *in, const char *name, const char *ending, char **path, diagnostic *why)
+static status inner_path(const lab *l, const char *in, const char *name, const char *ending, char **path,
+                         diagnostic *why)
 {
     char *inner = in ? text_format("%s/%s%s", in, name, ending) : NULL;
-    const status code = inner ? folder_path(l->files, inner, true, path, why) : diagnose(why, STATUS_BAD_INPUT, "", "there is no such figure");
+    const status code = inner ? folder_path(l->files, inner, true, path, why)
+                              : diagnose(why, STATUS_BAD_INPUT, "", "there is no such figure");
     free(inner);
     return code;
 }
@@ -33,8 +35,10 @@ static status inner_path(const lab *l, const char *in, const char *name, const c
 status figure_read(const lab *l, const char *name, char **svg, size_t *size, diagnostic *why)
 {
     char *in = figures_folder(l), *path = NULL;
-    status code = figure_name_is_fit(name) ? inner_path(l, in, name, ".svg", &path, why)
-                                           : diagnose(why, STATUS_BAD_INPUT, "small letters, digits and - name a figure", "this names no figure");
+    status code =
+        figure_name_is_fit(name)
+            ? inner_path(l, in, name, ".svg", &path, why)
+            : diagnose(why, STATUS_BAD_INPUT, "small letters, digits and - name a figure", "this names no figure");
     if (code == STATUS_OK)
         code = file_read_below(path, folder_real(l->files), SVG_MAX, svg, size, why);
     free(path);
@@ -97,7 +101,8 @@ static bool is_of(const lab *l, const char *figure, const char *of)
 }
 
 /* The names of a folder's files with that ending, which name figures, and for which wanted says so. */
-static json_t *names_in(const char *path, const char *ending, bool (*wanted)(const lab *, const char *, const char *), const lab *l, const char *of)
+static json_t *names_in(const char *path, const char *ending, bool (*wanted)(const lab *, const char *, const char *),
+                        const lab *l, const char *of)
 {
     struct dirent **entries = NULL;
     json_t *names = json_array();
@@ -107,7 +112,8 @@ static json_t *names_in(const char *path, const char *ending, bool (*wanted)(con
         const bool ends = dot && strcmp(dot, ending) == 0;
         if (ends)
             *dot = 0;
-        if (ends && names && json_array_size(names) < FIGURES_MAX && figure_name_is_fit(entries[i]->d_name) && wanted(l, entries[i]->d_name, of))
+        if (ends && names && json_array_size(names) < FIGURES_MAX && figure_name_is_fit(entries[i]->d_name) &&
+            wanted(l, entries[i]->d_name, of))
             json_array_append_new(names, json_string(entries[i]->d_name));
         free(entries[i]);
     }

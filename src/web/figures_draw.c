@@ -81,7 +81,8 @@ static status write_tables(const study *s, const char *results, diagnostic *why)
     if (code == STATUS_OK)
         code = write_summary(s, results, path, why);
     for (size_t i = 0; code == STATUS_OK && i < sizeof kinds / sizeof *kinds; i++) {
-        char *first = part_path(s, results, 0, kinds[i]), *table = text_format("%s/tables/%s-%s.tsv", results, s->name, kinds[i]);
+        char *first = part_path(s, results, 0, kinds[i]),
+             *table = text_format("%s/tables/%s-%s.tsv", results, s->name, kinds[i]);
         if (!first || !table)
             code = no_memory(why);
         else if (access(first, R_OK) == 0)
@@ -96,7 +97,8 @@ static status write_tables(const study *s, const char *results, diagnostic *why)
 
 /* --- the script --- */
 
-static status run_script(const lab *l, const char *script, const json_t *figures, char **said, bool *whole, diagnostic *why)
+static status run_script(const lab *l, const char *script, const json_t *figures, char **said, bool *whole,
+                         diagnostic *why)
 {
     enum { BEFORE = 6 };
     const size_t count = json_array_size(figures);
@@ -108,7 +110,8 @@ static status run_script(const lab *l, const char *script, const json_t *figures
     for (size_t i = 0; i < count; i++)
         arguments[BEFORE + i] = json_string_value(json_array_get(figures, i));
     int exit_code;
-    status code = child_run((char *const *)(uintptr_t)arguments, draw_limit_s, studies_ending(l->studies), said, &exit_code, why);
+    status code =
+        child_run((char *const *)(uintptr_t)arguments, draw_limit_s, studies_ending(l->studies), said, &exit_code, why);
     free(arguments);
     *whole = exit_code == 0;
     return code;
@@ -122,7 +125,8 @@ status figures_draw(const lab *l, const study *s, char **said, bool *whole, diag
     json_t *figures = figures_drawable(l, s->name);
     status code = figures ? STATUS_OK : no_memory(why);
     if (code == STATUS_OK && json_array_size(figures) == 0)
-        code = diagnose(why, STATUS_BAD_INPUT, "write a script in plots/ that says `# needs: tables/NAME.tsv`", "no figure is drawn from this study");
+        code = diagnose(why, STATUS_BAD_INPUT, "write a script in plots/ that says `# needs: tables/NAME.tsv`",
+                        "no figure is drawn from this study");
     if (code == STATUS_OK)
         code = folder_path(l->files, "plots/draw.sh", true, &script, why);
     if (code == STATUS_OK)

@@ -133,7 +133,8 @@ static bool is_name(const char *name)
     }
 }
 
-/* Of a folder that is the working one, names are paths already; but "-" and what begins with it would mean something else to who takes it. */
+/* Of a folder that is the working one, names are paths already; but "-" and what begins with it would mean something
+ * else to who takes it. */
 static char *join(const folder *f, const char *name)
 {
     if (strcmp(f->given, ".") == 0 && name[0] != '-')
@@ -143,14 +144,17 @@ static char *join(const folder *f, const char *name)
 
 static status outside(const char *name, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "name a file in the folder with which the laboratory was started", "'%.300s' leads out of the folder", name);
+    return diagnose(why, STATUS_BAD_INPUT, "name a file in the folder with which the laboratory was started",
+                    "'%.300s' leads out of the folder", name);
 }
 
 static status check_file(const char *real, const char *name, bool must_exist, diagnostic *why)
 {
     struct stat about;
     if (stat(real, &about) == 0)
-        return S_ISREG(about.st_mode) ? STATUS_OK : diagnose(why, STATUS_BAD_INPUT, "name a file", "'%.300s' is not a regular file", name);
+        return S_ISREG(about.st_mode)
+                   ? STATUS_OK
+                   : diagnose(why, STATUS_BAD_INPUT, "name a file", "'%.300s' is not a regular file", name);
     if (must_exist)
         return diagnose(why, STATUS_BAD_INPUT, "see which files there are", "there is no file '%.300s'", name);
     char *parent = strdup(real), *slash = parent ? strrchr(parent, '/') : NULL;
@@ -161,14 +165,17 @@ static status check_file(const char *real, const char *name, bool must_exist, di
     slash[slash == parent] = 0;
     const bool is_there = stat(parent, &about) == 0 && S_ISDIR(about.st_mode);
     free(parent);
-    return is_there ? STATUS_OK : diagnose(why, STATUS_BAD_INPUT, "make its folder first", "the folder of '%.300s' is not there", name);
+    return is_there
+               ? STATUS_OK
+               : diagnose(why, STATUS_BAD_INPUT, "make its folder first", "the folder of '%.300s' is not there", name);
 }
 
 status folder_path(const folder *f, const char *name, bool must_exist, char **path, diagnostic *why)
 {
     *path = NULL;
     if (!is_name(name))
-        return diagnose(why, STATUS_BAD_INPUT, "give its path from the folder on, without . and .. as parts", "'%.300s' is no name of a file", name);
+        return diagnose(why, STATUS_BAD_INPUT, "give its path from the folder on, without . and .. as parts",
+                        "'%.300s' is no name of a file", name);
     char *whole = join(f, name);
     if (!whole)
         return no_memory(why);
@@ -210,7 +217,9 @@ static status check_named(const folder *f, const scene *s, const char *what, con
     const bool is_in = name != NULL;
     free(name);
     return is_in ? STATUS_OK
-                 : diagnose(why, STATUS_BAD_INPUT, "put the file into the folder with which the laboratory was started, or start it with a folder that holds both",
+                 : diagnose(why, STATUS_BAD_INPUT,
+                            "put the file into the folder with which the laboratory was started, or start it with a "
+                            "folder that holds both",
                             "%.80s: '%.200s' leads out of the folder", what, path);
 }
 

@@ -1,5 +1,5 @@
-/* What is in the folder that the laboratory can open: told by endings, and scenes from scripts of hands by what they say. Folders nearer to the top go
- * first, so that a large one far down hides nothing above it. */
+/* What is in the folder that the laboratory can open: told by endings, and scenes from scripts of hands by what they
+ * say. Folders nearer to the top go first, so that a large one far down hides nothing above it. */
 #include "web/folder.h"
 #include "base/text.h"
 #include "scene/document.h"
@@ -15,14 +15,20 @@ enum { DEPTH_MAX = 3, LOOKED_AT_MAX = 50000, DOCUMENT_MAX = 1 << 20 };
 typedef enum file_use { USE_SCENE, USE_MODEL, USE_PICTURE, USE_SCRIPT, USE_STUDY, USE_COUNT } file_use;
 static const char *const use_names[USE_COUNT] = {"scenes", "models", "pictures", "scripts", "studies"};
 
-static const struct ending { const char *text; file_use use; } endings[] = {
-    {".yaml", USE_SCENE},   {".yml", USE_SCENE},    {".obj", USE_MODEL},     {".ply", USE_MODEL},   {".stl", USE_MODEL},   {".gltf", USE_MODEL},
-    {".glb", USE_MODEL},    {".png", USE_PICTURE},  {".jpg", USE_PICTURE},   {".jpeg", USE_PICTURE}, {".pfm", USE_PICTURE},
-    {".bmp", USE_PICTURE},  {".study", USE_STUDY},
+static const struct ending {
+    const char *text;
+    file_use use;
+} endings[] = {
+    {".yaml", USE_SCENE},  {".yml", USE_SCENE},   {".obj", USE_MODEL},   {".ply", USE_MODEL},   {".stl", USE_MODEL},
+    {".gltf", USE_MODEL},  {".glb", USE_MODEL},   {".png", USE_PICTURE}, {".jpg", USE_PICTURE}, {".jpeg", USE_PICTURE},
+    {".pfm", USE_PICTURE}, {".bmp", USE_PICTURE}, {".study", USE_STUDY},
 };
 
 /* Names relative to the folder, owned. */
-typedef struct names { char **name; size_t count, room; } names;
+typedef struct names {
+    char **name;
+    size_t count, room;
+} names;
 
 typedef struct listing {
     const folder *of;
@@ -78,10 +84,12 @@ static file_use use_by_ending(const char *name)
     return USE_COUNT;
 }
 
-/* A YAML file is what its keys say; one that cannot be read is listed with the scenes, so that opening it says what is wrong. */
+/* A YAML file is what its keys say; one that cannot be read is listed with the scenes, so that opening it says what is
+ * wrong. */
 static file_use use_by_keys(const folder *f, const char *path)
 {
-    static const char *const of_scenes[] = {"solids", "camera", "lights", "render", "background", "meshes", "materials", "textures"};
+    static const char *const of_scenes[] = {"solids",     "camera", "lights",    "render",
+                                            "background", "meshes", "materials", "textures"};
     document *file;
     if (document_read_below(path, folder_real(f), &file, NULL) != STATUS_OK)
         return USE_SCENE;
@@ -143,7 +151,8 @@ static void look_at(listing *l, char *name)
         look_at_file(l, name);
 }
 
-/* All names of a folder before any is looked at, so that what is left out does not depend on the order in which the system tells them. */
+/* All names of a folder before any is looked at, so that what is left out does not depend on the order in which the
+ * system tells them. */
 static void look_into(listing *l, const char *name)
 {
     char *path = join(folder_root(l->of), name);
@@ -151,7 +160,8 @@ static void look_into(listing *l, const char *name)
     l->out_of_memory |= !path;
     free(path);
     names here = {.name = NULL};
-    for (const struct dirent *e; d && !l->out_of_memory && l->looked_at < LOOKED_AT_MAX && (e = readdir(d)); l->looked_at++)
+    for (const struct dirent *e; d && !l->out_of_memory && l->looked_at < LOOKED_AT_MAX && (e = readdir(d));
+         l->looked_at++)
         if (e->d_name[0] != '.' && is_text(e->d_name))
             keep(l, &here, join(name, e->d_name));
     if (d)

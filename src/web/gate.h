@@ -1,5 +1,6 @@
-/* Lets in a few at a time, for what takes much memory and time and cannot be ended on its way: pictures that are encoded or compared, models that are read.
- * For any number of threads. Ownership: gate_create gives, gate_destroy releases, when nobody is in it or waits. */
+/* Lets in a few at a time, for what takes much memory and time and cannot be ended on its way: pictures that are
+ * encoded or compared, models that are read. For any number of threads. Ownership: gate_create gives, gate_destroy
+ * releases, when nobody is in it or waits. */
 #ifndef CUVETTE_WEB_GATE_H
 #define CUVETTE_WEB_GATE_H
 

@@ -20,10 +20,12 @@ static status listen_at(int port, int backlog, int *out, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "", "no socket: %s", strerror(errno));
     const int on = 1; /* a port that was just given back is free again */
     setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    const struct sockaddr_in here = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    const struct sockaddr_in here = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     if (bind(fd, (const struct sockaddr *)&here, sizeof here) == 0 && listen(fd, backlog) == 0)
         return STATUS_OK;
-    diagnose(why, STATUS_BAD_INPUT, "take another port, or 0 for any that is free", "port %d of 127.0.0.1 cannot be had: %s", port, strerror(errno));
+    diagnose(why, STATUS_BAD_INPUT, "take another port, or 0 for any that is free",
+             "port %d of 127.0.0.1 cannot be had: %s", port, strerror(errno));
     close(fd);
     return STATUS_BAD_INPUT;
 }
@@ -31,15 +33,18 @@ static status listen_at(int port, int backlog, int *out, diagnostic *why)
 static status check(http_settings *s, diagnostic *why)
 {
     if (s->port < 0 || s->port > 65535)
-        return diagnose(why, STATUS_BAD_INPUT, "a port from 1 to 65535, or 0 for any that is free", "port %d is out of range", s->port);
+        return diagnose(why, STATUS_BAD_INPUT, "a port from 1 to 65535, or 0 for any that is free",
+                        "port %d is out of range", s->port);
     s->body_max = s->body_max ? s->body_max : (size_t)1 << 20;
     s->connections = s->connections ? s->connections : 64;
     if (s->connections < 1 || s->connections > 1024)
-        return diagnose(why, STATUS_BAD_INPUT, "1 to 1024 connections", "%d connections are out of range", s->connections);
+        return diagnose(why, STATUS_BAD_INPUT, "1 to 1024 connections", "%d connections are out of range",
+                        s->connections);
     if (!s->event_clients)
         s->event_clients = s->connections / 2 < 32 ? s->connections / 2 : 32;
     if (s->event_clients < 0 || s->event_clients > HTTP_EVENT_CLIENTS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "0 to 512 streams of events", "%d streams of events are out of range", s->event_clients);
+        return diagnose(why, STATUS_BAD_INPUT, "0 to 512 streams of events", "%d streams of events are out of range",
+                        s->event_clients);
     s->timeout_s = s->timeout_s > 0 ? s->timeout_s : 10;
     s->requests_per_s = s->requests_per_s > 0 ? s->requests_per_s : 2000;
     return STATUS_OK;
@@ -79,10 +84,11 @@ static status listen_and_serve(http_server *s, diagnostic *why)
     code = http_watch_start(s, why);
     if (code == STATUS_OK) {
         s->daemon = MHD_start_daemon(
-            MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL, 0, NULL, NULL, http_on_request, s,
-            MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_CONNECTION_LIMIT, (unsigned)s->settings.connections,
-            MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)s->settings.timeout_s, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)32768,
-            MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_URI_LOG_CALLBACK, http_on_target, s, MHD_OPTION_NOTIFY_COMPLETED, http_on_end, s,
+            MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL, 0, NULL, NULL,
+            http_on_request, s, MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_CONNECTION_LIMIT,
+            (unsigned)s->settings.connections, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)s->settings.timeout_s,
+            MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)32768, MHD_OPTION_STRICT_FOR_CLIENT, 1,
+            MHD_OPTION_URI_LOG_CALLBACK, http_on_target, s, MHD_OPTION_NOTIFY_COMPLETED, http_on_end, s,
             MHD_OPTION_NOTIFY_CONNECTION, http_watch_notify, s, MHD_OPTION_END);
         if (!s->daemon)
             code = diagnose(why, STATUS_FAILURE, "", "the server's threads cannot be started");

@@ -1,5 +1,5 @@
-/* Streams of server-sent events (HTML Standard, 9.2). Each stream has a short queue of payloads, which all streams share; its connection's
- * thread sleeps until one comes, the client leaves, or it is time for a comment. */
+/* Streams of server-sent events (HTML Standard, 9.2). Each stream has a short queue of payloads, which all streams
+ * share; its connection's thread sleeps until one comes, the client leaves, or it is time for a comment. */
 #include "web/http_private.h"
 
 #include <errno.h>
@@ -145,11 +145,15 @@ void http_events(void *context, const http_request *q, http_reply *r)
     if (!c)
         return;
     const union MHD_ConnectionInfo *info = MHD_get_connection_info(q->connection, MHD_CONNECTION_INFO_CONNECTION_FD);
-    *c = (http_event_client){.server = s, .connection = q->connection, .socket = info ? info->connect_fd : -1, .place = -1,
+    *c = (http_event_client){.server = s,
+                             .connection = q->connection,
+                             .socket = info ? info->connect_fd : -1,
+                             .place = -1,
                              .wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
     struct MHD_Response *response = NULL;
     if (c->wake < 0 || !join(s, c))
-        http_reply_error(r, 503, "as many streams of events are open as there may be", "close another page of this lab");
+        http_reply_error(r, 503, "as many streams of events are open as there may be",
+                         "close another page of this lab");
     else
         response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, more, c, leave);
     if (response)
@@ -208,7 +212,8 @@ static void wake(const http_event_client *c)
 status http_publish(http_server *s, const char *event, const json_t *value, diagnostic *why)
 {
     if (!is_name(event))
-        return diagnose(why, STATUS_BAD_INPUT, "1 to 63 letters, digits, '-', '_' or '.'", "\"%s\" is no event's name", event);
+        return diagnose(why, STATUS_BAD_INPUT, "1 to 63 letters, digits, '-', '_' or '.'", "\"%s\" is no event's name",
+                        event);
     payload *p = payload_of(event, value);
     if (!p)
         return diagnose(why, STATUS_FAILURE, "", "no memory for the event %s", event);

@@ -18,9 +18,10 @@ static int hex(char c)
 /* No part of it is "." or "..", none but the last is empty. */
 static bool stays_below(const char *path)
 {
-    for (const char *part = path; *part == '/'; ) {
+    for (const char *part = path; *part == '/';) {
         const size_t length = strcspn(++part, "/");
-        if ((length == 0 && part[0] == '/') || (length == 1 && part[0] == '.') || (length == 2 && part[0] == '.' && part[1] == '.'))
+        if ((length == 0 && part[0] == '/') || (length == 1 && part[0] == '.') ||
+            (length == 2 && part[0] == '.' && part[1] == '.'))
             return false;
         part += length;
     }
@@ -80,7 +81,7 @@ char *http_clean_target(const char *target)
     const size_t path = strcspn(target, "?");
     memcpy(clean, target, path);
     char *end = clean + path, mark = '?';
-    for (const char *part = target + path; *part; ) {
+    for (const char *part = target + path; *part;) {
         const size_t length = strcspn(++part, "&");
         if (length && strncmp(part, "token=", 6) != 0) {
             *end++ = mark;
@@ -107,7 +108,10 @@ static bool is_ours(const http_server *s, const char *host)
     return false;
 }
 
-typedef struct heads { int hosts, origins; const char *host, *origin; } heads;
+typedef struct heads {
+    int hosts, origins;
+    const char *host, *origin;
+} heads;
 
 static enum MHD_Result look(void *context, enum MHD_ValueKind kind, const char *name, const char *value)
 {
@@ -161,7 +165,8 @@ static bool has_token(const http_request *q)
     const char *bearer = MHD_lookup_connection_value(q->connection, MHD_HEADER_KIND, "Authorization");
     if (bearer && strncasecmp(bearer, "Bearer ", 7) == 0 && http_same_token(q->server->token, bearer + 7))
         return true;
-    return http_same_token(q->server->token, MHD_lookup_connection_value(q->connection, MHD_COOKIE_KIND, q->server->cookie));
+    return http_same_token(q->server->token,
+                           MHD_lookup_connection_value(q->connection, MHD_COOKIE_KIND, q->server->cookie));
 }
 
 /* What is not about the token: nothing that another site's page can do gets past here. */
@@ -176,7 +181,8 @@ static int guard_site(http_request *q, const char *version)
     if (no_memory)
         return refuse(q, 500, "no memory for a request", "try again later");
     if (!q->path)
-        return refuse(q, 400, "the path climbs, or has characters that no path has", "ask for a path as the page's links write it");
+        return refuse(q, 400, "the path climbs, or has characters that no path has",
+                      "ask for a path as the page's links write it");
     if (h.hosts != 1 || h.origins > 1)
         return refuse(q, 400, "there must be one Host, and at most one Origin", "send the header Host once");
     if (!is_ours(q->server, h.host))
@@ -191,7 +197,9 @@ int http_guard(http_request *q, const char *version)
     const int code = guard_site(q, version);
     if (code)
         return code;
-    const char *asked = strcmp(q->method, "GET") == 0 ? MHD_lookup_connection_value(q->connection, MHD_GET_ARGUMENT_KIND, "token") : NULL;
+    const char *asked = strcmp(q->method, "GET") == 0
+                            ? MHD_lookup_connection_value(q->connection, MHD_GET_ARGUMENT_KIND, "token")
+                            : NULL;
     const bool in_address = http_same_token(q->server->token, asked), known = in_address || has_token(q);
     if (!within_rate(q->server, known)) {
         http_reply_header(&q->reply, "Retry-After", "1");
@@ -199,7 +207,8 @@ int http_guard(http_request *q, const char *version)
     }
     if (!known) {
         http_reply_header(&q->reply, "WWW-Authenticate", "Bearer");
-        return refuse(q, 401, "the token is missing or wrong", "open the address that the program printed, with its token");
+        return refuse(q, 401, "the token is missing or wrong",
+                      "open the address that the program printed, with its token");
     }
     return in_address ? let_in(q) : 0;
 }

@@ -7,7 +7,13 @@
 #include <pthread.h>
 #include <stdbool.h>
 
-enum { HTTP_TOKEN_DIGITS = 32, HTTP_EVENT_CLIENTS_MAX = 512, HTTP_EVENTS_WAITING = 16, HTTP_HEADERS_MAX = 8, HTTP_HEARTBEAT_MS = 5000 };
+enum {
+    HTTP_TOKEN_DIGITS = 32,
+    HTTP_EVENT_CLIENTS_MAX = 512,
+    HTTP_EVENTS_WAITING = 16,
+    HTTP_HEADERS_MAX = 8,
+    HTTP_HEARTBEAT_MS = 5000
+};
 
 /* Refills at its rate and holds a second's worth. */
 typedef struct http_bucket {
@@ -55,8 +61,8 @@ struct http_reply {
 struct http_request {
     http_server *server;
     struct MHD_Connection *connection;
-    char *target;         /* as it came: path and query */
-    char *path;           /* decoded */
+    char *target; /* as it came: path and query */
+    char *path;   /* decoded */
     const char *method;
     const http_route *route;
     const http_file *file;
@@ -64,7 +70,7 @@ struct http_request {
     char *body;
     size_t body_size, body_room, received;
     bool head_read;
-    http_reply reply;     /* set before the body has come: it is answered with that */
+    http_reply reply; /* set before the body has come: it is answered with that */
 };
 
 /* --- http_guard.c: may it pass? Each answers 0, or the code with the reply set. --- */
@@ -81,7 +87,8 @@ int http_find_route(http_request *q);
 
 /* --- http_reply.c --- */
 void http_reply_release(http_reply *r);
-void http_reply_set(http_reply *r, int code, const char *type, struct MHD_Response *response); /* takes it; NULL: memory was out */
+void http_reply_set(http_reply *r, int code, const char *type,
+                    struct MHD_Response *response); /* takes it; NULL: memory was out */
 /* Hands the reply to libmicrohttpd, with the headers that all have. */
 enum MHD_Result http_reply_send(http_reply *r);
 
@@ -97,8 +104,8 @@ void http_events_end(http_server *s);
 
 /* --- http_request.c: libmicrohttpd's callbacks --- */
 void *http_on_target(void *server, const char *target, struct MHD_Connection *c);
-enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const char *url, const char *method, const char *version,
-                                const char *upload, size_t *upload_size, void **request);
+enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const char *url, const char *method,
+                                const char *version, const char *upload, size_t *upload_size, void **request);
 void http_on_end(void *server, struct MHD_Connection *c, void **request, enum MHD_RequestTerminationCode why);
 
 #endif

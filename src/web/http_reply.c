@@ -6,8 +6,9 @@
 #include <string.h>
 
 static const char *const on_every_reply[][2] = {
-    {"Content-Security-Policy", "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
-                                "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+    {"Content-Security-Policy",
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
+     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
     {"X-Content-Type-Options", "nosniff"},
     {"Referrer-Policy", "no-referrer"},
     {"Cache-Control", "no-store"},
@@ -55,12 +56,17 @@ void http_reply_json(http_reply *r, int code, json_t *value)
 
 void http_reply_error(http_reply *r, int code, const char *what, const char *remedy)
 {
-    http_reply_json(r, code, json_pack("{s:o, s:o}", "error", json_of_text(what), "remedy", json_of_text(remedy ? remedy : "")));
+    http_reply_json(r, code,
+                    json_pack("{s:o, s:o}", "error", json_of_text(what), "remedy", json_of_text(remedy ? remedy : "")));
 }
 
 void http_reply_diagnostic(http_reply *r, status code, const diagnostic *why)
 {
-    http_reply_json(r, code == STATUS_BAD_INPUT ? 400 : code == STATUS_INTERRUPTED ? 409 : 500, json_of_diagnostic(why));
+    http_reply_json(r,
+                    code == STATUS_BAD_INPUT     ? 400
+                    : code == STATUS_INTERRUPTED ? 409
+                                                 : 500,
+                    json_of_diagnostic(why));
 }
 
 static bool printable(const char *text)

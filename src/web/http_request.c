@@ -5,10 +5,12 @@
 #include <string.h>
 #include <strings.h>
 
-/* Bodies above the limit are still read up to this many times of it, so that who sends one reads our 413 and no broken connection. */
+/* Bodies above the limit are still read up to this many times of it, so that who sends one reads our 413 and no broken
+ * connection. */
 enum { PATIENCE = 8 };
 
-/* The one place that sees the target as it came: what libmicrohttpd hands out later is decoded and cut at the first NUL. */
+/* The one place that sees the target as it came: what libmicrohttpd hands out later is decoded and cut at the first
+ * NUL. */
 void *http_on_target(void *server, const char *target, struct MHD_Connection *c)
 {
     http_request *q = calloc(1, sizeof *q);
@@ -63,7 +65,8 @@ static enum MHD_Result read_head(http_request *q, const char *method, const char
     q->method = method;
     if (!q->target)
         return MHD_NO;
-    if (http_guard(q, version) == 0 && http_find_route(q) == 0 && changes(q) && !is_json(http_header(q, "Content-Type")))
+    if (http_guard(q, version) == 0 && http_find_route(q) == 0 && changes(q) &&
+        !is_json(http_header(q, "Content-Type")))
         http_reply_error(&q->reply, 415, "this is not JSON", "send it with Content-Type: application/json");
     const char *length = http_header(q, "Content-Length");
     const unsigned long long size = length ? strtoull(length, NULL, 10) : 0;
@@ -108,8 +111,8 @@ static void answer(http_request *q)
         q->route->handle(q->route->context, q, &q->reply);
 }
 
-enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const char *url, const char *method, const char *version,
-                                const char *upload, size_t *upload_size, void **request)
+enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const char *url, const char *method,
+                                const char *version, const char *upload, size_t *upload_size, void **request)
 {
     (void)url;
     http_request *q = *request;
@@ -127,7 +130,8 @@ enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const ch
         http_watch_deadline(q->server, c, 0);
         answer(q);
         http_watch_deadline(q->server, c, s->settings.timeout_s);
-        /* libmicrohttpd takes the time that a handler needs for time in which the client did nothing; a limit that is set anew starts now. */
+        /* libmicrohttpd takes the time that a handler needs for time in which the client did nothing; a limit that is
+         * set anew starts now. */
         MHD_set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
         if (q->route == NULL || q->route->handle != http_events)
             MHD_set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)s->settings.timeout_s);
@@ -149,7 +153,8 @@ const char *http_query_value(const http_request *q, const char *name)
 {
     const char *value = NULL;
     size_t size;
-    if (MHD_lookup_connection_value_n(q->connection, MHD_GET_ARGUMENT_KIND, name, strlen(name), &value, &size) != MHD_YES)
+    if (MHD_lookup_connection_value_n(q->connection, MHD_GET_ARGUMENT_KIND, name, strlen(name), &value, &size) !=
+        MHD_YES)
         return NULL;
     return value ? value : "";
 }

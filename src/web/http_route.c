@@ -44,7 +44,8 @@ static bool is_method(const http_request *q, const char *method)
 static void add_method(char *allow, size_t size, const char *method)
 {
     const size_t length = strlen(allow);
-    snprintf(allow + length, size - length, "%s%s%s", length ? ", " : "", method, strcmp(method, "GET") == 0 ? ", HEAD" : "");
+    snprintf(allow + length, size - length, "%s%s%s", length ? ", " : "", method,
+             strcmp(method, "GET") == 0 ? ", HEAD" : "");
 }
 
 int http_find_route(http_request *q)
@@ -82,7 +83,8 @@ const char *http_path_value(const http_request *q, const char *name)
 {
     int i = 0;
     const size_t length = strlen(name);
-    for (const char *brace = q->route ? strchr(q->route->pattern, '{') : NULL; brace && i < HTTP_VALUES_MAX; brace = strchr(brace + 1, '{'), i++)
+    for (const char *brace = q->route ? strchr(q->route->pattern, '{') : NULL; brace && i < HTTP_VALUES_MAX;
+         brace = strchr(brace + 1, '{'), i++)
         if (strncmp(brace + 1, name, length) == 0 && brace[1 + length] == '}')
             return q->value[i];
     return NULL;

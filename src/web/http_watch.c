@@ -1,5 +1,6 @@
-/* libmicrohttpd cuts off connections on which nothing moves; one that sends a byte now and then would stay. Here each connection has a place
- * with the time by which its request must have come, or its reply be taken; a thread looks once a second. */
+/* libmicrohttpd cuts off connections on which nothing moves; one that sends a byte now and then would stay. Here each
+ * connection has a place with the time by which its request must have come, or its reply be taken; a thread looks once
+ * a second. */
 #include "web/http_private.h"
 
 #include "base/float_environment.h"
@@ -62,7 +63,8 @@ void http_watch_notify(void *context, struct MHD_Connection *c, void **place, en
         const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
         for (int i = 0; i < s->settings.connections && info && !*place; i++)
             if (s->places[i].socket < 0) {
-                s->places[i] = (http_place){.socket = info->connect_fd, .deadline_s = clock_wall_s() + s->settings.timeout_s};
+                s->places[i] =
+                    (http_place){.socket = info->connect_fd, .deadline_s = clock_wall_s() + s->settings.timeout_s};
                 *place = &s->places[i];
             }
     } else if (*place) {

@@ -30,7 +30,9 @@ json_t *lab_state(lab *l)
     good = good && json_object_set_new(state, "slime", live_tell(painter_live(l->painter))) == 0;
     good = good && json_object_set_new(state, "pin", pins_tell(l->pins)) == 0;
     good = good && json_object_set_new(state, "study", studies_tell(l->studies)) == 0;
-    good = good && json_object_set_new(state, "limits", json_pack("{s:i,s:i}", "pixels", DESK_PIXELS_MAX, "triangles", DESK_TRIANGLES_MAX)) == 0;
+    good = good &&
+           json_object_set_new(state, "limits",
+                               json_pack("{s:i,s:i}", "pixels", DESK_PIXELS_MAX, "triangles", DESK_TRIANGLES_MAX)) == 0;
     if (good)
         return state;
     json_decref(state);
@@ -86,7 +88,8 @@ static status first_scene(const lab *l, scene **out, char **file, diagnostic *wh
     *file = folder_name(l->files, l->settings.scene);
     if (!*file) {
         diagnostic_locate(why, l->settings.scene, 0, 0);
-        return diagnose(why, STATUS_BAD_INPUT, "name a scene below the folder, or another folder", "is not in the folder of the laboratory");
+        return diagnose(why, STATUS_BAD_INPUT, "name a scene below the folder, or another folder",
+                        "is not in the folder of the laboratory");
     }
     return scene_read_below(l->settings.scene, folder_real(l->files), out, why);
 }
@@ -106,7 +109,8 @@ void lab_forget_threads(const lab *l, scene *s)
 /* The folder itself has no name, but what is in it has. */
 static bool is_inside(const folder *files, const char *path)
 {
-    char *any = text_format("%s/any", path), *name = folder_name(files, path), *within = any ? folder_name(files, any) : NULL;
+    char *any = text_format("%s/any", path), *name = folder_name(files, path),
+         *within = any ? folder_name(files, any) : NULL;
     const bool inside = name || within;
     free(any);
     free(name);
@@ -119,7 +123,8 @@ static status check_results(const lab *l, diagnostic *why)
     if (is_inside(l->files, l->settings.results))
         return STATUS_OK;
     diagnostic_locate(why, l->settings.results, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, "give a folder for results below the laboratory's", "is not in the folder of the laboratory");
+    return diagnose(why, STATUS_BAD_INPUT, "give a folder for results below the laboratory's",
+                    "is not in the folder of the laboratory");
 }
 
 static status open_desk(lab *l, diagnostic *why)
@@ -138,9 +143,8 @@ static status open_desk(lab *l, diagnostic *why)
 /* All tables of routes in one, with the lab as their context. */
 static status join_routes(lab *l, size_t *count, diagnostic *why)
 {
-    const lab_routes *const tables[] = {&desk_routes,    &picture_routes, &trace_routes, &compare_routes,
-                                        &edit_routes, &file_routes,    &slime_routes, &study_routes,
-                                        &note_routes};
+    const lab_routes *const tables[] = {&desk_routes, &picture_routes, &trace_routes, &compare_routes, &edit_routes,
+                                        &file_routes, &slime_routes,   &study_routes, &note_routes};
     *count = 0;
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
         *count += tables[i]->count;
@@ -160,8 +164,15 @@ static status serve(lab *l, diagnostic *why)
 {
     size_t count;
     status code = join_routes(l, &count, why);
-    const http_settings settings = {.port = l->settings.port, .routes = l->routes, .route_count = count, .files = page_files, .file_count = page_file_count,
-                                    .connections = 128, .event_clients = 48, .timeout_s = 30, .requests_per_s = l->settings.requests_per_s};
+    const http_settings settings = {.port = l->settings.port,
+                                    .routes = l->routes,
+                                    .route_count = count,
+                                    .files = page_files,
+                                    .file_count = page_file_count,
+                                    .connections = 128,
+                                    .event_clients = 48,
+                                    .timeout_s = 30,
+                                    .requests_per_s = l->settings.requests_per_s};
     if (code == STATUS_OK)
         code = http_start(&settings, &l->server, why);
     pthread_mutex_lock(&l->publish_lock);
@@ -176,7 +187,8 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     lab *l = calloc(1, sizeof *l);
     if (!l)
         return diagnose(why, STATUS_FAILURE, "", "out of memory");
-    *l = (lab){.settings = *settings, .tell_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
+    *l =
+        (lab){.settings = *settings, .tell_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
     const painter_listener listener = {on_picture, on_told, l};
     status code = folder_open(settings->folder, &l->files, why);
     if (code == STATUS_OK)
@@ -198,7 +210,8 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     return code;
 }
 
-/* First nothing is published any more, then nothing is measured and nobody waits any more, then no handler runs any more. */
+/* First nothing is published any more, then nothing is measured and nobody waits any more, then no handler runs any
+ * more. */
 void lab_stop(lab *l)
 {
     if (!l)

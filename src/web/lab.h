@@ -1,7 +1,8 @@
-/* The laboratory in a browser: one scene on a desk, a painter who renders it whenever it changes, a toy that moves, studies that run; served to
- * pages and programs through web/http.h, by the API of web/README.md.
- * Ownership: lab_start gives, lab_stop releases and joins all threads; the settings' texts are borrowed in between. Errors: STATUS_BAD_INPUT for a scene,
- * folder or port that cannot be had, STATUS_FAILURE for memory and threads. Nothing is printed, no signal is taken. */
+/* The laboratory in a browser: one scene on a desk, a painter who renders it whenever it changes, a toy that moves,
+ * studies that run; served to pages and programs through web/http.h, by the API of web/README.md. Ownership: lab_start
+ * gives, lab_stop releases and joins all threads; the settings' texts are borrowed in between. Errors: STATUS_BAD_INPUT
+ * for a scene, folder or port that cannot be had, STATUS_FAILURE for memory and threads. Nothing is printed, no signal
+ * is taken. */
 #ifndef CUVETTE_WEB_LAB_H
 #define CUVETTE_WEB_LAB_H
 
@@ -12,11 +13,12 @@ typedef struct lab lab;
 
 typedef struct lab_settings {
     const char *folder;  /* nothing outside of it is read or written */
-    const char *scene;   /* file to open, in the working folder's terms and below folder; NULL: a room with a floor, a light and a camera */
+    const char *scene;   /* file to open, in the working folder's terms and below folder; NULL: a room with a floor, a
+                            light and a camera */
     const char *results; /* folder of studies' rows: folder, or below it; it need not be there */
     int port;            /* 0: any that is free */
     isa level;
-    int threads;         /* of scenes as they are opened; 0: what they say */
+    int threads;           /* of scenes as they are opened; 0: what they say */
     double requests_per_s; /* 0: as web/http.h has it */
 } lab_settings;
 

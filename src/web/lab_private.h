@@ -23,14 +23,19 @@ struct lab {
     gate *heavy; /* for handlers that take much memory and time */
     http_server *server;
     http_route *routes;
-    pthread_mutex_t tell_lock;    /* held while the state is looked at and sent: what comes last is the newest; goes before all others */
+    pthread_mutex_t tell_lock; /* held while the state is looked at and sent: what comes last is the newest; goes before
+                                  all others */
     pthread_mutex_t publish_lock;
     bool open; /* events may be published */
 };
 
 /* One table for each api_*.c; context is filled in by lab.c. */
-typedef struct lab_routes { const http_route *routes; size_t count; } lab_routes;
-extern const lab_routes desk_routes, picture_routes, trace_routes, compare_routes, edit_routes, file_routes, slime_routes, study_routes, note_routes;
+typedef struct lab_routes {
+    const http_route *routes;
+    size_t count;
+} lab_routes;
+extern const lab_routes desk_routes, picture_routes, trace_routes, compare_routes, edit_routes, file_routes,
+    slime_routes, study_routes, note_routes;
 
 /* Sends an event to all pages; takes value. From any thread, at any time. */
 void lab_publish(lab *l, const char *event, json_t *value);
@@ -47,8 +52,8 @@ void lab_forget_threads(const lab *l, scene *s);
 /* {"generation": N}, or the diagnostic. */
 void lab_reply_generation(http_reply *r, status code, uint64_t generation, const diagnostic *why);
 
-/* Numbers and words of a body. Each is false, with the reply set to 400, where the key is of another kind; a missing one is an error only where
- * needed. value is left alone where it is missing. */
+/* Numbers and words of a body. Each is false, with the reply set to 400, where the key is of another kind; a missing
+ * one is an error only where needed. value is left alone where it is missing. */
 bool lab_take_number(const json_t *body, const char *key, bool needed, double *value, http_reply *r);
 bool lab_take_vector(const json_t *body, const char *key, bool needed, double value[3], http_reply *r);
 bool lab_take_text(const json_t *body, const char *key, bool needed, const char **value, http_reply *r);

@@ -16,7 +16,8 @@ static bool refuse(http_reply *r, const char *key, const char *form)
 }
 
 /* Is there something to read? *good is the answer when there is not. */
-static bool is_there(const json_t *body, const char *key, bool needed, const char *form, json_t **value, bool *good, http_reply *r)
+static bool is_there(const json_t *body, const char *key, bool needed, const char *form, json_t **value, bool *good,
+                     http_reply *r)
 {
     *value = json_object_get(body, key);
     if (*value && !json_is_null(*value))
@@ -84,7 +85,8 @@ bool lab_take_gesture(const json_t *body, const char **gesture, http_reply *r)
     *gesture = NULL;
     if (!lab_take_text(body, "gesture", false, gesture, r))
         return false;
-    return !*gesture || strlen(*gesture) <= GESTURE_MAX ? true : refuse(r, "gesture", "a text of at most 64 characters");
+    return !*gesture || strlen(*gesture) <= GESTURE_MAX ? true
+                                                        : refuse(r, "gesture", "a text of at most 64 characters");
 }
 
 void lab_reply_generation(http_reply *r, status code, uint64_t generation, const diagnostic *why)
@@ -98,7 +100,8 @@ void lab_reply_generation(http_reply *r, status code, uint64_t generation, const
 void lab_camera_ray(const scene *s, double x, double y, vec3 *origin, vec3 *direction)
 {
     const camera_frame f = camera_frame_of(s);
-    const double u = (2.0 * x / (double)s->render.width - 1.0) * f.half_width, v = (1.0 - 2.0 * y / (double)s->render.height) * f.half_height;
+    const double u = (2.0 * x / (double)s->render.width - 1.0) * f.half_width,
+                 v = (1.0 - 2.0 * y / (double)s->render.height) * f.half_height;
     *origin = f.eye;
     *direction = vec3_normalize(vec3_add(f.forward, vec3_add(vec3_scale(f.right, u), vec3_scale(f.up, v))));
 }

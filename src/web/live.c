@@ -130,7 +130,8 @@ status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, 
 {
     const double length = vec3_length(direction);
     if (!is_finite(origin) || !(length > 0.0 && isfinite(length)) || !(reach >= 0.0 && isfinite(reach)))
-        return diagnose(why, STATUS_BAD_INPUT, "give a finite ray, and a reach that is not below 0", "it grabs along no ray");
+        return diagnose(why, STATUS_BAD_INPUT, "give a finite ray, and a reach that is not below 0",
+                        "it grabs along no ray");
     grab_request q = {.origin = origin, .direction = vec3_scale(direction, 1.0 / length), .reach = reach, .why = why};
     pthread_mutex_lock(&l->lock);
     status code = check_on(l, why);
@@ -254,7 +255,9 @@ json_t *live_tell(live *l)
     if (!a.has_slime)
         return json_null();
     return json_pack("{s:b, s:b, s:o, s:o, s:o, s:o, s:I, s:b, s:o, s:s, s:o}", "on", mode != LIVE_IS_OFF, "playing",
-                     mode == LIVE_IS_PLAYING && !a.in_trouble, "time_s", json_of_real(a.time_s), "speed", json_of_real(a.speed), "volume",
-                     json_of_real(a.volume), "volume_at_rest", json_of_real(a.volume_at_rest), "held", (json_int_t)a.held, "resting", a.resting,
-                     "realtime", json_of_real(a.realtime), "preview", preview == LIVE_ZBUFFER ? "zbuffer" : "traced", "trouble", json_of_trouble(&a));
+                     mode == LIVE_IS_PLAYING && !a.in_trouble, "time_s", json_of_real(a.time_s), "speed",
+                     json_of_real(a.speed), "volume", json_of_real(a.volume), "volume_at_rest",
+                     json_of_real(a.volume_at_rest), "held", (json_int_t)a.held, "resting", a.resting, "realtime",
+                     json_of_real(a.realtime), "preview", preview == LIVE_ZBUFFER ? "zbuffer" : "traced", "trouble",
+                     json_of_trouble(&a));
 }

@@ -1,4 +1,5 @@
-/* How the live slime moves: by as much time as has gone by, as far as there is time to compute it, until it is at rest. */
+/* How the live slime moves: by as much time as has gone by, as far as there is time to compute it, until it is at rest.
+ */
 #include "web/live_private.h"
 
 #include "measure/clock.h"

@@ -1,4 +1,5 @@
-/* The live slime, shared by live.c (what other threads ask), live_stage.c (which scene it is in, and orders) and live_move.c (its motion). */
+/* The live slime, shared by live.c (what other threads ask), live_stage.c (which scene it is in, and orders) and
+ * live_move.c (its motion). */
 #ifndef CUVETTE_WEB_LIVE_PRIVATE_H
 #define CUVETTE_WEB_LIVE_PRIVATE_H
 
@@ -24,11 +25,11 @@ enum { LIVE_HANDS_MAX = 256 };
 
 /* One of those that others know, by a number that is never given again. */
 typedef struct live_hand {
-    int id;           /* 0: none */
+    int id; /* 0: none */
     size_t slime;
-    int number;       /* of the body's own */
-    vec3 where;       /* in the world */
-    vec3 by;          /* of the world: where it is to be, from there */
+    int number; /* of the body's own */
+    vec3 where; /* in the world */
+    vec3 by;    /* of the world: where it is to be, from there */
     bool let_go;
 } live_hand;
 
@@ -44,7 +45,8 @@ struct live {
     void (*wake)(void *context);
     void *context;
 
-    pthread_mutex_t lock;      /* of all from here to the painter's own; grabs are done under it, which takes a millisecond */
+    /* of all from here to the painter's own; grabs are done under it, which takes a millisecond */
+    pthread_mutex_t lock;
     pthread_cond_t answered;
     live_mode mode;
     live_preview preview;
@@ -55,15 +57,15 @@ struct live {
     live_account account;
 
     /* The painter's own. */
-    scene *stage;              /* NULL: none now */
-    scene_motion *motion;      /* NULL: not begun */
-    motion_hand *hands;        /* SOFTBODY_HANDS_MAX of each slime */
+    scene *stage;         /* NULL: none now */
+    scene_motion *motion; /* NULL: not begun */
+    motion_hand *hands;   /* SOFTBODY_HANDS_MAX of each slime */
     double time_s;
-    double moved_at_s;         /* wall time of the latest move; NaN: it stood still */
-    double cost;               /* computing time of a second of motion; 0: not known */
+    double moved_at_s; /* wall time of the latest move; NaN: it stood still */
+    double cost;       /* computing time of a second of motion; 0: not known */
     double realtime;
-    double quiet_s;            /* how long it has been at rest */
-    bool moved, changed;       /* the stage looks otherwise; what is told is other than by mere motion */
+    double quiet_s;      /* how long it has been at rest */
+    bool moved, changed; /* the stage looks otherwise; what is told is other than by mere motion */
 };
 
 /* --- live_stage.c --- */
@@ -73,7 +75,8 @@ void live_fail(live *l, const diagnostic *why);
 
 /* --- live_move.c --- */
 
-/* Moves by the wall time since the last call, at most about most_s of work. The lock is not held. STATUS_BAD_INPUT: the body blew up. */
+/* Moves by the wall time since the last call, at most about most_s of work. The lock is not held. STATUS_BAD_INPUT: the
+ * body blew up. */
 status live_move_on(live *l, double most_s, diagnostic *why);
 /* Nothing is left of how it moved. */
 void live_stand_still(live *l);

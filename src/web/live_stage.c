@@ -164,7 +164,8 @@ static status take_hold(live *l, grab_request *q)
         return code;
     live_hand *h = free_hand(l);
     int number = 0;
-    code = h ? scene_motion_grab(l->motion, index, &place, reach_of(l, q, index, &place), &l->hands[index * SOFTBODY_HANDS_MAX], &number, q->why)
+    code = h ? scene_motion_grab(l->motion, index, &place, reach_of(l, q, index, &place),
+                                 &l->hands[index * SOFTBODY_HANDS_MAX], &number, q->why)
              : diagnose(q->why, STATUS_BAD_INPUT, "let one release what it holds", "no hand is free");
     if (code != STATUS_OK)
         return code;

@@ -19,7 +19,8 @@ static vec3 rounded(vec3 v, double size)
     return vec3_make(spot_round(v.x, size), spot_round(v.y, size), spot_round(v.z, size));
 }
 
-/* How deep boxes around two solids, along the camera's ways, lie in each other once the first one has stepped; 0 where something parts them. */
+/* How deep boxes around two solids, along the camera's ways, lie in each other once the first one has stepped; 0 where
+ * something parts them. */
 static double depth(const scene *s, const spot *where, const solid *a, vec3 step, const solid *b)
 {
     const vec3 along[] = {where->right, where->away, vec3_make(0, 1, 0)};
@@ -29,7 +30,8 @@ static double depth(const scene *s, const spot *where, const solid *a, vec3 step
         return 0.0;
     const vec3 way = vec3_sub(to, vec3_add(from, step));
     for (size_t i = 0; i < sizeof along / sizeof *along; i++)
-        least = fmin(least, spot_half_size(s, a, along[i]) + spot_half_size(s, b, along[i]) - fabs(vec3_dot(way, along[i])));
+        least = fmin(least,
+                     spot_half_size(s, a, along[i]) + spot_half_size(s, b, along[i]) - fabs(vec3_dot(way, along[i])));
     return fmax(0.0, least);
 }
 
@@ -54,12 +56,14 @@ static double stride(const scene *s, const solid *of, vec3 along, double radius)
 /* From it to where a second one is seen and stands free, or nearly so: to a side, or behind or before it. */
 static vec3 step_beside(const scene *s, const spot *where, const solid *of, vec3 centre, double radius)
 {
-    static const double ways[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {2, 0}, {-2, 0}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}, {0, 2}};
+    static const double ways[][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},  {2, 0}, {-2, 0},
+                                     {1, 1}, {-1, 1}, {1, -1}, {-1, -1}, {0, 2}};
     const double aside = stride(s, of, where->right, radius), behind = stride(s, of, where->away, radius);
     vec3 best = where->right;
     double least = INFINITY;
     for (size_t i = 0; i < sizeof ways / sizeof *ways && least > 0.0; i++) {
-        vec3 step = vec3_add(vec3_scale(where->right, aside * ways[i][0]), vec3_scale(where->away, behind * ways[i][1]));
+        vec3 step =
+            vec3_add(vec3_scale(where->right, aside * ways[i][0]), vec3_scale(where->away, behind * ways[i][1]));
         step = rounded(step, fmin(aside, behind));
         const double bad = overlap_after(s, where, of, step) + (spot_in_view(s, vec3_add(centre, step)) ? 0.0 : radius);
         if (bad < least) {
@@ -179,5 +183,6 @@ status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
     case PARAM_BACKGROUND:
     case PARAM_GROUP_COUNT: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "copy a solid, a light, a material, a mesh or a texture", "there is only one %.60s", of);
+    return diagnose(why, STATUS_BAD_INPUT, "copy a solid, a light, a material, a mesh or a texture",
+                    "there is only one %.60s", of);
 }

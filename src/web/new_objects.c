@@ -39,7 +39,8 @@ static status name_for(const scene *s, const char *wanted, const char *base, obj
 }
 
 /* NAME.ROW as scene_put takes it; after an error it does nothing. */
-static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...) __attribute__((format(printf, 6, 7)));
+static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...)
+    __attribute__((format(printf, 6, 7)));
 static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...)
 {
     char path[2 * SCENE_NAME_MAX], value[512];
@@ -65,7 +66,8 @@ static void put_vector(scene *s, status *code, diagnostic *why, const char *name
 /* A colour unlike the last one's. */
 static void put_look(scene *s, status *code, diagnostic *why, const char *name, size_t count)
 {
-    static const char *const colors[] = {"0.85,0.3,0.2", "0.2,0.5,0.85", "0.3,0.7,0.3", "0.9,0.7,0.2", "0.6,0.35,0.75", "0.2,0.7,0.7"};
+    static const char *const colors[] = {"0.85,0.3,0.2", "0.2,0.5,0.85",  "0.3,0.7,0.3",
+                                         "0.9,0.7,0.2",  "0.6,0.35,0.75", "0.2,0.7,0.7"};
     put(s, code, why, name, "color", "%s", colors[count % (sizeof colors / sizeof *colors)]);
     put(s, code, why, name, "ambient", "0.25");
     put(s, code, why, name, "diffuse", "0.7");
@@ -95,18 +97,21 @@ static void put_plane(scene *s, status *code, diagnostic *why, const char *name,
     vec3 at = where->looked_at;
     if (spot_ground(s, at.x, at.z, &y)) {
         at = vec3_add(at, vec3_scale(where->away, where->distance));
-        put(s, code, why, name, "rotation", "90,%.17g,0", spot_round(atan2(-where->away.x, -where->away.z) * (180.0 / M_PI), 1.0));
+        put(s, code, why, name, "rotation", "90,%.17g,0",
+            spot_round(atan2(-where->away.x, -where->away.z) * (180.0 / M_PI), 1.0));
     } else {
         at.y -= 0.5 * where->size;
     }
-    put_vector(s, code, why, name, "position", vec3_make(spot_round(at.x, where->size), spot_round(at.y, where->size), spot_round(at.z, where->size)));
+    put_vector(s, code, why, name, "position",
+               vec3_make(spot_round(at.x, where->size), spot_round(at.y, where->size), spot_round(at.z, where->size)));
 }
 
 static void put_shape(scene *s, status *code, diagnostic *why, const char *name, shape_kind shape, const spot *where)
 {
     const double size = where->size, half = 0.5 * size;
     const vec3 low = spot_free(s, where, size);
-    put_vector(s, code, why, name, "position", shape == SHAPE_BOX || shape == SHAPE_SPHERE ? vec3_add(low, vec3_make(0, half, 0)) : low);
+    put_vector(s, code, why, name, "position",
+               shape == SHAPE_BOX || shape == SHAPE_SPHERE ? vec3_add(low, vec3_make(0, half, 0)) : low);
     if (shape == SHAPE_BOX) {
         put_vector(s, code, why, name, "size", vec3_make(size, size, size));
         return;
@@ -182,9 +187,11 @@ status new_light(scene *s, const char *wanted, object_name name, diagnostic *why
     vec3 at = vec3_add(where.looked_at, vec3_scale(where.right, side * where.distance));
     at = vec3_add(at, vec3_scale(where.away, -0.4 * where.distance));
     at.y += 0.8 * where.distance;
-    put_vector(s, &code, why, name, "position", vec3_make(spot_round(at.x, where.size), spot_round(at.y, where.size), spot_round(at.z, where.size)));
+    put_vector(s, &code, why, name, "position",
+               vec3_make(spot_round(at.x, where.size), spot_round(at.y, where.size), spot_round(at.z, where.size)));
     put_vector(s, &code, why, name, "target",
-               vec3_make(spot_round(where.looked_at.x, where.size), spot_round(where.looked_at.y, where.size), spot_round(where.looked_at.z, where.size)));
+               vec3_make(spot_round(where.looked_at.x, where.size), spot_round(where.looked_at.y, where.size),
+                         spot_round(where.looked_at.z, where.size)));
     put(s, &code, why, name, "intensity", "0.5");
     return code;
 }
@@ -210,14 +217,16 @@ status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why
         code = add_mesh_solid(s, name, mesh_name, why);
     if (code != STATUS_OK)
         return code;
-    /* Its motion is that of the default, a ball of radius 1 on a floor at 0, whatever its size in the picture: stiffness and steps go with that one. */
+    /* Its motion is that of the default, a ball of radius 1 on a floor at 0, whatever its size in the picture:
+     * stiffness and steps go with that one. */
     put(s, &code, why, mesh_name, "generate", "slime");
     put_vector(s, &code, why, name, "scale", vec3_make(radius, radius, radius));
     put_vector(s, &code, why, name, "position", low);
     put(s, &code, why, name, "transparency", "0.9");
     put(s, &code, why, name, "ior", "1.2");
     const double metres = radius * s->render.unit_m;
-    put(s, &code, why, name, "absorb_per_m", "%.4g,%.4g,%.4g", fmin(2.2 / metres, 1e9), fmin(0.25 / metres, 1e9), fmin(1.8 / metres, 1e9));
+    put(s, &code, why, name, "absorb_per_m", "%.4g,%.4g,%.4g", fmin(2.2 / metres, 1e9), fmin(0.25 / metres, 1e9),
+        fmin(1.8 / metres, 1e9));
     put(s, &code, why, name, "specular", "0.7");
     put(s, &code, why, name, "shininess", "120");
     put(s, &code, why, name, "priority", "1");
@@ -285,7 +294,8 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
     const double scale = spot_round(where.size / longest, 0.01 * where.size / longest);
     put_vector(s, &code, why, name, "scale", vec3_make(scale, scale, scale));
     put_vector(s, &code, why, name, "position",
-               vec3_make(low.x - 0.5 * scale * (b.low.x + b.high.x), low.y - scale * b.low.y, low.z - 0.5 * scale * (b.low.z + b.high.z)));
+               vec3_make(low.x - 0.5 * scale * (b.low.x + b.high.x), low.y - scale * b.low.y,
+                         low.z - 0.5 * scale * (b.low.z + b.high.z)));
     put_look(s, &code, why, name, count);
     if (code == STATUS_OK)
         take_loaded(&s->meshes[s->mesh_count - 1], &loaded->meshes[0]);

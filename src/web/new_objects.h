@@ -1,6 +1,6 @@
-/* What can be added to a scene with one word: each stands where the camera looks (web/spot.h), fits, and can be seen. Called on a copy of the scene that is
- * thrown away after an error. wanted: the name that it is to have; NULL: one is made that is free, which name then says, wanted or not.
- * Errors: STATUS_BAD_INPUT as scene/edit.h has them. */
+/* What can be added to a scene with one word: each stands where the camera looks (web/spot.h), fits, and can be seen.
+ * Called on a copy of the scene that is thrown away after an error. wanted: the name that it is to have; NULL: one is
+ * made that is free, which name then says, wanted or not. Errors: STATUS_BAD_INPUT as scene/edit.h has them. */
 #ifndef CUVETTE_WEB_NEW_OBJECTS_H
 #define CUVETTE_WEB_NEW_OBJECTS_H
 
@@ -19,8 +19,10 @@ status new_material(scene *s, const char *wanted, object_name name, diagnostic *
 status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why);
 /* path: as the scene names it. */
 status new_texture(scene *s, const char *path, const char *wanted, object_name name, diagnostic *why);
-/* loaded: a scene with one mesh, which has its triangles from that path; path: as the scene names it. name is the solid's. */
-status new_model(scene *s, const scene *loaded, const char *path, const char *wanted, object_name name, diagnostic *why);
+/* loaded: a scene with one mesh, which has its triangles from that path; path: as the scene names it. name is the
+ * solid's. */
+status new_model(scene *s, const scene *loaded, const char *path, const char *wanted, object_name name,
+                 diagnostic *why);
 /* Another one like it, beside it. */
 status new_copy(scene *s, const char *of, object_name name, diagnostic *why);
 

@@ -1,4 +1,5 @@
-/* The scene to begin with: a room with a floor, a light and a camera, and nothing in it. Ownership: the scene is the caller's. */
+/* The scene to begin with: a room with a floor, a light and a camera, and nothing in it. Ownership: the scene is the
+ * caller's. */
 #ifndef CUVETTE_WEB_NEW_SCENE_H
 #define CUVETTE_WEB_NEW_SCENE_H
 

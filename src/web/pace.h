@@ -1,5 +1,5 @@
-/* How coarse the frames of a film that moves are, so that each takes about as long as it may: coarser when they come too late, finer when there
- * is time, a step at a time and no to and fro. Pure. */
+/* How coarse the frames of a film that moves are, so that each takes about as long as it may: coarser when they come
+ * too late, finer when there is time, a step at a time and no to and fro. Pure. */
 #ifndef CUVETTE_WEB_PACE_H
 #define CUVETTE_WEB_PACE_H
 

@@ -1,5 +1,5 @@
-/* The page's files (src/web/page/), which the program carries within itself: the Makefile embeds each under its name. For http_settings.files.
- * Constant; no ownership, cannot fail. */
+/* The page's files (src/web/page/), which the program carries within itself: the Makefile embeds each under its name.
+ * For http_settings.files. Constant; no ownership, cannot fail. */
 #ifndef CUVETTE_WEB_PAGE_H
 #define CUVETTE_WEB_PAGE_H
 

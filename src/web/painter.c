@@ -74,7 +74,8 @@ status painter_take_final(painter *p, double limit_s, const picture **out, diagn
             *why = p->trouble;
             code = p->trouble_code;
         } else if (p->waiting) {
-            code = diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "nothing is rendered now: %.200s", p->waiting);
+            code = diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "nothing is rendered now: %.200s",
+                            p->waiting);
         } else if (p->stop || pthread_cond_timedwait(&p->news, &p->lock, &until) == ETIMEDOUT) {
             code = diagnose(why, STATUS_INTERRUPTED, "ask again", "the picture is not finished yet");
         }
@@ -102,7 +103,8 @@ static status wait_for_scene(painter *p, diagnostic *why)
     pthread_mutex_lock(&p->lock);
     while (!is_settled(p, wanted) && code == STATUS_OK) {
         if (p->waiting)
-            code = diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "nothing is traced now: %.200s", p->waiting);
+            code = diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "nothing is traced now: %.200s",
+                            p->waiting);
         else if (p->stop || pthread_cond_timedwait(&p->news, &p->lock, &until) == ETIMEDOUT)
             code = diagnose(why, STATUS_INTERRUPTED, "ask again", "the scene is still being loaded");
     }
@@ -124,7 +126,8 @@ static bool is_there_still(painter *p)
 }
 
 /* Between the two locks the painter may have begun with another scene, which then is waited for. */
-status painter_with_scene(painter *p, status (*look)(void *context, scene *s, diagnostic *why), void *context, diagnostic *why)
+status painter_with_scene(painter *p, status (*look)(void *context, scene *s, diagnostic *why), void *context,
+                          diagnostic *why)
 {
     for (;;) {
         status code = wait_for_scene(p, why);
@@ -153,8 +156,8 @@ static bool prepare_locks(painter *p)
     }
     /* Those who look, one after another without a gap, shall not keep the painter from going on. */
     pthread_rwlockattr_setkind_np(&kind, PTHREAD_RWLOCK_PREFER_WRITER_NONRECURSIVE_NP);
-    const bool good = pthread_mutex_init(&p->lock, NULL) == 0 && pthread_rwlock_init(&p->stage_lock, &kind) == 0 && pthread_cond_init(&p->wake, NULL) == 0 &&
-                      pthread_cond_init(&p->news, &monotonic) == 0;
+    const bool good = pthread_mutex_init(&p->lock, NULL) == 0 && pthread_rwlock_init(&p->stage_lock, &kind) == 0 &&
+                      pthread_cond_init(&p->wake, NULL) == 0 && pthread_cond_init(&p->news, &monotonic) == 0;
     pthread_rwlockattr_destroy(&kind);
     pthread_condattr_destroy(&monotonic);
     return good;
@@ -228,8 +231,9 @@ static json_t *camera_json(const scene *s)
 {
     const camera_frame f = camera_frame_of(s);
     const double distance = s->camera.aimed ? vec3_length(vec3_sub(s->camera.target, s->camera.position)) : 0.0;
-    json_t *o = json_pack("{s:o,s:o,s:o,s:o,s:o,s:o}", "eye", vector_json(f.eye), "forward", vector_json(f.forward), "right", vector_json(f.right), "up",
-                          vector_json(f.up), "half_width", json_of_real(f.half_width), "half_height", json_of_real(f.half_height));
+    json_t *o = json_pack("{s:o,s:o,s:o,s:o,s:o,s:o}", "eye", vector_json(f.eye), "forward", vector_json(f.forward),
+                          "right", vector_json(f.right), "up", vector_json(f.up), "half_width",
+                          json_of_real(f.half_width), "half_height", json_of_real(f.half_height));
     if (!o)
         return NULL;
     json_object_set_new(o, "target", s->camera.aimed ? vector_json(s->camera.target) : json_null());
@@ -241,7 +245,8 @@ bool painter_tell(painter *p, json_t *state)
 {
     scene *now = desk_take(p->desk, NULL);
     pthread_mutex_lock(&p->lock);
-    int bad = json_object_set_new(state, "trouble", p->trouble_code != STATUS_OK ? json_of_diagnostic(&p->trouble) : json_null());
+    int bad = json_object_set_new(state, "trouble",
+                                  p->trouble_code != STATUS_OK ? json_of_diagnostic(&p->trouble) : json_null());
     bad |= json_object_set_new(state, "waiting", p->waiting ? json_of_text(p->waiting) : json_null());
     bad |= json_object_set_new(state, "picture", p->newest ? picture_json(p->newest) : json_null());
     pthread_mutex_unlock(&p->lock);

@@ -46,7 +46,7 @@ static scene pass_scene(const painter *p, int pass, const pace *tempo, bool rast
 {
     scene view = *p->stage;
     view.render = tempo ? passes_settings(&p->stage->render, pace_shrink(tempo), true)
-                       : passes_settings(&p->stage->render, p->plan.shrink[pass], p->plan.single[pass]);
+                        : passes_settings(&p->stage->render, p->plan.shrink[pass], p->plan.single[pass]);
     if (raster) {
         view.render.integrator = INTEGRATOR_ZBUFFER;
         view.render.spectrum = SPECTRUM_RGB;
@@ -60,10 +60,20 @@ static bool describe(painter *p, const render_result *made, int pass, bool movin
     if (film_image(made->picture, &linear, NULL) != STATUS_OK)
         return false;
     const bool final = !moving && pass == p->plan.count - 1;
-    *out = (picture){.generation = p->stage_generation, .pass = pass + 1, .passes = p->plan.count, .final = final, .width = made->picture->width,
-                     .height = made->picture->height, .full_width = (int)p->stage->render.width, .full_height = (int)p->stage->render.height,
-                     .wall_s = made->wall_s, .cpu_s = made->cpu_s, .rays = ray_counters_total(&made->counters), .noise = render_noise_rms(made),
-                     .threads = made->worker_count, .linear = linear};
+    *out = (picture){.generation = p->stage_generation,
+                     .pass = pass + 1,
+                     .passes = p->plan.count,
+                     .final = final,
+                     .width = made->picture->width,
+                     .height = made->picture->height,
+                     .full_width = (int)p->stage->render.width,
+                     .full_height = (int)p->stage->render.height,
+                     .wall_s = made->wall_s,
+                     .cpu_s = made->cpu_s,
+                     .rays = ray_counters_total(&made->counters),
+                     .noise = render_noise_rms(made),
+                     .threads = made->worker_count,
+                     .linear = linear};
     if (final) {
         out->film_hash = film_hash(made->picture);
         out->of = scene_clone(p->stage);

@@ -1,5 +1,6 @@
-/* What the painter's files share: not for others. painter.c answers others and starts and ends the thread, painter_thread.c is what it does in turn,
- * painter_stage.c brings the scene there and moves it, painter_pass.c makes a picture of it. See web/painter.h. */
+/* What the painter's files share: not for others. painter.c answers others and starts and ends the thread,
+ * painter_thread.c is what it does in turn, painter_stage.c brings the scene there and moves it, painter_pass.c makes a
+ * picture of it. See web/painter.h. */
 #ifndef CUVETTE_WEB_PAINTER_PRIVATE_H
 #define CUVETTE_WEB_PAINTER_PRIVATE_H
 
@@ -22,27 +23,27 @@ struct painter {
     pthread_mutex_t lock; /* of what follows */
     pthread_cond_t wake, news;
     bool woken, stop, busy;
-    const char *waiting;            /* waiting_text, or NULL */
+    const char *waiting; /* waiting_text, or NULL */
     char waiting_text[256];
     const picture *newest;
     uint64_t serial;
     diagnostic trouble;
-    status trouble_code;            /* of the stage's generation */
-    uint64_t stage_generation;      /* 0: none yet */
-    bool stage_ready;               /* loaded */
+    status trouble_code;       /* of the stage's generation */
+    uint64_t stage_generation; /* 0: none yet */
+    bool stage_ready;          /* loaded */
 
-    pthread_rwlock_t stage_lock;    /* read to look at the stage or to render it, written to replace or move it */
+    pthread_rwlock_t stage_lock; /* read to look at the stage or to render it, written to replace or move it */
     scene *stage;
 
     /* the thread's own */
     pass_plan plan;
-    int pass;                       /* next */
+    int pass; /* next */
     double rate;
-    int ended;                      /* first passes in a row, and loads before them */
-    double begun_s;                 /* when what is on its way, a load or a pass, began */
-    uint64_t taken;                 /* the generation that the stage is a copy of, loaded or not; 0: to be taken anew */
+    int ended;      /* first passes in a row, and loads before them */
+    double begun_s; /* when what is on its way, a load or a pass, began */
+    uint64_t taken; /* the generation that the stage is a copy of, loaded or not; 0: to be taken anew */
     bool was_on;
-    pace traced, raster;            /* of the film of the live slime */
+    pace traced, raster; /* of the film of the live slime */
 };
 
 /* How long the first pass may take. */

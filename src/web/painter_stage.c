@@ -9,8 +9,8 @@
 /* Of a frame of the live slime, how long its motion may take. */
 static const double move_s = 0.02;
 
-/* So often may a first pass be ended by newer changes before one is let through: who watches somebody else's drag shall see it. But no longer
- * than so: what takes minutes must not keep back what is newer. */
+/* So often may a first pass be ended by newer changes before one is let through: who watches somebody else's drag shall
+ * see it. But no longer than so: what takes minutes must not keep back what is newer. */
 enum { ENDED_MAX = 12 };
 static const double let_through_s = 0.5;
 
@@ -29,7 +29,8 @@ bool painter_must_end(painter *p)
     return now || (painter_is_stale(p) && !let_through) || (live_is_due(p->toy) && p->pass > 0);
 }
 
-/* A slime's way to its moment may be long: it ends where that is no longer wanted, by the desk or by who plays with it. */
+/* A slime's way to its moment may be long: it ends where that is no longer wanted, by the desk or by who plays with it.
+ */
 static bool go_on_loading(void *of, double share_done)
 {
     (void)share_done;
@@ -103,14 +104,16 @@ static bool is_bare(const scene *stage)
     return bare;
 }
 
-/* The slime's orders and its motion; a stage that moved is painted anew. What it leaves without a mesh, whenever the order came, is loaded. */
+/* The slime's orders and its motion; a stage that moved is painted anew. What it leaves without a mesh, whenever the
+ * order came, is loaded. */
 void painter_move_stage(painter *p)
 {
     diagnostic why = {.line = 0};
     bool told = false;
     pthread_rwlock_wrlock(&p->stage_lock);
     status code = live_advance(p->toy, move_s, &told, &why);
-    const bool moved = live_take_moved(p->toy), ended = (p->was_on && !live_is_on(p->toy)) || (p->stage_ready && is_bare(p->stage));
+    const bool moved = live_take_moved(p->toy),
+               ended = (p->was_on && !live_is_on(p->toy)) || (p->stage_ready && is_bare(p->stage));
     p->was_on = live_is_on(p->toy);
     if (code == STATUS_OK && ended)
         code = load_stage(p, &why);

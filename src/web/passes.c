@@ -20,7 +20,8 @@ render_settings passes_settings(const render_settings *r, int shrink, bool singl
 double passes_work(const render_settings *r, int shrink, bool single)
 {
     const render_settings pass = passes_settings(r, shrink, single);
-    const double rays = r->integrator == INTEGRATOR_PATH ? fmax((double)pass.paths, (double)pass.samples) : (double)pass.samples;
+    const double rays =
+        r->integrator == INTEGRATOR_PATH ? fmax((double)pass.paths, (double)pass.samples) : (double)pass.samples;
     const double wavelengths = r->spectrum == SPECTRUM_SPECTRAL ? (double)r->wavelengths : 1.0;
     return (double)pass.width * (double)pass.height * rays * wavelengths;
 }

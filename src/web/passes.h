@@ -1,4 +1,5 @@
-/* In how many passes, and how coarse, a scene is painted so that the first one comes soon: reckoned from how fast pictures came so far. Pure. */
+/* In how many passes, and how coarse, a scene is painted so that the first one comes soon: reckoned from how fast
+ * pictures came so far. Pure. */
 #ifndef CUVETTE_WEB_PASSES_H
 #define CUVETTE_WEB_PASSES_H
 
@@ -8,8 +9,8 @@
 enum { PASSES_MAX = 6 };
 typedef struct pass_plan {
     int count;
-    int shrink[PASSES_MAX];   /* so many times less wide and high; 1 for the last */
-    bool single[PASSES_MAX];  /* one sample (path) a pixel; false for the last */
+    int shrink[PASSES_MAX];  /* so many times less wide and high; 1 for the last */
+    bool single[PASSES_MAX]; /* one sample (path) a pixel; false for the last */
 } pass_plan;
 
 /* Camera rays of a frame, wavelengths counted, of that shrinkage. */

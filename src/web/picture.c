@@ -59,8 +59,9 @@ json_t *picture_json(const picture *p)
 {
     char hash[17];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)p->film_hash);
-    json_t *o = json_pack("{s:I,s:I,s:i,s:i,s:b,s:i,s:i,s:i,s:i,s:I,s:i}", "serial", (json_int_t)p->serial, "generation", (json_int_t)p->generation, "pass",
-                          p->pass, "passes", p->passes, "final", (int)p->final, "width", p->width, "height", p->height, "full_width", p->full_width,
+    json_t *o = json_pack("{s:I,s:I,s:i,s:i,s:b,s:i,s:i,s:i,s:i,s:I,s:i}", "serial", (json_int_t)p->serial,
+                          "generation", (json_int_t)p->generation, "pass", p->pass, "passes", p->passes, "final",
+                          (int)p->final, "width", p->width, "height", p->height, "full_width", p->full_width,
                           "full_height", p->full_height, "rays", (json_int_t)p->rays, "threads", p->threads);
     if (!o)
         return NULL;

@@ -8,7 +8,7 @@
 struct pin_pair {
     const picture *a, *b;
     atomic_int owners;
-    pthread_mutex_t lock; /* of what follows: who has it measures, others wait for that */
+    pthread_mutex_t lock;      /* of what follows: who has it measures, others wait for that */
     bool has_numbers, has_map; /* or knows why not */
     status numbers_code, map_code;
     diagnostic numbers_why, map_why;

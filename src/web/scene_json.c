@@ -14,7 +14,8 @@ static json_t *solid_json(const scene *s, const solid *one)
 {
     json_t *o = object_json(one->name, "solid");
     int bad = json_object_set_new(o, "shape", json_string(shape_name(one->shape.kind)));
-    bad |= json_object_set_new(o, "material", one->material_index >= 0 ? json_of_text(s->materials[one->material_index].name) : json_null());
+    bad |= json_object_set_new(
+        o, "material", one->material_index >= 0 ? json_of_text(s->materials[one->material_index].name) : json_null());
     if (one->shape.kind == SHAPE_MESH)
         bad |= json_object_set_new(o, "mesh", json_of_text(one->mesh));
     if (!bad)
@@ -62,7 +63,8 @@ static bool add_initial(json_t *rows, const json_t *opened_rows)
     json_t *initial = values_by_path(opened_rows);
     int bad = !initial;
     for (size_t i = 0; i < json_array_size(rows) && !bad; i++) {
-        json_t *row = json_array_get(rows, i), *value = json_object_get(initial, json_string_value(json_object_get(row, "path")));
+        json_t *row = json_array_get(rows, i),
+               *value = json_object_get(initial, json_string_value(json_object_get(row, "path")));
         bad |= json_object_set_new(row, "initial", value ? json_incref(value) : json_null());
     }
     json_decref(initial);
@@ -72,10 +74,11 @@ static bool add_initial(json_t *rows, const json_t *opened_rows)
 json_t *scene_json(const scene *s, const scene *opened, uint64_t generation)
 {
     json_t *rows = NULL, *before = NULL, *o = NULL;
-    if (param_rows_json(s, NULL, &rows, NULL) == STATUS_OK && param_rows_json(opened, NULL, &before, NULL) == STATUS_OK &&
+    if (param_rows_json(s, NULL, &rows, NULL) == STATUS_OK &&
+        param_rows_json(opened, NULL, &before, NULL) == STATUS_OK &&
         add_initial(json_object_get(rows, "params"), json_object_get(before, "params")))
-        o = json_pack("{s:I,s:o,s:o,s:O}", "generation", (json_int_t)generation, "title", json_of_text(s->title), "objects", objects_json(s), "params",
-                      json_object_get(rows, "params"));
+        o = json_pack("{s:I,s:o,s:o,s:O}", "generation", (json_int_t)generation, "title", json_of_text(s->title),
+                      "objects", objects_json(s), "params", json_object_get(rows, "params"));
     json_decref(rows);
     json_decref(before);
     return o;

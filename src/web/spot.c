@@ -26,7 +26,8 @@ bool spot_ground(const scene *s, double x, double z, double *y)
         const vec3 up = mat3_apply(rotation_from_deg(shape->rotation_deg), vec3_make(0, 1, 0));
         if (up.y < FLOOR_Y)
             continue;
-        const double height = shape->position.y - (up.x * (x - shape->position.x) + up.z * (z - shape->position.z)) / up.y;
+        const double height =
+            shape->position.y - (up.x * (x - shape->position.x) + up.z * (z - shape->position.z)) / up.y;
         if (height < s->camera.position.y && (!found || height > *y)) {
             *y = height;
             found = true;
@@ -45,9 +46,12 @@ static bounds3 mesh_box(const scene *s, const solid *of)
     bounds3 b = {vec3_make(at.x - r, at.y - r, at.z - r), vec3_make(at.x + r, at.y + r, at.z + r)};
     if (m && m->data && m->data->triangle_count)
         b = m->data->bounds;
-    const vec3 more = vec3_make((shape->copies.x - 1) * shape->spacing.x, (shape->copies.y - 1) * shape->spacing.y, (shape->copies.z - 1) * shape->spacing.z);
-    b.low = vec3_make(b.low.x * shape->scale.x + fmin(more.x, 0), b.low.y * shape->scale.y + fmin(more.y, 0), b.low.z * shape->scale.z + fmin(more.z, 0));
-    b.high = vec3_make(b.high.x * shape->scale.x + fmax(more.x, 0), b.high.y * shape->scale.y + fmax(more.y, 0), b.high.z * shape->scale.z + fmax(more.z, 0));
+    const vec3 more = vec3_make((shape->copies.x - 1) * shape->spacing.x, (shape->copies.y - 1) * shape->spacing.y,
+                                (shape->copies.z - 1) * shape->spacing.z);
+    b.low = vec3_make(b.low.x * shape->scale.x + fmin(more.x, 0), b.low.y * shape->scale.y + fmin(more.y, 0),
+                      b.low.z * shape->scale.z + fmin(more.z, 0));
+    b.high = vec3_make(b.high.x * shape->scale.x + fmax(more.x, 0), b.high.y * shape->scale.y + fmax(more.y, 0),
+                       b.high.z * shape->scale.z + fmax(more.z, 0));
     return b;
 }
 
@@ -80,13 +84,13 @@ double spot_half_size(const scene *s, const solid *of, vec3 along)
 {
     const solid_shape *shape = &of->shape;
     const mat3 turn = rotation_from_deg(shape->rotation_deg);
-    const double x = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(1, 0, 0)))), y = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(0, 1, 0)))),
+    const double x = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(1, 0, 0)))),
+                 y = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(0, 1, 0)))),
                  z = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(0, 0, 1))));
     vec3 size = shape->size;
     switch (shape->kind) {
     case SHAPE_CYLINDER:
-    case SHAPE_CUP:
-        return 0.5 * y * shape->height + hypot(x, z) * shape->radius / fmin(shape->m, 1.0);
+    case SHAPE_CUP: return 0.5 * y * shape->height + hypot(x, z) * shape->radius / fmin(shape->m, 1.0);
     case SHAPE_SPHERE: return shape->radius;
     case SHAPE_MESH: {
         const bounds3 b = mesh_box(s, of);
@@ -151,7 +155,8 @@ static bool is_in_view(const camera_frame *view, vec3 point)
 {
     const vec3 way = vec3_sub(point, view->eye);
     const double depth = vec3_dot(way, view->forward);
-    return depth > 0.0 && fabs(vec3_dot(way, view->right)) < view->half_width * depth && fabs(vec3_dot(way, view->up)) < view->half_height * depth;
+    return depth > 0.0 && fabs(vec3_dot(way, view->right)) < view->half_width * depth &&
+           fabs(vec3_dot(way, view->up)) < view->half_height * depth;
 }
 
 bool spot_in_view(const scene *s, vec3 point)
@@ -162,13 +167,15 @@ bool spot_in_view(const scene *s, vec3 point)
 
 vec3 spot_free(const scene *s, const spot *where, double size)
 {
-    static const double steps[][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {1, 1}, {-1, 1}, {0, -1}, {1, -1}, {-1, -1}, {2, 0}, {-2, 0}, {2, 1}, {-2, 1}, {0, 2}, {1, 2}, {-1, 2}};
+    static const double steps[][2] = {{0, 0},   {1, 0}, {-1, 0}, {0, 1}, {1, 1},  {-1, 1}, {0, -1}, {1, -1},
+                                      {-1, -1}, {2, 0}, {-2, 0}, {2, 1}, {-2, 1}, {0, 2},  {1, 2},  {-1, 2}};
     const camera_frame view = camera_frame_of(s);
     const vec3 half_up = vec3_make(0, 0.5 * size, 0);
     vec3 best = where->looked_at;
     double least = INFINITY;
     for (size_t i = 0; i < sizeof steps / sizeof *steps && least > 0.0; i++) {
-        const vec3 step = vec3_add(vec3_scale(where->right, 1.25 * size * steps[i][0]), vec3_scale(where->away, 1.25 * size * steps[i][1]));
+        const vec3 step = vec3_add(vec3_scale(where->right, 1.25 * size * steps[i][0]),
+                                   vec3_scale(where->away, 1.25 * size * steps[i][1]));
         vec3 at = vec3_add(where->looked_at, step);
         at.x = spot_round(at.x, size);
         at.z = spot_round(at.z, size);

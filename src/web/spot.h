@@ -1,5 +1,6 @@
-/* Where something new goes in a scene, and how large it is to be: into the middle of the picture, a sixth of the way from the eye in size, beside what is
- * there already, on the ground where there is one in the picture. Lengths are scene units. Pure. */
+/* Where something new goes in a scene, and how large it is to be: into the middle of the picture, a sixth of the way
+ * from the eye in size, beside what is there already, on the ground where there is one in the picture. Lengths are
+ * scene units. Pure. */
 #ifndef CUVETTE_WEB_SPOT_H
 #define CUVETTE_WEB_SPOT_H
 

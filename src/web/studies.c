@@ -16,13 +16,13 @@ struct studies {
     lab *l;
     pthread_mutex_t life; /* held while a thread is begun or joined; goes before lock */
     pthread_t thread;
-    bool begun;           /* there is a thread to be joined */
-    study *s;             /* the thread's while it runs */
+    bool begun; /* there is a thread to be joined */
+    study *s;   /* the thread's while it runs */
     atomic_bool stop, ending, drawing;
 
     pthread_mutex_t lock; /* of what follows */
     bool running;
-    char *name;           /* of the one that runs or ran last; NULL before the first */
+    char *name; /* of the one that runs or ran last; NULL before the first */
     study_moment now;
     double told_s;
     bool failed;
@@ -78,12 +78,14 @@ json_t *studies_tell(studies *st)
     static const char *const stages[] = {"measuring", "moving", "pictures"};
     pthread_mutex_lock(&st->lock);
     const study_moment *now = &st->now;
-    json_t *told = !st->name ? json_null()
-                             : json_pack("{s:s, s:b, s:I, s:I, s:o, s:I, s:o, s:s, s:I, s:I, s:o}", "name", st->name, "running", st->running, "frames_done",
-                                         (json_int_t)now->frames_done, "frames_all", (json_int_t)now->frames_all, "left_s", json_of_real(now->left_s), "cell",
-                                         (json_int_t)now->cell, "share", json_of_real(now->share), "stage", stages[now->stage], "picture",
-                                         (json_int_t)now->picture, "pictures", (json_int_t)now->pictures, "error",
-                                         st->failed ? json_of_diagnostic(&st->trouble) : json_null());
+    json_t *told =
+        !st->name ? json_null()
+                  : json_pack("{s:s, s:b, s:I, s:I, s:o, s:I, s:o, s:s, s:I, s:I, s:o}", "name", st->name, "running",
+                              st->running, "frames_done", (json_int_t)now->frames_done, "frames_all",
+                              (json_int_t)now->frames_all, "left_s", json_of_real(now->left_s), "cell",
+                              (json_int_t)now->cell, "share", json_of_real(now->share), "stage", stages[now->stage],
+                              "picture", (json_int_t)now->picture, "pictures", (json_int_t)now->pictures, "error",
+                              st->failed ? json_of_diagnostic(&st->trouble) : json_null());
     pthread_mutex_unlock(&st->lock);
     return told;
 }
@@ -123,7 +125,8 @@ static void *run(void *context)
     painter_wait(st->l->painter, text ? text : "a study measures");
     free(text);
     lab_tell_state(st->l);
-    const study_options options = {.results = st->l->settings.results, .stop = should_stop, .progressed = hear, .context = st};
+    const study_options options = {
+        .results = st->l->settings.results, .stop = should_stop, .progressed = hear, .context = st};
     diagnostic why = {.what = ""};
     const status code = study_run(st->s, &options, NULL, &why);
     painter_wait(st->l->painter, NULL);

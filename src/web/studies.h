@@ -1,6 +1,6 @@
-/* The one study that runs in the laboratory, in a thread of its own; while it measures, the painter waits. How far it is goes to all pages as event `study`
- * and stands in the state.
- * Ownership: studies_create gives, studies_destroy releases. Errors: STATUS_INTERRUPTED for what does not go together with what is there now (409). */
+/* The one study that runs in the laboratory, in a thread of its own; while it measures, the painter waits. How far it
+ * is goes to all pages as event `study` and stands in the state. Ownership: studies_create gives, studies_destroy
+ * releases. Errors: STATUS_INTERRUPTED for what does not go together with what is there now (409). */
 #ifndef CUVETTE_WEB_STUDIES_H
 #define CUVETTE_WEB_STUDIES_H
 
@@ -9,7 +9,8 @@
 #include <stdatomic.h>
 
 status studies_create(lab *l, studies **out, diagnostic *why);
-/* Stops what runs, waits for it, and lets nothing begin any more. While server, painter and desk are still there; handlers may come in until http_stop. */
+/* Stops what runs, waits for it, and lets nothing begin any more. While server, painter and desk are still there;
+ * handlers may come in until http_stop. */
 void studies_end(studies *st);
 /* After http_stop. NULL is allowed; ends it too. */
 void studies_destroy(studies *st);

@@ -74,8 +74,9 @@ static cell_times take_cell(sorted_rows *rows, size_t cell)
 
 static json_t *times_json(const cell_times *t)
 {
-    return json_pack("{s:o, s:o, s:o, s:I}", "median", json_of_real(t->wall.median), "low", json_of_real(t->wall.median_low), "high",
-                     json_of_real(t->wall.median_high), "n", (json_int_t)t->wall.count);
+    return json_pack("{s:o, s:o, s:o, s:I}", "median", json_of_real(t->wall.median), "low",
+                     json_of_real(t->wall.median_low), "high", json_of_real(t->wall.median_high), "n",
+                     (json_int_t)t->wall.count);
 }
 
 static json_t *cell_json(const study *s, size_t cell, const cell_times *a, const cell_times *b)
@@ -89,7 +90,8 @@ static json_t *cell_json(const study *s, size_t cell, const cell_times *a, const
     json_object_set_new(told, "a", times_json(a));
     json_object_set_new(told, "b", times_json(b));
     json_object_set_new(told, "ratio", json_of_real(b->wall.median / a->wall.median));
-    json_object_set_new(told, "same_film", a->film && b->film ? json_boolean(strcmp(a->film, b->film) == 0) : json_null());
+    json_object_set_new(told, "same_film",
+                        a->film && b->film ? json_boolean(strcmp(a->film, b->film) == 0) : json_null());
     return told;
 }
 
@@ -114,7 +116,8 @@ status study_json_compare(const study *s, const char *results, const char *other
         const cell_times mine = take_cell(&a, cell), theirs = take_cell(&b, cell);
         json_array_append_new(cells, cell_json(s, cell, &mine, &theirs));
     }
-    if (cells && !(*out = json_pack("{s:o, s:o, s:I}", "columns", paths_json(s), "cells", cells, "count", (json_int_t)study_cell_count(s))))
+    if (cells && !(*out = json_pack("{s:o, s:o, s:I}", "columns", paths_json(s), "cells", cells, "count",
+                                    (json_int_t)study_cell_count(s))))
         code = no_memory(why);
     else if (code == STATUS_OK && !cells)
         code = no_memory(why);

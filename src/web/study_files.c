@@ -28,7 +28,8 @@ static char *name_of(const lab *l, const char *file)
     return strndup(stem, dot ? (size_t)(dot - stem) : strlen(stem));
 }
 
-status study_each(const lab *l, bool (*visit)(void *context, const char *name, const char *file), void *context, diagnostic *why)
+status study_each(const lab *l, bool (*visit)(void *context, const char *name, const char *file), void *context,
+                  diagnostic *why)
 {
     json_t *told = folder_tell(l->files);
     status code = told ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
@@ -77,7 +78,9 @@ static status may_open(void *context, const char *path, diagnostic *why)
     char *name = folder_name(l->files, path);
     const bool inside = name != NULL;
     free(name);
-    return inside ? STATUS_OK : diagnose(why, STATUS_BAD_INPUT, "name a scene in the folder that the laboratory was started with", "the scene lies outside of the folder");
+    return inside ? STATUS_OK
+                  : diagnose(why, STATUS_BAD_INPUT, "name a scene in the folder that the laboratory was started with",
+                             "the scene lies outside of the folder");
 }
 
 static status may_load(void *context, const scene *setting, diagnostic *why)
@@ -108,14 +111,16 @@ static status check_inside(const lab *l, const char *path, diagnostic *why)
         return STATUS_OK;
     }
     diagnostic_locate(why, path, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, "let the results lie in the folder that the laboratory was started with", "it lies outside of the folder");
+    return diagnose(why, STATUS_BAD_INPUT, "let the results lie in the folder that the laboratory was started with",
+                    "it lies outside of the folder");
 }
 
 static status check_links(const lab *l, const char *path, diagnostic *why)
 {
     DIR *open = opendir(path);
     if (!open)
-        return errno == ENOENT ? STATUS_OK : check_inside(l, path, why); /* who wants to read or write there hears of the rest */
+        return errno == ENOENT ? STATUS_OK
+                               : check_inside(l, path, why); /* who wants to read or write there hears of the rest */
     status code = STATUS_OK;
     for (struct dirent *entry; code == STATUS_OK && (entry = readdir(open));) {
         if (entry->d_type != DT_LNK && entry->d_type != DT_UNKNOWN)
@@ -160,7 +165,8 @@ static void search_runs(run_search *search, const char *path, const char *below,
     struct dirent **entries = NULL;
     const int count = scandir(path, &entries, is_shown_folder, alphasort);
     for (int i = 0; i < count; i++) {
-        char *inner = text_format("%s/%s", path, entries[i]->d_name), *name = text_format("%s%s%s", below, below[0] ? "/" : "", entries[i]->d_name);
+        char *inner = text_format("%s/%s", path, entries[i]->d_name),
+             *name = text_format("%s%s%s", below, below[0] ? "/" : "", entries[i]->d_name);
         char *rows = inner ? text_format("%s/%s/rows.csv", inner, search->name) : NULL;
         if (rows && name && search->looked++ < RUNS_LOOKED_MAX) {
             if (access(rows, R_OK) == 0 && json_array_size(search->found) < RUNS_MAX)

@@ -46,7 +46,8 @@ static json_t *axis_json(const study *s, const study_axis *axis)
         bad |= json_array_append_new(units, json_of_text(unit_of(s, axis->points[0].paths[i]))) != 0;
     }
     if (!bad)
-        return json_pack("{s:o, s:o, s:o, s:I}", "name", json_of_text(axis->name), "paths", paths, "units", units, "count", (json_int_t)axis->count);
+        return json_pack("{s:o, s:o, s:o, s:I}", "name", json_of_text(axis->name), "paths", paths, "units", units,
+                         "count", (json_int_t)axis->count);
     json_decref(paths);
     json_decref(units);
     return NULL;
