@@ -241,6 +241,7 @@ test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and 
 setup-web: | $(filter setup setup-peers,$(MAKECMDGOALS))
 	@.ci/setup-web $(build)/web-tests
 test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, which it installs with node where there is none; only=NAME for one file
+	@tests/format.sh --check $(build)/web-tests
 	@node tests/web/run.mjs --program '$(abspath $(build)/cuvette)' --modules '$(abspath $(build)/web-tests)' \
 	  $(if $(screenshots),--screenshots '$(abspath $(screenshots))') $(only)
 
@@ -366,9 +367,11 @@ uninstall: ## remove what install put there
 	rm -f $(libraries)/libcuvette.a $(libraries)/libcuvette.so $(libraries)/$(soname) $(libraries)/libcuvette.so.$(version) $(description)
 	rm -rf $(shared) $(libexec) $(DESTDIR)$(PREFIX)/share/doc/cuvette
 
-.PHONY: format clean distclean help
-format: ## lay out the sources with clang-format
-	find src tests experiments/peers -name '*.[ch]' -exec clang-format -i {} +
+.PHONY: format format-check clean distclean help
+format: ## lay out the sources: clang-format, shfmt and, once setup-web has fetched it, prettier
+	@tests/format.sh --write $(build)/web-tests
+format-check: ## check the sources' layout; part of make test
+	@tests/run tests/format.sh
 clean: ## remove everything that was built
 	rm -rf $(build)
 distclean: clean ## also remove tables and figures; measured rows stay in results/

@@ -12,29 +12,44 @@ here=$(cd "$(dirname "$0")" && pwd)
 ours=${1:-${CUVETTE:-build/cuvette}} bare=${2:-${NOCOUNTERS:-}} reps=${REPS:-7}
 report=$(dirname "$ours")/peers/report
 [ -x "$ours" ] ||
-    { echo "usage: bench.sh [CUVETTE [CUVETTE_WITHOUT_COUNTERS]] (no program $ours; make builds it)" >&2; exit 2; }
-[ -x "$report" ] || { echo "bench.sh: no program $report; make peers builds it next to CUVETTE" >&2; exit 2; }
+    {
+        echo "usage: bench.sh [CUVETTE [CUVETTE_WITHOUT_COUNTERS]] (no program $ours; make builds it)" >&2
+        exit 2
+    }
+[ -x "$report" ] || {
+    echo "bench.sh: no program $report; make peers builds it next to CUVETTE" >&2
+    exit 2
+}
 scene=$here/scenes/rod.yaml size=${SIZE:-800x600} with_pov=
 if command -v povray >/dev/null; then
     with_pov=1
 else
     echo "bench.sh: POV-Ray is not installed and is left out; make setup-peers installs it" >&2
 fi
-work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 
 # field NAME < JSON: the first number under that name
 field() { sed -n "s/^ *\"$1\": *\([-0-9.eE+]*\),*$/\1/p" | head -n 1; }
 note() { printf '%s\t%s\n' "$2" "$3" >>"$work/$1"; } # note CONTESTANT seconds rays
-frame() { # frame CONTESTANT PROGRAM CLOCK [set...]: the median of five frames in a pool that the first ones start
-    local who=$1 program=$2 clock=$3 json; shift 3
-    json=$("$program" render "$scene" --json --repeat 5 --set "render.width=${size%x*}" --set "render.height=${size#*x}" "${@/#/--set=}")
+# frame CONTESTANT PROGRAM CLOCK [set...]: the median of five frames in a pool that the first ones start
+frame() {
+    local who=$1 program=$2 clock=$3 json
+    shift 3
+    json=$("$program" render "$scene" --json --repeat 5 --set "render.width=${size%x*}" --set \
+        "render.height=${size#*x}" "${@/#/--set=}")
     note "$who" "$(field "$clock" <<<"$json")" "$(field total <<<"$json")"
 }
 pov() { # pov CONTESTANT depth adc; the ground is unbounded, so its tests count the rays that were followed
     povray "+I$here/peers/rod.pov" "+O$work/pov.png" "+W${size%x*}" "+H${size#*x}" -D -A -V +WT1 \
         "Declare=DEPTH=$2" "Declare=ADC=$3" >"$work/log" 2>&1 ||
-        { echo "bench.sh: povray failed: $(tail -n 1 "$work/log")" >&2; exit 1; }
-    note "$1" "$(awk '/Trace Time/ {f = 1} f && /CPU-seconds/ {for (i = 1; i <= NF; i++) if ($i == "with") {print $(i + 1); exit}}' "$work/log")" \
+        {
+            echo "bench.sh: povray failed: $(tail -n 1 "$work/log")" >&2
+            exit 1
+        }
+    note "$1" "$(awk \
+        '/Trace Time/ {f = 1} f && /CPU-seconds/ {for (i = 1; i <= NF; i++) if ($i == "with") {print $(i + 1); exit}}' \
+        "$work/log")" \
         "$(awk '/^Plane /{print $2; exit}' "$work/log")"
 }
 report_frame() { # report_frame CONTESTANT depth
@@ -47,7 +62,8 @@ for ((round = 0; round < reps; round++)); do
     for depth in 0 4 8; do frame "depth $depth" "$ours" cpu_s render.depth=$depth; done
     [ -z "$bare" ] || for depth in 4 8; do frame "depth $depth, no counters" "$bare" cpu_s render.depth=$depth; done
     frame "depth 8, pruned" "$ours" cpu_s render.depth=8 render.min_weight=0.00392156862745098
-    for threads in 1 2 16 128 1024; do frame "wall, depth 8, $threads threads" "$ours" wall_s render.depth=8 render.threads=$threads; done
+    for threads in 1 2 16 128 1024; do frame "wall, depth 8, $threads threads" "$ours" wall_s render.depth=8 \
+        render.threads=$threads; done
     # What the machine has to give: its units may share a core, a cache, or a host.
     frame "beside another" "$ours" wall_s render.depth=8 &
     frame "wall, depth 8, 1 thread beside another" "$ours" wall_s render.depth=8
@@ -73,13 +89,16 @@ printf '%-40s %10s %12s %10s\n' "rod.yaml, $size" seconds rays "M rays/s"
 rm -f "$work/beside another"
 for f in "$work"/*\ *; do
     who=${f##*/}
-    awk -v who="$who" -v s="$(median "$who" 1)" -v n="$(median "$who" 2)" 'BEGIN {printf "%-40s %10.4f %12s %10s\n", who, s, n, n == "NA" || n == "" ? "NA" : sprintf("%.1f", n / s / 1e6)}'
+    awk -v who="$who" -v s="$(median "$who" 1)" -v n="$(median "$who" 2)" \
+        'BEGIN {printf "%-40s %10.4f %12s %10s\n", who, s, n,
+            n == "NA" || n == "" ? "NA" : sprintf("%.1f", n / s / 1e6)}'
 done
 echo
 ratio "depth 4" "depth 4, no counters" "counters, depth 4: time with / without"
 ratio "depth 8" "depth 8, no counters" "counters, depth 8: time with / without"
 ratio "wall, depth 8, 1 threads" "wall, depth 8, 2 threads" "two threads, depth 8: wall of one / wall of two"
-ratio "wall, depth 8, 1 thread beside another" "wall, depth 8, 1 threads" "one thread beside another process: wall / wall of one alone"
+ratio "wall, depth 8, 1 thread beside another" "wall, depth 8, 1 threads" \
+    "one thread beside another process: wall / wall of one alone"
 ratio "wall, depth 8, 1024 threads" "wall, depth 8, 2 threads" "1024 threads, depth 8: wall / wall of two"
 ratio "the report's algorithm, depth 0" "depth 0" "the report's algorithm / ours, depth 0 (it casts no shadow rays)"
 ratio "the report's algorithm, depth 4" "depth 4" "the report's algorithm / ours, depth 4"

@@ -10,15 +10,19 @@
 set -euo pipefail
 export LC_ALL=C
 ours=${1:-build/tests/bench_mesh} reps=${REPS:-5} accel=${ACCEL:-bvh}
-sets=${SETS:-sparse:10000 sparse:50000 sparse:1000000 dense:10000 dense:50000 dense:1000000 sphere:10000 sphere:50000 sphere:1000000}
+sets=${SETS:-$(echo {sparse,dense,sphere}:{10000,50000,1000000})}
 [ -x "$ours" ] ||
-    { echo "usage: mesh_bench.sh [BENCH_MESH] (no program $ours; make build/tests/bench_mesh builds it)" >&2; exit 2; }
+    {
+        echo "usage: mesh_bench.sh [BENCH_MESH] (no program $ours; make build/tests/bench_mesh builds it)" >&2
+        exit 2
+    }
 embree=$(dirname "$(dirname "$ours")")/peers/embree
 if [ ! -x "$embree" ]; then
     embree=
     echo "mesh_bench.sh: Embree is not installed and is left out; make setup-peers peers installs it" >&2
 fi
-work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 
 # Rows of "round set contestant cpu_ms hits blocked".
 for ((round = 0; round < reps; round++)); do

@@ -15,8 +15,12 @@ set -euo pipefail
 export LC_ALL=C
 cuvette=${1:-${CUVETTE:-build/cuvette}}
 paths=${PATHS:-40960}
-[ -x "$cuvette" ] || { echo "radiance.sh: no program $cuvette; run make" >&2; exit 2; }
-work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
+[ -x "$cuvette" ] || {
+    echo "radiance.sh: no program $cuvette; run make" >&2
+    exit 2
+}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 
 cat >"$work/pond.yaml" <<'END'
 background: {color: [0, 0, 0]}
@@ -35,7 +39,10 @@ mean() { # mean ASSIGNMENT...
     local options=() one
     for one in "$@"; do options+=(--set "$one"); done
     "$cuvette" render "$work/pond.yaml" -o "$work/pond.pfm" "${options[@]}" >"$work/log" 2>&1 ||
-        { cat "$work/log" >&2; exit 1; }
+        {
+            cat "$work/log" >&2
+            exit 1
+        }
     tail -n +4 "$work/pond.pfm" | od -An -v -t f4 -w12 |
         awk '{ sum += $1; squares += $1 * $1; n++ }
              END { mean = sum / n; spread = squares / n - mean * mean

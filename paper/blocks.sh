@@ -1,13 +1,16 @@
 #!/bin/sh
-# What fixed blocks can gain at best: all rays of the picture over the rays of its largest block, for columns and rows shared among
-# n threads as the renderer does, ceil(size / n) to each; and for columns where at most four or eight threads run at a time. From a
+# What fixed blocks can gain at best: all rays of the picture over the rays of its largest block, for columns and rows
+# shared among
+# n threads as the renderer does, ceil(size / n) to each; and for columns where at most four or eight threads run at a
+# time. From a
 # map of rays by pixel (PFM); prints \setval{blocks/...} lines.
 #   paper/blocks.sh MAP-rays.pfm
 export LC_ALL=C
 set -eu
 
 size=$(head -n 2 "$1" | tail -n 1)
-tail -c +$(($(head -n 3 "$1" | wc -c) + 1)) "$1" | od -An -v -t f4 -w12 | awk -v width="${size% *}" -v height="${size#* }" '
+tail -c +$(($(head -n 3 "$1" | wc -c) + 1)) "$1" | od -An -v -t f4 -w12 |
+    awk -v width="${size% *}" -v height="${size#* }" '
     function gain(lines, count, threads,   each, i, sum, largest) {
         each = int((count + threads - 1) / threads)
         for (i = 0; i < count; i++) {

@@ -10,7 +10,8 @@ here=$(dirname "$0")
 published=$here/../experiments/published
 
 fact() { # the first text or number of that name in the study's manifest
-    sed -n "s/^ *\"$2\": *\"\\{0,1\\}\\([^\"]*[^\",]\\)\"\\{0,1\\},\\{0,1\\}\$/\\1/p" "$results/$1/manifest.json" | head -n 1
+    sed -n "s/^ *\"$2\": *\"\\{0,1\\}\\([^\"]*[^\",]\\)\"\\{0,1\\},\\{0,1\\}\$/\\1/p" "$results/$1/manifest.json" |
+        head -n 1
 }
 
 # What TeX reads as commands, as text.
@@ -53,7 +54,10 @@ published() {
     series triangles 'triangles time_s' | awk '{ printf "\\setval{published/triangles/%d}{%s}\n", $1, $2 }'
     series coverage 'pixels time_s' | awk '{ printf "\\setval{published/coverage/%d}{%s}\n", $1, $2 }'
     series crowding 'triangles time_s' | awk '{ printf "\\setval{published/crowding/%d}{%s}\n", $1, $2 }'
-    { series triangles 'triangles time_s'; series crowding 'triangles time_s'; } |
+    {
+        series triangles 'triangles time_s'
+        series crowding 'triangles time_s'
+    } |
         awk '!($1 in sparse) { sparse[$1] = $2; next }
             $1 > 0 { printf "\\setval{published/crowding/%d/slower}{%.0f}\n", $1, $2 / sparse[$1] }'
     series depth 'depth cpu_s' | awk 'NR == 1 { first = $2 }
@@ -66,8 +70,10 @@ published() {
         END { printf "\\setval{published/threads/best}{%s}\n", count }'
 }
 
-# Light through a slab: the middle pixel of each thickness, what the slab's law says, and how far they lie apart at most.
-# Index and coefficients are those of experiments/scenes/absorber.yaml, in 1/m; the law's R is Fresnel's at normal incidence.
+# Light through a slab: the middle pixel of each thickness, what the slab's law says, and how far they lie apart at
+# most.
+# Index and coefficients are those of experiments/scenes/absorber.yaml, in 1/m; the law's R is Fresnel's at normal
+# incidence.
 slab() {
     [ -r "$results/tables/absorber.tsv" ] || return 0
     lines=$(awk -f "$here/../plots/select.awk" -v columns='cell liquid.size.z' "$results/tables/absorber.tsv" |
@@ -95,11 +101,13 @@ slab() {
         }'
 }
 
-# Light through a ball of slime: how far the way that the green light went inside, absorbed by 1/m, lies from the ball's chord (rms over a row
+# Light through a ball of slime: how far the way that the green light went inside, absorbed by 1/m, lies from the ball's
+# chord (rms over a row
 # of pixels), and what a surface that passes a share leaves of the light, against that share's square.
 ball() {
     [ -r "$results/tables/slime-light.tsv" ] || return 0
-    awk -f "$here/../plots/select.awk" -v columns='cell toy.level jelly.transparency' "$results/tables/slime-light.tsv" |
+    awk -f "$here/../plots/select.awk" -v columns='cell toy.level jelly.transparency' \
+        "$results/tables/slime-light.tsv" |
         while read -r cell level share; do
             picture=$(printf '%s/slime-light/images/%04d.pfm' "$results" "$cell")
             [ ! -r "$picture" ] || "$here/../plots/chord.sh" "$picture" 6 0.493 |

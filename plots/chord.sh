@@ -1,15 +1,21 @@
 #!/bin/sh
-# The middle row of a PFM picture of a ball of radius 1, seen from a distance towards its middle: for each pixel that the ball covers the length
-# of the straight way through the ball, 2 sqrt(1 - b^2) with b the way's distance from the middle; then red, green and blue, linear; tab separated.
+# The middle row of a PFM picture of a ball of radius 1, seen from a distance towards its middle: for each pixel that
+# the ball covers the length
+# of the straight way through the ball, 2 sqrt(1 - b^2) with b the way's distance from the middle; then red, green and
+# blue, linear; tab separated.
 #   plots/chord.sh PICTURE.pfm DISTANCE FOV_DEG        fov: vertical
 export LC_ALL=C
 set -eu
 
-[ "$(head -c 2 "$1")" = PF ] || { echo "$0: $1 is no PFM in colour" >&2; exit 1; }
+[ "$(head -c 2 "$1")" = PF ] || {
+    echo "$0: $1 is no PFM in colour" >&2
+    exit 1
+}
 read -r width height <<END
 $(head -n 2 "$1" | tail -n 1)
 END
-tail -c +$(($(head -n 3 "$1" | wc -c) + 12 * (height / 2) * width + 1)) "$1" | head -c $((12 * width)) | od -An -v -t f4 -w12 |
+tail -c +$(($(head -n 3 "$1" | wc -c) + 12 * (height / 2) * width + 1)) "$1" | head -c $((12 * width)) |
+    od -An -v -t f4 -w12 |
     awk -v width="$width" -v height="$height" -v distance="$2" -v fov_deg="$3" '
         {
             half = fov_deg * atan2(0, -1) / 360

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Luminance of one PFM less that of another, a line a pixel: x, y from the bottom, difference; then that of red, green and blue.
+# Luminance of one PFM less that of another, a line a pixel: x, y from the bottom, difference; then that of red, green
+# and blue.
 #   plots/difference.sh PICTURE FROM
 # Luminance: Y = 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), of linear light as PFM holds it.
 export LC_ALL=C
@@ -10,7 +11,10 @@ numbers() {
 }
 
 size=$(head -n 2 "$1" | tail -n 1)
-[ "$size" = "$(head -n 2 "$2" | tail -n 1)" ] || { echo "$0: $1 and $2 differ in size" >&2; exit 1; }
+[ "$size" = "$(head -n 2 "$2" | tail -n 1)" ] || {
+    echo "$0: $1 and $2 differ in size" >&2
+    exit 1
+}
 pipe=$(mktemp -u)
 mkfifo -m 600 "$pipe"
 trap 'rm -f "$pipe"' EXIT

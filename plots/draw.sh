@@ -2,12 +2,16 @@
 # Draws the figures whose rows exist and are newer than the figure, as PNG and SVG.
 #   plots/draw.sh [--results DIR] [--out DIR] [--format png,svg] [FIGURE...]
 # DIR is results unless told; figures go to DIR/figures. A figure named on the command line is always drawn.
-# A figure says in its head what it needs (`# needs:`, paths below DIR, * allowed); without that it is skipped with one line.
+# A figure says in its head what it needs (`# needs:`, paths below DIR, * allowed); without that it is skipped with one
+# line.
 # The same rows give the same bytes: no figure holds a time or a name of the machine.
 set -euo pipefail
 export LC_ALL=C.UTF-8
 
-fail() { echo "draw.sh: $*" >&2; exit 1; }
+fail() {
+    echo "draw.sh: $*" >&2
+    exit 1
+}
 
 root=$(cd "$(dirname "$0")/.." && pwd)
 results=$root/results
@@ -16,9 +20,19 @@ formats=(png svg)
 figures=()
 while [ $# -gt 0 ]; do
     case $1 in
-    --results) results=$(cd "${2:?--results needs a folder}" && pwd) || exit 1; shift ;;
-    --out) mkdir -p "${2:?--out needs a folder}"; out=$(cd "$2" && pwd); shift ;;
-    --format) IFS=, read -r -a formats <<<"${2:?--format needs png, svg or both}"; shift ;;
+    --results)
+        results=$(cd "${2:?--results needs a folder}" && pwd) || exit 1
+        shift
+        ;;
+    --out)
+        mkdir -p "${2:?--out needs a folder}"
+        out=$(cd "$2" && pwd)
+        shift
+        ;;
+    --format)
+        IFS=, read -r -a formats <<<"${2:?--format needs png, svg or both}"
+        shift
+        ;;
     -*) fail "unknown option $1; usage: plots/draw.sh [--results DIR] [--out DIR] [--format png,svg] [FIGURE...]" ;;
     *) figures+=("$1") ;;
     esac
@@ -29,11 +43,13 @@ out=${out:-$results/figures}
 named=${#figures[@]}
 [ "$named" -gt 0 ] || mapfile -t figures < <(grep -l '^# needs:' plots/*.gp | sed 's|.*/||; s|\.gp$||')
 command -v gnuplot >/dev/null || fail "gnuplot is missing; apt-get install --no-install-recommends gnuplot-nox"
-gnuplot -e 'set terminal pngcairo' 2>/dev/null || fail "this gnuplot has no pngcairo; apt-get install --no-install-recommends gnuplot-nox"
+gnuplot -e 'set terminal pngcairo' 2>/dev/null || fail \
+    "this gnuplot has no pngcairo; apt-get install --no-install-recommends gnuplot-nox"
 
 # Does a table hold a measured cell? One without counts, of metrics or curves, needs a line.
 has_rows() {
-    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "n") n = i } NR > 1 && (!n || $n > 0) { found = 1 } END { exit !found }' "$1"
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "n") n = i }
+        NR > 1 && (!n || $n > 0) { found = 1 } END { exit !found }' "$1"
 }
 
 # Sets `missing` to the first thing that a figure lacks, or to nothing, and `inputs` to the files that it is drawn from.
@@ -72,7 +88,8 @@ units() {
 draw() {
     local format scratch=$out/.$1.drawing
     for format in "${formats[@]}"; do
-        if ! gnuplot -e "results = '$results'; output = '$scratch'; format = '$format'; units = ${machine_units:-0}" "plots/$1.gp" \
+        if ! gnuplot -e "results = '$results'; output = '$scratch'; format = '$format'; units = ${machine_units:-0}" \
+            "plots/$1.gp" \
             2>"$scratch.log" || [ ! -s "$scratch.$format" ]; then
             sed "s/^/    /" "$scratch.log" | grep -v '^ *$' | head -n 5 >&2 || true
             rm -f "$scratch".*

@@ -4,7 +4,10 @@
 export LC_ALL=C
 set -eu
 
-[ "$(head -c 2 "$1")" = PF ] || { echo "$0: $1 is no PFM in colour" >&2; exit 1; }
+[ "$(head -c 2 "$1")" = PF ] || {
+    echo "$0: $1 is no PFM in colour" >&2
+    exit 1
+}
 read -r width height <<END
 $(head -n 2 "$1" | tail -n 1)
 END

@@ -20,7 +20,8 @@ awk 'function value(name) {
          return at[which]
      }
      BEGIN { RS = "}" }
-     /"ph": *"X"/ { print corner(2), corner(1), value("ts") / 1e3, (value("ts") + value("dur")) / 1e3, value("tid") }' "$1" |
+     /"ph": *"X"/ { print corner(2), corner(1), value("ts") / 1e3, (value("ts") + value("dur")) / 1e3, value("tid") }' \
+    "$1" |
     sort -n -k 1,1 -k 2,2 |
     awk '{ begin[NR] = $3; end[NR] = $4; worker[NR] = $5 }
          END { for (i = 1; i <= NR; i++) print begin[i], end[i], worker[i], (NR > 1 ? (i - 1) / (NR - 1) : 0) }'

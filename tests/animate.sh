@@ -1,5 +1,6 @@
 #!/bin/bash
-# Films: the same frames for any number of threads, and after being stopped; ledger, rows, names of frames, YUV4MPEG2. tests/animate.sh [PROGRAM];
+# Films: the same frames for any number of threads, and after being stopped; ledger, rows, names of frames, YUV4MPEG2.
+# tests/animate.sh [PROGRAM];
 # needs the compiler (CC) for tests/json_get.c. One line a check ("ok ...", "not ok ...").
 set -uo pipefail
 
@@ -12,8 +13,7 @@ unset CUVETTE_ISA NO_COLOR
 export LC_ALL=C
 
 passed=0 failed=0
-verdict() # STATUS WHAT
-{
+verdict() { # STATUS WHAT
     if (($1 == 0)); then
         passed=$((passed + 1))
         echo "ok $((passed + failed)) - $2"
@@ -23,20 +23,17 @@ verdict() # STATUS WHAT
         sed 's/^/# /' err 2>/dev/null | head -5
     fi
 }
-check() # WHAT COMMAND...: passes when the command succeeds
-{
+check() { # WHAT COMMAND...: passes when the command succeeds
     local what=$1
     shift
     "$@" >check.log 2>&1
     verdict $? "$what"
 }
-animate() # ARGUMENT...: the film of the scene; its results in out, err, code
-{
+animate() { # ARGUMENT...: the film of the scene; its results in out, err, code
     "$program" animate slime.yaml "$@" >out 2>err
     code=$?
 }
-refused() # WHAT PATTERN ARGUMENT...: exit 2 and one line that matches
-{
+refused() { # WHAT PATTERN ARGUMENT...: exit 2 and one line that matches
     local what=$1 pattern=$2
     animate "${@:3}"
     check "$what" eval '((code == 2)) && [[ ! -s out && $(wc -l <err) == 1 ]] && LC_ALL=C grep -qE -- "$pattern" err'
@@ -66,12 +63,14 @@ hands:
     - {time_s: 0.4, release: on}
 END
 check "tests/json_get.c compiles" bash -c \
-    '"$1" -std=gnu17 -Wall -Werror -o json_get "$2" $(pkg-config --cflags --libs jansson)' - "${CC:-gcc}" "$root/tests/json_get.c"
+    '"$1" -std=gnu17 -Wall -Werror -o json_get "$2" $(pkg-config --cflags --libs jansson)' - "${CC:-gcc}" \
+    "$root/tests/json_get.c"
 
 # --- frames
 animate -o one/%05d.png --duration 0.6
 check "a film succeeds" done_well
-check "it has duration times rate frames, from 0" is "$(cd one && echo *)" "%05d.png.json $(printf '%05d.png ' {0..14} | sed 's/ $//')"
+check "it has duration times rate frames, from 0" is "$(cd one && echo *)" \
+    "%05d.png.json $(printf '%05d.png ' {0..14} | sed 's/ $//')"
 check "the summary is one line" is "$(wc -l <out)" 1
 check "all were rendered" summary '15 rendered.* 0 kept'
 check "the body moves: no frame is as the next" is "$(sha256sum one/*.png | cut -c1-64 | sort -u | wc -l)" 15
@@ -94,9 +93,9 @@ check "and are as they were" same_frames one part
 animate -o part/%05d.png --duration 0.6 --set render.threads=3 --set render.accel=octant
 check "how it is computed does not make another film" summary '0 rendered.* 15 kept'
 
-interrupted() # SIGNAL FRAME: a long film, stopped when that frame is there
-{
-    "$program" animate slime.yaml -o long/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows long.csv >out 2>err &
+interrupted() { # SIGNAL FRAME: a long film, stopped when that frame is there
+    "$program" animate slime.yaml -o long/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows long.csv >out \
+        2>err &
     local child=$!
     until [[ -e long/$2.png ]] || ! kill -0 $child 2>/dev/null; do sleep 0.005; done
     kill -"$1" $child 2>/dev/null
@@ -115,9 +114,9 @@ check "SIGTERM does too" is $code 130
 animate -o long/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows long.csv
 check "it goes on to the end" done_well
 check "frames are those of the film that nobody stopped" same_frames calm long
-columns='definition|frame|time_s|film_hash|rays_total|triangles|steps|kinetic|elastic|compression|gravity|volume|center_[xyz]|low|high|speed_max|held'
-of_the_film() # FILE: its columns that do not depend on the machine
-{
+columns='definition|frame|time_s|film_hash|rays_total|triangles|steps|kinetic|elastic|compression|gravity|volume'
+columns+='|center_[xyz]|low|high|speed_max|held'
+of_the_film() { # FILE: its columns that do not depend on the machine
     awk -F, -v wanted="^($columns)\$" 'NR == 1 {for (i = 1; i <= NF; i++) take[i] = $i ~ wanted}
         {for (i = 1; i <= NF; i++) if (take[i]) printf "%s,", $i; print ""}' "$1"
 }
@@ -125,7 +124,8 @@ check "so are the rows, each frame once" diff <(of_the_film calm.csv) <(of_the_f
 check "which say something" is "$(of_the_film calm.csv | sed -n 2p | cut -d, -f2,3)" 0,0
 
 # --- the ledger
-refused "frames of another scene are not mixed in" 'toy.level was 2 and is 3; .*--restart' -o part/%05d.png --set toy.level=3
+refused "frames of another scene are not mixed in" 'toy.level was 2 and is 3; .*--restart' -o part/%05d.png --set \
+    toy.level=3
 refused "nor such of another rate" 'fps was 25/1 and is 30/1' -o part/%05d.png --fps 30
 refused "nor such of another script" 'a file of the scene' -o part/%05d.png --script tug.yaml
 refused "nor such of another beginning" 'start was 0 and is 1' -o part/%05d.png --start 1
@@ -140,7 +140,8 @@ rm part/*.png
 animate -o part/%05d.png --duration 0.6
 touch part/123456.png
 for restart in '' --restart; do
-    refused "a frame that the film has not is not taken for its own $restart" 'part/123456.png: .*has 15' -o part/%05d.png --duration 0.6 $restart
+    refused "a frame that the film has not is not taken for its own $restart" 'part/123456.png: .*has 15' -o \
+        part/%05d.png --duration 0.6 $restart
 done
 rm part/123456.png
 touch part/other.png part/1.png part/000012.png part/00012.png.bak
@@ -162,18 +163,21 @@ for restart in '' --restart; do
     refused "a folder is no frame $restart" 'over/a2.png: is a folder' -o over/a%d.png --duration 0.12 $restart
 done
 animate -o embree/%d.png --duration 0.04 --set render.accel=octant
-refused "frames by Embree are another film" 'render.accel was not embree and is embree' -o embree/%d.png --set render.accel=embree
+refused "frames by Embree are another film" 'render.accel was not embree and is embree' -o embree/%d.png --set \
+    render.accel=embree
 
 # --- what the scene reads
 animate -o read/%05d.png --duration 0.2
-sed 's/^solids:/textures:\n  skin: {file: read\/00003.png}\nsolids:/; s/mesh: toy,/mesh: toy, texture: skin,/' slime.yaml >textured.yaml
+sed 's/^solids:/textures:\n  skin: {file: read\/00003.png}\nsolids:/; s/mesh: toy,/mesh: toy, texture: skin,/' \
+    slime.yaml >textured.yaml
 mkdir links
 ln -s ../read/00003.png links/skin.png
 sed 's/read.00003/links\/skin/' textured.yaml >linked.yaml
 for from in textured linked; do
     "$program" animate $from.yaml -o read/%05d.png --duration 0.2 --restart >out 2>err
     code=$?
-    check "frames in place of a picture that the scene reads, $from" eval '((code == 2)) && [[ -e read/00003.png ]] && grep -q "is read from" err'
+    check "frames in place of a picture that the scene reads, $from" eval \
+        '((code == 2)) && [[ -e read/00003.png ]] && grep -q "is read from" err'
 done
 "$program" render textured.yaml -o read/00003.png >out 2>err
 code=$?
@@ -181,19 +185,21 @@ check "nor is a still put there" eval '((code == 2)) && cmp read/00003.png one/0
 cp slime.yaml '%d.png.json'
 "$program" animate %d.png.json -o ./%d.png --duration 0 >out 2>err
 code=$?
-check "nor the ledger in place of the scene" eval '((code == 2)) && cmp slime.yaml %d.png.json && grep -q "is read from" err'
+check "nor the ledger in place of the scene" eval \
+    '((code == 2)) && cmp slime.yaml %d.png.json && grep -q "is read from" err'
 rm '%d.png.json'
 
 animate -o "part/50%%-%03d.pfm" --duration 0
-check "a percent sign in a name, and at least one frame" eval 'done_well && [[ -s part/50%-000.pfm && ! -e part/50%-001.pfm ]]'
+check "a percent sign in a name, and at least one frame" eval \
+    'done_well && [[ -s part/50%-000.pfm && ! -e part/50%-001.pfm ]]'
 
 # --- rows
 refused "rows of another film are not mixed in" 'another film' -o three/%d.png --duration 0.1 --rows calm.csv
 echo a,b >foreign.csv
-refused "nor such of another kind, and nothing is removed for them" 'other columns' -o one/%05d.png --duration 0.1 --rows foreign.csv --restart
+refused "nor such of another kind, and nothing is removed for them" 'other columns' -o one/%05d.png --duration 0.1 \
+    --rows foreign.csv --restart
 check "the frames are there still" is "$(frames one)" 15
-described()
-{
+described() {
     awk '/^## / {on = $0 == "## Rows of a film"} on && /^\| `/' "$root/results/README.md" |
         sed -n 's/^| \(`[^|]*\) |.*/\1/p' | tr -d '` ' | tr ',' '\n'
 }
@@ -206,7 +212,8 @@ cp late.csv before.csv
 animate -o one/%05d.png --duration 0.6 --rows late.csv
 check "a frame whose picture is gone keeps its one row" eval 'summary "1 rendered.* 14 kept" && cmp before.csv late.csv'
 for film in one/%05d.png\ --restart film.y4m; do
-    refused "a film that begins anew makes no second rows: $film" 'late.csv: has rows already' -o $film --duration 0.6 --rows late.csv
+    refused "a film that begins anew makes no second rows: $film" 'late.csv: has rows already' -o $film --duration 0.6 \
+        --rows late.csv
 done
 check "and has removed nothing" is "$(frames one)" 15
 rm one/00014.png
@@ -215,7 +222,8 @@ refused "a row of another picture" 'wrong.csv: frame 14 ' -o one/%05d.png --dura
 animate -o one/%05d.png --duration 0.6
 exec 9>>late.csv
 flock 9
-refused "rows that another process writes" 'another process.*another file by --rows' -o one/%05d.png --duration 0.6 --rows late.csv
+refused "rows that another process writes" 'another process.*another file by --rows' -o one/%05d.png --duration 0.6 \
+    --rows late.csv
 exec 9>&-
 
 # --- scripts
@@ -224,7 +232,8 @@ check "a film with a script is 2 s longer than that" is "$(frames tug)" 60
 animate -o tug-2/%05d.png --set toy.script=tug.yaml --duration 1
 check "--script is script= of the slime" eval 'done_well && cmp tug/00012.png tug-2/00012.png'
 check "the hand changes the picture" eval '! cmp tug/00008.png one/00008.png && cmp tug/00002.png one/00002.png'
-held() { awk -F, -v frame="$1" 'NR == 1 {for (i = 1; i <= NF; i++) if ($i == "held") at = i} $2 == frame {print ($at > 0)}' tug.csv; }
+held() { awk -F, -v frame="$1" \
+    'NR == 1 {for (i = 1; i <= NF; i++) if ($i == "held") at = i} $2 == frame {print ($at > 0)}' tug.csv; }
 check "rows say what is held" is "$(held 2)$(held 5)$(held 12)" 010
 mkdir elsewhere && cp slime.yaml elsewhere/
 "$program" animate elsewhere/slime.yaml --script tug.yaml -o elsewhere/%05d.png --duration 0.4 >out 2>err
@@ -234,7 +243,8 @@ refused "a script in a pipe" 'regular file' -o three/%d.png --script <(cat tug.y
 refused "one that the scene names" 'nowhere.yaml' -o three/%d.png --set toy.script=nowhere.yaml
 sed 's/grab: \[0, 1, -6\]/grab: [0, 9, -6]/' tug.yaml >miss.yaml
 refused "a grab that misses" 'miss.yaml:4' -o miss/%05d.png --script miss.yaml
-check "leaves the frames before it" eval '(($(frames miss) >= 2 && $(frames miss) <= 4)) && cmp miss/00001.png one/00001.png'
+check "leaves the frames before it" eval \
+    '(($(frames miss) >= 2 && $(frames miss) <= 4)) && cmp miss/00001.png one/00001.png'
 
 # --- a body that blows up
 refused "a body that blows up" 'toy|slime' -o blown/%05d.png --set toy.stiffness=1e9 --duration 4
@@ -243,8 +253,9 @@ check "leaves the frames before it" eval '(($(frames blown) >= 1 && $(frames blo
 check "whole" is "$(./json_get out largest 2>&1)" 0.0
 
 # --- long ways
-stopped() # SECONDS ARGUMENT...: the program, sent SIGINT after that time, and killed when it has not heard it in 10 s more; its code
-{
+# stopped SECONDS ARGUMENT...: the program, sent SIGINT after that time, and killed when it has not heard it in 10 s
+# more; its code
+stopped() {
     "$program" "${@:2}" >out 2>err &
     local child=$! left=100
     sleep "$1"
@@ -257,8 +268,10 @@ stopped() # SECONDS ARGUMENT...: the program, sent SIGINT after that time, and k
 heard() { ((code == 130)) && [[ $(wc -l <err) == 1 && ! -s out ]] && grep -q -- "$1" err; } # PATTERN
 animate -o short/%d.png --duration 0.04 --set toy.time_s=86400 --set toy.dt_s=1e-5
 check "the slime's own time does not count" done_well
-refused "more steps to the film's end than there may be" 'toy: 2 s in steps of 1e-09 s' -o steps/%d.png --set toy.dt_s=1e-9 --duration 2
-refused "from a late start too" 'toy: 2000 s in steps' -o steps/%d.png --set toy.dt_s=1e-6 --start 1999.96 --duration 0.04
+refused "more steps to the film's end than there may be" 'toy: 2 s in steps of 1e-09 s' -o steps/%d.png --set \
+    toy.dt_s=1e-9 --duration 2
+refused "from a late start too" 'toy: 2000 s in steps' -o steps/%d.png --set toy.dt_s=1e-6 --start 1999.96 --duration \
+    0.04
 refused "nor to the script's" 'toy: 2.4 s in steps' -o steps/%d.png --set toy.dt_s=1e-9 --script tug.yaml
 refused "a step of next to nothing" 'toy.dt_s' -o steps/%d.png --set toy.dt_s=1e-300
 stopped 0.5 animate slime.yaml -o steps/%d.png --set toy.time_s=0 --set toy.dt_s=1e-9 --duration 0.1
@@ -279,12 +292,14 @@ animate -o - --duration 0.2 --fps 30000/1001
 check "a film to standard output" done_well
 header='YUV4MPEG2 W64 H48 F30000:1001 Ip A1:1 C420jpeg XCOLORRANGE=LIMITED'
 check "has its header" is "$(head -1 out)" "$header"
-check "and 6 frames of 6 + 64 * 48 * 3 / 2 bytes, nothing else" is "$(stat -c %s out)" $((${#header} + 1 + 6 * (6 + 64 * 48 * 3 / 2)))
+check "and 6 frames of 6 + 64 * 48 * 3 / 2 bytes, nothing else" is "$(stat -c %s out)" \
+    $((${#header} + 1 + 6 * (6 + 64 * 48 * 3 / 2)))
 cp out stdout.y4m
 animate -o film.y4m --duration 0.2 --fps 30000/1001
 check "a file has the same bytes" eval 'done_well && cmp film.y4m stdout.y4m'
 animate -o blown.y4m --set toy.stiffness=1e9 --duration 4
-check "a film in one file appears whole or not at all" eval '((code == 2)) && [[ ! -e blown.y4m && -z $(ls -A | grep part$ | grep cuvette) ]]'
+check "a film in one file appears whole or not at all" eval \
+    '((code == 2)) && [[ ! -e blown.y4m && -z $(ls -A | grep part$ | grep cuvette) ]]'
 "$program" animate slime.yaml -o - --duration 9 2>err | head -c 6000 >/dev/null
 check "a reader who leaves ends it without words" eval '[[ ${PIPESTATUS[0]} != 0 || ! -s err ]] && [[ ! -s err ]]'
 
@@ -297,7 +312,8 @@ check "and the definition of the rows" is "$(./json_get out definition)" "$(sed 
 
 # --- wrong command lines
 touch elsewhere/00000.jpg
-for pattern in x.png a%%.png %s.png %n%d.png %x.png '%5d.png' '%-5d.png' '%+d.png' '%lld.png' '%*d.png' '%1$d.png' '%0d.png' '%099d.png' \
+for pattern in x.png a%%.png %s.png %n%d.png %x.png '%5d.png' '%-5d.png' '%+d.png' '%lld.png' '%*d.png' '%1$d.png' \
+    '%0d.png' '%099d.png' \
     '%0999999999999d.png' '%d%d.png' '%05d%s.png' '%.3d.png'; do
     refused "-o $pattern" 'number' -o "$pattern"
 done
@@ -322,7 +338,8 @@ refused "rows into the scene" 'slime.yaml' -o %d.png --rows slime.yaml
 refused "a film in place of a folder that is not there" 'folder' -o nowhere/x.y4m
 "$program" animate "$root/experiments/scenes/rod.yaml" -o %d.png >out 2>err
 code=$?
-check "a scene without a slime" eval '((code == 2)) && [[ $(wc -l <err) == 1 ]] && grep -q "rod.yaml: nothing moves.*generate: slime" err'
+check "a scene without a slime" eval \
+    '((code == 2)) && [[ $(wc -l <err) == 1 ]] && grep -q "rod.yaml: nothing moves.*generate: slime" err'
 check "wrong command lines leave nothing" is "$(find . -maxdepth 1 -name '*.png' ! -name still.png | wc -l)" 0
 
 echo "$passed passed, $failed failed"

@@ -1,6 +1,8 @@
 #!/bin/bash
-# Wrong command lines, variables, scenes, studies, sky pictures and comparisons: tests/bad_input.sh [PROGRAM]. Each must end with exit 2,
-# nothing on standard output, and exactly one line on standard error that says where, what, and (for a person's slip) the
+# Wrong command lines, variables, scenes, studies, sky pictures and comparisons: tests/bad_input.sh [PROGRAM]. Each must
+# end with exit 2,
+# nothing on standard output, and exactly one line on standard error that says where, what, and (for a person's slip)
+# the
 # remedy. One line a check, then "N passed, N failed".
 set -uo pipefail
 
@@ -14,8 +16,7 @@ unset CUVETTE_ISA
 
 passed=0 failed=0
 located='^cuvette: [^:]+(:[0-9]+(:[0-9]+)?)?: [^;]+(; .+)?$'
-refused() # WHAT PATTERN ARGUMENT...: the line must also match PATTERN
-{
+refused() { # WHAT PATTERN ARGUMENT...: the line must also match PATTERN
     local what=$1 pattern=$2 wrong=
     shift 2
     timeout 60 "$program" "$@" >out 2>err </dev/null
@@ -33,8 +34,7 @@ refused() # WHAT PATTERN ARGUMENT...: the line must also match PATTERN
         echo "not ok $((passed + failed)) - $what:$wrong $(head -c 400 err)"
     fi
 }
-render() # WHAT PATTERN ARGUMENT...
-{
+render() { # WHAT PATTERN ARGUMENT...
     refused "$1" "$2" render "$scene" --json --set render.width=8 --set render.height=6 "${@:3}"
 }
 
@@ -133,8 +133,7 @@ render "a sky without a picture" "picture" --set background.kind=picture
 
 # --- sky pictures
 printf '%s\n' 'background: {kind: picture, picture: sky.png}' 'render: {width: 8, height: 6}' >sky.yaml
-sky() # WHAT: the file sky.png is bad
-{
+sky() { # WHAT: the file sky.png is bad
     refused "sky: $1" "sky\." render sky.yaml --json
 }
 rm -f sky.png
@@ -158,19 +157,36 @@ done
 head -c 20 good.png >sky.png
 sky "PNG cut in its header"
 # Width and height 2^31 - 1, the CRC of the header wrong as well.
-{ head -c 16 good.png; printf '\x7f\xff\xff\xff\x7f\xff\xff\xff'; tail -c +25 good.png; } >sky.png
+{
+    head -c 16 good.png
+    printf '\x7f\xff\xff\xff\x7f\xff\xff\xff'
+    tail -c +25 good.png
+} >sky.png
 sky "PNG of a huge size"
-{ head -c 60 good.png; printf '\xde\xad\xbe\xef'; tail -c +65 good.png; } >sky.png
+{
+    head -c 60 good.png
+    printf '\xde\xad\xbe\xef'
+    tail -c +65 good.png
+} >sky.png
 sky "PNG with damaged data"
 printf 'PF\n99999 99999\n-1.0\nabcd' >sky.png
 sky "PFM of a huge size"
 printf 'PF\n2 -2\n-1.0\n' >sky.png
 sky "PFM of a negative size"
-{ printf 'PF\n1 1\n-1.0\n'; printf '\x00\x00\xc0\x7f\x00\x00\xc0\x7f\x00\x00\xc0\x7f'; } >sky.png
+{
+    printf 'PF\n1 1\n-1.0\n'
+    printf '\x00\x00\xc0\x7f\x00\x00\xc0\x7f\x00\x00\xc0\x7f'
+} >sky.png
 sky "PFM with NaN"
-{ printf 'BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x08\0'; head -c 28 /dev/zero; } >sky.png
+{
+    printf 'BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x08\0'
+    head -c 28 /dev/zero
+} >sky.png
 sky "BMP of 8 bits"
-{ printf 'BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\2\0\0\0\2\0\0\0\1\0\x18\0'; head -c 28 /dev/zero; } >sky.png
+{
+    printf 'BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\2\0\0\0\2\0\0\0\1\0\x18\0'
+    head -c 28 /dev/zero
+} >sky.png
 sky "truncated BMP"
 printf 'GIF89a\1\0\1\0\0\0\0;' >sky.png
 sky "a GIF"
@@ -181,9 +197,11 @@ refused "picture over the sky" "the scene is read from it" render sky.yaml -o sk
 
 # --- scripts of slimes; their reader's own messages are in tests/bad-scripts
 mkdir slimes
-printf '%s\n' 'render: {width: 8, height: 6}' 'meshes:' '  toy: {generate: slime, level: 1, time_s: 0.02, script: tug.yaml}' 'solids:' \
+printf '%s\n' 'render: {width: 8, height: 6}' 'meshes:' \
+    '  toy: {generate: slime, level: 1, time_s: 0.02, script: tug.yaml}' 'solids:' \
     '  body: {shape: mesh, mesh: toy, diffuse: 1}' >slimes/toy.yaml
-refused "a script that is not there" "^cuvette: slimes/toy.yaml:3:58: toy: slimes/tug.yaml" render slimes/toy.yaml --json
+refused "a script that is not there" "^cuvette: slimes/toy.yaml:3:58: toy: slimes/tug.yaml" render slimes/toy.yaml \
+    --json
 printf '%s\n' 'hands:' '  left:' '    - {time_s: 0, move: [0, 0, 0]}' >slimes/tug.yaml
 refused "a wrong script" "^cuvette: slimes/tug.yaml:3:7: left: .*grab first" render slimes/toy.yaml --json
 refused "a wrong script, checked" "^cuvette: slimes/tug.yaml:3:7: " scene slimes/toy.yaml --check
@@ -191,7 +209,8 @@ printf '%s\n' 'hands:' '  left:' '    - {time_s: 0.01, grab: [9, 9, 9], towards:
 refused "a hand that misses" "^cuvette: slimes/tug.yaml:3:7: .*nothing" render slimes/toy.yaml --json
 refused "trace over the script" "the scene is read from it" trace slimes/toy.yaml --pixel 1,1 --text -o slimes/tug.yaml
 refused "scene over the script" "a script of the scene is read from it" scene slimes/toy.yaml -o slimes/tug.yaml
-refused "a slime that blows up" "^cuvette: slimes/toy.yaml:3:19: toy: " render slimes/toy.yaml --json --set toy.script= --set toy.stiffness=1e9
+refused "a slime that blows up" "^cuvette: slimes/toy.yaml:3:19: toy: " render slimes/toy.yaml --json --set \
+    toy.script= --set toy.stiffness=1e9
 refused "too fine a slime" "toy: .*level" render slimes/toy.yaml --json --set toy.level=8
 refused "a scene as a script" "unknown key 'render'" render slimes/toy.yaml --json --set toy.script=toy.yaml
 
@@ -206,7 +225,10 @@ refused "compare of a scene" "not a picture" compare "$scene" good.png
 refused "compare of two sizes" "40 x 20 .* 20 x 40.*one size" compare good.png other.png
 head -c $(($(wc -c <good.png) / 2)) good.png >half.png
 refused "compare of a truncated PNG" "half.png" compare good.png half.png
-{ printf 'PF\n1 1\n-1.0\n'; printf '\x00\x00\xc0\x7f\x00\x00\xc0\x7f\x00\x00\xc0\x7f'; } >nan.pfm
+{
+    printf 'PF\n1 1\n-1.0\n'
+    printf '\x00\x00\xc0\x7f\x00\x00\xc0\x7f\x00\x00\xc0\x7f'
+} >nan.pfm
 refused "compare of a PFM with NaN" "nan.pfm" compare nan.pfm nan.pfm
 refused "misspelt option of compare" "did you mean '--diff'" compare good.png good.jpg --dif-f x.png
 refused "--diff without a file" "needs a value" compare good.png good.jpg --diff
@@ -219,7 +241,8 @@ refused "--diff over a picture" "is read from it" compare good.png good.jpg --di
 refused "--diff is checked before the pictures" "x.gif" compare nowhere.png nowhere.png --diff x.gif
 
 # --- one ray, and many
-printf '%s\n' 'render: {shadows: off}' 'solids:' '  outer: {shape: box, transparency: 1, ior: 1.2, size: [4, 4, 4], priority: 0}' \
+printf '%s\n' 'render: {shadows: off}' 'solids:' \
+    '  outer: {shape: box, transparency: 1, ior: 1.2, size: [4, 4, 4], priority: 0}' \
     '  inner: {shape: box, transparency: 1, ior: 1.3, size: [1, 2, 3], rotation: [10, 20, 30], priority: 1}' >glass.yaml
 refused "trace of nothing" "no scene is named" trace
 refused "trace without a ray" "give --pixel" trace "$scene"
@@ -246,13 +269,13 @@ refused "trace onto a folder" "is a folder" trace "$scene" --pixel 1,1 --json -o
 refused "trace over the scene" "the scene is read from it" trace same.yaml --pixel 1,1 --text -o same.yaml
 # Two million rays: seconds, and a minute with sanitizers.
 [[ ${CONFIG:-release} != release ]] ||
-    refused "a tree too large" "--ray: .*more than .* rays.*render.depth" trace glass.yaml --ray 0.1,0.2,0.3,1,0.7,0.4 --depth 64
+    refused "a tree too large" "--ray: .*more than .* rays.*render.depth" trace glass.yaml --ray 0.1,0.2,0.3,1,0.7,0.4 \
+        --depth 64
 refused "misspelt option of trace" "did you mean '--pixel'" trace "$scene" --pixle 1,1
 refused "fan of nothing" "no scene is named" fan
 refused "fan without an axis" "no axis" fan "$scene" -o x.svg
 refused "fan without a file" "nothing is asked for" fan "$scene" --from 0,0,0 --to 1,0,0
-fan() # WHAT PATTERN ARGUMENT...
-{
+fan() { # WHAT PATTERN ARGUMENT...
     refused "$1" "$2" fan "$scene" --from -3,1,0 -o x.svg "${@:3}"
 }
 fan "fan to its own start" "same point" --to -3,1,0
@@ -269,8 +292,7 @@ fan "fan to standard output" "-o -: " --to 3,1,0 -o -
 fan "fan of a wrong depth" "--depth deep: " --to 3,1,0 --depth deep
 
 # --- scenes and studies; the modules' own tests go deeper
-bad_scene() # WHAT PATTERN TEXT
-{
+bad_scene() { # WHAT PATTERN TEXT
     printf '%b' "$3" >bad.yaml
     refused "scene: $1" "^cuvette: bad\.yaml.*$2" render bad.yaml --json
 }
@@ -285,8 +307,7 @@ bad_scene "a key twice" ":1:" 'render: {width: 8, width: 9}\n'
 bad_scene "unknown shape" ":2:" 'solids:\n  a: {shape: torus}\n'
 bad_scene "a material that is not there" ":2:" 'solids:\n  a: {shape: box, material: gold}\n'
 bad_scene "a list instead of a map" ":1:" '- a\n- b\n'
-bad_study() # WHAT PATTERN TEXT
-{
+bad_study() { # WHAT PATTERN TEXT
     printf '%b' "$3" >bad.study
     refused "study: $1" "^cuvette: bad\.study.*$2" study run bad.study --results results
 }
@@ -300,9 +321,9 @@ bad_study "a range of one value" ":3:" "study: a\nscene: $scene\ngrid: [{liquid.
 bad_study "more repetitions at least than at most" ":3:.*less than" \
     "study: a\nscene: $scene\nrepetitions: {min: 9, max: 3, relative_width: 0.1}\n"
 [[ -e results ]] && echo "# a refused study has made results/"
-changed() # GRID
-{
-    printf '%s\n' 'study: changed' "scene: $scene" 'set: {render.width: 8, render.height: 6}' "grid: [$1]" 'repetitions: 1' \
+changed() { # GRID
+    printf '%s\n' 'study: changed' "scene: $scene" 'set: {render.width: 8, render.height: 6}' "grid: [$1]" \
+        'repetitions: 1' \
         >changed.study
 }
 changed '{render.depth: [0, 1]}'

@@ -9,8 +9,7 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-bench.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 
 count=0 failed=0
-verdict() # STATUS WHAT [WHY]
-{
+verdict() { # STATUS WHAT [WHY]
     count=$((count + 1))
     if (($1 == 0)); then
         echo "ok $count - $2"
@@ -20,21 +19,19 @@ verdict() # STATUS WHAT [WHY]
         [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3"
     fi
 }
-equal() # WHAT GOT WANTED
-{
+equal() { # WHAT GOT WANTED
     [[ $2 == "$3" ]]
     verdict $? "$1" "got $2, not $3"
 }
-has_ratio() # TEXT NAME: the ratio, its rounds and its range
-{
+has_ratio() { # TEXT NAME: the ratio, its rounds and its range
     grep -qE "^$2.* [0-9]+\.[0-9]{3}   \(1 rounds, [0-9.]+ to [0-9.]+\)" <<<"$1"
     verdict $? "a ratio: $2" "$1"
 }
 
 # --- frames
 ours=('counters, depth 4' 'counters, depth 8' 'two threads' '1024 threads, depth 8: wall / wall of two'
-      "the report's algorithm / ours, depth 0" "the report's algorithm / ours, depth 4"
-      "the report's algorithm / ours, depth 8")
+    "the report's algorithm / ours, depth 0" "the report's algorithm / ours, depth 4"
+    "the report's algorithm / ours, depth 8")
 theirs=('POV-Ray / ours, depth 8, both pruned' 'POV-Ray / ours, depth 8, whole tree')
 
 # A path without POV-Ray, whether it is installed or not.
@@ -59,13 +56,11 @@ fi
 # --- the report's algorithm: what it counts
 rows=$("$report" -s 160x120 -d 0,1,2,3 -t 1,7 2>&1)
 verdict $? "the report's algorithm runs" "$rows"
-value() # DEPTH THREADS NAME: from a row
-{
+value() { # DEPTH THREADS NAME: from a row
     awk -F'\t' -v depth="$1" -v threads="$2" -v name="$3" 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i }
         $at["depth"] == depth && $at["threads"] == threads { print $at[name] }' <<<"$rows"
 }
-first() # SOLID: camera rays that meet it first, by Cuvette
-{
+first() { # SOLID: camera rays that meet it first, by Cuvette
     sed -n '/"first_hits"/,/}/s/^ *"'"$1"'": *\([0-9]*\),*$/\1/p' "$work/ours.json"
 }
 "$cuvette" render experiments/scenes/rod.yaml --json --set render.depth=0 \

@@ -1,12 +1,20 @@
 #!/bin/bash
-# The engine as other programs meet it: installed, found by pkg-config, linked shared and statically, from C and C++; its names, its
+# The engine as other programs meet it: installed, found by pkg-config, linked shared and statically, from C and C++;
+# its names, its
 # version; the example programs' pictures and memory. BUILD names the build folder, CONFIG its configuration.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 build=${BUILD:-build} config=${CONFIG:-release} cc=${CC:-gcc}
 case $cc in *clang*) cxx=${CXX:-clang++} ;; *) cxx=${CXX:-g++} ;; esac
-case $config in sanitize | tsan | fuzz) echo "# instrumented libraries are not for other programs"; exit 77 ;; esac
-[[ -f $build/libcuvette.a ]] || { echo "# $build/libcuvette.a is not built"; exit 77; }
+case $config in sanitize | tsan | fuzz)
+    echo "# instrumented libraries are not for other programs"
+    exit 77
+    ;;
+esac
+[[ -f $build/libcuvette.a ]] || {
+    echo "# $build/libcuvette.a is not built"
+    exit 77
+}
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-engine-XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 unset CUVETTE_ISA
@@ -26,16 +34,24 @@ empty() { # WHAT TEXT: passes when the text, what is wrong, is empty
     [[ -z $2 ]]
     verdict $? "$1" "$2"
 }
-skip() { case_number=$((case_number + 1)); echo "ok $case_number # SKIP $1"; }
+skip() {
+    case_number=$((case_number + 1))
+    echo "ok $case_number # SKIP $1"
+}
 have() { command -v "$1" >/dev/null; }
-run_make() { make -s --no-print-directory config="$config" build="$build" CC="$cc" "$@" 2>&1 | grep -v -i -e jobserver -e '^ '; }
+run_make() { make -s --no-print-directory config="$config" build="$build" CC="$cc" "$@" 2>&1 |
+    grep -v -i -e jobserver -e '^ '; }
 
 # --- installed, under DESTDIR and without it
 prefix=$work/prefix staged=$work/destination/opt/cuvette
 run_make install DESTDIR="$work/destination" PREFIX=/opt/cuvette
 run_make install PREFIX="$prefix"
 empty "DESTDIR goes before PREFIX, and is in no file" \
-    "$(diff <(cd "$prefix" && find . | sort) <(cd "$staged" && find . | sort); grep -l "$work" -r "$staged/lib/pkgconfig")"
+    "$(
+        diff <(cd "$prefix" && find . | sort) <(cd "$staged" && find . |
+            sort)
+        grep -l "$work" -r "$staged/lib/pkgconfig"
+    )"
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 flags() { pkg-config "$@" cuvette; }
 version=$(sed -n 's/^#define CUVETTE_VERSION_[A-Z]* //p' src/cuvette.h | paste -sd.)
@@ -51,7 +67,8 @@ empty "so does the static one" \
 empty "its soname is libcuvette.so.0" "$(readelf -d "$library" | grep SONAME | grep -v '\[libcuvette.so.0\]')"
 empty "it asks for no stack that runs code" "$(readelf -lW "$library" | awk '/GNU_STACK/ && /RWE/')"
 empty "it neither prints nor ends the program" \
-    "$(nm -D --undefined-only "$library" | awk '{print $2}' | sed 's/@.*//' | grep -x -e exit -e _exit -e abort -e printf -e puts -e putchar -e perror -e stderr)"
+    "$(nm -D --undefined-only "$library" | awk '{print $2}' | sed 's/@.*//' |
+        grep -x -e exit -e _exit -e abort -e printf -e puts -e putchar -e perror -e stderr)"
 
 # --- the examples, in four ways
 warnings=(-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
@@ -74,7 +91,8 @@ under_valgrind() { # NAME
         skip "valgrind is not installed"
         return
     fi
-    said=$(LD_LIBRARY_PATH=$prefix/lib valgrind -q --error-exitcode=9 --leak-check=full --show-leak-kinds=definite,indirect,possible \
+    said=$(LD_LIBRARY_PATH=$prefix/lib valgrind -q --error-exitcode=9 --leak-check=full \
+        --show-leak-kinds=definite,indirect,possible \
         --errors-for-leak-kinds=definite,indirect,possible "$work/$1" 2>&1 >"$work/valgrind.ppm")
     verdict $? "valgrind finds no fault in it, and no leak" "$(grep '^==' <<<"$said")"
     empty "and it sees the same picture" "$(cmp "$work/$1.ppm" "$work/valgrind.ppm" 2>&1)"
@@ -93,15 +111,25 @@ try_example() { # NAME WIDTH HEIGHT WHAT_IS_SAID: what of its words is the same 
         skip "$name as C++: no $cxx"
     fi
     empty "the shared one needs libcuvette.so.0, the static one none" \
-        "$(readelf -d "$work/$name-shared-c" | grep 'NEEDED.*libcuvette\.so\.0\]' >/dev/null || echo shared; readelf -d "$work/$name-static-c" | grep 'NEEDED.*libcuvette')"
+        "$(
+            readelf -d "$work/$name-shared-c" | grep 'NEEDED.*libcuvette\.so\.0\]' >/dev/null ||
+                echo shared
+            readelf -d "$work/$name-static-c" | grep 'NEEDED.*libcuvette'
+        )"
     empty "it says what it did" "$([[ -s $work/$name-shared-c.said ]] || echo nothing)"
     for way in "${ways[@]}"; do
         empty "$name-$way makes the same picture, films and counts" \
-            "$(cmp "$work/$name-shared-c.ppm" "$work/$name-$way.ppm" 2>&1; diff "$work/$name-shared-c.said" "$work/$name-$way.said")"
+            "$(
+                cmp "$work/$name-shared-c.ppm" "$work/$name-$way.ppm" 2>&1
+                diff "$work/$name-shared-c.said" \
+                    "$work/$name-$way.said"
+            )"
     done
     local head="P6 $width $height 255 "
     empty "the picture is a PPM of $width x $height" \
-        "$([[ $(head -c ${#head} "$work/$name-shared-c.ppm" | tr '\n' ' ') == "$head" && $(wc -c <"$work/$name-shared-c.ppm") == $((${#head} + 3 * width * height)) ]] || wc -c <"$work/$name-shared-c.ppm")"
+        "$([[ $(head -c ${#head} "$work/$name-shared-c.ppm" | tr '\n' ' ') == "$head" &&
+        $(wc -c <"$work/$name-shared-c.ppm") == $((${#head} + 3 * width * height)) ]] ||
+            wc -c <"$work/$name-shared-c.ppm")"
     under_valgrind "$name-shared-c"
 }
 try_example glass_ball 320 240 'film.*preview\|rays:.*'

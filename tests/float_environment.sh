@@ -53,12 +53,14 @@ int main(void)
 }
 EOF
 "${CC:-gcc}" -shared -fPIC -O1 -o strange.so strange.c -lm && "${CC:-gcc}" -o names names.c -lm ||
-    { echo "# no compiler that makes a library"; exit 77; }
+    {
+        echo "# no compiler that makes a library"
+        exit 77
+    }
 read -r nearest up down zero < <(./names | tr -d ';' | cut -d' ' -f1-4)
 
 passed=0 failed=0
-verdict() # STATUS WHAT
-{
+verdict() { # STATUS WHAT
     if (($1 == 0)); then
         passed=$((passed + 1))
         echo "ok $((passed + failed)) - $2"
@@ -68,8 +70,7 @@ verdict() # STATUS WHAT
     fi
 }
 environment= # STRANGE of what follows; empty: none
-strange() # PROGRAM ARGUMENT...
-{
+strange() {  # PROGRAM ARGUMENT...
     if [[ $environment ]]; then STRANGE=$environment LD_PRELOAD=$work/strange.so "$@"; else "$@"; fi
 }
 cuvette() { strange "$program" "$@"; }
@@ -99,8 +100,7 @@ EOF
 small=(--set render.width=48 --set render.height=36 --set render.depth=4 --set render.threads=2)
 hash_of() { cuvette render "$@" --json | grep -o '"film_hash": *"[0-9a-f]*"'; }
 
-run_all() # prints what the program says and writes
-{
+run_all() { # prints what the program says and writes
     hash_of "$scenes/rod.yaml" "${small[@]}"
     hash_of "$scenes/rod.yaml" "${small[@]}" --set render.integrator=path --set render.samples=4
     hash_of "$scenes/prism.yaml" "${small[@]}" --set render.wavelengths=16
@@ -120,8 +120,7 @@ run_all() # prints what the program says and writes
 run_all >expected 2>&1
 (($(grep -c film_hash expected) == 7)) && ! grep -q '^cuvette: ' expected
 verdict $? "every command works: $(wc -l <expected) lines"
-expect() # WHAT ENVIRONMENT
-{
+expect() { # WHAT ENVIRONMENT
     environment=$2
     run_all >found 2>&1
     cmp -s expected found

@@ -1,5 +1,6 @@
 #!/bin/bash
-# Every header under src/ compiles alone, as C17 and as C++17 where there is a C++ compiler; one with C11 atomics as C only.
+# Every header under src/ compiles alone, as C17 and as C++17 where there is a C++ compiler; one with C11 atomics as C
+# only.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 cc=${CC:-gcc}
@@ -12,7 +13,8 @@ compile() { # compile HEADER LANGUAGE COMPILER FLAG...
     local header=$1 language=$2 found
     shift 2
     case_number=$((case_number + 1))
-    if found=$(printf '#include "%s"\nextern int end_of_header;\n' "${header#src/}" | "$@" "${warnings[@]}" -D_GNU_SOURCE -Isrc "${libraries[@]}" -fsyntax-only - 2>&1); then
+    if found=$(printf '#include "%s"\nextern int end_of_header;\n' "${header#src/}" |
+        "$@" "${warnings[@]}" -D_GNU_SOURCE -Isrc "${libraries[@]}" -fsyntax-only - 2>&1); then
         echo "ok $case_number - $header as $language"
     else
         echo "not ok $case_number - $header as $language"

@@ -1,5 +1,6 @@
 #!/bin/bash
-# kill -9 at 20 random moments of a study, each time continued: no row lost, none twice, none torn, and the same cells in the
+# kill -9 at 20 random moments of a study, each time continued: no row lost, none twice, none torn, and the same cells
+# in the
 # end as in a run that nobody disturbed. CUVETTE names the program, KILLS how often, KILL_SEED the moments.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
@@ -7,7 +8,10 @@ program=${CUVETTE:-build/cuvette}
 kills=${KILLS:-20}
 seed=${KILL_SEED:-$(($(date +%s) % 32768))}
 RANDOM=$seed
-[[ -x $program ]] || { echo "# $program is not built"; exit 77; }
+[[ -x $program ]] || {
+    echo "# $program is not built"
+    exit 77
+}
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-kill-XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 echo "# seed $seed"
@@ -27,7 +31,10 @@ END
 case=0 bad=0
 result() { # status name
     case=$((case + 1))
-    if (($1 == 0)); then echo "ok $case - $2"; else echo "not ok $case - $2"; bad=1; fi
+    if (($1 == 0)); then echo "ok $case - $2"; else
+        echo "not ok $case - $2"
+        bad=1
+    fi
 }
 
 study() { "$program" study run --results "$1" "$work/kill.study" >"$work/said" 2>&1; }
@@ -35,7 +42,8 @@ study() { "$program" study run --results "$1" "$work/kill.study" >"$work/said" 2
 # The whole lines of a file: what follows the last newline is torn.
 whole() { [[ -f $1 ]] && if [[ -n $(tail -c 1 "$1") ]]; then sed '$d' "$1"; else cat "$1"; fi; }
 
-# Each line of rows.csv has all its columns; no cell and repetition stands twice; with "complete": 4 measured ones a cell.
+# Each line of rows.csv has all its columns; no cell and repetition stands twice; with "complete": 4 measured ones a
+# cell.
 check_rows() {
     awk -F, -v complete="${2:-}" '
         NR == 1 { columns = NF; next }
@@ -43,7 +51,10 @@ check_rows() {
         seen[$3, $4]++ { print "cell " $3 " repetition " $4 " stands twice"; bad = 1 }
         { cells[$3]; counted[$3] += !$5; marked += $12 }
         END {
-            for (cell in cells) { n++; if (complete && counted[cell] != 4) { print "cell " cell " has " counted[cell] " repetitions"; bad = 1 } }
+            for (cell in cells) {
+                n++
+                if (complete && counted[cell] != 4) { print "cell " cell " has " counted[cell] " repetitions"; bad = 1 }
+            }
             if (complete && n != 15) { print n " cells"; bad = 1 }
             if (marked) { print marked " rows are marked"; bad = 1 }
             exit bad
@@ -58,7 +69,11 @@ check_workers() {
         file == 2 && !(($3, $4) in threads) { print "worker row of no row: cell " $3 " repetition " $4; bad = 1 }
         file == 2 && seen[$3, $4, $8]++ { print "worker row twice"; bad = 1 }
         file == 2 { have[$3, $4]++ }
-        END { for (key in threads) if (have[key] != threads[key]) { print "a row has " have[key] " worker rows"; bad = 1 } exit bad }
+        END {
+            for (key in threads)
+                if (have[key] != threads[key]) { print "a row has " have[key] " worker rows"; bad = 1 }
+            exit bad
+        }
     ' "$1/rows.csv" "$1/workers.csv"
 }
 
@@ -87,14 +102,22 @@ while ((killed < kills)); do
         cp "$work/after" "$work/before"
         ((code == 137)) || break
         killed=$((killed + 1))
-        ((killed < kills)) || { study "$results"; code=$?; break; }
+        ((killed < kills)) || {
+            study "$results"
+            code=$?
+            break
+        }
     done
-    ((code == 0)) || { cat "$work/said"; rounds_bad=$((rounds_bad + 1)); }
+    ((code == 0)) || {
+        cat "$work/said"
+        rounds_bad=$((rounds_bad + 1))
+    }
     cmp -s -n "$(stat -c %s "$work/before")" "$work/before" "$results/kill/rows.csv" || lost=$((lost + 1))
     check_rows "$results/kill/rows.csv" complete || rounds_bad=$((rounds_bad + 1))
     check_workers "$results/kill" || rounds_bad=$((rounds_bad + 1))
     [[ $(cells "$results/kill/rows.csv") == "$(cells "$work/calm/kill/rows.csv")" ]] || rounds_bad=$((rounds_bad + 1))
-    [[ $(cd "$results/kill/images" && sha256sum *.png) == "$(cd "$work/calm/kill/images" && sha256sum *.png)" ]] || rounds_bad=$((rounds_bad + 1))
+    [[ $(cd "$results/kill/images" && sha256sum *.png) == "$(cd "$work/calm/kill/images" && sha256sum *.png)" ]] ||
+        rounds_bad=$((rounds_bad + 1))
     study "$results" && grep -q "nothing to do" "$work/said" || rounds_bad=$((rounds_bad + 1))
 done
 result $lost "$killed kills: no row is lost"

@@ -1,5 +1,6 @@
 #!/bin/bash
-# A file under src/ includes only from its own room and from floors below it, written from src/. Reads the #include lines;
+# A file under src/ includes only from its own room and from floors below it, written from src/. Reads the #include
+# lines;
 # then plants bad ones in a copy, to see that they are caught.
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -8,7 +9,8 @@ cd "$(dirname "$0")/.."
 check() {
     (cd "$1" && find . -name '*.[ch]' -printf '%P\n' | sort | xargs awk '
         BEGIN {
-            split("base 0 optics 1 geometry 1 measure 1 softbody 2 image 2 scene 3 render 4 realism 4.5 lint 4.5 study 5 report 5.5 engine 6 web 6.5 cli 7 mpi 7 import 7", word)
+            split("base 0 optics 1 geometry 1 measure 1 softbody 2 image 2 scene 3 render 4 realism 4.5 lint 4.5 " \
+                  "study 5 report 5.5 engine 6 web 6.5 cli 7 mpi 7 import 7", word)
             for (i = 1; i in word; i += 2) floor[word[i]] = word[i + 1]
         }
         function room(path) { return path ~ /\// ? substr(path, 1, index(path, "/") - 1) : "engine" }
@@ -20,7 +22,8 @@ check() {
             else if (target !~ /\// && target != "cuvette.h") complain("\"" target "\" is not written from src/")
             else if (!(other in floor)) complain("\"" target "\" leads to a room that stands on no floor")
             else if (other != own && floor[other] > floor[own]) complain("\"" target "\" climbs from " own " to " other)
-            else if (other != own && floor[other] == floor[own]) complain("\"" target "\" goes sideways from " own " to " other)
+            else if (other != own && floor[other] == floor[own])
+                complain("\"" target "\" goes sideways from " own " to " other)
         }' /dev/null)
 }
 

@@ -12,16 +12,21 @@ trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 unset CUVETTE_ISA
 case ${CONFIG:-release}${CC:-gcc} in
-tsan* | fuzz* | sanitize*clang*) echo "# allocates by itself, whatever is preloaded"; exit 77 ;;
+tsan* | fuzz* | sanitize*clang*)
+    echo "# allocates by itself, whatever is preloaded"
+    exit 77
+    ;;
 esac
 export LC_ALL=C ASAN_OPTIONS=verify_asan_link_order=0
 
 "${CC:-gcc}" -std=c17 -D_GNU_SOURCE -shared -fPIC -O1 -o fail.so "$root/tests/fail_allocation.c" -ldl ||
-    { echo "# no compiler that makes a library"; exit 77; }
+    {
+        echo "# no compiler that makes a library"
+        exit 77
+    }
 
 passed=0 failed=0
-verdict() # STATUS WHAT
-{
+verdict() { # STATUS WHAT
     if (($1 == 0)); then
         passed=$((passed + 1))
         echo "ok $((passed + failed)) - $2"
@@ -30,14 +35,12 @@ verdict() # STATUS WHAT
         echo "not ok $((passed + failed)) - $2"
     fi
 }
-failing() # NUMBER KINDS COMMAND...
-{
+failing() { # NUMBER KINDS COMMAND...
     FAIL_AT=$1 FAIL_KINDS=$2 FAIL_COUNT=$work/count LD_PRELOAD=$work/fail.so "${@:3}" >out 2>err
 }
 
 # What the last run has done wrong; nothing is good.
-wrongs() # CODE OUTPUT
-{
+wrongs() { # CODE OUTPUT
     if (($1 == 0)); then
         cmp -s "$2" right || echo "exit 0 with a wrong file"
     elif (($1 != 1)); then
@@ -50,8 +53,7 @@ wrongs() # CODE OUTPUT
 }
 
 # Fails allocations of some kinds, each or every so many: walk WHAT KINDS STEP OUTPUT ARGUMENT...
-walk()
-{
+walk() {
     local what=$1 kinds=$2 step=$3 output=$4 sites tried=0 told=0 bad=0 wrong at code
     shift 4
     rm -f "$output" count

@@ -1,5 +1,6 @@
 #!/bin/bash
-# Scenes that a student would write, each with one mistake: `cuvette scene --check` has one note for each, at the place that the scene's second
+# Scenes that a student would write, each with one mistake: `cuvette scene --check` has one note for each, at the place
+# that the scene's second
 # line names, and a remedy. `bash tests/notes.sh` prints what it says of them. CUVETTE: the program.
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -33,7 +34,8 @@ expect() { # expect NAME WANTED FOUND: how many notes on the depth
     fi
 }
 study() { # study GRID: what running it says
-    printf 'study: t\nscene: %s\ngrid:\n  - {%s}\nrepetitions: 1\n' "$PWD/tests/data/lint/shallow.yaml" "$1" >"$folder/t.study"
+    printf 'study: t\nscene: %s\ngrid:\n  - {%s}\nrepetitions: 1\n' "$PWD/tests/data/lint/shallow.yaml" "$1" \
+        >"$folder/t.study"
     "$cuvette" study run --results "$folder/$RANDOM" "$folder/t.study" ${2-} 2>&1
 }
 expect 'a render notes it' 1 "$("$cuvette" render tests/data/lint/shallow.yaml -o "$folder/a.png" 2>&1)"

@@ -1,6 +1,8 @@
 #!/bin/bash
-# The numbers that experiments/published takes from other reports say where they stand: each row has `where` and `quote`,
-# the quote holds the row's numbers (a label 0 of polygons2004 is our reading and is not printed), and the page there knows
+# The numbers that experiments/published takes from other reports say where they stand: each row has `where` and
+# `quote`,
+# the quote holds the row's numbers (a label 0 of polygons2004 is our reading and is not printed), and the page there
+# knows
 # the report. SOURCES=DIR, a folder with the plain texts that the page names: also that the quote stands in that line.
 # One line a check ("ok ...", "not ok ...").
 set -uo pipefail
@@ -8,8 +10,7 @@ set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 folder=$root/experiments/published
 count=0 failed=0
-verdict() # WHAT WRONG: passes when the text, what is wrong, is empty
-{
+verdict() { # WHAT WRONG: passes when the text, what is wrong, is empty
     count=$((count + 1))
     if [[ -z $2 ]]; then
         echo "ok $count - $1"
@@ -19,19 +20,16 @@ verdict() # WHAT WRONG: passes when the text, what is wrong, is empty
         sed 's/^/# /' <<<"$2"
     fi
 }
-columns() # FILE NAMES: tab separated; a row that lacks one of them is left out
-{
+columns() { # FILE NAMES: tab separated; a row that lacks one of them is left out
     awk -f "$root/plots/select.awk" -v columns="$2" "$1"
 }
 text_of() { sed -n "s/^| \`$1\` |.*| \`\([^\`]*\.txt\)\` |\$/\1/p" "$folder/README.md"; } # KEY
 
 # A number as the quote may print it: with a comma, and alone, not as a part of another.
-is_in() # NUMBER QUOTE
-{
+is_in() { # NUMBER QUOTE
     grep -qE "(^|[^0-9.,])${1//./[.,]}($|[^0-9.,])" <<<"$2"
 }
-check_rows() # FILE KEY_COLUMN TIME_COLUMN: what is wrong with its rows
-{
+check_rows() { # FILE KEY_COLUMN TIME_COLUMN: what is wrong with its rows
     local label time where quote key line found=0
     while IFS=$'\t' read -r label time where quote; do
         found=$((found + 1))
@@ -54,9 +52,9 @@ verdict "threads.csv says where its numbers stand" "$(check_rows "$folder/thread
 verdict "triangles.csv says where its numbers stand" "$(check_rows "$folder/triangles.csv" triangles time_s 2>&1)"
 verdict "coverage.csv says where its numbers stand" "$(check_rows "$folder/coverage.csv" pixels time_s 2>&1)"
 verdict "crowding.csv says where its numbers stand" "$(check_rows "$folder/crowding.csv" triangles time_s 2>&1)"
-# polygons2004 prints six times, then five labels: a row has the time of its own place, and the label of the place before.
-check_order() # FILE KEY_COLUMN
-{
+# polygons2004 prints six times, then five labels: a row has the time of its own place, and the label of the place
+# before.
+check_order() { # FILE KEY_COLUMN
     columns "$1" "$2 time_s quote" | tr ',' '.' | awk -F'\t' '{
         printed = split($3, part, " ")
         if (printed == 11 && ($2 != part[NR] || $1 != (NR == 1 ? 0 : part[NR + 5])))
@@ -71,8 +69,8 @@ verdict "no other series is there" \
     "$(cd "$folder" && printf '%s\n' *.csv | grep -vxE '(depth|threads|triangles|coverage|crowding)\.csv')"
 verdict "README.md describes every column" \
     "$(for name in $(head -q -n 1 "$folder"/*.csv | tr ',' '\n' | sort -u); do
-    grep -q "^| \`$name\` |" "$folder/README.md" || echo "$name"
-done)"
+        grep -q "^| \`$name\` |" "$folder/README.md" || echo "$name"
+    done)"
 # shellcheck disable=SC2016
 keys=$(sed -n 's/^| `\([a-z0-9]*\)` |.*\.txt` |$/\1/p' "$folder/README.md")
 verdict "the paper cites every report" "$(for key in ${keys:-none}; do

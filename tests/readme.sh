@@ -1,5 +1,6 @@
 #!/bin/bash
-# What the pages for people promise: files that they name are there, commands and the study of README.md work as they stand,
+# What the pages for people promise: files that they name are there, commands and the study of README.md work as they
+# stand,
 # and results/README.md names every column that a study writes. tests/readme.sh [PROGRAM]; needs the compiler (CC) for
 # tests/json_get.c. One line a check ("ok ...", "not ok ...").
 set -uo pipefail
@@ -11,8 +12,7 @@ trap 'rm -rf "$work"' EXIT
 unset CUVETTE_ISA NO_COLOR
 
 count=0 failed=0 skipped=0
-verdict() # STATUS WHAT [WHY]
-{
+verdict() { # STATUS WHAT [WHY]
     count=$((count + 1))
     if (($1 == 0)); then
         echo "ok $count - $2"
@@ -22,19 +22,16 @@ verdict() # STATUS WHAT [WHY]
         [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3"
     fi
 }
-empty() # WHAT TEXT: passes when the text, what is wrong, is empty
-{
+empty() { # WHAT TEXT: passes when the text, what is wrong, is empty
     [[ -z $2 ]]
     verdict $? "$1" "$2"
 }
 
 # --- files that are named: links and pictures from the page's folder, `src/...` and the like from the root
-links() # PAGE: their targets without those on the web and within the page
-{
+links() { # PAGE: their targets without those on the web and within the page
     grep -o '](\([^)]*\))' "$1" | sed 's/^](//; s/[)#].*$//' | grep -v -e '^[a-z]*:' -e '^$' | sort -u
 }
-words() # PAGE
-{
+words() { # PAGE
     # shellcheck disable=SC2016
     grep -oE '`(src|experiments|plots|tests|paper)(/[A-Za-z0-9_./-]*)?`' "$1" | tr -d '`' | sort -u
 }
@@ -61,7 +58,8 @@ for page in README.md results/README.md experiments/published/README.md paper/cl
 done
 # shellcheck disable=SC2016
 empty "the README names the two commands" \
-    "$(for line in 'make setup experiments' 'make setup test'; do grep -qE "^    $line( |$)" "$root/README.md" || echo "$line"; done)"
+    "$(for line in 'make setup experiments' 'make setup test'; do grep -qE "^    $line( |$)" "$root/README.md" ||
+        echo "$line"; done)"
 
 # --- a folder as a reader has it: the studies and scenes, the program on the path
 mkdir -p "$work/bin" "$work/lab/src/cli"
@@ -73,21 +71,21 @@ verdict $? "tests/json_get.c compiles"
 export PATH=$work/bin:$PATH
 cd "$work/lab" || exit 1
 
-try() # COMMAND LINE: its words in said
-{
+try() { # COMMAND LINE: its words in said
     bash -c "set -e -o pipefail; $1" >said 2>&1 </dev/null
     verdict $? "$1" "$(<said)"
 }
 # The commands of the tour that are done in a moment. What follows a | may need a program that is not installed.
 while read -r line; do
     try "${line%% | *}"
-done < <(sed -n 's/^    \(cuvette \(render\|params\|media\|trace\|fan\|compare\|realism\|motion\|machine\|study list\).*\)/\1/p' "$root/README.md" | sed 's/ *#.*//' |
+done < <(sed -n \
+    's/^    \(cuvette \(render\|params\|media\|trace\|fan\|compare\|realism\|motion\|machine\|study list\).*\)/\1/p' \
+    "$root/README.md" | sed 's/ *#.*//' |
     sed "s/ render / render --set=render.width=160 --set=render.height=120 /")
 
 # --- the example study, as it stands: the first block is the file, the second how to run it
 section() { awk '/^\*\*A study of your own/ {on = 1; print; next} on && /^\*\*/ {exit} on' "$root/README.md"; }
-block() # N: the Nth indented block of the section
-{
+block() { # N: the Nth indented block of the section
     section | awk -v n="$1" '/^    / {if (!inside) k++; inside = 1; if (k == n) print substr($0, 5); next} {inside = 0}'
 }
 file=$(section | sed -n '1s/.*`\([^`]*\)`.*/\1/p')
@@ -98,13 +96,17 @@ while read -r line; do
 done < <(block 2)
 name=$(sed -n 's/^study: //p' "$file")
 empty "its pictures are in images/index.tsv" \
-    "$({ cd "results/$name/images" && diff <(tail -n +2 index.tsv | cut -f1 | sort) <(find . -name '*.png' -printf '%f\n' | sort); } 2>&1)"
+    "$({ cd "results/$name/images" && diff <(tail -n +2 index.tsv | cut -f1 |
+        sort) <(find . -name '*.png' -printf '%f\n' | sort); } 2>&1)"
 cells=$(cuvette study list experiments | awk -v f="$file" '$1 == f {print $2}')
-empty "as many as it has cells" "$(awk -v n="$cells" 'END {if (NR != n + 1) print NR - 1, "for", n}' "results/$name/images/index.tsv" 2>&1)"
+empty "as many as it has cells" \
+    "$(awk -v n="$cells" 'END {if (NR != n + 1) print NR - 1, "for", n}' "results/$name/images/index.tsv" 2>&1)"
 empty "index.tsv has the range's ends" \
-    "$(awk -F'\t' 'NR == 2 {from = $3} {to = $3} END {if (from != 1 || to != 1.6) print from, to}' "results/$name/images/index.tsv" 2>&1)"
+    "$(awk -F'\t' 'NR == 2 {from = $3} {to = $3} END {if (from != 1 || to != 1.6) print from, to}' \
+        "results/$name/images/index.tsv" 2>&1)"
 empty "its summary has a line a cell, and intervals" \
-    "$(cuvette study summary "$file" | awk -F'\t' -v n="$cells" 'NR > 1 && !($6 < $7) {print} END {if (NR != n + 1) print NR}')"
+    "$(cuvette study summary "$file" | awk -F'\t' -v n="$cells" \
+        'NR > 1 && !($6 < $7) {print} END {if (NR != n + 1) print NR}')"
 
 # --- the dictionary against what a study writes; a name with <...> stands for several
 cat >experiments/columns.study <<'END'
@@ -117,17 +119,15 @@ keep: {image: on, workers: on}
 END
 cuvette study run --quiet experiments/columns.study
 cuvette study summary experiments/columns.study >summary.tsv
-described() # SECTION: first column of its table
-{
+described() { # SECTION: first column of its table
     awk -v title="## $1" '/^## / {on = $0 == title} on && /^\| `/' "$root/results/README.md" |
         sed -n 's/^| \(`[^|]*\) |.*/\1/p' | sed 's/^| *//' | cut -d'|' -f1 | tr -d '` ' | tr ',' '\n'
 }
-written() # FILE SEPARATOR: its header, a name a line, this study's own names as the dictionary's
-{
-    head -1 "$1" | tr "$2" '\n' | sed 's/^render\.depth$/<axis>/; s/hits\.\(ground\|vessel\|liquid\|rod\)$/hits.<solid>/' | uniq
+written() { # FILE SEPARATOR: its header, a name a line, this study's own names as the dictionary's
+    head -1 "$1" | tr "$2" '\n' | sed \
+        's/^render\.depth$/<axis>/; s/hits\.\(ground\|vessel\|liquid\|rod\)$/hits.<solid>/' | uniq
 }
-compare() # SECTION NAMES: the same ones, in the same order
-{
+compare() { # SECTION NAMES: the same ones, in the same order
     empty "results/README.md has the columns of $1" "$(diff <(described "$1") <(echo "$2"))"
 }
 folder=results/columns
@@ -136,8 +136,13 @@ compare workers.csv "$(written $folder/workers.csv ,)"
 compare 'tables/<study>.tsv' "$(written summary.tsv '\t')"
 compare images/index.tsv "$(written $folder/images/index.tsv '\t')"
 manifest() { json_get $folder/manifest.json "$1@keys" | sed "s/^/$2/"; }
-compare manifest.json "$(manifest study study.; manifest machine machine.; manifest 'runs[0]' 'runs[].')"
-empty "and no other part in manifest.json" "$(json_get $folder/manifest.json @keys | grep -vx -e study -e machine -e runs)"
+compare manifest.json "$(
+    manifest study study.
+    manifest machine machine.
+    manifest 'runs[0]' 'runs[].'
+)"
+empty "and no other part in manifest.json" \
+    "$(json_get $folder/manifest.json @keys | grep -vx -e study -e machine -e runs)"
 
 echo "$((count - failed - skipped)) passed, $failed failed"
 ((failed == 0))

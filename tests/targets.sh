@@ -8,8 +8,7 @@ trap 'rm -rf "$work"' EXIT
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
 count=0 failed=0
-builds() # TARGET PROGRAM...: each is linked when nothing is there yet
-{
+builds() { # TARGET PROGRAM...: each is linked when nothing is there yet
     local target=$1 plan program
     shift
     plan=$(make -n CC=gcc config=release build="$work/build" RESULTS="$work/results" "$target" 2>&1)

@@ -13,8 +13,7 @@ cd "$work" || exit 1
 unset CUVETTE_ISA NO_COLOR
 
 passed=0 failed=0
-verdict() # STATUS WHAT
-{
+verdict() { # STATUS WHAT
     if (($1 == 0)); then
         passed=$((passed + 1))
         echo "ok $((passed + failed)) - $2"
@@ -23,15 +22,13 @@ verdict() # STATUS WHAT
         echo "not ok $((passed + failed)) - $2"
     fi
 }
-check() # WHAT COMMAND...: passes when the command succeeds
-{
+check() { # WHAT COMMAND...: passes when the command succeeds
     local what=$1
     shift
     "$@" >check.log 2>&1
     verdict $? "$what"
 }
-run() # ARGUMENT...: the program, small; its results in out, err, code
-{
+run() { # ARGUMENT...: the program, small; its results in out, err, code
     "$program" "$@" >out 2>err
     code=$?
 }
@@ -48,7 +45,8 @@ holds() { awk "BEGIN {exit !($1)}"; } # CONDITION on numbers
 magic() { is "$(od -An -tx1 -N"${#2}" "$1" | tr -d ' \n' | cut -c1-"${#2}")" "$2"; }
 
 check "tests/json_get.c compiles" bash -c \
-    '"$1" -std=gnu17 -Wall -Werror -o json_get "$2" $(pkg-config --cflags --libs jansson)' - "${CC:-gcc}" "$root/tests/json_get.c"
+    '"$1" -std=gnu17 -Wall -Werror -o json_get "$2" $(pkg-config --cflags --libs jansson)' - "${CC:-gcc}" \
+    "$root/tests/json_get.c"
 
 # --- help and version
 run --version
@@ -58,7 +56,8 @@ check "--help succeeds on standard output" silent_success
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" "study list" "study status" "study merge" "study summary"; do
+for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" \
+    "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -80,7 +79,8 @@ run render "$scene" -o b.png "${small[@]}"
 check "the same scene gives the same bytes" cmp a.png b.png
 run render "$scene" -o c.png --bits 16 "${small[@]}"
 check "--bits 16 gives a PNG of 16 bits" is "$(od -An -tu1 -j24 -N1 c.png | tr -d ' ')" 16
-check "no other files are left" is "$(find . -type f -printf '%f\n' | LC_ALL=C sort | tr '\n' ' ')" "a.jpg a.pfm a.png b.png c.png check.log err json_get out "
+check "no other files are left" is "$(find . -type f -printf '%f\n' | LC_ALL=C sort | tr '\n' ' ')" \
+    "a.jpg a.pfm a.png b.png c.png check.log err json_get out "
 
 # --- the JSON account
 run render "$scene" --json "${small[@]}" --set render.depth=3 --set lamp.position.x=2 --set render.threads=3
@@ -96,7 +96,8 @@ check "one number a depth" is "$(json rays_by_depth@length)" 4
 check "first hits by solid" is "$(json first_hits@keys)" "$(lines ground vessel liquid rod)"
 check "first hits of the vessel" holds "$(json first_hits.vessel) > 0"
 check "hits and tests by solid" holds "0 < $(json hits.rod) && $(json hits.rod) <= $(json tests.rod)"
-check "cut rays" holds "$(json cut.depth.rays) > 0 && $(json cut.weight.rays) == 0 && $(json cut.depth.throughput@length) == 3"
+check "cut rays" holds "$(json cut.depth.rays) > 0 && $(json cut.weight.rays) == 0 && $(json \
+    cut.depth.throughput@length) == 3"
 check "cut_throughput is the mean of the channels" \
     holds "($(json 'cut.depth.throughput[]' | sum) / 3 - $(json cut_throughput)) ^ 2 < 1e-18"
 check "one account a worker" is "$(json 'threads[].worker')" "$(lines 0 1 2)"
@@ -109,7 +110,8 @@ check "switches and others" json voluntary_switches involuntary_switches others_
 check "without chance there is no noise" is "$(json noise@type)" null
 check "hardware counters are there or null" is "$(json hardware@keys | sort | tr '\n' ' ')" \
     "branch_misses cache_misses cycles instructions "
-check "parameters have types" is "$(json 'params["render.depth"]@type' 'params["render.weights"]')" "$(lines integer fresnel)"
+check "parameters have types" is "$(json 'params["render.depth"]@type' 'params["render.weights"]')" \
+    "$(lines integer fresnel)"
 check "vectors are lists" is "$(json 'params["lamp.position"][]')" "$(lines 2.0 7.0 -5.0)"
 check "a real reads back" is "$(json 'params["liquid.ior"]')" 1.33
 check "isa and version" matches "$(json isa version | tr '\n' ' ')" '^(sse2|avx2|avx512) [0-9.]+ $'
@@ -133,7 +135,8 @@ run render "$scene" --json "${small[@]}" --set liquid.visible=no --set render.po
 check "switches take no and false" is "$(json 'params["liquid.visible"]' 'params["render.pool"]')" "$(lines off off)"
 if locale -a 2>/dev/null | grep -qi '^de_DE'; then
     LC_ALL=de_DE.UTF-8 run render "$scene" --json "${small[@]}"
-    check "a locale with a decimal comma changes nothing" is "$(json film_hash 'params["liquid.ior"]')" "$(lines "$hash" 1.33)"
+    check "a locale with a decimal comma changes nothing" is "$(json film_hash 'params["liquid.ior"]')" \
+        "$(lines "$hash" 1.33)"
 fi
 
 # --- maps and timeline
@@ -147,8 +150,12 @@ check "one named row a worker" \
     is "$(./json_get line.json 'traceEvents[name=thread_name].args.name')" "$(lines "worker 0" "worker 1")"
 tiles() { ./json_get line.json "traceEvents[ph=X].$1"; }
 check "the tiles cover the picture" is 4800 \
-    "$(paste <(tiles args.x0) <(tiles args.x1) <(tiles args.y0) <(tiles args.y1) | awk '{s += ($2 - $1) * ($4 - $3)} END {print s}')"
-check "no tile ends before it begins" is "$( (tiles dur; tiles ts) | grep -c '^-')" 0
+    "$(paste <(tiles args.x0) <(tiles args.x1) <(tiles args.y0) <(tiles args.y1) |
+        awk '{s += ($2 - $1) * ($4 - $3)} END {print s}')"
+check "no tile ends before it begins" is "$( (
+    tiles dur
+    tiles ts
+) | grep -c '^-')" 0
 run render "$scene" "${small[@]}" --rays rays.pfm --json
 # The last pixels of a PFM's payload sum to nothing by themselves: compare the sum of one channel with the count.
 sum=$(tail -c $((80 * 60 * 12)) rays.pfm | od -An -v -tf4 -w12 | awk '{s += $1} END {printf "%d", s}')
@@ -179,21 +186,23 @@ check "or those in whose meaning it stands" is "$(tail -n +2 out | cut -d' ' -f1
 run params --man
 check "params --man is roff" grep -q '^\.SS ' out
 sed '/^\.\\" begin parameters/,/^\.\\" end parameters/!d' "$page" | sed '1d;$d' >page.txt
-check "cuvette.1 has these parameters (to renew: put 'cuvette params --man' between its begin and end marks)" cmp out page.txt
+check "cuvette.1 has these parameters (to renew: put 'cuvette params --man' between its begin and end marks)" cmp out \
+    page.txt
 missing=0
 while read -r path _; do
     grep -qF -- "$path" "$page" || missing=$((missing + 1))
 done < <("$program" params | tail -n +2)
 check "cuvette.1 names every parameter" is "$missing" 0
-example() # SECTION: the first example of that section of the page
-{
-    awk -v section="$1" '/^\.SH / {here = $0 == ".SH " section} here && /^\.EE/ {exit} on {print} here && /^\.EX/ {on = 1}' "$page" |
+example() { # SECTION: the first example of that section of the page
+    awk -v section="$1" \
+        '/^\.SH / {here = $0 == ".SH " section} here && /^\.EE/ {exit} on {print} here && /^\.EX/ {on = 1}' "$page" |
         sed 's/\\-/-/g'
 }
 example "SCENE FILES" >page.yaml
 run render page.yaml -o page.png "${small[@]}"
 check "the page's scene renders, and there is nothing to note" silent_success
-check "every solid of it is met" is "$("$program" render page.yaml --json "${small[@]}" | ./json_get - hits | grep -c ':0[,}]')" 0
+check "every solid of it is met" is \
+    "$("$program" render page.yaml --json "${small[@]}" | ./json_get - hits | grep -c ':0[,}]')" 0
 mkdir page
 cp -r "$root/experiments/scenes" page/
 example "STUDY FILES" >page/page.study
@@ -207,8 +216,7 @@ for option in $("$program" render --help | grep -o '^ .*--[a-z]*' | grep -o -- '
 done
 
 # --- comparison
-pfm() # WIDTH HEIGHT CHANNEL...: bytes of little-endian floats, rows from the bottom
-{
+pfm() { # WIDTH HEIGHT CHANNEL...: bytes of little-endian floats, rows from the bottom
     printf 'PF\n%d %d\n-1.0\n' "$1" "$2"
     printf '%b' "${@:3}"
 }
@@ -217,8 +225,10 @@ pfm 2 1 $zero $zero $zero $one $one $one >left.pfm
 pfm 2 1 $zero $zero $zero $one $zero $one >right.pfm
 run compare left.pfm right.pfm
 check "compare succeeds where pictures differ" silent_success
-check "compare prints a table" is "$(cut -c1-12 out | tr -d ' ' | tr '\n' ' ')" "size mse psnr ssim flip largest differing "
-check "one channel of six: mse 1/6, psnr 10 log10 6" is "$(sed -n 's/^\(mse\|psnr\) *//p' out)" "$(lines 0.166667 "7.78 dB")"
+check "compare prints a table" is "$(cut -c1-12 out | tr -d ' ' | tr '\n' ' ')" \
+    "size mse psnr ssim flip largest differing "
+check "one channel of six: mse 1/6, psnr 10 log10 6" is "$(sed -n 's/^\(mse\|psnr\) *//p' out)" \
+    "$(lines 0.166667 "7.78 dB")"
 check "the largest difference and its place" grep -q '^largest     1 at 1,0$' out
 check "the share that differs" grep -q '^differing   50% of the pixels' out
 run compare left.pfm right.pfm --json
@@ -257,20 +267,24 @@ run media --at 500
 check "media --at has one more column" is "$(awk 'NR == 1 || $1 == "bk7" {print $6}' out)" "$(lines n_at 1.52141)"
 check "media --at leaves out what was not measured there" grep -qE '^glycerol .* - +589' out
 run media fused-silica --at 632.8
-check "media of a name has its coefficients" grep -qE '^coefficients +0\.6961663 0\.0684043 0\.4079426 0\.1162414 0\.8974794 9\.896161$' out
+check "media of a name has its coefficients" grep -qE \
+    '^coefficients +0\.6961663 0\.0684043 0\.4079426 0\.1162414 0\.8974794 9\.896161$' out
 check "and its formula" grep -qE '^law .*n\^2 = 1 \+ .*L\^2 - C\^2' out
 check "and --at, also relative to vacuum" grep -qE '^n_at +1\.4570[0-9]* at 632\.8 nm, relative to vacuum 1\.4574' out
 run media glycerol
 check "media of a name says what to beware of" grep -qE '^note .*extrapolated' out
 run media water --json
-check "media --json of a name has that one" is "$(json schema media@length 'media[0].name' 'media[0].law')" "$(lines 1 1 water sellmeier)"
-check "media --json: absolute is n_d of a law relative to vacuum" is "$(json 'media[0].n_d')" "$(json 'media[0].absolute.n_d')"
+check "media --json of a name has that one" is "$(json schema media@length 'media[0].name' 'media[0].law')" \
+    "$(lines 1 1 water sellmeier)"
+check "media --json: absolute is n_d of a law relative to vacuum" is "$(json 'media[0].n_d')" \
+    "$(json 'media[0].absolute.n_d')"
 run media --json --at 500
 check "media --json has all" is "$(json media@length)" 15
 check "media --json: relative to air and absolute" holds \
     "($(json 'media[name=bk7].absolute.n_d') / $(json 'media[name=bk7].n_d') - 1.00027717) ^ 2 < 1e-16"
 check "media --json --at" holds "($(json 'media[name=bk7].at.n') - 1.52141) ^ 2 < 1e-10"
-check "media --json --at is null where it was not measured" is "$(json 'media[name=glycerol].at.n' 'media[name=glycerol].extrapolated')" \
+check "media --json --at is null where it was not measured" is \
+    "$(json 'media[name=glycerol].at.n' 'media[name=glycerol].extrapolated')" \
     "$(lines null '["n_d","n_F"]')"
 check "media --json: room temperature and no Abbe's number are null" \
     is "$(json 'media[name=diamond].temperature_c' 'media[name=olive-oil].V_d')" "$(lines null null)"
@@ -280,11 +294,13 @@ run mesh --generate box --size 1,2,3
 check "mesh describes a box" is "$code $(grep -E '^(triangles|area|closed|volume)' out | tr -s ' ' | tr '\n' ' ')" \
     "0 triangles 12 area 22 closed yes volume 6 "
 run mesh --generate lathe --profile 1,0,1,1 --around 4
-check "mesh names a hole" grep -qE '^closed +no: the edge from vertex [0-9]+ to [0-9]+ of triangle [0-9]+ is shared by 1, not 2$' out
+check "mesh names a hole" grep -qE \
+    '^closed +no: the edge from vertex [0-9]+ to [0-9]+ of triangle [0-9]+ is shared by 1, not 2$' out
 run mesh --generate sphere --count 20 --json
 check "mesh --json" is "$(json schema triangles vertices closed hole single)" "$(lines 1 20 60 true null true)"
 run mesh --generate sparse --count 3 --json
-check "mesh --json: no volume, but the hole" is "$(json closed volume hole.triangle hole.sharing)" "$(lines false null 0 1)"
+check "mesh --json: no volume, but the hole" is "$(json closed volume hole.triangle hole.sharing)" \
+    "$(lines false null 0 1)"
 run mesh --generate sparse --count 100 -f bin
 check "mesh -f bin: 36 bytes a triangle" is "$(wc -c <out) $(od -An -tf4 -N12 out | wc -w)" "3600 3"
 # what the peers' program embree_bench dumped of these triangles
@@ -293,24 +309,31 @@ for dump in "obj 894476047 13145" "bin 1098474655 3600" "pov 3555543625 13831" "
     check "mesh -f ${dump%% *} is the peers' dump" is "$(cksum <out)" "${dump#* }"
 done
 run mesh --generate torus --around 5 --tube 4 -f obj -o torus.obj
-check "mesh -o writes a file and no word" is "$code $(cat out err | wc -c) $(grep -c ^v torus.obj) $(grep -c ^f torus.obj)" "0 0 30 40"
+check "mesh -o writes a file and no word" is \
+    "$code $(cat out err | wc -c) $(grep -c ^v torus.obj) $(grep -c ^f torus.obj)" "0 0 30 40"
 run mesh --generate box -f ply
-check "mesh -f ply: header and bytes" is "$(head -c 35 out | tr '\n' ' ') $(($(wc -c <out) - $(grep -am1 -bo end_header out | cut -d: -f1) - 11))" \
+check "mesh -f ply: header and bytes" is \
+    "$(head -c 35 out | tr '\n' ' ') $(($(wc -c <out) - $(grep -am1 -bo end_header out | cut -d: -f1) - 11))" \
     "ply format binary_little_endian 1.0 $((24 * 32 + 12 * 13))"
 run mesh --generate box -f pov
-check "mesh -f pov" is "$(grep -c '^,\|{[0-9]*,<' out) $(tail -1 out)" "36 pigment{rgb 0.8} finish{ambient 0.1 diffuse 0.9}}"
+check "mesh -f pov" is "$(grep -c '^,\|{[0-9]*,<' out) $(tail -1 out)" \
+    "36 pigment{rgb 0.8} finish{ambient 0.1 diffuse 0.9}}"
 run mesh --generate box -f tachyon
 check "mesh -f tachyon" is "$(grep -c '^TRI V0 ' out)" 12
 run mesh --generate toru
-check "an unknown body is refused with the nearest" matches "$code $(<err)" "^2 cuvette: --generate: .*'toru'; did you mean 'torus'"
+check "an unknown body is refused with the nearest" matches "$code $(<err)" \
+    "^2 cuvette: --generate: .*'toru'; did you mean 'torus'"
 run mesh --generate torus --minor 2
-check "wrong radii are refused with the remedy" matches "$code $(<err)" "^2 cuvette: --generate: a torus of radii 1 and 2; use radii"
+check "wrong radii are refused with the remedy" matches "$code $(<err)" \
+    "^2 cuvette: --generate: a torus of radii 1 and 2; use radii"
 run mesh --generate lathe --profile 0,0,1
-check "a profile wants pairs" matches "$code $(<err)" "^2 cuvette: --generate: body: the profile has an odd number of numbers; "
+check "a profile wants pairs" matches "$code $(<err)" \
+    "^2 cuvette: --generate: body: the profile has an odd number of numbers; "
 run mesh --generate box -f obj -o nowhere/box.obj
 check "a folder that is not there is refused" matches "$code $(<err)" "^[12] cuvette: .*nowhere/box.obj"
 run mesh torus.obj
-check "mesh reads a file" is "$code $(grep -E "^(triangles|closed)" out | tr -s " " | tr "\n" " ")" "0 triangles 40 closed yes "
+check "mesh reads a file" is "$code $(grep -E "^(triangles|closed)" out | tr -s " " | tr "\n" " ")" \
+    "0 triangles 40 closed yes "
 run mesh nothing.obj
 check "a mesh file that is not there" matches "$code $(<err)" "^2 cuvette: .*nothing.obj.*cannot open"
 run mesh
@@ -336,7 +359,8 @@ check "a curve is CSV of three columns" is "$(awk -F'","|,' 'END {print NR, NF}'
 run realism "$scene" --curve dept
 check "an unknown curve is refused with the nearest" matches "$code $(<err)" "^2 cuvette: --curve: .*depth"
 run realism "$root/experiments/scenes/solids.yaml"
-check "a scene without a vessel is refused" matches "$code $(<err)" "^2 cuvette: .*solids.yaml: there is no visible cup named 'vessel'; "
+check "a scene without a vessel is refused" matches "$code $(<err)" \
+    "^2 cuvette: .*solids.yaml: there is no visible cup named 'vessel'; "
 run realism
 check "realism wants a scene" matches "$code $(<err)" "^2 cuvette: realism: no scene is named; "
 for option in $("$program" realism --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
@@ -356,7 +380,8 @@ run motion "$slime" --set toy.level=1 --json
 check "motion --json" is "$(json schema 'slimes[].name' 'slimes[].integrator')" "$(lines 1 toy euler)"
 check "motion --json has all values" is "$(json 'slimes[].values[].name' | sort -u | wc -l)" 19
 run motion "$scene"
-check "a scene without a slime is refused" matches "$code $(<err)" "^2 cuvette: .*rod.yaml: nothing moves in this scene; "
+check "a scene without a slime is refused" matches "$code $(<err)" \
+    "^2 cuvette: .*rod.yaml: nothing moves in this scene; "
 run motion "$slime" --json --csv
 check "motion takes JSON or CSV" matches "$code $(<err)" "^2 cuvette: motion: JSON and CSV do not go together"
 for option in $("$program" motion --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
@@ -364,13 +389,12 @@ for option in $("$program" motion --help | grep -o '^ .*--[a-z]*' | grep -o -- '
 done
 
 # --- one ray, and many
-pixel() # FILE X Y: the three floats of a pixel of an 80 x 60 PFM, whose rows go upwards
-{
+pixel() { # FILE X Y: the three floats of a pixel of an 80 x 60 PFM, whose rows go upwards
     tail -c $((80 * 60 * 12)) "$1" | od -An -v -tf4 -w12 -j$((((59 - $3) * 80 + $2) * 12)) -N12
 }
-same_floats() # a radiance of a.pfm and one printed with 17 digits
-{
-    paste <(printf '%s\n' $1) <(printf '%s\n' $2) | awk '{d = $1 - $2; if (d < 0) d = -d; if (d > 2e-7 * ($2 + 1e-30)) bad = 1} END {exit bad || NR != 3}'
+same_floats() { # a radiance of a.pfm and one printed with 17 digits
+    paste <(printf '%s\n' $1) <(printf '%s\n' $2) |
+        awk '{d = $1 - $2; if (d < 0) d = -d; if (d > 2e-7 * ($2 + 1e-30)) bad = 1} END {exit bad || NR != 3}'
 }
 for at in 40,30 37,41 5,3 44,22; do
     run trace "$scene" --pixel $at --json "${small[@]}"
@@ -384,12 +408,13 @@ check "keys of a ray, in order" is "$(json root@keys | tr '\n' ' ')" \
     "kind depth origin direction throughput medium n hit children end brought "
 check "keys of a hit, in order" is "$(json root.hit@keys | tr '\n' ' ')" \
     "solid surface t point normal from to cos_i cos_t R_s R_p R tir path_length transmittance error_bound opaque $(
-        )T radiance_factor "
+    )T radiance_factor "
 check "what a refraction does to radiance: T, and T (n1 / n2)^2" \
     holds "($(json root.hit.radiance_factor.classic) - (1 - $(json root.hit.R))) ^ 2 < 1e-30 &&
         ($(json root.hit.radiance_factor.basic) * 2.25 - (1 - $(json root.hit.R))) ^ 2 < 1e-30"
 check "and which of them rays carry" is "$(json carries)" classic
-check "the first ray" is "$(json root.kind root.depth root.medium root.n root.end root.hit.solid root.hit.surface root.hit.tir)" \
+check "the first ray" is "$(json root.kind root.depth root.medium root.n root.end root.hit.solid root.hit.surface \
+    root.hit.tir)" \
     "$(lines camera 0 air 1 hit vessel "outer side" false)"
 check "media on both sides" is "$(json root.hit.from.medium root.hit.to.medium root.hit.to.n)" "$(lines air vessel 1.5)"
 check "its children" is "$(json 'root.children[].kind')" "$(lines reflect refract)"
@@ -397,13 +422,15 @@ check "shares: reflectance and the rest" \
     holds "($(json 'root.children[kind=reflect].throughput[0]') - $(json root.hit.R)) ^ 2 < 1e-30"
 check "numbers have 17 significant digits" grep -qE '"cos_i":0\.[0-9]{16,18},' out
 check "a ray beyond the depth is said to be cut" grep -q '"depth":4,.*"hit":null,"children":\[\],"end":"cut_depth"' out
-check "a shadow ray has its light" grep -q '"kind":"shadow".*"end":"\(lit\|blocked\)".*"light":"lamp","light_distance":' out
+check "a shadow ray has its light" grep -q \
+    '"kind":"shadow".*"end":"\(lit\|blocked\)".*"light":"lamp","light_distance":' out
 count=$(grep -c '"kind"' out)
 run trace "$scene" --pixel 40,30 --depth 3 "${small[@]}"
 check "trace prints a line a ray, and the radiance" is "$(wc -l <out)" $((count + 1))
 check "kinds and ends in the text" matches "$(<out)" '^camera .*hit.*refract .*R_s .*cut_depth.*radiance '
 run trace "$scene" --ray=0,1.6,-0.5,0,0.6,1 --depth 2 --set rod.visible=off
-check "trace of a ray under water: total internal reflection" matches "$(head -1 out)" '^camera  depth 0  in liquid n 1\.33 .* none, TIR '
+check "trace of a ray under water: total internal reflection" matches "$(head -1 out)" \
+    '^camera  depth 0  in liquid n 1\.33 .* none, TIR '
 run trace "$scene" --pixel 40,30 --json "${small[@]}" --set render.samples=4
 check "four samples are four roots" is "$(json roots@length 'roots[0].throughput[]')" "$(lines 4 0.25 0.25 0.25)"
 run trace "$scene" --pixel 40,30 --json "${small[@]}" --set render.polarisation=on
@@ -420,22 +447,30 @@ check "a depth buffer draws the scene: no shadow rays" is "$code $(json rays.sha
 run render "$scene" -o drawn.png "${small[@]}" --set render.integrator=zbuffer --set render.spectrum=spectral
 check "but not a spectral one" matches "$code $(<err)" '^2 cuvette: .*depth buffer.*; set render.integrator'
 run trace "$scene" --pixel 40,30 --lambda 1200 --set liquid.medium=water "${small[@]}"
-check "a medium that was not measured there is noted" matches "$(<err)" '^cuvette: note: liquid\.medium: water was measured from 182 to 1129 nm only'
+check "a medium that was not measured there is noted" matches "$(<err)" \
+    '^cuvette: note: liquid\.medium: water was measured from 182 to 1129 nm only'
 run trace "$scene" --pixel 40,30 -o tree.json "${small[@]}"
 check "-o tree.json writes JSON, and nothing else" is "$(./json_get tree.json schema) $(cat out err)" "1 "
 run trace "$scene" --pixel 40,30 -o tree.svg "${small[@]}"
-check "-o tree.svg draws" matches "$(head -2 tree.svg | tail -1)" '^<svg xmlns="http://www.w3.org/2000/svg" version="1.1"'
+check "-o tree.svg draws" matches "$(head -2 tree.svg | tail -1)" \
+    '^<svg xmlns="http://www.w3.org/2000/svg" version="1.1"'
 run trace "$scene" --pixel 40,30 --svg "${small[@]}"
 check "--svg: the same bytes" cmp out tree.svg
-check "total reflection, media and axes are in it" is "$(grep -c 'total internal\|liquid, n = 1.33\|from above' tree.svg)" 3
-(sleep 0.3; "$program" trace "$scene" --pixel 400,300 --depth 9 --json 2>err; echo $? >code) | true
+check "total reflection, media and axes are in it" is \
+    "$(grep -c 'total internal\|liquid, n = 1.33\|from above' tree.svg)" 3
+(
+    sleep 0.3
+    "$program" trace "$scene" --pixel 400,300 --depth 9 --json 2>err
+    echo $? >code
+) | true
 check "a tree into a closed pipe exits 1 without words" is "$(cat code err)" 1
 run fan "$scene" --from -3,1,0 --to 3,1,0 -o fan.csv --set render.spectrum=spectral
 check "and so is fan" matches "$(<err)" '^cuvette: note: .*spectral'
 pencil=(--from -3,1.5,0 --to 3,1.5,0 --width 1.6 --set rod.visible=off)
 run fan "$scene" "${pencil[@]}" --rays 41 -o fan.svg
 check "fan draws" silent_success
-check "and says where the focus is" matches "$(<out)" '^41 rays, 41 followed to their end, 40 crossings of neighbours, mean focus 1\.7[0-9]*,1\.5,0 '
+check "and says where the focus is" matches "$(<out)" \
+    '^41 rays, 41 followed to their end, 40 crossings of neighbours, mean focus 1\.7[0-9]*,1\.5,0 '
 cp fan.svg first.svg
 run fan "$scene" "${pencil[@]}" --rays 41 -o fan.svg
 check "the same bytes again" cmp fan.svg first.svg
@@ -446,7 +481,8 @@ check "a row a ray" is "$(cut -d, -f1-4 fan.csv | tr '\n' ' ')" \
     "ray,offset,interfaces,end 0,-0.8,4,sky 1,-0.4,4,sky 2,0,4,sky 3,0.4,4,sky 4,0.8,4,sky "
 check "the middle ray goes straight on, and is the axis" is "$(sed -n 4p fan.csv | cut -d, -f11,13-)" 0,NA,NA,NA,NA
 run fan "$scene" --from -3,1.5,0 --to 3,1.5,0 --spread 10 --rays 3 -o fan.csv
-check "a fan has angles, and ends on what is opaque" is "$(cut -d, -f2,4 fan.csv | tr '\n' ' ')" "offset_deg,end -5,sky 0,rod 5,sky "
+check "a fan has angles, and ends on what is opaque" is "$(cut -d, -f2,4 fan.csv | tr '\n' ' ')" \
+    "offset_deg,end -5,sky 0,rod 5,sky "
 for command in trace fan lab; do
     for option in $("$program" $command --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
         check "cuvette.1 explains $command $option" grep -qF -- "${option/--/\\-\\-}" "$page"
@@ -461,8 +497,7 @@ check "machine --json" holds "$(json units) >= 1 && $(json wall_clock.tick_s) > 
 check "machine --json lists disturbances" is "$(json disturbances@type)" array
 
 # --- lab
-run_lab() # ARGUMENT...: starts one in the background; its address is in `address`
-{
+run_lab() {    # ARGUMENT...: starts one in the background; its address is in `address`
     : >lab.out # the last one's address is not this one's
     "$program" lab --no-browser "$@" >lab.out 2>lab.err &
     lab=$!
@@ -472,24 +507,33 @@ run_lab() # ARGUMENT...: starts one in the background; its address is in `addres
         sleep 0.1
     done
 }
-ask() # PATH: over bash's own sockets; the whole reply
-{
+ask() { # PATH: over bash's own sockets; the whole reply
     local port=${address#http://127.0.0.1:}
     exec 9<>"/dev/tcp/127.0.0.1/${port%%/*}"
-    printf 'GET %s HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nAuthorization: Bearer %s\r\nConnection: close\r\n\r\n' "$1" "${port%%/*}" "${address##*token=}" >&9
+    printf 'GET %s HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nAuthorization: Bearer %s\r\nConnection: close\r\n\r\n' "$1" \
+        "${port%%/*}" "${address##*token=}" >&9
     cat <&9
     exec 9>&-
 }
 cp "$scene" here.yaml
 run_lab here.yaml
-check "lab prints its address, and nothing else" matches "$address $(wc -l <lab.out) $(wc -c <lab.err)" '^http://127\.0\.0\.1:[0-9]+/\?token=[0-9a-f]{32} 1 0$'
+check "lab prints its address, and nothing else" matches "$address $(wc -l <lab.out) $(wc -c <lab.err)" \
+    '^http://127\.0\.0\.1:[0-9]+/\?token=[0-9a-f]{32} 1 0$'
 check "lab serves its page" grep -q '<title>' <(ask /)
-check "lab's picture is the film of render" grep -q '"film_hash":"b92bb012fd9c5f71"' <(ask '/api/picture.png?wait=1' >/dev/null; ask /api/state)
+check "lab's picture is the film of render" grep -q '"film_hash":"b92bb012fd9c5f71"' <(
+    ask '/api/picture.png?wait=1' \
+        >/dev/null
+    ask /api/state
+)
 kill -INT $lab
 wait $lab
 check "Ctrl-C ends it well" is "$? $(wc -c <lab.err)" "0 0"
 mkdir -p browser
-printf '#!/bin/bash\nread -r _ _ _ _ _ session _ </proc/$$/stat\necho "$session $1" >browser/seen.part && mv browser/seen.part browser/seen\n' >browser/xdg-open
+cat >browser/xdg-open <<'EOF'
+#!/bin/bash
+read -r _ _ _ _ _ session _ </proc/$$/stat
+echo "$session $1" >browser/seen.part && mv browser/seen.part browser/seen
+EOF
 chmod +x browser/xdg-open
 PATH=$PWD/browser:$PATH "$program" lab here.yaml >lab.out 2>lab.err &
 lab=$!
@@ -499,7 +543,8 @@ for ((i = 0; i < 600; i++)); do
 done
 read -r _ _ _ _ _ session _ </proc/$lab/stat
 check "lab opens its address in a browser" is "$(cut -d' ' -f2 browser/seen)" "$(<lab.out)"
-check "which is in a session of its own, so that Ctrl-C leaves it alone" holds "$(cut -d' ' -f1 browser/seen) != $session"
+check "which is in a session of its own, so that Ctrl-C leaves it alone" holds \
+    "$(cut -d' ' -f1 browser/seen) != $session"
 kill -INT $lab
 wait $lab
 run_lab --folder . --results . --port 0
@@ -507,8 +552,7 @@ check "lab needs no scene" matches "$address" '^http'
 kill -TERM $lab
 wait $lab
 check "a termination ends it too" is $? 0
-refused_lab() # WHAT ERROR ARGUMENT...
-{
+refused_lab() { # WHAT ERROR ARGUMENT...
     local what=$1 error=$2
     shift 2
     run lab --no-browser "$@"
@@ -571,7 +615,8 @@ run study merge studies/tiny.study --results parts
 check "study merge joins the shards" is "$(wc -l <parts/tiny/rows.csv)" "$lines"
 sed -e 's/^study: .*/study: against/' -e '$a reference: {render.depth: 2}' studies/tiny.study >studies/against.study
 run study run --quiet studies/against.study --results res
-check "a study with a reference compares each cell" is "$(awk -F, 'NR > 1 && $8 == 0' res/against/compare.csv | wc -l)" 1
+check "a study with a reference compares each cell" is \
+    "$(awk -F, 'NR > 1 && $8 == 0' res/against/compare.csv | wc -l)" 1
 run study summary studies/against.study --results res
 check "study summary has error beside time" is "$(awk -F'\t' 'NR == 4 {print $(NF - 7), $(NF - 6)}' out)" "0 NA"
 sed -i 's/^reference: .*/reference: {render.depht: 2}/' studies/against.study
@@ -582,10 +627,15 @@ check "a slip in the reference is located" matches "$(<err)" 'against\.study:10:
 "$program" params --json 2>err | head -1 >/dev/null
 check "a reader who leaves is no drama" is "$(<err)" ""
 # shellcheck disable=SC2216
-(sleep 0.3; "$program" render "$scene" --json "${small[@]}" 2>err; echo $? >code) | true
+(
+    sleep 0.3
+    "$program" render "$scene" --json "${small[@]}" 2>err
+    echo $? >code
+) | true
 check "a closed pipe exits 1 without words" is "$(cat code err)" 1
 if [[ -w /dev/full ]]; then
-    for words in params "params --json" media "media --json" "mesh --generate box" machine --help "render --help" "render $scene --json --set render.width=8"; do
+    for words in params "params --json" media "media --json" "mesh --generate box" machine --help "render --help" \
+        "render $scene --json --set render.width=8"; do
         # shellcheck disable=SC2086
         "$program" $words >/dev/full 2>err
         check "a full disk is exit 1 and one line: ${words%% /*}" is "$? $(wc -l <err)" "1 1"
@@ -597,7 +647,8 @@ check "a closed standard output is exit 1" is $? 1
 check "a picture does not go into a closed standard output" magic shut.png 89504e47
 for signal in INT TERM; do
     rm -f part.png
-    "$program" render "$scene" -o part.png --json --set render.width=4000 --set render.height=3000 --set render.depth=12 \
+    "$program" render "$scene" -o part.png --json --set render.width=4000 --set render.height=3000 --set \
+        render.depth=12 \
         --set render.tile=8 >out 2>err &
     job=$!
     sleep 0.4
@@ -620,7 +671,8 @@ kill -INT $job
 wait $job
 check "SIGINT ends a study with 130" is $? 130
 check "SIGINT: one line says so, and how to go on" is "$(grep -c 'interrupted.*run it again' err) $(wc -l <err)" "1 1"
-check "SIGINT: its rows are whole" awk -F, 'NR == 1 {n = NF} NF < n {bad = 1} END {exit bad || NR < 3}' res/long/rows.csv
+check "SIGINT: its rows are whole" awk -F, 'NR == 1 {n = NF} NF < n {bad = 1} END {exit bad || NR < 3}' \
+    res/long/rows.csv
 if command -v script >/dev/null; then
     script -qec "'$program' rendr" /dev/null >tty.txt 2>&1
     check "errors have colour on a terminal" grep -q $'\033\[' tty.txt
@@ -628,7 +680,8 @@ if command -v script >/dev/null; then
     check "NO_COLOR takes it off" is "$(grep -c $'\033' tty.txt)" 0
     TERM=dumb script -qec "'$program' rendr" /dev/null >tty.txt 2>&1
     check "TERM=dumb takes it off" is "$(grep -c $'\033' tty.txt)" 0
-    lasting=(--set render.width=1600 --set render.height=1200 --set render.depth=8) # over half a second, or there is no progress
+    lasting=(--set render.width=1600 --set render.height=1200 --set render.depth=8)
+    # over half a second, or there is no progress
     [[ ${CONFIG:-release} != release ]] && lasting=(--set render.depth=6)
     script -qec "'$program' render '$scene' --json ${lasting[*]} >/dev/null" /dev/null >tty.txt 2>&1
     check "progress on a terminal ends in an erased line" matches "$(tail -c 3 tty.txt)" $'^ +\r$'
@@ -654,20 +707,31 @@ run scene --new --title "Rod in a vessel" --set camera.position=0,2.75,-6 --set 
     --add material:plastic,color=0.85,0.15,0.10,ambient=0.1,diffuse=0.7,specular=0.5,shininess=40 \
     --add light:lamp --move lamp=4,-3,-5 --add solid:ground=plane,material=tiles \
     --add solid:vessel=cup,ior=1.5,material=clear,position=0,0.001,0,height=3,priority=2 \
-    --add solid:liquid=sphere --set liquid.shape=cylinder --set liquid.material=clear --set liquid.ior=1.33 --set liquid.priority=1 \
-    --set liquid.position=0,0.051,0 --set liquid.radius=0.95 --set liquid.height=1.95 --add solid:wrong=box --delete wrong \
-    --add solid:stick=box,material=plastic,size=0.25,3,0.25,priority=3 --rename stick=rod --turn rod=0,0,45 --turn rod=0,0,-45 \
+    --add solid:liquid=sphere --set liquid.shape=cylinder --set liquid.material=clear --set liquid.ior=1.33 --set \
+    liquid.priority=1 \
+    --set liquid.position=0,0.051,0 --set liquid.radius=0.95 --set liquid.height=1.95 --add solid:wrong=box --delete \
+    wrong \
+    --add solid:stick=box,material=plastic,size=0.25,3,0.25,priority=3 --rename stick=rod --turn rod=0,0,45 --turn \
+    rod=0,0,-45 \
     --move rod=0.2,2.101,0 -o built.yaml
 check "a scene is built by options alone" silent_success
 check "and is the same scene, byte for byte" cmp built.yaml first.yaml
 run scene built.yaml --list
-check "--list has a line an object" is "$(head -1 out) $(wc -l <out) $(tail -1 out)" "material clear 8 solid rod box plastic"
+check "--list has a line an object" is "$(head -1 out) $(wc -l <out) $(tail -1 out)" \
+    "material clear 8 solid rod box plastic"
 run scene built.yaml --check
-check "--check says that it is right" is "$code $(<out)" "0 built.yaml: right; meshes 0, textures 0, materials 3, lights 1, solids 4"
+check "--check says that it is right" is "$code $(<out)" \
+    "0 built.yaml: right; meshes 0, textures 0, materials 3, lights 1, solids 4"
 run scene built.yaml --move rod=0,0.5,0 -o built.yaml
-check "a scene is changed in its place" matches "$(grep -A3 '  rod:' built.yaml | tail -1)" 'position: \[0.2, 2.601, 0\]'
+check "a scene is changed in its place" matches "$(grep -A3 '  rod:' built.yaml | tail -1)" \
+    'position: \[0.2, 2.601, 0\]'
 run scene built.yaml --turn all+camera=0,90,0 --scale all+camera=2 --move all+camera=1,0,0 -o whole.yaml
-check "a whole scene is turned, scaled and moved" matches "$(grep -A6 '^camera:' whole.yaml | head -3 | tr -s '\n ' ' '; grep unit_m whole.yaml)" 'position: \[-11, 5.5, .*unit_m: 0.5'
+check "a whole scene is turned, scaled and moved" matches \
+    "$(
+        grep -A6 '^camera:' whole.yaml | head -3 | tr -s '\n ' ' '
+        grep unit_m whole.yaml
+    )" \
+    'position: \[-11, 5.5, .*unit_m: 0.5'
 run render built.yaml "${small[@]}" -o before.png
 run render whole.yaml "${small[@]}" -o after.png
 run compare before.png after.png
@@ -681,25 +745,33 @@ run scene built.yaml --set background.picture=pictures/sky.png -o pictures/scene
 check "paths follow the file" grep -q '  picture: ../sky.png' pictures/scenes/moved.yaml
 run scene pictures/scenes/moved.yaml --check
 check "and lead to the picture" depth_noted
-refused() # WHAT ERROR ARGUMENT...: one line, 2, nothing written
-{
+refused() { # WHAT ERROR ARGUMENT...: one line, 2, nothing written
     local what=$1 error=$2
     shift 2
     run scene "$@" -o refused.yaml
-    check "scene refuses $what" is "$code $(wc -l <err) $(cat out refused.yaml 2>/dev/null | wc -c) $(<err)" "2 1 0 cuvette: $error"
+    check "scene refuses $what" is "$code $(wc -l <err) $(cat out refused.yaml 2>/dev/null | wc -c) $(<err)" \
+        "2 1 0 cuvette: $error"
 }
 refused "to delete a material in use" \
-    "--delete clear: clear is the material of vessel and 1 more; give those another material first, or remove them" built.yaml --delete clear
-refused "a name that is not there" "--move rood=1,2,3: nothing in the scene is named 'rood'; did you mean 'rod'?" built.yaml --move rood=1,2,3
-refused "to scale the camera" "--scale camera=2: camera has no size of its own; scale a solid, a light, or all, solids, lights" built.yaml --scale camera=2
-refused "a factor of nothing" "--scale all=0: all cannot be scaled by 0; give a factor above 0, at most 1e9" built.yaml --scale all=0
+    "--delete clear: clear is the material of vessel and 1 more; give those another material first, or remove them" \
+    built.yaml --delete clear
+refused "a name that is not there" "--move rood=1,2,3: nothing in the scene is named 'rood'; did you mean 'rod'?" \
+    built.yaml --move rood=1,2,3
+refused "to scale the camera" \
+    "--scale camera=2: camera has no size of its own; scale a solid, a light, or all, solids, lights" built.yaml \
+    --scale camera=2
+refused "a factor of nothing" "--scale all=0: all cannot be scaled by 0; give a factor above 0, at most 1e9" \
+    built.yaml --scale all=0
 refused "two numbers" "--move rod=1,2: there are fewer than 3 numbers; give NAME=DX,DY,DZ" built.yaml --move rod=1,2
 refused "a shape that is none" "--add solid:x=bax: no shape 'bax'; did you mean 'box'?" built.yaml --add solid:x=bax
-refused "a solid without a shape" "--add solid:x: x has no shape; write solid:NAME=SHAPE, as solid:rod=box" built.yaml --add solid:x
-refused "a kind that is none" "--add ball:x: there is no kind of object 'ball'; give one of: solid, light, material, mesh, texture" \
+refused "a solid without a shape" "--add solid:x: x has no shape; write solid:NAME=SHAPE, as solid:rod=box" built.yaml \
+    --add solid:x
+refused "a kind that is none" \
+    "--add ball:x: there is no kind of object 'ball'; give one of: solid, light, material, mesh, texture" \
     built.yaml --add ball:x
 refused "what is wrong as a whole" \
-    "built.yaml: vessel: inner_radius 2 is not smaller than radius 1; make inner_radius smaller than radius, or the cup has no wall" \
+    "built.yaml: vessel: inner_radius 2 is not smaller than radius 1; make inner_radius smaller than radius, or the \
+cup has no wall" \
     built.yaml --set vessel.inner_radius=2
 refused "a file and --new" "scene: a scene file and --new exclude each other; give one of them" built.yaml --new
 run scene built.yaml -o rod.png
@@ -710,8 +782,7 @@ check "scene wants a file or --new" is "$code $(<err)" \
 
 # --- completion
 check "the completion is sound bash" bash -n "$root/src/cli/cuvette.bash"
-complete_line() # WORD...: what is offered for the last one
-{
+complete_line() { # WORD...: what is offered for the last one
     bash -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); compopt() { :; }; _cuvette
         printf "%s\n" "${COMPREPLY[@]}"' - "$root/src/cli/cuvette.bash" "$@"
 }
@@ -720,12 +791,20 @@ check "completion offers options" matches "$(complete_line cuvette render --t)" 
 check "completion offers parameters of the scene" \
     is "$(complete_line "$program" render "$scene" --set liquid.io)" "liquid.ior="
 check "completion offers options of compare" is "$(complete_line cuvette compare --d)" --diff
-check "completion offers mesh's options and bodies" is "$(complete_line "$program" mesh --gen; complete_line "$program" mesh --generate to)" \
+check "completion offers mesh's options and bodies" is \
+    "$(
+        complete_line "$program" mesh --gen
+        complete_line "$program" mesh --generate to
+    )" \
     "$(lines --generate torus)"
 check "completion offers media" is "$(complete_line "$program" media fused)" fused-silica
 check "completion offers options of trace" is "$(complete_line cuvette trace --p)" --pixel
 check "completion offers options of fan" is "$(complete_line cuvette fan --sp)" --spread
-check "completion offers objects of the scene" is "$(complete_line "$program" scene "$scene" --delete ve; complete_line "$program" scene "$scene" --move ro)" \
+check "completion offers objects of the scene" is \
+    "$(
+        complete_line "$program" scene "$scene" --delete ve
+        complete_line "$program" scene "$scene" --move ro
+    )" \
     "$(lines vessel rod=)"
 check "completion offers many objects at once" is "$(complete_line "$program" scene "$scene" --scale al)" "all="
 check "completion offers options of lab" is "$(complete_line cuvette lab --no)" --no-browser

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Which loops of the kernels gcc vectorised, for each instruction set. A loop under the comment VECTORISE must be
-# vectorised for AVX2 and AVX-512; plain SSE2 may stay scalar. KERNEL_FLAGS and KERNEL_FLAGS_<isa> come from the Makefile.
+# vectorised for AVX2 and AVX-512; plain SSE2 may stay scalar. KERNEL_FLAGS and KERNEL_FLAGS_<isa> come from the
+# Makefile.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 cc=${KERNEL_CC:-gcc}
@@ -29,14 +30,16 @@ report() {
         END { for (line in width) print line, width[line] }' "$folder/all" | sort -n >"$folder/vectorised"
 }
 
-# Why a loop stayed scalar: gcc's first objection, which is about the widest vectors; its short report gives the last one.
+# Why a loop stayed scalar: gcc's first objection, which is about the widest vectors; its short report gives the last
+# one.
 reason() { # reason FILE LINE
     awk -v loop="Analyzing loop at $1:$2" '/Analyzing loop at/ { mine = $0 == loop }
         mine && sub(/.*not vectorized: /, "") { print; exit }' "$folder/details"
 }
 
 while read -r file; do
-    marks=$(awk '/\/\* VECTORISE \*\// { marked = 1; next } marked { print FNR ($0 ~ /for *\(/ ? "" : "!"); marked = 0 }' "$file")
+    marks=$(awk '/\/\* VECTORISE \*\// { marked = 1; next }
+        marked { print FNR ($0 ~ /for *\(/ ? "" : "!"); marked = 0 }' "$file")
     for isa in sse2 avx2 avx512; do
         case_number=$((case_number + 1))
         if ! report "$file" "$isa"; then

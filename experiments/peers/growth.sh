@@ -10,8 +10,12 @@ export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
 report=${1:-build/peers/report} reps=${REPS:-5} size=${SIZE:-800x600} fovs=${FOVS-45 110}
 threads=${THREADS:-1 4 8 16 32 64 128 256 512 1024}
-[ -x "$report" ] || { echo "usage: growth.sh [REPORT] (no program $report; make peers builds it)" >&2; exit 2; }
-work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
+[ -x "$report" ] || {
+    echo "usage: growth.sh [REPORT] (no program $report; make peers builds it)" >&2
+    exit 2
+}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 
 # column FILE.csv KEY VALUE: "key value" by the names in its first line; what the two hold is numbers, to the left of
 # any quoted text

@@ -1,15 +1,21 @@
 #!/bin/bash
-# src/web/embed.sh FILE...: a C file, on the standard output, that holds these files and page.h's table of them. The assembler's .incbin reads the
+# src/web/embed.sh FILE...: a C file, on the standard output, that holds these files and page.h's table of them. The
+# assembler's .incbin reads the
 # bytes; gcc and clang take the same line.
 set -euo pipefail
-declare -A types=([html]='text/html; charset=utf-8' [css]='text/css; charset=utf-8' [js]='text/javascript; charset=utf-8' [svg]='image/svg+xml')
+declare -A types=([html]='text/html; charset=utf-8' [css]='text/css; charset=utf-8'
+    [js]='text/javascript; charset=utf-8' [svg]='image/svg+xml')
 
 echo '#include "web/page.h"'
 number=0 rows=
 for file in "$@"; do
     name=${file##*/} size=$(stat -c %s "$file")
     type=${types[${name##*.}]-}
-    [[ $type && $name =~ ^[a-z0-9_.-]+$ ]] || { echo "embed.sh: $file is no html, css, js or svg with a plain name" >&2; exit 1; }
+    [[ $type && $name =~ ^[a-z0-9_.-]+$ ]] || {
+        echo "embed.sh: $file is no html, css, js or svg with a plain name" \
+            >&2
+        exit 1
+    }
     echo "__asm__(\".pushsection .rodata\\npage_file_$number: .incbin \\\"$file\\\"\\n.byte 0\\n.popsection\");"
     echo "extern const unsigned char page_file_$number[] __attribute__((visibility(\"hidden\")));"
     rows+="    {\"$name\", \"$type\", page_file_$number, $size},"$'\n'

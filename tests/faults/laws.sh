@@ -1,27 +1,40 @@
 #!/bin/bash
-# tests/faults/laws.sh [N...]: puts each fault of laws.tsv (or those of the numbers given) into a copy of the sources, builds tests/test_laws there and
-# expects it to fail. A fault that no law catches is reported, and the status is 1. LAWS_SCENES=10000 is how many scenes each law may use, of each of
+# tests/faults/laws.sh [N...]: puts each fault of laws.tsv (or those of the numbers given) into a copy of the sources,
+# builds tests/test_laws there and
+# expects it to fail. A fault that no law catches is reported, and the status is 1. LAWS_SCENES=10000 is how many scenes
+# each law may use, of each of
 # three seeds: some faults show once in 20 000 scenes.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
-work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 cp -r "$root/Makefile" "$root/src" "$root/tests" "$root/.ci" "$work"
 mkdir -p "$work/experiments"
 missed=0 number=0
 build() {
-    make -s -j2 -C "$work" warnings= build/tests/test_laws >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 2; }
+    make -s -j2 -C "$work" warnings= build/tests/test_laws >"$work/log" 2>&1 || {
+        cat "$work/log" >&2
+        exit 2
+    }
 }
 # laws SEED SCENES SECONDS: 0 when all laws hold
 laws() { LAWS_SEED=$1 LAWS_SCENES=$2 timeout "$3" "$work/build/tests/test_laws" >"$work/out" 2>&1; }
 all_seeds() { for seed in 1 2 3; do laws "$seed" "${LAWS_SCENES:-10000}" 1800 || return; done; }
 build
-laws 1 500 600 || { cat "$work/out" >&2; echo "laws.sh: the laws do not hold without a fault" >&2; exit 2; }
+laws 1 500 600 || {
+    cat "$work/out" >&2
+    echo "laws.sh: the laws do not hold without a fault" >&2
+    exit 2
+}
 while IFS=$'\t' read -r file old new; do
     [[ $file == \#* ]] && continue
     number=$((number + 1))
     [[ $# -eq 0 || " $* " == *" $number "* ]] || continue
     text=$(<"$root/$file")
-    [[ $text == *"$old"* ]] || { echo "laws.sh: fault $number: $file has no '$old' any more" >&2; exit 2; }
+    [[ $text == *"$old"* ]] || {
+        echo "laws.sh: fault $number: $file has no '$old' any more" >&2
+        exit 2
+    }
     printf '%s\n' "${text/"$old"/"$new"}" >"$work/$file"
     build
     # Fewer scenes first: most faults show at once, or never come to an end.

@@ -5,164 +5,179 @@ const eye = [0, 6, -5];
 const view = camera({ position: eye, target: [0, 0, 0], fovDeg: 45, width: 640, height: 480 });
 
 async function change(screen, act) {
-    const { generation } = await screen.lab.get('/api/state');
-    await act();
-    await screen.until((g) => window.lab.wanted > g, generation);
-    await screen.settled(generation + 1);
-    return screen.lab.get('/api/state');
+  const { generation } = await screen.lab.get('/api/state');
+  await act();
+  await screen.until((g) => window.lab.wanted > g, generation);
+  await screen.settled(generation + 1);
+  return screen.lab.get('/api/state');
 }
 
 /** Middle of what is blue. */
 function blue({ width, height, data }) {
-    let [n, sx, sy] = [0, 0, 0];
-    for (let y = 0; y < height; y++)
-        for (let x = 0; x < width; x++) {
-            const i = (y * width + x) * 4;
-            if (data[i + 2] > 1.5 * data[i]) [n, sx, sy] = [n + 1, sx + x + 0.5, sy + y + 0.5];
-        }
-    return { n, x: sx / n, y: sy / n };
+  let [n, sx, sy] = [0, 0, 0];
+  for (let y = 0; y < height; y++)
+    for (let x = 0; x < width; x++) {
+      const i = (y * width + x) * 4;
+      if (data[i + 2] > 1.5 * data[i]) [n, sx, sy] = [n + 1, sx + x + 0.5, sy + y + 0.5];
+    }
+  return { n, x: sx / n, y: sy / n };
 }
 
 const names = async (lab) => (await lab.get('/api/scene')).objects.map((object) => object.name);
 
 export const cases = {
-    'a ball is dragged in the picture': async (t) => {
-        const lab = await t.lab('tests/shadow.yaml');
-        const screen = await t.open(lab, { width: 1920, height: 1080 });
-        await screen.actualSize();
-        const before = await lab.value('ball.position');
-        const middle = view.project(before);
-        await screen.chooseTool('Object');
-        await screen.clickPixel(Math.floor(middle.x), Math.floor(middle.y));
-        await screen.page.getByRole('heading', { name: 'ball', exact: true }).waitFor();
-        const seen = blue(await screen.pixels());
-        t.near(seen.x, middle.x, 1, 'the ball is where it is projected to, x');
-        await change(screen, async () => {
-            await screen.drag(middle, { x: middle.x + 90, y: middle.y + 30 });
-            await screen.quiet();
-        });
-        const after = await lab.value('ball.position');
-        const there = view.project(after);
-        // What the pointer took hold of is the point of the ball that is nearest to the eye.
-        const away = before.map((v, i) => v - eye[i]);
-        const held = after.map((v, i) => v - 0.3 * away[i] / Math.hypot(...away));
-        t.near(view.project(held).x, middle.x + 90, 1, 'what is held stays under the pointer, x');
-        t.near(view.project(held).y, middle.y + 30, 1, 'what is held stays under the pointer, y');
-        const moved = blue(await screen.pixels());
-        t.near(moved.x - seen.x, there.x - middle.x, 1.5, 'and so does what is seen of it, x');
-        t.near(moved.y - seen.y, there.y - middle.y, 1.5, 'and so does what is seen of it, y');
-        await change(screen, () => screen.button('Undo').click());
-        t.equal(await lab.value('ball.position'), before, 'one undo takes the drag back');
-    },
+  'a ball is dragged in the picture': async (t) => {
+    const lab = await t.lab('tests/shadow.yaml');
+    const screen = await t.open(lab, { width: 1920, height: 1080 });
+    await screen.actualSize();
+    const before = await lab.value('ball.position');
+    const middle = view.project(before);
+    await screen.chooseTool('Object');
+    await screen.clickPixel(Math.floor(middle.x), Math.floor(middle.y));
+    await screen.page.getByRole('heading', { name: 'ball', exact: true }).waitFor();
+    const seen = blue(await screen.pixels());
+    t.near(seen.x, middle.x, 1, 'the ball is where it is projected to, x');
+    await change(screen, async () => {
+      await screen.drag(middle, { x: middle.x + 90, y: middle.y + 30 });
+      await screen.quiet();
+    });
+    const after = await lab.value('ball.position');
+    const there = view.project(after);
+    // What the pointer took hold of is the point of the ball that is nearest to the eye.
+    const away = before.map((v, i) => v - eye[i]);
+    const held = after.map((v, i) => v - (0.3 * away[i]) / Math.hypot(...away));
+    t.near(view.project(held).x, middle.x + 90, 1, 'what is held stays under the pointer, x');
+    t.near(view.project(held).y, middle.y + 30, 1, 'what is held stays under the pointer, y');
+    const moved = blue(await screen.pixels());
+    t.near(moved.x - seen.x, there.x - middle.x, 1.5, 'and so does what is seen of it, x');
+    t.near(moved.y - seen.y, there.y - middle.y, 1.5, 'and so does what is seen of it, y');
+    await change(screen, () => screen.button('Undo').click());
+    t.equal(await lab.value('ball.position'), before, 'one undo takes the drag back');
+  },
 
-    'steps, by buttons and by keys': async (t) => {
-        const lab = await t.lab('tests/shadow.yaml');
-        const screen = await t.open(lab);
-        await screen.showPanel('Objects');
-        await screen.page.getByRole('button', { name: /^ball/ }).click();
-        const before = await lab.value('ball.position');
-        await change(screen, () => screen.button('Move by plus x').click());
-        t.near((await lab.value('ball.position'))[0] - before[0], 0.1, 1e-9, 'a step along x, scene units');
-        await change(screen, () => screen.button('Move by minus y').press('Enter'));
-        t.near((await lab.value('ball.position'))[1] - before[1], -0.1, 1e-9, 'a step down, scene units');
-        await change(screen, () => screen.button('Turn by plus z').click());
-        t.equal(await lab.value('ball.rotation'), [0, 0, 15], 'a turn about z, degrees');
-    },
+  'steps, by buttons and by keys': async (t) => {
+    const lab = await t.lab('tests/shadow.yaml');
+    const screen = await t.open(lab);
+    await screen.showPanel('Objects');
+    await screen.page.getByRole('button', { name: /^ball/ }).click();
+    const before = await lab.value('ball.position');
+    await change(screen, () => screen.button('Move by plus x').click());
+    t.near((await lab.value('ball.position'))[0] - before[0], 0.1, 1e-9, 'a step along x, scene units');
+    await change(screen, () => screen.button('Move by minus y').press('Enter'));
+    t.near((await lab.value('ball.position'))[1] - before[1], -0.1, 1e-9, 'a step down, scene units');
+    await change(screen, () => screen.button('Turn by plus z').click());
+    t.equal(await lab.value('ball.rotation'), [0, 0, 15], 'a turn about z, degrees');
+  },
 
-    'the whole scene moves, turns and grows': async (t) => {
-        const lab = await t.lab('tests/shadow.yaml');
-        const screen = await t.open(lab, { width: 1920, height: 1080 });
-        await screen.actualSize();
-        await screen.showPanel('Objects');
-        await screen.page.getByText('Whole scene').click();
-        const values = async () => Promise.all(['ball.position', 'lamp.position', 'camera.position'].map((path) => lab.value(path)));
-        const [ball, lamp, eyeAt] = await values();
-        await change(screen, () => screen.button('Move all by plus x').click());
-        let now = await values();
-        t.near(now[0][0] - ball[0], 0.1, 1e-9, 'the ball moves');
-        t.near(now[1][0] - lamp[0], 0.1, 1e-9, 'and the lamp');
-        t.equal(now[2], eyeAt, 'the camera stays');
-        await change(screen, () => screen.button('Undo').click());
-        await screen.page.getByRole('checkbox', { name: 'Camera' }).check();
-        const before = await screen.pixels();
-        await change(screen, () => screen.button('Turn all by plus y').click());
-        await change(screen, () => screen.button('Scale all: larger').click());
-        now = await values();
-        t.near(Math.hypot(...now[2]), 1.1 * Math.hypot(...eyeAt), 1e-9, 'with the camera: it is farther away by the factor');
-        const after = await screen.pixels();
-        const different = before.data.filter((value, i) => Math.abs(value - after.data[i]) > 2).length;
-        t.check(different < 4 * 50, `the picture is the same: ${different} values differ`);
-        await screen.page.getByRole('checkbox', { name: 'Solids' }).uncheck();
-        await screen.page.getByRole('checkbox', { name: 'Camera' }).uncheck();
-        const [stays] = await values();
-        await change(screen, () => screen.button('Move all by minus y').click());
-        t.equal((await values())[0], stays, 'the lights alone: the ball stays');
-        await t.axe(screen, 'steps of the whole scene');
-        await t.picture(screen, 'whole-scene');
-    },
+  'the whole scene moves, turns and grows': async (t) => {
+    const lab = await t.lab('tests/shadow.yaml');
+    const screen = await t.open(lab, { width: 1920, height: 1080 });
+    await screen.actualSize();
+    await screen.showPanel('Objects');
+    await screen.page.getByText('Whole scene').click();
+    const values = async () =>
+      Promise.all(['ball.position', 'lamp.position', 'camera.position'].map((path) => lab.value(path)));
+    const [ball, lamp, eyeAt] = await values();
+    await change(screen, () => screen.button('Move all by plus x').click());
+    let now = await values();
+    t.near(now[0][0] - ball[0], 0.1, 1e-9, 'the ball moves');
+    t.near(now[1][0] - lamp[0], 0.1, 1e-9, 'and the lamp');
+    t.equal(now[2], eyeAt, 'the camera stays');
+    await change(screen, () => screen.button('Undo').click());
+    await screen.page.getByRole('checkbox', { name: 'Camera' }).check();
+    const before = await screen.pixels();
+    await change(screen, () => screen.button('Turn all by plus y').click());
+    await change(screen, () => screen.button('Scale all: larger').click());
+    now = await values();
+    t.near(
+      Math.hypot(...now[2]),
+      1.1 * Math.hypot(...eyeAt),
+      1e-9,
+      'with the camera: it is farther away by the factor',
+    );
+    const after = await screen.pixels();
+    const different = before.data.filter((value, i) => Math.abs(value - after.data[i]) > 2).length;
+    t.check(different < 4 * 50, `the picture is the same: ${different} values differ`);
+    await screen.page.getByRole('checkbox', { name: 'Solids' }).uncheck();
+    await screen.page.getByRole('checkbox', { name: 'Camera' }).uncheck();
+    const [stays] = await values();
+    await change(screen, () => screen.button('Move all by minus y').click());
+    t.equal((await values())[0], stays, 'the lights alone: the ball stays');
+    await t.axe(screen, 'steps of the whole scene');
+    await t.picture(screen, 'whole-scene');
+  },
 
-    'a camera that is rolled': async (t) => {
-        const lab = await t.lab('tests/shadow.yaml');
-        const screen = await t.open(lab, { width: 1920, height: 1080 });
-        await screen.actualSize();
-        await screen.button('Camera', true).click();
-        const roll = screen.page.getByRole('spinbutton', { name: 'Roll' });
-        await roll.fill('90');
-        await change(screen, () => roll.press('Enter'));
-        const level = view.project(await lab.value('ball.position'));
-        // Roll 90 turns the picture to the left: what was to the right of the middle is above it.
-        const there = { x: 320 + (level.y - 240), y: 240 - (level.x - 320) };
-        const seen = blue(await screen.pixels());
-        t.near(seen.x, there.x, 1.5, 'the ball is seen where it is turned to, x');
-        t.near(seen.y, there.y, 1.5, 'the ball is seen where it is turned to, y');
-        await screen.chooseTool('Object');
-        await screen.clickPixel(Math.floor(there.x), Math.floor(there.y));
-        await screen.page.getByRole('heading', { name: 'ball', exact: true }).waitFor();
-        await change(screen, async () => {
-            await screen.drag(there, { x: there.x + 60, y: there.y });
-            await screen.quiet();
-        });
-        const moved = blue(await screen.pixels());
-        t.near(moved.x - seen.x, 60, 8, 'what is dragged to the right goes to the right, x');
-        t.near(moved.y - seen.y, 0, 8, 'what is dragged to the right goes to the right, y');
-    },
+  'a camera that is rolled': async (t) => {
+    const lab = await t.lab('tests/shadow.yaml');
+    const screen = await t.open(lab, { width: 1920, height: 1080 });
+    await screen.actualSize();
+    await screen.button('Camera', true).click();
+    const roll = screen.page.getByRole('spinbutton', { name: 'Roll' });
+    await roll.fill('90');
+    await change(screen, () => roll.press('Enter'));
+    const level = view.project(await lab.value('ball.position'));
+    // Roll 90 turns the picture to the left: what was to the right of the middle is above it.
+    const there = { x: 320 + (level.y - 240), y: 240 - (level.x - 320) };
+    const seen = blue(await screen.pixels());
+    t.near(seen.x, there.x, 1.5, 'the ball is seen where it is turned to, x');
+    t.near(seen.y, there.y, 1.5, 'the ball is seen where it is turned to, y');
+    await screen.chooseTool('Object');
+    await screen.clickPixel(Math.floor(there.x), Math.floor(there.y));
+    await screen.page.getByRole('heading', { name: 'ball', exact: true }).waitFor();
+    await change(screen, async () => {
+      await screen.drag(there, { x: there.x + 60, y: there.y });
+      await screen.quiet();
+    });
+    const moved = blue(await screen.pixels());
+    t.near(moved.x - seen.x, 60, 8, 'what is dragged to the right goes to the right, x');
+    t.near(moved.y - seen.y, 0, 8, 'what is dragged to the right goes to the right, y');
+  },
 
-    'added, copied, renamed, dressed, removed': async (t) => {
-        const lab = await t.lab('tests/shadow.yaml');
-        const screen = await t.open(lab);
-        await screen.showPanel('Objects');
-        const first = await names(lab);
-        for (const shape of ['Box', 'Sphere', 'Cylinder', 'Cup', 'Plane', 'Torus', 'Light', 'Material']) {
-            const known = await names(lab);
-            const { trouble } = await change(screen, () => screen.page.getByRole('tabpanel', { name: 'Objects' }).getByRole('button', { name: shape, exact: true }).click());
-            t.more((await names(lab)).length, known.length, `${shape}: there are more objects`);
-            t.equal(trouble, null, `${shape}: the scene can be rendered`);
-        }
-        while (await screen.button('Undo').isEnabled()) await change(screen, () => screen.button('Undo').click());
-        t.equal(await names(lab), first, 'all of it can be undone');
-        await screen.page.getByRole('button', { name: /^ball/ }).click();
-        await change(screen, () => screen.button('Copy', true).click());
-        const [copy] = (await names(lab)).filter((name) => !first.includes(name));
-        t.check(copy, 'the copy has a name');
-        const name = screen.page.getByRole('textbox', { name: 'Name' });
-        await name.fill('twin');
-        await change(screen, () => name.press('Enter'));
-        t.check((await names(lab)).includes('twin'), 'it is renamed');
-        await change(screen, () => screen.page.getByRole('combobox', { name: 'Material' }).selectOption('grey'));
-        t.equal((await lab.get('/api/scene')).objects.find((object) => object.name === 'twin').material, 'grey', 'it is dressed');
-        await t.axe(screen, 'an object that is chosen');
-        await change(screen, () => screen.button('Remove').click());
-        t.equal(await names(lab), first, 'it is removed');
-    },
+  'added, copied, renamed, dressed, removed': async (t) => {
+    const lab = await t.lab('tests/shadow.yaml');
+    const screen = await t.open(lab);
+    await screen.showPanel('Objects');
+    const first = await names(lab);
+    for (const shape of ['Box', 'Sphere', 'Cylinder', 'Cup', 'Plane', 'Torus', 'Light', 'Material']) {
+      const known = await names(lab);
+      const { trouble } = await change(screen, () =>
+        screen.page
+          .getByRole('tabpanel', { name: 'Objects' })
+          .getByRole('button', { name: shape, exact: true })
+          .click(),
+      );
+      t.more((await names(lab)).length, known.length, `${shape}: there are more objects`);
+      t.equal(trouble, null, `${shape}: the scene can be rendered`);
+    }
+    while (await screen.button('Undo').isEnabled()) await change(screen, () => screen.button('Undo').click());
+    t.equal(await names(lab), first, 'all of it can be undone');
+    await screen.page.getByRole('button', { name: /^ball/ }).click();
+    await change(screen, () => screen.button('Copy', true).click());
+    const [copy] = (await names(lab)).filter((name) => !first.includes(name));
+    t.check(copy, 'the copy has a name');
+    const name = screen.page.getByRole('textbox', { name: 'Name' });
+    await name.fill('twin');
+    await change(screen, () => name.press('Enter'));
+    t.check((await names(lab)).includes('twin'), 'it is renamed');
+    await change(screen, () => screen.page.getByRole('combobox', { name: 'Material' }).selectOption('grey'));
+    t.equal(
+      (await lab.get('/api/scene')).objects.find((object) => object.name === 'twin').material,
+      'grey',
+      'it is dressed',
+    );
+    await t.axe(screen, 'an object that is chosen');
+    await change(screen, () => screen.button('Remove').click());
+    t.equal(await names(lab), first, 'it is removed');
+  },
 
-    'a new scene': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        await screen.showPanel('Objects');
-        const state = await change(screen, () => screen.button('New', true).click());
-        t.equal(state.file, null, 'it is in no file');
-        t.equal(state.trouble, null, 'it can be rendered');
-        await change(screen, () => screen.button('Undo').click());
-        t.check((await names(lab)).includes('rod'), 'undo brings the other back');
-    },
+  'a new scene': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await screen.showPanel('Objects');
+    const state = await change(screen, () => screen.button('New', true).click());
+    t.equal(state.file, null, 'it is in no file');
+    t.equal(state.trouble, null, 'it can be rendered');
+    await change(screen, () => screen.button('Undo').click());
+    t.check((await names(lab)).includes('rod'), 'undo brings the other back');
+  },
 };

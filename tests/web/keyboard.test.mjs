@@ -4,146 +4,155 @@ const LONGEST_WAY = 120;
 
 /** Presses Tab until what has the focus is such an element. */
 async function tabTo(t, screen, selector) {
-    for (let i = 0; i < LONGEST_WAY; i++) {
-        await screen.page.keyboard.press('Tab');
-        if (await screen.page.evaluate((s) => document.activeElement.matches(s), selector)) return true;
-    }
-    return t.check(false, `Tab does not reach ${selector}`);
+  for (let i = 0; i < LONGEST_WAY; i++) {
+    await screen.page.keyboard.press('Tab');
+    if (await screen.page.evaluate((s) => document.activeElement.matches(s), selector)) return true;
+  }
+  return t.check(false, `Tab does not reach ${selector}`);
 }
 
 /** What has the focus can be told from what has not. */
 async function checkFocusShows(t, screen, what) {
-    const shown = await screen.page.evaluate(() => {
-        const visible = (node) => {
-            const { outlineStyle, outlineWidth, boxShadow } = getComputedStyle(node);
-            return (outlineStyle !== 'none' && parseFloat(outlineWidth) >= 1) || boxShadow !== 'none';
-        };
-        const node = document.activeElement;
-        return visible(node) || Boolean(node.closest('label') && visible(node.closest('label')));
-    });
-    t.check(shown, `${what}: its focus is seen`);
+  const shown = await screen.page.evaluate(() => {
+    const visible = (node) => {
+      const { outlineStyle, outlineWidth, boxShadow } = getComputedStyle(node);
+      return (outlineStyle !== 'none' && parseFloat(outlineWidth) >= 1) || boxShadow !== 'none';
+    };
+    const node = document.activeElement;
+    return visible(node) || Boolean(node.closest('label') && visible(node.closest('label')));
+  });
+  t.check(shown, `${what}: its focus is seen`);
 }
 
 export const cases = {
-    'the way through the page': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        const names = [];
-        const nameless = [];
-        for (let i = 0; i < LONGEST_WAY; i++) {
-            await screen.page.keyboard.press('Tab');
-            const at = await screen.page.evaluate(() => {
-                const node = document.activeElement;
-                if (node === document.body) return null;
-                const labels = [...(node.labels ?? [])].map((label) => label.innerText).join(' ');
-                const name = node.getAttribute('aria-label') || labels || document.getElementById(node.getAttribute('aria-labelledby'))?.innerText || node.innerText || node.title;
-                return { name: (name || '').trim(), what: node.outerHTML.slice(0, 90) };
-            });
-            if (!at) break;
-            names.push(at.name);
-            if (!at.name) nameless.push(at.what);
-        }
-        t.more(names.length, 15, 'elements that keys reach');
-        t.none(nameless, 'elements without a name');
-    },
+  'the way through the page': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    const names = [];
+    const nameless = [];
+    for (let i = 0; i < LONGEST_WAY; i++) {
+      await screen.page.keyboard.press('Tab');
+      const at = await screen.page.evaluate(() => {
+        const node = document.activeElement;
+        if (node === document.body) return null;
+        const labels = [...(node.labels ?? [])].map((label) => label.innerText).join(' ');
+        const name =
+          node.getAttribute('aria-label') ||
+          labels ||
+          document.getElementById(node.getAttribute('aria-labelledby'))?.innerText ||
+          node.innerText ||
+          node.title;
+        return { name: (name || '').trim(), what: node.outerHTML.slice(0, 90) };
+      });
+      if (!at) break;
+      names.push(at.name);
+      if (!at.name) nameless.push(at.what);
+    }
+    t.more(names.length, 15, 'elements that keys reach');
+    t.none(nameless, 'elements without a name');
+  },
 
-    'the picture': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        await tabTo(t, screen, '#picture');
-        await checkFocusShows(t, screen, 'the picture');
-        const eye = async () => (await lab.get('/api/state')).camera.eye;
-        for (const key of ['ArrowLeft', 'ArrowUp', 'w', 'd', 'PageUp']) {
-            const { generation, camera } = await lab.get('/api/state');
-            await screen.page.keyboard.press(key);
-            await screen.until((g) => window.lab.state.generation > g, generation);
-            const moved = Math.hypot(...(await eye()).map((v, i) => v - camera.eye[i]));
-            t.more(moved, 1e-3, `${key} moves the eye`);
-        }
-        await screen.settled();
-        const scale = () => screen.page.evaluate(() => window.lab.view.scale);
-        const before = await scale();
-        await screen.page.keyboard.press('+');
-        t.more(await scale(), before, '+ zooms in');
-        await screen.page.keyboard.press('0');
-        t.near(await scale(), before, 1e-6, '0 shows all of it again');
-    },
+  'the picture': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await tabTo(t, screen, '#picture');
+    await checkFocusShows(t, screen, 'the picture');
+    const eye = async () => (await lab.get('/api/state')).camera.eye;
+    for (const key of ['ArrowLeft', 'ArrowUp', 'w', 'd', 'PageUp']) {
+      const { generation, camera } = await lab.get('/api/state');
+      await screen.page.keyboard.press(key);
+      await screen.until((g) => window.lab.state.generation > g, generation);
+      const moved = Math.hypot(...(await eye()).map((v, i) => v - camera.eye[i]));
+      t.more(moved, 1e-3, `${key} moves the eye`);
+    }
+    await screen.settled();
+    const scale = () => screen.page.evaluate(() => window.lab.view.scale);
+    const before = await scale();
+    await screen.page.keyboard.press('+');
+    t.more(await scale(), before, '+ zooms in');
+    await screen.page.keyboard.press('0');
+    t.near(await scale(), before, 1e-6, '0 shows all of it again');
+  },
 
-    'the tools': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        await tabTo(t, screen, '[role=radiogroup] input[type=radio]');
-        await checkFocusShows(t, screen, 'the tools');
-        const chosen = () => screen.page.evaluate(() => window.lab.view.chosen);
-        const first = await chosen();
-        const seen = new Set([first]);
-        const all = await screen.page.getByRole('radiogroup', { name: 'What the pointer does' }).getByRole('radio').count();
-        for (let i = 1; i < all; i++) {
-            await screen.page.keyboard.press('ArrowRight');
-            seen.add(await chosen());
-        }
-        t.more(all, 1, 'tools');
-        t.equal(seen.size, all, 'tools that arrow keys choose');
-    },
+  'the tools': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await tabTo(t, screen, '[role=radiogroup] input[type=radio]');
+    await checkFocusShows(t, screen, 'the tools');
+    const chosen = () => screen.page.evaluate(() => window.lab.view.chosen);
+    const first = await chosen();
+    const seen = new Set([first]);
+    const all = await screen.page.getByRole('radiogroup', { name: 'What the pointer does' }).getByRole('radio').count();
+    for (let i = 1; i < all; i++) {
+      await screen.page.keyboard.press('ArrowRight');
+      seen.add(await chosen());
+    }
+    t.more(all, 1, 'tools');
+    t.equal(seen.size, all, 'tools that arrow keys choose');
+  },
 
-    'a light': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        await screen.chooseTool('Light');
-        await screen.page.locator('#head').click({ position: { x: 5, y: 5 } });
-        await tabTo(t, screen, '.light-handle');
-        await checkFocusShows(t, screen, 'the light');
-        const before = await lab.value('lamp.position');
-        await screen.page.keyboard.press('ArrowLeft');
-        await screen.until((x) => window.lab.param('lamp.position').value[0] < x, before[0]);
-        t.more(before[0], (await lab.value('lamp.position'))[0], 'an arrow key moves it to the left');
-    },
+  'a light': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await screen.chooseTool('Light');
+    await screen.page.locator('#head').click({ position: { x: 5, y: 5 } });
+    await tabTo(t, screen, '.light-handle');
+    await checkFocusShows(t, screen, 'the light');
+    const before = await lab.value('lamp.position');
+    await screen.page.keyboard.press('ArrowLeft');
+    await screen.until((x) => window.lab.param('lamp.position').value[0] < x, before[0]);
+    t.more(before[0], (await lab.value('lamp.position'))[0], 'an arrow key moves it to the left');
+  },
 
-    'a parameter': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        await screen.showPanel('Parameters');
-        await tabTo(t, screen, '.param[data-path="liquid.ior"] input[type=range]');
-        await checkFocusShows(t, screen, 'the slider');
-        await screen.page.keyboard.press('ArrowRight');
-        await screen.until(() => window.lab.param('liquid.ior').value > 1.33);
-        t.more(await lab.value('liquid.ior'), 1.33, 'an arrow key turns it');
-        await tabTo(t, screen, '.param[data-path="liquid.ior"] input[type=number]');
-        await screen.page.keyboard.type('1.4');
-        await screen.page.keyboard.press('Enter');
-        await screen.until(() => window.lab.param('liquid.ior').value === 1.4);
-        t.equal(await lab.value('liquid.ior'), 1.4, 'what is typed into the field beside it');
-        await tabTo(t, screen, '.param[data-path="liquid.ior"] button');
-        await screen.page.keyboard.press('Enter');
-        await screen.until(() => window.lab.param('liquid.ior').value === 1.33);
-        t.equal(await lab.value('liquid.ior'), 1.33, 'the button beside it resets it');
-    },
+  'a parameter': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await screen.showPanel('Parameters');
+    await tabTo(t, screen, '.param[data-path="liquid.ior"] input[type=range]');
+    await checkFocusShows(t, screen, 'the slider');
+    await screen.page.keyboard.press('ArrowRight');
+    await screen.until(() => window.lab.param('liquid.ior').value > 1.33);
+    t.more(await lab.value('liquid.ior'), 1.33, 'an arrow key turns it');
+    await tabTo(t, screen, '.param[data-path="liquid.ior"] input[type=number]');
+    await screen.page.keyboard.type('1.4');
+    await screen.page.keyboard.press('Enter');
+    await screen.until(() => window.lab.param('liquid.ior').value === 1.4);
+    t.equal(await lab.value('liquid.ior'), 1.4, 'what is typed into the field beside it');
+    await tabTo(t, screen, '.param[data-path="liquid.ior"] button');
+    await screen.page.keyboard.press('Enter');
+    await screen.until(() => window.lab.param('liquid.ior').value === 1.33);
+    t.equal(await lab.value('liquid.ior'), 1.33, 'the button beside it resets it');
+  },
 
-    'the panels': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        await tabTo(t, screen, '[role=tab]');
-        await checkFocusShows(t, screen, 'the tabs');
-        const names = await screen.page.getByRole('tab').allInnerTexts();
-        for (let i = 0; i < names.length; i++) {
-            const shown = await screen.page.getByRole('tabpanel').getAttribute('aria-labelledby');
-            const name = await screen.page.evaluate((id) => document.getElementById(id).innerText, shown);
-            t.equal(name, names[i], 'the panel of the tab');
-            await screen.page.keyboard.press('ArrowRight');
-        }
-        t.equal(await screen.page.evaluate(() => document.activeElement.innerText), names[0], 'after the last comes the first');
-    },
+  'the panels': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await tabTo(t, screen, '[role=tab]');
+    await checkFocusShows(t, screen, 'the tabs');
+    const names = await screen.page.getByRole('tab').allInnerTexts();
+    for (let i = 0; i < names.length; i++) {
+      const shown = await screen.page.getByRole('tabpanel').getAttribute('aria-labelledby');
+      const name = await screen.page.evaluate((id) => document.getElementById(id).innerText, shown);
+      t.equal(name, names[i], 'the panel of the tab');
+      await screen.page.keyboard.press('ArrowRight');
+    }
+    t.equal(
+      await screen.page.evaluate(() => document.activeElement.innerText),
+      names[0],
+      'after the last comes the first',
+    );
+  },
 
-    'the keys are listed': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        await screen.page.keyboard.press('?');
-        const dialog = screen.page.getByRole('dialog', { name: 'Keys' });
-        await dialog.waitFor();
-        await t.axe(screen, 'the dialog of keys');
-        await t.picture(screen, 'keys');
-        await screen.page.keyboard.press('Escape');
-        await dialog.waitFor({ state: 'hidden' });
-        t.equal(await dialog.count(), 0, 'Escape closes the dialog');
-    },
+  'the keys are listed': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await screen.page.keyboard.press('?');
+    const dialog = screen.page.getByRole('dialog', { name: 'Keys' });
+    await dialog.waitFor();
+    await t.axe(screen, 'the dialog of keys');
+    await t.picture(screen, 'keys');
+    await screen.page.keyboard.press('Escape');
+    await dialog.waitFor({ state: 'hidden' });
+    t.equal(await dialog.count(), 0, 'Escape closes the dialog');
+  },
 };

@@ -1,4 +1,5 @@
-// A laboratory of its own for a test: a temporary folder, `cuvette lab` on it, requests as curl would send them, and the program's other commands.
+// A laboratory of its own for a test: a temporary folder, `cuvette lab` on it, requests as curl would send them, and
+// the program's other commands.
 import { spawn, execFile } from 'node:child_process';
 import { rmSync } from 'node:fs';
 import { cp, mkdtemp, mkdir, rm } from 'node:fs/promises';
@@ -13,103 +14,124 @@ const START_LIMIT_MS = 30000;
 
 /** The first match of a pattern in what a program prints; an error with all that it printed where it ends before. */
 function said(child, pattern) {
-    return new Promise((resolve, reject) => {
-        let text = '';
-        const give_up = (why) => reject(new Error(`${why}: ${text.trim()}`));
-        const late = setTimeout(() => give_up('the program printed no address'), START_LIMIT_MS);
-        const hear = (piece) => {
-            text += piece;
-            const match = text.match(pattern);
-            if (match) {
-                clearTimeout(late);
-                resolve(match);
-            }
-        };
-        child.stdout.on('data', hear);
-        child.stderr.on('data', hear);
-        child.on('exit', (code) => {
-            clearTimeout(late);
-            give_up(`the program ended with ${code}`);
-        });
+  return new Promise((resolve, reject) => {
+    let text = '';
+    const give_up = (why) => reject(new Error(`${why}: ${text.trim()}`));
+    const late = setTimeout(() => give_up('the program printed no address'), START_LIMIT_MS);
+    const hear = (piece) => {
+      text += piece;
+      const match = text.match(pattern);
+      if (match) {
+        clearTimeout(late);
+        resolve(match);
+      }
+    };
+    child.stdout.on('data', hear);
+    child.stderr.on('data', hear);
+    child.on('exit', (code) => {
+      clearTimeout(late);
+      give_up(`the program ended with ${code}`);
     });
+  });
 }
 
 /** What runs and lies there now: it goes with this program, also where that is ended. */
 const running = new Set();
 process.on('exit', () => {
-    for (const { child, folder } of running) {
-        child?.kill('SIGKILL');
-        rmSync(folder, { recursive: true, force: true });
-    }
+  for (const { child, folder } of running) {
+    child?.kill('SIGKILL');
+    rmSync(folder, { recursive: true, force: true });
+  }
 });
-for (const [signal, code] of [['SIGINT', 130], ['SIGTERM', 143]]) process.on(signal, () => process.exit(code));
+for (const [signal, code] of [
+  ['SIGINT', 130],
+  ['SIGTERM', 143],
+])
+  process.on(signal, () => process.exit(code));
 
 export class Lab {
-    /** scene: a file of the folder, in which are experiments/scenes as scenes, experiments/hands as hands, tests/web/scenes as tests and the studies
-     *  of tests/web/studies. */
-    static async start(program, scene) {
-        const lab = new Lab();
-        lab.program = program;
-        lab.folder = await mkdtemp(join(tmpdir(), 'cuvette-web-'));
-        running.add(lab);
-        for (const [from, to] of [['experiments/scenes', 'scenes'], ['experiments/hands', 'hands'], ['tests/web/scenes', 'tests'], ['tests/web/studies', 'studies']])
-            await cp(join(root, from), join(lab.folder, to), { recursive: true });
-        await mkdir(join(lab.folder, 'results'));
-        await lab.serve(scene);
-        return lab;
-    }
+  /** scene: a file of the folder, in which are experiments/scenes as scenes, experiments/hands as hands,
+   * tests/web/scenes as tests and the studies
+   *  of tests/web/studies. */
+  static async start(program, scene) {
+    const lab = new Lab();
+    lab.program = program;
+    lab.folder = await mkdtemp(join(tmpdir(), 'cuvette-web-'));
+    running.add(lab);
+    for (const [from, to] of [
+      ['experiments/scenes', 'scenes'],
+      ['experiments/hands', 'hands'],
+      ['tests/web/scenes', 'tests'],
+      ['tests/web/studies', 'studies'],
+    ])
+      await cp(join(root, from), join(lab.folder, to), { recursive: true });
+    await mkdir(join(lab.folder, 'results'));
+    await lab.serve(scene);
+    return lab;
+  }
 
-    /** Starts the program; at a port of its choice or, after stop(), at the one that it had. */
-    async serve(scene, more = []) {
-        const port = this.port ? ['--port', String(this.port)] : [];
-        this.child = spawn(this.program, ['lab', ...(scene ? [join(this.folder, scene)] : []), '--no-browser', '--folder', this.folder, ...port, ...more],
-            { cwd: this.folder, stdio: ['ignore', 'pipe', 'pipe'] });
-        const [address, number, token] = await said(this.child, /http:\/\/127\.0\.0\.1:(\d+)\/\?token=([0-9a-f]+)/);
-        Object.assign(this, { address, port: Number(number), token, origin: `http://127.0.0.1:${number}` });
-    }
+  /** Starts the program; at a port of its choice or, after stop(), at the one that it had. */
+  async serve(scene, more = []) {
+    const port = this.port ? ['--port', String(this.port)] : [];
+    this.child = spawn(
+      this.program,
+      ['lab', ...(scene ? [join(this.folder, scene)] : []), '--no-browser', '--folder', this.folder, ...port, ...more],
+      { cwd: this.folder, stdio: ['ignore', 'pipe', 'pipe'] },
+    );
+    const [address, number, token] = await said(this.child, /http:\/\/127\.0\.0\.1:(\d+)\/\?token=([0-9a-f]+)/);
+    Object.assign(this, { address, port: Number(number), token, origin: `http://127.0.0.1:${number}` });
+  }
 
-    async stop() {
-        const { child } = this;
-        if (child.exitCode !== null || child.signalCode !== null) return;
-        const ended = new Promise((resolve) => child.once('exit', resolve));
-        child.kill('SIGTERM');
-        await ended;
-    }
+  async stop() {
+    const { child } = this;
+    if (child.exitCode !== null || child.signalCode !== null) return;
+    const ended = new Promise((resolve) => child.once('exit', resolve));
+    child.kill('SIGTERM');
+    await ended;
+  }
 
-    async end() {
-        await this.stop();
-        await rm(this.folder, { recursive: true, force: true });
-        running.delete(this);
-    }
+  async end() {
+    await this.stop();
+    await rm(this.folder, { recursive: true, force: true });
+    running.delete(this);
+  }
 
-    /** Status, type and bytes of a reply. */
-    async ask(method, path, body) {
-        const headers = { Authorization: `Bearer ${this.token}` };
-        if (method !== 'GET') headers['Content-Type'] = 'application/json';
-        const reply = await fetch(this.origin + path, { method, headers, body: method === 'GET' ? undefined : JSON.stringify(body ?? {}) });
-        return { status: reply.status, headers: reply.headers, bytes: new Uint8Array(await reply.arrayBuffer()) };
-    }
+  /** Status, type and bytes of a reply. */
+  async ask(method, path, body) {
+    const headers = { Authorization: `Bearer ${this.token}` };
+    if (method !== 'GET') headers['Content-Type'] = 'application/json';
+    const reply = await fetch(this.origin + path, {
+      method,
+      headers,
+      body: method === 'GET' ? undefined : JSON.stringify(body ?? {}),
+    });
+    return { status: reply.status, headers: reply.headers, bytes: new Uint8Array(await reply.arrayBuffer()) };
+  }
 
-    async json(method, path, body) {
-        const reply = await this.ask(method, path, body);
-        const text = new TextDecoder().decode(reply.bytes);
-        if (reply.status >= 400) throw new Error(`${method} ${path}: ${reply.status} ${text}`);
-        return JSON.parse(text);
-    }
-    get(path) { return this.json('GET', path); }
-    post(path, body) { return this.json('POST', path, body); }
+  async json(method, path, body) {
+    const reply = await this.ask(method, path, body);
+    const text = new TextDecoder().decode(reply.bytes);
+    if (reply.status >= 400) throw new Error(`${method} ${path}: ${reply.status} ${text}`);
+    return JSON.parse(text);
+  }
+  get(path) {
+    return this.json('GET', path);
+  }
+  post(path, body) {
+    return this.json('POST', path, body);
+  }
 
-    /** A parameter's value, as the scene on the desk has it. */
-    async value(path) {
-        const scene = await this.get('/api/scene');
-        const row = scene.params.find((param) => param.path === path || param.name === path);
-        if (!row) throw new Error(`the scene has no ${path}`);
-        return row.value;
-    }
+  /** A parameter's value, as the scene on the desk has it. */
+  async value(path) {
+    const scene = await this.get('/api/scene');
+    const row = scene.params.find((param) => param.path === path || param.name === path);
+    if (!row) throw new Error(`the scene has no ${path}`);
+    return row.value;
+  }
 
-    /** What another command of the program prints, run in the folder. */
-    async run(...words) {
-        const { stdout } = await promisify(execFile)(this.program, words, { cwd: this.folder, maxBuffer: 1 << 28 });
-        return stdout;
-    }
+  /** What another command of the program prints, run in the folder. */
+  async run(...words) {
+    const { stdout } = await promisify(execFile)(this.program, words, { cwd: this.folder, maxBuffer: 1 << 28 });
+    return stdout;
+  }
 }

@@ -3,10 +3,14 @@ import { writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 
 const ends = {
-    hit: 'meets a surface', sky: 'background', cut_depth: 'not traced: depth limit', cut_weight: 'not traced: weight too small',
-    lit: 'light comes through', blocked: 'blocked',
+  hit: 'meets a surface',
+  sky: 'background',
+  cut_depth: 'not traced: depth limit',
+  cut_weight: 'not traced: weight too small',
+  lit: 'light comes through',
+  blocked: 'blocked',
 };
-const degrees = (cosine) => Math.acos(Math.min(1, cosine)) * 180 / Math.PI;
+const degrees = (cosine) => (Math.acos(Math.min(1, cosine)) * 180) / Math.PI;
 const channels = (c) => (c[0] === c[1] && c[1] === c[2] ? [c[0]] : c);
 
 /** The rays of a tree from the root on, each before its branches. */
@@ -14,99 +18,127 @@ const flat = (node) => [node, ...node.children.flatMap(flat)];
 
 /** The numbers that a row shall show, by the head of their column. */
 function wanted({ depth, medium, n, throughput, brought, hit }) {
-    const row = { Depth: [depth], Weight: channels(throughput), Brought: brought.some((x) => x !== 0) ? channels(brought) : [] };
-    if (!hit) return { ...row, Media: [n], Angles: [], Path: [], medium };
-    return {
-        ...row, medium: hit.from.medium,
-        Media: hit.opaque ? [hit.from.n] : [hit.from.n, hit.to.n],
-        Angles: hit.opaque || hit.tir ? [degrees(hit.cos_i)] : [degrees(hit.cos_i), degrees(hit.cos_t)],
-        'R (s, p)': hit.opaque || hit.tir ? null : [hit.R, hit.R_s, hit.R_p].map((share) => 100 * share),
-        Path: [hit.path_length],
-    };
+  const row = {
+    Depth: [depth],
+    Weight: channels(throughput),
+    Brought: brought.some((x) => x !== 0) ? channels(brought) : [],
+  };
+  if (!hit) return { ...row, Media: [n], Angles: [], Path: [], medium };
+  return {
+    ...row,
+    medium: hit.from.medium,
+    Media: hit.opaque ? [hit.from.n] : [hit.from.n, hit.to.n],
+    Angles: hit.opaque || hit.tir ? [degrees(hit.cos_i)] : [degrees(hit.cos_i), degrees(hit.cos_t)],
+    'R (s, p)': hit.opaque || hit.tir ? null : [hit.R, hit.R_s, hit.R_p].map((share) => 100 * share),
+    Path: [hit.path_length],
+  };
 }
 
 const numbers = (text) => (text.replaceAll('\u2212', '-').match(/-?\d+(\.\d+)?(e-?\d+)?/g) ?? []).map(Number);
 
 /** The rows that are shown, as {head: text}. */
-const rowsOf = (screen) => screen.page.getByRole('treegrid', { name: 'Rays of the pixel' }).evaluate((table) => {
+const rowsOf = (screen) =>
+  screen.page.getByRole('treegrid', { name: 'Rays of the pixel' }).evaluate((table) => {
     const heads = [...table.tHead.rows[0].cells].map((cell) => cell.innerText.trim());
     return [...table.tBodies[0].rows].map((row) => ({
-        level: Number(row.getAttribute('aria-level')), ...Object.fromEntries([...row.cells].map((cell, i) => [heads[i], cell.textContent.trim()])),
+      level: Number(row.getAttribute('aria-level')),
+      ...Object.fromEntries([...row.cells].map((cell, i) => [heads[i], cell.textContent.trim()])),
     }));
-});
+  });
 
 function compareRow(t, row, node, what) {
-    const want = wanted(node);
-    t.match(row.Media, new RegExp(`^(in )?${want.medium}\\b`), `${what}: medium`);
-    t.equal(row.Ended, ends[node.end], `${what}: end`);
-    if (node.hit) t.check(row.Meets.startsWith(node.hit.solid), `${what}: meets ${row.Meets}, not ${node.hit.solid}`);
-    for (const [head, values] of Object.entries(want)) {
-        if (head === 'medium' || values === null) continue;
-        const shown = numbers(row[head]);
-        const same = shown.length === values.length && shown.every((x, i) => Math.abs(x - values[i]) <= 6e-3 * Math.abs(values[i]));
-        t.check(same, `${what}, ${head}: ${JSON.stringify(row[head])}, not ${values}`);
-    }
+  const want = wanted(node);
+  t.match(row.Media, new RegExp(`^(in )?${want.medium}\\b`), `${what}: medium`);
+  t.equal(row.Ended, ends[node.end], `${what}: end`);
+  if (node.hit) t.check(row.Meets.startsWith(node.hit.solid), `${what}: meets ${row.Meets}, not ${node.hit.solid}`);
+  for (const [head, values] of Object.entries(want)) {
+    if (head === 'medium' || values === null) continue;
+    const shown = numbers(row[head]);
+    const same =
+      shown.length === values.length && shown.every((x, i) => Math.abs(x - values[i]) <= 6e-3 * Math.abs(values[i]));
+    t.check(same, `${what}, ${head}: ${JSON.stringify(row[head])}, not ${values}`);
+  }
 }
 
 async function compareTree(t, screen, lab, x, y, what) {
-    await writeFile(join(lab.folder, 'scenes', 'asked.yaml'), (await lab.ask('GET', '/api/scene.yaml')).bytes);
-    const { root, radiance } = JSON.parse(await lab.run('trace', 'scenes/asked.yaml', '--pixel', `${x},${y}`, '--json'));
-    const tree = flat(root);
-    await screen.until(([count]) => document.querySelector('.panel-pixel')?.getAttribute('aria-busy') === 'false' &&
-        document.querySelectorAll('[role=treegrid] tbody tr').length > 0 && window.lab.wanted >= count, [0]);
-    await screen.button('Open all').click();
-    const rows = await rowsOf(screen);
-    if (!t.equal(rows.length, tree.length, `${what}: rays`)) return;
-    tree.forEach((node, i) => compareRow(t, rows[i], node, `${what}, ray ${i}`));
-    const summary = await screen.page.getByRole('tabpanel', { name: 'Pixel' }).locator('dl').first().innerText();
-    const shown = numbers(summary.split('\n').find((line) => line.includes('·')) ?? '');
-    t.check(shown.length === 3 && shown.every((v, i) => Math.abs(v - radiance[i]) < 1e-3 * radiance[i]), `${what}: radiance ${shown}, not ${radiance}`);
+  await writeFile(join(lab.folder, 'scenes', 'asked.yaml'), (await lab.ask('GET', '/api/scene.yaml')).bytes);
+  const { root, radiance } = JSON.parse(await lab.run('trace', 'scenes/asked.yaml', '--pixel', `${x},${y}`, '--json'));
+  const tree = flat(root);
+  await screen.until(
+    ([count]) =>
+      document.querySelector('.panel-pixel')?.getAttribute('aria-busy') === 'false' &&
+      document.querySelectorAll('[role=treegrid] tbody tr').length > 0 &&
+      window.lab.wanted >= count,
+    [0],
+  );
+  await screen.button('Open all').click();
+  const rows = await rowsOf(screen);
+  if (!t.equal(rows.length, tree.length, `${what}: rays`)) return;
+  tree.forEach((node, i) => compareRow(t, rows[i], node, `${what}, ray ${i}`));
+  const summary = await screen.page.getByRole('tabpanel', { name: 'Pixel' }).locator('dl').first().innerText();
+  const shown = numbers(summary.split('\n').find((line) => line.includes('·')) ?? '');
+  t.check(
+    shown.length === 3 && shown.every((v, i) => Math.abs(v - radiance[i]) < 1e-3 * radiance[i]),
+    `${what}: radiance ${shown}, not ${radiance}`,
+  );
 }
 
 export const cases = {
-    'pixels that are clicked': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab, { width: 1920, height: 1080 });
-        await screen.actualSize();
-        await screen.chooseTool('Ask');
-        for (const [x, y] of [[400, 300], [330, 420], [90, 560], [20, 10]]) {
-            await screen.clickPixel(x, y);
-            await screen.until(([px, py]) => [px, py].every((v, i) => Number(document.querySelectorAll('.panel-pixel input[type=number]')[i].value) === v), [x, y]);
-            await compareTree(t, screen, lab, x, y, `pixel ${x},${y}`);
-        }
-    },
+  'pixels that are clicked': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab, { width: 1920, height: 1080 });
+    await screen.actualSize();
+    await screen.chooseTool('Ask');
+    for (const [x, y] of [
+      [400, 300],
+      [330, 420],
+      [90, 560],
+      [20, 10],
+    ]) {
+      await screen.clickPixel(x, y);
+      await screen.until(
+        ([px, py]) =>
+          [px, py].every((v, i) => Number(document.querySelectorAll('.panel-pixel input[type=number]')[i].value) === v),
+        [x, y],
+      );
+      await compareTree(t, screen, lab, x, y, `pixel ${x},${y}`);
+    }
+  },
 
-    'a scene that was changed': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab, { width: 1920, height: 1080 });
-        await screen.actualSize();
-        await screen.chooseTool('Ask');
-        await screen.clickPixel(400, 300);
-        const first = await rowsOf(screen);
-        const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.7, 'render.depth': 3 } });
-        await screen.settled(generation);
-        await screen.quiet();
-        await compareTree(t, screen, lab, 400, 300, 'index 1.7');
-        t.check(JSON.stringify(first) !== JSON.stringify(await rowsOf(screen)), 'the table is another one');
-    },
+  'a scene that was changed': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab, { width: 1920, height: 1080 });
+    await screen.actualSize();
+    await screen.chooseTool('Ask');
+    await screen.clickPixel(400, 300);
+    const first = await rowsOf(screen);
+    const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.7, 'render.depth': 3 } });
+    await screen.settled(generation);
+    await screen.quiet();
+    await compareTree(t, screen, lab, 400, 300, 'index 1.7');
+    t.check(JSON.stringify(first) !== JSON.stringify(await rowsOf(screen)), 'the table is another one');
+  },
 
-    'the place is given by keys': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        await screen.showPanel('Pixel');
-        const [x, y] = [screen.page.getByRole('spinbutton', { name: 'Pixel x' }), screen.page.getByRole('spinbutton', { name: 'y', exact: true })];
-        await x.fill('400');
-        await x.press('Enter');
-        await y.fill('300');
-        await y.press('Enter');
-        await screen.quiet();
-        await compareTree(t, screen, lab, 400, 300, 'typed');
-        await screen.stage.focus();
-        await screen.chooseTool('Ask');
-        await screen.stage.focus();
-        await screen.page.keyboard.press('ArrowRight');
-        await screen.page.keyboard.press('Shift+ArrowDown');
-        await screen.quiet();
-        await compareTree(t, screen, lab, 401, 310, 'arrow keys');
-    },
+  'the place is given by keys': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await screen.showPanel('Pixel');
+    const [x, y] = [
+      screen.page.getByRole('spinbutton', { name: 'Pixel x' }),
+      screen.page.getByRole('spinbutton', { name: 'y', exact: true }),
+    ];
+    await x.fill('400');
+    await x.press('Enter');
+    await y.fill('300');
+    await y.press('Enter');
+    await screen.quiet();
+    await compareTree(t, screen, lab, 400, 300, 'typed');
+    await screen.stage.focus();
+    await screen.chooseTool('Ask');
+    await screen.stage.focus();
+    await screen.page.keyboard.press('ArrowRight');
+    await screen.page.keyboard.press('Shift+ArrowDown');
+    await screen.quiet();
+    await compareTree(t, screen, lab, 401, 310, 'arrow keys');
+  },
 };

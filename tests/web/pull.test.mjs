@@ -1,4 +1,5 @@
-// A ball of slime is let fall, taken hold of at its top, lifted until it is drawn out, and let go: it comes back. What is green in the picture is
+// A ball of slime is let fall, taken hold of at its top, lifted until it is drawn out, and let go: it comes back. What
+// is green in the picture is
 // the body.
 
 const LIFT = 60;
@@ -7,120 +8,137 @@ const IN = 12;
 const DRAWN_OUT = 1.2;
 
 function silhouette({ width, height, data }) {
-    let [count, left, right, top, bottom] = [0, width, -1, height, -1];
-    for (let y = 0; y < height; y++)
-        for (let x = 0; x < width; x++) {
-            const i = (y * width + x) * 4;
-            if (data[i + 1] < 1.3 * data[i] || data[i + 1] < 1.3 * data[i + 2]) continue;
-            count++;
-            [left, right, top, bottom] = [Math.min(left, x), Math.max(right, x), Math.min(top, y), Math.max(bottom, y)];
-        }
-    return { count, left, top, wide: right - left, high: bottom - top, middle: (left + right) / 2 };
+  let [count, left, right, top, bottom] = [0, width, -1, height, -1];
+  for (let y = 0; y < height; y++)
+    for (let x = 0; x < width; x++) {
+      const i = (y * width + x) * 4;
+      if (data[i + 1] < 1.3 * data[i] || data[i + 1] < 1.3 * data[i + 2]) continue;
+      count++;
+      [left, right, top, bottom] = [Math.min(left, x), Math.max(right, x), Math.min(top, y), Math.max(bottom, y)];
+    }
+  return { count, left, top, wide: right - left, high: bottom - top, middle: (left + right) / 2 };
 }
 
-const atRest = (screen) => screen.until(() => window.lab.slime?.resting && window.lab.slime.held === 0 && window.lab.picture.final);
+const atRest = (screen) =>
+  screen.until(() => window.lab.slime?.resting && window.lab.slime.held === 0 && window.lab.picture.final);
 const held = (screen, yes) => screen.until((wanted) => window.lab.slime.held > 0 === wanted, yes);
-const nextPicture = (screen) => screen.page.evaluate(() => new Promise((drawn) => {
-    const end = window.lab.on('picture', () => {
-        end();
-        drawn();
-    });
-}));
+const nextPicture = (screen) =>
+  screen.page.evaluate(
+    () =>
+      new Promise((drawn) => {
+        const end = window.lab.on('picture', () => {
+          end();
+          drawn();
+        });
+      }),
+  );
 
 async function fallen(t) {
-    const lab = await t.lab('tests/slime.yaml');
-    const screen = await t.open(lab, { width: 1920, height: 1080 });
-    screen.context.setDefaultTimeout(90000);
-    await screen.actualSize();
-    await screen.showPanel('Slime');
-    await screen.button('Play').click();
-    await atRest(screen);
-    await screen.chooseTool('Grab');
-    return { lab, screen, rest: silhouette(await screen.pixels()) };
+  const lab = await t.lab('tests/slime.yaml');
+  const screen = await t.open(lab, { width: 1920, height: 1080 });
+  screen.context.setDefaultTimeout(90000);
+  await screen.actualSize();
+  await screen.showPanel('Slime');
+  await screen.button('Play').click();
+  await atRest(screen);
+  await screen.chooseTool('Grab');
+  return { lab, screen, rest: silhouette(await screen.pixels()) };
 }
 
 async function drawnOut(t, screen, rest) {
-    let now = silhouette(await screen.pixels());
-    while (now.high < DRAWN_OUT * rest.high || now.top > rest.top - LIFT + IN) {
-        await nextPicture(screen);
-        now = silhouette(await screen.pixels());
-    }
-    t.more(rest.wide / rest.high, 1.1 * now.wide / now.high, 'how wide it was by how high, above that of now');
-    t.near(now.top, rest.top - LIFT, IN, 'its top goes with the hand, pixels');
+  let now = silhouette(await screen.pixels());
+  while (now.high < DRAWN_OUT * rest.high || now.top > rest.top - LIFT + IN) {
+    await nextPicture(screen);
+    now = silhouette(await screen.pixels());
+  }
+  t.more(rest.wide / rest.high, (1.1 * now.wide) / now.high, 'how wide it was by how high, above that of now');
+  t.near(now.top, rest.top - LIFT, IN, 'its top goes with the hand, pixels');
 }
 
 async function checkBack(t, lab, screen, rest) {
-    await held(screen, false);
-    await atRest(screen);
-    const now = silhouette(await screen.pixels());
-    // It may have rolled nearer or farther and lie on another side, which weighs on its shape; half of what lifting it did would be too much.
-    t.near(now.wide / now.high, rest.wide / rest.high, 0.1, 'let go, how wide it is by how high');
-    t.near(now.count / (now.wide * now.high), rest.count / (rest.wide * rest.high), 0.03, 'let go, its share of its frame');
-    const { slime } = await lab.get('/api/state');
-    t.near(slime.volume / slime.volume_at_rest, 1, 0.03, 'its volume, of that at rest');
-    t.equal(slime.trouble, null, 'it has no trouble');
+  await held(screen, false);
+  await atRest(screen);
+  const now = silhouette(await screen.pixels());
+  // It may have rolled nearer or farther and lie on another side, which weighs on its shape; half of what lifting it
+  // did would be too much.
+  t.near(now.wide / now.high, rest.wide / rest.high, 0.1, 'let go, how wide it is by how high');
+  t.near(
+    now.count / (now.wide * now.high),
+    rest.count / (rest.wide * rest.high),
+    0.03,
+    'let go, its share of its frame',
+  );
+  const { slime } = await lab.get('/api/state');
+  t.near(slime.volume / slime.volume_at_rest, 1, 0.03, 'its volume, of that at rest');
+  t.equal(slime.trouble, null, 'it has no trouble');
 }
 
 export const cases = {
-    'lifted by the mouse': async (t) => {
-        const { lab, screen, rest } = await fallen(t);
-        t.more(rest.count, 10000, 'the body is in the picture, pixels');
-        const [a, b] = [await screen.place(rest.middle, rest.top + IN), await screen.place(rest.middle, rest.top + IN - LIFT)];
-        await screen.page.mouse.move(a.x, a.y);
-        await screen.page.mouse.down();
-        await held(screen, true);
-        await screen.page.mouse.move(b.x, b.y, { steps: 10 });
-        await drawnOut(t, screen, rest);
-        await screen.page.mouse.up();
-        await checkBack(t, lab, screen, rest);
-    },
+  'lifted by the mouse': async (t) => {
+    const { lab, screen, rest } = await fallen(t);
+    t.more(rest.count, 10000, 'the body is in the picture, pixels');
+    const [a, b] = [
+      await screen.place(rest.middle, rest.top + IN),
+      await screen.place(rest.middle, rest.top + IN - LIFT),
+    ];
+    await screen.page.mouse.move(a.x, a.y);
+    await screen.page.mouse.down();
+    await held(screen, true);
+    await screen.page.mouse.move(b.x, b.y, { steps: 10 });
+    await drawnOut(t, screen, rest);
+    await screen.page.mouse.up();
+    await checkBack(t, lab, screen, rest);
+  },
 
-    'lifted by keys': async (t) => {
-        const { lab, screen, rest } = await fallen(t);
-        await screen.stage.focus();
-        // The cross begins in the middle of the picture; a key moves it by a fiftieth of the picture's width.
-        const { width, height } = await screen.page.evaluate(() => ({ width: window.lab.view.width, height: window.lab.view.height }));
-        const up = async (pixels) => {
-            for (let i = 0; i < Math.round(pixels * 50 / width); i++) await screen.page.keyboard.press('ArrowUp');
-        };
-        await up(height / 2 - rest.top - IN);
-        await screen.page.keyboard.press('Enter');
-        await held(screen, true);
-        await up(LIFT);
-        await drawnOut(t, screen, rest);
-        await screen.page.keyboard.press('Enter');
-        await checkBack(t, lab, screen, rest);
-    },
+  'lifted by keys': async (t) => {
+    const { lab, screen, rest } = await fallen(t);
+    await screen.stage.focus();
+    // The cross begins in the middle of the picture; a key moves it by a fiftieth of the picture's width.
+    const { width, height } = await screen.page.evaluate(() => ({
+      width: window.lab.view.width,
+      height: window.lab.view.height,
+    }));
+    const up = async (pixels) => {
+      for (let i = 0; i < Math.round((pixels * 50) / width); i++) await screen.page.keyboard.press('ArrowUp');
+    };
+    await up(height / 2 - rest.top - IN);
+    await screen.page.keyboard.press('Enter');
+    await held(screen, true);
+    await up(LIFT);
+    await drawnOut(t, screen, rest);
+    await screen.page.keyboard.press('Enter');
+    await checkBack(t, lab, screen, rest);
+  },
 
-    'paused, and off': async (t) => {
-        const lab = await t.lab('tests/slime.yaml');
-        const screen = await t.open(lab);
-        await screen.showPanel('Slime');
-        await screen.button('Play').click();
-        await screen.until(() => window.lab.slime.time_s > 0.2);
-        await screen.button('Pause').click();
-        await screen.until(() => !window.lab.slime.playing && window.lab.picture.final);
-        const { slime, picture } = await lab.get('/api/state');
-        const own = JSON.parse(await lab.run('render', 'tests/slime.yaml', '--json')).film_hash;
-        t.check(picture.film_hash !== own, 'the picture shows where it is, not where the scene has it');
-        t.equal((await lab.get('/api/state')).slime.time_s, slime.time_s, 'its time stands still');
-        await screen.button('Off').click();
-        await screen.until((hash) => window.lab.picture.film_hash === hash, own);
-        t.equal((await lab.get('/api/state')).slime.on, false, 'it is off, and the picture is that of cuvette render');
-    },
+  'paused, and off': async (t) => {
+    const lab = await t.lab('tests/slime.yaml');
+    const screen = await t.open(lab);
+    await screen.showPanel('Slime');
+    await screen.button('Play').click();
+    await screen.until(() => window.lab.slime.time_s > 0.2);
+    await screen.button('Pause').click();
+    await screen.until(() => !window.lab.slime.playing && window.lab.picture.final);
+    const { slime, picture } = await lab.get('/api/state');
+    const own = JSON.parse(await lab.run('render', 'tests/slime.yaml', '--json')).film_hash;
+    t.check(picture.film_hash !== own, 'the picture shows where it is, not where the scene has it');
+    t.equal((await lab.get('/api/state')).slime.time_s, slime.time_s, 'its time stands still');
+    await screen.button('Off').click();
+    await screen.until((hash) => window.lab.picture.film_hash === hash, own);
+    t.equal((await lab.get('/api/state')).slime.on, false, 'it is off, and the picture is that of cuvette render');
+  },
 
-    'a scene without one': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        await screen.showPanel('Slime');
-        await screen.page.getByText('This scene has no slime').waitFor();
-        const tools = screen.page.getByRole('radiogroup', { name: 'What the pointer does' });
-        t.equal(await tools.getByText('Grab').isVisible(), false, 'there is no tool to grab it');
-        const { generation } = await lab.get('/api/state');
-        await screen.button('Add a slime').click();
-        await screen.until((g) => window.lab.wanted > g, generation);
-        await screen.settled(generation + 1);
-        await screen.button('Play').waitFor();
-        t.check(await tools.getByText('Grab').isVisible(), 'one that was added can be grabbed');
-    },
+  'a scene without one': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await screen.showPanel('Slime');
+    await screen.page.getByText('This scene has no slime').waitFor();
+    const tools = screen.page.getByRole('radiogroup', { name: 'What the pointer does' });
+    t.equal(await tools.getByText('Grab').isVisible(), false, 'there is no tool to grab it');
+    const { generation } = await lab.get('/api/state');
+    await screen.button('Add a slime').click();
+    await screen.until((g) => window.lab.wanted > g, generation);
+    await screen.settled(generation + 1);
+    await screen.button('Play').waitFor();
+    t.check(await tools.getByText('Grab').isVisible(), 'one that was added can be grabbed');
+  },
 };

@@ -1,5 +1,7 @@
-// tests/web/run.mjs --program CUVETTE --modules FOLDER [--screenshots FOLDER] [NAME...]: runs tests/web/NAME.test.mjs, or all, in Chromium, one line a
-// file and a line a failed check, and ends with "N passed, M failed". A file exports cases: {what: async (t) => ..}; t has the checks of checks.mjs,
+// tests/web/run.mjs --program CUVETTE --modules FOLDER [--screenshots FOLDER] [NAME...]: runs tests/web/NAME.test.mjs,
+// or all, in Chromium, one line a
+// file and a line a failed check, and ends with "N passed, M failed". A file exports cases: {what: async (t) => ..}; t
+// has the checks of checks.mjs,
 // t.lab(scene), t.open(lab, options) and t.axe(screen, what); what these start ends with the case.
 import { execFileSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
@@ -15,7 +17,8 @@ import { Screen } from './screen.mjs';
 const here = dirname(fileURLToPath(import.meta.url));
 const CASE_LIMIT_MS = 180000;
 const { values: options, positionals: names } = parseArgs({
-    options: { program: { type: 'string' }, modules: { type: 'string' }, screenshots: { type: 'string' } }, allowPositionals: true,
+  options: { program: { type: 'string' }, modules: { type: 'string' }, screenshots: { type: 'string' } },
+  allowPositionals: true,
 });
 
 // What is installed lies in the build folder, where import does not look.
@@ -24,97 +27,115 @@ const { chromium } = installed('playwright-core');
 const axePath = installed.resolve('axe-core/axe.min.js');
 
 class Case extends Checks {
-    labs = [];
-    screens = [];
-    program = options.program;
-    screenshots = options.screenshots;
+  labs = [];
+  screens = [];
+  program = options.program;
+  screenshots = options.screenshots;
 
-    async lab(scene) {
-        const lab = await Lab.start(options.program, scene);
-        this.labs.push(lab);
-        return lab;
-    }
+  async lab(scene) {
+    const lab = await Lab.start(options.program, scene);
+    this.labs.push(lab);
+    return lab;
+  }
 
-    async open(lab, how) {
-        const screen = await Screen.open(this.browser, lab, how);
-        this.screens.push(screen);
-        return screen;
-    }
+  async open(lab, how) {
+    const screen = await Screen.open(this.browser, lab, how);
+    this.screens.push(screen);
+    return screen;
+  }
 
-    /** Accessibility as far as a program can tell: a check a state of the page. */
-    async axe(screen, what) {
-        // Not by a script element: the page's policy forbids those, and rightly.
-        await screen.page.evaluate(await axeSource());
-        const { violations } = await screen.page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
-        this.none(violations.map((v) => `${v.id} (${v.impact}): ${v.nodes.map((n) => `${n.target.join(' ')} ${n.any[0]?.message ?? ''}`).slice(0, 3).join(', ')}`), `${what}: axe`);
-    }
+  /** Accessibility as far as a program can tell: a check a state of the page. */
+  async axe(screen, what) {
+    // Not by a script element: the page's policy forbids those, and rightly.
+    await screen.page.evaluate(await axeSource());
+    const { violations } = await screen.page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
+    this.none(
+      violations.map(
+        (v) =>
+          `${v.id} (${v.impact}): ${v.nodes
+            .map((n) => `${n.target.join(' ')} ${n.any[0]?.message ?? ''}`)
+            .slice(0, 3)
+            .join(', ')}`,
+      ),
+      `${what}: axe`,
+    );
+  }
 
-    /** With --screenshots, a picture of the whole page. */
-    async picture(screen, name) {
-        if (!options.screenshots) return;
-        await mkdir(options.screenshots, { recursive: true });
-        await screen.page.screenshot({ path: join(options.screenshots, `${name}.png`) });
-    }
+  /** With --screenshots, a picture of the whole page. */
+  async picture(screen, name) {
+    if (!options.screenshots) return;
+    await mkdir(options.screenshots, { recursive: true });
+    await screen.page.screenshot({ path: join(options.screenshots, `${name}.png`) });
+  }
 
-    async end() {
-        for (const screen of this.screens) {
-            this.none(screen.unexpected, 'the page prints no error and asks nobody else');
-            await screen.close().catch(() => {});
-        }
-        for (const lab of this.labs) await lab.end();
+  async end() {
+    for (const screen of this.screens) {
+      this.none(screen.unexpected, 'the page prints no error and asks nobody else');
+      await screen.close().catch(() => {});
     }
+    for (const lab of this.labs) await lab.end();
+  }
 }
 
 let axe = null;
 const axeSource = () => (axe ??= readFile(axePath, 'utf8'));
 
 function limited(promise) {
-    let timer;
-    const late = new Promise((_, reject) => {
-        timer = setTimeout(() => reject(new Error(`not done within ${CASE_LIMIT_MS / 1000} s`)), CASE_LIMIT_MS);
-    });
-    return Promise.race([promise, late]).finally(() => clearTimeout(timer));
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`not done within ${CASE_LIMIT_MS / 1000} s`)), CASE_LIMIT_MS);
+  });
+  return Promise.race([promise, late]).finally(() => clearTimeout(timer));
 }
 
 async function runCase(browser, body) {
-    const t = new Case();
-    t.browser = browser;
-    try {
-        await limited(body(t));
-        t.check(t.passed + t.failures.length > 0, 'a case without a check');
-    } catch (error) {
-        t.failures.push(`${error.message}`.split('\n').slice(0, 4).join(' ') + at(error));
-    }
-    await t.end().catch((error) => t.failures.push(`at the end: ${error.message}`));
-    return t;
+  const t = new Case();
+  t.browser = browser;
+  try {
+    await limited(body(t));
+    t.check(t.passed + t.failures.length > 0, 'a case without a check');
+  } catch (error) {
+    t.failures.push(`${error.message}`.split('\n').slice(0, 4).join(' ') + at(error));
+  }
+  await t.end().catch((error) => t.failures.push(`at the end: ${error.message}`));
+  return t;
 }
 
 /** The line of a test file where an error came up. */
 function at(error) {
-    const line = `${error.stack}`.match(/[\w.-]+\.test\.mjs:\d+/);
-    return line ? ` (${line[0]})` : '';
+  const line = `${error.stack}`.match(/[\w.-]+\.test\.mjs:\d+/);
+  return line ? ` (${line[0]})` : '';
 }
 
-const selected = readdirSync(here).filter((file) => file.endsWith('.test.mjs')).map((file) => file.replace('.test.mjs', '')).sort()
-    .filter((name) => names.length === 0 || names.includes(name));
+const selected = readdirSync(here)
+  .filter((file) => file.endsWith('.test.mjs'))
+  .map((file) => file.replace('.test.mjs', ''))
+  .sort()
+  .filter((name) => names.length === 0 || names.includes(name));
 const browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? execFileSync('sh', ['-c', 'command -v chromium'], { encoding: 'utf8' }).trim(), headless: true,
-    args: ['--force-color-profile=srgb', ...(process.getuid() === 0 ? ['--no-sandbox'] : [])],
+  executablePath:
+    process.env.CHROMIUM ?? execFileSync('sh', ['-c', 'command -v chromium'], { encoding: 'utf8' }).trim(),
+  headless: true,
+  args: ['--force-color-profile=srgb', ...(process.getuid() === 0 ? ['--no-sandbox'] : [])],
 });
 let [passed, failed] = [0, 0];
 for (const name of selected) {
-    const { cases } = await import(pathToFileURL(join(here, `${name}.test.mjs`)));
-    const lines = [];
-    let good = 0;
-    for (const [what, body] of Object.entries(cases)) {
-        const t = await runCase(browser, body);
-        good += t.passed;
-        lines.push(...t.failures.map((line) => `      ${what}: ${line}`));
-    }
-    console.log(lines.length ? `FAIL  ${name.padEnd(24)} ${lines.length} of ${good + lines.length}` : `pass  ${name.padEnd(24)} ${good}`);
-    for (const line of lines) console.log(line);
-    passed += good;
-    failed += lines.length;
+  const { cases } = await import(pathToFileURL(join(here, `${name}.test.mjs`)));
+  const lines = [];
+  let good = 0;
+  for (const [what, body] of Object.entries(cases)) {
+    const t = await runCase(browser, body);
+    good += t.passed;
+    lines.push(...t.failures.map((line) => `      ${what}: ${line}`));
+  }
+  console.log(
+    lines.length
+      ? `FAIL  ${name.padEnd(24)} ${lines.length} of ${good + lines.length}`
+      : `pass  ${name.padEnd(24)} ${good}`,
+  );
+  for (const line of lines) console.log(line);
+  passed += good;
+  failed += lines.length;
 }
 await browser.close();
 console.log(`${passed} passed, ${failed} failed`);

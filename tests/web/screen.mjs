@@ -4,179 +4,215 @@ import { readPng } from './png.mjs';
 const LIMIT_MS = 30000;
 
 export class Screen {
-    /** options: width, height, dark. */
-    static async open(browser, lab, options = {}) {
-        const screen = new Screen();
-        const { width = 1366, height = 768, dark = false } = options;
-        screen.lab = lab;
-        screen.context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', reducedMotion: 'reduce' });
-        screen.context.setDefaultTimeout(LIMIT_MS);
-        screen.page = await screen.context.newPage();
-        screen.troubles = [];
-        screen.expected = [];
-        screen.asking = new Set();
-        screen.idle = [];
-        screen.watch();
-        await screen.load();
-        return screen;
-    }
+  /** options: width, height, dark. */
+  static async open(browser, lab, options = {}) {
+    const screen = new Screen();
+    const { width = 1366, height = 768, dark = false } = options;
+    screen.lab = lab;
+    screen.context = await browser.newContext({
+      viewport: { width, height },
+      colorScheme: dark ? 'dark' : 'light',
+      reducedMotion: 'reduce',
+    });
+    screen.context.setDefaultTimeout(LIMIT_MS);
+    screen.page = await screen.context.newPage();
+    screen.troubles = [];
+    screen.expected = [];
+    screen.asking = new Set();
+    screen.idle = [];
+    screen.watch();
+    await screen.load();
+    return screen;
+  }
 
-    watch() {
-        const { page } = this;
-        const note = (text) => this.troubles.push(text);
-        page.on('console', (message) => {
-            if (['error', 'warning'].includes(message.type())) note(`${message.text()} (${message.location().url ?? ''})`);
-        });
-        page.on('pageerror', (error) => note(`uncaught: ${error.message}`));
-        page.on('request', (request) => {
-            const url = new URL(request.url());
-            if (['data:', 'blob:', 'about:'].includes(url.protocol)) return;
-            if (url.origin !== this.lab.origin) note(`a request to ${url.origin}`);
-            if (url.pathname !== '/api/events') this.asking.add(request);
-        });
-        for (const end of ['requestfinished', 'requestfailed']) page.on(end, (request) => {
-            this.asking.delete(request);
-            if (this.asking.size === 0) for (const wake of this.idle.splice(0)) wake();
-        });
-    }
+  watch() {
+    const { page } = this;
+    const note = (text) => this.troubles.push(text);
+    page.on('console', (message) => {
+      if (['error', 'warning'].includes(message.type())) note(`${message.text()} (${message.location().url ?? ''})`);
+    });
+    page.on('pageerror', (error) => note(`uncaught: ${error.message}`));
+    page.on('request', (request) => {
+      const url = new URL(request.url());
+      if (['data:', 'blob:', 'about:'].includes(url.protocol)) return;
+      if (url.origin !== this.lab.origin) note(`a request to ${url.origin}`);
+      if (url.pathname !== '/api/events') this.asking.add(request);
+    });
+    for (const end of ['requestfinished', 'requestfailed'])
+      page.on(end, (request) => {
+        this.asking.delete(request);
+        if (this.asking.size === 0) for (const wake of this.idle.splice(0)) wake();
+      });
+  }
 
-    /** Errors that a case provokes; what matches is no trouble. */
-    expect(pattern) { this.expected.push(pattern); }
-    get unexpected() { return this.troubles.filter((text) => !this.expected.some((pattern) => pattern.test(text))); }
+  /** Errors that a case provokes; what matches is no trouble. */
+  expect(pattern) {
+    this.expected.push(pattern);
+  }
+  get unexpected() {
+    return this.troubles.filter((text) => !this.expected.some((pattern) => pattern.test(text)));
+  }
 
-    async load() {
-        await this.page.goto(this.lab.address);
-        await this.page.waitForFunction(() => window.lab?.picture);
-        await this.settled();
-    }
+  async load() {
+    await this.page.goto(this.lab.address);
+    await this.page.waitForFunction(() => window.lab?.picture);
+    await this.settled();
+  }
 
-    async close() { await this.context.close(); }
+  async close() {
+    await this.context.close();
+  }
 
-    /** Until what is drawn is the final picture of the newest generation that page and server know of, or of at least this one. */
-    async settled(generation = 0) {
-        const least = Math.max(generation, (await this.lab.get('/api/state')).generation);
-        await this.page.waitForFunction((g) => {
-            const { picture, wanted, scene } = window.lab;
-            return picture?.final && picture.generation >= Math.max(g, wanted) && scene?.generation >= g;
-        }, least);
-    }
+  /** Until what is drawn is the final picture of the newest generation that page and server know of, or of at least
+   * this one. */
+  async settled(generation = 0) {
+    const least = Math.max(generation, (await this.lab.get('/api/state')).generation);
+    await this.page.waitForFunction((g) => {
+      const { picture, wanted, scene } = window.lab;
+      return picture?.final && picture.generation >= Math.max(g, wanted) && scene?.generation >= g;
+    }, least);
+  }
 
-    /** Until nothing is asked of the server, but for the stream of events, and what came is drawn. */
-    async quiet() {
-        do { // what waited in the page for an answer is asked when that has come
-            if (this.asking.size) await new Promise((resolve) => this.idle.push(resolve));
-            await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
-        } while (this.asking.size);
-    }
+  /** Until nothing is asked of the server, but for the stream of events, and what came is drawn. */
+  async quiet() {
+    do {
+      // what waited in the page for an answer is asked when that has come
+      if (this.asking.size) await new Promise((resolve) => this.idle.push(resolve));
+      await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+    } while (this.asking.size);
+  }
 
-    /** Until an answer of the page is true; it may use window.lab. */
-    until(condition, argument) { return this.page.waitForFunction(condition, argument); }
+  /** Until an answer of the page is true; it may use window.lab. */
+  until(condition, argument) {
+    return this.page.waitForFunction(condition, argument);
+  }
 
-    /** What the canvas shows of the picture, as {width, height, data}: at actual size, so that each of its pixels is one of the canvas. */
-    async pixels() {
-        const { width, height, scale, text } = await this.page.evaluate(async () => {
-            const { view } = window.lab;
-            await new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)));
-            const canvas = view.stage.querySelector('canvas');
-            const { width, height, scale } = view;
-            const corner = view.toScreen(0, 0);
-            const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
-            copy.drawImage(canvas, -Math.round(corner.x), -Math.round(corner.y));
-            const shown = copy.getImageData(0, 0, width, height).data;
-            let text = '';
-            for (let i = 0; i < shown.length; i += 32768) text += String.fromCharCode(...shown.subarray(i, i + 32768));
-            return { width, height, scale, text: btoa(text) };
-        });
-        if (Math.abs(scale - 1) > 1e-6) throw new Error(`the picture is shown at ${scale} of its size; actualSize() first`);
-        return { width, height, data: new Uint8ClampedArray(Buffer.from(text, 'base64')) };
-    }
+  /** What the canvas shows of the picture, as {width, height, data}: at actual size, so that each of its pixels is one
+   * of the canvas. */
+  async pixels() {
+    const { width, height, scale, text } = await this.page.evaluate(async () => {
+      const { view } = window.lab;
+      await new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)));
+      const canvas = view.stage.querySelector('canvas');
+      const { width, height, scale } = view;
+      const corner = view.toScreen(0, 0);
+      const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+      copy.drawImage(canvas, -Math.round(corner.x), -Math.round(corner.y));
+      const shown = copy.getImageData(0, 0, width, height).data;
+      let text = '';
+      for (let i = 0; i < shown.length; i += 32768) text += String.fromCharCode(...shown.subarray(i, i + 32768));
+      return { width, height, scale, text: btoa(text) };
+    });
+    if (Math.abs(scale - 1) > 1e-6) throw new Error(`the picture is shown at ${scale} of its size; actualSize() first`);
+    return { width, height, data: new Uint8ClampedArray(Buffer.from(text, 'base64')) };
+  }
 
-    /** What people see of the picture, with all that lies over it. */
-    async seen() {
-        const { width, height } = await this.page.evaluate(() => ({ width: window.lab.view.width, height: window.lab.view.height }));
-        const corner = await this.place(0, 0);
-        return readPng(await this.page.screenshot({ clip: { ...corner, width, height } }));
-    }
+  /** What people see of the picture, with all that lies over it. */
+  async seen() {
+    const { width, height } = await this.page.evaluate(() => ({
+      width: window.lab.view.width,
+      height: window.lab.view.height,
+    }));
+    const corner = await this.place(0, 0);
+    return readPng(await this.page.screenshot({ clip: { ...corner, width, height } }));
+  }
 
-    /** Picture pixels as they are, by the key for it. */
-    async actualSize() {
-        await this.stage.focus();
-        await this.page.keyboard.press('1');
-        await this.until(() => Math.abs(window.lab.view.scale - 1) < 1e-6);
-    }
+  /** Picture pixels as they are, by the key for it. */
+  async actualSize() {
+    await this.stage.focus();
+    await this.page.keyboard.press('1');
+    await this.until(() => Math.abs(window.lab.view.scale - 1) < 1e-6);
+  }
 
-    /** The same picture from the server. */
-    async served(path = '/api/picture.png?wait=1') { return readPng((await this.lab.ask('GET', path)).bytes); }
+  /** The same picture from the server. */
+  async served(path = '/api/picture.png?wait=1') {
+    return readPng((await this.lab.ask('GET', path)).bytes);
+  }
 
-    /** Where a place of the picture, in its pixels, lies in the window. */
-    place(x, y) {
-        return this.page.evaluate(([px, py]) => {
-            const { view } = window.lab;
-            const box = view.stage.getBoundingClientRect();
-            const at = view.toScreen(px, py);
-            return { x: box.left + view.stage.clientLeft + at.x, y: box.top + view.stage.clientTop + at.y };
-        }, [x, y]);
-    }
+  /** Where a place of the picture, in its pixels, lies in the window. */
+  place(x, y) {
+    return this.page.evaluate(
+      ([px, py]) => {
+        const { view } = window.lab;
+        const box = view.stage.getBoundingClientRect();
+        const at = view.toScreen(px, py);
+        return { x: box.left + view.stage.clientLeft + at.x, y: box.top + view.stage.clientTop + at.y };
+      },
+      [x, y],
+    );
+  }
 
-    async clickPixel(x, y) {
-        const at = await this.place(x + 0.5, y + 0.5);
-        await this.page.mouse.click(at.x, at.y);
-    }
+  async clickPixel(x, y) {
+    const at = await this.place(x + 0.5, y + 0.5);
+    await this.page.mouse.click(at.x, at.y);
+  }
 
-    /** Presses at one place of the picture, goes to another in steps, and lets go. */
-    async drag(from, to, steps = 12) {
-        const [a, b] = [await this.place(from.x, from.y), await this.place(to.x, to.y)];
-        await this.page.mouse.move(a.x, a.y);
-        await this.page.mouse.down();
-        await this.page.mouse.move(b.x, b.y, { steps });
-        await this.page.mouse.up();
-    }
+  /** Presses at one place of the picture, goes to another in steps, and lets go. */
+  async drag(from, to, steps = 12) {
+    const [a, b] = [await this.place(from.x, from.y), await this.place(to.x, to.y)];
+    await this.page.mouse.move(a.x, a.y);
+    await this.page.mouse.down();
+    await this.page.mouse.move(b.x, b.y, { steps });
+    await this.page.mouse.up();
+  }
 
-    get stage() { return this.page.locator('#picture'); }
+  get stage() {
+    return this.page.locator('#picture');
+  }
 
-    /** Of the bar over the picture: what the pointer does. The radio buttons are small; people click what stands around them. */
-    async chooseTool(name) {
-        const radio = this.page.getByRole('radiogroup', { name: 'What the pointer does' }).getByRole('radio', { name, exact: true });
-        await radio.locator('xpath=ancestor::label').click();
-        await this.until((input) => input.checked, await radio.elementHandle());
-    }
+  /** Of the bar over the picture: what the pointer does. The radio buttons are small; people click what stands around
+   * them. */
+  async chooseTool(name) {
+    const radio = this.page
+      .getByRole('radiogroup', { name: 'What the pointer does' })
+      .getByRole('radio', { name, exact: true });
+    await radio.locator('xpath=ancestor::label').click();
+    await this.until((input) => input.checked, await radio.elementHandle());
+  }
 
-    async showPanel(name) {
-        await this.tab(name).click();
-        await this.page.getByRole('tabpanel', { name }).waitFor();
-    }
+  async showPanel(name) {
+    await this.tab(name).click();
+    await this.page.getByRole('tabpanel', { name }).waitFor();
+  }
 
-    /** A parameter's slider, at hand in the panel of parameters. */
-    async paramSlider(path) {
-        await this.showPanel('Parameters');
-        return this.page.getByRole('slider', { name: path.replaceAll(/[._]/g, ' '), exact: true }).first();
-    }
+  /** A parameter's slider, at hand in the panel of parameters. */
+  async paramSlider(path) {
+    await this.showPanel('Parameters');
+    return this.page.getByRole('slider', { name: path.replaceAll(/[._]/g, ' '), exact: true }).first();
+  }
 
-    /** Types a value into a parameter's number field and waits until it is on the desk and drawn. */
-    async setNumber(path, value) {
-        await this.showPanel('Parameters');
-        const field = this.page.getByRole('spinbutton', { name: `${path.replaceAll(/[._]/g, ' ')}, number`, exact: true }).first();
-        const { generation } = await this.lab.get('/api/state');
-        await field.fill(String(value));
-        await field.press('Enter');
-        await this.until((g) => window.lab.wanted > g, generation);
-        await this.settled(generation + 1);
-    }
+  /** Types a value into a parameter's number field and waits until it is on the desk and drawn. */
+  async setNumber(path, value) {
+    await this.showPanel('Parameters');
+    const field = this.page
+      .getByRole('spinbutton', { name: `${path.replaceAll(/[._]/g, ' ')}, number`, exact: true })
+      .first();
+    const { generation } = await this.lab.get('/api/state');
+    await field.fill(String(value));
+    await field.press('Enter');
+    await this.until((g) => window.lab.wanted > g, generation);
+    await this.settled(generation + 1);
+  }
 
-    button(name, exact = false) { return this.page.getByRole('button', { name, exact }); }
-    tab(name) { return this.page.getByRole('tab', { name }); }
+  button(name, exact = false) {
+    return this.page.getByRole('button', { name, exact });
+  }
+  tab(name) {
+    return this.page.getByRole('tab', { name });
+  }
 }
 
-/** Share of pixels that differ by more than a level in any channel; Infinity for other sizes. keep(x, y): which count. */
+/** Share of pixels that differ by more than a level in any channel; Infinity for other sizes. keep(x, y): which count.
+ * */
 export function difference(a, b, keep = () => true) {
-    if (a.width !== b.width || a.height !== b.height) return Infinity;
-    let [all, other] = [0, 0];
-    for (let y = 0; y < a.height; y++)
-        for (let x = 0; x < a.width; x++) {
-            if (!keep(x, y)) continue;
-            const i = (y * a.width + x) * 4;
-            all++;
-            if ([0, 1, 2].some((c) => Math.abs(a.data[i + c] - b.data[i + c]) > 1)) other++;
-        }
-    return other / all;
+  if (a.width !== b.width || a.height !== b.height) return Infinity;
+  let [all, other] = [0, 0];
+  for (let y = 0; y < a.height; y++)
+    for (let x = 0; x < a.width; x++) {
+      if (!keep(x, y)) continue;
+      const i = (y * a.width + x) * 4;
+      all++;
+      if ([0, 1, 2].some((c) => Math.abs(a.data[i + c] - b.data[i + c]) > 1)) other++;
+    }
+  return other / all;
 }

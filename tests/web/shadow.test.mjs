@@ -8,43 +8,42 @@ const ball = { centre: [0, 1, 0], radius: 0.3 };
 
 /** Middle and count of the pixels of which it is true. */
 function region(inside) {
-    let [n, sx, sy] = [0, 0, 0];
-    for (let y = 0; y < size.height; y++)
-        for (let x = 0; x < size.width; x++)
-            if (inside(x, y)) [n, sx, sy] = [n + 1, sx + x, sy + y];
-    return { n, x: sx / n, y: sy / n };
+  let [n, sx, sy] = [0, 0, 0];
+  for (let y = 0; y < size.height; y++)
+    for (let x = 0; x < size.width; x++) if (inside(x, y)) [n, sx, sy] = [n + 1, sx + x, sy + y];
+  return { n, x: sx / n, y: sy / n };
 }
 
 async function compare(t, screen, what) {
-    await screen.settled();
-    const lamp = await screen.lab.value('lamp.position');
-    const shown = await screen.pixels();
-    const at = (x, y, c) => shown.data[(y * size.width + x) * 4 + c];
-    const dark = (x, y) => at(x, y, 0) < 100 && at(x, y, 2) < 100;
-    const shade = (x, y) => inShadow(x + 0.5, y + 0.5, { eye, view, ball, lamp });
-    const [found, wanted] = [region(dark), region(shade)];
-    t.more(wanted.n, 300, `${what}: the shadow is in the picture`);
-    t.near(found.x, wanted.x, 1, `${what}, lamp at ${lamp}: the shadow's middle, x`);
-    t.near(found.y, wanted.y, 1, `${what}, lamp at ${lamp}: the shadow's middle, y`);
-    const wrong = region((x, y) => dark(x, y) !== shade(x, y)).n;
-    t.check(wrong <= wanted.n / 50, `${what}: ${wrong} of ${wanted.n} pixels are not as the closed form says`);
-    return { lamp, ...found };
+  await screen.settled();
+  const lamp = await screen.lab.value('lamp.position');
+  const shown = await screen.pixels();
+  const at = (x, y, c) => shown.data[(y * size.width + x) * 4 + c];
+  const dark = (x, y) => at(x, y, 0) < 100 && at(x, y, 2) < 100;
+  const shade = (x, y) => inShadow(x + 0.5, y + 0.5, { eye, view, ball, lamp });
+  const [found, wanted] = [region(dark), region(shade)];
+  t.more(wanted.n, 300, `${what}: the shadow is in the picture`);
+  t.near(found.x, wanted.x, 1, `${what}, lamp at ${lamp}: the shadow's middle, x`);
+  t.near(found.y, wanted.y, 1, `${what}, lamp at ${lamp}: the shadow's middle, y`);
+  const wrong = region((x, y) => dark(x, y) !== shade(x, y)).n;
+  t.check(wrong <= wanted.n / 50, `${what}: ${wrong} of ${wanted.n} pixels are not as the closed form says`);
+  return { lamp, ...found };
 }
 
 export const cases = {
-    'the lamp is dragged': async (t) => {
-        const lab = await t.lab('tests/shadow.yaml');
-        const screen = await t.open(lab, { width: 1920, height: 1080 });
-        await screen.actualSize();
-        const before = await compare(t, screen, 'as opened');
-        await screen.chooseTool('Light');
-        const handle = view.project(before.lamp);
-        await screen.drag(handle, { x: handle.x - 60, y: handle.y + 40 });
-        const after = await compare(t, screen, 'dragged');
-        t.more(Math.hypot(...after.lamp.map((v, i) => v - before.lamp[i])), 0.2, 'the lamp has moved');
-        t.more(Math.hypot(after.x - before.x, after.y - before.y), 10, 'and its shadow, pixels');
-        const there = view.project(after.lamp);
-        t.near(there.x, handle.x - 60, 2, 'the lamp is where the pointer let go of it, x');
-        t.near(there.y, handle.y + 40, 2, 'the lamp is where the pointer let go of it, y');
-    },
+  'the lamp is dragged': async (t) => {
+    const lab = await t.lab('tests/shadow.yaml');
+    const screen = await t.open(lab, { width: 1920, height: 1080 });
+    await screen.actualSize();
+    const before = await compare(t, screen, 'as opened');
+    await screen.chooseTool('Light');
+    const handle = view.project(before.lamp);
+    await screen.drag(handle, { x: handle.x - 60, y: handle.y + 40 });
+    const after = await compare(t, screen, 'dragged');
+    t.more(Math.hypot(...after.lamp.map((v, i) => v - before.lamp[i])), 0.2, 'the lamp has moved');
+    t.more(Math.hypot(after.x - before.x, after.y - before.y), 10, 'and its shadow, pixels');
+    const there = view.project(after.lamp);
+    t.near(there.x, handle.x - 60, 2, 'the lamp is where the pointer let go of it, x');
+    t.near(there.y, handle.y + 40, 2, 'the lamp is where the pointer let go of it, y');
+  },
 };

@@ -1,96 +1,100 @@
-// The slime in the page: it plays, hands draw it through the picture by pointer and by keys, and its colours are turned while it moves.
+// The slime in the page: it plays, hands draw it through the picture by pointer and by keys, and its colours are turned
+// while it moves.
 
 const slime = async (lab) => (await lab.get('/api/state')).slime;
 
 /** The panel with the slime playing. */
 async function play(t, options) {
-    const lab = await t.lab('scenes/slime.yaml');
-    await lab.post('/api/set', { set: { 'toy.script': '', 'toy.time_s': 0 } });
-    const screen = await t.open(lab, options);
-    await screen.showPanel('Slime');
-    await screen.button('Play').click();
-    await screen.until(() => window.lab.slime.playing && window.lab.slime.time_s > 0.1);
-    return { lab, screen };
+  const lab = await t.lab('scenes/slime.yaml');
+  await lab.post('/api/set', { set: { 'toy.script': '', 'toy.time_s': 0 } });
+  const screen = await t.open(lab, options);
+  await screen.showPanel('Slime');
+  await screen.button('Play').click();
+  await screen.until(() => window.lab.slime.playing && window.lab.slime.time_s > 0.1);
+  return { lab, screen };
 }
 
 /** Until it is told and true. */
 const told = (screen, condition) => screen.until(condition);
 
 export const cases = {
-    'a pointer draws it': async (t) => {
-        const { lab, screen } = await play(t);
-        await screen.chooseTool('Grab');
-        const [a, b] = [await screen.place(400, 330), await screen.place(330, 250)];
-        await screen.page.mouse.move(a.x, a.y);
-        await screen.page.mouse.down();
-        await told(screen, () => window.lab.slime.held > 0);
-        await screen.page.mouse.move(b.x, b.y, { steps: 8 });
-        await screen.page.mouse.wheel(0, -60);
-        await told(screen, () => window.lab.slime.speed > 1);
-        t.more(await screen.page.locator('.layer-grab circle').count(), 1, 'marks of the hand');
-        await t.picture(screen, 'slime-drawn');
-        await screen.page.mouse.up();
-        await told(screen, () => window.lab.slime.held === 0);
-        t.equal(await screen.page.locator('.layer-grab circle').count(), 0, 'marks when it let go');
-        t.equal((await slime(lab)).trouble, null, 'it holds together');
-    },
+  'a pointer draws it': async (t) => {
+    const { lab, screen } = await play(t);
+    await screen.chooseTool('Grab');
+    const [a, b] = [await screen.place(400, 330), await screen.place(330, 250)];
+    await screen.page.mouse.move(a.x, a.y);
+    await screen.page.mouse.down();
+    await told(screen, () => window.lab.slime.held > 0);
+    await screen.page.mouse.move(b.x, b.y, { steps: 8 });
+    await screen.page.mouse.wheel(0, -60);
+    await told(screen, () => window.lab.slime.speed > 1);
+    t.more(await screen.page.locator('.layer-grab circle').count(), 1, 'marks of the hand');
+    await t.picture(screen, 'slime-drawn');
+    await screen.page.mouse.up();
+    await told(screen, () => window.lab.slime.held === 0);
+    t.equal(await screen.page.locator('.layer-grab circle').count(), 0, 'marks when it let go');
+    t.equal((await slime(lab)).trouble, null, 'it holds together');
+  },
 
-    'keys draw it': async (t) => {
-        const { screen } = await play(t);
-        await screen.chooseTool('Grab');
-        await screen.stage.focus();
-        await screen.page.keyboard.press('ArrowDown');
-        await screen.page.keyboard.press('Enter');
-        await told(screen, () => window.lab.slime.held > 0);
-        for (const key of ['ArrowRight', 'ArrowRight', 'ArrowUp', 'PageDown']) await screen.page.keyboard.press(key);
-        await screen.page.keyboard.press('Enter');
-        await told(screen, () => window.lab.slime.held === 0);
-        await screen.page.keyboard.press('Enter');
-        await told(screen, () => window.lab.slime.held > 0);
-        await screen.chooseTool('Orbit');
-        await told(screen, () => window.lab.slime.held === 0);
-        t.check(true, 'another tool lets go');
-    },
+  'keys draw it': async (t) => {
+    const { screen } = await play(t);
+    await screen.chooseTool('Grab');
+    await screen.stage.focus();
+    await screen.page.keyboard.press('ArrowDown');
+    await screen.page.keyboard.press('Enter');
+    await told(screen, () => window.lab.slime.held > 0);
+    for (const key of ['ArrowRight', 'ArrowRight', 'ArrowUp', 'PageDown']) await screen.page.keyboard.press(key);
+    await screen.page.keyboard.press('Enter');
+    await told(screen, () => window.lab.slime.held === 0);
+    await screen.page.keyboard.press('Enter');
+    await told(screen, () => window.lab.slime.held > 0);
+    await screen.chooseTool('Orbit');
+    await told(screen, () => window.lab.slime.held === 0);
+    t.check(true, 'another tool lets go');
+  },
 
-    'colours are turned while it moves, and another body begins anew': async (t) => {
-        const { lab, screen } = await play(t);
-        const { time_s: then } = await slime(lab);
-        await screen.page.getByLabel('Absorption, red', { exact: true }).press('End');
-        await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 100);
-        await screen.until((time_s) => window.lab.slime.time_s > time_s, then);
-        t.more((await slime(lab)).time_s, then, 'its time goes on');
-        await screen.page.getByLabel('Tint', { exact: true }).fill('#ff8000');
-        await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 0);
-        const [red, green, blue] = await lab.value('body.absorb_per_m');
-        t.equal(red, 0, 'an orange tint absorbs no red');
-        t.near(Math.exp(-green), ((128 / 255 + 0.055) / 1.055) ** 2.4, 0.001, 'the share of green behind 1 m');
-        t.more(blue, 5, 'absorption of blue, 1/m');
-        const { generation } = await lab.get('/api/state');
-        await screen.page.getByLabel('Damping', { exact: true }).press('ArrowRight');
-        await screen.until((g) => window.lab.state.generation > g && window.lab.slime.time_s < window.lab.state.slime.time_s + 1, generation);
-        t.equal((await slime(lab)).trouble, null, 'no trouble');
-        await screen.button('Pause').click();
-        await told(screen, () => !window.lab.slime.playing);
-        await screen.button('Off').click();
-        await told(screen, () => !window.lab.slime.on);
-        await screen.settled();
-    },
+  'colours are turned while it moves, and another body begins anew': async (t) => {
+    const { lab, screen } = await play(t);
+    const { time_s: then } = await slime(lab);
+    await screen.page.getByLabel('Absorption, red', { exact: true }).press('End');
+    await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 100);
+    await screen.until((time_s) => window.lab.slime.time_s > time_s, then);
+    t.more((await slime(lab)).time_s, then, 'its time goes on');
+    await screen.page.getByLabel('Tint', { exact: true }).fill('#ff8000');
+    await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 0);
+    const [red, green, blue] = await lab.value('body.absorb_per_m');
+    t.equal(red, 0, 'an orange tint absorbs no red');
+    t.near(Math.exp(-green), ((128 / 255 + 0.055) / 1.055) ** 2.4, 0.001, 'the share of green behind 1 m');
+    t.more(blue, 5, 'absorption of blue, 1/m');
+    const { generation } = await lab.get('/api/state');
+    await screen.page.getByLabel('Damping', { exact: true }).press('ArrowRight');
+    await screen.until(
+      (g) => window.lab.state.generation > g && window.lab.slime.time_s < window.lab.state.slime.time_s + 1,
+      generation,
+    );
+    t.equal((await slime(lab)).trouble, null, 'no trouble');
+    await screen.button('Pause').click();
+    await told(screen, () => !window.lab.slime.playing);
+    await screen.button('Off').click();
+    await told(screen, () => !window.lab.slime.on);
+    await screen.settled();
+  },
 
-    'the panel, light and dark': async (t) => {
-        for (const dark of [false, true]) {
-            const { screen } = await play(t, { dark });
-            await screen.button('Pause').click();
-            await told(screen, () => !window.lab.slime.playing);
-            await t.axe(screen, dark ? 'slime, dark' : 'slime, light');
-            await t.picture(screen, `slime-${dark ? 'dark' : 'light'}`);
-        }
-    },
+  'the panel, light and dark': async (t) => {
+    for (const dark of [false, true]) {
+      const { screen } = await play(t, { dark });
+      await screen.button('Pause').click();
+      await told(screen, () => !window.lab.slime.playing);
+      await t.axe(screen, dark ? 'slime, dark' : 'slime, light');
+      await t.picture(screen, `slime-${dark ? 'dark' : 'light'}`);
+    }
+  },
 
-    'a scene without one': async (t) => {
-        const lab = await t.lab('scenes/rod.yaml');
-        const screen = await t.open(lab);
-        await screen.showPanel('Slime');
-        t.equal(await screen.page.getByRole('radio', { name: 'Grab' }).count(), 0, 'tools to grab with');
-        await t.axe(screen, 'no slime');
-    },
+  'a scene without one': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await screen.showPanel('Slime');
+    t.equal(await screen.page.getByRole('radio', { name: 'Grab' }).count(), 0, 'tools to grab with');
+    await t.axe(screen, 'no slime');
+  },
 };

@@ -1,4 +1,5 @@
-// tests/web/views.mjs --program CUVETTE --modules FOLDER --out FOLDER: pictures of every view of the laboratory, light and dark, for the README.
+// tests/web/views.mjs --program CUVETTE --modules FOLDER --out FOLDER: pictures of every view of the laboratory, light
+// and dark, for the README.
 // Not a test; run from the project's root, whose scenes, studies and reference run are shown.
 import { mkdir } from 'node:fs/promises';
 import { createRequire } from 'node:module';
@@ -7,84 +8,119 @@ import { parseArgs } from 'node:util';
 import { Lab } from './lab.mjs';
 import { Screen } from './screen.mjs';
 
-const { values: options } = parseArgs({ options: { program: { type: 'string' }, modules: { type: 'string' }, out: { type: 'string' } } });
+const { values: options } = parseArgs({
+  options: { program: { type: 'string' }, modules: { type: 'string' }, out: { type: 'string' } },
+});
 const { chromium } = createRequire(join(options.modules, 'package.json'))('playwright-core');
 const size = { width: 1366, height: 768 };
 
 /** The laboratory in the project's own folder, with the reference run's rows; nothing is saved or measured. */
 async function serve(scene) {
-    const lab = new Lab();
-    lab.program = options.program;
-    lab.folder = process.cwd();
-    await lab.serve(scene, ['--results', join(lab.folder, 'results/reference')]);
-    return lab;
+  const lab = new Lab();
+  lab.program = options.program;
+  lab.folder = process.cwd();
+  await lab.serve(scene, ['--results', join(lab.folder, 'results/reference')]);
+  return lab;
 }
 
 const views = {
-    parameters: { scene: 'experiments/scenes/rod.yaml', async show(screen) {
-        await screen.showPanel('Parameters');
-        await screen.setNumber('liquid.ior', 1.47);
-    } },
-    objects: { scene: 'experiments/scenes/models.yaml', async show(screen) {
-        await screen.showPanel('Objects');
-        await screen.chooseTool('Object');
-        await screen.clickPixel(400, 330);
-        await screen.quiet();
-    } },
-    pixel: { scene: 'experiments/scenes/rod.yaml', async show(screen) {
-        await screen.showPanel('Pixel');
-        await screen.chooseTool('Ask');
-        await screen.clickPixel(330, 420);
-        await screen.quiet();
-    } },
-    compare: { scene: 'experiments/scenes/rod.yaml', async show(screen) {
-        await screen.showPanel('Compare');
-        await screen.button('Pin as A').click();
-        await screen.until(() => window.lab.state.pin);
-        const { generation } = await screen.lab.post('/api/set', { set: { 'liquid.ior': 1.5, 'liquid.absorb_per_m': [0.9, 0.25, 0.05] } });
-        await screen.settled(generation);
-        await screen.page.getByText(/ dB$/).first().waitFor();
-        await screen.quiet();
-    } },
-    slime: { scene: 'experiments/scenes/slime.yaml', async show(screen) {
-        await screen.lab.post('/api/set', { set: { 'toy.script': '', 'toy.time_s': 0 } });
-        await screen.showPanel('Slime');
-        await screen.button('Play').click();
-        await screen.until(() => window.lab.slime?.playing && window.lab.slime.time_s > 0.6);
-        await screen.chooseTool('Grab');
-        const [from, to] = [await screen.place(400, 330), await screen.place(290, 200)];
-        await screen.page.mouse.move(from.x, from.y);
-        await screen.page.mouse.down();
-        await screen.until(() => window.lab.slime.held > 0);
-        await screen.page.mouse.move(to.x, to.y, { steps: 10 });
-        await screen.until(() => window.lab.slime.resting || window.lab.slime.speed < 0.2);
-        await screen.button('Pause').focus();
-        await screen.page.keyboard.press('Enter');
-        await screen.until(() => !window.lab.slime.playing && window.lab.picture.final);
-    } },
-    studies: { scene: 'experiments/scenes/rod.yaml', async show(screen) {
-        await screen.showPanel('Studies');
-        await screen.page.getByRole('button', { name: /^depth\b/ }).first().click();
-        await screen.quiet();
-    } },
-    machine: { scene: 'experiments/scenes/rod.yaml', async show(screen) {
-        await screen.showPanel('Machine');
-        await screen.quiet();
-    } },
+  parameters: {
+    scene: 'experiments/scenes/rod.yaml',
+    async show(screen) {
+      await screen.showPanel('Parameters');
+      await screen.setNumber('liquid.ior', 1.47);
+    },
+  },
+  objects: {
+    scene: 'experiments/scenes/models.yaml',
+    async show(screen) {
+      await screen.showPanel('Objects');
+      await screen.chooseTool('Object');
+      await screen.clickPixel(400, 330);
+      await screen.quiet();
+    },
+  },
+  pixel: {
+    scene: 'experiments/scenes/rod.yaml',
+    async show(screen) {
+      await screen.showPanel('Pixel');
+      await screen.chooseTool('Ask');
+      await screen.clickPixel(330, 420);
+      await screen.quiet();
+    },
+  },
+  compare: {
+    scene: 'experiments/scenes/rod.yaml',
+    async show(screen) {
+      await screen.showPanel('Compare');
+      await screen.button('Pin as A').click();
+      await screen.until(() => window.lab.state.pin);
+      const { generation } = await screen.lab.post('/api/set', {
+        set: { 'liquid.ior': 1.5, 'liquid.absorb_per_m': [0.9, 0.25, 0.05] },
+      });
+      await screen.settled(generation);
+      await screen.page.getByText(/ dB$/).first().waitFor();
+      await screen.quiet();
+    },
+  },
+  slime: {
+    scene: 'experiments/scenes/slime.yaml',
+    async show(screen) {
+      await screen.lab.post('/api/set', { set: { 'toy.script': '', 'toy.time_s': 0 } });
+      await screen.showPanel('Slime');
+      await screen.button('Play').click();
+      await screen.until(() => window.lab.slime?.playing && window.lab.slime.time_s > 0.6);
+      await screen.chooseTool('Grab');
+      const [from, to] = [await screen.place(400, 330), await screen.place(290, 200)];
+      await screen.page.mouse.move(from.x, from.y);
+      await screen.page.mouse.down();
+      await screen.until(() => window.lab.slime.held > 0);
+      await screen.page.mouse.move(to.x, to.y, { steps: 10 });
+      await screen.until(() => window.lab.slime.resting || window.lab.slime.speed < 0.2);
+      await screen.button('Pause').focus();
+      await screen.page.keyboard.press('Enter');
+      await screen.until(() => !window.lab.slime.playing && window.lab.picture.final);
+    },
+  },
+  studies: {
+    scene: 'experiments/scenes/rod.yaml',
+    async show(screen) {
+      await screen.showPanel('Studies');
+      await screen.page
+        .getByRole('button', { name: /^depth\b/ })
+        .first()
+        .click();
+      await screen.quiet();
+    },
+  },
+  machine: {
+    scene: 'experiments/scenes/rod.yaml',
+    async show(screen) {
+      await screen.showPanel('Machine');
+      await screen.quiet();
+    },
+  },
 };
 
 await mkdir(options.out, { recursive: true });
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: process.getuid() === 0 ? ['--no-sandbox'] : [] });
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  args: process.getuid() === 0 ? ['--no-sandbox'] : [],
+});
 try {
-    for (const [name, view] of Object.entries(views))
-        for (const dark of [false, true]) {
-            const lab = await serve(view.scene);
-            const screen = await Screen.open(browser, lab, { ...size, dark });
-            await view.show(screen);
-            await screen.page.screenshot({ path: join(options.out, `${name}-${dark ? 'dark' : 'light'}.jpg`), type: 'jpeg', quality: 88 });
-            await screen.close();
-            await lab.stop();
-        }
+  for (const [name, view] of Object.entries(views))
+    for (const dark of [false, true]) {
+      const lab = await serve(view.scene);
+      const screen = await Screen.open(browser, lab, { ...size, dark });
+      await view.show(screen);
+      await screen.page.screenshot({
+        path: join(options.out, `${name}-${dark ? 'dark' : 'light'}.jpg`),
+        type: 'jpeg',
+        quality: 88,
+      });
+      await screen.close();
+      await lab.stop();
+    }
 } finally {
-    await browser.close();
+  await browser.close();
 }

@@ -3,7 +3,8 @@
  * exports: ApiError, createApi(listeners)
  *   api.get(path), api.post(path, body), api.del(path)   JSON in and out; throw ApiError; get takes a limit in ms too
  *   api.blob(path)                                       a picture or file: {blob, headers}; throws ApiError
- *   listeners: generation(number) for each reply that has one, reached() for each reply, lost() when nobody answers, refused() for 401
+ *   listeners: generation(number) for each reply that has one, reached() for each reply, lost() when nobody answers,
+ *   refused() for 401
  * ApiError: message, remedy, status (0: nobody answered), and file, line, column where the server says them. */
 
 const PATIENCE_MS = 60000;
@@ -20,10 +21,16 @@ export class ApiError extends Error {
   }
 }
 
-const gone = () => new ApiError(0, {error: 'the server does not answer', remedy: 'see whether cuvette lab still runs in its terminal'});
-const stranger = () => new ApiError(401, {
-  error: 'this page is not known to the server', remedy: 'open the address that cuvette lab printed when it started',
-});
+const gone = () =>
+  new ApiError(0, {
+    error: 'the server does not answer',
+    remedy: 'see whether cuvette lab still runs in its terminal',
+  });
+const stranger = () =>
+  new ApiError(401, {
+    error: 'this page is not known to the server',
+    remedy: 'open the address that cuvette lab printed when it started',
+  });
 
 async function parsed(response) {
   const text = await response.text();
@@ -31,22 +38,23 @@ async function parsed(response) {
   try {
     return JSON.parse(text);
   } catch {
-    return {error: text.slice(0, 200)};
+    return { error: text.slice(0, 200) };
   }
 }
 
 export function createApi(listeners) {
   async function ask(method, path, body, patience = PATIENCE_MS) {
-    const options = {method, credentials: 'same-origin', cache: 'no-store', signal: AbortSignal.timeout(patience)};
+    const options = { method, credentials: 'same-origin', cache: 'no-store', signal: AbortSignal.timeout(patience) };
     if (method !== 'GET') {
-      options.headers = {'Content-Type': 'application/json'};
+      options.headers = { 'Content-Type': 'application/json' };
       options.body = JSON.stringify(body ?? {});
     }
     let response;
     try {
       response = await fetch(path, options);
     } catch (cause) {
-      if (cause.name === 'TimeoutError') throw new ApiError(0, {error: 'the server took too long', remedy: 'try again'});
+      if (cause.name === 'TimeoutError')
+        throw new ApiError(0, { error: 'the server took too long', remedy: 'try again' });
       listeners.lost();
       throw gone();
     }
@@ -79,7 +87,7 @@ export function createApi(listeners) {
     async blob(path) {
       const response = await ask('GET', path);
       if (!response.ok) throw new ApiError(response.status, await parsed(response));
-      return {blob: await response.blob(), headers: response.headers};
+      return { blob: await response.blob(), headers: response.headers };
     },
   };
 }

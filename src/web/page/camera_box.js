@@ -1,8 +1,8 @@
 /* The camera in numbers: exact steps, and fields for where it stands and looks. Opens under the picture.
  * exports: cameraBox(root, lab); sets lab.view.camera: {key(event)} for the keys of the picture */
 
-import {button, choice, element, gesture, memory, number} from './ui.js';
-import {moveCamera} from './tool_orbit.js';
+import { button, choice, element, gesture, memory, number } from './ui.js';
+import { moveCamera } from './tool_orbit.js';
 
 const ORBIT = 5;
 const FINE_ORBIT = 1;
@@ -14,44 +14,95 @@ const TURNS = {
 };
 
 export function cameraBox(root, lab) {
-  const settings = {length: memory.get('camera.length', 0.2), angle: memory.get('camera.angle', 5), around: memory.get('camera.around', true)};
+  const settings = {
+    length: memory.get('camera.length', 0.2),
+    angle: memory.get('camera.angle', 5),
+    around: memory.get('camera.around', true),
+  };
   const keep = (name, value) => {
     settings[name] = value;
     memory.set(`camera.${name}`, value);
   };
   const once = (body) => moveCamera(lab, body, gesture('camera'));
-  const step = (way) => once({step: way.map((x) => x * settings.length)});
-  const turn = (right, up) => once(settings.around ? {orbit: [-right * settings.angle, up * settings.angle]} : {turn: [right * settings.angle, up * settings.angle]});
-  const arrow = (name, drawing, act) => button(name, act, {icon: drawing, bare: true, small: true});
+  const step = (way) => once({ step: way.map((x) => x * settings.length) });
+  const turn = (right, up) =>
+    once(
+      settings.around
+        ? { orbit: [-right * settings.angle, up * settings.angle] }
+        : { turn: [right * settings.angle, up * settings.angle] },
+    );
+  const arrow = (name, drawing, act) => button(name, act, { icon: drawing, bare: true, small: true });
 
-  const steps = element('div', {class: 'pad', role: 'group', 'aria-label': 'Step'},
-    arrow('Step left', 'left', () => step([-1, 0, 0])), arrow('Step right', 'right', () => step([1, 0, 0])),
-    arrow('Step up', 'up', () => step([0, 1, 0])), arrow('Step down', 'down', () => step([0, -1, 0])),
-    arrow('Step forward', 'forward', () => step([0, 0, 1])), arrow('Step back', 'back', () => step([0, 0, -1])));
-  const turned = [['turnleft', -1, 0], ['turnright', 1, 0], ['tiltup', 0, 1], ['tiltdown', 0, -1]]
-    .map(([drawing, right, up]) => arrow(' ', drawing, () => turn(right, up)));
-  const turns = element('div', {class: 'pad', role: 'group', 'aria-label': 'Rotation'}, turned);
-  const nameTurns = () => turned.forEach((node, index) => {
-    node.title = TURNS[settings.around ? 'around' : 'spot'][index];
-    node.querySelector('.visually-hidden').textContent = node.title;
+  const steps = element(
+    'div',
+    { class: 'pad', role: 'group', 'aria-label': 'Step' },
+    arrow('Step left', 'left', () => step([-1, 0, 0])),
+    arrow('Step right', 'right', () => step([1, 0, 0])),
+    arrow('Step up', 'up', () => step([0, 1, 0])),
+    arrow('Step down', 'down', () => step([0, -1, 0])),
+    arrow('Step forward', 'forward', () => step([0, 0, 1])),
+    arrow('Step back', 'back', () => step([0, 0, -1])),
+  );
+  const turned = [
+    ['turnleft', -1, 0],
+    ['turnright', 1, 0],
+    ['tiltup', 0, 1],
+    ['tiltdown', 0, -1],
+  ].map(([drawing, right, up]) => arrow(' ', drawing, () => turn(right, up)));
+  const turns = element('div', { class: 'pad', role: 'group', 'aria-label': 'Rotation' }, turned);
+  const nameTurns = () =>
+    turned.forEach((node, index) => {
+      node.title = TURNS[settings.around ? 'around' : 'spot'][index];
+      node.querySelector('.visually-hidden').textContent = node.title;
+    });
+  const length = number({
+    label: 'Step',
+    value: settings.length,
+    min: 0.0001,
+    max: 100000,
+    unit: 'u',
+    onchange: (x) => keep('length', x),
   });
-  const length = number({label: 'Step', value: settings.length, min: 0.0001, max: 100000, unit: 'u', onchange: (x) => keep('length', x)});
-  const angle = number({label: 'Turn', value: settings.angle, min: 0.001, max: 180, unit: '°', onchange: (x) => keep('angle', x)});
+  const angle = number({
+    label: 'Turn',
+    value: settings.angle,
+    min: 0.001,
+    max: 180,
+    unit: '°',
+    onchange: (x) => keep('angle', x),
+  });
   const how = choice({
-    label: 'Rotation', radios: true, choices: [['around', 'Around target'], ['spot', 'On the spot']], value: settings.around ? 'around' : 'spot',
+    label: 'Rotation',
+    radios: true,
+    choices: [
+      ['around', 'Around target'],
+      ['spot', 'On the spot'],
+    ],
+    value: settings.around ? 'around' : 'spot',
     onchange: (word) => {
       keep('around', word === 'around');
       nameTurns();
     },
   });
   nameTurns();
-  const fields = element('div', {class: 'camera-fields'});
-  const box = element('div', {class: 'camera-box', hidden: true, role: 'region', 'aria-label': 'Camera'},
-    element('div', {class: 'camera-part'}, length.node, steps),
-    element('div', {class: 'camera-part'}, angle.node, turns), how.group, fields);
+  const fields = element('div', { class: 'camera-fields' });
+  const box = element(
+    'div',
+    { class: 'camera-box', hidden: true, role: 'region', 'aria-label': 'Camera' },
+    element('div', { class: 'camera-part' }, length.node, steps),
+    element('div', { class: 'camera-part' }, angle.node, turns),
+    how.group,
+    fields,
+  );
   root.append(box);
 
-  const toggle = button('Camera', () => open(box.hidden), {icon: 'camera', kind: 'quiet', small: true, title: 'Exact steps and numbers of the camera', 'aria-expanded': 'false'});
+  const toggle = button('Camera', () => open(box.hidden), {
+    icon: 'camera',
+    kind: 'quiet',
+    small: true,
+    title: 'Exact steps and numbers of the camera',
+    'aria-expanded': 'false',
+  });
   lab.view.bar.append(toggle);
   const rows = createFields(fields, lab);
   const open = (on) => {
@@ -61,41 +112,61 @@ export function cameraBox(root, lab) {
   };
   open(memory.get('camera.open', false));
   lab.on('scene', rows.update);
-  lab.view.camera = {key: createKeys(lab, settings)};
+  lab.view.camera = { key: createKeys(lab, settings) };
 }
 
 /* Whatever of place and aim the scene has as parameters: position, and target or yaw and pitch. */
 function createFields(root, lab) {
   let kinds = '';
   let shown = [];
-  const wanted = ['camera.position', 'camera.target', 'camera.yaw_deg', 'camera.pitch_deg', 'camera.roll_deg', 'camera.fov_deg'];
+  const wanted = [
+    'camera.position',
+    'camera.target',
+    'camera.yaw_deg',
+    'camera.pitch_deg',
+    'camera.roll_deg',
+    'camera.fov_deg',
+  ];
 
-  const send = (path, value) => lab.set({[path]: value}, gesture('camera')).catch((error) => {
-    lab.fail(error);
-    update();
-  });
+  const send = (path, value) =>
+    lab.set({ [path]: value }, gesture('camera')).catch((error) => {
+      lab.fail(error);
+      update();
+    });
 
   function vectorField(row) {
     const label = row.name[0].toUpperCase() + row.name.slice(1);
     const parts = AXES.map((axis, index) => {
       const part = number({
-        value: row.value[index], min: row.lowest, max: row.highest,
-        onchange: (x) => send(row.path, lab.param(row.path).value.map((old, at) => (at === index ? x : old))),
+        value: row.value[index],
+        min: row.lowest,
+        max: row.highest,
+        onchange: (x) =>
+          send(
+            row.path,
+            lab.param(row.path).value.map((old, at) => (at === index ? x : old)),
+          ),
       });
       part.input.setAttribute('aria-label', `${label} ${axis}`);
       return part;
     });
     return {
-      node: element('div', {class: 'camera-field', role: 'group', 'aria-label': label}, element('span', {class: 'label', text: label}), parts.map((part) => part.node)),
+      node: element(
+        'div',
+        { class: 'camera-field', role: 'group', 'aria-label': label },
+        element('span', { class: 'label', text: label }),
+        parts.map((part) => part.node),
+      ),
       set: (value) => parts.forEach((part, index) => part.set(short(value[index]))),
     };
   }
 
   function plainField(row) {
-    const label = {yaw_deg: 'Yaw', pitch_deg: 'Pitch', roll_deg: 'Roll', fov_deg: 'Field of view'}[row.name] || row.name;
-    const part = number({label, value: row.value, unit: '°', onchange: (x) => send(row.path, x)});
+    const label =
+      { yaw_deg: 'Yaw', pitch_deg: 'Pitch', roll_deg: 'Roll', fov_deg: 'Field of view' }[row.name] || row.name;
+    const part = number({ label, value: row.value, unit: '°', onchange: (x) => send(row.path, x) });
     part.node.classList.add('camera-field');
-    return {node: part.node, set: (value) => part.set(short(value))};
+    return { node: part.node, set: (value) => part.set(short(value)) };
   }
 
   function update() {
@@ -108,23 +179,25 @@ function createFields(root, lab) {
     }
     rows.forEach((row, index) => shown[index].set(row.value));
   }
-  return {update};
+  return { update };
 }
 
 function createKeys(lab, settings) {
-  const ways = {a: [-1, 0, 0], d: [1, 0, 0], e: [0, 1, 0], q: [0, -1, 0], w: [0, 0, 1], s: [0, 0, -1]};
-  const arrows = {ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
+  const ways = { a: [-1, 0, 0], d: [1, 0, 0], e: [0, 1, 0], q: [0, -1, 0], w: [0, 0, 1], s: [0, 0, -1] };
+  const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
   let held = null;
-  lab.view.stage.addEventListener('keyup', () => { held = null; });
+  lab.view.stage.addEventListener('keyup', () => {
+    held = null;
+  });
 
   return (event) => {
     const letter = event.key.toLowerCase();
     let body = null;
-    if (arrows[event.key]) body = {orbit: arrows[event.key].map((x) => x * (event.shiftKey ? FINE_ORBIT : ORBIT))};
-    else if (ways[letter]) body = {step: ways[letter].map((x) => x * settings.length * (event.shiftKey ? 0.1 : 1))};
+    if (arrows[event.key]) body = { orbit: arrows[event.key].map((x) => x * (event.shiftKey ? FINE_ORBIT : ORBIT)) };
+    else if (ways[letter]) body = { step: ways[letter].map((x) => x * settings.length * (event.shiftKey ? 0.1 : 1)) };
     else if (event.key === 'PageUp' || event.key === 'PageDown') {
       const distance = (lab.state?.camera?.distance || 1) * 0.1;
-      body = {step: [0, 0, event.key === 'PageUp' ? distance : -distance]};
+      body = { step: [0, 0, event.key === 'PageUp' ? distance : -distance] };
     }
     if (!body) return false;
     held ??= gesture('key');

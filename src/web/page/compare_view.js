@@ -2,49 +2,68 @@
  *
  * exports: createCompareView(lab, onshare(share)) -> {set({a, map, mode, share, strength, spot}), flip(on)}
  *   a, map      addresses of pictures of B's size, or null
- *   mode        'b': B alone; 'wipe': A to the left of the handle, its share of the width 0..1; 'map': the map, strength 0..1
+ *   mode        'b': B alone; 'wipe': A to the left of the handle, its share of the width 0..1; 'map': the map,
+ *               strength 0..1
  *   spot        [x, y], a pixel that is framed, or null
  * The handle is dragged, or moved with the arrow keys. */
 
-import {element, svg, unique} from './ui.js';
+import { element, svg, unique } from './ui.js';
 
 const EDGE = 0.05; /* a share too small for its letter */
 
 export function createCompareView(lab, onshare) {
-  const {view} = lab;
-  const part = svg('rect', {x: 0, y: 0});
+  const { view } = lab;
+  const part = svg('rect', { x: 0, y: 0 });
   const clip = unique('wipe');
-  const a = svg('image', {'clip-path': `url(#${clip})`, preserveAspectRatio: 'none'});
-  const map = svg('image', {preserveAspectRatio: 'none'});
-  const edge = svg('path', {class: 'wipe-edge'});
-  const frame = svg('path', {class: 'wipe-spot'});
+  const a = svg('image', { 'clip-path': `url(#${clip})`, preserveAspectRatio: 'none' });
+  const map = svg('image', { preserveAspectRatio: 'none' });
+  const edge = svg('path', { class: 'wipe-edge' });
+  const frame = svg('path', { class: 'wipe-spot' });
   const handle = element('button', {
-    type: 'button', class: 'wipe-handle', role: 'slider', 'aria-label': 'Share of the pinned picture', 'aria-valuemin': 0, 'aria-valuemax': 100,
-    'aria-orientation': 'horizontal', hidden: true,
+    type: 'button',
+    class: 'wipe-handle',
+    role: 'slider',
+    'aria-label': 'Share of the pinned picture',
+    'aria-valuemin': 0,
+    'aria-valuemax': 100,
+    'aria-orientation': 'horizontal',
+    hidden: true,
     onpointerdown: (event) => handle.setPointerCapture(event.pointerId),
     onpointermove: (event) => {
-      if (handle.hasPointerCapture(event.pointerId)) onshare(Math.min(1, Math.max(0, view.fromEvent(event).x / view.width)));
+      if (handle.hasPointerCapture(event.pointerId))
+        onshare(Math.min(1, Math.max(0, view.fromEvent(event).x / view.width)));
     },
     onkeydown: (event) => {
-      const step = {ArrowLeft: -0.02, ArrowDown: -0.02, ArrowRight: 0.02, ArrowUp: 0.02, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1}[event.key];
+      const step = {
+        ArrowLeft: -0.02,
+        ArrowDown: -0.02,
+        ArrowRight: 0.02,
+        ArrowUp: 0.02,
+        PageDown: -0.1,
+        PageUp: 0.1,
+        Home: -1,
+        End: 1,
+      }[event.key];
       if (step === undefined) return;
       onshare(Math.min(1, Math.max(0, now.share + step)));
       event.preventDefault();
       event.stopPropagation();
     },
   });
-  const labels = ['A', 'B'].map((name) => element('span', {class: name === 'B' ? 'wipe-label right' : 'wipe-label', text: name, hidden: true}));
+  const labels = ['A', 'B'].map((name) =>
+    element('span', { class: name === 'B' ? 'wipe-label right' : 'wipe-label', text: name, hidden: true }),
+  );
   const layer = view.layer('compare');
-  let now = {a: null, map: null, mode: 'b', share: 0.5, strength: 1, spot: null};
+  let now = { a: null, map: null, mode: 'b', share: 0.5, strength: 1, spot: null };
   let flipped = false;
 
-  layer.append(svg('clipPath', {id: clip}, part), a, map, edge, frame);
+  layer.append(svg('clipPath', { id: clip }, part), a, map, edge, frame);
   layer.parentNode.prepend(layer);
   view.overlay.append(handle, ...labels);
   lab.on('view', draw);
   return {
     set(next) {
-      now = {...now, ...next};
+      now = { ...now, ...next };
       draw();
     },
     flip(on) {
@@ -61,9 +80,9 @@ export function createCompareView(lab, onshare) {
   function draw() {
     const wiping = now.mode === 'wipe' && Boolean(now.a) && !flipped;
     const share = flipped ? 1 : wiping ? now.share : 0;
-    const {width, height} = view;
+    const { width, height } = view;
     for (const image of [a, map]) {
-      for (const [name, value] of Object.entries({width, height})) image.setAttribute(name, value);
+      for (const [name, value] of Object.entries({ width, height })) image.setAttribute(name, value);
       /* As the picture itself is drawn. */
       image.style.imageRendering = view.scale * devicePixelRatio < 2 ? 'auto' : 'pixelated';
     }
@@ -86,10 +105,10 @@ export function createCompareView(lab, onshare) {
     handle.hidden = !wiping;
     handle.setAttribute('aria-valuenow', Math.round(100 * share));
     handle.setAttribute('aria-valuetext', `A ${Math.round(100 * share)} %`);
-    Object.assign(handle.style, {left: `${at.x}px`, top: `${at.y}px`});
+    Object.assign(handle.style, { left: `${at.x}px`, top: `${at.y}px` });
     labels[0].hidden = !(wiping && share > EDGE) && !flipped;
     labels[1].hidden = !(wiping && share < 1 - EDGE);
-    Object.assign(labels[0].style, {left: `${Math.max(0, top.x)}px`, top: `${Math.max(0, top.y)}px`});
-    Object.assign(labels[1].style, {left: `${right.x}px`, top: `${Math.max(0, right.y)}px`});
+    Object.assign(labels[0].style, { left: `${Math.max(0, top.x)}px`, top: `${Math.max(0, top.y)}px` });
+    Object.assign(labels[1].style, { left: `${right.x}px`, top: `${Math.max(0, right.y)}px` });
   }
 }

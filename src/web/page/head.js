@@ -1,37 +1,78 @@
 /* The head of the page: what scene it is, undo, saving and copying, light and dark.
- * exports: createHead(root, lab); sets lab.undo(redo) and lab.name() (the scene's file name without folders and ending) */
+ * exports: createHead(root, lab); sets lab.undo(redo) and lab.name() (the scene's file name without folders and ending)
+ * */
 
-import {ask, button, copy, download, element, icon, memory} from './ui.js';
-import {showHelp} from './keys.js';
+import { ask, button, copy, download, element, icon, memory } from './ui.js';
+import { showHelp } from './keys.js';
 
 export function createHead(root, lab) {
   lab.undo = (redo = false) => lab.change(redo ? '/api/redo' : '/api/undo', {}).catch(lab.fail);
-  lab.name = () => (lab.state?.file || lab.state?.title || 'scene').split('/').pop().replace(/\.ya?ml$/, '').replace(/[^\w.-]+/g, '-') || 'scene';
+  lab.name = () =>
+    (lab.state?.file || lab.state?.title || 'scene')
+      .split('/')
+      .pop()
+      .replace(/\.ya?ml$/, '')
+      .replace(/[^\w.-]+/g, '-') || 'scene';
 
-  const title = element('h1', {class: 'scene-title', text: 'Cuvette'});
-  const file = element('span', {class: 'scene-file'});
-  const mark = element('span', {class: 'unsaved', hidden: true, text: 'unsaved'});
-  const undo = button('Undo', () => lab.undo(), {icon: 'undo', kind: 'quiet', disabled: true});
-  const redo = button('Redo', () => lab.undo(true), {icon: 'redo', kind: 'quiet', disabled: true});
-  const reset = button('Reset all', () => resetAll(lab), {icon: 'reset', kind: 'quiet', title: 'All values back to those with which the scene was opened'});
+  const title = element('h1', { class: 'scene-title', text: 'Cuvette' });
+  const file = element('span', { class: 'scene-file' });
+  const mark = element('span', { class: 'unsaved', hidden: true, text: 'unsaved' });
+  const undo = button('Undo', () => lab.undo(), { icon: 'undo', kind: 'quiet', disabled: true });
+  const redo = button('Redo', () => lab.undo(true), { icon: 'redo', kind: 'quiet', disabled: true });
+  const reset = button('Reset all', () => resetAll(lab), {
+    icon: 'reset',
+    kind: 'quiet',
+    title: 'All values back to those with which the scene was opened',
+  });
   root.append(
-    element('div', {class: 'brand'}, icon('cuvette'), element('span', {text: 'Cuvette'})),
-    element('div', {class: 'scene-name'}, title, file, mark),
-    element('div', {class: 'head-group', role: 'group', 'aria-label': 'History'}, undo, redo, reset),
-    element('div', {class: 'head-group', role: 'group', 'aria-label': 'Save and copy'},
-      button('PNG', () => savePicture(lab, 'png'), {icon: 'image', kind: 'quiet', title: 'Save the final picture as PNG', 'aria-label': 'Save PNG'}),
-      button('JPEG', () => savePicture(lab, 'jpg'), {icon: 'image', kind: 'quiet', title: 'Save the final picture as JPEG', 'aria-label': 'Save JPEG'}),
-      button('Scene', () => copyScene(lab), {icon: 'copy', kind: 'quiet', title: 'Copy the scene file', 'aria-label': 'Copy scene file'}),
-      button('Command', () => copyCommand(lab), {icon: 'terminal', kind: 'quiet', title: 'Copy the command that renders this picture', 'aria-label': 'Copy render command'})),
-    element('div', {class: 'head-group'}, themeButton(),
-      button('Help', showHelp, {icon: 'help', kind: 'quiet', bare: true, title: 'Keys (?)'})));
+    element('div', { class: 'brand' }, icon('cuvette'), element('span', { text: 'Cuvette' })),
+    element('div', { class: 'scene-name' }, title, file, mark),
+    element('div', { class: 'head-group', role: 'group', 'aria-label': 'History' }, undo, redo, reset),
+    element(
+      'div',
+      { class: 'head-group', role: 'group', 'aria-label': 'Save and copy' },
+      button('PNG', () => savePicture(lab, 'png'), {
+        icon: 'image',
+        kind: 'quiet',
+        title: 'Save the final picture as PNG',
+        'aria-label': 'Save PNG',
+      }),
+      button('JPEG', () => savePicture(lab, 'jpg'), {
+        icon: 'image',
+        kind: 'quiet',
+        title: 'Save the final picture as JPEG',
+        'aria-label': 'Save JPEG',
+      }),
+      button('Scene', () => copyScene(lab), {
+        icon: 'copy',
+        kind: 'quiet',
+        title: 'Copy the scene file',
+        'aria-label': 'Copy scene file',
+      }),
+      button('Command', () => copyCommand(lab), {
+        icon: 'terminal',
+        kind: 'quiet',
+        title: 'Copy the command that renders this picture',
+        'aria-label': 'Copy render command',
+      }),
+    ),
+    element(
+      'div',
+      { class: 'head-group' },
+      themeButton(),
+      button('Help', showHelp, { icon: 'help', kind: 'quiet', bare: true, title: 'Keys (?)' }),
+    ),
+  );
 
   lab.on('state', (state) => {
     title.textContent = state.title || 'Untitled scene';
     file.textContent = state.file || 'not in a file yet';
     mark.hidden = state.saved;
     document.title = `${state.saved ? '' : '• '}${state.title || 'Cuvette'}`;
-    for (const [node, what, word] of [[undo, state.undo, 'Undo'], [redo, state.redo, 'Redo']]) {
+    for (const [node, what, word] of [
+      [undo, state.undo, 'Undo'],
+      [redo, state.redo, 'Redo'],
+    ]) {
       node.disabled = !what;
       node.title = what ? `${word} ${what}` : `Nothing to ${word.toLowerCase()}`;
     }
@@ -39,14 +80,19 @@ export function createHead(root, lab) {
 }
 
 async function resetAll(lab) {
-  const yes = await ask('Reset all', 'Put all values, and the objects themselves, back to what they were when the scene was opened? Undo brings them back.', 'Reset all');
+  const yes = await ask(
+    'Reset all',
+    'Put all values, and the objects themselves, back to what they were when the scene was ' +
+      'opened? Undo brings them back.',
+    'Reset all',
+  );
   if (yes) lab.change('/api/reset', {}).then(() => lab.say('The scene is as it was opened.'), lab.fail);
 }
 
 async function savePicture(lab, ending) {
   lab.say('Waiting for the final picture …');
   try {
-    const {blob} = await lab.blob(`/api/picture.${ending}?wait=1`);
+    const { blob } = await lab.blob(`/api/picture.${ending}?wait=1`);
     download(blob, `${lab.name()}.${ending}`);
     lab.say(`${lab.name()}.${ending} is saved.`);
   } catch (error) {
@@ -56,7 +102,7 @@ async function savePicture(lab, ending) {
 
 async function copyScene(lab) {
   try {
-    const {blob} = await lab.blob('/api/scene.yaml');
+    const { blob } = await lab.blob('/api/scene.yaml');
     await copy(await blob.text());
     lab.say('The scene file is on the clipboard.');
   } catch (error) {
@@ -66,19 +112,29 @@ async function copyScene(lab) {
 
 async function copyCommand(lab) {
   try {
-    const {command, complete} = await lab.get('/api/command');
+    const { command, complete } = await lab.get('/api/command');
     await copy(command);
-    lab.say(complete ? 'The command is on the clipboard.' : 'The command is on the clipboard, but objects came or went: save the scene first.');
+    lab.say(
+      complete
+        ? 'The command is on the clipboard.'
+        : 'The command is on the clipboard, but objects came or went: save the scene first.',
+    );
   } catch (error) {
     lab.fail(error);
   }
 }
 
 function themeButton() {
-  const dark = () => (document.documentElement.dataset.theme || (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light')) === 'dark';
-  const face = element('span', {class: 'theme-face'});
-  const node = element('button', {type: 'button', class: 'button quiet bare', onclick: () => set(dark() ? 'light' : 'dark')}, face,
-    element('span', {class: 'visually-hidden', text: 'Dark colours'}));
+  const dark = () =>
+    (document.documentElement.dataset.theme ||
+      (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light')) === 'dark';
+  const face = element('span', { class: 'theme-face' });
+  const node = element(
+    'button',
+    { type: 'button', class: 'button quiet bare', onclick: () => set(dark() ? 'light' : 'dark') },
+    face,
+    element('span', { class: 'visually-hidden', text: 'Dark colours' }),
+  );
   const show = () => {
     face.replaceChildren(icon(dark() ? 'sun' : 'moon'));
     node.setAttribute('aria-pressed', String(dark()));

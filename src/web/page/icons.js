@@ -1,7 +1,8 @@
 /* Small drawings of one line width, in the colour of the text around them.
- * exports: icon(name) -> svg; names: the keys of paths below. Decoration only: the button that holds one is named by its text. */
+ * exports: icon(name) -> svg; names: the keys of paths below. Decoration only: the button that holds one is named by
+ * its text. */
 
-import {svg} from './ui_base.js';
+import { svg } from './ui_base.js';
 
 const paths = {
   undo: 'M4 9h10a6 6 0 0 1 0 12h-3M8 5 4 9l4 4',
@@ -10,17 +11,19 @@ const paths = {
   image: 'M4 5h16v14H4zM4 16l5-5 4 4 2-2 5 5M15.5 9.5h.01',
   copy: 'M9 9h11v11H9zM5 15H4V4h11v1',
   terminal: 'M3 5h18v14H3zM7 10l3 2.5L7 15M12 15h5',
-  sun: 'M12 8a4 4 0 1 0 0 8 4 4 0 0 0 0-8M12 2v2M12 20v2M2 12h2M20 12h2M5 5l1.4 1.4M17.6 17.6 19 19M5 19l1.4-1.4M17.6 6.4 19 5',
+  sun:
+    'M12 8a4 4 0 1 0 0 8 4 4 0 0 0 0-8M12 2v2M12 20v2M2 12h2M20 12h2M5 5l1.4 1.4M17.6 17.6 19 19' +
+    'M5 19l1.4-1.4M17.6 6.4 19 5',
   moon: 'M20 14.5A8.5 8.5 0 0 1 9.5 4 8.5 8.5 0 1 0 20 14.5',
   help: 'M12 3a9 9 0 1 0 0 18 9 9 0 0 0 0-18M9.5 9.5a2.5 2.5 0 1 1 3.6 2.2c-.8.4-1.1 1-1.1 1.8M12 17h.01',
   close: 'M6 6l12 12M18 6 6 18',
   check: 'M4 13l5 5L20 6',
   info: 'M12 3a9 9 0 1 0 0 18 9 9 0 0 0 0-18M12 11v6M12 7.5h.01',
   warning: 'M12 4 2.5 20h19zM12 10v5M12 17.5h.01',
-  orbit: 'M12 9a3 3 0 1 0 0 6 3 3 0 0 0 0-6M21 9c1 3-2 6-7 7.500s-10 1-11-1.500 1-6 6-7.800M18 5l3 4-4.500 1.500',
-  light: 'M9 18h6M10 21h4M12 3a6 6 0 0 0-3.500 10.900c.7.6 1 1.300 1 2.100h5c0-.8.3-1.500 1-2.100A6 6 0 0 0 12 3',
+  orbit: 'M12 9a3 3 0 1 0 0 6 3 3 0 0 0 0-6M21 9c1 3-2 6-7 7.5s-10 1-11-1.5 1-6 6-7.8M18 5l3 4-4.5 1.5',
+  light: 'M9 18h6M10 21h4M12 3a6 6 0 0 0-3.5 10.9c.7.6 1 1.3 1 2.1h5c0-.8.3-1.5 1-2.1A6 6 0 0 0 12 3',
   camera: 'M3 7h11v10H3zM14 11l7-4v10l-7-4',
-  search: 'M10.500 4a6.500 6.500 0 1 0 0 13 6.500 6.500 0 0 0 0-13M15.500 15.500 21 21',
+  search: 'M10.5 4a6.5 6.5 0 1 0 0 13 6.5 6.5 0 0 0 0-13M15.5 15.5 21 21',
   plus: 'M12 5v14M5 12h14',
   minus: 'M5 12h14',
   fit: 'M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5',
@@ -30,12 +33,14 @@ const paths = {
   down: 'M12 5v14M6 13l6 6 6-6',
   forward: 'M12 20V9M8 12l4-4 4 4M5 4h14',
   back: 'M12 4v11M8 12l4 4 4-4M5 20h14',
-  turnleft: 'M4 12a8 8 0 1 1 3 6.200M4 5v7h7',
-  turnright: 'M20 12a8 8 0 1 0-3 6.200M20 5v7h-7',
+  turnleft: 'M4 12a8 8 0 1 1 3 6.2M4 5v7h7',
+  turnright: 'M20 12a8 8 0 1 0-3 6.2M20 5v7h-7',
   tiltup: 'M5 18c0-8 6-11 12-11M13 3l4 4-4 4',
   tiltdown: 'M5 6c0 8 6 11 12 11M13 13l4 4-4 4',
   pixel: 'M12 2v6M12 16v6M2 12h6M16 12h6M10 10h4v4h-4z',
-  hand: 'M7 12V6.500a1.500 1.500 0 0 1 3 0V11M10 10V4.500a1.500 1.500 0 0 1 3 0V11M13 10V6a1.500 1.500 0 0 1 3 0v6M16 10a1.500 1.500 0 0 1 3 0v4c0 4-2.500 7-6 7-4 0-5.500-2-7.500-5.500L4 13c.800-1.200 2-1 3 .500',
+  hand:
+    'M7 12V6.5a1.5 1.5 0 0 1 3 0V11M10 10V4.5a1.5 1.5 0 0 1 3 0V11M13 10V6a1.5 1.5 0 0 1 3 0v6' +
+    'M16 10a1.5 1.5 0 0 1 3 0v4c0 4-2.5 7-6 7-4 0-5.5-2-7.5-5.5L4 13c.8-1.2 2-1 3 .5',
   move: 'M12 2v20M2 12h20M9 5l3-3 3 3M9 19l3 3 3-3M5 9l-3 3 3 3M19 9l3 3-3 3',
   play: 'M7 4l13 8-13 8z',
   pause: 'M7 4h3v16H7zM14 4h3v16h-3z',
@@ -47,13 +52,17 @@ const paths = {
   swap: 'M4 8h14M14 4l4 4-4 4M20 16H6M10 12l-4 4 4 4',
   pencil: 'M4 20l1-5L16 4l4 4L9 19zM13 7l4 4',
   eye: 'M2 12s4-7 10-7 10 7 10 7-4 7-10 7S2 12 2 12M12 9a3 3 0 1 0 0 6 3 3 0 0 0 0-6',
-  list: 'M8 6h13M8 12h13M8 18h13M3.500 6h.01M3.500 12h.01M3.500 18h.01',
+  list: 'M8 6h13M8 12h13M8 18h13M3.5 6h.01M3.5 12h.01M3.5 18h.01',
   chart: 'M4 4v16h16M8 16l4-6 3 3 5-7',
-  cube: 'M12 3l8 4.500v9L12 21l-8-4.500v-9zM4 7.500l8 4.500 8-4.500M12 12v9',
-  cuvette: 'M6 3v15a3 3 0 0 0 3 3h6a3 3 0 0 0 3-3V3M6 10h12M15.500 2 11 18',
+  cube: 'M12 3l8 4.5v9L12 21l-8-4.5v-9zM4 7.5l8 4.5 8-4.5M12 12v9',
+  cuvette: 'M6 3v15a3 3 0 0 0 3 3h6a3 3 0 0 0 3-3V3M6 10h12M15.5 2 11 18',
   arrow: 'M12 3l7 9h-4v9H9v-9H5z',
 };
 
 export function icon(name) {
-  return svg('svg', {class: 'icon', viewBox: '0 0 24 24', 'aria-hidden': 'true', focusable: 'false'}, svg('path', {d: paths[name] || paths.info}));
+  return svg(
+    'svg',
+    { class: 'icon', viewBox: '0 0 24 24', 'aria-hidden': 'true', focusable: 'false' },
+    svg('path', { d: paths[name] || paths.info }),
+  );
 }

@@ -1,6 +1,6 @@
 /* Keys of the whole page, and the dialog that lists them. exports: createKeys(lab), showHelp() */
 
-import {dialog, element, table} from './ui.js';
+import { dialog, element, table } from './ui.js';
 
 const list = [
   ['Ctrl Z', 'undo; Ctrl Shift Z or Ctrl Y redo'],
@@ -13,7 +13,11 @@ const list = [
   ['Ctrl arrow keys', 'on the picture: move the zoomed picture'],
   ['Ctrl wheel', 'zoom about the pointer; wheel alone: forward and back while Orbit is chosen'],
   ['Space or middle button', 'and drag: move the zoomed picture'],
-  ['Enter', 'with Grab, on the picture: take hold of the slime and let go; arrow keys pull, Page Up and Page Down along the view'],
+  [
+    'Enter',
+    'with Grab, on the picture: take hold of the slime and let go; arrow keys pull, Page Up and ' +
+      'Page Down along the view',
+  ],
   ['Shift drag', 'with Orbit: turn on the spot; with Light: nearer and farther'],
   ['Arrow keys with Ask', 'on the picture: the next pixel, with Shift the tenth; Escape clears'],
   ['F', 'while it is held: the pinned picture in place of the newest'],
@@ -21,17 +25,30 @@ const list = [
 ];
 
 export function showHelp() {
-  const keyed = list.map(([keys, what]) => [element('kbd', {text: keys}), what]);
-  dialog({title: 'Keys', wide: true, content: table({caption: 'Keys and what they do', hideCaption: true, columns: ['Keys', 'What they do'], rows: keyed})});
+  const keyed = list.map(([keys, what]) => [element('kbd', { text: keys }), what]);
+  dialog({
+    title: 'Keys',
+    wide: true,
+    content: table({
+      caption: 'Keys and what they do',
+      hideCaption: true,
+      columns: ['Keys', 'What they do'],
+      rows: keyed,
+    }),
+  });
 }
 
-const writes = (target) => target.closest?.('input:not([type=range]):not([type=checkbox]):not([type=radio]):not([type=color]), textarea, select, [contenteditable]');
+const writes = (target) =>
+  target.closest?.(
+    'input:not([type=range]):not([type=checkbox]):not([type=radio]):not([type=color]), textare' +
+      'a, select, [contenteditable]',
+  );
 
 /* What is being written in a field is part of what is saved. */
 function save(field, lab) {
   if (writes(field)) {
     field.blur();
-    field.focus({preventScroll: true});
+    field.focus({ preventScroll: true });
   }
   lab.save?.();
 }

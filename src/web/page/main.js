@@ -1,17 +1,18 @@
-/* Puts the laboratory together: one object lab (store.js), the picture (view.js), the panels, head and status line. Exports nothing; the browser's
+/* Puts the laboratory together: one object lab (store.js), the picture (view.js), the panels, head and status line.
+ * Exports nothing; the browser's
  * console finds it as lab. */
 
-import {createLab} from './store.js';
-import {createView} from './view.js';
-import {createPanels} from './panels.js';
-import {createHead} from './head.js';
-import {createStatus} from './status.js';
-import {createNotes} from './notes.js';
-import {createBanner} from './banner.js';
-import {createKeys} from './keys.js';
-import {orbitTool} from './tool_orbit.js';
-import {lightTool} from './tool_light.js';
-import {cameraBox} from './camera_box.js';
+import { createLab } from './store.js';
+import { createView } from './view.js';
+import { createPanels } from './panels.js';
+import { createHead } from './head.js';
+import { createStatus } from './status.js';
+import { createNotes } from './notes.js';
+import { createBanner } from './banner.js';
+import { createKeys } from './keys.js';
+import { orbitTool } from './tool_orbit.js';
+import { lightTool } from './tool_light.js';
+import { cameraBox } from './camera_box.js';
 
 /* A panel that cannot be loaded leaves the others as they are. */
 const modules = ['params', 'edit', 'pixel', 'compare', 'slime', 'studies', 'machine'];

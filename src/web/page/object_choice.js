@@ -1,15 +1,18 @@
 /* Which object is chosen, for the list, its details and the picture; and what is done to it.
  * exports: createChoice(lab) -> choice
- *   choice.name, choice.object          '' and undefined for none; an object that was just made may not be in the scene yet
+ *   choice.name, choice.object          '' and undefined for none; an object that was just made may not be in the scene
+ *                                       yet
  *   choice.choose(name)                 '' lets go
  *   choice.on(f)                        f() after another is chosen, or the chosen one is no more
  *   choice.add(body)                    POST /api/objects; chooses what comes
- *   choice.move(by, gesture), choice.turn(by, gesture), choice.scale(factor, gesture)    of the chosen one; those of one gesture that wait are joined
- *   choice.copy(), choice.remove(), choice.rename(to), choice.dress(material or null)    promises of true where it was done */
+ *   choice.move(by, gesture), choice.turn(by, gesture), choice.scale(factor, gesture)    of the chosen one; those
+ *       of one gesture that wait are joined
+ *   choice.copy(), choice.remove(), choice.rename(to), choice.dress(material or null)    promises of true where it
+ *       was done */
 
-import {add} from './ray_vectors.js';
+import { add } from './ray_vectors.js';
 
-const join = (waiting, newer) => ({by: add(waiting.by, newer.by)});
+const join = (waiting, newer) => ({ by: add(waiting.by, newer.by) });
 
 export function createChoice(lab) {
   const listeners = new Set();
@@ -17,14 +20,26 @@ export function createChoice(lab) {
 
   const choice = {
     name: '',
-    get object() { return choice.name ? lab.object(choice.name) : undefined; },
+    get object() {
+      return choice.name ? lab.object(choice.name) : undefined;
+    },
     on: (listener) => listeners.add(listener),
-    choose, add: make, rename, remove,
+    choose,
+    add: make,
+    rename,
+    remove,
     copy: () => made(lab.change(at('copy'), {})),
-    dress: (material) => done(lab.change(at('material'), {material})),
-    move: (by, gesture) => done(lab.change(at('move'), {by}, {gesture, merge: join})),
-    turn: (by, gesture) => done(lab.change(at('turn'), {by}, {gesture, merge: join})),
-    scale: (factor, gesture) => done(lab.change(at('scale'), {factor}, {gesture, merge: (waiting, newer) => ({factor: waiting.factor * newer.factor})})),
+    dress: (material) => done(lab.change(at('material'), { material })),
+    move: (by, gesture) => done(lab.change(at('move'), { by }, { gesture, merge: join })),
+    turn: (by, gesture) => done(lab.change(at('turn'), { by }, { gesture, merge: join })),
+    scale: (factor, gesture) =>
+      done(
+        lab.change(
+          at('scale'),
+          { factor },
+          { gesture, merge: (waiting, newer) => ({ factor: waiting.factor * newer.factor }) },
+        ),
+      ),
   };
   lab.on('scene', (scene) => {
     if (choice.name && !lab.object(choice.name) && scene.generation >= since) choose('');
@@ -69,9 +84,9 @@ export function createChoice(lab) {
   }
 
   async function rename(to) {
-    const {name} = choice;
+    const { name } = choice;
     try {
-      const reply = await lab.change(at('rename'), {to});
+      const reply = await lab.change(at('rename'), { to });
       if (choice.name === name) choose(to, reply.generation);
       return true;
     } catch (error) {
@@ -81,8 +96,8 @@ export function createChoice(lab) {
   }
 
   async function remove() {
-    const {name} = choice;
-    if (!name || !await done(lab.del(`/api/objects/${encodeURIComponent(name)}`))) return false;
+    const { name } = choice;
+    if (!name || !(await done(lab.del(`/api/objects/${encodeURIComponent(name)}`)))) return false;
     choose('');
     lab.say(`${name} is removed. Undo brings it back.`);
     return true;

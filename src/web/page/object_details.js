@@ -1,22 +1,27 @@
-/* The chosen object: its name, material, place and direction by steps, its file, and all its parameters. Lights are paged through.
+/* The chosen object: its name, material, place and direction by steps, its file, and all its parameters. Lights are
+ * paged through.
  * exports: createDetails(lab, choice, files) -> {node} */
 
-import {button, choice as choiceOf, element, empty, group, replace, text} from './ui.js';
-import {createRow} from './param_row.js';
-import {createPads} from './object_pads.js';
-import {hintOf} from './object_list.js';
+import { button, choice as choiceOf, element, empty, group, replace, text } from './ui.js';
+import { createRow } from './param_row.js';
+import { createPads } from './object_pads.js';
+import { hintOf } from './object_list.js';
 
-const GROUPS = {solid: 'Shape and place', material: 'Look', mesh: 'Mesh', light: 'Light', texture: 'Texture'};
+const GROUPS = { solid: 'Shape and place', material: 'Look', mesh: 'Mesh', light: 'Light', texture: 'Texture' };
 const OWN = '(its own look)';
 
 /* What tells a control from the others, also when it is made anew. */
 function keyOf(control) {
   const path = control.closest('.param')?.dataset.path || '';
-  return [control.tagName, path, control.getAttribute('aria-label') || control.labels?.[0]?.textContent || control.textContent].join('|');
+  return [
+    control.tagName,
+    path,
+    control.getAttribute('aria-label') || control.labels?.[0]?.textContent || control.textContent,
+  ].join('|');
 }
 
 export function createDetails(lab, choice, files) {
-  const node = element('section', {class: 'object-details', 'aria-label': 'The chosen object'});
+  const node = element('section', { class: 'object-details', 'aria-label': 'The chosen object' });
   const pads = createPads(choice);
   let rows = [];
   let shown = '';
@@ -24,23 +29,26 @@ export function createDetails(lab, choice, files) {
   choice.on(() => show());
   lab.on('scene', show);
   show();
-  return {node};
+  return { node };
 
   function ownRows() {
     return (lab.scene?.params || []).filter((row) => row.path === `${choice.name}.${row.name}`);
   }
 
   function show() {
-    const {object} = choice;
+    const { object } = choice;
     if (!object && choice.name) return; /* it is on its way */
     if (!object) {
-      if (shown !== 'none') replace(node, empty('Choose an object in the list, or with the tool Object in the picture.'));
+      if (shown !== 'none')
+        replace(node, empty('Choose an object in the list, or with the tool Object in the picture.'));
       shown = 'none';
       rows = [];
       return;
     }
     const own = ownRows();
-    const others = lab.scene.objects.filter((each) => ['material', 'light'].includes(each.kind)).map((each) => each.name);
+    const others = lab.scene.objects
+      .filter((each) => ['material', 'light'].includes(each.kind))
+      .map((each) => each.name);
     const now = JSON.stringify([object, own.map((row) => [row.path, row.type, row.choices?.length]), others]);
     if (now === shown) {
       for (const row of rows) if (lab.param(row.path)) row.update(lab.param(row.path), lab.scene.generation);
@@ -52,16 +60,36 @@ export function createDetails(lab, choice, files) {
 
   function build(object, own) {
     const focused = node.contains(document.activeElement) ? keyOf(document.activeElement) : null;
-    replace(node, head(object), object.kind === 'light' ? pager(object) : null, general(object), files.forObject(object),
-      object.kind === 'solid' || object.kind === 'light' ? pads.show({turns: object.kind === 'solid' || object.light !== 'point', scales: true}) : null, parameters(object, own));
-    if (focused) [...node.querySelectorAll('button, input, select')].find((each) => keyOf(each) === focused)?.focus({preventScroll: true});
+    replace(
+      node,
+      head(object),
+      object.kind === 'light' ? pager(object) : null,
+      general(object),
+      files.forObject(object),
+      object.kind === 'solid' || object.kind === 'light'
+        ? pads.show({ turns: object.kind === 'solid' || object.light !== 'point', scales: true })
+        : null,
+      parameters(object, own),
+    );
+    if (focused)
+      [...node.querySelectorAll('button, input, select')]
+        .find((each) => keyOf(each) === focused)
+        ?.focus({ preventScroll: true });
   }
 
   function head(object) {
-    return element('div', {class: 'object-head'}, element('h2', {text: object.name}), element('span', {class: 'hint', text: [object.kind, hintOf(object)].filter(Boolean).join(', ')}),
-      element('span', {class: 'buttons'},
-        button('Copy', () => choice.copy(), {icon: 'copy', small: true, title: 'Another one like it, beside it'}),
-        button('Remove', remove, {icon: 'trash', small: true, kind: 'danger'})));
+    return element(
+      'div',
+      { class: 'object-head' },
+      element('h2', { text: object.name }),
+      element('span', { class: 'hint', text: [object.kind, hintOf(object)].filter(Boolean).join(', ') }),
+      element(
+        'span',
+        { class: 'buttons' },
+        button('Copy', () => choice.copy(), { icon: 'copy', small: true, title: 'Another one like it, beside it' }),
+        button('Remove', remove, { icon: 'trash', small: true, kind: 'danger' }),
+      ),
+    );
   }
 
   function pager(object) {
@@ -69,11 +97,14 @@ export function createDetails(lab, choice, files) {
     const here = lights.indexOf(object.name);
     const to = (step) => choice.choose(lights[(here + step + lights.length) % lights.length]);
     const alone = lights.length < 2;
-    return element('div', {class: 'buttons object-pager', role: 'group', 'aria-label': 'Lights'},
-      button('Previous light', () => to(-1), {icon: 'left', small: true, disabled: alone}),
-      element('span', {class: 'hint', text: `${here + 1} of ${lights.length}`}),
-      button('Next light', () => to(1), {icon: 'right', small: true, disabled: alone}),
-      button('Add light', () => choice.add({kind: 'light'}), {icon: 'plus', small: true}));
+    return element(
+      'div',
+      { class: 'buttons object-pager', role: 'group', 'aria-label': 'Lights' },
+      button('Previous light', () => to(-1), { icon: 'left', small: true, disabled: alone }),
+      element('span', { class: 'hint', text: `${here + 1} of ${lights.length}` }),
+      button('Next light', () => to(1), { icon: 'right', small: true, disabled: alone }),
+      button('Add light', () => choice.add({ kind: 'light' }), { icon: 'plus', small: true }),
+    );
   }
 
   async function remove() {
@@ -81,29 +112,63 @@ export function createDetails(lab, choice, files) {
   }
 
   function general(object) {
-    const name = text({label: 'Name', value: object.name, onchange: async (to) => {
-      if (to && to !== object.name && await choice.rename(to)) return;
-      name.input.value = object.name;
-    }});
+    const name = text({
+      label: 'Name',
+      value: object.name,
+      onchange: async (to) => {
+        if (to && to !== object.name && (await choice.rename(to))) return;
+        name.input.value = object.name;
+      },
+    });
     name.input.maxLength = 63;
     const materials = lab.scene.objects.filter((each) => each.kind === 'material').map((each) => each.name);
-    const material = object.kind === 'solid' ? choiceOf({
-      label: 'Material', choices: [['', OWN], ...materials], value: object.material || '', onchange: (word) => choice.dress(word || null),
-    }) : null;
+    const material =
+      object.kind === 'solid'
+        ? choiceOf({
+            label: 'Material',
+            choices: [['', OWN], ...materials],
+            value: object.material || '',
+            onchange: (word) => choice.dress(word || null),
+          })
+        : null;
     const parts = [object.material, object.mesh].filter(Boolean);
-    return element('div', {class: 'object-general'}, name.node, material?.node, parts.length ? element('div', {class: 'buttons'},
-      parts.map((part) => button(`To ${part}`, () => choice.choose(part), {icon: 'right', small: true, kind: 'quiet'}))) : null);
+    return element(
+      'div',
+      { class: 'object-general' },
+      name.node,
+      material?.node,
+      parts.length
+        ? element(
+            'div',
+            { class: 'buttons' },
+            parts.map((part) =>
+              button(`To ${part}`, () => choice.choose(part), { icon: 'right', small: true, kind: 'quiet' }),
+            ),
+          )
+        : null,
+    );
   }
 
   function parameters(object, own) {
     const kinds = [...new Set(own.map((row) => row.group))];
     rows = [];
     /* Rows look as in the panel of parameters. */
-    return element('div', {class: 'panel-params object-rows'}, kinds.map((kind) => {
-      const made = own.filter((row) => row.group === kind).map((row) => createRow(row, lab));
-      rows.push(...made);
-      const note = kind === 'material' && object.kind === 'solid' && object.material ? `of ${object.material}; what is set here is for ${object.name} alone` : null;
-      return group(GROUPS[kind] || kind, {id: `edit.${kind}`, hint: note}, made.map((row) => row.node));
-    }));
+    return element(
+      'div',
+      { class: 'panel-params object-rows' },
+      kinds.map((kind) => {
+        const made = own.filter((row) => row.group === kind).map((row) => createRow(row, lab));
+        rows.push(...made);
+        const note =
+          kind === 'material' && object.kind === 'solid' && object.material
+            ? `of ${object.material}; what is set here is for ${object.name} alone`
+            : null;
+        return group(
+          GROUPS[kind] || kind,
+          { id: `edit.${kind}`, hint: note },
+          made.map((row) => row.node),
+        );
+      }),
+    );
   }
 }

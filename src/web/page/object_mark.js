@@ -1,17 +1,18 @@
-/* The chosen object over the picture, while it is looked after there or in its panel: the outline of a simple solid, and a cross where it stands.
+/* The chosen object over the picture, while it is looked after there or in its panel: the outline of a simple solid,
+ * and a cross where it stands.
  * exports: createMark(lab, choice) -> {at() -> [x,y,z] or null} */
 
-import {svg} from './ui.js';
-import {hull, solidPoints} from './ray_solids.js';
+import { svg } from './ui.js';
+import { hull, solidPoints } from './ray_solids.js';
 
 const CROSS_PX = 9;
 
 export function createMark(lab, choice) {
-  const {view} = lab;
+  const { view } = lab;
   const layer = view.layer('object');
   choice.on(draw);
   for (const name of ['view', 'scene', 'state', 'panel', 'tool']) lab.on(name, draw);
-  return {at};
+  return { at };
 
   function at() {
     return (choice.name && lab.param(`${choice.name}.position`)?.value) || null;
@@ -24,7 +25,7 @@ export function createMark(lab, choice) {
   }
 
   function stroked(tag, attributes) {
-    return ['edge', 'line'].map((what) => svg(tag, {class: `object-${what}`, ...attributes}));
+    return ['edge', 'line'].map((what) => svg(tag, { class: `object-${what}`, ...attributes }));
   }
 
   /* Left out where a part of it is behind the camera. */
@@ -34,7 +35,7 @@ export function createMark(lab, choice) {
       const seen = points.map((point) => view.project(point));
       if (seen.some((point) => !point)) return [];
       const around = hull(seen.map((point) => [point.x, point.y]));
-      return stroked('polygon', {points: around.map((point) => point.map((x) => x.toFixed(2)).join(',')).join(' ')});
+      return stroked('polygon', { points: around.map((point) => point.map((x) => x.toFixed(2)).join(',')).join(' ') });
     });
   }
 
@@ -42,6 +43,6 @@ export function createMark(lab, choice) {
     const seen = view.project(place);
     if (!seen) return [];
     const arm = CROSS_PX / (view.scale || 1);
-    return stroked('path', {d: `M${seen.x - arm} ${seen.y}h${2 * arm}M${seen.x} ${seen.y - arm}v${2 * arm}`});
+    return stroked('path', { d: `M${seen.x - arm} ${seen.y}h${2 * arm}M${seen.x} ${seen.y - arm}v${2 * arm}` });
   }
 }

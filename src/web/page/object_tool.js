@@ -1,9 +1,10 @@
-/* Object: a click in the picture chooses what is there, dragging moves it parallel to the picture, as far from the eye as it is. Planes are chosen but not
+/* Object: a click in the picture chooses what is there, dragging moves it parallel to the picture, as far from the eye
+ * as it is. Planes are chosen but not
  * dragged: on them, on the sky, and with Shift anywhere, dragging moves what is chosen already.
  * exports: objectTool(lab, choice, mark) */
 
-import {gesture} from './ui.js';
-import {add, dot, minus, times} from './ray_vectors.js';
+import { gesture } from './ui.js';
+import { add, dot, minus, times } from './ray_vectors.js';
 
 const STILL_PX = 3;
 const KEY_PX = 8;
@@ -13,15 +14,23 @@ const isPlane = (object) => object?.kind === 'solid' && object.shape === 'plane'
 const moves = (object) => object && (object.kind === 'solid' || object.kind === 'light') && !isPlane(object);
 
 export function objectTool(lab, choice, mark) {
-  const {view} = lab;
+  const { view } = lab;
   let drag = null;
   let keys = null;
 
   view.tool('object', {
-    label: 'Object', icon: 'cube', order: 15, cursor: 'pointer',
-    hint: 'Click an object to choose it, drag to move it; with Shift dragging moves what is chosen already; arrow keys move, Delete removes',
+    label: 'Object',
+    icon: 'cube',
+    order: 15,
+    cursor: 'pointer',
+    hint:
+      'Click an object to choose it, drag to move it; with Shift dragging moves what is chosen ' +
+      'already; arrow keys move, Delete removes',
     chosen: () => lab.panels?.use('edit'),
-    down, move, up, key,
+    down,
+    move,
+    up,
+    key,
   });
 
   function depthOf(point) {
@@ -31,8 +40,8 @@ export function objectTool(lab, choice, mark) {
 
   /* The world's way for dx, dy picture pixels at that depth. */
   function way(dx, dy, depth) {
-    const {right, up: upward, half_width: w, half_height: h} = lab.state.camera;
-    return add(times(right, dx * (2 * w / view.width) * depth), times(upward, -dy * (2 * h / view.height) * depth));
+    const { right, up: upward, half_width: w, half_height: h } = lab.state.camera;
+    return add(times(right, dx * ((2 * w) / view.width) * depth), times(upward, -dy * ((2 * h) / view.height) * depth));
   }
 
   async function hitAt(point) {
@@ -52,7 +61,7 @@ export function objectTool(lab, choice, mark) {
 
   function down(point, event) {
     if (!lab.state?.camera || (!point.inside && !choice.name)) return false;
-    const now = drag = {gesture: gesture('object'), from: point, last: point, depth: 0, hit: null, far: false};
+    const now = (drag = { gesture: gesture('object'), from: point, last: point, depth: 0, hit: null, far: false });
     if (event.shiftKey || !point.inside) {
       takeChosen(now);
       return true;
@@ -101,16 +110,19 @@ export function objectTool(lab, choice, mark) {
   }
 
   function key(event) {
-    const ways = {ArrowLeft: [-KEY_PX, 0], ArrowRight: [KEY_PX, 0], ArrowUp: [0, -KEY_PX], ArrowDown: [0, KEY_PX]};
+    const ways = { ArrowLeft: [-KEY_PX, 0], ArrowRight: [KEY_PX, 0], ArrowUp: [0, -KEY_PX], ArrowDown: [0, KEY_PX] };
     if (!choice.name) return false;
     if (event.key === 'Escape') choice.choose('');
     else if (event.key === 'Delete') choice.remove();
     else if (ways[event.key] && moves(choice.object) && mark.at()) {
-      if (!keys || event.timeStamp - keys.at > PAUSE_MS) keys = {gesture: gesture('object')};
+      if (!keys || event.timeStamp - keys.at > PAUSE_MS) keys = { gesture: gesture('object') };
       keys.at = event.timeStamp;
       const fine = event.shiftKey ? 0.1 : 1;
       const [dx, dy] = ways[event.key];
-      choice.move(way(dx * fine / view.scale, dy * fine / view.scale, Math.max(depthOf(mark.at()), 0)), keys.gesture);
+      choice.move(
+        way((dx * fine) / view.scale, (dy * fine) / view.scale, Math.max(depthOf(mark.at()), 0)),
+        keys.gesture,
+      );
     } else return false;
     return true;
   }

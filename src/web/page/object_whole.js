@@ -1,26 +1,43 @@
-/* The whole scene, by steps: its solids, its lights, its camera, or some of them. They turn and are scaled about the origin.
+/* The whole scene, by steps: its solids, its lights, its camera, or some of them. They turn and are scaled about the
+ * origin.
  * exports: createWhole(lab) -> node */
 
-import {check, element, group} from './ui.js';
-import {add} from './ray_vectors.js';
-import {createPads} from './object_pads.js';
+import { check, element, group } from './ui.js';
+import { add } from './ray_vectors.js';
+import { createPads } from './object_pads.js';
 
-const PARTS = [['solids', 'Solids', true], ['lights', 'Lights', true], ['camera', 'Camera', false]];
-const join = (waiting, newer) => ({by: add(waiting.by, newer.by)});
-const product = (waiting, newer) => ({factor: waiting.factor * newer.factor});
+const PARTS = [
+  ['solids', 'Solids', true],
+  ['lights', 'Lights', true],
+  ['camera', 'Camera', false],
+];
+const join = (waiting, newer) => ({ by: add(waiting.by, newer.by) });
+const product = (waiting, newer) => ({ factor: waiting.factor * newer.factor });
 
 export function createWhole(lab) {
-  const boxes = PARTS.map(([word, label, on]) => ({word, box: check(label, on)}));
+  const boxes = PARTS.map(([word, label, on]) => ({ word, box: check(label, on) }));
   const whole = {
-    get name() { return boxes.filter(({box}) => box.value).map(({word}) => word).join('+'); },
-    move: (by, gesture) => send('move', {by}, {gesture, merge: join}),
-    turn: (by, gesture) => send('turn', {by}, {gesture, merge: join}),
-    scale: (factor, gesture) => send('scale', {factor}, {gesture, merge: product}),
+    get name() {
+      return boxes
+        .filter(({ box }) => box.value)
+        .map(({ word }) => word)
+        .join('+');
+    },
+    move: (by, gesture) => send('move', { by }, { gesture, merge: join }),
+    turn: (by, gesture) => send('turn', { by }, { gesture, merge: join }),
+    scale: (factor, gesture) => send('scale', { factor }, { gesture, merge: product }),
   };
-  const pads = createPads(whole, {id: 'whole', many: 'all'});
-  return group('Whole scene', {id: 'edit.whole', open: false, hint: 'all solids and lights at once, about the origin'},
-    element('div', {class: 'buttons', role: 'group', 'aria-label': 'What of the scene'}, boxes.map(({box}) => box.node)),
-    pads.show({turns: true, scales: true}));
+  const pads = createPads(whole, { id: 'whole', many: 'all' });
+  return group(
+    'Whole scene',
+    { id: 'edit.whole', open: false, hint: 'all solids and lights at once, about the origin' },
+    element(
+      'div',
+      { class: 'buttons', role: 'group', 'aria-label': 'What of the scene' },
+      boxes.map(({ box }) => box.node),
+    ),
+    pads.show({ turns: true, scales: true }),
+  );
 
   /* The camera alone is an object: it turns where it stands, and has no size. */
   function send(what, body, how) {

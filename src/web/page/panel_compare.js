@@ -1,24 +1,27 @@
 /* Compare: a pinned picture A beside the newest one B, as pictures and in numbers. exports: panel */
 
-import {button, choice, element, empty, notice, replace, slider} from './ui.js';
-import {changes, costs, similarity, sizes} from './compare_numbers.js';
-import {createCompareView} from './compare_view.js';
+import { button, choice, element, empty, notice, replace, slider } from './ui.js';
+import { changes, costs, similarity, sizes } from './compare_numbers.js';
+import { createCompareView } from './compare_view.js';
 
 const CLOSE_UP = 12;
-const writes = (target) => target.closest?.('input:not([type=range]):not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable]');
+const writes = (target) =>
+  target.closest?.(
+    'input:not([type=range]):not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable]',
+  );
 
 let model = null;
 
 /* Asks whenever there is a pinned picture and a final one that was not compared with it. */
 function createModel(lab) {
   const listeners = new Set();
-  const mine = {answer: null, error: null, pin: null, current: false, on: (listener) => listeners.add(listener)};
+  const mine = { answer: null, error: null, pin: null, current: false, on: (listener) => listeners.add(listener) };
   let asking = false;
   let again = false;
   const key = (pin) => (pin ? pin.serial : 0);
-  lab.on('state', ({pin}) => {
+  lab.on('state', ({ pin }) => {
     if (key(pin) === key(mine.pin)) return;
-    Object.assign(mine, {pin: pin || null, answer: null, error: null});
+    Object.assign(mine, { pin: pin || null, answer: null, error: null });
     ask();
   });
   lab.on('picture', (picture) => {
@@ -27,7 +30,7 @@ function createModel(lab) {
     else tell();
   });
   lab.on('afresh', () => {
-    Object.assign(mine, {pin: null, answer: null, error: null});
+    Object.assign(mine, { pin: null, answer: null, error: null });
     tell();
   });
   return mine;
@@ -51,7 +54,8 @@ function createModel(lab) {
   async function fetchAnswer(of) {
     try {
       const answer = await lab.get('/api/compare');
-      if (key(answer.a) === of && of === key(mine.pin)) Object.assign(mine, {answer, error: null, current: answer.b.serial === lab.picture?.serial});
+      if (key(answer.a) === of && of === key(mine.pin))
+        Object.assign(mine, { answer, error: null, current: answer.b.serial === lab.picture?.serial });
     } catch (error) {
       if (error.status === 409) mine.current = false; /* B is being rendered again, or A is gone: news of that comes */
       else mine.error = error;
@@ -60,25 +64,62 @@ function createModel(lab) {
   }
 }
 
-const same = ({a, b}) => a.width === b.width && a.height === b.height;
+const same = ({ a, b }) => a.width === b.width && a.height === b.height;
 
 /* How A and B are drawn: the choice, its slider, and the key that flips. */
 function createShow(lab) {
   const view = createCompareView(lab, setShare);
-  const how = choice({label: 'Show', radios: true, value: 'wipe', choices: [['b', 'B'], ['wipe', 'Wipe'], ['map', 'Difference']], onchange: () => draw()});
-  const share = slider({label: 'Share of A', min: 0, max: 100, step: 1, value: 50, unit: '%', oninput: (value) => setShare(value / 100)});
-  const strength = slider({label: 'Strength', min: 0, max: 100, step: 1, value: 100, unit: '%', oninput: (value) => view.set({strength: value / 100})});
-  const flip = button('Hold to see A', null, {icon: 'eye', small: true, title: 'Hold it, or the key F'});
-  const legend = element('p', {class: 'hint', text: 'FLIP error: black where nothing differs, then purple and orange to pale yellow where much does.'});
-  const node = element('div', {class: 'compare-show', hidden: true}, how.node, share.node, strength.node, legend, flip);
-  let addresses = {a: null, map: null};
+  const how = choice({
+    label: 'Show',
+    radios: true,
+    value: 'wipe',
+    choices: [
+      ['b', 'B'],
+      ['wipe', 'Wipe'],
+      ['map', 'Difference'],
+    ],
+    onchange: () => draw(),
+  });
+  const share = slider({
+    label: 'Share of A',
+    min: 0,
+    max: 100,
+    step: 1,
+    value: 50,
+    unit: '%',
+    oninput: (value) => setShare(value / 100),
+  });
+  const strength = slider({
+    label: 'Strength',
+    min: 0,
+    max: 100,
+    step: 1,
+    value: 100,
+    unit: '%',
+    oninput: (value) => view.set({ strength: value / 100 }),
+  });
+  const flip = button('Hold to see A', null, { icon: 'eye', small: true, title: 'Hold it, or the key F' });
+  const legend = element('p', {
+    class: 'hint',
+    text: 'FLIP error: black where nothing differs, then purple and orange to pale yellow where much does.',
+  });
+  const node = element(
+    'div',
+    { class: 'compare-show', hidden: true },
+    how.node,
+    share.node,
+    strength.node,
+    legend,
+    flip,
+  );
+  let addresses = { a: null, map: null };
 
   hold(flip, view.flip);
-  return {node, set, spot: (place) => view.set({spot: place})};
+  return { node, set, spot: (place) => view.set({ spot: place }) };
 
   function setShare(value) {
     share.set(100 * value);
-    view.set({share: value});
+    view.set({ share: value });
   }
 
   function set(next) {
@@ -90,7 +131,7 @@ function createShow(lab) {
   function draw() {
     share.node.hidden = how.value !== 'wipe';
     strength.node.hidden = legend.hidden = how.value !== 'map';
-    view.set({...addresses, map: how.value === 'map' ? addresses.map : null, mode: how.value});
+    view.set({ ...addresses, map: how.value === 'map' ? addresses.map : null, mode: how.value });
     lab.view.note('compare', how.value === 'map' && addresses.map ? 'Difference from A' : null, () => {
       how.set('b');
       draw();
@@ -109,15 +150,18 @@ function hold(node, flip) {
   for (const name of ['pointerup', 'pointercancel', 'pointerleave', 'keyup']) node.addEventListener(name, on(false));
   node.addEventListener('blur', () => flip(false));
   document.addEventListener('keydown', (event) => {
-    if (event.key.toLowerCase() === 'f' && !event.ctrlKey && !event.metaKey && !event.altKey && !writes(event.target)) flip(true);
+    if (event.key.toLowerCase() === 'f' && !event.ctrlKey && !event.metaKey && !event.altKey && !writes(event.target))
+      flip(true);
   });
-  document.addEventListener('keyup', (event) => { if (event.key.toLowerCase() === 'f') flip(false); });
+  document.addEventListener('keyup', (event) => {
+    if (event.key.toLowerCase() === 'f') flip(false);
+  });
   window.addEventListener('blur', () => flip(false));
 }
 
 /* That pixel in the middle, large enough to see it among its neighbours. */
 function closeUp(lab, x, y) {
-  const {view} = lab;
+  const { view } = lab;
   view.zoom(CLOSE_UP / view.scale, view.toScreen(x + 0.5, y + 0.5));
   const at = view.toScreen(x + 0.5, y + 0.5);
   view.pan(view.stage.clientWidth / 2 - at.x, view.stage.clientHeight / 2 - at.y);
@@ -125,11 +169,22 @@ function closeUp(lab, x, y) {
 }
 
 function pinButtons(lab) {
-  const ask = (work, done) => () => work().then(() => lab.say(done)).catch(lab.fail);
-  const pin = button('Pin as A', ask(() => lab.post('/api/pin', {}), 'The picture is pinned as A'), {icon: 'pin', kind: 'primary'});
-  const drop = button('Let go of A', ask(() => lab.del('/api/pin'), 'A is let go of'), {icon: 'close', kind: 'quiet'});
+  const ask = (work, done) => () =>
+    work()
+      .then(() => lab.say(done))
+      .catch(lab.fail);
+  const pin = button(
+    'Pin as A',
+    ask(() => lab.post('/api/pin', {}), 'The picture is pinned as A'),
+    { icon: 'pin', kind: 'primary' },
+  );
+  const drop = button(
+    'Let go of A',
+    ask(() => lab.del('/api/pin'), 'A is let go of'),
+    { icon: 'close', kind: 'quiet' },
+  );
   return {
-    node: element('div', {class: 'compare-buttons'}, pin, drop),
+    node: element('div', { class: 'compare-buttons' }, pin, drop),
     show() {
       pin.disabled = !lab.picture?.final;
       pin.title = pin.disabled ? 'when the picture is finished' : 'the picture as it is now';
@@ -138,24 +193,30 @@ function pinButtons(lab) {
   };
 }
 
-function numbers({a, b, comparison, changed}, goto) {
-  return element('div', {class: 'compare-numbers'},
-    comparison ? null : notice(sizes(a, b), {kind: 'warning'}),
-    comparison && a.film_hash === b.film_hash ? notice('The two films are the same, to the last bit.', {kind: 'good'}) : null,
+function numbers({ a, b, comparison, changed }, goto) {
+  return element(
+    'div',
+    { class: 'compare-numbers' },
+    comparison ? null : notice(sizes(a, b), { kind: 'warning' }),
+    comparison && a.film_hash === b.film_hash
+      ? notice('The two films are the same, to the last bit.', { kind: 'good' })
+      : null,
     comparison ? similarity(comparison, goto) : null,
-    changes(changed), costs(a, b));
+    changes(changed),
+    costs(a, b),
+  );
 }
 
-function addressesOf({pin, answer}) {
-  if (!pin || (answer && !same(answer))) return {a: null, map: null};
+function addressesOf({ pin, answer }) {
+  if (!pin || (answer && !same(answer))) return { a: null, map: null };
   const map = answer?.comparison ? `/api/compare.png?a=${pin.serial}&b=${answer.b.serial}` : null;
-  return {a: `/api/pin.png?a=${pin.serial}`, map};
+  return { a: `/api/pin.png?a=${pin.serial}`, map };
 }
 
 function create(root, lab) {
   const buttons = pinButtons(lab);
   const how = createShow(lab);
-  const below = element('div', {class: 'compare-below'});
+  const below = element('div', { class: 'compare-below' });
   root.append(buttons.node, how.node, below);
   const goto = (x, y) => {
     how.spot([x, y]);
@@ -176,12 +237,27 @@ function create(root, lab) {
     }
     shown = null;
     how.spot(null);
-    if (model.error) replace(below, notice(model.error.message, {kind: 'error', remedy: model.error.remedy}));
-    else replace(below, empty(model.pin ? 'A is pinned; the comparison comes with the finished picture.'
-      : 'Pin the finished picture as A, change the scene, and see here what that did.'));
+    if (model.error) replace(below, notice(model.error.message, { kind: 'error', remedy: model.error.remedy }));
+    else
+      replace(
+        below,
+        empty(
+          model.pin
+            ? 'A is pinned; the comparison comes with the finished picture.'
+            : 'Pin the finished picture as A, change the scene, and see here what that did.',
+        ),
+      );
   };
   model.on(show);
   show();
 }
 
-export const panel = {id: 'compare', title: 'Compare', css: 'panel_compare.css', start: (lab) => { model = createModel(lab); }, create};
+export const panel = {
+  id: 'compare',
+  title: 'Compare',
+  css: 'panel_compare.css',
+  start: (lab) => {
+    model = createModel(lab);
+  },
+  create,
+};

@@ -1,15 +1,23 @@
-/* Objects: files of scenes, what can be added, the list of all objects, and the chosen one. exports: panel. The tool Object chooses and moves in the picture. */
+/* Objects: files of scenes, what can be added, the list of all objects, and the chosen one. exports: panel. The tool
+ * Object chooses and moves in the picture. */
 
-import {button, element, group} from './ui.js';
-import {createChoice} from './object_choice.js';
-import {createDetails} from './object_details.js';
-import {createFiles} from './scene_files.js';
-import {createList} from './object_list.js';
-import {createWhole} from './object_whole.js';
-import {createMark} from './object_mark.js';
-import {objectTool} from './object_tool.js';
+import { button, element, group } from './ui.js';
+import { createChoice } from './object_choice.js';
+import { createDetails } from './object_details.js';
+import { createFiles } from './scene_files.js';
+import { createList } from './object_list.js';
+import { createWhole } from './object_whole.js';
+import { createMark } from './object_mark.js';
+import { objectTool } from './object_tool.js';
 
-const SHAPES = [['plane', 'Plane'], ['cylinder', 'Cylinder'], ['cup', 'Cup'], ['box', 'Box'], ['sphere', 'Sphere'], ['mesh', 'Torus']];
+const SHAPES = [
+  ['plane', 'Plane'],
+  ['cylinder', 'Cylinder'],
+  ['cup', 'Cup'],
+  ['box', 'Box'],
+  ['sphere', 'Sphere'],
+  ['mesh', 'Torus'],
+];
 
 let choice = null;
 let files = null;
@@ -24,24 +32,48 @@ function start(lab) {
 }
 
 function fileButtons() {
-  return element('div', {class: 'buttons', role: 'group', 'aria-label': 'Scene file'},
-    button('Open …', files.open, {icon: 'folder'}), button('New', files.fresh, {icon: 'plus'}),
-    button('Save', files.save, {icon: 'save', title: 'Save (Ctrl S)'}), button('Save as …', () => files.saveAs()));
+  return element(
+    'div',
+    { class: 'buttons', role: 'group', 'aria-label': 'Scene file' },
+    button('Open …', files.open, { icon: 'folder' }),
+    button('New', files.fresh, { icon: 'plus' }),
+    button('Save', files.save, { icon: 'save', title: 'Save (Ctrl S)' }),
+    button('Save as …', () => files.saveAs()),
+  );
 }
 
 function addButtons() {
-  const small = (label, act, icon) => button(label, act, {small: true, icon});
-  return group('Add', {id: 'edit.add'},
-    element('div', {class: 'buttons', role: 'group', 'aria-label': 'Add a solid'}, SHAPES.map(([shape, label]) => small(label, () => choice.add({kind: 'solid', shape})))),
-    element('div', {class: 'buttons', role: 'group', 'aria-label': 'Add something else'},
-      small('Light', () => choice.add({kind: 'light'}), 'light'), small('Material', () => choice.add({kind: 'material'})),
-      small('Slime', () => choice.add({kind: 'slime'}), 'hand'), small('Model …', () => files.addFile('model', 'Add a model'), 'cube'),
-      small('Texture …', () => files.addFile('texture', 'Add a texture'), 'image'), small('Sky …', files.pickSky, 'image')));
+  const small = (label, act, icon) => button(label, act, { small: true, icon });
+  return group(
+    'Add',
+    { id: 'edit.add' },
+    element(
+      'div',
+      { class: 'buttons', role: 'group', 'aria-label': 'Add a solid' },
+      SHAPES.map(([shape, label]) => small(label, () => choice.add({ kind: 'solid', shape }))),
+    ),
+    element(
+      'div',
+      { class: 'buttons', role: 'group', 'aria-label': 'Add something else' },
+      small('Light', () => choice.add({ kind: 'light' }), 'light'),
+      small('Material', () => choice.add({ kind: 'material' })),
+      small('Slime', () => choice.add({ kind: 'slime' }), 'hand'),
+      small('Model …', () => files.addFile('model', 'Add a model'), 'cube'),
+      small('Texture …', () => files.addFile('texture', 'Add a texture'), 'image'),
+      small('Sky …', files.pickSky, 'image'),
+    ),
+  );
 }
 
 function create(root, lab) {
   start(lab);
-  root.append(fileButtons(), addButtons(), createList(lab, choice).node, createDetails(lab, choice, files).node, createWhole(lab));
+  root.append(
+    fileButtons(),
+    addButtons(),
+    createList(lab, choice).node,
+    createDetails(lab, choice, files).node,
+    createWhole(lab),
+  );
 }
 
-export const panel = {id: 'edit', title: 'Objects', css: 'panel_edit.css', start, create};
+export const panel = { id: 'edit', title: 'Objects', css: 'panel_edit.css', start, create };

@@ -1,15 +1,16 @@
-/* The parameters of the scene, made from the rows of the table: a short list at hand, then all of them by object, and a search.
+/* The parameters of the scene, made from the rows of the table: a short list at hand, then all of them by object, and a
+ * search.
  * exports: panel */
 
-import {button, check, element, empty, group, icon, memory, replace} from './ui.js';
-import {createRow, valueText} from './param_row.js';
-import {hasLaw} from './param_laws.js';
+import { button, check, element, empty, group, icon, memory, replace } from './ui.js';
+import { createRow, valueText } from './param_row.js';
+import { hasLaw } from './param_laws.js';
 
 const FOUND_MAX = 80;
-const LATER_MS = 300;     /* the list is not made anew while one of its controls is dragged */
+const LATER_MS = 300; /* the list is not made anew while one of its controls is dragged */
 const MANY = 36;
 const LAST = ['camera', 'background', 'render'];
-const TITLES = {camera: 'Camera', background: 'Background', render: 'Rendering'};
+const TITLES = { camera: 'Camera', background: 'Background', render: 'Rendering' };
 
 /* What stands at hand where the scene has it; all else comes from the rows. */
 const HAND = {
@@ -31,37 +32,50 @@ function grouped(rows) {
   return groups;
 }
 
-const rank = {solid: 0, light: 1, material: 2, mesh: 3, texture: 4};
+const rank = { solid: 0, light: 1, material: 2, mesh: 3, texture: 4 };
 
 function ordered(names, lab) {
-  const place = (name) => (LAST.includes(name) ? 10 + LAST.indexOf(name) : rank[lab.object(name)?.kind] ?? 5);
+  const place = (name) => (LAST.includes(name) ? 10 + LAST.indexOf(name) : (rank[lab.object(name)?.kind] ?? 5));
   return [...names].sort((a, b) => place(a) - place(b));
 }
 
 /* Once clear, a solid stays in that list: its slider for transparency must not go away under the hand. */
 function handParts(lab, onceClear) {
-  const take = (name, wanted) => wanted.map((word) => lab.param(`${name}.${word}`)).filter((row) => row && (row.name !== 'coefficients' || hasLaw(lab, name)));
+  const take = (name, wanted) =>
+    wanted
+      .map((word) => lab.param(`${name}.${word}`))
+      .filter((row) => row && (row.name !== 'coefficients' || hasLaw(lab, name)));
   const solids = lab.scene.objects.filter((object) => object.kind === 'solid').map((object) => object.name);
   for (const name of solids) if ((lab.param(`${name}.transparency`)?.value ?? 0) > 0) onceClear.add(name);
   const isClear = (name) => onceClear.has(name);
   const parts = [
     ...solids.filter(isClear).map((name) => [name, take(name, HAND.clear)]),
     ...solids.filter((name) => !isClear(name)).map((name) => [name, take(name, HAND.opaque)]),
-    ...lab.scene.objects.filter((object) => object.kind === 'light').map((object) => [object.name, take(object.name, HAND.light)]),
+    ...lab.scene.objects
+      .filter((object) => object.kind === 'light')
+      .map((object) => [object.name, take(object.name, HAND.light)]),
     ['render', take('render', HAND.render)],
   ];
   return parts.filter(([, rows]) => rows.length);
 }
 
 export const panel = {
-  id: 'params', title: 'Parameters', css: 'panel_params.css',
+  id: 'params',
+  title: 'Parameters',
+  css: 'panel_params.css',
 
   create(root, lab) {
-    const list = element('div', {class: 'param-list'});
-    const results = element('div', {class: 'param-list', hidden: true});
-    const about = element('div', {class: 'param-about', 'aria-hidden': 'true'});
-    const search = element('input', {type: 'search', class: 'input', placeholder: 'Find a parameter', 'aria-label': 'Find a parameter by name or meaning', spellcheck: 'false'});
-    const said = element('span', {class: 'visually-hidden', role: 'status'});
+    const list = element('div', { class: 'param-list' });
+    const results = element('div', { class: 'param-list', hidden: true });
+    const about = element('div', { class: 'param-about', 'aria-hidden': 'true' });
+    const search = element('input', {
+      type: 'search',
+      class: 'input',
+      placeholder: 'Find a parameter',
+      'aria-label': 'Find a parameter by name or meaning',
+      spellcheck: 'false',
+    });
+    const said = element('span', { class: 'visually-hidden', role: 'status' });
     const explain = check('Meanings', memory.get('meanings', false), (on) => {
       root.classList.toggle('explained', on);
       memory.set('meanings', on);
@@ -73,7 +87,18 @@ export const panel = {
     let timer = 0;
 
     root.classList.toggle('explained', explain.value);
-    root.append(element('div', {class: 'param-head'}, element('div', {class: 'param-search'}, icon('search'), search), explain.node, said), list, results, about);
+    root.append(
+      element(
+        'div',
+        { class: 'param-head' },
+        element('div', { class: 'param-search' }, icon('search'), search),
+        explain.node,
+        said,
+      ),
+      list,
+      results,
+      about,
+    );
     search.addEventListener('input', () => {
       clearTimeout(timer);
       timer = setTimeout(find, 120);
@@ -90,21 +115,36 @@ export const panel = {
 
     /* Rows are made for a part of the list ('hand', an object's name, 'found'), and forgotten with it. */
     function make(part, row, long) {
-      const made = createRow(row, lab, {onabout: tell, long});
+      const made = createRow(row, lab, { onabout: tell, long });
       if (!rows.has(part)) rows.set(part, []);
       rows.get(part).push(made);
       return made.node;
     }
 
     function tell(row) {
-      replace(about, row ? [
-        element('p', {class: 'about-path'}, element('code', {text: row.path}), element('span', {text: `default ${valueText(row.default)}`})),
-        element('p', {text: row.meaning}), element('p', {class: 'about-range', text: [row.range, row.unit].filter(Boolean).join(', ')}),
-      ] : element('p', {class: 'about-range', text: 'Point at a parameter to read what it means.'}));
+      replace(
+        about,
+        row
+          ? [
+              element(
+                'p',
+                { class: 'about-path' },
+                element('code', { text: row.path }),
+                element('span', { text: `default ${valueText(row.default)}` }),
+              ),
+              element('p', { text: row.meaning }),
+              element('p', { class: 'about-range', text: [row.range, row.unit].filter(Boolean).join(', ') }),
+            ]
+          : element('p', { class: 'about-range', text: 'Point at a parameter to read what it means.' }),
+      );
     }
 
     function show(scene) {
-      const shape = JSON.stringify([scene.objects, scene.params.map((row) => [row.path, row.type, row.choices?.length]), handParts(lab, onceClear).map(([name, own]) => [name, own.length])]);
+      const shape = JSON.stringify([
+        scene.objects,
+        scene.params.map((row) => [row.path, row.type, row.choices?.length]),
+        handParts(lab, onceClear).map(([name, own]) => [name, own.length]),
+      ]);
       if (shape !== built && [...rows.values()].flat().some((made) => made.busy())) {
         clearTimeout(later);
         later = setTimeout(() => show(lab.scene), LATER_MS);
@@ -131,7 +171,10 @@ export const panel = {
       replace(list, hand(), ordered(grouped(lab.scene.params).keys(), lab).map(objectGroup));
       list.scrollTop = place;
       if (focused && root.contains(document.activeElement) === false) {
-        list.querySelector(`.param[data-path="${CSS.escape(focused)}"]`)?.querySelectorAll('input, select')[nth]?.focus({preventScroll: true});
+        list
+          .querySelector(`.param[data-path="${CSS.escape(focused)}"]`)
+          ?.querySelectorAll('input, select')
+          [nth]?.focus({ preventScroll: true });
       }
       if (search.value) find();
     }
@@ -139,38 +182,65 @@ export const panel = {
     function hand() {
       const parts = handParts(lab, onceClear);
       const many = parts.reduce((sum, [, own]) => sum + own.length, 0) > MANY;
-      return group('At hand', {id: 'params.hand'}, parts.map(([name, own], index) => {
-        const open = memory.get(`group.hand.${name}`, !many || index < 2 || name === 'render');
-        const node = element('details', {class: 'hand-part', open},
-          element('summary', {}, element('h4', {text: TITLES[name] || name}), element('span', {class: 'group-hint', text: hint(name)})),
-          own.map((row) => make('hand', row)));
-        node.addEventListener('toggle', () => memory.set(`group.hand.${name}`, node.open));
-        return node;
-      }));
+      return group(
+        'At hand',
+        { id: 'params.hand' },
+        parts.map(([name, own], index) => {
+          const open = memory.get(`group.hand.${name}`, !many || index < 2 || name === 'render');
+          const node = element(
+            'details',
+            { class: 'hand-part', open },
+            element(
+              'summary',
+              {},
+              element('h4', { text: TITLES[name] || name }),
+              element('span', { class: 'group-hint', text: hint(name) }),
+            ),
+            own.map((row) => make('hand', row)),
+          );
+          node.addEventListener('toggle', () => memory.set(`group.hand.${name}`, node.open));
+          return node;
+        }),
+      );
     }
 
     function hint(name) {
       const object = lab.object(name);
       if (!object) return '';
-      return [object.kind === 'solid' ? object.shape || 'solid' : object.kind, object.material ? `of ${object.material}` : ''].filter(Boolean).join(' ');
+      return [
+        object.kind === 'solid' ? object.shape || 'solid' : object.kind,
+        object.material ? `of ${object.material}` : '',
+      ]
+        .filter(Boolean)
+        .join(' ');
     }
 
     /* What is in a folded group is made when it is first opened. */
     function objectGroup(name) {
-      const node = group(TITLES[name] || name, {open: false, id: `params.${name}`, hint: hint(name)});
+      const node = group(TITLES[name] || name, { open: false, id: `params.${name}`, hint: hint(name) });
       const body = node.querySelector('.group-body');
       node.classList.add('param-group');
       node.dataset.object = name;
-      node.querySelector('summary').append(element('span', {class: 'changed-count'}));
+      node.querySelector('summary').append(element('span', { class: 'changed-count' }));
       const fill = () => {
         if (!node.open || body.childElementCount) return;
         const own = grouped(lab.scene.params).get(name) || [];
         const kinds = [...new Set(own.map((row) => row.group))];
-        const titles = {solid: 'Shape and place', material: 'Look', mesh: 'Mesh', light: 'Light'};
-        body.append(...kinds.flatMap((kind) => [
-          kinds.length > 1 ? element('h4', {class: 'param-kind', text: titles[kind] || kind}) : null,
-          ...own.filter((row) => row.group === kind).map((row) => make(name, row)),
-        ]).filter(Boolean), button(`Reset ${name}`, () => resetGroup(name), {icon: 'reset', small: true, kind: 'quiet', class: 'button quiet small param-reset-group'}));
+        const titles = { solid: 'Shape and place', material: 'Look', mesh: 'Mesh', light: 'Light' };
+        body.append(
+          ...kinds
+            .flatMap((kind) => [
+              kinds.length > 1 ? element('h4', { class: 'param-kind', text: titles[kind] || kind }) : null,
+              ...own.filter((row) => row.group === kind).map((row) => make(name, row)),
+            ])
+            .filter(Boolean),
+          button(`Reset ${name}`, () => resetGroup(name), {
+            icon: 'reset',
+            small: true,
+            kind: 'quiet',
+            class: 'button quiet small param-reset-group',
+          }),
+        );
       };
       node.addEventListener('toggle', fill);
       fill();
@@ -179,8 +249,12 @@ export const panel = {
     }
 
     function changedRows(name) {
-      return (grouped(lab.scene.params).get(name) || [])
-        .filter((row) => row.initial !== null && row.initial !== undefined && JSON.stringify(row.value) !== JSON.stringify(row.initial));
+      return (grouped(lab.scene.params).get(name) || []).filter(
+        (row) =>
+          row.initial !== null &&
+          row.initial !== undefined &&
+          JSON.stringify(row.value) !== JSON.stringify(row.initial),
+      );
     }
 
     function mark(node) {
@@ -191,7 +265,7 @@ export const panel = {
     }
 
     function resetGroup(name) {
-      lab.change('/api/reset', {paths: changedRows(name).map((row) => row.path)}).catch(lab.fail);
+      lab.change('/api/reset', { paths: changedRows(name).map((row) => row.path) }).catch(lab.fail);
     }
 
     function find() {
@@ -210,11 +284,22 @@ export const panel = {
       });
       const paths = found.filter((row) => wanted.every((word) => row.path.toLowerCase().includes(word)));
       const near = new Set(handParts(lab, onceClear).flatMap(([, own]) => own.map((row) => row.path)));
-      const handFirst = (some) => [...some.filter((row) => near.has(row.path)), ...some.filter((row) => !near.has(row.path))];
+      const handFirst = (some) => [
+        ...some.filter((row) => near.has(row.path)),
+        ...some.filter((row) => !near.has(row.path)),
+      ];
       const best = [...handFirst(paths), ...handFirst(found.filter((row) => !paths.includes(row)))];
       said.textContent = `${best.length} found`;
-      replace(results, best.length ? element('p', {class: 'hint', text: best.length > FOUND_MAX ? `${FOUND_MAX} of ${best.length} found` : `${best.length} found`})
-        : empty('No parameter has that in its name or meaning.'), best.slice(0, FOUND_MAX).map((row) => make('found', row, true)));
+      replace(
+        results,
+        best.length
+          ? element('p', {
+              class: 'hint',
+              text: best.length > FOUND_MAX ? `${FOUND_MAX} of ${best.length} found` : `${best.length} found`,
+            })
+          : empty('No parameter has that in its name or meaning.'),
+        best.slice(0, FOUND_MAX).map((row) => make('found', row, true)),
+      );
     }
   },
 };

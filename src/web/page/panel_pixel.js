@@ -1,13 +1,29 @@
-/* Pixel: why a pixel has the colour that it has. Its tree of rays as a table, over the picture, and from the side and from above.
+/* Pixel: why a pixel has the colour that it has. Its tree of rays as a table, over the picture, and from the side and
+ * from above.
  * exports: panel. The tool "Ask" chooses the pixel: click or drag, arrow keys; Escape clears. */
 
-import {button, count, dialog, digits, download, element, empty, facts, group, notice, number, replace, svg, toByte} from './ui.js';
-import {createQuestion} from './pixel_question.js';
-import {createRayOverlay} from './ray_overlay.js';
-import {createRayPlot, sidePlane, topPlane} from './ray_plot.js';
-import {createRayTable} from './ray_table.js';
-import {solidPoints} from './ray_solids.js';
-import {isCut, kinds} from './ray_tree.js';
+import {
+  button,
+  count,
+  dialog,
+  digits,
+  download,
+  element,
+  empty,
+  facts,
+  group,
+  notice,
+  number,
+  replace,
+  svg,
+  toByte,
+} from './ui.js';
+import { createQuestion } from './pixel_question.js';
+import { createRayOverlay } from './ray_overlay.js';
+import { createRayPlot, sidePlane, topPlane } from './ray_plot.js';
+import { createRayTable } from './ray_table.js';
+import { solidPoints } from './ray_solids.js';
+import { isCut, kinds } from './ray_tree.js';
 
 let question = null;
 let overlay = null;
@@ -25,9 +41,15 @@ function start(lab) {
   question.on(() => note(lab));
   lab.on('tool', () => note(lab));
   lab.on('view', () => overlay.draw());
-  lab.on('state', () => { if (question.tree) overlay.draw(); });
+  lab.on('state', () => {
+    if (question.tree) overlay.draw();
+  });
   lab.view.tool('ask', {
-    label: 'Ask', icon: 'pixel', order: 40, cursor: 'crosshair', hint: 'Ask a pixel why: click it, or move from pixel to pixel with the arrow keys',
+    label: 'Ask',
+    icon: 'pixel',
+    order: 40,
+    cursor: 'crosshair',
+    hint: 'Ask a pixel why: click it, or move from pixel to pixel with the arrow keys',
     chosen: () => lab.panels?.use('pixel'),
     down: (point) => {
       if (point.inside) question.ask(point.x, point.y);
@@ -42,7 +64,7 @@ function start(lab) {
 
 /* With other tools: whose rays those are, and a way to be rid of them. */
 function note(lab) {
-  const {pixel} = question;
+  const { pixel } = question;
   lab.view.note('pixel', pixel && lab.view.chosen !== 'ask' ? `Rays of pixel ${pixel.x}, ${pixel.y}` : null, () => {
     question.clear();
     lab.view.stage.focus();
@@ -50,7 +72,7 @@ function note(lab) {
 }
 
 function pressed(key, far) {
-  const steps = {ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowUp: [0, -far], ArrowDown: [0, far]};
+  const steps = { ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowUp: [0, -far], ArrowDown: [0, far] };
   if (key === 'Escape' && question.pixel) question.clear();
   else if (steps[key] && question.pixel) question.step(...steps[key]);
   else return false;
@@ -61,15 +83,19 @@ function pressed(key, far) {
 
 function chooser(lab) {
   const go = () => question.ask(x.input.valueAsNumber || 0, y.input.valueAsNumber || 0);
-  const x = number({label: 'Pixel x', min: 0, step: 1, onchange: go});
-  const y = number({label: 'y', min: 0, step: 1, onchange: go});
-  const clear = button('Clear', () => question.clear(), {kind: 'quiet', small: true, title: 'Clear (Escape)'});
-  const tool = button('Choose in the picture', () => {
-    lab.view.use('ask');
-    lab.view.stage.focus();
-  }, {icon: 'pixel', small: true});
+  const x = number({ label: 'Pixel x', min: 0, step: 1, onchange: go });
+  const y = number({ label: 'y', min: 0, step: 1, onchange: go });
+  const clear = button('Clear', () => question.clear(), { kind: 'quiet', small: true, title: 'Clear (Escape)' });
+  const tool = button(
+    'Choose in the picture',
+    () => {
+      lab.view.use('ask');
+      lab.view.stage.focus();
+    },
+    { icon: 'pixel', small: true },
+  );
   return {
-    node: element('div', {class: 'pixel-chooser'}, x.node, y.node, tool, clear),
+    node: element('div', { class: 'pixel-chooser' }, x.node, y.node, tool, clear),
     show() {
       x.input.max = Math.max(0, lab.view.width - 1);
       y.input.max = Math.max(0, lab.view.height - 1);
@@ -82,19 +108,26 @@ function chooser(lab) {
 
 /* How many of which kind, and how many were not traced for their depth or weight. */
 function parts(tree) {
-  const words = {camera: 'from the camera', reflect: 'reflected', refract: 'refracted', shadow: 'to lights'};
+  const words = { camera: 'from the camera', reflect: 'reflected', refract: 'refracted', shadow: 'to lights' };
   const traced = tree.rays.filter((ray) => !isCut(ray));
   const list = Object.keys(words).map((kind) => [traced.filter((ray) => ray.node.kind === kind).length, words[kind]]);
   list.push([tree.rays.length - traced.length, 'not traced further']);
-  return list.filter(([n]) => n).map(([n, what]) => `${count(n)} ${what}`).join(', ');
+  return list
+    .filter(([n]) => n)
+    .map(([n, what]) => `${count(n)} ${what}`)
+    .join(', ');
 }
 
 function summary(tree) {
-  const {radiance, lambda_nm: lambda, depth} = tree.answer;
+  const { radiance, lambda_nm: lambda, depth } = tree.answer;
   const [r, g, b] = radiance.map(toByte);
   const deepest = tree.rays.reduce((most, ray) => (isCut(ray) ? most : Math.max(most, ray.node.depth)), 0);
-  const tinted = element('span', {class: 'pixel-colour'},
-    element('span', {class: 'swatch', style: {background: `rgb(${r} ${g} ${b})`}, 'aria-hidden': 'true'}), `${r} ${g} ${b}`);
+  const tinted = element(
+    'span',
+    { class: 'pixel-colour' },
+    element('span', { class: 'swatch', style: { background: `rgb(${r} ${g} ${b})` }, 'aria-hidden': 'true' }),
+    `${r} ${g} ${b}`,
+  );
   return facts([
     ['Radiance', radiance.map((x) => digits(x)).join(' · ')],
     ['Shown as', tinted],
@@ -107,39 +140,75 @@ function summary(tree) {
 /* The table shows a tree as Whitted traced it; of other pictures that is not the pixel's own sum. */
 function otherwise(lab) {
   const how = lab.param('render.integrator')?.value;
-  if (how === 'path') return 'The picture is made of random paths: this tree has all branches instead, and no light by way of matt surfaces.';
+  if (how === 'path')
+    return (
+      'The picture is made of random paths: this tree has all branches instead, and no light by ' +
+      'way of matt surfaces.'
+    );
   if (how === 'zbuffer') return 'The picture is drawn into a depth buffer: this tree is what tracing rays would give.';
-  if (lab.param('render.spectrum')?.value === 'spectral') return 'The picture is spectral: this tree is that of one wavelength.';
+  if (lab.param('render.spectrum')?.value === 'spectral')
+    return 'The picture is spectral: this tree is that of one wavelength.';
   return null;
 }
 
 function legend() {
-  return element('ul', {class: 'ray-legend', 'aria-label': 'Lines'}, kinds.map(([line, words]) => element('li', {},
-    svg('svg', {class: 'ray-sample', viewBox: '0 0 36 10', 'aria-hidden': 'true'},
-      svg('line', {class: `ray ${line}`, x1: 1, y1: 5, x2: 35, y2: 5, 'stroke-width': 2.5})), words)));
+  return element(
+    'ul',
+    { class: 'ray-legend', 'aria-label': 'Lines' },
+    kinds.map(([line, words]) =>
+      element(
+        'li',
+        {},
+        svg(
+          'svg',
+          { class: 'ray-sample', viewBox: '0 0 36 10', 'aria-hidden': 'true' },
+          svg('line', { class: `ray ${line}`, x1: 1, y1: 5, x2: 35, y2: 5, 'stroke-width': 2.5 }),
+        ),
+        words,
+      ),
+    ),
+  );
 }
 
-function openDrawing({x, y}) {
+function openDrawing({ x, y }) {
   const address = `/api/trace.svg?x=${x}&y=${y}`;
   const title = `Pixel ${x}, ${y}: rays in the plane of incidence, and from above`;
-  const content = element('div', {class: 'trace-drawing'}, element('img', {src: address, alt: title}),
-    button('Save the drawing', () => download(address, `pixel-${x}-${y}.svg`), {icon: 'save', small: true}));
-  dialog({title, wide: true, content});
+  const content = element(
+    'div',
+    { class: 'trace-drawing' },
+    element('img', { src: address, alt: title }),
+    button('Save the drawing', () => download(address, `pixel-${x}-${y}.svg`), { icon: 'save', small: true }),
+  );
+  dialog({ title, wide: true, content });
 }
 
 function createAnswer(lab) {
-  const table = createRayTable({caption: 'Rays of the pixel', onmark: mark});
-  const side = createRayPlot({title: 'From the side', onmark: mark, onchoose: table.reveal});
-  const top = createRayPlot({title: 'From above', onmark: mark, onchoose: table.reveal});
-  const head = element('div', {class: 'pixel-summary'});
-  const left = element('p', {class: 'hint'});
+  const table = createRayTable({ caption: 'Rays of the pixel', onmark: mark });
+  const side = createRayPlot({ title: 'From the side', onmark: mark, onchoose: table.reveal });
+  const top = createRayPlot({ title: 'From above', onmark: mark, onchoose: table.reveal });
+  const head = element('div', { class: 'pixel-summary' });
+  const left = element('p', { class: 'hint' });
   marking.add(table.mark).add(side.mark).add(top.mark);
-  const node = element('div', {class: 'pixel-answer', hidden: true}, head, legend(), left,
-    element('div', {class: 'ray-figures'}, side.node, top.node),
-    button('Larger drawing', () => openDrawing(question.tree.pixel), {icon: 'chart', small: true}),
-    group('Rays', {id: 'pixel-rays'},
-      element('div', {class: 'ray-buttons'}, button('Open all', table.openAll, {kind: 'quiet', small: true}),
-        button('Close all', table.closeAll, {kind: 'quiet', small: true})), table.node));
+  const node = element(
+    'div',
+    { class: 'pixel-answer', hidden: true },
+    head,
+    legend(),
+    left,
+    element('div', { class: 'ray-figures' }, side.node, top.node),
+    button('Larger drawing', () => openDrawing(question.tree.pixel), { icon: 'chart', small: true }),
+    group(
+      'Rays',
+      { id: 'pixel-rays' },
+      element(
+        'div',
+        { class: 'ray-buttons' },
+        button('Open all', table.openAll, { kind: 'quiet', small: true }),
+        button('Close all', table.closeAll, { kind: 'quiet', small: true }),
+      ),
+      table.node,
+    ),
+  );
   let shown = null;
 
   return {
@@ -155,7 +224,9 @@ function createAnswer(lab) {
       if (!tree) return;
       const note = otherwise(lab);
       replace(head, summary(tree), note ? notice(note) : null);
-      left.textContent = overlay.left ? `Rays drawn: ${count(overlay.count)}. Lighter ones, in the table alone: ${count(overlay.left)}.` : '';
+      left.textContent = overlay.left
+        ? `Rays drawn: ${count(overlay.count)}. Lighter ones, in the table alone: ${count(overlay.left)}.`
+        : '';
       left.hidden = !overlay.left;
     },
   };
@@ -173,12 +244,17 @@ function create(root, lab) {
     choose.show();
     root.setAttribute('aria-busy', String(question.busy));
     answer.show(question.tree);
-    if (question.error) replace(message, notice(question.error.message, {kind: 'error', remedy: question.error.remedy}));
-    else replace(message, question.pixel ? null : empty('Choose Ask above the picture and click a pixel, or give its place here.'));
+    if (question.error)
+      replace(message, notice(question.error.message, { kind: 'error', remedy: question.error.remedy }));
+    else
+      replace(
+        message,
+        question.pixel ? null : empty('Choose Ask above the picture and click a pixel, or give its place here.'),
+      );
   };
   question.on(show);
   lab.on('view', choose.show);
   show();
 }
 
-export const panel = {id: 'pixel', title: 'Pixel', css: 'panel_pixel.css', start, create};
+export const panel = { id: 'pixel', title: 'Pixel', css: 'panel_pixel.css', start, create };

@@ -1,27 +1,45 @@
-/* Studies: the list of them, and the one that was chosen. While one runs, what is shown follows it, a few seconds apart: asking takes time from
+/* Studies: the list of them, and the one that was chosen. While one runs, what is shown follows it, a few seconds
+ * apart: asking takes time from
  * what is measured. exports: panel */
 
-import {button, element, empty, memory, replace} from './ui.js';
-import {createStudyList} from './study_list.js';
-import {createDetails} from './study_details.js';
+import { button, element, empty, memory, replace } from './ui.js';
+import { createStudyList } from './study_list.js';
+import { createDetails } from './study_details.js';
 
 const APART_MS = 3000;
 let visible = false;
 let refresh = () => undefined;
 
 function create(root, lab) {
-  const list = createStudyList({onchoose: choose});
-  const details = createDetails(lab, {onrun: run, onstop: stop});
-  const place = element('div', {class: 'study-place'}, empty('Reading the studies …'));
+  const list = createStudyList({ onchoose: choose });
+  const details = createDetails(lab, { onrun: run, onstop: stop });
+  const place = element('div', { class: 'study-place' }, empty('Reading the studies …'));
   let studies = [];
   let results = null;
   let chosen = memory.get('study', null);
   let asked_at = 0;
-  let seen = {running: false, name: null};
+  let seen = { running: false, name: null };
   let fetched = -1;
   let asking = false;
-  root.append(element('div', {class: 'study-side'}, element('div', {class: 'study-side-head'}, element('h2', {text: 'Studies'}),
-    button('Look again', () => refresh(), {icon: 'reset', kind: 'quiet', small: true, title: 'read the files again'})), list.node), place);
+  root.append(
+    element(
+      'div',
+      { class: 'study-side' },
+      element(
+        'div',
+        { class: 'study-side-head' },
+        element('h2', { text: 'Studies' }),
+        button('Look again', () => refresh(), {
+          icon: 'reset',
+          kind: 'quiet',
+          small: true,
+          title: 'read the files again',
+        }),
+      ),
+      list.node,
+    ),
+    place,
+  );
   refresh = () => all().catch(lab.fail);
   lab.on('study', follow);
   lab.on('state', () => follow(lab.study));
@@ -42,16 +60,24 @@ function create(root, lab) {
 
   async function all() {
     const told = await lab.get('/api/studies');
-    ({studies, results} = told);
-    if (!studies.some((study) => study.file === chosen)) chosen = (studies.find((study) => !study.error) || studies[0])?.file ?? null;
+    ({ studies, results } = told);
+    if (!studies.some((study) => study.file === chosen))
+      chosen = (studies.find((study) => !study.error) || studies[0])?.file ?? null;
     showList();
-    if (!studies.length) replace(place, empty('There is no study in the folder. A study is a file NAME.study: a scene, a grid over its parameters, and repetitions.'));
+    if (!studies.length)
+      replace(
+        place,
+        empty(
+          'There is no study in the folder. A study is a file NAME.study: a scene, a grid over its ' +
+            'parameters, and repetitions.',
+        ),
+      );
     else await one();
   }
 
   /* Answers that came late are of another study. */
   async function one() {
-    const study = studies.find(({file}) => file === chosen);
+    const study = studies.find(({ file }) => file === chosen);
     if (!study) return;
     asked_at = Date.now();
     const told = study.error && study.cells === undefined ? study : await lab.get(path(study));
@@ -84,7 +110,7 @@ function create(root, lab) {
     if (!now) return;
     const begun = now.running && (!seen.running || seen.name !== now.name);
     const ended = seen.running && !now.running;
-    seen = {running: now.running, name: now.name};
+    seen = { running: now.running, name: now.name };
     if (ended) lab.say(now.error ? `${now.name}: ${now.error.error}` : `${now.name} has ended; all rows are kept.`);
     if (!visible) return;
     details.progress(now);
@@ -95,7 +121,7 @@ function create(root, lab) {
     fetched = now.frames_done;
     try {
       await (ended ? all() : one());
-      if (studies.find(({file}) => file === chosen)?.name === now.name) details.grew(ended);
+      if (studies.find(({ file }) => file === chosen)?.name === now.name) details.grew(ended);
     } catch (error) {
       lab.fail(error);
     }
@@ -104,10 +130,16 @@ function create(root, lab) {
 }
 
 export const panel = {
-  id: 'studies', title: 'Studies', wide: true, css: 'panel_studies.css', create,
+  id: 'studies',
+  title: 'Studies',
+  wide: true,
+  css: 'panel_studies.css',
+  create,
   shown() {
     visible = true;
     refresh();
   },
-  hidden() { visible = false; },
+  hidden() {
+    visible = false;
+  },
 };

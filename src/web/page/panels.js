@@ -1,39 +1,65 @@
 /* The panels as tabs beside the picture, and the splitter between the two. A panel is made when it is first shown.
  * exports: createPanels(side, splitter, desk, panels, lab) -> {use(id), chosen()}
- * panel: {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}; start is called once when the page opens, for tools of the
- * picture; a wide one takes the whole width, without the picture; css is the name of its own style sheet (panel_ID.css), which uses the variables
- * of lab.css for all colours and starts each rule with .panel-ID. The panel's title is its h2: headings within start at h3 */
+ * panel: {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}; start is called once when the
+ * page opens, for tools of the
+ * picture; a wide one takes the whole width, without the picture; css is the name of its own style sheet
+ * (panel_ID.css), which uses the variables
+ * of lab.css for all colours and starts each rule with .panel-ID. The panel's title is its h2: headings within start at
+ * h3 */
 
-import {element, memory, notice, replace} from './ui.js';
+import { element, memory, notice, replace } from './ui.js';
 
 const NARROWEST = 340;
 const STEP = 24;
 
 export function createPanels(side, splitter, desk, panels, lab) {
-  const list = element('div', {class: 'tabs', role: 'tablist', 'aria-label': 'Panels'});
+  const list = element('div', { class: 'tabs', role: 'tablist', 'aria-label': 'Panels' });
   const entries = new Map(panels.map((panel) => [panel.id, makeEntry(panel)]));
   let chosen = null;
 
   list.append(...[...entries.values()].map((entry) => entry.tab));
   list.addEventListener('keydown', key);
   side.id = 'side';
-  side.append(list, element('div', {class: 'panel-room', id: 'panels', tabindex: '-1'}, [...entries.values()].map((entry) => entry.frame)));
+  side.append(
+    list,
+    element(
+      'div',
+      { class: 'panel-room', id: 'panels', tabindex: '-1' },
+      [...entries.values()].map((entry) => entry.frame),
+    ),
+  );
   createSplitter(splitter, desk);
   for (const entry of entries.values()) guard(entry, () => entry.panel.start?.(lab));
   use(entries.has(memory.get('panel')) ? memory.get('panel') : panels[0]?.id);
-  return {use, chosen: () => chosen};
+  return { use, chosen: () => chosen };
 
   function makeEntry(panel) {
-    if (panel.css) document.head.append(element('link', {rel: 'stylesheet', href: panel.css}));
+    if (panel.css) document.head.append(element('link', { rel: 'stylesheet', href: panel.css }));
     const tab = element('button', {
-      type: 'button', role: 'tab', class: 'tab', id: `tab-${panel.id}`, 'aria-controls': `panel-${panel.id}`, 'aria-selected': 'false', tabindex: '-1',
-      onclick: () => use(panel.id), text: panel.title,
+      type: 'button',
+      role: 'tab',
+      class: 'tab',
+      id: `tab-${panel.id}`,
+      'aria-controls': `panel-${panel.id}`,
+      'aria-selected': 'false',
+      tabindex: '-1',
+      onclick: () => use(panel.id),
+      text: panel.title,
     });
-    const root = element('section', {class: `panel panel-${panel.id}`, tabindex: '0', 'aria-label': panel.title});
-    const frame = element('div', {
-      role: 'tabpanel', class: 'panel-frame', id: `panel-${panel.id}`, 'aria-labelledby': `tab-${panel.id}`, hidden: true,
-    }, element('h2', {class: 'visually-hidden', text: panel.title}), root);
-    return {panel, tab, root, frame, made: false};
+    const root = element('section', { class: `panel panel-${panel.id}`, tabindex: '0', 'aria-label': panel.title });
+    const frame = element(
+      'div',
+      {
+        role: 'tabpanel',
+        class: 'panel-frame',
+        id: `panel-${panel.id}`,
+        'aria-labelledby': `tab-${panel.id}`,
+        hidden: true,
+      },
+      element('h2', { class: 'visually-hidden', text: panel.title }),
+      root,
+    );
+    return { panel, tab, root, frame, made: false };
   }
 
   function show(entry, on) {
@@ -56,7 +82,10 @@ export function createPanels(side, splitter, desk, panels, lab) {
     } catch (error) {
       console.error(error);
       entry.made = true;
-      replace(entry.root, notice(`This panel failed: ${error.message}`, {kind: 'error', remedy: 'load the page again'}));
+      replace(
+        entry.root,
+        notice(`This panel failed: ${error.message}`, { kind: 'error', remedy: 'load the page again' }),
+      );
     }
   }
 
@@ -73,7 +102,14 @@ export function createPanels(side, splitter, desk, panels, lab) {
   function key(event) {
     const ids = [...entries.keys()];
     const now = ids.indexOf(chosen);
-    const to = {ArrowRight: now + 1, ArrowLeft: now - 1, ArrowDown: now + 1, ArrowUp: now - 1, Home: 0, End: ids.length - 1}[event.key];
+    const to = {
+      ArrowRight: now + 1,
+      ArrowLeft: now - 1,
+      ArrowDown: now + 1,
+      ArrowUp: now - 1,
+      Home: 0,
+      End: ids.length - 1,
+    }[event.key];
     if (to === undefined) return;
     use(ids[(to + ids.length) % ids.length]);
     entries.get(chosen).tab.focus();

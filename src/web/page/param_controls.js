@@ -1,27 +1,33 @@
 /* The control for one parameter, by its type.
  * exports: controlOf(row, context) -> {node, inputs, single, busy(), set(value)}
  *   context: {name (for screen readers), describedby, send(value, gesture), names: words that may be meant}
- *   single: the one input that a label belongs to, or null for a group; busy: it is being dragged; set(value, true): after a refused value */
+ *   single: the one input that a label belongs to, or null for a group; busy: it is being dragged; set(value, true):
+ *   after a refused value */
 
-import {element, gesture, toByte, toLinear, unique} from './ui.js';
-import {scale} from './ui_controls.js';
-import {workingRange} from './param_range.js';
+import { element, gesture, toByte, toLinear, unique } from './ui.js';
+import { scale } from './ui_controls.js';
+import { workingRange } from './param_range.js';
 
 const CHANNELS = ['red', 'green', 'blue'];
 const AXES = ['x', 'y', 'z'];
-const PAUSE_MS = 1000;      /* keys that follow each other faster are one step of undo */
-const COEFFICIENT = 1e6;    /* colours whose bound is beyond this are coefficients by channel */
+const PAUSE_MS = 1000; /* keys that follow each other faster are one step of undo */
+const COEFFICIENT = 1e6; /* colours whose bound is beyond this are coefficients by channel */
 
 export const written = (x) => (Number.isFinite(x) ? String(Number(x.toPrecision(7))) : '');
 const digitsOf = (x, n) => Number(x.toPrecision(n));
 
 function attributes(context, label) {
-  return {id: unique('param'), 'aria-label': label || context.name, 'aria-describedby': context.describedby};
+  return { id: unique('param'), 'aria-label': label || context.name, 'aria-describedby': context.describedby };
 }
 
 /* A number field that gives back what was last sent where it is left empty. */
 function numberInput(context, label, onvalue) {
-  const input = element('input', {type: 'number', class: 'input numeric', step: 'any', ...attributes(context, label)});
+  const input = element('input', {
+    type: 'number',
+    class: 'input numeric',
+    step: 'any',
+    ...attributes(context, label),
+  });
   let last = null;
   input.addEventListener('change', () => {
     if (Number.isFinite(input.valueAsNumber)) onvalue(input.valueAsNumber);
@@ -41,14 +47,14 @@ function slider(row, context, label, send) {
   let mine = null;
   let last = -Infinity;
   let dragged = false;
-  const range = element('input', {type: 'range', class: 'range', min: 0, step: 1, ...attributes(context, label)});
+  const range = element('input', { type: 'range', class: 'range', min: 0, step: 1, ...attributes(context, label) });
   const box = numberInput(context, `${label || context.name}, number`, (value) => {
     show(value);
     send(value, gesture('number'));
   });
   const fit = (value) => {
-    ruler = {...workingRange(row, value)};
-    Object.assign(ruler, scale({...ruler, step: ruler.step || undefined}));
+    ruler = { ...workingRange(row, value) };
+    Object.assign(ruler, scale({ ...ruler, step: ruler.step || undefined }));
     range.max = ruler.steps;
     box.input.step = row.type === 'integer' ? 1 : ruler.log ? 'any' : written(10 * ruler.step);
   };
@@ -56,9 +62,11 @@ function slider(row, context, label, send) {
     if (!ruler || value > ruler.max || value < ruler.min) fit(value);
     range.value = ruler.position(value);
     range.setAttribute('aria-valuetext', `${written(value)}${row.unit ? ` ${row.unit}` : ''}`);
-    range.style.setProperty('--filled', `${100 * range.value / ruler.steps}%`);
+    range.style.setProperty('--filled', `${(100 * range.value) / ruler.steps}%`);
   };
-  range.addEventListener('pointerdown', () => { last = -Infinity; });
+  range.addEventListener('pointerdown', () => {
+    last = -Infinity;
+  });
   range.addEventListener('input', (event) => {
     if (!dragged && event.timeStamp - last > PAUSE_MS) mine = gesture('slider');
     last = event.timeStamp;
@@ -68,9 +76,13 @@ function slider(row, context, label, send) {
     box.set(value);
     send(value, mine);
   });
-  range.addEventListener('change', () => { dragged = false; });
+  range.addEventListener('change', () => {
+    dragged = false;
+  });
   return {
-    nodes: [range, box.input], inputs: [range, box.input], busy: () => dragged,
+    nodes: [range, box.input],
+    inputs: [range, box.input],
+    busy: () => dragged,
     set(value, afresh) {
       if (afresh) fit(value); /* not the range that a refused value made */
       show(value);
@@ -81,7 +93,7 @@ function slider(row, context, label, send) {
 
 function scalar(row, context) {
   const one = slider(row, context, null, context.send);
-  return {...one, node: element('span', {class: 'param-slider'}, one.nodes), single: one.inputs[0]};
+  return { ...one, node: element('span', { class: 'param-slider' }, one.nodes), single: one.inputs[0] };
 }
 
 function parts(row, context, names, make) {
@@ -91,40 +103,86 @@ function parts(row, context, names, make) {
     context.send(value, name || gesture('number'));
   };
   const all = names.map((name, index) => make(`${context.name}, ${name}`, send(index)));
-  return {all, set(next, afresh) {
-    value = [...next];
-    all.forEach((part, index) => part.set(value[index], afresh));
-  }};
+  return {
+    all,
+    set(next, afresh) {
+      value = [...next];
+      all.forEach((part, index) => part.set(value[index], afresh));
+    },
+  };
 }
 
 function vector(row, context) {
   const three = parts(row, context, AXES, (label, send) => {
     const part = numberInput(context, label, send);
     part.input.step = written(10 * workingRange(row, row.value).step) || 'any';
-    return {...part, set(x) { if (document.activeElement !== part.input) part.set(x); }};
+    return {
+      ...part,
+      set(x) {
+        if (document.activeElement !== part.input) part.set(x);
+      },
+    };
   });
-  const node = element('span', {class: 'param-vector'}, three.all.map((part, index) => element('span', {class: 'param-axis'},
-    element('span', {class: 'axis', 'aria-hidden': 'true', text: AXES[index]}), part.input)));
-  return {node, inputs: three.all.map((part) => part.input), single: null, busy: () => false, set: three.set};
+  const node = element(
+    'span',
+    { class: 'param-vector' },
+    three.all.map((part, index) =>
+      element(
+        'span',
+        { class: 'param-axis' },
+        element('span', { class: 'axis', 'aria-hidden': 'true', text: AXES[index] }),
+        part.input,
+      ),
+    ),
+  );
+  return { node, inputs: three.all.map((part) => part.input), single: null, busy: () => false, set: three.set };
 }
 
 function channels(row, context) {
   const three = parts(row, context, CHANNELS, (label, send) => slider(row, context, label, send));
-  const node = element('span', {class: 'param-channels'}, three.all.map((part, index) => element('span', {class: 'param-slider'},
-    element('span', {class: `axis channel-${CHANNELS[index]}`, 'aria-hidden': 'true', text: CHANNELS[index][0]}), part.nodes)));
-  return {node, inputs: three.all.flatMap((part) => part.inputs), single: null, busy: () => three.all.some((part) => part.busy()), set: three.set};
+  const node = element(
+    'span',
+    { class: 'param-channels' },
+    three.all.map((part, index) =>
+      element(
+        'span',
+        { class: 'param-slider' },
+        element('span', { class: `axis channel-${CHANNELS[index]}`, 'aria-hidden': 'true', text: CHANNELS[index][0] }),
+        part.nodes,
+      ),
+    ),
+  );
+  return {
+    node,
+    inputs: three.all.flatMap((part) => part.inputs),
+    single: null,
+    busy: () => three.all.some((part) => part.busy()),
+    set: three.set,
+  };
 }
 
-const hex = (value, bright) => `#${value.map((x) => toByte(x / bright).toString(16).padStart(2, '0')).join('')}`;
+const hex = (value, bright) =>
+  `#${value
+    .map((x) =>
+      toByte(x / bright)
+        .toString(16)
+        .padStart(2, '0'),
+    )
+    .join('')}`;
 
 /* The picker knows colours up to 1: brighter ones are shown, and chosen, divided by their largest channel. */
 function colour(row, context) {
   let bright = 1;
   let mine = null;
-  const picker = element('input', {type: 'color', ...attributes(context, `${context.name}, colour`)});
+  const picker = element('input', { type: 'color', ...attributes(context, `${context.name}, colour`) });
   const three = parts(row, context, CHANNELS, (label, send) => {
     const part = numberInput(context, `${label}, linear`, send);
-    return {...part, set(x) { if (document.activeElement !== part.input) part.set(x); }};
+    return {
+      ...part,
+      set(x) {
+        if (document.activeElement !== part.input) part.set(x);
+      },
+    };
   });
   const set = (value) => {
     bright = Math.max(1, ...value);
@@ -137,36 +195,91 @@ function colour(row, context) {
     three.set(value);
     context.send(value, mine);
   });
-  picker.addEventListener('change', () => { mine = null; });
-  const node = element('span', {class: 'param-colour'}, picker, three.all.map((part) => part.input));
-  return {node, inputs: [picker, ...three.all.map((part) => part.input)], single: null, busy: () => mine !== null, set};
+  picker.addEventListener('change', () => {
+    mine = null;
+  });
+  const node = element(
+    'span',
+    { class: 'param-colour' },
+    picker,
+    three.all.map((part) => part.input),
+  );
+  return {
+    node,
+    inputs: [picker, ...three.all.map((part) => part.input)],
+    single: null,
+    busy: () => mine !== null,
+    set,
+  };
 }
 
 function switches(row, context) {
   const name = unique('switch');
   const inputs = [...row.choices].reverse().map((word) => {
-    const input = element('input', {type: 'radio', name, value: word, class: 'visually-hidden', 'aria-describedby': context.describedby});
+    const input = element('input', {
+      type: 'radio',
+      name,
+      value: word,
+      class: 'visually-hidden',
+      'aria-describedby': context.describedby,
+    });
     input.addEventListener('change', () => context.send(word, gesture('choice')));
     return input;
   });
-  const node = element('span', {class: 'segments'}, inputs.map((input) => element('label', {class: 'segment'}, input, element('span', {text: input.value}))));
-  return {node, inputs, single: null, busy: () => false, set(value) { for (const input of inputs) input.checked = input.value === value; }};
+  const node = element(
+    'span',
+    { class: 'segments' },
+    inputs.map((input) => element('label', { class: 'segment' }, input, element('span', { text: input.value }))),
+  );
+  return {
+    node,
+    inputs,
+    single: null,
+    busy: () => false,
+    set(value) {
+      for (const input of inputs) input.checked = input.value === value;
+    },
+  };
 }
 
 function words(row, context) {
   const integer = row.type === 'integer';
-  const input = element('select', {class: 'input select', ...attributes(context)}, row.choices.map((word) => element('option', {value: word, text: word})));
+  const input = element(
+    'select',
+    { class: 'input select', ...attributes(context) },
+    row.choices.map((word) => element('option', { value: word, text: word })),
+  );
   input.addEventListener('change', () => context.send(integer ? Number(input.value) : input.value, gesture('choice')));
-  return {node: input, inputs: [input], single: input, busy: () => false, set(value) { input.value = String(value); }};
+  return {
+    node: input,
+    inputs: [input],
+    single: input,
+    busy: () => false,
+    set(value) {
+      input.value = String(value);
+    },
+  };
 }
 
 const listText = (value) => (Array.isArray(value) ? value.map(written).join(', ') : String(value));
 
 function text(row, context) {
   const list = row.type === 'list';
-  const known = context.names?.length ? element('datalist', {id: unique('known')}, context.names.map((word) => element('option', {value: word}))) : null;
+  const known = context.names?.length
+    ? element(
+        'datalist',
+        { id: unique('known') },
+        context.names.map((word) => element('option', { value: word })),
+      )
+    : null;
   const input = element('input', {
-    type: 'text', class: 'input', spellcheck: 'false', autocomplete: 'off', placeholder: list ? 'numbers, with commas' : 'none', list: known?.id, ...attributes(context),
+    type: 'text',
+    class: 'input',
+    spellcheck: 'false',
+    autocomplete: 'off',
+    placeholder: list ? 'numbers, with commas' : 'none',
+    list: known?.id,
+    ...attributes(context),
   });
   const read = () => {
     const pieces = input.value.split(/[,;\s]+/).filter(Boolean);
@@ -174,8 +287,13 @@ function text(row, context) {
   };
   input.addEventListener('change', () => context.send(read(), gesture('text')));
   return {
-    node: element('span', {class: 'param-text'}, input, known), inputs: [input], single: input, busy: () => false,
-    set(value) { if (document.activeElement !== input) input.value = listText(value); },
+    node: element('span', { class: 'param-text' }, input, known),
+    inputs: [input],
+    single: input,
+    busy: () => false,
+    set(value) {
+      if (document.activeElement !== input) input.value = listText(value);
+    },
   };
 }
 
@@ -186,7 +304,8 @@ export function controlOf(row, context) {
 }
 
 function maker(row) {
-  if (row.choices) return row.choices.length === 2 && row.choices[0] === 'off' && row.choices[1] === 'on' ? switches : words;
+  if (row.choices)
+    return row.choices.length === 2 && row.choices[0] === 'off' && row.choices[1] === 'on' ? switches : words;
   if (row.type === 'color') return row.highest > COEFFICIENT ? channels : colour;
   if (row.type === 'vector') return vector;
   if (row.type === 'real' || row.type === 'integer') return scalar;

@@ -1,8 +1,8 @@
 /* The range of a slider: a parameter's bounds, or a part of them that is of use where they are wide.
  * exports: workingRange(row, value) -> {min, max, step, log} for scale() of ui_controls.js */
 
-const WIDE = 1000;          /* bounds that far apart are not taken as they are */
-const DECADES = 6;          /* positive bounds so far apart, about the default, make a logarithmic slider */
+const WIDE = 1000; /* bounds that far apart are not taken as they are */
+const DECADES = 6; /* positive bounds so far apart, about the default, make a logarithmic slider */
 const STEPS = 400;
 
 function niceAbove(x) {
@@ -17,16 +17,22 @@ export function workingRange(row, value) {
   const integer = row.type === 'integer';
   const low = row.lowest ?? -Infinity;
   const high = row.highest ?? Infinity;
-  if (high - low <= WIDE) return {min: low, max: high, step: stepOf(high - low, integer), log: false};
+  if (high - low <= WIDE) return { min: low, max: high, step: stepOf(high - low, integer), log: false };
   const size = Math.max(component(row.default), component(row.initial), component(value));
   const middle = Math.sqrt(low * high);
   if (low > 0 && Math.log10(high / low) >= DECADES && size > 0 && middle / size < 100 && size / middle < 100) {
     const ref = component(row.default) || size;
-    return {min: Math.max(low, Math.min(ref, component(value)) / 100), max: Math.min(high, 100 * Math.max(ref, component(value))), step: integer ? 1 : 0, log: true};
+    return {
+      min: Math.max(low, Math.min(ref, component(value)) / 100),
+      max: Math.min(high, 100 * Math.max(ref, component(value))),
+      step: integer ? 1 : 0,
+      log: true,
+    };
   }
-  if (low === 0 && size === 0 || row.type === 'color') return {min: 0, max: Math.min(high, niceAbove(Math.max(100, 2 * component(value)))), step: 0, log: true};
+  if ((low === 0 && size === 0) || row.type === 'color')
+    return { min: 0, max: Math.min(high, niceAbove(Math.max(100, 2 * component(value)))), step: 0, log: true };
   const max = Math.min(high, niceAbove(Math.max(2.5 * size, integer ? 16 : 1e-3)));
   const min = Math.max(low, low < 0 ? -max : 0);
   const step = stepOf(max - min, integer);
-  return {min: row.above_lowest && min <= low ? step : min, max, step, log: false};
+  return { min: row.above_lowest && min <= low ? step : min, max, step, log: false };
 }

@@ -3,9 +3,9 @@
  *   long: the label has the object's name too; busy: it is being dragged.
  * node is .param with data-path, the slider in it an input of type range, the number beside it one of type number */
 
-import {button, element, unique} from './ui.js';
-import {controlOf, written} from './param_controls.js';
-import {whyUnused, withMedium} from './param_laws.js';
+import { button, element, unique } from './ui.js';
+import { controlOf, written } from './param_controls.js';
+import { whyUnused, withMedium } from './param_laws.js';
 
 const FORGET_MS = 8000;
 
@@ -18,41 +18,65 @@ export function valueText(value) {
   return value === '' || value === null ? 'none' : String(value);
 }
 
-export function createRow(first, lab, {onabout, long} = {}) {
-  const {path} = first;
+export function createRow(first, lab, { onabout, long } = {}) {
+  const { path } = first;
   const object = path.slice(0, path.length - first.name.length - 1);
-  const meaning = element('span', {class: 'param-meaning', id: unique('meaning'), text: `${first.meaning}. ${first.range}; default ${valueText(first.default)}`});
-  const problem = element('p', {class: 'param-problem', role: 'alert', hidden: true});
-  const unused = element('span', {class: 'param-unused', text: 'unused', hidden: true});
-  const title = () => [long ? element('span', {class: 'param-object', text: object}) : null, labelOf(first.name), unused].filter(Boolean);
-  const label = element('label', {class: 'param-label', title: path}, title());
-  const reset = button(`Reset ${path}`, undo, {icon: 'reset', bare: true, small: true, kind: 'quiet'});
+  const meaning = element('span', {
+    class: 'param-meaning',
+    id: unique('meaning'),
+    text: `${first.meaning}. ${first.range}; default ${valueText(first.default)}`,
+  });
+  const problem = element('p', { class: 'param-problem', role: 'alert', hidden: true });
+  const unused = element('span', { class: 'param-unused', text: 'unused', hidden: true });
+  const title = () =>
+    [long ? element('span', { class: 'param-object', text: object }) : null, labelOf(first.name), unused].filter(
+      Boolean,
+    );
+  const label = element('label', { class: 'param-label', title: path }, title());
+  const reset = button(`Reset ${path}`, undo, { icon: 'reset', bare: true, small: true, kind: 'quiet' });
   let known = first;
   let waiting = 0;
   let settled = 0;
   let forget = 0;
 
   const control = controlOf(first, {
-    name: `${object} ${labelOf(first.name)}`, describedby: meaning.id, send,
+    name: `${object} ${labelOf(first.name)}`,
+    describedby: meaning.id,
+    send,
     names: (lab.scene?.objects || []).filter((each) => each.kind === first.name).map((each) => each.name),
   });
   label.id = unique('label');
   if (control.single) label.htmlFor = control.single.id;
-  const node = element('div', {
-    class: 'param', role: control.single ? null : 'group', 'aria-label': control.single ? null : `${object} ${labelOf(first.name)}`,
-    dataset: {path},
-  }, control.single ? label : element('span', {class: 'param-label', title: path}, title()),
-  element('div', {class: 'param-control'}, control.node, element('span', {class: 'unit', text: shortUnit(first.unit), title: first.unit || null})),
-  reset, meaning, problem);
+  const node = element(
+    'div',
+    {
+      class: 'param',
+      role: control.single ? null : 'group',
+      'aria-label': control.single ? null : `${object} ${labelOf(first.name)}`,
+      dataset: { path },
+    },
+    control.single ? label : element('span', { class: 'param-label', title: path }, title()),
+    element(
+      'div',
+      { class: 'param-control' },
+      control.node,
+      element('span', { class: 'unit', text: shortUnit(first.unit), title: first.unit || null }),
+    ),
+    reset,
+    meaning,
+    problem,
+  );
   node.addEventListener('pointerenter', () => onabout?.(known));
   node.addEventListener('focusin', () => onabout?.(known));
   node.addEventListener('focusout', () => {
     clearTimeout(forget);
-    forget = setTimeout(() => { if (!node.contains(document.activeElement)) refuse(null); }, FORGET_MS);
+    forget = setTimeout(() => {
+      if (!node.contains(document.activeElement)) refuse(null);
+    }, FORGET_MS);
   });
   showReset();
   showUse();
-  return {node, path, update, busy: () => control.busy()};
+  return { node, path, update, busy: () => control.busy() };
 
   function shortUnit(unit) {
     return unit === 'scene units' ? 'u' : unit === 'deg' ? '°' : unit;
@@ -85,9 +109,12 @@ export function createRow(first, lab, {onabout, long} = {}) {
     waiting += 1;
     let error = null;
     try {
-      const reply = await lab.set(first.name === 'medium' ? withMedium(lab, object, value) : {[path]: value}, gesture);
+      const reply = await lab.set(
+        first.name === 'medium' ? withMedium(lab, object, value) : { [path]: value },
+        gesture,
+      );
       settled = Math.max(settled, reply.generation || 0);
-      known = {...known, value};
+      known = { ...known, value };
     } catch (caught) {
       error = caught;
     }
@@ -107,12 +134,12 @@ export function createRow(first, lab, {onabout, long} = {}) {
     const held = document.activeElement;
     if (control.inputs.includes(held)) held.blur();
     control.set(value, true);
-    if (control.inputs.includes(held)) held.focus({preventScroll: true});
+    if (control.inputs.includes(held)) held.focus({ preventScroll: true });
   }
 
   function undo() {
     refuse(null);
-    lab.change('/api/reset', {paths: [path]}).catch(refuse);
+    lab.change('/api/reset', { paths: [path] }).catch(refuse);
     (control.single || control.inputs[0]).focus();
   }
 

@@ -1,9 +1,11 @@
-/* Which pixel is asked about, and the answer: one at a time is on its way, and of those that wait only the newest is sent.
+/* Which pixel is asked about, and the answer: one at a time is on its way, and of those that wait only the newest is
+ * sent.
  *
- * exports: createQuestion(lab) -> {pixel: {x, y} or null, tree or null, error or null, busy, ask(x, y), step(dx, dy), clear(), on(f)}
+ * exports: createQuestion(lab) -> {pixel: {x, y} or null, tree or null, error or null, busy, ask(x, y), step(dx, dy),
+ * clear(), on(f)}
  * It asks again for the same pixel when another final picture has come. */
 
-import {grow} from './ray_tree.js';
+import { grow } from './ray_tree.js';
 
 export function createQuestion(lab) {
   const listeners = new Set();
@@ -12,7 +14,12 @@ export function createQuestion(lab) {
   let asked = -1; /* the serial of the picture that was shown when the tree was asked for */
 
   const question = {
-    pixel: null, tree: null, error: null, busy: false, ask, clear,
+    pixel: null,
+    tree: null,
+    error: null,
+    busy: false,
+    ask,
+    clear,
     step(dx, dy) {
       if (question.pixel) ask(question.pixel.x + dx, question.pixel.y + dy);
     },
@@ -30,15 +37,15 @@ export function createQuestion(lab) {
   }
 
   function ask(x, y) {
-    const {width, height} = lab.view;
+    const { width, height } = lab.view;
     if (!width) return;
     const at = (value, size) => Math.min(size - 1, Math.max(0, Math.floor(value)));
-    question.pixel = {x: at(x, width), y: at(y, height)};
+    question.pixel = { x: at(x, width), y: at(y, height) };
     send();
   }
 
   function clear() {
-    Object.assign(question, {pixel: null, tree: null, error: null});
+    Object.assign(question, { pixel: null, tree: null, error: null });
     tell();
   }
 
@@ -50,7 +57,7 @@ export function createQuestion(lab) {
     asking = true;
     while (waiting) {
       waiting = false;
-      const {pixel} = question;
+      const { pixel } = question;
       if (pixel) await fetchTree(pixel);
     }
     asking = false;
@@ -62,9 +69,9 @@ export function createQuestion(lab) {
     asked = lab.picture?.serial ?? -1;
     try {
       const answer = await lab.get(`/api/trace?x=${pixel.x}&y=${pixel.y}`);
-      if (question.pixel) Object.assign(question, {tree: {...grow(answer), pixel}, error: null});
+      if (question.pixel) Object.assign(question, { tree: { ...grow(answer), pixel }, error: null });
     } catch (error) {
-      if (question.pixel) Object.assign(question, {tree: null, error});
+      if (question.pixel) Object.assign(question, { tree: null, error });
     }
     tell();
   }

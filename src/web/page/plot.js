@@ -7,11 +7,11 @@
  *   heading: what the lines are told apart by, over their names
  *   mark: a value of y with a line across, such as 1 for ratios */
 
-import {digits, svg, unique} from './ui.js';
+import { digits, svg, unique } from './ui.js';
 
 const WIDTH = 860;
 const HEIGHT = 400;
-const FRAME = {left: 76, top: 34, right: 22, bottom: 48};
+const FRAME = { left: 76, top: 34, right: 22, bottom: 48 };
 const WORDS = 30; /* more under an axis of slanted words */
 const LEGEND = 226;
 const NAME_MAX = 23;
@@ -19,18 +19,23 @@ const TICKS = 6;
 const COLOURS = 5;
 const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2'];
 const MARKERS = [
-  'M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0', 'M-3.600-3.600h7.200v7.200h-7.200z', 'M0-5 4.600 3.600h-9.200z', 'M0-5 5 0 0 5-5 0z', 'M0 5-4.600-3.600h9.200z',
-  'M-4-4 4 4M4-4-4 4', 'M-5 0h10M0-5v10',
+  'M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0',
+  'M-3.600-3.600h7.200v7.200h-7.200z',
+  'M0-5 4.600 3.600h-9.200z',
+  'M0-5 5 0 0 5-5 0z',
+  'M0 5-4.600-3.600h9.200z',
+  'M-4-4 4 4M4-4-4 4',
+  'M-5 0h10M0-5v10',
 ];
 
 const round = (value) => Math.round(value * 100) / 100;
 const finite = (values) => values.filter((value) => Number.isFinite(value));
 
 /* How values lie between two ends of the drawing. */
-function ruler({log, from, to, a, b}) {
+function ruler({ log, from, to, a, b }) {
   const bend = log ? Math.log10 : (value) => value;
   const [low, high] = [bend(from), bend(to)];
-  return {log, from, to, at: (value) => round(a + ((bend(value) - low) / (high - low)) * (b - a))};
+  return { log, from, to, at: (value) => round(a + ((bend(value) - low) / (high - low)) * (b - a)) };
 }
 
 function niceStep(across) {
@@ -43,7 +48,7 @@ function linearTicks(from, to) {
   const step = niceStep(to - from);
   const first = Math.ceil(from / step - 1e-9);
   const last = Math.floor(to / step + 1e-9);
-  return Array.from({length: last - first + 1}, (_, k) => Number(((first + k) * step).toPrecision(12)));
+  return Array.from({ length: last - first + 1 }, (_, k) => Number(((first + k) * step).toPrecision(12)));
 }
 
 function logTicks(from, to) {
@@ -76,16 +81,17 @@ function ticksOf(scale, own) {
   return own && own.length <= 12 && apart ? own : logTicks(scale.from, scale.to);
 }
 
-const text = (x, y, anchor, words, more) => svg('text', {x, y, 'text-anchor': anchor, ...more}, words);
+const text = (x, y, anchor, words, more) => svg('text', { x, y, 'text-anchor': anchor, ...more }, words);
 
 /* Words under the axis are slanted where they would not fit beside each other. */
-const areSlanted = (values, width) => values && Math.max(...values.map((value) => value.length)) * 6.5 > width / values.length;
+const areSlanted = (values, width) =>
+  values && Math.max(...values.map((value) => value.length)) * 6.5 > width / values.length;
 
 function words(values, scale, bottom, slanted) {
   const short = (value) => (slanted && value.length > 14 ? `${value.slice(0, 13)}…` : value);
   return values.map((value, i) => {
     const x = scale.at(i);
-    const turn = slanted ? {transform: `rotate(-28 ${x} ${bottom + 14})`} : {};
+    const turn = slanted ? { transform: `rotate(-28 ${x} ${bottom + 14})` } : {};
     return text(x + (slanted ? 4 : 0), bottom + 16, slanted ? 'end' : 'middle', short(value), turn);
   });
 }
@@ -94,61 +100,111 @@ function axes(area, x, y, across, up) {
   const own = [...new Set(finite(x.points))].sort((a, b) => a - b);
   const right = area.x + area.width;
   const bottom = area.y + area.height;
-  return svg('g', {class: 'plot-axes'},
+  return svg(
+    'g',
+    { class: 'plot-axes' },
     ticksOf(up).map((value) => [
-      svg('path', {class: 'plot-grid', d: `M${area.x} ${up.at(value)}H${right}`}), text(area.x - 7, up.at(value) + 4, 'end', digits(value)),
+      svg('path', { class: 'plot-grid', d: `M${area.x} ${up.at(value)}H${right}` }),
+      text(area.x - 7, up.at(value) + 4, 'end', digits(value)),
     ]),
-    x.values ? words(x.values, across, bottom, areSlanted(x.values, area.width))
+    x.values
+      ? words(x.values, across, bottom, areSlanted(x.values, area.width))
       : ticksOf(across, own).map((value) => [
-        svg('path', {class: 'plot-grid', d: `M${across.at(value)} ${area.y}V${bottom}`}), text(across.at(value), bottom + 16, 'middle', digits(value)),
-      ]),
-    svg('path', {class: 'plot-frame', d: `M${area.x} ${area.y}V${bottom}H${right}`}),
-    text(area.x + area.width / 2, HEIGHT - 8, 'middle', x.label, {class: 'plot-label'}),
-    text(0, 0, 'middle', y.label, {class: 'plot-label', transform: `translate(15 ${area.y + area.height / 2}) rotate(-90)`}));
+          svg('path', { class: 'plot-grid', d: `M${across.at(value)} ${area.y}V${bottom}` }),
+          text(across.at(value), bottom + 16, 'middle', digits(value)),
+        ]),
+    svg('path', { class: 'plot-frame', d: `M${area.x} ${area.y}V${bottom}H${right}` }),
+    text(area.x + area.width / 2, HEIGHT - 8, 'middle', x.label, { class: 'plot-label' }),
+    text(0, 0, 'middle', y.label, {
+      class: 'plot-label',
+      transform: `translate(15 ${area.y + area.height / 2}) rotate(-90)`,
+    }),
+  );
 }
 
-const looks = (index) => ({class: `plot-series plot-colour-${(index % COLOURS) + 1}`});
+const looks = (index) => ({ class: `plot-series plot-colour-${(index % COLOURS) + 1}` });
 
 function line(one, index, across, up) {
-  const points = one.points.filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y) && (!up.log || point.y > 0) && (!across.log || point.x > 0));
+  const points = one.points.filter(
+    (point) =>
+      Number.isFinite(point.x) && Number.isFinite(point.y) && (!up.log || point.y > 0) && (!across.log || point.x > 0),
+  );
   const at = points.map((point) => `${across.at(point.x)} ${up.at(point.y)}`);
-  return svg('g', looks(index),
-    at.length > 1 ? svg('path', {class: 'plot-line', d: `M${at.join('L')}`, 'stroke-dasharray': DASHES[index % DASHES.length]}) : null,
-    points.filter((point) => point.low < point.high && (!up.log || point.low > 0)).map((point) => svg('path', {
-      class: 'plot-interval', d: `M${across.at(point.x) - 4} ${up.at(point.low)}h8m-4 0V${up.at(point.high)}m-4 0h8`,
-    })),
-    points.map((point, i) => svg('path', {class: 'plot-marker', d: MARKERS[index % MARKERS.length], transform: `translate(${at[i]})`},
-      svg('title', {}, `${one.name ? `${one.name}: ` : ''}${digits(point.y, 5)}`))));
+  return svg(
+    'g',
+    looks(index),
+    at.length > 1
+      ? svg('path', { class: 'plot-line', d: `M${at.join('L')}`, 'stroke-dasharray': DASHES[index % DASHES.length] })
+      : null,
+    points
+      .filter((point) => point.low < point.high && (!up.log || point.low > 0))
+      .map((point) =>
+        svg('path', {
+          class: 'plot-interval',
+          d: `M${across.at(point.x) - 4} ${up.at(point.low)}h8m-4 0V${up.at(point.high)}m-4 0h8`,
+        }),
+      ),
+    points.map((point, i) =>
+      svg(
+        'path',
+        { class: 'plot-marker', d: MARKERS[index % MARKERS.length], transform: `translate(${at[i]})` },
+        svg('title', {}, `${one.name ? `${one.name}: ` : ''}${digits(point.y, 5)}`),
+      ),
+    ),
+  );
 }
 
 function legend(series, heading, left) {
   const short = (name) => (name.length > NAME_MAX ? `${name.slice(0, NAME_MAX - 1)}…` : name);
-  return svg('g', {class: 'plot-legend'}, text(left, FRAME.top + 4, 'start', short(heading), {class: 'plot-label'}), series.map((one, index) => {
-    const y = FRAME.top + 26 + index * 20;
-    return svg('g', looks(index),
-      svg('path', {class: 'plot-line', d: `M${left} ${y}h34`, 'stroke-dasharray': DASHES[index % DASHES.length]}),
-      svg('path', {class: 'plot-marker', d: MARKERS[index % MARKERS.length], transform: `translate(${left + 17} ${y})`}),
-      text(left + 44, y + 4, 'start', short(one.name)), svg('title', {}, one.name));
-  }));
+  return svg(
+    'g',
+    { class: 'plot-legend' },
+    text(left, FRAME.top + 4, 'start', short(heading), { class: 'plot-label' }),
+    series.map((one, index) => {
+      const y = FRAME.top + 26 + index * 20;
+      return svg(
+        'g',
+        looks(index),
+        svg('path', { class: 'plot-line', d: `M${left} ${y}h34`, 'stroke-dasharray': DASHES[index % DASHES.length] }),
+        svg('path', {
+          class: 'plot-marker',
+          d: MARKERS[index % MARKERS.length],
+          transform: `translate(${left + 17} ${y})`,
+        }),
+        text(left + 44, y + 4, 'start', short(one.name)),
+        svg('title', {}, one.name),
+      );
+    }),
+  );
 }
 
-export function plot({title, x, y, series, heading = '', mark}) {
+export function plot({ title, x, y, series, heading = '', mark }) {
   const many = series.length > 1;
   const width = WIDTH - FRAME.left - FRAME.right - (many ? LEGEND : 0);
-  const area = {x: FRAME.left, y: FRAME.top, width, height: HEIGHT - FRAME.top - FRAME.bottom - (areSlanted(x.values, width) ? WORDS : 0)};
+  const area = {
+    x: FRAME.left,
+    y: FRAME.top,
+    width,
+    height: HEIGHT - FRAME.top - FRAME.bottom - (areSlanted(x.values, width) ? WORDS : 0),
+  };
   const points = series.flatMap((one) => one.points);
   const xs = points.map((point) => point.x);
-  const ys = finite([...points.flatMap((point) => [point.y, point.low, point.high]), mark]).filter((value) => !y.log || value > 0);
+  const ys = finite([...points.flatMap((point) => [point.y, point.low, point.high]), mark]).filter(
+    (value) => !y.log || value > 0,
+  );
   const [left, right] = x.values ? [-0.5, x.values.length - 0.5] : ends(finite(xs), x.log, false);
   const [low, high] = ends(ys, y.log, mark === undefined);
-  const across = ruler({log: x.log && !x.values, from: left, to: right, a: area.x, b: area.x + area.width});
-  const up = ruler({log: y.log, from: low, to: high, a: area.y + area.height, b: area.y});
+  const across = ruler({ log: x.log && !x.values, from: left, to: right, a: area.x, b: area.x + area.width });
+  const up = ruler({ log: y.log, from: low, to: high, a: area.y + area.height, b: area.y });
   const name = unique('plot');
-  return svg('svg', {class: 'plot', viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'img', 'aria-labelledby': name},
-    svg('title', {id: name}, title),
-    text(area.x, 17, 'start', title, {class: 'plot-title', 'aria-hidden': 'true'}),
-    axes(area, {...x, points: xs}, y, across, up),
-    mark === undefined ? null : svg('path', {class: 'plot-mark', d: `M${area.x} ${up.at(mark)}h${area.width}`}),
+  return svg(
+    'svg',
+    { class: 'plot', viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'img', 'aria-labelledby': name },
+    svg('title', { id: name }, title),
+    text(area.x, 17, 'start', title, { class: 'plot-title', 'aria-hidden': 'true' }),
+    axes(area, { ...x, points: xs }, y, across, up),
+    mark === undefined ? null : svg('path', { class: 'plot-mark', d: `M${area.x} ${up.at(mark)}h${area.width}` }),
     series.map((one, index) => line(one, index, across, up)),
-    many ? legend(series, heading, area.x + area.width + 24) : null);
+    many ? legend(series, heading, area.x + area.width + 24) : null,
+  );
 }

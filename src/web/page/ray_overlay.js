@@ -1,13 +1,15 @@
 /* The rays of a pixel drawn over the picture.
  *
  * exports:
- *   createRayOverlay(lab) -> {show(tree or null, pixel), draw(), mark(ray or null), nearest(point) -> ray or null, count, left}
- *                                      draw: the camera has moved; count, left: rays that are drawn, and that are too faint or too many to be
+ *   createRayOverlay(lab) -> {show(tree or null, pixel), draw(), mark(ray or null), nearest(point) -> ray or null,
+ *   count, left}
+ *                                      draw: the camera has moved; count, left: rays that are drawn, and that are too
+ *                                      faint or too many to be
  *   drawn(tree) -> rays                those that drawings show */
 
-import {svg} from './ui.js';
-import {lineClass} from './ray_tree.js';
-import {add, dot, length, minus, times} from './ray_vectors.js';
+import { svg } from './ui.js';
+import { lineClass } from './ray_tree.js';
+import { add, dot, length, minus, times } from './ray_vectors.js';
 
 const LIGHTEST = 0.002;
 const LINES_MAX = 1500;
@@ -28,7 +30,11 @@ export function createRayOverlay(lab) {
   let marked = null;
 
   const overlay = {
-    count: 0, left: 0, draw, mark, nearest,
+    count: 0,
+    left: 0,
+    draw,
+    mark,
+    nearest,
     show(next, at) {
       tree = next;
       pixel = at;
@@ -43,7 +49,12 @@ export function createRayOverlay(lab) {
     pieces = rays.map(piece).filter(Boolean);
     for (const one of pieces) {
       one.node = svg('line', {
-        class: lineClass(one.ray), x1: one.a[0], y1: one.a[1], x2: one.b[0], y2: one.b[1], 'stroke-width': strokeWidth(one.ray),
+        class: lineClass(one.ray),
+        x1: one.a[0],
+        y1: one.a[1],
+        x2: one.b[0],
+        y2: one.b[1],
+        'stroke-width': strokeWidth(one.ray),
       });
     }
     overlay.count = rays.length;
@@ -55,16 +66,30 @@ export function createRayOverlay(lab) {
   }
 
   /* So that it is seen on any picture. */
-  function halo({ray, a, b}) {
-    return svg('line', {class: 'ray-halo', x1: a[0], y1: a[1], x2: b[0], y2: b[1], 'stroke-width': Number(strokeWidth(ray)) + 2});
+  function halo({ ray, a, b }) {
+    return svg('line', {
+      class: 'ray-halo',
+      x1: a[0],
+      y1: a[1],
+      x2: b[0],
+      y2: b[1],
+      'stroke-width': Number(strokeWidth(ray)) + 2,
+    });
   }
 
   /* The pixel itself, and arms of 10 CSS pixels about it, however large the picture's pixels are. */
   function cross() {
-    const {x, y} = pixel;
+    const { x, y } = pixel;
     const arm = 10 / lab.view.scale;
-    const d = `M${x} ${y}h1v1h-1zM${x + 0.5} ${y - arm}V${y}M${x + 0.5} ${y + 1}v${arm}M${x - arm} ${y + 0.5}H${x}M${x + 1} ${y + 0.5}h${arm}`;
-    return svg('g', {}, svg('path', {class: 'ray-halo', d, 'stroke-width': 4}), svg('path', {class: 'ray-pixel', d}));
+    const d =
+      `M${x} ${y}h1v1h-1zM${x + 0.5} ${y - arm}V${y}M${x + 0.5} ${y + 1}v${arm}M${x - arm} ` +
+      `${y + 0.5}H${x}M${x + 1} ${y + 0.5}h${arm}`;
+    return svg(
+      'g',
+      {},
+      svg('path', { class: 'ray-halo', d, 'stroke-width': 4 }),
+      svg('path', { class: 'ray-pixel', d }),
+    );
   }
 
   function piece(ray) {
@@ -73,19 +98,20 @@ export function createRayOverlay(lab) {
     const ends = seen && seen.map((point) => lab.view.project(point));
     if (!ends || !ends[0] || !ends[1]) return null;
     const clipped = clipBox([ends[0].x, ends[0].y], [ends[1].x, ends[1].y], lab.view.width, lab.view.height);
-    return clipped && {ray, a: clipped[0], b: clipped[1]};
+    return clipped && { ray, a: clipped[0], b: clipped[1] };
   }
 
   function mark(ray) {
     if (ray === marked) return;
-    for (const one of pieces) if (one.ray === marked || one.ray === ray) one.node.classList.toggle('marked', one.ray === ray);
+    for (const one of pieces)
+      if (one.ray === marked || one.ray === ray) one.node.classList.toggle('marked', one.ray === ray);
     marked = ray;
   }
 
   function nearest(point) {
     let best = null;
     let least = NEAR_PX / lab.view.scale;
-    for (const {ray, a, b} of pieces) {
+    for (const { ray, a, b } of pieces) {
       const away = distance([point.x, point.y], a, b);
       if (away < least && ray.node.kind !== 'camera') [best, least] = [ray, away];
     }
@@ -107,7 +133,12 @@ function clipNear(a, b, camera, near) {
 function clipBox(a, b, width, height) {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   let [first, last] = [0, 1];
-  for (const [p, q] of [[-dx, a[0]], [dx, width - a[0]], [-dy, a[1]], [dy, height - a[1]]]) {
+  for (const [p, q] of [
+    [-dx, a[0]],
+    [dx, width - a[0]],
+    [-dy, a[1]],
+    [dy, height - a[1]],
+  ]) {
     if (p === 0 && q < 0) return null;
     if (p < 0) first = Math.max(first, q / p);
     if (p > 0) last = Math.min(last, q / p);

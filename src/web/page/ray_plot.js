@@ -1,30 +1,38 @@
-/* A small drawing of the rays of a pixel at right angles onto a plane: from the side, or from above; both axes at one scale, in scene units.
- * exports: createRayPlot({title, onmark(ray or null), onchoose(ray)}) -> {node, show(tree or null, plane, solids), mark(ray or null)}
- *          sidePlane(camera), topPlane()     {u: [x,y,z], v: [x,y,z], uName, vName}: what is to the right, what is up */
+/* A small drawing of the rays of a pixel at right angles onto a plane: from the side, or from above; both axes at one
+ * scale, in scene units.
+ * exports: createRayPlot({title, onmark(ray or null), onchoose(ray)}) -> {node, show(tree or null, plane, solids),
+ * mark(ray or null)}
+ *          sidePlane(camera), topPlane()     {u: [x,y,z], v: [x,y,z], uName, vName}: what is to the right, what is up
+ *                                            */
 
-import {digits, element, svg, unique} from './ui.js';
-import {lineClass} from './ray_tree.js';
-import {drawn, strokeWidth} from './ray_overlay.js';
-import {hull} from './ray_solids.js';
-import {dot, unit} from './ray_vectors.js';
+import { digits, element, svg, unique } from './ui.js';
+import { lineClass } from './ray_tree.js';
+import { drawn, strokeWidth } from './ray_overlay.js';
+import { hull } from './ray_solids.js';
+import { dot, unit } from './ray_vectors.js';
 
 const WIDTH = 250;
 const HEIGHT = 220;
-const FRAME = {left: 32, top: 8, right: 8, bottom: 32};
+const FRAME = { left: 32, top: 8, right: 8, bottom: 32 };
 
-export const topPlane = () => ({u: [1, 0, 0], v: [0, 0, 1], uName: 'x', vName: 'z'});
+export const topPlane = () => ({ u: [1, 0, 0], v: [0, 0, 1], uName: 'x', vName: 'z' });
 
 /* Upright, through the line of sight; of a camera that looks straight up or down, through its upper edge. */
 export function sidePlane(camera) {
   const level = ([x, , z]) => unit(Math.hypot(x, z) > 1e-6 ? [x, 0, z] : [0, 0, 0]);
   const u = (camera && (level(camera.forward) || level(camera.up))) || [0, 0, 1];
   const isZ = Math.abs(u[2]) > 1 - 1e-9;
-  return {u: isZ ? [0, 0, 1] : u, v: [0, 1, 0], uName: isZ ? 'z' : 'along the line of sight', vName: 'y'};
+  return { u: isZ ? [0, 0, 1] : u, v: [0, 1, 0], uName: isZ ? 'z' : 'along the line of sight', vName: 'y' };
 }
 
-export function createRayPlot({title, onmark, onchoose}) {
-  const drawing = svg('svg', {class: 'ray-plot', viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'img', 'aria-label': title});
-  const node = element('figure', {class: 'ray-figure'}, drawing, element('figcaption', {text: title}));
+export function createRayPlot({ title, onmark, onchoose }) {
+  const drawing = svg('svg', {
+    class: 'ray-plot',
+    viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
+    role: 'img',
+    'aria-label': title,
+  });
+  const node = element('figure', { class: 'ray-figure' }, drawing, element('figcaption', { text: title }));
   let lines = new Map();
   let marked = null;
   const rayAt = (event) => [...lines].find(([, line]) => line === event.target)?.[0];
@@ -35,7 +43,7 @@ export function createRayPlot({title, onmark, onchoose}) {
     if (rayAt(event)) onchoose(rayAt(event));
   });
   drawing.addEventListener('pointerleave', () => onmark(null));
-  return {node, show, mark};
+  return { node, show, mark };
 
   function show(tree, plane, solids) {
     lines = new Map();
@@ -43,23 +51,38 @@ export function createRayPlot({title, onmark, onchoose}) {
     drawing.replaceChildren();
     if (!tree) return;
     const flat = (point) => [dot(point, plane.u), dot(point, plane.v)];
-    const outlines = solids.map((solid) => ({...solid, parts: solid.points.map((points) => hull(points.map(flat)))}));
+    const outlines = solids.map((solid) => ({ ...solid, parts: solid.points.map((points) => hull(points.map(flat))) }));
     const rays = drawn(tree);
     const map = fit(windowOf(rays, outlines, flat));
     const inside = unique('plot');
     drawing.append(
-      svg('clipPath', {id: inside}, svg('rect', map.frame)),
+      svg('clipPath', { id: inside }, svg('rect', map.frame)),
       axes(map, plane),
-      svg('g', {'clip-path': `url(#${inside})`}, outlines.flatMap((solid) => outline(solid, map)), rays.map((ray) => line(ray, flat, map))));
+      svg(
+        'g',
+        { 'clip-path': `url(#${inside})` },
+        outlines.flatMap((solid) => outline(solid, map)),
+        rays.map((ray) => line(ray, flat, map)),
+      ),
+    );
   }
 
   function outline(solid, map) {
-    return solid.parts.map((points) => svg('path', {class: 'ray-solid', d: `M${points.map(map.at).join('L')}Z`}, svg('title', {}, solid.name)));
+    return solid.parts.map((points) =>
+      svg('path', { class: 'ray-solid', d: `M${points.map(map.at).join('L')}Z` }, svg('title', {}, solid.name)),
+    );
   }
 
   function line(ray, flat, map) {
     const [a, b] = [map.at(flat(ray.from)), map.at(flat(ray.to))];
-    const one = svg('line', {class: lineClass(ray), x1: a[0], y1: a[1], x2: b[0], y2: b[1], 'stroke-width': strokeWidth(ray)});
+    const one = svg('line', {
+      class: lineClass(ray),
+      x1: a[0],
+      y1: a[1],
+      x2: b[0],
+      y2: b[1],
+      'stroke-width': strokeWidth(ray),
+    });
     lines.set(ray, one);
     return one;
   }
@@ -74,9 +97,10 @@ export function createRayPlot({title, onmark, onchoose}) {
 /* What the rays meet, the solids there, and the camera where it is not far off. */
 function windowOf(rays, outlines, flat) {
   const box = [Infinity, Infinity, -Infinity, -Infinity];
-  const take = ([u, v], into = box) => into.splice(0, 4, Math.min(into[0], u), Math.min(into[1], v), Math.max(into[2], u), Math.max(into[3], v));
+  const take = ([u, v], into = box) =>
+    into.splice(0, 4, Math.min(into[0], u), Math.min(into[1], v), Math.max(into[2], u), Math.max(into[3], v));
   const size = (of) => (of[0] <= of[2] ? Math.hypot(of[2] - of[0], of[3] - of[1]) : 0);
-  const met = new Set(rays.filter((ray) => ray.node.hit).flatMap(({node}) => [node.hit.solid, node.hit.surface_of]));
+  const met = new Set(rays.filter((ray) => ray.node.hit).flatMap(({ node }) => [node.hit.solid, node.hit.surface_of]));
   for (const solid of outlines) if (met.has(solid.name)) solid.parts.flat().forEach((point) => take(point));
   const near = size(box);
   for (const ray of rays) {
@@ -88,18 +112,27 @@ function windowOf(rays, outlines, flat) {
   return near === 0 || size(wide) < 4 * size(box) ? wide : box;
 }
 
-const within = ([u, v], box, reach) => u > box[0] - reach && u < box[2] + reach && v > box[1] - reach && v < box[3] + reach;
+const within = ([u, v], box, reach) =>
+  u > box[0] - reach && u < box[2] + reach && v > box[1] - reach && v < box[3] + reach;
 
 /* The window about the box in the frame: a point (u, v) to where it is drawn. */
 function fit(box) {
-  const frame = {x: FRAME.left, y: FRAME.top, width: WIDTH - FRAME.left - FRAME.right, height: HEIGHT - FRAME.top - FRAME.bottom};
+  const frame = {
+    x: FRAME.left,
+    y: FRAME.top,
+    width: WIDTH - FRAME.left - FRAME.right,
+    height: HEIGHT - FRAME.top - FRAME.bottom,
+  };
   const across = Math.max(1e-9, box[2] - box[0], ((box[3] - box[1]) * frame.width) / frame.height);
   const scale = (0.88 * frame.width) / across;
   const middle = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
   const round = (x) => Math.round(x * 100) / 100;
   return {
     frame,
-    at: ([u, v]) => [round(frame.x + frame.width / 2 + scale * (u - middle[0])), round(frame.y + frame.height / 2 - scale * (v - middle[1]))],
+    at: ([u, v]) => [
+      round(frame.x + frame.width / 2 + scale * (u - middle[0])),
+      round(frame.y + frame.height / 2 - scale * (v - middle[1])),
+    ],
     low: [middle[0] - frame.width / 2 / scale, middle[1] - frame.height / 2 / scale],
     high: [middle[0] + frame.width / 2 / scale, middle[1] + frame.height / 2 / scale],
   };
@@ -109,7 +142,7 @@ function fit(box) {
 function ticks(low, high, step) {
   const first = Math.ceil(low / step);
   const last = Math.floor(high / step);
-  return Array.from({length: Math.max(0, last - first + 1)}, (_, k) => (first + k) * step);
+  return Array.from({ length: Math.max(0, last - first + 1) }, (_, k) => (first + k) * step);
 }
 
 function niceStep(across) {
@@ -118,19 +151,31 @@ function niceStep(across) {
   return power * (times > 5 ? 10 : times > 2 ? 5 : times > 1 ? 2 : 1);
 }
 
-function axes({frame, at, low, high}, plane) {
+function axes({ frame, at, low, high }, plane) {
   const step = niceStep(high[0] - low[0]);
   const bottom = frame.y + frame.height;
-  const text = (x, y, anchor, words) => svg('text', {x, y, 'text-anchor': anchor}, words);
+  const text = (x, y, anchor, words) => svg('text', { x, y, 'text-anchor': anchor }, words);
   const along = ticks(low[0], high[0], step).map((u) => {
     const [x] = at([u, low[1]]);
-    return [svg('path', {class: 'ray-grid', d: `M${x} ${frame.y}V${bottom}`}), text(x, bottom + 13, 'middle', digits(u))];
+    return [
+      svg('path', { class: 'ray-grid', d: `M${x} ${frame.y}V${bottom}` }),
+      text(x, bottom + 13, 'middle', digits(u)),
+    ];
   });
   const up = ticks(low[1], high[1], step).map((v) => {
     const [, y] = at([low[0], v]);
-    return [svg('path', {class: 'ray-grid', d: `M${frame.x} ${y}h${frame.width}`}), text(frame.x - 5, y + 3.5, 'end', digits(v))];
+    return [
+      svg('path', { class: 'ray-grid', d: `M${frame.x} ${y}h${frame.width}` }),
+      text(frame.x - 5, y + 3.5, 'end', digits(v)),
+    ];
   });
-  return svg('g', {class: 'ray-axes'}, along, up, svg('rect', {class: 'ray-frame', ...frame}),
+  return svg(
+    'g',
+    { class: 'ray-axes' },
+    along,
+    up,
+    svg('rect', { class: 'ray-frame', ...frame }),
     text(frame.x + frame.width / 2, HEIGHT - 5, 'middle', `${plane.uName}, scene units`),
-    text(4, frame.y + 4, 'start', plane.vName));
+    text(4, frame.y + 4, 'start', plane.vName),
+  );
 }

@@ -1,14 +1,15 @@
 /* The outlines of simple solids, seen along any direction: of convex ones the hull of their corners and rims.
- * exports: solidPoints(lab) -> [{name, points: [[[x,y,z]..]..]}]    for each solid, the points of each of its convex parts, in scene units;
+ * exports: solidPoints(lab) -> [{name, points: [[[x,y,z]..]..]}]    for each solid, the points of each of its convex
+ *                                                                   parts, in scene units;
  *          hull(points) -> points                                   the convex hull of [u, v], counter-clockwise
  * Planes have no outline and meshes no cheap one: they are left out. */
 
-import {add} from './ray_vectors.js';
+import { add } from './ray_vectors.js';
 
 const RIM = 48;
 
 function circle(radius, m, y) {
-  return Array.from({length: RIM}, (_, k) => {
+  return Array.from({ length: RIM }, (_, k) => {
     const angle = (2 * Math.PI * k) / RIM;
     return [radius * Math.cos(angle), y, (radius / m) * Math.sin(angle)];
   });
@@ -27,7 +28,8 @@ function ball(radius) {
 
 function box([x, y, z]) {
   const points = [];
-  for (const i of [-0.5, 0.5]) for (const j of [-0.5, 0.5]) for (const k of [-0.5, 0.5]) points.push([i * x, j * y, k * z]);
+  for (const i of [-0.5, 0.5])
+    for (const j of [-0.5, 0.5]) for (const k of [-0.5, 0.5]) points.push([i * x, j * y, k * z]);
   return points;
 }
 
@@ -35,7 +37,10 @@ const shapes = {
   box: (of) => [box(of('size'))],
   sphere: (of) => [ball(of('radius'))],
   cylinder: (of) => [tube(of('radius'), of('m') || 1, 0, of('height'))],
-  cup: (of) => [tube(of('radius'), of('m') || 1, 0, of('height')), tube(of('inner_radius'), of('m') || 1, of('floor'), of('height'))],
+  cup: (of) => [
+    tube(of('radius'), of('m') || 1, 0, of('height')),
+    tube(of('inner_radius'), of('m') || 1, of('floor'), of('height')),
+  ],
 };
 
 /* About x, then y, then z, as the scene says it. */
@@ -56,8 +61,10 @@ export function solidPoints(lab) {
     const of = (name) => lab.param(`${object.name}.${name}`)?.value;
     const position = of('position');
     if (object.kind !== 'solid' || !shapes[object.shape] || !position || of('visible') === 'off') continue;
-    const parts = shapes[object.shape](of).map((points) => points.map((point) => add(turn(point, of('rotation') || [0, 0, 0]), position)));
-    solids.push({name: object.name, points: parts});
+    const parts = shapes[object.shape](of).map((points) =>
+      points.map((point) => add(turn(point, of('rotation') || [0, 0, 0]), position)),
+    );
+    solids.push({ name: object.name, points: parts });
   }
   return solids;
 }

@@ -1,20 +1,33 @@
 /* The rays of a pixel as a table whose rows open and close.
  *
- * exports: createRayTable({caption, onmark(ray or null)}) -> {node, show(tree or null), mark(ray or null), reveal(ray), openAll(), closeAll()}
+ * exports: createRayTable({caption, onmark(ray or null)}) -> {node, show(tree or null), mark(ray or null), reveal(ray),
+ * openAll(), closeAll()}
  * Rows are made when they are first seen: a tree may have very many. Arrow keys go through them as in any tree grid. */
 
-import {element} from './ui.js';
-import {columns, describe, lineClass} from './ray_tree.js';
+import { element } from './ui.js';
+import { columns, describe, lineClass } from './ray_tree.js';
 
 const OPEN_AT_FIRST = 30;
 const OPEN_AT_MOST = 2000;
 
-export function createRayTable({caption, onmark}) {
-  const head = element('tr', {}, columns.map(([, label, title]) => element('th', {scope: 'col', text: label, title})));
+export function createRayTable({ caption, onmark }) {
+  const head = element(
+    'tr',
+    {},
+    columns.map(([, label, title]) => element('th', { scope: 'col', text: label, title })),
+  );
   const body = element('tbody', {});
-  const node = element('div', {class: 'table-frame ray-table'},
-    element('table', {role: 'treegrid', 'aria-label': caption},
-      element('caption', {class: 'visually-hidden', text: caption}), element('thead', {}, head), body));
+  const node = element(
+    'div',
+    { class: 'table-frame ray-table' },
+    element(
+      'table',
+      { role: 'treegrid', 'aria-label': caption },
+      element('caption', { class: 'visually-hidden', text: caption }),
+      element('thead', {}, head),
+      body,
+    ),
+  );
   let rows = new Map(); /* of those that are shown, by ray */
   let open = new Set();
   let tree = null;
@@ -24,7 +37,9 @@ export function createRayTable({caption, onmark}) {
     if (!event.altKey && !event.ctrlKey && !event.metaKey && press(event.key)) event.preventDefault();
   });
   body.addEventListener('focusin', (event) => note(rayOf(event.target)));
-  body.addEventListener('pointermove', (event) => note(rayOf(event.target))); /* not 'over': rows that scroll under it were not meant */
+  body.addEventListener('pointermove', (event) =>
+    note(rayOf(event.target)),
+  ); /* not 'over': rows that scroll under it were not meant */
   body.addEventListener('pointerleave', () => note(null));
   body.addEventListener('click', (event) => {
     const ray = rayOf(event.target);
@@ -34,7 +49,8 @@ export function createRayTable({caption, onmark}) {
   });
 
   return {
-    node, mark,
+    node,
+    mark,
     show(next) {
       tree = next;
       marked = null;
@@ -46,7 +62,7 @@ export function createRayTable({caption, onmark}) {
       for (let above = ray.parent; above; above = above.parent) open.add(above);
       if (!rows.has(ray)) draw();
       focus(ray);
-      rows.get(ray).scrollIntoView({block: 'nearest'});
+      rows.get(ray).scrollIntoView({ block: 'nearest' });
     },
     openAll() {
       openUpTo(OPEN_AT_MOST);
@@ -86,10 +102,11 @@ export function createRayTable({caption, onmark}) {
 
   function visible() {
     const list = [];
-    const walk = (siblings) => siblings.forEach((ray, place) => {
-      list.push([ray, place + 1, siblings.length]);
-      if (open.has(ray)) walk(ray.children);
-    });
+    const walk = (siblings) =>
+      siblings.forEach((ray, place) => {
+        list.push([ray, place + 1, siblings.length]);
+        if (open.has(ray)) walk(ray.children);
+      });
     if (tree) walk(tree.roots);
     return list;
   }
@@ -101,20 +118,41 @@ export function createRayTable({caption, onmark}) {
     for (const [ray, place, among] of visible()) rows.set(ray, before.get(ray) || row(ray, place, among));
     for (const [ray, tr] of rows) if (ray.children.length) tr.setAttribute('aria-expanded', String(open.has(ray)));
     body.replaceChildren(...rows.values());
-    if (focused && rows.has(focused)) rows.get(focused).focus({preventScroll: true});
+    if (focused && rows.has(focused)) rows.get(focused).focus({ preventScroll: true });
     else if (rows.size && ![...rows.values()].some((tr) => tr.tabIndex === 0)) rows.values().next().value.tabIndex = 0;
   }
 
   function row(ray, place, among) {
     const words = describe(ray);
-    const cells = columns.slice(1).map(([key]) => element('td', {class: ray.node.hit?.tir && key === 'reflectance' ? 'ray-total' : null, text: words[key]}));
-    const first = element('th', {scope: 'row'},
-      element('span', {class: 'ray-name', style: {'--ray-level': String(ray.level - 1)}},
-        element('span', {class: ray.children.length ? 'ray-twist' : 'ray-leaf', 'aria-hidden': 'true'}),
-        element('span', {class: `ray-mark ${lineClass(ray)}`, 'aria-hidden': 'true'}), words.kind));
-    return element('tr', {
-      role: 'row', tabindex: '-1', 'aria-level': ray.level, 'aria-posinset': place, 'aria-setsize': among, dataset: {ray: String(ray.index)},
-    }, first, cells);
+    const cells = columns
+      .slice(1)
+      .map(([key]) =>
+        element('td', { class: ray.node.hit?.tir && key === 'reflectance' ? 'ray-total' : null, text: words[key] }),
+      );
+    const first = element(
+      'th',
+      { scope: 'row' },
+      element(
+        'span',
+        { class: 'ray-name', style: { '--ray-level': String(ray.level - 1) } },
+        element('span', { class: ray.children.length ? 'ray-twist' : 'ray-leaf', 'aria-hidden': 'true' }),
+        element('span', { class: `ray-mark ${lineClass(ray)}`, 'aria-hidden': 'true' }),
+        words.kind,
+      ),
+    );
+    return element(
+      'tr',
+      {
+        role: 'row',
+        tabindex: '-1',
+        'aria-level': ray.level,
+        'aria-posinset': place,
+        'aria-setsize': among,
+        dataset: { ray: String(ray.index) },
+      },
+      first,
+      cells,
+    );
   }
 
   function mark(ray) {
@@ -130,8 +168,8 @@ export function createRayTable({caption, onmark}) {
     for (const tr of rows.values()) tr.tabIndex = -1;
     const tr = rows.get(ray);
     tr.tabIndex = 0;
-    tr.focus({preventScroll: true});
-    tr.scrollIntoView({block: 'nearest', inline: 'nearest'});
+    tr.focus({ preventScroll: true });
+    tr.scrollIntoView({ block: 'nearest', inline: 'nearest' });
   }
 
   function toggle(ray) {
@@ -146,7 +184,7 @@ export function createRayTable({caption, onmark}) {
     if (!ray) return false;
     const list = [...rows.keys()];
     const at = list.indexOf(ray);
-    const step = {ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: list.length - 1}[key];
+    const step = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: list.length - 1 }[key];
     if (step !== undefined) {
       if (list[step]) focus(list[step]);
       return true;

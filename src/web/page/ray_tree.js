@@ -1,15 +1,17 @@
 /* A pixel's tree of rays, as /api/trace gives it, as a list, and what is read of each ray. Pure: no page, no server.
  *
  * exports:
- *   grow(answer) -> {answer, rays, roots, reach}     rays in the order of a table; each {index, node, parent, level, children, weight, from, to};
- *                                                    weight: 0..1 of the camera ray's; reach: how far rays are drawn that meet nothing
+ *   grow(answer) -> {answer, rays, roots, reach}     rays in the order of a table; each {index, node, parent, level,
+ *                                                    children, weight, from, to};
+ *                                                    weight: 0..1 of the camera ray's; reach: how far rays are drawn
+ *                                                    that meet nothing
  *   isCut(ray)                                       was it left out for its depth or weight?
  *   lineClass(ray)                                   the class of its line in a drawing
  *   kinds                                            [class, what it is] of each, for legends
  *   columns, describe(ray)                           [key, head, title] of a table, and what stands in it */
 
-import {digits} from './ui.js';
-import {add, length, mean, times} from './ray_vectors.js';
+import { digits } from './ui.js';
+import { add, length, mean, times } from './ray_vectors.js';
 
 export const kinds = [
   ['ray-camera', 'camera ray'],
@@ -20,7 +22,7 @@ export const kinds = [
   ['ray-cut', 'not traced further'],
 ];
 
-const kindWords = {camera: 'camera ray', reflect: 'reflected', refract: 'refracted', shadow: 'to a light'};
+const kindWords = { camera: 'camera ray', reflect: 'reflected', refract: 'refracted', shadow: 'to a light' };
 
 const endWords = {
   hit: 'meets a surface',
@@ -31,7 +33,7 @@ const endWords = {
   blocked: 'blocked',
 };
 
-export const isCut = ({node}) => node.end === 'cut_depth' || node.end === 'cut_weight';
+export const isCut = ({ node }) => node.end === 'cut_depth' || node.end === 'cut_weight';
 
 export function lineClass(ray) {
   if (isCut(ray)) return 'ray ray-cut';
@@ -43,7 +45,7 @@ export function grow(answer) {
   const all = mean(first[0].throughput) || 1;
   const rays = [];
   const visit = (node, parent, level) => {
-    const ray = {index: rays.length, node, parent, level, children: []};
+    const ray = { index: rays.length, node, parent, level, children: [] };
     /* A shadow ray's throughput is a radiance: it counts as much as the ray whose hit it leaves. */
     ray.weight = node.kind === 'shadow' && parent ? parent.weight : Math.min(1, mean(node.throughput) / all);
     rays.push(ray);
@@ -56,7 +58,7 @@ export function grow(answer) {
     ray.from = ray.node.origin;
     ray.to = endOf(ray, reach);
   }
-  return {answer, rays, roots, reach};
+  return { answer, rays, roots, reach };
 }
 
 /* The size of what is hit; of a single hit, a part of the way there. */
@@ -66,7 +68,7 @@ function extent(rays) {
   const sides = [0, 1, 2].map((k) => {
     let low = Infinity;
     let high = -Infinity;
-    for (const {point} of hits) {
+    for (const { point } of hits) {
       low = Math.min(low, point[k]);
       high = Math.max(high, point[k]);
     }
@@ -76,7 +78,7 @@ function extent(rays) {
 }
 
 function endOf(ray, reach) {
-  const {node} = ray;
+  const { node } = ray;
   if (node.hit) return node.hit.point;
   if (node.kind === 'shadow') return add(node.origin, times(node.direction, node.light_distance));
   return add(node.origin, times(node.direction, isCut(ray) ? 0.15 * reach : 0.5 * reach));
@@ -92,7 +94,11 @@ export const columns = [
   ['angles', 'Angles', 'of incidence and of refraction, from the normal'],
   ['reflectance', 'R (s, p)', 'share of the light that is reflected: unpolarised, and of each polarisation'],
   ['path', 'Path', 'length of the ray up to there'],
-  ['transmittance', 'Let through', 'share of the light that the medium does not absorb on that way; red, green, blue where they differ'],
+  [
+    'transmittance',
+    'Let through',
+    'share of the light that the medium does not absorb on that way; red, green, blue where they differ',
+  ],
   ['weight', 'Weight', "with how much of it the ray's light counts in the picture"],
   ['brought', 'Brought', 'radiance that this ray itself brings to the pixel'],
   ['end', 'Ended', 'what became of it'],
@@ -104,7 +110,7 @@ const degrees = (cosine) => `${digits((Math.acos(Math.min(1, Math.max(0, cosine)
 /* One number where the channels are equal, else three. */
 const channels = (c) => (c[0] === c[1] && c[1] === c[2] ? digits(c[0], 3) : c.map((x) => digits(x, 3)).join(' · '));
 
-const medium = ({medium: name, n}) => (name === digits(n) ? name : `${name} ${digits(n)}`);
+const medium = ({ medium: name, n }) => (name === digits(n) ? name : `${name} ${digits(n)}`);
 
 function surface(hit) {
   return hit.surface_of ? `${hit.solid}: ${hit.surface} of ${hit.surface_of}` : `${hit.solid}: ${hit.surface}`;
@@ -133,11 +139,16 @@ function ofHit(hit) {
 }
 
 export function describe(ray) {
-  const {node} = ray;
+  const { node } = ray;
   return {
     kind: node.kind === 'shadow' && node.light ? `to ${node.light}` : kindWords[node.kind],
     depth: String(node.depth),
-    surface: '', media: `in ${medium(node)}`, angles: '', reflectance: '', path: '', transmittance: '',
+    surface: '',
+    media: `in ${medium(node)}`,
+    angles: '',
+    reflectance: '',
+    path: '',
+    transmittance: '',
     weight: channels(node.throughput),
     brought: node.brought.some((x) => x !== 0) ? channels(node.brought) : '',
     end: endWords[node.end] || node.end,

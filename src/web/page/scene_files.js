@@ -1,14 +1,15 @@
 /* Opening, saving and choosing files of the laboratory's folder.
- * exports: createFiles(lab, choice) -> {open(), fresh(), save(), saveAs(), pickSky(), pick(title, kind, empty) -> promise of a name or null, forObject(object) -> node or null} */
+ * exports: createFiles(lab, choice) -> {open(), fresh(), save(), saveAs(), pickSky(), pick(title, kind, empty) ->
+ * promise of a name or null, forObject(object) -> node or null} */
 
-import {ask, button, dialog, element, empty, notice, replace, unique} from './ui.js';
+import { ask, button, dialog, element, empty, notice, replace, unique } from './ui.js';
 
 const MANY = 8;
 
 export function createFiles(lab, choice) {
   const ours = new Set(); /* files that were written from here since they were opened: they have nothing more to lose */
 
-  return {open, fresh, save, saveAs, pickSky, pick, addFile, forObject};
+  return { open, fresh, save, saveAs, pickSky, pick, addFile, forObject };
 
   /* kind: a key of /api/files; actions: of the dialog, beside Cancel. */
   async function pick(title, kind, nothing, actions = []) {
@@ -22,19 +23,48 @@ export function createFiles(lab, choice) {
   }
 
   function chooser(title, names, folder, nothing, actions) {
-    const list = element('ul', {class: 'file-list'});
-    const search = element('input', {type: 'search', class: 'input', id: unique('find'), spellcheck: 'false', placeholder: 'Find'});
-    const content = element('div', {class: 'file-choice'}, element('p', {class: 'hint', text: `In the folder ${folder}`}),
-      names.length > MANY ? element('label', {class: 'visually-hidden', for: search.id, text: 'Find a file'}) : null, names.length > MANY ? search : null,
-      names.length ? list : empty(nothing));
-    const made = dialog({title, content, actions: [...actions, ['Cancel', null]]});
+    const list = element('ul', { class: 'file-list' });
+    const search = element('input', {
+      type: 'search',
+      class: 'input',
+      id: unique('find'),
+      spellcheck: 'false',
+      placeholder: 'Find',
+    });
+    const content = element(
+      'div',
+      { class: 'file-choice' },
+      element('p', { class: 'hint', text: `In the folder ${folder}` }),
+      names.length > MANY ? element('label', { class: 'visually-hidden', for: search.id, text: 'Find a file' }) : null,
+      names.length > MANY ? search : null,
+      names.length ? list : empty(nothing),
+    );
+    const made = dialog({ title, content, actions: [...actions, ['Cancel', null]] });
     made.node.classList.add('file-dialog');
     const fill = () => {
       const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
       const fitting = names.filter((name) => words.every((word) => name.toLowerCase().includes(word)));
-      replace(list, fitting.length ? fitting.map((name) => element('li', {}, element('button', {
-        type: 'button', class: 'object-item', 'aria-current': name === lab.state?.file ? 'true' : null, onclick: () => made.close(name),
-      }, ...named(name)))) : element('li', {class: 'hint', text: 'No file has that in its name.'}));
+      replace(
+        list,
+        fitting.length
+          ? fitting.map((name) =>
+              element(
+                'li',
+                {},
+                element(
+                  'button',
+                  {
+                    type: 'button',
+                    class: 'object-item',
+                    'aria-current': name === lab.state?.file ? 'true' : null,
+                    onclick: () => made.close(name),
+                  },
+                  ...named(name),
+                ),
+              ),
+            )
+          : element('li', { class: 'hint', text: 'No file has that in its name.' }),
+      );
     };
     search.addEventListener('input', fill);
     fill();
@@ -44,15 +74,27 @@ export function createFiles(lab, choice) {
 
   function named(name) {
     const at = name.lastIndexOf('/') + 1;
-    return [element('span', {class: 'object-hint', text: name.slice(0, at)}), element('span', {class: 'object-name', text: name.slice(at)})];
+    return [
+      element('span', { class: 'object-hint', text: name.slice(0, at) }),
+      element('span', { class: 'object-name', text: name.slice(at) }),
+    ];
   }
 
   /* Is there nothing to lose, or may it go? Undo brings it back as long as the laboratory runs. */
   async function mayLeave() {
     if (!lab.state || lab.state.saved) return true;
     const answer = await dialog({
-      title: 'Unsaved changes', content: element('p', {text: `${lab.state.file || 'This scene'} has changes that are in no file. Undo goes back to them only while the laboratory runs.`}),
-      actions: [['Cancel', null], ['Go on without saving', 'go', 'danger'], ['Save first', 'save', 'primary']],
+      title: 'Unsaved changes',
+      content: element('p', {
+        text:
+          `${lab.state.file || 'This scene'} has changes that are in no file. Undo goes back to them ` +
+          `only while the laboratory runs.`,
+      }),
+      actions: [
+        ['Cancel', null],
+        ['Go on without saving', 'go', 'danger'],
+        ['Save first', 'save', 'primary'],
+      ],
     }).closed;
     return answer === 'save' ? save() : answer === 'go';
   }
@@ -69,34 +111,44 @@ export function createFiles(lab, choice) {
   }
 
   async function open() {
-    if (!await mayLeave()) return;
+    if (!(await mayLeave())) return;
     const file = await pick('Open a scene', 'scenes', 'There are no scenes in the folder.');
-    if (file) await opened({file});
+    if (file) await opened({ file });
   }
 
   async function fresh() {
-    if (await mayLeave()) await opened({new: true});
+    if (await mayLeave()) await opened({ new: true });
   }
 
   /* The server asks about other files alone, and one written by hand has more in it than the scene. */
   async function overwrite(file, failed) {
-    const answer = ours.has(file) ? 'replace' : await dialog({
-      title: 'Replace the file', content: element('p', {text: `Replace ${file}? It is written anew: comments are lost.`}),
-      actions: [['Cancel', null], ['Save as …', 'as'], ['Replace', 'replace', 'danger']],
-    }).closed;
+    const answer = ours.has(file)
+      ? 'replace'
+      : await dialog({
+          title: 'Replace the file',
+          content: element('p', { text: `Replace ${file}? It is written anew: comments are lost.` }),
+          actions: [
+            ['Cancel', null],
+            ['Save as …', 'as'],
+            ['Replace', 'replace', 'danger'],
+          ],
+        }).closed;
     if (answer === 'as') return saveAs(file);
     return answer === 'replace' && write(file, false, failed);
   }
 
   async function write(file, replaceIt, failed = lab.fail) {
     try {
-      await lab.change('/api/save', replaceIt ? {file, replace: true} : {file});
+      await lab.change('/api/save', replaceIt ? { file, replace: true } : { file });
       ours.add(file);
       lab.say(`${file} is saved.`);
       return true;
     } catch (error) {
       if (error.status !== 409) return Boolean(await failed(error));
-      return await ask('Replace the file', `There is a file ${file} already. Replace it?`, 'Replace', 'danger') && write(file, true, failed);
+      return (
+        (await ask('Replace the file', `There is a file ${file} already. Replace it?`, 'Replace', 'danger')) &&
+        write(file, true, failed)
+      );
     }
   }
 
@@ -107,10 +159,28 @@ export function createFiles(lab, choice) {
   /* Where it cannot be written, the name is there to be mended. */
   async function saveAs(again, problem) {
     const proposed = typeof again === 'string' ? again : lab.state?.file || `${lab.name?.() || 'scene'}.yaml`;
-    const input = element('input', {type: 'text', class: 'input', id: unique('file'), spellcheck: 'false', autocomplete: 'off', value: proposed});
-    const field = element('div', {class: 'field wide'}, element('label', {for: input.id, text: 'Name, from the folder of the laboratory on'}),
-      element('span', {class: 'field-control'}, input));
-    const made = dialog({title: 'Save the scene as', content: problem ? [field, notice(problem.message, {kind: 'error', remedy: problem.remedy})] : field, actions: [['Cancel', null], ['Save', () => input.value.trim(), 'primary']]});
+    const input = element('input', {
+      type: 'text',
+      class: 'input',
+      id: unique('file'),
+      spellcheck: 'false',
+      autocomplete: 'off',
+      value: proposed,
+    });
+    const field = element(
+      'div',
+      { class: 'field wide' },
+      element('label', { for: input.id, text: 'Name, from the folder of the laboratory on' }),
+      element('span', { class: 'field-control' }, input),
+    );
+    const made = dialog({
+      title: 'Save the scene as',
+      content: problem ? [field, notice(problem.message, { kind: 'error', remedy: problem.remedy })] : field,
+      actions: [
+        ['Cancel', null],
+        ['Save', () => input.value.trim(), 'primary'],
+      ],
+    });
     input.addEventListener('keydown', (event) => {
       if (event.key !== 'Enter') return;
       event.preventDefault(); /* it would press the button that gets the focus back */
@@ -135,7 +205,7 @@ export function createFiles(lab, choice) {
     const name = await pick(title, kind, nothing, actions);
     if (name === null) return;
     try {
-      await lab.set(name ? {[path]: await asPath(name)} : none());
+      await lab.set(name ? { [path]: await asPath(name) } : none());
       lab.say(`${path} is ${name || 'none'}.`);
     } catch (error) {
       lab.fail(error);
@@ -145,26 +215,61 @@ export function createFiles(lab, choice) {
   function pickSky() {
     const kind = lab.param('background.kind');
     const away = kind?.value === 'picture' ? [['No picture', '']] : [];
-    return setFile('background.picture', 'Picture of the sky', 'pictures', 'There are no pictures in the folder.', away, () => {
-      const plain = kind.initial && kind.initial !== 'picture' ? kind.initial : kind.choices.find((word) => word !== 'picture');
-      return {'background.kind': plain};
-    });
+    return setFile(
+      'background.picture',
+      'Picture of the sky',
+      'pictures',
+      'There are no pictures in the folder.',
+      away,
+      () => {
+        const plain =
+          kind.initial && kind.initial !== 'picture' ? kind.initial : kind.choices.find((word) => word !== 'picture');
+        return { 'background.kind': plain };
+      },
+    );
   }
 
   async function addFile(kind, title) {
-    const file = await pick(title, kind === 'model' ? 'models' : 'pictures', kind === 'model' ? 'There are no models in the folder.' : 'There are no pictures in the folder.');
-    if (file) await choice.add({kind, file});
+    const file = await pick(
+      title,
+      kind === 'model' ? 'models' : 'pictures',
+      kind === 'model' ? 'There are no models in the folder.' : 'There are no pictures in the folder.',
+    );
+    if (file) await choice.add({ kind, file });
   }
 
   /* Buttons for what an object has of files. */
   function forObject(object) {
     const of = (name) => lab.param(`${object.name}.${name}`);
     const parts = [];
-    if (object.kind === 'texture') parts.push(['Choose a picture …', () => setFile(`${object.name}.file`, 'Picture', 'pictures', 'There are no pictures in the folder.')]);
-    if (object.kind === 'mesh' && of('file')) parts.push(['Choose a model …', () => setFile(`${object.name}.file`, 'Model', 'models', 'There are no models in the folder.')]);
+    if (object.kind === 'texture')
+      parts.push([
+        'Choose a picture …',
+        () => setFile(`${object.name}.file`, 'Picture', 'pictures', 'There are no pictures in the folder.'),
+      ]);
+    if (object.kind === 'mesh' && of('file'))
+      parts.push([
+        'Choose a model …',
+        () => setFile(`${object.name}.file`, 'Model', 'models', 'There are no models in the folder.'),
+      ]);
     if (object.kind === 'mesh' && of('script')) {
-      parts.push(['Choose what hands do …', () => setFile(`${object.name}.script`, 'What hands do with it', 'scripts', 'There are no scripts of hands in the folder.')]);
+      parts.push([
+        'Choose what hands do …',
+        () =>
+          setFile(
+            `${object.name}.script`,
+            'What hands do with it',
+            'scripts',
+            'There are no scripts of hands in the folder.',
+          ),
+      ]);
     }
-    return parts.length ? element('div', {class: 'buttons'}, parts.map(([label, act]) => button(label, act, {icon: 'folder', small: true}))) : null;
+    return parts.length
+      ? element(
+          'div',
+          { class: 'buttons' },
+          parts.map(([label, act]) => button(label, act, { icon: 'folder', small: true })),
+        )
+      : null;
   }
 }

@@ -1,33 +1,43 @@
-/* The tool Grab: takes hold of the slime in the picture and draws it, with as many pointers as there are, or with the keys.
+/* The tool Grab: takes hold of the slime in the picture and draws it, with as many pointers as there are, or with the
+ * keys.
  * exports: createGrab(lab) */
 
-import {svg} from './ui.js';
-import {createHands} from './slime_hands.js';
+import { svg } from './ui.js';
+import { createHands } from './slime_hands.js';
 
 const KEYS = 'keys';
-const STEP = 0.02;          /* of the picture's width, for a key */
-const DEEP = 0.0015;        /* of the distance that is looked at, for a CSS pixel of the wheel */
-const DEEP_KEY = 0.04;      /* of it, for a key */
+const STEP = 0.02; /* of the picture's width, for a key */
+const DEEP = 0.0015; /* of the distance that is looked at, for a CSS pixel of the wheel */
+const DEEP_KEY = 0.04; /* of it, for a key */
 
 export function createGrab(lab) {
-  const {view} = lab;
+  const { view } = lab;
   const marks = view.layer('grab');
   const hands = createHands(lab, draw);
-  let cross = null;           /* of the keys, in picture pixels */
+  let cross = null; /* of the keys, in picture pixels */
   const tool = {
-    label: 'Grab', icon: 'hand', order: 30, cursor: 'grab',
-    hint: 'Drag the slime; wheel while dragging: along the view. Keys: arrows, Enter to take hold and let go, Page Up and Page Down along the view',
+    label: 'Grab',
+    icon: 'hand',
+    order: 30,
+    cursor: 'grab',
+    hint:
+      'Drag the slime; wheel while dragging: along the view. Keys: arrows, Enter to take hold and ' +
+      'let go, Page Up and Page Down along the view',
     chosen: () => lab.panels?.use('slime'),
     dropped() {
       hands.dropAll();
       cross = null;
       draw();
     },
-    down, hover, wheel, key,
+    down,
+    hover,
+    wheel,
+    key,
   };
   view.tool('grab', tool);
   tool.segment.hidden = true;
-  for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) view.stage.addEventListener(name, (event) => hands.drop(event.pointerId));
+  for (const name of ['pointerup', 'pointercancel', 'lostpointercapture'])
+    view.stage.addEventListener(name, (event) => hands.drop(event.pointerId));
   view.stage.addEventListener('blur', () => {
     hands.drop(KEYS);
     cross = null;
@@ -70,8 +80,8 @@ export function createGrab(lab) {
 
   function key(event) {
     const far = (event.shiftKey ? 0.2 : 1) * STEP * view.width;
-    const way = {ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowUp: [0, -far], ArrowDown: [0, far]}[event.key];
-    const deep = {PageUp: DEEP_KEY, PageDown: -DEEP_KEY}[event.key];
+    const way = { ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowUp: [0, -far], ArrowDown: [0, far] }[event.key];
+    const deep = { PageUp: DEEP_KEY, PageDown: -DEEP_KEY }[event.key];
     const hand = hands.get(KEYS);
     if (way) step(hand, way);
     else if (deep && hand) push(hand, deep);
@@ -83,13 +93,13 @@ export function createGrab(lab) {
   }
 
   function step(hand, [dx, dy]) {
-    cross ??= {x: view.width / 2, y: view.height / 2};
-    cross = {x: Math.min(view.width, Math.max(0, cross.x + dx)), y: Math.min(view.height, Math.max(0, cross.y + dy))};
+    cross ??= { x: view.width / 2, y: view.height / 2 };
+    cross = { x: Math.min(view.width, Math.max(0, cross.x + dx)), y: Math.min(view.height, Math.max(0, cross.y + dy)) };
     hand?.move(cross.x, cross.y);
   }
 
   function toggle(hand) {
-    cross ??= {x: view.width / 2, y: view.height / 2};
+    cross ??= { x: view.width / 2, y: view.height / 2 };
     if (hand) hands.drop(KEYS);
     else hands.take(KEYS, cross.x, cross.y);
     lab.say(hand ? 'The hand let go' : 'A hand takes hold');
@@ -97,7 +107,7 @@ export function createGrab(lab) {
 
   /* Twice: a dark edge under a bright line, to be seen on any picture. */
   function both(tag, attributes) {
-    return [svg(tag, {...attributes, class: 'grab-edge'}), svg(tag, {...attributes, class: 'grab-mark'})];
+    return [svg(tag, { ...attributes, class: 'grab-edge' }), svg(tag, { ...attributes, class: 'grab-mark' })];
   }
 
   function draw() {
@@ -105,12 +115,22 @@ export function createGrab(lab) {
     const shapes = [];
     for (const hand of hands.all()) {
       const from = hand.where && view.project(hand.where);
-      if (from) shapes.push(...both('line', {x1: from.x, y1: from.y, x2: hand.x, y2: hand.y}), ...both('circle', {cx: from.x, cy: from.y, r: 3 * px}));
-      shapes.push(...both('circle', {cx: hand.x, cy: hand.y, r: 9 * px}));
+      if (from)
+        shapes.push(
+          ...both('line', { x1: from.x, y1: from.y, x2: hand.x, y2: hand.y }),
+          ...both('circle', { cx: from.x, cy: from.y, r: 3 * px }),
+        );
+      shapes.push(...both('circle', { cx: hand.x, cy: hand.y, r: 9 * px }));
     }
     if (cross) {
-      const {x, y} = cross;
-      shapes.push(...both('path', {d: `M${x - 16 * px} ${y}h${11 * px}m${10 * px} 0h${11 * px}M${x} ${y - 16 * px}v${11 * px}m0 ${10 * px}v${11 * px}`}));
+      const { x, y } = cross;
+      shapes.push(
+        ...both('path', {
+          d:
+            `M${x - 16 * px} ${y}h${11 * px}m${10 * px} 0h${11 * px}M${x} ${y - 16 * px}v${11 * px}m0 ` +
+            `${10 * px}v${11 * px}`,
+        }),
+      );
     }
     marks.replaceChildren(...shapes);
   }

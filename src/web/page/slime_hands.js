@@ -1,14 +1,16 @@
-/* Hands that hold the slime, one for each pointer or key that took hold of it; what they are told goes to the server one after the other, the newest
+/* Hands that hold the slime, one for each pointer or key that took hold of it; what they are told goes to the server
+ * one after the other, the newest
  * place in place of those that wait.
  * exports: createHands(lab, changed) -> {all(), take(key, x, y), get(key), drop(key), dropAll()}
- *   take: places in pixels of the full picture; a hand is {x, y, depth, where ([x,y,z] where it took hold, null before), move(x, y, depth)}
+ *   take: places in pixels of the full picture; a hand is {x, y, depth, where ([x,y,z] where it took hold, null
+ *   before), move(x, y, depth)}
  *   changed() is called when a hand came, moved or went */
 
 /* What is no fault of who drags: what was held began anew, or the page was left. */
 const gone = (error) => error.status === 409 || error.status === 404 || error.status === 0 || error.status === 401;
 
 async function playing(lab) {
-  if (!lab.slime?.on) await lab.post('/api/slime', {do: 'play'});
+  if (!lab.slime?.on) await lab.post('/api/slime', { do: 'play' });
 }
 
 export function createHands(lab, changed) {
@@ -17,13 +19,13 @@ export function createHands(lab, changed) {
   addEventListener('pagehide', () => {
     for (const hand of hands.values()) hand.leave();
   });
-  return {all: () => [...hands.values()], take, get: (key) => hands.get(key), drop, dropAll};
+  return { all: () => [...hands.values()], take, get: (key) => hands.get(key), drop, dropAll };
 
   function take(key, x, y) {
     drop(key);
-    const hand = {x, y, depth: 0, where: null, number: null, held: true, dirty: false, sending: true};
+    const hand = { x, y, depth: 0, where: null, number: null, held: true, dirty: false, sending: true };
     hand.move = (nextX, nextY, depth) => {
-      Object.assign(hand, {x: nextX, y: nextY, depth: depth ?? hand.depth, dirty: true});
+      Object.assign(hand, { x: nextX, y: nextY, depth: depth ?? hand.depth, dirty: true });
       changed();
       send(hand);
     };
@@ -31,7 +33,10 @@ export function createHands(lab, changed) {
     hand.leave = () => {
       if (hand.number !== null) {
         fetch('/api/slime/release', {
-          method: 'POST', keepalive: true, headers: {'Content-Type': 'application/json'}, body: JSON.stringify({hand: hand.number}),
+          method: 'POST',
+          keepalive: true,
+          headers: { 'Content-Type': 'application/json' },
+          body: JSON.stringify({ hand: hand.number }),
         }).catch(() => undefined);
       }
     };
@@ -44,7 +49,7 @@ export function createHands(lab, changed) {
   async function hold(key, hand, x, y) {
     try {
       await playing(lab);
-      const reply = await lab.post('/api/slime/grab', {x, y});
+      const reply = await lab.post('/api/slime/grab', { x, y });
       hand.number = reply.hand;
       hand.where = reply.where;
       changed();
@@ -65,7 +70,7 @@ export function createHands(lab, changed) {
     try {
       while (hand.dirty && hand.held) {
         hand.dirty = false;
-        await lab.post('/api/slime/move', {hand: hand.number, x: hand.x, y: hand.y, depth: hand.depth});
+        await lab.post('/api/slime/move', { hand: hand.number, x: hand.x, y: hand.y, depth: hand.depth });
       }
     } catch (error) {
       for (const [key, one] of hands) if (one === hand) forget(key, hand);
@@ -84,9 +89,9 @@ export function createHands(lab, changed) {
 
   function release(hand) {
     if (hand.number === null) return;
-    const {number} = hand;
+    const { number } = hand;
     hand.number = null;
-    lab.post('/api/slime/release', {hand: number}).catch((error) => {
+    lab.post('/api/slime/release', { hand: number }).catch((error) => {
       if (!gone(error)) lab.fail(error);
     });
   }

@@ -1,27 +1,50 @@
 /* Sliders for how a slime looks and how it is made.
- * exports: createSliders(lab, solid, mesh) -> {looks: [nodes], body: [nodes], update()}; names of the solid that shows it and of its mesh */
+ * exports: createSliders(lab, solid, mesh) -> {looks: [nodes], body: [nodes], update()}; names of the solid that shows
+ * it and of its mesh */
 
-import {slider, element, gesture, toByte, toLinear, unique} from './ui.js';
+import { slider, element, gesture, toByte, toLinear, unique } from './ui.js';
 
-const CHANNELS = [['red', 0], ['green', 1], ['blue', 2]];
+const CHANNELS = [
+  ['red', 0],
+  ['green', 1],
+  ['blue', 2],
+];
 
 /* of: 'solid' or 'mesh'; at: which element of a list; sign: -1 shows the negative */
 const looks = [
-  {heading: 'Colour', of: 'solid', name: 'color', channels: true, min: 0, max: 1, step: 0.005},
-  {label: 'Diffuse share', of: 'solid', name: 'diffuse', min: 0, max: 1, step: 0.005, hint: 'how much of the colour is seen; clear slime is coloured by what it absorbs'},
-  {label: 'Transmission', of: 'solid', name: 'transparency', min: 0, max: 1, step: 0.005},
-  {label: 'Index', of: 'solid', name: 'ior', min: 1, max: 2.5, step: 0.005},
-  {heading: 'Absorption', of: 'solid', name: 'absorb_per_m', channels: true, tint: true, min: 0, max: 100, log: true, unit: '1/m'},
+  { heading: 'Colour', of: 'solid', name: 'color', channels: true, min: 0, max: 1, step: 0.005 },
+  {
+    label: 'Diffuse share',
+    of: 'solid',
+    name: 'diffuse',
+    min: 0,
+    max: 1,
+    step: 0.005,
+    hint: 'how much of the colour is seen; clear slime is coloured by what it absorbs',
+  },
+  { label: 'Transmission', of: 'solid', name: 'transparency', min: 0, max: 1, step: 0.005 },
+  { label: 'Index', of: 'solid', name: 'ior', min: 1, max: 2.5, step: 0.005 },
+  {
+    heading: 'Absorption',
+    of: 'solid',
+    name: 'absorb_per_m',
+    channels: true,
+    tint: true,
+    min: 0,
+    max: 100,
+    log: true,
+    unit: '1/m',
+  },
 ];
 const body = [
-  {label: 'Stiffness', of: 'mesh', name: 'stiffness', min: 0, max: 200, log: true, unit: 'N/u'},
-  {label: 'Damping', of: 'mesh', name: 'damping', min: 0, max: 2, log: true, unit: 'N s/u'},
-  {label: 'Gravity', of: 'mesh', name: 'gravity', at: 1, sign: -1, min: 0, max: 30, step: 0.05, unit: 'u/s²'},
-  {label: 'Pressure', of: 'mesh', name: 'pressure', min: 0, max: 5000, log: true, unit: 'N/u²'},
+  { label: 'Stiffness', of: 'mesh', name: 'stiffness', min: 0, max: 200, log: true, unit: 'N/u' },
+  { label: 'Damping', of: 'mesh', name: 'damping', min: 0, max: 2, log: true, unit: 'N s/u' },
+  { label: 'Gravity', of: 'mesh', name: 'gravity', at: 1, sign: -1, min: 0, max: 30, step: 0.05, unit: 'u/s²' },
+  { label: 'Pressure', of: 'mesh', name: 'pressure', min: 0, max: 5000, log: true, unit: 'N/u²' },
 ];
 
 function create(lab, path, entry, label, at) {
-  const {min, max, step, log, unit, hint, sign = 1} = entry;
+  const { min, max, step, log, unit, hint, sign = 1 } = entry;
   const read = () => {
     const value = lab.param(path)?.value;
     const one = at === undefined ? value : value?.[at];
@@ -31,45 +54,66 @@ function create(lab, path, entry, label, at) {
     const whole = lab.param(path)?.value;
     const value = at === undefined ? sign * x : whole.map((old, index) => (index === at ? sign * x : old));
     if (at !== undefined) lab.param(path).value = value; /* the next channel's slider may come before the scene does */
-    lab.set({[path]: value}, gesture).catch(lab.fail);
+    lab.set({ [path]: value }, gesture).catch(lab.fail);
   };
-  const one = slider({label, min, max, step, log, unit, value: read(), oninput: send});
-  if (hint) one.node.append(element('span', {class: 'hint', text: hint}));
-  return {node: one.node, update: () => one.set(read())};
+  const one = slider({ label, min, max, step, log, unit, value: read(), oninput: send });
+  if (hint) one.node.append(element('span', { class: 'hint', text: hint }));
+  return { node: one.node, update: () => one.set(read()) };
 }
 
-const DARKEST = 1e-3;      /* what is left of a channel that the chosen colour lacks */
+const DARKEST = 1e-3; /* what is left of a channel that the chosen colour lacks */
 
 /* The absorption as the colour of white light behind 1 m of it, by Beer and Lambert. */
 function tint(lab, path) {
-  const input = element('input', {type: 'color', id: unique('tint')});
+  const input = element('input', { type: 'color', id: unique('tint') });
   let mine = null;
   const update = () => {
     const value = lab.param(path)?.value;
-    if (!mine && value) input.value = `#${value.map((a) => toByte(Math.exp(-a)).toString(16).padStart(2, '0')).join('')}`;
+    if (!mine && value)
+      input.value = `#${value.map((a) => toByte(Math.exp(-a)).toString(16).padStart(2, '0')).join('')}`;
   };
   input.addEventListener('input', () => {
     mine ??= gesture('tint');
     const left = [1, 3, 5].map((at) => Math.max(DARKEST, toLinear(parseInt(input.value.slice(at, at + 2), 16))));
-    lab.set({[path]: left.map((share) => Math.max(0, Number((-Math.log(share)).toPrecision(4))))}, mine).catch(lab.fail);
+    lab
+      .set({ [path]: left.map((share) => Math.max(0, Number((-Math.log(share)).toPrecision(4)))) }, mine)
+      .catch(lab.fail);
   });
-  input.addEventListener('change', () => { mine = null; });
+  input.addEventListener('change', () => {
+    mine = null;
+  });
   update();
-  const node = element('div', {class: 'field'}, element('label', {for: input.id, text: 'Tint'}),
-    element('span', {class: 'field-control'}, input, element('span', {class: 'hint', text: 'white light behind 1 m of it'})));
-  return {node, update};
+  const node = element(
+    'div',
+    { class: 'field' },
+    element('label', { for: input.id, text: 'Tint' }),
+    element(
+      'span',
+      { class: 'field-control' },
+      input,
+      element('span', { class: 'hint', text: 'white light behind 1 m of it' }),
+    ),
+  );
+  return { node, update };
 }
 
 function channels(lab, path, entry) {
   const three = CHANNELS.map(([name, at]) => {
     const one = create(lab, path, entry, `${entry.heading}, ${name}`, at);
-    one.node.querySelector('label').replaceChildren(element('span', {class: `channel channel-${name}`, 'aria-hidden': 'true'}), name);
+    one.node
+      .querySelector('label')
+      .replaceChildren(element('span', { class: `channel channel-${name}`, 'aria-hidden': 'true' }), name);
     one.node.querySelector('.range').setAttribute('aria-label', `${entry.heading}, ${name}`);
     return one;
   });
   const all = entry.tint ? [tint(lab, path), ...three] : three;
-  const node = element('fieldset', {class: 'slime-channels'}, element('legend', {text: entry.heading}), all.map((one) => one.node));
-  return {node, update: () => all.forEach((one) => one.update())};
+  const node = element(
+    'fieldset',
+    { class: 'slime-channels' },
+    element('legend', { text: entry.heading }),
+    all.map((one) => one.node),
+  );
+  return { node, update: () => all.forEach((one) => one.update()) };
 }
 
 export function createSliders(lab, solid, mesh) {
@@ -78,9 +122,10 @@ export function createSliders(lab, solid, mesh) {
     if (!lab.param(path)) return [];
     return [entry.channels ? channels(lab, path, entry) : create(lab, path, entry, entry.label, entry.at)];
   };
-  const made = {looks: looks.flatMap(make), body: body.flatMap(make)};
+  const made = { looks: looks.flatMap(make), body: body.flatMap(make) };
   return {
-    looks: made.looks.map((one) => one.node), body: made.body.map((one) => one.node),
+    looks: made.looks.map((one) => one.node),
+    body: made.body.map((one) => one.node),
     update: () => [...made.looks, ...made.body].forEach((one) => one.update()),
   };
 }

@@ -1,13 +1,13 @@
 /* The line at the bottom: what is shown, what it cost, and the last message; and the live region for screen readers.
  * exports: createStatus(root, live, lab); sets lab.say and lab.fail */
 
-import {button, copy, count, digits, element, icon, replace, seconds} from './ui.js';
+import { button, copy, count, digits, element, icon, replace, seconds } from './ui.js';
 
 const LINGER_MS = 6000;
 
 export function createStatus(root, live, lab) {
-  const facts = element('div', {class: 'status-facts'});
-  const message = element('div', {class: 'status-message', hidden: true});
+  const facts = element('div', { class: 'status-facts' });
+  const message = element('div', { class: 'status-message', hidden: true });
   let timer = 0;
   let frame = 0;
   root.append(facts, message);
@@ -19,13 +19,23 @@ export function createStatus(root, live, lab) {
 
   function tell(words, kind, remedy) {
     clearTimeout(timer);
-    replace(message, icon(kind === 'error' ? 'warning' : 'info'), element('span', {class: 'status-words', title: [words, remedy].filter(Boolean).join('. ')},
-      element('strong', {text: words}), remedy ? ` – ${remedy}` : null),
-    button('Dismiss', clear, {icon: 'close', bare: true, kind: 'quiet', small: true}));
+    replace(
+      message,
+      icon(kind === 'error' ? 'warning' : 'info'),
+      element(
+        'span',
+        { class: 'status-words', title: [words, remedy].filter(Boolean).join('. ') },
+        element('strong', { text: words }),
+        remedy ? ` – ${remedy}` : null,
+      ),
+      button('Dismiss', clear, { icon: 'close', bare: true, kind: 'quiet', small: true }),
+    );
     message.className = `status-message ${kind}`;
     message.hidden = false;
     live.textContent = '';
-    requestAnimationFrame(() => { live.textContent = [words, remedy].filter(Boolean).join('. '); });
+    requestAnimationFrame(() => {
+      live.textContent = [words, remedy].filter(Boolean).join('. ');
+    });
     timer = setTimeout(clear, kind === 'error' ? 3 * LINGER_MS : LINGER_MS);
   }
   lab.say = (words, remedy) => tell(words, 'info', remedy);
@@ -39,40 +49,77 @@ export function createStatus(root, live, lab) {
     frame = 0;
     replace(facts, items(lab));
   };
-  const soon = () => { frame ||= requestAnimationFrame(draw); };
+  const soon = () => {
+    frame ||= requestAnimationFrame(draw);
+  };
   for (const name of ['picture', 'state', 'connection', 'news', 'notes']) lab.on(name, soon);
   draw();
 }
 
-const fact = (name, value, title) => element('span', {class: 'fact', title}, element('span', {class: 'fact-name', text: name}),
-  element('span', {class: 'fact-value'}, value));
+const fact = (name, value, title) =>
+  element(
+    'span',
+    { class: 'fact', title },
+    element('span', { class: 'fact-name', text: name }),
+    element('span', { class: 'fact-value' }, value),
+  );
 
 function items(lab) {
   const noted = lab.notes?.count() || 0;
-  const {picture, state} = lab;
-  if (!picture) return [element('span', {class: 'fact', text: lab.connected === 'open' ? 'No picture yet' : 'Connecting …'})];
-  const {rays, wall_s: wall} = picture;
+  const { picture, state } = lab;
+  if (!picture)
+    return [element('span', { class: 'fact', text: lab.connected === 'open' ? 'No picture yet' : 'Connecting …' })];
+  const { rays, wall_s: wall } = picture;
   const behind = lab.wanted > picture.generation || !picture.final;
   return [
-    element('span', {class: behind ? 'lamp busy' : 'lamp', role: 'img', 'aria-label': behind ? 'rendering' : 'final', title: behind ? 'rendering' : 'final picture'}),
+    element('span', {
+      class: behind ? 'lamp busy' : 'lamp',
+      role: 'img',
+      'aria-label': behind ? 'rendering' : 'final',
+      title: behind ? 'rendering' : 'final picture',
+    }),
     noted ? notesButton(noted, lab) : null,
     fact('pass', picture.passes ? `${picture.pass} of ${picture.passes}` : String(picture.pass)),
-    fact('size', picture.width === picture.full_width ? `${picture.full_width} × ${picture.full_height}`
-      : `${picture.width} × ${picture.height} of ${picture.full_width} × ${picture.full_height}`),
+    fact(
+      'size',
+      picture.width === picture.full_width
+        ? `${picture.full_width} × ${picture.full_height}`
+        : `${picture.width} × ${picture.height} of ${picture.full_width} × ${picture.full_height}`,
+    ),
     fact('time', seconds(wall), 'wall time of the pass'),
     fact('rays', count(rays)),
     rays && wall ? fact('rays/s', count(rays / wall)) : null,
     Number.isFinite(picture.noise) ? fact('noise', digits(picture.noise, 3), 'standard error of random paths') : null,
     picture.film_hash ? fact('film', hash(picture.film_hash, lab), 'hash of the film; click to copy') : null,
-    fact('generation', String(picture.generation), state && state.generation > picture.generation ? `the scene is at ${state.generation}` : null),
+    fact(
+      'generation',
+      String(picture.generation),
+      state && state.generation > picture.generation ? `the scene is at ${state.generation}` : null,
+    ),
   ];
 }
 
-const notesButton = (noted, lab) => element('button', {
-  type: 'button', class: 'fact notes-button', title: 'what looks wrong in the scene', onclick: () => lab.notes.show(),
-}, icon('warning'), element('span', {text: noted === 1 ? '1 note' : `${noted} notes`}));
+const notesButton = (noted, lab) =>
+  element(
+    'button',
+    {
+      type: 'button',
+      class: 'fact notes-button',
+      title: 'what looks wrong in the scene',
+      onclick: () => lab.notes.show(),
+    },
+    icon('warning'),
+    element('span', { text: noted === 1 ? '1 note' : `${noted} notes` }),
+  );
 
-const hash = (words, lab) => element('button', {
-  type: 'button', class: 'hash', 'aria-label': `copy film hash ${words}`,
-  onclick: () => copy(words).then(() => lab.say('The film hash is on the clipboard.'), lab.fail),
-}, words);
+const hash = (words, lab) =>
+  element(
+    'button',
+    {
+      type: 'button',
+      class: 'hash',
+      'aria-label': `copy film hash ${words}`,
+      onclick: () => copy(words).then(() => lab.say('The film hash is on the clipboard.'), lab.fail),
+    },
+    words,
+  );

@@ -5,24 +5,28 @@
  *   lab.state, lab.scene, lab.picture, lab.slime, lab.study    what came last; null before
  *   lab.wanted                          the newest generation that is known of: older pictures are not shown
  *   lab.connected                       'opening', 'open', 'lost' or 'refused'
- *   lab.on(name, f) -> end()            names: state, scene, picture (a pass was drawn), news (a pass is there), slime, study, connection,
- *                                       afresh (another server: what was known is void), view (the picture's place changed), tool, panel (one was chosen)
+ *   lab.on(name, f) -> end()            names: state, scene, picture (a pass was drawn), news (a pass is there), slime,
+ *                                       study, connection,
+ *                                       afresh (another server: what was known is void), view (the picture's place
+ *                                       changed), tool, panel (one was chosen)
  *   lab.emit(name, value)
  *   lab.param(path)                     the row of that parameter; undefined: the scene has none
  *   lab.object(name)                    the object of that name; undefined
- *   lab.set(values, gesture)            {path: value}; promise of the reply. In order; of one gesture only the newest waits
- *   lab.change(path, body, {gesture, merge})   any other POST that changes the scene, in the same order as set; merge(waiting, body) -> body joins
+ *   lab.set(values, gesture)            {path: value}; promise of the reply. In order; of one gesture only the newest
+ *                                       waits
+ *   lab.change(path, body, {gesture, merge})   any other POST that changes the scene, in the same order as set;
+ *                                              merge(waiting, body) -> body joins
  *                                       two of one gesture and path (default: the newer takes the place of the older)
  *   lab.refresh()                       asks for state and scene anew
  *   lab.start()                         opens the stream of events
  *   lab.say(text, remedy), lab.fail(error), lab.notes      set by main.js */
 
-import {createApi} from './api.js';
+import { createApi } from './api.js';
 
 const RETRY_MS = 1000;
 const STRANGER_RETRY_MS = 5000;
 const PULSE_MS = 10000;
-const SCENE_MS = 150;      /* the scene is fetched no more often */
+const SCENE_MS = 150; /* the scene is fetched no more often */
 const EVENTS = ['state', 'picture', 'slime', 'study'];
 
 function createEmitter() {
@@ -64,15 +68,15 @@ function createQueue(post) {
     busy = false;
   }
 
-  return (path, payload, {gesture, merge} = {}) => {
+  return (path, payload, { gesture, merge } = {}) => {
     const last = waiting[waiting.length - 1];
     if (last && gesture && last.gesture === gesture && last.path === path) {
       last.payload = merge ? merge(last.payload, payload) : payload;
       return last.promise;
     }
-    const entry = {path, payload, gesture};
-    entry.body = () => (gesture ? {...entry.payload, gesture} : entry.payload);
-    entry.promise = new Promise((resolve, reject) => Object.assign(entry, {resolve, reject}));
+    const entry = { path, payload, gesture };
+    entry.body = () => (gesture ? { ...entry.payload, gesture } : entry.payload);
+    entry.promise = new Promise((resolve, reject) => Object.assign(entry, { resolve, reject }));
     waiting.push(entry);
     work();
     return entry.promise;
@@ -80,7 +84,7 @@ function createQueue(post) {
 }
 
 export function createLab() {
-  const {on, emit} = createEmitter();
+  const { on, emit } = createEmitter();
   let rows = new Map();
   let objects = new Map();
   let stream = null;
@@ -97,9 +101,17 @@ export function createLab() {
   });
 
   const lab = {
-    state: null, scene: null, picture: null, news: null, slime: null, study: null,
-    wanted: 0, connected: 'opening',
-    ...api, on, emit,
+    state: null,
+    scene: null,
+    picture: null,
+    news: null,
+    slime: null,
+    study: null,
+    wanted: 0,
+    connected: 'opening',
+    ...api,
+    on,
+    emit,
     param: (path) => rows.get(path),
     object: (name) => objects.get(name),
     say: (text) => console.info(text),
@@ -109,13 +121,21 @@ export function createLab() {
   };
   setInterval(pulse, PULSE_MS);
   lab.change = createQueue(api.post);
-  lab.set = (values, gesture) => lab.change('/api/set', {set: values}, {
-    gesture, merge: (waiting, newer) => ({set: {...waiting.set, ...newer.set}}),
-  }).then((reply) => {
-    const [first] = reply.notes || []; /* what was set and does nothing */
-    if (first) lab.say(`Note: ${first.place}: ${first.text}`, first.remedy);
-    return reply;
-  });
+  lab.set = (values, gesture) =>
+    lab
+      .change(
+        '/api/set',
+        { set: values },
+        {
+          gesture,
+          merge: (waiting, newer) => ({ set: { ...waiting.set, ...newer.set } }),
+        },
+      )
+      .then((reply) => {
+        const [first] = reply.notes || []; /* what was set and does nothing */
+        if (first) lab.say(`Note: ${first.place}: ${first.text}`, first.remedy);
+        return reply;
+      });
   return lab;
 
   function want(generation) {
@@ -156,7 +176,10 @@ export function createLab() {
 
   /* A connection that is cut on the way may stay open at this end. */
   function pulse() {
-    if (lab.connected === 'open') api.get('/api/state', PULSE_MS).catch((error) => { if (error.status === 0) lose('lost'); });
+    if (lab.connected === 'open')
+      api.get('/api/state', PULSE_MS).catch((error) => {
+        if (error.status === 0) lose('lost');
+      });
   }
 
   /* The stream does not say why it failed; a request does. */
@@ -171,7 +194,7 @@ export function createLab() {
       const state = await api.get('/api/state');
       if (stream !== mine) return;
       if (!lab.state || state.generation < lab.state.generation || lab.connected !== 'open') {
-        Object.assign(lab, {wanted: 0, news: null});
+        Object.assign(lab, { wanted: 0, news: null });
         stale = true;
         emit('afresh', null);
       }

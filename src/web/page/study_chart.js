@@ -1,9 +1,9 @@
 /* A chart of a study's cells with its choices (what against what, logarithmic or not) and the same as a table.
  * exports: createChart({caption, id}) -> {node, show({title, cells(quantity), quantities, paths, mark, note})} */
 
-import {check, choice, digits, element, empty, group, replace, table} from './ui.js';
-import {plot} from './plot.js';
-import {axesFor, seriesOf} from './study_data.js';
+import { check, choice, digits, element, empty, group, replace, table } from './ui.js';
+import { plot } from './plot.js';
+import { axesFor, seriesOf } from './study_data.js';
 
 const withUnit = (name, unit) => (unit ? `${name} / ${unit}` : name);
 const spread = (values) => {
@@ -12,24 +12,39 @@ const spread = (values) => {
 };
 
 function numbers(series, x, quantity, caption) {
-  const rows = series.flatMap(({name, points}) => points.map((point) => [point.text || '–', name || '–', digits(point.y, 5), digits(point.low, 5), digits(point.high, 5)]));
-  const right = (label) => ({label, numeric: true});
-  return table({caption, columns: [x || 'cell', 'line', right(withUnit(quantity.label, quantity.unit)), right('low'), right('high')], rows});
+  const rows = series.flatMap(({ name, points }) =>
+    points.map((point) => [
+      point.text || '–',
+      name || '–',
+      digits(point.y, 5),
+      digits(point.low, 5),
+      digits(point.high, 5),
+    ]),
+  );
+  const right = (label) => ({ label, numeric: true });
+  return table({
+    caption,
+    columns: [x || 'cell', 'line', right(withUnit(quantity.label, quantity.unit)), right('low'), right('high')],
+    rows,
+  });
 }
 
-export function createChart({caption, id}) {
-  const chosen = {quantity: null, x: null, logX: null, logY: null};
-  const bar = element('div', {class: 'study-choices'});
-  const place = element('figure', {class: 'study-plot', tabindex: '0', 'aria-label': caption});
-  const below = element('div', {class: 'study-numbers'});
-  const alternative = group('The figure as a table', {open: false, id}, below);
-  const node = element('div', {class: 'study-chart'}, bar, place, alternative);
+export function createChart({ caption, id }) {
+  const chosen = { quantity: null, x: null, logX: null, logY: null };
+  const bar = element('div', { class: 'study-choices' });
+  const place = element('figure', { class: 'study-plot', tabindex: '0', 'aria-label': caption });
+  const below = element('div', { class: 'study-numbers' });
+  const alternative = group('The figure as a table', { open: false, id }, below);
+  const node = element('div', { class: 'study-chart' }, bar, place, alternative);
   let what = null;
   let barOf = '';
-  return {node, show(next) {
-    what = next;
-    draw();
-  }};
+  return {
+    node,
+    show(next) {
+      what = next;
+      draw();
+    },
+  };
 
   function pick(key, value) {
     chosen[key] = value;
@@ -41,41 +56,73 @@ export function createChart({caption, id}) {
 
   /* The choices are made anew only when they change: a list that is open must not go away as rows come. */
   function choices(quantity, x, axes, log) {
-    const now = JSON.stringify([what.quantities.map(({key}) => key), axes, quantity.key, x, log]);
+    const now = JSON.stringify([what.quantities.map(({ key }) => key), axes, quantity.key, x, log]);
     if (now === barOf) return;
     const focused = [...bar.querySelectorAll('select, input')].indexOf(document.activeElement);
     barOf = now;
-    replace(bar,
-      what.quantities.length > 1 ? choice({label: 'Quantity', choices: what.quantities.map(({key, label}) => [key, label]), value: quantity.key,
-        onchange: (value) => pick('quantity', value)}).node : null,
-      axes.length > 1 ? choice({label: 'Against', choices: axes.map(({path}) => path), value: x, onchange: (value) => pick('x', value)}).node : null,
-      check('Logarithmic across', log.x, (on) => pick('logX', on)).node, check('Logarithmic up', log.y, (on) => pick('logY', on)).node);
+    replace(
+      bar,
+      what.quantities.length > 1
+        ? choice({
+            label: 'Quantity',
+            choices: what.quantities.map(({ key, label }) => [key, label]),
+            value: quantity.key,
+            onchange: (value) => pick('quantity', value),
+          }).node
+        : null,
+      axes.length > 1
+        ? choice({
+            label: 'Against',
+            choices: axes.map(({ path }) => path),
+            value: x,
+            onchange: (value) => pick('x', value),
+          }).node
+        : null,
+      check('Logarithmic across', log.x, (on) => pick('logX', on)).node,
+      check('Logarithmic up', log.y, (on) => pick('logY', on)).node,
+    );
     if (focused >= 0) bar.querySelectorAll('select, input')[focused]?.focus();
   }
 
   function draw() {
-    const quantity = what.quantities.find(({key}) => key === chosen.quantity) || what.quantities[0];
+    const quantity = what.quantities.find(({ key }) => key === chosen.quantity) || what.quantities[0];
     const cells = quantity ? what.cells(quantity) : []; /* those to come too, so that lines keep their looks */
-    bar.hidden = alternative.hidden = !cells.some(({y}) => Number.isFinite(y));
+    bar.hidden = alternative.hidden = !cells.some(({ y }) => Number.isFinite(y));
     if (bar.hidden) {
       replace(place, empty('There is nothing to draw yet.'));
       return;
     }
     const axes = axesFor(cells, what.paths);
-    const axis = axes.find(({path}) => path === chosen.x) || axes[0];
-    const {series, values, heading, left} = seriesOf(cells, what.paths, axis?.path);
+    const axis = axes.find(({ path }) => path === chosen.x) || axes[0];
+    const { series, values, heading, left } = seriesOf(cells, what.paths, axis?.path);
     const log = {
       x: chosen.logX ?? (!values && spread(series.flatMap((one) => one.points.map((point) => point.x))) >= 30),
-      y: chosen.logY ?? spread(cells.map(({y}) => y)) >= 50,
+      y: chosen.logY ?? spread(cells.map(({ y }) => y)) >= 50,
     };
     log.x &&= !values && series.every((one) => one.points.every((point) => point.x > 0));
     choices(quantity, axis?.path, axes, log);
     const title = `${what.title}: ${quantity.label}`;
-    const few = quantity.low >= 0 && !cells.some(({low}) => Number.isFinite(low)) ? 'Of fewer than six rows a cell no interval of the median is known.' : '';
-    replace(place, plot({
-      title, series, heading, mark: what.mark,
-      x: {label: withUnit(axis?.path || '', axis?.unit), log: log.x, values}, y: {label: withUnit(quantity.label, quantity.unit), log: log.y},
-    }), element('figcaption', {class: 'hint', text: [what.note, few, left ? `${left} more lines are not drawn; the summary has them.` : ''].filter(Boolean).join(' ')}));
+    const few =
+      quantity.low >= 0 && !cells.some(({ low }) => Number.isFinite(low))
+        ? 'Of fewer than six rows a cell no interval of the median is known.'
+        : '';
+    replace(
+      place,
+      plot({
+        title,
+        series,
+        heading,
+        mark: what.mark,
+        x: { label: withUnit(axis?.path || '', axis?.unit), log: log.x, values },
+        y: { label: withUnit(quantity.label, quantity.unit), log: log.y },
+      }),
+      element('figcaption', {
+        class: 'hint',
+        text: [what.note, few, left ? `${left} more lines are not drawn; the summary has them.` : '']
+          .filter(Boolean)
+          .join(' '),
+      }),
+    );
     replace(below, numbers(series, axis?.path, quantity, caption));
   }
 }

@@ -1,51 +1,94 @@
-/* Two runs of a study, cell by cell: a chart of ratios and a table. exports: createCompare(lab) -> {node, show(study, details, results), forget()} */
+/* Two runs of a study, cell by cell: a chart of ratios and a table. exports: createCompare(lab) -> {node, show(study,
+ * details, results), forget()} */
 
-import {choice, digits, element, empty, notice, replace} from './ui.js';
-import {createChart} from './study_chart.js';
-import {createSortTable} from './study_table.js';
-import {pathsOf} from './study_data.js';
+import { choice, digits, element, empty, notice, replace } from './ui.js';
+import { createChart } from './study_chart.js';
+import { createSortTable } from './study_table.js';
+import { pathsOf } from './study_data.js';
 
 const text = (value) => (value === null || value === undefined ? 'NA' : String(value));
 const sameness = (value) => (value === null ? 'NA' : value ? 'yes' : 'no');
 
 /* Of the quotient no interval is known; what both intervals allow is at most this. */
-function bounds({a, b}) {
-  return {low: b.low === null || a.high === null ? NaN : b.low / a.high, high: b.high === null || a.low === null ? NaN : b.high / a.low};
+function bounds({ a, b }) {
+  return {
+    low: b.low === null || a.high === null ? NaN : b.low / a.high,
+    high: b.high === null || a.low === null ? NaN : b.high / a.low,
+  };
 }
 
-const quantity = {key: 'ratio', label: 'wall time B / wall time A', unit: ''};
+const quantity = { key: 'ratio', label: 'wall time B / wall time A', unit: '' };
 
 function rowsOf(answer) {
-  const columns = ['cell', ...answer.columns, 'A / s', 'A from', 'A to', 'A n', 'B / s', 'B from', 'B to', 'B n', 'B / A', 'same film'];
-  const rows = answer.cells.map((cell) => [
-    cell.cell, ...answer.columns.map((path) => cell[path]), cell.a.median, cell.a.low, cell.a.high, cell.a.n,
-    cell.b.median, cell.b.low, cell.b.high, cell.b.n, cell.ratio,
-  ].map(text).concat(sameness(cell.same_film)));
+  const columns = [
+    'cell',
+    ...answer.columns,
+    'A / s',
+    'A from',
+    'A to',
+    'A n',
+    'B / s',
+    'B from',
+    'B to',
+    'B n',
+    'B / A',
+    'same film',
+  ];
+  const rows = answer.cells.map((cell) =>
+    [
+      cell.cell,
+      ...answer.columns.map((path) => cell[path]),
+      cell.a.median,
+      cell.a.low,
+      cell.a.high,
+      cell.a.n,
+      cell.b.median,
+      cell.b.low,
+      cell.b.high,
+      cell.b.n,
+      cell.ratio,
+    ]
+      .map(text)
+      .concat(sameness(cell.same_film)),
+  );
   return [columns, rows];
 }
 
-function verdict({cells}) {
+function verdict({ cells }) {
   const others = cells.filter((cell) => cell.same_film === false).length;
   const both = cells.filter((cell) => cell.ratio !== null);
-  if (!both.length) return notice('No cell was measured in both runs.', {kind: 'warning'});
+  if (!both.length) return notice('No cell was measured in both runs.', { kind: 'warning' });
   const middle = Math.exp(both.reduce((sum, cell) => sum + Math.log(cell.ratio), 0) / both.length);
   return [
-    element('p', {text: `${both.length} of ${cells.length} cells were measured in both; B takes ${digits(middle, 3)} times as long as A in the geometric mean.`}),
-    others ? notice(`${others} ${others === 1 ? 'cell has' : 'cells have'} another film: what was rendered is not the same.`, {kind: 'warning'}) : null,
+    element('p', {
+      text:
+        `${both.length} of ${cells.length} cells were measured in both; B takes ` +
+        `${digits(middle, 3)} times as long as A in the geometric mean.`,
+    }),
+    others
+      ? notice(
+          `${others} ${others === 1 ? 'cell has' : 'cells have'} another film: what was rendered is not the same.`,
+          { kind: 'warning' },
+        )
+      : null,
   ];
 }
 
 export function createCompare(lab) {
   const bar = element('div');
-  const below = element('div', {class: 'study-compare'});
-  const chart = createChart({caption: 'Ratios of the two runs', id: 'study-ratios'});
-  const sorted = createSortTable({caption: 'Two runs, cell by cell'});
-  const node = element('div', {class: 'study-part'}, bar, below);
+  const below = element('div', { class: 'study-compare' });
+  const chart = createChart({ caption: 'Ratios of the two runs', id: 'study-ratios' });
+  const sorted = createSortTable({ caption: 'Two runs, cell by cell' });
+  const node = element('div', { class: 'study-part' }, bar, below);
   let shown = '';
   let other = '';
-  return {node, show, forget() {
-    shown = other = '';
-  }};
+  return {
+    node,
+    show,
+    forget() {
+      shown = other = '';
+    },
+  };
 
   function show(study, details, results) {
     const runs = (details.runs || []).filter((run) => run !== results);
@@ -54,12 +97,22 @@ export function createCompare(lab) {
     shown = key;
     if (!runs.includes(other)) other = '';
     if (!runs.length) {
-      replace(bar, empty(`No other folder holds rows of ${study.name}. Copy ${results || 'results'} aside before you measure anew, and compare then.`));
+      replace(
+        bar,
+        empty(
+          `No other folder holds rows of ${study.name}. Copy ${results || 'results'} aside before you ` +
+            `measure anew, and compare then.`,
+        ),
+      );
       replace(below);
       return;
     }
     const choices = [['', 'Choose a run'], ...runs.map((run) => [run, run])];
-    replace(bar, choice({label: `A is ${results || 'results'}, B is`, choices, value: other, onchange: (run) => ask(study, run)}).node);
+    replace(
+      bar,
+      choice({ label: `A is ${results || 'results'}, B is`, choices, value: other, onchange: (run) => ask(study, run) })
+        .node,
+    );
     ask(study, other);
   }
 
@@ -68,19 +121,29 @@ export function createCompare(lab) {
     replace(below);
     if (!run) return;
     try {
-      const answer = await lab.get(`/api/studies/${encodeURIComponent(study.name)}/compare?with=${encodeURIComponent(run)}`);
+      const answer = await lab.get(
+        `/api/studies/${encodeURIComponent(study.name)}/compare?with=${encodeURIComponent(run)}`,
+      );
       if (run === other) draw(study, answer, run);
     } catch (error) {
-      if (run === other) replace(below, notice(error.message, {kind: 'error', remedy: error.remedy}));
+      if (run === other) replace(below, notice(error.message, { kind: 'error', remedy: error.remedy }));
     }
   }
 
   function draw(study, answer, run) {
     const paths = pathsOf(study);
-    const cells = answer.cells.map((cell) => ({at: Object.fromEntries(paths.map(({path}) => [path, cell[path]])), y: cell.ratio ?? NaN, ...bounds(cell)}));
+    const cells = answer.cells.map((cell) => ({
+      at: Object.fromEntries(paths.map(({ path }) => [path, cell[path]])),
+      y: cell.ratio ?? NaN,
+      ...bounds(cell),
+    }));
     replace(below, verdict(answer), chart.node, sorted.node);
     chart.show({
-      title: `${study.title}, ${run} against ours`, paths, quantities: [quantity], cells: () => cells, mark: 1,
+      title: `${study.title}, ${run} against ours`,
+      paths,
+      quantities: [quantity],
+      cells: () => cells,
+      mark: 1,
       note: 'Medians of wall times; the bars reach as far as the 95% intervals of both medians allow.',
     });
     sorted.show(...rowsOf(answer));

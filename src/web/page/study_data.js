@@ -7,24 +7,41 @@
  *   quantitiesOf(summary, paths)      [{key, label, unit, column, low, high}] that a chart can show
  *   cellsOf(summary, paths, quantity) [{at: {path: text}, y, low, high}]
  *   axesFor(cells, paths)             paths with more than one value, numbers first
- *   seriesOf(cells, paths, x)         {series: [{name, points}], values, heading, left}: values are words of an axis without numbers; left: lines left out */
+ *   seriesOf(cells, paths, x)         {series: [{name, points}], values, heading, left}: values are words of an axis
+ *                                     without numbers; left: lines left out */
 
 const SERIES_MAX = 14;
 const FINGERPRINTS = /(^|_)(hash|definition|reference|film_expected|reference_film)$/;
 const NAMES = {
-  wall_s: 'wall time of a frame', cpu_s: 'CPU time of a frame', rays_total: 'rays of a frame', noise_rms: 'noise of random paths', imbalance: 'imbalance of the workers',
-  flip: 'FLIP error', error_rms: 'error against the reference, rms', build_s: 'time to build hierarchies', motion_s: 'time of the motion', peak_rss_bytes: 'peak memory',
-  psnr_db: 'PSNR against the reference', ssim: 'SSIM against the reference', others_share: 'share of the machine that others used',
+  wall_s: 'wall time of a frame',
+  cpu_s: 'CPU time of a frame',
+  rays_total: 'rays of a frame',
+  noise_rms: 'noise of random paths',
+  imbalance: 'imbalance of the workers',
+  flip: 'FLIP error',
+  error_rms: 'error against the reference, rms',
+  build_s: 'time to build hierarchies',
+  motion_s: 'time of the motion',
+  peak_rss_bytes: 'peak memory',
+  psnr_db: 'PSNR against the reference',
+  ssim: 'SSIM against the reference',
+  others_share: 'share of the machine that others used',
 };
 const NOT_SHOWN = new Set(['cell', 'n', 'marked']);
 
-export const numberOf = (text) => (text === undefined || text === null || text === '' || text === 'NA' ? NaN : Number(text));
+export const numberOf = (text) =>
+  text === undefined || text === null || text === '' || text === 'NA' ? NaN : Number(text);
 
 export function isNumeric(column, rows, index) {
-  return !FINGERPRINTS.test(column) && rows.every((row) => row[index] === 'NA' || !Number.isNaN(numberOf(row[index]))) && rows.some((row) => row[index] !== 'NA');
+  return (
+    !FINGERPRINTS.test(column) &&
+    rows.every((row) => row[index] === 'NA' || !Number.isNaN(numberOf(row[index]))) &&
+    rows.some((row) => row[index] !== 'NA')
+  );
 }
 
-export const pathsOf = (study) => (study.axes || []).flatMap((axis) => axis.paths.map((path, i) => ({path, unit: axis.units[i]})));
+export const pathsOf = (study) =>
+  (study.axes || []).flatMap((axis) => axis.paths.map((path, i) => ({ path, unit: axis.units[i] })));
 
 export function unitOf(column) {
   if (/_s(_|$)/.test(column)) return 's';
@@ -34,31 +51,47 @@ export function unitOf(column) {
 }
 
 export function quantitiesOf(summary, paths) {
-  const {columns, rows} = summary;
-  const own = new Set(paths.map(({path}) => path));
+  const { columns, rows } = summary;
+  const own = new Set(paths.map(({ path }) => path));
   const part = /_(low|high|mean|min|max)$/;
-  return columns.map((column, i) => ({column, i}))
-    .filter(({column, i}) => !own.has(column) && !NOT_SHOWN.has(column) && !(part.test(column) && /^(wall|cpu)_s/.test(column)) && isNumeric(column, rows, i))
-    .map(({column}) => {
+  return columns
+    .map((column, i) => ({ column, i }))
+    .filter(
+      ({ column, i }) =>
+        !own.has(column) &&
+        !NOT_SHOWN.has(column) &&
+        !(part.test(column) && /^(wall|cpu)_s/.test(column)) &&
+        isNumeric(column, rows, i),
+    )
+    .map(({ column }) => {
       const key = column.replace(/_median$/, '');
-      return {key, column, label: NAMES[key] || key, unit: unitOf(key), low: columns.indexOf(`${key}_low`), high: columns.indexOf(`${key}_high`)};
+      return {
+        key,
+        column,
+        label: NAMES[key] || key,
+        unit: unitOf(key),
+        low: columns.indexOf(`${key}_low`),
+        high: columns.indexOf(`${key}_high`),
+      };
     });
 }
 
 export function cellsOf(summary, paths, quantity) {
-  const {columns, rows} = summary;
+  const { columns, rows } = summary;
   const value = columns.indexOf(quantity.column);
   return rows.map((row) => ({
-    at: Object.fromEntries(paths.map(({path}) => [path, row[columns.indexOf(path)]])),
-    y: numberOf(row[value]), low: numberOf(row[quantity.low]), high: numberOf(row[quantity.high]),
+    at: Object.fromEntries(paths.map(({ path }) => [path, row[columns.indexOf(path)]])),
+    y: numberOf(row[value]),
+    low: numberOf(row[quantity.low]),
+    high: numberOf(row[quantity.high]),
   }));
 }
 
 const valuesOf = (cells, path) => [...new Set(cells.map((cell) => cell.at[path]))];
 
 export function axesFor(cells, paths) {
-  const some = paths.filter(({path}) => valuesOf(cells, path).length > 1);
-  const numeric = ({path}) => valuesOf(cells, path).every((value) => !Number.isNaN(numberOf(value)));
+  const some = paths.filter(({ path }) => valuesOf(cells, path).length > 1);
+  const numeric = ({ path }) => valuesOf(cells, path).every((value) => !Number.isNaN(numberOf(value)));
   return [...some.filter(numeric), ...some.filter((one) => !numeric(one))];
 }
 
@@ -72,7 +105,9 @@ function follows(cells, path, from) {
 }
 
 export function seriesOf(cells, paths, x) {
-  const apart = paths.map(({path}) => path).filter((path) => path !== x && valuesOf(cells, path).length > 1 && !follows(cells, path, x));
+  const apart = paths
+    .map(({ path }) => path)
+    .filter((path) => path !== x && valuesOf(cells, path).length > 1 && !follows(cells, path, x));
   const telling = apart.filter((path, i) => !apart.slice(0, i).some((other) => follows(cells, path, other)));
   const all = x ? valuesOf(cells, x) : ['all'];
   const words = all.some((value) => Number.isNaN(numberOf(value)));
@@ -80,11 +115,20 @@ export function seriesOf(cells, paths, x) {
   for (const cell of cells) {
     const name = telling.map((path) => cell.at[path]).join(', ');
     if (!lines.has(name)) lines.set(name, []);
-    lines.get(name).push({x: words || !x ? Math.max(0, all.indexOf(cell.at[x])) : numberOf(cell.at[x]), text: x ? cell.at[x] : '', ...cell});
+    lines.get(name).push({
+      x: words || !x ? Math.max(0, all.indexOf(cell.at[x])) : numberOf(cell.at[x]),
+      text: x ? cell.at[x] : '',
+      ...cell,
+    });
   }
-  const series = [...lines].map(([name, points]) => ({name, points: points.filter((point) => Number.isFinite(point.y)).sort((a, b) => a.x - b.x)}));
+  const series = [...lines].map(([name, points]) => ({
+    name,
+    points: points.filter((point) => Number.isFinite(point.y)).sort((a, b) => a.x - b.x),
+  }));
   return {
-    series: series.slice(0, SERIES_MAX), left: Math.max(0, series.length - SERIES_MAX), values: words || !x ? all : null,
+    series: series.slice(0, SERIES_MAX),
+    left: Math.max(0, series.length - SERIES_MAX),
+    values: words || !x ? all : null,
     heading: telling.length === 1 ? telling[0] : telling.map((path) => path.split('.').pop()).join(', '),
   };
 }

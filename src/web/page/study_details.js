@@ -1,66 +1,98 @@
-/* One study: what it is, how far, its figure, tables and other runs. exports: createDetails(lab, {onrun, onstop}) -> {node, show(study, details, results), progress(running), grew} */
+/* One study: what it is, how far, its figure, tables and other runs. exports: createDetails(lab, {onrun, onstop}) ->
+ * {node, show(study, details, results), progress(running), grew} */
 
-import {button, check, count, element, empty, facts, group, notice, replace, seconds} from './ui.js';
-import {cellsOf, pathsOf, quantitiesOf} from './study_data.js';
-import {createChart} from './study_chart.js';
-import {createCompare} from './study_compare.js';
-import {createFigures} from './study_figures.js';
-import {createRows} from './study_rows.js';
-import {createSortTable} from './study_table.js';
+import { button, check, count, element, empty, facts, group, notice, replace, seconds } from './ui.js';
+import { cellsOf, pathsOf, quantitiesOf } from './study_data.js';
+import { createChart } from './study_chart.js';
+import { createCompare } from './study_compare.js';
+import { createFigures } from './study_figures.js';
+import { createRows } from './study_rows.js';
+import { createSortTable } from './study_table.js';
 
 const FIRST = /^(cell|n|wall_s_(median|low|high)|cpu_s_median|rays_total|noise_rms|psnr_db|flip|film_hash|marked)$/;
-const stages = {measuring: 'measuring', moving: 'the slime moves', pictures: 'making pictures'};
+const stages = { measuring: 'measuring', moving: 'the slime moves', pictures: 'making pictures' };
 
-function axisWords({name, paths, units, count: points}) {
+function axisWords({ name, paths, units, count: points }) {
   const own = paths.map((path, i) => (units[i] ? `${path} / ${units[i]}` : path)).join(', ');
   return `${paths.length === 1 && paths[0] === name ? own : `${name} (${own})`}: ${points} values`;
 }
 
-const about = (study, details) => facts([
-  ['File', study.file],
-  ['Axes', study.axes.length ? element('ul', {class: 'study-axes'}, study.axes.map((axis) => element('li', {text: axisWords(axis)}))) : 'none'],
-  ['Cells', `${count(details.cells_done)} of ${count(details.cells)} done`],
-  ['Rows', `${count(details.rows)}, of which ${count(details.warmups)} warm-ups`],
-  details.marked ? ['Marked', `${count(details.marked)} rows saw another film than the first one of their cell`] : null,
-].filter(Boolean));
+const about = (study, details) =>
+  facts(
+    [
+      ['File', study.file],
+      [
+        'Axes',
+        study.axes.length
+          ? element(
+              'ul',
+              { class: 'study-axes' },
+              study.axes.map((axis) => element('li', { text: axisWords(axis) })),
+            )
+          : 'none',
+      ],
+      ['Cells', `${count(details.cells_done)} of ${count(details.cells)} done`],
+      ['Rows', `${count(details.rows)}, of which ${count(details.warmups)} warm-ups`],
+      details.marked
+        ? ['Marked', `${count(details.marked)} rows saw another film than the first one of their cell`]
+        : null,
+    ].filter(Boolean),
+  );
 
 /* The bar, and what happens now in words. */
 function createProgress() {
-  const bar = element('progress', {max: 1, value: '0', 'aria-label': 'done'});
-  const words = element('p', {class: 'study-now'});
-  const node = element('div', {class: 'study-progress'}, bar, words);
-  return {node, show(now) {
-    node.hidden = !now?.running;
-    if (node.hidden) return;
-    const done = now.stage === 'pictures' ? (now.picture - 1 + now.share) / now.pictures : now.frames_all ? (now.frames_done + now.share) / now.frames_all : 0;
-    bar.value = done;
-    words.textContent = [
-      now.pictures ? `picture ${now.picture} of ${now.pictures}` : `${count(now.frames_done)} of ${count(now.frames_all)} frames`,
-      `${Math.floor(100 * done)} %`,
-      now.pictures || now.left_s === null ? null : `about ${seconds(Math.max(1, Math.round(now.left_s)))} left`,
-      `cell ${now.cell}: ${stages[now.stage] || now.stage}`,
-    ].filter(Boolean).join(' · ');
-  }};
+  const bar = element('progress', { max: 1, value: '0', 'aria-label': 'done' });
+  const words = element('p', { class: 'study-now' });
+  const node = element('div', { class: 'study-progress' }, bar, words);
+  return {
+    node,
+    show(now) {
+      node.hidden = !now?.running;
+      if (node.hidden) return;
+      const done =
+        now.stage === 'pictures'
+          ? (now.picture - 1 + now.share) / now.pictures
+          : now.frames_all
+            ? (now.frames_done + now.share) / now.frames_all
+            : 0;
+      bar.value = done;
+      words.textContent = [
+        now.pictures
+          ? `picture ${now.picture} of ${now.pictures}`
+          : `${count(now.frames_done)} of ${count(now.frames_all)} frames`,
+        `${Math.floor(100 * done)} %`,
+        now.pictures || now.left_s === null ? null : `about ${seconds(Math.max(1, Math.round(now.left_s)))} left`,
+        `cell ${now.cell}: ${stages[now.stage] || now.stage}`,
+      ]
+        .filter(Boolean)
+        .join(' · ');
+    },
+  };
 }
 
 function createSummary() {
-  const sorted = createSortTable({caption: 'Summary: one line a cell'});
+  const sorted = createSortTable({ caption: 'Summary: one line a cell' });
   const all = check('All columns', false, () => draw());
-  const place = element('div', {class: 'study-part'});
+  const place = element('div', { class: 'study-part' });
   let summary = null;
   let paths = [];
-  return {node: place, show(next, nextPaths) {
-    summary = next;
-    paths = nextPaths.map(({path}) => path);
-    draw();
-  }};
+  return {
+    node: place,
+    show(next, nextPaths) {
+      summary = next;
+      paths = nextPaths.map(({ path }) => path);
+      draw();
+    },
+  };
 
   function draw() {
     if (!summary) {
       replace(place, empty('There are no rows to sum up yet.'));
       return;
     }
-    const kept = summary.columns.map((column, i) => i).filter((i) => all.value || paths.includes(summary.columns[i]) || FIRST.test(summary.columns[i]));
+    const kept = summary.columns
+      .map((column, i) => i)
+      .filter((i) => all.value || paths.includes(summary.columns[i]) || FIRST.test(summary.columns[i]));
     const known = kept.filter((i) => all.value || summary.rows.some((row) => row[i] !== 'NA'));
     const pick = (row) => known.map((i) => row[i]);
     if (!place.contains(sorted.node)) replace(place, all.node, sorted.node);
@@ -68,28 +100,39 @@ function createSummary() {
   }
 }
 
-export function createDetails(lab, {onrun, onstop}) {
+export function createDetails(lab, { onrun, onstop }) {
   const heading = element('h2');
-  const start = button('Start', () => onrun(study), {icon: 'play', kind: 'primary'});
-  const stop = button('Stop', () => onstop(study), {icon: 'stop'});
+  const start = button('Start', () => onrun(study), { icon: 'play', kind: 'primary' });
+  const stop = button('Stop', () => onstop(study), { icon: 'stop' });
   const progress = createProgress();
   const trouble = element('div');
   const what = element('div');
-  const chart = createChart({caption: 'The study in numbers', id: 'study-figure-numbers'});
+  const chart = createChart({ caption: 'The study in numbers', id: 'study-figure-numbers' });
   const summary = createSummary();
   const rows = createRows(lab);
   const figures = createFigures(lab);
   const compare = createCompare(lab);
-  const parts = element('div', {class: 'study-groups'},
-    group('Figure', {id: 'study-figure', hint: 'medians and their 95% intervals, as the rows come'}, chart.node),
-    group('Summary', {id: 'study-summary', hint: 'one line a cell'}, summary.node), rows.node,
-    group('Figures of plots/', {id: 'study-drawn', hint: 'drawn by gnuplot'}, figures.node),
-    group('Compare two runs', {id: 'study-compare', hint: 'cell by cell'}, compare.node));
-  const node = element('article', {class: 'study-details', 'aria-label': 'Study'}, element('div', {class: 'study-head'}, heading, element('div', {class: 'buttons'}, start, stop)),
-    progress.node, trouble, what, parts);
+  const parts = element(
+    'div',
+    { class: 'study-groups' },
+    group('Figure', { id: 'study-figure', hint: 'medians and their 95% intervals, as the rows come' }, chart.node),
+    group('Summary', { id: 'study-summary', hint: 'one line a cell' }, summary.node),
+    rows.node,
+    group('Figures of plots/', { id: 'study-drawn', hint: 'drawn by gnuplot' }, figures.node),
+    group('Compare two runs', { id: 'study-compare', hint: 'cell by cell' }, compare.node),
+  );
+  const node = element(
+    'article',
+    { class: 'study-details', 'aria-label': 'Study' },
+    element('div', { class: 'study-head' }, heading, element('div', { class: 'buttons' }, start, stop)),
+    progress.node,
+    trouble,
+    what,
+    parts,
+  );
   let study = null;
   let details = null;
-  return {node, show, progress: showProgress, grew: (ended) => figures.grew(ended)};
+  return { node, show, progress: showProgress, grew: (ended) => figures.grew(ended) };
 
   function show(next, told, results) {
     study = next;
@@ -102,7 +145,9 @@ export function createDetails(lab, {onrun, onstop}) {
     if (broken) return;
     const paths = pathsOf(study);
     chart.show({
-      title: study.title, paths, quantities: details.summary ? quantitiesOf(details.summary, paths) : [],
+      title: study.title,
+      paths,
+      quantities: details.summary ? quantitiesOf(details.summary, paths) : [],
       cells: (quantity) => cellsOf(details.summary, paths, quantity),
     });
     summary.show(details.summary, paths);
@@ -123,15 +168,23 @@ export function createDetails(lab, {onrun, onstop}) {
     start.hidden = Boolean(mine && now.running);
     stop.hidden = !start.hidden;
     const complete = details.cells > 0 && details.cells_done >= details.cells;
-    start.querySelector('.button-label').textContent = complete ? 'Make what is missing' : details.rows ? 'Continue' : 'Start';
+    start.querySelector('.button-label').textContent = complete
+      ? 'Make what is missing'
+      : details.rows
+        ? 'Continue'
+        : 'Start';
     start.classList.toggle('primary', !complete);
     start.disabled = Boolean(other) || (Boolean(details.error) && details.cells === undefined);
-    start.title = other ? `the study ${other} runs` : complete ? 'all rows are there; pictures that lack are made' : 'measures what is missing; nothing is rendered beside it';
+    start.title = other
+      ? `the study ${other} runs`
+      : complete
+        ? 'all rows are there; pictures that lack are made'
+        : 'measures what is missing; nothing is rendered beside it';
     const error = details.error || (mine && now.error) || null;
     const where = error?.file ? `${error.file}${error.line ? `:${error.line}` : ''}: ` : '';
     if (trouble.dataset.of !== JSON.stringify(error)) {
       trouble.dataset.of = JSON.stringify(error);
-      replace(trouble, error ? notice(`${where}${error.error}`, {kind: 'error', remedy: error.remedy}) : null);
+      replace(trouble, error ? notice(`${where}${error.error}`, { kind: 'error', remedy: error.remedy }) : null);
     }
   }
 }

@@ -1,21 +1,31 @@
 /* A table of texts whose columns sort. exports: createSortTable({caption, mono}) -> {node, show(columns, rows)}
- * columns: names; rows: lists of texts. Sorted by a column at a click on its head, the other way at the next, as the rows came at the third. */
+ * columns: names; rows: lists of texts. Sorted by a column at a click on its head, the other way at the next, as the
+ * rows came at the third. */
 
-import {digits, element, icon, replace} from './ui.js';
-import {isNumeric, numberOf} from './study_data.js';
+import { digits, element, icon, replace } from './ui.js';
+import { isNumeric, numberOf } from './study_data.js';
 
 const ORDERS = ['none', 'ascending', 'descending'];
 
-export function createSortTable({caption}) {
+export function createSortTable({ caption }) {
   const head = element('tr');
   const body = element('tbody');
-  const frame = element('div', {class: 'table-frame study-table', tabindex: '0', role: 'region', 'aria-label': caption},
-    element('table', {}, element('caption', {class: 'visually-hidden', text: caption}), element('thead', {}, head), body));
+  const frame = element(
+    'div',
+    { class: 'table-frame study-table', tabindex: '0', role: 'region', 'aria-label': caption },
+    element(
+      'table',
+      {},
+      element('caption', { class: 'visually-hidden', text: caption }),
+      element('thead', {}, head),
+      body,
+    ),
+  );
   let columns = [];
   let rows = [];
   let by = null;
   let order = 'none';
-  return {node: frame, show};
+  return { node: frame, show };
 
   function show(nextColumns, nextRows) {
     const changed = nextColumns.join() !== columns.join();
@@ -34,12 +44,22 @@ export function createSortTable({caption}) {
   }
 
   function drawHead() {
-    replace(head, columns.map((column, index) => {
-      const sorted = column === by ? order : 'none';
-      return element('th', {scope: 'col', class: isNumeric(column, rows, index) ? 'numeric' : null, 'aria-sort': sorted},
-        element('button', {type: 'button', class: 'study-sort', onclick: () => sortBy(column)}, column,
-          sorted === 'none' ? null : icon(sorted === 'ascending' ? 'up' : 'down')));
-    }));
+    replace(
+      head,
+      columns.map((column, index) => {
+        const sorted = column === by ? order : 'none';
+        return element(
+          'th',
+          { scope: 'col', class: isNumeric(column, rows, index) ? 'numeric' : null, 'aria-sort': sorted },
+          element(
+            'button',
+            { type: 'button', class: 'study-sort', onclick: () => sortBy(column) },
+            column,
+            sorted === 'none' ? null : icon(sorted === 'ascending' ? 'up' : 'down'),
+          ),
+        );
+      }),
+    );
   }
 
   function inOrder(numeric) {
@@ -48,7 +68,7 @@ export function createSortTable({caption}) {
     const sign = order === 'ascending' ? 1 : -1;
     const last = (value) => (Number.isNaN(value) ? 1 : 0);
     return [...rows].sort((a, b) => {
-      if (!numeric[index]) return sign * String(a[index]).localeCompare(String(b[index]), 'en', {numeric: true});
+      if (!numeric[index]) return sign * String(a[index]).localeCompare(String(b[index]), 'en', { numeric: true });
       const [x, y] = [numberOf(a[index]), numberOf(b[index])];
       return last(x) - last(y) || sign * (x - y);
     });
@@ -56,9 +76,22 @@ export function createSortTable({caption}) {
 
   function drawBody() {
     const numeric = columns.map((column, index) => isNumeric(column, rows, index));
-    replace(body, inOrder(numeric).map((row) => element('tr', {}, row.map((value, index) => element(index === 0 ? 'th' : 'td', {
-      class: numeric[index] ? 'numeric' : null, scope: index === 0 ? 'row' : null, title: numeric[index] && value.length > 7 ? value : null,
-      text: value === 'NA' ? '–' : numeric[index] ? digits(numberOf(value), 5) : value,
-    })))));
+    replace(
+      body,
+      inOrder(numeric).map((row) =>
+        element(
+          'tr',
+          {},
+          row.map((value, index) =>
+            element(index === 0 ? 'th' : 'td', {
+              class: numeric[index] ? 'numeric' : null,
+              scope: index === 0 ? 'row' : null,
+              title: numeric[index] && value.length > 7 ? value : null,
+              text: value === 'NA' ? '–' : numeric[index] ? digits(numberOf(value), 5) : value,
+            }),
+          ),
+        ),
+      ),
+    );
   }
 }

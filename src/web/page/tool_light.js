@@ -1,7 +1,8 @@
-/* Light: a handle for each light at its place in the picture; dragged it moves the light parallel to the picture, with shift along the line of sight.
+/* Light: a handle for each light at its place in the picture; dragged it moves the light parallel to the picture, with
+ * shift along the line of sight.
  * exports: lightTool(lab) */
 
-import {digits, element, gesture, icon} from './ui.js';
+import { digits, element, gesture, icon } from './ui.js';
 
 const EDGE = 30;
 const KEY_PX = 12;
@@ -11,12 +12,16 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const minus = (a, b) => a.map((value, axis) => value - b[axis]);
 
 export function lightTool(lab) {
-  const {view} = lab;
+  const { view } = lab;
   const handles = new Map();
   let active = false;
 
   view.tool('light', {
-    label: 'Light', icon: 'light', order: 20, cursor: 'default', hint: 'Drag a light; with Shift nearer and farther',
+    label: 'Light',
+    icon: 'light',
+    order: 20,
+    cursor: 'default',
+    hint: 'Drag a light; with Shift nearer and farther',
     chosen() {
       active = true;
       place();
@@ -27,19 +32,25 @@ export function lightTool(lab) {
       handles.clear();
     },
   });
-  for (const name of ['view', 'scene', 'state', 'picture']) lab.on(name, () => { if (active) place(); });
+  for (const name of ['view', 'scene', 'state', 'picture'])
+    lab.on(name, () => {
+      if (active) place();
+    });
 
   function lights() {
-    return (lab.scene?.objects || []).filter((object) => object.kind === 'light' && lab.param(`${object.name}.position`)).map((object) => object.name);
+    return (lab.scene?.objects || [])
+      .filter((object) => object.kind === 'light' && lab.param(`${object.name}.position`))
+      .map((object) => object.name);
   }
 
   function place() {
     if (!lab.state?.camera || !view.width) return;
     const names = lights();
-    for (const [name, handle] of handles) if (!names.includes(name)) {
-      handle.node.remove();
-      handles.delete(name);
-    }
+    for (const [name, handle] of handles)
+      if (!names.includes(name)) {
+        handle.node.remove();
+        handles.delete(name);
+      }
     for (const name of names) {
       if (!handles.has(name)) handles.set(name, createHandle(name));
       show(handles.get(name));
@@ -64,16 +75,25 @@ export function lightTool(lab) {
     const bottom = Math.min(lower.y, view.stage.clientHeight) - EDGE;
     if (seen) {
       const at = view.toScreen(seen.x, seen.y);
-      const held = {x: Math.min(right, Math.max(left, at.x)), y: Math.min(bottom, Math.max(top, at.y))};
+      const held = { x: Math.min(right, Math.max(left, at.x)), y: Math.min(bottom, Math.max(top, at.y)) };
       const outside = Math.hypot(held.x - at.x, held.y - at.y) > 1;
-      return {...held, outside, behind: false, angle: Math.atan2(at.y - held.y, at.x - held.x)};
+      return { ...held, outside, behind: false, angle: Math.atan2(at.y - held.y, at.x - held.x) };
     }
     const across = [dot(d, camera.right), -dot(d, camera.up)];
     const length = Math.hypot(...across) || 1;
-    const middle = {x: (left + right) / 2, y: (top + bottom) / 2};
+    const middle = { x: (left + right) / 2, y: (top + bottom) / 2 };
     const way = [across[0] / length, length > 1e-9 ? across[1] / length : 1];
-    const reach = Math.min((right - left) / 2 / Math.max(1e-9, Math.abs(way[0])), (bottom - top) / 2 / Math.max(1e-9, Math.abs(way[1])));
-    return {x: middle.x + way[0] * reach, y: middle.y + way[1] * reach, outside: true, behind: depth <= 0, angle: Math.atan2(way[1], way[0])};
+    const reach = Math.min(
+      (right - left) / 2 / Math.max(1e-9, Math.abs(way[0])),
+      (bottom - top) / 2 / Math.max(1e-9, Math.abs(way[1])),
+    );
+    return {
+      x: middle.x + way[0] * reach,
+      y: middle.y + way[1] * reach,
+      outside: true,
+      behind: depth <= 0,
+      angle: Math.atan2(way[1], way[0]),
+    };
   }
 
   function show(handle) {
@@ -89,59 +109,96 @@ export function lightTool(lab) {
     const told = handle.drag || document.activeElement === handle.node;
     handle.label.textContent = told ? `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}` : handle.name;
     const side = at.behind ? ', behind the camera' : at.outside ? ', outside the picture' : '';
-    handle.node.setAttribute('aria-label', `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}, light${side}`);
+    handle.node.setAttribute(
+      'aria-label',
+      `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}, light${side}`,
+    );
   }
 
-  /* The world's way for dx, dy CSS pixels on the picture, at the light's own depth, so that it stays under the pointer. One that is not in the picture,
+  /* The world's way for dx, dy CSS pixels on the picture, at the light's own depth, so that it stays under the pointer.
+   * One that is not in the picture,
    * and so perhaps very near or behind the camera, moves as if it were no nearer than the target. */
-  function along(point, dx, dy, {deep, seen}) {
+  function along(point, dx, dy, { deep, seen }) {
     const camera = lab.state.camera;
     const depth = Math.max(dot(minus(point, camera.eye), camera.forward), seen ? 0 : camera.distance || 1);
-    const x = dx / view.scale * camera.half_width * 2 / view.width * depth;
-    const y = -dy / view.scale * camera.half_height * 2 / view.height * depth;
-    return point.map((value, axis) => value + (deep ? y * camera.forward[axis] : x * camera.right[axis] + y * camera.up[axis]));
+    const x = (((dx / view.scale) * camera.half_width * 2) / view.width) * depth;
+    const y = (((-dy / view.scale) * camera.half_height * 2) / view.height) * depth;
+    return point.map(
+      (value, axis) => value + (deep ? y * camera.forward[axis] : x * camera.right[axis] + y * camera.up[axis]),
+    );
   }
 
   function move(handle, point, name) {
     const tidy = point.map((x) => Number(x.toPrecision(5)));
     handle.moved = tidy;
     show(handle);
-    const mine = handle.turn = (handle.turn || 0) + 1;
-    lab.set({[`${handle.name}.position`]: tidy}, name).catch(lab.fail).finally(() => {
-      const end = lab.on('scene', () => { if (!handle.drag && handle.turn === mine) handle.moved = null; end(); });
-    });
+    const mine = (handle.turn = (handle.turn || 0) + 1);
+    lab
+      .set({ [`${handle.name}.position`]: tidy }, name)
+      .catch(lab.fail)
+      .finally(() => {
+        const end = lab.on('scene', () => {
+          if (!handle.drag && handle.turn === mine) handle.moved = null;
+          end();
+        });
+      });
   }
 
   function createHandle(name) {
-    const handle = {name, moved: null, drag: null, keys: null};
-    handle.label = element('span', {class: 'light-name', text: name});
-    handle.node = element('button', {
-      type: 'button', class: 'light-handle', title: `${name}: drag, or arrow keys; with Shift nearer and farther`,
-      onfocus: () => show(handle), onblur: () => show(handle),
-    }, icon('light'), handle.label);
+    const handle = { name, moved: null, drag: null, keys: null };
+    handle.label = element('span', { class: 'light-name', text: name });
+    handle.node = element(
+      'button',
+      {
+        type: 'button',
+        class: 'light-handle',
+        title: `${name}: drag, or arrow keys; with Shift nearer and farther`,
+        onfocus: () => show(handle),
+        onblur: () => show(handle),
+      },
+      icon('light'),
+      handle.label,
+    );
     handle.node.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return;
       handle.node.setPointerCapture(event.pointerId);
-      handle.node.focus({preventScroll: true});
-      handle.drag = {x: event.clientX, y: event.clientY, at: position(handle), seen: !where(position(handle)).outside, gesture: gesture('light')};
+      handle.node.focus({ preventScroll: true });
+      handle.drag = {
+        x: event.clientX,
+        y: event.clientY,
+        at: position(handle),
+        seen: !where(position(handle)).outside,
+        gesture: gesture('light'),
+      };
       event.preventDefault();
       event.stopPropagation();
     });
     handle.node.addEventListener('pointermove', (event) => {
       if (!handle.drag) return;
-      const next = along(handle.drag.at, event.clientX - handle.drag.x, event.clientY - handle.drag.y, {deep: event.shiftKey, seen: handle.drag.seen});
-      Object.assign(handle.drag, {x: event.clientX, y: event.clientY, at: next});
+      const next = along(handle.drag.at, event.clientX - handle.drag.x, event.clientY - handle.drag.y, {
+        deep: event.shiftKey,
+        seen: handle.drag.seen,
+      });
+      Object.assign(handle.drag, { x: event.clientX, y: event.clientY, at: next });
       move(handle, next, handle.drag.gesture);
     });
-    const end = () => { handle.drag = null; };
+    const end = () => {
+      handle.drag = null;
+    };
     handle.node.addEventListener('pointerup', end);
     handle.node.addEventListener('pointercancel', end);
     handle.node.addEventListener('keydown', (event) => {
-      const way = {ArrowLeft: [-KEY_PX, 0], ArrowRight: [KEY_PX, 0], ArrowUp: [0, -KEY_PX], ArrowDown: [0, KEY_PX]}[event.key];
+      const way = { ArrowLeft: [-KEY_PX, 0], ArrowRight: [KEY_PX, 0], ArrowUp: [0, -KEY_PX], ArrowDown: [0, KEY_PX] }[
+        event.key
+      ];
       if (!way || event.ctrlKey || event.altKey) return;
-      if (!handle.keys || event.timeStamp - handle.keys.at > PAUSE_MS) handle.keys = {gesture: gesture('light')};
+      if (!handle.keys || event.timeStamp - handle.keys.at > PAUSE_MS) handle.keys = { gesture: gesture('light') };
       handle.keys.at = event.timeStamp;
-      move(handle, along(position(handle), ...way, {deep: event.shiftKey, seen: !where(position(handle)).outside}), handle.keys.gesture);
+      move(
+        handle,
+        along(position(handle), ...way, { deep: event.shiftKey, seen: !where(position(handle)).outside }),
+        handle.keys.gesture,
+      );
       event.preventDefault();
       event.stopPropagation();
     });

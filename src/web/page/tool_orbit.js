@@ -1,10 +1,12 @@
-/* Orbit: dragging goes around the point that is looked at, with shift turns on the spot, the wheel goes forward and back.
- * exports: orbitTool(lab), moveCamera(lab, body, gesture): deltas of /api/camera; those of one gesture that wait are added up */
+/* Orbit: dragging goes around the point that is looked at, with shift turns on the spot, the wheel goes forward and
+ * back.
+ * exports: orbitTool(lab), moveCamera(lab, body, gesture): deltas of /api/camera; those of one gesture that wait are
+ * added up */
 
-import {gesture} from './ui.js';
+import { gesture } from './ui.js';
 
-const DEGREES = 0.35;   /* for a CSS pixel of dragging */
-const WHEEL = 0.0012;   /* of the distance, for a CSS pixel of the wheel */
+const DEGREES = 0.35; /* for a CSS pixel of dragging */
+const WHEEL = 0.0012; /* of the distance, for a CSS pixel of the wheel */
 const PAUSE_MS = 400;
 
 const sum = (a, b) => (a && b ? a.map((value, index) => value + b[index]) : a || b);
@@ -18,33 +20,37 @@ function join(waiting, newer) {
   return joined;
 }
 
-export const moveCamera = (lab, body, name) => lab.change('/api/camera', body, {gesture: name, merge: join}).catch(lab.fail);
+export const moveCamera = (lab, body, name) =>
+  lab.change('/api/camera', body, { gesture: name, merge: join }).catch(lab.fail);
 
 export function orbitTool(lab) {
   let drag = null;
   let wheeling = null;
   lab.view.tool('orbit', {
-    label: 'Orbit', icon: 'orbit', order: 10, cursor: 'grab',
+    label: 'Orbit',
+    icon: 'orbit',
+    order: 10,
+    cursor: 'grab',
     hint: 'Drag to go around the target; with Shift to turn on the spot; wheel for forward and back',
     down(point, event) {
-      drag = {x: event.clientX, y: event.clientY, gesture: gesture('orbit'), turning: event.shiftKey};
+      drag = { x: event.clientX, y: event.clientY, gesture: gesture('orbit'), turning: event.shiftKey };
       lab.view.stage.style.cursor = 'grabbing';
     },
     move(point, event) {
       const by = [(event.clientX - drag.x) * DEGREES, (event.clientY - drag.y) * DEGREES];
-      Object.assign(drag, {x: event.clientX, y: event.clientY});
+      Object.assign(drag, { x: event.clientX, y: event.clientY });
       if (!by[0] && !by[1]) return;
-      moveCamera(lab, drag.turning ? {turn: [-by[0], by[1]]} : {orbit: by}, drag.gesture);
+      moveCamera(lab, drag.turning ? { turn: [-by[0], by[1]] } : { orbit: by }, drag.gesture);
     },
     up() {
       drag = null;
       lab.view.stage.style.cursor = 'grab';
     },
     wheel(point, event, lines) {
-      if (!wheeling || event.timeStamp - wheeling.at > PAUSE_MS) wheeling = {gesture: gesture('wheel')};
+      if (!wheeling || event.timeStamp - wheeling.at > PAUSE_MS) wheeling = { gesture: gesture('wheel') };
       wheeling.at = event.timeStamp;
       const distance = lab.state?.camera?.distance || 1;
-      moveCamera(lab, {step: [0, 0, -lines * WHEEL * distance]}, wheeling.gesture);
+      moveCamera(lab, { step: [0, 0, -lines * WHEEL * distance] }, wheeling.gesture);
     },
   });
 }

@@ -1,92 +1,148 @@
 /* What the page's modules share: elements, controls, dialogs, tables, numbers as text.
  *
  * exports:
- *   element(tag, properties, ...children)      properties: class, text, dataset {}, style {}, on {event: f} or onclick: f, aria-*, and any attribute;
- *                                              false, null and undefined are left out. children: nodes, texts, lists; null is left out
+ *   element(tag, properties, ...children)      properties: class, text, dataset {}, style {}, on {event: f} or onclick:
+ *                                              f, aria-*, and any attribute;
+ *                                              false, null and undefined are left out. children: nodes, texts, lists;
+ *                                              null is left out
  *   svg(tag, attributes, ...children)          the same for SVG elements
  *   replace(node, ...children)                 empties it and fills it anew
  *   unique(prefix)                             an id that nothing else has
  *   gesture(prefix)                            a text for one drag
  *   icon(name)                                 a small drawing; see icons.js
- *   button(label, onclick, {icon, kind: 'primary' | 'quiet' | 'danger', title, pressed, small, bare, disabled})   bare: the label is for screen readers
- *   field(label, control, {hint, unit, wide})  a labelled control; control gets an id, and aria-describedby for the hint
+ *   button(label, onclick, {icon, kind: 'primary' | 'quiet' | 'danger', title, pressed, small, bare, disabled})
+ *       bare: the label is for screen readers
+ *   field(label, control, {hint, unit, wide})  a labelled control; control gets an id, and aria-describedby for the
+ *   hint
  *   number({label, value, min, max, step, unit, onchange(value)})      a number field: {node, input, value, set(value)}
  *   text({label, value, placeholder, onchange(value)})                 a text field, the same
  *   check(label, checked, onchange(checked))                           a checkbox, the same
- *   slider({label, min, max, step, value, log, unit, oninput(value, gesture), onchange(value, gesture)})    slider and number field: {node, set(value)}
- *   choice({label, choices, value, radios, onchange(value)})           choices: words or [value, label]; select, or radio buttons: {node, set(value)}
- *   group(title, {open, id, hint}, ...children)                        a part that folds (details); an open one with id is remembered
- *   table({caption, columns, rows, hideCaption, onrow})                columns: names or {label, numeric, key}; cells: text, number, node. head sticks
+ *   slider({label, min, max, step, value, log, unit, oninput(value, gesture), onchange(value, gesture)})    slider
+ *       and number field: {node, set(value)}
+ *   choice({label, choices, value, radios, onchange(value)})           choices: words or [value, label]; select, or
+ *       radio buttons: {node, set(value)}
+ *   group(title, {open, id, hint}, ...children)                        a part that folds (details); an open one
+ *       with id is remembered
+ *   table({caption, columns, rows, hideCaption, onrow})                columns: names or {label, numeric, key};
+ *       cells: text, number, node. head sticks
  *   facts(pairs)                               a list of [name, value] as dl
  *   notice(text, {kind: 'info' | 'warning' | 'error' | 'good', remedy})   a box with a message
  *   empty(text)                                what stands where there is nothing yet
- *   dialog({title, content, actions, wide})    actions: [[label, value, kind]]; {node, close(value), closed: promise of value (null: dismissed)}
+ *   dialog({title, content, actions, wide})    actions: [[label, value, kind]]; {node, close(value), closed: promise of
+ *                                              value (null: dismissed)}
  *   ask(title, text, yes)                      promise of true or false
  *   download(blob or address, name)            lets the browser save it
  *   copy(text)                                 promise; to the clipboard
  *   memory.get(key, otherwise), memory.set(key, value)      localStorage, where there is any
- *   digits(x, n), seconds(s), count(n), vector([..], n)     numbers as text: 4 significant digits unless n says otherwise
+ *   digits(x, n), seconds(s), count(n), vector([..], n)     numbers as text: 4 significant digits unless n says
+ *                                                           otherwise
  *   toLinear(byte), toByte(linear)             sRGB, 0..255 to and from linear 0..1 */
 
-import {icon} from './icons.js';
-import {table} from './ui_table.js';
-import {dialog, ask} from './ui_dialog.js';
-import {slider, choice, number, text, check} from './ui_controls.js';
-import {element, svg, replace, unique, gesture, memory} from './ui_base.js';
-import {digits, seconds, count, vector, toLinear, toByte} from './ui_numbers.js';
+import { icon } from './icons.js';
+import { table } from './ui_table.js';
+import { dialog, ask } from './ui_dialog.js';
+import { slider, choice, number, text, check } from './ui_controls.js';
+import { element, svg, replace, unique, gesture, memory } from './ui_base.js';
+import { digits, seconds, count, vector, toLinear, toByte } from './ui_numbers.js';
 
-export {icon, table, dialog, ask, slider, choice, number, text, check, element, svg, replace, unique, gesture, memory};
-export {digits, seconds, count, vector, toLinear, toByte};
+export {
+  icon,
+  table,
+  dialog,
+  ask,
+  slider,
+  choice,
+  number,
+  text,
+  check,
+  element,
+  svg,
+  replace,
+  unique,
+  gesture,
+  memory,
+};
+export { digits, seconds, count, vector, toLinear, toByte };
 
-export function button(label, onclick, {icon: drawing, kind, title, pressed, small, bare, disabled, ...rest} = {}) {
+export function button(label, onclick, { icon: drawing, kind, title, pressed, small, bare, disabled, ...rest } = {}) {
   const face = drawing ? icon(drawing) : null;
-  const node = element('button', {
-    type: 'button',
-    class: ['button', kind, small && 'small', bare && 'bare'].filter(Boolean).join(' '),
-    title: title ?? (bare ? label : null), disabled,
-    'aria-pressed': pressed === undefined ? null : String(pressed),
-    onclick, ...rest,
-  }, face, element('span', {class: bare ? 'visually-hidden' : 'button-label', text: label}));
+  const node = element(
+    'button',
+    {
+      type: 'button',
+      class: ['button', kind, small && 'small', bare && 'bare'].filter(Boolean).join(' '),
+      title: title ?? (bare ? label : null),
+      disabled,
+      'aria-pressed': pressed === undefined ? null : String(pressed),
+      onclick,
+      ...rest,
+    },
+    face,
+    element('span', { class: bare ? 'visually-hidden' : 'button-label', text: label }),
+  );
   return node;
 }
 
-export function field(label, control, {hint, unit, wide} = {}) {
+export function field(label, control, { hint, unit, wide } = {}) {
   control.id ||= unique('field');
-  const about = hint ? element('span', {class: 'hint', id: `${control.id}-hint`, text: hint}) : null;
+  const about = hint ? element('span', { class: 'hint', id: `${control.id}-hint`, text: hint }) : null;
   if (about) control.setAttribute('aria-describedby', about.id);
-  return element('div', {class: wide ? 'field wide' : 'field'},
-    element('label', {for: control.id, text: label}),
-    element('span', {class: 'field-control'}, control, unit ? element('span', {class: 'unit', text: unit}) : null),
-    about);
+  return element(
+    'div',
+    { class: wide ? 'field wide' : 'field' },
+    element('label', { for: control.id, text: label }),
+    element('span', { class: 'field-control' }, control, unit ? element('span', { class: 'unit', text: unit }) : null),
+    about,
+  );
 }
 
-export function group(title, {open = true, id, hint} = {}, ...children) {
+export function group(title, { open = true, id, hint } = {}, ...children) {
   const key = id ? `group.${id}` : null;
-  const node = element('details', {class: 'group', open: key ? memory.get(key, open) : open},
-    element('summary', {}, element('h3', {class: 'group-title', text: title}), hint ? element('span', {class: 'group-hint', text: hint}) : null),
-    element('div', {class: 'group-body'}, ...children));
+  const node = element(
+    'details',
+    { class: 'group', open: key ? memory.get(key, open) : open },
+    element(
+      'summary',
+      {},
+      element('h3', { class: 'group-title', text: title }),
+      hint ? element('span', { class: 'group-hint', text: hint }) : null,
+    ),
+    element('div', { class: 'group-body' }, ...children),
+  );
   if (key) node.addEventListener('toggle', () => memory.set(key, node.open));
   return node;
 }
 
 export function facts(pairs) {
-  return element('dl', {class: 'facts'}, pairs.map(([name, value]) => [
-    element('dt', {text: name}),
-    element('dd', {}, value instanceof Node ? value : String(value ?? '–')),
-  ]));
+  return element(
+    'dl',
+    { class: 'facts' },
+    pairs.map(([name, value]) => [
+      element('dt', { text: name }),
+      element('dd', {}, value instanceof Node ? value : String(value ?? '–')),
+    ]),
+  );
 }
 
-export function notice(message, {kind = 'info', remedy} = {}) {
-  return element('div', {class: `notice ${kind}`, role: kind === 'error' ? 'alert' : null},
+export function notice(message, { kind = 'info', remedy } = {}) {
+  return element(
+    'div',
+    { class: `notice ${kind}`, role: kind === 'error' ? 'alert' : null },
     icon(kind === 'good' ? 'check' : kind === 'info' ? 'info' : 'warning'),
-    element('div', {}, element('p', {text: message}), remedy ? element('p', {class: 'remedy', text: remedy}) : null));
+    element(
+      'div',
+      {},
+      element('p', { text: message }),
+      remedy ? element('p', { class: 'remedy', text: remedy }) : null,
+    ),
+  );
 }
 
-export const empty = (message) => element('p', {class: 'empty', text: message});
+export const empty = (message) => element('p', { class: 'empty', text: message });
 
 export function download(what, name) {
   const address = what instanceof Blob ? URL.createObjectURL(what) : what;
-  const link = element('a', {href: address, download: name, hidden: true});
+  const link = element('a', { href: address, download: name, hidden: true });
   document.body.append(link);
   link.click();
   link.remove();
@@ -98,7 +154,7 @@ export async function copy(words) {
   try {
     await navigator.clipboard.writeText(words);
   } catch {
-    const area = element('textarea', {class: 'visually-hidden', readonly: true, 'aria-hidden': 'true'});
+    const area = element('textarea', { class: 'visually-hidden', readonly: true, 'aria-hidden': 'true' });
     area.value = words;
     document.body.append(area);
     area.select();

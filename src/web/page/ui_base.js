@@ -26,12 +26,15 @@ export const element = (tag, properties, ...children) => fill(document.createEle
 export const svg = (tag, attributes, ...children) => fill(document.createElementNS(SVG, tag), attributes, children);
 
 export function replace(node, ...children) {
-  node.replaceChildren(...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false));
+  node.replaceChildren(
+    ...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false),
+  );
   return node;
 }
 
 export const unique = (prefix = 'id') => `${prefix}-${++counter}`;
-export const gesture = (prefix = 'drag') => `${prefix}-${Date.now().toString(36)}-${++counter}-${Math.random().toString(36).slice(2, 8)}`.slice(-64);
+export const gesture = (prefix = 'drag') =>
+  `${prefix}-${Date.now().toString(36)}-${++counter}-${Math.random().toString(36).slice(2, 8)}`.slice(-64);
 
 /* Browsers may forbid it, or lose it at any time: it is for comfort only. */
 export const memory = {
@@ -46,6 +49,8 @@ export const memory = {
   set(key, value) {
     try {
       localStorage.setItem(`cuvette.${key}`, JSON.stringify(value));
-    } catch { /* then it is forgotten */ }
+    } catch {
+      /* then it is forgotten */
+    }
   },
 };

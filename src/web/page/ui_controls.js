@@ -1,20 +1,31 @@
 /* Controls with a label of their own. exports: number, text, check, slider, choice (see ui.js)
  * Each is {node, set(value), ..}; set shows a value and tells nobody. */
 
-import {element, gesture, unique} from './ui_base.js';
-import {digits} from './ui_numbers.js';
+import { element, gesture, unique } from './ui_base.js';
+import { digits } from './ui_numbers.js';
 
 const shown = (value) => (Number.isFinite(value) ? String(Number(Number(value).toPrecision(7))) : '');
 
 function frame(label, input, unit) {
   input.id ||= unique('input');
-  return element('div', {class: 'field'}, element('label', {for: input.id, text: label}),
-    element('span', {class: 'field-control'}, input, unit ? element('span', {class: 'unit', text: unit}) : null));
+  return element(
+    'div',
+    { class: 'field' },
+    element('label', { for: input.id, text: label }),
+    element('span', { class: 'field-control' }, input, unit ? element('span', { class: 'unit', text: unit }) : null),
+  );
 }
 
-export function number({label, value, min, max, step, unit, onchange}) {
+export function number({ label, value, min, max, step, unit, onchange }) {
   let last = value;
-  const input = element('input', {type: 'number', class: 'input numeric', min, max, step: step ?? 'any', value: shown(value)});
+  const input = element('input', {
+    type: 'number',
+    class: 'input numeric',
+    min,
+    max,
+    step: step ?? 'any',
+    value: shown(value),
+  });
   input.addEventListener('change', () => {
     if (input.value === '' || !input.checkValidity()) {
       if (input.value === '') input.value = shown(last);
@@ -24,32 +35,64 @@ export function number({label, value, min, max, step, unit, onchange}) {
     last = input.valueAsNumber;
     onchange?.(last);
   });
-  input.addEventListener('blur', () => { input.value = shown(last); }); /* not what was refused */
+  input.addEventListener('blur', () => {
+    input.value = shown(last);
+  }); /* not what was refused */
   const set = (next) => {
     last = next;
     if (document.activeElement !== input || input.value === '') input.value = shown(next);
   };
-  return {node: label ? frame(label, input, unit) : input, input, set, get value() { return input.valueAsNumber; }};
+  return {
+    node: label ? frame(label, input, unit) : input,
+    input,
+    set,
+    get value() {
+      return input.valueAsNumber;
+    },
+  };
 }
 
-export function text({label, value = '', placeholder, onchange}) {
-  const input = element('input', {type: 'text', class: 'input', value, placeholder, spellcheck: 'false', autocomplete: 'off'});
+export function text({ label, value = '', placeholder, onchange }) {
+  const input = element('input', {
+    type: 'text',
+    class: 'input',
+    value,
+    placeholder,
+    spellcheck: 'false',
+    autocomplete: 'off',
+  });
   input.addEventListener('change', () => onchange?.(input.value));
   const set = (next) => {
     if (document.activeElement !== input) input.value = next;
   };
-  return {node: label ? frame(label, input) : input, input, set, get value() { return input.value; }};
+  return {
+    node: label ? frame(label, input) : input,
+    input,
+    set,
+    get value() {
+      return input.value;
+    },
+  };
 }
 
 export function check(label, checked, onchange) {
-  const input = element('input', {type: 'checkbox', checked});
+  const input = element('input', { type: 'checkbox', checked });
   input.addEventListener('change', () => onchange?.(input.checked));
-  const node = element('label', {class: 'check'}, input, element('span', {text: label}));
-  return {node, input, set(next) { input.checked = next; }, get value() { return input.checked; }};
+  const node = element('label', { class: 'check' }, input, element('span', { text: label }));
+  return {
+    node,
+    input,
+    set(next) {
+      input.checked = next;
+    },
+    get value() {
+      return input.checked;
+    },
+  };
 }
 
 /* Positions of the slider are 0..steps; a logarithmic one that starts at 0 has 0 at its left end. */
-export function scale({min, max, step, log}) {
+export function scale({ min, max, step, log }) {
   const integer = step >= 1;
   const floor = log && min <= 0 ? max * 1e-5 : min;
   const steps = !log && step && (max - min) / step <= 1000 ? Math.round((max - min) / step) : 1000;
@@ -72,16 +115,29 @@ export function scale({min, max, step, log}) {
   };
 }
 
-export function slider({label, min, max, step = (max - min) / 200, value, log = false, unit, oninput, onchange}) {
-  const ruler = scale({min, max, step, log});
-  const input = element('input', {type: 'range', class: 'range', min: 0, max: ruler.steps, step: 1, id: unique('range')});
-  const box = element('input', {type: 'number', class: 'input numeric', step: 'any', value: shown(value), 'aria-label': `${label}, number`});
+export function slider({ label, min, max, step = (max - min) / 200, value, log = false, unit, oninput, onchange }) {
+  const ruler = scale({ min, max, step, log });
+  const input = element('input', {
+    type: 'range',
+    class: 'range',
+    min: 0,
+    max: ruler.steps,
+    step: 1,
+    id: unique('range'),
+  });
+  const box = element('input', {
+    type: 'number',
+    class: 'input numeric',
+    step: 'any',
+    value: shown(value),
+    'aria-label': `${label}, number`,
+  });
   let mine = null;
   let dragged = false;
   const show = (next) => {
     input.value = ruler.position(next);
     input.setAttribute('aria-valuetext', `${digits(next)}${unit ? ` ${unit}` : ''}`);
-    input.style.setProperty('--filled', `${100 * input.value / ruler.steps}%`);
+    input.style.setProperty('--filled', `${(100 * input.value) / ruler.steps}%`);
   };
   input.addEventListener('input', () => {
     mine ??= gesture('slider');
@@ -105,47 +161,96 @@ export function slider({label, min, max, step = (max - min) / 200, value, log = 
     onchange?.(next, once);
   });
   show(value);
-  const node = element('div', {class: 'field'}, element('label', {for: input.id, text: label}),
-    element('span', {class: 'field-control'}, input, box, unit ? element('span', {class: 'unit', text: unit}) : null));
+  const node = element(
+    'div',
+    { class: 'field' },
+    element('label', { for: input.id, text: label }),
+    element(
+      'span',
+      { class: 'field-control' },
+      input,
+      box,
+      unit ? element('span', { class: 'unit', text: unit }) : null,
+    ),
+  );
   return {
-    node, input, box,
+    node,
+    input,
+    box,
     set(next) {
       if (dragged) return;
       show(next);
       if (document.activeElement !== box) box.value = shown(next);
     },
-    get value() { return box.valueAsNumber; },
+    get value() {
+      return box.valueAsNumber;
+    },
   };
 }
 
 const pair = (entry) => (Array.isArray(entry) ? entry : [entry, String(entry)]);
 
-function radioGroup({label, choices, value, onchange}) {
+function radioGroup({ label, choices, value, onchange }) {
   const name = unique('radio');
   const inputs = new Map();
   const buttons = choices.map(pair).map(([word, title]) => {
-    const input = element('input', {type: 'radio', name, value: word, checked: word === value, class: 'visually-hidden'});
+    const input = element('input', {
+      type: 'radio',
+      name,
+      value: word,
+      checked: word === value,
+      class: 'visually-hidden',
+    });
     input.addEventListener('change', () => onchange?.(word));
     inputs.set(word, input);
-    return element('label', {class: 'segment'}, input, element('span', {text: title}));
+    return element('label', { class: 'segment' }, input, element('span', { text: title }));
   });
-  const node = element('div', {class: 'segments', role: 'radiogroup', 'aria-label': label}, buttons);
+  const node = element('div', { class: 'segments', role: 'radiogroup', 'aria-label': label }, buttons);
   return {
-    node, inputs,
-    set(next) { for (const [word, input] of inputs) input.checked = word === next; },
-    get value() { return [...inputs].find(([, input]) => input.checked)?.[0]; },
+    node,
+    inputs,
+    set(next) {
+      for (const [word, input] of inputs) input.checked = word === next;
+    },
+    get value() {
+      return [...inputs].find(([, input]) => input.checked)?.[0];
+    },
   };
 }
 
-export function choice({label, choices, value, radios = false, onchange}) {
+export function choice({ label, choices, value, radios = false, onchange }) {
   if (radios) {
-    const group = radioGroup({label, choices, value, onchange});
-    const node = element('div', {class: 'field'}, element('span', {class: 'label', 'aria-hidden': 'true', text: label}),
-      element('span', {class: 'field-control'}, group.node));
-    return {node, group: group.node, inputs: group.inputs, set: group.set, get value() { return group.value; }};
+    const group = radioGroup({ label, choices, value, onchange });
+    const node = element(
+      'div',
+      { class: 'field' },
+      element('span', { class: 'label', 'aria-hidden': 'true', text: label }),
+      element('span', { class: 'field-control' }, group.node),
+    );
+    return {
+      node,
+      group: group.node,
+      inputs: group.inputs,
+      set: group.set,
+      get value() {
+        return group.value;
+      },
+    };
   }
-  const input = element('select', {class: 'input select'},
-    choices.map(pair).map(([word, title]) => element('option', {value: word, selected: word === value, text: title})));
+  const input = element(
+    'select',
+    { class: 'input select' },
+    choices.map(pair).map(([word, title]) => element('option', { value: word, selected: word === value, text: title })),
+  );
   input.addEventListener('change', () => onchange?.(input.value));
-  return {node: frame(label, input), input, set(next) { input.value = next; }, get value() { return input.value; }};
+  return {
+    node: frame(label, input),
+    input,
+    set(next) {
+      input.value = next;
+    },
+    get value() {
+      return input.value;
+    },
+  };
 }

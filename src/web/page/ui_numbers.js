@@ -6,7 +6,12 @@ export function digits(x, n = 4) {
   if (x === null || x === undefined || Number.isNaN(x)) return '–';
   if (!Number.isFinite(x)) return x > 0 ? '∞' : `${MINUS}∞`;
   const size = Math.abs(x);
-  if (size !== 0 && (size >= 1e7 || size < 1e-4)) return x.toExponential(Math.max(0, n - 1)).replace(/\.?0+e/, 'e').replace('e+', 'e').replace('-', MINUS);
+  if (size !== 0 && (size >= 1e7 || size < 1e-4))
+    return x
+      .toExponential(Math.max(0, n - 1))
+      .replace(/\.?0+e/, 'e')
+      .replace('e+', 'e')
+      .replace('-', MINUS);
   return String(Number(x.toPrecision(n))).replace('-', MINUS);
 }
 

@@ -2,50 +2,77 @@
  *
  * exports: createView(root, lab) -> view
  *   view.width, view.height             of the full picture, in pixels; 0 before the first
- *   view.project([x,y,z])               to {x, y, depth} in picture pixels (x from the left edge, y from the top, not rounded); null behind the camera
+ *   view.project([x,y,z])               to {x, y, depth} in picture pixels (x from the left edge, y from the top, not
+ *                                       rounded); null behind the camera
  *   view.toScreen(x, y)                 picture pixels to {x, y} in CSS pixels from the upper left corner of the stage
  *   view.fromEvent(event)               {x, y, inside} in picture pixels, not rounded: the pixel is Math.floor of each
  *   view.scale                          CSS pixels of a picture's pixel
- *   view.layer(name)                    an SVG group over the picture in picture pixels (0,0 is the upper left corner of the first pixel); made when first
- *                                       asked for; strokes keep their width on the screen (vector-effect). svg() of ui.js makes what goes in
- *   view.overlay                        an HTML element over the whole stage, for buttons placed by toScreen; only its children take the pointer
- *   view.tool(name, tool)               {label, icon, hint, order, cursor, down(point, event), move(point, event, start), up(point, event), hover(point, event),
- *                                       leave(), wheel(point, event), key(event) -> true when it is taken, chosen(), dropped()}; all may be left out.
- *                                       A tool with a label stands in the bar of tools. down may answer false: then no drag begins.
+ *   view.layer(name)                    an SVG group over the picture in picture pixels (0,0 is the upper left corner
+ *                                       of the first pixel); made when first
+ *                                       asked for; strokes keep their width on the screen (vector-effect). svg() of
+ *                                       ui.js makes what goes in
+ *   view.overlay                        an HTML element over the whole stage, for buttons placed by toScreen; only its
+ *                                       children take the pointer
+ *   view.tool(name, tool)               {label, icon, hint, order, cursor, down(point, event), move(point, event,
+ *                                       start), up(point, event), hover(point, event),
+ *                                       leave(), wheel(point, event), key(event) -> true when it is taken, chosen(),
+ *                                       dropped()}; all may be left out.
+ *                                       A tool with a label stands in the bar of tools. down may answer false: then no
+ *                                       drag begins.
  *                                       point is what fromEvent answers
  *   view.use(name)                      chooses a tool; view.chosen is its name
- *   view.options                        an element in the bar beside the tools, for controls of the chosen one (empty it in dropped)
+ *   view.options                        an element in the bar beside the tools, for controls of the chosen one (empty
+ *                                       it in dropped)
  *   view.stage                          the element that takes the pointer and keys
  *   view.pixel(x, y)                    [r, g, b] bytes of what is shown; null outside or before the first picture
  *   view.zoom(factor, at), view.fit(), view.actual()     at: {x, y} on the stage
- *   view.show(blob or null)             another picture of the full size in place of the pass (for comparisons); null goes back. Promise
+ *   view.show(blob or null)             another picture of the full size in place of the pass (for comparisons); null
+ *                                       goes back. Promise
  *   view.redraw()
- *   view.note(name, text or null, onclose)   a line at the upper edge about what lies over the picture, with a button that takes it away
+ *   view.note(name, text or null, onclose)   a line at the upper edge about what lies over the picture, with a button
+ *                                            that takes it away
  * lab.on('view', f) tells that scale, place or size changed: what stands in overlay must be placed anew. */
 
-import {element, svg} from './ui.js';
-import {createPlace} from './view_place.js';
-import {createPainting} from './view_painting.js';
-import {createToolbar} from './view_tools.js';
-import {createNotes} from './view_notes.js';
+import { element, svg } from './ui.js';
+import { createPlace } from './view_place.js';
+import { createPainting } from './view_painting.js';
+import { createToolbar } from './view_tools.js';
+import { createNotes } from './view_notes.js';
 
 export function createView(root, lab) {
-  const canvas = element('canvas', {class: 'view-canvas', 'aria-hidden': 'true'});
+  const canvas = element('canvas', { class: 'view-canvas', 'aria-hidden': 'true' });
   const layers = svg('g');
-  const drawing = svg('svg', {class: 'view-layers', 'aria-hidden': 'true'}, layers);
-  const overlay = element('div', {class: 'view-overlay'});
-  const readout = element('div', {class: 'readout', hidden: true});
-  const waiting = element('div', {class: 'view-waiting', hidden: true});
+  const drawing = svg('svg', { class: 'view-layers', 'aria-hidden': 'true' }, layers);
+  const overlay = element('div', { class: 'view-overlay' });
+  const readout = element('div', { class: 'readout', hidden: true });
+  const waiting = element('div', { class: 'view-waiting', hidden: true });
   const notes = createNotes();
   notes.node.append(waiting);
-  const stage = element('div', {
-    class: 'stage', id: 'picture', tabindex: '0', role: 'application', 'aria-label': 'Picture. Arrow keys orbit, W A S D Q E step, plus and minus zoom',
-  }, canvas, drawing, overlay, readout, notes.node);
+  const stage = element(
+    'div',
+    {
+      class: 'stage',
+      id: 'picture',
+      tabindex: '0',
+      role: 'application',
+      'aria-label': 'Picture. Arrow keys orbit, W A S D Q E step, plus and minus zoom',
+    },
+    canvas,
+    drawing,
+    overlay,
+    readout,
+    notes.node,
+  );
   const named = new Map();
 
   const view = {
-    stage, overlay, width: 0, height: 0,
-    get scale() { return place.scale; },
+    stage,
+    overlay,
+    width: 0,
+    height: 0,
+    get scale() {
+      return place.scale;
+    },
     project,
     toScreen: (x, y) => place.toScreen(x, y),
     fromEvent,
@@ -62,14 +89,15 @@ export function createView(root, lab) {
   const place = createPlace(stage, view, redraw);
   const painting = createPainting(canvas, view, place, lab);
   const toolbar = createToolbar(view, lab, readout);
-  Object.assign(view, {tool: toolbar.tool, use: toolbar.use, options: toolbar.options, bar: toolbar.bar, place});
-  Object.defineProperty(view, 'chosen', {get: () => toolbar.chosen()});
+  Object.assign(view, { tool: toolbar.tool, use: toolbar.use, options: toolbar.options, bar: toolbar.bar, place });
+  Object.defineProperty(view, 'chosen', { get: () => toolbar.chosen() });
 
   root.append(toolbar.node, stage);
   const explain = () => {
-    const {state} = lab;
+    const { state } = lab;
     if (!state) return;
-    const why = state.trouble ? [state.trouble.error, state.trouble.remedy].filter(Boolean).join(' – ')
+    const why = state.trouble
+      ? [state.trouble.error, state.trouble.remedy].filter(Boolean).join(' – ')
       : state.waiting || (lab.picture ? '' : 'The scene is being prepared …');
     waiting.textContent = why || '';
     waiting.hidden = !why;
@@ -93,8 +121,8 @@ export function createView(root, lab) {
     const depth = along(camera.forward);
     if (!(depth > 1e-9)) return null;
     return {
-      x: (along(camera.right) / (depth * camera.half_width) + 1) * view.width / 2,
-      y: (1 - along(camera.up) / (depth * camera.half_height)) * view.height / 2,
+      x: ((along(camera.right) / (depth * camera.half_width) + 1) * view.width) / 2,
+      y: ((1 - along(camera.up) / (depth * camera.half_height)) * view.height) / 2,
       depth,
     };
   }
@@ -102,12 +130,12 @@ export function createView(root, lab) {
   function fromEvent(event) {
     const box = stage.getBoundingClientRect();
     const at = place.fromScreen(event.clientX - box.left - stage.clientLeft, event.clientY - box.top - stage.clientTop);
-    return {...at, inside: at.x >= 0 && at.y >= 0 && at.x < view.width && at.y < view.height};
+    return { ...at, inside: at.x >= 0 && at.y >= 0 && at.x < view.width && at.y < view.height };
   }
 
   function layer(name) {
     if (!named.has(name)) {
-      const group = svg('g', {class: `layer layer-${name}`});
+      const group = svg('g', { class: `layer layer-${name}` });
       named.set(name, group);
       layers.append(group);
     }

@@ -1,12 +1,13 @@
-/* Fetches the newest pass and draws it. A picture that is older than what was asked for (lab.wanted), or than the one that is shown, is never drawn;
+/* Fetches the newest pass and draws it. A picture that is older than what was asked for (lab.wanted), or than the one
+ * that is shown, is never drawn;
  * serials say which is newer, also where a slime moves within one generation.
  * exports: createPainting(canvas, view, place, lab) -> {paint, pixel, show} */
 
 const newer = (a, b) => Boolean(a) && (!b || a.serial > b.serial);
 
 export function createPainting(canvas, view, place, lab) {
-  const context = canvas.getContext('2d', {alpha: true});
-  const probe = new OffscreenCanvas(1, 1).getContext('2d', {willReadFrequently: true});
+  const context = canvas.getContext('2d', { alpha: true });
+  const probe = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
   const told = new Map();
   let bitmap = null;
   let instead = null;
@@ -19,8 +20,16 @@ export function createPainting(canvas, view, place, lab) {
     told.clear();
   });
   lab.on('news', hear);
-  lab.on('state', (state) => { if (state.picture) hear(state.picture); });
-  return {paint: () => { frame ||= requestAnimationFrame(paint); }, pixel, show};
+  lab.on('state', (state) => {
+    if (state.picture) hear(state.picture);
+  });
+  return {
+    paint: () => {
+      frame ||= requestAnimationFrame(paint);
+    },
+    pixel,
+    show,
+  };
 
   function due() {
     return newer(lab.news, shown) && lab.news.generation >= lab.wanted;
@@ -28,7 +37,7 @@ export function createPainting(canvas, view, place, lab) {
 
   function hear(news) {
     const before = told.get(news.serial);
-    told.set(news.serial, {...before, ...news});
+    told.set(news.serial, { ...before, ...news });
     if (told.size > 12) told.delete(told.keys().next().value);
     if (shown?.serial !== news.serial) load();
     else if (!before && shown.generation >= lab.wanted) publish();
@@ -41,13 +50,15 @@ export function createPainting(canvas, view, place, lab) {
     let last = null;
     while (due() && newer(lab.news, last)) {
       try {
-        const {blob, headers} = await lab.blob('/api/picture.png');
+        const { blob, headers } = await lab.blob('/api/picture.png');
         const head = {
-          serial: Number(headers.get('X-Cuvette-Serial')), generation: Number(headers.get('X-Cuvette-Generation')), pass: Number(headers.get('X-Cuvette-Pass')),
+          serial: Number(headers.get('X-Cuvette-Serial')),
+          generation: Number(headers.get('X-Cuvette-Generation')),
+          pass: Number(headers.get('X-Cuvette-Pass')),
           final: headers.get('X-Cuvette-Final') === '1',
         };
         if (head.generation >= lab.wanted && newer(head, shown)) {
-          const next = await createImageBitmap(blob, {colorSpaceConversion: 'none'});
+          const next = await createImageBitmap(blob, { colorSpaceConversion: 'none' });
           if (head.generation >= lab.wanted) draw(next, head);
           else next.close();
         }
@@ -74,14 +85,21 @@ export function createPainting(canvas, view, place, lab) {
     const resized = width !== view.width || height !== view.height;
     view.width = width;
     view.height = height;
-    lab.picture = {...about, ...shown, width: bitmap.width, height: bitmap.height, full_width: width, full_height: height};
+    lab.picture = {
+      ...about,
+      ...shown,
+      width: bitmap.width,
+      height: bitmap.height,
+      full_width: width,
+      full_height: height,
+    };
     if (resized) place.fit();
     else view.redraw();
     lab.emit('picture', lab.picture);
   }
 
   async function show(blob) {
-    const next = blob ? await createImageBitmap(blob, {colorSpaceConversion: 'none'}) : null;
+    const next = blob ? await createImageBitmap(blob, { colorSpaceConversion: 'none' }) : null;
     if (instead) instead.close();
     instead = next;
     view.redraw();
@@ -92,14 +110,20 @@ export function createPainting(canvas, view, place, lab) {
     const ratio = devicePixelRatio;
     const width = Math.max(1, Math.round(place.width * ratio));
     const height = Math.max(1, Math.round(place.height * ratio));
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     else context.clearRect(0, 0, width, height);
     const source = instead || bitmap;
     if (!source || !view.width) return;
     const coarse = source.width < view.width;
     context.imageSmoothingEnabled = coarse || place.scale * ratio < 2;
     context.imageSmoothingQuality = 'high';
-    context.drawImage(source, place.left * ratio, place.top * ratio, view.width * place.scale * ratio, view.height * place.scale * ratio);
+    context.drawImage(
+      source,
+      place.left * ratio,
+      place.top * ratio,
+      view.width * place.scale * ratio,
+      view.height * place.scale * ratio,
+    );
   }
 
   function pixel(x, y) {
@@ -108,8 +132,8 @@ export function createPainting(canvas, view, place, lab) {
     const row = Math.floor(y);
     if (!source || column < 0 || row < 0 || column >= view.width || row >= view.height) return null;
     probe.clearRect(0, 0, 1, 1);
-    const sx = Math.min(source.width - 1, Math.floor((column + 0.5) * source.width / view.width));
-    const sy = Math.min(source.height - 1, Math.floor((row + 0.5) * source.height / view.height));
+    const sx = Math.min(source.width - 1, Math.floor(((column + 0.5) * source.width) / view.width));
+    const sy = Math.min(source.height - 1, Math.floor(((row + 0.5) * source.height) / view.height));
     probe.drawImage(source, sx, sy, 1, 1, 0, 0, 1, 1);
     return [...probe.getImageData(0, 0, 1, 1).data.slice(0, 3)];
   }

@@ -1,25 +1,35 @@
 /* Where the picture lies on the stage: fitted, or zoomed about a point.
- * exports: createPlace(stage, view, changed) -> {scale, left, top, fitted, toScreen, fromScreen, zoom, fit, actual, pan, size} */
+ * exports: createPlace(stage, view, changed) -> {scale, left, top, fitted, toScreen, fromScreen, zoom, fit, actual,
+ * pan, size} */
 
 const MARGIN = 12;
 const LARGEST = 64;
 const SMALLEST = 0.05;
-const CRISP = 1.2;     /* a picture that would be enlarged by less is shown pixel for pixel */
+const CRISP = 1.2; /* a picture that would be enlarged by less is shown pixel for pixel */
 
 const whole = (x) => Math.round(x * devicePixelRatio) / devicePixelRatio;
 
 export function createPlace(stage, view, changed) {
   const place = {
-    scale: 1, left: 0, top: 0, fitted: true, width: 0, height: 0,
-    toScreen: (x, y) => ({x: place.left + x * place.scale, y: place.top + y * place.scale}),
-    fromScreen: (x, y) => ({x: (x - place.left) / place.scale, y: (y - place.top) / place.scale}),
-    zoom, fit, actual, pan, size,
+    scale: 1,
+    left: 0,
+    top: 0,
+    fitted: true,
+    width: 0,
+    height: 0,
+    toScreen: (x, y) => ({ x: place.left + x * place.scale, y: place.top + y * place.scale }),
+    fromScreen: (x, y) => ({ x: (x - place.left) / place.scale, y: (y - place.top) / place.scale }),
+    zoom,
+    fit,
+    actual,
+    pan,
+    size,
   };
   new ResizeObserver(() => size()).observe(stage);
   return place;
 
   function size() {
-    const {clientWidth, clientHeight} = stage;
+    const { clientWidth, clientHeight } = stage;
     if (!clientWidth || !clientHeight) return;
     const dx = (clientWidth - place.width) / 2;
     const dy = (clientHeight - place.height) / 2;
@@ -36,7 +46,10 @@ export function createPlace(stage, view, changed) {
   function fit() {
     place.fitted = true;
     if (view.width && place.width) {
-      place.scale = Math.max(SMALLEST / 4, Math.min((place.width - 2 * MARGIN) / view.width, (place.height - 2 * MARGIN) / view.height));
+      place.scale = Math.max(
+        SMALLEST / 4,
+        Math.min((place.width - 2 * MARGIN) / view.width, (place.height - 2 * MARGIN) / view.height),
+      );
       const enlarged = place.scale * devicePixelRatio;
       if (enlarged > 1 && enlarged < CRISP) place.scale = 1 / devicePixelRatio;
       place.left = whole((place.width - view.width * place.scale) / 2);
@@ -45,8 +58,8 @@ export function createPlace(stage, view, changed) {
     changed();
   }
 
-  function zoom(factor, at = {x: place.width / 2, y: place.height / 2}) {
-    const {x, y} = place.fromScreen(at.x, at.y);
+  function zoom(factor, at = { x: place.width / 2, y: place.height / 2 }) {
+    const { x, y } = place.fromScreen(at.x, at.y);
     place.fitted = false;
     place.scale = Math.min(LARGEST, Math.max(SMALLEST, place.scale * factor));
     place.left = at.x - x * place.scale;

@@ -1,7 +1,8 @@
-/* The bar over the picture, and the pointer and keys on it: the chosen tool's, and panning, zooming and the readout, which all tools share.
+/* The bar over the picture, and the pointer and keys on it: the chosen tool's, and panning, zooming and the readout,
+ * which all tools share.
  * exports: createToolbar(view, lab, readout) -> {node, bar, options, tool, use, chosen} */
 
-import {button, element, icon, unique} from './ui.js';
+import { button, element, icon, unique } from './ui.js';
 
 const ZOOM = 1.25;
 const PAN = 48;
@@ -10,33 +11,79 @@ const hex = (byte) => byte.toString(16).padStart(2, '0');
 
 export function createToolbar(view, lab, readout) {
   const tools = new Map();
-  const radios = element('div', {class: 'segments tools', role: 'radiogroup', 'aria-label': 'What the pointer does'});
-  const options = element('div', {class: 'tool-options'});
-  const level = element('button', {type: 'button', class: 'button quiet small level', title: 'Picture pixels as they are (1)', onclick: () => view.actual()});
-  const bar = element('div', {class: 'bar-end'});
-  const node = element('div', {class: 'toolbar'}, radios, options, element('div', {class: 'bar-end'},
-    button('Zoom out', () => view.zoom(1 / ZOOM), {icon: 'minus', bare: true, kind: 'quiet', small: true, title: 'Zoom out (-)'}), level,
-    button('Zoom in', () => view.zoom(ZOOM), {icon: 'plus', bare: true, kind: 'quiet', small: true, title: 'Zoom in (+)'}),
-    button('Fit', () => view.fit(), {icon: 'fit', bare: true, kind: 'quiet', small: true, title: 'The whole picture (0)'}), bar));
+  const radios = element('div', { class: 'segments tools', role: 'radiogroup', 'aria-label': 'What the pointer does' });
+  const options = element('div', { class: 'tool-options' });
+  const level = element('button', {
+    type: 'button',
+    class: 'button quiet small level',
+    title: 'Picture pixels as they are (1)',
+    onclick: () => view.actual(),
+  });
+  const bar = element('div', { class: 'bar-end' });
+  const node = element(
+    'div',
+    { class: 'toolbar' },
+    radios,
+    options,
+    element(
+      'div',
+      { class: 'bar-end' },
+      button('Zoom out', () => view.zoom(1 / ZOOM), {
+        icon: 'minus',
+        bare: true,
+        kind: 'quiet',
+        small: true,
+        title: 'Zoom out (-)',
+      }),
+      level,
+      button('Zoom in', () => view.zoom(ZOOM), {
+        icon: 'plus',
+        bare: true,
+        kind: 'quiet',
+        small: true,
+        title: 'Zoom in (+)',
+      }),
+      button('Fit', () => view.fit(), {
+        icon: 'fit',
+        bare: true,
+        kind: 'quiet',
+        small: true,
+        title: 'The whole picture (0)',
+      }),
+      bar,
+    ),
+  );
   const group = unique('tool');
   let chosen = null;
   let drag = null;
   let space = false;
 
   listen(view.stage);
-  lab.on('view', () => { level.textContent = `${Math.round(view.scale * devicePixelRatio * 100)} %`; });
-  return {node, bar, options, tool, use, chosen: () => chosen};
+  lab.on('view', () => {
+    level.textContent = `${Math.round(view.scale * devicePixelRatio * 100)} %`;
+  });
+  return { node, bar, options, tool, use, chosen: () => chosen };
 
   function tool(name, what) {
     tools.set(name, what);
     if (what.label) {
-      const input = element('input', {type: 'radio', name: group, value: name, class: 'visually-hidden'});
+      const input = element('input', { type: 'radio', name: group, value: name, class: 'visually-hidden' });
       input.addEventListener('change', () => use(name));
       what.radio = input;
-      what.segment = element('label', {class: 'segment', title: what.hint}, input, icon(what.icon || 'move'), element('span', {text: what.label}));
+      what.segment = element(
+        'label',
+        { class: 'segment', title: what.hint },
+        input,
+        icon(what.icon || 'move'),
+        element('span', { text: what.label }),
+      );
     }
-    radios.replaceChildren(...[...tools.values()].filter((each) => each.segment)
-      .sort((a, b) => (a.order ?? 50) - (b.order ?? 50)).map((each) => each.segment));
+    radios.replaceChildren(
+      ...[...tools.values()]
+        .filter((each) => each.segment)
+        .sort((a, b) => (a.order ?? 50) - (b.order ?? 50))
+        .map((each) => each.segment),
+    );
     if (chosen && tools.get(chosen).radio) tools.get(chosen).radio.checked = true;
   }
 
@@ -61,21 +108,27 @@ export function createToolbar(view, lab, readout) {
       readout.hidden = true;
       tools.get(chosen)?.leave?.();
     });
-    stage.addEventListener('wheel', wheel, {passive: false});
+    stage.addEventListener('wheel', wheel, { passive: false });
     stage.addEventListener('keydown', key);
-    stage.addEventListener('keyup', (event) => { if (event.key === ' ') space = false; });
-    stage.addEventListener('blur', () => { space = false; });
-    stage.addEventListener('contextmenu', (event) => { if (drag) event.preventDefault(); });
+    stage.addEventListener('keyup', (event) => {
+      if (event.key === ' ') space = false;
+    });
+    stage.addEventListener('blur', () => {
+      space = false;
+    });
+    stage.addEventListener('contextmenu', (event) => {
+      if (drag) event.preventDefault();
+    });
   }
 
   function down(event) {
     if (event.target.closest('button, input, select, a') || drag) return;
-    view.stage.focus({preventScroll: true});
+    view.stage.focus({ preventScroll: true });
     const point = view.fromEvent(event);
     const panning = event.button === 1 || (event.button === 0 && space);
     if (!panning && event.button !== 0) return;
     if (!panning && tools.get(chosen)?.down?.(point, event) === false) return;
-    drag = {id: event.pointerId, start: point, panning, x: event.clientX, y: event.clientY};
+    drag = { id: event.pointerId, start: point, panning, x: event.clientX, y: event.clientY };
     view.stage.setPointerCapture(event.pointerId);
     event.preventDefault();
   }
@@ -88,7 +141,7 @@ export function createToolbar(view, lab, readout) {
     } else if (event.pointerId === drag.id) {
       if (drag.panning) {
         view.pan(event.clientX - drag.x, event.clientY - drag.y);
-        Object.assign(drag, {x: event.clientX, y: event.clientY});
+        Object.assign(drag, { x: event.clientX, y: event.clientY });
       } else {
         tools.get(chosen)?.move?.(point, event, drag.start);
       }
@@ -97,7 +150,7 @@ export function createToolbar(view, lab, readout) {
 
   function up(event) {
     if (!drag || event.pointerId !== drag.id) return;
-    const {panning} = drag;
+    const { panning } = drag;
     drag = null;
     if (!panning) tools.get(chosen)?.up?.(view.fromEvent(event), event);
   }
@@ -106,7 +159,7 @@ export function createToolbar(view, lab, readout) {
     const lines = event.deltaY * (event.deltaMode === 1 ? 16 : event.deltaMode === 2 ? 400 : 1);
     if (event.ctrlKey || event.metaKey) {
       const box = view.stage.getBoundingClientRect();
-      view.zoom(Math.exp(-lines / 400), {x: event.clientX - box.left, y: event.clientY - box.top});
+      view.zoom(Math.exp(-lines / 400), { x: event.clientX - box.left, y: event.clientY - box.top });
     } else if (tools.get(chosen)?.wheel) {
       tools.get(chosen).wheel(view.fromEvent(event), event, lines);
     } else {
@@ -117,8 +170,14 @@ export function createToolbar(view, lab, readout) {
 
   function key(event) {
     if (event.target !== view.stage || event.altKey) return;
-    const arrows = {ArrowLeft: [PAN, 0], ArrowRight: [-PAN, 0], ArrowUp: [0, PAN], ArrowDown: [0, -PAN]};
-    const zooms = {'+': () => view.zoom(ZOOM), '=': () => view.zoom(ZOOM), '-': () => view.zoom(1 / ZOOM), 0: () => view.fit(), 1: () => view.actual()};
+    const arrows = { ArrowLeft: [PAN, 0], ArrowRight: [-PAN, 0], ArrowUp: [0, PAN], ArrowDown: [0, -PAN] };
+    const zooms = {
+      '+': () => view.zoom(ZOOM),
+      '=': () => view.zoom(ZOOM),
+      '-': () => view.zoom(1 / ZOOM),
+      0: () => view.fit(),
+      1: () => view.actual(),
+    };
     if (event.ctrlKey && arrows[event.key]) view.pan(...arrows[event.key]);
     else if (event.ctrlKey || event.metaKey) return;
     else if (event.key === ' ') space = true;
@@ -133,8 +192,10 @@ export function createToolbar(view, lab, readout) {
     if (!bytes) return;
     const [r, g, b] = bytes;
     readout.replaceChildren(
-      element('span', {class: 'swatch', style: {background: `rgb(${r} ${g} ${b})`}}),
-      element('span', {text: `x ${Math.floor(point.x)}  y ${Math.floor(point.y)}`}),
-      element('span', {text: `${r} ${g} ${b}`}), element('span', {text: `#${hex(r)}${hex(g)}${hex(b)}`}));
+      element('span', { class: 'swatch', style: { background: `rgb(${r} ${g} ${b})` } }),
+      element('span', { text: `x ${Math.floor(point.x)}  y ${Math.floor(point.y)}` }),
+      element('span', { text: `${r} ${g} ${b}` }),
+      element('span', { text: `#${hex(r)}${hex(g)}${hex(b)}` }),
+    );
   }
 }
