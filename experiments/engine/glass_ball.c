@@ -8,30 +8,14 @@
 
 enum { WIDTH = 320, HEIGHT = 240 };
 
-typedef struct setting {
-    const char *path, *value;
-} setting;
-
-static const setting settings[] = {
-    {"render.width", "320"},
-    {"render.height", "240"},
-    {"render.depth", "6"},
-    {"render.threads", "2"},
-    {"camera.position", "0,2,-6"},
-    {"camera.target", "0,1,0"},
-    {"background.color", "0.5,0.7,0.9"},
-    {"lamp.position", "4,7,-5"},
-    {"ground.color", "0.85,0.85,0.85"},
-    {"ground.checker_color", "0.25,0.3,0.35"},
-    {"ground.checker", "0.5"},
-    {"ground.ambient", "0.1"},
-    {"ground.diffuse", "0.7"},
-    {"glass.transparency", "1"},
-    {"glass.medium", "bk7"},
-    {"glass.specular", "0.6"},
-    {"glass.shininess", "80"},
-    {"ball.position", "0,1.01,0"},
-};
+/* Each path and its value. */
+static const char *const settings[] = { // clang-format off
+    "render.width", "320", "render.height", "240", "render.depth", "6", "render.threads", "2",
+    "camera.position", "0,2,-6", "camera.target", "0,1,0", "background.color", "0.5,0.7,0.9",
+    "lamp.position", "4,7,-5", "ground.color", "0.85,0.85,0.85", "ground.checker_color", "0.25,0.3,0.35",
+    "ground.checker", "0.5", "ground.ambient", "0.1", "ground.diffuse", "0.7", "glass.transparency", "1",
+    "glass.medium", "bk7", "glass.specular", "0.6", "glass.shininess", "80", "ball.position", "0,1.01,0"
+}; // clang-format on
 
 /* Ends the program with the library's own words. */
 static void need(cuvette_status status, const cuvette_diagnostic *why)
@@ -52,8 +36,8 @@ static cuvette_scene *make_scene(void)
     need(cuvette_scene_add_material(scene, "glass", &why), &why);
     need(cuvette_scene_add_solid(scene, "ground", "plane", NULL, &why), &why);
     need(cuvette_scene_add_solid(scene, "ball", "sphere", "glass", &why), &why);
-    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
-        need(cuvette_scene_set(scene, settings[i].path, settings[i].value, &why), &why);
+    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i += 2)
+        need(cuvette_scene_set(scene, settings[i], settings[i + 1], &why), &why);
     need(cuvette_scene_set_double(scene, "ball.radius", 1.0, &why), &why);
     return scene;
 }

@@ -1,6 +1,5 @@
 /* A slime that is taken hold of under a pixel, drawn aside and let go, by the engine alone: five moments side by side
  * in a PPM on standard output, and what became of the slime on standard error.
- *
  *   cc -o slime slime.c $(pkg-config --cflags --libs cuvette) && ./slime >slime.ppm */
 #include <cuvette.h>
 #include <stdio.h>
@@ -8,37 +7,24 @@
 
 enum { WIDTH = 160, HEIGHT = 120, FRAMES = 5, ROW = 3 * WIDTH * FRAMES };
 
-static const char *const settings[][2] = {
-    {"render.width", "160"},
-    {"render.height", "120"},
-    {"render.depth", "6"},
-    {"render.threads", "2"},
-    {"camera.position", "0,2,-6"},
-    {"camera.target", "0,0.9,0"},
-    {"background.color", "0.5,0.7,0.9"},
-    {"ground.ambient", "0.1"},
-    {"lamp.position", "4,7,-5"},
-    {"ground.checker", "0.5"},
-    {"ground.diffuse", "0.8"},
-    {"ground.checker_color", "0.25,0.3,0.35"},
-    {"toy.generate", "slime"},
-    {"toy.level", "3"},
-    {"toy.dt_s", "0.002"},
-    {"body.mesh", "toy"},
-    {"body.priority", "1"},
-    {"body.ior", "1.2"},
-    {"body.transparency", "0.9"},
-    {"body.absorb_per_m", "2.2,0.25,1.8"},
-};
+/* Each path and its value. */
+static const char *const settings[] = { // clang-format off
+    "render.width", "160", "render.height", "120", "render.depth", "6", "render.threads", "2",
+    "camera.position", "0,2,-6", "camera.target", "0,0.9,0", "background.color", "0.5,0.7,0.9",
+    "ground.ambient", "0.1", "lamp.position", "4,7,-5", "ground.checker", "0.5", "ground.diffuse", "0.8",
+    "ground.checker_color", "0.25,0.3,0.35", "toy.generate", "slime", "toy.level", "3", "toy.dt_s", "0.002",
+    "body.mesh", "toy", "body.priority", "1", "body.ior", "1.2", "body.transparency", "0.9",
+    "body.absorb_per_m", "2.2,0.25,1.8"
+}; // clang-format on
 
 /* Ends the program with the library's own words. */
 static void need(cuvette_status status, const cuvette_diagnostic *why)
 {
     char text[CUVETTE_DIAGNOSTIC_TEXT_MAX];
-    if (status != CUVETTE_OK) {
-        fprintf(stderr, "slime: %s\n", cuvette_diagnostic_text(why, text, sizeof text));
-        exit(1);
-    }
+    if (status == CUVETTE_OK)
+        return;
+    fprintf(stderr, "slime: %s\n", cuvette_diagnostic_text(why, text, sizeof text));
+    exit(1);
 }
 
 static cuvette_scene *make_scene(void)
@@ -50,8 +36,8 @@ static cuvette_scene *make_scene(void)
     need(cuvette_scene_add_mesh(scene, "toy", &why), &why);
     need(cuvette_scene_add_solid(scene, "ground", "plane", NULL, &why), &why);
     need(cuvette_scene_add_solid(scene, "body", "mesh", NULL, &why), &why);
-    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
-        need(cuvette_scene_set(scene, settings[i][0], settings[i][1], &why), &why);
+    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i += 2)
+        need(cuvette_scene_set(scene, settings[i], settings[i + 1], &why), &why);
     return scene;
 }
 
@@ -69,15 +55,13 @@ static int grab_under(cuvette_motion *motion, const cuvette_scene *scene, double
     return hand;
 }
 
-static void render(cuvette_engine *engine, const cuvette_scene *scene, const cuvette_motion *motion,
-                   unsigned char *picture)
+static void render(cuvette_engine *engine, const cuvette_scene *scene, const cuvette_motion *motion, unsigned char *rgb)
 {
     cuvette_diagnostic why;
     cuvette_frame *frame;
     cuvette_slime slime;
     cuvette_request request = CUVETTE_REQUEST;
-    request.width = WIDTH, request.height = HEIGHT;
-    request.srgb = picture, request.srgb_stride = ROW;
+    request.width = WIDTH, request.height = HEIGHT, request.srgb = rgb, request.srgb_stride = ROW;
     need(cuvette_engine_render(engine, scene, &request, &frame, &why), &why);
     slime.size = sizeof slime;
     need(cuvette_motion_state(motion, "toy", &slime, &why), &why);
