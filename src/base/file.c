@@ -12,10 +12,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static status no_memory(diagnostic *why, const char *path)
+static status no_room(diagnostic *why, const char *path)
 {
     diagnostic_locate(why, path, 0, 0);
-    return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+    return out_of_memory(why);
 }
 
 /* Fills *why with an error of the system about path. The reason is text of its own, because strerror is not
@@ -24,7 +24,7 @@ static status system_error(diagnostic *why, status code, const char *path, const
 {
     const char *reason = strerrordesc_np(error), *remedy = NULL;
     if (error == ENOMEM)
-        return no_memory(why, path);
+        return no_room(why, path);
     switch (error) {
     case ENOSPC:
     case EDQUOT: remedy = "free some space or choose another disk"; break;
@@ -77,7 +77,7 @@ static status read_descriptor(int fd, const char *path, size_t limit, size_t exp
             buffer = larger;
         }
     }
-    return no_memory(why, path);
+    return no_room(why, path);
 }
 
 status file_read(const char *path, size_t limit, char **text, size_t *size, diagnostic *why)
@@ -217,7 +217,7 @@ status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
     }
     writer->path = strdup(path);
     if (!writer->path) {
-        return no_memory(why, path);
+        return no_room(why, path);
     }
     int fd = open_target(writer);
     if (fd >= 0) {
@@ -312,7 +312,7 @@ status file_make_directory(const char *path, diagnostic *why)
 {
     char *part = strdup(path);
     if (!part) {
-        return no_memory(why, path);
+        return no_room(why, path);
     }
     int error = *path ? 0 : ENOENT;
     for (char *c = part; *c && !error; c++) {

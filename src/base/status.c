@@ -62,6 +62,11 @@ status diagnose(diagnostic *why, status code, const char *remedy, const char *wh
     return code;
 }
 
+status out_of_memory(diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "", "out of memory");
+}
+
 void diagnostic_locate(diagnostic *why, const char *file, long line, long column)
 {
     if (!why) {

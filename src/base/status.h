@@ -32,6 +32,9 @@ enum { DIAGNOSTIC_TEXT_MAX = 1792 };
 status diagnose(diagnostic *why, status code, const char *remedy, const char *what, ...)
     __attribute__((format(printf, 4, 5)));
 
+/* STATUS_FAILURE, and the same words for all that runs out of memory. */
+status out_of_memory(diagnostic *why);
+
 /* Says where the trouble is. file may be NULL; line and column from 1, 0 for none. */
 void diagnostic_locate(diagnostic *why, const char *file, long line, long column);
 

@@ -33,11 +33,6 @@ static ssize_t append(void *of, const char *bytes, size_t count)
     return (ssize_t)count;
 }
 
-static status out_of_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 status text_writer_open(text_writer *writer, diagnostic *why)
 {
     *writer = (text_writer){.stream = NULL};

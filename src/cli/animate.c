@@ -21,8 +21,7 @@ static status set_scripts(const animate_request *request, scene *s, diagnostic *
         if (s->meshes[i].source != MESH_SLIME)
             continue;
         char *path = text_format("%s.script", s->meshes[i].name);
-        result =
-            path ? scene_set(s, path, request->script_path, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+        result = path ? scene_set(s, path, request->script_path, why) : out_of_memory(why);
         if (result != STATUS_OK)
             diagnostic_locate(why, "--script", 0, 0);
         free(path);
@@ -95,7 +94,7 @@ static status print_account(const animate_request *request, const scene *s, cons
         "simulated_s", json_of_real(a->simulated_s), "steps", (json_int_t)a->steps, "step_s", json_of_real(a->step_s),
         "skin_s", json_of_real(a->skin_s), "wall_s", json_of_real(a->wall_s), "wall_s_mean",
         json_of_real(a->rendered ? a->wall_s / (double)a->rendered : (double)NAN), "params", report_params(s));
-    status result = o ? json_write(stdout, o, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status result = o ? json_write(stdout, o, why) : out_of_memory(why);
     json_decref(o);
     return result;
 }

@@ -10,11 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static bool is_time_of_slime(const param *row)
 {
     return row->group == PARAM_MESH && strcmp(row->name, "time_s") == 0;
@@ -67,7 +62,7 @@ status animate_define(const animate_request *request, const scene *s, animate_de
     *out = (animate_definition){.parameters = json_object(), .hash = HASH_START};
     if (!out->parameters || !add_request(out->parameters, request, s) ||
         scene_each_param(s, add_param, out->parameters) != STATUS_OK)
-        return no_memory(why);
+        return out_of_memory(why);
     hash_parameters(&out->hash, out->parameters);
     hash_solids(&out->hash, s);
     grid_hash_files(&out->hash, s);

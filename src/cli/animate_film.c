@@ -28,11 +28,6 @@ typedef struct film_job {
     animate_account *account;
 } film_job;
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static bool show_progress(void *context, double share_done)
 {
     film_job *job = context;
@@ -141,7 +136,7 @@ static status make_frame(film_job *job, diagnostic *why)
 {
     char *path = job->names ? animate_name(job->names, job->frame) : NULL;
     if (job->names && !path)
-        return no_memory(why);
+        return out_of_memory(why);
     const bool kept = is_there(job, path);
     snprintf(job->label, sizeof job->label, "frame %" PRId64 " of %" PRId64, job->frame + 1, job->count);
     status result = show_progress(job, 0) ? STATUS_OK : say_interrupted(job, why);

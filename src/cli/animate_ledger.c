@@ -11,11 +11,6 @@ enum { LEDGER_BYTES_MAX = 1 << 26 };
 
 static const char otherwise[] = "put this film into another folder, or add --restart, which removes the frames there";
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static status refuse(const char *path, diagnostic *why, const char *what)
 {
     diagnostic_locate(why, path, 0, 0);
@@ -36,7 +31,7 @@ static status write_ledger(const char *path, const animate_names *names, const a
         json_pack("{s:s,s:o,s:I,s:s,s:O}", "version", CUVETTE_VERSION, "frames", json_of_text(names->pattern), "count",
                   (json_int_t)count, "definition", hash, "parameters", d->parameters);
     file_writer file = {0};
-    status result = ledger ? file_writer_open(&file, path, why) : no_memory(why);
+    status result = ledger ? file_writer_open(&file, path, why) : out_of_memory(why);
     if (result == STATUS_OK) {
         result = json_write(file.stream, ledger, why);
         if (result == STATUS_OK)
@@ -137,7 +132,7 @@ status animate_ledger_check(const animate_names *names, const animate_definition
 {
     int64_t known = -1;
     char *path = ledger_path(names);
-    status result = path ? STATUS_OK : no_memory(why);
+    status result = path ? STATUS_OK : out_of_memory(why);
     if (path && access(path, F_OK) == 0)
         result = compare(path, d, restart, &known, why);
     if (result == STATUS_OK)
@@ -150,7 +145,7 @@ status animate_ledger_begin(const animate_names *names, const animate_definition
                             diagnostic *why)
 {
     char *path = ledger_path(names);
-    status result = path ? file_make_directory(names->folder, why) : no_memory(why);
+    status result = path ? file_make_directory(names->folder, why) : out_of_memory(why);
     if (result == STATUS_OK && restart)
         result = animate_folder_clear(names, why);
     if (result == STATUS_OK && (restart || count > animate_ledger_count(path)))

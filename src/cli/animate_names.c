@@ -68,7 +68,7 @@ status animate_names_parse(const char *pattern, animate_names *out, diagnostic *
     out->before = calloc(1, strlen(name) + 1);
     out->after = calloc(1, strlen(name) + 1);
     if (!out->folder || !out->before || !out->after)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     return split(pattern, name, out, why);
 }
 

@@ -79,11 +79,6 @@ static void put_row(csv_line *line, const animate_row *r)
     csv_end(line);
 }
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static status refuse(const char *path, const char *what, diagnostic *why)
 {
     diagnostic_locate(why, path, 0, 0);
@@ -114,7 +109,7 @@ static status take_rows(animate_rows *rows, const char *path, const csv *there, 
         return refuse(path, "has other columns than the rows of a film", why);
     rows->there = calloc(there->row_count + 1, sizeof *rows->there);
     if (!rows->there)
-        return no_memory(why);
+        return out_of_memory(why);
     const int frame = csv_column(there, "frame"), of = csv_column(there, "definition"),
               picture = csv_column(there, "film_hash");
     for (size_t i = 0; i < there->row_count; i++) {
@@ -146,7 +141,7 @@ status animate_rows_open(const char *path, uint64_t definition, bool anew, anima
     csv *there = NULL;
     if (rows)
         rows->path = strdup(path);
-    status result = rows && rows->path && !header.failed ? csv_read(path, &there, why) : no_memory(why);
+    status result = rows && rows->path && !header.failed ? csv_read(path, &there, why) : out_of_memory(why);
     if (result == STATUS_OK && there)
         result = take_rows(rows, path, there, header.text, definition, why);
     if (result == STATUS_OK && anew && rows->count > 0)
@@ -199,7 +194,7 @@ status animate_rows_add(animate_rows *rows, const animate_row *row, diagnostic *
         return STATUS_OK;
     csv_line line = {0};
     put_row(&line, row);
-    status result = line.failed ? no_memory(why) : table_append(rows->file, line.text, line.size, why);
+    status result = line.failed ? out_of_memory(why) : table_append(rows->file, line.text, line.size, why);
     csv_line_free(&line);
     return result;
 }

@@ -56,7 +56,7 @@ static status run_command(const command *chosen, int argc, char **argv, diagnost
     char **own = calloc((size_t)argc + 1, sizeof *own);
     status result;
     if (!program || !own) {
-        result = diagnose(why, STATUS_FAILURE, "", "out of memory");
+        result = out_of_memory(why);
     } else {
         own[0] = program;
         memcpy(own + 1, argv + 2, (size_t)(argc - 2) * sizeof *own);
@@ -71,7 +71,7 @@ status command_dispatch(const command *table, size_t count, const char *about, i
 {
     char *help = table_text(table, count, about, argv[0]);
     if (!help)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     const struct argp argp = {.parser = take_word, .args_doc = "COMMAND [ARGUMENT...]", .doc = help};
     choice chosen = {0};
     status result = options_parse(&argp, ARGP_IN_ORDER, argc, argv, &chosen, why);

@@ -43,5 +43,5 @@ status fan_write_csv(const fanned *t, FILE *out, diagnostic *why)
     if (!failed)
         fwrite(line.text, 1, line.size, out);
     csv_line_free(&line);
-    return failed ? diagnose(why, STATUS_FAILURE, "", "out of memory") : STATUS_OK;
+    return failed ? out_of_memory(why) : STATUS_OK;
 }

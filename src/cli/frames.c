@@ -97,7 +97,7 @@ status frames_render(const scene *s, isa level, size_t count, const render_optio
 {
     *out = (frames){.wall_s = calloc(count + 1, sizeof(double)), .cpu_s = calloc(count + 1, sizeof(double))};
     if (!out->wall_s || !out->cpu_s)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     hardware_counter *counter = hardware_counter_create(); /* before the pool: it counts threads that start after it */
     topology *machine = NULL;
     renderer *r = NULL;

@@ -153,7 +153,7 @@ status command_lab(int argc, char **argv, diagnostic *why)
     const char *folder = request.folder ? request.folder : chosen;
     if (code == STATUS_OK && !request.results) {
         results = strcmp(folder, ".") == 0 ? strdup("results") : text_format("%s/results", folder);
-        code = results ? code : diagnose(why, STATUS_FAILURE, "", "out of memory");
+        code = results ? code : out_of_memory(why);
     }
     if (code == STATUS_OK)
         code = run_lab(&request, folder, request.results ? request.results : results, why);

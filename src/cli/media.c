@@ -65,7 +65,7 @@ static status find(const media_request *request, const medium **out, diagnostic 
 {
     const char **names = calloc(media_count(), sizeof *names);
     if (!names)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     for (size_t i = 0; i < media_count(); i++)
         names[i] = media_at(i)->name;
     *out = media_find(request->name);

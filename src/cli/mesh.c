@@ -202,8 +202,7 @@ status command_mesh(int argc, char **argv, diagnostic *why)
 {
     mesh_request request = {.around = scene_create(), .format = MESH_FORMAT_COUNT};
     const mesh *m = NULL;
-    status result = request.around ? scene_add_mesh(request.around, "body", NULL, why)
-                                   : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status result = request.around ? scene_add_mesh(request.around, "body", NULL, why) : out_of_memory(why);
     if (result == STATUS_OK)
         result = options_parse(&parser, 0, argc, argv, &request, why);
     if (result == STATUS_OK)

@@ -154,7 +154,7 @@ static status measure_and_print(const motion_request *request, const scene *s, i
         if (m->source != MESH_SLIME || (result = softbody_trials(&settings, level, &report, why)) != STATUS_OK)
             continue;
         if (request->json && json_array_append_new(slimes, slime_object(m, &report)) != 0)
-            result = diagnose(why, STATUS_FAILURE, "", "out of memory");
+            result = out_of_memory(why);
         else if (request->csv)
             print_csv(m, &report);
         else if (!request->json)

@@ -96,7 +96,7 @@ static status check(const struct argp *argp, unsigned flags, int argc, char **ar
     make_table(argp, flags, &table);
     char **copy = calloc((size_t)argc + 1, sizeof *copy);
     if (!copy)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     memcpy(copy, argv, (size_t)argc * sizeof *copy);
     status result = STATUS_OK;
     optind = 0; /* glibc: start anew */
@@ -132,7 +132,7 @@ status options_parse(const struct argp *argp, unsigned flags, int argc, char **a
     if (error == EINVAL)
         return STATUS_BAD_INPUT;
     if (error == ENOMEM)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     return error ? diagnose(why, STATUS_FAILURE, "", "cannot read the command line: %s", strerror(error)) : STATUS_OK;
 }
 

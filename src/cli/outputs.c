@@ -67,7 +67,7 @@ static status check_folder(const named_file *file, diagnostic *why)
         return wrong(file, why, "name a file in it", "is a folder");
     char *folder = folder_of(file->path);
     if (!folder)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     bool there = stat(folder, &about) == 0 && S_ISDIR(about.st_mode);
     free(folder);
     return there ? STATUS_OK : wrong(file, why, "make it first, or name another", "its folder is not there");

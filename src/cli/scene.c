@@ -108,7 +108,7 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
     if (request->path)
         result = scene_read(request->path, out, why);
     else if (!(*out = scene_create()))
-        result = diagnose(why, STATUS_FAILURE, "", "out of memory");
+        result = out_of_memory(why);
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
         result = scene_edit_apply(*out, request->edits[i].edit, request->edits[i].text, why);
     if (result == STATUS_OK) {
@@ -186,8 +186,7 @@ status command_scene(int argc, char **argv, diagnostic *why)
     const struct argp parser = {.options = options, .parser = take_option, .args_doc = "[FILE]", .doc = about};
     scene_request request = {.edits = calloc((size_t)argc + 1, sizeof *request.edits)};
     scene *s = NULL;
-    status result = request.edits ? options_parse(&parser, 0, argc, argv, &request, why)
-                                  : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status result = request.edits ? options_parse(&parser, 0, argc, argv, &request, why) : out_of_memory(why);
     if (result == STATUS_OK)
         result = check_request(&request, why);
     if (result == STATUS_OK)

@@ -126,7 +126,7 @@ static status put_parameter(scene *s, const char *name, char *parameter, bool wa
 static status put_parameters(scene *s, const char *name, const char *text, bool wants_material, diagnostic *why)
 {
     char *copy = strdup(text);
-    status result = copy ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status result = copy ? STATUS_OK : out_of_memory(why);
     for (char *next, *at = copy; at && result == STATUS_OK; at = next) {
         next = cut_parameter(at);
         result = put_parameter(s, name, at, wants_material, why);
@@ -165,7 +165,7 @@ static status apply_add(scene *s, const scene_edit *edit, const char *text, diag
 {
     char *copy = strdup(text);
     if (!copy)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     char *colon = strchr(copy, ':'), *comma = strchr(copy, ',');
     if (comma)
         *comma = 0;

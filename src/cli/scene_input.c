@@ -8,7 +8,7 @@
 status scene_input_prepare(scene_input *input, const char *command, int argc, diagnostic *why)
 {
     *input = (scene_input){.command = command, .changes = calloc((size_t)argc + 1, sizeof *input->changes)};
-    return input->changes ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return input->changes ? STATUS_OK : out_of_memory(why);
 }
 
 void scene_input_release(scene_input *input)

@@ -22,7 +22,7 @@ static status for_each_study(const study_request *request, study_action *act, di
 {
     study **studies = calloc(request->file_count + 1, sizeof *studies);
     if (!studies)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     status result = STATUS_OK;
     for (size_t i = 0; i < request->file_count && result == STATUS_OK; i++)
         result = study_read(request->files[i], &studies[i], why);
@@ -85,7 +85,7 @@ static status lint(const study *s, const study_request *request, diagnostic *why
     result = scene_input_isa(&level, why);
     scene *base = scene_clone(s->base);
     if (result == STATUS_OK && !base)
-        result = diagnose(why, STATUS_FAILURE, "", "out of memory");
+        result = out_of_memory(why);
     bool moves = false;
     for (size_t i = 0; result == STATUS_OK && i < base->mesh_count; i++)
         moves |= base->meshes[i].source == MESH_SLIME;

@@ -114,7 +114,7 @@ status study_request_parse(study_verb verb, int argc, char **argv, study_request
     *out = (study_request){
         .verb = verb, .results = "results", .shards = 1, .files = calloc((size_t)argc + 1, sizeof(char *))};
     if (!out->files)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     status result = options_parse(&parsers[verb], 0, argc, argv, out, why);
     return result == STATUS_OK ? check_files(out, argv[0], why) : result;
 }

@@ -104,5 +104,5 @@ status study_table_print(FILE *out, char *tsv, diagnostic *why)
     free(text);
     free(width);
     free(f.field);
-    return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return good ? STATUS_OK : out_of_memory(why);
 }

@@ -58,7 +58,7 @@ static status make_mesh(const cuvette_triangles *t, mesh **out, diagnostic *why)
     for (int i = 0; t->slot_names && i < t->slot_count && i < MESH_SLOTS_MAX && code == STATUS_OK; i++) {
         m->slot_count = m->slot_count > i ? m->slot_count : i + 1;
         if (t->slot_names[i] && !(m->slot_names[i] = strdup(t->slot_names[i])))
-            code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+            code = out_of_memory(why);
     }
     if (code == STATUS_OK)
         code = mesh_finish(m, why);

@@ -17,7 +17,7 @@ status canvas_open(const cuvette_request *request, float_environment *host, canv
         c->bytes = malloc(sizeof *c->bytes);
     if ((request->srgb && !c->bytes) || pthread_mutex_init(&c->lock, NULL) != 0) {
         free(c->bytes);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     if (c->bytes)
         codec_bytes_prepare(c->bytes);

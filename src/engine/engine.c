@@ -33,8 +33,7 @@ cuvette_status cuvette_engine_create(const char *instructions, cuvette_engine **
     *out = NULL;
     diagnostic inner = {.line = 0};
     cuvette_engine *e = calloc(1, sizeof *e);
-    status code =
-        e ? engine_isa(instructions, &e->level, &inner) : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
+    status code = e ? engine_isa(instructions, &e->level, &inner) : out_of_memory(&inner);
     if (code == STATUS_OK)
         code = renderer_create(e->level, NULL, &e->workers, &inner);
     if (code != STATUS_OK) {
@@ -255,8 +254,7 @@ cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene
     }
     atomic_store(&engine->cancelled, false);
     cuvette_frame *frame = calloc(1, sizeof *frame);
-    const status code = frame ? render_held(engine, held, request, &host, frame, &inner)
-                              : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
+    const status code = frame ? render_held(engine, held, request, &host, frame, &inner) : out_of_memory(&inner);
     engine_end_render(held);
     atomic_store(&engine->busy, false);
     if (out && frame && frame->result)

@@ -31,7 +31,7 @@ static status begin(cuvette_motion *m, diagnostic *why)
     if (code != STATUS_OK)
         return code;
     m->hands = calloc(scene_motion_count(m->bodies) * SOFTBODY_HANDS_MAX, sizeof *m->hands);
-    return m->hands ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return m->hands ? STATUS_OK : out_of_memory(why);
 }
 
 cuvette_status cuvette_motion_create(cuvette_scene *s, cuvette_motion **out, cuvette_diagnostic *why)
@@ -45,7 +45,7 @@ cuvette_status cuvette_motion_create(cuvette_scene *s, cuvette_motion **out, cuv
         return held;
     diagnostic inner = {.line = 0};
     cuvette_motion *m = calloc(1, sizeof *m);
-    status code = m ? STATUS_OK : diagnose(&inner, STATUS_FAILURE, "", "out of memory");
+    status code = m ? STATUS_OK : out_of_memory(&inner);
     if (m) {
         m->of = s;
         atomic_fetch_add(&s->owners, 1);

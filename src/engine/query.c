@@ -42,7 +42,7 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
         return code;
     q->kernels = kernels_of(level);
     q->model = scene_clone(&without_sky);
-    return q->model ? plan_build(q->model, &q->ready, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return q->model ? plan_build(q->model, &q->ready, why) : out_of_memory(why);
 }
 
 cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instructions, cuvette_query **out,
@@ -56,7 +56,7 @@ cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instruct
     cuvette_query *q = calloc(1, sizeof *q);
     if (!q || pthread_mutex_init(&q->lock, NULL) != 0) {
         free(q);
-        return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
+        return engine_report(out_of_memory(&inner), &inner, why);
     }
     status code =
         engine_load((cuvette_scene *)(uintptr_t)s, &inner); /* every handle was made by us, none is constant */

@@ -173,7 +173,7 @@ static status begin(const cuvette_query *q, const cuvette_ray *rays, size_t coun
             return code;
     }
     *out = query_take_bench(q);
-    return *out ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return *out ? STATUS_OK : out_of_memory(why);
 }
 
 cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_ray *rays, size_t count,

@@ -13,7 +13,7 @@ cuvette_status engine_wrap_scene(scene *model, cuvette_scene **out, cuvette_diag
     if (!s || pthread_mutex_init(&s->loading, NULL) != 0) {
         free(s);
         scene_destroy(model);
-        return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
+        return engine_report(out_of_memory(&inner), &inner, why);
     }
     s->model = model;
     atomic_init(&s->owners, 1);
@@ -198,7 +198,7 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
     pthread_mutex_unlock(&held->loading);
     diagnostic inner = {.line = 0};
     if (!copy)
-        return engine_report(diagnose(&inner, STATUS_FAILURE, "", "out of memory"), &inner, why);
+        return engine_report(out_of_memory(&inner), &inner, why);
     scene_hints(copy, &(note_taker){call_host, &(host_call){note, context, &host}});
     scene_destroy(copy);
     return CUVETTE_OK;

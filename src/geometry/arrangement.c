@@ -144,7 +144,7 @@ status arrangement_build(const body_source *sources, int count, int64_t outside_
     if (!a || !order || !a->primitives || !a->bodies) {
         free(order);
         arrangement_destroy(a);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     a->bodies[0] = (body){.outside = -1, .hollow = -1, .medium = outside_medium, .clearness = 1.0, .solid = -1};
     a->body_count = count;

@@ -134,7 +134,7 @@ status forest_build(const forest_source *sources, int count, forest **out, diagn
     if (!f || !parts) {
         free(f);
         free(parts);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     f->parts = parts;
     f->part_count = count;

@@ -62,7 +62,7 @@ static status read_triangles(const mesh *m, team *t, bvh_ref *refs, bvh_range *a
     size_t count = (m->triangle_count + PIECE - 1) / PIECE;
     reading r = {m, refs, aligned_alloc(64, (count + 1) * 64 * ((sizeof(bvh_range) + 63) / 64))};
     if (!r.pieces)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     team_run(t, read_piece, &r, count);
     *all = (bvh_range){.box = bvh_box_empty(), .centers = bvh_box_empty()};
     for (size_t i = 0; i < count; i++) {
@@ -105,7 +105,7 @@ status hierarchy_build_bvh(hierarchy *h, int threads, diagnostic *why)
     h->single = m->single;
     bvh_ref *refs = aligned_alloc(64, (m->triangle_count + 2) / 2 * 2 * sizeof *refs);
     team *t = team_start(useful(threads, m->triangle_count));
-    status code = refs && t ? build(h, t, refs, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = refs && t ? build(h, t, refs, why) : out_of_memory(why);
     team_stop(t);
     free(refs);
     size_t block = h->single ? sizeof(block_single) : sizeof(block_double);

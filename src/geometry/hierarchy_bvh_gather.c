@@ -206,7 +206,7 @@ static status make_room(hierarchy *h, size_t nodes, size_t blocks, diagnostic *w
     h->nodes = aligned_alloc(64, nodes * sizeof *h->nodes);
     h->node_count = nodes;
     if (!h->nodes || !hierarchy_make_blocks(h, blocks))
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     return STATUS_OK;
 }
 
@@ -225,7 +225,7 @@ static status no_triangles(hierarchy *h, diagnostic *why)
 static status gather(gathering *g, bvh_branch *root, team *t, diagnostic *why)
 {
     if (!find_small(g, root, true))
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     team_run(t, count_place, g, g->count);
     count_tree(root, true, true);
     status code = make_room(g->h, root->nodes, root->blocks, why);
@@ -233,7 +233,7 @@ static status gather(gathering *g, bvh_branch *root, team *t, diagnostic *why)
         return code;
     g->count = 0;
     if (!write_tree(g, root, true, 0, 0, g))
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     team_run(t, write_place, g, g->count);
     g->h->report.nodes = root->nodes;
     g->h->report.leaves = root->leaves;

@@ -93,10 +93,10 @@ static bool add_task(growth *g, const bvh_range *range, int depth, bvh_branch **
 static status grow_top(growth *g, const bvh_range *range, int depth, bvh_branch **out, diagnostic *why)
 {
     if (range->count <= TASK_TRIANGLES)
-        return add_task(g, range, depth, out) ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return add_task(g, range, depth, out) ? STATUS_OK : out_of_memory(why);
     bvh_branch *b = *out = new_branch(&g->tree->stores[0], range);
     if (!b)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     bvh_range half[2];
     status code = bvh_split_together(g->t, g->refs, range, depth, half, why);
     for (int i = 0; code == STATUS_OK && i < 2; i++)
@@ -121,7 +121,7 @@ static status grow_all(growth *g, const bvh_range *all, diagnostic *why)
     team_run(g->t, grow_task, g, g->task_count);
     for (size_t i = 0; i < g->task_count; i++)
         if (!*g->tasks[i].out)
-            return diagnose(why, STATUS_FAILURE, "", "out of memory");
+            return out_of_memory(why);
     choose_top(g->tree->root);
     return STATUS_OK;
 }
@@ -133,7 +133,7 @@ status bvh_grow(bvh_tree *tree, team *t, bvh_ref *refs, const bvh_range *all, di
         return STATUS_OK;
     tree->stores = calloc((size_t)tree->store_count, sizeof(bvh_store *));
     if (!tree->stores)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     growth g = {.tree = tree, .t = t, .refs = refs};
     status code = grow_all(&g, all, why);
     free(g.tasks);

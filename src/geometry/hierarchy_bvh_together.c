@@ -90,7 +90,7 @@ status bvh_split_together(team *t, bvh_ref *refs, const bvh_range *range, int de
     job j = {.refs = refs + range->first, .count = range->count};
     j.pieces = aligned_alloc(64, (pieces * sizeof *j.pieces + 63) / 64 * 64);
     if (!j.pieces)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     bvh_bins_begin(&j.bins, range);
     team_run(t, fill_piece, &j, pieces);
     for (size_t i = 0; i < pieces; i++)

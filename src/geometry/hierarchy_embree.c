@@ -158,7 +158,7 @@ status hierarchy_build_embree(hierarchy *h, int threads, diagnostic *why)
     foreign *f = calloc(1, sizeof *f);
     h->foreign = f;
     if (!f)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     f->device = rtcNewDevice(wish);
     if (!f->device)
         return diagnose(why, STATUS_FAILURE, "choose another hierarchy", "Embree finds no device (error %d)",

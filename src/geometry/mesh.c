@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-static status out_of_memory(diagnostic *why)
+static status no_room(diagnostic *why)
 {
     return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for a mesh");
 }
@@ -53,7 +53,7 @@ status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals
                         vertex_count);
     mesh *m = calloc(1, sizeof *m);
     if (!m)
-        return out_of_memory(why);
+        return no_room(why);
     const size_t vertices = vertex_count ? vertex_count : 1, triangles = triangle_count ? triangle_count : 1;
     m->vertex_count = vertex_count;
     m->triangle_count = triangle_count;
@@ -67,7 +67,7 @@ status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals
     if (!m->share || !m->vertices || !m->triangles || (with_normals && !m->normals) || (with_uvs && !m->uvs) ||
         (with_slots && !m->slots)) {
         mesh_free(m);
-        return out_of_memory(why);
+        return no_room(why);
     }
     *out = m;
     return STATUS_OK;

@@ -119,7 +119,7 @@ status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diag
     float *linear = codec_decode_table(255);
     if (!linear) {
         image_destroy(picture);
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+        return out_of_memory(why);
     }
     const size_t width = (size_t)header.width, height = (size_t)header.height;
     for (size_t row = 0; row < height; row++) {

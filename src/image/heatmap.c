@@ -271,7 +271,7 @@ status heatmap_create(const double *values, int width, int height, const char *t
     float *decoded = codec_decode_table(255);
     image *picture = NULL;
     if (!decoded) {
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+        return out_of_memory(why);
     }
     code = image_create(picture_width, height + key.height, &picture, why);
     if (code == STATUS_OK) {

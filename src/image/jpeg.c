@@ -149,7 +149,7 @@ static bool allocate(jpeg_job *job, long long width, long long height, size_t fi
     job->linear = codec_decode_table(255);
     job->row = malloc((size_t)width * 3);
     if (!job->linear || !job->row) {
-        job->code = diagnose(job->why, STATUS_FAILURE, NULL, "out of memory");
+        job->code = out_of_memory(job->why);
         return false;
     }
     return true;

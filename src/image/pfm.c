@@ -15,7 +15,7 @@ status codec_pfm_write(const image *picture, FILE *stream, diagnostic *why)
     size_t count = (size_t)picture->width * 3;
     unsigned char *row = malloc(count * 4);
     if (!row) {
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+        return out_of_memory(why);
     }
     fprintf(stream, "PF\n%d %d\n-1.0\n", picture->width, picture->height);
     for (int y = picture->height - 1; y >= 0; y--) {

@@ -150,7 +150,7 @@ static bool allocate(png_job *job, long long width, long long height, bool inter
     /* Zeroed, because an interlaced picture is read by combining with what was there. */
     job->raw = calloc(interlaced ? (size_t)height : 1, png_get_rowbytes(job->png, job->info));
     if (!job->linear || !job->raw) {
-        job->code = diagnose(job->why, STATUS_FAILURE, NULL, "out of memory");
+        job->code = out_of_memory(job->why);
         return false;
     }
     return true;
@@ -204,7 +204,7 @@ status codec_png_read(const unsigned char *bytes, size_t size, image **out, int 
     job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
     job.info = job.png ? png_create_info_struct(job.png) : NULL;
     if (!job.info) {
-        diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+        out_of_memory(why);
     } else {
         read_guarded(&job);
     }

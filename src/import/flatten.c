@@ -192,7 +192,7 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
         gather(w, mesh, at, i, numbers);
         switch (join_vertex(&w->join, w->flat, w->asked->vertices, numbers, &index[i])) {
         case JOINED: break;
-        case JOIN_NO_MEMORY: return no_memory(w->asked, w->why);
+        case JOIN_NO_MEMORY: return no_memory_for(w->asked, w->why);
         case JOIN_TOO_MANY:
             return diagnose(w->why, STATUS_BAD_INPUT, "take a mesh of less detail",
                             "more vertices than the limit of %llu", (unsigned long long)w->asked->vertices);
@@ -208,7 +208,7 @@ static status take_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
     at.mirrored = determinant < 0;
     uint32_t *index = calloc((size_t)mesh->mNumVertices + 1, sizeof *index);
     if (!index) {
-        return no_memory(w->asked, w->why);
+        return no_memory_for(w->asked, w->why);
     }
     status code = take_vertices(w, mesh, &at, index);
     for (unsigned f = 0; f < mesh->mNumFaces && code == STATUS_OK; f++) {
@@ -242,5 +242,5 @@ status flatten(const request *asked, const struct aiScene *scene, flat_mesh *fla
     }
     flat->triangles = malloc((size_t)w.triangles * sizeof *flat->triangles);
     flat->slots = malloc((size_t)w.triangles);
-    return flat->triangles && flat->slots ? visit_all(&w, take_mesh) : no_memory(asked, why);
+    return flat->triangles && flat->slots ? visit_all(&w, take_mesh) : no_memory_for(asked, why);
 }

@@ -53,7 +53,7 @@ status check_whole(const request *asked, diagnostic *why);
 
 /* The scene of the file, triangulated; every file that it needs was there. */
 status read_scene(const request *asked, const struct aiScene **out, diagnostic *why);
-status no_memory(const request *asked, diagnostic *why);
+status no_memory_for(const request *asked, diagnostic *why);
 
 /* ---- flatten.c ---- */
 

@@ -6,7 +6,7 @@
 #include <jansson.h>
 #include <string.h>
 
-status no_memory(const request *asked, diagnostic *why)
+status no_memory_for(const request *asked, diagnostic *why)
 {
     diagnostic_locate(why, asked->path, 0, 0);
     return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
@@ -46,7 +46,7 @@ static status explain(const request *asked, const file_access *access, const cha
     }
     if (strstr(said, "bad_alloc") || strstr(said, "length_error") || strstr(said, "bad_array_new_length") ||
         strstr(said, "_M_") || strstr(said, "max_size")) {
-        return no_memory(asked, why);
+        return no_memory_for(asked, why);
     }
     if (asked->kind == FILE_GLTF && locate_json(asked, why)) {
         return STATUS_BAD_INPUT;

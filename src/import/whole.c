@@ -277,7 +277,7 @@ status check_whole(const request *asked, diagnostic *why)
         close(fd);
     }
     if (bytes == MAP_FAILED) {
-        return no_memory(asked, why);
+        return no_memory_for(asked, why);
     }
     ply p = {.at = bytes, .end = (const char *)bytes + about.st_size, .why = why};
     diagnostic_locate(why, asked->path, 0, 0);

@@ -37,7 +37,7 @@ static status trace_image(depth_probe *p, int deeper, diagnostic *why)
     for (size_t i = 0; i < pixels; i++)
         p->pixel_rays[i] = 0.0;
     if (!tracer_begin(p->rays, &target))
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     tracer_span(p->rays, &whole, &begun, &stop);
     tracer_finish(p->rays, &stop);
     for (size_t i = 0; i < pixels; i++)
@@ -150,8 +150,7 @@ status lint_depth(const lint_room *room, diagnostic *why)
     p.pixel_rays = calloc((size_t)(r->width * r->height), sizeof *p.pixel_rays);
     int last = 0;
     bool settled = false;
-    status code = p.rays && p.pixel_rays ? look_deeper(&p, depth, &last, &settled, why)
-                                         : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = p.rays && p.pixel_rays ? look_deeper(&p, depth, &last, &settled, why) : out_of_memory(why);
     if (code == STATUS_OK && last > 0 && !tracer_overflowed(p.rays))
         note_depth(room, &p, depth, last, settled);
     room->made->render.depth = depth;

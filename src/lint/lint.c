@@ -65,7 +65,7 @@ static status lint_traced(const scene *s, isa level, const note_taker *taker, di
 {
     scene *copy = small_copy(s);
     lint_room room = {.of = s, .level = level, .taker = taker};
-    status code = copy ? plan_build(copy, &room.made, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = copy ? plan_build(copy, &room.made, why) : out_of_memory(why);
     if (code == STATUS_OK)
         code = lint_neighbours(&room, why);
     if (code == STATUS_OK)

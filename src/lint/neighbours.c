@@ -326,5 +326,5 @@ status lint_neighbours(const lint_room *room, diagnostic *why)
     free(all);
     free(gap);
     free(middle);
-    return there ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return there ? STATUS_OK : out_of_memory(why);
 }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status no_memory(diagnostic *why)
+static status no_room(diagnostic *why)
 {
     return diagnose(why, STATUS_FAILURE, "", "out of memory for the topology of the machine");
 }
@@ -96,7 +96,7 @@ static status load(topology *machine, const char *synthetic, diagnostic *why)
 {
     if (hwloc_topology_init(&machine->tree) != 0) {
         machine->tree = NULL;
-        return no_memory(why);
+        return no_room(why);
     }
     if (synthetic && hwloc_topology_set_synthetic(machine->tree, synthetic) != 0)
         return diagnose(why, STATUS_BAD_INPUT, "write it as hwloc does: \"pack:2 core:4 pu:2\"",
@@ -113,7 +113,7 @@ static status respect_binding(topology *machine, diagnostic *why)
 {
     hwloc_bitmap_t own = hwloc_bitmap_alloc();
     if (!own)
-        return no_memory(why);
+        return no_room(why);
     status result = STATUS_OK;
     if (hwloc_get_cpubind(machine->tree, own, HWLOC_CPUBIND_PROCESS) == 0 &&
         hwloc_bitmap_intersects(own, hwloc_topology_get_topology_cpuset(machine->tree)) &&
@@ -128,12 +128,12 @@ static status create(const char *synthetic, topology **out, diagnostic *why)
     *out = NULL;
     topology *machine = calloc(1, sizeof *machine);
     if (!machine)
-        return no_memory(why);
+        return no_room(why);
     status result = load(machine, synthetic, why);
     if (result == STATUS_OK && !synthetic)
         result = respect_binding(machine, why);
     if (result == STATUS_OK && !make_rounds(machine))
-        result = no_memory(why);
+        result = no_room(why);
     if (result != STATUS_OK) {
         topology_destroy(machine);
         return result;
@@ -156,14 +156,14 @@ status topology_restrict(topology *machine, const char *units, diagnostic *why)
 {
     hwloc_bitmap_t set = hwloc_bitmap_alloc();
     if (!set)
-        return no_memory(why);
+        return no_room(why);
     status result = STATUS_OK;
     if (hwloc_bitmap_list_sscanf(set, units) != 0 ||
         !hwloc_bitmap_intersects(set, hwloc_topology_get_topology_cpuset(machine->tree)))
         result =
             diagnose(why, STATUS_BAD_INPUT, "write a list such as 0-3,8", "'%s' names no unit of this machine", units);
     else if (restrict_tree(machine->tree, set) != 0 || !make_rounds(machine))
-        result = no_memory(why);
+        result = no_room(why);
     hwloc_bitmap_free(set);
     return result;
 }
@@ -248,7 +248,7 @@ status topology_bind_thread(const topology *machine, int pu, diagnostic *why)
                         "this process may not use processing unit %d", pu);
     hwloc_bitmap_t set = hwloc_bitmap_dup(own);
     if (!set)
-        return no_memory(why);
+        return no_room(why);
     if (pu >= 0)
         hwloc_bitmap_only(set, (unsigned)pu);
     int failed = hwloc_set_cpubind(machine->tree, set, HWLOC_CPUBIND_THREAD);

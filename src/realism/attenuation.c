@@ -83,7 +83,7 @@ static status compare_slopes(const metrics *m, worst_pair *worst, double *tolera
 {
     scene *supposed = attenuation_scene(m->supposed, &m->theory_at);
     if (!supposed)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     const vec3 a = material_absorption(&supposed->solids[m->theory_at.liquid].surface);
     scene_destroy(supposed);
     const double theory[3] = {a.x, a.y, a.z};

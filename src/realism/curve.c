@@ -106,7 +106,7 @@ static status trace_absorption(const metrics *m, realism_points *out, diagnostic
 static status trace_edges(const metrics *m, realism_points *out, diagnostic *why)
 {
     scene *s = scene_clone(m->traced);
-    status code = s ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = s ? STATUS_OK : out_of_memory(why);
     metrics turned = *m;
     turned.traced = turned.supposed = s;
     for (int i = 0; i <= 60 && code == STATUS_OK; i++) {

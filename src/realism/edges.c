@@ -169,7 +169,7 @@ static status add_round(const metrics *m, diagnostic *why)
         for (int i = 0; i < 2; i++)
             edge[i] = distance * sin(atan((edge[i] - eye.width / 2.0) / eye.focal_px));
     } else {
-        code = s ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+        code = s ? STATUS_OK : out_of_memory(why);
         scene_destroy(s);
         theory = NAN;
     }

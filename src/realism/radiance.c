@@ -85,7 +85,7 @@ static double theory(const setup *at, look which, double angle)
 static status measure(const metrics *m, look which, worst_pair *worst, diagnostic *why)
 {
     scene *s = pond(m->traced, &m->at, which);
-    status code = s ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = s ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && which == LOOK_LAMP)
         code = hang_lamp(s, why);
     if (code != STATUS_OK) {

@@ -7,7 +7,7 @@ status trial_start(trial *t, scene *taken, isa level, diagnostic *why)
 {
     *t = (trial){.s = taken};
     if (!taken)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     return probe_create(taken, level, &t->p, why);
 }
 

@@ -144,7 +144,7 @@ status realism_water_line(const metrics *m, diagnostic *why)
     status code = STATUS_OK;
     scene *supposed = leaning_rod(m->supposed, &m->theory_at);
     if (!supposed)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     if (m->theory_at.liquid < 0)
         what = "there is no liquid";
     else if (isnan(theory = theory_break(supposed, &m->theory_at)))

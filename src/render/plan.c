@@ -95,7 +95,7 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
     if (!sources || !shapes || !p->own_trees || !p->clearness) {
         free(sources);
         free(shapes);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     status code = STATUS_OK;
     int count = 0;
@@ -105,7 +105,7 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
             continue;
         double clearness;
         if (!body_clearness_make(s, one, &clearness, &p->clearness[i]))
-            code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+            code = out_of_memory(why);
         sources[count] = (body_source){.shape = &one->shape,
                                        .priority = one->priority,
                                        .medium = medium_of(s, laws, i),
@@ -132,7 +132,7 @@ static status aim_cones(const scene *s, plan *p, diagnostic *why)
 {
     p->cones = calloc(s->light_count + 1, sizeof *p->cones);
     if (!p->cones)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     for (size_t i = 0; i < s->light_count; i++)
         if (s->lights[i].kind != LIGHT_POINT)
             p->cones[i] = light_cone_of(&s->lights[i]);
@@ -174,7 +174,7 @@ static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnos
     p->looks = calloc(ranks, sizeof *p->looks);
     p->mirrors = calloc(s->solid_count + 1, sizeof *p->mirrors);
     if (!p->mirrors || !p->materials || !p->ior || !p->laws || !p->absorption || !p->looks)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     for (size_t r = 0; r < ranks; r++) {
         const int solid_index = p->solids->bodies[r].solid;
         p->laws[r] = laws[solid_index < 0 ? (int)s->solid_count : solid_index];
@@ -183,12 +183,12 @@ static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnos
             continue;
         p->materials[r] = material_of(s, p, solid_index);
         if (!body_look_make(s, &s->solids[solid_index], p->materials[r], &p->looks[r]))
-            return diagnose(why, STATUS_FAILURE, "", "out of memory");
+            return out_of_memory(why);
         p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
     }
     p->absorption[0] = vec3_scale(s->background.absorb_per_m, s->render.unit_m);
     if (s->render.spectrum == SPECTRUM_SPECTRAL && !(p->spectral = spectra_create(s, p->materials, p->laws, ranks)))
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     return STATUS_OK;
 }
 
@@ -196,7 +196,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
 {
     plan *p = calloc(1, sizeof *p);
     index_law *laws = calloc(s->solid_count + 1, sizeof *laws);
-    status code = p && laws ? laws_of(s, laws, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = p && laws ? laws_of(s, laws, why) : out_of_memory(why);
     if (code == STATUS_OK)
         p->basic = scene_has_basic_radiance(&s->render);
     if (code == STATUS_OK)

@@ -98,12 +98,12 @@ status pool_reserve(pool *p, int count, diagnostic *why)
         return STATUS_OK;
     worker **grown = realloc(p->workers, (size_t)count * sizeof *grown);
     if (!grown)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     p->workers = grown;
     while (p->count < count) {
         worker *w = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
         if (!w)
-            return diagnose(why, STATUS_FAILURE, "", "out of memory");
+            return out_of_memory(why);
         memset(w, 0, sizeof *w);
         w->owner = p;
         w->index = p->count;
@@ -160,7 +160,7 @@ static status run_fresh(pool *p, int count, void (*watch)(void *), double every_
 {
     worker *fresh = aligned_alloc(64, (size_t)count * sizeof *fresh);
     if (!fresh)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     int started = 0, error = 0;
     for (; started < count; started++) {
         fresh[started].owner = p;

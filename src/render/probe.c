@@ -10,10 +10,10 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
 {
     probe *p = calloc(1, sizeof *p);
     if (!p)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     p->setting = scene_clone(s);
     p->rays = tracer_create(level);
-    status code = p->setting && p->rays ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = p->setting && p->rays ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK) {
         render_settings *r = &p->setting->render;
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
@@ -90,7 +90,7 @@ static status begin(probe *p, ray_tree *tree, diagnostic *why)
     tree->depth_limit = (int)p->scene->render.depth;
     tree->lambda_nm = p->scene->render.lambda_nm;
     p->scene->eye_rank = arrangement_rank(p->scene->solids, p->scene->eye_inside);
-    return tracer_begin(p->rays, &target) ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return tracer_begin(p->rays, &target) ? STATUS_OK : out_of_memory(why);
 }
 
 static status finish(probe *p, ray_tree *tree, status code, diagnostic *why)

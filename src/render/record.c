@@ -42,7 +42,7 @@ status record_noise(const render_result *result, const char *path, diagnostic *w
     const size_t pixels = (size_t)result->picture->width * (size_t)result->picture->height;
     double *error = malloc((pixels + 1) * sizeof *error);
     if (!error)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     for (size_t i = 0; i < pixels; i++) {
         const double *v = &result->variance[3 * i];
         error[i] = sqrt((v[0] + v[1] + v[2]) / 3.0);

@@ -52,7 +52,7 @@ status renderer_create(isa level, const topology *machine, renderer **out, diagn
     }
     if (!r || !r->threads || !r->tracers) {
         renderer_destroy(r);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     *out = r;
     return STATUS_OK;
@@ -270,7 +270,7 @@ static status make_result(const scene *s, const render_options *options, render_
     const size_t pixels = (size_t)s->render.width * (size_t)s->render.height;
     render_result *result = calloc(1, sizeof *result);
     if (!result)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     const film_space space = s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
     status code = film_create((int)s->render.width, (int)s->render.height, layers_of(s), space, &result->picture, why);
     if (code == STATUS_OK) {
@@ -326,7 +326,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
     desk *desks = make_desks(count);
     const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns, depths};
     bool has_memory = f && desks && tracer_set_begin(r->tracers, count, &target);
-    status code = has_memory ? renderer_prepare(r, s, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
     if (code == STATUS_OK) {
         memset(f, 0, sizeof *f);
         f->owner = r;

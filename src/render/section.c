@@ -126,5 +126,5 @@ status section_cut(const probe *p, const section_plane *plane, int cells, sectio
     free(c.crossing);
     free(c.at);
     free(c.pieces);
-    return c.failed ? diagnose(why, STATUS_FAILURE, "", "out of memory") : STATUS_OK;
+    return c.failed ? out_of_memory(why) : STATUS_OK;
 }

@@ -72,7 +72,7 @@ status section_area(const section *s, int medium, section_step *out, size_t *cou
     *count = 0;
     bool *used = calloc(s->line_count + 1, sizeof *used);
     if (!used)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     for (size_t i = 0; i < s->line_count; i++) {
         if (used[i] || !bounds(&s->line[i], medium))
             continue;

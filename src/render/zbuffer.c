@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status no_memory(diagnostic *why)
+static status no_room(diagnostic *why)
 {
     return diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer triangles",
                     "out of memory for the depth buffer");
@@ -60,7 +60,7 @@ status zbuffer_create(const plan *p, zbuffer **out, diagnostic *why)
 {
     zbuffer *z = calloc(1, sizeof *z);
     if (!z)
-        return no_memory(why);
+        return no_room(why);
     z->scene = p;
     make_grid(z);
     if (z->width > 2 * REACH || z->height > 2 * REACH) {
@@ -73,9 +73,9 @@ status zbuffer_create(const plan *p, zbuffer **out, diagnostic *why)
     zbuffer_find_layers(z);
     if (z->layered)
         z->blocks = calloc(BLOCKS_MAX, sizeof(drawn_layer *));
-    status code = z->seen && z->first && (z->blocks || !z->layered) ? zbuffer_cut(z, why) : no_memory(why);
+    status code = z->seen && z->first && (z->blocks || !z->layered) ? zbuffer_cut(z, why) : no_room(why);
     if (code == STATUS_OK && !make_chunks(z))
-        code = no_memory(why);
+        code = no_room(why);
     if (code != STATUS_OK) {
         zbuffer_destroy(z);
         return code;
@@ -150,7 +150,7 @@ static box squares_of(const zbuffer *z, const screen_triangle *t)
 status zbuffer_sort(zbuffer *z, diagnostic *why)
 {
     if (atomic_load(&z->out_of_memory) || !join_chunks(z))
-        return no_memory(why);
+        return no_room(why);
     const size_t squares = (size_t)z->across * (size_t)z->down;
     for (size_t i = 0; i < z->triangle_count; i++) {
         const box b = squares_of(z, &z->triangles[i]);
@@ -165,7 +165,7 @@ status zbuffer_sort(zbuffer *z, diagnostic *why)
     }
     z->listed = malloc((sum + 1) * sizeof *z->listed);
     if (!z->listed)
-        return no_memory(why);
+        return no_room(why);
     for (size_t i = z->triangle_count; i-- > 0;) {
         const box b = squares_of(z, &z->triangles[i]);
         for (int y = b.y0; y <= b.y1; y++)

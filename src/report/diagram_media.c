@@ -106,7 +106,7 @@ status diagram_media(diagram *d, diagnostic *why)
         keep_needed(d, d->cut.line[i].first, d->cut.line[i].first + d->cut.line[i].count - 1);
     if (!steps || !d->kept) {
         free(steps);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     status code = STATUS_OK;
     fputs("<g>\n", d->out);

@@ -35,7 +35,7 @@ status machine_look(machine_account *a, diagnostic *why)
     uname(&a->kernel);
     a->disturbances = json_array();
     if (!a->disturbances)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     usage_disturbances(LOAD_SAMPLE_S, add_disturbance, a->disturbances);
     return STATUS_OK;
 }

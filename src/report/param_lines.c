@@ -130,6 +130,6 @@ status param_lines_collect(const scene *s, const char *filter, param_lines *out,
 {
     *out = (param_lines){0};
     if (add_lines(out, s) != STATUS_OK)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     return filter ? narrow(out, filter, s != NULL, why) : STATUS_OK;
 }

@@ -156,7 +156,7 @@ status param_rows_json(const scene *s, const char *filter, json_t **out, diagnos
         *out = json_pack("{s:i,s:o}", "schema", REPORT_SCHEMA, "params", list);
     else
         json_decref(list);
-    return result == STATUS_OK && !*out ? diagnose(why, STATUS_FAILURE, "", "out of memory") : result;
+    return result == STATUS_OK && !*out ? out_of_memory(why) : result;
 }
 
 /* roff reads '-' as a hyphen, '\' as an escape, and '.' or a quote at the start of a line as a request. */

@@ -90,7 +90,7 @@ static status load_sky(scene *s, diagnostic *why)
     }
     char *path = scene_file_path(s, sky->picture_path);
     if (!path) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     diagnostic bad = {.what = ""};
     status code = image_read_below(path, s->limits.root, &sky->picture, NULL, &bad);
@@ -108,7 +108,7 @@ static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
 {
     char *path = scene_file_path(s, t->path);
     if (!path) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     diagnostic bad = {.what = ""};
     texture *data = NULL;
@@ -165,7 +165,7 @@ static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
     }
     char *path = scene_file_path(s, m->path);
     if (!path) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     diagnostic bad = {.what = ""};
     const status code = mesh_make_from_file(m, path, &s->limits, &bad);

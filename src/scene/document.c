@@ -235,7 +235,7 @@ static status wrap(const char *name, node *root, document **out, diagnostic *why
         free(d);
         free(copy);
         node_destroy(root);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     d->name = copy;
     d->root = root;

@@ -5,7 +5,7 @@
 
 status events_out_of_memory(event_reader *r)
 {
-    return diagnose(r->why, STATUS_FAILURE, "", "out of memory");
+    return out_of_memory(r->why);
 }
 
 status events_error(event_reader *r, yaml_mark_t mark, const char *remedy, const char *what)

@@ -172,7 +172,7 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
         code = check_name_is_free(s, new_name, why);
     }
     if (code == STATUS_OK && !(copy = strdup(new_name))) {
-        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+        code = out_of_memory(why);
     }
     if (code == STATUS_OK) {
         follow_name(s, &at, name, copy);
@@ -186,7 +186,7 @@ status scene_set_title(scene *s, const char *title, diagnostic *why)
 {
     char *copy = strdup(title);
     if (!copy) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     free(s->title);
     s->title = copy;

@@ -25,7 +25,7 @@ static status append(const scene *s, const char *name, void **array, size_t coun
     *array = grown ? grown : *array;
     if (!copy || !grown) {
         free(copy);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     memset(grown + count * size, 0, size);
     memcpy(grown + count * size, &copy, sizeof copy);

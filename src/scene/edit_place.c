@@ -15,7 +15,7 @@ status edit_set_vector(scene *s, const char *name, const char *row, vec3 v, diag
     char x[NUMBER_TEXT_MAX], y[NUMBER_TEXT_MAX], z[NUMBER_TEXT_MAX];
     char *path = text_format("%s.%s", name, row);
     char *value = text_format("%s,%s,%s", number_format(v.x, x), number_format(v.y, y), number_format(v.z, z));
-    status code = path && value ? scene_set(s, path, value, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = path && value ? scene_set(s, path, value, why) : out_of_memory(why);
     free(path);
     free(value);
     return code;

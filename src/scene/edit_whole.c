@@ -97,7 +97,7 @@ static status apply(whole_edit *e)
 {
     scene *before = scene_clone(e->s);
     if (!before) {
-        return diagnose(e->why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(e->why);
     }
     e->before = before;
     const status code = e->act(e);
@@ -223,7 +223,7 @@ static status scale_row(void *context, const char *path, const param *row, const
         v.vector = vec3_scale(v.vector, e->factor);
     }
     char *text = param_value_text(row, -1, &v);
-    code = text ? scene_set(e->s, path, text, e->why) : diagnose(e->why, STATUS_FAILURE, "", "out of memory");
+    code = text ? scene_set(e->s, path, text, e->why) : out_of_memory(e->why);
     free(text);
     return code;
 }

@@ -84,7 +84,7 @@ status looks_create(const mesh_import *imported, const char *root, const face_lo
 {
     face_looks *looks = calloc(1, sizeof *looks + (size_t)imported->material_count * sizeof looks->look[0]);
     if (!looks) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     atomic_init(&looks->owners, 1);
     looks->count = imported->material_count;

@@ -82,7 +82,7 @@ status mesh_child_open(mesh_child *child, const char *path, const mesh_limits *l
         free(program);
         free(name);
         free(root);
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+        return out_of_memory(why);
     }
     child->deadline_s = mesh_child_now_s() + limits->wall_s;
     int error = spawn_with_pipes(child, program,

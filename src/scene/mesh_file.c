@@ -53,7 +53,7 @@ static status resolve_texture(const char *path, imported_material *m, diagnostic
         free(respelt);
     }
     if (!found) {
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory");
+        return out_of_memory(why);
     }
     if (!is_file(found)) {
         diagnose(why, STATUS_BAD_INPUT, "put it where the mesh file says, or take the line that names it out",

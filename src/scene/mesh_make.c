@@ -30,7 +30,7 @@ static status make_terrain(const mesh_entry *m, mesh **out, diagnostic *why)
     const int columns = (int)m->around + 1, rows = (int)m->tube + 1;
     double *heights = malloc((size_t)columns * (size_t)rows * sizeof *heights);
     if (!heights) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     for (int row = 0; row < rows; row++) {
         for (int column = 0; column < columns; column++) {

@@ -44,7 +44,7 @@ static status damaged(diagnostic *why, const char *what)
                     "the importer's answer is damaged: %s", what);
 }
 
-static status out_of_memory(diagnostic *why)
+static status no_room(diagnostic *why)
 {
     return diagnose(why, STATUS_FAILURE, NULL, "out of memory for the mesh");
 }
@@ -127,7 +127,7 @@ static status read_text(const mesh_source *source, uint32_t length, char **text,
     }
     char *fresh = malloc(length + 1);
     if (!fresh) {
-        return out_of_memory(why);
+        return no_room(why);
     }
     status code = source->read(source->context, fresh, length, why);
     fresh[length] = 0;
@@ -205,7 +205,7 @@ static status read_materials(const mesh_source *source, mesh_import *into, diagn
             return code;
         }
         if (m->name && !(into->mesh->slot_names[i] = strdup(m->name))) {
-            return out_of_memory(why);
+            return no_room(why);
         }
     }
     char end[sizeof MESH_WIRE_END - 1];
@@ -232,7 +232,7 @@ static status read_all(const mesh_source *source, const mesh_limits *limits, mes
     into->mesh->slot_count = into->material_count = (int)header.material_count;
     into->materials = calloc(header.material_count, sizeof *into->materials);
     if (!into->materials) {
-        return out_of_memory(why);
+        return no_room(why);
     }
     code = read_arrays(source, into->mesh, why);
     if (code == STATUS_OK) {
@@ -247,7 +247,7 @@ status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, me
     *out = NULL;
     mesh_import *fresh = calloc(1, sizeof *fresh);
     if (!fresh) {
-        return out_of_memory(why);
+        return no_room(why);
     }
     status code = read_all(source, &all, fresh, why);
     if (code != STATUS_OK) {

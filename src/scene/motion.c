@@ -107,7 +107,7 @@ status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
     if (!m || !slimes) {
         free(m);
         free(slimes);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     m->s = s;
     m->slimes = slimes;

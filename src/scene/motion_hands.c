@@ -118,7 +118,7 @@ status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, d
     const double largest = fmax(shape->scale.x, fmax(shape->scale.y, shape->scale.z));
     const int taken = softbody_grab(m->slimes[i].x.body, place->on_mesh, reach / largest);
     if (taken == HAND_NO_MEMORY) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     if (taken < 0) {
         return diagnose(why, STATUS_BAD_INPUT, "let one release what it holds",

@@ -58,7 +58,7 @@ status motion_remember(scene_motion *m, moving_slime *one, diagnostic *why)
     one->name = strdup(entry->name);
     one->parameters = motion_parameters(m->s, entry);
     if (!one->name || !one->parameters) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     take_given(&one->given, entry);
     return STATUS_OK;
@@ -104,7 +104,7 @@ static status find_same(const scene *s, const moving_slime *one, size_t *mesh_in
         }
         char *parameters = motion_parameters(s, entry);
         if (!parameters) {
-            return diagnose(why, STATUS_FAILURE, "", "out of memory");
+            return out_of_memory(why);
         }
         *mesh_index = i;
         *found = strcmp(parameters, one->parameters) == 0;

@@ -150,7 +150,7 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
     }
     char *path = strndup(assignment, (size_t)(equals - assignment));
     if (!path) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     status code = scene_set(s, path, equals + 1, why);
     free(path);
@@ -174,7 +174,7 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
         return code;
     }
     *value = place_text(s, &at);
-    return *value ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return *value ? STATUS_OK : out_of_memory(why);
 }
 
 static status visit_one(const scene *s, const place *at, param_visit *visit, void *context)

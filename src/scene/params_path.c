@@ -140,7 +140,7 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
     size_t count;
     const char **words = group_words(s, &count);
     if (!words) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     const char *nearest = suggest_word(path->group, words, count);
     char remedy[300] = "a path is render.NAME, camera.NAME, background.NAME, or the name of a mesh, texture, light, "
@@ -244,7 +244,7 @@ status place_find_object(const scene *s, const char *name, place *out, diagnosti
     size_t count;
     const char **words = group_words(s, &count);
     if (!words) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     const char *nearest = suggest_word(name, words, count);
     char remedy[SCENE_NAME_MAX + 80] = "give the name of a light, material or solid";

@@ -221,7 +221,7 @@ static status parse_path(const param *row, const char *label, char *text, char *
         }
     }
     *out = strdup(text);
-    return *out ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return *out ? STATUS_OK : out_of_memory(why);
 }
 
 /* The name of another object, or nothing. */
@@ -276,7 +276,7 @@ status param_value_parse(const param *row, int element, const char *label, const
     }
     char *copy = strndup(text, length);
     if (!copy) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     status code = parse_trimmed(row, element, label, copy, out, why);
     free(copy);

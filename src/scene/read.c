@@ -121,7 +121,7 @@ static status build(const document *file, scene **out, diagnostic *why)
     if (!s || !path) {
         free(path);
         scene_destroy(s);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     free(s->path);
     s->path = path;

@@ -16,7 +16,7 @@ status read_located(const scene_reader *r, const node *at, status code)
 
 status read_out_of_memory(const scene_reader *r)
 {
-    return diagnose(r->why, STATUS_FAILURE, "", "out of memory");
+    return out_of_memory(r->why);
 }
 
 static bool is_empty(const node *n)
@@ -66,7 +66,7 @@ static status read_value(const scene_reader *r, const char *path, const param *r
     }
     char *text = node_value_text(value);
     if (!text && node_is_value(value)) {
-        return diagnose(r->why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(r->why);
     }
     if (!text) {
         return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",

@@ -157,7 +157,7 @@ status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why
 {
     char *copy = root ? strdup(root) : NULL;
     if (root && !copy) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     free(s->limits.root);
     s->limits = (load_limits){.root = copy, .triangles = triangles};

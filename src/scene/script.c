@@ -232,7 +232,7 @@ static status read_script(const script_reader *r)
 static status build_and_release(document *file, hand_script **out, diagnostic *why)
 {
     script_reader r = {.file = file, .script = hand_script_create(document_name(file)), .why = why};
-    const status code = r.script ? read_script(&r) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    const status code = r.script ? read_script(&r) : out_of_memory(why);
     document_destroy(file);
     if (code != STATUS_OK) {
         hand_script_destroy(r.script);

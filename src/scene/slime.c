@@ -56,7 +56,7 @@ status slime_read_script(const scene *s, const mesh_entry *m, hand_script **out,
     }
     char *path = scene_file_path(s, m->script_path);
     if (!path) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     diagnostic bad = {.what = ""};
     const status code = script_read_below(path, s->limits.root, out, &bad);

@@ -79,5 +79,5 @@ status write_moved_path(const char *path, const char *old_file, const char *new_
     free(from);
     free(to);
     free(whole);
-    return *moved ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return *moved ? STATUS_OK : out_of_memory(why);
 }

@@ -70,7 +70,7 @@ status write_is_wanted(const scene *s, const place *at, const char *value, bool 
     }
     char *implied = implied_text(s, at);
     if (!implied) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     /* An empty path says nothing, and none is visited where a file is named that is not in use. */
     *wanted = (all && value[0]) || is_needed(at->row) || strcmp(implied, value) != 0;

@@ -142,7 +142,7 @@ status hand_script_add(hand_script *s, const char *hand, const hand_key *key, di
     track = is_new ? add_track(s, hand) : track;
     hand_key *keys = track ? grow(track->keys, track->key_count, sizeof *keys) : NULL;
     if (!keys) {
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     track->keys = keys;
     track->keys[track->key_count++] = *key;

@@ -37,7 +37,7 @@ static status add_edges(const softbody_settings *s, toy_net *n, diagnostic *why)
     const size_t count = 3 * n->face_count;
     side *sides = malloc(count * sizeof *sides);
     if (!sides)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     for (size_t i = 0; i < count; i++) {
         const uint32_t *corner = n->faces[i / 3].corner, a = corner[i % 3], b = corner[(i + 1) % 3];
         sides[i] = (side){a < b ? a : b, a < b ? b : a, corner[(i + 2) % 3]};
@@ -72,7 +72,7 @@ static status add_diameters(const softbody_settings *s, const vec3 *unit, toy_ne
 {
     spot *spots = malloc(n->mass_count * sizeof *spots);
     if (!spots)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     for (size_t i = 0; i < n->mass_count; i++)
         spots[i] = (spot){vec3_add(unit[i], vec3_make(0.0, 0.0, 0.0)), (uint32_t)i}; /* no -0 */
     qsort(spots, n->mass_count, sizeof *spots, by_place);

@@ -190,7 +190,7 @@ status softbody_create_net(const softbody_net *net, const softbody_settings *s, 
         return code;
     softbody *b = calloc(1, sizeof *b);
     if (!b)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     b->set = *s;
     b->skin_level = -1;
     b->kernels = kernels[level];
@@ -222,7 +222,7 @@ status softbody_create(const softbody_settings *s, isa level, softbody **out, di
                               .mass_kg = mass_kg,
                               .springs = toy.springs,
                               .faces = toy.faces};
-    code = mass_kg ? softbody_create_net(&net, s, level, out, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    code = mass_kg ? softbody_create_net(&net, s, level, out, why) : out_of_memory(why);
     if (code == STATUS_OK) {
         (*out)->mass_of = toy.mass_of;
         (*out)->skin_level = (int)s->level;

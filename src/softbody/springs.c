@@ -137,7 +137,7 @@ status springs_build(springs *s, const softbody_net *net, diagnostic *why)
             code = diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for springs");
         }
     } else if (code == STATUS_OK) {
-        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+        code = out_of_memory(why);
     }
     rings_release(r);
     free(count);

@@ -122,11 +122,6 @@ static status damaged(const char *path, long line, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "move the file away, or take this line out of a copy", "the row is damaged");
 }
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 /* Counts lines and columns, and finds where rows start. */
 static status measure(csv *table, const char *path, diagnostic *why)
 {
@@ -141,7 +136,7 @@ static status measure(csv *table, const char *path, diagnostic *why)
     table->start = malloc(lines * sizeof *table->start);
     table->split = malloc(table->whole);
     if (!table->start || !table->split)
-        return no_memory(why);
+        return out_of_memory(why);
     memcpy(table->split, table->raw, table->whole);
     size_t line = 0;
     table->column_count = 1;
@@ -162,13 +157,13 @@ static status split_all(csv *table, const char *path, diagnostic *why)
         return code;
     table->header = calloc(table->column_count, sizeof *table->header);
     if (!table->header)
-        return no_memory(why);
+        return out_of_memory(why);
     table->column_count = csv_split(table->split, table->header);
     if (table->column_count == 0)
         return damaged(path, 1, why);
     table->fields = calloc(table->row_count * table->column_count + 1, sizeof *table->fields);
     if (!table->fields)
-        return no_memory(why);
+        return out_of_memory(why);
     for (size_t row = 0; row < table->row_count; row++) {
         char *text = table->split + table->start[row];
         /* A quoted field may hold commas, so a line is counted before its fields are kept. */
@@ -179,7 +174,7 @@ static status split_all(csv *table, const char *path, diagnostic *why)
             return damaged(path, (long)row + 2, why);
         char **fields = malloc(commas * sizeof *fields);
         if (!fields)
-            return no_memory(why);
+            return out_of_memory(why);
         bool right = csv_split(text, fields) == table->column_count;
         if (right)
             memcpy(table->fields + row * table->column_count, fields, table->column_count * sizeof *fields);
@@ -202,7 +197,7 @@ status csv_read_below(const char *path, const char *root, csv **out, diagnostic 
         return STATUS_OK;
     csv *table = calloc(1, sizeof *table);
     if (!table)
-        return no_memory(why);
+        return out_of_memory(why);
     status code = file_read_below(path, root, CSV_BYTES_MAX, &table->raw, &table->size, why);
     if (code == STATUS_OK) {
         const char *newline = table->size ? memrchr(table->raw, '\n', table->size) : NULL;

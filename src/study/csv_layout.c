@@ -12,11 +12,6 @@ struct csv_layout {
     int *source; /* of each column of `to`: which one of `from`, or -1 */
 };
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static void names_free(names *n)
 {
     free(n->text);
@@ -57,7 +52,7 @@ status csv_layout_create(const char *from, const char *to, csv_layout **out, dia
     names_free(&other);
     if (!l || !l->source) {
         csv_layout_destroy(l);
-        return no_memory(why);
+        return out_of_memory(why);
     }
     *out = l;
     return STATUS_OK;
@@ -82,7 +77,7 @@ status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv
         csv_end(out);
         names_free(&fields);
         if (!right || out->failed)
-            return no_memory(why);
+            return out_of_memory(why);
         at += length;
     }
     return STATUS_OK;

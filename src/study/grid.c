@@ -107,7 +107,7 @@ status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *wh
     *out = NULL;
     scene *setting = scene_clone(s->base);
     if (!setting)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     for (size_t axis = 0; axis < s->axis_count; axis++) {
         const study_point *point = &s->axes[axis].points[study_cell_point(s, cell, axis)];
         status code = grid_set_point(setting, point, why);
@@ -203,7 +203,7 @@ status grid_definition(const study *s, uint64_t *hash, diagnostic *why)
     meaning said = {0};
     status code = scene_load_files(s->base, why); /* what is computed follows from the parameters */
     if (code == STATUS_OK && meaning_of_study(&said, s) != STATUS_OK)
-        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+        code = out_of_memory(why);
     const int64_t word = (int64_t)meaning_hash(&said);
     meaning_free(&said);
     *hash = hash_words(HASH_START, &word, 1);

@@ -100,13 +100,13 @@ static status write_kept(const study *s, const kept_cell *c, kept what, const ch
 status keep_write(const study *s, const char *folder, const kept_cell *c, diagnostic *why)
 {
     char *images = text_format("%s/images", folder);
-    status code = images ? file_make_directory(images, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = images ? file_make_directory(images, why) : out_of_memory(why);
     free(images);
     for (kept what = 0; code == STATUS_OK && what < KEPT_COUNT; what++) {
         if (!wanted(s, what))
             continue;
         char *path = kept_path(folder, c->cell, what);
-        code = path ? write_kept(s, c, what, path, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+        code = path ? write_kept(s, c, what, path, why) : out_of_memory(why);
         free(path);
     }
     return code;
@@ -135,7 +135,7 @@ static status list_kept(const study *s, const char *folder, FILE *out, diagnosti
         for (kept what = 0; what < KEPT_COUNT; what++) {
             char *path = kept_path(folder, cell, what);
             if (!path)
-                return diagnose(why, STATUS_FAILURE, "", "out of memory");
+                return out_of_memory(why);
             if (access(path, F_OK) == 0)
                 index_line(s, path, cell, out);
             free(path);
@@ -147,7 +147,7 @@ status keep_index(const study *s, const char *folder, bool renew, diagnostic *wh
 {
     bool keeps = study_keeps_files(s);
     char *path = text_format("%s/images/index.tsv", folder), *images = text_format("%s/images", folder);
-    status code = path && images ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = path && images ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && keeps && access(images, F_OK) == 0 && (renew || access(path, F_OK) != 0)) {
         file_writer writer;
         /* Of shards that end at one time the last one must list the files of all. */

@@ -6,18 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 status ledger_add(ledger *l, const ledger_entry *entry, diagnostic *why)
 {
     ledger_cell *cell = &l->cells[entry->cell];
     if (!entry->warmup) {
         double *grown = realloc(cell->wall_s, (cell->counted + 1) * sizeof *grown);
         if (!grown)
-            return no_memory(why);
+            return out_of_memory(why);
         cell->wall_s = grown;
         grown[cell->counted++] = entry->wall_s;
     }
@@ -52,7 +47,7 @@ status ledger_read(const study *s, const char *results, ledger **out, diagnostic
         l->cells = calloc(l->cell_count = study_cell_count(s), sizeof *l->cells);
     }
     if (!l || !l->cells)
-        code = no_memory(why);
+        code = out_of_memory(why);
     for (size_t i = 0; code == STATUS_OK && i < files->row_count; i++) {
         const row_ref *ref = &files->rows[i];
         ledger_entry entry = {.cell = ref->cell,

@@ -162,7 +162,7 @@ static status load(const study *s, const char *path, const topology *machine, js
         return STATUS_OK;
     }
     *out = json_pack("{s:o, s:o, s:[]}", "study", study_facts(s), "machine", machine_facts(machine), "runs");
-    return *out ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    return *out ? STATUS_OK : out_of_memory(why);
 }
 
 static status save(const json_t *manifest, const char *path, diagnostic *why)
@@ -170,7 +170,7 @@ static status save(const json_t *manifest, const char *path, diagnostic *why)
     /* jansson writes reals in the C locale's form by itself. */
     char *text = json_dumps(manifest, JSON_INDENT(2) | JSON_REAL_PRECISION(6));
     if (!text)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     file_writer writer;
     status code = file_writer_open(&writer, path, why);
     if (code == STATUS_OK) {
@@ -186,7 +186,7 @@ status manifest_write(const study *s, const char *folder, const topology *machin
 {
     json_t *run = run_facts(s, machine, level, shard, shards), *manifest = NULL;
     char *path = text_format("%s/manifest.json", folder);
-    status code = run && path ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = run && path ? STATUS_OK : out_of_memory(why);
     /* Shards may start at one time, and each reads the list before it writes it. */
     int lock = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock >= 0)

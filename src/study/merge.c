@@ -5,11 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 /* The rows of one file, from `from` on; those of a file with other columns under their names. */
 static status write_rows(FILE *out, const row_files *files, size_t from, size_t to, const char *header, diagnostic *why)
 {
@@ -17,7 +12,7 @@ static status write_rows(FILE *out, const row_files *files, size_t from, size_t 
     char *own = strndup(of->raw, of->start[0]);
     csv_layout *layout = NULL;
     csv_line placed = {0};
-    status code = own ? csv_layout_create(own, header, &layout, why) : no_memory(why);
+    status code = own ? csv_layout_create(own, header, &layout, why) : out_of_memory(why);
     for (size_t i = from; code == STATUS_OK && i < to; i++) {
         const size_t row = files->rows[i].row, start = of->start[row], size = of->start[row + 1] - start;
         if (strcmp(own, header) == 0) {
@@ -54,7 +49,7 @@ static status write_joined(const row_files *files, const char *path, const char 
 {
     file_writer writer;
     char *all = joined_header(files, header);
-    status code = all ? file_writer_open(&writer, path, why) : no_memory(why);
+    status code = all ? file_writer_open(&writer, path, why) : out_of_memory(why);
     if (code != STATUS_OK) {
         free(all);
         return code;
@@ -86,7 +81,7 @@ static status join(const study *s, const char *results, row_kind kind, size_t *r
     char *joined = folder ? row_file_path(folder, kind, 0, 1) : NULL;
     table **locked = calloc(files->count + 1, sizeof(table *));
     size_t locked_count = 0;
-    code = joined && header && locked ? table_open(joined, header, &locked[0], why) : no_memory(why);
+    code = joined && header && locked ? table_open(joined, header, &locked[0], why) : out_of_memory(why);
     if (code == STATUS_OK)
         locked_count = 1;
     for (size_t i = 0; code == STATUS_OK && i < files->count; i++)

@@ -35,11 +35,6 @@ enum { FILE_BYTES_MAX = 1 << 20, NAME_MAX_LENGTH = 64, TITLE_MAX_LENGTH = 200 };
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 /* An integer, though perhaps of more digits than a number holds? */
 static bool only_digits(const char *text)
 {
@@ -97,7 +92,7 @@ static status read_names(study *s, const document *d, const node *root, diagnost
         return node_error(d, title, why, "write one line of at most 200 characters", "this is not a title");
     s->name = strdup(name->text);
     s->title = strdup(title ? title->text : name->text);
-    return s->name && s->title ? STATUS_OK : no_memory(why);
+    return s->name && s->title ? STATUS_OK : out_of_memory(why);
 }
 
 /* With six the median has a 95% interval (measure/statistics.h). */
@@ -206,7 +201,7 @@ static status read_scene(study *s, const document *d, const node *root, const st
                           "this is not a file name");
     char *copy = strdup(s->path);
     if (!copy)
-        return no_memory(why);
+        return out_of_memory(why);
     const char *folder = dirname(copy);
     bool as_is = n->text[0] == '/' || strcmp(folder, ".") == 0;
     s->scene_path = malloc(strlen(folder) + strlen(n->text) + 2);
@@ -217,7 +212,7 @@ static status read_scene(study *s, const document *d, const node *root, const st
     }
     free(copy);
     if (!s->scene_path)
-        return no_memory(why);
+        return out_of_memory(why);
     diagnostic refused = {.what = ""};
     const status allowed = guard ? guard->may_open(guard->context, s->scene_path, &refused) : STATUS_OK;
     if (allowed != STATUS_OK) {
@@ -305,7 +300,7 @@ static status read_text(const char *name, const char *text, size_t size, const s
     document *d = NULL;
     if (!s || !(s->path = strdup(name)) || !(s->text = strndup(text, size))) {
         study_destroy(s);
-        return no_memory(why);
+        return out_of_memory(why);
     }
     status code = document_parse(name, text, size, &d, why);
     if (code == STATUS_OK)

@@ -15,11 +15,6 @@ bool read_grid_plain(const char *text)
     return true;
 }
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static status locate(const document *d, const node *at, diagnostic *why, status code)
 {
     diagnostic_locate(why, document_name(d), at->line, at->column);
@@ -38,7 +33,7 @@ static status try_value(scene *on, const document *d, const node *key, const nod
         return locate(d, key, why, code);
     char *text = node_value_text(value);
     if (!text && node_is_value(value))
-        return no_memory(why);
+        return out_of_memory(why);
     if (!text)
         return node_error(d, value, why, "write a number, a word, or a list of numbers", "%s cannot be set to this",
                           key->text);
@@ -57,7 +52,7 @@ static status point_reserve(study_point *point, const node *at, size_t count, di
     point->column = at->column;
     point->paths = calloc(count + 1, sizeof *point->paths);
     point->values = calloc(count + 1, sizeof *point->values);
-    return point->paths && point->values ? STATUS_OK : no_memory(why);
+    return point->paths && point->values ? STATUS_OK : out_of_memory(why);
 }
 
 static status point_add(study_point *point, scene *on, const document *d, const node *key, const node *value,
@@ -69,7 +64,7 @@ static status point_add(study_point *point, scene *on, const document *d, const 
         return code;
     point->values[point->count] = canonical;
     point->paths[point->count] = strdup(key->text);
-    return point->paths[point->count++] ? STATUS_OK : no_memory(why);
+    return point->paths[point->count++] ? STATUS_OK : out_of_memory(why);
 }
 
 /* Every entry of a map path: value. */
@@ -119,7 +114,7 @@ static status read_values(study_axis *axis, scene *on, const document *d, const 
                           diagnostic *why)
 {
     axis->name = strdup(key->text);
-    status code = axis->name ? STATUS_OK : no_memory(why);
+    status code = axis->name ? STATUS_OK : out_of_memory(why);
     for (size_t i = 0; code == STATUS_OK && i < list->count; i++) {
         study_point *point = &axis->points[axis->count++];
         code = point_reserve(point, list->items[i], 1, why);
@@ -163,7 +158,7 @@ static status read_range(study_axis *axis, scene *on, const document *d, const n
         return code;
     axis->points = calloc((size_t)steps, sizeof *axis->points);
     axis->name = strdup(key->text);
-    code = axis->points && axis->name ? STATUS_OK : no_memory(why);
+    code = axis->points && axis->name ? STATUS_OK : out_of_memory(why);
     for (int64_t i = 0; code == STATUS_OK && i < steps; i++) {
         char text[NUMBER_TEXT_MAX];
         double value = i == steps - 1 ? end[1] : end[0] + (double)i * (end[1] - end[0]) / (double)(steps - 1);
@@ -187,7 +182,7 @@ static status read_points(study_axis *axis, scene *on, const document *d, const 
     if (!name || name->kind != NODE_SCALAR || !name->text[0] || !read_grid_plain(name->text))
         return node_error(d, name ? name : list, why, "write {name: WORD, points: [...]}", "the axis has no name");
     axis->name = strdup(name->text);
-    status code = axis->name ? STATUS_OK : no_memory(why);
+    status code = axis->name ? STATUS_OK : out_of_memory(why);
     for (size_t i = 0; code == STATUS_OK && i < list->count; i++) {
         study_point *point = &axis->points[axis->count++];
         code = read_point(point, on, d, list->items[i], why);
@@ -230,7 +225,7 @@ static status read_axis(study_axis *axis, scene *on, const document *d, const no
         return node_error(d, list, why, "write at most 4096 values", "the axis has %zu values", list->count);
     axis->points = calloc(list->count, sizeof *axis->points);
     if (!axis->points)
-        return no_memory(why);
+        return out_of_memory(why);
     code = together ? read_points(axis, on, d, node_get(n, "name"), list, why)
                     : read_values(axis, on, d, n->keys[0], list, why);
     return code == STATUS_OK ? check_distinct(axis, d, list, why) : code;
@@ -262,7 +257,7 @@ static status read_axes(study *s, scene *on, const document *d, const node *grid
         return node_error(d, grid, why, "use at most 16 axes", "the grid has %zu axes", grid->count);
     s->axes = calloc(grid->count, sizeof *s->axes);
     if (!s->axes)
-        return no_memory(why);
+        return out_of_memory(why);
     size_t cells = 1;
     for (size_t i = 0; i < grid->count; i++) {
         s->axis_count++;
@@ -289,7 +284,7 @@ status read_grid(study *s, const document *d, const node *set, const node *grid,
         return code;
     scene *on = scene_clone(s->base);
     if (!on)
-        return no_memory(why);
+        return out_of_memory(why);
     code = read_axes(s, on, d, grid, why);
     scene_destroy(on);
     return code;
@@ -301,7 +296,7 @@ status read_reference(study *s, const document *d, const node *reference, diagno
         return STATUS_OK;
     scene *on = scene_clone(s->base);
     if (!on)
-        return no_memory(why);
+        return out_of_memory(why);
     status code = read_point(&s->reference, on, d, reference, why);
     scene_destroy(on);
     return code;

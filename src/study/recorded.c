@@ -4,11 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static status read_parts(study *s, const document *d, const char *scene_text, diagnostic *why)
 {
     const node *root = document_root(d);
@@ -17,7 +12,7 @@ static status read_parts(study *s, const document *d, const char *scene_text, di
         return diagnose(why, STATUS_BAD_INPUT, "", "it is not a study");
     s->name = strdup(name->text);
     status code =
-        s->name ? scene_read_text(s->scene_path, scene_text, strlen(scene_text), &s->base, why) : no_memory(why);
+        s->name ? scene_read_text(s->scene_path, scene_text, strlen(scene_text), &s->base, why) : out_of_memory(why);
     if (code == STATUS_OK)
         code = read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why);
     return code == STATUS_OK ? read_reference(s, d, node_get(root, "reference"), why) : code;
@@ -29,7 +24,7 @@ status recorded_study(const study *now, const char *text, const char *scene_text
     study *s = calloc(1, sizeof *s);
     if (!s || !(s->path = strdup(now->path)) || !(s->scene_path = strdup(now->scene_path))) {
         study_destroy(s);
-        return no_memory(why);
+        return out_of_memory(why);
     }
     document *d = NULL;
     status code = document_parse(s->path, text, strlen(text), &d, why);

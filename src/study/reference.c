@@ -14,11 +14,6 @@
 
 enum { FACTS_BYTES_MAX = 1 << 20 };
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why)
 {
     status code = study_cell_scene(s, cell, out, why);
@@ -123,7 +118,7 @@ status reference_load(const char *folder, const char *root, uint64_t scene_hash,
     *out = (reference){.scene_hash = scene_hash};
     char *facts = file_path(folder, scene_hash, ".json"), *picture = file_path(folder, scene_hash, ".pfm");
     uint64_t pixels = 0;
-    status code = facts && picture ? STATUS_OK : no_memory(why);
+    status code = facts && picture ? STATUS_OK : out_of_memory(why);
     /* The facts are written last: without them the picture is not believed. */
     if (code == STATUS_OK && access(facts, F_OK) == 0 && access(picture, F_OK) == 0) {
         code = load_facts(facts, root, out, &pixels, why);
@@ -159,7 +154,7 @@ static status save_facts(const reference *of, const scene *setting, const char *
     char *text = code == STATUS_OK && facts ? json_dumps(facts, JSON_INDENT(2)) : NULL;
     json_decref(facts);
     if (!text)
-        return no_memory(why);
+        return out_of_memory(why);
     file_writer writer;
     code = file_writer_open(&writer, path, why);
     if (code == STATUS_OK) {
@@ -175,7 +170,7 @@ status reference_save(const study *s, const char *folder, const reference *of, c
     char *into = text_format("%s/references", folder);
     char *pfm = file_path(folder, of->scene_hash, ".pfm"), *png = file_path(folder, of->scene_hash, ".png");
     char *facts = file_path(folder, of->scene_hash, ".json");
-    status code = into && pfm && png && facts ? file_make_directory(into, why) : no_memory(why);
+    status code = into && pfm && png && facts ? file_make_directory(into, why) : out_of_memory(why);
     if (code == STATUS_OK)
         code = image_write(of->picture, pfm, 8, why);
     if (code == STATUS_OK && s->keep_image)

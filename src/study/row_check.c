@@ -73,7 +73,7 @@ status row_check_drop_twins(row_files *files, diagnostic *why)
 {
     row_ref **sorted = malloc((files->row_count + 1) * sizeof(row_ref *));
     if (!sorted)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     for (size_t i = 0; i < files->row_count; i++)
         sorted[i] = &files->rows[i];
     qsort(sorted, files->row_count, sizeof *sorted, compare_keys);

@@ -34,11 +34,6 @@ char *row_file_header(const study *s, row_kind kind)
     return NULL;
 }
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 typedef struct shard_name {
     long shard, shards;
 } shard_name;
@@ -84,7 +79,7 @@ static status list_shards(const char *folder, row_kind kind, shard_name **list, 
             *list = grown;
             grown[(*count)++] = name;
         } else {
-            code = no_memory(why);
+            code = out_of_memory(why);
         }
     }
     closedir(open);
@@ -96,7 +91,7 @@ static status list_shards(const char *folder, row_kind kind, shard_name **list, 
 static status add_file(row_files *files, const study *s, char *path, diagnostic *why)
 {
     if (!path)
-        return no_memory(why);
+        return out_of_memory(why);
     csv *table;
     status code = csv_read_below(path, s->base->limits.root, &table, why);
     if (code != STATUS_OK || !table) {
@@ -116,8 +111,8 @@ static status open_files(row_files *files, const study *s, const char *folder, r
     if (code == STATUS_OK) {
         files->paths = calloc(count + 1, sizeof *files->paths);
         files->tables = calloc(count + 1, sizeof *files->tables);
-        code =
-            files->paths && files->tables ? add_file(files, s, row_file_path(folder, kind, 0, 1), why) : no_memory(why);
+        code = files->paths && files->tables ? add_file(files, s, row_file_path(folder, kind, 0, 1), why)
+                                             : out_of_memory(why);
     }
     for (size_t i = 0; code == STATUS_OK && i < count; i++)
         code = add_file(files, s, row_file_path(folder, kind, shards[i].shard, shards[i].shards), why);
@@ -173,7 +168,7 @@ static status read_rows(row_files *files, const study *s, const char *folder, ro
     for (size_t i = 0; i < files->count; i++)
         total += files->tables[i]->row_count;
     files->rows = malloc((total + 1) * sizeof *files->rows);
-    status code = files->rows ? STATUS_OK : no_memory(why);
+    status code = files->rows ? STATUS_OK : out_of_memory(why);
     for (size_t i = 0; code == STATUS_OK && i < files->count; i++) {
         const csv *table = files->tables[i];
         if (!table->header)
@@ -193,7 +188,7 @@ static status load(const study *s, const char *results, row_kind kind, row_files
     *out = NULL;
     row_files *files = calloc(1, sizeof *files);
     char *folder = study_folder(s, results);
-    status code = files && folder ? open_files(files, s, folder, kind, why) : no_memory(why);
+    status code = files && folder ? open_files(files, s, folder, kind, why) : out_of_memory(why);
     if (code == STATUS_OK)
         code = read_rows(files, s, folder, kind, why);
     free(folder);

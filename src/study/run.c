@@ -13,11 +13,6 @@
 #include <time.h>
 #include <unistd.h>
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 status run_interrupted(diagnostic *why)
 {
     return diagnose(why, STATUS_INTERRUPTED, "run it again: it goes on from here", "stopped; all rows so far are kept");
@@ -65,12 +60,12 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
     status code = STATUS_OK;
     if (r->workers) {
         worker_rows_write(&line, row);
-        code = line.failed ? no_memory(why) : table_append(r->workers, line.text, line.size, why);
+        code = line.failed ? out_of_memory(why) : table_append(r->workers, line.text, line.size, why);
         csv_line_free(&line);
     }
     if (code == STATUS_OK) {
         row_write(&line, row);
-        code = line.failed ? no_memory(why) : table_append(r->rows, line.text, line.size, why);
+        code = line.failed ? out_of_memory(why) : table_append(r->rows, line.text, line.size, why);
         csv_line_free(&line);
     }
     if (code != STATUS_OK)
@@ -191,7 +186,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
              .compared = calloc(total, sizeof *r.compared),
              .line = progress_begin(s, options)};
     bool has_memory = r.folder && r.cells && r.warm && r.order && r.compared && r.line;
-    status code = has_memory ? ledger_read(s, options->results, &r.done, why) : no_memory(why);
+    status code = has_memory ? ledger_read(s, options->results, &r.done, why) : out_of_memory(why);
     if (code == STATUS_OK)
         code = run_find_compared(&r, why);
     if (code == STATUS_OK) {

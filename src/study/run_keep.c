@@ -90,8 +90,7 @@ static status compare_cell(run *r, size_t cell, const scene *setting, const rend
     if (code != STATUS_OK)
         return code;
     compare_row_write(&line, &row);
-    code = line.failed ? diagnose(why, STATUS_FAILURE, "", "out of memory")
-                       : table_append(r->compares, line.text, line.size, why);
+    code = line.failed ? out_of_memory(why) : table_append(r->compares, line.text, line.size, why);
     csv_line_free(&line);
     r->compared[cell] = code == STATUS_OK;
     return code;

@@ -5,11 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 /* Worker rows are written before the row that they belong to; those at the end without one are what a killed
  * process left. */
 static status set_orphans_aside(run *r, const csv *rows, const char *path, diagnostic *why)
@@ -39,7 +34,7 @@ static status open_table(const run *r, row_kind kind, table **out, char **path, 
 {
     char *header = row_file_header(r->s, kind);
     *path = row_file_path(r->folder, kind, r->options->shard, r->options->shards);
-    status code = *path && header ? table_open(*path, header, out, why) : no_memory(why);
+    status code = *path && header ? table_open(*path, header, out, why) : out_of_memory(why);
     free(header);
     return code;
 }

@@ -74,7 +74,7 @@ static status put_solids(const study *s, const cell_rows *cell, bool header, dia
     for (size_t i = 0; i < s->base->solid_count; i++) {
         char *name = text_format("first_hits.%s", s->base->solids[i].name);
         if (!name)
-            return diagnose(why, STATUS_FAILURE, "", "out of memory");
+            return out_of_memory(why);
         if (header)
             fprintf(cell->out, "\t%s", name);
         else
@@ -142,7 +142,7 @@ static status put_cells(const study *s, const row_files *files, const row_files 
     size_t room = files->row_count + 1;
     cell_rows cell = {
         .rows = malloc(room * sizeof *cell.rows), .values = malloc(room * sizeof *cell.values), .out = out};
-    status code = cell.rows && cell.values ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = cell.rows && cell.values ? STATUS_OK : out_of_memory(why);
     for (size_t number = 0; code == STATUS_OK && number < study_cell_count(s); number++) {
         const char *film_expected = NULL;
         cell.count = cell.marked = 0;

@@ -5,11 +5,6 @@
 
 enum { TABLE_BYTES_MAX = 1 << 30 };
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 /* The file's lines below a wider header; each goes on with as many values that are not known. */
 static status widen(const char *path, const char *lines, const char *header, size_t added, diagnostic *why)
 {
@@ -34,7 +29,7 @@ static status settle(const char *path, char *text, const char *header, csv_layou
     char *own = end ? strndup(text, (size_t)(end - text) + 1) : NULL;
     size_t added = 0;
     char *all = own ? csv_header_extend(own, header, &added) : NULL;
-    status code = all ? STATUS_OK : no_memory(why);
+    status code = all ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && added > 0) {
         code = widen(path, end + 1, all, added, why);
         *replaced = code == STATUS_OK;

@@ -239,8 +239,7 @@ static void get_file(void *of, const http_request *q, http_reply *r)
     scene *now = desk_take(l->desk, NULL);
     if (now)
         lab_forget_threads(l, now);
-    const status code = now ? scene_write_text(now, now->path, false, &text, &why)
-                            : diagnose(&why, STATUS_FAILURE, "", "out of memory");
+    const status code = now ? scene_write_text(now, now->path, false, &text, &why) : out_of_memory(&why);
     scene_destroy(now);
     if (code == STATUS_OK)
         http_reply_bytes(r, 200, "application/yaml; charset=utf-8", text, strlen(text));
@@ -259,8 +258,8 @@ static void get_command(void *of, const http_request *q, http_reply *r)
     json_t *told = json_object();
     const bool known = now && told && desk_tell(l->desk, told);
     const char *file = known ? json_string_value(json_object_get(told, "file")) : NULL;
-    const status code = known ? command_line(l->files, file, now, l->settings.threads, &text, &complete, &why)
-                              : diagnose(&why, STATUS_FAILURE, "", "out of memory");
+    const status code =
+        known ? command_line(l->files, file, now, l->settings.threads, &text, &complete, &why) : out_of_memory(&why);
     if (code == STATUS_OK)
         http_reply_json(r, 200, json_pack("{s:o,s:b}", "command", json_of_text(text), "complete", (int)complete));
     else

@@ -243,7 +243,7 @@ static status load_alone(lab *l, const char *file, bool is_model, scene **out, d
     status code = folder_path(l->files, file, true, &path, why);
     scene *s = code == STATUS_OK ? scene_create() : NULL;
     if (code == STATUS_OK && !s)
-        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+        code = out_of_memory(why);
     if (code == STATUS_OK)
         code = is_model ? scene_add_mesh(s, "model", NULL, why) : scene_add_texture(s, "picture", NULL, why);
     if (code == STATUS_OK)

@@ -125,7 +125,7 @@ static void write_file(lab *l, const char *name, const char *path, http_reply *r
     scene *s = desk_take(l->desk, &generation);
     if (s)
         lab_forget_threads(l, s);
-    const status code = s ? scene_write(s, path, false, &why) : diagnose(&why, STATUS_FAILURE, "", "out of memory");
+    const status code = s ? scene_write(s, path, false, &why) : out_of_memory(&why);
     scene_destroy(s);
     if (code == STATUS_OK)
         desk_saved(l->desk, name, generation);

@@ -54,7 +54,7 @@ static status encode_own(const picture *p, image_format format, int bits, unsign
     if (*bytes)
         memcpy(*bytes, shared, *size);
     else if (code == STATUS_OK)
-        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+        code = out_of_memory(why);
     return code;
 }
 

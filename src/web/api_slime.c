@@ -115,7 +115,7 @@ static void grab(lab *l, const json_t *given, http_reply *reply)
     vec3 origin, direction, where;
     int hand = LIVE_MISSED;
     scene *now = desk_take(l->desk, NULL);
-    status code = now ? STATUS_OK : diagnose(&why, STATUS_FAILURE, "", "out of memory");
+    status code = now ? STATUS_OK : out_of_memory(&why);
     if (now) {
         lab_camera_ray(now, x, y, &origin, &direction);
         scene_destroy(now);
@@ -155,7 +155,7 @@ static void move(lab *l, const json_t *given, http_reply *reply)
     diagnostic why = {.what = ""};
     vec3 where;
     scene *now = desk_take(l->desk, NULL);
-    status code = now ? live_where(toy, hand, &where, &why) : diagnose(&why, STATUS_FAILURE, "", "out of memory");
+    status code = now ? live_where(toy, hand, &where, &why) : out_of_memory(&why);
     if (code == STATUS_OK)
         code = live_move(toy, hand, way_to(now, x, y, depth, where), &why);
     scene_destroy(now);

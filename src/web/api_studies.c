@@ -207,8 +207,7 @@ static void get_rows(void *context, const http_request *q, http_reply *r)
 static status take_run(const lab *l, const char *run, const study *s, char **results, diagnostic *why)
 {
     char *rows = text_format("%s/%s/rows.csv", run, s->name);
-    status code =
-        rows ? folder_path(l->files, rows, true, results, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = rows ? folder_path(l->files, rows, true, results, why) : out_of_memory(why);
     if (code == STATUS_OK) {
         (*results)[strlen(*results) - strlen(rows) + strlen(run)] = 0;
         code = study_check_results(l, *results, s->name, why);

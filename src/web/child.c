@@ -93,7 +93,7 @@ status child_run(char *const *arguments, double limit_s, const atomic_bool *stop
     *said = c.said;
     *exit_code = -1;
     if (!c.said)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     const int error = begin(&c, arguments);
     if (error) {
         const char *reason = strerrordesc_np(error);

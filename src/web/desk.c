@@ -41,11 +41,6 @@ struct desk {
     pile undo, redo;
 };
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static origin *origin_create(const scene *s, uint64_t number)
 {
     origin *o = calloc(1, sizeof *o);
@@ -111,7 +106,7 @@ status desk_create(scene *first, const char *file, const folder *files, void (*c
                    desk **out, diagnostic *why)
 {
     *out = NULL;
-    status code = first ? desk_check(first, files, why) : no_memory(why);
+    status code = first ? desk_check(first, files, why) : out_of_memory(why);
     if (code == STATUS_OK)
         code = desk_limit(first, files, why);
     desk *d = code == STATUS_OK ? calloc(1, sizeof *d) : NULL;
@@ -119,7 +114,7 @@ status desk_create(scene *first, const char *file, const folder *files, void (*c
     if (!from) {
         free(d);
         scene_destroy(first);
-        return code == STATUS_OK ? no_memory(why) : code;
+        return code == STATUS_OK ? out_of_memory(why) : code;
     }
     *d = (desk){.lock = PTHREAD_MUTEX_INITIALIZER,
                 .files = files,
@@ -153,7 +148,7 @@ static status replace(desk *d, scene *next, const char *file, origin *from, cons
     if (!words || (file && !name)) {
         free(name);
         free(words);
-        return no_memory(why);
+        return out_of_memory(why);
     }
     const bool goes_on = gesture && d->gesture[0] && strcmp(gesture, d->gesture) == 0;
     snprintf(d->gesture, sizeof d->gesture, "%s", gesture ? gesture : "");
@@ -191,7 +186,7 @@ status desk_apply(desk *d, const char *what, const char *gesture, desk_change *c
 {
     pthread_mutex_lock(&d->lock);
     scene *next = scene_clone(d->now.s);
-    status code = next ? change(context, next, why) : no_memory(why);
+    status code = next ? change(context, next, why) : out_of_memory(why);
     if (code == STATUS_OK)
         code = desk_check(next, d->files, why);
     if (code == STATUS_OK)
@@ -209,7 +204,7 @@ status desk_open(desk *d, scene *s, const char *file, uint64_t *generation, diag
     origin *from = code == STATUS_OK ? origin_create(s, 0) : NULL;
     if (!from) {
         scene_destroy(s);
-        return code == STATUS_OK ? no_memory(why) : code;
+        return code == STATUS_OK ? out_of_memory(why) : code;
     }
     char words[128];
     snprintf(words, sizeof words, "open %.100s", file ? file : "a new scene");
@@ -256,7 +251,7 @@ status desk_reset(desk *d, const char *const *paths, size_t count, uint64_t *gen
     pthread_mutex_lock(&d->lock);
     const origin *from = d->now.from;
     scene *next = scene_clone(count ? d->now.s : from->s);
-    status code = next ? STATUS_OK : no_memory(why);
+    status code = next ? STATUS_OK : out_of_memory(why);
     for (size_t i = 0; i < count && code == STATUS_OK; i++)
         code = set_back(next, from->s, paths[i], why);
     if (code == STATUS_OK)

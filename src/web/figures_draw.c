@@ -12,11 +12,6 @@
 static const double draw_limit_s = 50;
 enum { PART_MAX = 64 << 20 };
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 /* --- tables, as the Makefile's rules make them --- */
 
 static status write_summary(const study *s, const char *results, const char *path, diagnostic *why)
@@ -62,7 +57,7 @@ static status string_parts(const study *s, const char *results, const char *kind
     for (size_t cell = 0; code == STATUS_OK && cell < study_cell_count(s); cell++) {
         char *part = part_path(s, results, cell, kind);
         if (!part)
-            code = no_memory(why);
+            code = out_of_memory(why);
         else if (access(part, R_OK) == 0)
             code = append_part(file.stream, part, s->base->limits.root, &headed, why);
         free(part);
@@ -77,14 +72,14 @@ static status write_tables(const study *s, const char *results, diagnostic *why)
 {
     static const char *const kinds[] = {"metrics", "curves", "motion"};
     char *tables = text_format("%s/tables", results), *path = text_format("%s/tables/%s.tsv", results, s->name);
-    status code = tables && path ? file_make_directory(tables, why) : no_memory(why);
+    status code = tables && path ? file_make_directory(tables, why) : out_of_memory(why);
     if (code == STATUS_OK)
         code = write_summary(s, results, path, why);
     for (size_t i = 0; code == STATUS_OK && i < sizeof kinds / sizeof *kinds; i++) {
         char *first = part_path(s, results, 0, kinds[i]),
              *table = text_format("%s/tables/%s-%s.tsv", results, s->name, kinds[i]);
         if (!first || !table)
-            code = no_memory(why);
+            code = out_of_memory(why);
         else if (access(first, R_OK) == 0)
             code = string_parts(s, results, kinds[i], table, why);
         free(first);
@@ -104,7 +99,7 @@ static status run_script(const lab *l, const char *script, const json_t *figures
     const size_t count = json_array_size(figures);
     const char **arguments = calloc(BEFORE + count + 1, sizeof *arguments);
     if (!arguments)
-        return no_memory(why);
+        return out_of_memory(why);
     const char *const before[BEFORE] = {"/bin/bash", script, "--results", l->settings.results, "--format", "svg"};
     memcpy(arguments, before, sizeof before);
     for (size_t i = 0; i < count; i++)
@@ -123,7 +118,7 @@ status figures_draw(const lab *l, const study *s, char **said, bool *whole, diag
     *said = NULL;
     *whole = false;
     json_t *figures = figures_drawable(l, s->name);
-    status code = figures ? STATUS_OK : no_memory(why);
+    status code = figures ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && json_array_size(figures) == 0)
         code = diagnose(why, STATUS_BAD_INPUT, "write a script in plots/ that says `# needs: tables/NAME.tsv`",
                         "no figure is drawn from this study");

@@ -14,11 +14,6 @@ struct folder {
     char *real;  /* from the root, without links and without a slash at its end: "" is the root itself */
 };
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static void trim_slashes(char *path, size_t least)
 {
     for (size_t length = strlen(path); length > least && path[length - 1] == '/'; length--)
@@ -32,7 +27,7 @@ status folder_open(const char *path, folder **out, diagnostic *why)
     struct stat about;
     if (!f || !(f->given = strdup(path)) || (!(f->real = realpath(path, NULL)) && errno == ENOMEM)) {
         folder_close(f);
-        return no_memory(why);
+        return out_of_memory(why);
     }
     if (!f->real || stat(f->real, &about) != 0 || !S_ISDIR(about.st_mode)) {
         folder_close(f);
@@ -160,7 +155,7 @@ static status check_file(const char *real, const char *name, bool must_exist, di
     char *parent = strdup(real), *slash = parent ? strrchr(parent, '/') : NULL;
     if (!slash) {
         free(parent);
-        return no_memory(why);
+        return out_of_memory(why);
     }
     slash[slash == parent] = 0;
     const bool is_there = stat(parent, &about) == 0 && S_ISDIR(about.st_mode);
@@ -178,10 +173,10 @@ status folder_path(const folder *f, const char *name, bool must_exist, char **pa
                         "'%.300s' is no name of a file", name);
     char *whole = join(f, name);
     if (!whole)
-        return no_memory(why);
+        return out_of_memory(why);
     errno = 0;
     char *real = resolve(whole);
-    status code = real && below(f, real) ? STATUS_OK : errno == ENOMEM ? no_memory(why) : outside(name, why);
+    status code = real && below(f, real) ? STATUS_OK : errno == ENOMEM ? out_of_memory(why) : outside(name, why);
     if (code == STATUS_OK)
         code = check_file(real, name, must_exist, why);
     free(real);
@@ -196,7 +191,7 @@ status folder_path_from(const folder *f, const char *name, const char *file, cha
 {
     *path = NULL;
     char *inside = text_format("%s/any", f->given);
-    const status code = inside ? write_moved_path(name, inside, file, path, why) : no_memory(why);
+    const status code = inside ? write_moved_path(name, inside, file, path, why) : out_of_memory(why);
     free(inside);
     return code;
 }
@@ -208,12 +203,12 @@ static status check_named(const folder *f, const scene *s, const char *what, con
         return STATUS_OK;
     char *whole = scene_file_path(s, path);
     if (!whole)
-        return no_memory(why);
+        return out_of_memory(why);
     errno = 0;
     char *name = folder_name(f, whole);
     free(whole);
     if (!name && errno == ENOMEM)
-        return no_memory(why);
+        return out_of_memory(why);
     const bool is_in = name != NULL;
     free(name);
     return is_in ? STATUS_OK

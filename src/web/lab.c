@@ -150,7 +150,7 @@ static status join_routes(lab *l, size_t *count, diagnostic *why)
         *count += tables[i]->count;
     l->routes = calloc(*count, sizeof *l->routes);
     if (!l->routes)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     size_t at = 0;
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
         for (size_t k = 0; k < tables[i]->count; k++) {
@@ -186,7 +186,7 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     *out = NULL;
     lab *l = calloc(1, sizeof *l);
     if (!l)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     *l =
         (lab){.settings = *settings, .tell_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
     const painter_listener listener = {on_picture, on_told, l};
@@ -198,7 +198,7 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     if (code == STATUS_OK)
         code = painter_create(l->desk, settings->level, &listener, &l->painter, why);
     if (code == STATUS_OK && (!(l->pins = pins_create()) || !(l->heavy = gate_create(HEAVY_AT_ONCE))))
-        code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+        code = out_of_memory(why);
     if (code == STATUS_OK)
         code = studies_create(l, &l->studies, why);
     if (code == STATUS_OK)

@@ -65,7 +65,7 @@ static status begin(live *l, diagnostic *why)
     status code = scene_motion_create(l->stage, &l->motion, &bad);
     if (code == STATUS_OK) {
         l->hands = calloc(scene_motion_count(l->motion) * SOFTBODY_HANDS_MAX, sizeof *l->hands);
-        code = l->hands ? STATUS_OK : diagnose(&bad, STATUS_FAILURE, "", "out of memory");
+        code = l->hands ? STATUS_OK : out_of_memory(&bad);
     }
     if (code != STATUS_OK) {
         end(l);

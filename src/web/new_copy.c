@@ -9,11 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static vec3 rounded(vec3 v, double size)
 {
     return vec3_make(spot_round(v.x, size), spot_round(v.y, size), spot_round(v.z, size));
@@ -120,7 +115,7 @@ static status copy_mesh(scene *s, size_t of, const char *name, diagnostic *why)
 {
     char *path = strdup(s->meshes[of].path), *script = strdup(s->meshes[of].script_path);
     size_t index;
-    const status code = path && script ? scene_add_mesh(s, name, &index, why) : no_memory(why);
+    const status code = path && script ? scene_add_mesh(s, name, &index, why) : out_of_memory(why);
     if (code != STATUS_OK) {
         free(path);
         free(script);
@@ -144,7 +139,7 @@ static status copy_texture(scene *s, size_t of, const char *name, diagnostic *wh
 {
     char *path = strdup(s->textures[of].path);
     size_t index;
-    const status code = path ? scene_add_texture(s, name, &index, why) : no_memory(why);
+    const status code = path ? scene_add_texture(s, name, &index, why) : out_of_memory(why);
     if (code != STATUS_OK) {
         free(path);
         return code;

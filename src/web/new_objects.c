@@ -13,11 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 status new_name(const scene *s, const char *base, object_name name, diagnostic *why)
 {
     for (int n = 1; n <= 9999; n++) {
@@ -259,7 +254,7 @@ status new_texture(scene *s, const char *path, const char *wanted, object_name n
         code = scene_add_texture(s, name, NULL, why);
     char *row = text_format("%s.file", name);
     if (code == STATUS_OK)
-        code = row ? scene_set(s, row, path, why) : no_memory(why);
+        code = row ? scene_set(s, row, path, why) : out_of_memory(why);
     free(row);
     return code;
 }
@@ -288,7 +283,7 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
         code = add_mesh_solid(s, name, mesh_name, why);
     char *row = code == STATUS_OK ? text_format("%s.file", mesh_name) : NULL;
     if (code == STATUS_OK)
-        code = row ? scene_set(s, row, path, why) : no_memory(why);
+        code = row ? scene_set(s, row, path, why) : out_of_memory(why);
     free(row);
     /* Four digits, so that it does not stand deep in the ground or above it. */
     const double scale = spot_round(where.size / longest, 0.01 * where.size / longest);

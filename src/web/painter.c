@@ -184,14 +184,14 @@ status painter_create(desk *d, isa level, const painter_listener *listener, pain
     painter *p = calloc(1, sizeof *p);
     if (!p || !prepare_locks(p)) {
         free(p);
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     }
     p->desk = d;
     p->level = level;
     p->listener = *listener;
     p->traced.step = p->raster.step = 3; /* until it is known how long frames take */
     p->toy = live_create(wake, p);
-    status code = p->toy ? topology_create(&p->machine, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = p->toy ? topology_create(&p->machine, why) : out_of_memory(why);
     if (code == STATUS_OK)
         code = renderer_create(level, p->machine, &p->tracer, why);
     if (code == STATUS_OK && pthread_create(&p->thread, NULL, painter_thread, p) != 0)

@@ -67,7 +67,7 @@ void painter_renew_stage(painter *p)
     const bool had_slime = has_slime(p);
     pthread_rwlock_wrlock(&p->stage_lock);
     set_ready(p, false);
-    status code = next ? STATUS_OK : diagnose(&why, STATUS_FAILURE, "", "out of memory");
+    status code = next ? STATUS_OK : out_of_memory(&why);
     if (next) {
         if (p->stage && !live_is_on(p->toy))
             scene_borrow_meshes(next, p->stage);

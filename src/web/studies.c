@@ -33,7 +33,7 @@ status studies_create(lab *l, studies **out, diagnostic *why)
 {
     *out = calloc(1, sizeof **out);
     if (!*out)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     (*out)->l = l;
     pthread_mutex_init(&(*out)->life, NULL);
     pthread_mutex_init(&(*out)->lock, NULL);
@@ -145,7 +145,7 @@ static status take_place(studies *st, study *s, diagnostic *why)
 {
     char *name = strdup(s->name);
     if (!name)
-        return diagnose(why, STATUS_FAILURE, "", "out of memory");
+        return out_of_memory(why);
     pthread_mutex_lock(&st->lock);
     const bool busy = st->running;
     if (busy)

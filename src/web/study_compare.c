@@ -20,11 +20,6 @@ typedef struct cell_times {
     const char *film; /* NULL without a row */
 } cell_times;
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 static int compare_places(const void *a, const void *b)
 {
     const row_ref *x = a, *y = b;
@@ -43,7 +38,7 @@ static status sort_rows(const study *s, const char *results, sorted_rows *out, d
         return code;
     qsort(out->files->rows, out->files->row_count, sizeof *out->files->rows, compare_places);
     out->values = malloc((out->files->row_count + 1) * sizeof *out->values);
-    return out->values ? STATUS_OK : no_memory(why);
+    return out->values ? STATUS_OK : out_of_memory(why);
 }
 
 static void release(sorted_rows *rows)
@@ -118,9 +113,9 @@ status study_json_compare(const study *s, const char *results, const char *other
     }
     if (cells && !(*out = json_pack("{s:o, s:o, s:I}", "columns", paths_json(s), "cells", cells, "count",
                                     (json_int_t)study_cell_count(s))))
-        code = no_memory(why);
+        code = out_of_memory(why);
     else if (code == STATUS_OK && !cells)
-        code = no_memory(why);
+        code = out_of_memory(why);
     release(&a);
     release(&b);
     return code;

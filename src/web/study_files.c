@@ -32,7 +32,7 @@ status study_each(const lab *l, bool (*visit)(void *context, const char *name, c
                   diagnostic *why)
 {
     json_t *told = folder_tell(l->files);
-    status code = told ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = told ? STATUS_OK : out_of_memory(why);
     const json_t *files = json_object_get(told, "studies");
     bool go_on = true;
     for (size_t i = 0; go_on && code == STATUS_OK && i < json_array_size(files); i++) {
@@ -41,7 +41,7 @@ status study_each(const lab *l, bool (*visit)(void *context, const char *name, c
         if (name)
             go_on = visit(context, name, file);
         else
-            code = diagnose(why, STATUS_FAILURE, "", "out of memory");
+            code = out_of_memory(why);
         free(name);
     }
     json_decref(told);
@@ -127,7 +127,7 @@ static status check_links(const lab *l, const char *path, diagnostic *why)
             continue;
         char *inner = text_format("%s/%s", path, entry->d_name);
         if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
-            code = inner ? check_inside(l, inner, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+            code = inner ? check_inside(l, inner, why) : out_of_memory(why);
         free(inner);
     }
     closedir(open);
@@ -137,7 +137,7 @@ static status check_links(const lab *l, const char *path, diagnostic *why)
 status study_check_results(const lab *l, const char *results, const char *name, diagnostic *why)
 {
     char *own = text_format("%s/%s", results, name);
-    status code = own ? check_inside(l, own, why) : diagnose(why, STATUS_FAILURE, "", "out of memory");
+    status code = own ? check_inside(l, own, why) : out_of_memory(why);
     if (code == STATUS_OK)
         code = check_links(l, own, why);
     free(own);

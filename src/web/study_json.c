@@ -7,11 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status no_memory(diagnostic *why)
-{
-    return diagnose(why, STATUS_FAILURE, "", "out of memory");
-}
-
 /* --- what is in the study --- */
 
 typedef struct unit_search {
@@ -108,7 +103,7 @@ status study_json_summary(const study *s, const char *results, json_t **out, dia
     if (code != STATUS_OK)
         return code;
     if (progress.rows == 0)
-        return (*out = json_null()) ? STATUS_OK : no_memory(why);
+        return (*out = json_null()) ? STATUS_OK : out_of_memory(why);
     char *text = NULL;
     text_writer writer;
     code = text_writer_open(&writer, why);
@@ -120,7 +115,7 @@ status study_json_summary(const study *s, const char *results, json_t **out, dia
     else
         text_writer_abandon(&writer);
     if (code == STATUS_OK && !(*out = lines_json(text)))
-        code = no_memory(why);
+        code = out_of_memory(why);
     free(text);
     return code;
 }
@@ -161,5 +156,5 @@ status study_json_rows(const study *s, const char *results, size_t from, json_t 
         json_decref(rows);
     }
     row_files_destroy(files);
-    return *out ? STATUS_OK : no_memory(why);
+    return *out ? STATUS_OK : out_of_memory(why);
 }
