@@ -6,11 +6,9 @@ bool hierarchy_refit(hierarchy *h)
 {
     static void (*const refit[ISA_COUNT])(hierarchy *) = {hierarchy_refit_nodes_sse2, hierarchy_refit_nodes_avx2,
                                                           hierarchy_refit_nodes_avx512};
-    isa level = ISA_SSE2;
     if (h->kind != HIERARCHY_BVH || h->referred != h->of->triangle_count || (h->single && !h->of->single))
         return false;
-    (void)isa_choose(&level, NULL); /* the same bits from all */
-    refit[level](h);
+    refit[isa_best()](h); /* the same bits from all */
     return true;
 }
 

@@ -20,18 +20,18 @@ typedef struct sight {
 } sight;
 
 /* Planes to work in, all of one size. */
-typedef struct desk {
+typedef struct work_planes {
     int width, height;
     size_t count;
     double *opponent[3], *scratch;
     sight a, b;
     double *memory;
-} desk;
+} work_planes;
 
-static status lay_out_desk(desk *d, const image *picture, diagnostic *why)
+static status lay_out_planes(work_planes *d, const image *picture, diagnostic *why)
 {
     enum { PLANES = 2 * SEEN + 4 };
-    *d = (desk){.width = picture->width, .height = picture->height};
+    *d = (work_planes){.width = picture->width, .height = picture->height};
     d->count = (size_t)d->width * (size_t)d->height;
     d->memory = calloc(d->count, PLANES * sizeof *d->memory);
     if (!d->memory) {
@@ -65,7 +65,7 @@ static double weight_of_peak(const convolve_taps *gaussian)
     return 1.0 / (middle * middle);
 }
 
-static void filter_colors(const desk *d, const sight *s)
+static void filter_colors(const work_planes *d, const sight *s)
 {
     convolve_taps luminance = sensitivity(0.0047), red_green = sensitivity(0.0053);
     convolve_taps wide = sensitivity(0.04), narrow = sensitivity(0.025);
@@ -110,7 +110,7 @@ static void make_detectors(convolve_taps *smooth, convolve_taps *edge, convolve_
 }
 
 /* The length of the gradient by a detector. across and down are overwritten. */
-static void detect(const desk *d, const convolve_taps *detector, const convolve_taps *smooth, double *across,
+static void detect(const work_planes *d, const convolve_taps *detector, const convolve_taps *smooth, double *across,
                    double *down, double *strength)
 {
     for (size_t i = 0; i < d->count; i++) {
@@ -123,7 +123,7 @@ static void detect(const desk *d, const convolve_taps *detector, const convolve_
     }
 }
 
-static void look_at(const desk *d, const image *picture, const sight *s)
+static void look_at(const work_planes *d, const image *picture, const sight *s)
 {
     for (size_t i = 0; i < d->count; i++) {
         double opponent[3];
@@ -159,8 +159,8 @@ static double error_at(const sight *a, const sight *b, size_t at, double farthes
 
 status compare_flip(const image *a, const image *b, double *errors, diagnostic *why)
 {
-    desk d;
-    status code = lay_out_desk(&d, a, why);
+    work_planes d;
+    status code = lay_out_planes(&d, a, why);
     if (code != STATUS_OK) {
         return code;
     }

@@ -4,7 +4,7 @@
  * Tolerance: a place in the picture is good to some 1e-12 px by bisection, and a ray's place on the rod to 1e-14 scene
  * units, which at a few hundred px a unit is as much; times the lens's own magnification of errors towards its rim. */
 #include "realism/metrics.h"
-#include "realism/section.h"
+#include "realism/level_section.h"
 
 #include <math.h>
 
@@ -42,14 +42,14 @@ static status traced_edges(scene *taken, const metrics *m, const double range[2]
 }
 
 typedef struct theory_line {
-    const section *c;
+    const level_section *c;
     double py;
 } theory_line;
 
 static bool theory_sees(void *context, double x)
 {
     const theory_line *l = context;
-    return section_sees_rod(l->c, x, l->py);
+    return level_section_sees_rod(l->c, x, l->py);
 }
 
 /* The line of the picture through the axis in the middle of what is filled of the rod's height, and the theory in it.
@@ -60,8 +60,8 @@ typedef struct picture_line {
 
 static const char *theory_edges(const scene *s, const setup *at, picture_line *out)
 {
-    section c;
-    const char *none = section_read(s, at, &c);
+    level_section c;
+    const char *none = level_section_read(s, at, &c);
     if (none)
         return none;
     const solid_shape *rod = &s->solids[at->rod].shape;
@@ -70,14 +70,14 @@ static const char *theory_edges(const scene *s, const setup *at, picture_line *o
     double px;
     if (!view_place(&c.eye, at->x, (low + high) / 2.0, at->z, &px, &out->py))
         return "the vessel is behind the camera";
-    section_range(&c, px, out->py, out->range);
-    const section bare = section_bare(&c);
+    level_section_range(&c, px, out->py, out->range);
+    const level_section bare = level_section_bare(&c);
     theory_line filled_line = {&c, out->py}, bare_line = {&bare, out->py};
     if (!find_edges(theory_sees, &filled_line, out->range[0], out->range[1], SCAN_STEPS, out->filled) ||
         !find_edges(theory_sees, &bare_line, out->range[0], out->range[1], SCAN_STEPS, out->bare))
         return "both edges of the rod are not in sight through the vessel";
     for (int i = 0; i < 2; i++)
-        if (!section_stays(&c, out->filled[i], out->py, low, high))
+        if (!level_section_stays(&c, out->filled[i], out->py, low, high))
             return "the view is too steep: no ray through the filled wall meets the rod below the surface";
     return NULL;
 }

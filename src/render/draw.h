@@ -5,8 +5,19 @@
 
 #include "base/random.h"
 #include "render/ticket.h"
+#include "scene/scene.h"
 
-enum { DRAW_WAVELENGTH, DRAW_BRANCH, DRAW_DIRECTION, DRAW_ROULETTE, DRAW_LIGHT /* and one more for each light */ };
+/* These numbers are part of every image and never change. A new purpose counts on from DRAW_NEXT: those from DRAW_LIGHT
+ * on are the lights', one each. */
+enum {
+    DRAW_WAVELENGTH = 0,
+    DRAW_BRANCH = 1,
+    DRAW_DIRECTION = 2,
+    DRAW_ROULETTE = 3,
+    DRAW_LIGHT = 4,
+    DRAW_NEXT = 0x1000
+};
+_Static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_NEXT, "lights draw by numbers of their own");
 
 static inline random_words draw(int64_t seed, int64_t ticket, int depth, int purpose)
 {

@@ -22,12 +22,12 @@ typedef struct event_list {
 } event_list;
 
 /* What one worker writes during a frame, on cache lines of its own. */
-typedef struct desk {
+typedef struct worker_account {
     _Alignas(64) worker_report report;
     event_list events;
     atomic_uint_fast64_t pixels; /* begun; read by the watcher */
     bool out_of_memory, misplaced;
-} desk;
+} worker_account;
 
 typedef struct frame {
     renderer *owner;
@@ -37,7 +37,7 @@ typedef struct frame {
     const film *picture;
     zbuffer *depths; /* of a frame that is drawn, else NULL */
     schedule pieces;
-    desk *desks;
+    worker_account *accounts;
     double began_s;
     atomic_bool stop;
 } frame;
@@ -102,7 +102,7 @@ static double since(const frame *f)
     return clock_wall_s() - f->began_s;
 }
 
-static void note_tile(const frame *f, desk *d, int worker, const span *piece, double began_s)
+static void note_tile(const frame *f, worker_account *d, int worker, const span *piece, double began_s)
 {
     event_list *l = &d->events;
     if (l->count == l->capacity) {
@@ -119,7 +119,7 @@ static void note_tile(const frame *f, desk *d, int worker, const span *piece, do
 }
 
 /* Pieces one after another; rays that do not fill a batch at the end of one piece go on with the next. */
-static void trace_pieces(frame *f, int worker, desk *d, span piece)
+static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
 {
     const bool timeline = f->options && f->options->timeline, by_piece = f->options && f->options->piece_done;
     const double began_s = since(f);
@@ -157,7 +157,7 @@ static void trace_pieces(frame *f, int worker, desk *d, span piece)
 static void work(void *context, int worker)
 {
     frame *f = context;
-    desk *d = &f->desks[worker];
+    worker_account *d = &f->accounts[worker];
     const double began_s = since(f), cpu_s = clock_thread_cpu_s();
     d->misplaced = !take_place(f, worker);
     span piece;
@@ -174,7 +174,7 @@ static void watch(void *context)
     frame *f = context;
     uint64_t begun = 0;
     for (int i = 0; i < (int)f->s->render.threads; i++)
-        begun += atomic_load_explicit(&f->desks[i].pixels, memory_order_relaxed);
+        begun += atomic_load_explicit(&f->accounts[i].pixels, memory_order_relaxed);
     double share = (double)begun / ((double)f->s->render.width * (double)f->s->render.height);
     if (!f->options->progress(f->options->context, share))
         atomic_store(&f->stop, true);
@@ -188,17 +188,17 @@ static int compare_events(const void *a, const void *b)
     return (x->worker > y->worker) - (x->worker < y->worker);
 }
 
-static bool join_events(const desk *desks, int count, render_result *result)
+static bool join_events(const worker_account *accounts, int count, render_result *result)
 {
     size_t total = 0;
     for (int i = 0; i < count; i++)
-        total += desks[i].events.count;
+        total += accounts[i].events.count;
     result->events = calloc(total + 1, sizeof *result->events);
     if (!result->events)
         return false;
     for (int i = 0; i < count; i++)
-        for (size_t k = 0; k < desks[i].events.count; k++)
-            result->events[result->event_count++] = desks[i].events.event[k];
+        for (size_t k = 0; k < accounts[i].events.count; k++)
+            result->events[result->event_count++] = accounts[i].events.event[k];
     qsort(result->events, total, sizeof *result->events, compare_events);
     return true;
 }
@@ -215,13 +215,13 @@ static void count_tests(const plan *p, ray_counters *c)
     }
 }
 
-/* Sums up what the workers left on their desks. */
+/* Sums up what the workers wrote into their accounts. */
 static status collect(frame *f, bool in_range, render_result *result, diagnostic *why)
 {
     const int count = (int)f->s->render.threads;
     bool out_of_memory = false, misplaced = false;
     for (int i = 0; i < count; i++) {
-        desk *d = &f->desks[i];
+        worker_account *d = &f->accounts[i];
         d->report.waiting_s = result->wall_s - d->report.busy_s;
         d->report.visibility_s = f->scene->solids->meshes ? d->report.visibility_s : NAN;
         result->workers[i] = d->report;
@@ -232,7 +232,7 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
     if (!f->depths)
         count_tests(f->scene, &result->counters);
     if (f->options && f->options->timeline)
-        out_of_memory |= !join_events(f->desks, count, result);
+        out_of_memory |= !join_events(f->accounts, count, result);
     if (out_of_memory)
         return diagnose(why, STATUS_FAILURE, "use fewer threads or less depth", "out of memory while tracing");
     if (misplaced)
@@ -294,12 +294,12 @@ static status make_result(const scene *s, const render_options *options, render_
     return STATUS_OK;
 }
 
-static desk *make_desks(int count)
+static worker_account *make_accounts(int count)
 {
-    desk *desks = aligned_alloc(64, (size_t)count * sizeof *desks);
-    if (desks)
-        memset(desks, 0, (size_t)count * sizeof *desks);
-    return desks;
+    worker_account *accounts = aligned_alloc(64, (size_t)count * sizeof *accounts);
+    if (accounts)
+        memset(accounts, 0, (size_t)count * sizeof *accounts);
+    return accounts;
 }
 
 static void project(void *context, int worker)
@@ -323,9 +323,9 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
 {
     const int count = (int)s->render.threads;
     frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
-    desk *desks = make_desks(count);
+    worker_account *accounts = make_accounts(count);
     const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns, depths};
-    bool has_memory = f && desks && tracer_set_begin(r->tracers, count, &target);
+    bool has_memory = f && accounts && tracer_set_begin(r->tracers, count, &target);
     status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
     if (code == STATUS_OK) {
         memset(f, 0, sizeof *f);
@@ -335,7 +335,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->scene = p;
         f->picture = result->picture;
         f->depths = depths;
-        f->desks = desks;
+        f->accounts = accounts;
         schedule_start(&f->pieces, &s->render);
         const double cpu_s = clock_process_cpu_s();
         f->began_s = clock_wall_s();
@@ -353,9 +353,9 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
                                 "out of memory for the layers of clear solids");
         }
         for (int i = 0; i < count; i++)
-            free(desks[i].events.event);
+            free(accounts[i].events.event);
     }
-    free(desks);
+    free(accounts);
     free(f);
     return code;
 }

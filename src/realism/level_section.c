@@ -1,13 +1,13 @@
-#include "realism/section.h"
+#include "realism/level_section.h"
 
 #include <math.h>
 
-const char *section_read(const scene *s, const setup *at, section *out)
+const char *level_section_read(const scene *s, const setup *at, level_section *out)
 {
     const solid_shape *rod = &s->solids[at->rod].shape;
     if (rod->rotation_deg.x != 0.0 || rod->rotation_deg.z != 0.0)
         return "the rod leans: this wants an upright one";
-    *out = (section){.eye = view_of(s), .shells = setup_shells(at), .x = at->x, .z = at->z};
+    *out = (level_section){.eye = view_of(s), .shells = setup_shells(at), .x = at->x, .z = at->z};
     out->eye.roll = 0.0; /* as in arrange_empty */
     const double turn = rod->rotation_deg.y * M_PI / 180.0;
     for (int i = 0; i < 4; i++) {
@@ -22,9 +22,9 @@ const char *section_read(const scene *s, const setup *at, section *out)
     return NULL;
 }
 
-section section_bare(const section *c)
+level_section level_section_bare(const level_section *c)
 {
-    section bare = *c;
+    level_section bare = *c;
     bare.shells.n_wall = bare.shells.n_core = bare.shells.n_around;
     return bare;
 }
@@ -40,7 +40,7 @@ static double flat_index(double n, double steepness)
     return sqrt(n * n - steepness * steepness);
 }
 
-static flat_ray flatten(const section *c, double px, double py)
+static flat_ray flatten(const level_section *c, double px, double py)
 {
     const sight d = view_through(&c->eye, px, py);
     flat_ray r = {.heading = atan2(d.z, d.x), .steepness = c->shells.n_around * d.y, .shells = c->shells};
@@ -51,7 +51,7 @@ static flat_ray flatten(const section *c, double px, double py)
     return r;
 }
 
-bool section_sees_rod(const section *c, double px, double py)
+bool level_section_sees_rod(const level_section *c, double px, double py)
 {
     const flat_ray r = flatten(c, px, py);
     if (!(fabs(r.offset) < theory_shells_reach(&r.shells)))
@@ -68,7 +68,7 @@ bool section_sees_rod(const section *c, double px, double py)
     return least <= 0.0 && most >= 0.0; /* corners on both sides */
 }
 
-void section_range(const section *c, double px, double py, double range[2])
+void level_section_range(const level_section *c, double px, double py, double range[2])
 {
     for (int i = 0; i < 2; i++) {
         double inside = px, outside = px + (i ? 8.0 : -8.0) * c->eye.focal_px;
@@ -83,7 +83,7 @@ void section_range(const section *c, double px, double py, double range[2])
     }
 }
 
-bool section_stays(const section *c, double px, double py, double low, double high)
+bool level_section_stays(const level_section *c, double px, double py, double low, double high)
 {
     const flat_ray r = flatten(c, px, py);
     const theory_shells *n = &r.shells;
