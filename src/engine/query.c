@@ -94,15 +94,6 @@ void query_give_bench(const cuvette_query *query, bench *b)
     pthread_mutex_unlock(&q->lock);
 }
 
-/* Never inlined: it computes with its arguments (base/float_environment.h). */
-static __attribute__((noinline)) vec3 direction_at(const plan *p, double x, double y)
-{
-    const camera_frame *f = &p->view;
-    const double u = (2.0 * x / (double)p->render.width - 1.0) * f->half_width;
-    const double v = (1.0 - 2.0 * y / (double)p->render.height) * f->half_height;
-    return vec3_normalize(vec3_add(f->forward, vec3_add(vec3_scale(f->right, u), vec3_scale(f->up, v))));
-}
-
 cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, double y, cuvette_ray *out,
                                         cuvette_diagnostic *why)
 {
@@ -114,7 +105,7 @@ cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, do
         return engine_report(
             diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point of the picture is not finite"), &inner,
             why);
-    const vec3 eye = query->ready->view.eye, d = direction_at(query->ready, x, y);
+    const vec3 eye = query->ready->view.eye, d = camera_direction(&query->ready->view, &query->ready->render, x, y);
     memset(out, 0, sizeof *out);
     out->origin[0] = eye.x, out->origin[1] = eye.y, out->origin[2] = eye.z;
     out->direction[0] = d.x, out->direction[1] = d.y, out->direction[2] = d.z;

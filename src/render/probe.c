@@ -192,10 +192,7 @@ int probe_medium_at(const probe *p, vec3 point)
 
 vec3 probe_camera_direction(const probe *p, double x, double y)
 {
-    const camera_frame *f = &p->scene->view;
-    const double u = (2.0 * x / (double)p->scene->render.width - 1.0) * f->half_width;
-    const double v = (1.0 - 2.0 * y / (double)p->scene->render.height) * f->half_height;
-    return vec3_normalize(vec3_add(f->forward, vec3_add(vec3_scale(f->right, u), vec3_scale(f->up, v))));
+    return camera_direction(&p->scene->view, &p->scene->render, x, y);
 }
 
 const char *probe_face_name(const probe *p, const ray_hit *hit)

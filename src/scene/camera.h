@@ -15,4 +15,8 @@ camera_frame camera_frame_of(const scene *s);
 /* The same without the camera's roll: right is level. */
 camera_frame camera_frame_level(const scene *s);
 
+/* The unit direction of the ray through a point of the picture, in pixels from its upper left corner; picture: whose
+ * width and height count. */
+vec3 camera_direction(const camera_frame *f, const render_settings *picture, double x, double y);
+
 #endif

@@ -100,8 +100,6 @@ void lab_reply_generation(http_reply *r, status code, uint64_t generation, const
 void lab_camera_ray(const scene *s, double x, double y, vec3 *origin, vec3 *direction)
 {
     const camera_frame f = camera_frame_of(s);
-    const double u = (2.0 * x / (double)s->render.width - 1.0) * f.half_width,
-                 v = (1.0 - 2.0 * y / (double)s->render.height) * f.half_height;
     *origin = f.eye;
-    *direction = vec3_normalize(vec3_add(f.forward, vec3_add(vec3_scale(f.right, u), vec3_scale(f.up, v))));
+    *direction = camera_direction(&f, &s->render, x, y);
 }
