@@ -68,7 +68,7 @@ static status check_scene(const motion_request *request, const scene *s, diagnos
     return diagnose(why, STATUS_BAD_INPUT, "give a mesh 'generate: slime'", "nothing moves in this scene");
 }
 
-static const char *integrator_of(const mesh_entry *m)
+static const char *motion_word(const mesh_entry *m)
 {
     return param_find(PARAM_MESH, "integrator")->choices[m->slime.integrator];
 }
@@ -83,7 +83,7 @@ static void print_number(double value, int digits, int width)
 
 static void print_text(const mesh_entry *m, const softbody_trial_report *r)
 {
-    printf("%s: level %lld, %s, steps of %g s\n", m->name, (long long)m->level, integrator_of(m), m->slime.dt_s);
+    printf("%s: level %lld, %s, steps of %g s\n", m->name, (long long)m->level, motion_word(m), m->slime.dt_s);
     printf("  %-24s %16s %16s %9s  %-12s %s\n", "", "measured", "theory", "error", "unit", "what");
     for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++) {
         const softbody_trial *v = &r->value[i];
@@ -128,7 +128,7 @@ static json_t *slime_object(const mesh_entry *m, const softbody_trial_report *r)
     }
     json_t *o = bad ? NULL
                     : json_pack("{s:s,s:I,s:s,s:o,s:O}", "name", m->name, "level", (json_int_t)m->level, "integrator",
-                                integrator_of(m), "dt_s", json_of_real(m->slime.dt_s), "values", values);
+                                motion_word(m), "dt_s", json_of_real(m->slime.dt_s), "values", values);
     json_decref(values);
     return o;
 }

@@ -141,7 +141,7 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why)
                                 {"--time", o->time},
                                 {"--noise", o->noise},
                                 {"--timeline", o->timeline}};
-    if (o->noise && (s->render.integrator != INTEGRATOR_PATH || s->render.paths < 2))
+    if (o->noise && (!integrator_of(&s->render)->by_chance || s->render.paths < 2))
         return wrong(&files[3], why, "set render.integrator to path and render.paths to 16 or more",
                      "nothing is drawn by chance");
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {

@@ -110,7 +110,7 @@ status scene_input_lint(const scene *s, isa level, const lint_filter *varies, di
 
 void scene_input_note_tree(const scene *s)
 {
-    const bool path = s->render.integrator == INTEGRATOR_PATH, drawn = s->render.integrator == INTEGRATOR_ZBUFFER;
+    const bool path = integrator_of(&s->render)->by_chance, drawn = integrator_of(&s->render)->drawn;
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
     scene one_lambda = *s; /* borrows what s owns */
     one_lambda.render.spectrum = SPECTRUM_RGB;

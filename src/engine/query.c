@@ -33,8 +33,8 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
     isa level = ISA_SSE2;
     scene without_sky = *s; /* no ray of a query looks at it */
     without_sky.background.picture = NULL;
-    if (s->render.integrator == INTEGRATOR_ZBUFFER)
-        without_sky.render.integrator = INTEGRATOR_WHITTED; /* rays need the hierarchies that drawing does without */
+    if (integrator_of(&s->render)->drawn)
+        trace_trees(&without_sky.render); /* rays need the hierarchies that drawing does without */
     status code = engine_isa(instructions, &level, why);
     if (code == STATUS_OK)
         code = scene_check(s, why);

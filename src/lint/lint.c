@@ -48,7 +48,7 @@ static scene *small_copy(const scene *s)
     r->samples = 1;
     r->spectrum = SPECTRUM_RGB;
     r->polarisation = 0;
-    r->integrator = INTEGRATOR_WHITTED;
+    trace_trees(r);
     if (r->accel != HIERARCHY_BVH) {
         r->accel = HIERARCHY_BVH;
         r->keep = 0;
@@ -58,7 +58,7 @@ static scene *small_copy(const scene *s)
 
 static bool follows_rays(const render_settings *r)
 {
-    return r->integrator == INTEGRATOR_WHITTED;
+    return integrator_of(r)->tree;
 }
 
 static status lint_traced(const scene *s, isa level, const note_taker *taker, diagnostic *why)

@@ -69,7 +69,7 @@ static void absorption_shares(tracer *t, int count)
 void absorption_spare_sky(tracer *t)
 {
     const plan *p = t->target.scene;
-    const bool random_paths = p->render.integrator == INTEGRATOR_PATH;
+    const bool random_paths = integrator_of(&p->render)->by_chance;
     for (int k = 0; p->solids->bodies[0].absorbs && k < t->scratch.ways->count; k++) {
         stretch *s = &t->scratch.ways->stretches[k];
         const bool to_light = random_paths && t->met_light[s->ray] >= 0;

@@ -3,7 +3,7 @@
 
 int64_t camera_rays_a_pixel(const render_settings *r)
 {
-    if (r->integrator == INTEGRATOR_PATH)
+    if (integrator_of(r)->by_chance)
         return r->paths;
     return r->spectrum == SPECTRUM_SPECTRAL ? r->samples * r->wavelengths : r->samples;
 }
@@ -11,7 +11,7 @@ int64_t camera_rays_a_pixel(const render_settings *r)
 /* The point of a pixel that a ray goes through: the middle of one of its k x k cells, line by line. */
 static int64_t point_of(const render_settings *r, int64_t cells, int64_t ray)
 {
-    const bool wavelengths_inside = r->integrator != INTEGRATOR_PATH && r->spectrum == SPECTRUM_SPECTRAL;
+    const bool wavelengths_inside = !integrator_of(r)->by_chance && r->spectrum == SPECTRUM_SPECTRAL;
     return wavelengths_inside ? ray / r->wavelengths : ray % (cells * cells);
 }
 
@@ -19,7 +19,7 @@ static int64_t point_of(const render_settings *r, int64_t cells, int64_t ray)
  * would move the picture. */
 static int64_t cells_across(const render_settings *r)
 {
-    const int64_t most = r->integrator == INTEGRATOR_PATH && r->paths < r->samples ? r->paths : r->samples;
+    const int64_t most = integrator_of(r)->by_chance && r->paths < r->samples ? r->paths : r->samples;
     int64_t k = 1;
     while ((k + 1) * (k + 1) <= most)
         k++;
@@ -34,7 +34,7 @@ void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
     double u[ROW], v[ROW];
     const double across = 2.0 * p->view.half_width / (double)r->width,
                  down = 2.0 * p->view.half_height / (double)r->height;
-    const int64_t each = camera_rays_a_pixel(r), flag = r->integrator == INTEGRATOR_PATH ? TICKET_SEES_LIGHTS : 0;
+    const int64_t each = camera_rays_a_pixel(r), flag = integrator_of(r)->by_chance ? TICKET_SEES_LIGHTS : 0;
     const int64_t cells = cells_across(r);
     const int at = q->count;
     for (int k = 0; k < count; k++) {

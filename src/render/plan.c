@@ -33,7 +33,7 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
 {
     const hierarchy_kind kind = (hierarchy_kind)s->render.accel;
-    if (s->render.integrator == INTEGRATOR_ZBUFFER)
+    if (integrator_of(&s->render)->drawn)
         return STATUS_OK; /* what is drawn needs none */
     if (s->render.keep)
         return hierarchy_of_mesh(m, kind, scene_build_threads(&s->render), out, why);
@@ -212,7 +212,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     }
     p->view = camera_frame_of(s);
     p->render = s->render;
-    if (s->render.integrator == INTEGRATOR_ZBUFFER)
+    if (integrator_of(&s->render)->drawn)
         p->render.shadows = SHADOWS_OFF;
     else
         p->eye_inside = arrangement_inside(p->solids, p->view.eye);
@@ -223,7 +223,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     p->lights = s->lights;
     p->light_count = (int)s->light_count;
     p->solid_shadows = s->render.shadows == SHADOWS_OPAQUE;
-    for (size_t i = 0; i < s->light_count && s->render.integrator == INTEGRATOR_PATH; i++)
+    for (size_t i = 0; i < s->light_count && integrator_of(&s->render)->by_chance; i++)
         p->solid_shadows |= s->lights[i].radius > 0.0;
     *out = p;
     return STATUS_OK;

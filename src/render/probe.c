@@ -18,8 +18,8 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         render_settings *r = &p->setting->render;
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
         r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
-        if (r->integrator == INTEGRATOR_PATH || r->integrator == INTEGRATOR_ZBUFFER)
-            r->integrator = INTEGRATOR_WHITTED; /* all branches, not one by chance or none */
+        if (integrator_of(r)->by_chance || integrator_of(r)->drawn)
+            trace_trees(r); /* all branches, not one by chance or none */
         code = scene_check(p->setting, why);
     }
     if (code == STATUS_OK)

@@ -259,7 +259,7 @@ static double *make_map(size_t pixels)
 static int layers_of(const scene *s)
 {
     const render_settings *r = &s->render;
-    int layers = r->integrator == INTEGRATOR_PATH && r->paths % r->samples == 0 ? FILM_LAYERS_MAX : 1;
+    int layers = integrator_of(r)->by_chance && r->paths % r->samples == 0 ? FILM_LAYERS_MAX : 1;
     while (r->paths / r->samples % layers != 0)
         layers--;
     return layers;
@@ -370,7 +370,7 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
         code = diagnose(why, STATUS_FAILURE, "call scene_load before", "the sky's picture is not loaded");
     if (code == STATUS_OK)
         code = plan_build(s, &p, why);
-    if (code == STATUS_OK && s->render.integrator == INTEGRATOR_ZBUFFER)
+    if (code == STATUS_OK && integrator_of(&s->render)->drawn)
         code = zbuffer_create(p, &depths, why);
     if (code == STATUS_OK)
         code = make_result(s, options, &result, why);

@@ -111,7 +111,7 @@ static void expose_own_light(tracer *t, const material *m)
 {
     const group *g = &t->gathered;
     const plan *p = t->target.scene;
-    const double k_a = p->render.integrator == INTEGRATOR_PATH ? 0.0 : m->ambient, k_e = m->emission;
+    const double k_a = integrator_of(&p->render)->by_chance ? 0.0 : m->ambient, k_e = m->emission;
     if (k_a == 0.0 && k_e == 0.0)
         return;
     if (p->spectral) {
@@ -172,7 +172,7 @@ static void send_out(tracer *t, int rank)
     const plan *p = t->target.scene;
     const material *m = &t->look->surface;
     material dull;
-    if (p->render.lighting == LIGHTING_LAMBERT && p->render.integrator != INTEGRATOR_PATH) {
+    if (p->render.lighting == LIGHTING_LAMBERT && !integrator_of(&p->render)->by_chance) {
         dull = *m;
         dull.specular = 0.0;
         m = &dull;
@@ -181,7 +181,7 @@ static void send_out(tracer *t, int rank)
     if (m->diffuse == 0.0 && m->specular == 0.0)
         return;
     for (int k = 0; k < p->light_count; k++) {
-        if (p->render.integrator == INTEGRATOR_PATH && p->lights[k].radius > 0.0)
+        if (integrator_of(&p->render)->by_chance && p->lights[k].radius > 0.0)
             continue;
         direct_light(t, m, k, rank);
         if (p->render.shadows != SHADOWS_OFF) {
@@ -358,7 +358,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
     if (t->straight && t->look->picture)
         drawn_straighten(t, list);
     color(t, rank, surface);
-    if (p->render.integrator == INTEGRATOR_PATH) {
+    if (integrator_of(&p->render)->by_chance) {
         path_group(t, depth, rank);
         return;
     }

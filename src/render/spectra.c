@@ -78,7 +78,7 @@ static body_spectrum body_at(const lifted_scene *l, size_t rank, double lambda_n
 /* How many wavelengths share one offset. */
 static int64_t wavelengths_together(const render_settings *render)
 {
-    return render->integrator == INTEGRATOR_PATH ? render->paths : render->wavelengths;
+    return integrator_of(render)->by_chance ? render->paths : render->wavelengths;
 }
 
 /* Number `i` of `count` wavelengths. */

@@ -70,9 +70,9 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     t->target = *target;
     const render_settings *r = &target->scene->render;
     t->depth_limit = (int)r->depth;
-    t->branching = (r->integrator == INTEGRATOR_WHITTED || target->depths) && r->lighting == LIGHTING_WHITTED;
+    t->branching = (integrator_of(r)->tree || target->depths) && r->lighting == LIGHTING_WHITTED;
     t->by_ticket =
-        r->integrator == INTEGRATOR_PATH || r->spectrum == SPECTRUM_SPECTRAL || target->depths || target->scene->basic;
+        integrator_of(r)->by_chance || r->spectrum == SPECTRUM_SPECTRAL || target->depths || target->scene->basic;
     /* Of a spectral film a camera ray is one for each wavelength, each with its part of the weight. */
     t->least_weight = r->spectrum == SPECTRUM_SPECTRAL ? r->min_weight / (double)r->wavelengths : r->min_weight;
     int shadows_at_once = BATCH * (target->scene->light_count + 1);
@@ -188,7 +188,7 @@ static void trace_batch(tracer *t, int depth)
     else
         t->geometry->nearest(p->solids, &rays, &t->scratch, &t->hits);
     visibility_ends(t, began_ns);
-    const bool random_paths = p->render.integrator == INTEGRATOR_PATH;
+    const bool random_paths = integrator_of(&p->render)->by_chance;
     if (random_paths)
         path_meet_lights(t, q, first, rays.count);
     if (t->scratch.ways) {

@@ -97,12 +97,11 @@ status check_render(const scene *s, diagnostic *why)
                         "a picture of %lld x %lld pixels is too large", (long long)s->render.width,
                         (long long)s->render.height);
     }
-    if (s->render.polarisation && s->render.integrator == INTEGRATOR_PATH) {
+    if (s->render.polarisation && integrator_of(&s->render)->by_chance) {
         return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
                         "the path integrator does not follow polarisation");
     }
-    if (s->render.integrator == INTEGRATOR_ZBUFFER &&
-        (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL)) {
+    if (integrator_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL)) {
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "the depth buffer draws red, green and blue: it knows no %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
@@ -120,7 +119,7 @@ status check_render(const scene *s, diagnostic *why)
 
 status check_light(const scene *s, const light *lamp, diagnostic *why)
 {
-    if (s->render.integrator == INTEGRATOR_PATH && lamp->radius > 0.0 && lamp->reach == 0.0) {
+    if (integrator_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0) {
         return diagnose(why, STATUS_BAD_INPUT,
                         "give the distance at which it has its intensity, as 'reach: 8', or radius 0",
                         "%.80s: a sphere's light falls off with distance, and no reach says from where", lamp->name);

@@ -10,30 +10,30 @@ bool is_black(vec3 color)
 
 bool is_path(const scene *s)
 {
-    return s->render.integrator == INTEGRATOR_PATH;
+    return integrator_of(&s->render)->by_chance;
 }
 
 bool follows_rays(const scene *s)
 {
-    return is_path(s) || (s->render.integrator == INTEGRATOR_WHITTED && s->render.lighting == LIGHTING_WHITTED);
+    return is_path(s) || (integrator_of(&s->render)->tree && s->render.lighting == LIGHTING_WHITTED);
 }
 
 bool draws_through(const scene *s)
 {
-    return s->render.integrator == INTEGRATOR_ZBUFFER && s->render.lighting == LIGHTING_WHITTED && first_clear(s);
+    return integrator_of(&s->render)->drawn && s->render.lighting == LIGHTING_WHITTED && first_clear(s);
 }
 
 /* Shadow rays pass clear solids where shadows are attenuated. */
 bool nothing_passes(const scene *s)
 {
     const bool lit_through =
-        s->render.integrator != INTEGRATOR_ZBUFFER && s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
+        !integrator_of(&s->render)->drawn && s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
     return !follows_rays(s) && !draws_through(s) && !lit_through;
 }
 
 bool say_no_tree(const inert_case *c)
 {
-    const bool whitted = c->s->render.integrator == INTEGRATOR_WHITTED;
+    const bool whitted = integrator_of(&c->s->render)->tree;
     return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : "set render.integrator=whitted",
                      "no ray goes on from a surface under this render.%s", whitted ? "lighting" : "integrator");
 }

@@ -173,7 +173,7 @@ static bool reflectivity_rule(const inert_case *c)
     if (coats) {
         return (!material_matches_surroundings(s, c->m) && unpassed(c)) || mirrors_black(c);
     }
-    if (s->render.integrator == INTEGRATOR_ZBUFFER && !material_is_opaque(c->m)) {
+    if (integrator_of(&s->render)->drawn && !material_is_opaque(c->m)) {
         return false;
     }
     if (!follows_rays(s)) {

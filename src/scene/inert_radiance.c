@@ -53,7 +53,7 @@ static bool light_begins_in_dense(const scene *s)
 bool inert_radiance(const inert_case *c)
 {
     const scene *s = c->s;
-    if (s->render.integrator == INTEGRATOR_ZBUFFER) {
+    if (integrator_of(&s->render)->drawn) {
         return inert_say(c, "zbuffer-radiance", "set render.integrator=whitted",
                          "the depth buffer follows no light through a surface");
     }

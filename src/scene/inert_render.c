@@ -91,7 +91,7 @@ static bool lighting(const inert_case *c)
     }
     scene shiny = *s; /* borrows what s owns */
     shiny.render.lighting = LIGHTING_PHONG;
-    bool highlight = s->render.integrator == INTEGRATOR_ZBUFFER && first_clear(s);
+    bool highlight = integrator_of(&s->render)->drawn && first_clear(s);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         highlight |= one->visible && (shows_specular(&shiny, &one->surface) || may_look_by_face(s, one));
@@ -99,7 +99,7 @@ static bool lighting(const inert_case *c)
     if (highlight) {
         return false;
     }
-    if (s->render.integrator != INTEGRATOR_WHITTED) {
+    if (!integrator_of(&s->render)->tree) {
         return inert_say(c, "no-highlight", WHITTED,
                          "no lamp makes a highlight, and no ray goes on under this render.integrator");
     }
@@ -174,7 +174,7 @@ static bool nothing_lit(const inert_case *c)
 static bool shadows(const inert_case *c)
 {
     const scene *s = c->s;
-    if (s->render.integrator == INTEGRATOR_ZBUFFER) {
+    if (integrator_of(&s->render)->drawn) {
         return inert_say(c, "no-shadows", WHITTED, "the depth buffer draws no shadows");
     }
     return nothing_lit(c) ||
@@ -250,7 +250,7 @@ static bool shows_texture(const scene *s)
 
 static bool texturing(const inert_case *c)
 {
-    if (c->s->render.integrator != INTEGRATOR_ZBUFFER) {
+    if (!integrator_of(&c->s->render)->drawn) {
         return inert_say(c, "zbuffer-only", "set render.integrator=zbuffer",
                          "rays always meet a texture in perspective");
     }

@@ -60,8 +60,7 @@ static bool is_plain(const scene *s, const material *m)
 static bool rotation_rule(const inert_case *c)
 {
     /* The depth buffer draws a sphere of triangles, which turn with it. */
-    if (c->owner->shape.kind != SHAPE_SPHERE || !is_plain(c->s, c->m) ||
-        c->s->render.integrator == INTEGRATOR_ZBUFFER) {
+    if (c->owner->shape.kind != SHAPE_SPHERE || !is_plain(c->s, c->m) || integrator_of(&c->s->render)->drawn) {
         return false;
     }
     const inert_remedy color = color_remedy(c->s, c->m, c->name);

@@ -15,7 +15,6 @@ static const char *const radiance_words[] = {"classic", "basic", NULL};
 static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
 static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynamic", NULL};
 static const char *const pin_words[] = {"none", "compact", "scatter", NULL};
-static const char *const integrator_words[] = {"raycast", "whitted", "path", "zbuffer", NULL};
 static const char *const lighting_words[] = {"lambert", "phong", "whitted", NULL};
 static const char *const spectrum_words[] = {"rgb", "spectral", NULL};
 static const char *const accel_words[] = {"none", "sphere", "octant", "bvh", "embree", NULL};

@@ -11,6 +11,7 @@
 #include "image/image.h"
 #include "image/texture.h"
 #include "softbody/softbody.h"
+#include "scene/integrators.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -22,12 +23,6 @@ typedef enum radiance_rule { RADIANCE_CLASSIC, RADIANCE_BASIC } radiance_rule;
 typedef enum shadow_rule { SHADOWS_OFF, SHADOWS_OPAQUE, SHADOWS_ATTENUATED } shadow_rule;
 typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SCHEDULE_DYNAMIC } schedule_rule;
 typedef enum pin_rule { PIN_RULE_NONE, PIN_RULE_COMPACT, PIN_RULE_SCATTER } pin_rule;
-typedef enum integrator_rule {
-    INTEGRATOR_RAYCAST,
-    INTEGRATOR_WHITTED,
-    INTEGRATOR_PATH,
-    INTEGRATOR_ZBUFFER
-} integrator_rule;
 typedef enum lighting_rule { LIGHTING_LAMBERT, LIGHTING_PHONG, LIGHTING_WHITTED } lighting_rule;
 typedef enum spectrum_rule { SPECTRUM_RGB, SPECTRUM_SPECTRAL } spectrum_rule;
 typedef enum texturing_rule { TEXTURING_PERSPECTIVE, TEXTURING_AFFINE } texturing_rule;
@@ -77,6 +72,22 @@ typedef struct render_settings {
     double rebuild;
     int64_t texturing; /* texturing_rule, of the rasteriser */
 } render_settings;
+
+static inline const integrator_traits *integrator_of(const render_settings *r)
+{
+    return &integrator_table[r->integrator];
+}
+
+/* All branches of each ray, for what looks into a scene; or a preview of triangles. */
+static inline void trace_trees(render_settings *r)
+{
+    r->integrator = INTEGRATOR_WHITTED;
+}
+
+static inline void draw_triangles(render_settings *r)
+{
+    r->integrator = INTEGRATOR_ZBUFFER;
+}
 
 /* y is up; yaw 0 looks along +z, positive yaw turns towards +x, positive pitch looks up; x is to the right at yaw 0. */
 typedef struct camera {
@@ -293,8 +304,7 @@ static inline bool scene_has_constant_shares(const render_settings *r)
  * nothing is, nor in what is drawn with a depth buffer. */
 static inline bool scene_has_basic_radiance(const render_settings *r)
 {
-    return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT &&
-           r->integrator != INTEGRATOR_ZBUFFER;
+    return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT && !integrator_of(r)->drawn;
 }
 
 /* Index of the solid of that name, or -1. */

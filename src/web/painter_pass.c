@@ -48,7 +48,7 @@ static scene pass_scene(const painter *p, int pass, const pace *tempo, bool rast
     view.render = tempo ? passes_settings(&p->stage->render, pace_shrink(tempo), true)
                         : passes_settings(&p->stage->render, p->plan.shrink[pass], p->plan.single[pass]);
     if (raster) {
-        view.render.integrator = INTEGRATOR_ZBUFFER;
+        draw_triangles(&view.render);
         view.render.spectrum = SPECTRUM_RGB;
     }
     return view;
