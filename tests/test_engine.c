@@ -93,8 +93,8 @@ static void what_is_missing_or_wrong_is_said_and_changes_nothing(void **state)
     assert_non_null(strstr(why.remedy, "render.depth"));
     assert_int_equal(cuvette_scene_add_solid(s, "ball", "spere", NULL, &why), CUVETTE_BAD_INPUT);
     assert_non_null(strstr(why.remedy, "sphere"));
-    assert_int_equal(cuvette_scene_add_solid(s, "ball", "sphere", "glass", &why),
-                     CUVETTE_BAD_INPUT); /* no such material: no ball either */
+    /* No such material: no ball either. */
+    assert_int_equal(cuvette_scene_add_solid(s, "ball", "sphere", "glass", &why), CUVETTE_BAD_INPUT);
     assert_int_equal((int)cuvette_scene_count(s, CUVETTE_SOLID), 0);
     assert_int_equal(cuvette_query_create(NULL, NULL, &query, &why), CUVETTE_BAD_INPUT);
     cuvette_scene_destroy(s);
@@ -321,8 +321,8 @@ static void a_texture_from_memory_is_seen(void **state)
     for (size_t i = 0; i < COUNT(set); i++)
         turn(s, set[i][0], set[i][1]);
     char text[4096];
-    assert_int_equal(cuvette_scene_write_text(s, text, sizeof text, NULL, &why),
-                     CUVETTE_BAD_INPUT); /* no file would hold its pixels */
+    /* No file would hold its pixels. */
+    assert_int_equal(cuvette_scene_write_text(s, text, sizeof text, NULL, &why), CUVETTE_BAD_INPUT);
     assert_non_null(strstr(why.what, "paint"));
     fine(cuvette_scene_clone(s, &clone, &why), &why);
     cuvette_scene_destroy(s);
@@ -431,8 +431,8 @@ static void an_older_struct_is_filled_as_far_as_it_goes(void **state)
     fine(cuvette_frame_rgb(frame, 39, 29, 40, 30, rgb, 0, &why), &why);
     cuvette_request request = CUVETTE_REQUEST;
     request.rgb = rgb, request.width = 1, request.height = 1;
-    assert_int_equal(cuvette_engine_render(engine, s, &request, NULL, &why),
-                     CUVETTE_BAD_INPUT); /* the picture is larger */
+    /* The picture is larger. */
+    assert_int_equal(cuvette_engine_render(engine, s, &request, NULL, &why), CUVETTE_BAD_INPUT);
     request = CUVETTE_REQUEST;
     request.preview = 1;
     assert_int_equal(cuvette_engine_render(engine, s, &request, NULL, &why), CUVETTE_BAD_INPUT);

@@ -237,9 +237,8 @@ static void paths_do_not_climb(void **state)
         "GET /hello%cx HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nConnection: close\r\nAuthorization: Bearer %s\r\n\r\n", 0,
         http_port(*state), http_token(*state));
     char *reply = client_raw(http_port(*state), nul, (size_t)size);
-    assert_true(
-        reply_code(reply) == 400 ||
-        strstr(reply_body(reply), "\"path\":\"/hello\"")); /* libmicrohttpd ends the line there: so does all else */
+    /* libmicrohttpd ends the line there: so does all else. */
+    assert_true(reply_code(reply) == 400 || strstr(reply_body(reply), "\"path\":\"/hello\""));
     free(reply);
 }
 

@@ -661,8 +661,8 @@ static void bombs_are_refused(void **state)
         assert_non_null(strstr(why.what, "claims"));
         assert_true(after.ru_maxrss - before.ru_maxrss < 64 << 10);
     }
-    write_bomb(path, 4000, 8, PNG_COLOR_TYPE_GRAY,
-               PNG_INTERLACE_NONE); /* sixteen million pixels of one colour are still a picture */
+    /* Sixteen million pixels of one colour are still a picture. */
+    write_bomb(path, 4000, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE);
     image *picture;
     assert_int_equal(image_read(path, &picture, NULL, NULL), STATUS_OK);
     image_destroy(picture);

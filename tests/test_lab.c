@@ -213,8 +213,8 @@ static void the_camera_orbits_turns_and_steps(void **state)
     assert_same_place(now.at,
                       vec3_add(first.at, vec3_add(vec3_scale(first.right, 0.5), vec3_scale(first.forward, 2.0))));
     assert_same_place(now.forward, first.forward);
-    room_post(&room, "/api/set",
-              "{\"set\": {\"camera.yaw_deg\": 20, \"camera.pitch_deg\": -10}}"); /* not aimed any more */
+    /* Not aimed any more. */
+    room_post(&room, "/api/set", "{\"set\": {\"camera.yaw_deg\": 20, \"camera.pitch_deg\": -10}}");
     room_post(&room, "/api/camera", "{\"turn\": [5, 3]}");
     now = view_now();
     assert_near(atan2(now.forward.x, now.forward.z) * 180.0 / M_PI, 25.0);

@@ -277,8 +277,8 @@ static void test_save(void **state)
     film(r, before);
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": false}");
-    tell(r, 200, "POST", "/api/save",
-         "{\"file\": \"wrong.yaml\", \"replace\": true}"); /* whose paths are now from another folder */
+    /* Whose paths are now from another folder. */
+    tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": true}");
     assert_string_equal(told(r, "file", text), "wrong.yaml");
     tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
     tell(r, 200, "POST", "/api/save", "{\"file\": \"deep/Another \\u00fc.yml\"}");
@@ -379,8 +379,8 @@ static void test_others_come(void **state)
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"slime\"}");
     film(r, next);
     assert_string_not_equal(hash, next);
-    tell(r, 200, "POST", "/api/set",
-         "{\"set\": {\"slime-mesh.time_s\": 0.3}}"); /* whose motion takes its time to load */
+    /* Whose motion takes its time to load. */
+    tell(r, 200, "POST", "/api/set", "{\"set\": {\"slime-mesh.time_s\": 0.3}}");
     film(r, hash);
     assert_string_not_equal(hash, next);
     static const char *const bad[] = {"{\"kind\": \"solid\"}",

@@ -117,8 +117,8 @@ static void a_hand_draws_it_through_the_picture(void **state)
     char *way = text_format("{\"hand\": %d, \"x\": 10, \"y\": 24, \"depth\": -0.5}", hand);
     json_decref(room_ask(&room, "POST", "/api/slime/move", way, 200));
     wait_for_time(&room, then_s + 0.4);
-    json_t *there = room_ask(&room, "POST", "/api/slime/grab", "{\"x\": 10, \"y\": 24, \"reach\": 0.01}",
-                             200); /* now it is there */
+    /* Now it is there. */
+    json_t *there = room_ask(&room, "POST", "/api/slime/grab", "{\"x\": 10, \"y\": 24, \"reach\": 0.01}", 200);
     json_decref(there);
     char *let_go = text_format("{\"hand\": %d}", hand);
     json_decref(room_ask(&room, "POST", "/api/slime/release", let_go, 200));

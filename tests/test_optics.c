@@ -217,8 +217,8 @@ static void directions_obey_snell(void **state)
         quad3 t = quad3_from(direction_refract(w.d, w.n, w.cos_i, f.eta, f.cos_t));
         quad3 across_t = quad3_cross(n, t);
         assert_near(quad3_length(t), 1, 2.5e-16);
-        assert_near(quad3_length(quad3_sub(quad3_scale(across_i, from), quad3_scale(across_t, to))), 0,
-                    3e-15); /* n sin, as vectors */
+        /* n sin, as vectors. */
+        assert_near(quad3_length(quad3_sub(quad3_scale(across_i, from), quad3_scale(across_t, to))), 0, 3e-15);
         assert_near(quad3_dot(n, t), -f.cos_t, 2e-15 / (f.cos_t + 1e-8));
     }
 }

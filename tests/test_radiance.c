@@ -487,8 +487,8 @@ static void a_tree_says_what_each_refraction_does_to_radiance(void **state)
         set(g.setting, "render.radiance=basic");
         stage_look(&g);
     }
-    worked(probe_ray(g.probe, vec3_make(0.0, 0.5, 0.0), vec3_make(1.0, 1.0, 0.0), &g.tree, &why),
-           &why); /* beyond the critical angle */
+    /* Beyond the critical angle. */
+    worked(probe_ray(g.probe, vec3_make(0.0, 0.5, 0.0), vec3_make(1.0, 1.0, 0.0), &g.tree, &why), &why);
     assert_true(g.tree.node[0].hit.tir && g.tree.node[0].hit.gain_basic == 0.0);
     stage_close(&g);
 }

@@ -233,8 +233,8 @@ static void a_copy_is_equal_and_independent(void **state)
     assert_int_equal(scene_each_param(s, compare, c), STATUS_OK);
     assert_string_equal(c->path, SCENES "rod.yaml");
     assert_string_equal(c->title, s->title);
-    assert_ptr_equal(c->background.picture,
-                     s->background.picture); /* one sky for both: it is never changed once it is loaded */
+    /* One sky for both: it is never changed once it is loaded. */
+    assert_ptr_equal(c->background.picture, s->background.picture);
     assert_int_equal(scene_set(c, "clear.ior", "3", NULL), STATUS_OK);
     assert_true(find(s, "vessel")->surface.ior == 1.5 && find(c, "vessel")->surface.ior == 3);
     scene_destroy(s); /* the copy outlives it */

@@ -118,14 +118,13 @@ static void the_sky_is_as_bright_as_given(void **state)
     scene *s = scene_from(floor_scene);
     set_all(s, "background.color=1,1,1 floor.diffuse=0 floor.visible=off");
     expect(look(s), 1.0, 0.0);
-    set_all(
-        s,
-        "floor.visible=on floor.reflectivity=0.5"); /* the way to the mirror counts, that from it to the sky does not */
+    /* The way to the mirror counts, that from it to the sky does not. */
+    set_all(s, "floor.visible=on floor.reflectivity=0.5");
     expect(look(s), 0.5, 5.0);
     set(s, "render.depth=0"); /* nor beyond the last depth */
     expect(look(s), 0.5, 5.0);
-    set_all(
-        s, "render.depth=4 slab.visible=on"); /* the slab of index 1 is left twice: no interface, no light lost to it */
+    /* The slab of index 1 is left twice: no interface, no light lost to it. */
+    set_all(s, "render.depth=4 slab.visible=on");
     expect(look(s), 0.5, 4.0);
     scene_destroy(s);
 }

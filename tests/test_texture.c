@@ -268,8 +268,8 @@ static void each_level_has_half_the_size_and_the_mean_of_the_picture(void **stat
             for (int i = 0; i < w * h; i++) {
                 mean = vec3_add(mean, vec3_scale(texture_texel(t, level, i % w, i / w), 1.0 / (w * h)));
             }
-            assert_same(mean, vec3_make(sum[0], sum[1], sum[2]),
-                        6e-8 * level + 1e-14); /* texels are floats: 2^-24 a level */
+            /* Texels are floats: 2^-24 a level. */
+            assert_same(mean, vec3_make(sum[0], sum[1], sum[2]), 6e-8 * level + 1e-14);
         }
         texture_release(t);
     }

@@ -101,8 +101,9 @@ static void the_higher_priority_is_seen_where_solids_overlap(void **state)
     assert_near(seen_in(both, "water.priority=3"),
                 behind(a, exp(-0.1 * 1.5) * behind(b, exp(-0.4 * 2.0) * behind(c, wall))), 1e-9);
     assert_near(seen_in(both, "water.ior=1.5"), behind(a, exp(-0.2 - 0.4 * 1.5) * behind(a, wall)), 1e-9);
+    /* In contact. */
     assert_near(seen_in(both, "water.position=0,0,2"), behind(a, exp(-0.2) * behind(b, exp(-0.8) * behind(c, wall))),
-                1e-9); /* in contact */
+                1e-9);
     static const char vessel[] =
         "  cup: {shape: cup, transparency: 1, ior: 1.5, radius: 2, inner_radius: 1.5, height: 4, floor: 0.2, "
         "position: [0, -2, 0], priority: 2}\n"
@@ -123,8 +124,8 @@ static void opaque_solids_among_clear_ones(void **state)
     const double a = head_on(1.0, 1.5);
     assert_near(seen_in(block, ""), behind(a, exp(-0.1 * 1.5)), 1e-9);
     assert_near(seen_in(block, "brick.priority=1"), behind(a, exp(-0.4) * behind(a, wall)), 1e-9);
-    assert_near(seen_in(block, "brick.priority=1 brick.position=0,0,2"), behind(a, exp(-0.4)),
-                1e-9); /* the brick begins where the glass ends */
+    /* The brick begins where the glass ends. */
+    assert_near(seen_in(block, "brick.priority=1 brick.position=0,0,2"), behind(a, exp(-0.4)), 1e-9);
     assert_near(seen_in(block, "brick.position=0,0,-3"), 1.0, 1e-9);
 }
 

@@ -112,8 +112,8 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
         result = scene_edit_apply(*out, request->edits[i].edit, request->edits[i].text, why);
     if (result == STATUS_OK) {
-        diagnostic_locate(why, request->path ? request->path : "--new", 0,
-                          0); /* for checks that have no line to name */
+        /* For checks that have no line to name. */
+        diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         result = scene_check(*out, why);
     }
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)

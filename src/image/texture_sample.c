@@ -8,9 +8,8 @@ static inline double fold(double c, texture_wrap wrap)
 {
     double place = 0.0, away;
     switch (wrap) {
-    case TEXTURE_REPEAT:
-        place = c - floor(c); /* 1 for the last numbers under 0 */
-        break;
+    /* 1 for the last numbers under 0. */
+    case TEXTURE_REPEAT: place = c - floor(c); break;
     case TEXTURE_MIRROR:
         away = magnitude(c);
         place = away - 2.0 * floor(0.5 * away);

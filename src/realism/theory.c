@@ -81,8 +81,8 @@ static double reach(double p, double height, double depth, double n_above, doubl
 
 double theory_apparent_tangent(double height, double depth, double distance, double n_above, double n_below)
 {
-    double low = 0.0,
-           high = fmin(n_above, n_below); /* reach grows from 0 to infinity, or to the end of the smaller medium's */
+    /* Reach grows from 0 to infinity, or to the end of the smaller medium's. */
+    double low = 0.0, high = fmin(n_above, n_below);
     if (!(height > 0.0 && depth >= 0.0))
         return NAN;
     for (int i = 0; i < 200; i++) {

@@ -117,8 +117,8 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
     const double distance2 = vec3_dot(way, way), share2 = l->radius * l->radius / distance2;
     if (share2 >= 1.0)
         return;
-    const double least_cos = sqrt(1.0 - share2),
-                 cap = share2 / (1.0 + least_cos); /* 1 - least_cos, without its cancellation */
+    /* 1 - least_cos, without its cancellation. */
+    const double least_cos = sqrt(1.0 - share2), cap = share2 / (1.0 + least_cos);
     const random_words drawn = draw(p->render.seed, g->ticket[k], depth, DRAW_LIGHT + lamp);
     const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
     const vec3 to = direction_about(vec3_scale(way, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));

@@ -8,8 +8,8 @@
 /* The point of the grid that a ray goes through. */
 static size_t point_of(const zbuffer *z, int64_t ticket, int *x, int *y)
 {
-    const uint32_t pixel = (uint32_t)ticket_pixel(ticket),
-                   sample = (uint32_t)ticket_sample(ticket); /* short divisions are faster */
+    /* Short divisions are faster. */
+    const uint32_t pixel = (uint32_t)ticket_pixel(ticket), sample = (uint32_t)ticket_sample(ticket);
     const uint32_t points = (uint32_t)z->points, width = (uint32_t)z->scene->render.width;
     const uint32_t row = pixel / width, line = points == 1 ? 0 : sample / points;
     *x = (int)((pixel - row * width) * points + sample - line * points);
