@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "render/ticket.h"
 #include "scene/scene.h"
+#include <assert.h>
 
 /* These numbers are part of every image and never change. A new purpose counts on from DRAW_NEXT: those from DRAW_LIGHT
  * on are the lights', one each. */
@@ -17,7 +18,7 @@ enum {
     DRAW_LIGHT = 4,
     DRAW_NEXT = 0x1000
 };
-_Static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_NEXT, "lights draw by numbers of their own");
+static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_NEXT, "lights draw by numbers of their own");
 
 static inline random_words draw(int64_t seed, int64_t ticket, int depth, int purpose)
 {
