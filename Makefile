@@ -78,11 +78,11 @@ isa_flags_avx2   := -mavx2
 isa_flags_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
 isas := sse2 avx2 avx512
 
-sources := $(wildcard src/*.c src/*/*.c)
+sources := $(wildcard src/*.c src/*/*.c src/*/*/*.c src/*/*/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
 library := $(filter-out src/cli/% src/import/% src/report/% src/web/% $(kernels),$(sources))
 program := $(wildcard src/cli/*.c)
-web := $(wildcard src/report/*.c src/web/*.c)
+web := $(filter src/report/% src/web/%,$(sources))
 page := $(sort $(wildcard $(addprefix src/web/page/*.,html css js svg)))
 importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c number.c below.c float_environment.c)
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
@@ -129,7 +129,7 @@ $(build)/plain/%.o: src/%.c $(build)/flags
 	$(quiet)$(CC) $(plain_cflags) -MMD -MP -c -o $@ $<
 
 # Where it looks last; not part of the flags, which a PREFIX for `make install` alone must not change.
-$(build)/obj/scene/mesh_program.o: private all_cflags += -DCUVETTE_LIBEXEC='"$(PREFIX)/libexec/cuvette"'
+$(build)/obj/scene/assets/mesh_program.o: private all_cflags += -DCUVETTE_LIBEXEC='"$(PREFIX)/libexec/cuvette"'
 
 $(build)/libcuvette.a: $(library_objects)
 	@rm -f $@

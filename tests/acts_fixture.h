@@ -5,9 +5,9 @@
 
 #include "acts_values.h"
 
-#include "render/renderer.h"
-#include "scene/inert.h"
-#include "scene/params_path.h"
+#include "render/core/renderer.h"
+#include "scene/model/inert/inert.h"
+#include "scene/model/params_path.h"
 
 /* Bodies of fewer triangles, fewer wavelengths: what is tried stays what it is. */
 typedef struct acts_small {

@@ -4,7 +4,7 @@
 #ifndef CUVETTE_TESTS_ACTS_VALUES_H
 #define CUVETTE_TESTS_ACTS_VALUES_H
 
-#include "scene/params.h"
+#include "scene/model/params.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* libFuzzer entry: any bytes are a scene file. A scene that is accepted must also survive what is done with every
  * scene: each parameter visited, set again to its own text, and the whole checked, copied and released.
  *   clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz_scene.c; ./fuzz_scene CORPUS tests/bad/scenes */
-#include "scene/params.h"
+#include "scene/model/params.h"
 
 #include <stdlib.h>
 

@@ -1,10 +1,10 @@
-/* A client over plain sockets for tests of web/http.h. Ownership: texts are fresh memory; sockets are the caller's. A
- * server that never answers shows as a reply of "" after READ_LIMIT_S, not as a test that hangs. */
+/* A client over plain sockets for tests of web/http/http.h. Ownership: texts are fresh memory; sockets are the
+ * caller's. A server that never answers shows as a reply of "" after READ_LIMIT_S, not as a test that hangs. */
 #ifndef CUVETTE_TESTS_HTTP_FIXTURE_H
 #define CUVETTE_TESTS_HTTP_FIXTURE_H
 
 #include "base/text.h"
-#include "web/http.h"
+#include "web/http/http.h"
 #include <arpa/inet.h>
 #include <stdbool.h>
 #include <dirent.h>

@@ -1,5 +1,5 @@
-/* A laboratory with a tiny study, for tests of web/studies.h and what came of studies. Include http_fixture.h's needs
- * (cmocka) first. */
+/* A laboratory with a tiny study, for tests of web/session/studies.h and what came of studies. Include http_fixture.h's
+ * needs (cmocka) first. */
 #ifndef CUVETTE_TESTS_LAB_STUDY_FIXTURE_H
 #define CUVETTE_TESTS_LAB_STUDY_FIXTURE_H
 

@@ -69,7 +69,7 @@ plant web/a.c '"report/json.h"' ''
 plant report/a.c '"cuvette.h"' climbs
 plant study/a.c '"report/json.h"' climbs
 plant web/a.c '"cuvette.h"' ''
-plant cuvette.c '"web/http.h"' climbs
+plant cuvette.c '"web/http/http.h"' climbs
 plant scene/a.c '"params.h"' 'not written from src/'
 plant scene/a.c '"../base/status.h"' 'not written from src/'
 plant scene/a.c '"scene/../render/film.h"' 'not written from src/'
@@ -79,8 +79,8 @@ plant study/a.c '"realism/realism.h"' ''
 plant cuvette.c '"cli/cli.h"' climbs
 plant cuvette.c '"study/study.h"' ''
 plant cli/a.c '"cuvette.h"' ''
-plant scene/a.c '"scene/scene.h"' ''
+plant scene/a.c '"scene/model/scene.h"' ''
 plant scene/a.c '"import/import.h"' climbs
 plant cli/a.c '"import/import.h"' sideways
-plant import/a.c '"scene/mesh_wire.h"' ''
+plant import/a.c '"scene/assets/mesh_wire.h"' ''
 exit $failed

@@ -6,7 +6,7 @@
 #define CUVETTE_TESTS_LINT_ORACLE_H
 
 #include "law_scene.h"
-#include "scene/medium.h"
+#include "scene/model/medium.h"
 #include "solid_reference.h"
 
 enum { ORACLE_CROSSINGS_MAX = 512, ORACLE_LINES = 2000 };

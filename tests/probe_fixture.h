@@ -1,12 +1,12 @@
-/* Scenes written line by line, and single rays through them, for tests that look through render/probe.h. Each call
- * asserts that it worked. Ownership: stage_of gives, stage_close releases; trees belong to their stage and last until
- * its next ray. */
+/* Scenes written line by line, and single rays through them, for tests that look through render/inspect/probe.h. Each
+ * call asserts that it worked. Ownership: stage_of gives, stage_close releases; trees belong to their stage and last
+ * until its next ray. */
 #ifndef CUVETTE_TESTS_PROBE_FIXTURE_H
 #define CUVETTE_TESTS_PROBE_FIXTURE_H
 
 #include "optics/interface.h"
 #include "quad.h"
-#include "render/probe.h"
+#include "render/inspect/probe.h"
 #include "render_fixture.h"
 #include <stdarg.h>
 

@@ -3,8 +3,8 @@
 #ifndef CUVETTE_TESTS_RENDER_FIXTURE_H
 #define CUVETTE_TESTS_RENDER_FIXTURE_H
 
-#include "render/renderer.h"
-#include "scene/params.h"
+#include "render/core/renderer.h"
+#include "scene/model/params.h"
 #include <stdio.h>
 #include <string.h>
 

@@ -2,8 +2,8 @@
 #ifndef CUVETTE_TESTS_SOFTBODY_FIXTURE_H
 #define CUVETTE_TESTS_SOFTBODY_FIXTURE_H
 
-#include "scene/edit.h"
-#include "scene/slime.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/slime.h"
 #include "softbody/softbody.h"
 
 #include <math.h>

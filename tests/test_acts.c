@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "acts_fixture.h"
-#include "scene/medium.h"
+#include "scene/model/medium.h"
 
 #include <glob.h>
 #include <pthread.h>

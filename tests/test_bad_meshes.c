@@ -7,7 +7,7 @@
 
 #include "mesh_files.h"
 #include "bad_mesh.h"
-#include "scene/mesh_file.h"
+#include "scene/assets/mesh_file.h"
 #include <errno.h>
 #include <signal.h>
 #include <sys/resource.h>

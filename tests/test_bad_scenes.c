@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "bad_files.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "scene/document.h"
+#include "scene/file/document.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

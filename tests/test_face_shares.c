@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "path_fixture.h"
-#include "scene/hints.h"
+#include "scene/model/hints.h"
 
 /* Faces of a mesh that let through and reflect what their own materials say, where light goes straight on. */
 

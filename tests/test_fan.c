@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render/fan.h"
+#include "render/inspect/fan.h"
 #include "render_fixture.h"
 
 /* Pencils and fans against geometrical optics. */

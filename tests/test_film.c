@@ -6,8 +6,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "render/film.h"
-#include "render/queue.h"
+#include "render/core/film.h"
+#include "render/core/queue.h"
 
 static film *made(int width, int height)
 {

@@ -7,7 +7,7 @@
 
 #include "base/team.h"
 #include "cuvette.h"
-#include "render/pool.h"
+#include "render/core/pool.h"
 #include <fenv.h>
 #include <pthread.h>
 #include <stdio.h>

@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "scene/hints.h"
-#include "scene/params.h"
+#include "scene/model/hints.h"
+#include "scene/model/params.h"
 #include <stdio.h>
 #include <string.h>
 

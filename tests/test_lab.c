@@ -8,8 +8,8 @@
 
 #include "lab_fixture.h"
 #include "render_fixture.h"
-#include "scene/camera.h"
-#include "scene/write.h"
+#include "scene/model/camera.h"
+#include "scene/file/write.h"
 
 static lab_room room;
 

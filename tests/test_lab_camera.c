@@ -7,8 +7,8 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
-#include "scene/camera.h"
-#include "web/camera_moves.h"
+#include "scene/model/camera.h"
+#include "scene/model/camera_moves.h"
 #include "web/lab_private.h"
 
 /* The page's camera where it is rolled: its moves follow the image, and a place of the image is the tracer's ray

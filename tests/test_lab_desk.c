@@ -7,7 +7,7 @@
 
 #include "lab_fixture.h"
 #include "render_fixture.h"
-#include "web/desk.h"
+#include "web/session/desk.h"
 #include <pthread.h>
 
 static int changes_seen;

@@ -7,10 +7,10 @@
 #include <cmocka.h>
 
 #include "base/text.h"
-#include "scene/edit.h"
-#include "scene/params.h"
-#include "web/folder.h"
-#include "web/new_scene.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/params.h"
+#include "web/session/folder.h"
+#include "scene/model/place/new_scene.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

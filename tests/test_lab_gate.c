@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "web/gate.h"
+#include "web/session/gate.h"
 #include <pthread.h>
 #include <sched.h>
 

@@ -14,8 +14,8 @@
 #include <cmocka.h>
 
 #include "base/text.h"
-#include "scene/params.h"
-#include "web/live.h"
+#include "scene/model/params.h"
+#include "web/live/live.h"
 
 /* It lies on a floor at once and comes to rest soon. */
 static const char toys[] =

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "web/pace.h"
+#include "web/live/pace.h"
 
 static const double wanted_s = 0.03;
 

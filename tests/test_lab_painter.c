@@ -8,8 +8,8 @@
 #include "lab_fixture.h"
 #include "measure/clock.h"
 #include "render_fixture.h"
-#include "web/painter.h"
-#include "web/passes.h"
+#include "web/live/painter.h"
+#include "web/live/passes.h"
 #include <pthread.h>
 #include <stdatomic.h>
 #include <time.h>

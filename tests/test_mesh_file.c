@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "mesh_files.h"
-#include "scene/mesh_file.h"
+#include "scene/assets/mesh_file.h"
 
 static mesh_import *read_mesh(const char *name)
 {

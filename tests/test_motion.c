@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
-#include "scene/motion.h"
+#include "scene/motion/motion.h"
 
 static const char toys[] =
     "render: {width: 64, height: 48, depth: 3}\n"

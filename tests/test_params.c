@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "base/number.h"
-#include "scene/params.h"
+#include "scene/model/params.h"
 #include <stdlib.h>
 #include <string.h>
 

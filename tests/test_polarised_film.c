@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "polarised_chain.h"
-#include "render/probe.h"
+#include "render/inspect/probe.h"
 #include "render_fixture.h"
 
 /* Films of rays that carry Stokes vectors: Brewster, Malus, the pile of plates, chains of total reflections, energy. */

@@ -9,7 +9,7 @@
 #include <time.h>
 #include <cmocka.h>
 
-#include "render/pool.h"
+#include "render/core/pool.h"
 
 enum { WORKERS_MAX = 300 };
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render/probe.h"
+#include "render/inspect/probe.h"
 #include "geometry/arrangement.h"
 #include "render_fixture.h"
 

@@ -8,7 +8,7 @@
 #include "realism/realism.h"
 #include "realism/theory.h"
 #include "realism/view.h"
-#include "render/probe.h"
+#include "render/inspect/probe.h"
 #include "render_fixture.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))

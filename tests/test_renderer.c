@@ -38,7 +38,7 @@ static void light_beyond_the_films_range_is_an_error(void **state)
     scene_destroy(s);
 }
 
-/* As render/tracer.c says of contributions that are not numbers; with shadow rays and without. */
+/* As render/core/tracer.c says of contributions that are not numbers; with shadow rays and without. */
 static void light_that_is_not_a_number_is_an_error(void **state)
 {
     (void)state;

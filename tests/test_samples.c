@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render/ticket.h"
+#include "render/core/ticket.h"
 #include "render_fixture.h"
 
 /* Samples of a pixel: the middles of k x k cells. One pixel sees, at z = 1, the square from -1 to 1, and in it a white

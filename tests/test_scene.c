@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "scene/params.h"
+#include "scene/model/params.h"
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>

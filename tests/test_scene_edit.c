@@ -8,8 +8,8 @@
 
 #include "random_stream.h"
 #include "render_fixture.h"
-#include "scene/edit.h"
-#include "scene/write.h"
+#include "scene/model/edit/edit.h"
+#include "scene/file/write.h"
 #include <math.h>
 #include <stdlib.h>
 

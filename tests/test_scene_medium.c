@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
-#include "scene/medium.h"
+#include "scene/model/medium.h"
 #include <stdlib.h>
 
 static double index_at(const scene *s, const char *name, double lambda_nm)

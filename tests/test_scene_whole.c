@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
-#include "scene/edit.h"
+#include "scene/model/edit/edit.h"
 
 /* A whole scene moves, turns and is scaled: with its camera the film is the same up to rounding; of its parts only
  * those that are named change; and when one of them would leave its range, nothing does. */

@@ -7,9 +7,9 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
-#include "scene/edit.h"
-#include "scene/params_path.h"
-#include "scene/write.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/params_path.h"
+#include "scene/file/write.h"
 #include <dirent.h>
 #include <stdlib.h>
 #include <sys/stat.h>

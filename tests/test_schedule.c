@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "render/schedule.h"
+#include "render/core/schedule.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render/section.h"
+#include "render/inspect/section.h"
 #include "render_fixture.h"
 
 /* Sections against plane geometry: circles, rectangles, walls. */

@@ -7,7 +7,7 @@
 
 #include "quad.h"
 #include "random_stream.h"
-#include "render/sky.h"
+#include "render/shade/sky.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 

@@ -1,7 +1,7 @@
 /* A minute of the default toy, with the recorded grab of experiments/hands/tug.yaml: it rests, is drawn out, let go,
  * and comes back. Under its own weight the toy is no sphere but a drop on a floor, so "back" is the shape of one that
  * no hand has touched; without weight it is the sphere. */
-#include "scene/script.h"
+#include "scene/motion/script.h"
 #include "softbody_fixture.h"
 
 typedef struct extent {

@@ -1,9 +1,9 @@
 /* Slimes in scene files: the mesh is the skin of the body that the parameters and the script say, and nothing else. */
 #include "study_fixture.h"
 
-#include "scene/params.h"
-#include "scene/slime.h"
-#include "scene/write.h"
+#include "scene/model/params.h"
+#include "scene/model/slime.h"
+#include "scene/file/write.h"
 #include "study/shelf.h"
 #include <limits.h>
 

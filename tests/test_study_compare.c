@@ -1,7 +1,7 @@
 #include "study_fixture.h"
 #include "image/compare.h"
-#include "render/renderer.h"
-#include "scene/params.h"
+#include "render/core/renderer.h"
+#include "scene/model/params.h"
 #include "study/csv.h"
 #include "study/summary.h"
 #include <dirent.h>

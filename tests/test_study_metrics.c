@@ -1,7 +1,7 @@
 #include "study_fixture.h"
 
 #include "realism/realism.h"
-#include "scene/params.h"
+#include "scene/model/params.h"
 #include "softbody/trials.h"
 #include "study/csv.h"
 

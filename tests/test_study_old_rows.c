@@ -3,8 +3,8 @@
  * is at its default. */
 #include "study_fixture.h"
 #include "base/hash.h"
-#include "scene/params_path.h"
-#include "scene/params_value.h"
+#include "scene/model/params_path.h"
+#include "scene/model/params_value.h"
 #include "study/csv.h"
 #include "study/definition_v1.h"
 #include "study/grid.h"

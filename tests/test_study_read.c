@@ -1,5 +1,5 @@
 #include "study_fixture.h"
-#include "scene/params.h"
+#include "scene/model/params.h"
 #include <dirent.h>
 
 static const char bad_folder[] = "tests/bad-studies";

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "render/tracer_set.h"
+#include "render/core/tracer_set.h"
 #include "render_fixture.h"
 
 enum { WORKERS = 4 };

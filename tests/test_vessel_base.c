@@ -13,8 +13,8 @@
 #include <cmocka.h>
 
 #include "base/isa.h"
-#include "render/renderer.h"
-#include "scene/params.h"
+#include "render/core/renderer.h"
+#include "scene/model/params.h"
 #include <math.h>
 
 static const double GLASS = 1.5, LIQUID = 1.33;

@@ -7,7 +7,7 @@
 
 /* x^y for 0 <= x; 0^0 = 1. Relative error below 4e-16 (2 + |y log2 x|), so 4e-14 at x^y = 1e-30; results under
  * 2^-1000 are 0, over 2^1000 they are 2^1000. Branch-free in base/elementary_inline.h, for kernels (the one for
- * Phong's highlights raises whole exponents by squaring instead: render/shade_kernel.c states its error). */
+ * Phong's highlights raises whole exponents by squaring instead: render/shade/shade_kernel.c states its error). */
 double elementary_pow(double x, double y);
 
 /* Sine and cosine of an angle in degrees; exact at multiples of 90. Absolute error below 3e-16, for |degrees| <= 1e6.

@@ -4,8 +4,8 @@
 #include "report/json.h"
 #include "cli/outputs.h"
 #include "report/report.h"
-#include "scene/params.h"
-#include "scene/slime.h"
+#include "scene/model/params.h"
+#include "scene/model/slime.h"
 #include "base/text.h"
 #include <inttypes.h>
 #include <math.h>

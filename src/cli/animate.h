@@ -7,7 +7,7 @@
 #define CUVETTE_CLI_ANIMATE_H
 
 #include "cli/scene_input.h"
-#include "scene/motion.h"
+#include "scene/motion/motion.h"
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdint.h>

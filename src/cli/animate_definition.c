@@ -3,8 +3,8 @@
 #include "base/hash.h"
 #include "base/number.h"
 #include "report/json.h"
-#include "scene/params.h"
-#include "scene/slime.h"
+#include "scene/model/params.h"
+#include "scene/model/slime.h"
 #include "study/grid.h"
 #include <inttypes.h>
 #include <math.h>

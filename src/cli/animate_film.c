@@ -3,7 +3,7 @@
 #include "cli/animate_rows.h"
 #include "cli/terminal.h"
 #include "image/y4m.h"
-#include "render/record.h"
+#include "render/core/record.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>

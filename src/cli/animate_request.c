@@ -2,7 +2,7 @@
 #include "base/number.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "scene/params.h"
+#include "scene/model/params.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>

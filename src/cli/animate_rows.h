@@ -4,8 +4,8 @@
 #ifndef CUVETTE_CLI_ANIMATE_ROWS_H
 #define CUVETTE_CLI_ANIMATE_ROWS_H
 
-#include "render/renderer.h"
-#include "scene/motion.h"
+#include "render/core/renderer.h"
+#include "scene/motion/motion.h"
 
 typedef struct animate_rows animate_rows;
 

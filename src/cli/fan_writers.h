@@ -3,7 +3,7 @@
 #ifndef CUVETTE_CLI_FAN_WRITERS_H
 #define CUVETTE_CLI_FAN_WRITERS_H
 
-#include "render/fan.h"
+#include "render/inspect/fan.h"
 #include <stdio.h>
 
 typedef struct fanned {

@@ -1,8 +1,8 @@
 #include "cli/inert_notes.h"
 #include "cli/terminal.h"
-#include "render/renderer.h"
-#include "scene/hints.h"
-#include "scene/params.h"
+#include "render/core/renderer.h"
+#include "scene/model/hints.h"
+#include "scene/model/params.h"
 
 #include <stdio.h>
 #include <stdlib.h>

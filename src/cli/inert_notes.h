@@ -1,11 +1,11 @@
-/* Notes on parameters that a person sets and that cannot act (scene/inert.h), one line each on standard error. What the
- * linter notes of the same place is not said twice. Everything is borrowed. */
+/* Notes on parameters that a person sets and that cannot act (scene/model/inert/inert.h), one line each on standard
+ * error. What the linter notes of the same place is not said twice. Everything is borrowed. */
 #ifndef CUVETTE_CLI_INERT_NOTES_H
 #define CUVETTE_CLI_INERT_NOTES_H
 
 #include "cli/scene_input.h"
-#include "render/renderer.h"
-#include "scene/inert.h"
+#include "render/core/renderer.h"
+#include "scene/model/inert/inert.h"
 #include "study/study.h"
 
 /* Of the command line. s: as it changed it. */

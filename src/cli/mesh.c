@@ -6,9 +6,9 @@
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "base/file.h"
-#include "scene/edit.h"
-#include "scene/mesh_write.h"
-#include "scene/params.h"
+#include "scene/model/edit/edit.h"
+#include "scene/assets/mesh_write.h"
+#include "scene/model/params.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,9 +2,9 @@
 #include "report/json.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
-#include "scene/motion.h"
-#include "scene/params.h"
-#include "scene/slime.h"
+#include "scene/motion/motion.h"
+#include "scene/model/params.h"
+#include "scene/model/slime.h"
 #include "softbody/trials.h"
 #include <errno.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "cli/outputs.h"
 #include "cli/scene_files.h"
-#include "render/record.h"
+#include "render/core/record.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #ifndef CUVETTE_CLI_OUTPUTS_H
 #define CUVETTE_CLI_OUTPUTS_H
 
-#include "render/renderer.h"
+#include "render/core/renderer.h"
 
 typedef struct outputs {
     const char *picture, *rays, *time, *noise, *timeline; /* NULL: not wanted */

@@ -4,8 +4,8 @@
 #include "cli/outputs.h"
 #include "cli/scene_edits.h"
 #include "cli/scene_input.h"
-#include "scene/params_path.h"
-#include "scene/write.h"
+#include "scene/model/params_path.h"
+#include "scene/file/write.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

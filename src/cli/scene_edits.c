@@ -1,7 +1,7 @@
 #include "cli/scene_edits.h"
 #include "cli/options.h"
-#include "scene/edit.h"
-#include "scene/params.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/params.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

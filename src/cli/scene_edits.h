@@ -3,7 +3,7 @@
 #ifndef CUVETTE_CLI_SCENE_EDITS_H
 #define CUVETTE_CLI_SCENE_EDITS_H
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 typedef struct scene_edit scene_edit;
 

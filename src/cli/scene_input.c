@@ -1,7 +1,7 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
-#include "scene/hints.h"
-#include "scene/params.h"
+#include "scene/model/hints.h"
+#include "scene/model/params.h"
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -6,7 +6,7 @@
 
 #include "base/isa.h"
 #include "lint/lint.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 typedef struct scene_change {
     const char *option; /* "--set" */
@@ -45,7 +45,7 @@ status scene_input_load(scene *s, diagnostic *why);
  * one wavelength; and where a medium was not measured at that. */
 void scene_input_note_tree(const scene *s);
 
-/* Notes on what looks wrong in the scene (scene/hints.h), on standard error. */
+/* Notes on what looks wrong in the scene (scene/model/hints.h), on standard error. */
 void scene_input_note_hints(const scene *s);
 
 /* All notes of the linter (lint/lint.h) on a loaded scene; those whose place varies are left out. varies may be

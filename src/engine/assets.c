@@ -1,7 +1,7 @@
 /* Meshes and textures: named by a file or a body, or handed over as arrays. */
 #include "engine/engine_private.h"
 
-#include "scene/edit.h"
+#include "scene/model/edit/edit.h"
 #include <string.h>
 
 cuvette_status cuvette_scene_add_mesh(cuvette_scene *s, const char *name, cuvette_diagnostic *why)

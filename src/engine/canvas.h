@@ -7,7 +7,7 @@
 #include "base/float_environment.h"
 #include "cuvette.h"
 #include "image/codec.h"
-#include "render/film.h"
+#include "render/core/film.h"
 #include <pthread.h>
 
 typedef struct canvas {

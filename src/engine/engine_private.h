@@ -6,8 +6,8 @@
 #include "base/float_environment.h"
 #include "base/isa.h"
 #include "cuvette.h"
-#include "render/renderer.h"
-#include "scene/scene.h"
+#include "render/core/renderer.h"
+#include "scene/model/scene.h"
 #include <pthread.h>
 #include <stdatomic.h>
 

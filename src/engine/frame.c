@@ -2,7 +2,7 @@
 #include "engine/canvas.h"
 #include "engine/engine_private.h"
 
-#include "render/record.h"
+#include "render/core/record.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* Motions: the slimes of a scene from their beginning on, as far as the scene stays the one that they were made of. */
 #include "engine/motion_private.h"
 
-#include "scene/params_path.h"
-#include "scene/slime.h"
+#include "scene/model/params_path.h"
+#include "scene/model/slime.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* Hands of the caller's: what cuvette.h promises of them, done by scene/motion_hands.h. */
+/* Hands of the caller's: what cuvette.h promises of them, done by scene/motion/motion_hands.h. */
 #include "engine/motion_private.h"
 
 #include <math.h>

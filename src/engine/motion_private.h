@@ -4,7 +4,7 @@
 #define CUVETTE_ENGINE_MOTION_PRIVATE_H
 
 #include "engine/engine_private.h"
-#include "scene/motion_hands.h"
+#include "scene/motion/motion_hands.h"
 
 struct cuvette_motion {
     cuvette_scene *of;

@@ -1,7 +1,7 @@
 /* Lights, materials and solids come, go, move and turn. */
 #include "engine/engine_private.h"
 
-#include "scene/edit.h"
+#include "scene/model/edit/edit.h"
 
 cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {

@@ -3,8 +3,8 @@
 #include "engine/engine_private.h"
 
 #include "base/number.h"
-#include "scene/params.h"
-#include "scene/params_path.h"
+#include "scene/model/params.h"
+#include "scene/model/params_path.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

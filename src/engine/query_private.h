@@ -5,7 +5,7 @@
 #include "engine/engine_private.h"
 #include "geometry/forest.h"
 #include "geometry/rays.h"
-#include "render/plan.h"
+#include "render/core/plan.h"
 
 typedef struct bench {
     _Alignas(64) ray_scratch scratch;

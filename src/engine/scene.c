@@ -1,8 +1,8 @@
 /* Scenes as handles: made, read, copied, checked, written. */
 #include "engine/engine_private.h"
 
-#include "scene/hints.h"
-#include "scene/write.h"
+#include "scene/model/hints.h"
+#include "scene/file/write.h"
 #include <stdlib.h>
 #include <string.h>
 

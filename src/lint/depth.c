@@ -1,7 +1,7 @@
 /* A small image of the scene at its depth limit and deeper, until that changes nothing any more or enough rays are
  * spent. */
 #include "lint/parts.h"
-#include "render/tracer.h"
+#include "render/core/tracer.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #include "lint/lint.h"
 
 #include "lint/parts.h"
-#include "scene/hints.h"
+#include "scene/model/hints.h"
 #include <math.h>
 #include <stdlib.h>
 

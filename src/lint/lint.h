@@ -1,4 +1,4 @@
-/* The linter: notes on a scene that is legal and still looks wrong, from what it says (scene/hints.h), from where
+/* The linter: notes on a scene that is legal and still looks wrong, from what it says (scene/model/hints.h), from where
  * its solids and its camera are, and from a small probe image. Where solids are is found along lines through them: a
  * note is only given where the solids themselves show it, so that it is never a false alarm; what lies between all
  * lines is not seen.
@@ -9,7 +9,7 @@
 #define CUVETTE_LINT_LINT_H
 
 #include "base/isa.h"
-#include "scene/note.h"
+#include "scene/model/inert/note.h"
 
 /* Of a scene that is not loaded (scene_load) and has meshes only what it says is looked at. level: from isa_choose. */
 status lint_scene(const scene *s, isa level, const note_taker *taker, diagnostic *why);

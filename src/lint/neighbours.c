@@ -3,7 +3,7 @@
  * no gap. */
 #include "lint/lines.h"
 #include "lint/parts.h"
-#include "scene/cover.h"
+#include "scene/model/cover.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 #ifndef CUVETTE_LINT_PARTS_H
 #define CUVETTE_LINT_PARTS_H
 
-#include "render/plan.h"
-#include "scene/note.h"
+#include "render/core/plan.h"
+#include "scene/model/inert/note.h"
 
 typedef struct lint_room {
     const scene *of; /* what is looked at, as the caller has it */

@@ -5,7 +5,7 @@
  * Tolerance: 2.2e-16 in a transmittance, over the optical depth that the longest way has. */
 #include "realism/metrics.h"
 
-#include "scene/medium.h"
+#include "scene/model/medium.h"
 #include <math.h>
 
 #define ABSORPTION_TOLERANCE 1e-10 /* relative, at an optical depth of 1e-4 and more */

@@ -1,6 +1,6 @@
 #include "realism/metrics.h"
 
-#include "scene/medium.h"
+#include "scene/model/medium.h"
 #include <math.h>
 
 #define DEGREE (M_PI / 180.0)

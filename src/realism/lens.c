@@ -7,8 +7,8 @@
 #include "realism/metrics.h"
 
 #include "optics/media.h"
-#include "scene/medium.h"
-#include "scene/params.h"
+#include "scene/model/medium.h"
+#include "scene/model/params.h"
 #include <math.h>
 
 #define ANGLE_TOLERANCE 1e-11

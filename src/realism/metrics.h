@@ -6,7 +6,7 @@
 
 #include "realism/realism.h"
 #include "realism/setup.h"
-#include "render/probe.h"
+#include "render/inspect/probe.h"
 
 typedef struct metrics {
     const scene *traced, *supposed; /* measured in; theory's */

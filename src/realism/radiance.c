@@ -6,7 +6,7 @@
  * * Tolerance: as of gap.c; some film units and, near the critical angle, the root of a rounding. */
 #include "realism/metrics.h"
 
-#include "scene/edit.h"
+#include "scene/model/edit/edit.h"
 #include <math.h>
 
 #define RADIANCE_TOLERANCE 1e-11

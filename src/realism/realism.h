@@ -1,7 +1,7 @@
 /* Between a picture that looks right and one that is right: each metric measures a quantity of optics through the
- * tracer, by taking rays apart (render/probe.h), beside the same quantity from a textbook's closed form, which theory.h
- * computes with scalars and without the tracer's code. Angles in radians unless a unit says otherwise; lengths in scene
- * units.
+ * tracer, by taking rays apart (render/inspect/probe.h), beside the same quantity from a textbook's closed form, which
+ * theory.h computes with scalars and without the tracer's code. Angles in radians unless a unit says otherwise; lengths
+ * in scene units.
  *
  * The scene has solids named vessel (a cup), rod (a box) and, unless it is empty, liquid (a cylinder that reaches into
  * the vessel's wall), upright and around one axis, as experiments/scenes/rod.yaml. Their indices, and the settings that
@@ -20,7 +20,7 @@
 
 #include "base/isa.h"
 #include "base/status.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 #include <stdbool.h>
 
 typedef struct realism_value {

@@ -1,6 +1,6 @@
 #include "realism/setup.h"
 
-#include "scene/medium.h"
+#include "scene/model/medium.h"
 #include <math.h>
 
 static status wrong(const scene *s, diagnostic *why, const char *remedy, const char *what)

@@ -1,6 +1,6 @@
 #include "realism/metrics.h"
 
-#include "scene/medium.h"
+#include "scene/model/medium.h"
 #include <math.h>
 
 status trial_start(trial *t, scene *taken, isa level, diagnostic *why)

@@ -1,10 +1,10 @@
 /* The camera in scalars: which way a point of the picture looks, and where a point of the scene lies in the picture.
- * Pinhole geometry, written apart from render/plan.c. Pictures count from their top left corner, px; lengths in scene
- * units. Pure. */
+ * Pinhole geometry, written apart from render/core/plan.c. Pictures count from their top left corner, px; lengths in
+ * scene units. Pure. */
 #ifndef CUVETTE_REALISM_VIEW_H
 #define CUVETTE_REALISM_VIEW_H
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 typedef struct view {
     double x, y, z;       /* of the eye */

@@ -6,7 +6,7 @@
 #ifndef CUVETTE_REPORT_DIAGRAM_H
 #define CUVETTE_REPORT_DIAGRAM_H
 
-#include "render/section.h"
+#include "render/inspect/section.h"
 #include <stdio.h>
 
 /* A box in the plane's coordinates that grows; empty while u0 > u1. */

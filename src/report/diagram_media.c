@@ -1,6 +1,6 @@
 /* A diagram's ground: media as areas, boundaries as lines, and the key to them. */
 #include "report/diagram_parts.h"
-#include "scene/medium.h"
+#include "scene/model/medium.h"
 #include "image/image.h"
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef CUVETTE_REPORT_PARAM_LINES_H
 #define CUVETTE_REPORT_PARAM_LINES_H
 
-#include "scene/params.h"
+#include "scene/model/params.h"
 
 enum { PARAM_PATH_MAX = 400 };
 

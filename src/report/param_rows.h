@@ -2,7 +2,7 @@
 #ifndef CUVETTE_REPORT_PARAM_ROWS_H
 #define CUVETTE_REPORT_PARAM_ROWS_H
 
-#include "scene/params.h"
+#include "scene/model/params.h"
 #include <jansson.h>
 #include <stdio.h>
 

@@ -4,8 +4,8 @@
 
 #include "image/compare.h"
 #include "measure/usage.h"
-#include "render/renderer.h"
-#include "scene/params.h"
+#include "render/core/renderer.h"
+#include "scene/model/params.h"
 #include <jansson.h>
 #include <stdbool.h>
 

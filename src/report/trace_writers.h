@@ -3,7 +3,7 @@
 #ifndef CUVETTE_REPORT_TRACE_WRITERS_H
 #define CUVETTE_REPORT_TRACE_WRITERS_H
 
-#include "render/probe.h"
+#include "render/inspect/probe.h"
 #include <stdio.h>
 
 typedef struct traced {

@@ -5,7 +5,7 @@
 #define CUVETTE_STUDY_COMPARE_ROWS_H
 
 #include "image/compare.h"
-#include "render/renderer.h"
+#include "render/core/renderer.h"
 #include "study/reference.h"
 #include "study/rows.h"
 

@@ -1,6 +1,6 @@
 #include "study/definition_v1.h"
 #include "base/hash.h"
-#include "scene/params_value.h"
+#include "scene/model/params_value.h"
 #include "study/grid.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "study/grid.h"
 #include "base/hash.h"
-#include "scene/params.h"
+#include "scene/model/params.h"
 #include "study/meaning.h"
 #include <stdlib.h>
 #include <string.h>

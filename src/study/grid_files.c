@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "scene/looks.h"
+#include "scene/model/looks.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,7 +1,7 @@
 #include "study/keep.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "render/record.h"
+#include "render/core/record.h"
 #include "study/grid.h"
 #include "study/metric_table.h"
 #include "study/motion_table.h"

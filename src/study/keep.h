@@ -4,7 +4,7 @@
 #ifndef CUVETTE_STUDY_KEEP_H
 #define CUVETTE_STUDY_KEEP_H
 
-#include "render/renderer.h"
+#include "render/core/renderer.h"
 #include "study/study.h"
 
 /* Does the cell lack a file that the study keeps? */

@@ -1,8 +1,8 @@
 #include "study/meaning.h"
 #include "base/hash.h"
 #include "base/text.h"
-#include "scene/params_path.h"
-#include "scene/params_value.h"
+#include "scene/model/params_path.h"
+#include "scene/model/params_value.h"
 #include "study/grid.h"
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 #include "study/motion_table.h"
 
 #include "base/file.h"
-#include "scene/motion.h"
-#include "scene/slime.h"
+#include "scene/motion/motion.h"
+#include "scene/model/slime.h"
 #include "softbody/trials.h"
 #include "study/cell_table.h"
 #include "study/grid.h"

@@ -19,7 +19,7 @@
  * Every path and value is tried on the scene here, so that a study that was read can be run. */
 #include "base/file.h"
 #include "base/number.h"
-#include "scene/document.h"
+#include "scene/file/document.h"
 #include "study/grid.h"
 #include "study/read_grid.h"
 #include "study/metric_table.h"

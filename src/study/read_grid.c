@@ -1,6 +1,6 @@
 #include "study/read_grid.h"
 #include "base/number.h"
-#include "scene/params.h"
+#include "scene/model/params.h"
 #include "study/grid.h"
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef CUVETTE_STUDY_READ_GRID_H
 #define CUVETTE_STUDY_READ_GRID_H
 
-#include "scene/document.h"
+#include "scene/file/document.h"
 #include "study/study.h"
 
 /* Tries every path and value on s->base, sets the fixed ones in it, and fills s->fixed and s->axes. set and grid

@@ -1,5 +1,5 @@
 #include "study/recorded.h"
-#include "scene/document.h"
+#include "scene/file/document.h"
 #include "study/read_grid.h"
 #include <stdlib.h>
 #include <string.h>

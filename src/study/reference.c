@@ -3,7 +3,7 @@
 #include "base/hash.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "scene/params.h"
+#include "scene/model/params.h"
 #include "study/grid.h"
 #include <inttypes.h>
 #include <jansson.h>

@@ -1,6 +1,6 @@
 #include "study/rows.h"
 #include "base/text.h"
-#include "scene/params.h"
+#include "scene/model/params.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 
 #include "base/isa.h"
 #include "measure/usage.h"
-#include "render/renderer.h"
+#include "render/core/renderer.h"
 #include "study/csv.h"
 #include "study/study.h"
 

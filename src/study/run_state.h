@@ -4,7 +4,7 @@
 #define CUVETTE_STUDY_RUN_STATE_H
 
 #include "measure/usage.h"
-#include "render/renderer.h"
+#include "render/core/renderer.h"
 #include "study/ledger.h"
 #include "study/progress.h"
 #include "study/reference.h"

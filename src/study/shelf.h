@@ -4,7 +4,7 @@
 #ifndef CUVETTE_STUDY_SHELF_H
 #define CUVETTE_STUDY_SHELF_H
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 enum { SHELF_SCENES = 64 };
 #define SHELF_TRIANGLES \

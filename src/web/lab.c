@@ -1,10 +1,10 @@
 #include "web/lab_private.h"
 #include "base/text.h"
-#include "scene/params.h"
-#include "web/new_scene.h"
+#include "scene/model/params.h"
+#include "scene/model/place/new_scene.h"
 #include "web/page.h"
-#include "web/pins.h"
-#include "web/studies.h"
+#include "web/session/pins.h"
+#include "web/session/studies.h"
 
 #include <stdlib.h>
 #include <string.h>

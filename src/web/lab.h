@@ -1,13 +1,13 @@
 /* The laboratory in a browser: one scene on a desk, a painter who renders it whenever it changes, a toy that moves,
- * studies that run; served to pages and programs through web/http.h, by the API of web/README.md. Ownership: lab_start
- * gives, lab_stop releases and joins all threads; the settings' texts are borrowed in between. Errors: STATUS_BAD_INPUT
- * for a scene, folder or port that cannot be had, STATUS_FAILURE for memory and threads. Nothing is printed, no signal
- * is taken. */
+ * studies that run; served to pages and programs through web/http/http.h, by the API of web/README.md. Ownership:
+ * lab_start gives, lab_stop releases and joins all threads; the settings' texts are borrowed in between. Errors:
+ * STATUS_BAD_INPUT for a scene, folder or port that cannot be had, STATUS_FAILURE for memory and threads. Nothing is
+ * printed, no signal is taken. */
 #ifndef CUVETTE_WEB_LAB_H
 #define CUVETTE_WEB_LAB_H
 
 #include "base/isa.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 typedef struct lab lab;
 
@@ -19,7 +19,7 @@ typedef struct lab_settings {
     int port;            /* 0: any that is free */
     isa level;
     int threads;           /* of scenes as they are opened; 0: what they say */
-    double requests_per_s; /* 0: as web/http.h has it */
+    double requests_per_s; /* 0: as web/http/http.h has it */
 } lab_settings;
 
 status lab_start(const lab_settings *settings, lab **out, diagnostic *why);

@@ -2,16 +2,16 @@
 #ifndef CUVETTE_WEB_LAB_PRIVATE_H
 #define CUVETTE_WEB_LAB_PRIVATE_H
 
-#include "web/desk.h"
-#include "web/folder.h"
-#include "web/gate.h"
-#include "web/http.h"
+#include "web/session/desk.h"
+#include "web/session/folder.h"
+#include "web/session/gate.h"
+#include "web/http/http.h"
 #include "web/lab.h"
-#include "web/painter.h"
+#include "web/live/painter.h"
 #include <pthread.h>
 
-typedef struct pins pins;       /* web/pins.h */
-typedef struct studies studies; /* web/studies.h */
+typedef struct pins pins;       /* web/session/pins.h */
+typedef struct studies studies; /* web/session/studies.h */
 
 struct lab {
     lab_settings settings;

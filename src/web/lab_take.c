@@ -1,7 +1,7 @@
 /* What handlers have in common: reading bodies, answering changes, rays of the camera. See web/lab_private.h. */
 #include "web/lab_private.h"
 #include "base/text.h"
-#include "scene/camera.h"
+#include "scene/model/camera.h"
 
 #include <math.h>
 #include <stdlib.h>

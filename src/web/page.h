@@ -3,7 +3,7 @@
 #ifndef CUVETTE_WEB_PAGE_H
 #define CUVETTE_WEB_PAGE_H
 
-#include "web/http.h"
+#include "web/http/http.h"
 
 extern const http_file page_files[];
 extern const size_t page_file_count;

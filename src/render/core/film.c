@@ -1,0 +1,124 @@
+#include "render/core/film.h"
+
+#include "base/hash.h"
+#include "optics/observer.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Two cache lines, which processors fetch together: where the picture's and the tiles' widths are multiples
+ * of 16, tiles then share none, and workers do not take lines from one another. */
+enum { ALIGNMENT = 128 };
+
+static size_t values_of(const film *f)
+{
+    return (size_t)f->width * (size_t)f->height * 3;
+}
+
+status film_create(int width, int height, int layers, film_space space, film **out, diagnostic *why)
+{
+    const size_t bytes = (size_t)width * (size_t)height * 3 * sizeof(int64_t) * (size_t)layers;
+    film *f = calloc(1, sizeof *f);
+    if (f)
+        f->memory = malloc(bytes + ALIGNMENT); /* aligned_alloc would leave gaps that the next film does not fit into */
+    if (!f || !f->memory) {
+        free(f);
+        return diagnose(why, STATUS_FAILURE, "render a smaller picture", "out of memory for a film of %d x %d", width,
+                        height);
+    }
+    f->sum = (int64_t *)(((uintptr_t)f->memory + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
+    memset(f->sum, 0, bytes); /* the pages are there before the clock starts */
+    f->width = width;
+    f->height = height;
+    f->layers = layers;
+    f->space = space;
+    *out = f;
+    return STATUS_OK;
+}
+
+void film_destroy(film *f)
+{
+    if (!f)
+        return;
+    free(f->memory);
+    free(f);
+}
+
+bool film_add_layers(film *f, double *variance)
+{
+    const size_t count = values_of(f), layers = (size_t)f->layers;
+    int64_t signs = 0;
+    if (layers == 1)
+        return true;
+    for (size_t i = 0; i < count; i++) {
+        double total = 0.0, squares = 0.0;
+        int64_t sum = 0;
+        for (size_t k = 0; k < layers; k++) {
+            sum = (int64_t)((uint64_t)sum + (uint64_t)f->sum[k * count + i]);
+            signs |= sum; /* as its sign tells: no layer's sum is negative */
+            total += (double)f->sum[k * count + i] / FILM_ONE;
+        }
+        for (size_t k = 0; k < layers; k++) {
+            const double from_mean = (double)f->sum[k * count + i] / FILM_ONE - total / (double)layers;
+            squares += from_mean * from_mean;
+        }
+        if (variance) /* a sum of n values of variance squares / (n - 1) each */
+            variance[i] = squares * (double)layers / (double)(layers - 1);
+        f->sum[i] = sum;
+    }
+    f->layers = 1;
+    return signs >= 0;
+}
+
+/* The pixel's colour, linear sRGB. */
+static void pixel_rgb(const film *f, size_t pixel, double rgb[3])
+{
+    const size_t layers = (size_t)f->layers, layer = values_of(f);
+    double value[3];
+    for (size_t c = 0; c < 3; c++) {
+        uint64_t sum = 0;
+        for (size_t k = 0; k < layers; k++)
+            sum += (uint64_t)f->sum[k * layer + pixel * 3 + c];
+        value[c] = (double)(int64_t)sum / FILM_ONE;
+    }
+    if (f->space == FILM_XYZ)
+        xyz_to_linear_srgb(value, rgb);
+    else
+        memcpy(rgb, value, sizeof value);
+}
+
+double film_value(const film *f, int x, int y, int channel)
+{
+    double rgb[3];
+    pixel_rgb(f, (size_t)y * (size_t)f->width + (size_t)x, rgb);
+    return rgb[channel];
+}
+
+void film_read(const film *f, int x0, int y0, int x1, int y1, float *rgb, size_t stride)
+{
+    for (int y = y0; y < y1; y++) {
+        float *row = rgb + (size_t)(y - y0) * stride;
+        for (int x = x0; x < x1; x++, row += 3) {
+            double value[3];
+            pixel_rgb(f, (size_t)y * (size_t)f->width + (size_t)x, value);
+            for (size_t c = 0; c < 3; c++)
+                row[c] = (float)value[c];
+        }
+    }
+}
+
+uint64_t film_hash(const film *f)
+{
+    const int64_t size[2] = {f->width, f->height};
+    uint64_t hash = hash_words(HASH_START, size, 2);
+    return hash_finish(hash_words(hash, f->sum, values_of(f)));
+}
+
+status film_image(const film *f, image **out, diagnostic *why)
+{
+    status code = image_create(f->width, f->height, out, why);
+    if (code != STATUS_OK)
+        return code;
+    film_read(f, 0, 0, f->width, f->height, (*out)->pixel, 3 * (size_t)f->width);
+    return STATUS_OK;
+}

@@ -1,0 +1,254 @@
+#include "render/core/plan.h"
+
+#include "render/shade/sky.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface unless it is coated
+ * or shines; with constant shares, as in the report, every surface reflects whatever its index. laws: by solid,
+ * [solid_count] the surroundings'. */
+static bool shows_itself(const scene *s, const material *m)
+{
+    return m->emission > 0.0 || material_coating(m, &s->render) > 0.0;
+}
+
+static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
+{
+    const material *m = &s->solids[solid_index].surface;
+    if (material_is_opaque(m) || scene_has_constant_shares(&s->render) || shows_itself(s, m))
+        return solid_index + 1;
+    if (index_laws_match(&s->render, &laws[solid_index], &laws[s->solid_count]))
+        return 0;
+    for (int i = 0; i < solid_index; i++) {
+        const solid *other = &s->solids[i];
+        if (other->visible && !material_is_opaque(&other->surface) && !shows_itself(s, &other->surface) &&
+            index_laws_match(&s->render, &laws[i], &laws[solid_index]))
+            return i + 1;
+    }
+    return solid_index + 1;
+}
+
+/* The hierarchy of the solid's mesh: the mesh's own, or one for this frame, of which solids of one mesh share the
+ * first's. */
+static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
+{
+    const hierarchy_kind kind = (hierarchy_kind)s->render.accel;
+    if (integrator_of(&s->render)->drawn)
+        return STATUS_OK; /* what is drawn needs none */
+    if (s->render.keep)
+        return hierarchy_of_mesh(m, kind, scene_build_threads(&s->render), out, why);
+    for (size_t k = 0; k < i; k++) {
+        const mesh_entry *other = s->solids[k].shape.kind == SHAPE_MESH ? scene_find_mesh(s, s->solids[k].mesh) : NULL;
+        if (p->own_trees[k] && other && other->data == m) {
+            *out = p->own_trees[k];
+            return STATUS_OK;
+        }
+    }
+    const status code = hierarchy_build(m, kind, scene_build_threads(&s->render), &p->own_trees[i], why);
+    *out = p->own_trees[i];
+    return code;
+}
+
+static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, const hierarchy *tree, bool first)
+{
+    const double copies = shape->copies.x * shape->copies.y * shape->copies.z;
+    p->meshes.instances += (uint64_t)copies;
+    p->meshes.triangles += (uint64_t)copies * shape->mesh->triangle_count;
+    if (first && m->source == MESH_SLIME) {
+        p->meshes.motion_steps += m->account.substeps;
+        p->meshes.motion_s += m->motion_s;
+    }
+    if (first && tree) {
+        const hierarchy_report r = hierarchy_describe(tree);
+        p->meshes.bytes += r.bytes;
+        p->meshes.build_s += r.build_s;
+    }
+}
+
+/* The shape of a mesh solid with its triangles, and the hierarchy over them. */
+static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, body_source *source, diagnostic *why)
+{
+    const solid *one = &s->solids[i];
+    const mesh_entry *m = scene_find_mesh(s, one->mesh);
+    if (!m || !m->data)
+        return diagnose(why, STATUS_FAILURE, "call scene_load before", "%.80s: the mesh is not loaded", one->name);
+    *shape = one->shape;
+    shape->mesh = m->data;
+    source->shape = shape;
+    const status code = tree_of(s, i, p, m->data, &source->tree, why);
+    bool first = true;
+    for (size_t k = 0; k < i; k++)
+        first &= !(s->solids[k].visible && s->solids[k].shape.kind == SHAPE_MESH &&
+                   strcmp(s->solids[k].mesh, one->mesh) == 0);
+    if (code == STATUS_OK)
+        report_mesh(p, m, shape, source->tree, first);
+    return code;
+}
+
+static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic *why)
+{
+    body_source *sources = calloc(s->solid_count + 1, sizeof *sources);
+    solid_shape *shapes = calloc(s->solid_count + 1, sizeof *shapes);
+    p->own_trees = calloc(s->solid_count + 1, sizeof(hierarchy *));
+    p->own_tree_count = s->solid_count;
+    p->clearness = calloc(s->solid_count + 1, sizeof *p->clearness);
+    if (!sources || !shapes || !p->own_trees || !p->clearness) {
+        free(sources);
+        free(shapes);
+        return out_of_memory(why);
+    }
+    status code = STATUS_OK;
+    int count = 0;
+    for (int i = 0; i < (int)s->solid_count && code == STATUS_OK; i++) {
+        const solid *one = &s->solids[i];
+        if (!one->visible)
+            continue;
+        double clearness;
+        if (!body_clearness_make(s, one, &clearness, &p->clearness[i]))
+            code = out_of_memory(why);
+        sources[count] = (body_source){.shape = &one->shape,
+                                       .priority = one->priority,
+                                       .medium = medium_of(s, laws, i),
+                                       .opaque = looks_opaque(s, one),
+                                       .clearness = clearness,
+                                       .face_clearness = p->clearness[i],
+                                       .absorbs = material_dims(&one->surface),
+                                       .reflects = p->basic && !scene_has_constant_shares(&s->render),
+                                       .solid = i};
+        if (code == STATUS_OK && one->shape.kind == SHAPE_MESH)
+            code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
+        count++;
+    }
+    if (code == STATUS_OK)
+        code = arrangement_build(sources, count, 0, &p->solids, why);
+    if (code == STATUS_OK && surroundings_absorb(&s->background))
+        arrangement_surroundings_absorb(p->solids);
+    free(shapes);
+    free(sources);
+    return code;
+}
+
+static status aim_cones(const scene *s, plan *p, diagnostic *why)
+{
+    p->cones = calloc(s->light_count + 1, sizeof *p->cones);
+    if (!p->cones)
+        return out_of_memory(why);
+    for (size_t i = 0; i < s->light_count; i++)
+        if (s->lights[i].kind != LIGHT_POINT)
+            p->cones[i] = light_cone_of(&s->lights[i]);
+    return STATUS_OK;
+}
+
+/* By solid; the last one is that of the surroundings. */
+static status laws_of(const scene *s, index_law *laws, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; i < s->solid_count && code == STATUS_OK; i++)
+        code = material_index_law(&s->solids[i].surface, s->solids[i].name, &laws[i], why);
+    laws[s->solid_count] = surrounding_index_law(&s->background);
+    return code;
+}
+
+/* A solid's material as it is traced. */
+static const material *material_of(const scene *s, plan *p, int solid_index)
+{
+    const material *m = &s->solids[solid_index].surface;
+    if (!material_is_mirror(m))
+        return m;
+    material *mirror = &p->mirrors[solid_index];
+    *mirror = *m;
+    const double both = m->reflectivity + m->transparency;
+    mirror->reflectivity = scene_has_constant_shares(&s->render) && both < 1.0 ? both : 1.0;
+    mirror->transparency = 0.0;
+    return mirror;
+}
+
+/* What each rank's body is made of. */
+static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnostic *why)
+{
+    const size_t ranks = (size_t)p->solids->body_count + 1;
+    p->materials = calloc(ranks, sizeof *p->materials);
+    p->ior = calloc(ranks, sizeof *p->ior);
+    p->laws = calloc(ranks, sizeof *p->laws);
+    p->absorption = calloc(ranks, sizeof *p->absorption);
+    p->looks = calloc(ranks, sizeof *p->looks);
+    p->mirrors = calloc(s->solid_count + 1, sizeof *p->mirrors);
+    if (!p->mirrors || !p->materials || !p->ior || !p->laws || !p->absorption || !p->looks)
+        return out_of_memory(why);
+    for (size_t r = 0; r < ranks; r++) {
+        const int solid_index = p->solids->bodies[r].solid;
+        p->laws[r] = laws[solid_index < 0 ? (int)s->solid_count : solid_index];
+        p->ior[r] = index_law_at(&p->laws[r], s->render.lambda_nm);
+        if (solid_index < 0)
+            continue;
+        p->materials[r] = material_of(s, p, solid_index);
+        if (!body_look_make(s, &s->solids[solid_index], p->materials[r], &p->looks[r]))
+            return out_of_memory(why);
+        p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
+    }
+    p->absorption[0] = vec3_scale(s->background.absorb_per_m, s->render.unit_m);
+    if (s->render.spectrum == SPECTRUM_SPECTRAL && !(p->spectral = spectra_create(s, p->materials, p->laws, ranks)))
+        return out_of_memory(why);
+    return STATUS_OK;
+}
+
+status plan_build(const scene *s, plan **out, diagnostic *why)
+{
+    plan *p = calloc(1, sizeof *p);
+    index_law *laws = calloc(s->solid_count + 1, sizeof *laws);
+    status code = p && laws ? laws_of(s, laws, why) : out_of_memory(why);
+    if (code == STATUS_OK)
+        p->basic = scene_has_basic_radiance(&s->render);
+    if (code == STATUS_OK)
+        code = arrange(s, laws, p, why);
+    if (code == STATUS_OK)
+        code = fill_ranks(s, laws, p, why);
+    if (code == STATUS_OK)
+        code = aim_cones(s, p, why);
+    free(laws);
+    if (code != STATUS_OK) {
+        plan_destroy(p);
+        return code;
+    }
+    p->view = camera_frame_of(s);
+    p->render = s->render;
+    if (integrator_of(&s->render)->drawn)
+        p->render.shadows = SHADOWS_OFF;
+    else
+        p->eye_inside = arrangement_inside(p->solids, p->view.eye);
+    p->eye_rank = arrangement_rank(p->solids, p->eye_inside);
+    p->sky = &s->background;
+    if (s->render.beyond == BEYOND_MEAN)
+        p->sky_mean = sky_mean(p->sky);
+    p->lights = s->lights;
+    p->light_count = (int)s->light_count;
+    p->solid_shadows = s->render.shadows == SHADOWS_OPAQUE;
+    for (size_t i = 0; i < s->light_count && integrator_of(&s->render)->by_chance; i++)
+        p->solid_shadows |= s->lights[i].radius > 0.0;
+    *out = p;
+    return STATUS_OK;
+}
+
+void plan_destroy(plan *p)
+{
+    if (!p)
+        return;
+    for (int r = 0; p->looks && r <= p->solids->body_count; r++)
+        free(p->looks[r].look);
+    free(p->looks);
+    arrangement_destroy(p->solids);
+    for (size_t i = 0; p->own_trees && i < p->own_tree_count; i++)
+        hierarchy_destroy(p->own_trees[i]);
+    free(p->own_trees);
+    for (size_t i = 0; p->clearness && i < p->own_tree_count; i++)
+        free(p->clearness[i]);
+    free(p->clearness);
+    free(p->materials);
+    free(p->mirrors);
+    free(p->ior);
+    free(p->laws);
+    free(p->absorption);
+    free(p->cones);
+    spectra_destroy(p->spectral);
+    free(p);
+}

@@ -1,0 +1,61 @@
+/* A scene made ready for tracing: solids in order of rank, materials and indices by rank, the camera's frame. Built
+ * once a frame, then read by all workers. Ownership: plan_build gives, plan_destroy releases; it borrows the scene's
+ * lights and sky. */
+#ifndef CUVETTE_RENDER_CORE_PLAN_H
+#define CUVETTE_RENDER_CORE_PLAN_H
+
+#include "geometry/arrangement.h"
+#include "geometry/hierarchy.h"
+#include "render/core/mesh_report.h"
+#include "render/shade/light_cone.h"
+#include "render/shade/spectra.h"
+#include "scene/model/camera.h"
+#include "scene/model/looks.h"
+#include "scene/model/medium.h"
+#include "scene/model/scene.h"
+
+/* By a mesh's slots, or one for all. */
+typedef struct body_look {
+    int count;
+    surface_look *look;
+    shading_rule shading;
+} body_look;
+
+typedef struct plan {
+    arrangement *solids;
+    const material **materials; /* by rank; [0] is NULL */
+    body_look *looks;           /* by rank; [0] is empty */
+    hierarchy **own_trees;      /* of a plan that does not keep them with the meshes; by solid */
+    size_t own_tree_count;
+    double **clearness; /* by solid: of its faces by slot, or NULL; as many as own_trees */
+    mesh_report meshes;
+    material *mirrors; /* by solid: clear materials whose index makes them mirrors, as opaque ones */
+    double *ior;       /* by rank; [0] is the surrounding medium's; at render.lambda_nm */
+    index_law *laws;   /* by rank: what ior was taken from */
+    vec3 *absorption;  /* by rank: Beer and Lambert's coefficients and tints, by channel, in 1 / scene unit */
+    spectra *spectral; /* of a spectral film, else NULL */
+    camera_frame view;
+    uint64_t eye_inside; /* the set of primitives that the camera stands in */
+    int eye_rank;        /* and the medium there */
+    bool basic;          /* rays carry basic radiance: see radiance.c */
+    render_settings render;
+    /* every solid blocks a light: it is asked for, or what comes through is found by random paths */
+    bool solid_shadows;
+    const background *sky;
+    vec3 sky_mean; /* over all directions; worked out where render.beyond is mean */
+    const light *lights;
+    light_cone *cones; /* by light; of a point light it means nothing */
+    int light_count;
+} plan;
+
+/* scene_load must have been called. */
+status plan_build(const scene *s, plan **out, diagnostic *why);
+void plan_destroy(plan *p);
+
+/* Fills *out for a body of that solid, whose own surface is that material; false when memory is out. For plan.c. */
+bool body_look_make(const scene *s, const solid *owner, const material *surface, body_look *out);
+/* What a shadow ray keeps at its surface: the least, and by slot where faces differ, else NULL; *by_slot is the
+ * caller's. False when memory is out. */
+bool body_clearness_make(const scene *s, const solid *owner, double *least, double **by_slot);
+
+#endif

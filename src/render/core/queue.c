@@ -1,0 +1,42 @@
+#include "render/core/queue.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIELDS = 15, LINE = 64, LANES = LANES_MAX };
+
+bool queue_create(ray_queue *q, int capacity)
+{
+    memset(q, 0, sizeof *q);
+    size_t length = ((size_t)capacity + LANES - 1) / LANES * LANES + LANES; /* not a multiple of 1024 bytes: see ROW */
+    char *memory = aligned_alloc(LINE, FIELDS * length * sizeof(double));
+    if (!memory)
+        return false;
+    double **reals[] = {&q->ox, &q->oy, &q->oz, &q->dx, &q->dy, &q->dz, &q->wr, &q->wg, &q->wb};
+    double *at = (double *)(void *)memory;
+    for (size_t i = 0; i < sizeof reals / sizeof *reals; i++, at += length)
+        *reals[i] = at;
+    q->start = (int64_t *)(void *)at;
+    q->ticket = (int64_t *)(void *)(at + length);
+    q->inside = (uint64_t *)(void *)(at + 2 * length);
+    q->sq = at + 3 * length, q->su = at + 4 * length, q->sv = at + 5 * length;
+    q->memory = memory;
+    q->capacity = capacity;
+    return true;
+}
+
+void queue_destroy(ray_queue *q)
+{
+    free(q->memory);
+    memset(q, 0, sizeof *q);
+}
+
+ray_batch queue_take(ray_queue *q, int *first)
+{
+    int from = q->count > BATCH ? (q->count - BATCH + LANES - 1) / LANES * LANES : 0;
+    ray_batch b = {q->count - from, q->ox + from, q->oy + from,    q->oz + from,    q->dx + from,
+                   q->dy + from,    q->dz + from, q->start + from, q->inside + from};
+    q->count = from;
+    *first = from;
+    return b;
+}

@@ -1,0 +1,90 @@
+#include "render/core/record.h"
+
+#include "base/file.h"
+#include "base/number.h"
+#include "image/heatmap.h"
+#include <math.h>
+#include <stdlib.h>
+
+status record_picture(const film *f, const char *path, int bits, diagnostic *why)
+{
+    image *picture = NULL;
+    status code = film_image(f, &picture, why);
+    if (code == STATUS_OK)
+        code = image_write(picture, path, bits, why);
+    image_destroy(picture);
+    return code;
+}
+
+static status picture_of_values(const double *values, const film *f, image **out, diagnostic *why)
+{
+    status code = image_create(f->width, f->height, out, why);
+    for (size_t i = 0; code == STATUS_OK && i < (size_t)f->width * (size_t)f->height; i++)
+        for (size_t channel = 0; channel < 3; channel++)
+            (*out)->pixel[i * 3 + channel] = (float)values[i];
+    return code;
+}
+
+status record_map(const double *values, const film *f, const char *title, const char *path, diagnostic *why)
+{
+    image *picture = NULL;
+    status code = image_format_of(path) == IMAGE_PFM
+                      ? picture_of_values(values, f, &picture, why)
+                      : heatmap_create(values, f->width, f->height, title, &picture, why);
+    if (code == STATUS_OK)
+        code = image_write(picture, path, 8, why);
+    image_destroy(picture);
+    return code;
+}
+
+status record_noise(const render_result *result, const char *path, diagnostic *why)
+{
+    const size_t pixels = (size_t)result->picture->width * (size_t)result->picture->height;
+    double *error = malloc((pixels + 1) * sizeof *error);
+    if (!error)
+        return out_of_memory(why);
+    for (size_t i = 0; i < pixels; i++) {
+        const double *v = &result->variance[3 * i];
+        error[i] = sqrt((v[0] + v[1] + v[2]) / 3.0);
+    }
+    status code = record_map(error, result->picture, "standard error per pixel", path, why);
+    free(error);
+    return code;
+}
+
+static void write_row_name(FILE *stream, int worker)
+{
+    fprintf(stream, ",\n{\"name\":\"thread_name\",\"ph\":\"M\",\"pid\":1,\"tid\":%d,\"args\":{\"name\":\"worker %d\"}}",
+            worker, worker);
+    fprintf(stream,
+            ",\n{\"name\":\"thread_sort_index\",\"ph\":\"M\",\"pid\":1,\"tid\":%d,\"args\":{\"sort_index\":%d}}",
+            worker, worker);
+}
+
+static void write_event(FILE *stream, const tile_event *e)
+{
+    char begin[NUMBER_TEXT_MAX], length[NUMBER_TEXT_MAX];
+    number_format(e->begin_s * 1e6, begin);
+    number_format((e->end_s - e->begin_s) * 1e6, length);
+    fprintf(stream,
+            ",\n{\"name\":\"tile %d,%d\",\"cat\":\"tile\",\"ph\":\"X\",\"ts\":%s,\"dur\":%s,\"pid\":1,\"tid\":%d,",
+            e->x0, e->y0, begin, length, e->worker);
+    fprintf(stream, "\"args\":{\"x0\":%d,\"y0\":%d,\"x1\":%d,\"y1\":%d}}", e->x0, e->y0, e->x1, e->y1);
+}
+
+status record_timeline(const render_result *result, const char *path, diagnostic *why)
+{
+    file_writer file;
+    status opened = file_writer_open(&file, path, why);
+    if (opened != STATUS_OK)
+        return opened;
+    fputs("{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n", file.stream);
+    fputs("{\"name\":\"process_name\",\"ph\":\"M\",\"pid\":1,\"tid\":0,\"args\":{\"name\":\"cuvette render\"}}",
+          file.stream);
+    for (int i = 0; i < result->worker_count; i++)
+        write_row_name(file.stream, i);
+    for (size_t i = 0; i < result->event_count; i++)
+        write_event(file.stream, &result->events[i]);
+    fputs("\n]}\n", file.stream);
+    return file_writer_commit(&file, why);
+}

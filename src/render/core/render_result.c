@@ -1,0 +1,28 @@
+#include "render/core/renderer.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+double render_noise_rms(const render_result *result)
+{
+    if (!result->variance)
+        return (double)NAN;
+    const size_t count = 3 * (size_t)result->picture->width * (size_t)result->picture->height;
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++)
+        sum += result->variance[i];
+    return sqrt(sum / (double)count);
+}
+
+void render_result_destroy(render_result *result)
+{
+    if (!result)
+        return;
+    film_destroy(result->picture);
+    free(result->workers);
+    free(result->pixel_rays);
+    free(result->pixel_ns);
+    free(result->variance);
+    free(result->events);
+    free(result);
+}

@@ -1,0 +1,393 @@
+#include "render/core/renderer.h"
+
+#include "measure/clock.h"
+#include "render/core/plan.h"
+#include "render/core/pool.h"
+#include "render/core/schedule.h"
+#include "render/core/tracer_set.h"
+#include "render/zbuffer/zbuffer.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct renderer {
+    const topology *machine;
+    pool *threads;
+    tracer_set *tracers;
+};
+
+typedef struct event_list {
+    tile_event *event;
+    size_t count, capacity;
+} event_list;
+
+/* What one worker writes during a frame, on cache lines of its own. */
+typedef struct worker_account {
+    _Alignas(64) worker_report report;
+    event_list events;
+    atomic_uint_fast64_t pixels; /* begun; read by the watcher */
+    bool out_of_memory, misplaced;
+} worker_account;
+
+typedef struct frame {
+    renderer *owner;
+    const scene *s;
+    const render_options *options;
+    const plan *scene;
+    const film *picture;
+    zbuffer *depths; /* of a frame that is drawn, else NULL */
+    schedule pieces;
+    worker_account *accounts;
+    double began_s;
+    atomic_bool stop;
+} frame;
+
+status renderer_create(isa level, const topology *machine, renderer **out, diagnostic *why)
+{
+    renderer *r = calloc(1, sizeof *r);
+    if (r) {
+        r->threads = pool_create();
+        r->tracers = tracer_set_create(level);
+        r->machine = machine;
+    }
+    if (!r || !r->threads || !r->tracers) {
+        renderer_destroy(r);
+        return out_of_memory(why);
+    }
+    *out = r;
+    return STATUS_OK;
+}
+
+void renderer_destroy(renderer *r)
+{
+    if (!r)
+        return;
+    pool_destroy(r->threads);
+    tracer_set_destroy(r->tracers);
+    free(r);
+}
+
+status renderer_prepare(renderer *r, const scene *s, diagnostic *why)
+{
+    return s->render.pool ? pool_reserve(r->threads, (int)s->render.threads, why) : STATUS_OK;
+}
+
+static pin_policy policy_of(const scene *s)
+{
+    switch ((pin_rule)s->render.pin) {
+    case PIN_RULE_NONE: break;
+    case PIN_RULE_COMPACT: return PIN_COMPACT;
+    case PIN_RULE_SCATTER: return PIN_SCATTER;
+    }
+    return PIN_NONE;
+}
+
+/* Threads of a kept pool remember where they were put. False if a thread cannot be put where it belongs. */
+static bool take_place(const frame *f, int worker)
+{
+    static _Thread_local int bound_to = -1;
+    if (!f->owner->machine)
+        return true;
+    int pu = topology_place(f->owner->machine, policy_of(f->s), worker, (int)f->s->render.threads);
+    if (pu == bound_to)
+        return true;
+    if (topology_bind_thread(f->owner->machine, pu, NULL) != STATUS_OK)
+        return false;
+    bound_to = pu;
+    return true;
+}
+
+static double since(const frame *f)
+{
+    return clock_wall_s() - f->began_s;
+}
+
+static void note_tile(const frame *f, worker_account *d, int worker, const span *piece, double began_s)
+{
+    event_list *l = &d->events;
+    if (l->count == l->capacity) {
+        size_t capacity = l->capacity ? 2 * l->capacity : 64;
+        tile_event *grown = realloc(l->event, capacity * sizeof *grown);
+        if (!grown) {
+            d->out_of_memory = true;
+            return;
+        }
+        l->event = grown;
+        l->capacity = capacity;
+    }
+    l->event[l->count++] = (tile_event){worker, piece->x0, piece->y0, piece->x1, piece->y1, began_s, since(f)};
+}
+
+/* Pieces one after another; rays that do not fill a batch at the end of one piece go on with the next. */
+static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
+{
+    const bool timeline = f->options && f->options->timeline, by_piece = f->options && f->options->piece_done;
+    const double began_s = since(f);
+    tracer *t = tracer_set_take(f->owner->tracers);
+    if (!t) {
+        d->out_of_memory = true;
+        return;
+    }
+    const ray_counters *c = tracer_counters(t);
+    const double visibility_s = tracer_visibility_s(t);
+    const uint64_t camera_rays = c->camera, reflect = c->reflect, refract = c->refract, shadow = c->shadow;
+    do {
+        double tile_began_s = timeline ? since(f) : 0.0;
+        tracer_span(t, &piece, &d->pixels, &f->stop);
+        if (by_piece) {
+            tracer_finish(t, &f->stop);
+            if (!atomic_load_explicit(&f->stop, memory_order_relaxed))
+                f->options->piece_done(f->options->context, f->picture, piece.x0, piece.y0, piece.x1, piece.y1);
+        }
+        d->report.tiles++;
+        if (timeline)
+            note_tile(f, d, worker, &piece, tile_began_s);
+    } while (!atomic_load_explicit(&f->stop, memory_order_relaxed) &&
+             schedule_next(&f->pieces, worker, d->report.tiles, &piece));
+    tracer_finish(t, &f->stop);
+    if (timeline && d->events.count > 0)
+        d->events.event[d->events.count - 1].end_s = since(f);
+    d->report.busy_s = since(f) - began_s;
+    d->report.visibility_s = tracer_visibility_s(t) - visibility_s;
+    d->report.camera = c->camera - camera_rays, d->report.reflect = c->reflect - reflect;
+    d->report.refract = c->refract - refract, d->report.shadow = c->shadow - shadow;
+    tracer_set_give(f->owner->tracers, t);
+}
+
+static void work(void *context, int worker)
+{
+    frame *f = context;
+    worker_account *d = &f->accounts[worker];
+    const double began_s = since(f), cpu_s = clock_thread_cpu_s();
+    d->misplaced = !take_place(f, worker);
+    span piece;
+    if (!atomic_load_explicit(&f->stop, memory_order_relaxed) && schedule_next(&f->pieces, worker, 0, &piece))
+        trace_pieces(f, worker, d, piece);
+    d->report.start_s = began_s;
+    d->report.pu = topology_current_pu();
+    d->report.cpu_s = clock_thread_cpu_s() - cpu_s;
+    d->report.wall_s = since(f) - began_s;
+}
+
+static void watch(void *context)
+{
+    frame *f = context;
+    uint64_t begun = 0;
+    for (int i = 0; i < (int)f->s->render.threads; i++)
+        begun += atomic_load_explicit(&f->accounts[i].pixels, memory_order_relaxed);
+    double share = (double)begun / ((double)f->s->render.width * (double)f->s->render.height);
+    if (!f->options->progress(f->options->context, share))
+        atomic_store(&f->stop, true);
+}
+
+static int compare_events(const void *a, const void *b)
+{
+    const tile_event *x = a, *y = b;
+    if (x->begin_s != y->begin_s)
+        return x->begin_s < y->begin_s ? -1 : 1;
+    return (x->worker > y->worker) - (x->worker < y->worker);
+}
+
+static bool join_events(const worker_account *accounts, int count, render_result *result)
+{
+    size_t total = 0;
+    for (int i = 0; i < count; i++)
+        total += accounts[i].events.count;
+    result->events = calloc(total + 1, sizeof *result->events);
+    if (!result->events)
+        return false;
+    for (int i = 0; i < count; i++)
+        for (size_t k = 0; k < accounts[i].events.count; k++)
+            result->events[result->event_count++] = accounts[i].events.event[k];
+    qsort(result->events, total, sizeof *result->events, compare_events);
+    return true;
+}
+
+/* Rays that look for their nearest interface are tested against every visible solid, shadow rays against those that
+ * cast shadows. */
+static void count_tests(const plan *p, ray_counters *c)
+{
+    const uint64_t nearest = c->camera + c->reflect + c->refract;
+    for (int r = 1; r <= p->solids->body_count; r++) {
+        const body *b = &p->solids->bodies[r];
+        c->tests[b->solid] =
+            nearest + (body_casts_shadow(b, p->solid_shadows) || p->solids->bodies[0].absorbs ? c->shadow : 0);
+    }
+}
+
+/* Sums up what the workers wrote into their accounts. */
+static status collect(frame *f, bool in_range, render_result *result, diagnostic *why)
+{
+    const int count = (int)f->s->render.threads;
+    bool out_of_memory = false, misplaced = false;
+    for (int i = 0; i < count; i++) {
+        worker_account *d = &f->accounts[i];
+        d->report.waiting_s = result->wall_s - d->report.busy_s;
+        d->report.visibility_s = f->scene->solids->meshes ? d->report.visibility_s : NAN;
+        result->workers[i] = d->report;
+        out_of_memory |= d->out_of_memory;
+        misplaced |= d->misplaced;
+    }
+    const bool overflow = tracer_set_collect(f->owner->tracers, &result->counters) || !in_range;
+    if (!f->depths)
+        count_tests(f->scene, &result->counters);
+    if (f->options && f->options->timeline)
+        out_of_memory |= !join_events(f->accounts, count, result);
+    if (out_of_memory)
+        return diagnose(why, STATUS_FAILURE, "use fewer threads or less depth", "out of memory while tracing");
+    if (misplaced)
+        return diagnose(why, STATUS_FAILURE, "set render.pin to none",
+                        "a worker cannot be bound to its processing unit");
+    if (overflow)
+        return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
+                        "the picture is brighter than the film holds (262144 in one contribution, 524288 in a pixel)");
+    return atomic_load(&f->stop) ? STATUS_INTERRUPTED : STATUS_OK;
+}
+
+/* Zeros that are written, so that no pixel's time holds the making of a page; of malloc and memset the compiler would
+ * make a calloc, which writes nothing. */
+static double *make_map(size_t pixels)
+{
+    double *map = malloc(pixels * sizeof *map);
+    if (map)
+        explicit_bzero(map, pixels * sizeof *map);
+    return map;
+}
+
+/* As many equal shares of a pixel's paths as there can be, to tell how they differ. Each has all of the pixel's points.
+ */
+static int layers_of(const scene *s)
+{
+    const render_settings *r = &s->render;
+    int layers = integrator_of(r)->by_chance && r->paths % r->samples == 0 ? FILM_LAYERS_MAX : 1;
+    while (r->paths / r->samples % layers != 0)
+        layers--;
+    return layers;
+}
+
+static status make_result(const scene *s, const render_options *options, render_result **out, diagnostic *why)
+{
+    const size_t pixels = (size_t)s->render.width * (size_t)s->render.height;
+    render_result *result = calloc(1, sizeof *result);
+    if (!result)
+        return out_of_memory(why);
+    const film_space space = s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
+    status code = film_create((int)s->render.width, (int)s->render.height, layers_of(s), space, &result->picture, why);
+    if (code == STATUS_OK) {
+        result->worker_count = (int)s->render.threads;
+        result->workers = calloc((size_t)result->worker_count, sizeof *result->workers);
+        bool missing = !result->workers;
+        if (options && options->pixel_rays)
+            missing |= !(result->pixel_rays = make_map(pixels));
+        if (options && options->pixel_time)
+            missing |= !(result->pixel_ns = make_map(pixels));
+        if (layers_of(s) > 1)
+            missing |= !(result->variance = make_map(3 * pixels));
+        if (missing)
+            code = diagnose(why, STATUS_FAILURE, "render a smaller picture", "out of memory");
+    }
+    if (code != STATUS_OK) {
+        render_result_destroy(result);
+        return code;
+    }
+    *out = result;
+    return STATUS_OK;
+}
+
+static worker_account *make_accounts(int count)
+{
+    worker_account *accounts = aligned_alloc(64, (size_t)count * sizeof *accounts);
+    if (accounts)
+        memset(accounts, 0, (size_t)count * sizeof *accounts);
+    return accounts;
+}
+
+static void project(void *context, int worker)
+{
+    const frame *f = context;
+    (void)worker;
+    zbuffer_project(f->depths);
+}
+
+/* Of a frame that is drawn, the triangles must be sorted before any piece of the picture can be made. */
+static status prepare_drawing(frame *f, int count, diagnostic *why)
+{
+    if (!f->depths)
+        return STATUS_OK;
+    const status code = pool_run(f->owner->threads, count, f->s->render.pool, project, NULL, 0.0, f, why);
+    return code == STATUS_OK ? zbuffer_sort(f->depths, why) : code;
+}
+
+static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, zbuffer *depths,
+                        render_result *result, diagnostic *why)
+{
+    const int count = (int)s->render.threads;
+    frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
+    worker_account *accounts = make_accounts(count);
+    const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns, depths};
+    bool has_memory = f && accounts && tracer_set_begin(r->tracers, count, &target);
+    status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
+    if (code == STATUS_OK) {
+        memset(f, 0, sizeof *f);
+        f->owner = r;
+        f->s = s;
+        f->options = options;
+        f->scene = p;
+        f->picture = result->picture;
+        f->depths = depths;
+        f->accounts = accounts;
+        schedule_start(&f->pieces, &s->render);
+        const double cpu_s = clock_process_cpu_s();
+        f->began_s = clock_wall_s();
+        code = prepare_drawing(f, count, why);
+        if (code == STATUS_OK)
+            code = pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL,
+                            options && options->progress_s > 0 ? options->progress_s : 0.1, f, why);
+        result->wall_s = clock_wall_s() - f->began_s;
+        result->cpu_s = clock_process_cpu_s() - cpu_s;
+        if (code == STATUS_OK) {
+            const bool in_range = film_add_layers(result->picture, result->variance);
+            code = collect(f, in_range, result, why);
+            if (code == STATUS_OK && depths && zbuffer_failed(depths))
+                code = diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer clear solids",
+                                "out of memory for the layers of clear solids");
+        }
+        for (int i = 0; i < count; i++)
+            free(accounts[i].events.event);
+    }
+    free(accounts);
+    free(f);
+    return code;
+}
+
+status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out, diagnostic *why)
+{
+    status code = scene_check(s, why);
+    plan *p = NULL;
+    zbuffer *depths = NULL;
+    render_result *result = NULL;
+    if (code == STATUS_OK && s->background.kind == BACKGROUND_PICTURE && !s->background.picture)
+        code = diagnose(why, STATUS_FAILURE, "call scene_load before", "the sky's picture is not loaded");
+    if (code == STATUS_OK)
+        code = plan_build(s, &p, why);
+    if (code == STATUS_OK && integrator_of(&s->render)->drawn)
+        code = zbuffer_create(p, &depths, why);
+    if (code == STATUS_OK)
+        code = make_result(s, options, &result, why);
+    if (code == STATUS_OK)
+        code = run_frame(r, s, options, p, depths, result, why);
+    if (result && p)
+        result->meshes = p->meshes;
+    if (code == STATUS_OK && depths) {
+        result->meshes.drawn = zbuffer_triangles(depths);
+        result->meshes.drawn_bytes = zbuffer_bytes(depths);
+    }
+    zbuffer_destroy(depths);
+    plan_destroy(p);
+    if (code != STATUS_OK && code != STATUS_INTERRUPTED) {
+        render_result_destroy(result);
+        return code;
+    }
+    *out = result;
+    return code;
+}

@@ -1,0 +1,48 @@
+#include "render/core/schedule.h"
+
+void schedule_start(schedule *s, const render_settings *settings)
+{
+    s->rule = (schedule_rule)settings->schedule;
+    s->width = (int)settings->width;
+    s->height = (int)settings->height;
+    s->tile = (int)settings->tile;
+    s->workers = (int)settings->threads;
+    s->tiles_across = (s->width + s->tile - 1) / s->tile;
+    s->tile_count = s->tiles_across * ((s->height + s->tile - 1) / s->tile);
+    atomic_store(&s->next, 0);
+}
+
+static int clamp(int64_t v, int most)
+{
+    return v < most ? (int)v : most;
+}
+
+/* The worker's share of length units, ceil(length / workers) each, as the report deals them out. */
+static bool block(int length, int workers, int worker, int *from, int *to)
+{
+    int64_t each = (length + workers - 1) / workers;
+    *from = clamp(each * worker, length);
+    *to = clamp(each * (worker + 1), length);
+    return *from < *to;
+}
+
+static bool tile(const schedule *s, int64_t index, span *out)
+{
+    if (index >= s->tile_count)
+        return false;
+    int64_t x = index % s->tiles_across * s->tile, y = index / s->tiles_across * s->tile;
+    *out = (span){(int)x, (int)y, clamp(x + s->tile, s->width), clamp(y + s->tile, s->height)};
+    return true;
+}
+
+bool schedule_next(schedule *s, int worker, uint64_t taken, span *out)
+{
+    *out = (span){0, 0, s->width, s->height};
+    switch (s->rule) {
+    case SCHEDULE_COLUMNS: return taken == 0 && block(s->width, s->workers, worker, &out->x0, &out->x1);
+    case SCHEDULE_ROWS: return taken == 0 && block(s->height, s->workers, worker, &out->y0, &out->y1);
+    case SCHEDULE_TILES: return tile(s, worker + (int64_t)taken * s->workers, out);
+    case SCHEDULE_DYNAMIC: return tile(s, atomic_fetch_add_explicit(&s->next, 1, memory_order_relaxed), out);
+    }
+    return false;
+}

@@ -1,0 +1,26 @@
+/* Which worker does which piece of the picture. columns and rows: one block a worker, as the report; tiles: square
+ * tiles dealt out in turn; dynamic: the next tile to whoever asks. Ownership: a value; next is the only field that
+ * workers share. */
+#ifndef CUVETTE_RENDER_CORE_SCHEDULE_H
+#define CUVETTE_RENDER_CORE_SCHEDULE_H
+
+#include "scene/model/scene.h"
+#include <stdatomic.h>
+
+typedef struct span {
+    int x0, y0, x1, y1;
+} span; /* x0 <= x < x1 */
+
+typedef struct schedule {
+    schedule_rule rule;
+    int width, height, tile, workers;
+    int64_t tiles_across, tile_count;
+    _Alignas(64) atomic_int_fast64_t next;
+} schedule;
+
+void schedule_start(schedule *s, const render_settings *settings);
+
+/* The next piece for a worker that has had `taken` of them so far; false when there is none left. */
+bool schedule_next(schedule *s, int worker, uint64_t taken, span *out);
+
+#endif

@@ -1,0 +1,92 @@
+#include "render/core/tracer_set.h"
+
+#include "render/core/tracer_private.h"
+#include <pthread.h>
+#include <stdlib.h>
+
+struct tracer_set {
+    isa level;
+    pthread_mutex_t lock;
+    tracer **all, **idle; /* idle: a stack of those that nobody holds */
+    int capacity, count, idle_count;
+    tracer_target target;
+    uint64_t frame; /* running number; a tracer says in which one it was last begun */
+};
+
+tracer_set *tracer_set_create(isa level)
+{
+    tracer_set *set = calloc(1, sizeof *set);
+    if (!set)
+        return NULL;
+    set->level = level;
+    pthread_mutex_init(&set->lock, NULL);
+    return set;
+}
+
+void tracer_set_destroy(tracer_set *set)
+{
+    if (!set)
+        return;
+    for (int i = 0; i < set->count; i++)
+        tracer_destroy(set->all[i]);
+    free(set->all);
+    free(set->idle);
+    pthread_mutex_destroy(&set->lock);
+    free(set);
+}
+
+static bool reserve(tracer ***list, int count)
+{
+    tracer **grown = realloc(*list, (size_t)count * sizeof(tracer *));
+    if (grown)
+        *list = grown;
+    return grown != NULL;
+}
+
+bool tracer_set_begin(tracer_set *set, int workers, const tracer_target *target)
+{
+    if (workers > set->capacity) {
+        if (!reserve(&set->all, workers) || !reserve(&set->idle, workers))
+            return false;
+        set->capacity = workers;
+    }
+    set->target = *target;
+    set->frame++;
+    return true;
+}
+
+tracer *tracer_set_take(tracer_set *set)
+{
+    pthread_mutex_lock(&set->lock);
+    tracer *t = set->idle_count > 0 ? set->idle[--set->idle_count] : NULL;
+    if (!t && (t = tracer_create(set->level)))
+        set->all[set->count++] = t;
+    pthread_mutex_unlock(&set->lock);
+    if (!t || t->frame == set->frame)
+        return t;
+    if (!tracer_begin(t, &set->target)) {
+        tracer_set_give(set, t);
+        return NULL;
+    }
+    t->frame = set->frame;
+    return t;
+}
+
+void tracer_set_give(tracer_set *set, tracer *t)
+{
+    pthread_mutex_lock(&set->lock);
+    set->idle[set->idle_count++] = t;
+    pthread_mutex_unlock(&set->lock);
+}
+
+bool tracer_set_collect(const tracer_set *set, ray_counters *sum)
+{
+    bool overflow = false;
+    for (int i = 0; i < set->count; i++) {
+        if (set->all[i]->frame != set->frame)
+            continue;
+        ray_counters_add(sum, tracer_counters(set->all[i]));
+        overflow |= tracer_overflowed(set->all[i]);
+    }
+    return overflow;
+}

@@ -1,0 +1,24 @@
+/* The tracers of a renderer. Each is lent to one worker at a time, the last one given back first: what it works on is
+ * then still in that processor's cache, and a thousand workers on few processors need no more tracers than run at once.
+ * Ownership: tracer_set_create gives, tracer_set_destroy releases; take and give may be called from any thread. */
+#ifndef CUVETTE_RENDER_CORE_TRACER_SET_H
+#define CUVETTE_RENDER_CORE_TRACER_SET_H
+
+#include "render/core/tracer.h"
+
+typedef struct tracer_set tracer_set;
+
+tracer_set *tracer_set_create(isa level);
+void tracer_set_destroy(tracer_set *set);
+
+/* Begins a frame with so many workers, none of which holds a tracer yet. False when memory is out. */
+bool tracer_set_begin(tracer_set *set, int workers, const tracer_target *target);
+
+/* A tracer with nothing in its queues, its counters those of the frame so far; NULL when memory is out. */
+tracer *tracer_set_take(tracer_set *set);
+void tracer_set_give(tracer_set *set, tracer *t);
+
+/* After the frame: adds up what its tracers counted; true if one of them overflowed. */
+bool tracer_set_collect(const tracer_set *set, ray_counters *sum);
+
+#endif

@@ -1,0 +1,214 @@
+#include "render/inspect/probe.h"
+
+#include "optics/interface.h"
+#include "scene/model/medium.h"
+#include "render/inspect/probe_private.h"
+#include <stdlib.h>
+#include <string.h>
+
+status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
+{
+    probe *p = calloc(1, sizeof *p);
+    if (!p)
+        return out_of_memory(why);
+    p->setting = scene_clone(s);
+    p->rays = tracer_create(level);
+    status code = p->setting && p->rays ? STATUS_OK : out_of_memory(why);
+    if (code == STATUS_OK) {
+        render_settings *r = &p->setting->render;
+        p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
+        r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
+        if (integrator_of(r)->by_chance || integrator_of(r)->drawn)
+            trace_trees(r); /* all branches, not one by chance or none */
+        code = scene_check(p->setting, why);
+    }
+    if (code == STATUS_OK)
+        code = plan_build(p->setting, &p->scene, why);
+    if (code == STATUS_OK)
+        code = film_create(1, 1, 1, FILM_RGB, &p->picture, why);
+    if (code != STATUS_OK) {
+        probe_destroy(p);
+        return code;
+    }
+    if (p->spectral)
+        probe_one_wavelength(p);
+    *out = p;
+    return STATUS_OK;
+}
+
+/* By channel, or of a spectral film at the one wavelength. */
+static vec3 tint_of(const probe *p, const material *m)
+{
+    vec3 share = m->color;
+    if (!material_tints(m))
+        return vec3_make(0.0, 0.0, 0.0);
+    if (p->spectral) {
+        const lifted color = lift_reflectance((const double[3]){share.x, share.y, share.z});
+        share.x = share.y = share.z = lifted_reflectance(&color, p->scene->render.lambda_nm);
+    }
+    return vec3_make(material_tint(m, share.x), material_tint(m, share.y), material_tint(m, share.z));
+}
+
+void probe_one_wavelength(probe *p)
+{
+    const render_settings *r = &p->scene->render;
+    if (p->spectral) {
+        const double a = surrounding_absorption_at(&p->setting->background, r->lambda_nm) * r->unit_m;
+        p->scene->absorption[0] = vec3_make(a, a, a);
+    }
+    for (int rank = 1; rank <= p->scene->solids->body_count; rank++) {
+        const material *m = p->scene->materials[rank];
+        if (m->absorb_spectrum.count == 0 && !p->spectral)
+            continue;
+        const double a = material_absorption_at(m, r->lambda_nm) * r->unit_m;
+        p->scene->absorption[rank] = vec3_add(vec3_make(a, a, a), tint_of(p, m));
+    }
+}
+
+void probe_destroy(probe *p)
+{
+    if (!p)
+        return;
+    plan_destroy(p->scene);
+    tracer_destroy(p->rays);
+    film_destroy(p->picture);
+    scene_destroy(p->setting);
+    free(p);
+}
+
+void ray_tree_release(ray_tree *tree)
+{
+    free(tree->node);
+    memset(tree, 0, sizeof *tree);
+}
+
+static status begin(probe *p, ray_tree *tree, diagnostic *why)
+{
+    const tracer_target target = {p->scene, p->picture, NULL, NULL, NULL};
+    memset(p->picture->sum, 0, 3 * sizeof *p->picture->sum);
+    tree->count = 0;
+    tree->depth_limit = (int)p->scene->render.depth;
+    tree->lambda_nm = p->scene->render.lambda_nm;
+    p->scene->eye_rank = arrangement_rank(p->scene->solids, p->scene->eye_inside);
+    return tracer_begin(p->rays, &target) ? STATUS_OK : out_of_memory(why);
+}
+
+static status finish(probe *p, ray_tree *tree, status code, diagnostic *why)
+{
+    for (int c = 0; c < 3; c++)
+        tree->radiance[c] = film_value(p->picture, 0, 0, c);
+    if (code == STATUS_OK && tracer_overflowed(p->rays))
+        return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
+                        "the ray is brighter than the film holds");
+    return code;
+}
+
+status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
+{
+    const render_settings *r = &p->scene->render;
+    if (x < 0 || y < 0 || x >= r->width || y >= r->height)
+        return diagnose(why, STATUS_BAD_INPUT, "count pixels from 0,0 at the top left",
+                        "pixel %d,%d is outside the picture of %lld x %lld", x, y, (long long)r->width,
+                        (long long)r->height);
+    status code = begin(p, tree, why);
+    if (code != STATUS_OK)
+        return code;
+    ray_record roots[SCENE_SAMPLES_MAX];
+    const int count = tracer_camera_rays(p->rays, x, y);
+    for (int i = 0; i < count; i++)
+        probe_take(p, 0, i, &roots[i]);
+    p->rays->waiting[0].count = 0;
+    size_t last = 0;
+    for (int i = 0; i < count && code == STATUS_OK; i++) {
+        size_t root;
+        code = probe_grow(p, tree, &roots[i], RAY_CAMERA, RAY_NONE, &root, why);
+        if (code == STATUS_OK && i > 0)
+            tree->node[last].next = (int)root;
+        last = root;
+    }
+    return finish(p, tree, code, why);
+}
+
+/* Begins a tree with a ray of the caller's. */
+static status begin_free(probe *p, vec3 origin, vec3 direction, ray_tree *tree, ray_record *root, diagnostic *why)
+{
+    status code = probe_check_ray(origin, direction, why);
+    if (code == STATUS_OK)
+        code = begin(p, tree, why);
+    if (code == STATUS_OK) {
+        *root = probe_free_ray(p, origin, direction);
+        p->scene->eye_rank = root->medium_rank; /* an eye stands where the ray starts */
+    }
+    return code;
+}
+
+status probe_ray(probe *p, vec3 origin, vec3 direction, ray_tree *tree, diagnostic *why)
+{
+    ray_record root;
+    size_t unused;
+    status code = begin_free(p, origin, direction, tree, &root, why);
+    if (code != STATUS_OK)
+        return code;
+    code = probe_grow(p, tree, &root, RAY_CAMERA, RAY_NONE, &unused, why);
+    return finish(p, tree, code, why);
+}
+
+status probe_way(probe *p, vec3 origin, vec3 direction, int reflect_at, ray_tree *tree, diagnostic *why)
+{
+    ray_record root;
+    status code = begin_free(p, origin, direction, tree, &root, why);
+    if (code != STATUS_OK)
+        return code;
+    code = probe_follow(p, tree, &root, reflect_at, why);
+    return finish(p, tree, code, why);
+}
+
+const char *probe_medium_name(const probe *p, int at)
+{
+    const scene *s = p->setting;
+    if (at == RAY_OUTSIDE) {
+        const char *name = surrounding_medium_name(&s->background);
+        return name ? name : s->background.ior == 1.0 ? "air" : "surroundings";
+    }
+    const char *name = material_medium_name(&s->solids[at].surface);
+    return name ? name : s->solids[at].name;
+}
+
+int probe_medium_at(const probe *p, vec3 point)
+{
+    const scene *s = p->setting;
+    const arrangement *a = p->scene->solids;
+    int best = RAY_OUTSIDE;
+    if (a->meshes) /* only who has their triangles in order knows what is in them */
+        return a->bodies[arrangement_rank(a, arrangement_inside(a, point))].solid;
+    for (int i = 0; i < (int)s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && solid_shape_contains(&one->shape, point) &&
+            (best < 0 || one->priority > s->solids[best].priority))
+            best = i;
+    }
+    return best;
+}
+
+vec3 probe_camera_direction(const probe *p, double x, double y)
+{
+    return camera_direction(&p->scene->view, &p->scene->render, x, y);
+}
+
+const char *probe_face_name(const probe *p, const ray_hit *hit)
+{
+    static const char *const cylinder[] = {"side", "bottom", "top"};
+    static const char *const cup_outside[] = {"outer side", "bottom", "rim"};
+    static const char *const cup_hollow[] = {"inner side", "floor", "rim"};
+    static const char *const box[] = {"-x side", "+x side", "bottom", "top", "-z side", "+z side"};
+    switch (p->setting->solids[hit->face_solid].shape.kind) {
+    case SHAPE_CYLINDER: return cylinder[hit->face % FACES_MAX];
+    case SHAPE_CUP: return (hit->face < FACES_MAX ? cup_outside : cup_hollow)[hit->face % FACES_MAX];
+    case SHAPE_BOX: return box[hit->face % FACES_MAX];
+    case SHAPE_PLANE:
+    case SHAPE_SPHERE:
+    case SHAPE_MESH:
+    case SHAPE_COUNT: break;
+    }
+    return "surface";
+}

@@ -1,0 +1,39 @@
+/* The probe's inside, shared by probe.c (what is asked) and probe_grow.c (how a tree grows). */
+#ifndef CUVETTE_RENDER_INSPECT_PROBE_PRIVATE_H
+#define CUVETTE_RENDER_INSPECT_PROBE_PRIVATE_H
+
+#include "render/inspect/probe.h"
+#include "render/core/tracer_private.h"
+
+struct probe {
+    scene *setting; /* its own copy */
+    plan *scene;
+    tracer *rays;
+    film *picture; /* one pixel */
+    bool spectral; /* its picture would be */
+};
+
+/* A record of a queue, by itself. */
+typedef struct ray_record {
+    vec3 origin, direction;
+    double weight[3], stokes[3];
+    int64_t start;
+    uint64_t inside;
+    int depth;
+    int medium_rank; /* it sets out in */
+} ray_record;
+
+status probe_check_ray(vec3 origin, vec3 direction, diagnostic *why);
+ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction);
+
+/* Copies record i of the queue of a depth. */
+void probe_take(const probe *p, int depth, int i, ray_record *out);
+
+/* Adds a ray and all that comes of it to the tree; *at is its index. */
+status probe_grow(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind, int parent, size_t *at,
+                  diagnostic *why);
+
+/* Adds a ray and of its branches one each: see probe_way. */
+status probe_follow(probe *p, ray_tree *tree, const ray_record *ray, int reflect_at, diagnostic *why);
+
+#endif

@@ -1,0 +1,148 @@
+#include "render/inspect/section_private.h"
+
+#include <stdlib.h>
+
+/* How often a piece of a boundary is halved, and how straight it must be (share of a cell) not to be. */
+enum { HALVINGS = 9, JUNCTION_STEPS = 12 };
+#define STRAIGHT 1e-4
+
+/* Adds the points of the boundary between media a (on the left of the way from `from` to `to`) and b, both ends left
+ * out. */
+static void refine(cutter *c, section_point from, section_point to, int a, int b, int halvings)
+{
+    const double du = to.u - from.u, dv = to.v - from.v, length2 = du * du + dv * dv;
+    const double cell = c->du > c->dv ? c->du : c->dv;
+    if (halvings == 0 || length2 < STRAIGHT * STRAIGHT * cell * cell)
+        return;
+    const section_point middle = between(from, to, 0.5);
+    const section_point left = {middle.u - 0.7 * dv, middle.v + 0.7 * du},
+                        right = {middle.u + 0.7 * dv, middle.v - 0.7 * du};
+    if (medium_at(c, left) != a || medium_at(c, right) != b)
+        return;
+    const section_point on = section_bisect(c, left, right, a);
+    const double off_u = on.u - middle.u, off_v = on.v - middle.v;
+    if (off_u * off_u + off_v * off_v < STRAIGHT * STRAIGHT * cell * cell)
+        return;
+    refine(c, from, on, a, b, halvings - 1);
+    section_add_point(c, on);
+    refine(c, on, to, a, b, halvings - 1);
+}
+
+/* The piece of a boundary between two crossings of a cell, or a crossing and a junction. */
+static void add_piece(cutter *c, int from, int to, int a, int b)
+{
+    piece *more = section_grown(c->pieces, c->piece_count, &c->piece_capacity, sizeof *more);
+    c->failed |= !more;
+    if (!more)
+        return;
+    c->pieces = more;
+    const int index = (int)c->piece_count++;
+    piece *one = &c->pieces[index];
+    *one = (piece){.end = {from, to}, .a = a < b ? a : b, .b = a < b ? b : a, .first = c->out->point_count};
+    if (one->a != SECTION_EDGE)
+        refine(c, c->crossing[from], c->crossing[to], a, b, HALVINGS);
+    one->count = c->out->point_count - one->first;
+    for (int k = 0; k < 2; k++)
+        if (one->end[k] < c->edges)
+            c->at[one->end[k]][c->at[one->end[k]][0] >= 0] = index;
+}
+
+static int add_junction(cutter *c, section_point at)
+{
+    if (c->junctions == c->junction_capacity) {
+        const int wanted = 2 * c->junction_capacity;
+        section_point *more = realloc(c->crossing, (size_t)(c->edges + wanted) * sizeof *more);
+        c->failed |= !more;
+        if (!more)
+            return 0;
+        c->crossing = more;
+        c->junction_capacity = wanted;
+    }
+    c->crossing[c->edges + c->junctions] = at;
+    return c->edges + c->junctions++;
+}
+
+static int distinct(const int *media)
+{
+    int count = 1;
+    for (int k = 1; k < 4; k++) {
+        bool is_new = true;
+        for (int m = 0; m < k; m++)
+            is_new &= media[m] != media[k];
+        count += is_new;
+    }
+    return count;
+}
+
+/* Where three media meet: the quarter of the cell whose corners see most of them, again and again. */
+static section_point meeting_point(const cutter *c, int i, int j)
+{
+    section_point low = grid_point(c, i, j);
+    double du = c->du, dv = c->dv;
+    for (int step = 0; step < JUNCTION_STEPS; step++) {
+        int seen[3][3], best = 0, most = 0;
+        for (int k = 0; k < 9; k++)
+            seen[k / 3][k % 3] = medium_at(c, (section_point){low.u + 0.5 * du * (k % 3), low.v + 0.5 * dv * (k / 3)});
+        for (int k = 0; k < 4; k++) {
+            const int x = k % 2, y = k / 2,
+                      corners[4] = {seen[y][x], seen[y][x + 1], seen[y + 1][x + 1], seen[y + 1][x]};
+            if (distinct(corners) > most)
+                most = distinct(corners), best = k;
+        }
+        du *= 0.5, dv *= 0.5;
+        low.u += du * (best % 2), low.v += dv * (best / 2);
+    }
+    return (section_point){low.u + 0.5 * du, low.v + 0.5 * dv};
+}
+
+/* A cell with corners 0 .. 3 counterclockwise and sides 0 .. 3 that follow them. A boundary that goes in through side
+ * k, between corners k and k + 1, has the medium of corner k on its left. */
+static void meet(cutter *c, int i, int j, const int *side, const int *corner)
+{
+    section_point at = {0.0, 0.0};
+    bool framed = false, found = false;
+    for (int k = 0; k < 4; k++)
+        framed |= corner[k] == SECTION_EDGE;
+    for (int k = 0; k < 4 && framed; k++) {
+        const int a = corner[k], b = corner[(k + 1) % 4];
+        if (a != b && a != SECTION_EDGE && b != SECTION_EDGE)
+            at = c->crossing[side[k]], found = true;
+    }
+    const int junction = add_junction(c, found ? at : meeting_point(c, i, j));
+    for (int k = 0; k < 4 && !c->failed; k++)
+        if (corner[k] != corner[(k + 1) % 4])
+            add_piece(c, side[k], junction, corner[k], corner[(k + 1) % 4]);
+}
+
+/* Four crossings: the medium in the middle joins two opposite corners that are of it, or else all meet. */
+static void part_corners(cutter *c, int i, int j, const int *side, const int *corner)
+{
+    const section_point low = grid_point(c, i, j);
+    const int middle = medium_at(c, (section_point){low.u + 0.5 * c->du, low.v + 0.5 * c->dv});
+    for (int k = 0; k < 2; k++) {
+        if (corner[k] != corner[k + 2] || corner[k] != middle)
+            continue;
+        for (int m = k + 1; m < 4 + k; m += 2) /* cuts off corner m */
+            add_piece(c, side[m - 1], side[m % 4], middle, corner[m % 4]);
+        return;
+    }
+    meet(c, i, j, side, corner);
+}
+
+void section_march(cutter *c, int i, int j)
+{
+    const int corner[4] = {label(c, i, j), label(c, i + 1, j), label(c, i + 1, j + 1), label(c, i, j + 1)};
+    const int side[4] = {edge_across(c, i, j), edge_up(c, i + 1, j), edge_across(c, i, j + 1), edge_up(c, i, j)};
+    int crossed[4], count = 0;
+    for (int k = 0; k < 4; k++)
+        if (corner[k] != corner[(k + 1) % 4])
+            crossed[count++] = k;
+    if (count == 0)
+        return;
+    if (count == 4)
+        part_corners(c, i, j, side, corner);
+    else if (count == 3)
+        meet(c, i, j, side, corner);
+    else
+        add_piece(c, side[crossed[0]], side[crossed[1]], corner[crossed[0]], corner[(crossed[0] + 1) % 4]);
+}

@@ -1,0 +1,266 @@
+/* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is drawn by chance,
+ * weighed so that the mean over all paths is the whole tree's. What stands for the light's way: a clear surface
+ * reflects or refracts with Fresnel's shares as odds, so that the weight does not change; a matte surface  is lit by
+ * every light, at a point of the light's sphere drawn evenly over the cone in which it is seen (Shirley, Wang and
+ * Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 15(1), 1996), and sends the path on by the
+ * cosine law, or like a mirror by its reflectivity. A sphere that shines is met by rays from the eye and from clear or
+ * mirror-like surfaces alone: matte ones have looked for it already. That is how light through a vessel makes caustics.
+ * Beside a sphere, points of light too are blocked by clear solids. A light's radiance is intensity (reach / radius)^2,
+ * so that a matte surface at its reach is as bright as in Phong's sum. Ambient light is left out: here it is what the
+ * sky and the other surfaces send. */
+#include "render/core/tracer_private.h"
+
+#include "base/elementary.h"
+#include "optics/mueller.h"
+#include "render/core/draw.h"
+#include <string.h>
+
+/* Below this depth every path goes on; after it faint ones end by chance. */
+enum { ROULETTE_DEPTH = 3 };
+
+/* Radiance that a ray along a unit vector meets on a light's sphere, for a colour of 1. Of a cone each point of the
+ * sphere shines into the cone alone, so that far away it is the cone of a point. */
+static double radiance_along(const plan *p, int lamp, vec3 direction)
+{
+    const light *l = &p->lights[lamp];
+    return l->reach * l->reach / (l->radius * l->radius) * light_share(l, &p->cones[lamp], vec3_scale(direction, -1.0));
+}
+
+static vec3 light_color(const tracer *t, int lamp, int64_t ticket)
+{
+    const plan *p = t->target.scene;
+    const light *l = &p->lights[lamp];
+    if (!p->spectral)
+        return vec3_scale(l->color, l->intensity);
+    const double radiance = spectra_light(p->spectral, ticket, lamp);
+    return vec3_make(radiance, radiance, radiance);
+}
+
+/* Distance to a sphere that the ray runs into from outside, or HUGE_VAL. */
+static double distance_to_light(const light *l, vec3 origin, vec3 direction)
+{
+    const vec3 way = vec3_sub(l->position, origin);
+    const double along = vec3_dot(way, direction);
+    const vec3 across = vec3_sub(way, vec3_scale(direction, along));
+    const double discriminant = l->radius * l->radius - vec3_dot(across, across);
+    if (!(discriminant > 0.0) || vec3_dot(way, way) <= l->radius * l->radius || along <= 0.0)
+        return (double)HUGE_VAL;
+    return along - sqrt(discriminant);
+}
+
+/* What a ray went through ends at the light. */
+static void clip_stretches(ray_ways *w, int ray, double end)
+{
+    double start = 0.0;
+    for (int k = 0; w && k < w->count; k++) {
+        stretch *one = &w->stretches[k];
+        if (one->ray != ray)
+            continue;
+        const double length = one->length;
+        one->length = start + length <= end ? length : start < end ? end - start : 0.0;
+        start += length;
+    }
+}
+
+void path_meet_lights(tracer *t, const ray_queue *q, int first, int count)
+{
+    const plan *p = t->target.scene;
+    for (int i = 0; i < count; i++) {
+        const int at = first + i;
+        double nearest = t->hits.t[i];
+        t->met_light[i] = -1;
+        for (int k = 0; k < p->light_count && q->ticket[at] & TICKET_SEES_LIGHTS; k++) {
+            if (p->lights[k].radius == 0.0)
+                continue;
+            const vec3 origin = vec3_make(q->ox[at], q->oy[at], q->oz[at]);
+            const double distance =
+                distance_to_light(&p->lights[k], origin, vec3_make(q->dx[at], q->dy[at], q->dz[at]));
+            if (distance < nearest) {
+                nearest = distance;
+                t->met_light[i] = k;
+            }
+        }
+        if (t->met_light[i] < 0)
+            continue;
+        t->hits.crossed[i] = -1;
+        clip_stretches(t->scratch.ways, i, nearest);
+    }
+}
+
+void path_expose_light(tracer *t, int64_t ticket, int lamp, int rank, vec3 direction, double wr, double wg, double wb)
+{
+    const plan *p = t->target.scene;
+    const double radiance = radiance_along(p, lamp, direction) * (t->basic ? radiance_share(p, ticket, rank) : 1.0);
+    const vec3 l = vec3_scale(light_color(t, lamp, ticket), radiance);
+    shading_expose(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+}
+
+/* A unit vector at the angle whose cosine and sine are given, about an axis. */
+static vec3 direction_about(vec3 axis, double cosine, double sine, double turn)
+{
+    vec3 x, y;
+    double s, c;
+    polarisation_frame(axis, &x, &y);
+    elementary_sincos_deg(360.0 * turn, &s, &c);
+    const vec3 across = vec3_add(vec3_scale(x, sine * c), vec3_scale(y, sine * s));
+    return vec3_normalize(vec3_add(vec3_scale(axis, cosine), across));
+}
+
+/* A shadow ray from record k of the group to a point of a light's sphere, drawn by chance. */
+static void look_for_light(tracer *t, int k, const material *m, bool opaque, int lamp, int depth)
+{
+    const plan *p = t->target.scene;
+    const group *g = &t->gathered;
+    const light *l = &p->lights[lamp];
+    const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
+    const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]), way = vec3_sub(l->position, point);
+    const double distance2 = vec3_dot(way, way), share2 = l->radius * l->radius / distance2;
+    if (share2 >= 1.0)
+        return;
+    /* 1 - least_cos, without its cancellation. */
+    const double least_cos = sqrt(1.0 - share2), cap = share2 / (1.0 + least_cos);
+    const random_words drawn = draw(p->render.seed, g->ticket[k], depth, DRAW_LIGHT + lamp);
+    const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
+    const vec3 to = direction_about(vec3_scale(way, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
+    const double n_l = vec3_dot(n, to), radiance = radiance_along(p, lamp, to),
+                 within = l->radius * l->radius - distance2 * sine * sine;
+    if (!(n_l > 0.0) || radiance == 0.0 || !mesh_lets_out(t, k, to))
+        return;
+    const double reach = sqrt(distance2) * cosine - sqrt(within > 0.0 ? within : 0.0);
+    /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)); Phong's highlight by the same light. */
+    const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
+    const double r_v = 2.0 * n_l * g->points.cos_i[k] + vec3_dot(d, to);
+    const double shine = opaque && m->specular > 0.0 && r_v > 0.0
+                             ? m->specular * elementary_pow(r_v < 1.0 ? r_v : 1.0, m->shininess)
+                             : 0.0;
+    const double seen = 2.0 * cap * radiance, diffuse = m->diffuse * n_l;
+    const vec3 color = vec3_scale(light_color(t, lamp, g->ticket[k]), seen);
+    ray_queue *q = &t->shadows;
+    const int at = q->count++;
+    q->ox[at] = point.x, q->oy[at] = point.y, q->oz[at] = point.z;
+    q->dx[at] = to.x * reach, q->dy[at] = to.y * reach, q->dz[at] = to.z * reach;
+    q->wr[at] = g->wr[k] * color.x * (diffuse * g->cr[k] + shine);
+    q->wg[at] = g->wg[k] * color.y * (diffuse * g->cg[k] + shine);
+    q->wb[at] = g->wb[k] * color.z * (diffuse * g->cb[k] + shine);
+    q->start[at] = g->points.face[k], q->ticket[at] = g->ticket[k], q->inside[at] = g->inside_before[k];
+}
+
+/* A continuation: where to, through which media, with which share of each channel. */
+typedef struct continuation {
+    vec3 direction, share;
+    uint64_t inside;
+    bool refracted, sees_lights;
+} continuation;
+
+static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
+{
+    const branch_group *b = &t->branches;
+    const double both = b->reflect[k] + b->refract[k];
+    if (!(both > 0.0))
+        return false;
+    c->refracted = chance * both >= b->reflect[k] && b->refract[k] > 0.0;
+    c->direction = c->refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
+    c->inside = c->refracted ? t->gathered.inside_after[k] : t->gathered.inside_before[k];
+    c->share = vec3_make(both, both, both);
+    c->sees_lights = true;
+    return true;
+}
+
+static bool draw_matte(const tracer *t, const material *m, int k, int depth, double chance, continuation *c)
+{
+    const group *g = &t->gathered;
+    const double brightest = fmax(g->cr[k], fmax(g->cg[k], g->cb[k])), matte = m->diffuse * brightest,
+                 mirror = m->reflectivity;
+    if (!(matte + mirror > 0.0))
+        return false;
+    const bool mirrored = chance * (matte + mirror) < mirror;
+    const double odds = (mirrored ? mirror : matte) / (matte + mirror);
+    c->inside = g->inside_before[k];
+    c->refracted = false;
+    c->sees_lights = mirrored;
+    if (mirrored) {
+        c->direction = vec3_make(t->branches.rx[k], t->branches.ry[k], t->branches.rz[k]);
+        c->share = vec3_make(mirror / odds, mirror / odds, mirror / odds);
+        return true;
+    }
+    const random_words drawn = draw(t->target.scene->render.seed, g->ticket[k], depth, DRAW_DIRECTION);
+    const double sine2 = random_unit(drawn.word[0]);
+    const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
+    c->direction = direction_about(n, sqrt(1.0 - sine2), sqrt(sine2), random_unit(drawn.word[1]));
+    c->share = vec3_scale(vec3_make(g->cr[k], g->cg[k], g->cb[k]), m->diffuse / odds);
+    return mesh_lets_out(t, k, c->direction);
+}
+
+/* Ends a faint path by chance; the others carry its weight. */
+static bool survives(const tracer *t, int k, int depth, vec3 *share)
+{
+    const render_settings *r = &t->target.scene->render;
+    const group *g = &t->gathered;
+    if (!r->roulette || depth < ROULETTE_DEPTH)
+        return true;
+    const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)r->paths;
+    if (weight >= 1.0)
+        return true;
+    if (random_unit(draw(r->seed, g->ticket[k], depth, DRAW_ROULETTE).word[0]) >= weight)
+        return false;
+    *share = vec3_scale(*share, 1.0 / weight);
+    return true;
+}
+
+static void cut(tracer *t, int k, const continuation *c)
+{
+    const group *g = &t->gathered;
+    const double r = g->wr[k] * c->share.x, gr = g->wg[k] * c->share.y, b = g->wb[k] * c->share.z;
+    COUNT(t->counters.cut_depth++);
+    COUNT(t->counters.cut_depth_throughput[0] += counters_cut_units(r));
+    COUNT(t->counters.cut_depth_throughput[1] += counters_cut_units(gr));
+    COUNT(t->counters.cut_depth_throughput[2] += counters_cut_units(b));
+    shading_expose_beyond(t, g->ticket[k], c->direction, r, gr, b);
+}
+
+static void go_on(tracer *t, int k, int depth, const continuation *c)
+{
+    const group *g = &t->gathered;
+    ray_queue *q = &t->waiting[depth + 1];
+    const int at = q->count++;
+    q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
+    q->dx[at] = c->direction.x, q->dy[at] = c->direction.y, q->dz[at] = c->direction.z;
+    q->wr[at] = g->wr[k] * c->share.x, q->wg[at] = g->wg[k] * c->share.y, q->wb[at] = g->wb[k] * c->share.z;
+    q->start[at] = g->points.face[k], q->inside[at] = c->inside;
+    q->ticket[at] = (g->ticket[k] & ~TICKET_SEES_LIGHTS) | (c->sees_lights ? TICKET_SEES_LIGHTS : 0);
+    COUNT(c->refracted ? t->counters.refract++ : t->counters.reflect++);
+}
+
+static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth)
+{
+    const random_words drawn = draw(t->target.scene->render.seed, t->gathered.ticket[k], depth, DRAW_BRANCH);
+    const double chance = random_unit(drawn.word[0]);
+    continuation c = {.refracted = false};
+    if (!(opaque ? draw_matte(t, m, k, depth, chance, &c) : draw_clear(t, k, chance, &c)))
+        return;
+    if (depth == t->depth_limit)
+        cut(t, k, &c);
+    else if (survives(t, k, depth, &c.share))
+        go_on(t, k, depth, &c);
+}
+
+void path_group(tracer *t, int depth, int rank)
+{
+    const plan *p = t->target.scene;
+    const material *m = &t->look->surface;
+    const bool opaque = surface_is_opaque(t, rank), lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
+    local_light(t, rank); /* of points; spheres follow */
+    if (t->basic)
+        radiance_weigh(t);
+    for (int k = 0; lit && k < t->gathered.count; k++)
+        for (int lamp = 0; lamp < p->light_count; lamp++)
+            if (p->lights[lamp].radius > 0.0)
+                look_for_light(t, k, m, opaque, lamp, depth);
+    if (t->basic)
+        radiance_weigh_back(t);
+    shading_branches(t, opaque);
+    if (!opaque)
+        COUNT(t->counters.total_internal += (uint64_t)t->branches.total);
+    for (int k = 0; k < t->gathered.count; k++)
+        continue_one(t, m, opaque, k, depth);
+}

@@ -1,0 +1,155 @@
+/* Rays that met meshes: where, with which normal, and what a triangle that a normal only pretends to be curved lets
+ * through. */
+#include "render/core/tracer_private.h"
+
+#include "render/core/film.h"
+
+static void copy_point(surface_batch *s, mesh_points *m, int to, int from)
+{
+    s->px[to] = s->px[from], s->py[to] = s->py[from], s->pz[to] = s->pz[from];
+    s->nx[to] = s->nx[from], s->ny[to] = s->ny[from], s->nz[to] = s->nz[from];
+    s->cos_i[to] = s->cos_i[from], s->error[to] = s->error[from], s->face[to] = s->face[from];
+    m->gx[to] = m->gx[from], m->gy[to] = m->gy[from], m->gz[to] = m->gz[from];
+}
+
+void mesh_surface(tracer *t, int rank, const int *list)
+{
+    const plan *p = t->target.scene;
+    const shading_rule shading = p->looks[rank].shading;
+    group *g = &t->gathered;
+    mesh_work *w = t->meshes;
+    for (int k = 0; k < g->count; k++)
+        w->hits[k] = w->scratch.hit[list[k]];
+    const ray_batch rays = {g->count, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
+    forest_surface(p->solids->meshes, &rays, w->hits, shading == SHADING_SMOOTH, &g->points, &w->points);
+    for (int k = g->count; k < g->padded; k++)
+        copy_point(&g->points, &w->points, k, g->count - 1);
+}
+
+static vec3 geometric(const mesh_work *w, int k)
+{
+    return vec3_make(w->points.gx[k], w->points.gy[k], w->points.gz[k]);
+}
+
+bool mesh_lets_out(const tracer *t, int k, vec3 direction)
+{
+    return !t->on_mesh || vec3_dot(geometric(t->meshes, k), direction) > 0.0;
+}
+
+/* No light reaches the ray's side of a triangle from behind it, whatever its normal. */
+void mesh_bound_light(tracer *t)
+{
+    lit_group *l = &t->lit;
+    for (int k = 0; k < t->gathered.count; k++) {
+        if (mesh_lets_out(t, k, vec3_make(l->lx[k], l->ly[k], l->lz[k])))
+            continue;
+        l->r[k] = l->g[k] = l->b[k] = 0.0;
+        l->shows[k] = 0;
+    }
+}
+
+/* A reflected ray stays on its side of the triangle, a refracted one leaves it; where the interpolated normal sends the
+ * refracted ray back, all of the light is reflected, as at total reflection. */
+void mesh_bound_branches(tracer *t)
+{
+    branch_group *b = &t->branches;
+    const group *g = &t->gathered;
+    for (int k = 0; k < g->count; k++) {
+        const vec3 n = geometric(t->meshes, k);
+        if (b->refract[k] > 0.0 && !(vec3_dot(n, vec3_make(b->tx[k], b->ty[k], b->tz[k])) < 0.0)) {
+            b->reflect[k] += b->refract[k];
+            b->refract[k] = 0.0;
+        }
+        if (!(vec3_dot(n, vec3_make(b->rx[k], b->ry[k], b->rz[k])) > 0.0)) {
+            const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]),
+                       r = vec3_sub(d, vec3_scale(n, 2.0 * vec3_dot(d, n)));
+            b->rx[k] = r.x, b->ry[k] = r.y, b->rz[k] = r.z;
+        }
+    }
+}
+
+bool mesh_has_corner_light(const tracer *t, int rank)
+{
+    return t->on_mesh && t->target.scene->looks[rank].shading == SHADING_GOURAUD;
+}
+
+/* The group as it would be if its rays met one corner of their triangles each. */
+static void move_to_corner(tracer *t, int corner, const forest_part *part)
+{
+    group *c = &t->meshes->corner;
+    const group *g = &t->gathered;
+    const mesh_points *m = &t->meshes->points;
+    for (int k = 0; k < g->count; k++) {
+        const uint32_t vertex = m->corner[corner][k];
+        const vec3 at = forest_vertex_point(part, mesh_face_copy(g->points.face[k]), vertex),
+                   o = vec3_make(g->ox[k], g->oy[k], g->oz[k]);
+        const vec3 side = geometric(t->meshes, k), way = vec3_sub(at, o);
+        vec3 n = forest_vertex_normal(part, vertex);
+        n = vec3_dot(n, n) > 0.0 ? n : side;
+        n = vec3_dot(n, side) < 0.0 ? vec3_scale(n, -1.0) : n;
+        const double length = vec3_length(way);
+        const vec3 d = length > 0.0 ? vec3_scale(way, 1.0 / length) : vec3_make(g->dx[k], g->dy[k], g->dz[k]);
+        c->points.px[k] = at.x, c->points.py[k] = at.y, c->points.pz[k] = at.z;
+        c->points.nx[k] = n.x, c->points.ny[k] = n.y, c->points.nz[k] = n.z;
+        c->points.cos_i[k] = -vec3_dot(d, n) > 1e-12 ? -vec3_dot(d, n) : 1e-12;
+        c->dx[k] = d.x, c->dy[k] = d.y, c->dz[k] = d.z;
+    }
+}
+
+/* Gouraud, "Continuous shading of curved surfaces" (1971): light at a triangle's corners, and between them by their
+ * weights. Shadows are the point's own. */
+void mesh_corner_light(tracer *t, const material *m, const light *lamp, int rank)
+{
+    mesh_work *w = t->meshes;
+    lit_group *l = &t->lit;
+    const group *g = &t->gathered;
+    const forest *f = t->target.scene->solids->meshes;
+    const forest_part *part = &f->parts[f->by_primitive[t->target.scene->solids->bodies[rank].outside]];
+    t->shade->direct(m, lamp, g, l); /* for the ways to the light */
+    for (int k = 0; k < g->count; k++)
+        l->r[k] = l->g[k] = l->b[k] = 0.0;
+    w->corner = *g;
+    for (int corner = 0; corner < 3; corner++) {
+        move_to_corner(t, corner, part);
+        for (int k = g->count; k < g->padded; k++) {
+            copy_point(&w->corner.points, &w->points, k, g->count - 1);
+            w->corner.dx[k] = w->corner.dx[g->count - 1], w->corner.dy[k] = w->corner.dy[g->count - 1],
+            w->corner.dz[k] = w->corner.dz[g->count - 1];
+        }
+        t->shade->direct(m, lamp, &w->corner, &w->corner_light);
+        for (int k = 0; k < g->count; k++) {
+            const double weight = w->points.weight[corner][k];
+            l->r[k] += weight * w->corner_light.r[k], l->g[k] += weight * w->corner_light.g[k],
+                l->b[k] += weight * w->corner_light.b[k];
+        }
+    }
+    const double least = 0.5 / FILM_ONE;
+    for (int k = 0; k < g->count; k++)
+        l->shows[k] = -(int64_t) !(l->r[k] < least && l->g[k] < least && l->b[k] < least);
+}
+
+static int slot_of(const tracer *t, int i)
+{
+    const forest *f = t->target.scene->solids->meshes;
+    const int64_t face = t->meshes->scratch.hit[i].face;
+    if (face == FACE_NONE)
+        return 0;
+    const mesh *m = f->parts[f->by_primitive[mesh_face_primitive(face)]].triangles;
+    return m->slots ? m->slots[mesh_face_triangle(face)] : 0;
+}
+
+/* Brings those that look like the first one to the front of the list, each part in its order; returns how many. */
+int mesh_next_look(const tracer *t, int *list, int count, int *slot)
+{
+    int others[BATCH], alike = 0, left = 0;
+    *slot = slot_of(t, list[0]);
+    for (int k = 0; k < count; k++) {
+        if (slot_of(t, list[k]) == *slot)
+            list[alike++] = list[k];
+        else
+            others[left++] = list[k];
+    }
+    for (int k = 0; k < left; k++)
+        list[alike + k] = others[k];
+    return alike;
+}

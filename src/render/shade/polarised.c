@@ -1,0 +1,59 @@
+/* Polarised light on its way back to the eye: each ray carries the analyser's Stokes vector (optics/mueller.h), of
+ * which the first element is in its throughput and the others, relative to that, in the queue. Light comes unpolarised
+ * from the sky, from lights and from matte surfaces, so that the first element alone weighs it. */
+#include "render/core/tracer_private.h"
+
+#include "optics/mueller.h"
+#include "scene/model/medium.h"
+
+void polarised_gather(tracer *t, const ray_queue *q, int first, const int *list)
+{
+    polar_group *p = &t->polar;
+    for (int k = 0; k < t->gathered.count; k++) {
+        const int at = first + list[k];
+        p->q[k] = q->sq[at], p->u[k] = q->su[at], p->v[k] = q->sv[at];
+    }
+}
+
+static stokes stokes_add(stokes a, stokes b, double times)
+{
+    return (stokes){a.i + times * b.i, a.q + times * b.q, a.u + times * b.u, a.v + times * b.v};
+}
+
+/* The share of unpolarised light, at least 0, and the rest relative to it. */
+static double take_apart(stokes s, double *q, double *u, double *v)
+{
+    const double share = s.i > 0.0 ? s.i : 0.0, inverse = s.i > 0.0 ? 1.0 / s.i : 0.0;
+    *q = s.q * inverse, *u = s.u * inverse, *v = s.v * inverse;
+    return share;
+}
+
+/* After the branches' directions and unpolarised weights are known. */
+void polarised_branches(tracer *t, const material *m, bool opaque)
+{
+    const group *g = &t->gathered;
+    branch_group *b = &t->branches;
+    polar_group *p = &t->polar;
+    const double coating = material_coating(m, &t->target.scene->render);
+    for (int k = 0; k < g->count; k++) {
+        const stokes row = {1.0, p->q[k], p->u[k], p->v[k]};
+        const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
+        const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
+        const vec3 reflected = vec3_make(b->rx[k], b->ry[k], b->rz[k]),
+                   refracted = vec3_make(b->tx[k], b->ty[k], b->tz[k]);
+        const double cos_i = g->points.cos_i[k];
+        if (opaque) {
+            b->reflect[k] =
+                m->reflectivity * take_apart(analyser_mirror(row, d, n, reflected), &p->rq[k], &p->ru[k], &p->rv[k]);
+            continue;
+        }
+        stokes r = analyser_reflect(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected);
+        if (coating > 0.0)
+            r = stokes_add(r, analyser_coating(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected), coating);
+        b->reflect[k] = take_apart(r, &p->rq[k], &p->ru[k], &p->rv[k]);
+        if (b->refract[k] == 0.0) /* total reflection: there is no direction */
+            continue;
+        const stokes s = analyser_refract(row, d, n, cos_i, g->n_from[k], g->n_to[k], refracted);
+        b->refract[k] = m->transparency * (1.0 - coating) * take_apart(s, &p->tq[k], &p->tu[k], &p->tv[k]);
+    }
+}

@@ -1,0 +1,141 @@
+/* Basic radiance (render.radiance). Where light is refracted from a medium of index n_1 into one of n_2 its cone of
+ * directions narrows or widens: n^2 cos(theta) dA d(omega) stays as it is, and so, but for what is reflected, does
+ * L / n^2 (Nicodemus, "Radiance", American Journal of Physics 31, 1963; Veach, Robust Monte Carlo Methods for Light
+ * Transport Simulation, 1997, 5.2). A ray's throughput is its share of L / n^2: no interface puts an index into it.
+ * Indices come in where light is sent out, in a medium of index n, and where the eye takes it, in one of n_eye:
+ * radiance L there counts (n_eye / n)^2 times. The eye's factor is taken at that end too, so that throughputs, which
+ * limits on a ray's weight compare, are shares of the camera ray whatever the eye stands in.
+ *
+ * A shadow ray carries irradiance, in which the square of the index cancels against the solid angle: E = E_straight
+ * T, with each interface's unpolarised transmittance. It is straight where light is bent. Its angle at an interface
+ * is taken on the side of the lower index: there it is the true one for a lamp far above water, and for a pane in air
+ * on both of its faces; and no angle there is beyond the critical one. */
+#include "render/core/tracer_private.h"
+
+#include "optics/interface.h"
+#include <string.h>
+
+static double index_of(const plan *p, int64_t ticket, int rank)
+{
+    return p->spectral ? spectra_body(p->spectral, ticket, rank)->index : p->ior[rank];
+}
+
+double radiance_share(const plan *p, int64_t ticket, int rank)
+{
+    const double ratio = index_of(p, ticket, p->eye_rank) / index_of(p, ticket, rank);
+    return ratio * ratio;
+}
+
+void radiance_weigh(tracer *t)
+{
+    const plan *p = t->target.scene;
+    group *g = &t->gathered;
+    radiance_work *w = t->basic;
+    const size_t bytes = (size_t)g->padded * sizeof(double);
+    memcpy(w->wr, g->wr, bytes), memcpy(w->wg, g->wg, bytes), memcpy(w->wb, g->wb, bytes);
+    for (int k = 0; k < g->padded; k++) {
+        const double ratio = index_of(p, g->ticket[k], p->eye_rank) / g->n_from[k], share = ratio * ratio;
+        g->wr[k] *= share, g->wg[k] *= share, g->wb[k] *= share;
+    }
+}
+
+void radiance_weigh_back(tracer *t)
+{
+    group *g = &t->gathered;
+    const radiance_work *w = t->basic;
+    const size_t bytes = (size_t)g->padded * sizeof(double);
+    memcpy(g->wr, w->wr, bytes), memcpy(g->wg, w->wg, bytes), memcpy(g->wb, w->wb, bytes);
+}
+
+/* The shadow rays of crossings of one primitive, side by side, as kernels want them. */
+typedef struct straight_rays {
+    double ox[ROW], oy[ROW], oz[ROW], dx[ROW], dy[ROW], dz[ROW], t[ROW];
+    int64_t start[ROW];
+    uint64_t inside[ROW];
+    forest_hit mesh[ROW];
+    int64_t number[ROW]; /* in the list of crossings */
+    int count;
+} straight_rays;
+
+static void add_ray(const radiance_work *w, int number, straight_rays *s)
+{
+    const ray_crossing *x = &w->crossings.crossings[number];
+    const ray_batch *rays = &w->rays;
+    const int i = x->ray, at = s->count++;
+    const vec3 way = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]);
+    const double length = vec3_length(way);
+    s->ox[at] = rays->ox[i], s->oy[at] = rays->oy[i], s->oz[at] = rays->oz[i];
+    s->dx[at] = way.x / length, s->dy[at] = way.y / length, s->dz[at] = way.z / length;
+    s->t[at] = x->t * length;
+    s->start[at] = rays->start[i], s->inside[at] = x->inside, s->mesh[at] = x->mesh;
+    s->number[at] = number;
+}
+
+static double transmittance(const plan *p, int64_t ticket, const ray_crossing *x, double cosine)
+{
+    const double before = index_of(p, ticket, x->before), after = index_of(p, ticket, x->after);
+    const double low = before < after ? before : after, high = before < after ? after : before;
+    return 1.0 - fresnel_dielectric(cosine, low, high).R;
+}
+
+/* The interfaces of a primitive that the list holds of it. */
+static void cross_surface(tracer *t, int met, straight_rays *s)
+{
+    const plan *p = t->target.scene;
+    radiance_work *w = t->basic;
+    const primitive *surface = &p->solids->primitives[met];
+    const ray_batch rays = {s->count, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, s->start, s->inside};
+    if (surface->kind == PRIMITIVE_MESH)
+        forest_surface(p->solids->meshes, &rays, s->mesh, p->looks[surface->rank].shading == SHADING_SMOOTH, &w->points,
+                       &w->on_mesh);
+    else
+        t->geometry->surface(surface, &rays, s->t, met, &w->points);
+    for (int k = 0; k < s->count; k++) {
+        const ray_crossing *x = &w->crossings.crossings[s->number[k]];
+        w->kept[s->number[k]] = transmittance(p, w->tickets[x->ray], x, w->points.cos_i[k]);
+    }
+    s->count = 0;
+}
+
+/* Empties the list of crossings: surfaces a primitive at a time, the product in the order along each ray, whatever
+ * else is in the batch. */
+static void take_crossings(void *context)
+{
+    tracer *t = context;
+    radiance_work *w = t->basic;
+    straight_rays s;
+    s.count = 0;
+    for (int met = 0; w->crossings.count > 0 && met < t->target.scene->solids->primitive_count; met++) {
+        for (int k = 0; k < w->crossings.count; k++) {
+            if (w->crossings.crossings[k].primitive != met)
+                continue;
+            add_ray(w, k, &s);
+            if (s.count == BATCH)
+                cross_surface(t, met, &s);
+        }
+        if (s.count > 0)
+            cross_surface(t, met, &s);
+    }
+    for (int k = 0; k < w->crossings.count; k++)
+        w->through[w->crossings.crossings[k].ray] *= w->kept[k];
+    w->crossings.count = 0;
+}
+
+void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *tickets)
+{
+    radiance_work *w = t->basic;
+    w->rays = *rays;
+    w->tickets = tickets;
+    w->crossings.full = take_crossings;
+    w->crossings.context = t;
+    for (int i = 0; i < rays->count; i++)
+        w->through[i] = 1.0;
+}
+
+void radiance_end_shadows(tracer *t)
+{
+    const radiance_work *w = t->basic;
+    take_crossings(t);
+    for (int i = 0; i < w->rays.count; i++)
+        t->transmitted[i] *= w->through[i];
+}

@@ -1,0 +1,308 @@
+#include "render/shade/shade.h"
+
+#include "base/counters.h"
+#include "base/elementary_inline.h"
+#include "base/kernel.h"
+#include "optics/interface.h"
+#include "render/core/film.h"
+
+/* Highest whole shininess that is raised by squaring. */
+enum { SHININESS_SQUARED_MAX = 4096 };
+
+/* base[i]^exponent in place. Whole exponents by squaring (relative error below exponent half-ulps); bases so small that
+ * the power is under 2^-200, far below the film's unit, are zero, which keeps the squares out of the slow subnormal
+ * range. */
+static void raise_to(double exponent, int count, double *restrict base)
+{
+    const unsigned whole = exponent >= 1.0 && exponent <= SHININESS_SQUARED_MAX ? (unsigned)exponent : 0;
+    if ((double)whole != exponent) {
+        /* VECTORISE */
+        for (int i = 0; i < count; i++)
+            base[i] = elementary_pow_inline(base[i], exponent);
+        return;
+    }
+    double square[ROW];
+    const double least = elementary_exp2_inline(-200.0 / exponent);
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        square[i] = blend(mask_less(base[i], least), 0.0, base[i]);
+        base[i] = 1.0;
+    }
+    for (unsigned bits = whole; bits; bits >>= 1) {
+        const int64_t take = -(int64_t)(bits & 1);
+        /* VECTORISE */
+        for (int i = 0; i < count; i++) {
+            base[i] *= blend(take, square[i], 1.0);
+            square[i] *= square[i];
+        }
+    }
+}
+
+/* For each flat face of a primitive: which coordinate is constant there, and the one to look up the cell with instead,
+ * half a cell inside; of a half-space the surface itself. Rounding across the face must not choose the cell. */
+enum { FLAT_FACES = 6 };
+typedef struct flat_faces {
+    int64_t is_x[FLAT_FACES], is_y[FLAT_FACES], is_z[FLAT_FACES]; /* masks */
+    double at[FLAT_FACES];
+} flat_faces;
+
+static flat_faces flat_faces_of(const primitive *p, double cell)
+{
+    flat_faces f = {{0}, {0}, {0}, {0}};
+    const double half[3] = {p->half.x, p->half.y, p->half.z};
+    switch (p->kind) {
+    case PRIMITIVE_HALFSPACE: f.is_y[0] = -1; break;
+    case PRIMITIVE_CYLINDER:
+        f.is_y[1] = f.is_y[2] = -1;
+        f.at[1] = p->bottom + 0.5 * cell;
+        f.at[2] = p->top - 0.5 * cell;
+        break;
+    case PRIMITIVE_BOX:
+        for (int k = 0; k < FLAT_FACES; k++) {
+            f.is_x[k] = mask_of(k / 2 == 0), f.is_y[k] = mask_of(k / 2 == 1), f.is_z[k] = mask_of(k / 2 == 2);
+            f.at[k] = k % 2 ? half[k / 2] - 0.5 * cell : 0.5 * cell - half[k / 2];
+        }
+        break;
+    case PRIMITIVE_MESH:
+    case PRIMITIVE_SPHERE: break;
+    }
+    return f;
+}
+
+static void color(const material *m, const primitive *p, group *restrict g)
+{
+    const int count = g->padded;
+    const vec3 even = m->color, odd = m->checker_color;
+    if (m->checker == 0.0) {
+        for (int i = 0; i < count; i++)
+            g->cr[i] = even.x, g->cg[i] = even.y, g->cb[i] = even.z;
+        return;
+    }
+    const vec3 origin = p->origin;
+    const mat3 rotation = p->rotation; /* the identity where it is not turned, which changes no bit */
+    const double size = m->checker;
+    const int64_t first = p->first_face;
+    const flat_faces flat = flat_faces_of(p, size);
+    for (int i = 0; i < count; i++) {
+        vec3 q = vec3_make(g->points.px[i] - origin.x, g->points.py[i] - origin.y, g->points.pz[i] - origin.z);
+        q = mat3_apply_transposed(rotation, q);
+        for (int k = 0; k < FLAT_FACES; k++) {
+            const int64_t here = mask_same(g->points.face[i], first + k);
+            q.x = blend(here & flat.is_x[k], flat.at[k], q.x);
+            q.y = blend(here & flat.is_y[k], flat.at[k], q.y);
+            q.z = blend(here & flat.is_z[k], flat.at[k], q.z);
+        }
+        double cell = floor(q.x / size) + floor(q.y / size) + floor(q.z / size);
+        int64_t is_even = mask_same(lanes_bits(cell * 0.5), lanes_bits(floor(cell * 0.5)));
+        g->cr[i] = blend(is_even, even.x, odd.x);
+        g->cg[i] = blend(is_even, even.y, odd.y);
+        g->cb[i] = blend(is_even, even.z, odd.z);
+    }
+}
+
+/* The inverse square of the distance, 1 at the light's reach. */
+static void fall_off(double reach, int count, lit_group *restrict lit)
+{
+    const double least = 0.5 / FILM_ONE, reach2 = reach * reach;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        double share = reach2 / (lit->lx[i] * lit->lx[i] + lit->ly[i] * lit->ly[i] + lit->lz[i] * lit->lz[i]);
+        lit->r[i] *= share;
+        lit->g[i] *= share;
+        lit->b[i] *= share;
+        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+    }
+}
+
+/* Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975: k_d I_L C (N.L) + k_s I_L (R.V)^n with
+ * R = 2(N.L)N - L; both terms only where the light stands on the ray's side (N.L > 0). */
+static void direct(const material *m, const light *lamp, const group *g, lit_group *restrict lit)
+{
+    const double ir = lamp->color.x * lamp->intensity, ig = lamp->color.y * lamp->intensity,
+                 ib = lamp->color.z * lamp->intensity;
+    const vec3 at = lamp->position;
+    const double least = 0.5 / FILM_ONE;
+    const double k_d = m->diffuse, k_s = m->specular;
+    const surface_batch *p = &g->points;
+    const int count = g->padded;
+    double n_l[ROW], shine[ROW];
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        vec3 l = vec3_make(at.x - p->px[i], at.y - p->py[i], at.z - p->pz[i]);
+        double inverse = 1.0 / vec3_length(l);
+        double l_v = -(g->dx[i] * l.x + g->dy[i] * l.y + g->dz[i] * l.z) * inverse;
+        n_l[i] = (p->nx[i] * l.x + p->ny[i] * l.y + p->nz[i] * l.z) * inverse;
+        shine[i] = lesser(greater(2.0 * n_l[i] * p->cos_i[i] - l_v, 0.0), 1.0);
+        lit->lx[i] = l.x;
+        lit->ly[i] = l.y;
+        lit->lz[i] = l.z;
+    }
+    if (k_s > 0.0)
+        raise_to(m->shininess, count, shine);
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        double highlight = k_s * shine[i], diffuse = k_d * n_l[i];
+        int64_t facing = mask_less(0.0, n_l[i]);
+        lit->r[i] = blend(facing, g->wr[i] * ir * (diffuse * g->cr[i] + highlight), 0.0);
+        lit->g[i] = blend(facing, g->wg[i] * ig * (diffuse * g->cg[i] + highlight), 0.0);
+        lit->b[i] = blend(facing, g->wb[i] * ib * (diffuse * g->cb[i] + highlight), 0.0);
+        /* What is no number shows, so that it is found out. */
+        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+    }
+    if (lamp->reach > 0.0)
+        fall_off(lamp->reach, count, lit);
+}
+
+ALWAYS_INLINE void within_cone(const light_cone *cone, bool soft, const group *g, lit_group *restrict lit)
+{
+    const light_cone c = *cone;
+    const double least = 0.5 / FILM_ONE;
+    const int count = g->padded;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        const vec3 l = vec3_make(lit->lx[i], lit->ly[i], lit->lz[i]);
+        const double share = light_cone_share(&c, soft, vec3_scale(l, -1.0 / vec3_length(l)));
+        lit->r[i] *= share;
+        lit->g[i] *= share;
+        lit->b[i] *= share;
+        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+    }
+}
+
+/* Two loops without a choice in them. */
+static void spot(const light_cone *c, bool soft, const group *g, lit_group *restrict lit)
+{
+    if (soft)
+        within_cone(c, true, g, lit);
+    else
+        within_cone(c, false, g, lit);
+}
+
+ALWAYS_INLINE fresnel branch_directions(const group *g, int i, branch_group *b)
+{
+    const surface_batch *p = &g->points;
+    vec3 d = vec3_make(g->dx[i], g->dy[i], g->dz[i]), n = vec3_make(p->nx[i], p->ny[i], p->nz[i]);
+    fresnel f = fresnel_dielectric(p->cos_i[i], g->n_from[i], g->n_to[i]);
+    vec3 r = direction_reflect(d, n, p->cos_i[i]), t = direction_refract(d, n, p->cos_i[i], f.eta, f.cos_t);
+    b->rx[i] = r.x, b->ry[i] = r.y, b->rz[i] = r.z;
+    b->tx[i] = t.x, b->ty[i] = t.y, b->tz[i] = t.z;
+    return f;
+}
+
+/* Total reflections among the group's rays, from their number among the padded lanes. */
+static int64_t without_padding(const group *g, int64_t among_padded)
+{
+    const int last = g->count - 1;
+    const int64_t of_last = fresnel_dielectric(g->points.cos_i[last], g->n_from[last], g->n_to[last]).total;
+    return among_padded + (g->padded - g->count) * of_last;
+}
+
+static void fresnel_branches(const material *m, const group *g, branch_group *restrict b)
+{
+    const double transparency = m->transparency, coating = m->reflectivity;
+    const int count = g->padded;
+    int64_t total = 0;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        fresnel f = branch_directions(g, i, b);
+        const double R = f.R + (1.0 - f.R) * coating;
+        b->reflect[i] = R;
+        b->refract[i] = transparency * (1.0 - R);
+        total -= f.total;
+    }
+    b->total = without_padding(g, total);
+}
+
+/* Under total internal reflection the light that cannot pass goes back too. */
+static void constant_branches(const material *m, bool opaque, const group *g, branch_group *restrict b)
+{
+    const double reflectivity = m->reflectivity, transparency = opaque ? 0.0 : m->transparency;
+    const int count = g->padded;
+    int64_t total = 0;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        fresnel f = branch_directions(g, i, b);
+        b->reflect[i] = blend(f.total, reflectivity + transparency, reflectivity);
+        b->refract[i] = blend(f.total, 0.0, transparency);
+        total -= f.total;
+    }
+    b->total = without_padding(g, total);
+}
+
+static void straight_branches(const material *m, const group *g, branch_group *restrict b)
+{
+    const double reflectivity = m->reflectivity, transparency = m->transparency;
+    const surface_batch *p = &g->points;
+    const int count = g->padded;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        const vec3 d = vec3_make(g->dx[i], g->dy[i], g->dz[i]), n = vec3_make(p->nx[i], p->ny[i], p->nz[i]);
+        const vec3 r = direction_reflect(d, n, p->cos_i[i]);
+        b->rx[i] = r.x, b->ry[i] = r.y, b->rz[i] = r.z;
+        b->tx[i] = d.x, b->ty[i] = d.y, b->tz[i] = d.z;
+        b->reflect[i] = reflectivity;
+        b->refract[i] = transparency;
+    }
+    b->total = 0;
+}
+
+static void cut(const group *g, const branch_group *b, cut_sum *sum)
+{
+    const int count = g->count;
+    int64_t branches = 0, red = 0, green = 0, blue = 0;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        const double reflect = b->reflect[i], refract = b->refract[i];
+        branches -= mask_less(0.0, reflect) + mask_less(0.0, refract);
+        red += counters_cut_units(g->wr[i] * reflect) + counters_cut_units(g->wr[i] * refract);
+        green += counters_cut_units(g->wg[i] * reflect) + counters_cut_units(g->wg[i] * refract);
+        blue += counters_cut_units(g->wb[i] * reflect) + counters_cut_units(g->wb[i] * refract);
+    }
+    *sum = (cut_sum){branches, {red, green, blue}};
+}
+
+static void append(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,
+                   const uint64_t *inside, ray_queue *q)
+{
+    const surface_batch *p = &g->points;
+    const int n = g->padded, at = q->count;
+    const ray_queue to = {.ox = q->ox + at,
+                          .oy = q->oy + at,
+                          .oz = q->oz + at,
+                          .dx = q->dx + at,
+                          .dy = q->dy + at,
+                          .dz = q->dz + at,
+                          .wr = q->wr + at,
+                          .wg = q->wg + at,
+                          .wb = q->wb + at};
+    const size_t bytes = (size_t)n * sizeof(double);
+    memcpy(to.ox, p->px, bytes), memcpy(to.oy, p->py, bytes), memcpy(to.oz, p->pz, bytes);
+    memcpy(to.dx, dx, bytes), memcpy(to.dy, dy, bytes), memcpy(to.dz, dz, bytes);
+    memcpy(q->start + at, p->face, bytes), memcpy(q->ticket + at, g->ticket, bytes),
+        memcpy(q->inside + at, inside, bytes);
+    double *restrict wr = to.wr, *restrict wg = to.wg, *restrict wb = to.wb;
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        wr[i] = g->wr[i] * weight[i];
+        wg[i] = g->wg[i] * weight[i];
+        wb[i] = g->wb[i] * weight[i];
+    }
+    q->count += g->count;
+}
+
+static void camera_directions(const camera_frame *view, int count, const double *u, const double *v,
+                              double *restrict dx, double *restrict dy, double *restrict dz)
+{
+    const camera_frame f = *view;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        vec3 d = vec3_add(f.forward, vec3_add(vec3_scale(f.right, u[i]), vec3_scale(f.up, v[i])));
+        d = vec3_normalize(d);
+        dx[i] = d.x;
+        dy[i] = d.y;
+        dz[i] = d.z;
+    }
+}
+
+const shade_kernels KERNEL(shade_kernels) = {
+    color, direct, spot, fresnel_branches, constant_branches, straight_branches, cut, append, camera_directions};

@@ -1,0 +1,387 @@
+/* What becomes of rays that met a surface: local light, shadow rays, reflected and refracted children, and the film. */
+#include "render/core/tracer_private.h"
+
+#include "render/shade/sky.h"
+#include <string.h>
+
+/* Is it in the film's range? Not if it is no number. */
+static inline bool is_exposable(double radiance)
+{
+    const double limit = 262144.0; /* half of what a channel holds */
+    return (int)(radiance >= 0.0) & (int)(radiance < limit);
+}
+
+static inline int64_t in_film_units(double radiance)
+{
+    return (int64_t)(radiance * FILM_ONE + 0.5);
+}
+
+static inline void expose_at(tracer *t, int64_t place, double r, double g, double b)
+{
+    if (!((int)is_exposable(r) & (int)is_exposable(g) & (int)is_exposable(b))) {
+        t->overflow = -1;
+        return;
+    }
+    int64_t *sum = &t->target.picture->sum[place * 3];
+    const int64_t red = (int64_t)((uint64_t)sum[0] + (uint64_t)in_film_units(r));
+    const int64_t green = (int64_t)((uint64_t)sum[1] + (uint64_t)in_film_units(g));
+    const int64_t blue = (int64_t)((uint64_t)sum[2] + (uint64_t)in_film_units(b));
+    sum[0] = red, sum[1] = green, sum[2] = blue;
+    t->overflow |= red | green | blue;
+}
+
+/* The ticket's layer and pixel; of a spectral film as what the eye makes of its wavelength. Never inline, so that the
+ * rgb film's way keeps its registers. */
+static __attribute__((noinline)) void expose_by_ticket(tracer *t, int64_t ticket, double r, double g, double b)
+{
+    const plan *p = t->target.scene;
+    const film *f = t->target.picture;
+    const int64_t layer = f->layers == 1 ? 0 : ticket_sample(ticket) / p->render.samples % f->layers;
+    const int64_t place = ticket_pixel(ticket) + layer * f->width * f->height;
+    if (p->spectral) {
+        const double *eye = spectra_row(p->spectral, ticket)->eye;
+        r *= eye[0], g *= eye[1], b *= eye[2];
+    }
+    expose_at(t, place, r, g, b);
+}
+
+static inline void expose(tracer *t, int64_t ticket, double r, double g, double b)
+{
+    if (t->by_ticket)
+        expose_by_ticket(t, ticket, r, g, b);
+    else
+        expose_at(t, ticket, r, g, b);
+}
+
+void shading_expose(tracer *t, int64_t ticket, double r, double g, double b)
+{
+    expose(t, ticket, r, g, b);
+}
+
+static __attribute__((noinline)) void expose_sky_by_ticket(tracer *t, int64_t ticket, vec3 direction, double wr,
+                                                           double wg, double wb)
+{
+    const plan *p = t->target.scene;
+    vec3 l;
+    if (p->spectral)
+        l.x = l.y = l.z = spectra_sky(spectra_row(p->spectral, ticket), p->sky, direction);
+    else
+        l = sky_radiance(p->sky, direction);
+    if (p->basic) /* the sky lies in the surroundings, wherever a ray ends that is given its light */
+        l = vec3_scale(l, radiance_share(p, ticket, 0));
+    expose_by_ticket(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+}
+
+void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+{
+    const background *sky = t->target.scene->sky;
+    if (t->by_ticket) {
+        expose_sky_by_ticket(t, ticket, direction, wr, wg, wb);
+        return;
+    }
+    const vec3 l = sky->kind == BACKGROUND_UNIFORM ? sky->color : sky_radiance(sky, direction);
+    expose_at(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+}
+
+/* What lies beyond the depth limit, along a branch that it cuts off. */
+static void expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+{
+    const plan *p = t->target.scene;
+    if (p->render.beyond != BEYOND_MEAN) {
+        shading_expose_sky(t, ticket, direction, wr, wg, wb);
+        return;
+    }
+    vec3 l = p->sky_mean;
+    if (p->spectral)
+        l.x = l.y = l.z = spectra_sky_mean(spectra_row(p->spectral, ticket), p->sky, p->sky_mean);
+    if (p->basic)
+        l = vec3_scale(l, radiance_share(p, ticket, 0));
+    expose(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+}
+
+void shading_expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+{
+    if (t->target.scene->render.beyond != BEYOND_BLACK)
+        expose_beyond(t, ticket, direction, wr, wg, wb);
+}
+
+/* Light that needs no lamp: ambient, which random paths find by themselves, and emitted; of a spectral film as
+ * daylight, white's spectrum. */
+static void expose_own_light(tracer *t, const material *m)
+{
+    const group *g = &t->gathered;
+    const plan *p = t->target.scene;
+    const double k_a = integrator_of(&p->render)->by_chance ? 0.0 : m->ambient, k_e = m->emission;
+    if (k_a == 0.0 && k_e == 0.0)
+        return;
+    if (p->spectral) {
+        for (int i = 0; i < g->count; i++) {
+            const spectral_row *row = spectra_row(p->spectral, g->ticket[i]);
+            const double a = (k_a * row->ambient + k_e * row->basis[SKY_BASIS_WHITE]) * g->cr[i];
+            expose(t, g->ticket[i], g->wr[i] * a, g->wg[i] * a, g->wb[i] * a);
+        }
+        return;
+    }
+    const vec3 a = vec3_add(vec3_scale(p->sky->ambient, k_a), vec3_make(k_e, k_e, k_e));
+    for (int i = 0; i < g->count; i++)
+        expose(t, g->ticket[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
+}
+
+/* A shadow ray is worth its while only if its light can change the film. */
+static void put_shadow_rays_in_line(tracer *t)
+{
+    const group *g = &t->gathered;
+    const lit_group *l = &t->lit;
+    ray_queue *q = &t->shadows;
+    int worth[ROW], count = 0;
+    for (int i = 0; i < g->count; i++) {
+        worth[count] = i;
+        count -= (int)l->shows[i];
+    }
+    for (int k = 0; k < count; k++) {
+        const int i = worth[k], at = q->count++;
+        q->ox[at] = g->points.px[i], q->oy[at] = g->points.py[i], q->oz[at] = g->points.pz[i];
+        q->dx[at] = l->lx[i], q->dy[at] = l->ly[i], q->dz[at] = l->lz[i];
+        q->wr[at] = l->r[i], q->wg[at] = l->g[i], q->wb[at] = l->b[i];
+        q->start[at] = g->points.face[i], q->ticket[at] = g->ticket[i], q->inside[at] = g->inside_before[i];
+    }
+}
+
+/* One light on the gathered group, with the light's own spectrum where there is one. */
+static void direct_light(tracer *t, const material *m, int lamp, int rank)
+{
+    const plan *p = t->target.scene;
+    light l = p->lights[lamp];
+    if (p->spectral)
+        l.color = vec3_make(1.0, 1.0, 1.0), l.intensity = 1.0;
+    if (mesh_has_corner_light(t, rank))
+        mesh_corner_light(t, m, &l, rank);
+    else
+        t->shade->direct(m, &l, &t->gathered, &t->lit);
+    if (l.kind != LIGHT_POINT)
+        t->shade->spot(&p->cones[lamp], l.kind == LIGHT_SOFT_CONE, &t->gathered, &t->lit);
+    if (t->on_mesh)
+        mesh_bound_light(t);
+    if (p->spectral)
+        spectral_light(t, lamp);
+}
+
+/* All that the surface sends out by itself, weighted. */
+static void send_out(tracer *t, int rank)
+{
+    const plan *p = t->target.scene;
+    const material *m = &t->look->surface;
+    material dull;
+    if (p->render.lighting == LIGHTING_LAMBERT && !integrator_of(&p->render)->by_chance) {
+        dull = *m;
+        dull.specular = 0.0;
+        m = &dull;
+    }
+    expose_own_light(t, m);
+    if (m->diffuse == 0.0 && m->specular == 0.0)
+        return;
+    for (int k = 0; k < p->light_count; k++) {
+        if (integrator_of(&p->render)->by_chance && p->lights[k].radius > 0.0)
+            continue;
+        direct_light(t, m, k, rank);
+        if (p->render.shadows != SHADOWS_OFF) {
+            put_shadow_rays_in_line(t);
+            continue;
+        }
+        for (int i = 0; i < t->gathered.count; i++)
+            if (t->lit.shows[i])
+                expose(t, t->gathered.ticket[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
+    }
+}
+
+void local_light(tracer *t, int rank)
+{
+    if (t->basic)
+        radiance_weigh(t);
+    send_out(t, rank);
+    if (t->basic)
+        radiance_weigh_back(t);
+}
+
+/* Branches that the depth limit cuts off: counted, and given what lies beyond it. */
+static void cut_branches(tracer *t)
+{
+    const group *g = &t->gathered;
+    const branch_group *b = &t->branches;
+    const plan *p = t->target.scene;
+    if (CUVETTE_COUNTERS) {
+        cut_sum sum;
+        t->shade->cut(g, b, &sum);
+        t->counters.cut_depth += (uint64_t)sum.branches;
+        for (int c = 0; c < 3; c++)
+            t->counters.cut_depth_throughput[c] += sum.throughput[c];
+    }
+    if (p->render.beyond == BEYOND_BLACK)
+        return;
+    const bool uniform =
+        p->sky->kind == BACKGROUND_UNIFORM || p->render.beyond == BEYOND_MEAN; /* then directions do not matter */
+    for (int i = 0; i < g->count; i++) {
+        const double first = uniform ? b->reflect[i] + b->refract[i] : b->reflect[i],
+                     second = uniform ? 0.0 : b->refract[i];
+        if (first > 0.0)
+            expose_beyond(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first, g->wg[i] * first,
+                          g->wb[i] * first);
+        if (second > 0.0)
+            expose_beyond(t, g->ticket[i], vec3_make(b->tx[i], b->ty[i], b->tz[i]), g->wr[i] * second,
+                          g->wg[i] * second, g->wb[i] * second);
+    }
+}
+
+static bool too_light(tracer *t, const ray_queue *q, int i, double least)
+{
+    if (q->wr[i] >= least || q->wg[i] >= least || q->wb[i] >= least)
+        return false;
+    COUNT(t->counters.cut_weight++);
+    COUNT(t->counters.cut_weight_throughput[0] += counters_cut_units(q->wr[i]));
+    COUNT(t->counters.cut_weight_throughput[1] += counters_cut_units(q->wg[i]));
+    COUNT(t->counters.cut_weight_throughput[2] += counters_cut_units(q->wb[i]));
+    return true;
+}
+
+/* The same as below, with the Stokes vectors. */
+static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, const double *weight, double least)
+{
+    const polar_group *p = &t->polar;
+    const size_t bytes = (size_t)t->gathered.count * sizeof(double);
+    memcpy(q->sq + first, reflected ? p->rq : p->tq, bytes);
+    memcpy(q->su + first, reflected ? p->ru : p->tu, bytes);
+    memcpy(q->sv + first, reflected ? p->rv : p->tv, bytes);
+    for (int i = t->gathered.count - 1; i >= 0; i--)
+        if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
+            queue_move_polarised(q, first + i, --q->count);
+    return q->count - first;
+}
+
+/* Puts a kind of children in line: all of them at once, then the last one into each hole of those that do not exist or
+ * weigh too little. Returns how many there are. */
+int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz,
+                         const double *weight, const uint64_t *inside)
+{
+    ray_queue *q = &t->waiting[depth];
+    const double least = t->least_weight;
+    const int first = q->count;
+    t->shade->append(&t->gathered, dx, dy, dz, weight, inside, q);
+    if (t->target.scene->render.polarisation)
+        return keep_polarised(t, q, first, dx == t->branches.rx, weight, least);
+    for (int i = t->gathered.count - 1; i >= 0; i--)
+        if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
+            queue_move(q, first + i, --q->count);
+    return q->count - first;
+}
+
+void shading_branches(tracer *t, bool opaque)
+{
+    const plan *p = t->target.scene;
+    const material *m = &t->look->surface;
+    if (!opaque && p->render.transmission == TRANSMISSION_SIMPLE)
+        t->shade->straight_branches(m, &t->gathered, &t->branches);
+    else if (opaque || p->render.weights == WEIGHTS_CONSTANT)
+        t->shade->constant_branches(m, opaque, &t->gathered, &t->branches);
+    else
+        t->shade->fresnel_branches(m, &t->gathered, &t->branches);
+    if (p->render.polarisation)
+        polarised_branches(t, m, opaque);
+    if (t->on_mesh)
+        mesh_bound_branches(t);
+}
+
+static void branch(tracer *t, int depth, bool opaque)
+{
+    const material *m = &t->look->surface;
+    group *g = &t->gathered;
+    branch_group *b = &t->branches;
+    if (opaque && (m->reflectivity == 0.0 || t->target.depths))
+        return;
+    shading_branches(t, opaque);
+    if (!opaque)
+        COUNT(t->counters.total_internal += (uint64_t)b->total);
+    if (depth == t->depth_limit) {
+        cut_branches(t);
+        return;
+    }
+    if (t->target.depths) {
+        drawn_branches(t, depth);
+        return;
+    }
+    int reflected = put_children_in_line(t, depth + 1, b->rx, b->ry, b->rz, b->reflect, g->inside_before);
+    int refracted = put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
+    COUNT(t->counters.reflect += (uint64_t)reflected);
+    COUNT(t->counters.refract += (uint64_t)refracted);
+}
+
+/* A checker's cells lie in the frame of the solid whose surface it is, also where another solid's face exposes it. */
+static void color(tracer *t, int rank, const primitive *surface)
+{
+    const plan *p = t->target.scene;
+    const primitive *frame = surface->rank == rank ? surface : &p->solids->primitives[p->solids->bodies[rank].outside];
+    if (!p->spectral) {
+        t->shade->color(&t->look->surface, frame, &t->gathered);
+        if (t->look->picture)
+            texture_colors(t, surface);
+        return;
+    }
+    /* Which of the two colours, and then its spectrum. */
+    material marked = t->look->surface;
+    marked.color = vec3_make(1.0, 0.0, 0.0);
+    marked.checker_color = vec3_make(0.0, 1.0, 0.0);
+    t->shade->color(&marked, frame, &t->gathered);
+    spectral_colors(t, rank);
+}
+
+static void shade_alike(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
+{
+    const plan *p = t->target.scene;
+    const primitive *surface = &p->solids->primitives[met];
+    group *g = &t->gathered;
+    group_gather(&t->waiting[depth], first, &t->hits, p->ior, list, count, g);
+    if (p->spectral)
+        spectral_indices(t, list);
+    if (p->render.polarisation)
+        polarised_gather(t, &t->waiting[depth], first, list);
+    const ray_batch rays = {g->padded, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
+    t->on_mesh = surface->kind == PRIMITIVE_MESH;
+    if (t->on_mesh)
+        mesh_surface(t, rank, list);
+    else
+        t->geometry->surface(surface, &rays, g->t, met, &g->points);
+    if (t->target.depths)
+        drawn_bend(t, list);
+    const int owner = p->solids->bodies[rank].solid;
+    COUNT(t->counters.hits[owner] += (uint64_t)count);
+    if (depth == 0)
+        COUNT(t->counters.first_hits[owner] += (uint64_t)count);
+    if (t->straight && t->look->picture)
+        drawn_straighten(t, list);
+    color(t, rank, surface);
+    if (integrator_of(&p->render)->by_chance) {
+        path_group(t, depth, rank);
+        return;
+    }
+    local_light(t, rank);
+    if (t->branching)
+        branch(t, depth, surface_is_opaque(t, rank));
+}
+
+void shading_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
+{
+    const body_look *looks = &t->target.scene->looks[rank];
+    t->look = looks->look;
+    if (looks->count == 1) {
+        shade_alike(t, depth, first, met, rank, list, count);
+        return;
+    }
+    int left[BATCH];
+    memcpy(left, list, (size_t)count * sizeof left[0]);
+    for (int begin = 0; begin < count;) {
+        int slot;
+        const int alike = mesh_next_look(t, left + begin, count - begin, &slot);
+        t->look = &looks->look[slot < looks->count ? slot : 0];
+        shade_alike(t, depth, first, met, rank, left + begin, alike);
+        begin += alike;
+    }
+}

@@ -1,0 +1,88 @@
+#include "render/shade/sky.h"
+
+#include "base/elementary.h"
+
+static vec3 picture_texel(const image *picture, int x, int y)
+{
+    const float *p = &picture->pixel[((size_t)y * (size_t)picture->width + (size_t)x) * 3];
+    return vec3_make((double)p[0], (double)p[1], (double)p[2]);
+}
+
+static vec3 mix(vec3 a, vec3 b, double share)
+{
+    return vec3_add(vec3_scale(a, 1.0 - share), vec3_scale(b, share));
+}
+
+static int wrap(int x, int width)
+{
+    x %= width;
+    return x < 0 ? x + width : x;
+}
+
+static int clamp(int y, int height)
+{
+    return y < 0 ? 0 : y >= height ? height - 1 : y;
+}
+
+/* Bilinear; longitude wraps around, latitude is clamped. */
+static vec3 picture_radiance(const image *picture, vec3 d)
+{
+    double longitude = elementary_atan2_deg(d.x, d.z),
+           latitude = elementary_atan2_deg(d.y, sqrt(d.x * d.x + d.z * d.z));
+    double u = (0.5 + longitude / 360.0) * picture->width - 0.5, v = (0.5 - latitude / 180.0) * picture->height - 0.5;
+    double left = floor(u), top = floor(v);
+    int x0 = wrap((int)left, picture->width), x1 = wrap((int)left + 1, picture->width);
+    int y0 = clamp((int)top, picture->height), y1 = clamp((int)top + 1, picture->height);
+    vec3 upper = mix(picture_texel(picture, x0, y0), picture_texel(picture, x1, y0), u - left);
+    vec3 lower = mix(picture_texel(picture, x0, y1), picture_texel(picture, x1, y1), u - left);
+    return mix(upper, lower, v - top);
+}
+
+vec3 sky_radiance(const background *sky, vec3 direction)
+{
+    switch ((background_kind)sky->kind) {
+    case BACKGROUND_UNIFORM: return sky->color;
+    case BACKGROUND_GRADIENT: return mix(sky->horizon, sky->color, direction.y > 0.0 ? direction.y : 0.0);
+    case BACKGROUND_PICTURE: return sky->picture ? picture_radiance(sky->picture, direction) : sky->color;
+    }
+    return sky->color;
+}
+
+/* What a row of texels weighs in the mean: the integral of its interpolation, a hat from the row above to the row
+ * below, times the sine of the polar angle. With rows h apart that is sin(angle) 2 (1 - cos h) / h; a row next to a
+ * pole holds up to the pole: 1 - 2 cos h sin(h / 2) / h. All of them add up to 2. */
+static double row_weight(int y, int height)
+{
+    const double h_deg = 180.0 / height, h = 3.141592653589793 / height;
+    double sin_h, cos_h, sin_half, cos_half, sine, cosine;
+    if (height == 1)
+        return 2.0;
+    elementary_sincos_deg(h_deg, &sin_h, &cos_h);
+    elementary_sincos_deg(0.5 * h_deg, &sin_half, &cos_half);
+    if (y == 0 || y == height - 1)
+        return 1.0 - 2.0 * cos_h * sin_half / h;
+    elementary_sincos_deg((y + 0.5) * h_deg, &sine, &cosine);
+    return sine * 4.0 * sin_half * sin_half / h;
+}
+
+static vec3 picture_mean(const image *picture)
+{
+    vec3 mean = {0.0, 0.0, 0.0};
+    for (int y = 0; y < picture->height; y++) {
+        vec3 row = {0.0, 0.0, 0.0};
+        for (int x = 0; x < picture->width; x++)
+            row = vec3_add(row, picture_texel(picture, x, y));
+        mean = vec3_add(mean, vec3_scale(row, 0.5 * row_weight(y, picture->height) / picture->width));
+    }
+    return mean;
+}
+
+vec3 sky_mean(const background *sky)
+{
+    switch ((background_kind)sky->kind) {
+    case BACKGROUND_UNIFORM: return sky->color;
+    case BACKGROUND_GRADIENT: return mix(sky->horizon, sky->color, 0.25);
+    case BACKGROUND_PICTURE: return sky->picture ? picture_mean(sky->picture) : sky->color;
+    }
+    return sky->color;
+}

@@ -1,0 +1,131 @@
+/* Which solids are drawn as layers: clear ones, through which the view goes on, and opaque ones that a clear one of a
+ * higher rank may hide a piece of. Of all others the nearest surface is all that shows. */
+#include "render/zbuffer/zbuffer_private.h"
+
+#include "base/elementary.h"
+
+static bounds3 box_around(const primitive *p, const arrangement *a)
+{
+    vec3 low, high;
+    const forest_part *part =
+        p->kind == PRIMITIVE_MESH ? &a->meshes->parts[a->meshes->by_primitive[p->first_face / FACES_MAX]] : NULL;
+    switch (p->kind) {
+    case PRIMITIVE_BOX: low = vec3_scale(p->half, -1.0), high = p->half; break;
+    case PRIMITIVE_CYLINDER:
+        high = vec3_make(p->radius, p->top, p->radius / sqrt(p->m2));
+        low = vec3_make(-high.x, p->bottom, -high.z);
+        break;
+    case PRIMITIVE_MESH: {
+        const vec3 s = part->scale,
+                   steps = vec3_make(part->spacing.x * (part->copies[0] - 1), part->spacing.y * (part->copies[1] - 1),
+                                     part->spacing.z * (part->copies[2] - 1));
+        const bounds3 b = part->triangles->bounds;
+        low = vec3_make(b.low.x * s.x + fmin(steps.x, 0.0), b.low.y * s.y + fmin(steps.y, 0.0),
+                        b.low.z * s.z + fmin(steps.z, 0.0));
+        high = vec3_make(b.high.x * s.x + fmax(steps.x, 0.0), b.high.y * s.y + fmax(steps.y, 0.0),
+                         b.high.z * s.z + fmax(steps.z, 0.0));
+        break;
+    }
+    case PRIMITIVE_SPHERE:
+    case PRIMITIVE_HALFSPACE: /* which has none */
+    default:
+        low = vec3_make(-p->radius, -p->radius, -p->radius), high = vec3_make(p->radius, p->radius, p->radius);
+        break;
+    }
+    bounds3 world = {vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL), vec3_make(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL)};
+    for (int k = 0; k < 8; k++) {
+        const vec3 corner = vec3_make(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z);
+        const vec3 at = vec3_add(p->origin, mat3_apply(p->rotation, corner));
+        world.low = vec3_make(fmin(world.low.x, at.x), fmin(world.low.y, at.y), fmin(world.low.z, at.z));
+        world.high = vec3_make(fmax(world.high.x, at.x), fmax(world.high.y, at.y), fmax(world.high.z, at.z));
+    }
+    return world;
+}
+
+/* Does the box reach below the half-space's plane? */
+static bool dips_into(const primitive *half, bounds3 b)
+{
+    const vec3 n = vec3_make(half->rotation.row[0].y, half->rotation.row[1].y, half->rotation.row[2].y);
+    const vec3 lowest =
+        vec3_make(n.x > 0.0 ? b.low.x : b.high.x, n.y > 0.0 ? b.low.y : b.high.y, n.z > 0.0 ? b.low.z : b.high.z);
+    return vec3_dot(n, vec3_sub(lowest, half->origin)) <= 0.0;
+}
+
+static bool may_touch(const primitive *p, const primitive *q, const arrangement *a)
+{
+    if (p->kind == PRIMITIVE_HALFSPACE || q->kind == PRIMITIVE_HALFSPACE) {
+        if (p->kind == q->kind)
+            return true;
+        return p->kind == PRIMITIVE_HALFSPACE ? dips_into(p, box_around(q, a)) : dips_into(q, box_around(p, a));
+    }
+    const bounds3 b = box_around(p, a), c = box_around(q, a);
+    return b.low.x <= c.high.x && c.low.x <= b.high.x && b.low.y <= c.high.y && c.low.y <= b.high.y &&
+           b.low.z <= c.high.z && c.low.z <= b.high.z;
+}
+
+static bool is_layered(const arrangement *a, int rank)
+{
+    const body *b = &a->bodies[rank];
+    bool layered = !b->opaque;
+    for (int r = rank + 1; r <= a->body_count && !layered; r++)
+        layered =
+            !a->bodies[r].opaque && may_touch(&a->primitives[b->outside], &a->primitives[a->bodies[r].outside], a);
+    return layered;
+}
+
+/* Is the eye in one of the mesh's copies? By the solid angle that the triangles fill (van Oosterom and Strackee, "The
+ * solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983): all of it or none. A drawn frame has no
+ * hierarchy to ask. */
+static bool eye_in_mesh(const forest_part *p, vec3 eye)
+{
+    for (uint32_t copy = 0; copy < p->copies[0] * p->copies[1] * p->copies[2]; copy++) {
+        const vec3 o = vec3_sub(forest_origin(p, copy), eye);
+        const vec3 far = vec3_make(fabs(o.x), fabs(o.y), fabs(o.z));
+        const double reach = 1.8 * p->reach;
+        if (far.x > reach || far.y > reach || far.z > reach)
+            continue;
+        double turns = 0.0;
+        for (size_t k = 0; k < p->triangles->triangle_count; k++) {
+            const mesh_triangle tri = p->triangles->triangles[k];
+            const vec3 a = zbuffer_vertex(p, o, tri.corner[0]), b = zbuffer_vertex(p, o, tri.corner[1]),
+                       c = zbuffer_vertex(p, o, tri.corner[2]);
+            const double la = vec3_length(a), lb = vec3_length(b), lc = vec3_length(c);
+            const double below = la * lb * lc + vec3_dot(a, b) * lc + vec3_dot(b, c) * la + vec3_dot(c, a) * lb;
+            turns += elementary_atan2_deg(vec3_dot(a, vec3_cross(b, c)), below) / 360.0;
+        }
+        if (fabs(turns) > 0.5)
+            return true;
+    }
+    return false;
+}
+
+static bool eye_in(const arrangement *a, const body *b, vec3 eye)
+{
+    const primitive *p = &a->primitives[b->outside];
+    if (p->kind != PRIMITIVE_MESH)
+        return primitive_contains(p, eye) && !(b->hollow >= 0 && primitive_contains(&a->primitives[b->hollow], eye));
+    const forest_part *part = &a->meshes->parts[a->meshes->by_primitive[b->outside]];
+    return part->closed && eye_in_mesh(part, eye);
+}
+
+void zbuffer_find_layers(zbuffer *z)
+{
+    const arrangement *a = z->scene->solids;
+    bool clear = false;
+    for (int r = 1; r <= a->body_count; r++)
+        clear |= !a->bodies[r].opaque;
+    if (!clear || z->scene->render.lighting != LIGHTING_WHITTED)
+        return;
+    for (int r = 1; r <= a->body_count; r++) {
+        if (!is_layered(a, r))
+            continue;
+        const uint64_t bit = (uint64_t)1 << (r - 1);
+        z->layered |= bit;
+        /* An eye in an opaque solid sees it from within, whether it is a layer or not. */
+        if (!a->bodies[r].opaque && eye_in(a, &a->bodies[r], z->scene->view.eye))
+            z->eye_inside |= bit;
+        const bool skin = a->meshes && a->meshes->skins >> a->bodies[r].outside & 1;
+        z->skins |= skin ? bit : 0;
+    }
+    z->eye_index = z->scene->ior[z->eye_inside ? 64 - __builtin_clzll(z->eye_inside) : 0];
+}

@@ -1,0 +1,232 @@
+/* What one sees through: of each point of the grid the surfaces before the nearest opaque one, in the order of their
+ * depth (Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984), and of them those where the
+ * medium changes, by priority as for rays. */
+#include "render/zbuffer/zbuffer_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Surfaces whose depths differ by less than this share are crossed at once, as at a contact. */
+#define TOGETHER 1e-9
+
+static bool grow(drawn_fragment **all, size_t *capacity, size_t wanted)
+{
+    if (wanted <= *capacity)
+        return true;
+    const size_t more = wanted < 1024 ? 1024 : 2 * wanted;
+    drawn_fragment *grown = realloc(*all, more * sizeof *grown);
+    if (!grown)
+        return false;
+    *all = grown;
+    *capacity = more;
+    return true;
+}
+
+void zbuffer_square_begin(zbuffer_square *s)
+{
+    s->block = NULL;
+}
+
+void zbuffer_square_release(zbuffer_square *s)
+{
+    free(s->fragments);
+    free(s->column);
+}
+
+void zbuffer_add_fragment(zbuffer *z, zbuffer_square *s, int point, double nearness, uint32_t number)
+{
+    if (s->count == INT32_MAX || !grow(&s->fragments, &s->capacity, s->count + 1)) {
+        atomic_store(&z->out_of_memory, true);
+        return;
+    }
+    s->fragments[s->count] = (drawn_fragment){nearness, number, s->newest[point], z->triangles[number].part};
+    s->newest[point] = (int32_t)s->count++;
+}
+
+static int compare_fragments(const void *a, const void *b)
+{
+    const drawn_fragment *x = a, *y = b;
+    if (x->nearness != y->nearness)
+        return x->nearness > y->nearness ? -1 : 1;
+    return (x->number > y->number) - (x->number < y->number);
+}
+
+static void sort_fragments(drawn_fragment *f, int count)
+{
+    if (count > 24) {
+        qsort(f, (size_t)count, sizeof *f, compare_fragments);
+        return;
+    }
+    for (int k = 1; k < count; k++) {
+        const drawn_fragment one = f[k];
+        int at = k;
+        for (; at > 0 && compare_fragments(&one, &f[at - 1]) < 0; at--)
+            f[at] = f[at - 1];
+        f[at] = one;
+    }
+}
+
+static bool is_opaque(const zbuffer *z, const drawn_fragment *f)
+{
+    return z->scene->solids->bodies[z->parts[f->part].at.rank].opaque;
+}
+
+/* The point's fragments before its nearest opaque surface, the nearest first; how many. Of two opaque ones the nearer
+ * is seen however close they are, as where nothing clear is drawn. */
+static int collect(zbuffer *z, zbuffer_square *s, int point)
+{
+    int count = 0;
+    for (int32_t k = s->newest[point]; k >= 0; k = s->fragments[k].next) {
+        const drawn_fragment *f = &s->fragments[k];
+        const double contact = is_opaque(z, f) ? 0.0 : TOGETHER * f->nearness;
+        if (!(f->nearness - s->nearness[point] > contact)) /* behind the opaque surface, or in contact with it */
+            continue;
+        if (!grow(&s->column, &s->column_capacity, (size_t)count + 1)) {
+            atomic_store(&z->out_of_memory, true);
+            return 0;
+        }
+        s->column[count++] = *f;
+    }
+    sort_fragments(s->column, count);
+    return count;
+}
+
+typedef struct layer_list {
+    int count;
+    drawn_layer layer[LAYERS_MAX];
+} layer_list;
+
+/* Sets of bodies have the bit r - 1 for the rank r: the medium is that of the highest. */
+static uint64_t bit_of(const zbuffer *z, const drawn_fragment *f)
+{
+    return (uint64_t)1 << (z->parts[f->part].at.rank - 1);
+}
+
+static int highest(uint64_t inside)
+{
+    return inside ? 64 - __builtin_clzll(inside) : 0;
+}
+
+/* Crosses what lies together at the front of the column: each surface leads into its body or out of it, whatever way
+ * its triangle looks, so that near an outline, where front and back are as near, their order does not matter. What is
+ * drawn of a cup's outside and of its hollow bounds its matter. Only one of them is opaque. Returns how many there
+ * were. */
+static int cross(const zbuffer *z, const drawn_fragment *f, int count, uint64_t *inside)
+{
+    int n = 0;
+    bool opaque = false;
+    do {
+        if (opaque && is_opaque(z, &f[n]))
+            break;
+        opaque |= is_opaque(z, &f[n]);
+        const uint64_t bit = bit_of(z, &f[n]);
+        *inside = z->skins & bit ? *inside | bit : *inside ^ bit;
+        n++;
+    } while (n < count && f[0].nearness - f[n].nearness <= TOGETHER * f[0].nearness);
+    return n;
+}
+
+/* Of the surfaces that are crossed together that of the body whose surface it is. */
+static inline drawn_layer layer_of(const zbuffer *z, const drawn_fragment *f, int count, uint64_t inside, int before,
+                                   int after)
+{
+    const int rank = arrangement_surface(z->scene->solids, before, after);
+    const drawn_fragment *c = f;
+    for (int k = 1; k < count && z->parts[c->part].at.rank != rank; k++)
+        c = z->parts[f[k].part].at.rank == rank ? &f[k] : c;
+    const drawn_part *p = &z->parts[c->part];
+    return (drawn_layer){.number = c->number + 1,
+                         .before = (uint8_t)before,
+                         .after = (uint8_t)after,
+                         .surface = (uint8_t)rank,
+                         .leaving = ((inside & bit_of(z, c)) != 0) != p->hollow,
+                         .ends = z->scene->solids->bodies[rank].opaque};
+}
+
+static bool absorb_alike(const plan *p, int before, int after)
+{
+    const vec3 a = p->absorption[before], b = p->absorption[after];
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* Every layer but the last is a clear interface, no more of them than the depth limit lets through, or is passed; the
+ * last one is what ends the view. */
+static void list_layers(const zbuffer *z, const drawn_fragment *f, int count, uint32_t base, layer_list *l)
+{
+    const arrangement *a = z->scene->solids;
+    const int most = (int)z->scene->render.depth + 1;
+    uint64_t inside = z->eye_inside;
+    int before = highest(inside);
+    int interfaces = 0;
+    l->count = 0;
+    for (int k = 0; k < count && interfaces < most;) {
+        uint64_t behind = inside;
+        const int together = cross(z, f + k, count - k, &behind), after = highest(behind);
+        if (a->bodies[before].medium != a->bodies[after].medium) {
+            l->layer[l->count++] = layer_of(z, f + k, together, inside, before, after);
+            interfaces++;
+            if (l->layer[l->count - 1].ends)
+                return;
+        } else if (l->count < LAYERS_MAX - most && !absorb_alike(z->scene, before, after)) {
+            l->layer[l->count] = layer_of(z, f + k, together, inside, before, after);
+            l->layer[l->count++].passed = true;
+        }
+        inside = behind & ~z->skins;
+        before = highest(inside);
+        k += together;
+    }
+    if (interfaces < most) {
+        const int after = base ? z->parts[z->triangles[base - 1].part].at.rank : before;
+        l->layer[l->count++] = (drawn_layer){.number = base,
+                                             .before = (uint8_t)before,
+                                             .after = (uint8_t)after,
+                                             .surface = (uint8_t)after,
+                                             .ends = true};
+    }
+}
+
+/* Room for a list in the worker's own block of them, or a fresh one. NULL when memory is out. */
+static drawn_layer *room_for(zbuffer *z, zbuffer_square *s, int count, uint32_t *place)
+{
+    if (!s->block || s->used + (uint32_t)count > BLOCK_LAYERS) {
+        const uint32_t number = atomic_fetch_add(&z->next_block, 1);
+        if (number >= BLOCKS_MAX || !(z->blocks[number] = malloc(BLOCK_LAYERS * sizeof(drawn_layer))))
+            return NULL;
+        s->block = z->blocks[number];
+        s->block_number = number;
+        s->used = 0;
+    }
+    *place = s->block_number * BLOCK_LAYERS + s->used;
+    s->used += (uint32_t)count;
+    return s->block + s->used - count;
+}
+
+/* What is seen at a point: an opaque surface alone stays as it is. */
+static void resolve_point(zbuffer *z, zbuffer_square *s, int point, uint32_t *seen, size_t *listed)
+{
+    layer_list l;
+    const int count = collect(z, s, point);
+    list_layers(z, s->column, count, *seen, &l);
+    if (l.count == 1 && l.layer[0].number == *seen && l.layer[0].before == 0)
+        return;
+    uint32_t place;
+    drawn_layer *to = room_for(z, s, l.count, &place);
+    if (!to) {
+        atomic_store(&z->out_of_memory, true);
+        return;
+    }
+    memcpy(to, l.layer, (size_t)l.count * sizeof *to);
+    *seen = SEEN_LAYERS | place;
+    *listed += (size_t)l.count;
+}
+
+void zbuffer_resolve(zbuffer *z, int x0, int y0, int x1, int y1, zbuffer_square *s)
+{
+    size_t listed = 0;
+    int point = 0;
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++, point++)
+            if (s->newest[point] >= 0 || z->eye_inside)
+                resolve_point(z, s, point, &z->seen[(size_t)y * (size_t)z->width + (size_t)x], &listed);
+    atomic_fetch_add_explicit(&z->layer_count, listed, memory_order_relaxed);
+}

@@ -1,0 +1,137 @@
+/* Triangles into the picture: corners to the grid, and the plane of inverse depths. */
+#include "render/zbuffer/zbuffer_private.h"
+
+#include "base/lanes.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Of the plane through a triangle, 1 / depth is linear in the picture (Blinn, "Hyperbolic interpolation", 1992): N.r /
+ * N.P along the ray r = (x/z, y/z, 1). False when one looks along it. corners: the triangle's own. */
+static bool depth_plane(const zbuffer *z, const drawn_part *p, const clip_corner *corners, screen_triangle *t)
+{
+    const vec3 a = vec3_make(corners[0].x, corners[0].y, corners[0].z),
+               b = vec3_make(corners[1].x, corners[1].y, corners[1].z);
+    const vec3 c = vec3_make(corners[2].x, corners[2].y, corners[2].z);
+    const vec3 n = p->plane ? vec3_cross(b, c) : vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
+    const double k = vec3_dot(n, a);
+    if (k == 0.0)
+        return false;
+    t->a = n.x / z->units_x / k;
+    t->b = -n.y / z->units_y / k;
+    t->c = (n.z - 0.5 * z->width * n.x / z->units_x + 0.5 * z->height * n.y / z->units_y) / k;
+    return isfinite(t->a) && isfinite(t->b) && isfinite(t->c);
+}
+
+static int32_t smallest3(const int32_t v[3])
+{
+    const int32_t m = v[0] < v[1] ? v[0] : v[1];
+    return m < v[2] ? m : v[2];
+}
+
+static int32_t largest3(const int32_t v[3])
+{
+    const int32_t m = v[0] > v[1] ? v[0] : v[1];
+    return m > v[2] ? m : v[2];
+}
+
+/* Is there a point of the picture's grid in its box? */
+static bool may_show(const zbuffer *z, const screen_triangle *t)
+{
+    const int half = SUBPIXEL / 2;
+    const int x0 = (smallest3(t->x) + half - 1) >> 12, x1 = (largest3(t->x) - half) >> 12;
+    const int y0 = (smallest3(t->y) + half - 1) >> 12, y1 = (largest3(t->y) - half) >> 12;
+    return x0 <= x1 && y0 <= y1 && x1 >= 0 && y1 >= 0 && x0 < z->width && y0 < z->height;
+}
+
+static void put(chunk *c, const zbuffer *z, screen_triangle *t)
+{
+    const int64_t area =
+        (int64_t)(t->x[1] - t->x[0]) * (t->y[2] - t->y[0]) - (int64_t)(t->y[1] - t->y[0]) * (t->x[2] - t->x[0]);
+    if (area == 0 || !may_show(z, t))
+        return;
+    if (area < 0) {
+        const int32_t x = t->x[1], y = t->y[1];
+        t->x[1] = t->x[2], t->y[1] = t->y[2];
+        t->x[2] = x, t->y[2] = y;
+    }
+    if (c->made_count == c->capacity) {
+        const size_t capacity = c->capacity ? 2 * c->capacity : 256;
+        screen_triangle *grown = realloc(c->made, capacity * sizeof *grown);
+        if (!grown) {
+            c->made_count = SIZE_MAX;
+            return;
+        }
+        c->made = grown;
+        c->capacity = capacity;
+    }
+    c->made[c->made_count++] = *t;
+}
+
+/* Are all corners beyond one edge of the picture? */
+static bool is_beside(const zbuffer *z, const clip_corner *c)
+{
+    const double wide = 0.5 * z->width / z->units_x, high = 0.5 * z->height / z->units_y;
+    bool left = true, right = true, below = true, above = true, behind = true;
+    for (int k = 0; k < 3; k++) {
+        left &= c[k].x<-wide * c[k].z, right &= c[k].x> wide * c[k].z;
+        below &= c[k].y<-high * c[k].z, above &= c[k].y> high * c[k].z;
+        behind &= c[k].z < 0.0;
+    }
+    return left || right || below || above || behind;
+}
+
+/* Do the normals at its corners differ? A mesh that is shaded flat is what it is. */
+static bool is_curved(const zbuffer *z, const drawn_part *p, uint32_t triangle)
+{
+    const mesh *m = p->at.triangles;
+    if (p->plane || !m->normals || (!p->own && z->scene->looks[p->at.rank].shading == SHADING_FLAT))
+        return false;
+    const mesh_triangle tri = m->triangles[triangle];
+    const vec3 n = m->normals[tri.corner[0]];
+    const double least = 1.0 - 1e-9;
+    return !(vec3_dot(n, m->normals[tri.corner[1]]) > least && vec3_dot(n, m->normals[tri.corner[2]]) > least);
+}
+
+static void project_triangle(const zbuffer *z, chunk *c, const drawn_part *p, uint32_t copy, uint32_t triangle)
+{
+    clip_corner polygon[POLYGON_MAX];
+    int32_t x[POLYGON_MAX], y[POLYGON_MAX];
+    screen_triangle t = {.triangle = triangle, .copy = copy, .part = (uint16_t)c->part};
+    zbuffer_corners(z, p, copy, triangle, polygon);
+    if (is_beside(z, polygon) || !depth_plane(z, p, polygon, &t))
+        return;
+    t.curved = c->part >= z->first_layered_part && is_curved(z, p, triangle);
+    const int count = zbuffer_clip(z, p, polygon);
+    t.least = HUGE_VAL, t.most = 0.0;
+    for (int k = 0; k < count; k++) {
+        double across, down;
+        zbuffer_place(z, &polygon[k], &across, &down);
+        x[k] = (int32_t)floor(across * SUBPIXEL + 0.5), y[k] = (int32_t)floor(down * SUBPIXEL + 0.5);
+        t.least = lesser(t.least, polygon[k].h / polygon[k].z), t.most = greater(t.most, polygon[k].h / polygon[k].z);
+    }
+    for (int k = 1; k + 1 < count && c->made_count != SIZE_MAX; k++) {
+        screen_triangle piece = t;
+        const int at[3] = {0, k, k + 1};
+        for (int j = 0; j < 3; j++)
+            piece.x[j] = x[at[j]], piece.y[j] = y[at[j]];
+        piece.piece = (uint8_t)k;
+        put(c, z, &piece);
+    }
+}
+
+void zbuffer_project(zbuffer *z)
+{
+    for (size_t k; (k = atomic_fetch_add_explicit(&z->next_chunk, 1, memory_order_relaxed)) < z->chunk_count;) {
+        chunk *c = &z->chunks[k];
+        const drawn_part *p = &z->parts[c->part];
+        const uint32_t number = zbuffer_number(p);
+        for (int i = 0; i < c->count && c->made_count != SIZE_MAX; i++) {
+            const uint64_t at = c->first + (uint64_t)i;
+            project_triangle(z, c, p, (uint32_t)(at / number), (uint32_t)(at % number));
+        }
+        if (c->made_count == SIZE_MAX) {
+            c->made_count = 0;
+            atomic_store(&z->out_of_memory, true);
+        }
+    }
+}

@@ -1,0 +1,311 @@
+/* What the depth buffer shows at the tracer's camera rays, as if they had been traced there. */
+#include "render/core/tracer_private.h"
+#include "render/zbuffer/zbuffer_private.h"
+
+#include "base/lanes.h"
+#include <string.h>
+
+/* The point of the grid that a ray goes through. */
+static size_t point_of(const zbuffer *z, int64_t ticket, int *x, int *y)
+{
+    /* Short divisions are faster. */
+    const uint32_t pixel = (uint32_t)ticket_pixel(ticket), sample = (uint32_t)ticket_sample(ticket);
+    const uint32_t points = (uint32_t)z->points, width = (uint32_t)z->scene->render.width;
+    const uint32_t row = pixel / width, line = points == 1 ? 0 : sample / points;
+    *x = (int)((pixel - row * width) * points + sample - line * points);
+    *y = (int)(row * points + line);
+    return (size_t)*y * (size_t)z->width + (size_t)*x;
+}
+
+typedef struct met {
+    double t, u, v;
+    bool leaving;
+} met;
+
+static met met_plane(const primitive *p, const camera_frame *view, vec3 d)
+{
+    const vec3 n = vec3_make(p->rotation.row[0].y, p->rotation.row[1].y, p->rotation.row[2].y);
+    const double along = vec3_dot(n, d);
+    return (met){.t = vec3_dot(n, vec3_sub(p->origin, view->eye)) / along, .leaving = along > 0.0};
+}
+
+/* Weights of the corners under the ray: what interpolating u / w, v / w and 1 / w across the picture comes to (Heckbert
+ * and Moreton, "Interpolation for polygon texture mapping and shading", 1991), by the ray instead of the picture
+ * because corners may be behind the eye (Moller and Trumbore, JGT 2(1), 1997). A ray that misses by what corners were
+ * rounded takes the nearest edge. */
+static met met_triangle(const drawn_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
+{
+    const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
+    const vec3 o = vec3_sub(forest_origin(&p->at, s->copy), view->eye);
+    const vec3 a = zbuffer_vertex(&p->at, o, tri.corner[0]);
+    const vec3 ab = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[1]), a),
+               ac = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[2]), a);
+    const vec3 h = vec3_cross(d, ac), q = vec3_cross(ab, a);
+    const double size = vec3_dot(ab, h);
+    double u = -vec3_dot(a, h) / size, v = vec3_dot(d, q) / size;
+    if (!(fabs(u) < 1e6 && fabs(v) < 1e6)) /* seen from its edge */
+        u = v = 1.0 / 3.0;
+    if (u < 0.0 || v < 0.0 || u + v > 1.0) {
+        const double w = greater(1.0 - u - v, 0.0);
+        u = greater(u, 0.0), v = greater(v, 0.0);
+        const double sum = w + u + v;
+        u /= sum, v /= sum;
+    }
+    const vec3 at = vec3_add(a, vec3_add(vec3_scale(ab, u), vec3_scale(ac, v)));
+    return (met){vec3_dot(at, d), u, v, size < 0.0};
+}
+
+/* The same by the plane of inverse depths, where neither weights nor sides are wanted. */
+static met met_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
+{
+    const double near = lesser(greater(s->a * (x + 0.5) + (s->b * (y + 0.5) + s->c), s->least), s->most);
+    return (met){.t = 1.0 / (near * vec3_dot(z->scene->view.forward, d))};
+}
+
+static void note_nothing(tracer *t, int i)
+{
+    t->hits.t[i] = HUGE_VAL;
+    t->hits.crossed[i] = -1;
+    t->hits.surface[i] = 0;
+}
+
+static met met_by(const zbuffer *z, const screen_triangle *s, vec3 d)
+{
+    const drawn_part *p = &z->parts[s->part];
+    return p->plane ? met_plane(&z->scene->solids->primitives[p->met], &z->scene->view, d)
+                    : met_triangle(p, s, &z->scene->view, d);
+}
+
+static void note_hit(tracer *t, int i, const screen_triangle *s, met m)
+{
+    const zbuffer *z = t->target.depths;
+    const drawn_part *p = &z->parts[s->part];
+    const primitive *surface = &z->scene->solids->primitives[p->met];
+    hit_batch *h = &t->hits;
+    h->t[i] = m.t;
+    h->crossed[i] = p->met;
+    h->surface[i] = h->after[i] = surface->rank;
+    h->inside_before[i] = m.leaving ? (uint64_t)1 << p->met : 0;
+    if (surface->kind != PRIMITIVE_MESH)
+        return;
+    const int64_t face = mesh_face_number(p->met, s->copy, s->triangle);
+    t->meshes->scratch.hit[i] = (forest_hit){m.t, m.u, m.v, face, m.leaving ? FACING_BACK : FACING_FRONT};
+}
+
+/* The straight views of a batch, whose directions may be bent: through the points of the grid. */
+static void straight_views(tracer *t, int count)
+{
+    const zbuffer *z = t->target.depths;
+    const camera_frame *view = &z->scene->view;
+    drawn_work *w = t->drawn;
+    const double across = 1.0 / z->units_x, down = 1.0 / z->units_y;
+    double u[ROW], v[ROW];
+    for (int i = 0; i < count; i++) {
+        u[i] = (w->x[i] + 0.5) * across - view->half_width;
+        v[i] = view->half_height - (w->y[i] + 0.5) * down;
+    }
+    t->shade->camera(view, count, u, v, w->vx, w->vy, w->vz);
+}
+
+/* A camera ray's own direction. */
+static void first_views(tracer *t, const ray_batch *rays)
+{
+    const size_t bytes = (size_t)rays->count * sizeof(double);
+    memcpy(t->drawn->vx, rays->dx, bytes), memcpy(t->drawn->vy, rays->dy, bytes), memcpy(t->drawn->vz, rays->dz, bytes);
+}
+
+/* The straight way to a layer goes through one medium, which takes its share of the light. */
+static void dim(const plan *p, ray_queue *q, int at, int rank, double length)
+{
+    if (rank == 0 || !p->solids->bodies[rank].absorbs)
+        return;
+    const vec3 a = p->absorption[rank];
+    q->wr[at] *= absorption_left(a.x * length), q->wg[at] *= absorption_left(a.y * length),
+        q->wb[at] *= absorption_left(a.z * length);
+}
+
+static const drawn_layer *layer_at(const zbuffer *z, uint32_t place)
+{
+    return &z->blocks[place / BLOCK_LAYERS][place % BLOCK_LAYERS];
+}
+
+static inline met met_layer(const tracer *t, int i, const drawn_layer *l)
+{
+    const zbuffer *z = t->target.depths;
+    const drawn_work *w = t->drawn;
+    const screen_triangle *s = &z->triangles[l->number - 1];
+    const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
+    met m = l->ends || !z->parts[s->part].own ? met_by(z, s, view) : met_depth(z, s, w->x[i], w->y[i], view);
+    m.leaving = l->ends ? m.leaving : l->leaving;
+    return m;
+}
+
+/* The ray number `at` meets the next interface of its point's list, at `place` or behind what is passed: where the
+ * straight view does, but along its own direction, as if it had set out towards that point. Where its list goes on it
+ * takes along as its set. */
+static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
+{
+    const zbuffer *z = t->target.depths;
+    const plan *p = z->scene;
+    const drawn_layer *l = layer_at(z, place);
+    const vec3 view = vec3_make(t->drawn->vx[i], t->drawn->vy[i], t->drawn->vz[i]);
+    double passed = vec3_dot(vec3_sub(vec3_make(q->ox[at], q->oy[at], q->oz[at]), p->view.eye), view);
+    t->drawn->straight[i] = false;
+    for (; l->passed; l = layer_at(z, ++place)) {
+        const double end = greater(met_layer(t, i, l).t, passed);
+        dim(p, q, at, l->before, end - passed);
+        passed = end;
+    }
+    t->drawn->number[i] = l->number - 1;
+    if (l->number == 0) {
+        const double for_ever = 1e100;
+        note_nothing(t, i);
+        dim(p, q, at, l->before, for_ever);
+        return;
+    }
+    met m = met_layer(t, i, l);
+    const vec3 point = vec3_add(p->view.eye, vec3_scale(view, m.t));
+    const double length = greater(m.t - passed, 0.0);
+    const screen_triangle *s = &z->triangles[l->number - 1];
+    t->drawn->straight[i] = s->curved;
+    if (s->curved)
+        q->dx[at] = view.x, q->dy[at] = view.y, q->dz[at] = view.z;
+    m.t = length;
+    const vec3 set_out = vec3_sub(point, vec3_scale(vec3_make(q->dx[at], q->dy[at], q->dz[at]), length));
+    q->ox[at] = set_out.x, q->oy[at] = set_out.y, q->oz[at] = set_out.z;
+    note_hit(t, i, s, m);
+    t->hits.before[i] = l->before;
+    t->hits.after[i] = l->after;
+    t->hits.surface[i] = l->surface;
+    t->hits.inside_after[i] = place + 1;
+    dim(p, q, at, l->before, length);
+}
+
+void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
+{
+    const zbuffer *z = t->target.depths;
+    drawn_work *w = t->drawn;
+    uint32_t seen[ROW];
+    for (int i = 0; i < rays->count; i++)
+        seen[i] = z->seen[point_of(z, q->ticket[first + i], &w->x[i], &w->y[i])];
+    if (depth == 0)
+        first_views(t, rays);
+    else
+        straight_views(t, rays->count);
+    for (int i = 0; i < rays->count; i++) {
+        t->hits.before[i] = t->hits.after[i] = 0;
+        t->hits.inside_before[i] = t->hits.inside_after[i] = 0;
+        if (t->meshes)
+            t->meshes->scratch.hit[i].face = FACE_NONE;
+        if (z->layered && seen[i] & SEEN_LAYERS) {
+            note_layer(t, q, first + i, i, depth == 0 ? seen[i] & ~SEEN_LAYERS : (uint32_t)q->inside[first + i]);
+            continue;
+        }
+        w->number[i] = seen[i] - 1;
+        w->straight[i] = false;
+        if (seen[i]) {
+            const screen_triangle *s = &z->triangles[seen[i] - 1];
+            note_hit(t, i, s, met_by(z, s, vec3_make(w->vx[i], w->vy[i], w->vz[i])));
+        } else {
+            note_nothing(t, i);
+        }
+    }
+}
+
+/* At a curved surface the straight view does not meet what a bent ray would: where it leaves a ball near its outline,
+ * the normal is another than where the ray does, and light that came in would not get out. So the view is bent there as
+ * between the surface and one like it that it came in by: the part along the surface is as n sin is, the same in all
+ * layers. */
+void drawn_bend(tracer *t, const int *list)
+{
+    const zbuffer *z = t->target.depths;
+    group *g = &t->gathered;
+    if (!z->layered || z->scene->render.transmission == TRANSMISSION_SIMPLE)
+        return;
+    for (int k = 0; k < g->count; k++) {
+        const double eta = z->eye_index / g->n_from[k], cosine = g->points.cos_i[k];
+        if (!t->drawn->straight[list[k]] || eta == 1.0)
+            continue;
+        const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
+        const vec3 along = vec3_scale(vec3_add(vec3_make(g->dx[k], g->dy[k], g->dz[k]), vec3_scale(n, cosine)), eta);
+        const double sine2 = vec3_dot(along, along);
+        if (sine2 >= 1.0)
+            continue;
+        g->points.cos_i[k] = sqrt(1.0 - sine2);
+        const vec3 d = vec3_sub(along, vec3_scale(n, g->points.cos_i[k]));
+        g->dx[k] = d.x, g->dy[k] = d.y, g->dz[k] = d.z;
+    }
+}
+
+/* What a clear surface does with the view: the sky's light along the reflected direction, and on to the next layer with
+ * what is left. */
+void drawn_branches(tracer *t, int depth)
+{
+    const group *g = &t->gathered;
+    const branch_group *b = &t->branches;
+    for (int i = 0; i < g->count; i++)
+        if (b->reflect[i] > 0.0)
+            shading_expose_sky(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * b->reflect[i],
+                               g->wg[i] * b->reflect[i], g->wb[i] * b->reflect[i]);
+    put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
+}
+
+/* Weights straight across the picture, of the polygon that the planes left: not what they are in space, unless all
+ * corners are equally far. */
+static void straight_weights(const zbuffer *z, const screen_triangle *s, double x, double y, double weight[3])
+{
+    clip_corner polygon[POLYGON_MAX];
+    zbuffer_corners(z, &z->parts[s->part], s->copy, s->triangle, polygon);
+    zbuffer_clip(z, &z->parts[s->part], polygon);
+    const clip_corner *corner[3] = {&polygon[0], &polygon[s->piece], &polygon[s->piece + 1]};
+    double cx[3], cy[3], area[3];
+    for (int k = 0; k < 3; k++)
+        zbuffer_place(z, corner[k], &cx[k], &cy[k]);
+    for (int k = 0; k < 3; k++) {
+        const int b = (k + 1) % 3, c = (k + 2) % 3;
+        area[k] = (cx[b] - x) * (cy[c] - y) - (cy[b] - y) * (cx[c] - x);
+    }
+    const double whole = area[0] + area[1] + area[2];
+    for (int j = 0; j < 3; j++) {
+        weight[j] = 0.0;
+        for (int k = 0; k < 3; k++)
+            weight[j] += (whole != 0.0 ? area[k] / whole : 1.0 / 3.0) * corner[k]->weight[j];
+    }
+}
+
+static void straighten_uv(tracer *t, const drawn_part *p, const screen_triangle *s, const double weight[3], int k)
+{
+    const mesh *m = p->at.triangles;
+    const mesh_triangle tri = m->triangles[s->triangle];
+    double u = 0.0, v = 0.0;
+    for (int j = 0; m->uvs && j < 3; j++)
+        u += weight[j] * m->uvs[tri.corner[j]].u, v += weight[j] * m->uvs[tri.corner[j]].v;
+    t->meshes->points.tu[k] = u, t->meshes->points.tv[k] = v;
+}
+
+/* A plane's corners are infinitely far, where no straight way leads to. */
+void drawn_straighten(tracer *t, const int *list)
+{
+    const zbuffer *z = t->target.depths;
+    const surface_batch *points = &t->gathered.points;
+    drawn_work *w = t->drawn;
+    for (int k = 0; k < t->gathered.count; k++) {
+        const int i = list[k];
+        const screen_triangle *s = &z->triangles[w->number[i]];
+        const drawn_part *p = &z->parts[s->part];
+        w->at[k] = vec3_make(points->px[k], points->py[k], points->pz[k]);
+        if (p->plane)
+            continue;
+        double weight[3];
+        straight_weights(z, s, w->x[i] + 0.5, w->y[i] + 0.5, weight);
+        if (t->on_mesh) {
+            straighten_uv(t, p, s, weight, k);
+            continue;
+        }
+        const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
+        vec3 at = vec3_make(0.0, 0.0, 0.0);
+        for (int j = 0; j < 3; j++)
+            at = vec3_add(at, vec3_scale(forest_vertex_point(&p->at, s->copy, tri.corner[j]), weight[j]));
+        w->at[k] = at;
+    }
+}

@@ -1,0 +1,274 @@
+/* What a scene names and does not hold in itself: meshes, textures and the sky's picture. */
+#include "base/text.h"
+#include "scene/assets/assets.h"
+#include "scene/model/looks.h"
+#include "scene/model/params_value.h"
+#include "scene/assets/mesh_make.h"
+#include "scene/model/slime.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void mesh_entry_unload(mesh_entry *m)
+{
+    mesh_release(m->data);
+    looks_release(m->looks);
+    m->data = NULL;
+    m->looks = NULL;
+    m->account = (softbody_account){.steps = 0};
+    m->motion_s = 0.0;
+}
+
+void texture_entry_unload(texture_entry *t)
+{
+    texture_release(t->data);
+    t->data = NULL;
+}
+
+const mesh_entry *scene_find_mesh(const scene *s, const char *name)
+{
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        if (strcmp(s->meshes[i].name, name) == 0) {
+            return &s->meshes[i];
+        }
+    }
+    return NULL;
+}
+
+const texture_entry *scene_find_texture(const scene *s, const char *name)
+{
+    for (size_t i = 0; i < s->texture_count; i++) {
+        if (strcmp(s->textures[i].name, name) == 0) {
+            return &s->textures[i];
+        }
+    }
+    return NULL;
+}
+
+status asset_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code,
+                   diagnostic *why)
+{
+    if (line == 0) {
+        diagnostic_locate(why, bad->file, bad->line, bad->column);
+        return diagnose(why, code, bad->remedy, "%s: %s", what, bad->what);
+    }
+    diagnostic_locate(why, s->path, line, column);
+    return diagnose(why, code, bad->remedy, "%s: %s%s%s", what, bad->file, bad->file[0] ? ": " : "", bad->what);
+}
+
+char *scene_file_path(const scene *s, const char *path)
+{
+    const char *slash = strrchr(s->path, '/');
+    int folder = path[0] != '/' && slash ? (int)(slash - s->path) + 1 : 0;
+    return text_format("%.*s%s", folder, s->path, path);
+}
+
+/* Light is not negative, and the film must hold it. */
+static status check_sky(const image *sky, const char *path, diagnostic *bad)
+{
+    for (int y = 0; y < sky->height; y++) {
+        for (int x = 0; x < sky->width; x++) {
+            const float *pixel = &sky->pixel[((size_t)y * (size_t)sky->width + (size_t)x) * 3];
+            for (int channel = 0; channel < 3; channel++) {
+                if (!(pixel[channel] >= 0.0F && pixel[channel] <= SCENE_SKY_MAX)) {
+                    diagnostic_locate(bad, path, 0, 0);
+                    return diagnose(bad, STATUS_BAD_INPUT, "scale the picture to 0..65536",
+                                    "pixel %d,%d is %g in channel %d, and a sky's light is from 0 to 65536", x, y,
+                                    (double)pixel[channel], channel);
+                }
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+static status load_sky(scene *s, diagnostic *why)
+{
+    background *sky = &s->background;
+    if (sky->kind != BACKGROUND_PICTURE || sky->picture || !sky->picture_path[0]) {
+        return STATUS_OK;
+    }
+    char *path = scene_file_path(s, sky->picture_path);
+    if (!path) {
+        return out_of_memory(why);
+    }
+    diagnostic bad = {.what = ""};
+    status code = image_read_below(path, s->limits.root, &sky->picture, NULL, &bad);
+    if (code == STATUS_OK && (code = check_sky(sky->picture, path, &bad)) != STATUS_OK) {
+        image_destroy(sky->picture);
+        sky->picture = NULL;
+    }
+    free(path);
+    return code == STATUS_OK
+               ? code
+               : asset_error(s, "background.picture", sky->picture_line, sky->picture_column, &bad, code, why);
+}
+
+static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
+{
+    char *path = scene_file_path(s, t->path);
+    if (!path) {
+        return out_of_memory(why);
+    }
+    diagnostic bad = {.what = ""};
+    texture *data = NULL;
+    const status code = texture_read_below(path, s->limits.root, (texture_space)t->space, (texture_wrap)t->wrap_u,
+                                           (texture_wrap)t->wrap_v, (texture_filter)t->filter, &data, &bad);
+    free(path);
+    t->data = data;
+    return code == STATUS_OK ? code : asset_error(s, t->name, t->path_line, t->path_column, &bad, code, why);
+}
+
+static bool same_value(const param *row, const char *a, const char *b)
+{
+    char *x = param_value_text(row, -1, a + row->offset), *y = param_value_text(row, -1, b + row->offset);
+    const bool same = x && y && strcmp(x, y) == 0;
+    free(x);
+    free(y);
+    return same;
+}
+
+static bool same_mesh(const mesh_entry *a, const mesh_entry *b)
+{
+    bool same = true;
+    for (size_t i = 0; i < param_count() && same; i++) {
+        const param *row = param_at(i);
+        same = row->group != PARAM_MESH || same_value(row, (const char *)a, (const char *)b);
+    }
+    return same;
+}
+
+void scene_borrow_meshes(scene *s, const scene *from)
+{
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        mesh_entry *m = &s->meshes[i];
+        const bool own = m->source == MESH_SLIME && !s->render.keep;
+        for (size_t k = 0; k < from->mesh_count && !m->data && !own; k++) {
+            const mesh_entry *other = &from->meshes[k];
+            if (!other->data || !same_mesh(m, other)) {
+                continue;
+            }
+            m->data = other->data;
+            m->looks = other->looks;
+            m->account = other->account;
+            m->motion_s = other->motion_s;
+            mesh_retain(m->data);
+            looks_retain(m->looks);
+        }
+    }
+}
+
+static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
+{
+    if (m->source != MESH_FILE) {
+        return mesh_make(m, why);
+    }
+    char *path = scene_file_path(s, m->path);
+    if (!path) {
+        return out_of_memory(why);
+    }
+    diagnostic bad = {.what = ""};
+    const status code = mesh_make_from_file(m, path, &s->limits, &bad);
+    free(path);
+    return code == STATUS_OK ? code : asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
+}
+
+/* After m was loaded: is it too much, with all that is there? */
+static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
+{
+    size_t all = 0;
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        all += s->meshes[i].data ? s->meshes[i].data->triangle_count : 0;
+    }
+    if (!s->limits.triangles || all <= s->limits.triangles) {
+        return STATUS_OK;
+    }
+    diagnostic bad = {.what = ""};
+    const status code =
+        diagnose(&bad, STATUS_BAD_INPUT, "use smaller meshes, or fewer",
+                 "%zu triangles in all meshes are more than the limit of %zu", all, s->limits.triangles);
+    mesh_entry_unload(m);
+    return asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
+}
+
+/* Sky and textures. */
+static status load_pictures(scene *s, diagnostic *why)
+{
+    status code = load_sky(s, why);
+    for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++) {
+        if (!s->textures[i].data) {
+            code = load_texture(s, &s->textures[i], why);
+        }
+    }
+    return code;
+}
+
+/* Of all slimes that are to move, what one of them does. */
+typedef struct shared_watch {
+    const load_watch *whole;
+    double before, own, all; /* slime_work */
+} shared_watch;
+
+static bool go_on_all(void *context, double share_done)
+{
+    const shared_watch *w = context;
+    return w->whole->go_on(w->whole->context, (w->before + share_done * w->own) / w->all);
+}
+
+static double work_of(const mesh_entry *m)
+{
+    return m->source == MESH_SLIME && !m->data ? slime_work(m) : 0.0;
+}
+
+static status load_meshes(scene *s, const load_watch *watch, diagnostic *why)
+{
+    shared_watch shared = {.whole = watch};
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        shared.all += work_of(&s->meshes[i]);
+    }
+    status code = STATUS_OK;
+    for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
+        mesh_entry *m = &s->meshes[i];
+        shared.own = work_of(m);
+        if (!m->data && m->source == MESH_SLIME) {
+            code = slime_make(s, m, watch ? &(load_watch){go_on_all, &shared} : NULL, why);
+        } else if (!m->data) {
+            code = load_mesh(s, m, why);
+        }
+        if (code == STATUS_OK) {
+            code = check_triangles(s, m, why);
+        }
+        shared.before += shared.own;
+    }
+    return code;
+}
+
+status scene_load_until(scene *s, const load_watch *watch, diagnostic *why)
+{
+    const status code = load_pictures(s, why);
+    return code == STATUS_OK ? load_meshes(s, watch, why) : code;
+}
+
+status scene_load(scene *s, diagnostic *why)
+{
+    return scene_load_until(s, NULL, why);
+}
+
+status scene_load_files(scene *s, diagnostic *why)
+{
+    status code = load_pictures(s, why);
+    for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
+        mesh_entry *m = &s->meshes[i];
+        if (m->source == MESH_FILE && !m->data) {
+            code = load_mesh(s, m, why);
+            if (code == STATUS_OK) {
+                code = check_triangles(s, m, why);
+            }
+        } else if (m->source == MESH_SLIME) {
+            hand_script *script;
+            code = slime_read_script(s, m, &script, why);
+            hand_script_destroy(script);
+        }
+    }
+    return code;
+}

@@ -1,0 +1,212 @@
+#include "scene/assets/mesh_child.h"
+
+#include "base/text.h"
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/pidfd.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+double mesh_child_now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ---- listen ---- */
+
+static void hang_up(int *fd)
+{
+    if (*fd >= 0) {
+        close(*fd);
+        *fd = -1;
+    }
+}
+
+/* What it writes on standard error; only the beginning is kept, but it never has to wait for us. */
+static void hear(mesh_child *child)
+{
+    char buffer[4096];
+    ssize_t got = read(child->err, buffer, sizeof buffer);
+    if (got < 0 && errno == EINTR) {
+        return;
+    }
+    if (got <= 0) {
+        hang_up(&child->err);
+        return;
+    }
+    size_t room = sizeof child->said - 1 - child->said_length, kept = (size_t)got < room ? (size_t)got : room;
+    memcpy(child->said + child->said_length, buffer, kept);
+    child->said_length += kept;
+}
+
+/* Waits until there is something on standard output (true) or nothing will come. */
+static bool wait_for_bytes(mesh_child *child)
+{
+    while (child->out >= 0) {
+        double left_s = child->deadline_s - mesh_child_now_s();
+        if (left_s <= 0) {
+            child->late = true;
+            return false;
+        }
+        struct pollfd both[] = {{.fd = child->out, .events = POLLIN},
+                                {.fd = child->err, .events = POLLIN}}; /* -1 is left out */
+        int ready = poll(both, 2, left_s < 1000 ? (int)(left_s * 1000) + 1 : 1000000);
+        if (ready < 0 && errno != EINTR && errno != EAGAIN) {
+            return false;
+        }
+        if (ready > 0 && both[1].revents) {
+            hear(child);
+        }
+        if (ready > 0 && both[0].revents) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Up to size bytes; 0 at the end, or when the time is over. */
+static size_t take(mesh_child *child, void *bytes, size_t size)
+{
+    while (wait_for_bytes(child)) {
+        ssize_t got = read(child->out, bytes, size);
+        if (got > 0) {
+            return (size_t)got;
+        }
+        if (got == 0 || errno != EINTR) {
+            hang_up(&child->out);
+        }
+    }
+    return 0;
+}
+
+status mesh_child_read(void *context, void *bytes, size_t size, diagnostic *why)
+{
+    for (size_t done = 0; done < size;) {
+        size_t got = take(context, (char *)bytes + done, size - done);
+        if (got == 0) {
+            return diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer ends early");
+        }
+        done += got;
+    }
+    return STATUS_OK;
+}
+
+status mesh_child_end(void *context, diagnostic *why)
+{
+    char more;
+    return take(context, &more, 1) == 0
+               ? STATUS_OK
+               : diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer goes on after its end");
+}
+
+/* ---- end ---- */
+
+/* Its exit status as waitpid gives it; -1 when nobody knows any more (SIGCHLD is ignored by who started us). */
+static int reap(mesh_child *child, bool still_wanted)
+{
+    while (still_wanted && child->err >= 0 && !child->late) { /* what it still has to say; its end closes this too */
+        double left_s = child->deadline_s - mesh_child_now_s();
+        struct pollfd one = {.fd = child->err, .events = POLLIN};
+        int ready = left_s > 0 ? poll(&one, 1, left_s < 1000 ? (int)(left_s * 1000) + 1 : 1000000) : 0;
+        child->late = left_s <= 0;
+        if (ready > 0) {
+            hear(child);
+        } else if (ready < 0 && errno != EINTR && errno != EAGAIN) {
+            break;
+        }
+    }
+    /* One that ends just now keeps its own exit status: a process that is exiting takes no more signals. */
+    if (child->handle >= 0) {
+        pidfd_send_signal(child->handle, SIGKILL, NULL, 0);
+    } else {
+        kill(child->pid, SIGKILL);
+    }
+    hang_up(&child->handle);
+    hang_up(&child->out);
+    hang_up(&child->err);
+    int state = -1;
+    while (waitpid(child->pid, &state, 0) < 0) {
+        if (errno != EINTR) {
+            return -1;
+        }
+    }
+    return state;
+}
+
+/* The child's line "cuvette-import: PATH[:LINE[:COLUMN]]: what[; remedy]" taken apart again; false when that is not
+ * what it said. */
+static bool repeat(mesh_child *child, const char *path, diagnostic *why)
+{
+    diagnostic here = {.what = ""};
+    diagnostic_locate(&here, path, 0, 0);
+    char *prefix = text_format("cuvette-import: %s:", here.file), *line = child->said;
+    line[child->said_length] = 0;
+    size_t length = prefix ? strlen(prefix) : 0;
+    bool ours = prefix && strncmp(line, prefix, length) == 0;
+    free(prefix);
+    char *end = strchr(line, '\n');
+    if (!ours || !end) {
+        return false;
+    }
+    *end = 0;
+    char *at = line + length;
+    long place[2] = {0, 0};
+    for (int i = 0; i < 2 && *at >= '0' && *at <= '9'; i++) {
+        place[i] = strtol(at, &at, 10);
+        at += *at == ':';
+    }
+    at += *at == ' ';
+    char *remedy = strstr(at, "; ");
+    if (remedy) {
+        *remedy = 0;
+        remedy += 2;
+    }
+    diagnostic_locate(why, path, place[0], place[1]);
+    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", at);
+    return true;
+}
+
+status mesh_child_close(mesh_child *child, const char *path, const mesh_limits *limits, status code, diagnostic *why)
+{
+    /* A stream that was refused although it was all there: nothing more is awaited. */
+    int state = reap(child, code == STATUS_OK || child->out < 0);
+    diagnostic_locate(why, path, 0, 0);
+    if (child->late) {
+        return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
+                        "reading it took longer than the limit of %g s", limits->wall_s);
+    }
+    if (state == -1) {
+        return code != STATUS_OK && repeat(child, path, why) ? STATUS_BAD_INPUT : code;
+    }
+    if (WIFSIGNALED(state)) {
+        int signal = WTERMSIG(state);
+        const char *name = sigdescr_np(signal);
+        if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP) {
+            return diagnose(why, STATUS_INTERRUPTED, NULL, "reading it was interrupted");
+        }
+        if (signal == SIGXCPU) {
+            return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
+                            "reading it took more processor time than the limit of %g s", limits->wall_s);
+        }
+        if (signal == SIGKILL && code != STATUS_OK) {
+            return code;
+        }
+        return diagnose(why, STATUS_BAD_INPUT, "check that the file is whole, and export it again",
+                        "the importer was stopped by signal %d (%s)", signal, name ? name : "unknown");
+    }
+    int exit_code = WEXITSTATUS(state);
+    if (exit_code == 0) {
+        return code;
+    }
+    if (!repeat(child, path, why)) {
+        diagnose(why, STATUS_FAILURE, NULL, "the importer ended with exit code %d and did not say why", exit_code);
+        return STATUS_FAILURE;
+    }
+    return exit_code == STATUS_BAD_INPUT ? STATUS_BAD_INPUT : STATUS_FAILURE;
+}

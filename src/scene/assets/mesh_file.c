@@ -1,0 +1,97 @@
+#include "scene/assets/mesh_file.h"
+
+#include "base/text.h"
+#include "scene/assets/mesh_child.h"
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* name as seen from the folder of path; fresh memory. */
+static char *beside(const char *path, const char *name)
+{
+    const char *slash = strrchr(path, '/');
+    return name[0] == '/' || !slash ? strdup(name) : text_format("%.*s%s", (int)(slash - path) + 1, path, name);
+}
+
+/* Two ways of writing a name that are not ours: \ for / (MTL files of Windows), and %20 for a blank (the URIs of glTF).
+ */
+static void respell(char *name)
+{
+    char *to = name;
+    for (const char *from = name; *from; from++) {
+        char digits[3] = {from[0] == '%' ? from[1] : (char)0, 0, 0};
+        digits[1] = digits[0] ? from[2] : (char)0;
+        char *end = digits;
+        long byte = strtol(digits, &end, 16);
+        if (end == digits + 2 && byte >= 0x20) {
+            *to++ = (char)byte;
+            from += 2;
+        } else {
+            *to++ = *from == '\\' ? '/' : *from;
+        }
+    }
+    *to = 0;
+}
+
+static bool is_file(const char *path)
+{
+    struct stat about;
+    return path && stat(path, &about) == 0 && S_ISREG(about.st_mode);
+}
+
+/* The picture's path as the caller can open it, first by the name's own spelling. */
+static status resolve_texture(const char *path, imported_material *m, diagnostic *why)
+{
+    char *found = beside(path, m->texture);
+    if (!is_file(found)) {
+        char *respelt = strdup(m->texture);
+        if (respelt) {
+            respell(respelt);
+            free(found);
+            found = beside(path, respelt);
+        }
+        free(respelt);
+    }
+    if (!found) {
+        return out_of_memory(why);
+    }
+    if (!is_file(found)) {
+        diagnose(why, STATUS_BAD_INPUT, "put it where the mesh file says, or take the line that names it out",
+                 "the picture '%.200s' of material '%.100s' is not there", m->texture, m->name ? m->name : "");
+        free(found);
+        return STATUS_BAD_INPUT;
+    }
+    free(m->texture);
+    m->texture = found;
+    return STATUS_OK;
+}
+
+status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import **out, diagnostic *why)
+{
+    mesh_limits all = mesh_limits_complete(limits);
+    mesh_child child;
+    diagnostic said = {.what = ""};
+    *out = NULL;
+    if (!*path) {
+        return diagnose(why, STATUS_BAD_INPUT, "name a mesh file", "the name of the mesh file is empty");
+    }
+    status code = mesh_child_open(&child, path, &all, &said);
+    mesh_import *fresh = NULL;
+    if (code == STATUS_OK) {
+        mesh_source source = {.read = mesh_child_read, .end = mesh_child_end, .context = &child};
+        code = mesh_stream_read(&source, &all, &fresh, &said);
+        code = mesh_child_close(&child, path, &all, code, &said);
+    }
+    for (int i = 0; i < (fresh ? fresh->material_count : 0) && code == STATUS_OK; i++) {
+        code = fresh->materials[i].texture ? resolve_texture(path, &fresh->materials[i], &said) : STATUS_OK;
+    }
+    if (code != STATUS_OK) {
+        mesh_import_destroy(fresh);
+        if (why) {
+            *why = said;
+        }
+        return code;
+    }
+    *out = fresh;
+    return STATUS_OK;
+}

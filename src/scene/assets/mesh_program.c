@@ -1,0 +1,54 @@
+#include "scene/assets/mesh_child.h"
+
+#include "base/text.h"
+#include <dlfcn.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define PROGRAM "cuvette-import"
+#ifndef CUVETTE_LIBEXEC
+#define CUVETTE_LIBEXEC "/usr/local/libexec/cuvette"
+#endif
+
+static const char here;
+
+/* Beside a file, or where `make install` puts it when the file is in bin, lib or lib/ARCHITECTURE; NULL if it is in
+ * none of them. */
+static char *near(char *file)
+{
+    static const char *const places[] = {"", "/../libexec/cuvette", "/../../libexec/cuvette"};
+    char *slash = strrchr(file, '/');
+    if (!slash) {
+        return NULL;
+    }
+    *slash = 0;
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        char *path = text_format("%s%s/" PROGRAM, file, places[i]);
+        if (path && access(path, X_OK) == 0) {
+            return path;
+        }
+        free(path);
+    }
+    return NULL;
+}
+
+char *mesh_child_program(void)
+{
+    const char *asked = getenv("CUVETTE_IMPORT");
+    if (asked && *asked) {
+        return strdup(asked);
+    }
+    char own[PATH_MAX];
+    ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
+    own[length > 0 ? length : 0] = 0;
+    char *path = near(own);
+    Dl_info library; /* that this stands in, when it is not the program itself */
+    if (!path && dladdr(&here, &library) && library.dli_fname) {
+        snprintf(own, sizeof own, "%s", library.dli_fname);
+        path = near(own);
+    }
+    return path ? path : strdup(CUVETTE_LIBEXEC "/" PROGRAM);
+}

@@ -1,0 +1,31 @@
+/* The bytes that cuvette-import writes on its standard output for the program that started it, both of one build and on
+ * one machine: numbers in the machine's own order, no padding. header positions   vertex_count x 3 doubles normals the
+ * same, with MESH_WIRE_NORMALS; of any length uvs         vertex_count x 2 doubles, with MESH_WIRE_UVS triangles
+ * triangle_count x 3 uint32 slots       triangle_count x 1 byte: index of the material materials   material_count of:
+ * record, name, texture (texts without a final 0, of the lengths in the record) MESH_WIRE_END Who reads them believes
+ * nothing (scene/assets/mesh_stream.h). */
+#ifndef CUVETTE_SCENE_ASSETS_MESH_WIRE_H
+#define CUVETTE_SCENE_ASSETS_MESH_WIRE_H
+
+#include <stdint.h>
+
+#define MESH_WIRE_MAGIC "CUVMESH\n"
+#define MESH_WIRE_END "\nMESHEND"
+enum { MESH_WIRE_VERSION = 2, MESH_WIRE_TEXT_MAX = 1024 };
+enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 };          /* header's flags */
+enum { MESH_WIRE_GIVEN = 1, MESH_WIRE_TEXTURE_INSIDE = 2 }; /* material's flags */
+
+typedef struct mesh_wire_header {
+    char magic[8];
+    uint32_t version, flags;
+    uint64_t vertex_count, triangle_count;
+    uint32_t material_count, reserved; /* 1 to MESH_SLOTS_MAX; 0 */
+} mesh_wire_header;
+
+/* As the file gives them, linear RGB. */
+typedef struct mesh_wire_material {
+    double diffuse[3], ambient[3], specular[3], emissive[3], shininess, opacity, ior;
+    uint32_t flags, name_length, texture_length, reserved;
+} mesh_wire_material;
+
+#endif

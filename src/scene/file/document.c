@@ -1,0 +1,318 @@
+/* Builds the tree from events (document_events.c). What is asked of its nodes is in document_node.c. */
+#include "scene/file/document.h"
+#include "base/file.h"
+#include "scene/file/document_events.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIZE_LIMIT = 1 << 20, DEPTH_LIMIT = 16, NODE_LIMIT = 65536 };
+
+struct document {
+    char *name;
+    node *root;
+};
+
+static void node_destroy(node *n)
+{
+    if (!n) {
+        return;
+    }
+    for (size_t i = 0; i < n->count; i++) {
+        node_destroy(n->items[i]);
+        if (n->keys) {
+            node_destroy(n->keys[i]);
+        }
+    }
+    free(n->items);
+    free(n->keys);
+    free(n->text);
+    free(n);
+}
+
+static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, node **out)
+{
+    if (++r->node_count > NODE_LIMIT) {
+        return events_error(r, mark, "make the file smaller", "more than 65536 values in one file");
+    }
+    node *n = calloc(1, sizeof *n);
+    if (!n) {
+        return events_out_of_memory(r);
+    }
+    n->kind = kind;
+    n->line = (long)mark.line + 1;
+    n->column = (long)mark.column + 1;
+    *out = n;
+    return STATUS_OK;
+}
+
+/* Appends value, and key when the node is a map. On failure they stay the caller's. */
+static status node_append(event_reader *r, node *parent, node *key, node *value)
+{
+    size_t count = parent->count;
+    if ((count & (count - 1)) == 0) { /* the room is always a power of two */
+        size_t room = count ? count * 2 : 1;
+        node **items = realloc(parent->items, room * sizeof *items);
+        if (!items) {
+            return events_out_of_memory(r);
+        }
+        parent->items = items;
+        if (key) {
+            node **keys = realloc(parent->keys, room * sizeof *keys);
+            if (!keys) {
+                return events_out_of_memory(r);
+            }
+            parent->keys = keys;
+        }
+    }
+    parent->items[count] = value;
+    if (key) {
+        parent->keys[count] = key;
+    }
+    parent->count++;
+    return STATUS_OK;
+}
+
+static status read_scalar(event_reader *r, const yaml_event_t *event, node **out)
+{
+    const char *value = (const char *)event->data.scalar.value;
+    size_t length = event->data.scalar.length;
+    if (memchr(value, 0, length)) {
+        return events_error(r, event->start_mark, "remove it", "a text holds a NUL character");
+    }
+    node *n = NULL;
+    status code = node_create(r, NODE_SCALAR, event->start_mark, &n);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    n->quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
+    n->text = strdup(value);
+    if (!n->text) {
+        node_destroy(n);
+        return events_out_of_memory(r);
+    }
+    *out = n;
+    return STATUS_OK;
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+    const node *x = *(node *const *)a, *y = *(node *const *)b;
+    int order = strcmp(x->text, y->text);
+    if (order != 0) {
+        return order;
+    }
+    return x->line != y->line ? (x->line > y->line) - (x->line < y->line)
+                              : (x->column > y->column) - (x->column < y->column);
+}
+
+static status check_unique_keys(event_reader *r, const node *map)
+{
+    if (map->count < 2) {
+        return STATUS_OK;
+    }
+    node **sorted = malloc(map->count * sizeof(node *));
+    if (!sorted) {
+        return events_out_of_memory(r);
+    }
+    memcpy(sorted, map->keys, map->count * sizeof(node *));
+    qsort(sorted, map->count, sizeof(node *), compare_keys);
+    status code = STATUS_OK;
+    for (size_t i = 1; i < map->count && code == STATUS_OK; i++) {
+        if (strcmp(sorted[i - 1]->text, sorted[i]->text) == 0) {
+            diagnostic_locate(r->why, r->name, sorted[i]->line, sorted[i]->column);
+            code = diagnose(r->why, STATUS_BAD_INPUT, "keep one of the two", "key '%.80s' stands here and on line %ld",
+                            sorted[i]->text, sorted[i - 1]->line);
+        }
+    }
+    free(sorted);
+    return code;
+}
+
+static status read_node(event_reader *r, yaml_event_t *event, int depth, node **out);
+
+static status read_key(event_reader *r, yaml_event_t *event, node **key)
+{
+    if (event->type != YAML_SCALAR_EVENT || event->data.scalar.length == 0) {
+        return events_error(r, event->start_mark, "begin the entry with a name and a colon", "a key is not a word");
+    }
+    return read_scalar(r, event, key);
+}
+
+/* Reads entries until the list or map ends; what was read is in *n even on failure. */
+static status read_entries(event_reader *r, yaml_event_type_t end, int depth, node *n)
+{
+    for (;;) {
+        yaml_event_t event;
+        status code = events_next(r, &event);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        if (event.type == end) {
+            yaml_event_delete(&event);
+            return n->kind == NODE_MAP ? check_unique_keys(r, n) : STATUS_OK;
+        }
+        node *key = NULL, *value = NULL;
+        if (n->kind == NODE_MAP) {
+            code = read_key(r, &event, &key);
+            yaml_event_delete(&event);
+            if (code == STATUS_OK) {
+                code = events_next(r, &event);
+            }
+        }
+        if (code == STATUS_OK) {
+            code = read_node(r, &event, depth + 1, &value);
+            yaml_event_delete(&event);
+        }
+        if (code == STATUS_OK) {
+            code = node_append(r, n, key, value);
+        }
+        if (code != STATUS_OK) {
+            node_destroy(key);
+            node_destroy(value);
+            return code;
+        }
+    }
+}
+
+/* Reads the node that *event begins; the event stays the caller's. *out is set only on success. */
+static status read_node(event_reader *r, yaml_event_t *event, int depth, node **out)
+{
+    if (event->type == YAML_SCALAR_EVENT) {
+        return read_scalar(r, event, out);
+    }
+    if (depth > DEPTH_LIMIT) {
+        return events_error(r, event->start_mark, "a scene or study needs four levels at most",
+                            "nested deeper than 16 levels");
+    }
+    bool map = event->type == YAML_MAPPING_START_EVENT;
+    node *n = NULL;
+    status code = node_create(r, map ? NODE_MAP : NODE_LIST, event->start_mark, &n);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = read_entries(r, map ? YAML_MAPPING_END_EVENT : YAML_SEQUENCE_END_EVENT, depth, n);
+    if (code != STATUS_OK) {
+        node_destroy(n);
+        return code;
+    }
+    *out = n;
+    return STATUS_OK;
+}
+
+/* One document, from stream start to stream end. */
+static status read_stream(event_reader *r, node **root)
+{
+    for (;;) {
+        yaml_event_t event;
+        status code = events_next(r, &event);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        yaml_event_type_t type = event.type;
+        if (type == YAML_DOCUMENT_START_EVENT && *root) {
+            code = events_error(r, event.start_mark, "put it into a file of its own", "a second document begins here");
+        } else if (type == YAML_STREAM_END_EVENT && !*root) {
+            code = events_error(
+                r, (yaml_mark_t){0},
+                "begin a scene with keys such as solids: and lights:, a study with study:, a script with hands:",
+                "the file is empty");
+        } else if (type == YAML_SCALAR_EVENT || type == YAML_SEQUENCE_START_EVENT || type == YAML_MAPPING_START_EVENT) {
+            code = read_node(r, &event, 1, root);
+        }
+        yaml_event_delete(&event);
+        if (code != STATUS_OK || type == YAML_STREAM_END_EVENT) {
+            return code;
+        }
+    }
+}
+
+static status wrap(const char *name, node *root, document **out, diagnostic *why)
+{
+    document *d = calloc(1, sizeof *d);
+    char *copy = strdup(name);
+    if (!d || !copy) {
+        free(d);
+        free(copy);
+        node_destroy(root);
+        return out_of_memory(why);
+    }
+    d->name = copy;
+    d->root = root;
+    *out = d;
+    return STATUS_OK;
+}
+
+static bool is_picture(const char *text, size_t size)
+{
+    return size >= 4 && (memcmp(text, "\x89PNG", 4) == 0 || memcmp(text, "\xff\xd8\xff", 3) == 0);
+}
+
+status document_parse(const char *name, const char *text, size_t size, document **out, diagnostic *why)
+{
+    *out = NULL;
+    static const char byte_order_mark[] = "\xef\xbb\xbf";
+    if (size >= 3 && memcmp(text, byte_order_mark, 3) == 0) { /* it is no column */
+        text += 3;
+        size -= 3;
+    }
+    event_reader r = {.name = name, .text = text, .size = size, .node_count = 0, .why = why};
+    if (size > SIZE_LIMIT) {
+        diagnostic_locate(why, name, 1, 1);
+        return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 1 MiB");
+    }
+    if (is_picture(text, size)) {
+        return events_error(&r, (yaml_mark_t){0}, "give the file that describes it", "this is a picture, not a scene");
+    }
+    if (!yaml_parser_initialize(&r.parser)) {
+        return events_out_of_memory(&r);
+    }
+    yaml_parser_set_encoding(&r.parser, YAML_UTF8_ENCODING);
+    yaml_parser_set_input_string(&r.parser, (const unsigned char *)text, size);
+    node *root = NULL;
+    status code = read_stream(&r, &root);
+    yaml_parser_delete(&r.parser);
+    if (code != STATUS_OK) {
+        node_destroy(root);
+        return code;
+    }
+    return wrap(name, root, out, why);
+}
+
+status document_read(const char *path, document **out, diagnostic *why)
+{
+    return document_read_below(path, NULL, out, why);
+}
+
+status document_read_below(const char *path, const char *root, document **out, diagnostic *why)
+{
+    *out = NULL;
+    char *text;
+    size_t size;
+    status code = file_read_below(path, root, SIZE_LIMIT, &text, &size, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = document_parse(path, text, size, out, why);
+    free(text);
+    return code;
+}
+
+void document_destroy(document *d)
+{
+    if (d) {
+        node_destroy(d->root);
+        free(d->name);
+        free(d);
+    }
+}
+
+const node *document_root(const document *d)
+{
+    return d->root;
+}
+
+const char *document_name(const document *d)
+{
+    return d->name;
+}

@@ -1,0 +1,22 @@
+/* libyaml's events for document.c, with its errors as diagnostics. Ownership: the reader borrows its text; events_next
+ * gives an event, release it with yaml_event_delete. */
+#ifndef CUVETTE_SCENE_FILE_DOCUMENT_EVENTS_H
+#define CUVETTE_SCENE_FILE_DOCUMENT_EVENTS_H
+
+#include "base/status.h"
+#include <yaml.h>
+
+typedef struct event_reader {
+    yaml_parser_t parser;
+    const char *name, *text; /* the file's name, and all of its bytes */
+    size_t size, node_count;
+    diagnostic *why;
+} event_reader;
+
+status events_out_of_memory(event_reader *r);
+/* STATUS_BAD_INPUT, located at mark. */
+status events_error(event_reader *r, yaml_mark_t mark, const char *remedy, const char *what);
+/* The next event. Aliases, anchors and tags are refused here, and so is what is not YAML or not UTF-8. */
+status events_next(event_reader *r, yaml_event_t *event);
+
+#endif

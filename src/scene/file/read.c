@@ -1,0 +1,174 @@
+/* Reads scene files. The grammar, in YAML (every key may be left out, but a solid's shape):
+ *
+ *   title: TEXT
+ *   render: {PARAMETER: VALUE, ...}
+ *   camera: {PARAMETER: VALUE, ...}             either a target, or yaw_deg and pitch_deg (0 when left out)
+ *   background: {PARAMETER: VALUE, ...}
+ *   meshes: {NAME: {PARAMETER: VALUE, ...}, ...}
+ *   textures: {NAME: {PARAMETER: VALUE, ...}, ...}
+ *   materials: {NAME: {PARAMETER: VALUE, ...}, ...}
+ *   lights: {NAME: {PARAMETER: VALUE, ...}, ...}
+ *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
+ *
+ * A background with a picture is of the kind picture, which need not be said. Switches are on or off, also written
+ * yes or no, true or false.
+ * SHAPE is plane, cylinder, cup, box, sphere or mesh. The parameters are the rows of the table (scene/model/params.h);
+ * a solid also takes those of a material, for itself alone. Vectors and colours are lists: [0, 1, 2]. The file's order
+ * is kept. Sections and objects may be empty. */
+#include "scene/model/check.h"
+#include "scene/model/edit/edit.h"
+#include "scene/file/read_entries.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static status read_settings(const scene_reader *r, param_group group, const node *map)
+{
+    const char *name = param_group_name(group);
+    status code = read_expect_map(r, map, name);
+    if (code == STATUS_OK) {
+        code = read_check_keys(r, group, map);
+    }
+    return code == STATUS_OK ? read_entries(r, name, group, map) : code;
+}
+
+static status read_render(const scene_reader *r, const char *name, const node *map)
+{
+    (void)name;
+    status code = read_settings(r, PARAM_RENDER, map);
+    return code == STATUS_OK ? read_located(r, map, check_render(r->scene, r->why)) : code;
+}
+
+static status read_camera(const scene_reader *r, const char *name, const node *map)
+{
+    (void)name;
+    const node *target = node_get(map, "target"), *yaw = node_get(map, "yaw_deg"), *pitch = node_get(map, "pitch_deg");
+    if (target && (yaw || pitch)) {
+        return node_error(r->file, yaw ? yaw : pitch, r->why, "keep the target, or the angles",
+                          "the camera has a target and %s too", yaw ? "yaw_deg" : "pitch_deg");
+    }
+    if (yaw || pitch) { /* the angle left out is 0, not the default target's */
+        r->scene->camera.aimed = 0;
+    }
+    status code = read_settings(r, PARAM_CAMERA, map);
+    return code == STATUS_OK ? read_located(r, map, check_camera(r->scene, r->why)) : code;
+}
+
+static status read_background(const scene_reader *r, const char *name, const node *map)
+{
+    (void)name;
+    const node *kind = node_get(map, "kind"), *picture = node_get(map, "picture");
+    bool shown = picture && picture->kind == NODE_SCALAR && picture->text[0];
+    status code = read_settings(r, PARAM_BACKGROUND, map);
+    if (code == STATUS_OK) {
+        code = read_one_medium(r, map);
+    }
+    if (code == STATUS_OK && shown) {
+        r->scene->background.picture_line = picture->line;
+        r->scene->background.picture_column = picture->column;
+    }
+    if (code == STATUS_OK && shown && kind && strcmp(kind->text, "picture") != 0) {
+        return node_error(r->file, kind, r->why, "set it to picture, or take the picture away",
+                          "background.kind is %s, and there is a picture", kind->text);
+    }
+    return code == STATUS_OK ? read_located(r, map, check_background(r->scene, r->why)) : code;
+}
+
+static status read_title(const scene_reader *r, const char *name, const node *value)
+{
+    status code = read_expect_word(r, value, name);
+    return code == STATUS_OK ? scene_set_title(r->scene, value->text, r->why) : code;
+}
+
+static status read_sections(const scene_reader *r)
+{
+    /* Not in the file's order: solids refer to materials, and are checked under the weights of render. */
+    static const struct section {
+        const char *name;
+        status (*read)(const scene_reader *, const char *, const node *);
+    } sections[] = {
+        {"title", read_title},           {"render", read_render}, {"camera", read_camera},
+        {"background", read_background}, {"meshes", read_meshes}, {"textures", read_textures},
+        {"materials", read_materials},   {"lights", read_lights}, {"solids", read_solids},
+    };
+    enum { COUNT = sizeof sections / sizeof sections[0] };
+    const node *root = document_root(r->file);
+    const char *names[COUNT];
+    for (size_t i = 0; i < COUNT; i++) {
+        names[i] = sections[i].name;
+    }
+    if (root->kind != NODE_MAP) {
+        return node_error(r->file, root, r->why,
+                          "begin with keys such as camera:, lights: and solids:", "this is not a scene");
+    }
+    const node *name = node_get(root, "study");
+    if (name) {
+        return node_error(r->file, name, r->why, "this looks like a study; cuvette study run FILE",
+                          "unknown key 'study'");
+    }
+    status code = node_check_keys(r->file, root, names, COUNT, r->why);
+    for (size_t i = 0; i < COUNT && code == STATUS_OK; i++) {
+        const node *value = node_get(root, names[i]);
+        code = value ? sections[i].read(r, names[i], value) : STATUS_OK;
+    }
+    return code;
+}
+
+static status build(const document *file, scene **out, diagnostic *why)
+{
+    scene *s = scene_create();
+    char *path = strdup(document_name(file));
+    if (!s || !path) {
+        free(path);
+        scene_destroy(s);
+        return out_of_memory(why);
+    }
+    free(s->path);
+    s->path = path;
+    scene_reader r = {.file = file, .scene = s, .why = why};
+    status code = read_sections(&r);
+    if (code == STATUS_OK) {
+        code = read_located(&r, document_root(file), scene_check(s, why));
+    }
+    if (code != STATUS_OK) {
+        scene_destroy(s);
+        return code;
+    }
+    *out = s;
+    return STATUS_OK;
+}
+
+static status build_and_release(document *file, scene **out, diagnostic *why)
+{
+    status code = build(file, out, why);
+    document_destroy(file);
+    return code;
+}
+
+status scene_read(const char *path, scene **out, diagnostic *why)
+{
+    return scene_read_below(path, NULL, out, why);
+}
+
+status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why)
+{
+    *out = NULL;
+    document *file;
+    status code = document_read_below(path, root, &file, why);
+    if (code == STATUS_OK) {
+        code = build_and_release(file, out, why);
+    }
+    if (code == STATUS_OK && (code = scene_limit(*out, root, 0, why)) != STATUS_OK) {
+        scene_destroy(*out);
+        *out = NULL;
+    }
+    return code;
+}
+
+status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why)
+{
+    *out = NULL;
+    document *file;
+    status code = document_parse(name, text, size, &file, why);
+    return code == STATUS_OK ? build_and_release(file, out, why) : code;
+}

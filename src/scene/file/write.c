@@ -1,0 +1,226 @@
+/* Goes through the scene's parameters in the order of the table and of the scene, and writes those that a reader would
+ * not find by itself: which those are is in write_wanted.c. How a text is quoted is in write_text.c, how paths follow
+ * the file in write_paths.c. */
+#include "scene/file/write.h"
+#include "base/file.h"
+#include "base/text_writer.h"
+#include "scene/model/params_path.h"
+#include "scene/file/write_parts.h"
+#include "scene/file/write_wanted.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* While the scene is gone through: what is being written, and where in the file that is. */
+typedef struct scene_writer {
+    const scene *s;
+    const char *path; /* of the file to be */
+    bool all;
+    FILE *out;
+    bool begun;                      /* something stands in the file */
+    param_group group;               /* whose turn it is */
+    bool in_section;                 /* its heading stands there */
+    char object[SCENE_NAME_MAX + 1]; /* the one whose heading stands there last */
+    bool empty;                      /* and that has no line below it yet */
+    diagnostic *why;
+} scene_writer;
+
+static bool is_section_of_objects(param_group group)
+{
+    return group > PARAM_BACKGROUND;
+}
+
+/* "materials" */
+static void put_section(scene_writer *w)
+{
+    if (!w->in_section) {
+        const char *plural = w->group == PARAM_MESH ? "es" : is_section_of_objects(w->group) ? "s" : "";
+        fprintf(w->out, "%s%s%s:\n", w->begun ? "\n" : "", param_group_name(w->group), plural);
+        w->begun = w->in_section = true;
+    }
+}
+
+/* An object without lines is an empty map. */
+static void end_object(scene_writer *w)
+{
+    if (w->object[0] && w->empty) {
+        fputs(" {}\n", w->out);
+    }
+    w->object[0] = 0;
+}
+
+static void begin_line(scene_writer *w, const char *key)
+{
+    if (w->object[0] && w->empty) {
+        fputc('\n', w->out);
+        w->empty = false;
+    }
+    fprintf(w->out, "%s%s: ", is_section_of_objects(w->group) ? "    " : "  ", key);
+}
+
+/* The heading of an object, and of a solid what is no row of the table. */
+static void begin_object(scene_writer *w, const place *at)
+{
+    const char *name = place_group_name(w->s, at->group, at->index);
+    end_object(w);
+    put_section(w);
+    fputs("  ", w->out);
+    write_word(w->out, name);
+    fputc(':', w->out);
+    strcpy(w->object, name);
+    w->empty = true;
+    if (at->group != PARAM_SOLID) {
+        return;
+    }
+    const solid *owner = &w->s->solids[at->index];
+    begin_line(w, "shape");
+    fprintf(w->out, "%s\n", shape_name(owner->shape.kind));
+    if (owner->material_index >= 0) {
+        begin_line(w, "material");
+        write_word(w->out, w->s->materials[owner->material_index].name);
+        fputc('\n', w->out);
+    }
+}
+
+static void put_value(scene_writer *w, const param *row, const char *value)
+{
+    switch (row->type) {
+    case PARAM_VECTOR:
+    case PARAM_COLOR:
+    case PARAM_LIST: write_list(w->out, value); break;
+    case PARAM_PATH:
+    case PARAM_WORD: write_word(w->out, value); break;
+    case PARAM_INT:
+    case PARAM_REAL:
+    case PARAM_CHOICE: fputs(value, w->out); break;
+    }
+    fputc('\n', w->out);
+}
+
+static status put_path(scene_writer *w, const char *label, const param *row, const char *value)
+{
+    char *there = NULL;
+    status code = write_moved_path(value, w->s->path, w->path, &there, w->why);
+    if (code == STATUS_OK) {
+        code = write_check_text(label, there, w->why);
+    }
+    if (code == STATUS_OK) {
+        put_value(w, row, there);
+    }
+    free(there);
+    return code;
+}
+
+static status visit(void *context, const char *path, const param *row, const char *value)
+{
+    scene_writer *w = context;
+    if (row->group != w->group && !(w->group == PARAM_SOLID && row->group == PARAM_MATERIAL)) {
+        return STATUS_OK;
+    }
+    place at;
+    status code = place_find(w->s, path, &at, w->why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (at.group != w->group) {
+        return STATUS_OK;
+    }
+    if (is_section_of_objects(at.group) && strcmp(w->object, place_group_name(w->s, at.group, at.index)) != 0) {
+        begin_object(w, &at);
+    }
+    bool wanted = false;
+    code = write_is_wanted(w->s, &at, value, w->all, &wanted, w->why);
+    if (code != STATUS_OK || !wanted) {
+        return code;
+    }
+    put_section(w);
+    begin_line(w, row->name);
+    if (row->type == PARAM_PATH) {
+        return put_path(w, path, row, value);
+    }
+    put_value(w, row, value);
+    return STATUS_OK;
+}
+
+/* What a program gave as arrays stands in no file. */
+static status check_sources(const scene *s, diagnostic *why)
+{
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        if (s->meshes[i].source == MESH_ARRAYS) {
+            return diagnose(why, STATUS_BAD_INPUT, "write the mesh to a file of its own, and name that",
+                            "the mesh %.80s was given as arrays, which a scene file does not hold", s->meshes[i].name);
+        }
+    }
+    for (size_t i = 0; i < s->texture_count; i++) {
+        if (s->textures[i].data && !s->textures[i].path[0]) {
+            return diagnose(why, STATUS_BAD_INPUT, "write the picture to a file of its own, and name that",
+                            "the texture %.80s was given as pixels, which a scene file does not hold",
+                            s->textures[i].name);
+        }
+    }
+    return STATUS_OK;
+}
+
+static status put_scene(scene_writer *w)
+{
+    /* What is referred to stands first, as a person would have it. */
+    static const param_group order[] = {PARAM_RENDER,  PARAM_CAMERA,   PARAM_BACKGROUND, PARAM_MESH,
+                                        PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT,      PARAM_SOLID};
+    _Static_assert(sizeof order / sizeof *order == PARAM_GROUP_COUNT, "every group has its section");
+    if (w->s->title[0]) {
+        status code = write_check_text("title", w->s->title, w->why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        fputs("title: ", w->out);
+        write_word(w->out, w->s->title);
+        fputc('\n', w->out);
+        w->begun = true;
+    }
+    status code = check_sources(w->s, w->why);
+    for (size_t i = 0; i < PARAM_GROUP_COUNT && code == STATUS_OK; i++) {
+        w->group = order[i];
+        w->in_section = false;
+        code = scene_each_param(w->s, visit, w);
+        end_object(w);
+    }
+    if (!w->begun) {
+        fputs("solids: {}\n", w->out); /* an empty file is no scene */
+    }
+    return code;
+}
+
+status scene_write_text(const scene *s, const char *path, bool all, char **text, diagnostic *why)
+{
+    *text = NULL;
+    text_writer writer;
+    status code = text_writer_open(&writer, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    scene_writer w = {.s = s, .path = path ? path : "", .all = all, .out = writer.stream, .why = why};
+    code = put_scene(&w);
+    if (code == STATUS_OK) {
+        return text_writer_close(&writer, text, NULL, why);
+    }
+    text_writer_abandon(&writer);
+    /* Of a parameter whose text found no room, nothing has been said yet. */
+    return code == STATUS_FAILURE ? diagnose(why, code, "", "out of memory") : code;
+}
+
+status scene_write(const scene *s, const char *path, bool all, diagnostic *why)
+{
+    char *text;
+    status code = scene_write_text(s, strcmp(path, "-") == 0 ? "" : path, all, &text, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    file_writer writer;
+    code = file_writer_open(&writer, path, why);
+    if (code == STATUS_OK) {
+        fputs(text, writer.stream);
+        code = file_writer_commit(&writer, why);
+    }
+    free(text);
+    return code;
+}

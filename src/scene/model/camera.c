@@ -1,0 +1,61 @@
+#include "scene/model/camera.h"
+#include "base/elementary.h"
+
+static void aim_at_target(const struct camera *c, camera_frame *f)
+{
+    f->forward = vec3_normalize(vec3_sub(c->target, c->position));
+    vec3 side = vec3_cross(vec3_make(0.0, 1.0, 0.0), f->forward);
+    f->right = vec3_length(side) > 1e-12 ? vec3_normalize(side) : vec3_make(1.0, 0.0, 0.0); /* straight up or down */
+}
+
+static void aim_along_angles(const struct camera *c, camera_frame *f)
+{
+    double sin_yaw, cos_yaw, sin_pitch, cos_pitch;
+    elementary_sincos_deg(c->yaw_deg, &sin_yaw, &cos_yaw);
+    elementary_sincos_deg(c->pitch_deg, &sin_pitch, &cos_pitch);
+    f->forward = vec3_make(cos_pitch * sin_yaw, sin_pitch, cos_pitch * cos_yaw);
+    f->right = vec3_make(cos_yaw, 0.0, -sin_yaw);
+}
+
+/* About forward, right towards below. A roll of a multiple of 90 degrees is exact, one of 0 changes no bit. */
+static void roll(camera_frame *f, double degrees)
+{
+    if (degrees == 0.0)
+        return;
+    double sine, cosine;
+    elementary_sincos_deg(degrees, &sine, &cosine);
+    const vec3 right = f->right, up = f->up;
+    f->right = vec3_sub(vec3_scale(right, cosine), vec3_scale(up, sine));
+    f->up = vec3_add(vec3_scale(right, sine), vec3_scale(up, cosine));
+}
+
+camera_frame camera_frame_level(const scene *s)
+{
+    const struct camera *c = &s->camera;
+    camera_frame f;
+    f.eye = c->position;
+    if (c->aimed)
+        aim_at_target(c, &f);
+    else
+        aim_along_angles(c, &f);
+    f.up = vec3_cross(f.forward, f.right);
+    double sine, cosine;
+    elementary_sincos_deg(0.5 * c->fov_deg, &sine, &cosine);
+    f.half_height = sine / cosine;
+    f.half_width = f.half_height * ((double)s->render.width / (double)s->render.height);
+    return f;
+}
+
+camera_frame camera_frame_of(const scene *s)
+{
+    camera_frame f = camera_frame_level(s);
+    roll(&f, s->camera.roll_deg);
+    return f;
+}
+
+vec3 camera_direction(const camera_frame *f, const render_settings *picture, double x, double y)
+{
+    const double u = (2.0 * x / (double)picture->width - 1.0) * f->half_width;
+    const double v = (1.0 - 2.0 * y / (double)picture->height) * f->half_height;
+    return vec3_normalize(vec3_add(f->forward, vec3_add(vec3_scale(f->right, u), vec3_scale(f->up, v))));
+}

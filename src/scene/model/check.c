@@ -1,0 +1,376 @@
+#include "scene/model/check.h"
+#include "base/counters.h"
+#include "scene/model/looks.h"
+#include "scene/model/medium.h"
+#include "scene/model/params.h"
+#include "scene/model/slime.h"
+#include "scene/model/suggest.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* A solid is at least one primitive, so the counters' room for solids follows. */
+_Static_assert((int)SCENE_PRIMITIVES_MAX <= (int)COUNTERS_SOLID_MAX, "a counter for every solid");
+
+static bool is_reserved(const char *name)
+{
+    static const char *const sections[] = {"title", "meshes", "textures", "materials", "lights", "solids"};
+    for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
+        if (strcmp(name, sections[i]) == 0) {
+            return true;
+        }
+    }
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
+        if (strcmp(name, param_group_name((param_group)g)) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+status check_name(const char *name, diagnostic *why)
+{
+    size_t length = strlen(name);
+    bool right = is_letter(name[0]) && length <= SCENE_NAME_MAX;
+    for (const char *c = name; right && *c; c++) {
+        right = is_letter(*c) || (*c >= '0' && *c <= '9') || *c == '-';
+    }
+    if (!right) {
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "a name is letters, digits, _ and -, begins with a letter or _, and has at most 63 of them",
+                        "'%.80s' cannot be a name", name);
+    }
+    if (is_reserved(name)) {
+        return diagnose(why, STATUS_BAD_INPUT, "choose another one", "the name '%s' is a word of scene files", name);
+    }
+    return STATUS_OK;
+}
+
+static size_t count_name(const scene *s, const char *name)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        count += strcmp(s->meshes[i].name, name) == 0;
+    }
+    for (size_t i = 0; i < s->texture_count; i++) {
+        count += strcmp(s->textures[i].name, name) == 0;
+    }
+    for (size_t i = 0; i < s->light_count; i++) {
+        count += strcmp(s->lights[i].name, name) == 0;
+    }
+    for (size_t i = 0; i < s->material_count; i++) {
+        count += strcmp(s->materials[i].name, name) == 0;
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        count += strcmp(s->solids[i].name, name) == 0;
+    }
+    return count;
+}
+
+static status name_taken(const char *name, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT,
+                    "meshes, textures, lights, materials and solids need different names, because paths use them",
+                    "the name '%s' is taken", name);
+}
+
+status check_name_is_free(const scene *s, const char *name, diagnostic *why)
+{
+    return count_name(s, name) == 0 ? STATUS_OK : name_taken(name, why);
+}
+
+static status check_own_name(const scene *s, const char *name, diagnostic *why)
+{
+    status code = check_name(name, why);
+    return code != STATUS_OK || count_name(s, name) == 1 ? code : name_taken(name, why);
+}
+
+status check_render(const scene *s, diagnostic *why)
+{
+    if (s->render.width > SCENE_PIXELS_MAX / s->render.height) {
+        return diagnose(why, STATUS_BAD_INPUT, "keep width times height within 268435456",
+                        "a picture of %lld x %lld pixels is too large", (long long)s->render.width,
+                        (long long)s->render.height);
+    }
+    if (s->render.polarisation && integrator_of(&s->render)->by_chance) {
+        return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
+                        "the path integrator does not follow polarisation");
+    }
+    if (integrator_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL)) {
+        return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
+                        "the depth buffer draws red, green and blue: it knows no %s",
+                        s->render.polarisation ? "polarisation" : "spectrum");
+    }
+    if (s->render.polarisation && s->render.weights == WEIGHTS_CONSTANT) {
+        return diagnose(why, STATUS_BAD_INPUT, "set render.weights to fresnel",
+                        "constant weights know no polarisation, which Fresnel's equations give");
+    }
+    if (s->render.polarisation && s->render.transmission == TRANSMISSION_SIMPLE) {
+        return diagnose(why, STATUS_BAD_INPUT, "set render.transmission to refract",
+                        "simple transmission knows no polarisation, which Fresnel's equations give");
+    }
+    return STATUS_OK;
+}
+
+status check_light(const scene *s, const light *lamp, diagnostic *why)
+{
+    if (integrator_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0) {
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "give the distance at which it has its intensity, as 'reach: 8', or radius 0",
+                        "%.80s: a sphere's light falls off with distance, and no reach says from where", lamp->name);
+    }
+    const vec3 axis = vec3_sub(lamp->target, lamp->position);
+    if (lamp->kind != LIGHT_POINT && !(vec3_dot(axis, axis) > 0.0)) {
+        return diagnose(why, STATUS_BAD_INPUT, "move its position or its target",
+                        "%.80s: the light stands at its own target", lamp->name);
+    }
+    return STATUS_OK;
+}
+
+status check_camera(const scene *s, diagnostic *why)
+{
+    vec3 d = vec3_sub(s->camera.target, s->camera.position);
+    if (s->camera.aimed && !(vec3_dot(d, d) > 0.0)) {
+        return diagnose(why, STATUS_BAD_INPUT, "move camera.position or camera.target",
+                        "the camera stands at its own target");
+    }
+    return STATUS_OK;
+}
+
+status check_background(const scene *s, diagnostic *why)
+{
+    if (s->background.kind == BACKGROUND_PICTURE && !s->background.picture_path[0]) {
+        return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG, PFM or 24-bit BMP file",
+                        "the background is a picture, but which one is not said");
+    }
+    return STATUS_OK;
+}
+
+status check_mesh(const mesh_entry *m, diagnostic *why)
+{
+    if (m->source == MESH_FILE && !m->path[0]) {
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "give it a file, as 'file: teapot.obj', or 'generate: icosphere' and the like",
+                        "%.80s: where the mesh comes from is not said", m->name);
+    }
+    if (m->source == MESH_LATHE && m->profile.count % 2 != 0) {
+        return diagnose(why, STATUS_BAD_INPUT, "give radius, height, radius, height ..",
+                        "%.80s: the profile has an odd number of numbers", m->name);
+    }
+    return m->source == MESH_SLIME ? slime_check(m, why) : STATUS_OK;
+}
+
+status check_texture(const texture_entry *t, diagnostic *why)
+{
+    if (!t->path[0] && !t->data) {
+        return diagnose(why, STATUS_BAD_INPUT, "give it a file, as 'file: wood.png'",
+                        "%.80s: the texture has no picture", t->name);
+    }
+    return STATUS_OK;
+}
+
+/* Texture or mesh: group says which. */
+static status unknown(const scene *s, param_group group, const char *owner, const char *name, diagnostic *why)
+{
+    enum { ROOM = SCENE_MESHES_MAX > SCENE_TEXTURES_MAX ? (int)SCENE_MESHES_MAX : (int)SCENE_TEXTURES_MAX };
+    const char *words[ROOM], *what = param_group_name(group);
+    size_t count = 0;
+    for (size_t i = 0; group == PARAM_MESH && i < s->mesh_count; i++) {
+        words[count++] = s->meshes[i].name;
+    }
+    for (size_t i = 0; group == PARAM_TEXTURE && i < s->texture_count; i++) {
+        words[count++] = s->textures[i].name;
+    }
+    const char *nearest = suggest_word(name, words, count);
+    char remedy[SCENE_NAME_MAX + 80];
+    if (nearest) {
+        snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
+    } else {
+        snprintf(remedy, sizeof remedy, "add it to %s%s", what, group == PARAM_MESH ? "es" : "s");
+    }
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: there is no %s '%.80s'", owner, what, name);
+}
+
+/* A clear solid bends light by what is inside it: an open mesh has no inside. */
+static status check_closed(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
+{
+    const mesh *data = m->data;
+    if (!data || data->closed || material_is_opaque(&owner->surface) || s->render.transmission == TRANSMISSION_SIMPLE) {
+        return STATUS_OK;
+    }
+    const vec3 a = data->vertices[data->hole.from], b = data->vertices[data->hole.to];
+    return diagnose(why, STATUS_BAD_INPUT, "close the mesh, or make the solid opaque (transparency 0)",
+                    "%.80s is clear, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, %g) of "
+                    "triangle %zu is an edge of %d "
+                    "triangles, and not of 2",
+                    owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, data->hole.sharing);
+}
+
+/* A spectral film's colours are spectra by material. */
+static status check_colors(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
+{
+    const bool by_face = m && owner->material_index < 0 && (m->looks || (m->data && m->data->slot_count > 1));
+    if (s->render.spectrum != SPECTRUM_SPECTRAL || !(by_face || owner->surface.texture[0])) {
+        return STATUS_OK;
+    }
+    return diagnose(why, STATUS_BAD_INPUT,
+                    by_face ? "set render.spectrum to rgb, or give the solid a material" : "set render.spectrum to rgb",
+                    "%.80s: %s have no spectra", owner->name, by_face ? "materials by face" : "textures");
+}
+
+/* What the solid names is there. */
+static status check_references(const scene *s, const solid *owner, diagnostic *why)
+{
+    const mesh_entry *m = scene_find_mesh(s, owner->mesh);
+    if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture)) {
+        return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
+    }
+    if (owner->shape.kind != SHAPE_MESH) {
+        return check_colors(s, owner, NULL, why);
+    }
+    if (!owner->mesh[0]) {
+        return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', of one in meshes",
+                        "%.80s: which mesh it is is not said", owner->name);
+    }
+    if (!m) {
+        return unknown(s, PARAM_MESH, owner->name, owner->mesh, why);
+    }
+    const status code = check_colors(s, owner, m, why);
+    return code == STATUS_OK ? check_closed(s, owner, m, why) : code;
+}
+
+/* The same sum for each kind of face that has shares of its own. */
+static status check_faces(const scene *s, const solid *owner, diagnostic *why)
+{
+    const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? looks_slots(s, owner) : 0;
+    for (int slot = 0; slot < slots; slot++) {
+        const material m = looks_face(s, owner, &owner->surface, slot).surface;
+        const char *name = scene_find_mesh(s, owner->mesh)->data->slot_names[slot];
+        if (m.reflectivity + m.transparency > 1.0 + 1e-12) {
+            return diagnose(why, STATUS_BAD_INPUT, "lower one of them, or set render.transmission to refract",
+                            "%.80s: under simple transmission its faces of %.80s have reflectivity %g + transparency "
+                            "%g, more than 1",
+                            owner->name, name && name[0] ? name : "no material", m.reflectivity, m.transparency);
+        }
+    }
+    return STATUS_OK;
+}
+
+status check_solid(const scene *s, const solid *owner, diagnostic *why)
+{
+    diagnostic shape = {.what = ""};
+    status code = solid_shape_check(&owner->shape, &shape);
+    if (code != STATUS_OK) {
+        return diagnose(why, code, shape.remedy, "%.80s: %s", owner->name, shape.what);
+    }
+    code = check_references(s, owner, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    index_law unused;
+    code = material_index_law(&owner->surface, owner->name, &unused, why);
+    if (code == STATUS_OK) {
+        code = material_absorption_check(&owner->surface, owner->name, why);
+    }
+    if (code != STATUS_OK) {
+        return code;
+    }
+    /* What a surface hands on is at most what it gets; the slack is for sums like 0.7 + 0.2 + 0.1. Under Fresnel
+     * weights R + T = 1 by themselves, and reflectivity counts for opaque surfaces alone. */
+    double sum = owner->surface.reflectivity + owner->surface.transparency;
+    if (scene_has_constant_shares(&s->render) && sum > 1.0 + 1e-12) {
+        const bool simple = s->render.transmission == TRANSMISSION_SIMPLE;
+        return diagnose(why, STATUS_BAD_INPUT,
+                        simple ? "lower one of them, or set render.transmission to refract"
+                               : "lower one of them, or set render.weights to fresnel",
+                        "%.80s: under %s reflectivity %g + transparency %g is more than 1", owner->name,
+                        simple ? "simple transmission" : "constant weights", owner->surface.reflectivity,
+                        owner->surface.transparency);
+    }
+    return check_faces(s, owner, why);
+}
+
+status check_limits(const scene *s, diagnostic *why)
+{
+    size_t primitives = 0;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        primitives += s->solids[i].shape.kind == SHAPE_CUP ? 2 : 1;
+    }
+    if (primitives > SCENE_PRIMITIVES_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64, and a cup counts as two", "more than 64 solids");
+    }
+    if (s->light_count > SCENE_LIGHTS_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64", "more than 64 lights");
+    }
+    if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64 of each", "more than 64 %s",
+                        s->mesh_count > SCENE_MESHES_MAX ? "meshes" : "textures");
+    }
+    if (s->material_count > SCENE_MATERIALS_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 256", "more than 256 materials");
+    }
+    return STATUS_OK;
+}
+
+static status check_names(const scene *s, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
+        code = check_own_name(s, s->meshes[i].name, why);
+    }
+    for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++) {
+        code = check_own_name(s, s->textures[i].name, why);
+    }
+    for (size_t i = 0; i < s->light_count && code == STATUS_OK; i++) {
+        code = check_own_name(s, s->lights[i].name, why);
+    }
+    for (size_t i = 0; i < s->material_count && code == STATUS_OK; i++) {
+        code = check_own_name(s, s->materials[i].name, why);
+    }
+    for (size_t i = 0; i < s->solid_count && code == STATUS_OK; i++) {
+        code = check_own_name(s, s->solids[i].name, why);
+    }
+    return code;
+}
+
+status scene_check(const scene *s, diagnostic *why)
+{
+    status (*const checks[])(const scene *, diagnostic *) = {check_limits, check_names, check_render, check_camera,
+                                                             check_background};
+    for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
+        status code = checks[i](s, why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        status code = check_mesh(&s->meshes[i], why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    for (size_t i = 0; i < s->texture_count; i++) {
+        status code = check_texture(&s->textures[i], why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    for (size_t i = 0; i < s->light_count; i++) {
+        status code = check_light(s, &s->lights[i], why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        status code = check_solid(s, &s->solids[i], why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    return STATUS_OK;
+}

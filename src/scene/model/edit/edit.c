@@ -1,0 +1,194 @@
+/* Objects go and change their names. How they come is in edit_add.c, what a solid is made of is in edit_solid.c, how
+ * things move in edit_place.c. */
+#include "scene/model/edit/edit.h"
+#include "scene/model/check.h"
+#include "scene/model/params_path.h"
+#include "scene/model/params_value.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Takes one element out of an array, whose name was released. */
+static void close_gap(void *array, size_t *count, size_t size, size_t index)
+{
+    char *gap = (char *)array + index * size;
+    memmove(gap, gap + size, (*count - index - 1) * size);
+    --*count;
+}
+
+static status remove_material(scene *s, size_t index, diagnostic *why)
+{
+    const char *user = NULL;
+    size_t users = 0;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (s->solids[i].material_index == (int)index) {
+            user = user ? user : s->solids[i].name;
+            users++;
+        }
+    }
+    if (user) {
+        char others[48] = "";
+        if (users > 1) {
+            snprintf(others, sizeof others, " and %zu more", users - 1);
+        }
+        return diagnose(why, STATUS_BAD_INPUT, "give those another material first, or remove them",
+                        "%.80s is the material of %.80s%s", s->materials[index].name, user, others);
+    }
+    free(s->materials[index].name);
+    close_gap(s->materials, &s->material_count, sizeof *s->materials, index);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        s->solids[i].material_index -= s->solids[i].material_index > (int)index;
+    }
+    return STATUS_OK;
+}
+
+static status in_use(const char *what, const char *name, const char *user, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, "give that another one first, or remove it", "%.80s is the %s of %.80s",
+                    name, what, user);
+}
+
+static status remove_mesh(scene *s, size_t index, diagnostic *why)
+{
+    mesh_entry *m = &s->meshes[index];
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (s->solids[i].shape.kind == SHAPE_MESH && strcmp(s->solids[i].mesh, m->name) == 0) {
+            return in_use("mesh", m->name, s->solids[i].name, why);
+        }
+    }
+    mesh_entry_unload(m);
+    free(m->name);
+    free(m->path);
+    free(m->script_path);
+    close_gap(s->meshes, &s->mesh_count, sizeof *s->meshes, index);
+    return STATUS_OK;
+}
+
+static status remove_texture(scene *s, size_t index, diagnostic *why)
+{
+    texture_entry *t = &s->textures[index];
+    for (size_t i = 0; i < s->material_count; i++) {
+        if (strcmp(s->materials[i].value.texture, t->name) == 0) {
+            return in_use("texture", t->name, s->materials[i].name, why);
+        }
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (strcmp(s->solids[i].surface.texture, t->name) == 0) {
+            return in_use("texture", t->name, s->solids[i].name, why);
+        }
+    }
+    texture_entry_unload(t);
+    free(t->name);
+    free(t->path);
+    close_gap(s->textures, &s->texture_count, sizeof *s->textures, index);
+    return STATUS_OK;
+}
+
+status scene_remove(scene *s, const char *name, diagnostic *why)
+{
+    place at;
+    status code = place_find_object(s, name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    switch (at.group) {
+    case PARAM_MESH: return remove_mesh(s, at.index, why);
+    case PARAM_TEXTURE: return remove_texture(s, at.index, why);
+    case PARAM_MATERIAL: return remove_material(s, at.index, why);
+    case PARAM_LIGHT:
+        free(s->lights[at.index].name);
+        close_gap(s->lights, &s->light_count, sizeof *s->lights, at.index);
+        return STATUS_OK;
+    case PARAM_SOLID:
+        free(s->solids[at.index].name);
+        close_gap(s->solids, &s->solid_count, sizeof *s->solids, at.index);
+        return STATUS_OK;
+    case PARAM_RENDER: return param_set_defaults(PARAM_RENDER, &s->render, why);
+    case PARAM_CAMERA: s->camera.aimed = 1; return param_set_defaults(PARAM_CAMERA, &s->camera, why);
+    case PARAM_BACKGROUND:
+        image_destroy(s->background.picture);
+        s->background.picture = NULL;
+        s->background.picture_line = s->background.picture_column = 0;
+        return param_set_defaults(PARAM_BACKGROUND, &s->background, why);
+    case PARAM_GROUP_COUNT: break;
+    }
+    return STATUS_FAILURE;
+}
+
+/* Where an object keeps its name; NULL for what has none of its own. */
+static char **name_field(scene *s, const place *at)
+{
+    switch (at->group) {
+    case PARAM_MESH: return &s->meshes[at->index].name;
+    case PARAM_TEXTURE: return &s->textures[at->index].name;
+    case PARAM_LIGHT: return &s->lights[at->index].name;
+    case PARAM_MATERIAL: return &s->materials[at->index].name;
+    case PARAM_SOLID: return &s->solids[at->index].name;
+    case PARAM_RENDER:
+    case PARAM_CAMERA:
+    case PARAM_BACKGROUND:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return NULL;
+}
+
+/* Solids and materials refer to meshes and textures by name. */
+static void follow_name(scene *s, const place *at, const char *from, const char *to)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        solid *owner = &s->solids[i];
+        if (at->group == PARAM_MESH && strcmp(owner->mesh, from) == 0) {
+            strcpy(owner->mesh, to);
+        }
+        if (at->group == PARAM_TEXTURE && strcmp(owner->surface.texture, from) == 0) {
+            strcpy(owner->surface.texture, to);
+        }
+    }
+    for (size_t i = 0; at->group == PARAM_TEXTURE && i < s->material_count; i++) {
+        if (strcmp(s->materials[i].value.texture, from) == 0) {
+            strcpy(s->materials[i].value.texture, to);
+        }
+    }
+}
+
+status scene_rename(scene *s, const char *name, const char *new_name, diagnostic *why)
+{
+    place at;
+    status code = place_find_object(s, name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    char **field = name_field(s, &at), *copy = NULL;
+    if (!field) {
+        return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid",
+                        "the %s has no name of its own", name);
+    }
+    if (strcmp(name, new_name) == 0) {
+        return STATUS_OK;
+    }
+    code = check_name(new_name, why);
+    if (code == STATUS_OK) {
+        code = check_name_is_free(s, new_name, why);
+    }
+    if (code == STATUS_OK && !(copy = strdup(new_name))) {
+        code = out_of_memory(why);
+    }
+    if (code == STATUS_OK) {
+        follow_name(s, &at, name, copy);
+        free(*field);
+        *field = copy;
+    }
+    return code;
+}
+
+status scene_set_title(scene *s, const char *title, diagnostic *why)
+{
+    char *copy = strdup(title);
+    if (!copy) {
+        return out_of_memory(why);
+    }
+    free(s->title);
+    s->title = copy;
+    return STATUS_OK;
+}

@@ -1,0 +1,224 @@
+/* Objects and the camera move and turn, one by one. All together: edit_whole.c. */
+#include "scene/model/edit/edit.h"
+#include "scene/model/edit/edit_vector.h"
+#include "base/elementary.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "scene/model/params_path.h"
+
+#include <stdlib.h>
+
+typedef enum axis { AXIS_X, AXIS_Y, AXIS_Z } axis;
+
+status edit_set_vector(scene *s, const char *name, const char *row, vec3 v, diagnostic *why)
+{
+    char x[NUMBER_TEXT_MAX], y[NUMBER_TEXT_MAX], z[NUMBER_TEXT_MAX];
+    char *path = text_format("%s.%s", name, row);
+    char *value = text_format("%s,%s,%s", number_format(v.x, x), number_format(v.y, y), number_format(v.z, z));
+    status code = path && value ? scene_set(s, path, value, why) : out_of_memory(why);
+    free(path);
+    free(value);
+    return code;
+}
+
+static status move_camera(scene *s, vec3 delta, diagnostic *why)
+{
+    const camera before = s->camera;
+    status code = edit_set_vector(s, "camera", "position", vec3_add(before.position, delta), why);
+    if (code == STATUS_OK && before.aimed) {
+        code = edit_set_vector(s, "camera", "target", vec3_add(before.target, delta), why);
+    }
+    if (code != STATUS_OK) {
+        s->camera = before;
+    }
+    return code;
+}
+
+static status has_no(const char *name, param_group group, const char *what, const char *remedy, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s is %s %s, which has no %s", name,
+                    group <= PARAM_BACKGROUND ? "the" : "a", param_group_name(group), what);
+}
+
+/* A cone goes on shining the same way. */
+static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
+{
+    light *l = &s->lights[index];
+    const light before = *l;
+    status code = edit_set_vector(s, l->name, "position", vec3_add(before.position, delta), why);
+    if (code == STATUS_OK && before.kind != LIGHT_POINT) {
+        code = edit_set_vector(s, l->name, "target", vec3_add(before.target, delta), why);
+    }
+    if (code != STATUS_OK) {
+        *l = before;
+    }
+    return code;
+}
+
+status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
+{
+    place at;
+    scene_parts parts;
+    if (scene_parts_named(s, name, &parts)) {
+        return scene_move_parts(s, parts, delta, why);
+    }
+    status code = edit_find(s, name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    switch (at.group) {
+    case PARAM_CAMERA: return move_camera(s, delta, why);
+    case PARAM_LIGHT: return move_light(s, at.index, delta, why);
+    case PARAM_SOLID:
+        return edit_set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
+    case PARAM_RENDER:
+    case PARAM_BACKGROUND:
+    case PARAM_MESH:
+    case PARAM_TEXTURE:
+    case PARAM_MATERIAL:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return has_no(name, at.group, "place", "move a solid, a light or the camera", why);
+}
+
+/* -180 < degrees <= 180 */
+static double wrap(double degrees)
+{
+    if (degrees > -180.0 && degrees <= 180.0) {
+        return degrees;
+    }
+    double rest = degrees - 360.0 * floor(degrees / 360.0);
+    return rest > 180.0 ? rest - 360.0 : rest;
+}
+
+double edit_settle_deg(double degrees)
+{
+    double round = floor(degrees * 1e6 + 0.5) / 1e6;
+    return fabs(round - degrees) < 1e-12 ? round : degrees;
+}
+
+static mat3 product(mat3 a, mat3 b)
+{
+    mat3 c;
+    for (int i = 0; i < 3; i++) {
+        c.row[i] = mat3_apply_transposed(b, a.row[i]);
+    }
+    return c;
+}
+
+/* Angles whose rotation_from_deg is r = R_z R_y R_x. The x angle is read from R_z^-1 r rather than from r's last row,
+ * so that it makes up for whatever z was taken to be when the local x axis stands upright and x and z turn about one
+ * line: Herter and Lott, Algorithms for decomposing 3-D orthogonal matrices into primitive rotations, Computers &
+ * Graphics 17 (1993). */
+static vec3 angles_of(mat3 r)
+{
+    const double cos_y = sqrt(r.row[0].x * r.row[0].x + r.row[1].x * r.row[1].x);
+    const double z = elementary_atan2_deg(r.row[1].x, r.row[0].x);
+    double sz, cz;
+    elementary_sincos_deg(z, &sz, &cz);
+    const double cos_x = cz * r.row[1].y - sz * r.row[0].y, minus_sin_x = cz * r.row[1].z - sz * r.row[0].z;
+    return vec3_make(edit_settle_deg(elementary_atan2_deg(-minus_sin_x, cos_x)),
+                     edit_settle_deg(elementary_atan2_deg(-r.row[2].x, cos_y)), edit_settle_deg(z));
+}
+
+static vec3 about(axis which, double degrees)
+{
+    return vec3_make(which == AXIS_X ? degrees : 0.0, which == AXIS_Y ? degrees : 0.0, which == AXIS_Z ? degrees : 0.0);
+}
+
+/* The angles after one more turn about an axis of the world. z is turned last, so a turn about z only adds to it; one
+ * about y or x does where the angles after it are 0. Sums keep a person's numbers as they are. */
+static vec3 turned(vec3 angles, axis which, double degrees)
+{
+    if (degrees == 0.0) {
+        return angles;
+    }
+    if (which == AXIS_Z) {
+        return vec3_make(angles.x, angles.y, wrap(angles.z + degrees));
+    }
+    if (which == AXIS_Y && angles.z == 0.0) {
+        return vec3_make(angles.x, wrap(angles.y + degrees), 0.0);
+    }
+    if (which == AXIS_X && angles.y == 0.0 && angles.z == 0.0) {
+        return vec3_make(wrap(angles.x + degrees), 0.0, 0.0);
+    }
+    return angles_of(product(rotation_from_deg(about(which, degrees)), rotation_from_deg(angles)));
+}
+
+static vec3 turned_by(vec3 angles, vec3 degrees)
+{
+    return turned(turned(turned(angles, AXIS_X, degrees.x), AXIS_Y, degrees.y), AXIS_Z, degrees.z);
+}
+
+static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
+{
+    const mat3 turn = rotation_from_deg(degrees);
+    camera *c = &s->camera;
+    if (c->aimed) {
+        return edit_set_vector(s, "camera", "target",
+                               vec3_add(c->position, mat3_apply(turn, vec3_sub(c->target, c->position))), why);
+    }
+    if (degrees.x == 0.0 && degrees.z == 0.0) { /* yaw turns as y does, z towards x */
+        c->yaw_deg = wrap(c->yaw_deg + degrees.y);
+        return STATUS_OK;
+    }
+    double sin_yaw, cos_yaw, sin_pitch, cos_pitch;
+    elementary_sincos_deg(c->yaw_deg, &sin_yaw, &cos_yaw);
+    elementary_sincos_deg(c->pitch_deg, &sin_pitch, &cos_pitch);
+    const vec3 d = mat3_apply(turn, vec3_make(cos_pitch * sin_yaw, sin_pitch, cos_pitch * cos_yaw));
+    c->yaw_deg = edit_settle_deg(elementary_atan2_deg(d.x, d.z));
+    c->pitch_deg = edit_settle_deg(elementary_atan2_deg(d.y, sqrt(d.x * d.x + d.z * d.z)));
+    return STATUS_OK;
+}
+
+static bool is_angle(double degrees)
+{
+    return fabs(degrees) <= 1e6; /* where elementary_sincos_deg still keeps its error; false for NaN */
+}
+
+/* A cone's target goes around its position. */
+static status turn_light(scene *s, const light *l, vec3 degrees, diagnostic *why)
+{
+    const vec3 way = mat3_apply(rotation_from_deg(degrees), vec3_sub(l->target, l->position));
+    return edit_set_vector(s, l->name, "target", vec3_add(l->position, way), why);
+}
+
+status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
+{
+    place at;
+    scene_parts parts;
+    const bool is_many = scene_parts_named(s, name, &parts);
+    const status code = is_many ? STATUS_OK : edit_find(s, name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (!is_angle(degrees.x) || !is_angle(degrees.y) || !is_angle(degrees.z)) {
+        return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees",
+                        "%.80s cannot be turned so far", name);
+    }
+    if (is_many) {
+        return scene_turn_parts(s, parts, degrees, why);
+    }
+    switch (at.group) {
+    case PARAM_CAMERA: return turn_camera(s, degrees, why);
+    case PARAM_LIGHT:
+        if (s->lights[at.index].kind != LIGHT_POINT) {
+            return turn_light(s, &s->lights[at.index], degrees, why);
+        }
+        break;
+    case PARAM_SOLID:
+        return edit_set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
+    case PARAM_RENDER:
+    case PARAM_BACKGROUND:
+    case PARAM_MESH:
+    case PARAM_TEXTURE:
+    case PARAM_MATERIAL:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return has_no(name, at.group, "direction", "turn a solid, a cone of light or the camera", why);
+}
+
+status scene_look_at(scene *s, vec3 target, diagnostic *why)
+{
+    return edit_set_vector(s, "camera", "target", target, why);
+}

@@ -1,0 +1,106 @@
+/* What a solid is made of and what shape it has: what a file says of it beside the rows of the table. */
+#include "scene/model/edit/edit.h"
+#include "base/text.h"
+#include "scene/model/check.h"
+#include "scene/model/params_path.h"
+#include "scene/model/params_value.h"
+#include "scene/model/suggest.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static status no_material(const scene *s, const char *name, diagnostic *why)
+{
+    const char *words[SCENE_MATERIALS_MAX];
+    size_t count = 0;
+    for (; count < s->material_count && count < SCENE_MATERIALS_MAX; count++) {
+        words[count] = s->materials[count].name;
+    }
+    const char *nearest = suggest_word(name, words, count);
+    char remedy[SCENE_NAME_MAX + 80] = "add it to materials";
+    if (nearest) {
+        snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
+    }
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "no material '%.80s'", name);
+}
+
+status scene_give_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why)
+{
+    place at;
+    status code = place_find_object(s, solid_name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (at.group != PARAM_SOLID) {
+        return diagnose(why, STATUS_BAD_INPUT, "name a solid", "%.80s is a %s, which has no material", solid_name,
+                        param_group_name(at.group));
+    }
+    solid *owner = &s->solids[at.index];
+    if (!material_name || !material_name[0]) {
+        owner->material_index = -1;
+        return param_set_defaults(PARAM_MATERIAL, &owner->surface, why);
+    }
+    for (size_t i = 0; i < s->material_count; i++) {
+        if (strcmp(s->materials[i].name, material_name) == 0) {
+            owner->material_index = (int)i;
+            owner->surface = s->materials[i].value;
+            return STATUS_OK;
+        }
+    }
+    return no_material(s, material_name, why);
+}
+
+status scene_shape_named(const char *word, shape_kind *out, diagnostic *why)
+{
+    const char *words[SHAPE_COUNT];
+    for (int k = 0; k < SHAPE_COUNT; k++) {
+        words[k] = shape_name((shape_kind)k);
+        if (strcmp(words[k], word) == 0) {
+            *out = (shape_kind)k;
+            return STATUS_OK;
+        }
+    }
+    const char *nearest = text_nearest(word, words, SHAPE_COUNT);
+    char remedy[100];
+    snprintf(remedy, sizeof remedy,
+             nearest ? "did you mean '%s'?" : "the shapes are plane, cylinder, cup, box, sphere and mesh", nearest);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "no shape '%.60s'", word);
+}
+
+static status put_shape(scene *s, solid *owner, const char *word, diagnostic *why)
+{
+    const shape_kind before = owner->shape.kind;
+    status code = scene_shape_named(word, &owner->shape.kind, why);
+    if (code == STATUS_OK) {
+        code = check_limits(s, why);
+    }
+    if (code != STATUS_OK) {
+        owner->shape.kind = before;
+    }
+    return code;
+}
+
+/* The solid that a path begins with, or NULL. */
+static solid *owner_of(const scene *s, const char *path)
+{
+    const size_t length = strcspn(path, ".");
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (strlen(s->solids[i].name) == length && strncmp(s->solids[i].name, path, length) == 0) {
+            return &s->solids[i];
+        }
+    }
+    return NULL;
+}
+
+status scene_put(scene *s, const char *path, const char *value, diagnostic *why)
+{
+    solid *owner = owner_of(s, path);
+    const char *rest = path + strcspn(path, ".");
+    if (owner && strcmp(rest, ".material") == 0) {
+        return scene_give_material(s, owner->name, value, why);
+    }
+    if (owner && strcmp(rest, ".shape") == 0) {
+        return put_shape(s, owner, value, why);
+    }
+    return scene_set(s, path, value, why);
+}

@@ -1,0 +1,291 @@
+/* A whole scene moves, turns and is scaled: all its solids, lights, or both, with or without the camera. One solid or
+ * light is scaled here too. */
+#include "scene/model/edit/edit.h"
+#include "scene/model/edit/edit_vector.h"
+#include "base/elementary.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "scene/model/camera.h"
+#include "scene/model/params_path.h"
+#include "scene/model/params_value.h"
+
+#include <stdlib.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool add_word(const char *word, size_t length, scene_parts *parts)
+{
+    static const struct {
+        const char *word;
+        scene_parts parts;
+    } words[] = {{"all", {.solids = true, .lights = true}},
+                 {"solids", {.solids = true}},
+                 {"lights", {.lights = true}},
+                 {"camera", {.camera = true}}};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        if (strlen(words[i].word) == length && strncmp(words[i].word, word, length) == 0) {
+            parts->solids |= words[i].parts.solids;
+            parts->lights |= words[i].parts.lights;
+            parts->camera |= words[i].parts.camera;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool scene_parts_named(const scene *s, const char *name, scene_parts *out)
+{
+    place unused;
+    *out = (scene_parts){.solids = false};
+    if (place_find_object(s, name, &unused, NULL) == STATUS_OK) {
+        return false;
+    }
+    for (const char *word = name;; word++) {
+        const size_t length = strcspn(word, "+");
+        if (!add_word(word, length, out)) {
+            return false;
+        }
+        word += length;
+        if (!*word) {
+            return true;
+        }
+    }
+}
+
+status edit_find(const scene *s, const char *name, place *at, diagnostic *why)
+{
+    const status code = place_find_object(s, name, at, why);
+    if (code == STATUS_BAD_INPUT && why && strncmp(why->remedy, "did you mean", 12) != 0) {
+        snprintf(why->remedy, sizeof why->remedy,
+                 "give the name of a solid or light, or of camera, solids, lights, all, or a sum as all+camera");
+    }
+    return code;
+}
+
+/* What an edit changes goes back to what it was in a clone. */
+static void put_back(scene *s, const scene *before)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        s->solids[i].shape = before->solids[i].shape;
+        s->solids[i].surface = before->solids[i].surface;
+    }
+    for (size_t i = 0; i < s->light_count; i++) {
+        char *name = s->lights[i].name;
+        s->lights[i] = before->lights[i];
+        s->lights[i].name = name;
+    }
+    for (size_t i = 0; i < s->material_count; i++) {
+        s->materials[i].value = before->materials[i].value;
+    }
+    s->camera = before->camera;
+    s->render.unit_m = before->render.unit_m;
+}
+
+/* An edit of many objects, which is done whole or not at all. */
+typedef struct whole_edit {
+    scene *s;
+    const scene *before;
+    scene_parts parts;
+    const char *only; /* scales that solid or light alone, where it stands; NULL: the parts */
+    vec3 by;          /* of a move or turn */
+    double factor;    /* of a scale */
+    diagnostic *why;
+    status (*act)(struct whole_edit *e);
+} whole_edit;
+
+static status apply(whole_edit *e)
+{
+    scene *before = scene_clone(e->s);
+    if (!before) {
+        return out_of_memory(e->why);
+    }
+    e->before = before;
+    const status code = e->act(e);
+    if (code != STATUS_OK) {
+        put_back(e->s, before);
+    }
+    scene_destroy(before);
+    return code;
+}
+
+static status move_parts(whole_edit *e)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; i < e->s->solid_count && e->parts.solids && code == STATUS_OK; i++) {
+        code = scene_move(e->s, e->s->solids[i].name, e->by, e->why);
+    }
+    for (size_t i = 0; i < e->s->light_count && e->parts.lights && code == STATUS_OK; i++) {
+        code = scene_move(e->s, e->s->lights[i].name, e->by, e->why);
+    }
+    return e->parts.camera && code == STATUS_OK ? scene_move(e->s, "camera", e->by, e->why) : code;
+}
+
+/* About the origin; what is on an axis of the turn keeps its zeros. */
+static status turn_point(const whole_edit *e, const char *name, const char *row, vec3 point)
+{
+    const vec3 to = mat3_apply(rotation_from_deg(e->by), point);
+    return edit_set_vector(e->s, name, row, vec3_make(to.x + 0.0, to.y + 0.0, to.z + 0.0), e->why);
+}
+
+static status turn_solid(whole_edit *e, const solid *one)
+{
+    const status code = turn_point(e, one->name, "position", one->shape.position);
+    return code == STATUS_OK ? scene_turn(e->s, one->name, e->by, e->why) : code;
+}
+
+static status turn_light(whole_edit *e, const light *one)
+{
+    const status code = turn_point(e, one->name, "position", one->position);
+    return code == STATUS_OK && one->kind != LIGHT_POINT ? turn_point(e, one->name, "target", one->target) : code;
+}
+
+/* The whole frame goes around the origin, so that the image's up does too: what is left between that and a level image
+ * is roll. */
+static status turn_camera(whole_edit *e)
+{
+    scene *s = e->s;
+    const vec3 eye = s->camera.position, target = s->camera.target,
+               up = mat3_apply(rotation_from_deg(e->by), camera_frame_of(s).up);
+    status code = STATUS_OK;
+    if (s->camera.aimed) {
+        code = turn_point(e, "camera", "target", target);
+    } else {
+        code = scene_turn(s, "camera", e->by, e->why);
+    }
+    if (code == STATUS_OK) {
+        code = turn_point(e, "camera", "position", eye);
+    }
+    if (code == STATUS_OK) {
+        const camera_frame level = camera_frame_level(s);
+        const double roll = edit_settle_deg(elementary_atan2_deg(vec3_dot(up, level.right), vec3_dot(up, level.up)));
+        s->camera.roll_deg = fabs(roll - s->camera.roll_deg) < 1e-12 ? s->camera.roll_deg : roll + 0.0;
+    }
+    return code;
+}
+
+static status turn_parts(whole_edit *e)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; i < e->s->solid_count && e->parts.solids && code == STATUS_OK; i++) {
+        code = turn_solid(e, &e->s->solids[i]);
+    }
+    for (size_t i = 0; i < e->s->light_count && e->parts.lights && code == STATUS_OK; i++) {
+        code = turn_light(e, &e->s->lights[i]);
+    }
+    return e->parts.camera && code == STATUS_OK ? turn_camera(e) : code;
+}
+
+/* Lengths are the rows of the table whose unit is the scene unit, so that a new one is scaled too; and a mesh's own
+ * scale. */
+static bool is_length(const param *row)
+{
+    if (row->group == PARAM_SOLID && strcmp(row->name, "scale") == 0) {
+        return true;
+    }
+    return strcmp(row->unit, "scene units") == 0 && (row->type == PARAM_REAL || row->type == PARAM_VECTOR);
+}
+
+static bool is_scaled(const whole_edit *e, const char *name, const param *row)
+{
+    place at;
+    if (!is_length(row) || place_find_object(e->s, name, &at, NULL) != STATUS_OK) {
+        return false;
+    }
+    if (e->only) { /* its material stays what it is, as its absorption by render.unit_m does */
+        return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 &&
+               strcmp(row->name, "position") != 0 && strcmp(row->name, "target") != 0;
+    }
+    return at.group == PARAM_SOLID || at.group == PARAM_MATERIAL ? e->parts.solids
+           : at.group == PARAM_LIGHT                             ? e->parts.lights
+                                                                 : at.group == PARAM_CAMERA && e->parts.camera;
+}
+
+/* Visits the clone, since a material that is set is set for its solids. */
+static status scale_row(void *context, const char *path, const param *row, const char *value)
+{
+    whole_edit *e = context;
+    char name[SCENE_NAME_MAX + 1] = "";
+    const size_t length = strcspn(path, ".");
+    if (length <= SCENE_NAME_MAX) {
+        memcpy(name, path, length);
+    }
+    if (!is_scaled(e, name, row)) {
+        return STATUS_OK;
+    }
+    param_value v;
+    status code = param_value_parse(row, -1, path, value, &v, e->why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (row->type == PARAM_REAL) {
+        v.real *= e->factor;
+    } else {
+        v.vector = vec3_scale(v.vector, e->factor);
+    }
+    char *text = param_value_text(row, -1, &v);
+    code = text ? scene_set(e->s, path, text, e->why) : out_of_memory(e->why);
+    free(text);
+    return code;
+}
+
+/* Of a plane a texture size of 0 means 1, which is a length. */
+static void scale_planes(whole_edit *e)
+{
+    for (size_t i = 0; i < e->s->solid_count; i++) {
+        solid *one = &e->s->solids[i];
+        const bool is_wanted = e->only ? strcmp(one->name, e->only) == 0 : e->parts.solids;
+        if (is_wanted && one->shape.kind == SHAPE_PLANE && one->surface.texture[0] &&
+            one->surface.texture_size == 0.0) {
+            one->surface.texture_size = e->factor;
+        }
+    }
+}
+
+/* A scene that is scaled keeps its lengths in metres, and with them what its media absorb. */
+static status keep_metres(whole_edit *e)
+{
+    char text[NUMBER_TEXT_MAX];
+    return scene_set(e->s, "render.unit_m", number_format(e->before->render.unit_m / e->factor, text), e->why);
+}
+
+static status scale_parts(whole_edit *e)
+{
+    const status code = scene_each_param(e->before, scale_row, e);
+    if (code == STATUS_OK) {
+        scale_planes(e);
+    }
+    return code == STATUS_OK && e->parts.solids ? keep_metres(e) : code;
+}
+
+status scene_move_parts(scene *s, scene_parts parts, vec3 delta, diagnostic *why)
+{
+    return apply(&(whole_edit){.s = s, .parts = parts, .by = delta, .why = why, .act = move_parts});
+}
+
+status scene_turn_parts(scene *s, scene_parts parts, vec3 degrees, diagnostic *why)
+{
+    return apply(&(whole_edit){.s = s, .parts = parts, .by = degrees, .why = why, .act = turn_parts});
+}
+
+status scene_scale(scene *s, const char *name, double factor, diagnostic *why)
+{
+    whole_edit e = {.s = s, .factor = factor, .why = why, .act = scale_parts};
+    place at;
+    if (!(factor > 0.0 && factor <= 1e9)) {
+        return diagnose(why, STATUS_BAD_INPUT, "give a factor above 0, at most 1e9", "%.80s cannot be scaled by %g",
+                        name, factor);
+    }
+    if (scene_parts_named(s, name, &e.parts)) {
+        return apply(&e);
+    }
+    const status code = edit_find(s, name, &at, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (at.group != PARAM_SOLID && at.group != PARAM_LIGHT) {
+        return diagnose(why, STATUS_BAD_INPUT, "scale a solid, a light, or all, solids, lights",
+                        "%.80s has no size of its own", name);
+    }
+    e.only = name;
+    return apply(&e);
+}

@@ -1,0 +1,216 @@
+#include "scene/model/hints.h"
+#include "scene/model/cover.h"
+#include "scene/model/looks.h"
+#include "scene/model/medium.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static bool is_lit(const material *m)
+{
+    return m->diffuse > 0.0 || m->specular > 0.0;
+}
+
+/* Does another medium hold the solid, so that one of the air's index is a bubble? Its position says so: the centre, or
+ * that of the base. */
+static bool is_inside_medium(const scene *s, const solid *bubble)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *other = &s->solids[i];
+        if (other != bubble && other->visible && other->surface.transparency > 0.0 &&
+            !material_matches_surroundings(s, &other->surface) &&
+            solid_shape_contains(&other->shape, bubble->shape.position)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Does it cut away from another one, so that one of the surroundings' index shows by what is missing there? */
+static bool cuts_another(const scene *s, const solid *cutter)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *other = &s->solids[i];
+        const bool seen = other->surface.transparency == 0.0 || !material_matches_surroundings(s, &other->surface);
+        if (other->visible && seen && scene_wins(cutter, other) && !scene_apart(s, cutter, other)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What a clear solid seems to lack. */
+static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
+{
+    const material *m = &owner->surface;
+    if (integrator_of(&s->render)->drawn && s->render.lighting != LIGHTING_WHITTED) {
+        if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0) {
+            note_give(
+                taker, "render", "lighting", "set render.lighting to whitted",
+                "%s is transparent, and without reflected and refracted light its surface is black but for highlights",
+                owner->name);
+        }
+    } else if (!scene_has_constant_shares(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
+               m->reflectivity == 0.0 && m->emission == 0.0 && !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
+        note_give(taker, owner->name, "ior", "set its ior",
+                  "%s is transparent with the index of what is around it: it %s", owner->name,
+                  material_absorbs(m) ? "bends no light" : "is invisible");
+    }
+}
+
+/* Of no clear matter the index of visible light reaches that: germanium's and silicon's are 4 to 5. */
+#define INDEX_MOST 5.0
+
+/* An index of a mirror, on what reflects nothing of its own. Above MIRROR_IOR a clear solid is a mirror indeed. True if
+ * there is a note. */
+static bool hint_at_index(const scene *s, const solid *owner, const note_taker *taker)
+{
+    const material *m = &owner->surface;
+    index_law law;
+    if (m->reflectivity > 0.0 || material_is_mirror(m) || material_index_law(m, "", &law, NULL) != STATUS_OK) {
+        return false;
+    }
+    const double index = index_law_at(&law, s->render.lambda_nm);
+    if (!(index > INDEX_MOST)) {
+        return false;
+    }
+    note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium",
+              m->transparency > 0.0
+                  ? "set its ior between 1 and 5; for a mirror set its reflectivity, and its transparency to 0"
+                  : "for a mirror set its reflectivity; the index of an opaque solid has no effect",
+              "%s has a refractive index of %.4g, which no clear matter has, and a reflectivity of 0", owner->name,
+              index);
+    return true;
+}
+
+/* What the solid seems to lack. */
+static void hint_at_solid(const scene *s, const solid *owner, const note_taker *taker)
+{
+    const material *m = &owner->surface;
+    if (hint_at_index(s, owner, taker)) {
+        return;
+    }
+    if (m->transparency > 0.0) {
+        hint_at_clear(s, owner, taker);
+    } else if ((m->medium != MEDIUM_IOR || m->ior != 1.0) && !looks_by_face(s, owner)) {
+        note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
+                  "%s has a refractive index but is opaque", owner->name);
+    } else if (m->ambient == 0.0 && m->emission == 0.0 && m->reflectivity == 0.0 && !is_lit(m) &&
+               !looks_by_face(s, owner) &&
+               !scene_is_behind_camera(s, owner)) { /* a black board behind the eye keeps reflections dark */
+        note_give(taker, owner->name, "diffuse", "set its diffuse",
+                  "%s is neither transparent, nor diffuse, nor lit: it is black", owner->name);
+    }
+}
+
+static void hint_at_cover(const scene *s, const solid *hidden, const note_taker *taker)
+{
+    const solid *cover = scene_cover(s, hidden);
+    char remedy[NOTE_TEXT_MAX];
+    if (cover) {
+        snprintf(remedy, sizeof remedy, "give %s the higher priority", hidden->name);
+        note_give(taker, hidden->name, "priority", remedy, "%s lies wholly inside %s, which wins there and hides it",
+                  hidden->name, cover->name);
+    }
+}
+
+/* A law that is used outside the wavelengths where its medium was measured. */
+static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law,
+                          const note_taker *taker)
+{
+    static const char remedy[] = "keep to these wavelengths, or give coefficients that reach further";
+    const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
+    const double low_nm = spectral ? VISIBLE_LOW_NM : s->render.lambda_nm,
+                 high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
+    if (dispersion_covers(&law->law, low_nm, high_nm)) {
+        return;
+    }
+    if (law->law.kind == DISPERSION_TABLE) {
+        note_give(taker, where, "coefficients", remedy,
+                  "its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond",
+                  law->law.coefficient[0], law->law.coefficient[law->law.count - 2]);
+    } else {
+        note_give(taker, where, "medium", remedy, "%s was measured from %g to %g nm only, and is extrapolated beyond",
+                  name, law->law.low_nm, law->law.high_nm);
+    }
+}
+
+/* What is set and does nothing. */
+static void hint_at_idle(const scene *s, const solid *owner, const note_taker *taker)
+{
+    const material *m = &owner->surface;
+    if (m->transparency == 0.0 && material_absorbs(m) && looks_opaque(s, owner)) {
+        note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m",
+                  "set its transparency", "%s absorbs but is opaque", owner->name);
+    }
+    if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE)) {
+        note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
+                  "%s has coefficients but no law for them", owner->name);
+    }
+    if (looks_waste(s, owner)) {
+        note_give(taker, owner->name, "transparency",
+                  "set it for the whole solid, or set render.transmission to simple",
+                  "the transparency and reflectivity of the faces of %s have no effect: where light is bent they "
+                  "belong to the solid",
+                  owner->name);
+    }
+}
+
+static void hint_at_lights(const scene *s, const note_taker *taker)
+{
+    const bool path = integrator_of(&s->render)->by_chance;
+    bool clear = false;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        clear |= s->solids[i].visible && s->solids[i].surface.transparency > 0.0;
+    }
+    for (size_t i = 0; i < s->light_count; i++) {
+        const light *lamp = &s->lights[i];
+        if (lamp->radius > 0.0 && !path) {
+            note_give(taker, lamp->name, "radius", "set render.integrator=path, where its radius shows",
+                      "%s is lit as a point", lamp->name);
+        } else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0) {
+            note_give(taker, lamp->name, "radius", "give it a radius and a reach",
+                      "%s is a point, which random paths cannot find through clear solids: no caustics", lamp->name);
+        }
+    }
+}
+
+void scene_range_hints(const scene *s, const note_taker *taker)
+{
+    index_law law = surrounding_index_law(&s->background);
+    hint_at_range(s, "background", surrounding_words[s->background.medium], &law, taker);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && one->surface.transparency > 0.0 &&
+            material_index_law(&one->surface, "", &law, NULL) == STATUS_OK) {
+            hint_at_range(s, one->name, medium_words[one->surface.medium], &law, taker);
+        }
+    }
+}
+
+void scene_hints(const scene *s, const note_taker *taker)
+{
+    size_t visible = 0, lit = 0, shining = 0;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        visible += s->solids[i].visible != 0;
+        lit += s->solids[i].visible && is_lit(&s->solids[i].surface);
+        shining += s->solids[i].visible && s->solids[i].surface.emission > 0.0;
+    }
+    if (visible == 0) {
+        note_give(taker, "solids", NULL, "add solids:", "no visible solids: the picture shows the background alone");
+    }
+    const bool emitters_light = shining > 0 && integrator_of(&s->render)->by_chance;
+    if (lit > 0 && s->light_count == 0 && !emitters_light) {
+        note_give(taker, "lights", NULL,
+                  "add lights:", "no lights: opaque surfaces are dark but for their ambient and emitted light");
+    }
+    hint_at_lights(s, taker);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (s->solids[i].visible) {
+            hint_at_solid(s, &s->solids[i], taker);
+            hint_at_idle(s, &s->solids[i], taker);
+            hint_at_cover(s, &s->solids[i], taker);
+        }
+    }
+    scene_range_hints(s, taker);
+}

@@ -1,0 +1,123 @@
+/* Why a parameter of a surface does nothing on faces that look as a mesh's file says: see looks_face. */
+#include "scene/model/inert/inert_private.h"
+#include "scene/model/looks.h"
+#include "scene/model/medium.h"
+
+#include <string.h>
+
+static bool is_row(const inert_case *c, const char *name)
+{
+    return strcmp(c->at.row->name, name) == 0;
+}
+
+/* What a body is made of. */
+static bool is_of_body(const inert_case *c)
+{
+    static const char *const of_body[] = {"ior",           "medium", "coefficients", "absorb_per_m", "absorb_spectrum",
+                                          "tint_distance", NULL};
+    return is_among(c, of_body);
+}
+
+static bool is_straight(const inert_case *c)
+{
+    return c->s->render.transmission == TRANSMISSION_SIMPLE;
+}
+
+/* Does the solid's own surface say it, on faces of which a material of the scene or of the file says the rest? */
+static bool is_own(const inert_case *c, const material *named, const face_look *given)
+{
+    static const char *const never_given[] = {"ambient", "reflectivity", "checker", "checker_color", NULL};
+    const bool clear = !material_is_opaque(&c->owner->surface);
+    if (!named && !given) {
+        return true;
+    }
+    if (is_row(c, "transparency")) {
+        return !is_straight(c) || (!named && given->opacity == 1.0);
+    }
+    if (named) {
+        return is_row(c, "reflectivity") && !is_straight(c) && clear;
+    }
+    return is_among(c, never_given) || (is_row(c, "emission") && given->emission == 0.0) ||
+           (is_row(c, "color") && clear);
+}
+
+/* The rules of a whole surface, on one kind of face. */
+static bool inert_on_slot(const inert_case *c, int slot)
+{
+    const surface_look look = looks_face(c->s, c->owner, &c->owner->surface, slot);
+    inert_case face = *c;
+    face.m = &look.surface;
+    return inert_look(&face);
+}
+
+static bool say_by_face(const inert_case *c)
+{
+    return inert_say(c, "by-face", "give the solid a material, or name one of the scene's as the faces' is named",
+                     "the mesh's file says how the faces of %s look", c->owner->name);
+}
+
+/* Before the mesh is there, nobody knows. */
+bool inert_faces(const inert_case *c)
+{
+    if (!looks_by_face(c->s, c->owner)) {
+        return false;
+    }
+    if (is_of_body(c)) { /* which is clear where a face is */
+        material clear = *c->m;
+        clear.transparency = 1.0;
+        inert_case body = *c;
+        body.m = !looks_opaque(c->s, c->owner) && !is_row(c, "tint_distance") ? &clear : c->m;
+        return inert_look(&body);
+    }
+    bool some = false;
+    for (int slot = 0; slot < looks_slots(c->s, c->owner); slot++) {
+        const material *named;
+        const face_look *given;
+        looks_source(c->s, c->owner, slot, &named, &given);
+        if (!is_own(c, named, given)) {
+            continue;
+        }
+        some = true;
+        if (!inert_on_slot(c, slot)) {
+            return false;
+        }
+    }
+    return some || say_by_face(c);
+}
+
+/* Of the scene's material that c is about: does a face that is named so take it? */
+static bool is_named_ones(const inert_case *c)
+{
+    if (is_of_body(c)) {
+        return false;
+    }
+    if (is_row(c, "transparency")) {
+        return is_straight(c);
+    }
+    return !is_row(c, "reflectivity") || is_straight(c) || material_is_opaque(&c->owner->surface);
+}
+
+static bool say_of_solid(const inert_case *c)
+{
+    const inert_remedy remedy = inert_set("%s.%s", c->owner->name, c->at.row->name);
+    return inert_say(c, "of-solid", remedy.text, "a face takes it from its solid, %s", c->owner->name);
+}
+
+bool inert_named_faces(const inert_case *c)
+{
+    if (!looks_by_face(c->s, c->owner)) {
+        return false;
+    }
+    for (int slot = 0; slot < looks_slots(c->s, c->owner); slot++) {
+        const material *named;
+        const face_look *given;
+        looks_source(c->s, c->owner, slot, &named, &given);
+        if (named != &c->s->materials[c->at.index].value) {
+            continue;
+        }
+        if (is_named_ones(c) ? !inert_on_slot(c, slot) : !say_of_solid(c)) {
+            return false;
+        }
+    }
+    return true; /* without an answer where no face is named so */
+}

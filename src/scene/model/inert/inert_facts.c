@@ -1,0 +1,168 @@
+/* What a scene does with light, as far as its file says it. Each of these is what the renderer decides by, too: see
+ * render/shade/shading.c, render/integrators/path.c and render/core/plan.c. */
+#include "scene/model/inert/inert_private.h"
+#include "scene/model/medium.h"
+
+bool is_black(vec3 color)
+{
+    return color.x == 0.0 && color.y == 0.0 && color.z == 0.0;
+}
+
+bool is_path(const scene *s)
+{
+    return integrator_of(&s->render)->by_chance;
+}
+
+bool follows_rays(const scene *s)
+{
+    return is_path(s) || (integrator_of(&s->render)->tree && s->render.lighting == LIGHTING_WHITTED);
+}
+
+bool draws_through(const scene *s)
+{
+    return integrator_of(&s->render)->drawn && s->render.lighting == LIGHTING_WHITTED && first_clear(s);
+}
+
+/* Shadow rays pass clear solids where shadows are attenuated. */
+bool nothing_passes(const scene *s)
+{
+    const bool lit_through =
+        !integrator_of(&s->render)->drawn && s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
+    return !follows_rays(s) && !draws_through(s) && !lit_through;
+}
+
+bool say_no_tree(const inert_case *c)
+{
+    const bool whitted = integrator_of(&c->s->render)->tree;
+    return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : "set render.integrator=whitted",
+                     "no ray goes on from a surface under this render.%s", whitted ? "lighting" : "integrator");
+}
+
+bool is_dark_beyond(const scene *s)
+{
+    const background *b = &s->background;
+    const bool dark_sky = is_black(b->color) &&
+                          (b->kind == BACKGROUND_UNIFORM || (b->kind == BACKGROUND_GRADIENT && is_black(b->horizon)));
+    return s->render.beyond == BEYOND_BLACK || dark_sky;
+}
+
+bool shines(const light *l)
+{
+    return l->intensity > 0.0 && !is_black(l->color);
+}
+
+size_t shining_lights(const scene *s)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < s->light_count; i++) {
+        count += shines(&s->lights[i]);
+    }
+    return count;
+}
+
+bool only_spheres_shine(const scene *s)
+{
+    for (size_t i = 0; i < s->light_count; i++) {
+        if (shines(&s->lights[i]) && s->lights[i].radius == 0.0) {
+            return false;
+        }
+    }
+    return is_path(s);
+}
+
+bool may_look_by_face(const scene *s, const solid *owner)
+{
+    const mesh_entry *m =
+        owner->shape.kind == SHAPE_MESH && owner->material_index < 0 ? scene_find_mesh(s, owner->mesh) : NULL;
+    return m && (m->source == MESH_FILE || m->source == MESH_ARRAYS);
+}
+
+const solid *first_visible(const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (s->solids[i].visible) {
+            return &s->solids[i];
+        }
+    }
+    return NULL;
+}
+
+const solid *first_clear(const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        const bool by_face = s->render.transmission == TRANSMISSION_SIMPLE && may_look_by_face(s, one);
+        if (one->visible && (one->surface.transparency > 0.0 || by_face)) {
+            return one;
+        }
+    }
+    return NULL;
+}
+
+static bool has_color(const material *m)
+{
+    return !is_black(m->color) || (m->checker > 0.0 && !is_black(m->checker_color));
+}
+
+bool shows_ambient(const scene *s, const material *m)
+{
+    return !is_path(s) && m->ambient > 0.0 && has_color(m) && !is_black(s->background.ambient);
+}
+
+bool shows_diffuse(const scene *s, const material *m)
+{
+    return m->diffuse > 0.0 && has_color(m) && (shining_lights(s) > 0 || (is_path(s) && material_is_opaque(m)));
+}
+
+bool shows_specular(const scene *s, const material *m)
+{
+    if (m->specular == 0.0 || shining_lights(s) == 0) {
+        return false;
+    }
+    return is_path(s) ? material_is_opaque(m) || !only_spheres_shine(s) : s->render.lighting != LIGHTING_LAMBERT;
+}
+
+bool is_lit_by_lamps(const scene *s, const material *m)
+{
+    return shows_specular(s, m) || (shining_lights(s) > 0 && m->diffuse > 0.0 && has_color(m));
+}
+
+bool shows_color(const scene *s, const material *m)
+{
+    material white = *m;
+    white.color = vec3_make(1.0, 1.0, 1.0);
+    return m->emission > 0.0 || shows_ambient(s, &white) || shows_diffuse(s, &white);
+}
+
+bool sends_rays_on(const scene *s, const solid *owner)
+{
+    const material *m = &owner->surface;
+    const bool matte = is_path(s) && m->diffuse > 0.0 && has_color(m);
+    return m->transparency > 0.0 || m->reflectivity > 0.0 || matte || may_look_by_face(s, owner);
+}
+
+inert_remedy lamp_remedy(const scene *s)
+{
+    for (size_t i = 0; i < s->light_count; i++) {
+        const light *l = &s->lights[i];
+        if (!shines(l)) {
+            return l->intensity > 0.0 ? inert_set("%s.color=1,1,1", l->name) : inert_set("%s.intensity=1", l->name);
+        }
+    }
+    return (inert_remedy){"add a light"};
+}
+
+inert_remedy color_remedy(const scene *s, const material *m, const char *name)
+{
+    material coated = *m;
+    coated.diffuse = 0.7;
+    if (shows_color(s, &coated)) {
+        return inert_set("%s.diffuse=0.7", name);
+    }
+    coated.ambient = 0.5;
+    if (shows_color(s, &coated)) {
+        return inert_set("%s.ambient=0.5", name);
+    }
+    return is_path(s) ? inert_set("%s.diffuse=0.7 and %s.transparency=0", name, name)
+                      : inert_set("background.ambient=1,1,1 and %s.ambient=0.5", name);
+}

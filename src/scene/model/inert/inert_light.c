@@ -1,0 +1,141 @@
+/* Why a light's or the background's parameter does nothing in a scene. */
+#include "scene/model/inert/inert_private.h"
+#include "scene/model/medium.h"
+
+#include <string.h>
+
+/* No visible surface shows a lamp's light, nor does the eye meet the lamp. */
+static bool lights_nothing(const inert_case *c, const light *l)
+{
+    const scene *s = c->s;
+    if (is_path(s) && l->radius > 0.0) {
+        return false;
+    }
+    scene lit = *s; /* borrows what s owns; a lamp alone, which shines */
+    light white = *l;
+    white.color = vec3_make(1.0, 1.0, 1.0), white.intensity = 1.0;
+    lit.lights = &white, lit.light_count = 1;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && (is_lit_by_lamps(&lit, &one->surface) || may_look_by_face(s, one))) {
+            return false;
+        }
+    }
+    const solid *first = first_visible(s);
+    const inert_remedy remedy = first ? inert_set("%s.diffuse=0.7", first->name) : (inert_remedy){"add a solid"};
+    return inert_say(c, "lights-nothing", remedy.text, "no visible surface shows a lamp's light");
+}
+
+bool inert_light(const inert_case *c)
+{
+    const light *l = &c->s->lights[c->at.index];
+    const char *name = c->at.row->name;
+    const bool of_color = strcmp(name, "color") == 0, of_intensity = strcmp(name, "intensity") == 0;
+    if (!of_intensity && l->intensity == 0.0) {
+        return inert_say(c, "dark-lamp", inert_set("%s.intensity=1", c->name).text, "the light's intensity is 0");
+    }
+    if (!of_color && is_black(l->color)) {
+        return inert_say(c, "dark-lamp", inert_set("%s.color=1,1,1", c->name).text, "the light's color is black");
+    }
+    if ((strcmp(name, "target") == 0 || strcmp(name, "half_angle_deg") == 0) && l->kind == LIGHT_POINT) {
+        return inert_say(c, "point-lamp", inert_set("%s.kind=cone", c->name).text,
+                         "a point of light shines all around");
+    }
+    if (strcmp(name, "radius") == 0 && !is_path(c->s)) {
+        const inert_remedy far = inert_set("render.integrator=path and %s.reach=8", c->name);
+        return inert_say(c, "sphere-lamp", l->reach > 0.0 ? "set render.integrator=path" : far.text,
+                         "the path integrator alone knows a light's size");
+    }
+    return lights_nothing(c, l);
+}
+
+static bool background_color(const inert_case *c)
+{
+    return c->s->background.kind == BACKGROUND_PICTURE &&
+           inert_say(c, "picture-sky", "set background.kind=uniform", "the sky is a picture");
+}
+
+static bool horizon(const inert_case *c)
+{
+    return c->s->background.kind != BACKGROUND_GRADIENT &&
+           inert_say(c, "no-gradient", "set background.kind=gradient", "the background is no gradient");
+}
+
+/* A gradient between equal colours is uniform; a picture must be named. */
+static bool kind(const inert_case *c)
+{
+    const background *b = &c->s->background;
+    const bool flat = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
+    return flat && b->kind != BACKGROUND_PICTURE && !b->picture_path[0] &&
+           inert_say(c, "flat-gradient", "set background.horizon=0.5,0.4,0.3",
+                     "horizon is the color, too: a gradient between them is uniform");
+}
+
+static bool ambient(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (is_path(s)) {
+        return inert_say(c, "path-ambient", "set render.integrator=whitted",
+                         "the path integrator has no ambient light");
+    }
+    scene bright = *s; /* borrows what s owns */
+    bright.background.ambient = vec3_make(1.0, 1.0, 1.0);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && (shows_ambient(&bright, &one->surface) || may_look_by_face(s, one))) {
+            return false;
+        }
+    }
+    const solid *first = first_visible(s);
+    const inert_remedy remedy = first ? inert_set("%s.ambient=0.5", first->name) : (inert_remedy){"add a solid"};
+    return inert_say(c, "no-ambient", remedy.text, "no visible surface has an ambient term");
+}
+
+static bool some_match_surroundings(const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && !material_is_opaque(&one->surface) && material_matches_surroundings(s, &one->surface)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool surrounding_index(const inert_case *c)
+{
+    const scene *s = c->s;
+    const solid *first = first_visible(s);
+    if (!first_clear(s)) {
+        const inert_remedy remedy = first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name)
+                                          : (inert_remedy){"add a solid"};
+        return inert_say(c, "no-clear", remedy.text, "no visible solid is transparent: no light is bent");
+    }
+    if (s->render.transmission == TRANSMISSION_SIMPLE) {
+        return inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
+    }
+    return !follows_rays(s) && !draws_through(s) && !s->render.radiance && !some_match_surroundings(s) &&
+           inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
+                     "no ray goes on through a surface: all that counts is which indices are equal");
+}
+
+static bool surrounding_absorption(const inert_case *c)
+{
+    return integrator_of(&c->s->render)->drawn && inert_say(c, "drawn-surroundings", "set render.integrator=whitted",
+                                                            "the depth buffer leaves out what the surroundings absorb");
+}
+
+bool inert_background(const inert_case *c)
+{
+    static const inert_row rows[] = {
+        {"kind", kind},
+        {"color", background_color},
+        {"horizon", horizon},
+        {"ambient", ambient},
+        {"ior", surrounding_index},
+        {"medium", surrounding_index},
+        {"absorb_per_m", surrounding_absorption},
+        {NULL, NULL},
+    };
+    return inert_by_name(rows, c);
+}

@@ -1,0 +1,360 @@
+/* Why a material's parameter does nothing on the solids that have it. */
+#include "scene/model/inert/inert_private.h"
+#include "scene/model/cover.h"
+#include "scene/model/medium.h"
+
+#include <string.h>
+
+static inert_remedy set_on(const inert_case *c, const char *assignment)
+{
+    return inert_set("%s.%s", c->name, assignment);
+}
+
+static bool is_open(const inert_case *c)
+{
+    const mesh_entry *m = c->owner->shape.kind == SHAPE_MESH ? scene_find_mesh(c->s, c->owner->mesh) : NULL;
+    return m && m->data && !m->data->closed;
+}
+
+static bool opaque_rule(const inert_case *c)
+{
+    if (c->m->transparency > 0.0) {
+        return false;
+    }
+    const inert_remedy remedy =
+        is_open(c) ? (inert_remedy){"give it a closed mesh and a transparency"} : set_on(c, "transparency=0.9");
+    return inert_say(c, "opaque", remedy.text, "the solid is opaque");
+}
+
+static int clear_users(const inert_case *c)
+{
+    int count = 0;
+    for (size_t i = 0; i < c->s->solid_count; i++) {
+        const solid *one = &c->s->solids[i];
+        count += one->visible && one->material_index == (int)c->at.index && !material_is_opaque(&one->surface);
+    }
+    return count;
+}
+
+/* Between equal indices is no surface: with any other one it is as with this. */
+static bool not_bent(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (material_is_mirror(c->m)) {
+        return false;
+    }
+    if (s->render.transmission == TRANSMISSION_SIMPLE) {
+        return inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
+    }
+    const bool makes_equal = c->at.group == PARAM_MATERIAL && clear_users(c) > 1;
+    return !follows_rays(s) && !draws_through(s) && !s->render.radiance && !material_matches_surroundings(s, c->m) &&
+           !makes_equal &&
+           inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
+                     "no ray goes on through a surface: all that counts is which indices are equal");
+}
+
+static bool index_rule(const inert_case *c)
+{
+    return opaque_rule(c) || not_bent(c);
+}
+
+/* Light in the solid is that of an eye in it alone. */
+static bool unpassed(const inert_case *c)
+{
+    const solid eye = {.shape = {.kind = SHAPE_SPHERE, .position = c->s->camera.position}};
+    return nothing_passes(c->s) && scene_apart(c->s, c->owner, &eye) && say_no_tree(c);
+}
+
+static bool absorption_rule(const inert_case *c)
+{
+    return opaque_rule(c) || unpassed(c) ||
+           (material_is_mirror(c->m) &&
+            inert_say(c, "mirror", set_on(c, "ior=1.5").text, "its index makes it a mirror that no light passes"));
+}
+
+static bool no_color(const inert_case *c)
+{
+    return !shows_color(c->s, c->m) && inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text,
+                                                 "no ambient or diffuse light shows this surface's colour");
+}
+
+/* A clear solid has a tint, too. */
+static bool color_rule(const inert_case *c)
+{
+    return material_is_opaque(c->m) ? no_color(c) : !shows_color(c->s, c->m) && unpassed(c);
+}
+
+static bool tint_distance_rule(const inert_case *c)
+{
+    const vec3 white = c->m->color;
+    return absorption_rule(c) ||
+           (white.x == 1.0 && white.y == 1.0 && white.z == 1.0 &&
+            inert_say(c, "no-tint", set_on(c, "color=0.9,0.7,0.5").text, "color is white, which tints nothing"));
+}
+
+static bool is_black_surface(const inert_case *c)
+{
+    return is_black(c->m->color) && (c->m->checker == 0.0 || is_black(c->m->checker_color)) &&
+           inert_say(c, "black", set_on(c, "color=0.8,0.8,0.8").text, "the surface's color is black");
+}
+
+static bool ambient_rule(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (is_path(s)) {
+        return inert_say(c, "path-ambient", "set render.integrator=whitted",
+                         "the path integrator has no ambient light");
+    }
+    return is_black_surface(c) ||
+           (is_black(s->background.ambient) &&
+            inert_say(c, "dark-ambient", "set background.ambient=1,1,1", "background.ambient is black"));
+}
+
+static bool no_lamp(const inert_case *c)
+{
+    return shining_lights(c->s) == 0 && inert_say(c, "no-lamp", lamp_remedy(c->s).text, "no light shines");
+}
+
+static bool diffuse_rule(const inert_case *c)
+{
+    const bool scatters = is_path(c->s) && material_is_opaque(c->m);
+    return is_black_surface(c) || (!scatters && no_lamp(c));
+}
+
+static bool specular_rule(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (!is_path(s) && s->render.lighting == LIGHTING_LAMBERT) {
+        return inert_say(c, "lambert", "set render.lighting=phong", "Lambert's lighting has no highlights");
+    }
+    return no_lamp(c) || (only_spheres_shine(s) && !material_is_opaque(c->m) &&
+                          inert_say(c, "sphere-highlight", "set render.integrator=whitted",
+                                    "the light itself is what a clear surface reflects"));
+}
+
+static bool shininess_rule(const inert_case *c)
+{
+    return (c->m->specular == 0.0 &&
+            inert_say(c, "no-specular", set_on(c, "specular=0.5").text, "specular is 0: there is no highlight")) ||
+           specular_rule(c);
+}
+
+/* Weights are not negative: a film that is the same with all of the light mirrored shows nothing of it with less. A
+ * coating takes from what passes as it adds to what is reflected; that both change nothing at one half and at one
+ * leaves black on both ways. */
+static bool mirrors_black(const inert_case *c)
+{
+    const background *sky = &c->s->background;
+    const bool dark = sky->kind == BACKGROUND_UNIFORM && is_black(sky->color), clear = !material_is_opaque(c->m);
+    return dark && c->m->reflectivity < 1.0 && !(clear && shining_lights(c->s) > 0) &&
+           inert_same(c, "%s.reflectivity=1", c->name) && (!clear || inert_same(c, "%s.reflectivity=0.5", c->name)) &&
+           inert_say(c, "mirrors-black", "set background.color=0.5,0.5,0.5",
+                     "all that it could mirror in this image is black");
+}
+
+static bool say_unseen(const inert_case *c)
+{
+    int64_t highest = c->owner->priority;
+    for (size_t i = 0; i < c->s->solid_count; i++) {
+        const solid *one = &c->s->solids[i];
+        highest = one->visible && one->priority > highest ? one->priority : highest;
+    }
+    const inert_remedy higher =
+        inert_set("%s.priority=%lld, or move it or the camera", c->owner->name, (long long)highest + 1);
+    return inert_say(c, "unseen", highest > c->owner->priority ? higher.text : "move it, or the camera",
+                     "no ray of this image meets a surface of %s", c->owner->name);
+}
+
+static bool reflectivity_rule(const inert_case *c)
+{
+    const scene *s = c->s;
+    /* The coating of a clear surface keeps light from shadow rays, too. */
+    const bool coats = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
+    if (coats) {
+        return (!material_matches_surroundings(s, c->m) && unpassed(c)) || mirrors_black(c);
+    }
+    if (integrator_of(&s->render)->drawn && !material_is_opaque(c->m)) {
+        return false;
+    }
+    if (!follows_rays(s)) {
+        return say_no_tree(c);
+    }
+    if (s->render.depth == 0 && is_dark_beyond(s)) {
+        return inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0, and what lies beyond it is black");
+    }
+    if (material_is_mirror(c->m) && !scene_has_constant_shares(&s->render)) {
+        return inert_say(c, "mirror", set_on(c, "transparency=0").text, "its index makes it a mirror already");
+    }
+    return mirrors_black(c);
+}
+
+static bool coefficients_rule(const inert_case *c)
+{
+    const int64_t law = c->m->medium;
+    if (law == MEDIUM_IOR || law >= MEDIUM_CATALOGUE) {
+        return inert_say(c, "no-law",
+                         inert_set("%s.coefficients=1.5,0.004 and %s.medium=cauchy", c->name, c->name).text,
+                         "medium %s takes no coefficients", medium_words[law]);
+    }
+    return index_rule(c);
+}
+
+static bool absorb_per_m_rule(const inert_case *c)
+{
+    return absorption_rule(c) ||
+           (c->m->absorb_spectrum.count > 0 &&
+            inert_say(c, "by-spectrum", set_on(c, "absorb_spectrum=[]").text, "absorb_spectrum takes its place"));
+}
+
+static bool texture_rule(const inert_case *c)
+{
+    return (c->s->texture_count == 0 &&
+            inert_say(c, "no-textures", "add one under textures:", "the scene has no textures")) ||
+           no_color(c);
+}
+
+static bool texture_size_rule(const inert_case *c)
+{
+    if (c->owner->shape.kind == SHAPE_MESH) {
+        return inert_say(c, "mesh-texture", "set it on a solid that is no mesh",
+                         "a mesh has texture coordinates of its own");
+    }
+    if (!c->m->texture[0]) {
+        const inert_remedy remedy = c->s->texture_count > 0
+                                        ? inert_set("%s.texture=%s", c->name, c->s->textures[0].name)
+                                        : (inert_remedy){"add one under textures:"};
+        return inert_say(c, "no-texture", remedy.text, "the surface has no texture");
+    }
+    return no_color(c);
+}
+
+static bool same_vector(vec3 a, vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+static bool checker_rule(const inert_case *c)
+{
+    return no_color(c) ||
+           (same_vector(c->m->color, c->m->checker_color) &&
+            inert_say(c, "one-color", set_on(c, "checker_color=0.2,0.4,0.6").text, "checker_color is the color, too"));
+}
+
+static bool checker_color_rule(const inert_case *c)
+{
+    return (c->m->checker == 0.0 &&
+            inert_say(c, "no-checker", set_on(c, "checker=0.2").text, "checker is 0: there are no cells")) ||
+           no_color(c);
+}
+
+bool is_among(const inert_case *c, const char *const *names)
+{
+    while (*names && strcmp(*names, c->at.row->name) != 0) {
+        names++;
+    }
+    return *names != NULL;
+}
+
+/* What Phong's terms are of: all that a clear surface sends back of its own. */
+static const char *const of_surface[] = {"ambient",      "diffuse", "specular",      "shininess", "texture",
+                                         "texture_size", "checker", "checker_color", NULL};
+
+/* What a surface that no ray meets would send back. Light that passes a clear one on its way to another is met by none.
+ */
+static bool unseen(const inert_case *c)
+{
+    static const char *const of_opaque[] = {"color", "emission", "reflectivity", NULL};
+    const bool sent_back = is_among(c, of_surface) || (c->m->transparency == 0.0 && is_among(c, of_opaque));
+    return sent_back && c->frame && c->frame->hits[c->owner - c->s->solids] == 0 && say_unseen(c);
+}
+
+/* A clear solid of the surroundings' index has no surface, where no other clear one has one either. */
+static bool no_interface(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (scene_has_constant_shares(&s->render) || !is_among(c, of_surface)) {
+        return false;
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        const material *m = &one->surface;
+        const bool plain = m->reflectivity == 0.0 && m->emission == 0.0 && material_matches_surroundings(s, m);
+        if (one->visible && ((!material_is_opaque(m) && !plain) || may_look_by_face(s, one))) {
+            return false;
+        }
+    }
+    return !material_is_opaque(c->m) && inert_say(c, "no-interface", set_on(c, "ior=1.5").text,
+                                                  "its index is that of what is around it: it has no surface");
+}
+
+/* Wholly inside a solid that wins there: nothing of it is met. */
+static bool covered(const inert_case *c)
+{
+    const solid *cover = scene_cover(c->s, c->owner);
+    return cover &&
+           inert_say(c, "covered", inert_set("%s.priority=%lld", c->owner->name, (long long)cover->priority + 1).text,
+                     "%s lies wholly inside %s, which wins there", c->owner->name, cover->name);
+}
+
+bool inert_look(const inert_case *c)
+{
+    static const inert_row rows[] = {
+        {"color", color_rule},
+        {"emission", is_black_surface},
+        {"ambient", ambient_rule},
+        {"diffuse", diffuse_rule},
+        {"specular", specular_rule},
+        {"shininess", shininess_rule},
+        {"reflectivity", reflectivity_rule},
+        {"ior", index_rule},
+        {"medium", index_rule},
+        {"coefficients", coefficients_rule},
+        {"absorb_per_m", absorb_per_m_rule},
+        {"absorb_spectrum", absorption_rule},
+        {"tint_distance", tint_distance_rule},
+        {"texture", texture_rule},
+        {"texture_size", texture_size_rule},
+        {"checker", checker_rule},
+        {"checker_color", checker_color_rule},
+        {NULL, NULL},
+    };
+    return inert_by_name(rows, c) || covered(c) || no_interface(c) || unseen(c);
+}
+
+bool inert_surface(const inert_case *c)
+{
+    return may_look_by_face(c->s, c->owner) ? inert_faces(c) : inert_look(c);
+}
+
+static bool unused(const inert_case *c, const solid *hidden)
+{
+    const inert_remedy remedy =
+        hidden ? inert_set("%s.visible=on", hidden->name) : (inert_remedy){"give it to a visible solid"};
+    return inert_say(c, "unused-material", remedy.text, "no visible solid is of this material");
+}
+
+/* On each visible solid that refers to it, and each face that is named so; the answer is the first one's. */
+bool inert_material(const inert_case *c)
+{
+    const scene *s = c->s;
+    const solid *hidden = NULL;
+    inert_answer first = {.rule = ""}, other;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        const bool by_face = may_look_by_face(s, one);
+        if (one->material_index != (int)c->at.index && !by_face) {
+            continue;
+        }
+        hidden = one->visible || by_face ? hidden : one;
+        inert_case user = *c;
+        user.owner = one, user.m = &one->surface, user.out = first.rule[0] ? &other : &first;
+        if (one->visible && !(by_face ? inert_named_faces(&user) : inert_look(&user))) {
+            return false;
+        }
+    }
+    if (!first.rule[0]) {
+        return unused(c, hidden);
+    }
+    *c->out = first;
+    return true;
+}

@@ -1,0 +1,286 @@
+/* Why a setting of the renderer does nothing in a scene. */
+#include "scene/model/inert/inert_private.h"
+#include "scene/model/medium.h"
+
+#include <math.h>
+
+static const char *const WHITTED = "set render.integrator=whitted";
+
+static bool path_only(const inert_case *c)
+{
+    return !is_path(c->s) &&
+           inert_say(c, "path-only", "set render.integrator=path", "only the path integrator draws by chance");
+}
+
+/* The spectral film's wavelengths are drawn, too: render/shade/spectra.c. */
+static bool seed(const inert_case *c)
+{
+    return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
+}
+
+/* Faint paths end by chance after the third surface: render/integrators/path.c. */
+static bool roulette(const inert_case *c)
+{
+    enum { ROULETTE_DEPTH = 3 };
+    if (path_only(c)) {
+        return true;
+    }
+    return c->s->render.depth <= ROULETTE_DEPTH &&
+           inert_say(c, "roulette-depth", "set render.depth=8",
+                     "paths may end by chance from depth %d on, and render.depth is %lld", ROULETTE_DEPTH + 1,
+                     (long long)c->s->render.depth);
+}
+
+/* The first visible solid whose surface sends rays on, or one that could. */
+static bool nothing_goes_on(const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        if (s->solids[i].visible && sends_rays_on(s, &s->solids[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static inert_remedy mirror_remedy(const scene *s)
+{
+    const solid *first = first_visible(s);
+    return first ? inert_set("%s.reflectivity=0.5", first->name) : (inert_remedy){"add a solid"};
+}
+
+/* No ray has children. */
+static bool no_tree(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (draws_through(s)) {
+        return false;
+    }
+    if (!follows_rays(s)) {
+        return say_no_tree(c);
+    }
+    return nothing_goes_on(s) &&
+           inert_say(c, "no-branches", mirror_remedy(s).text, "nothing visible reflects or refracts");
+}
+
+static bool beyond(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (no_tree(c)) {
+        return true;
+    }
+    scene sky = *s; /* borrows what s owns */
+    sky.render.beyond = BEYOND_SKY;
+    if (is_dark_beyond(&sky)) {
+        return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black, too");
+    }
+    /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both
+     * has no cut ray. */
+    const bool nothing_cut = s->render.beyond != BEYOND_BLACK
+                                 ? inert_same(c, "render.beyond=black")
+                                 : inert_same(c, "render.beyond=sky") && inert_same(c, "render.beyond=mean");
+    return nothing_cut && inert_say(c, "nothing-cut", s->render.depth > 1 ? "set render.depth=1" : "set render.depth=0",
+                                    "no ray that render.depth cuts off carries light that the film resolves");
+}
+
+/* Highlights and branches are all that the lighting model chooses. */
+static bool lighting(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (is_path(s)) {
+        return inert_say(c, "not-path", WHITTED, "the path integrator has one lighting model");
+    }
+    scene shiny = *s; /* borrows what s owns */
+    shiny.render.lighting = LIGHTING_PHONG;
+    bool highlight = integrator_of(&s->render)->drawn && first_clear(s);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        highlight |= one->visible && (shows_specular(&shiny, &one->surface) || may_look_by_face(s, one));
+    }
+    if (highlight) {
+        return false;
+    }
+    if (!integrator_of(&s->render)->tree) {
+        return inert_say(c, "no-highlight", WHITTED,
+                         "no lamp makes a highlight, and no ray goes on under this render.integrator");
+    }
+    return (nothing_goes_on(s) || (s->render.depth == 0 && is_dark_beyond(s))) &&
+           inert_say(c, "no-highlight", mirror_remedy(s).text, "nothing visible has a highlight, reflects or refracts");
+}
+
+/* A plane alone shows little of what a clear solid does. */
+static inert_remedy clear_remedy(const scene *s)
+{
+    const solid *first = first_visible(s);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        first = first->shape.kind == SHAPE_PLANE && s->solids[i].visible ? &s->solids[i] : first;
+    }
+    return first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name)
+                 : (inert_remedy){"add a solid"};
+}
+
+static bool no_clear(const inert_case *c)
+{
+    return !first_clear(c->s) && inert_say(c, "no-clear", clear_remedy(c->s).text, "no visible solid is transparent");
+}
+
+/* Of two words the film with the other one tells. */
+static bool same_but_for(const inert_case *c, const char *one, const char *other, bool is_one)
+{
+    const scene *s = c->s;
+    return !follows_rays(s) && !draws_through(s) &&
+           inert_same(c, "render.%s=%s", c->at.row->name, is_one ? other : one) && say_no_tree(c);
+}
+
+static bool transmission(const inert_case *c)
+{
+    for (size_t i = 0; i < c->s->solid_count; i++) {
+        if (c->s->solids[i].visible && may_look_by_face(c->s, &c->s->solids[i])) {
+            return false; /* a file's faces may be clear where light goes straight on */
+        }
+    }
+    return no_clear(c) || same_but_for(c, "refract", "simple", c->s->render.transmission != TRANSMISSION_SIMPLE);
+}
+
+static bool weights(const inert_case *c)
+{
+    return no_clear(c) || same_but_for(c, "fresnel", "constant", c->s->render.weights == WEIGHTS_FRESNEL) ||
+           (c->s->render.transmission == TRANSMISSION_SIMPLE &&
+            inert_say(c, "simple", "set render.transmission=refract",
+                      "simple transmission takes the materials' constants"));
+}
+
+static bool polarisation(const inert_case *c)
+{
+    return no_tree(c) || no_clear(c);
+}
+
+static bool nothing_lit(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (shining_lights(s) == 0) {
+        return inert_say(c, "no-lamp", lamp_remedy(s).text, "no light shines");
+    }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && (is_lit_by_lamps(s, &one->surface) || may_look_by_face(s, one))) {
+            return false;
+        }
+    }
+    const solid *first = first_visible(s);
+    const inert_remedy remedy = first ? inert_set("%s.diffuse=0.7", first->name) : (inert_remedy){"add a solid"};
+    return inert_say(c, "nothing-lit", remedy.text, "no lamp's light shows on anything visible");
+}
+
+static bool shadows(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (integrator_of(&s->render)->drawn) {
+        return inert_say(c, "no-shadows", WHITTED, "the depth buffer draws no shadows");
+    }
+    return nothing_lit(c) ||
+           (only_spheres_shine(s) &&
+            inert_say(c, "spheres", WHITTED, "lights that are spheres are looked for along random paths"));
+}
+
+static bool min_weight(const inert_case *c)
+{
+    if (is_path(c->s)) {
+        return inert_say(c, "whitted-only", WHITTED, "random paths are no tree: render.roulette ends faint ones");
+    }
+    return no_tree(c) || (c->s->render.depth == 0 &&
+                          inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0: no branch is followed"));
+}
+
+static bool wavelengths(const inert_case *c)
+{
+    return c->s->render.spectrum != SPECTRUM_SPECTRAL &&
+           inert_say(c, "spectral-only", "set render.spectrum=spectral", "the film is rgb");
+}
+
+static bool is_dispersive(const index_law *law)
+{
+    return law->law.kind != DISPERSION_CONSTANT || law->relative_to_air;
+}
+
+static bool lambda(const inert_case *c)
+{
+    const scene *s = c->s;
+    if (s->render.spectrum == SPECTRUM_SPECTRAL) {
+        return inert_say(c, "rgb-only", "set render.spectrum=rgb",
+                         "the spectral film takes each wavelength's own index");
+    }
+    if (no_clear(c)) {
+        return true;
+    }
+    index_law law = surrounding_index_law(&s->background);
+    bool disperses = is_dispersive(&law);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        const bool clear = one->visible && one->surface.transparency > 0.0;
+        disperses |= clear && material_index_law(&one->surface, "", &law, NULL) == STATUS_OK && is_dispersive(&law);
+    }
+    return !disperses && inert_say(c, "no-dispersion", inert_set("%s.medium=bk7", first_clear(s)->name).text,
+                                   "no clear medium's index depends on the wavelength");
+}
+
+static bool unit(const inert_case *c)
+{
+    const scene *s = c->s;
+    bool absorbs = surroundings_absorb(&s->background);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        absorbs |= one->visible && !material_is_opaque(&one->surface) && material_absorbs(&one->surface);
+    }
+    const solid *clear = first_clear(s);
+    const inert_remedy remedy = clear ? inert_set("%s.absorb_per_m=0.2,0.4,0.8", clear->name)
+                                      : inert_set("background.absorb_per_m=0.01,0.02,0.04");
+    return !absorbs && inert_say(c, "no-absorption", remedy.text, "nothing that light passes absorbs");
+}
+
+static bool shows_texture(const scene *s)
+{
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && ((one->surface.texture[0] && shows_color(s, &one->surface)) || may_look_by_face(s, one))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool texturing(const inert_case *c)
+{
+    if (!integrator_of(&c->s->render)->drawn) {
+        return inert_say(c, "zbuffer-only", "set render.integrator=zbuffer",
+                         "rays always meet a texture in perspective");
+    }
+    const solid *first = first_visible(c->s);
+    const inert_remedy remedy = first && c->s->texture_count > 0
+                                    ? inert_set("%s.texture=%s", first->name, c->s->textures[0].name)
+                                    : (inert_remedy){"give a visible solid a texture"};
+    return !shows_texture(c->s) && inert_say(c, "untextured", remedy.text, "nothing visible has a texture");
+}
+
+bool inert_render(const inert_case *c)
+{
+    static const inert_row rows[] = {
+        {"depth", no_tree},
+        {"beyond", beyond},
+        {"lighting", lighting},
+        {"weights", weights},
+        {"transmission", transmission},
+        {"shadows", shadows},
+        {"min_weight", min_weight},
+        {"paths", path_only},
+        {"roulette", roulette},
+        {"seed", seed},
+        {"radiance", inert_radiance},
+        {"polarisation", polarisation},
+        {"wavelengths", wavelengths},
+        {"lambda_nm", lambda},
+        {"unit_m", unit},
+        {"texturing", texturing},
+        {NULL, NULL},
+    };
+    return inert_by_name(rows, c);
+}

@@ -1,0 +1,110 @@
+/* Why a solid's parameter does nothing in a scene. */
+#include "scene/model/inert/inert_private.h"
+#include "geometry/shared_faces.h"
+#include "scene/model/cover.h"
+
+#include <string.h>
+
+/* The shape with its triangles where they are loaded. */
+static solid_shape shape_of(const scene *s, const solid *one)
+{
+    solid_shape shape = one->shape;
+    const mesh_entry *m = shape.kind == SHAPE_MESH ? scene_find_mesh(s, one->mesh) : NULL;
+    shape.mesh = m ? m->data : NULL;
+    return shape;
+}
+
+static bool is_opaque_pair(const solid *a, const solid *b)
+{
+    return a->surface.transparency == 0.0 && b->surface.transparency == 0.0;
+}
+
+/* Neither the eye nor light sees what of two solids is inside both, where both are opaque: from outside they are their
+ * union, and each point of that has one owner, unless faces of both lie in one another. An eye inside would see it. */
+static bool meets_unseen(const scene *s, const solid *a, const solid *b)
+{
+    const solid eye = {.shape = {.kind = SHAPE_SPHERE, .position = s->camera.position}};
+    const solid_shape of_a = shape_of(s, a), of_b = shape_of(s, b);
+    return scene_apart(s, a, &eye) && scene_apart(s, b, &eye) && !solid_shapes_may_share_faces(&of_a, &of_b);
+}
+
+static bool priority_rule(const inert_case *c)
+{
+    const scene *s = c->s;
+    const solid *hidden = NULL;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one == c->owner || !one->visible || scene_apart(s, c->owner, one)) {
+            continue;
+        }
+        if (!is_opaque_pair(c->owner, one) || !meets_unseen(s, c->owner, one)) {
+            return false;
+        }
+        hidden = one;
+    }
+    if (hidden) {
+        return inert_say(c, "both-opaque",
+                         inert_set("%s.transparency=0.9 and %s.ior=1.3", hidden->name, hidden->name).text,
+                         "%s overlaps %s, but both are opaque: nothing sees into them", c->name, hidden->name);
+    }
+    return inert_say(c, "apart", "move it into another solid", "no other visible solid overlaps %s", c->name);
+}
+
+/* Its surface looks alike all around. */
+static bool is_plain(const scene *s, const material *m)
+{
+    const bool checkered = m->checker > 0.0 && memcmp(&m->color, &m->checker_color, sizeof m->color) != 0;
+    return !shows_color(s, m) || !(checkered || m->texture[0]);
+}
+
+static bool rotation_rule(const inert_case *c)
+{
+    /* The depth buffer draws a sphere of triangles, which turn with it. */
+    if (c->owner->shape.kind != SHAPE_SPHERE || !is_plain(c->s, c->m) || integrator_of(&c->s->render)->drawn) {
+        return false;
+    }
+    const inert_remedy color = color_remedy(c->s, c->m, c->name);
+    const inert_remedy remedy = shows_color(c->s, c->m)
+                                    ? inert_set("%s.checker=0.2 and %s.checker_color=0.3,0.5,0.7", c->name, c->name)
+                                    : inert_set("%s.checker=0.2 and %s", c->name, color.text + strlen("set "));
+    return inert_say(c, "round", remedy.text, "a sphere without checker or texture looks the same from all sides");
+}
+
+static bool spacing_rule(const inert_case *c)
+{
+    const vec3 n = c->owner->shape.copies;
+    return n.x == 1.0 && n.y == 1.0 && n.z == 1.0 &&
+           inert_say(c, "one-copy", inert_set("%s.copies=2,1,1", c->name).text, "the mesh stands there once");
+}
+
+static bool mesh_shading(const inert_case *c)
+{
+    const scene *s = c->s;
+    const bool textured = c->m->texture[0] && shows_color(s, c->m); /* a texel's footprint depends on the normal */
+    if (textured || is_lit_by_lamps(s, c->m) || may_look_by_face(s, c->owner) ||
+        (follows_rays(s) && sends_rays_on(s, c->owner))) {
+        return false;
+    }
+    const inert_remedy remedy = shining_lights(s) > 0 ? inert_set("%s.diffuse=0.7", c->name) : lamp_remedy(s);
+    return inert_say(c, "unshaded", remedy.text, "no lamp's light shows on it, and it sends no ray on");
+}
+
+static bool mesh_name(const inert_case *c)
+{
+    return c->s->mesh_count == 1 && inert_say(c, "one-mesh", "add another under meshes:", "the scene has one mesh");
+}
+
+bool inert_solid(const inert_case *c)
+{
+    static const inert_row rows[] = {
+        {"priority", priority_rule}, {"rotation", rotation_rule}, {"spacing", spacing_rule},
+        {"shading", mesh_shading},   {"mesh", mesh_name},         {NULL, NULL},
+    };
+    inert_case own = *c;
+    own.owner = &c->s->solids[c->at.index], own.m = &own.owner->surface;
+    if (!own.owner->visible) {
+        return strcmp(c->at.row->name, "visible") != 0 &&
+               inert_say(c, "invisible", inert_set("%s.visible=on", c->name).text, "the solid is not visible");
+    }
+    return c->at.row->group == PARAM_MATERIAL ? inert_surface(&own) : inert_by_name(rows, &own);
+}

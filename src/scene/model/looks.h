@@ -1,0 +1,56 @@
+/* How the faces of a mesh's slots look, as its file says it: what Phong's sum needs and a texture, by slot. Shared like
+ * the mesh that they came with: looks_retain and looks_release count owners, from any thread. */
+#ifndef CUVETTE_SCENE_MODEL_LOOKS_H
+#define CUVETTE_SCENE_MODEL_LOOKS_H
+
+#include "scene/assets/mesh_stream.h"
+#include "scene/model/scene.h"
+
+typedef struct face_look {
+    char name[SCENE_NAME_MAX + 1]; /* cut off where it is longer; "" for none */
+    bool given;                    /* the file says something; else the solid's own surface counts */
+    vec3 color;                    /* linear RGB, at most 1 */
+    double diffuse, specular, shininess, emission, opacity;
+    const texture *picture; /* one owner of it; NULL for none */
+} face_look;
+
+/* From what an importer found; reads the pictures that it names, each once, below root (base/below.h). A diagnostic
+ * names the picture's file. */
+status looks_create(const mesh_import *imported, const char *root, const face_looks **out, diagnostic *why);
+void looks_retain(const face_looks *l); /* NULL is allowed, here and below */
+void looks_release(const face_looks *l);
+
+/* Do the mesh's slots, not one material, say how the solid's faces look? Where it is a mesh that has several, or a
+ * file's materials, and names no material itself. False before scene_load. */
+bool looks_by_face(const scene *s, const solid *owner);
+
+/* What one kind of face of a solid looks like; the picture is borrowed. */
+typedef struct surface_look {
+    material surface;
+    const texture *picture;
+} surface_look;
+
+/* What says how a slot's faces look: the scene's material of its name, else what the file gives; both NULL where the
+ * solid's own surface does. Of a solid that looks by face. */
+void looks_source(const scene *s, const solid *owner, int slot, const material **named, const face_look **given);
+
+/* How many slots say so; 0 where one material does. */
+int looks_slots(const scene *s, const solid *owner);
+
+/* The look of a slot's faces, of a solid with slots whose own material, as it is traced, is own: that of the scene's
+ * material of the slot's name, else the file's, else own. Under simple transmission with its own transparency (MTL's d
+ * or Tr, glTF's alpha; own's where the file says 1) and reflectivity; else with the solid's. */
+surface_look looks_face(const scene *s, const solid *owner, const material *own, int slot);
+/* That of a solid without slots. */
+surface_look looks_whole(const scene *s, const material *own);
+
+/* Does no light pass any of its faces? */
+bool looks_opaque(const scene *s, const solid *owner);
+
+/* Do its faces have a transparency or reflectivity that has no effect, because light is bent? */
+bool looks_waste(const scene *s, const solid *owner);
+
+int looks_count(const face_looks *l); /* 0 for NULL */
+const face_look *looks_at(const face_looks *l, int slot);
+
+#endif

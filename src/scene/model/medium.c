@@ -1,0 +1,215 @@
+#include "scene/model/medium.h"
+
+#include "base/elementary_inline.h"
+#include <float.h>
+#include <string.h>
+
+#define NAME(name) name,
+const char *const medium_words[] = {"ior", "sellmeier", "cauchy", "table", MEDIA_NAMES(NAME) NULL};
+const char *const surrounding_words[] = {"ior", MEDIA_NAMES(NAME) NULL};
+
+static index_law law_of_catalogue(int64_t at)
+{
+    const medium *m = media_at((size_t)at);
+    return (index_law){m->law, m->relative_to_air};
+}
+
+static index_law law_of_ior(double ior)
+{
+    return (index_law){{.kind = DISPERSION_CONSTANT, .count = 1, .coefficient = {ior}}, false};
+}
+
+status material_index_law(const material *m, const char *label, index_law *out, diagnostic *why)
+{
+    static const dispersion_kind kinds[] = {[MEDIUM_IOR] = DISPERSION_CONSTANT,
+                                            [MEDIUM_SELLMEIER] = DISPERSION_SELLMEIER,
+                                            [MEDIUM_CAUCHY] = DISPERSION_CAUCHY,
+                                            [MEDIUM_TABLE] = DISPERSION_TABLE};
+    if (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE) {
+        *out = m->medium == MEDIUM_IOR ? law_of_ior(m->ior) : law_of_catalogue(m->medium - MEDIUM_CATALOGUE);
+        return STATUS_OK;
+    }
+    *out = (index_law){{.kind = kinds[m->medium], .count = (int)m->coefficients.count}, false};
+    memcpy(out->law.coefficient, m->coefficients.value, (size_t)m->coefficients.count * sizeof(double));
+    diagnostic bad = {.what = ""};
+    if (m->coefficients.count == 0) {
+        static const char *const examples[] = {
+            [MEDIUM_SELLMEIER] = "give pairs B, C in um^2, as 'coefficients: [1.1, 0.012]'",
+            [MEDIUM_CAUCHY] = "give A, B in um^2, .., as 'coefficients: [1.5046, 0.0042]'",
+            [MEDIUM_TABLE] = "give pairs of nm and index, as 'coefficients: [450, 1.34, 650, 1.33]'"};
+        return diagnose(why, STATUS_BAD_INPUT, examples[m->medium], "%.80s: medium %s has no coefficients", label,
+                        medium_words[m->medium]);
+    }
+    status code = dispersion_check(&out->law, &bad);
+    return code == STATUS_OK ? code : diagnose(why, code, bad.remedy, "%.80s: %s", label, bad.what);
+}
+
+index_law surrounding_index_law(const background *b)
+{
+    return b->medium < SURROUNDING_CATALOGUE ? law_of_ior(b->ior) : law_of_catalogue(b->medium - SURROUNDING_CATALOGUE);
+}
+
+double index_law_at(const index_law *law, double lambda_nm)
+{
+    const double n = dispersion_index(&law->law, lambda_nm);
+    return law->relative_to_air ? n * medium_index(media_at(0), lambda_nm) : n;
+}
+
+bool index_laws_equal(const index_law *a, const index_law *b)
+{
+    if (a->law.kind != b->law.kind || a->law.count != b->law.count || a->relative_to_air != b->relative_to_air) {
+        return false;
+    }
+    for (int i = 0; i < a->law.count; i++) {
+        if (a->law.coefficient[i] != b->law.coefficient[i]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool index_laws_match(const render_settings *r, const index_law *a, const index_law *b)
+{
+    return r->spectrum == SPECTRUM_SPECTRAL ? index_laws_equal(a, b)
+                                            : index_law_at(a, r->lambda_nm) == index_law_at(b, r->lambda_nm);
+}
+
+bool material_matches_surroundings(const scene *s, const material *m)
+{
+    index_law own;
+    const index_law around = surrounding_index_law(&s->background);
+    return material_index_law(m, "", &own, NULL) == STATUS_OK && index_laws_match(&s->render, &own, &around);
+}
+
+bool material_is_mirror(const material *m)
+{
+    return m->transparency > 0.0 && m->medium == MEDIUM_IOR &&
+           m->ior > MIRROR_IOR; /* no law or catalogue reaches that */
+}
+
+bool material_is_opaque(const material *m)
+{
+    return m->transparency == 0.0 || material_is_mirror(m);
+}
+
+const char *material_medium_name(const material *m)
+{
+    return m->medium >= MEDIUM_CATALOGUE ? medium_words[m->medium] : NULL;
+}
+
+const char *surrounding_medium_name(const background *b)
+{
+    return b->medium >= SURROUNDING_CATALOGUE ? surrounding_words[b->medium] : NULL;
+}
+
+/* Linear between points x0, y0, x1, y1, ...; constant beyond the first and the last. */
+static double interpolate(const double *points, int64_t count, double x)
+{
+    if (x <= points[0]) {
+        return points[1];
+    }
+    for (int64_t i = 2; i < count; i += 2) {
+        if (x <= points[i]) {
+            const double share = (x - points[i - 2]) / (points[i] - points[i - 2]);
+            return points[i - 1] + share * (points[i + 1] - points[i - 1]);
+        }
+    }
+    return points[count - 1];
+}
+
+static double between_channels(vec3 a, double lambda_nm)
+{
+    const double channel_nm[] = CHANNEL_LAMBDA_NM;
+    const double points[] = {channel_nm[2], a.z, channel_nm[1], a.y, channel_nm[0], a.x};
+    return interpolate(points, 6, lambda_nm);
+}
+
+double material_absorption_at(const material *m, double lambda_nm)
+{
+    if (m->absorb_spectrum.count > 0) {
+        return interpolate(m->absorb_spectrum.value, m->absorb_spectrum.count, lambda_nm);
+    }
+    return between_channels(m->absorb_per_m, lambda_nm);
+}
+
+double surrounding_absorption_at(const background *b, double lambda_nm)
+{
+    return between_channels(b->absorb_per_m, lambda_nm);
+}
+
+vec3 material_absorption(const material *m)
+{
+    const double channel_nm[] = CHANNEL_LAMBDA_NM;
+    if (m->absorb_spectrum.count == 0) {
+        return m->absorb_per_m;
+    }
+    return vec3_make(material_absorption_at(m, channel_nm[0]), material_absorption_at(m, channel_nm[1]),
+                     material_absorption_at(m, channel_nm[2]));
+}
+
+static bool absorbs(vec3 a)
+{
+    return a.x > 0.0 || a.y > 0.0 || a.z > 0.0;
+}
+
+bool surroundings_absorb(const background *b)
+{
+    return absorbs(b->absorb_per_m);
+}
+
+bool material_absorbs(const material *m)
+{
+    for (int64_t i = 1; i < m->absorb_spectrum.count; i += 2) {
+        if (m->absorb_spectrum.value[i] > 0.0) {
+            return true;
+        }
+    }
+    return m->absorb_spectrum.count == 0 && absorbs(m->absorb_per_m);
+}
+
+bool material_tints(const material *m)
+{
+    return !material_is_opaque(m) && (m->color.x < 1.0 || m->color.y < 1.0 || m->color.z < 1.0);
+}
+
+double material_tint(const material *m, double share)
+{
+    const double black = 1e9, ln_2 = 0.69314718055994530942;
+    if (share >= 1.0) {
+        return 0.0;
+    }
+    return (share > DBL_MIN ? -ln_2 * elementary_log2_inline(share) : black) / m->tint_distance;
+}
+
+bool material_dims(const material *m)
+{
+    return material_absorbs(m) || material_tints(m);
+}
+
+vec3 material_extinction(const material *m, double unit_m)
+{
+    const vec3 absorbed = vec3_scale(material_absorption(m), unit_m);
+    if (!material_tints(m)) {
+        return absorbed;
+    }
+    return vec3_add(
+        absorbed, vec3_make(material_tint(m, m->color.x), material_tint(m, m->color.y), material_tint(m, m->color.z)));
+}
+
+double material_coating(const material *m, const render_settings *r)
+{
+    return material_is_opaque(m) || scene_has_constant_shares(r) ? 0.0 : m->reflectivity;
+}
+
+status material_absorption_check(const material *m, const char *label, diagnostic *why)
+{
+    const number_list *list = &m->absorb_spectrum;
+    bool right = list->count % 2 == 0;
+    for (int64_t i = 0; right && i < list->count; i += 2) {
+        right = list->value[i] > 0.0 && list->value[i + 1] >= 0.0 && (i == 0 || list->value[i] > list->value[i - 2]);
+    }
+    return right ? STATUS_OK
+                 : diagnose(why, STATUS_BAD_INPUT,
+                            "write nm,1/m,nm,1/m.. with ascending wavelengths, as [400, 0.1, 700, 2]",
+                            "%.80s: absorb_spectrum is not a list of wavelengths and coefficients", label);
+}

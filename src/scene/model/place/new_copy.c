@@ -1,0 +1,183 @@
+/* A second object like another. */
+#include "scene/model/place/new_objects.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/looks.h"
+#include "scene/model/params_path.h"
+#include "scene/model/place/spot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static vec3 rounded(vec3 v, double size)
+{
+    return vec3_make(spot_round(v.x, size), spot_round(v.y, size), spot_round(v.z, size));
+}
+
+/* How deep boxes around two solids, along the camera's ways, lie in each other once the first one has stepped; 0 where
+ * something parts them. */
+static double depth(const scene *s, const spot *where, const solid *a, vec3 step, const solid *b)
+{
+    const vec3 along[] = {where->right, where->away, vec3_make(0, 1, 0)};
+    vec3 from, to;
+    double radius, least = INFINITY;
+    if (!spot_ball(s, a, &from, &radius) || !spot_ball(s, b, &to, &radius))
+        return 0.0;
+    const vec3 way = vec3_sub(to, vec3_add(from, step));
+    for (size_t i = 0; i < sizeof along / sizeof *along; i++)
+        least = fmin(least,
+                     spot_half_size(s, a, along[i]) + spot_half_size(s, b, along[i]) - fabs(vec3_dot(way, along[i])));
+    return fmax(0.0, least);
+}
+
+/* What it stands in, its copy may stand in, too. */
+static double overlap_after(const scene *s, const spot *where, const solid *of, vec3 step)
+{
+    double sum = depth(s, where, of, step, of);
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *other = &s->solids[i];
+        if (other != of && other->visible && depth(s, where, of, vec3_make(0, 0, 0), other) <= 0.0)
+            sum += depth(s, where, of, step, other);
+    }
+    return sum;
+}
+
+/* A little more than its size that way, so that something parts it and its copy. */
+static double stride(const scene *s, const solid *of, vec3 along, double radius)
+{
+    return 2.1 * fmax(spot_half_size(s, of, along), 0.01 * radius);
+}
+
+/* From it to where a second one is seen and stands free, or nearly so: to a side, or behind or before it. */
+static vec3 step_beside(const scene *s, const spot *where, const solid *of, vec3 centre, double radius)
+{
+    static const double ways[][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},  {2, 0}, {-2, 0},
+                                     {1, 1}, {-1, 1}, {1, -1}, {-1, -1}, {0, 2}};
+    const double aside = stride(s, of, where->right, radius), behind = stride(s, of, where->away, radius);
+    vec3 best = where->right;
+    double least = INFINITY;
+    for (size_t i = 0; i < sizeof ways / sizeof *ways && least > 0.0; i++) {
+        vec3 step =
+            vec3_add(vec3_scale(where->right, aside * ways[i][0]), vec3_scale(where->away, behind * ways[i][1]));
+        step = rounded(step, fmin(aside, behind));
+        const double bad = overlap_after(s, where, of, step) + (spot_in_view(s, vec3_add(centre, step)) ? 0.0 : radius);
+        if (bad < least) {
+            least = bad;
+            best = step;
+        }
+    }
+    return best;
+}
+
+/* A plane's stands behind its surface, where it changes nothing before it is moved. */
+static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
+{
+    const spot where = spot_of(s);
+    const vec3 normal = mat3_apply(rotation_from_deg(s->solids[of].shape.rotation_deg), vec3_make(0, 1, 0));
+    vec3 centre, step = rounded(vec3_scale(normal, -where.size), where.size);
+    double radius;
+    if (spot_ball(s, &s->solids[of], &centre, &radius))
+        step = step_beside(s, &where, &s->solids[of], centre, radius);
+    size_t index;
+    const status code = scene_add_solid(s, name, s->solids[of].shape.kind, &index, why);
+    if (code != STATUS_OK)
+        return code;
+    char *own = s->solids[index].name;
+    s->solids[index] = s->solids[of];
+    s->solids[index].name = own;
+    return scene_move(s, name, step, why);
+}
+
+static status copy_light(scene *s, size_t of, const char *name, diagnostic *why)
+{
+    size_t index;
+    const status code = scene_add_light(s, name, &index, why);
+    if (code != STATUS_OK)
+        return code;
+    char *own = s->lights[index].name;
+    s->lights[index] = s->lights[of];
+    s->lights[index].name = own;
+    const spot where = spot_of(s);
+    return scene_move(s, name, rounded(vec3_scale(where.right, where.size), where.size), why);
+}
+
+static status copy_material(scene *s, size_t of, const char *name, diagnostic *why)
+{
+    size_t index;
+    const status code = scene_add_material(s, name, &index, why);
+    if (code == STATUS_OK)
+        s->materials[index].value = s->materials[of].value;
+    return code;
+}
+
+/* Loaded anew where it was not computed from the same parameters. */
+static status copy_mesh(scene *s, size_t of, const char *name, diagnostic *why)
+{
+    char *path = strdup(s->meshes[of].path), *script = strdup(s->meshes[of].script_path);
+    size_t index;
+    const status code = path && script ? scene_add_mesh(s, name, &index, why) : out_of_memory(why);
+    if (code != STATUS_OK) {
+        free(path);
+        free(script);
+        return code;
+    }
+    mesh_entry *new = &s->meshes[index];
+    char *own = new->name;
+    free(new->path);
+    free(new->script_path);
+    *new = s->meshes[of];
+    new->name = own;
+    new->path = path;
+    new->script_path = script;
+    if (new->data)
+        mesh_retain(new->data);
+    looks_retain(new->looks);
+    return STATUS_OK;
+}
+
+static status copy_texture(scene *s, size_t of, const char *name, diagnostic *why)
+{
+    char *path = strdup(s->textures[of].path);
+    size_t index;
+    const status code = path ? scene_add_texture(s, name, &index, why) : out_of_memory(why);
+    if (code != STATUS_OK) {
+        free(path);
+        return code;
+    }
+    texture_entry *new = &s->textures[index];
+    char *own = new->name;
+    free(new->path);
+    *new = s->textures[of];
+    new->name = own;
+    new->path = path;
+    if (new->data)
+        texture_retain(new->data);
+    return STATUS_OK;
+}
+
+status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
+{
+    place at;
+    object_name base;
+    status code = place_find_object(s, of, &at, why);
+    if (code != STATUS_OK)
+        return code;
+    size_t length = strlen(strcpy(base, of));
+    while (length > 1 && base[length - 1] >= '0' && base[length - 1] <= '9')
+        base[--length] = 0;
+    if ((code = new_name(s, base, name, why)) != STATUS_OK)
+        return code;
+    switch (at.group) {
+    case PARAM_SOLID: return copy_solid(s, at.index, name, why);
+    case PARAM_LIGHT: return copy_light(s, at.index, name, why);
+    case PARAM_MATERIAL: return copy_material(s, at.index, name, why);
+    case PARAM_MESH: return copy_mesh(s, at.index, name, why);
+    case PARAM_TEXTURE: return copy_texture(s, at.index, name, why);
+    case PARAM_RENDER:
+    case PARAM_CAMERA:
+    case PARAM_BACKGROUND:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return diagnose(why, STATUS_BAD_INPUT, "copy a solid, a light, a material, a mesh or a texture",
+                    "there is only one %.60s", of);
+}

@@ -1,0 +1,299 @@
+#include "scene/model/place/new_objects.h"
+#include "base/text.h"
+#include "scene/model/check.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/looks.h"
+#include "scene/model/params_path.h"
+#include "scene/model/place/spot.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+status new_name(const scene *s, const char *base, object_name name, diagnostic *why)
+{
+    for (int n = 1; n <= 9999; n++) {
+        snprintf(name, sizeof(object_name), n == 1 ? "%.*s" : "%.*s%d", SCENE_NAME_MAX - 4, base, n);
+        if (check_name(name, NULL) == STATUS_OK && check_name_is_free(s, name, NULL) == STATUS_OK)
+            return STATUS_OK;
+    }
+    return diagnose(why, STATUS_BAD_INPUT, "name it yourself", "there is no free name like %.60s", base);
+}
+
+static status name_for(const scene *s, const char *wanted, const char *base, object_name name, diagnostic *why)
+{
+    if (!wanted)
+        return new_name(s, base, name, why);
+    const status code = check_name(wanted, why);
+    if (code == STATUS_OK)
+        strcpy(name, wanted);
+    return code;
+}
+
+/* NAME.ROW as scene_put takes it; after an error it does nothing. */
+static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...)
+    __attribute__((format(printf, 6, 7)));
+static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...)
+{
+    char path[2 * SCENE_NAME_MAX], value[512];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(value, sizeof value, format, list);
+    va_end(list);
+    snprintf(path, sizeof path, "%s.%s", name, row);
+    if (*code == STATUS_OK)
+        *code = scene_put(s, path, value, why);
+}
+
+static void put_number(scene *s, status *code, diagnostic *why, const char *name, const char *row, double value)
+{
+    put(s, code, why, name, row, "%.17g", value);
+}
+
+static void put_vector(scene *s, status *code, diagnostic *why, const char *name, const char *row, vec3 v)
+{
+    put(s, code, why, name, row, "%.17g,%.17g,%.17g", v.x, v.y, v.z);
+}
+
+/* A colour unlike the last one's. */
+static void put_look(scene *s, status *code, diagnostic *why, const char *name, size_t count)
+{
+    static const char *const colors[] = {"0.85,0.3,0.2", "0.2,0.5,0.85",  "0.3,0.7,0.3",
+                                         "0.9,0.7,0.2",  "0.6,0.35,0.75", "0.2,0.7,0.7"};
+    put(s, code, why, name, "color", "%s", colors[count % (sizeof colors / sizeof *colors)]);
+    put(s, code, why, name, "ambient", "0.25");
+    put(s, code, why, name, "diffuse", "0.7");
+    put(s, code, why, name, "specular", "0.3");
+}
+
+/* Where there was no free place, it is what is seen there. */
+static void put_above_others(scene *s, status *code, diagnostic *why, const char *name)
+{
+    const int index = scene_find_solid(s, name);
+    vec3 centre, other;
+    double radius, its_radius;
+    if (*code != STATUS_OK || index < 0 || !spot_ball(s, &s->solids[index], &centre, &radius))
+        return;
+    int64_t priority = s->solids[index].priority;
+    for (int i = 0; i < (int)s->solid_count; i++)
+        if (i != index && s->solids[i].visible && spot_ball(s, &s->solids[i], &other, &its_radius) &&
+            vec3_length(vec3_sub(other, centre)) < radius + its_radius && s->solids[i].priority >= priority)
+            priority = s->solids[i].priority + (s->solids[i].priority < 1000000);
+    put(s, code, why, name, "priority", "%lld", (long long)priority);
+}
+
+/* A floor under what is looked at; or, where there is one, a wall behind it. */
+static void put_plane(scene *s, status *code, diagnostic *why, const char *name, const spot *where)
+{
+    double y;
+    vec3 at = where->looked_at;
+    if (spot_ground(s, at.x, at.z, &y)) {
+        at = vec3_add(at, vec3_scale(where->away, where->distance));
+        put(s, code, why, name, "rotation", "90,%.17g,0",
+            spot_round(atan2(-where->away.x, -where->away.z) * (180.0 / M_PI), 1.0));
+    } else {
+        at.y -= 0.5 * where->size;
+    }
+    put_vector(s, code, why, name, "position",
+               vec3_make(spot_round(at.x, where->size), spot_round(at.y, where->size), spot_round(at.z, where->size)));
+}
+
+static void put_shape(scene *s, status *code, diagnostic *why, const char *name, shape_kind shape, const spot *where)
+{
+    const double size = where->size, half = 0.5 * size;
+    const vec3 low = spot_free(s, where, size);
+    put_vector(s, code, why, name, "position",
+               shape == SHAPE_BOX || shape == SHAPE_SPHERE ? vec3_add(low, vec3_make(0, half, 0)) : low);
+    if (shape == SHAPE_BOX) {
+        put_vector(s, code, why, name, "size", vec3_make(size, size, size));
+        return;
+    }
+    put_number(s, code, why, name, "radius", half);
+    if (shape == SHAPE_CYLINDER || shape == SHAPE_CUP)
+        put_number(s, code, why, name, "height", size);
+    if (shape == SHAPE_CUP) {
+        put_number(s, code, why, name, "inner_radius", spot_round(0.9 * half, 0.1 * half));
+        put_number(s, code, why, name, "floor", spot_round(0.1 * size, 0.1 * size));
+    }
+}
+
+/* A mesh and the solid that shows it. */
+static status add_mesh_solid(scene *s, const char *solid_name, object_name mesh_name, diagnostic *why)
+{
+    object_name base;
+    snprintf(base, sizeof base, "%.*s-mesh", SCENE_NAME_MAX - 9, solid_name);
+    status code = new_name(s, base, mesh_name, why);
+    if (code == STATUS_OK)
+        code = scene_add_mesh(s, mesh_name, NULL, why);
+    if (code == STATUS_OK)
+        code = scene_add_solid(s, solid_name, SHAPE_MESH, NULL, why);
+    put(s, &code, why, solid_name, "mesh", "%s", mesh_name);
+    return code;
+}
+
+static status new_torus(scene *s, const char *name, const spot *where, diagnostic *why)
+{
+    object_name mesh_name;
+    const vec3 low = spot_free(s, where, where->size);
+    status code = add_mesh_solid(s, name, mesh_name, why);
+    const double minor = spot_round(0.15 * where->size, 0.1 * where->size);
+    put(s, &code, why, mesh_name, "generate", "torus");
+    put_number(s, &code, why, mesh_name, "major", spot_round(0.35 * where->size, 0.1 * where->size));
+    put_number(s, &code, why, mesh_name, "minor", minor);
+    put_vector(s, &code, why, name, "position", vec3_add(low, vec3_make(0, minor, 0)));
+    return code;
+}
+
+status new_solid(scene *s, shape_kind shape, const char *wanted, object_name name, diagnostic *why)
+{
+    const spot where = spot_of(s);
+    const size_t count = s->solid_count;
+    status code = name_for(s, wanted, shape == SHAPE_MESH ? "torus" : shape_name(shape), name, why);
+    if (code != STATUS_OK)
+        return code;
+    if (shape == SHAPE_MESH) {
+        code = new_torus(s, name, &where, why);
+    } else if ((code = scene_add_solid(s, name, shape, NULL, why)) == STATUS_OK) {
+        s->solids[s->solid_count - 1].visible = 0; /* it is not in its own way */
+        if (shape == SHAPE_PLANE)
+            put_plane(s, &code, why, name, &where);
+        else
+            put_shape(s, &code, why, name, shape, &where);
+        s->solids[s->solid_count - 1].visible = 1;
+    }
+    put_look(s, &code, why, name, count);
+    if (shape == SHAPE_PLANE)
+        put(s, &code, why, name, "color", "0.72,0.7,0.66");
+    put_above_others(s, &code, why, name);
+    return code;
+}
+
+status new_light(scene *s, const char *wanted, object_name name, diagnostic *why)
+{
+    const spot where = spot_of(s);
+    status code = name_for(s, wanted, "lamp", name, why);
+    if (code == STATUS_OK)
+        code = scene_add_light(s, name, NULL, why);
+    /* To the left and in front of it, alternately to the right, so that two do not shine from one point. */
+    const double side = s->light_count % 2 ? 0.5 : -0.5;
+    vec3 at = vec3_add(where.looked_at, vec3_scale(where.right, side * where.distance));
+    at = vec3_add(at, vec3_scale(where.away, -0.4 * where.distance));
+    at.y += 0.8 * where.distance;
+    put_vector(s, &code, why, name, "position",
+               vec3_make(spot_round(at.x, where.size), spot_round(at.y, where.size), spot_round(at.z, where.size)));
+    put_vector(s, &code, why, name, "target",
+               vec3_make(spot_round(where.looked_at.x, where.size), spot_round(where.looked_at.y, where.size),
+                         spot_round(where.looked_at.z, where.size)));
+    put(s, &code, why, name, "intensity", "0.5");
+    return code;
+}
+
+status new_material(scene *s, const char *wanted, object_name name, diagnostic *why)
+{
+    const size_t count = s->material_count;
+    status code = name_for(s, wanted, "paint", name, why);
+    if (code == STATUS_OK)
+        code = scene_add_material(s, name, NULL, why);
+    put_look(s, &code, why, name, count);
+    return code;
+}
+
+status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why)
+{
+    spot where = spot_of(s);
+    const double size = spot_round(where.distance / 3.0, where.distance / 3.0), radius = 0.5 * size;
+    const vec3 low = spot_free(s, &where, size);
+    object_name mesh_name;
+    status code = name_for(s, wanted, "slime", name, why);
+    if (code == STATUS_OK)
+        code = add_mesh_solid(s, name, mesh_name, why);
+    if (code != STATUS_OK)
+        return code;
+    /* Its motion is that of the default, a ball of radius 1 on a floor at 0, whatever its size in the picture:
+     * stiffness and steps go with that one. */
+    put(s, &code, why, mesh_name, "generate", "slime");
+    put_vector(s, &code, why, name, "scale", vec3_make(radius, radius, radius));
+    put_vector(s, &code, why, name, "position", low);
+    put(s, &code, why, name, "transparency", "0.9");
+    put(s, &code, why, name, "ior", "1.2");
+    const double metres = radius * s->render.unit_m;
+    put(s, &code, why, name, "absorb_per_m", "%.4g,%.4g,%.4g", fmin(2.2 / metres, 1e9), fmin(0.25 / metres, 1e9),
+        fmin(1.8 / metres, 1e9));
+    put(s, &code, why, name, "specular", "0.7");
+    put(s, &code, why, name, "shininess", "120");
+    put(s, &code, why, name, "priority", "1");
+    put_above_others(s, &code, why, name);
+    return code;
+}
+
+/* "models/Stanford bunny.obj": Stanford-bunny */
+static void base_of_path(const char *path, const char *otherwise, object_name base)
+{
+    const char *slash = strrchr(path, '/'), *from = slash ? slash + 1 : path, *dot = strrchr(from, '.');
+    size_t length = 0;
+    for (const char *c = from; *c && c != dot && length < 40; c++) {
+        const bool right = isalnum((unsigned char)*c) || *c == '_' || *c == '-';
+        if (length == 0 && !isalpha((unsigned char)*c))
+            continue;
+        base[length++] = right ? *c : '-';
+    }
+    base[length] = 0;
+    if (length == 0)
+        strcpy(base, otherwise);
+}
+
+status new_texture(scene *s, const char *path, const char *wanted, object_name name, diagnostic *why)
+{
+    object_name base;
+    base_of_path(path, "picture", base);
+    status code = name_for(s, wanted, base, name, why);
+    if (code == STATUS_OK)
+        code = scene_add_texture(s, name, NULL, why);
+    char *row = text_format("%s.file", name);
+    if (code == STATUS_OK)
+        code = row ? scene_set(s, row, path, why) : out_of_memory(why);
+    free(row);
+    return code;
+}
+
+static void take_loaded(mesh_entry *m, const mesh_entry *from)
+{
+    m->data = from->data;
+    m->looks = from->looks;
+    mesh_retain(m->data);
+    looks_retain(m->looks);
+}
+
+status new_model(scene *s, const scene *loaded, const char *path, const char *wanted, object_name name, diagnostic *why)
+{
+    const spot where = spot_of(s);
+    const bounds3 b = loaded->meshes[0].data->bounds;
+    const size_t count = s->solid_count;
+    const vec3 low = spot_free(s, &where, where.size), edges = vec3_sub(b.high, b.low);
+    const double longest = fmax(fmax(edges.x, edges.y), edges.z);
+    if (!(longest > 0.0))
+        return diagnose(why, STATUS_BAD_INPUT, "choose another file", "the mesh has no extent");
+    object_name base, mesh_name;
+    base_of_path(path, "model", base);
+    status code = name_for(s, wanted, base, name, why);
+    if (code == STATUS_OK)
+        code = add_mesh_solid(s, name, mesh_name, why);
+    char *row = code == STATUS_OK ? text_format("%s.file", mesh_name) : NULL;
+    if (code == STATUS_OK)
+        code = row ? scene_set(s, row, path, why) : out_of_memory(why);
+    free(row);
+    /* Four digits, so that it does not stand deep in the ground or above it. */
+    const double scale = spot_round(where.size / longest, 0.01 * where.size / longest);
+    put_vector(s, &code, why, name, "scale", vec3_make(scale, scale, scale));
+    put_vector(s, &code, why, name, "position",
+               vec3_make(low.x - 0.5 * scale * (b.low.x + b.high.x), low.y - scale * b.low.y,
+                         low.z - 0.5 * scale * (b.low.z + b.high.z)));
+    put_look(s, &code, why, name, count);
+    if (code == STATUS_OK)
+        take_loaded(&s->meshes[s->mesh_count - 1], &loaded->meshes[0]);
+    put_above_others(s, &code, why, name);
+    return code;
+}

@@ -1,0 +1,39 @@
+/* Where something new goes in a scene, and how large it is to be: into the middle of the picture, a sixth of the way
+ * from the eye in size, beside what is there already, on the ground where there is one in the picture. Lengths are
+ * scene units. Pure. */
+#ifndef CUVETTE_SCENE_MODEL_PLACE_SPOT_H
+#define CUVETTE_SCENE_MODEL_PLACE_SPOT_H
+
+#include "scene/model/scene.h"
+#include <stdbool.h>
+
+typedef struct spot {
+    vec3 looked_at;
+    vec3 right, away; /* horizontal unit vectors of the camera */
+    double distance;  /* from the eye to looked_at */
+    double size;
+} spot;
+
+spot spot_of(const scene *s);
+
+/* The lowest point of a thing of that size that stands free. */
+vec3 spot_free(const scene *s, const spot *where, double size);
+
+/* The height of the highest plane that lies under the eye like a floor, at x and z; false for none. */
+bool spot_ground(const scene *s, double x, double z, double *y);
+
+/* How deep a ball would lie in the balls of all that can be seen, together; 0 where it is free. */
+double spot_overlap(const scene *s, vec3 centre, double radius);
+
+/* A ball that holds the solid, as far as is known; false for a plane. */
+bool spot_ball(const scene *s, const solid *of, vec3 *centre, double *radius);
+
+/* Half of the solid's size along a unit vector, as far as is known; 0 for a plane. */
+double spot_half_size(const scene *s, const solid *of, vec3 along);
+
+bool spot_in_view(const scene *s, vec3 point);
+
+/* value to so many digits as something of that size needs. */
+double spot_round(double value, double size);
+
+#endif

@@ -1,0 +1,184 @@
+#include "scene/model/slime.h"
+#include "measure/clock.h"
+#include "scene/assets/assets.h"
+#include "scene/motion/script.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+softbody_settings slime_settings(const mesh_entry *m)
+{
+    softbody_settings settings = m->slime;
+    settings.level = m->level;
+    return settings;
+}
+
+static status check_steps(const mesh_entry *m, double time_s, const char *remedy, diagnostic *why)
+{
+    if (time_s / m->slime.dt_s > SLIME_STEPS_MAX) {
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: %g s in steps of %g s are more than %g steps", m->name,
+                        time_s, m->slime.dt_s, SLIME_STEPS_MAX);
+    }
+    return STATUS_OK;
+}
+
+status slime_check(const mesh_entry *m, diagnostic *why)
+{
+    const softbody_settings settings = slime_settings(m);
+    diagnostic bad = {.what = ""};
+    const status code = softbody_check(&settings, &bad);
+    if (code != STATUS_OK) {
+        return diagnose(why, code, bad.remedy, "%.80s: %s", m->name, bad.what);
+    }
+    return check_steps(m, m->time_s, "raise dt_s, or lower time_s", why);
+}
+
+status slime_check_end(const mesh_entry *m, double end_s, diagnostic *why)
+{
+    return check_steps(m, end_s, "raise dt_s, or end earlier", why);
+}
+
+/* What is wrong with the body, unless it is in its script, which says so itself. */
+static status body_error(const scene *s, const mesh_entry *m, const diagnostic *bad, status code, diagnostic *why)
+{
+    if (bad->file[0] && bad->line > 0) {
+        diagnostic_locate(why, bad->file, bad->line, bad->column);
+        return diagnose(why, code, bad->remedy, "%s", bad->what);
+    }
+    return asset_error(s, m->name, m->path_line, m->path_column, bad, code, why);
+}
+
+status slime_read_script(const scene *s, const mesh_entry *m, hand_script **out, diagnostic *why)
+{
+    *out = NULL;
+    if (!m->script_path[0]) {
+        return STATUS_OK;
+    }
+    char *path = scene_file_path(s, m->script_path);
+    if (!path) {
+        return out_of_memory(why);
+    }
+    diagnostic bad = {.what = ""};
+    const status code = script_read_below(path, s->limits.root, out, &bad);
+    free(path);
+    if (code != STATUS_OK && bad.line == 0) { /* no text to point at: wrong is what names it */
+        return asset_error(s, m->name, m->script_line, m->script_column, &bad, code, why);
+    }
+    return code == STATUS_OK ? code : body_error(s, m, &bad, code, why);
+}
+
+status slime_create(const scene *s, const mesh_entry *m, slime *out, diagnostic *why)
+{
+    *out = (slime){.body = NULL};
+    const softbody_settings settings = slime_settings(m);
+    hand_script *script;
+    status code = slime_read_script(s, m, &script, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    diagnostic bad = {.what = ""};
+    softbody *body = NULL;
+    code = softbody_create(&settings, isa_best(), &body, &bad);
+    if (code != STATUS_OK) {
+        hand_script_destroy(script);
+        return body_error(s, m, &bad, code, why);
+    }
+    if (script) {
+        code = softbody_follow(body, script, why);
+    }
+    *out = (slime){.body = body, .script = script};
+    if (code != STATUS_OK) {
+        slime_destroy(out);
+    }
+    return code;
+}
+
+void slime_destroy(slime *x)
+{
+    softbody_destroy(x->body);
+    hand_script_destroy(x->script);
+    *x = (slime){.body = NULL};
+}
+
+static double steps_to(const mesh_entry *m, double time_s)
+{
+    return floor(time_s / m->slime.dt_s + 0.5); /* as softbody_advance counts them */
+}
+
+double slime_work(const mesh_entry *m)
+{
+    return steps_to(m, m->time_s) * (10.0 * pow(4.0, (double)m->level) + 2.0);
+}
+
+/* A step at a time, so that a wish to stop is heard soon, however short the steps are. */
+static status advance_watched(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch,
+                              diagnostic *bad)
+{
+    const double ask_s = 0.01, first = x->steps, last = steps_to(m, time_s);
+    double asked_s = clock_wall_s();
+    for (status code; x->steps < last; x->steps += 1.0) {
+        code = softbody_advance(x->body, (x->steps + 1.0) * m->slime.dt_s, bad);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        const double now_s = clock_wall_s();
+        if (now_s - asked_s < ask_s) {
+            continue;
+        }
+        asked_s = now_s;
+        if (!watch->go_on(watch->context, (x->steps + 1.0 - first) / (last - first))) {
+            x->steps += 1.0;
+            diagnostic_locate(bad, s->path, 0, 0);
+            return diagnose(bad, STATUS_INTERRUPTED, "", "interrupted at %.6g s of the %.6g s that the slime moves",
+                            x->steps * m->slime.dt_s, time_s);
+        }
+    }
+    return STATUS_OK;
+}
+
+status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch,
+                     diagnostic *why)
+{
+    diagnostic bad = {.what = ""};
+    const double begun_s = clock_wall_s();
+    status code = watch ? advance_watched(x, s, m, time_s, watch, &bad) : STATUS_OK;
+    if (code == STATUS_OK) {
+        code = softbody_advance(x->body, time_s, &bad);
+        x->steps = fmax(x->steps, code == STATUS_OK ? steps_to(m, time_s) : 0.0);
+    }
+    x->motion_s += clock_wall_s() - begun_s;
+    if (code == STATUS_INTERRUPTED) {
+        diagnostic_locate(why, bad.file, 0, 0);
+        return diagnose(why, code, "", "%.80s: %s", m->name, bad.what);
+    }
+    return code == STATUS_OK ? code : body_error(s, m, &bad, code, why);
+}
+
+static status make_skin(const slime *x, const scene *s, mesh_entry *m, diagnostic *why)
+{
+    diagnostic bad = {.what = ""};
+    mesh *skin = NULL;
+    const status code = softbody_skin(x->body, &skin, &bad);
+    if (code != STATUS_OK) {
+        return body_error(s, m, &bad, code, why);
+    }
+    m->data = skin;
+    m->account = softbody_measure(x->body);
+    m->motion_s = x->motion_s;
+    return STATUS_OK;
+}
+
+status slime_make(const scene *s, mesh_entry *m, const load_watch *watch, diagnostic *why)
+{
+    slime x;
+    status code = slime_create(s, m, &x, why);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = slime_advance(&x, s, m, m->time_s, watch, why);
+    if (code == STATUS_OK) {
+        code = make_skin(&x, s, m, why);
+    }
+    slime_destroy(&x);
+    return code;
+}

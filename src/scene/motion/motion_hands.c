@@ -1,0 +1,186 @@
+#include "scene/motion/motion_hands.h"
+#include "scene/motion/motion_private.h"
+
+#include <math.h>
+#include <string.h>
+
+static vec3 times(vec3 a, vec3 b)
+{
+    return vec3_make(a.x * b.x, a.y * b.y, a.z * b.z);
+}
+
+static vec3 over(vec3 a, vec3 b)
+{
+    return vec3_make(a.x / b.x, a.y / b.y, a.z / b.z);
+}
+
+/* What a pair of planes leaves of a ray, a little more than rounding needs. */
+static void cut(double low, double high, double o, double d, double *enter, double *leave)
+{
+    const double slack = 1e-9 * (fabs(low) + fabs(high) + fabs(o));
+    const double a = (low - slack - o) / d, b = (high + slack - o) / d;
+    if (d != 0.0) {
+        *enter = fmax(*enter, fmin(a, b));
+        *leave = fmin(*leave, fmax(a, b));
+    } else if (o < low - slack || o > high + slack) {
+        *leave = -INFINITY;
+    }
+}
+
+/* Does the ray pass the box? There may be millions of copies that it has nothing to do with. */
+static bool passes(bounds3 box, vec3 o, vec3 d)
+{
+    double enter = 0.0, leave = INFINITY;
+    cut(box.low.x, box.high.x, o.x, d.x, &enter, &leave);
+    cut(box.low.y, box.high.y, o.y, d.y, &enter, &leave);
+    cut(box.low.z, box.high.z, o.z, d.z, &enter, &leave);
+    return enter <= leave;
+}
+
+/* What is looked for, in one solid's frame. */
+typedef struct search {
+    const softbody *body;
+    bounds3 box;
+    const solid_shape *shape;
+    size_t solid;
+    vec3 origin, direction;
+} search;
+
+/* The nearest of what is met so far and one copy. */
+static void pick_copy(const search *q, vec3 copy, motion_place *best)
+{
+    const solid_shape *shape = q->shape;
+    const vec3 o = over(vec3_sub(q->origin, copy), shape->scale), d = over(q->direction, shape->scale);
+    vec3 met;
+    if (!passes(q->box, o, d) || !softbody_pick(q->body, o, d, &met)) {
+        return;
+    }
+    const vec3 at = vec3_add(copy, times(met, shape->scale));
+    const double distance = vec3_length(vec3_sub(at, q->origin)); /* the direction is a unit vector */
+    if (distance < best->distance) {
+        *best =
+            (motion_place){.where = vec3_add(shape->position, mat3_apply(rotation_from_deg(shape->rotation_deg), at)),
+                           .on_mesh = met,
+                           .distance = distance,
+                           .solid = q->solid};
+    }
+}
+
+static void pick_copies(const search *q, motion_place *best)
+{
+    const vec3 copies = q->shape->copies;
+    for (double z = 0.0; z < copies.z; z++) {
+        for (double y = 0.0; y < copies.y; y++) {
+            for (double x = 0.0; x < copies.x; x++) {
+                pick_copy(q, times(vec3_make(x, y, z), q->shape->spacing), best);
+            }
+        }
+    }
+}
+
+static bool is_wanted(const solid *one, const char *mesh_name, int solid_or_any, size_t index)
+{
+    const bool shows = one->shape.kind == SHAPE_MESH && strcmp(one->mesh, mesh_name) == 0;
+    return solid_or_any == MOTION_ANY_SOLID ? shows && one->visible : solid_or_any == (int)index;
+}
+
+status scene_motion_pick(const scene_motion *m, size_t i, int solid_or_any, vec3 origin, vec3 direction,
+                         motion_place *out, diagnostic *why)
+{
+    *out = (motion_place){.distance = INFINITY};
+    const scene *s = m->s;
+    const mesh_entry *entry = motion_entry(m, &m->slimes[i]);
+    for (size_t k = 0; k < s->solid_count; k++) {
+        const solid_shape *shape = &s->solids[k].shape;
+        if (!is_wanted(&s->solids[k], entry->name, solid_or_any, k)) {
+            continue;
+        }
+        const status code = solid_shape_check(shape, why);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        const mat3 rotation = rotation_from_deg(shape->rotation_deg);
+        const search q = {.body = m->slimes[i].x.body,
+                          .box = entry->data->bounds,
+                          .shape = shape,
+                          .solid = k,
+                          .origin = mat3_apply_transposed(rotation, vec3_sub(origin, shape->position)),
+                          .direction = mat3_apply_transposed(rotation, direction)};
+        pick_copies(&q, out);
+    }
+    return STATUS_OK;
+}
+
+status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, double reach, motion_hand *hands,
+                         int *number, diagnostic *why)
+{
+    const solid_shape *shape = &m->s->solids[place->solid].shape;
+    const double largest = fmax(shape->scale.x, fmax(shape->scale.y, shape->scale.z));
+    const int taken = softbody_grab(m->slimes[i].x.body, place->on_mesh, reach / largest);
+    if (taken == HAND_NO_MEMORY) {
+        return out_of_memory(why);
+    }
+    if (taken < 0) {
+        return diagnose(why, STATUS_BAD_INPUT, "let one release what it holds",
+                        "no hand is free, or others hold all of it");
+    }
+    hands[taken] = (motion_hand){.holds = true,
+                                 .rotation = rotation_from_deg(shape->rotation_deg),
+                                 .scale = shape->scale,
+                                 .where = place->on_mesh};
+    *number = taken;
+    return STATUS_OK;
+}
+
+void scene_motion_release(scene_motion *m, size_t i, motion_hand *hands, int number)
+{
+    softbody_release(m->slimes[i].x.body, number);
+    hands[number] = (motion_hand){.holds = false};
+}
+
+vec3 motion_hand_way(const motion_hand *h, vec3 by)
+{
+    return over(mat3_apply_transposed(h->rotation, by), h->scale);
+}
+
+static bool is_moving(const motion_hand *h)
+{
+    return h->holds && (h->from.x != h->to.x || h->from.y != h->to.y || h->from.z != h->to.z);
+}
+
+/* Where the hands are to be at the end of a step, a share of the way that they have; in a script's own arithmetic. */
+static void put_hands(softbody *body, const motion_hand *hands, double share)
+{
+    for (int i = 0; i < SOFTBODY_HANDS_MAX; i++) {
+        const motion_hand *h = &hands[i];
+        const vec3 offset = share >= 1.0 ? h->to : vec3_add(h->from, vec3_scale(vec3_sub(h->to, h->from), share));
+        if (is_moving(h)) {
+            softbody_hold(body, i, vec3_add(h->where, offset));
+        }
+    }
+}
+
+status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, double time_s, diagnostic *why)
+{
+    softbody *body = m->slimes[i].x.body;
+    const mesh_entry *entry = motion_entry(m, &m->slimes[i]);
+    const uint64_t begin = softbody_measure(body).steps, end = (uint64_t)floor(time_s / entry->slime.dt_s + 0.5);
+    bool any = false;
+    for (int k = 0; k < SOFTBODY_HANDS_MAX; k++) {
+        any |= is_moving(&hands[k]);
+    }
+    diagnostic bad = {.line = 0};
+    status code = STATUS_OK;
+    for (uint64_t step = begin; any && step < end && code == STATUS_OK; step++) {
+        put_hands(body, hands, (double)(step + 1 - begin) / (double)(end - begin));
+        code = softbody_step(body, &bad);
+    }
+    for (int k = 0; k < SOFTBODY_HANDS_MAX && begin < end; k++) {
+        hands[k].from = hands[k].to;
+    }
+    if (code == STATUS_OK) {
+        return code;
+    }
+    diagnostic_locate(why, bad.file, bad.line, bad.column);
+    return diagnose(why, code, bad.remedy, "%.80s: %s", entry->name, bad.what);
+}

@@ -1,0 +1,24 @@
+/* Script files: what hands do with a slime, as a person writes it. YAML:
+ *
+ *   title: A tug to the left            # may be left out
+ *   hands:
+ *     left:                             # any name; each hand holds one place at a time
+ *       - {time_s: 0.5, grab: [0, 1, -6], towards: [0, 0, 1], reach: 0.3}   # under the ray from a point in a direction
+ *       - {time_s: 1.5, move: [-1.2, 0.8, 0]}                               # by then so far from where it took hold
+ *       - {time_s: 2.0, release: on}
+ *
+ * Points are in the frame of the slime's mesh, which is the world's where its solid is neither moved, turned nor
+ * scaled. Ownership: the caller releases with hand_script_destroy. Errors: STATUS_BAD_INPUT, located: file, line,
+ * column. */
+#ifndef CUVETTE_SCENE_MOTION_SCRIPT_H
+#define CUVETTE_SCENE_MOTION_SCRIPT_H
+
+#include "softbody/hand.h"
+
+status script_read(const char *path, hand_script **out, diagnostic *why);
+/* The same of a file that lies below root (base/below.h). */
+status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why);
+/* The same from memory; name stands for the file in diagnostics. */
+status script_read_text(const char *name, const char *text, size_t size, hand_script **out, diagnostic *why);
+
+#endif

@@ -1,0 +1,85 @@
+#include "web/api/scene_json.h"
+#include "report/json.h"
+#include "report/param_rows.h"
+#include "scene/model/params_path.h"
+
+static const char *const light_words[] = {"point", "cone", "soft-cone"};
+
+static json_t *object_json(const char *name, const char *kind)
+{
+    return json_pack("{s:o,s:s}", "name", json_of_text(name), "kind", kind);
+}
+
+static json_t *solid_json(const scene *s, const solid *one)
+{
+    json_t *o = object_json(one->name, "solid");
+    int bad = json_object_set_new(o, "shape", json_string(shape_name(one->shape.kind)));
+    bad |= json_object_set_new(
+        o, "material", one->material_index >= 0 ? json_of_text(s->materials[one->material_index].name) : json_null());
+    if (one->shape.kind == SHAPE_MESH)
+        bad |= json_object_set_new(o, "mesh", json_of_text(one->mesh));
+    if (!bad)
+        return o;
+    json_decref(o);
+    return NULL;
+}
+
+static json_t *objects_json(const scene *s)
+{
+    json_t *list = json_array();
+    int bad = !list;
+    for (size_t i = 0; i < s->solid_count; i++)
+        bad |= json_array_append_new(list, solid_json(s, &s->solids[i]));
+    for (size_t i = 0; i < s->light_count; i++) {
+        json_t *o = object_json(s->lights[i].name, "light");
+        bad |= json_object_set_new(o, "light", json_string(light_words[s->lights[i].kind]));
+        bad |= json_array_append_new(list, o);
+    }
+    for (size_t i = 0; i < s->material_count; i++)
+        bad |= json_array_append_new(list, object_json(s->materials[i].name, "material"));
+    for (size_t i = 0; i < s->mesh_count; i++)
+        bad |= json_array_append_new(list, object_json(s->meshes[i].name, "mesh"));
+    for (size_t i = 0; i < s->texture_count; i++)
+        bad |= json_array_append_new(list, object_json(s->textures[i].name, "texture"));
+    if (!bad)
+        return list;
+    json_decref(list);
+    return NULL;
+}
+
+/* {path: value}, borrowed from rows. */
+static json_t *values_by_path(const json_t *rows)
+{
+    json_t *values = json_object();
+    for (size_t i = 0; values && i < json_array_size(rows); i++) {
+        const json_t *row = json_array_get(rows, i);
+        json_object_set(values, json_string_value(json_object_get(row, "path")), json_object_get(row, "value"));
+    }
+    return values;
+}
+
+static bool add_initial(json_t *rows, const json_t *opened_rows)
+{
+    json_t *initial = values_by_path(opened_rows);
+    int bad = !initial;
+    for (size_t i = 0; i < json_array_size(rows) && !bad; i++) {
+        json_t *row = json_array_get(rows, i),
+               *value = json_object_get(initial, json_string_value(json_object_get(row, "path")));
+        bad |= json_object_set_new(row, "initial", value ? json_incref(value) : json_null());
+    }
+    json_decref(initial);
+    return !bad;
+}
+
+json_t *scene_json(const scene *s, const scene *opened, uint64_t generation)
+{
+    json_t *rows = NULL, *before = NULL, *o = NULL;
+    if (param_rows_json(s, NULL, &rows, NULL) == STATUS_OK &&
+        param_rows_json(opened, NULL, &before, NULL) == STATUS_OK &&
+        add_initial(json_object_get(rows, "params"), json_object_get(before, "params")))
+        o = json_pack("{s:I,s:o,s:o,s:O}", "generation", (json_int_t)generation, "title", json_of_text(s->title),
+                      "objects", objects_json(s), "params", json_object_get(rows, "params"));
+    json_decref(rows);
+    json_decref(before);
+    return o;
+}

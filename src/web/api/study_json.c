@@ -1,0 +1,160 @@
+#include "web/api/study_json.h"
+#include "base/text_writer.h"
+#include "report/json.h"
+#include "scene/model/params.h"
+#include "study/row_files.h"
+#include "study/summary.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* --- what is in the study --- */
+
+typedef struct unit_search {
+    const char *path, *unit;
+} unit_search;
+
+static status look_for_unit(void *context, const char *path, const param *row, const char *value)
+{
+    (void)value;
+    unit_search *search = context;
+    const size_t length = strlen(path);
+    /* One element of a vector is path.x */
+    if (strncmp(path, search->path, length) != 0 || (search->path[length] && search->path[length] != '.'))
+        return STATUS_OK;
+    search->unit = row->unit;
+    return STATUS_INTERRUPTED;
+}
+
+static const char *unit_of(const study *s, const char *path)
+{
+    unit_search search = {path, ""};
+    scene_each_param(s->base, look_for_unit, &search);
+    return search.unit;
+}
+
+static json_t *axis_json(const study *s, const study_axis *axis)
+{
+    json_t *paths = json_array(), *units = json_array();
+    bool bad = !paths || !units;
+    for (size_t i = 0; !bad && i < axis->points[0].count; i++) {
+        bad |= json_array_append_new(paths, json_of_text(axis->points[0].paths[i])) != 0;
+        bad |= json_array_append_new(units, json_of_text(unit_of(s, axis->points[0].paths[i]))) != 0;
+    }
+    if (!bad)
+        return json_pack("{s:o, s:o, s:o, s:I}", "name", json_of_text(axis->name), "paths", paths, "units", units,
+                         "count", (json_int_t)axis->count);
+    json_decref(paths);
+    json_decref(units);
+    return NULL;
+}
+
+bool study_json_about(const study *s, json_t *into)
+{
+    json_t *axes = json_array();
+    bool bad = !axes;
+    for (size_t i = 0; !bad && i < s->axis_count; i++)
+        bad |= json_array_append_new(axes, axis_json(s, &s->axes[i])) != 0;
+    bad |= json_object_set_new(into, "title", json_of_text(s->title)) != 0;
+    bad |= json_object_set_new(into, "cells", json_integer((json_int_t)study_cell_count(s))) != 0;
+    bad |= json_object_set_new(into, "axes", axes) != 0;
+    return !bad;
+}
+
+/* --- its tables --- */
+
+/* A line of fields between tabs, cut apart in place. */
+static json_t *fields_json(char *line)
+{
+    json_t *fields = json_array();
+    for (char *field; (field = strsep(&line, "\t"));)
+        if (json_array_append_new(fields, json_of_text(field)) != 0) {
+            json_decref(fields);
+            return NULL;
+        }
+    return fields;
+}
+
+static json_t *table_json(json_t *columns, json_t *rows, size_t count)
+{
+    return json_pack("{s:o, s:o, s:I}", "columns", columns, "rows", rows, "count", (json_int_t)count);
+}
+
+static json_t *lines_json(char *text)
+{
+    char *line = strsep(&text, "\n");
+    json_t *columns = fields_json(line), *rows = json_array();
+    size_t count = 0;
+    bool bad = !columns || !rows;
+    while (!bad && (line = strsep(&text, "\n")) && *line)
+        if (count++ < STUDY_JSON_CELLS_MAX)
+            bad |= json_array_append_new(rows, fields_json(line)) != 0;
+    if (!bad)
+        return table_json(columns, rows, count);
+    json_decref(columns);
+    json_decref(rows);
+    return NULL;
+}
+
+status study_json_summary(const study *s, const char *results, json_t **out, diagnostic *why)
+{
+    study_progress progress;
+    *out = NULL;
+    status code = study_status(s, results, &progress, why);
+    if (code != STATUS_OK)
+        return code;
+    if (progress.rows == 0)
+        return (*out = json_null()) ? STATUS_OK : out_of_memory(why);
+    char *text = NULL;
+    text_writer writer;
+    code = text_writer_open(&writer, why);
+    if (code != STATUS_OK)
+        return code;
+    code = study_summary(s, results, writer.stream, why);
+    if (code == STATUS_OK)
+        code = text_writer_close(&writer, &text, NULL, why);
+    else
+        text_writer_abandon(&writer);
+    if (code == STATUS_OK && !(*out = lines_json(text)))
+        code = out_of_memory(why);
+    free(text);
+    return code;
+}
+
+/* The columns' names; or of a row, of whatever file, the fields in these columns. */
+static json_t *row_json(const csv *columns, const row_ref *of)
+{
+    json_t *row = json_array();
+    for (size_t i = 0; i < columns->column_count; i++) {
+        const char *name = columns->header[i];
+        const int at = of && of->table != columns ? csv_column(of->table, name) : (int)i;
+        if (json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, at) : name)) != 0) {
+            json_decref(row);
+            return NULL;
+        }
+    }
+    return row;
+}
+
+status study_json_rows(const study *s, const char *results, size_t from, json_t **out, diagnostic *why)
+{
+    row_files *files;
+    *out = NULL;
+    status code = row_files_read(s, results, ROWS, &files, why);
+    if (code != STATUS_OK)
+        return code;
+    const csv *first = NULL;
+    for (size_t i = 0; !first && i < files->count; i++)
+        first = files->tables[i]->header ? files->tables[i] : NULL;
+    json_t *columns = first ? row_json(first, NULL) : json_array(), *rows = json_array();
+    bool bad = !columns || !rows;
+    for (size_t i = from; !bad && i < files->row_count && i - from < STUDY_JSON_ROWS_MAX; i++)
+        bad |= json_array_append_new(rows, row_json(first, &files->rows[i])) != 0;
+    if (!bad) {
+        *out = table_json(columns, rows, files->row_count);
+    } else {
+        json_decref(columns);
+        json_decref(rows);
+    }
+    row_files_destroy(files);
+    return *out ? STATUS_OK : out_of_memory(why);
+}

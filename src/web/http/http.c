@@ -1,0 +1,159 @@
+/* Start and stop. */
+#include "web/http/http_private.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+/* A socket of our own, because libmicrohttpd's may share its port with another program's. */
+static status listen_at(int port, int backlog, int *out, diagnostic *why)
+{
+    const int fd = *out = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (fd < 0)
+        return diagnose(why, STATUS_FAILURE, "", "no socket: %s", strerror(errno));
+    const int on = 1; /* a port that was just given back is free again */
+    setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    const struct sockaddr_in here = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    if (bind(fd, (const struct sockaddr *)&here, sizeof here) == 0 && listen(fd, backlog) == 0)
+        return STATUS_OK;
+    diagnose(why, STATUS_BAD_INPUT, "take another port, or 0 for any that is free",
+             "port %d of 127.0.0.1 cannot be had: %s", port, strerror(errno));
+    close(fd);
+    return STATUS_BAD_INPUT;
+}
+
+static status check(http_settings *s, diagnostic *why)
+{
+    if (s->port < 0 || s->port > 65535)
+        return diagnose(why, STATUS_BAD_INPUT, "a port from 1 to 65535, or 0 for any that is free",
+                        "port %d is out of range", s->port);
+    s->body_max = s->body_max ? s->body_max : (size_t)1 << 20;
+    s->connections = s->connections ? s->connections : 64;
+    if (s->connections < 1 || s->connections > 1024)
+        return diagnose(why, STATUS_BAD_INPUT, "1 to 1024 connections", "%d connections are out of range",
+                        s->connections);
+    if (!s->event_clients)
+        s->event_clients = s->connections / 2 < 32 ? s->connections / 2 : 32;
+    if (s->event_clients < 0 || s->event_clients > HTTP_EVENT_CLIENTS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "0 to 512 streams of events", "%d streams of events are out of range",
+                        s->event_clients);
+    s->timeout_s = s->timeout_s > 0 ? s->timeout_s : 10;
+    s->requests_per_s = s->requests_per_s > 0 ? s->requests_per_s : 2000;
+    return STATUS_OK;
+}
+
+static status make_token(http_server *s, diagnostic *why)
+{
+    unsigned char bits[HTTP_TOKEN_DIGITS / 2];
+    if (getrandom(bits, sizeof bits, 0) != (ssize_t)sizeof bits)
+        return diagnose(why, STATUS_FAILURE, "", "no random numbers: %s", strerror(errno));
+    for (size_t i = 0; i < sizeof bits; i++)
+        snprintf(s->token + 2 * i, 3, "%02x", bits[i]);
+    explicit_bzero(bits, sizeof bits);
+    return STATUS_OK;
+}
+
+static status listen_and_serve(http_server *s, diagnostic *why)
+{
+    int fd;
+    status code = listen_at(s->settings.port, s->settings.connections, &fd, why);
+    if (code != STATUS_OK)
+        return code;
+    struct sockaddr_in here = {0};
+    socklen_t size = sizeof here;
+    if (getsockname(fd, (struct sockaddr *)&here, &size) != 0) {
+        close(fd);
+        return diagnose(why, STATUS_FAILURE, "", "the socket has no port: %s", strerror(errno));
+    }
+    s->port = ntohs(here.sin_port);
+    snprintf(s->address, sizeof s->address, "http://127.0.0.1:%d/?token=%s", s->port, s->token);
+    snprintf(s->cookie, sizeof s->cookie, "cuvette_%d", s->port);
+
+    /* Signals are the program's: its threads take them, ours do not. */
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    code = http_watch_start(s, why);
+    if (code == STATUS_OK) {
+        s->daemon = MHD_start_daemon(
+            MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL, 0, NULL, NULL,
+            http_on_request, s, MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_CONNECTION_LIMIT,
+            (unsigned)s->settings.connections, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)s->settings.timeout_s,
+            MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)32768, MHD_OPTION_STRICT_FOR_CLIENT, 1,
+            MHD_OPTION_URI_LOG_CALLBACK, http_on_target, s, MHD_OPTION_NOTIFY_COMPLETED, http_on_end, s,
+            MHD_OPTION_NOTIFY_CONNECTION, http_watch_notify, s, MHD_OPTION_END);
+        if (!s->daemon)
+            code = diagnose(why, STATUS_FAILURE, "", "the server's threads cannot be started");
+    } else {
+        close(fd);
+    }
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return code;
+}
+
+status http_start(const http_settings *settings, http_server **out, diagnostic *why)
+{
+    *out = NULL;
+    http_server *s = calloc(1, sizeof *s);
+    if (!s)
+        return diagnose(why, STATUS_FAILURE, "", "no memory for a server");
+    s->settings = *settings;
+    pthread_mutex_init(&s->bucket_lock, NULL);
+    pthread_mutex_init(&s->watch_lock, NULL);
+    pthread_mutex_init(&s->event_lock, NULL);
+    pthread_condattr_t monotonic;
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_cond_init(&s->watch_wake, &monotonic);
+    pthread_condattr_destroy(&monotonic);
+    status code = check(&s->settings, why);
+    if (code == STATUS_OK)
+        code = make_token(s, why);
+    if (code == STATUS_OK)
+        code = listen_and_serve(s, why);
+    if (code != STATUS_OK) {
+        http_stop(s);
+        return code;
+    }
+    *out = s;
+    return STATUS_OK;
+}
+
+void http_stop(http_server *s)
+{
+    if (!s)
+        return;
+    http_events_end(s);
+    if (s->daemon)
+        MHD_stop_daemon(s->daemon);
+    http_watch_stop(s);
+    pthread_cond_destroy(&s->watch_wake);
+    pthread_mutex_destroy(&s->event_lock);
+    pthread_mutex_destroy(&s->watch_lock);
+    pthread_mutex_destroy(&s->bucket_lock);
+    explicit_bzero(s, sizeof *s);
+    free(s);
+}
+
+int http_port(const http_server *s)
+{
+    return s->port;
+}
+
+const char *http_token(const http_server *s)
+{
+    return s->token;
+}
+
+const char *http_address(const http_server *s)
+{
+    return s->address;
+}

@@ -1,0 +1,247 @@
+/* Streams of server-sent events (HTML Standard, 9.2). Each stream has a short queue of payloads, which all streams
+ * share; its connection's thread sleeps until one comes, the client leaves, or it is time for a comment. */
+#include "web/http/http_private.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+enum { NAME_MAX_LENGTH = 63, SLOW_CLIENT_TIMEOUTS = 6 };
+
+/* Counted under event_lock. */
+typedef struct payload {
+    int users;
+    size_t size;
+    char name[NAME_MAX_LENGTH + 1];
+    char text[];
+} payload;
+
+struct http_event_client {
+    http_server *server;
+    struct MHD_Connection *connection;
+    int socket, wake, place; /* wake: an eventfd */
+    int waiting;
+    payload *queue[HTTP_EVENTS_WAITING]; /* oldest first */
+    payload *sending;                    /* only its thread looks */
+    size_t sent;
+    bool greeted;
+};
+
+static void let_go(payload *p)
+{
+    if (--p->users == 0)
+        free(p);
+}
+
+static ssize_t comment(http_event_client *c, char *to, size_t room)
+{
+    static const char text[] = ":\n\n";
+    if (room < sizeof text - 1)
+        return MHD_CONTENT_READER_END_WITH_ERROR;
+    memcpy(to, text, sizeof text - 1);
+    http_watch_deadline(c->server, c->connection, SLOW_CLIENT_TIMEOUTS * c->server->settings.timeout_s);
+    return sizeof text - 1;
+}
+
+static ssize_t send_on(http_event_client *c, char *to, size_t room)
+{
+    const size_t left = c->sending->size - c->sent, size = left < room ? left : room;
+    memcpy(to, c->sending->text + c->sent, size);
+    c->sent += size;
+    if (c->sent == c->sending->size) {
+        pthread_mutex_lock(&c->server->event_lock);
+        let_go(c->sending);
+        pthread_mutex_unlock(&c->server->event_lock);
+        c->sending = NULL;
+    }
+    http_watch_deadline(c->server, c->connection, SLOW_CLIENT_TIMEOUTS * c->server->settings.timeout_s);
+    return (ssize_t)size;
+}
+
+/* Takes the oldest that waits; false when the streams end. */
+static bool take(http_event_client *c)
+{
+    pthread_mutex_lock(&c->server->event_lock);
+    const bool ends = c->server->events_end;
+    if (!ends && c->waiting) {
+        c->sending = c->queue[0];
+        c->sent = 0;
+        memmove(c->queue, c->queue + 1, (size_t)--c->waiting * sizeof *c->queue);
+    }
+    pthread_mutex_unlock(&c->server->event_lock);
+    return !ends;
+}
+
+/* libmicrohttpd wants more bytes, and may wait for them: what it got before is on its way. */
+static ssize_t more(void *context, uint64_t position, char *to, size_t room)
+{
+    (void)position;
+    http_event_client *c = context;
+    if (!c->greeted) { /* sends the reply's head off, so that the page knows that it listens */
+        c->greeted = true;
+        return comment(c, to, room);
+    }
+    if (c->sending)
+        return send_on(c, to, room);
+    http_watch_deadline(c->server, c->connection, 0);
+    for (;;) {
+        if (!take(c))
+            return MHD_CONTENT_READER_END_OF_STREAM;
+        if (c->sending)
+            return send_on(c, to, room);
+        struct pollfd wait[2] = {{.fd = c->wake, .events = POLLIN}, {.fd = c->socket, .events = POLLRDHUP}};
+        const int ready = poll(wait, 2, HTTP_HEARTBEAT_MS);
+        if (ready == 0)
+            return comment(c, to, room);
+        if ((ready < 0 && errno != EINTR) || (ready > 0 && wait[1].revents))
+            return MHD_CONTENT_READER_END_WITH_ERROR;
+        uint64_t count;
+        if (ready > 0 && read(c->wake, &count, sizeof count) < 0 && errno != EAGAIN)
+            return MHD_CONTENT_READER_END_WITH_ERROR;
+    }
+}
+
+static void leave(void *context)
+{
+    http_event_client *c = context;
+    http_server *s = c->server;
+    pthread_mutex_lock(&s->event_lock);
+    if (c->place >= 0) {
+        s->event_client[c->place] = NULL;
+        s->event_client_count--;
+    }
+    for (int i = 0; i < c->waiting; i++)
+        let_go(c->queue[i]);
+    if (c->sending)
+        let_go(c->sending);
+    pthread_mutex_unlock(&s->event_lock);
+    if (c->wake >= 0)
+        close(c->wake);
+    free(c);
+}
+
+/* False where all places are taken. */
+static bool join(http_server *s, http_event_client *c)
+{
+    pthread_mutex_lock(&s->event_lock);
+    for (int i = 0; i < s->settings.event_clients && !s->events_end && c->place < 0; i++)
+        if (!s->event_client[i]) {
+            s->event_client[i] = c;
+            s->event_client_count++;
+            c->place = i;
+        }
+    pthread_mutex_unlock(&s->event_lock);
+    return c->place >= 0;
+}
+
+void http_events(void *context, const http_request *q, http_reply *r)
+{
+    (void)context;
+    http_server *s = q->server;
+    http_event_client *c = calloc(1, sizeof *c);
+    if (!c)
+        return;
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(q->connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    *c = (http_event_client){.server = s,
+                             .connection = q->connection,
+                             .socket = info ? info->connect_fd : -1,
+                             .place = -1,
+                             .wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
+    struct MHD_Response *response = NULL;
+    if (c->wake < 0 || !join(s, c))
+        http_reply_error(r, 503, "as many streams of events are open as there may be",
+                         "close another page of this lab");
+    else
+        response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, more, c, leave);
+    if (response)
+        http_reply_set(r, 200, "text/event-stream", response);
+    else
+        leave(c);
+}
+
+static bool is_name(const char *name)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
+    const size_t length = strlen(name);
+    return length >= 1 && length <= NAME_MAX_LENGTH && strspn(name, letters) == length;
+}
+
+/* "event: NAME", "data: VALUE", an empty line; compact JSON has no line breaks. */
+static payload *payload_of(const char *name, const json_t *value)
+{
+    char *json = json_dumps(value, JSON_COMPACT | JSON_ENCODE_ANY);
+    if (!json)
+        return NULL;
+    static const char event[] = "event: ", data[] = "\ndata: ", end[] = "\n\n";
+    payload *p = malloc(sizeof *p + strlen(name) + strlen(json) + sizeof event + sizeof data + sizeof end);
+    if (p) {
+        strcpy(p->name, name);
+        char *to = stpcpy(stpcpy(stpcpy(stpcpy(stpcpy(p->text, event), name), data), json), end);
+        p->size = (size_t)(to - p->text);
+        p->users = 1;
+    }
+    free(json);
+    return p;
+}
+
+static void enqueue(http_event_client *c, payload *p)
+{
+    int drop = 0;
+    while (drop < c->waiting && strcmp(c->queue[drop]->name, p->name) != 0)
+        drop++;
+    if (drop == c->waiting)
+        drop = c->waiting == HTTP_EVENTS_WAITING ? 0 : -1;
+    if (drop >= 0) {
+        let_go(c->queue[drop]);
+        memmove(c->queue + drop, c->queue + drop + 1, (size_t)(--c->waiting - drop) * sizeof *c->queue);
+    }
+    c->queue[c->waiting++] = p;
+    p->users++;
+}
+
+static void wake(const http_event_client *c)
+{
+    const uint64_t one = 1;
+    while (write(c->wake, &one, sizeof one) < 0 && errno == EINTR)
+        continue;
+}
+
+status http_publish(http_server *s, const char *event, const json_t *value, diagnostic *why)
+{
+    if (!is_name(event))
+        return diagnose(why, STATUS_BAD_INPUT, "1 to 63 letters, digits, '-', '_' or '.'", "\"%s\" is no event's name",
+                        event);
+    payload *p = payload_of(event, value);
+    if (!p)
+        return diagnose(why, STATUS_FAILURE, "", "no memory for the event %s", event);
+    pthread_mutex_lock(&s->event_lock);
+    for (int i = 0; i < s->settings.event_clients; i++)
+        if (s->event_client[i]) {
+            enqueue(s->event_client[i], p);
+            wake(s->event_client[i]);
+        }
+    let_go(p);
+    pthread_mutex_unlock(&s->event_lock);
+    return STATUS_OK;
+}
+
+int http_event_clients(http_server *s)
+{
+    pthread_mutex_lock(&s->event_lock);
+    const int count = s->event_client_count;
+    pthread_mutex_unlock(&s->event_lock);
+    return count;
+}
+
+void http_events_end(http_server *s)
+{
+    pthread_mutex_lock(&s->event_lock);
+    s->events_end = true;
+    for (int i = 0; i < HTTP_EVENT_CLIENTS_MAX; i++)
+        if (s->event_client[i])
+            wake(s->event_client[i]);
+    pthread_mutex_unlock(&s->event_lock);
+}

@@ -1,0 +1,214 @@
+/* Who may pass: the path, the host, the origin, the token, the rate. */
+#include "web/http/http_private.h"
+
+#include "measure/clock.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static int hex(char c)
+{
+    if (c >= '0' && c <= '9')
+        return c - '0';
+    c = (char)(c | 0x20);
+    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+}
+
+/* No part of it is "." or "..", none but the last is empty. */
+static bool stays_below(const char *path)
+{
+    for (const char *part = path; *part == '/';) {
+        const size_t length = strcspn(++part, "/");
+        if ((length == 0 && part[0] == '/') || (length == 1 && part[0] == '.') ||
+            (length == 2 && part[0] == '.' && part[1] == '.'))
+            return false;
+        part += length;
+    }
+    return true;
+}
+
+char *http_safe_path(const char *target, bool *no_memory)
+{
+    *no_memory = false;
+    if (target[0] != '/')
+        return NULL;
+    char *path = malloc(strlen(target) + 1), *end = path;
+    if (!path) {
+        *no_memory = true;
+        return NULL;
+    }
+    for (const char *c = target; *c && *c != '?'; c++) {
+        int byte = (unsigned char)*c;
+        if (byte == '%') {
+            const int high = hex(c[1]), low = high < 0 ? -1 : hex(c[2]);
+            byte = low < 0 ? 0 : 16 * high + low;
+            /* A slash that is no border between parts would be one to whoever decodes later. */
+            byte = byte == '/' ? 0 : byte;
+            c += low < 0 ? 0 : 2;
+        } else if (byte >= 0x7f || byte == '#') {
+            byte = 0;
+        }
+        if (byte < 0x20 || byte == 0x7f || byte == '\\') {
+            free(path);
+            return NULL;
+        }
+        *end++ = (char)byte;
+    }
+    *end = 0;
+    if (stays_below(path))
+        return path;
+    free(path);
+    return NULL;
+}
+
+/* Takes as long for every text of that length, wherever it differs. */
+bool http_same_token(const char *token, const char *given)
+{
+    if (!given || strlen(given) != HTTP_TOKEN_DIGITS)
+        return false;
+    volatile unsigned char difference = 0;
+    for (int i = 0; i < HTTP_TOKEN_DIGITS; i++)
+        difference = (unsigned char)(difference | (token[i] ^ given[i]));
+    return difference == 0;
+}
+
+char *http_clean_target(const char *target)
+{
+    char *clean = malloc(strlen(target) + 1);
+    if (!clean)
+        return NULL;
+    const size_t path = strcspn(target, "?");
+    memcpy(clean, target, path);
+    char *end = clean + path, mark = '?';
+    for (const char *part = target + path; *part;) {
+        const size_t length = strcspn(++part, "&");
+        if (length && strncmp(part, "token=", 6) != 0) {
+            *end++ = mark;
+            memcpy(end, part, length);
+            end += length;
+            mark = '&';
+        }
+        part += length;
+    }
+    *end = 0;
+    return clean;
+}
+
+/* One of the names that this machine has for itself, with our port. */
+static bool is_ours(const http_server *s, const char *host)
+{
+    static const char *const names[] = {"127.0.0.1", "localhost", "[::1]"};
+    for (int i = 0; i < 3; i++) {
+        char ours[32];
+        snprintf(ours, sizeof ours, "%s:%d", names[i], s->port);
+        if (strcasecmp(host, ours) == 0 || (s->port == 80 && strcasecmp(host, names[i]) == 0))
+            return true;
+    }
+    return false;
+}
+
+typedef struct heads {
+    int hosts, origins;
+    const char *host, *origin;
+} heads;
+
+static enum MHD_Result look(void *context, enum MHD_ValueKind kind, const char *name, const char *value)
+{
+    (void)kind;
+    heads *h = context;
+    if (strcasecmp(name, "Host") == 0) {
+        h->hosts++;
+        h->host = value ? value : "";
+    } else if (strcasecmp(name, "Origin") == 0) {
+        h->origins++;
+        h->origin = value ? value : "";
+    }
+    return MHD_YES;
+}
+
+static bool within_rate(http_server *s, bool known)
+{
+    const double rate = s->settings.requests_per_s, room = rate > 1 ? rate : 1, now_s = clock_wall_s();
+    pthread_mutex_lock(&s->bucket_lock);
+    http_bucket *b = known ? &s->known : &s->unknown;
+    const double filled = b->filled_s > 0 ? b->left + (now_s - b->filled_s) * rate : room;
+    b->left = filled < room ? filled : room;
+    b->filled_s = now_s;
+    const bool yes = b->left >= 1;
+    if (yes)
+        b->left -= 1;
+    pthread_mutex_unlock(&s->bucket_lock);
+    return yes;
+}
+
+static int refuse(http_request *q, int code, const char *what, const char *remedy)
+{
+    http_reply_error(&q->reply, code, what, remedy);
+    return code;
+}
+
+/* The page's first address: remembers the token where no script can read it, and leaves it out of the address. */
+static int let_in(http_request *q)
+{
+    char *clean = http_clean_target(q->target), cookie[128];
+    snprintf(cookie, sizeof cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict", q->server->cookie, q->server->token);
+    http_reply_static(&q->reply, 303, "text/plain; charset=utf-8", "", 0);
+    http_reply_header(&q->reply, "Set-Cookie", cookie);
+    http_reply_header(&q->reply, "Location", clean ? clean : "/");
+    free(clean);
+    return 303;
+}
+
+static bool has_token(const http_request *q)
+{
+    const char *bearer = MHD_lookup_connection_value(q->connection, MHD_HEADER_KIND, "Authorization");
+    if (bearer && strncasecmp(bearer, "Bearer ", 7) == 0 && http_same_token(q->server->token, bearer + 7))
+        return true;
+    return http_same_token(q->server->token,
+                           MHD_lookup_connection_value(q->connection, MHD_COOKIE_KIND, q->server->cookie));
+}
+
+/* What is not about the token: nothing that another site's page can do gets past here. */
+static int guard_site(http_request *q, const char *version)
+{
+    heads h = {0};
+    bool no_memory;
+    MHD_get_connection_values(q->connection, MHD_HEADER_KIND, look, &h);
+    if (strcmp(version, "HTTP/1.1") != 0 && strcmp(version, "HTTP/1.0") != 0)
+        return refuse(q, 400, "this is not HTTP/1.1", "send HTTP/1.1");
+    q->path = http_safe_path(q->target, &no_memory);
+    if (no_memory)
+        return refuse(q, 500, "no memory for a request", "try again later");
+    if (!q->path)
+        return refuse(q, 400, "the path climbs, or has characters that no path has",
+                      "ask for a path as the page's links write it");
+    if (h.hosts != 1 || h.origins > 1)
+        return refuse(q, 400, "there must be one Host, and at most one Origin", "send the header Host once");
+    if (!is_ours(q->server, h.host))
+        return refuse(q, 421, "this server has no such name", "use the address that it printed");
+    if (h.origin && (strncmp(h.origin, "http://", 7) != 0 || strcasecmp(h.origin + 7, h.host) != 0))
+        return refuse(q, 403, "the request comes from another site's page", "use the server's own page");
+    return 0;
+}
+
+int http_guard(http_request *q, const char *version)
+{
+    const int code = guard_site(q, version);
+    if (code)
+        return code;
+    const char *asked = strcmp(q->method, "GET") == 0
+                            ? MHD_lookup_connection_value(q->connection, MHD_GET_ARGUMENT_KIND, "token")
+                            : NULL;
+    const bool in_address = http_same_token(q->server->token, asked), known = in_address || has_token(q);
+    if (!within_rate(q->server, known)) {
+        http_reply_header(&q->reply, "Retry-After", "1");
+        return refuse(q, 429, "too many requests at once", "wait a second");
+    }
+    if (!known) {
+        http_reply_header(&q->reply, "WWW-Authenticate", "Bearer");
+        return refuse(q, 401, "the token is missing or wrong",
+                      "open the address that the program printed, with its token");
+    }
+    return in_address ? let_in(q) : 0;
+}

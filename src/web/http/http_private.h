@@ -1,0 +1,111 @@
+/* What the server's files share: not for others. See web/http/http.h. */
+#ifndef CUVETTE_WEB_HTTP_HTTP_PRIVATE_H
+#define CUVETTE_WEB_HTTP_HTTP_PRIVATE_H
+
+#include "web/http/http.h"
+#include <microhttpd.h>
+#include <pthread.h>
+#include <stdbool.h>
+
+enum {
+    HTTP_TOKEN_DIGITS = 32,
+    HTTP_EVENT_CLIENTS_MAX = 512,
+    HTTP_EVENTS_WAITING = 16,
+    HTTP_HEADERS_MAX = 8,
+    HTTP_HEARTBEAT_MS = 5000
+};
+
+/* Refills at its rate and holds a second's worth. */
+typedef struct http_bucket {
+    double left, filled_s;
+} http_bucket;
+
+/* One connection's place in the watch. */
+typedef struct http_place {
+    int socket;        /* -1: the place is free */
+    double deadline_s; /* 0: none */
+} http_place;
+
+typedef struct http_event_client http_event_client;
+
+struct http_server {
+    http_settings settings;
+    struct MHD_Daemon *daemon;
+    int port;
+    char token[HTTP_TOKEN_DIGITS + 1], address[96], cookie[24];
+
+    pthread_mutex_t bucket_lock;
+    http_bucket known, unknown; /* requests with the token and without */
+
+    pthread_mutex_t watch_lock;
+    pthread_cond_t watch_wake;
+    pthread_t watch;
+    bool watching, watch_ends;
+    http_place *places; /* settings.connections of them */
+
+    pthread_mutex_t event_lock;
+    bool events_end;
+    int event_client_count;
+    http_event_client *event_client[HTTP_EVENT_CLIENTS_MAX];
+};
+
+struct http_reply {
+    http_server *server;
+    struct MHD_Connection *connection;
+    struct MHD_Response *response; /* NULL: none yet */
+    int code;
+    int header_count;
+    char *header_name[HTTP_HEADERS_MAX], *header_value[HTTP_HEADERS_MAX];
+};
+
+struct http_request {
+    http_server *server;
+    struct MHD_Connection *connection;
+    char *target; /* as it came: path and query */
+    char *path;   /* decoded */
+    const char *method;
+    const http_route *route;
+    const http_file *file;
+    char *value[HTTP_VALUES_MAX]; /* of the pattern's braces, in their order */
+    char *body;
+    size_t body_size, body_room, received;
+    bool head_read;
+    http_reply reply; /* set before the body has come: it is answered with that */
+};
+
+/* --- http_guard.c: may it pass? Each answers 0, or the code with the reply set. --- */
+
+/* Path of a target, decoded; NULL for one that climbs or cannot be read. *no_memory tells the two NULLs apart. */
+char *http_safe_path(const char *target, bool *no_memory);
+bool http_same_token(const char *token, const char *given);
+int http_guard(http_request *q, const char *version);
+/* The target without its token. NULL: memory. */
+char *http_clean_target(const char *target);
+
+/* --- http_route.c --- */
+int http_find_route(http_request *q);
+
+/* --- http_reply.c --- */
+void http_reply_release(http_reply *r);
+void http_reply_set(http_reply *r, int code, const char *type,
+                    struct MHD_Response *response); /* takes it; NULL: memory was out */
+/* Hands the reply to libmicrohttpd, with the headers that all have. */
+enum MHD_Result http_reply_send(http_reply *r);
+
+/* --- http_watch.c: cuts off who takes longer than timeout_s --- */
+status http_watch_start(http_server *s, diagnostic *why);
+void http_watch_stop(http_server *s);
+void http_watch_notify(void *server, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what);
+/* What the connection does now must be done within that time; 0: as long as it takes. */
+void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s);
+
+/* --- http_events.c --- */
+void http_events_end(http_server *s);
+
+/* --- http_request.c: libmicrohttpd's callbacks --- */
+void *http_on_target(void *server, const char *target, struct MHD_Connection *c);
+enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const char *url, const char *method,
+                                const char *version, const char *upload, size_t *upload_size, void **request);
+void http_on_end(void *server, struct MHD_Connection *c, void **request, enum MHD_RequestTerminationCode why);
+
+#endif

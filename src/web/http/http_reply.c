@@ -1,0 +1,118 @@
+/* What is sent back. */
+#include "web/http/http_private.h"
+#include "report/json.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const on_every_reply[][2] = {
+    {"Content-Security-Policy",
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
+     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cache-Control", "no-store"},
+    {"Cross-Origin-Opener-Policy", "same-origin"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+};
+
+static const char no_memory[] = "{\"error\":\"no memory for the reply\",\"remedy\":\"try again later\"}";
+
+void http_reply_set(http_reply *r, int code, const char *type, struct MHD_Response *response)
+{
+    if (r->response)
+        MHD_destroy_response(r->response);
+    r->response = response;
+    r->code = code;
+    if (response && MHD_add_response_header(response, "Content-Type", type) != MHD_YES) {
+        MHD_destroy_response(response);
+        r->response = NULL;
+    }
+}
+
+void http_reply_static(http_reply *r, int code, const char *type, const void *bytes, size_t size)
+{
+    http_reply_set(r, code, type, MHD_create_response_from_buffer(size, (void *)(size_t)bytes, MHD_RESPMEM_PERSISTENT));
+}
+
+void http_reply_bytes(http_reply *r, int code, const char *type, void *bytes, size_t size)
+{
+    if (!bytes) {
+        http_reply_static(r, 500, "application/json", no_memory, sizeof no_memory - 1);
+        return;
+    }
+    struct MHD_Response *response = MHD_create_response_from_buffer(size, bytes, MHD_RESPMEM_MUST_FREE);
+    if (!response)
+        free(bytes);
+    http_reply_set(r, code, type, response);
+}
+
+void http_reply_json(http_reply *r, int code, json_t *value)
+{
+    char *text = value ? json_dumps(value, JSON_COMPACT | JSON_ENCODE_ANY) : NULL;
+    json_decref(value);
+    http_reply_bytes(r, code, "application/json", text, text ? strlen(text) : 0);
+}
+
+void http_reply_error(http_reply *r, int code, const char *what, const char *remedy)
+{
+    http_reply_json(r, code,
+                    json_pack("{s:o, s:o}", "error", json_of_text(what), "remedy", json_of_text(remedy ? remedy : "")));
+}
+
+void http_reply_diagnostic(http_reply *r, status code, const diagnostic *why)
+{
+    http_reply_json(r,
+                    code == STATUS_BAD_INPUT     ? 400
+                    : code == STATUS_INTERRUPTED ? 409
+                                                 : 500,
+                    json_of_diagnostic(why));
+}
+
+static bool printable(const char *text)
+{
+    for (; *text; text++)
+        if ((unsigned char)*text < 0x20 || *text == 0x7f)
+            return false;
+    return true;
+}
+
+void http_reply_header(http_reply *r, const char *name, const char *value)
+{
+    if (r->header_count == HTTP_HEADERS_MAX || !printable(name) || !printable(value))
+        return;
+    char *name_copy = strdup(name), *value_copy = strdup(value);
+    if (!name_copy || !value_copy) {
+        free(name_copy);
+        free(value_copy);
+        return;
+    }
+    r->header_name[r->header_count] = name_copy;
+    r->header_value[r->header_count++] = value_copy;
+}
+
+void http_reply_release(http_reply *r)
+{
+    if (r->response)
+        MHD_destroy_response(r->response);
+    r->response = NULL;
+    for (; r->header_count > 0; r->header_count--) {
+        free(r->header_name[r->header_count - 1]);
+        free(r->header_value[r->header_count - 1]);
+    }
+}
+
+enum MHD_Result http_reply_send(http_reply *r)
+{
+    if (!r->response)
+        http_reply_error(r, 500, "there is no reply to that", "");
+    if (!r->response)
+        return MHD_NO;
+    bool whole = true;
+    for (size_t i = 0; i < sizeof on_every_reply / sizeof *on_every_reply; i++)
+        whole &= MHD_add_response_header(r->response, on_every_reply[i][0], on_every_reply[i][1]) == MHD_YES;
+    for (int i = 0; i < r->header_count; i++)
+        whole &= MHD_add_response_header(r->response, r->header_name[i], r->header_value[i]) == MHD_YES;
+    /* Rather no reply than one that lacks what guards the page. */
+    return whole ? MHD_queue_response(r->connection, (unsigned)r->code, r->response) : MHD_NO;
+}

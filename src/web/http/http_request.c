@@ -1,0 +1,184 @@
+/* A request's way through libmicrohttpd's callbacks: its target, its head, its body, its end. */
+#include "web/http/http_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* Bodies above the limit are still read up to this many times of it, so that who sends one reads our 413 and no broken
+ * connection. */
+enum { PATIENCE = 8 };
+
+/* The one place that sees the target as it came: what libmicrohttpd hands out later is decoded and cut at the first
+ * NUL. */
+void *http_on_target(void *server, const char *target, struct MHD_Connection *c)
+{
+    http_request *q = calloc(1, sizeof *q);
+    if (!q)
+        return NULL;
+    q->server = q->reply.server = server;
+    q->connection = q->reply.connection = c;
+    q->target = strdup(target);
+    http_watch_deadline(server, c, q->server->settings.timeout_s);
+    return q;
+}
+
+void http_on_end(void *server, struct MHD_Connection *c, void **request, enum MHD_RequestTerminationCode why)
+{
+    (void)why;
+    http_request *q = *request;
+    *request = NULL;
+    if (!q)
+        return;
+    http_reply_release(&q->reply);
+    for (int i = 0; i < HTTP_VALUES_MAX; i++)
+        free(q->value[i]);
+    free(q->target);
+    free(q->path);
+    free(q->body);
+    free(q);
+    http_watch_deadline(server, c, ((http_server *)server)->settings.timeout_s);
+}
+
+static bool changes(const http_request *q)
+{
+    return strcmp(q->method, "GET") != 0 && strcmp(q->method, "HEAD") != 0;
+}
+
+static bool is_json(const char *type)
+{
+    static const char json[] = "application/json";
+    const size_t length = sizeof json - 1;
+    return type && strncasecmp(type, json, length) == 0 && (!type[length] || strchr("; \t", type[length]));
+}
+
+static void too_large(http_request *q)
+{
+    if (!q->reply.response)
+        http_reply_error(&q->reply, 413, "the request's body is too large", "send less at once");
+}
+
+/* Before the body: what is refused here is not kept. */
+static enum MHD_Result read_head(http_request *q, const char *method, const char *version)
+{
+    q->head_read = true;
+    q->method = method;
+    if (!q->target)
+        return MHD_NO;
+    if (http_guard(q, version) == 0 && http_find_route(q) == 0 && changes(q) &&
+        !is_json(http_header(q, "Content-Type")))
+        http_reply_error(&q->reply, 415, "this is not JSON", "send it with Content-Type: application/json");
+    const char *length = http_header(q, "Content-Length");
+    const unsigned long long size = length ? strtoull(length, NULL, 10) : 0;
+    if (size > q->server->settings.body_max)
+        too_large(q);
+    if (size / PATIENCE > q->server->settings.body_max)
+        return http_reply_send(&q->reply);
+    return MHD_YES;
+}
+
+static enum MHD_Result read_body(http_request *q, const char *bytes, size_t size)
+{
+    const size_t limit = q->server->settings.body_max;
+    q->received += size;
+    if (q->received / PATIENCE > limit)
+        return MHD_NO;
+    if (q->received > limit)
+        too_large(q);
+    if (q->reply.response)
+        return MHD_YES;
+    if (q->body_size + size + 1 > q->body_room) {
+        size_t room = q->body_room ? 2 * q->body_room : 4096;
+        room = room < q->body_size + size + 1 ? q->body_size + size + 1 : room;
+        room = room > limit + 1 ? limit + 1 : room;
+        char *body = realloc(q->body, room);
+        if (!body)
+            return MHD_NO;
+        q->body = body;
+        q->body_room = room;
+    }
+    memcpy(q->body + q->body_size, bytes, size);
+    q->body_size += size;
+    q->body[q->body_size] = 0;
+    return MHD_YES;
+}
+
+static void answer(http_request *q)
+{
+    if (q->file)
+        http_reply_static(&q->reply, 200, q->file->type, q->file->bytes, q->file->size);
+    else
+        q->route->handle(q->route->context, q, &q->reply);
+}
+
+enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const char *url, const char *method,
+                                const char *version, const char *upload, size_t *upload_size, void **request)
+{
+    (void)url;
+    http_request *q = *request;
+    const http_server *s = server;
+    if (!q)
+        return MHD_NO;
+    if (!q->head_read)
+        return read_head(q, method, version);
+    if (*upload_size) {
+        const size_t size = *upload_size;
+        *upload_size = 0;
+        return read_body(q, upload, size);
+    }
+    if (!q->reply.response) {
+        http_watch_deadline(q->server, c, 0);
+        answer(q);
+        http_watch_deadline(q->server, c, s->settings.timeout_s);
+        /* libmicrohttpd takes the time that a handler needs for time in which the client did nothing; a limit that is
+         * set anew starts now. */
+        MHD_set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
+        if (q->route == NULL || q->route->handle != http_events)
+            MHD_set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)s->settings.timeout_s);
+    }
+    return http_reply_send(&q->reply);
+}
+
+const char *http_method(const http_request *q)
+{
+    return q->method;
+}
+
+const char *http_path(const http_request *q)
+{
+    return q->path;
+}
+
+const char *http_query_value(const http_request *q, const char *name)
+{
+    const char *value = NULL;
+    size_t size;
+    if (MHD_lookup_connection_value_n(q->connection, MHD_GET_ARGUMENT_KIND, name, strlen(name), &value, &size) !=
+        MHD_YES)
+        return NULL;
+    return value ? value : "";
+}
+
+const char *http_header(const http_request *q, const char *name)
+{
+    return MHD_lookup_connection_value(q->connection, MHD_HEADER_KIND, name);
+}
+
+const char *http_body(const http_request *q, size_t *size)
+{
+    if (size)
+        *size = q->body_size;
+    return q->body ? q->body : "";
+}
+
+json_t *http_body_json(const http_request *q, http_reply *r)
+{
+    json_error_t error;
+    json_t *value = json_loadb(q->body ? q->body : "", q->body_size, JSON_REJECT_DUPLICATES | JSON_DECODE_ANY, &error);
+    if (!value) {
+        diagnostic why = {.line = error.line > 0 ? error.line : 1, .column = error.column > 0 ? error.column : 1};
+        diagnose(&why, STATUS_BAD_INPUT, "send one JSON value", "the request's body is not JSON: %s", error.text);
+        http_reply_diagnostic(r, STATUS_BAD_INPUT, &why);
+    }
+    return value;
+}

@@ -1,0 +1,85 @@
+/* libmicrohttpd cuts off connections on which nothing moves; one that sends a byte now and then would stay. Here each
+ * connection has a place with the time by which its request must have come, or its reply be taken; a thread looks once
+ * a second. */
+#include "web/http/http_private.h"
+
+#include "base/float_environment.h"
+#include "measure/clock.h"
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <time.h>
+
+static void *watch(void *context)
+{
+    http_server *s = context;
+    float_environment_set();
+    pthread_mutex_lock(&s->watch_lock);
+    while (!s->watch_ends) {
+        const double now_s = clock_wall_s();
+        for (int i = 0; i < s->settings.connections; i++) {
+            http_place *p = &s->places[i];
+            if (p->socket >= 0 && p->deadline_s > 0 && now_s > p->deadline_s) {
+                shutdown(p->socket, SHUT_RDWR); /* its own thread notices and closes it */
+                p->deadline_s = 0;
+            }
+        }
+        struct timespec next;
+        clock_gettime(CLOCK_MONOTONIC, &next);
+        next.tv_sec++;
+        pthread_cond_timedwait(&s->watch_wake, &s->watch_lock, &next);
+    }
+    pthread_mutex_unlock(&s->watch_lock);
+    return NULL;
+}
+
+status http_watch_start(http_server *s, diagnostic *why)
+{
+    s->places = calloc((size_t)s->settings.connections, sizeof *s->places);
+    if (!s->places)
+        return diagnose(why, STATUS_FAILURE, "", "no memory for %d connections", s->settings.connections);
+    for (int i = 0; i < s->settings.connections; i++)
+        s->places[i].socket = -1;
+    s->watching = pthread_create(&s->watch, NULL, watch, s) == 0;
+    return s->watching ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "the server's threads cannot be started");
+}
+
+void http_watch_stop(http_server *s)
+{
+    if (s->watching) {
+        pthread_mutex_lock(&s->watch_lock);
+        s->watch_ends = true;
+        pthread_cond_signal(&s->watch_wake);
+        pthread_mutex_unlock(&s->watch_lock);
+        pthread_join(s->watch, NULL);
+    }
+    free(s->places);
+}
+
+void http_watch_notify(void *context, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what)
+{
+    http_server *s = context;
+    pthread_mutex_lock(&s->watch_lock);
+    if (what == MHD_CONNECTION_NOTIFY_STARTED) {
+        const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
+        for (int i = 0; i < s->settings.connections && info && !*place; i++)
+            if (s->places[i].socket < 0) {
+                s->places[i] =
+                    (http_place){.socket = info->connect_fd, .deadline_s = clock_wall_s() + s->settings.timeout_s};
+                *place = &s->places[i];
+            }
+    } else if (*place) {
+        ((http_place *)*place)->socket = -1;
+        *place = NULL;
+    }
+    pthread_mutex_unlock(&s->watch_lock);
+}
+
+void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s)
+{
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    http_place *place = info ? info->socket_context : NULL;
+    pthread_mutex_lock(&s->watch_lock);
+    if (place)
+        place->deadline_s = in_s > 0 ? clock_wall_s() + in_s : 0;
+    pthread_mutex_unlock(&s->watch_lock);
+}

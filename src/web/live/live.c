@@ -1,0 +1,263 @@
+/* What any thread may ask of the live slime. */
+#include "web/live/live_private.h"
+
+#include "report/json.h"
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+live *live_create(void (*wake)(void *context), void *context)
+{
+    live *l = calloc(1, sizeof *l);
+    if (!l)
+        return NULL;
+    l->wake = wake;
+    l->context = context;
+    l->moved_at_s = NAN;
+    pthread_mutex_init(&l->lock, NULL);
+    pthread_condattr_t by;
+    pthread_condattr_init(&by);
+    pthread_condattr_setclock(&by, CLOCK_MONOTONIC);
+    pthread_cond_init(&l->answered, &by);
+    pthread_condattr_destroy(&by);
+    return l;
+}
+
+void live_destroy(live *l)
+{
+    if (!l)
+        return;
+    scene_motion_destroy(l->motion);
+    free(l->hands);
+    pthread_cond_destroy(&l->answered);
+    pthread_mutex_destroy(&l->lock);
+    free(l);
+}
+
+/* Unlocks first: who is woken may hold a lock of its own while it asks what is due. */
+static void unlock_and_wake(live *l)
+{
+    l->ordered = true;
+    pthread_mutex_unlock(&l->lock);
+    if (l->wake)
+        l->wake(l->context);
+}
+
+void live_give(live *l, live_order order)
+{
+    pthread_mutex_lock(&l->lock);
+    switch (order) {
+    case LIVE_PLAY:
+        l->mode = LIVE_IS_PLAYING;
+        l->restart |= l->account.in_trouble;
+        break;
+    case LIVE_PAUSE: l->mode = LIVE_IS_PAUSED; break;
+    case LIVE_RESTART:
+        l->mode = LIVE_IS_PLAYING;
+        l->restart = true;
+        break;
+    case LIVE_OFF:
+        l->mode = LIVE_IS_OFF;
+        l->restart = false;
+        break;
+    }
+    unlock_and_wake(l);
+}
+
+void live_set_preview(live *l, live_preview preview)
+{
+    pthread_mutex_lock(&l->lock);
+    l->preview = preview;
+    unlock_and_wake(l);
+}
+
+void live_stop(live *l)
+{
+    pthread_mutex_lock(&l->lock);
+    l->stopped = true;
+    pthread_cond_broadcast(&l->answered);
+    pthread_mutex_unlock(&l->lock);
+}
+
+static bool is_finite(vec3 v)
+{
+    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+}
+
+static struct timespec limit(void)
+{
+    struct timespec at;
+    clock_gettime(CLOCK_MONOTONIC, &at);
+    at.tv_sec += (time_t)LIVE_WAIT_S;
+    return at;
+}
+
+static void withdraw(live *l, const grab_request *q)
+{
+    grab_request **at = &l->first;
+    while (*at && *at != q)
+        at = &(*at)->next;
+    if (*at)
+        *at = q->next;
+}
+
+/* The lock is held, but while it waits. */
+static status wait_for(live *l, grab_request *q, diagnostic *why)
+{
+    const struct timespec until = limit();
+    int waited = 0;
+    while (!q->done && !l->stopped && waited != ETIMEDOUT)
+        waited = pthread_cond_timedwait(&l->answered, &l->lock, &until);
+    if (q->done)
+        return q->code;
+    withdraw(l, q);
+    return diagnose(why, STATUS_INTERRUPTED, l->stopped ? "" : "try again when the picture moves",
+                    l->stopped ? "the laboratory is closing" : "nothing moves the slime now");
+}
+
+/* Is there something to take hold of? The lock is held. */
+static status check_on(const live *l, diagnostic *why)
+{
+    if (l->mode == LIVE_IS_OFF || !l->account.has_slime)
+        return diagnose(why, STATUS_BAD_INPUT, "let it play", "the slime is not live");
+    if (l->account.in_trouble && !l->restart)
+        return diagnose(why, STATUS_BAD_INPUT, "start it again", "the slime stands still: %s", l->account.trouble.what);
+    return STATUS_OK;
+}
+
+status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, vec3 *where, diagnostic *why)
+{
+    const double length = vec3_length(direction);
+    if (!is_finite(origin) || !(length > 0.0 && isfinite(length)) || !(reach >= 0.0 && isfinite(reach)))
+        return diagnose(why, STATUS_BAD_INPUT, "give a finite ray, and a reach that is not below 0",
+                        "it grabs along no ray");
+    grab_request q = {.origin = origin, .direction = vec3_scale(direction, 1.0 / length), .reach = reach, .why = why};
+    pthread_mutex_lock(&l->lock);
+    status code = check_on(l, why);
+    if (code == STATUS_OK) {
+        grab_request **end = &l->first;
+        while (*end)
+            end = &(*end)->next;
+        *end = &q;
+        unlock_and_wake(l);
+        pthread_mutex_lock(&l->lock);
+        code = wait_for(l, &q, why);
+    }
+    pthread_mutex_unlock(&l->lock);
+    *hand = code == STATUS_OK ? q.hand : LIVE_MISSED;
+    *where = q.where;
+    return code;
+}
+
+/* The lock is held. */
+static status find_hand(live *l, int id, live_hand **out, diagnostic *why)
+{
+    for (int i = 0; i < LIVE_HANDS_MAX; i++)
+        if (id > 0 && l->held[i].id == id && !l->held[i].let_go) {
+            *out = &l->held[i];
+            return STATUS_OK;
+        }
+    return diagnose(why, STATUS_BAD_INPUT, "grab again: what it held may have begun anew", "hand %d holds nothing", id);
+}
+
+status live_where(live *l, int hand, vec3 *where, diagnostic *why)
+{
+    live_hand *h = NULL;
+    pthread_mutex_lock(&l->lock);
+    const status code = find_hand(l, hand, &h, why);
+    if (code == STATUS_OK)
+        *where = h->where;
+    pthread_mutex_unlock(&l->lock);
+    return code;
+}
+
+status live_move(live *l, int hand, vec3 by, diagnostic *why)
+{
+    const double far = 1e6;
+    if (!(vec3_length(by) <= far))
+        return diagnose(why, STATUS_BAD_INPUT, "stay within 1e6 scene units", "the hand moves to nowhere");
+    live_hand *h = NULL;
+    pthread_mutex_lock(&l->lock);
+    const status code = find_hand(l, hand, &h, why);
+    if (code == STATUS_OK)
+        h->by = by;
+    pthread_mutex_unlock(&l->lock);
+    return code;
+}
+
+status live_release(live *l, int hand, diagnostic *why)
+{
+    live_hand *h = NULL;
+    pthread_mutex_lock(&l->lock);
+    const status code = hand == LIVE_ALL ? STATUS_OK : find_hand(l, hand, &h, why);
+    if (code != STATUS_OK) {
+        pthread_mutex_unlock(&l->lock);
+        return code;
+    }
+    for (int i = 0; i < LIVE_HANDS_MAX; i++)
+        l->held[i].let_go |= l->held[i].id > 0 && (!h || h == &l->held[i]);
+    unlock_and_wake(l);
+    return STATUS_OK;
+}
+
+bool live_is_on(live *l)
+{
+    pthread_mutex_lock(&l->lock);
+    const bool on = l->mode != LIVE_IS_OFF;
+    pthread_mutex_unlock(&l->lock);
+    return on;
+}
+
+/* The lock is held. */
+static bool is_moving(const live *l)
+{
+    const live_account *a = &l->account;
+    return l->mode == LIVE_IS_PLAYING && a->has_slime && !a->resting && !a->in_trouble;
+}
+
+bool live_is_moving(live *l)
+{
+    pthread_mutex_lock(&l->lock);
+    const bool moving = is_moving(l);
+    pthread_mutex_unlock(&l->lock);
+    return moving;
+}
+
+bool live_is_due(live *l)
+{
+    pthread_mutex_lock(&l->lock);
+    const bool due = is_moving(l) || l->ordered || l->first;
+    pthread_mutex_unlock(&l->lock);
+    return due;
+}
+
+live_preview live_preview_of(live *l)
+{
+    pthread_mutex_lock(&l->lock);
+    const live_preview preview = l->preview;
+    pthread_mutex_unlock(&l->lock);
+    return preview;
+}
+
+static json_t *json_of_trouble(const live_account *a)
+{
+    return a->in_trouble ? json_of_diagnostic(&a->trouble) : json_null();
+}
+
+json_t *live_tell(live *l)
+{
+    pthread_mutex_lock(&l->lock);
+    const live_account a = l->account;
+    const live_mode mode = l->mode;
+    const live_preview preview = l->preview;
+    pthread_mutex_unlock(&l->lock);
+    if (!a.has_slime)
+        return json_null();
+    return json_pack("{s:b, s:b, s:o, s:o, s:o, s:o, s:I, s:b, s:o, s:s, s:o}", "on", mode != LIVE_IS_OFF, "playing",
+                     mode == LIVE_IS_PLAYING && !a.in_trouble, "time_s", json_of_real(a.time_s), "speed",
+                     json_of_real(a.speed), "volume", json_of_real(a.volume), "volume_at_rest",
+                     json_of_real(a.volume_at_rest), "held", (json_int_t)a.held, "resting", a.resting, "realtime",
+                     json_of_real(a.realtime), "preview", preview == LIVE_ZBUFFER ? "zbuffer" : "traced", "trouble",
+                     json_of_trouble(&a));
+}

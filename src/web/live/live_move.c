@@ -1,0 +1,137 @@
+/* How the live slime moves: by as much time as has gone by, as far as there is time to compute it, until it is at rest.
+ */
+#include "web/live/live_private.h"
+
+#include "measure/clock.h"
+#include <math.h>
+
+/* A pause in which nothing was rendered is not caught up with. */
+static const double longest_s = 0.25, first_s = 1.0 / 60.0;
+
+void live_stand_still(live *l)
+{
+    l->moved_at_s = NAN;
+    l->realtime = 0.0;
+    l->quiet_s = 0.0;
+}
+
+static const mesh_entry *entry_of(const live *l, size_t i)
+{
+    return &l->stage->meshes[scene_motion_mesh(l->motion, i)];
+}
+
+static double longest_step_s(const live *l)
+{
+    double step_s = 0.0;
+    for (size_t i = 0; i < scene_motion_count(l->motion); i++)
+        step_s = fmax(step_s, entry_of(l, i)->slime.dt_s);
+    return step_s;
+}
+
+/* How much time is computed before the clock is looked at again. */
+static double piece_s(const live *l, double most_s, double left_s)
+{
+    const double pieces = 8.0, step_s = longest_step_s(l);
+    const double by_cost_s = l->cost > 0.0 ? most_s / pieces / l->cost : step_s;
+    return fmin(left_s, fmax(step_s, by_cost_s));
+}
+
+/* Hands go a share of the way that is left to them. */
+static void aim(live *l, double share)
+{
+    pthread_mutex_lock(&l->lock);
+    for (int i = 0; i < LIVE_HANDS_MAX; i++) {
+        const live_hand *known = &l->held[i];
+        if (known->id == 0)
+            continue;
+        motion_hand *h = &l->hands[known->slime * SOFTBODY_HANDS_MAX + (size_t)known->number];
+        const vec3 way = vec3_sub(motion_hand_way(h, known->by), h->from);
+        h->to = share >= 1.0 ? motion_hand_way(h, known->by) : vec3_add(h->from, vec3_scale(way, share));
+    }
+    pthread_mutex_unlock(&l->lock);
+}
+
+static status step_to(live *l, double time_s, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (size_t i = 0; i < scene_motion_count(l->motion) && code == STATUS_OK; i++)
+        code = scene_motion_step_held(l->motion, i, &l->hands[i * SOFTBODY_HANDS_MAX], time_s, why);
+    return code == STATUS_OK ? scene_motion_advance(l->motion, time_s, false, why) : code;
+}
+
+/* A script's hand that misses what others have drawn away is no trouble: it does no more. */
+static status step_on(live *l, double time_s, diagnostic *why)
+{
+    const status code = step_to(l, time_s, why);
+    if (code != STATUS_BAD_INPUT || !scene_motion_drop_scripts(l->motion))
+        return code;
+    *why = (diagnostic){.what = ""};
+    return step_to(l, time_s, why);
+}
+
+/* Pieces of the way until that time, or until the time for them is out. */
+static status go(live *l, double until_s, double most_s, diagnostic *why)
+{
+    const double begun_s = clock_wall_s();
+    double piece_begun_s = begun_s;
+    for (status code; l->time_s < until_s && piece_begun_s - begun_s < most_s;) {
+        const double left_s = until_s - l->time_s, now_s = piece_s(l, most_s, left_s);
+        const double to_s = now_s < left_s ? l->time_s + now_s : until_s;
+        aim(l, now_s / left_s);
+        code = step_on(l, to_s, why);
+        if (code != STATUS_OK)
+            return code;
+        l->time_s = to_s;
+        const double piece_ended_s = clock_wall_s(), cost = (piece_ended_s - piece_begun_s) / now_s, recent = 0.3;
+        l->cost = l->cost > 0.0 ? l->cost + recent * (cost - l->cost) : cost;
+        piece_begun_s = piece_ended_s;
+    }
+    return STATUS_OK;
+}
+
+/* What a vertex on the floor gains and loses in each step is no motion. */
+static bool is_quiet(const live *l)
+{
+    const double slow = 0.1; /* radii a second: a wobble of less than a pixel */
+    bool quiet = l->time_s >= scene_motion_script_end_s(l->motion);
+    for (size_t i = 0; i < scene_motion_count(l->motion) && quiet; i++) {
+        const softbody_settings *set = &entry_of(l, i)->slime;
+        const softbody_account a = entry_of(l, i)->account;
+        quiet = a.held == 0 && a.speed_max < slow * set->radius + 4.0 * vec3_length(set->gravity) * set->dt_s;
+    }
+    return quiet;
+}
+
+static void watch_rest(live *l, double gone_s)
+{
+    const double long_s = 0.25;
+    l->quiet_s = is_quiet(l) ? l->quiet_s + gone_s : 0.0;
+    if (l->quiet_s < long_s)
+        return;
+    pthread_mutex_lock(&l->lock);
+    l->account.resting = true;
+    pthread_mutex_unlock(&l->lock);
+    l->changed = true;
+}
+
+status live_move_on(live *l, double most_s, diagnostic *why)
+{
+    const double now_s = clock_wall_s(), before_s = l->time_s;
+    const bool goes_on = !isnan(l->moved_at_s);
+    const double elapsed_s = goes_on ? now_s - l->moved_at_s : first_s;
+    l->moved_at_s = now_s;
+    status code = go(l, before_s + fmin(elapsed_s, longest_s), most_s, why);
+    if (code != STATUS_OK)
+        return code; /* skins as they lay */
+    code = scene_motion_advance(l->motion, l->time_s, true, why);
+    if (code != STATUS_OK)
+        return code;
+    const double gone_s = l->time_s - before_s, memory_s = 0.5;
+    if (goes_on && elapsed_s > 0.0)
+        l->realtime += (gone_s / elapsed_s - l->realtime) * fmin(1.0, elapsed_s / memory_s);
+    else
+        l->realtime = 1.0;
+    l->moved = true;
+    watch_rest(l, gone_s);
+    return STATUS_OK;
+}

@@ -1,0 +1,14 @@
+/* How the painter makes its pictures; see web/live/painter.h for those who look at them. */
+#ifndef CUVETTE_WEB_LIVE_PICTURE_H
+#define CUVETTE_WEB_LIVE_PICTURE_H
+
+#include "web/live/painter.h"
+#include <pthread.h>
+#include <stdatomic.h>
+
+typedef struct shared_picture shared_picture;
+
+/* One owner; takes shown's image and scene. NULL when memory is out: they are then the caller's still. */
+const picture *picture_create(const picture *shown);
+
+#endif

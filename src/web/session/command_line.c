@@ -1,0 +1,138 @@
+#include "web/session/command_line.h"
+#include "base/text.h"
+#include "base/text_writer.h"
+#include "scene/model/params.h"
+#include "scene/file/write.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* In single quotes where a shell would read it otherwise than it is. */
+static void write_word(FILE *out, const char *word)
+{
+    if (*word && word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,=:+-")] == 0) {
+        fputs(word, out);
+        return;
+    }
+    fputc('\'', out);
+    for (const char *c = word; *c; c++)
+        fputs(*c == '\'' ? "'\\''" : (const char[]){*c, 0}, out);
+    fputc('\'', out);
+}
+
+static const char *material_of(const scene *s, const solid *one)
+{
+    return one->material_index >= 0 ? s->materials[one->material_index].name : "";
+}
+
+static bool same_solids(const scene *a, const scene *b)
+{
+    bool same = a->solid_count == b->solid_count;
+    for (size_t i = 0; i < a->solid_count && same; i++)
+        same = strcmp(a->solids[i].name, b->solids[i].name) == 0 &&
+               a->solids[i].shape.kind == b->solids[i].shape.kind &&
+               strcmp(material_of(a, &a->solids[i]), material_of(b, &b->solids[i])) == 0;
+    return same;
+}
+
+/* Have they the same objects, so that parameters alone tell them apart? */
+static bool same_objects(const scene *a, const scene *b)
+{
+    bool same = same_solids(a, b) && a->light_count == b->light_count && a->material_count == b->material_count &&
+                a->mesh_count == b->mesh_count && a->texture_count == b->texture_count;
+    for (size_t i = 0; i < a->light_count && same; i++)
+        same = strcmp(a->lights[i].name, b->lights[i].name) == 0;
+    for (size_t i = 0; i < a->material_count && same; i++)
+        same = strcmp(a->materials[i].name, b->materials[i].name) == 0;
+    for (size_t i = 0; i < a->mesh_count && same; i++)
+        same = strcmp(a->meshes[i].name, b->meshes[i].name) == 0;
+    for (size_t i = 0; i < a->texture_count && same; i++)
+        same = strcmp(a->textures[i].name, b->textures[i].name) == 0;
+    return same;
+}
+
+/* What the options so far have made of the file's scene. */
+typedef struct writing {
+    FILE *out;
+    scene *so_far;
+    bool camera; /* is aimed otherwise: say all of it */
+} writing;
+
+static status add_option(void *of, const char *path, const param *row, const char *value)
+{
+    writing *w = of;
+    char *now = NULL;
+    status code = scene_get(w->so_far, path, &now, NULL);
+    if (code != STATUS_OK || strcmp(now, value) != 0 || (w->camera && row->group == PARAM_CAMERA)) {
+        code = scene_set(w->so_far, path, value, NULL);
+        char *both = text_format("%s=%s", path, value);
+        fputs(" --set ", w->out);
+        write_word(w->out, both ? both : "");
+        free(both);
+    }
+    free(now);
+    return code;
+}
+
+static status read_again(const folder *files, const char *file, int threads, scene **out, char **path)
+{
+    diagnostic unread;
+    status code = folder_path(files, file, true, path, &unread);
+    if (code == STATUS_OK)
+        code = scene_read_below(*path, folder_real(files), out, &unread);
+    if (code == STATUS_OK && threads > 0 && (*out)->render.threads == 1)
+        (*out)->render.threads = threads;
+    return code;
+}
+
+/* As it reads from that file, whose folder need not be the one that its own paths start from; NULL where it cannot be.
+ */
+static scene *seen_from(const scene *s, const char *path)
+{
+    if (strcmp(s->path, path) == 0)
+        return scene_clone(s);
+    scene *seen = NULL;
+    char *text = NULL;
+    diagnostic unsaid;
+    if (scene_write_text(s, path, false, &text, &unsaid) == STATUS_OK &&
+        scene_read_text(path, text, strlen(text), &seen, &unsaid) != STATUS_OK)
+        seen = NULL;
+    free(text);
+    return seen;
+}
+
+static bool write_line(FILE *out, scene *from, const char *path, const scene *s)
+{
+    fputs("cuvette render ", out);
+    write_word(out, path);
+    scene *seen = seen_from(s, path);
+    writing w = {.out = out, .so_far = from};
+    if (seen)
+        w.camera = from->camera.aimed != seen->camera.aimed;
+    const bool whole = seen && same_objects(from, seen) && scene_each_param(seen, add_option, &w) == STATUS_OK;
+    scene_destroy(seen);
+    fputs(" -o picture.png", out);
+    return whole;
+}
+
+status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,
+                    diagnostic *why)
+{
+    scene *from = NULL;
+    char *path = NULL;
+    *complete = false;
+    *text = NULL;
+    text_writer writer;
+    const status code = text_writer_open(&writer, why);
+    if (code != STATUS_OK)
+        return code;
+    if (file && read_again(files, file, threads, &from, &path) == STATUS_OK)
+        *complete = write_line(writer.stream, from, path, s);
+    else
+        fputs("cuvette render scene.yaml -o picture.png", writer.stream);
+    scene_destroy(from);
+    free(path);
+    return text_writer_close(&writer, text, NULL, why);
+}

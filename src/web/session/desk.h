@@ -1,0 +1,57 @@
+/* The scene that all pages work at, and how it came to be: each change makes a new generation of it; undo and redo go
+ * through them. For any number of threads. A change is done to a copy, which is checked as a whole and against the
+ * bounds below before it takes the place of the scene, so that nobody ever sees a half of one. Ownership: desk_create
+ * gives, desk_destroy releases; scenes that go in or come out belong to the receiver, but for the desk's own copy in a
+ * change. Errors: STATUS_BAD_INPUT with the reason; the scene is then as it was. */
+#ifndef CUVETTE_WEB_SESSION_DESK_H
+#define CUVETTE_WEB_SESSION_DESK_H
+
+#include "web/session/folder.h"
+
+typedef struct desk desk;
+
+/* Of what is on the desk: a render must be bounded, in memory and so that it ends. */
+enum { DESK_PIXELS_MAX = 16777216, DESK_TRIANGLES_MAX = 4000000, DESK_UNDO_MAX = 200 };
+#define DESK_WORK_MAX 1e12 /* pixels * (samples or paths) * wavelengths */
+
+/* Takes the scene, also after an error. changed is called, with the desk unlocked, after each change. file: its name as
+ * pages see it, NULL for a new one. files is borrowed: what a scene names must lie in it, and nothing else is opened
+ * when a copy of it is loaded. */
+status desk_create(scene *first, const char *file, const folder *files, void (*changed)(void *context), void *context,
+                   desk **out, diagnostic *why);
+void desk_destroy(desk *d); /* NULL is allowed */
+
+/* Does something to a copy of the scene. */
+typedef status desk_change(void *context, scene *s, diagnostic *why);
+
+/* what: a few words for undo ("set liquid.ior"), copied. gesture: NULL, or a text; changes of one gesture in a row are
+ * one step of undo. generation may be NULL. */
+status desk_apply(desk *d, const char *what, const char *gesture, desk_change *change, void *context,
+                  uint64_t *generation, diagnostic *why);
+
+/* Another scene takes its place, from a file or new (file NULL): a change like others, to which resets go back from now
+ * on. Takes s, also after an error. */
+status desk_open(desk *d, scene *s, const char *file, uint64_t *generation, diagnostic *why);
+
+/* STATUS_BAD_INPUT when there is nothing to undo (or redo). */
+status desk_undo(desk *d, bool redo, uint64_t *generation, diagnostic *why);
+
+/* To the values at which the scene was opened: of these paths, or of all and of the objects themselves (count 0). */
+status desk_reset(desk *d, const char *const *paths, size_t count, uint64_t *generation, diagnostic *why);
+
+/* A copy with what is loaded of it (triangles, textures); NULL when memory is out. generation may be NULL. */
+scene *desk_take(desk *d, uint64_t *generation);
+/* The same of the scene as it was opened. */
+scene *desk_take_opened(desk *d);
+uint64_t desk_generation(desk *d);
+
+/* What was loaded for a copy of that generation is kept for the copies to come. loaded is borrowed. */
+void desk_lend(desk *d, const scene *loaded, uint64_t generation);
+
+/* It was written to that file. */
+void desk_saved(desk *d, const char *file, uint64_t generation);
+
+/* Adds generation, file, title, saved, undo, redo; false when memory is out. */
+bool desk_tell(desk *d, json_t *state);
+
+#endif

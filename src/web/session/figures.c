@@ -1,0 +1,148 @@
+#include "web/session/figures.h"
+#include "base/file.h"
+#include "base/text.h"
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIGURE_NAME_MAX = 64, FIGURES_MAX = 200, SVG_MAX = 32 << 20, SCRIPT_MAX = 1 << 20 };
+
+bool figure_name_is_fit(const char *name)
+{
+    const size_t length = strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789-");
+    return length > 0 && length <= FIGURE_NAME_MAX && !name[length];
+}
+
+/* results/figures, as a name in the chosen folder; NULL where it is not in it. */
+static char *figures_folder(const lab *l)
+{
+    char *path = text_format("%s/figures", l->settings.results), *name = path ? folder_name(l->files, path) : NULL;
+    free(path);
+    return name;
+}
+
+/* The path of a file in a folder that is named within the chosen one. */
+static status inner_path(const lab *l, const char *in, const char *name, const char *ending, char **path,
+                         diagnostic *why)
+{
+    char *inner = in ? text_format("%s/%s%s", in, name, ending) : NULL;
+    const status code = inner ? folder_path(l->files, inner, true, path, why)
+                              : diagnose(why, STATUS_BAD_INPUT, "", "there is no such figure");
+    free(inner);
+    return code;
+}
+
+status figure_read(const lab *l, const char *name, char **svg, size_t *size, diagnostic *why)
+{
+    char *in = figures_folder(l), *path = NULL;
+    status code =
+        figure_name_is_fit(name)
+            ? inner_path(l, in, name, ".svg", &path, why)
+            : diagnose(why, STATUS_BAD_INPUT, "small letters, digits and - name a figure", "this names no figure");
+    if (code == STATUS_OK)
+        code = file_read_below(path, folder_real(l->files), SVG_MAX, svg, size, why);
+    free(path);
+    free(in);
+    return code;
+}
+
+/* --- which are a study's --- */
+
+static bool needs_it(const char *need, size_t length, const char *of)
+{
+    static const char tables[] = "tables/";
+    const size_t name = strlen(of);
+    if (length > name && strncmp(need, of, name) == 0 && need[name] == '/')
+        return true;
+    if (length < sizeof tables - 1 || strncmp(need, tables, sizeof tables - 1) != 0)
+        return false;
+    need += sizeof tables - 1;
+    if (strncmp(need, of, name) != 0)
+        return false;
+    static const char *const endings[] = {".tsv", "-metrics.tsv", "-curves.tsv", "-motion.tsv"};
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (strncmp(need + name, endings[i], strlen(endings[i])) == 0)
+            return true;
+    return false;
+}
+
+/* Does the script's head say that it needs the study's rows? *says: it says what it needs. */
+static bool script_needs(const lab *l, const char *figure, const char *of, bool *says)
+{
+    char *path = NULL, *text = NULL;
+    size_t size;
+    bool needs = false;
+    *says = false;
+    if (inner_path(l, "plots", figure, ".gp", &path, NULL) == STATUS_OK &&
+        file_read_below(path, folder_real(l->files), SCRIPT_MAX, &text, &size, NULL) == STATUS_OK) {
+        static const char key[] = "# needs:";
+        for (const char *line = text; line && *line == '#' && !needs; line = strchr(line, '\n'), line += line != NULL) {
+            if (strncmp(line, key, sizeof key - 1) != 0)
+                continue;
+            *says = true;
+            for (const char *at = line + sizeof key - 1; *at == ' ' && !needs; at += strcspn(at, " \n")) {
+                at += strspn(at, " ");
+                needs = needs_it(at, strcspn(at, " \n"), of);
+            }
+        }
+    }
+    free(text);
+    free(path);
+    return needs;
+}
+
+static bool is_of(const lab *l, const char *figure, const char *of)
+{
+    bool says;
+    const size_t length = strlen(of);
+    if (script_needs(l, figure, of, &says))
+        return true;
+    return !says && strncmp(figure, of, length) == 0 && (!figure[length] || figure[length] == '-');
+}
+
+/* The names of a folder's files with that ending, which name figures, and for which wanted says so. */
+static json_t *names_in(const char *path, const char *ending, bool (*wanted)(const lab *, const char *, const char *),
+                        const lab *l, const char *of)
+{
+    struct dirent **entries = NULL;
+    json_t *names = json_array();
+    const int count = path ? scandir(path, &entries, NULL, alphasort) : 0;
+    for (int i = 0; i < count; i++) {
+        char *dot = strrchr(entries[i]->d_name, '.');
+        const bool ends = dot && strcmp(dot, ending) == 0;
+        if (ends)
+            *dot = 0;
+        if (ends && names && json_array_size(names) < FIGURES_MAX && figure_name_is_fit(entries[i]->d_name) &&
+            wanted(l, entries[i]->d_name, of))
+            json_array_append_new(names, json_string(entries[i]->d_name));
+        free(entries[i]);
+    }
+    free(entries);
+    return names;
+}
+
+json_t *figures_of(const lab *l, const char *of)
+{
+    char *in = figures_folder(l), *path = in ? text_format("%s/figures", l->settings.results) : NULL;
+    json_t *names = names_in(path, ".svg", is_of, l, of);
+    free(path);
+    free(in);
+    return names;
+}
+
+static bool is_drawn_from(const lab *l, const char *figure, const char *of)
+{
+    bool says;
+    return script_needs(l, figure, of, &says);
+}
+
+json_t *figures_drawable(const lab *l, const char *of)
+{
+    char *script = NULL;
+    if (inner_path(l, "plots", "draw", ".sh", &script, NULL) != STATUS_OK)
+        return json_array();
+    *strrchr(script, '/') = 0;
+    json_t *names = names_in(script, ".gp", is_drawn_from, l, of);
+    free(script);
+    return names;
+}

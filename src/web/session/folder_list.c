@@ -1,0 +1,207 @@
+/* What is in the folder that the laboratory can open: told by endings, and scenes from scripts of hands by what they
+ * say. Folders nearer to the top go first, so that a large one far down hides nothing above it. */
+#include "web/session/folder.h"
+#include "base/text.h"
+#include "scene/file/document.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+enum { DEPTH_MAX = 3, LOOKED_AT_MAX = 50000, DOCUMENT_MAX = 1 << 20 };
+
+typedef enum file_use { USE_SCENE, USE_MODEL, USE_PICTURE, USE_SCRIPT, USE_STUDY, USE_COUNT } file_use;
+static const char *const use_names[USE_COUNT] = {"scenes", "models", "pictures", "scripts", "studies"};
+
+static const struct ending {
+    const char *text;
+    file_use use;
+} endings[] = {
+    {".yaml", USE_SCENE},  {".yml", USE_SCENE},   {".obj", USE_MODEL},   {".ply", USE_MODEL},   {".stl", USE_MODEL},
+    {".gltf", USE_MODEL},  {".glb", USE_MODEL},   {".png", USE_PICTURE}, {".jpg", USE_PICTURE}, {".jpeg", USE_PICTURE},
+    {".pfm", USE_PICTURE}, {".bmp", USE_PICTURE}, {".study", USE_STUDY},
+};
+
+/* Names relative to the folder, owned. */
+typedef struct names {
+    char **name;
+    size_t count, room;
+} names;
+
+typedef struct listing {
+    const folder *of;
+    names found[USE_COUNT], next; /* next: folders of the next level */
+    size_t files, looked_at;
+    bool out_of_memory;
+} listing;
+
+/* Takes the name. */
+static void keep(listing *l, names *list, char *name)
+{
+    if (name && list->count == list->room) {
+        const size_t room = list->room ? 2 * list->room : 64;
+        char **grown = realloc(list->name, room * sizeof *grown);
+        if (grown) {
+            list->name = grown;
+            list->room = room;
+        }
+    }
+    if (!name || list->count == list->room) {
+        free(name);
+        l->out_of_memory = true;
+        return;
+    }
+    list->name[list->count++] = name;
+}
+
+static void forget(names *list)
+{
+    for (size_t i = 0; i < list->count; i++)
+        free(list->name[i]);
+    free(list->name);
+    *list = (names){.name = NULL};
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static void sort(const names *list)
+{
+    if (list->count > 1)
+        qsort(list->name, list->count, sizeof *list->name, by_name);
+}
+
+static file_use use_by_ending(const char *name)
+{
+    const char *ending = strrchr(name, '.');
+    for (size_t i = 0; ending && i < sizeof endings / sizeof *endings; i++)
+        if (strcasecmp(ending, endings[i].text) == 0)
+            return endings[i].use;
+    return USE_COUNT;
+}
+
+/* A YAML file is what its keys say; one that cannot be read is listed with the scenes, so that opening it says what is
+ * wrong. */
+static file_use use_by_keys(const folder *f, const char *path)
+{
+    static const char *const of_scenes[] = {"solids",     "camera", "lights",    "render",
+                                            "background", "meshes", "materials", "textures"};
+    document *file;
+    if (document_read_below(path, folder_real(f), &file, NULL) != STATUS_OK)
+        return USE_SCENE;
+    const node *root = document_root(file);
+    file_use use = USE_COUNT;
+    if (root->kind == NODE_MAP && node_get(root, "hands"))
+        use = USE_SCRIPT;
+    for (size_t i = 0; root->kind == NODE_MAP && use == USE_COUNT && i < sizeof of_scenes / sizeof *of_scenes; i++)
+        use = node_get(root, of_scenes[i]) ? USE_SCENE : USE_COUNT;
+    document_destroy(file);
+    return use;
+}
+
+/* Takes the name. Links count where they lead to a file within the folder. */
+static void look_at_file(listing *l, char *name)
+{
+    file_use use = use_by_ending(name);
+    char *path = NULL;
+    struct stat about;
+    if (use == USE_COUNT || folder_path(l->of, name, true, &path, NULL) != STATUS_OK) {
+        free(name);
+        return;
+    }
+    if (use == USE_SCENE)
+        use = stat(path, &about) == 0 && about.st_size <= DOCUMENT_MAX ? use_by_keys(l->of, path) : USE_COUNT;
+    free(path);
+    if (use == USE_COUNT) {
+        free(name);
+        return;
+    }
+    l->files++;
+    keep(l, &l->found[use], name);
+}
+
+static bool is_text(const char *name)
+{
+    json_t *text = json_string(name); /* NULL where it is not UTF-8 */
+    json_decref(text);
+    return text != NULL;
+}
+
+/* Below the folder, whose name is "" for the chosen one itself. */
+static char *join(const char *folder_of_it, const char *name)
+{
+    return text_format("%s%s%s", folder_of_it, *folder_of_it ? "/" : "", name);
+}
+
+/* Takes the name. Links to folders are not followed, so that nothing is listed twice. */
+static void look_at(listing *l, char *name)
+{
+    struct stat about;
+    char *path = join(folder_root(l->of), name);
+    const bool is_folder = path && lstat(path, &about) == 0 && S_ISDIR(about.st_mode);
+    l->out_of_memory |= !path;
+    free(path);
+    if (is_folder)
+        keep(l, &l->next, name);
+    else
+        look_at_file(l, name);
+}
+
+/* All names of a folder before any is looked at, so that what is left out does not depend on the order in which the
+ * system tells them. */
+static void look_into(listing *l, const char *name)
+{
+    char *path = join(folder_root(l->of), name);
+    DIR *d = path ? opendir(path) : NULL;
+    l->out_of_memory |= !path;
+    free(path);
+    names here = {.name = NULL};
+    for (const struct dirent *e; d && !l->out_of_memory && l->looked_at < LOOKED_AT_MAX && (e = readdir(d));
+         l->looked_at++)
+        if (e->d_name[0] != '.' && is_text(e->d_name))
+            keep(l, &here, join(name, e->d_name));
+    if (d)
+        closedir(d);
+    sort(&here);
+    for (size_t i = 0; i < here.count && l->files < FOLDER_FILES_MAX; i++) {
+        look_at(l, here.name[i]);
+        here.name[i] = NULL;
+    }
+    forget(&here);
+}
+
+static json_t *tell(const listing *l)
+{
+    json_t *all = json_object();
+    json_object_set_new(all, "folder", json_string_nocheck(folder_title(l->of)));
+    for (int use = 0; use < USE_COUNT; use++) {
+        json_t *list = json_array();
+        sort(&l->found[use]);
+        for (size_t i = 0; i < l->found[use].count; i++)
+            json_array_append_new(list, json_string(l->found[use].name[i]));
+        json_object_set_new(all, use_names[use], list);
+    }
+    return all;
+}
+
+json_t *folder_tell(const folder *f)
+{
+    listing l = {.of = f};
+    look_into(&l, "");
+    for (int depth = 1; depth <= DEPTH_MAX; depth++) {
+        names level = l.next;
+        l.next = (names){.name = NULL};
+        for (size_t i = 0; i < level.count && l.files < FOLDER_FILES_MAX; i++)
+            look_into(&l, level.name[i]);
+        forget(&level);
+    }
+    json_t *all = l.out_of_memory ? NULL : tell(&l);
+    forget(&l.next);
+    for (int use = 0; use < USE_COUNT; use++)
+        forget(&l.found[use]);
+    return all;
+}

@@ -1,0 +1,191 @@
+#include "web/session/study_files.h"
+#include "base/text.h"
+#include "scene/file/document.h"
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* --- files --- */
+
+/* The name that it gives itself, without looking at the rest of it; else the file's own. */
+static char *name_of(const lab *l, const char *file)
+{
+    char *path = NULL, *name = NULL;
+    document *d = NULL;
+    if (folder_path(l->files, file, true, &path, NULL) == STATUS_OK &&
+        document_read_below(path, folder_real(l->files), &d, NULL) == STATUS_OK) {
+        const node *root = document_root(d), *given = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
+        if (given && given->kind == NODE_SCALAR && given->text[0])
+            name = strdup(given->text);
+    }
+    document_destroy(d);
+    free(path);
+    if (name)
+        return name;
+    const char *last = strrchr(file, '/'), *stem = last ? last + 1 : file, *dot = strrchr(stem, '.');
+    return strndup(stem, dot ? (size_t)(dot - stem) : strlen(stem));
+}
+
+status study_each(const lab *l, bool (*visit)(void *context, const char *name, const char *file), void *context,
+                  diagnostic *why)
+{
+    json_t *told = folder_tell(l->files);
+    status code = told ? STATUS_OK : out_of_memory(why);
+    const json_t *files = json_object_get(told, "studies");
+    bool go_on = true;
+    for (size_t i = 0; go_on && code == STATUS_OK && i < json_array_size(files); i++) {
+        const char *file = json_string_value(json_array_get(files, i));
+        char *name = file ? name_of(l, file) : NULL;
+        if (name)
+            go_on = visit(context, name, file);
+        else
+            code = out_of_memory(why);
+        free(name);
+    }
+    json_decref(told);
+    return code;
+}
+
+typedef struct wanted {
+    const char *name;
+    char *file;
+} wanted;
+
+static bool is_wanted(void *context, const char *name, const char *file)
+{
+    wanted *w = context;
+    if (strcmp(name, w->name) != 0)
+        return true;
+    w->file = strdup(file);
+    return false;
+}
+
+status study_find(const lab *l, const char *name, char **file, diagnostic *why)
+{
+    wanted w = {.name = name};
+    const status code = study_each(l, is_wanted, &w, why);
+    *file = w.file;
+    return code;
+}
+
+/* --- what it may read --- */
+
+static status may_open(void *context, const char *path, diagnostic *why)
+{
+    const lab *l = context;
+    char *name = folder_name(l->files, path);
+    const bool inside = name != NULL;
+    free(name);
+    return inside ? STATUS_OK
+                  : diagnose(why, STATUS_BAD_INPUT, "name a scene in the folder that the laboratory was started with",
+                             "the scene lies outside of the folder");
+}
+
+static status may_load(void *context, const scene *setting, diagnostic *why)
+{
+    const lab *l = context;
+    return folder_check_scene(l->files, setting, why);
+}
+
+status study_open(const lab *l, const char *file, study **out, diagnostic *why)
+{
+    const study_guard guard = {may_open, may_load, (void *)(uintptr_t)l, folder_real(l->files)};
+    char *path = NULL;
+    *out = NULL;
+    status code = folder_path(l->files, file, true, &path, why);
+    if (code == STATUS_OK)
+        code = study_read_guarded(path, &guard, out, why);
+    free(path);
+    return code;
+}
+
+/* --- where its rows lie --- */
+
+static status check_inside(const lab *l, const char *path, diagnostic *why)
+{
+    char *name = folder_name(l->files, path);
+    if (name) {
+        free(name);
+        return STATUS_OK;
+    }
+    diagnostic_locate(why, path, 0, 0);
+    return diagnose(why, STATUS_BAD_INPUT, "let the results lie in the folder that the laboratory was started with",
+                    "it lies outside of the folder");
+}
+
+static status check_links(const lab *l, const char *path, diagnostic *why)
+{
+    DIR *open = opendir(path);
+    if (!open)
+        return errno == ENOENT ? STATUS_OK
+                               : check_inside(l, path, why); /* who wants to read or write there hears of the rest */
+    status code = STATUS_OK;
+    for (struct dirent *entry; code == STATUS_OK && (entry = readdir(open));) {
+        if (entry->d_type != DT_LNK && entry->d_type != DT_UNKNOWN)
+            continue;
+        char *inner = text_format("%s/%s", path, entry->d_name);
+        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+            code = inner ? check_inside(l, inner, why) : out_of_memory(why);
+        free(inner);
+    }
+    closedir(open);
+    return code;
+}
+
+status study_check_results(const lab *l, const char *results, const char *name, diagnostic *why)
+{
+    char *own = text_format("%s/%s", results, name);
+    status code = own ? check_inside(l, own, why) : out_of_memory(why);
+    if (code == STATUS_OK)
+        code = check_links(l, own, why);
+    free(own);
+    return code;
+}
+
+/* --- other runs --- */
+
+enum { RUNS_DEEP = 3, RUNS_MAX = 200, RUNS_LOOKED_MAX = 20000 };
+
+typedef struct run_search {
+    const char *name;
+    json_t *found;
+    int looked;
+} run_search;
+
+static int is_shown_folder(const struct dirent *entry)
+{
+    return entry->d_type == DT_DIR && entry->d_name[0] != '.';
+}
+
+/* below: the folder's name in the chosen one, "" for that itself. */
+static void search_runs(run_search *search, const char *path, const char *below, int depth)
+{
+    struct dirent **entries = NULL;
+    const int count = scandir(path, &entries, is_shown_folder, alphasort);
+    for (int i = 0; i < count; i++) {
+        char *inner = text_format("%s/%s", path, entries[i]->d_name),
+             *name = text_format("%s%s%s", below, below[0] ? "/" : "", entries[i]->d_name);
+        char *rows = inner ? text_format("%s/%s/rows.csv", inner, search->name) : NULL;
+        if (rows && name && search->looked++ < RUNS_LOOKED_MAX) {
+            if (access(rows, R_OK) == 0 && json_array_size(search->found) < RUNS_MAX)
+                json_array_append_new(search->found, json_string(name)); /* none for a name that is not UTF-8 */
+            if (depth < RUNS_DEEP)
+                search_runs(search, inner, name, depth + 1);
+        }
+        free(rows);
+        free(name);
+        free(inner);
+        free(entries[i]);
+    }
+    free(entries);
+}
+
+json_t *study_runs(const lab *l, const char *name)
+{
+    run_search search = {.name = name, .found = json_array()};
+    if (search.found)
+        search_runs(&search, folder_root(l->files), "", 1);
+    return search.found;
+}
