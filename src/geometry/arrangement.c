@@ -25,6 +25,7 @@ static void add_body(arrangement *a, int rank, const body_source *source)
     shape->primitives(source->shape, parts);
     a->opaque_ranks |= (uint64_t)source->opaque << (rank - 1);
     body *b = &a->bodies[rank];
+    a->shapes[rank] = *source->shape;
     *b = (body){.outside = a->primitive_count,
                 .hollow = n == 2 ? a->primitive_count + 1 : -1,
                 .medium = source->medium,
@@ -80,8 +81,9 @@ status arrangement_build(const body_source *sources, int count, int64_t outside_
     if (a) {
         a->primitives = calloc((size_t)primitives + 1, sizeof *a->primitives);
         a->bodies = calloc((size_t)count + 1, sizeof *a->bodies);
+        a->shapes = calloc((size_t)count + 1, sizeof *a->shapes);
     }
-    if (!a || !order || !a->primitives || !a->bodies) {
+    if (!a || !order || !a->primitives || !a->bodies || !a->shapes) {
         free(order);
         arrangement_destroy(a);
         return out_of_memory(why);
@@ -109,6 +111,7 @@ void arrangement_destroy(arrangement *a)
     forest_destroy(a->meshes);
     free(a->primitives);
     free(a->bodies);
+    free(a->shapes);
     free(a);
 }
 

@@ -312,6 +312,12 @@ int scene_find_solid(const scene *s, const char *name);
 
 /* The mesh or texture of that name; NULL if there is none. */
 const mesh_entry *scene_find_mesh(const scene *s, const char *name);
+/* The mesh that a solid shows; NULL if it is of a shape without triangles, or names none that is there. */
+const mesh_entry *scene_mesh_of(const scene *s, const solid *owner);
+/* The solid's shape with the triangles of its mesh, where they are loaded. */
+solid_shape scene_loaded_shape(const scene *s, const solid *owner);
+/* Is it of a shape with triangles, and names that mesh? */
+bool solid_shows(const solid *owner, const char *mesh_name);
 const texture_entry *scene_find_texture(const scene *s, const char *name);
 
 /* Gives each mesh of s that is not loaded the triangles of a mesh with the same parameters in another scene, where
