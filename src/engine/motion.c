@@ -4,6 +4,7 @@
 #include "geometry/shapes/shape.h"
 #include "scene/model/params_path.h"
 #include "scene/model/slime.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,6 +3,7 @@
 #include "geometry/shapes/shape.h"
 #include "lint/parts.h"
 #include "scene/model/hints.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
 

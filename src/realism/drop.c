@@ -6,6 +6,7 @@
 #include "geometry/shapes/shape.h"
 
 #include "optics/media.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <string.h>
 

@@ -3,8 +3,9 @@
 #ifndef CUVETTE_REALISM_SETUP_H
 #define CUVETTE_REALISM_SETUP_H
 
+#include "geometry/solid.h"
 #include "realism/theory.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef enum setup_medium { SETUP_OUTSIDE, SETUP_VESSEL, SETUP_LIQUID, SETUP_MEDIA } setup_medium;
 

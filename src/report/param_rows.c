@@ -1,3 +1,4 @@
+#include "geometry/solid.h"
 #include "report/param_rows.h"
 #include "geometry/shapes/shape.h"
 #include "report/json.h"

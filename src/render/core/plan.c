@@ -2,6 +2,7 @@
 #include "geometry/shapes/shape.h"
 
 #include "render/shade/sky.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,6 +2,7 @@
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/file/read_entries.h"
+#include "scene/model/scene.h"
 
 #include <string.h>
 

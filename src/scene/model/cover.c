@@ -1,6 +1,7 @@
 #include "scene/model/cover.h"
 #include "geometry/shapes/placed.h"
 #include "scene/model/camera.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 

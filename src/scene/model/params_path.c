@@ -1,6 +1,7 @@
 #include "scene/model/params_path.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/suggest.h"
+#include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>

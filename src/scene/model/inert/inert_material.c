@@ -3,6 +3,7 @@
 #include "geometry/shapes/shape.h"
 #include "scene/model/cover.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 #include <string.h>
 

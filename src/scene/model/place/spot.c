@@ -1,6 +1,7 @@
 #include "scene/model/place/spot.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdio.h>
