@@ -85,6 +85,14 @@ void cylinder_fit(solid_shape *shape, double size)
     shape->height = size;
 }
 
+int cylinder_rings(const solid_shape *shape, shape_ring *out)
+{
+    const double r = shape->radius;
+    out[0] = (shape_ring){.x = r, .z = r / shape->m};
+    out[1] = (shape_ring){.y = shape->height, .x = r, .z = r / shape->m};
+    return 2;
+}
+
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     (void)part;
@@ -113,6 +121,7 @@ const shape_rule shape_cylinder = {
     .covers = cylinder_covers,
     .thickness = thickness,
     .fit = cylinder_fit,
+    .rings = cylinder_rings,
     .tessellation = tessellation,
     .tessellation_scale = cylinder_tessellation_scale,
 };
