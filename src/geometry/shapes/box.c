@@ -80,6 +80,7 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
 
 const shape_rule shape_box = {
     .word = "box",
+    .meaning = "|x|, |y| and |z| at most half of its size; its position is its centre",
     .parameters = WORDS("size"),
     .check = check,
     .contains = contains,

@@ -101,6 +101,8 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
 
 const shape_rule shape_cup = {
     .word = "cup",
+    .meaning = "a cylinder less one of inner_radius that stands on its floor and is open at the top; its "
+               "position is the centre of its base",
     .parameters = WORDS("radius", "height", "m", "inner_radius", "floor"),
     .hollow = true,
     .curved = true,

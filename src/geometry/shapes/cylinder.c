@@ -107,6 +107,7 @@ vec3 cylinder_tessellation_scale(const solid_shape *shape)
 
 const shape_rule shape_cylinder = {
     .word = "cylinder",
+    .meaning = "x^2 + m^2 z^2 <= radius^2, 0 <= y <= height; its position is the centre of its base",
     .parameters = WORDS("radius", "height", "m"),
     .curved = true,
     .check = cylinder_check,

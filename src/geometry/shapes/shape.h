@@ -45,6 +45,7 @@ typedef struct round_frame {
 
 typedef struct shape_rule {
     const char *word;              /* in files: "cylinder" */
+    const char *meaning;           /* one line for the manual, in its own frame, no full stop */
     const char *added_as;          /* what a new one is called; NULL: by its word */
     const char *const *parameters; /* of the parameter table, those that it has and not every solid, with NULL behind;
                                     * NULL for none */
@@ -99,6 +100,8 @@ bool shape_has(const shape_rule *rule, const char *parameter);
 /* "surface" where it has no name. face: of the body, primitive * FACES_MAX + face. */
 const char *shape_face_name(const shape_rule *rule, int64_t face);
 
+/* A point, as a solid that holds nothing else. */
+solid_shape shape_point(vec3 at);
 placed_shape shape_placed(const solid_shape *shape);
 /* How far it reaches along a local direction: as farthest says, of triangles as the box around them does. */
 double shape_reach(const solid_shape *shape, vec3 direction);

@@ -76,8 +76,14 @@ static vec3 tessellation_scale(const solid_shape *shape)
     return vec3_make(shape->radius, shape->radius, shape->radius);
 }
 
+solid_shape shape_point(vec3 at)
+{
+    return (solid_shape){.kind = SHAPE_SPHERE, .position = at};
+}
+
 const shape_rule shape_sphere = {
     .word = "sphere",
+    .meaning = "x^2 + y^2 + z^2 <= radius^2; its position is its centre",
     .parameters = WORDS("radius"),
     .isotropic = true,
     .curved = true,

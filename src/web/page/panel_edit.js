@@ -34,12 +34,14 @@ function fileButtons() {
 }
 
 /* What there is to add is known with the first scene. */
-function shapeButtons(lab, small) {
+function shapeButtons(lab) {
   const node = element('div', { class: 'buttons', role: 'group', 'aria-label': 'Add a solid' });
   const fill = () => {
     if (node.firstChild || !lab.scene) return;
-    for (const { shape, added_as: name } of lab.scene.shapes)
-      node.append(small(name[0].toUpperCase() + name.slice(1), () => choice.add({ kind: 'solid', shape })));
+    for (const { shape, meaning, added_as: name } of lab.scene.shapes) {
+      const label = name[0].toUpperCase() + name.slice(1);
+      node.append(button(label, () => choice.add({ kind: 'solid', shape }), { small: true, title: meaning }));
+    }
   };
   lab.on('scene', fill);
   fill();
@@ -51,7 +53,7 @@ function addButtons(lab) {
   return group(
     'Add',
     { id: 'edit.add' },
-    shapeButtons(lab, small),
+    shapeButtons(lab),
     element(
       'div',
       { class: 'buttons', role: 'group', 'aria-label': 'Add something else' },
