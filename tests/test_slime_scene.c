@@ -4,7 +4,7 @@
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
 #include "scene/file/write.h"
-#include "study/shelf.h"
+#include "job/shelf.h"
 #include <limits.h>
 
 static const char tug[] = "hands:\n"

@@ -40,24 +40,21 @@ static char *write_row(const study *s, const scene *setting, bool workers)
     frame.counters.first_hits[0] = 60;
     frame.counters.first_hits[1] = 40;
     frame.counters.hits[1] = 80;
-    study_row row = {.of = s,
-                     .cell = 3,
-                     .setting = setting,
-                     .repetition = 2,
-                     .order = 17,
-                     .time_ms = INT64_C(1700000000250),
-                     .film_hash = 0xabc,
-                     .film_expected = 0xabd,
-                     .frame = &frame,
-                     .level = ISA_AVX2,
-                     .used = {.wall_s = 1,
-                              .cpu_s = 0.875,
-                              .peak_rss_bytes = 4096,
-                              .voluntary_switches = 1,
-                              .involuntary_switches = 0,
-                              .machine_busy_s = NAN,
-                              .machine_units = 2},
-                     .hardware = {-1, -1, 5, 0}};
+    const job_account made = {.of = setting,
+                              .level = ISA_AVX2,
+                              .result = &frame,
+                              .whole = true,
+                              .ended_ms = INT64_C(1700000000250),
+                              .film_hash = 0xabc,
+                              .spent = {.wall_s = 1,
+                                        .cpu_s = 0.875,
+                                        .peak_rss_bytes = 4096,
+                                        .voluntary_switches = 1,
+                                        .involuntary_switches = 0,
+                                        .machine_busy_s = NAN,
+                                        .machine_units = 2},
+                              .hardware = {-1, -1, 5, 0}};
+    study_row row = {.of = s, .cell = 3, .repetition = 2, .order = 17, .film_expected = 0xabd, .made = &made};
     csv_line line = {0};
     (workers ? worker_header : row_header)(&line, s);
     (workers ? worker_rows_write : row_write)(&line, &row);

@@ -2,7 +2,6 @@
 #include "report/json.h"
 #include "report/param_lines.h"
 #include "base/number.h"
-#include "measure/statistics.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -157,18 +156,6 @@ static json_t *list_of_reals(const double *values, size_t count)
     return list;
 }
 
-/* The median of all the finished frames; of a frame that was broken off, what it took. */
-static json_t *median(const double *values, size_t count, double otherwise)
-{
-    double *sorted = malloc((count + 1) * sizeof *sorted);
-    if (!sorted)
-        return NULL;
-    memcpy(sorted, values, count * sizeof *sorted);
-    json_t *result = json_of_real(count ? summarize(sorted, count).median : otherwise);
-    free(sorted);
-    return result;
-}
-
 static json_t *hardware(const hardware_counts *h)
 {
     return json_pack("{s:o,s:o,s:o,s:o}", "cycles", json_of_count(h->cycles), "instructions",
@@ -176,10 +163,10 @@ static json_t *hardware(const hardware_counts *h)
                      json_of_count(h->cache_misses));
 }
 
-static int add_times(json_t *o, const frames *f, bool repeated)
+static int add_times(json_t *o, const job_account *f, bool repeated)
 {
-    int bad = json_object_set_new(o, "wall_s", median(f->wall_s, f->count, f->result->wall_s));
-    bad |= json_object_set_new(o, "cpu_s", median(f->cpu_s, f->count, f->result->cpu_s));
+    int bad = json_object_set_new(o, "wall_s", json_of_real(job_account_wall_s(f)));
+    bad |= json_object_set_new(o, "cpu_s", json_of_real(job_account_cpu_s(f)));
     if (repeated) {
         bad |= json_object_set_new(o, "repeat", json_integer((count_type)f->count));
         bad |= json_object_set_new(o, "wall_s_all", list_of_reals(f->wall_s, f->count));
@@ -235,7 +222,7 @@ static json_t *meshes(const mesh_report *m)
     return NULL;
 }
 
-static int add_process(json_t *o, const frames *f)
+static int add_process(json_t *o, const job_account *f)
 {
     int bad = json_object_set_new(o, "threads", workers(f->result));
     bad |= json_object_set_new(o, "peak_rss_bytes", json_of_count(f->spent.peak_rss_bytes));
@@ -246,17 +233,18 @@ static int add_process(json_t *o, const frames *f)
     return bad;
 }
 
-json_t *report_create(const scene *s, isa level, const frames *f, bool repeated)
+json_t *report_create(const job_account *f, bool repeated)
 {
+    const scene *s = f->of;
     char hash[17];
-    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)film_hash(f->result->picture));
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)job_account_hash(f));
     json_t *o = json_pack("{s:i,s:s,s:b}", "schema", REPORT_SCHEMA, "film_hash", hash, "whole", (int)f->whole);
     if (!o)
         return NULL;
     int bad = add_times(o, f, repeated) | add_counts(o, s, &f->result->counters) | add_process(o, f);
     bad |= json_object_set_new(o, "noise", noise(f->result));
     bad |= json_object_set_new(o, "meshes", meshes(&f->result->meshes));
-    bad |= json_object_set_new(o, "isa", json_string(isa_name(level)));
+    bad |= json_object_set_new(o, "isa", json_string(isa_name(f->level)));
     bad |= json_object_set_new(o, "version", json_string(CUVETTE_VERSION));
     bad |= json_object_set_new(o, "scene", json_of_text(s->path ? s->path : ""));
     bad |= json_object_set_new(o, "params", report_params(s));

@@ -96,20 +96,20 @@ static void put_cut(csv_line *line, const int64_t throughput[3])
 
 static void put_solids(csv_line *line, const study_row *r, const uint64_t counts[COUNTERS_SOLID_MAX])
 {
-    for (size_t i = 0; i < r->setting->solid_count; i++)
+    for (size_t i = 0; i < r->made->of->solid_count; i++)
         csv_count(line, i < COUNTERS_SOLID_MAX ? (int64_t)counts[i] : -1);
 }
 
 static void put_isa_and_config(csv_line *line, const study_row *r, bool config)
 {
     char text[ROW_TIME_MAX];
-    csv_text(line, config ? row_build_config(text) : isa_name(r->level));
+    csv_text(line, config ? row_build_config(text) : isa_name(r->made->level));
 }
 
 static void put_time(csv_line *line, const study_row *r)
 {
     char text[ROW_TIME_MAX];
-    csv_text(line, row_time(r->time_ms, text));
+    csv_text(line, row_time(r->made->ended_ms, text));
 }
 
 /* A column's name, unit, meaning and how it is written stand together, so that header, dictionary and row cannot
@@ -130,17 +130,17 @@ static void put_time(csv_line *line, const study_row *r)
       csv_count(line, (int64_t)r->order))                                                                              \
     X("time_utc", "", "when the frame had ended, ISO 8601", put_time(line, r))                                         \
     X("<axis>", "of the parameter", "value of each parameter of the grid, in its order",                               \
-      row_put_axes(line, r->of, r->setting))                                                                           \
-    X("film_hash", "", "fingerprint of the film, 16 hex digits", csv_hash(line, r->film_hash))                         \
+      row_put_axes(line, r->of, r->made->of))                                                                          \
+    X("film_hash", "", "fingerprint of the film, 16 hex digits", csv_hash(line, job_account_hash(r->made)))            \
     X("film_expected", "",                                                                                             \
       "film_hash of the first row of all cells that must have one film: they differ only in how it is made (threads, " \
       "pool, schedule, tile, pin, hierarchies)",                                                                       \
       csv_hash(line, r->film_expected))                                                                                \
     X("marked", "", "1: film_hash is not film_expected, do not trust this row",                                        \
-      csv_count(line, r->film_hash != r->film_expected))                                                               \
+      csv_count(line, job_account_hash(r->made) != r->film_expected))                                                  \
     X("wall_s", "s", "wall time of the frame; with render.pool off, making and joining threads too",                   \
-      csv_real(line, r->frame->wall_s))                                                                                \
-    X("cpu_s", "s", "CPU time of the process over the same stretch", csv_real(line, r->frame->cpu_s))                  \
+      csv_real(line, r->made->result->wall_s))                                                                         \
+    X("cpu_s", "s", "CPU time of the process over the same stretch", csv_real(line, r->made->result->cpu_s))           \
     X("rays_camera", "rays", "camera rays traced", csv_count(line, (int64_t)c->camera))                                \
     X("rays_reflect", "rays", "reflected rays traced", csv_count(line, (int64_t)c->reflect))                           \
     X("rays_refract", "rays", "refracted rays traced", csv_count(line, (int64_t)c->refract))                           \
@@ -163,24 +163,24 @@ static void put_time(csv_line *line, const study_row *r)
     X("noise_rms", "radiance",                                                                                         \
       "of random paths: root of the mean square of the film's standard error, over all its values, 1 is white; else "  \
       "NA",                                                                                                            \
-      csv_real(line, render_noise_rms(r->frame)))                                                                      \
+      csv_real(line, render_noise_rms(r->made->result)))                                                               \
     X("triangles", "", "of all meshes as they stand there, copies counted; 0 without meshes",                          \
-      csv_count(line, (int64_t)r->frame->meshes.triangles))                                                            \
-    X("instances", "", "copies of meshes", csv_count(line, (int64_t)r->frame->meshes.instances))                       \
+      csv_count(line, (int64_t)r->made->result->meshes.triangles))                                                     \
+    X("instances", "", "copies of meshes", csv_count(line, (int64_t)r->made->result->meshes.instances))                \
     X("accel_bytes", "B", "memory of the hierarchies over their triangles, each mesh once",                            \
-      csv_count(line, (int64_t)r->frame->meshes.bytes))                                                                \
+      csv_count(line, (int64_t)r->made->result->meshes.bytes))                                                         \
     X("build_s", "s", "wall time of building these, for this frame (render.keep off) or before it; not in wall_s",     \
-      csv_real(line, r->frame->meshes.build_s))                                                                        \
+      csv_real(line, r->made->result->meshes.build_s))                                                                 \
     X("motion_steps", "",                                                                                              \
       "steps and substeps of slimes from their beginnings to the moments that are shown; 0 without slimes",            \
-      csv_count(line, (int64_t)r->frame->meshes.motion_steps))                                                         \
+      csv_count(line, (int64_t)r->made->result->meshes.motion_steps))                                                  \
     X("motion_s", "s", "wall time of these, for this frame (render.keep off) or before it; not in wall_s",             \
-      csv_real(line, r->frame->meshes.motion_s))                                                                       \
+      csv_real(line, r->made->result->meshes.motion_s))                                                                \
     X("drawn", "", "of the depth buffer: triangles in the picture, analytic solids' too; else 0",                      \
-      csv_count(line, (int64_t)r->frame->meshes.drawn))                                                                \
+      csv_count(line, (int64_t)r->made->result->meshes.drawn))                                                         \
     X("drawn_bytes", "B", "memory of the depth buffer and of these triangles",                                         \
-      csv_count(line, (int64_t)r->frame->meshes.drawn_bytes))                                                          \
-    X("workers", "", "threads of the frame", csv_count(line, r->frame->worker_count))                                  \
+      csv_count(line, (int64_t)r->made->result->meshes.drawn_bytes))                                                   \
+    X("workers", "", "threads of the frame", csv_count(line, r->made->result->worker_count))                           \
     X("workers_with_tiles", "", "those that had a piece of the picture", csv_count(line, w.with_tiles))                \
     X("busy_s_mean", "s", "from a worker's first piece to its last ray, 0 without a piece; mean over all workers",     \
       csv_real(line, w.busy_mean))                                                                                     \
@@ -194,17 +194,18 @@ static void put_time(csv_line *line, const study_row *r)
     X("imbalance", "", "busy_s_max / busy_s_mean - 1", csv_real(line, w.imbalance))                                    \
     X("peak_rss_bytes", "bytes",                                                                                       \
       "highest resident memory of the process: since the frame began where Linux lets it be reset, else so far",       \
-      csv_count(line, r->used.peak_rss_bytes))                                                                         \
+      csv_count(line, r->made->spent.peak_rss_bytes))                                                                  \
     X("voluntary_switches", "", "context switches by waiting, whole process, during the frame",                        \
-      csv_count(line, r->used.voluntary_switches))                                                                     \
+      csv_count(line, r->made->spent.voluntary_switches))                                                              \
     X("involuntary_switches", "", "context switches by losing the processor",                                          \
-      csv_count(line, r->used.involuntary_switches))                                                                   \
+      csv_count(line, r->made->spent.involuntary_switches))                                                            \
     X("others_share", "", "share of the machine used by other processes meanwhile, 0..1; coarse under 0.1 s",          \
-      csv_real(line, usage_others_share(&r->used)))                                                                    \
-    X("cycles", "", "hardware counter of the process over the frame, user mode", csv_count(line, r->hardware.cycles))  \
-    X("instructions", "", "hardware counter", csv_count(line, r->hardware.instructions))                               \
-    X("branch_misses", "", "hardware counter", csv_count(line, r->hardware.branch_misses))                             \
-    X("cache_misses", "", "hardware counter", csv_count(line, r->hardware.cache_misses))                               \
+      csv_real(line, usage_others_share(&r->made->spent)))                                                             \
+    X("cycles", "", "hardware counter of the process over the frame, user mode",                                       \
+      csv_count(line, r->made->hardware.cycles))                                                                       \
+    X("instructions", "", "hardware counter", csv_count(line, r->made->hardware.instructions))                         \
+    X("branch_misses", "", "hardware counter", csv_count(line, r->made->hardware.branch_misses))                       \
+    X("cache_misses", "", "hardware counter", csv_count(line, r->made->hardware.cache_misses))                         \
     X("isa", "", "vector instructions used: sse2, avx2, avx512", put_isa_and_config(line, r, false))                   \
     X("config", "", "build: release, debug, sanitize, tsan, nocounters", put_isa_and_config(line, r, true))
 
@@ -212,7 +213,7 @@ static void put_time(csv_line *line, const study_row *r)
 #define WORKER_COLUMNS(X)                                                                                     \
     WHOSE(X)                                                                                                  \
     X("<axis>", "of the parameter", "value of each parameter of the grid, in its order",                      \
-      row_put_axes(line, r->of, r->setting))                                                                  \
+      row_put_axes(line, r->of, r->made->of))                                                                 \
     X("worker", "", "number of the worker, from 0", csv_count(line, worker))                                  \
     X("pu", "", "processing unit that it ended on (the system's number)", csv_count(line, k->pu))             \
     X("tiles", "", "pieces of the picture that it took", csv_count(line, (int64_t)k->tiles))                  \
@@ -274,16 +275,16 @@ void worker_header(csv_line *line, const study *s)
 
 void row_write(csv_line *line, const study_row *r)
 {
-    const ray_counters *c = &r->frame->counters;
-    workers_sum w = sum_workers(r->frame);
+    const ray_counters *c = &r->made->result->counters;
+    workers_sum w = sum_workers(r->made->result);
     ROW_COLUMNS(PUT)
     csv_end(line);
 }
 
 void worker_rows_write(csv_line *line, const study_row *r)
 {
-    for (int worker = 0; worker < r->frame->worker_count; worker++) {
-        const worker_report *k = &r->frame->workers[worker];
+    for (int worker = 0; worker < r->made->result->worker_count; worker++) {
+        const worker_report *k = &r->made->result->workers[worker];
         WORKER_COLUMNS(PUT)
         csv_end(line);
     }

@@ -4,9 +4,7 @@
 #ifndef CUVETTE_STUDY_ROWS_H
 #define CUVETTE_STUDY_ROWS_H
 
-#include "base/isa.h"
-#include "measure/usage.h"
-#include "render/core/renderer.h"
+#include "job/account.h"
 #include "study/csv.h"
 #include "study/study.h"
 
@@ -25,16 +23,11 @@ extern const size_t worker_column_count;
 typedef struct study_row {
     const study *of;
     size_t cell;
-    const scene *setting; /* the cell's scene */
-    long repetition;      /* running number in the cell, warm-ups counted */
+    long repetition; /* running number in the cell, warm-ups counted */
     bool warmup;
-    size_t order;    /* running number in the file */
-    int64_t time_ms; /* since 1970 UTC, when the frame had ended */
-    uint64_t film_hash, film_expected;
-    const render_result *frame;
-    usage used;               /* over the frame */
-    hardware_counts hardware; /* over the frame */
-    isa level;
+    size_t order; /* running number in the file */
+    uint64_t film_expected;
+    const job_account *made;
 } study_row;
 
 /* The header lines. */

@@ -30,12 +30,6 @@ static void publish(painter *p, picture *shown)
     picture_release(made);
 }
 
-static bool go_on_rendering(void *of, double share_done)
-{
-    (void)share_done;
-    return !painter_must_end(of);
-}
-
 static bool is_raster(painter *p, bool moving)
 {
     return moving && live_preview_of(p->toy) == LIVE_ZBUFFER;
@@ -98,14 +92,15 @@ void painter_paint_pass(painter *p)
     const bool raster = is_raster(p, moving);
     pace *tempo = !moving ? NULL : raster ? &p->raster : &p->traced;
     const scene view = pass_scene(p, pass, tempo, raster);
-    const render_options options = {.progress = go_on_rendering, .progress_s = look_up_s, .context = p};
+    const render_options options = {.progress_s = look_up_s};
     diagnostic why = {.line = 0};
-    render_result *made = NULL;
+    job_account account;
     picture shown;
     bool good = false;
     p->begun_s = clock_wall_s();
     pthread_rwlock_rdlock(&p->stage_lock);
-    const status code = renderer_render(p->tracer, &view, &options, &made, &why);
+    const status code = job_render(p->tracer, &view, &options, &account, &why);
+    const render_result *made = account.result;
     if (code == STATUS_OK)
         good = describe(p, made, pass, moving, &shown);
     pthread_rwlock_unlock(&p->stage_lock);
@@ -121,7 +116,7 @@ void painter_paint_pass(painter *p)
     } else {
         p->pass = p->plan.count;
     }
-    render_result_destroy(made);
+    job_account_release(&account);
     if (code != STATUS_INTERRUPTED)
         painter_set_trouble(p, code, &why);
     if (good)

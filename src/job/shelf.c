@@ -1,4 +1,4 @@
-#include "study/shelf.h"
+#include "job/shelf.h"
 
 void shelf_clear(shelf *s)
 {
