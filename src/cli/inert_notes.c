@@ -112,8 +112,9 @@ static bool is_same(void *context, const char *assignment)
     return same;
 }
 
-void inert_note_frame(const scene *s, const scene_input *input, job *with, const job_account *frame)
+void inert_note_frame(const scene_input *input, job *with, const job_account *frame)
 {
+    const scene *s = frame->of;
     frame_of f = {frame, with};
     const inert_witness witness = {&frame->result->counters, is_same, &f};
     for (size_t i = 0; i < input->count; i++) {

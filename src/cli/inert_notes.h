@@ -12,7 +12,7 @@ void inert_note_changes(const scene *s, const scene_input *input);
 
 /* Of the command line, too, what shows only in a frame: rendered by this job. Renders another one
  * where a note depends on it, if that takes no more than a moment. */
-void inert_note_frame(const scene *s, const scene_input *input, job *with, const job_account *frame);
+void inert_note_frame(const scene_input *input, job *with, const job_account *frame);
 
 /* Of one PATH=VALUE. */
 void inert_note_assignment(const scene *s, const char *assignment);

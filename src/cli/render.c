@@ -176,7 +176,7 @@ static status render_and_write(const render_request *request, const scene *s, jo
         result = written == STATUS_OK ? result : written;
     }
     if (result == STATUS_OK && !request->json)
-        inert_note_frame(s, &request->input, with, &measured);
+        inert_note_frame(&request->input, with, &measured);
     if (result == STATUS_INTERRUPTED)
         result = say_interrupted(request, &measured, why);
     job_account_release(&measured);

@@ -1,9 +1,10 @@
-/* The JSON account of a render: what `cuvette render --json` prints. The manual page names the keys. */
+/* The JSON account of a render, made from the list of job/quantities.h: what `cuvette render --json` prints, and what
+ * the page shows of an image. The manual page names the keys. Ownership: new references, NULL when memory is out. */
 #ifndef CUVETTE_REPORT_REPORT_H
 #define CUVETTE_REPORT_REPORT_H
 
 #include "image/compare.h"
-#include "job/account.h"
+#include "job/quantities.h"
 #include "scene/model/params.h"
 #include <jansson.h>
 #include <stdbool.h>
@@ -12,7 +13,13 @@ enum { REPORT_SCHEMA = 1 }; /* goes up when a key changes its meaning or goes aw
 
 /* The account of measured frames, with at least one result; NULL when memory is out. repeated: asked for by
  * --repeat. */
-json_t *report_create(const job_account *f, bool repeated);
+json_t *report_create(const job_account *a, bool repeated);
+
+/* One quantity of it. worker: as for its read. */
+json_t *report_quantity(const quantity *q, const job_account *a, int worker);
+
+/* The numbers of an image that the laboratory's page shows. */
+json_t *report_page(const job_account *a);
 
 /* Each parameter of the scene under its path, as number, list or word; NULL when memory is out. */
 json_t *report_params(const scene *s);

@@ -1,6 +1,7 @@
 /* One pass of the painter: how it is rendered, and the picture that comes of it. See web/live/painter_private.h. */
 #include "web/live/painter_private.h"
 #include "measure/clock.h"
+#include "report/report.h"
 #include "web/live/picture.h"
 
 #include <stdlib.h>
@@ -15,8 +16,7 @@ static void publish(painter *p, picture *shown)
     pthread_mutex_unlock(&p->lock);
     const picture *made = picture_create(shown);
     if (!made) {
-        image_destroy((image *)(uintptr_t)shown->linear);
-        scene_destroy((scene *)(uintptr_t)shown->of);
+        picture_drop(shown);
         return;
     }
     picture_keep(made); /* for the listener */
@@ -48,35 +48,29 @@ static scene pass_scene(const painter *p, int pass, const pace *tempo, bool rast
     return view;
 }
 
-static bool describe(painter *p, const render_result *made, int pass, bool moving, picture *out)
+static bool describe(painter *p, const job_account *made, int pass, bool moving, picture *out)
 {
+    const film *shown = made->result->picture;
     image *linear = NULL;
-    if (film_image(made->picture, &linear, NULL) != STATUS_OK)
+    if (film_image(shown, &linear, NULL) != STATUS_OK)
         return false;
     const bool final = !moving && pass == p->plan.count - 1;
     *out = (picture){.generation = p->stage_generation,
                      .pass = pass + 1,
                      .passes = p->plan.count,
                      .final = final,
-                     .width = made->picture->width,
-                     .height = made->picture->height,
+                     .width = shown->width,
+                     .height = shown->height,
                      .full_width = (int)p->stage->render.width,
                      .full_height = (int)p->stage->render.height,
-                     .wall_s = made->wall_s,
-                     .cpu_s = made->cpu_s,
-                     .rays = ray_counters_total(&made->counters),
-                     .noise = render_noise_rms(made),
-                     .threads = made->worker_count,
-                     .linear = linear};
-    if (final) {
-        out->film_hash = film_hash(made->picture);
-        out->of = scene_clone(p->stage);
-        if (!out->of) {
-            image_destroy(linear);
-            return false;
-        }
-    }
-    return true;
+                     .numbers = report_page(made),
+                     .film_hash = final ? job_account_hash(made) : 0,
+                     .linear = linear,
+                     .of = final ? scene_clone(p->stage) : NULL};
+    if (out->numbers && (out->of || !final))
+        return true;
+    picture_drop(out);
+    return false;
 }
 
 static void take_rate(painter *p, int pass, const render_result *made)
@@ -102,7 +96,7 @@ void painter_paint_pass(painter *p)
     const status code = job_render(p->tracer, &view, &options, &account, &why);
     const render_result *made = account.result;
     if (code == STATUS_OK)
-        good = describe(p, made, pass, moving, &shown);
+        good = describe(p, &account, pass, moving, &shown);
     pthread_rwlock_unlock(&p->stage_lock);
     if (code == STATUS_OK) {
         if (tempo)
