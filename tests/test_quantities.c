@@ -3,6 +3,7 @@
  * environment these two are written anew first (make dictionary). */
 #include "base/file.h"
 #include "job/job.h"
+#include "scene/model/scene.h"
 #include "base/text.h"
 #include "report/report.h"
 #include "study/compare_rows.h"

@@ -10,6 +10,7 @@
 #include "scene/model/edit/edit.h"
 #include "scene/model/params_path.h"
 #include "scene/file/write.h"
+#include "scene/model/scene.h"
 #include <dirent.h>
 #include <stdlib.h>
 #include <sys/stat.h>

@@ -6,6 +6,7 @@
 #include "cli/inert_notes.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
+#include "scene/model/scene.h"
 #include <errno.h>
 #include <stdio.h>
 

@@ -3,6 +3,7 @@
 
 #include "scene/model/params_path.h"
 #include "scene/model/slime.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,6 +2,7 @@
 #include "engine/engine_private.h"
 
 #include "scene/model/edit/edit.h"
+#include "scene/model/scene.h"
 
 cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {

@@ -2,6 +2,7 @@
 
 #include "job/shelf.h"
 #include "measure/clock.h"
+#include "scene/model/scene.h"
 #include <inttypes.h>
 #include <stdatomic.h>
 #include <stdlib.h>

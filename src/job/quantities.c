@@ -1,4 +1,5 @@
 #include "job/quantities.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,6 +2,7 @@
 
 #include "lint/parts.h"
 #include "scene/model/hints.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
 

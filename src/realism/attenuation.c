@@ -6,6 +6,7 @@
 #include "realism/metrics.h"
 
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 #define ABSORPTION_TOLERANCE 1e-10 /* relative, at an optical depth of 1e-4 and more */

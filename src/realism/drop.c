@@ -4,6 +4,7 @@
 #include "realism/metrics.h"
 
 #include "optics/media.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <string.h>
 

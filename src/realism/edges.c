@@ -5,6 +5,7 @@
  * units, which at a few hundred px a unit is as much; times the lens's own magnification of errors towards its rim. */
 #include "realism/metrics.h"
 #include "realism/level_section.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 

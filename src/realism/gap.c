@@ -6,6 +6,7 @@
  * the critical angle, where R has an infinite slope, the root of a rounding times the angle's distance from it, a
  * degree at the least. */
 #include "realism/metrics.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 

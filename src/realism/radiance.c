@@ -7,6 +7,7 @@
 #include "realism/metrics.h"
 
 #include "scene/model/edit/edit.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 #define RADIANCE_TOLERANCE 1e-11

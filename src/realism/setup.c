@@ -1,6 +1,7 @@
 #include "realism/setup.h"
 
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 static status wrong(const scene *s, diagnostic *why, const char *remedy, const char *what)

@@ -4,7 +4,7 @@
 #define CUVETTE_REALISM_SETUP_H
 
 #include "realism/theory.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef enum setup_medium { SETUP_OUTSIDE, SETUP_VESSEL, SETUP_LIQUID, SETUP_MEDIA } setup_medium;
 

@@ -5,6 +5,7 @@
  *
  * Tolerance: some film units, 5.7e-14 each, and a few roundings. */
 #include "realism/metrics.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 

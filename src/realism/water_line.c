@@ -6,6 +6,7 @@
  * Tolerance: edges are good to 1e-11 px; over a secant of 50 px that is 1e-11 degrees. */
 #include "realism/metrics.h"
 #include "realism/view.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 

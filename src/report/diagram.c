@@ -1,4 +1,5 @@
 #include "report/diagram_parts.h"
+#include "scene/model/solids.h"
 #include <stdlib.h>
 
 void diagram_include(diagram_box *box, const section_plane *plane, vec3 p)

@@ -1,3 +1,4 @@
+#include "geometry/solid.h"
 #include "report/param_rows.h"
 #include "report/json.h"
 #include "report/param_lines.h"

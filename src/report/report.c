@@ -2,6 +2,7 @@
 #include "report/json.h"
 #include "report/param_lines.h"
 #include "base/number.h"
+#include "scene/model/scene.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>

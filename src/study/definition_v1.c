@@ -2,6 +2,7 @@
 #include "base/hash.h"
 #include "scene/model/params_value.h"
 #include "study/grid.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

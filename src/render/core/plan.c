@@ -1,6 +1,7 @@
 #include "render/core/plan.h"
 
 #include "render/shade/sky.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

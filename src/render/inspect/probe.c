@@ -3,6 +3,7 @@
 #include "optics/interface.h"
 #include "scene/model/medium.h"
 #include "render/inspect/probe_private.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -5,6 +5,7 @@
 #include "scene/model/params_value.h"
 #include "scene/assets/mesh_make.h"
 #include "scene/model/slime.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <string.h>

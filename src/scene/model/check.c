@@ -5,6 +5,7 @@
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
 #include "scene/model/suggest.h"
+#include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,7 +3,8 @@
 #ifndef CUVETTE_SCENE_MODEL_COVER_H
 #define CUVETTE_SCENE_MODEL_COVER_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
+#include "scene/model/solids.h"
 
 /* The visible solid of s that contains all of `hidden`, one of its own solids, and wins there; NULL if there is
  * none, or none that is known: what only several cover together, what lies in a mesh, a few cylinders that lie askew

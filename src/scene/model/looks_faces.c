@@ -1,6 +1,7 @@
 #include "scene/model/looks.h"
 
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 #include <string.h>
 
 /* The material of that name in the scene, which goes before the file's. */

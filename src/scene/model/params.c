@@ -4,6 +4,7 @@
 #include "scene/model/medium.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
+#include "scene/model/scene.h"
 
 #include <stddef.h>
 #include <stdlib.h>

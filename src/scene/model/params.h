@@ -9,7 +9,7 @@
 #ifndef CUVETTE_SCENE_MODEL_PARAMS_H
 #define CUVETTE_SCENE_MODEL_PARAMS_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef enum param_group {
     PARAM_RENDER,

@@ -1,5 +1,6 @@
 #include "scene/model/params_path.h"
 #include "scene/model/suggest.h"
+#include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,9 @@
 /* The table itself: a new parameter is one new row here, and a field in scene.h. */
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
+#include "scene/model/mesh_entry.h"
+#include "scene/model/light.h"
+#include "scene/model/solids.h"
 
 #include <stddef.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
 #include "scene/motion/motion_hands.h"
 #include "scene/motion/motion_private.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,6 +2,7 @@
 #include "report/json.h"
 #include "report/param_rows.h"
 #include "scene/model/params_path.h"
+#include "scene/model/scene.h"
 
 static const char *const light_words[] = {"point", "cone", "soft-cone"};
 

@@ -3,6 +3,7 @@
 #include "measure/clock.h"
 #include "report/report.h"
 #include "web/live/picture.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 

@@ -6,7 +6,8 @@
 #ifndef CUVETTE_SCENE_MODEL_EDIT_EDIT_H
 #define CUVETTE_SCENE_MODEL_EDIT_EDIT_H
 
-#include "scene/model/scene.h"
+#include "geometry/solid.h"
+#include "scene/model/open.h"
 
 /* One more object at the end of its section. The name must be right and free (scene/model/check.h), the limits of a
  * scene hold. index may be NULL. */

@@ -8,6 +8,7 @@
 #include "scene/model/camera.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <stdio.h>

@@ -2,6 +2,7 @@
  * render/shade/shading.c, render/integrators/path.c and render/core/plan.c. */
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 bool is_black(vec3 color)
 {

@@ -1,5 +1,6 @@
 /* Why a mesh's or a texture's parameter does nothing in a scene. */
 #include "scene/model/inert/inert_private.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <string.h>

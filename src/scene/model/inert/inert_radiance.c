@@ -3,6 +3,7 @@
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/cover.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 static bool is_bare(const background *b)
 {

@@ -1,6 +1,7 @@
 /* Why a setting of the renderer does nothing in a scene. */
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 

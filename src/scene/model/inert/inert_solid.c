@@ -2,6 +2,7 @@
 #include "scene/model/inert/inert_private.h"
 #include "geometry/shared_faces.h"
 #include "scene/model/cover.h"
+#include "scene/model/scene.h"
 
 #include <string.h>
 
