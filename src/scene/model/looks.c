@@ -1,4 +1,5 @@
 #include "scene/model/looks.h"
+#include "scene/model/scene.h"
 
 #include "scene/model/scene.h"
 #include <math.h>
