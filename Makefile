@@ -32,7 +32,8 @@ PACKAGES := libpng libjpeg hwloc yaml-0.1 jansson
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla
 # A user's newer compiler may warn of more: warnings end a build in CI (STRICT=1) and in the tests' own programs alone.
 STRICT ?=
-errors := $(if $(STRICT),-Werror)
+# A function that is called undeclared is an error everywhere: its pointers would be cut.
+errors := -Werror=implicit-function-declaration $(if $(STRICT),-Werror)
 # Instrumented code hides from gcc which values a number can take; its guess about printf's output is then wrong.
 ifneq ($(filter sanitize tsan,$(config)),)
 warnings += $(if $(clang),,-Wno-format-truncation)
