@@ -13,13 +13,12 @@
 
 typedef struct tracer tracer;
 
-/* What a frame is traced into. pixel_rays and pixel_ns may be NULL; so is depths, but for a frame that is drawn
- * instead. */
+/* What a frame is traced into. pixel_rays and pixel_ns may be NULL; kept is what the integrator keeps for the frame. */
 typedef struct tracer_target {
     const plan *scene;
     film *picture;
     double *pixel_rays, *pixel_ns;
-    struct zbuffer *depths;
+    void *kept;
 } tracer_target;
 
 tracer *tracer_create(isa level);

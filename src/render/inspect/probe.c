@@ -84,7 +84,7 @@ void ray_tree_release(ray_tree *tree)
 
 static status begin(probe *p, ray_tree *tree, diagnostic *why)
 {
-    const tracer_target target = {p->scene, p->picture, NULL, NULL, NULL};
+    const tracer_target target = {.scene = p->scene, .picture = p->picture};
     memset(p->picture->sum, 0, 3 * sizeof *p->picture->sum);
     tree->count = 0;
     tree->depth_limit = (int)p->scene->render.depth;
@@ -117,7 +117,7 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
     const int count = tracer_camera_rays(p->rays, x, y);
     for (int i = 0; i < count; i++)
         probe_take(p, 0, i, &roots[i]);
-    p->rays->waiting[0].count = 0;
+    p->rays->queues.waiting[0].count = 0;
     size_t last = 0;
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         size_t root;

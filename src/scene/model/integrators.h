@@ -1,16 +1,17 @@
 /* The integrators: the words of render.integrator, and what the rest of the program asks of each. A new one is a row
- * here and its own file in src/render. Constant. */
+ * here and its own file in src/render/integrators; render's table of what they do is made from the same rows.
+ * Constant. */
 #ifndef CUVETTE_SCENE_MODEL_INTEGRATORS_H
 #define CUVETTE_SCENE_MODEL_INTEGRATORS_H
 
 #include <stdbool.h>
 
 /* Name, word, and the traits that it has. */
-#define INTEGRATORS(X)                   \
-    X(RAYCAST, "raycast", .tree = false) \
-    X(WHITTED, "whitted", .tree = true)  \
-    X(PATH, "path", .by_chance = true)   \
-    X(ZBUFFER, "zbuffer", .drawn = true)
+#define INTEGRATORS(X)                 \
+    X(RAYCAST, raycast, .tree = false) \
+    X(WHITTED, whitted, .tree = true)  \
+    X(PATH, path, .by_chance = true)   \
+    X(ZBUFFER, zbuffer, .drawn = true)
 
 #define INTEGRATOR_NUMBER(name, word, ...) INTEGRATOR_##name,
 typedef enum integrator_rule { INTEGRATORS(INTEGRATOR_NUMBER) INTEGRATOR_COUNT } integrator_rule;
@@ -23,6 +24,6 @@ typedef struct integrator_traits {
 } integrator_traits;
 
 extern const char *const integrator_words[];
-extern const integrator_traits integrator_table[INTEGRATOR_COUNT];
+extern const integrator_traits integrator_table[];
 
 #endif

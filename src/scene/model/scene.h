@@ -78,6 +78,12 @@ static inline const integrator_traits *integrator_of(const render_settings *r)
     return &integrator_table[r->integrator];
 }
 
+/* Both branches of each ray are followed. */
+static inline bool follows_trees(const render_settings *r)
+{
+    return integrator_of(r)->tree && r->lighting == LIGHTING_WHITTED;
+}
+
 /* All branches of each ray, for what looks into a scene; or a preview of triangles. */
 static inline void trace_trees(render_settings *r)
 {

@@ -15,7 +15,7 @@ bool is_path(const scene *s)
 
 bool follows_rays(const scene *s)
 {
-    return is_path(s) || (integrator_of(&s->render)->tree && s->render.lighting == LIGHTING_WHITTED);
+    return is_path(s) || follows_trees(&s->render);
 }
 
 bool draws_through(const scene *s)
