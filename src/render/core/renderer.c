@@ -278,6 +278,8 @@ static status make_result(const scene *s, const render_options *options, render_
             missing |= !(result->pixel_rays = make_map(pixels));
         if (options && options->pixel_time)
             missing |= !(result->pixel_ns = make_map(pixels));
+        if (options && options->layers && integrator_of(&s->render)->layers)
+            missing |= !(result->layers = layers_create((int)s->render.width, (int)s->render.height));
         if (layers_of(s) > 1)
             missing |= !(result->variance = make_map(3 * pixels));
         if (missing)
@@ -325,7 +327,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
     const int count = (int)s->render.threads;
     frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
     worker_account *accounts = make_accounts(count);
-    const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns, kept};
+    const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns, kept, result->layers};
     bool has_memory = f && accounts && tracer_set_begin(r->tracers, count, &target);
     status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
     if (code == STATUS_OK) {

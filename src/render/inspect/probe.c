@@ -18,7 +18,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         render_settings *r = &p->setting->render;
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
         r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
-        if (integrator_of(r)->by_chance || integrator_of(r)->drawn)
+        if (integrator_of(r)->by_chance || integrator_of(r)->drawn || integrator_of(r)->layers)
             trace_trees(r); /* all branches, not one by chance or none */
         code = scene_check(p->setting, why);
     }

@@ -21,9 +21,13 @@ typedef struct integrator_traits {
     bool tree;      /* both branches of each ray are followed, where render.lighting says so (Whitted 1980) */
     bool by_chance; /* random paths, render.paths a pixel, that see the lights' size */
     bool drawn;     /* triangles are drawn into a depth buffer; no ray is traced, and no light followed */
+    bool layers;    /* of what camera rays meet first it gives named layers, and follows no light */
 } integrator_traits;
 
 extern const char *const integrator_words[];
 extern const integrator_traits integrator_table[];
+
+/* The word of the first one that gives layers; NULL if none does. */
+const char *integrator_with_layers(void);
 
 #endif

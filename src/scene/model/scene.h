@@ -12,6 +12,7 @@
 #include "image/texture.h"
 #include "softbody/softbody.h"
 #include "scene/model/integrators.h"
+#include "scene/model/layers.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -45,6 +46,7 @@ typedef struct render_settings {
     int64_t depth;         /* recursion depth; 0 = camera rays only */
     int64_t samples;       /* a pixel: a whole square, at most SCENE_SAMPLES_MAX */
     int64_t integrator;    /* integrator_rule */
+    int64_t layer;         /* layer_rule: which one the film shows, of an integrator that gives layers */
     int64_t lighting;      /* lighting_rule */
     int64_t weights;       /* weights_rule */
     int64_t transmission;  /* transmission_rule */
