@@ -156,6 +156,10 @@ static bool mirrors_black(const inert_case *c)
 
 static bool say_unseen(const inert_case *c)
 {
+    if (integrator_of(&c->s->render)->layers) {
+        return inert_say(c, "unseen", "set render.integrator=whitted", "no camera ray of this image meets %s first",
+                         c->owner->name);
+    }
     int64_t highest = c->owner->priority;
     for (size_t i = 0; i < c->s->solid_count; i++) {
         const solid *one = &c->s->solids[i];
