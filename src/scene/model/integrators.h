@@ -11,7 +11,8 @@
     X(RAYCAST, raycast, .tree = false) \
     X(WHITTED, whitted, .tree = true)  \
     X(PATH, path, .by_chance = true)   \
-    X(ZBUFFER, zbuffer, .drawn = true)
+    X(ZBUFFER, zbuffer, .drawn = true) \
+    X(AOV, aov, .layers = true)
 
 #define INTEGRATOR_NUMBER(name, word, ...) INTEGRATOR_##name,
 typedef enum integrator_rule { INTEGRATORS(INTEGRATOR_NUMBER) INTEGRATOR_COUNT } integrator_rule;
