@@ -22,8 +22,7 @@ void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
     const render_settings *r = &p->render;
     ray_queue *q = &t->queues.waiting[0];
     double u[ROW], v[ROW];
-    const double across = 2.0 * p->view.half_width / (double)r->width,
-                 down = 2.0 * p->view.half_height / (double)r->height;
+    const camera_pixel pixel = camera_pixel_of(&p->view, r);
     const camera_need need = t->rule->camera(r);
     const int64_t each = need.rays, cells = cells_across(need.points);
     const int at = q->count;
@@ -35,8 +34,8 @@ void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
             const int64_t s = ray / need.together % (cells * cells); /* line by line */
             sx = ((double)(s % cells) + 0.5) / (double)cells, sy = ((double)(s / cells) + 0.5) / (double)cells;
         }
-        u[k] = ((double)x + sx) * across - p->view.half_width;
-        v[k] = p->view.half_height - (y + sy) * down;
+        u[k] = camera_u(&p->view, pixel, (double)x + sx);
+        v[k] = camera_v(&p->view, pixel, y + sy);
         const int i = at + k;
         q->ox[i] = p->view.eye.x, q->oy[i] = p->view.eye.y, q->oz[i] = p->view.eye.z;
         q->wr[i] = q->wg[i] = q->wb[i] = 1.0 / (double)each;
