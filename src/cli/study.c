@@ -7,6 +7,7 @@
 #include "cli/terminal.h"
 #include "study/study.h"
 #include "study/summary.h"
+#include "scene/model/scene.h"
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -32,12 +33,6 @@ static status for_each_study(const study_request *request, study_action *act, di
         study_destroy(studies[i]);
     free(studies);
     return result;
-}
-
-static bool stop_asked(void *context)
-{
-    (void)context;
-    return terminal_stop_asked();
 }
 
 /* Is the path the place, or a part of it, or the other way round? */
@@ -106,7 +101,7 @@ static status run_one(const study *s, const study_request *request, diagnostic *
                                    .shard = request->shard,
                                    .shards = request->shards,
                                    .progress = terminal,
-                                   .stop = stop_asked};
+                                   .stop = terminal_stop_asked};
     size_t rows = 0;
     status result = request->quiet ? STATUS_OK : lint(s, request, why);
     if (result == STATUS_OK)

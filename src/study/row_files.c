@@ -5,6 +5,7 @@
 #include "study/compare_rows.h"
 #include "study/row_check.h"
 #include "study/rows.h"
+#include "scene/model/open.h"
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -25,9 +26,9 @@ char *row_file_path(const char *folder, row_kind kind, long shard, long shards)
 
 char *row_file_header(const study *s, row_kind kind)
 {
-    static void (*const headers[])(csv_line *, const study *) = {row_header, worker_header, compare_header};
+    static row_columns *const columns[] = {row_each_column, worker_each_column, compare_each_column};
     csv_line line = {0};
-    headers[kind](&line, s);
+    row_columns_header(&line, s, columns[kind]);
     if (!line.failed)
         return line.text;
     csv_line_free(&line);
@@ -93,7 +94,7 @@ static status add_file(row_files *files, const study *s, char *path, diagnostic 
     if (!path)
         return out_of_memory(why);
     csv *table;
-    status code = csv_read_below(path, s->base->limits.root, &table, why);
+    status code = csv_read_below(path, scene_root(s->base), &table, why);
     if (code != STATUS_OK || !table) {
         free(path);
         return code;

@@ -2,6 +2,7 @@
 #include "study/manifest.h"
 #include "study/row_files.h"
 #include "study/run_state.h"
+#include "scene/model/open.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +11,7 @@
 static status set_orphans_aside(run *r, const csv *rows, const char *path, diagnostic *why)
 {
     csv *workers = NULL;
-    status code = csv_read_below(path, r->s->base->limits.root, &workers, why);
+    status code = csv_read_below(path, scene_root(r->s->base), &workers, why);
     if (code != STATUS_OK || !workers || !workers->header) {
         csv_destroy(workers);
         return code;
@@ -44,7 +45,7 @@ static status open_tables(run *r, diagnostic *why)
     char *path = NULL, *workers_path = NULL, *compare_path = NULL;
     csv *rows = NULL;
     status code = open_table(r, ROWS, &r->rows, &path, why);
-    if (code == STATUS_OK && (code = csv_read_below(path, r->s->base->limits.root, &rows, why)) == STATUS_OK && rows)
+    if (code == STATUS_OK && (code = csv_read_below(path, scene_root(r->s->base), &rows, why)) == STATUS_OK && rows)
         r->row_number = rows->row_count;
     if (code == STATUS_OK && r->s->keep_workers)
         code = open_table(r, WORKER_ROWS, &r->workers, &workers_path, why);
@@ -59,10 +60,16 @@ static status open_tables(run *r, diagnostic *why)
     return code;
 }
 
-/* Folder, locks, the rows so far (read again under the lock), manifest, machine, renderer. */
+/* Folder, locks, the rows so far (read again under the lock), manifest, job. */
 status run_prepare(run *r, diagnostic *why)
 {
-    status code = isa_choose(&r->level, why);
+    const job_settings settings = {.measured = true,
+                                   .fresh_peak = true,
+                                   .keeps_meshes = true,
+                                   .stop = r->options->stop,
+                                   .context = r->options->context};
+    const topology *machine = NULL;
+    status code = job_create(&settings, &r->with, why);
     if (code == STATUS_OK)
         code = file_make_directory(r->folder, why);
     if (code == STATUS_OK)
@@ -74,22 +81,16 @@ status run_prepare(run *r, diagnostic *why)
     if (code == STATUS_OK)
         code = run_find_compared(r, why);
     if (code == STATUS_OK)
-        code = topology_create(&r->machine, why);
+        code = job_machine(r->with, &machine, why);
     if (code == STATUS_OK)
-        code = manifest_write(r->s, r->folder, r->machine, r->level, r->options->shard, r->options->shards, why);
-    /* Counts the threads that start after it, so it comes before the pool. */
-    r->hardware = hardware_counter_create();
-    return code == STATUS_OK ? renderer_create(r->level, r->machine, &r->tracer, why) : code;
+        code = manifest_write(r->s, r->folder, machine, job_isa(r->with), r->options->shard, r->options->shards, why);
+    return code;
 }
 
 void run_release(run *r)
 {
     progress_end(r->line);
-    shelf_clear(&r->meshes);
-    renderer_destroy(r->tracer);
-    if (r->hardware)
-        hardware_counter_destroy(r->hardware);
-    topology_destroy(r->machine);
+    job_destroy(r->with);
     reference_release(&r->held);
     table_close(r->compares);
     table_close(r->workers);

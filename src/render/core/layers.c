@@ -14,6 +14,14 @@ layer_set *layers_create(int width, int height)
     return NULL;
 }
 
+uint64_t layers_bytes(void)
+{
+    uint64_t sum = 0;
+    for (int i = 0; i < LAYER_COUNT; i++)
+        sum += (uint64_t)layer_channels[i] * sizeof(float);
+    return sum;
+}
+
 void layers_destroy(layer_set *l)
 {
     for (int i = 0; l && i < LAYER_COUNT; i++)

@@ -14,6 +14,7 @@ typedef struct layer_set {
 
 /* All 0. NULL when memory is out. */
 layer_set *layers_create(int width, int height);
+uint64_t layers_bytes(void);       /* a pixel */
 void layers_destroy(layer_set *l); /* NULL is allowed */
 
 /* Of a layer of one number: value.x. */

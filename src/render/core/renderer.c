@@ -6,6 +6,7 @@
 #include "render/core/schedule.h"
 #include "render/core/tracer_set.h"
 #include "render/integrators/integrator.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,6 +68,11 @@ void renderer_destroy(renderer *r)
     pool_destroy(r->threads);
     tracer_set_destroy(r->tracers);
     free(r);
+}
+
+void renderer_know_machine(renderer *r, const topology *machine)
+{
+    r->machine = machine;
 }
 
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why)
@@ -260,6 +266,15 @@ static int layers_of(const scene *s)
 {
     const integrator *rule = integrator_for(&s->render);
     return rule->shares ? rule->shares(&s->render) : 1;
+}
+
+uint64_t renderer_result_bytes(const scene *s, const render_options *options)
+{
+    const uint64_t layers = (uint64_t)layers_of(s), pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
+    const uint64_t maps = options ? (uint64_t)options->pixel_rays + (uint64_t)options->pixel_time : 0;
+    const uint64_t named = options && options->layers && integrator_of(&s->render)->layers ? layers_bytes() : 0;
+    return pixels *
+           (named + 3 * sizeof(int64_t) * layers + (layers > 1 ? 3 * sizeof(double) : 0) + maps * sizeof(double));
 }
 
 static status make_result(const scene *s, const render_options *options, render_result **out, diagnostic *why)

@@ -12,7 +12,7 @@
 #include "render/core/film.h"
 #include "render/core/layers.h"
 #include "render/core/mesh_report.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include <stdbool.h>
 
 typedef struct renderer renderer;
@@ -20,6 +20,9 @@ typedef struct renderer renderer;
 /* level: from isa_choose. machine is borrowed for pinning; it may be NULL, then nothing is pinned. */
 status renderer_create(isa level, const topology *machine, renderer **out, diagnostic *why);
 void renderer_destroy(renderer *r);
+
+/* The same machine, known later. */
+void renderer_know_machine(renderer *r, const topology *machine);
 
 /* One worker's account of a frame; seconds from the frame's start. */
 typedef struct worker_report {
@@ -87,6 +90,9 @@ double render_noise_rms(const render_result *result);
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out,
                        diagnostic *why);
 void render_result_destroy(render_result *result);
+
+/* What the film and the maps of such a frame take. */
+uint64_t renderer_result_bytes(const scene *s, const render_options *options);
 
 /* Makes the pool as large as s asks for beforehand (render.pool on), so that the first frame does not pay for it. */
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why);

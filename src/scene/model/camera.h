@@ -2,7 +2,9 @@
 #ifndef CUVETTE_SCENE_MODEL_CAMERA_H
 #define CUVETTE_SCENE_MODEL_CAMERA_H
 
-#include "scene/model/scene.h"
+#include "base/vec3.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
 
 /* See camera_toward: u is in (-half_width, half_width), v likewise. */
 typedef struct camera_frame {

@@ -3,6 +3,7 @@
 #include "scene/model/inert/inert_private.h"
 
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 
