@@ -7,8 +7,8 @@
  *   material  1 for the scene's first; of a surface that is none of them their number and the solid's
  *   position  the point, scene units
  * and 0 in all of them where nothing is met. The film shows one of them, render.layer, as a display would: normals as
- * (n + 1) / 2, as normal maps do; depths and positions d by s / (s + d), with s how far solids are away; numbers by
- * colours that keep apart. */
+ * (n + 1) / 2, as normal maps do; depths d as s / (s + d), with s how far solids are away, and positions likewise, 1/2
+ * at 0; numbers by colours that keep apart. */
 #include "render/shade/shading.h"
 
 #include "image/image.h"
