@@ -215,7 +215,7 @@ static void every_parameter_survives_away_from_its_default(void **state)
             snprintf(path, sizeof path, "%s.%s", owners[o], param_at(i)->name);
             if (place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
                 continue;
-            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->shapes               ? "toy"
+            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->makers               ? "toy"
                                                             : at.row->type == PARAM_PATH ? "model"
                                                                                          : "body") != 0)
                 continue; /* a file takes the place of what is generated, which a mesh that has a file is not; a slime's

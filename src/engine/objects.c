@@ -30,7 +30,7 @@ cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const
     ENGINE_NEED(name, why);
     ENGINE_NEED(shape, why);
     diagnostic inner = {.line = 0};
-    shape_kind kind = SHAPE_SPHERE;
+    shape_kind kind = {0};
     status code = scene_shape_named(shape, &kind, &inner);
     if (code == STATUS_OK)
         code = scene_add_solid(s->model, name, kind, NULL, &inner);

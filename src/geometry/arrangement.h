@@ -64,6 +64,7 @@ typedef struct arrangement {
     primitive *primitives;
     int body_count;        /* ranks 1 .. body_count */
     body *bodies;          /* [0] is the surrounding medium */
+    solid_shape *shapes;   /* by rank, what the bodies were made of; [0] is none */
     double extent;         /* largest of the primitives' */
     uint64_t opaque_ranks; /* bit r - 1: the body of rank r is opaque */
     bool distinct;         /* no two bodies are of one medium, nor is any of the surrounding one */

@@ -1,4 +1,5 @@
 #include "scene/model/check.h"
+#include "geometry/shapes/shape.h"
 #include "base/counters.h"
 #include "scene/model/looks.h"
 #include "scene/model/medium.h"
@@ -227,11 +228,11 @@ static status check_colors(const scene *s, const solid *owner, const mesh_entry 
 /* What the solid names is there. */
 static status check_references(const scene *s, const solid *owner, diagnostic *why)
 {
-    const mesh_entry *m = scene_find_mesh(s, owner->mesh);
+    const mesh_entry *m = scene_mesh_of(s, owner);
     if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture)) {
         return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
     }
-    if (owner->shape.kind != SHAPE_MESH) {
+    if (!shape_of(&owner->shape)->triangles) {
         return check_colors(s, owner, NULL, why);
     }
     if (!owner->mesh[0]) {
@@ -300,7 +301,7 @@ status check_limits(const scene *s, diagnostic *why)
 {
     size_t primitives = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
-        primitives += s->solids[i].shape.kind == SHAPE_CUP ? 2 : 1;
+        primitives += (size_t)shape_of(&s->solids[i].shape)->primitive_count;
     }
     if (primitives > SCENE_PRIMITIVES_MAX) {
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64, and a cup counts as two", "more than 64 solids");

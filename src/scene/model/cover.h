@@ -18,6 +18,9 @@ bool scene_wins(const solid *winner, const solid *loser);
  * between them; two that lie askew may be apart and not be known to be. */
 bool scene_apart(const scene *s, const solid *a, const solid *b);
 
+/* Is the camera known to be outside the solid, by the same reaches? */
+bool scene_apart_from_eye(const scene *s, const solid *owner);
+
 /* Does the solid lie wholly behind the camera, so that it is seen in reflections at most? */
 bool scene_is_behind_camera(const scene *s, const solid *owner);
 

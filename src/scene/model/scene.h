@@ -36,6 +36,10 @@ int scene_find_solid(const scene *s, const char *name);
 
 /* The mesh or texture of that name; NULL if there is none. */
 const mesh_entry *scene_find_mesh(const scene *s, const char *name);
+/* The mesh that a solid shows; NULL if it is of a shape without triangles, or names none that is there. */
+const mesh_entry *scene_mesh_of(const scene *s, const solid *owner);
+/* The solid's shape with the triangles of its mesh, where they are loaded. */
+solid_shape scene_loaded_shape(const scene *s, const solid *owner);
 const texture_entry *scene_find_texture(const scene *s, const char *name);
 
 #endif

@@ -7,7 +7,7 @@
 
 typedef enum shading_rule { SHADING_FLAT, SHADING_SMOOTH, SHADING_GOURAUD } shading_rule;
 
-/* Primitives are the convex pieces that solids are made of: a cup is two, the others are one. */
+/* Of all solids together (shape_rule.primitive_count). */
 enum { SCENE_PRIMITIVES_MAX = 64 };
 
 typedef struct solid {
@@ -20,5 +20,8 @@ typedef struct solid {
     int material_index;            /* into scene.materials; -1 when it has none */
     material surface;              /* its own copy, with its own changes */
 } solid;
+
+/* Is it of a shape with triangles, and names that mesh? */
+bool solid_shows(const solid *owner, const char *mesh_name);
 
 #endif

@@ -26,6 +26,8 @@ status scene_give_material(scene *s, const char *solid_name, const char *materia
 status scene_put(scene *s, const char *path, const char *value, diagnostic *why);
 
 /* The shape of that name. */
+/* "plane, cylinder or mesh", with the conjunction "or"; returns text. */
+char *scene_shape_words(const char *conjunction, char *text, size_t size);
 status scene_shape_named(const char *word, shape_kind *out, diagnostic *why);
 
 status scene_set_title(scene *s, const char *title, diagnostic *why);
