@@ -45,10 +45,7 @@ static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, siz
 cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, float *rgb, size_t stride,
                                  cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(rgb, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(frame, rgb);
     const size_t row = stride ? stride : 3 * (size_t)(x1 - x0);
     const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, row, &inner);
     if (code == STATUS_OK)
@@ -59,10 +56,7 @@ cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int
 cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, unsigned char *srgb,
                                   size_t stride, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(srgb, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(frame, srgb);
     const size_t row = stride ? stride : 3 * (size_t)(x1 - x0);
     const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, row, &inner);
     if (code == STATUS_OK) {
@@ -75,10 +69,7 @@ cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, in
 
 cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path, int bits, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(path, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(frame, path);
     status code = bits == 8 || bits == 16
                       ? STATUS_OK
                       : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "a picture cannot have %d bits", bits);
@@ -91,9 +82,7 @@ _Static_assert(sizeof(((cuvette_counters *)0)->by_depth) == sizeof(((ray_counter
 
 cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counters *out, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(frame, out);
     const ray_counters *c = &frame->account.result->counters;
     cuvette_counters told = {.camera = c->camera,
                              .reflect = c->reflect,
@@ -113,10 +102,7 @@ cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counte
 cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t index, cuvette_solid_counters *out,
                                             cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(out, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(frame, out);
     if (index >= frame->solid_count)
         return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "count them from 0",
                                       "there is no solid %zu among the scene's %zu", index, frame->solid_count),
@@ -129,9 +115,7 @@ cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t i
 
 cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_statistics *out, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(frame, out);
     const render_result *r = frame->account.result;
     const cuvette_statistics told = {.wall_s = r->wall_s,
                                      .cpu_s = r->cpu_s,

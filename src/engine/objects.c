@@ -6,30 +6,20 @@
 
 cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name);
     return engine_report(scene_add_light(s->model, name, NULL, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_add_material(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name);
     return engine_report(scene_add_material(s->model, name, NULL, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const char *shape, const char *of,
                                        cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    ENGINE_NEED(shape, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name, shape);
     shape_kind kind = {0};
     status code = scene_shape_named(shape, &kind, &inner);
     if (code == STATUS_OK)
@@ -44,10 +34,7 @@ cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const
 
 cuvette_status cuvette_scene_remove(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name);
     const size_t meshes = s->model->mesh_count;
     const status code = scene_remove(s->model, name, &inner);
     s->slimes_changed += s->model->mesh_count != meshes; /* those behind it have other places now */
@@ -56,59 +43,39 @@ cuvette_status cuvette_scene_remove(cuvette_scene *s, const char *name, cuvette_
 
 cuvette_status cuvette_scene_rename(cuvette_scene *s, const char *name, const char *new_name, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    ENGINE_NEED(new_name, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name, new_name);
     return engine_report(scene_rename(s->model, name, new_name, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_give_material(cuvette_scene *s, const char *to, const char *of, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED_NAMED(to, "solid", why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s);
+    ENGINE_NEED_NAMED(to, "solid");
     return engine_report(scene_give_material(s->model, to, of, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_move(cuvette_scene *s, const char *name, const double *by, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    ENGINE_NEED(by, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name, by);
     return engine_report(scene_move(s->model, name, vec3_make(by[0], by[1], by[2]), &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_turn(cuvette_scene *s, const char *name, const double *degrees, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    ENGINE_NEED(degrees, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name, degrees);
     return engine_report(scene_turn(s->model, name, vec3_make(degrees[0], degrees[1], degrees[2]), &inner), &inner,
                          why);
 }
 
 cuvette_status cuvette_scene_scale(cuvette_scene *s, const char *name, double factor, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name);
     return engine_report(scene_scale(s->model, name, factor, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_look_at(cuvette_scene *s, const double *target, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(target, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, target);
     return engine_report(scene_look_at(s->model, vec3_make(target[0], target[1], target[2]), &inner), &inner, why);
 }
 
