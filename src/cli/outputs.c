@@ -1,4 +1,6 @@
 #include "cli/outputs.h"
+#include "base/file.h"
+#include "cli/options.h"
 #include "cli/scene_files.h"
 #include "render/core/record.h"
 #include "scene/model/scene.h"
@@ -14,11 +16,7 @@ typedef struct named_file {
 
 static status wrong(const named_file *file, diagnostic *why, const char *remedy, const char *what)
 {
-    char where[512];
-    snprintf(where, sizeof where, "%s %s", file->option, file->path);
-    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
-    diagnostic_locate(why, where, 0, 0);
-    return STATUS_BAD_INPUT;
+    return options_wrong(file->option, file->path, why, remedy, "%s", what);
 }
 
 static bool ends_with(const char *path, const char *ending)
@@ -197,6 +195,22 @@ status outputs_check_script(const char *option, const char *path, const scene *s
     const named_file file = {option, path};
     const bool is_read = strcmp(path, "-") != 0 && is_script_of(path, s);
     return is_read ? wrong(&file, why, "name another file", "a script of the scene is read from it") : STATUS_OK;
+}
+
+status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),
+                          const void *content, diagnostic *why)
+{
+    if (!path || strcmp(path, "-") == 0)
+        return write(content, stdout, why);
+    file_writer writer;
+    status result = file_writer_open(&writer, path, why);
+    if (result != STATUS_OK)
+        return result;
+    result = write(content, writer.stream, why);
+    if (result == STATUS_OK)
+        return file_writer_commit(&writer, why);
+    file_writer_abandon(&writer);
+    return result;
 }
 
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why)

@@ -5,6 +5,7 @@
 #define CUVETTE_CLI_OUTPUTS_H
 
 #include "render/core/renderer.h"
+#include <stdio.h>
 
 typedef struct outputs {
     const char *picture, *rays, *time, *noise, *timeline; /* NULL: not wanted */
@@ -28,6 +29,10 @@ status outputs_check_folder(const char *option, const char *path, diagnostic *wh
 status outputs_check_place(const char *option, const char *path, const scene *s, diagnostic *why);
 /* That no script is read from it: for what may be written in place of the scene itself. "-" is always right. */
 status outputs_check_script(const char *option, const char *path, const scene *s, diagnostic *why);
+
+/* Writes a text file, whole or not at all; path NULL or "-": to standard output. */
+status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),
+                          const void *content, diagnostic *why);
 
 /* Writes them all; result has what was wanted, or a part of it. */
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why);
