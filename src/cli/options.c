@@ -168,7 +168,7 @@ static error_t take_key(int key, char *value, struct argp_state *state)
         return reading->form->word(reading->request, value), 0;
     if (key == ARGP_KEY_ARG && (reading->form->excess || reading->words < reading->form->words_most))
         return take_word(reading, value, input->why) == STATUS_OK ? 0 : EINVAL;
-    for (const command_option *o = reading->form->options; o && o->name; o++)
+    for (const command_option *o = key == ARGP_KEY_ARG ? NULL : reading->form->options; o && o->name; o++)
         if (key == o->letter || key == KEY_FIRST + (int)(o - reading->form->options))
             return o->take(o, reading->request, value, input->why) == STATUS_OK ? 0 : EINVAL;
     return ARGP_ERR_UNKNOWN;
