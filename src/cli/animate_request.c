@@ -137,10 +137,9 @@ static const scene_command animate_command = {
              .words = "SCENE",
              SCENE_WORD("animate"),
              .about =
-                 "Render a film of the scene file SCENE, whose slimes move.\v"
-                 "Frame k shows the time START + k / FPS; there are DURATION times FPS of them, rounded, at least one. "
-                 "Frames that are there already are "
-                 "not rendered again: a film that was stopped goes on when it is asked for again. For example:\n"
+                 "Render a film of the scene file SCENE, whose slimes move.\vFrame k shows the time START + k / FPS; "
+                 "there are DURATION times FPS of them, rounded, at least one. Frames that are there already are not "
+                 "rendered again: a film that was stopped goes on when it is asked for again. For example:\n"
                  "  cuvette animate experiments/scenes/slime.yaml -o frames/%05d.png\n"
                  "  cuvette animate experiments/scenes/slime.yaml -o - | ffmpeg -i - slime.mp4"},
     .check = check_request,

@@ -25,12 +25,10 @@ static const command_form form = {
     .words_most = 2,
     .excess_remedy = "compare takes two pictures",
     .excess = "'%.128s' is one too many",
-    .about =
-        "Say how far the pictures A and B lie apart, as a display shows them: mean squared error, peak signal-to-noise "
-        "ratio, structural similarity, FLIP, the largest difference, the pixels that differ. PNG, JPEG, PFM and 24-bit "
-        "BMP go "
-        "together, of one size.\vFor example:\n"
-        "  cuvette compare depth4.png depth8.png --diff where.png",
+    .about = "Say how far the pictures A and B lie apart, as a display shows them: mean squared error, peak "
+             "signal-to-noise ratio, structural similarity, FLIP, the largest difference, the pixels that differ. PNG, "
+             "JPEG, PFM and 24-bit BMP go together, of one size.\vFor example:\n"
+             "  cuvette compare depth4.png depth8.png --diff where.png",
 };
 
 typedef struct pair {

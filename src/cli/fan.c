@@ -138,18 +138,14 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 
 static const scene_command fan_command = {
     .name = "fan",
-    .form =
-        {.options = options,
-         .words = "SCENE --from X,Y,Z --to X,Y,Z -o FILE",
-         SCENE_WORD("fan"),
-         .about =
-             "Send many rays through the scene side by side, or from one point, in one plane; follow each along its "
-             "refracted way; and "
-             "find where neighbours cross, the caustic, and the mean focus.\vThe plane is level where --from and --to "
-             "are equally "
-             "high, else upright. For example:\n"
-             "  cuvette fan experiments/scenes/rod.yaml --from -3,1.5,0 --to 3,1.5,0 --width 1.6 --rays 41 --set "
-             "rod.visible=off -o fan.svg"},
+    .form = {.options = options,
+             .words = "SCENE --from X,Y,Z --to X,Y,Z -o FILE",
+             SCENE_WORD("fan"),
+             .about = "Send many rays through the scene side by side, or from one point, in one plane; follow each "
+                      "along its refracted way; and find where neighbours cross, the caustic, and the mean focus.\vThe "
+                      "plane is level where --from and --to are equally high, else upright. For example:\n"
+                      "  cuvette fan experiments/scenes/rod.yaml --from -3,1.5,0 --to 3,1.5,0 --width 1.6 --rays 41 "
+                      "--set rod.visible=off -o fan.svg"},
     .check = check_request,
     .check_scene = check_scene,
     .run = run,

@@ -22,8 +22,7 @@ typedef struct lab_request {
 static const command_option options[] = {
     {"folder", 0, "DIR",
      "the folder whose scenes, models and studies are there, and where files are saved; nothing outside of it is read "
-     "or written "
-     "(default: the working folder, or the scene's where that lies elsewhere)",
+     "or written (default: the working folder, or the scene's where that lies elsewhere)",
      OPTION_FILLS(option_text, lab_request, folder)},
     {"results", 0, "DIR", "folder for rows of studies, within the other (default: results there)",
      OPTION_FILLS(option_text, lab_request, results)},
@@ -42,15 +41,12 @@ static const command_form form = {
     .words_most = 1,
     .excess_remedy = "give one SCENE",
     .excess = "'%.128s' is one argument too many",
-    .about =
-        "Open the laboratory in the browser: look at a scene and turn every parameter of it, ask a pixel why, "
-        "compare, edit, play with a slime, run studies. "
-        "The page is served by this program on 127.0.0.1 alone, to those who know the token in the address that is "
-        "printed.\vFor example:\n"
-        "  cuvette lab experiments/scenes/rod.yaml\n"
-        "From another machine: ssh -L 8000:127.0.0.1:8000 HOST cuvette lab --port 8000 --no-browser SCENE, and open "
-        "the address that it prints here. "
-        "Ctrl-C ends it.",
+    .about = "Open the laboratory in the browser: look at a scene and turn every parameter of it, ask a pixel why, "
+             "compare, edit, play with a slime, run studies. The page is served by this program on 127.0.0.1 alone, to "
+             "those who know the token in the address that is printed.\vFor example:\n"
+             "  cuvette lab experiments/scenes/rod.yaml\n"
+             "From another machine: ssh -L 8000:127.0.0.1:8000 HOST cuvette lab --port 8000 --no-browser SCENE, and "
+             "open the address that it prints here. Ctrl-C ends it.",
 };
 
 /* The working folder where the scene lies below it (or is not there, which is said later), otherwise the scene's own.

@@ -26,9 +26,8 @@ static const command commands[] = {
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
-static const char about[] =
-    "Cuvette, a ray-tracing laboratory: describe a scene, sweep any of its parameters, get the picture, the exact "
-    "ray counts and honest times.";
+static const char about[] = "Cuvette, a ray-tracing laboratory: describe a scene, sweep any of its parameters, get the "
+                            "picture, the exact ray counts and honest times.";
 
 static status dispatch(int argc, char **argv, diagnostic *why)
 {

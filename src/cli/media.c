@@ -36,13 +36,11 @@ static const command_form form = {
     .words_most = 1,
     .excess_remedy = "name one medium, or none for all",
     .excess = "'%.128s' is one too many",
-    .about =
-        "Print the catalogue of media: refractive indices at the lines d, F and C, Abbe's number, the range of "
-        "wavelengths "
-        "and the temperature of the measurement, what the indices are relative to, and who measured. With a name, all "
-        "about that one: its dispersion law with every coefficient, and what to beware of.\v"
-        "Indices are as published, relative to air or to vacuum; for one medium those relative to vacuum stand beside "
-        "them. A star marks an index outside the range that was measured. --at never extrapolates.",
+    .about = "Print the catalogue of media: refractive indices at the lines d, F and C, Abbe's number, the range of "
+             "wavelengths and the temperature of the measurement, what the indices are relative to, and who measured. "
+             "With a name, all about that one: its dispersion law with every coefficient, and what to beware "
+             "of.\vIndices are as published, relative to air or to vacuum; for one medium those relative to vacuum "
+             "stand beside them. A star marks an index outside the range that was measured. --at never extrapolates.",
 };
 
 static status find(const media_request *request, const medium **out, diagnostic *why)

@@ -83,8 +83,8 @@ static const command_form form = {
     .words_at = offsetof(mesh_request, file),
     .words_most = 1,
     .about = "Read a mesh of triangles (OBJ, PLY, STL, glTF), or make one, and say what it is: its numbers, bounds, "
-             "area, whether it is closed, its "
-             "volume or its first hole. With --format, write its triangles instead.\vFor example:\n"
+             "area, whether it is closed, its volume or its first hole. With --format, write its triangles "
+             "instead.\vFor example:\n"
              "  cuvette mesh teapot.obj\n"
              "  cuvette mesh --generate torus --minor 0.4 --around 256 --tube 128\n"
              "  cuvette mesh --generate sparse --count 50000 -f pov -o sparse.pov\n"

@@ -136,18 +136,15 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 
 static const scene_command motion_command = {
     .name = "motion",
-    .form =
-        {.options = options,
-         .words = "SCENE",
-         SCENE_WORD("motion"),
-         .about =
-             "Measure how each slime of the scene file SCENE moves with its stiffness, its integrator and its step, "
-             "beside the closed forms of "
-             "mechanics: a spring's swing, a fall, a bounce, what a free body keeps, its volume, the longest stable "
-             "step, and how fast it is "
-             "computed.\vFor example:\n"
-             "  cuvette motion experiments/scenes/slime.yaml\n"
-             "  cuvette motion experiments/scenes/slime.yaml --set toy.integrator=verlet --set toy.dt_s=0.0005"},
+    .form = {.options = options,
+             .words = "SCENE",
+             SCENE_WORD("motion"),
+             .about =
+                 "Measure how each slime of the scene file SCENE moves with its stiffness, its integrator and its "
+                 "step, beside the closed forms of mechanics: a spring's swing, a fall, a bounce, what a free body "
+                 "keeps, its volume, the longest stable step, and how fast it is computed.\vFor example:\n"
+                 "  cuvette motion experiments/scenes/slime.yaml\n"
+                 "  cuvette motion experiments/scenes/slime.yaml --set toy.integrator=verlet --set toy.dt_s=0.0005"},
     .check = check_request,
     .check_scene = check_scene,
     .unloaded = true, /* the trials move slimes of their own */

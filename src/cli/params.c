@@ -28,12 +28,11 @@ static const command_form form = {
     .words_most = 2,
     .excess_remedy = "name one scene and one parameter or word at most",
     .excess = "'%.128s' is one too many",
-    .about =
-        "Print the table of parameters: name, default, unit, range, meaning. With a scene, its own parameters and "
-        "their values. With a path, a part of one, or a word, only those that it fits.\v"
-        "A name is what --set takes, what a scene file has under its group, and what a study sweeps. "
-        "MESH, TEXTURE, LIGHT, MATERIAL and SOLID stand for the names that a scene gives. One element of a vector is "
-        "lamp.position.x (.y .z, for colours .r .g .b).",
+    .about = "Print the table of parameters: name, default, unit, range, meaning. With a scene, its own parameters and "
+             "their values. With a path, a part of one, or a word, only those that it fits.\vA name is what --set "
+             "takes, what a scene file has under its group, and what a study sweeps. MESH, TEXTURE, LIGHT, MATERIAL "
+             "and SOLID stand for the names that a scene gives. One element of a vector is lamp.position.x (.y .z, for "
+             "colours .r .g .b).",
 };
 
 static bool ends_with(const char *text, const char *ending)

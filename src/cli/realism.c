@@ -161,19 +161,16 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 
 static const scene_command realism_command = {
     .name = "realism",
-    .form =
-        {.options = options,
-         .words = "SCENE",
-         SCENE_WORD("realism"),
-         .about =
-             "Measure how far what is traced lies from textbook optics, in the scene file SCENE: a vessel (a cup), a "
-             "liquid in it (a "
-             "cylinder) and a rod (a box); or a prism, a drop, or two plates. It succeeds whether the metrics pass or "
-             "not.\vFor example:\n"
-             "  cuvette realism experiments/scenes/rod.yaml\n"
-             "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set clear.reflectivity=0.1 "
-             "--set clear.transparency=0.9\n"
-             "  cuvette realism experiments/scenes/prism.yaml"},
+    .form = {.options = options,
+             .words = "SCENE",
+             SCENE_WORD("realism"),
+             .about = "Measure how far what is traced lies from textbook optics, in the scene file SCENE: a vessel (a "
+                      "cup), a liquid in it (a cylinder) and a rod (a box); or a prism, a drop, or two plates. It "
+                      "succeeds whether the metrics pass or not.\vFor example:\n"
+                      "  cuvette realism experiments/scenes/rod.yaml\n"
+                      "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set "
+                      "clear.reflectivity=0.1 --set clear.transparency=0.9\n"
+                      "  cuvette realism experiments/scenes/prism.yaml"},
     .check = check_request,
     .run = run,
 };

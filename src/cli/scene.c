@@ -156,13 +156,12 @@ static status run(const scene_request *request, scene *s, diagnostic *why)
     return result == STATUS_OK ? scene_write(s, output, request->writes_all, why) : result;
 }
 
-static const char about[] = "Read a scene, or begin with an empty one; change it by the options, one after another; "
-                            "check it, and write it in one normal "
-                            "form. Only what differs from the defaults is written. Comments are not kept.\vNothing is "
-                            "written when something is wrong. For "
-                            "example:\n"
-                            "  cuvette scene rod.yaml --move rod=0,0.5,0 --turn rod=0,0,-22 -o b.yaml\n"
-                            "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8";
+static const char about[] =
+    "Read a scene, or begin with an empty one; change it by the options, one after another; check it, and write it in "
+    "one normal form. Only what differs from the defaults is written. Comments are not kept.\vNothing is written when "
+    "something is wrong. For example:\n"
+    "  cuvette scene rod.yaml --move rod=0,0.5,0 --turn rod=0,0,-22 -o b.yaml\n"
+    "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8";
 
 status command_scene(int argc, char **argv, diagnostic *why)
 {

@@ -47,13 +47,11 @@ static const command_option results_options[] = {
 };
 
 static const command_form forms[STUDY_VERB_COUNT] = {
-    [STUDY_RUN] =
-        {.options = run_options,
-         .word = take_file,
-         .words = "FILE...",
-         .about =
-             "Measure what is missing of each study, row by row.\vA study that is stopped, or killed, goes on where "
-             "it was when it is run again. Rows are never rewritten."},
+    [STUDY_RUN] = {.options = run_options,
+                   .word = take_file,
+                   .words = "FILE...",
+                   .about = "Measure what is missing of each study, row by row.\vA study that is stopped, or killed, "
+                            "goes on where it was when it is run again. Rows are never rewritten."},
     [STUDY_LIST] = {.word = take_file,
                     .words = "[DIR]",
                     .about = "List the study files of a folder; 'experiments' if none is named."},
@@ -67,12 +65,11 @@ static const command_form forms[STUDY_VERB_COUNT] = {
                      .word = take_file,
                      .words = "FILE...",
                      .about = "Join the rows of a study's shards into its rows.csv."},
-    [STUDY_SUMMARY] =
-        {.options = results_options,
-         .word = take_file,
-         .words = "FILE",
-         .about = "Print one line a cell: medians, 95% intervals, counts.\vOn a terminal the columns that one looks at "
-                  "first; into a file or pipe all of them, separated by tabs."},
+    [STUDY_SUMMARY] = {.options = results_options,
+                       .word = take_file,
+                       .words = "FILE",
+                       .about = "Print one line a cell: medians, 95% intervals, counts.\vOn a terminal the columns "
+                                "that one looks at first; into a file or pipe all of them, separated by tabs."},
 };
 
 static status check_files(const study_request *request, const char *program, diagnostic *why)

@@ -142,8 +142,7 @@ static const scene_command trace_command = {
          SCENE_WORD("trace"),
          .about =
              "Take one ray apart: the whole tree of rays that it grows into, with media, angles, reflectances and what "
-             "each brings to "
-             "the picture. The tree of a pixel has the pixel's radiance, to the bit.\vFor example:\n"
+             "each brings to the picture. The tree of a pixel has the pixel's radiance, to the bit.\vFor example:\n"
              "  cuvette trace experiments/scenes/rod.yaml --pixel 400,300 --depth 3\n"
              "  cuvette trace experiments/scenes/rod.yaml --ray -3,1.5,0.4,1,0,0 -o ray.svg"},
     .check = check_request,
