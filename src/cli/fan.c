@@ -9,7 +9,6 @@
 
 typedef struct fan_request {
     scene_input input;
-    const char *output;
     size_t format; /* index of the ending */
     fan_rule rule;
     int64_t rays;
@@ -62,8 +61,7 @@ static const command_option options[] = {
     OPTION_SET("'rod.visible=off'"),
     {"tree", 0, NULL, "draw each ray's whole tree, not its refracted way alone",
      OPTION_FILLS(option_flag, fan_request, whole_trees)},
-    {"output", 'o', "FILE", "write there: .svg, a drawing, or .csv, a row a ray",
-     OPTION_FILLS(option_text, fan_request, output)},
+    OPTION_OUTPUT("write there: .svg, a drawing, or .csv, a row a ray"),
     {0},
 };
 
@@ -74,16 +72,10 @@ static status check_request(void *asked, diagnostic *why)
     request->rule.rays = (int)request->rays;
     if (isnan(request->rule.from.x) || isnan(request->rule.to.x))
         return options_wrong("fan", NULL, why, "give --from X,Y,Z and --to X,Y,Z", "the rays have no axis");
-    if (!request->output)
+    if (!request->input.output)
         return options_wrong("fan", NULL, why, "add -o FILE.svg for the drawing or -o FILE.csv for a row a ray",
                              "nothing is asked for");
-    return outputs_ending("-o", request->output, endings, 2, "end it in .svg or .csv", &request->format, why);
-}
-
-static status check_scene(void *asked, const scene *s, diagnostic *why)
-{
-    const fan_request *request = asked;
-    return outputs_check_place("-o", request->output, s, why);
+    return outputs_ending("-o", request->input.output, endings, 2, "end it in .svg or .csv", &request->format, why);
 }
 
 static status write_fan(const void *content, FILE *out, diagnostic *why)
@@ -102,7 +94,7 @@ static void print_summary(const fan_request *request, const fan *f)
     if (f->has_focus)
         printf(", %s %.6g,%.6g,%.6g (rms distance %.3g)", f->is_virtual ? "virtual mean focus" : "mean focus",
                fan_shown(f->focus.x), fan_shown(f->focus.y), fan_shown(f->focus.z), f->focus_rms);
-    printf(" -> %s\n", request->output);
+    printf(" -> %s\n", request->input.output);
 }
 
 static status follow(const fan_request *request, const scene *s, probe *p, diagnostic *why)
@@ -113,7 +105,7 @@ static status follow(const fan_request *request, const scene *s, probe *p, diagn
         diagnostic_locate(why, "fan", 0, 0);
     if (result == STATUS_OK) {
         const fanned t = {s, p, &request->rule, &f, request->whole_trees, request->format == FAN_CSV};
-        result = outputs_write_text(request->output, write_fan, &t, why);
+        result = outputs_write_text(request->input.output, write_fan, &t, why);
     }
     if (result == STATUS_OK)
         print_summary(request, &f);
@@ -125,9 +117,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 {
     const fan_request *request = asked;
     probe *p = NULL;
-    status result = probe_create(s, level, &p, why);
-    if (result == STATUS_OK && scene_input_one_wavelength(&request->input))
-        probe_one_wavelength(p);
+    status result = scene_input_probe(&request->input, s, level, &p, why);
     if (result == STATUS_OK) {
         scene_input_note_tree(s);
         result = follow(request, s, p, why);
@@ -147,7 +137,6 @@ static const scene_command fan_command = {
                       "  cuvette fan experiments/scenes/rod.yaml --from -3,1.5,0 --to 3,1.5,0 --width 1.6 --rays 41 "
                       "--set rod.visible=off -o fan.svg"},
     .check = check_request,
-    .check_scene = check_scene,
     .run = run,
 };
 

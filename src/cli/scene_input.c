@@ -1,4 +1,5 @@
 #include "cli/scene_input.h"
+#include "cli/outputs.h"
 #include "cli/terminal.h"
 #include "scene/model/hints.h"
 #include "scene/model/params.h"
@@ -24,12 +25,13 @@ status option_change(const command_option *o, void *request, const char *value, 
     return STATUS_OK;
 }
 
-bool scene_input_one_wavelength(const scene_input *input)
+status scene_input_probe(const scene_input *input, const scene *s, isa level, probe **out, diagnostic *why)
 {
-    bool found = false;
-    for (size_t i = 0; i < input->count; i++)
-        found |= strcmp(input->changes[i].option, "lambda") == 0;
-    return found;
+    const status result = probe_create(s, level, out, why);
+    for (size_t i = 0; i < input->count && result == STATUS_OK; i++)
+        if (strcmp(input->changes[i].option, "lambda") == 0)
+            probe_one_wavelength(*out);
+    return result;
 }
 
 status scene_command_read(const scene_command *command, int argc, char **argv, void *request, diagnostic *why)
@@ -53,6 +55,9 @@ status scene_command_run(const scene_command *command, int argc, char **argv, vo
         result = scene_input_isa(&level, why);
     if (result == STATUS_OK)
         result = scene_input_read(request, &s, why);
+    const char *output = ((scene_input *)request)->output;
+    if (result == STATUS_OK && output)
+        result = outputs_check_place("-o", output, s, why);
     if (result == STATUS_OK && command->check_scene)
         result = command->check_scene(request, s, why);
     if (result == STATUS_OK && !command->unloaded)

@@ -7,6 +7,7 @@
 #include "cli/options.h"
 #include "job/job.h"
 #include "lint/lint.h"
+#include "render/inspect/probe.h"
 #include "scene/model/open.h"
 
 typedef struct scene_change {
@@ -16,7 +17,8 @@ typedef struct scene_change {
 } scene_change;
 
 typedef struct scene_input {
-    const char *path; /* NULL until it is named */
+    const char *path;   /* NULL until it is named */
+    const char *output; /* of OPTION_OUTPUT; NULL: not said, or the command has another one */
     scene_change *changes;
     size_t count;
     bool from_beginning; /* a slime's time_s does not count: it moves from its beginning on */
@@ -26,6 +28,10 @@ typedef struct scene_input {
 #define OPTION_SET(example)                                                                                         \
     {                                                                                                               \
         "set", 's', "PATH=VALUE", "set a parameter, as " example "; may be given many times", .take = option_change \
+    }
+#define OPTION_OUTPUT(purpose)                                                         \
+    {                                                                                  \
+        "output", 'o', "FILE", purpose, OPTION_FILLS(option_text, scene_input, output) \
     }
 #define OPTION_DEPTH                                                                                            \
     {                                                                                                           \
@@ -38,8 +44,8 @@ typedef struct scene_input {
     }
 status option_change(const command_option *o, void *request, const char *value, diagnostic *why);
 
-/* Was --lambda given? */
-bool scene_input_one_wavelength(const scene_input *input);
+/* A probe of the scene, at one wavelength where --lambda was given. */
+status scene_input_probe(const scene_input *input, const scene *s, isa level, probe **out, diagnostic *why);
 
 /* The one word of their command line. */
 #define SCENE_WORD(command)                                                              \
@@ -48,7 +54,8 @@ bool scene_input_one_wavelength(const scene_input *input);
     .excess = "'%.128s' is one too many"
 
 /* A command on a scene: reads its command line into the request, then the scene and, unless it stays unloaded, its
- * files, and runs. Each check may be NULL. */
+ * files, and runs. Each check may be NULL. What OPTION_OUTPUT names is looked at: its folder, and that the scene does
+ * not read it. */
 typedef struct scene_command {
     const char *name; /* "render" */
     command_form form;

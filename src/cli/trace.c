@@ -11,7 +11,6 @@ typedef enum trace_format { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_NONE } 
 
 typedef struct trace_request {
     scene_input input;
-    const char *output; /* NULL: standard output */
     trace_format format;
     bool by_pixel, by_ray;
     double pixel[2], ray[6];
@@ -58,8 +57,7 @@ static const command_option options[] = {
     {"text", 0, NULL, "print an indented tree, a line a ray (the default)", .take = take_format},
     {"json", 0, NULL, "print one JSON object", .take = take_format},
     {"svg", 0, NULL, "draw the tree in the plane of incidence and from above", .take = take_format},
-    {"output", 'o', "FILE", "write there; without a format, the ending says which: .txt, .json, .svg",
-     OPTION_FILLS(option_text, trace_request, output)},
+    OPTION_OUTPUT("write there; without a format, the ending says which: .txt, .json, .svg"),
     {0},
 };
 
@@ -72,18 +70,12 @@ static status check_request(void *asked, diagnostic *why)
                              request->by_ray ? "--pixel and --ray exclude each other" : "no ray is named");
     size_t which = FORMAT_TEXT;
     status result = STATUS_OK;
-    if (request->format == FORMAT_NONE && request->output && strcmp(request->output, "-") != 0)
-        result = outputs_ending("-o", request->output, endings, 3,
+    if (request->format == FORMAT_NONE && request->input.output && strcmp(request->input.output, "-") != 0)
+        result = outputs_ending("-o", request->input.output, endings, 3,
                                 "end it in .txt, .json or .svg, or give --text, --json or --svg", &which, why);
     if (request->format == FORMAT_NONE)
         request->format = (trace_format)which;
     return result;
-}
-
-static status check_scene(void *asked, const scene *s, diagnostic *why)
-{
-    const trace_request *request = asked;
-    return request->output ? outputs_check_place("-o", request->output, s, why) : STATUS_OK;
 }
 
 static status grow(const trace_request *request, probe *p, ray_tree *tree, diagnostic *why)
@@ -119,15 +111,13 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
     const trace_request *request = asked;
     probe *p = NULL;
     ray_tree tree = {0};
-    status result = probe_create(s, level, &p, why);
-    if (result == STATUS_OK && scene_input_one_wavelength(&request->input))
-        probe_one_wavelength(p);
+    status result = scene_input_probe(&request->input, s, level, &p, why);
     if (result == STATUS_OK)
         result = grow(request, p, &tree, why);
     if (result == STATUS_OK) {
         const formatted f = {{s, p, &tree, request->input.path}, request->format};
         scene_input_note_tree(s);
-        result = outputs_write_text(request->output, write_as, &f, why);
+        result = outputs_write_text(request->input.output, write_as, &f, why);
     }
     ray_tree_release(&tree);
     probe_destroy(p);
@@ -146,7 +136,6 @@ static const scene_command trace_command = {
              "  cuvette trace experiments/scenes/rod.yaml --pixel 400,300 --depth 3\n"
              "  cuvette trace experiments/scenes/rod.yaml --ray -3,1.5,0.4,1,0,0 -o ray.svg"},
     .check = check_request,
-    .check_scene = check_scene,
     .run = run,
 };
 

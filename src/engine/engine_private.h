@@ -64,9 +64,6 @@ status engine_check(const cuvette_scene *s, diagnostic *why);
 /* Reads the files that the scene names, once. */
 status engine_load(cuvette_scene *s, diagnostic *why);
 
-/* Takes over the model; destroys it when memory is out. */
-cuvette_status engine_wrap_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why);
-
 /* Copies as much of content, of `known` bytes, as the caller's struct, an older or a newer one, has room for; its own
  * size, with which both begin, stays. */
 cuvette_status engine_give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why);

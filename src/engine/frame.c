@@ -30,15 +30,18 @@ uint64_t cuvette_frame_hash(const cuvette_frame *frame)
     return frame ? job_account_hash(&frame->account) : 0;
 }
 
-static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, size_t stride, diagnostic *why)
+/* *stride: 0 becomes that of rows without room between them. */
+static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, size_t *stride, diagnostic *why)
 {
+    if (*stride == 0)
+        *stride = 3 * (size_t)(x1 - x0);
     if (x0 < 0 || y0 < 0 || x1 > f->width || y1 > f->height || x0 >= x1 || y0 >= y1)
         return diagnose(why, STATUS_BAD_INPUT, "keep 0 <= x0 < x1 <= width, and y likewise",
                         "no part of a picture of %d x %d lies from %d,%d to %d,%d", f->width, f->height, x0, y0, x1,
                         y1);
-    if (stride < 3 * (size_t)(x1 - x0))
+    if (*stride < 3 * (size_t)(x1 - x0))
         return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width",
-                        "a stride of %zu is shorter than a row", stride);
+                        "a stride of %zu is shorter than a row", *stride);
     return STATUS_OK;
 }
 
@@ -46,10 +49,9 @@ cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int
                                  cuvette_diagnostic *why)
 {
     ENGINE_CALL(frame, rgb);
-    const size_t row = stride ? stride : 3 * (size_t)(x1 - x0);
-    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, row, &inner);
+    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, &stride, &inner);
     if (code == STATUS_OK)
-        film_read(frame->account.result->picture, x0, y0, x1, y1, rgb, row);
+        film_read(frame->account.result->picture, x0, y0, x1, y1, rgb, stride);
     return engine_report(code, &inner, why);
 }
 
@@ -57,12 +59,11 @@ cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, in
                                   size_t stride, cuvette_diagnostic *why)
 {
     ENGINE_CALL(frame, srgb);
-    const size_t row = stride ? stride : 3 * (size_t)(x1 - x0);
-    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, row, &inner);
+    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, &stride, &inner);
     if (code == STATUS_OK) {
         codec_bytes bytes;
         codec_bytes_prepare(&bytes);
-        canvas_bytes(frame->account.result->picture, &bytes, x0, y0, x1, y1, srgb, row);
+        canvas_bytes(frame->account.result->picture, &bytes, x0, y0, x1, y1, srgb, stride);
     }
     return engine_report(code, &inner, why);
 }

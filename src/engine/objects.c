@@ -2,6 +2,7 @@
 #include "engine/engine_private.h"
 
 #include "scene/model/edit/edit.h"
+#include "scene/model/params_path.h"
 #include "scene/model/scene.h"
 
 cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
@@ -79,30 +80,22 @@ cuvette_status cuvette_scene_look_at(cuvette_scene *s, const double *target, cuv
     return engine_report(scene_look_at(s->model, vec3_make(target[0], target[1], target[2]), &inner), &inner, why);
 }
 
+static param_group group_of(cuvette_object kind)
+{
+    static const param_group groups[] = {[CUVETTE_LIGHT] = PARAM_LIGHT,
+                                         [CUVETTE_MATERIAL] = PARAM_MATERIAL,
+                                         [CUVETTE_SOLID] = PARAM_SOLID,
+                                         [CUVETTE_MESH] = PARAM_MESH,
+                                         [CUVETTE_TEXTURE] = PARAM_TEXTURE};
+    return (size_t)kind < sizeof groups / sizeof *groups ? groups[kind] : PARAM_GROUP_COUNT;
+}
+
 size_t cuvette_scene_count(const cuvette_scene *s, cuvette_object kind)
 {
-    if (!s)
-        return 0;
-    switch (kind) {
-    case CUVETTE_LIGHT: return s->model->light_count;
-    case CUVETTE_MATERIAL: return s->model->material_count;
-    case CUVETTE_SOLID: return s->model->solid_count;
-    case CUVETTE_MESH: return s->model->mesh_count;
-    case CUVETTE_TEXTURE: return s->model->texture_count;
-    }
-    return 0;
+    return s && group_of(kind) != PARAM_GROUP_COUNT ? place_group_size(s->model, group_of(kind)) : 0;
 }
 
 const char *cuvette_scene_name(const cuvette_scene *s, cuvette_object kind, size_t index)
 {
-    if (index >= cuvette_scene_count(s, kind))
-        return NULL;
-    switch (kind) {
-    case CUVETTE_LIGHT: return s->model->lights[index].name;
-    case CUVETTE_MATERIAL: return s->model->materials[index].name;
-    case CUVETTE_SOLID: return s->model->solids[index].name;
-    case CUVETTE_MESH: return s->model->meshes[index].name;
-    case CUVETTE_TEXTURE: return s->model->textures[index].name;
-    }
-    return NULL;
+    return index < cuvette_scene_count(s, kind) ? place_group_name(s->model, group_of(kind), index) : NULL;
 }
