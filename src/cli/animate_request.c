@@ -160,8 +160,7 @@ void animate_request_release(animate_request *request)
 
 bool animate_is_stream(const animate_request *request)
 {
-    const size_t length = strlen(request->output);
-    return strcmp(request->output, "-") == 0 || (length > 4 && strcasecmp(request->output + length - 4, ".y4m") == 0);
+    return strcmp(request->output, "-") == 0 || outputs_ends_with(request->output, ".y4m");
 }
 
 double animate_time_s(const animate_request *request, int64_t frame)

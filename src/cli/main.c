@@ -1,6 +1,7 @@
 #include "base/float_environment.h"
 #include "cli/cli.h"
 #include "cli/terminal.h"
+#include <argp.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -1,6 +1,7 @@
 #include "cli/options.h"
 #include "base/number.h"
 #include "base/text.h"
+#include <argp.h>
 #include <errno.h>
 #include <getopt.h>
 #include <stdarg.h>
@@ -123,20 +124,6 @@ void options_locate(diagnostic *why, const char *program)
     diagnostic_locate(why, words ? words + 1 : "command line", 0, 0);
 }
 
-status options_parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *request, diagnostic *why)
-{
-    status result = check(argp, flags, argc, argv, why);
-    if (result != STATUS_OK)
-        return result;
-    options_input input = {request, why};
-    error_t error = argp_parse(argp, argc, argv, flags, NULL, &input);
-    if (error == EINVAL)
-        return STATUS_BAD_INPUT;
-    if (error == ENOMEM)
-        return out_of_memory(why);
-    return error ? diagnose(why, STATUS_FAILURE, "", "cannot read the command line: %s", strerror(error)) : STATUS_OK;
-}
-
 /* --- command lines --- */
 
 enum { KEY_FIRST = 0x100 };
@@ -146,44 +133,58 @@ typedef struct form_reading {
     const char *program;
     void *request;
     size_t words;
+    diagnostic *why;
 } form_reading;
 
-static status take_word(form_reading *reading, const char *word, diagnostic *why)
+static error_t take_word(form_reading *reading, const char *word, struct argp_state *state)
 {
     const command_form *form = reading->form;
+    if (form->word)
+        return form->word(reading->request, word), 0;
+    if (reading->words == form->words_most && !form->excess)
+        return ARGP_ERR_UNKNOWN;
     if (reading->words == form->words_most) {
-        options_wrong(NULL, NULL, why, form->excess_remedy, form->excess, word);
-        options_locate(why, reading->program);
-        return STATUS_BAD_INPUT;
+        options_wrong(NULL, NULL, reading->why, form->excess_remedy, form->excess, word);
+        options_locate(reading->why, reading->program);
+        return EINVAL;
     }
     ((const char **)((char *)reading->request + form->words_at))[reading->words++] = word;
-    return STATUS_OK;
+    if (form->ends_at_word)
+        state->next = state->argc;
+    return 0;
 }
 
+/* A mistake fills *why and is EINVAL. */
 static error_t take_key(int key, char *value, struct argp_state *state)
 {
-    const options_input *input = state->input;
-    form_reading *reading = input->request;
-    if (key == ARGP_KEY_ARG && reading->form->word)
-        return reading->form->word(reading->request, value), 0;
-    if (key == ARGP_KEY_ARG && (reading->form->excess || reading->words < reading->form->words_most))
-        return take_word(reading, value, input->why) == STATUS_OK ? 0 : EINVAL;
-    for (const command_option *o = key == ARGP_KEY_ARG ? NULL : reading->form->options; o && o->name; o++)
+    form_reading *reading = state->input;
+    if (key == ARGP_KEY_ARG)
+        return take_word(reading, value, state);
+    for (const command_option *o = reading->form->options; o && o->name; o++)
         if (key == o->letter || key == KEY_FIRST + (int)(o - reading->form->options))
-            return o->take(o, reading->request, value, input->why) == STATUS_OK ? 0 : EINVAL;
+            return o->take(o, reading->request, value, reading->why) == STATUS_OK ? 0 : EINVAL;
     return ARGP_ERR_UNKNOWN;
 }
 
 status command_form_read(const command_form *form, int argc, char **argv, void *request, diagnostic *why)
 {
     struct argp_option options[OPTIONS_MAX + 1] = {{0}};
-    form_reading reading = {form, argv[0], request, 0};
+    form_reading reading = {form, argv[0], request, 0, why};
+    const unsigned flags = form->ends_at_word ? ARGP_IN_ORDER : 0;
     for (int i = 0; form->options && form->options[i].name && i < OPTIONS_MAX; i++) {
         const command_option *o = &form->options[i];
         options[i] = (struct argp_option){o->name, o->letter ? o->letter : KEY_FIRST + i, o->form, 0, o->purpose, 0};
     }
     const struct argp argp = {.options = options, .parser = take_key, .args_doc = form->words, .doc = form->about};
-    return options_parse(&argp, 0, argc, argv, &reading, why);
+    const status result = check(&argp, flags, argc, argv, why);
+    if (result != STATUS_OK)
+        return result;
+    const error_t error = argp_parse(&argp, argc, argv, flags, NULL, &reading);
+    if (error == EINVAL)
+        return STATUS_BAD_INPUT;
+    if (error == ENOMEM)
+        return out_of_memory(why);
+    return error ? diagnose(why, STATUS_FAILURE, "", "cannot read the command line: %s", strerror(error)) : STATUS_OK;
 }
 
 status option_text(const command_option *o, void *request, const char *value, diagnostic *why)

@@ -5,7 +5,6 @@
 #define CUVETTE_CLI_OPTIONS_H
 
 #include "base/status.h"
-#include <argp.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -36,19 +35,11 @@ typedef struct command_form {
     size_t words_at, words_most;
     const char *excess, *excess_remedy; /* of a further word, as "'%s' is one too many"; NULL: argp's own error */
     void (*word)(void *request, const char *word); /* in place of a list that has an end; or NULL */
+    bool ends_at_word;                             /* what follows the first word is not read */
 } command_form;
 
 /* Reads a command line into the request. */
 status command_form_read(const command_form *form, int argc, char **argv, void *request, diagnostic *why);
-
-/* What a parser of options_parse gets as state->input. A parser that finds a mistake fills *why and returns EINVAL. */
-typedef struct options_input {
-    void *request;
-    diagnostic *why;
-} options_input;
-
-/* flags as argp_parse's. */
-status options_parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *request, diagnostic *why);
 
 /* STATUS_BAD_INPUT, located: at a command or an option, and its value unless that is NULL. */
 status options_wrong(const char *where, const char *value, diagnostic *why, const char *remedy, const char *what, ...)

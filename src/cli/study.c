@@ -4,7 +4,6 @@
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "cli/study_request.h"
-#include "cli/study_table.h"
 #include "cli/terminal.h"
 #include "study/study.h"
 #include "study/summary.h"
