@@ -81,10 +81,10 @@ verdict $? "the preloaded library sets the environment"
 
 # A function that is added to the engine enters the default environment too.
 bare=$(awk '/^cuvette_status cuvette_/ {name = $2; sub(/\(.*/, "", name); n++}
-            name && open {if ($0 !~ /^ *ENGINE_ENTER\(host\);$/) print name; name = ""}
+            name && open {if ($0 !~ /^ *ENGINE_(ENTER|CALL|CHANGE)\(.*\);$/) print name; name = ""}
             {open = /^{$/} END {if (n < 50) print "only", n, "functions"}' "$root"/src/engine/*.c)
 [[ -z $bare ]]
-verdict $? "every function of cuvette.h that can fail begins with ENGINE_ENTER${bare:+, but not }$bare"
+verdict $? "every function of cuvette.h that can fail enters its environment${bare:+, but not }$bare"
 
 scenes=$root/experiments/scenes
 "$program" mesh --generate torus --around 24 --tube 12 -o ring.ply >/dev/null || exit 1

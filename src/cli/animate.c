@@ -39,7 +39,7 @@ static status choose_duration(animate_request *request, const scene *s, diagnost
     status result = animate_script_end_s(s, &any, &end_s, why);
     if (result != STATUS_OK)
         return result;
-    if (!request->has_duration)
+    if (request->duration_s < 0)
         request->duration_s = any ? fmax(0, end_s + rest_s - request->start_s) : without_script_s;
     result = animate_check_length(request, why);
     for (size_t i = 0; i < s->mesh_count && result == STATUS_OK; i++) {
@@ -95,9 +95,7 @@ static status print_account(const animate_request *request, const scene *s, cons
         "simulated_s", json_of_real(a->simulated_s), "steps", (json_int_t)a->steps, "step_s", json_of_real(a->step_s),
         "skin_s", json_of_real(a->skin_s), "wall_s", json_of_real(a->wall_s), "wall_s_mean",
         json_of_real(a->rendered ? a->wall_s / (double)a->rendered : (double)NAN), "params", report_params(s));
-    status result = o ? json_write(stdout, o, why) : out_of_memory(why);
-    json_decref(o);
-    return result;
+    return o ? json_print(o, why) : out_of_memory(why);
 }
 
 static status make(const animate_request *request, const animate_names *names, job *with, scene *s, diagnostic *why)

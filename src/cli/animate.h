@@ -15,11 +15,11 @@
 /* Frame k, from 0, shows start_s + k fps_den / fps_num. */
 typedef struct animate_request {
     scene_input input;
-    const char *output;        /* a pattern, "-", or a name that ends in .y4m */
-    const char *script, *rows; /* NULL: not said */
-    char *script_path;         /* script as an absolute path; owned */
-    double start_s, duration_s;
-    bool has_duration, restart, json;
+    const char *output;         /* a pattern, "-", or a name that ends in .y4m */
+    const char *script, *rows;  /* NULL: not said */
+    char *script_path;          /* script as an absolute path; owned */
+    double start_s, duration_s; /* duration_s < 0: not said */
+    bool restart, json;
     int64_t fps_num, fps_den; /* in lowest terms */
 } animate_request;
 

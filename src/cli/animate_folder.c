@@ -1,7 +1,7 @@
 /* What lies in the folder of a film's frames: its own, those of other films, and what the scene reads. */
 #include "cli/animate.h"
 #include "base/text.h"
-#include "cli/scene_files.h"
+#include "cli/outputs.h"
 #include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
@@ -38,15 +38,9 @@ static bool is_folder(DIR *in, const char *name)
     return fstatat(dirfd(in), name, &about, 0) == 0 && S_ISDIR(about.st_mode);
 }
 
-static const char *name_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 static bool is_own_ledger(const animate_names *names, const char *name)
 {
-    const char *own = name_of(names->pattern);
+    const char *own = outputs_name_of(names->pattern);
     const size_t length = strlen(own);
     return strncmp(name, own, length) == 0 && strcmp(name + length, ".json") == 0;
 }
@@ -78,7 +72,7 @@ static bool overlaps(const animate_names *names, const char *ledger, int64_t cou
     if (pattern && animate_names_parse(pattern, &other, NULL) == STATUS_OK) {
         for (int64_t k = 0; k < frames && !same; k++) {
             char *theirs = animate_name(&other, k);
-            const int64_t ours = theirs ? animate_name_frame(names, name_of(theirs)) : -1;
+            const int64_t ours = theirs ? animate_name_frame(names, outputs_name_of(theirs)) : -1;
             same = ours >= 0 && ours < count;
             free(theirs);
         }
@@ -89,12 +83,6 @@ static bool overlaps(const animate_names *names, const char *ledger, int64_t cou
     return same;
 }
 
-static bool is_json(const char *name)
-{
-    const size_t length = strlen(name);
-    return length > 5 && strcmp(name + length - 5, ".json") == 0;
-}
-
 status animate_folder_check(const animate_names *names, int64_t known, int64_t wanted, diagnostic *why)
 {
     DIR *folder;
@@ -103,7 +91,8 @@ status animate_folder_check(const animate_names *names, int64_t known, int64_t w
         const char *name = entry->d_name;
         if (animate_name_frame(names, name) >= 0)
             result = check_frame(names, folder, name, known, why);
-        else if (is_json(name) && !is_own_ledger(names, name) && overlaps(names, name, known > wanted ? known : wanted))
+        else if (outputs_ends_with(name, ".json") && !is_own_ledger(names, name) &&
+                 overlaps(names, name, known > wanted ? known : wanted))
             result = refuse(names, name, elsewhere, "another film has frames of the same names", why);
     }
     if (folder)
@@ -135,13 +124,11 @@ typedef struct read_search {
 
 static bool is_in_place(const animate_names *names, const char *path)
 {
-    const char *name = name_of(path);
+    const char *name = outputs_name_of(path);
     if (animate_name_frame(names, name) < 0 && !is_own_ledger(names, name))
         return false;
-    char *folder = name == path ? strdup(".") : strndup(path, (size_t)(name - path));
-    struct stat theirs, ours;
-    const bool same = folder && stat(folder, &theirs) == 0 && stat(names->folder, &ours) == 0 &&
-                      theirs.st_dev == ours.st_dev && theirs.st_ino == ours.st_ino;
+    char *folder = outputs_folder_of(path);
+    const bool same = folder && outputs_same_entry(folder, names->folder);
     free(folder);
     return same;
 }
@@ -163,8 +150,6 @@ status animate_names_check(const animate_names *names, const scene *s, diagnosti
     read_search x = {.names = names};
     if (!scene_files_any(s, is_frame, &x))
         return STATUS_OK;
-    char where[512];
-    snprintf(where, sizeof where, "-o %s", names->pattern);
-    diagnostic_locate(why, where, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, elsewhere, "the scene is read from %s, which has such a name", x.found);
+    return options_wrong("-o", names->pattern, why, elsewhere, "the scene is read from %s, which has such a name",
+                         x.found);
 }

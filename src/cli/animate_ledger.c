@@ -1,5 +1,6 @@
 #include "cli/animate.h"
 #include "base/file.h"
+#include "cli/outputs.h"
 #include "base/text.h"
 #include "report/json.h"
 #include <inttypes.h>
@@ -22,6 +23,11 @@ static char *ledger_path(const animate_names *names)
     return text_format("%s.json", names->pattern);
 }
 
+static status put_ledger(const void *ledger, FILE *out, diagnostic *why)
+{
+    return json_write(out, ledger, why);
+}
+
 static status write_ledger(const char *path, const animate_names *names, const animate_definition *d, int64_t count,
                            diagnostic *why)
 {
@@ -30,15 +36,7 @@ static status write_ledger(const char *path, const animate_names *names, const a
     json_t *ledger =
         json_pack("{s:s,s:o,s:I,s:s,s:O}", "version", CUVETTE_VERSION, "frames", json_of_text(names->pattern), "count",
                   (json_int_t)count, "definition", hash, "parameters", d->parameters);
-    file_writer file = {0};
-    status result = ledger ? file_writer_open(&file, path, why) : out_of_memory(why);
-    if (result == STATUS_OK) {
-        result = json_write(file.stream, ledger, why);
-        if (result == STATUS_OK)
-            result = file_writer_commit(&file, why);
-        else
-            file_writer_abandon(&file);
-    }
+    const status result = ledger ? outputs_write_text(path, put_ledger, ledger, why) : out_of_memory(why);
     json_decref(ledger);
     return result;
 }

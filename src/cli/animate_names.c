@@ -1,5 +1,6 @@
 #include "cli/animate.h"
 #include "base/text.h"
+#include "cli/outputs.h"
 #include "image/image.h"
 #include <ctype.h>
 #include <inttypes.h>
@@ -11,11 +12,7 @@ enum { DIGITS_MAX = 18 };
 
 static status wrong(const char *pattern, const char *remedy, const char *what, diagnostic *why)
 {
-    char where[512];
-    snprintf(where, sizeof where, "-o %s", pattern);
-    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
-    diagnostic_locate(why, where, 0, 0);
-    return STATUS_BAD_INPUT;
+    return options_wrong("-o", pattern, why, remedy, "%s", what);
 }
 
 static const char number_form[] = "write one %d, or %05d for five digits; %% stands for a percent sign";
@@ -64,7 +61,7 @@ status animate_names_parse(const char *pattern, animate_names *out, diagnostic *
                      "the ending names no format of pictures or films", why);
     if (slash && memchr(pattern, '%', (size_t)(slash - pattern)))
         return wrong(pattern, "number the files, not their folder", "a % in the folder's name", why);
-    out->folder = !slash ? strdup(".") : slash == pattern ? strdup("/") : strndup(pattern, (size_t)(slash - pattern));
+    out->folder = outputs_folder_of(pattern);
     out->before = calloc(1, strlen(name) + 1);
     out->after = calloc(1, strlen(name) + 1);
     if (!out->folder || !out->before || !out->after)

@@ -6,7 +6,7 @@
 #define CUVETTE_CLI_CLI_H
 
 #include "base/status.h"
-#include <argp.h>
+#include <stddef.h>
 
 typedef struct command {
     const char *name;

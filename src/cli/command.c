@@ -7,21 +7,6 @@
 
 enum { COMMANDS_MAX = 16 };
 
-typedef struct choice {
-    int at; /* index in argv of the command's name; 0 while none is known */
-} choice;
-
-static error_t take_word(int key, char *word, struct argp_state *state)
-{
-    choice *chosen = ((options_input *)state->input)->request;
-    if (key != ARGP_KEY_ARG)
-        return ARGP_ERR_UNKNOWN;
-    (void)word;
-    chosen->at = state->next - 1;
-    state->next = state->argc; /* the rest is the command's own */
-    return 0;
-}
-
 /* Help text made from the table, so that it cannot fall behind it. */
 static char *table_text(const command *table, size_t count, const char *about, const char *program)
 {
@@ -72,24 +57,26 @@ status command_dispatch(const command *table, size_t count, const char *about, i
     char *help = table_text(table, count, about, argv[0]);
     if (!help)
         return out_of_memory(why);
-    const struct argp argp = {.parser = take_word, .args_doc = "COMMAND [ARGUMENT...]", .doc = help};
-    choice chosen = {0};
-    status result = options_parse(&argp, ARGP_IN_ORDER, argc, argv, &chosen, why);
+    const char *word = NULL;
+    const command_form form = {.words = "COMMAND [ARGUMENT...]", .about = help, .words_most = 1, .ends_at_word = true};
+    status result = command_form_read(&form, argc, argv, &word, why);
     free(help);
     if (result != STATUS_OK)
         return result;
-    if (chosen.at == 0) {
+    if (!word) {
         char remedy[96];
         snprintf(remedy, sizeof remedy, "'%s --help' lists them", argv[0]);
-        diagnose(why, STATUS_BAD_INPUT, remedy, "name a command");
         options_locate(why, argv[0]);
-        return STATUS_BAD_INPUT;
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "name a command");
     }
+    int at = 1;
+    while (argv[at] != word)
+        at++;
     for (size_t i = 0; i < count; i++) {
-        if (strcmp(argv[chosen.at], table[i].name) == 0) {
-            argv[chosen.at - 1] = argv[0]; /* only a "--" can stand before the command */
-            return run_command(&table[i], argc - chosen.at + 1, argv + chosen.at - 1, why);
+        if (strcmp(argv[at], table[i].name) == 0) {
+            argv[at - 1] = argv[0]; /* only a "--" can stand before the command */
+            return run_command(&table[i], argc - at + 1, argv + at - 1, why);
         }
     }
-    return unknown_command(table, count, argv[0], argv[chosen.at], why);
+    return unknown_command(table, count, argv[0], argv[at], why);
 }

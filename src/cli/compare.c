@@ -4,56 +4,31 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "image/compare.h"
-#include <errno.h>
 #include <stdio.h>
 
 typedef struct compare_request {
     const char *paths[2], *map; /* map: NULL when not wanted */
-    size_t count;
     bool json;
 } compare_request;
 
-enum { KEY_JSON = 0x100, KEY_DIFF };
-
-static const struct argp_option options[] = {
-    {"diff", KEY_DIFF, "FILE", 0, "write where they differ, the FLIP error in false colour: .png, .jpg or .pfm", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object", 0},
+static const command_option options[] = {
+    {"diff", 0, "FILE", "write where they differ, the FLIP error in false colour: .png, .jpg or .pfm",
+     OPTION_FILLS(option_text, compare_request, map)},
+    {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, compare_request, json)},
     {0},
 };
 
-static error_t take_argument(const char *argument, compare_request *request, diagnostic *why)
-{
-    if (request->count < 2) {
-        request->paths[request->count++] = argument;
-        return 0;
-    }
-    diagnose(why, STATUS_BAD_INPUT, "compare takes two pictures", "'%.128s' is one too many", argument);
-    diagnostic_locate(why, "compare", 0, 0);
-    return EINVAL;
-}
-
-static error_t take_option(int key, char *value, struct argp_state *state)
-{
-    options_input *input = state->input;
-    compare_request *request = input->request;
-    switch (key) {
-    case KEY_DIFF: request->map = value; return 0;
-    case KEY_JSON: request->json = true; return 0;
-    case ARGP_KEY_ARG: return take_argument(value, request, input->why);
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
-
-static const struct argp parser = {
+static const command_form form = {
     .options = options,
-    .parser = take_option,
-    .args_doc = "A B",
-    .doc =
-        "Say how far the pictures A and B lie apart, as a display shows them: mean squared error, peak signal-to-noise "
-        "ratio, structural similarity, FLIP, the largest difference, the pixels that differ. PNG, JPEG, PFM and 24-bit "
-        "BMP go "
-        "together, of one size.\vFor example:\n"
-        "  cuvette compare depth4.png depth8.png --diff where.png",
+    .words = "A B",
+    .words_at = offsetof(compare_request, paths),
+    .words_most = 2,
+    .excess_remedy = "compare takes two pictures",
+    .excess = "'%.128s' is one too many",
+    .about = "Say how far the pictures A and B lie apart, as a display shows them: mean squared error, peak "
+             "signal-to-noise ratio, structural similarity, FLIP, the largest difference, the pixels that differ. PNG, "
+             "JPEG, PFM and 24-bit BMP go together, of one size.\vFor example:\n"
+             "  cuvette compare depth4.png depth8.png --diff where.png",
 };
 
 typedef struct pair {
@@ -64,12 +39,10 @@ typedef struct pair {
 
 static status check_request(const compare_request *request, diagnostic *why)
 {
-    if (request->count < 2) {
-        diagnose(why, STATUS_BAD_INPUT, "give two PNG, JPEG, PFM or 24-bit BMP files", "%s",
-                 request->count ? "there is nothing to compare the picture with" : "no pictures are named");
-        diagnostic_locate(why, "compare", 0, 0);
-        return STATUS_BAD_INPUT;
-    }
+    if (!request->paths[1])
+        return options_wrong("compare", NULL, why, "give two PNG, JPEG, PFM or 24-bit BMP files",
+                             request->paths[0] ? "there is nothing to compare the picture with"
+                                               : "no pictures are named");
     return request->map ? outputs_check_picture("--diff", request->map, request->paths, 2, why) : STATUS_OK;
 }
 
@@ -125,16 +98,14 @@ static status print_json(const compare_request *request, const pair *p, diagnost
     bad |= json_object_set_new(o, "width", json_integer(p->pictures[0]->width));
     bad |= json_object_set_new(o, "height", json_integer(p->pictures[0]->height));
     bad |= !report_comparison(o, c);
-    status result = json_write(stdout, bad ? NULL : o, why);
-    json_decref(o);
-    return result;
+    return json_print(json_unless(bad, o), why);
 }
 
 status command_compare(int argc, char **argv, diagnostic *why)
 {
     compare_request request = {0};
     pair p = {0};
-    status result = options_parse(&parser, 0, argc, argv, &request, why);
+    status result = command_form_read(&form, argc, argv, &request, why);
     if (result == STATUS_OK)
         result = check_request(&request, why);
     if (result == STATUS_OK)

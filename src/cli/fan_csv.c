@@ -23,8 +23,7 @@ status fan_write_csv(const fanned *t, FILE *out, diagnostic *why)
     csv_line line = {0};
     fprintf(out,
             "ray,%s,interfaces,end,exit_x,exit_y,exit_z,direction_x,direction_y,direction_z,deviation_deg,weight,axis_"
-            "at,axis_x,"
-            "axis_y,axis_z\n",
+            "at,axis_x,axis_y,axis_z\n",
             t->rule->spreads ? "offset_deg" : "offset");
     for (int i = 0; i < t->f->count; i++) {
         const fan_ray *ray = &t->f->ray[i];

@@ -63,16 +63,11 @@ static vec3 end_of(const diagram *d, const ray_node *node)
     vec3 from = node->origin;
     if (node->end == RAY_END_HIT)
         return node->hit.point;
-    if (node->end == RAY_END_CUT_DEPTH || node->end == RAY_END_CUT_WEIGHT)
+    if (diagram_is_cut(node))
         return vec3_add(from, vec3_scale(node->direction, 0.04 * across));
     const section_point at = section_project(&d->plane, from);
     const double off = hypot(at.u - d->plane.u0, at.v - d->plane.v0);
     return vec3_add(from, vec3_scale(node->direction, 2.0 * (across + off)));
-}
-
-static bool is_cut(const ray_node *node)
-{
-    return node->end == RAY_END_CUT_DEPTH || node->end == RAY_END_CUT_WEIGHT;
 }
 
 /* Many rays side by side are drawn thinner. */
@@ -81,31 +76,22 @@ static double crowding(const fan *f)
     return f->count > 20 ? sqrt(20.0 / f->count) : 1.0;
 }
 
-static void draw_way(const diagram *d, const fan *f, const fan_ray *ray)
+static void draw_piece(const diagram *d, const fan *f, const ray_node *node)
 {
     static const char *const colors[] = {
         [RAY_CAMERA] = SVG_INK, [RAY_REFLECT] = SVG_VERMILLION, [RAY_REFRACT] = SVG_BLUE, [RAY_SHADOW] = SVG_GREY};
-    for (size_t k = 0; k < ray->count; k++) {
-        const ray_node *node = &f->node[ray->first + k];
-        const double weight = (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
-        diagram_ray(d, node->origin, end_of(d, node), colors[node->kind], crowding(f) * weight,
-                    is_cut(node) ? "0.5,3" : NULL);
-    }
+    diagram_ray(d, node->origin, end_of(d, node), colors[node->kind], crowding(f) * diagram_weight(node),
+                diagram_is_cut(node) ? DIAGRAM_CUT : NULL);
 }
 
 static status draw_tree(const diagram *d, const fanned *t, const fan_ray *ray, diagnostic *why)
 {
-    static const char *const colors[] = {SVG_INK, SVG_VERMILLION, SVG_BLUE, SVG_GREY};
     const ray_node *first = &t->f->node[ray->first];
     ray_tree tree = {0};
     status result = probe_ray(t->p, first->origin, first->direction, &tree, why);
-    for (size_t i = 0; i < tree.count && result == STATUS_OK; i++) {
-        const ray_node *node = &tree.node[i];
-        const double weight = (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
-        if (node->kind != RAY_SHADOW && weight >= LIGHTEST)
-            diagram_ray(d, node->origin, end_of(d, node), colors[node->kind], crowding(t->f) * weight,
-                        is_cut(node) ? "0.5,3" : NULL);
-    }
+    for (size_t i = 0; i < tree.count && result == STATUS_OK; i++)
+        if (tree.node[i].kind != RAY_SHADOW && diagram_weight(&tree.node[i]) >= LIGHTEST)
+            draw_piece(d, t->f, &tree.node[i]);
     ray_tree_release(&tree);
     return result;
 }
@@ -114,10 +100,11 @@ static status draw_rays(const diagram *d, const fanned *t, diagnostic *why)
 {
     status result = STATUS_OK;
     for (int i = 0; i < t->f->count && result == STATUS_OK; i++) {
+        const fan_ray *ray = &t->f->ray[i];
         if (t->whole_trees)
-            result = draw_tree(d, t, &t->f->ray[i], why);
-        else
-            draw_way(d, t->f, &t->f->ray[i]);
+            result = draw_tree(d, t, ray, why);
+        for (size_t k = 0; k < ray->count && !t->whole_trees; k++)
+            draw_piece(d, t->f, &t->f->node[ray->first + k]);
     }
     for (int i = 0; i < t->f->count; i++) {
         const fan_ray *ray = &t->f->ray[i];
@@ -144,22 +131,13 @@ static void draw_caustic(const diagram *d, const fan *f)
         diagram_cross(d, f->focus, 5.0, SVG_VERMILLION);
 }
 
-static double key_line(FILE *out, double x, double y, const char *color, const char *words, double width)
-{
-    char stroke[96];
-    snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"1.6\"", color);
-    svg_line(out, x, y - 4.0, x + 22.0, y - 4.0, stroke);
-    svg_label(out, x + 28.0, y, "start", SVG_INK, words);
-    return x + width;
-}
-
 static void draw_key(const fanned *t, FILE *out, double left, double y)
 {
     const fan *f = t->f;
     char text[200];
-    double x = key_line(out, left, y, SVG_INK, "incoming", 104.0);
-    x = key_line(out, x, y, SVG_BLUE, "refracted", 106.0);
-    x = key_line(out, x, y, SVG_VERMILLION, "reflected", 106.0);
+    double x = svg_key(out, left, y, SVG_INK, NULL, "incoming", 104.0);
+    x = svg_key(out, x, y, SVG_BLUE, NULL, "refracted", 106.0);
+    x = svg_key(out, x, y, SVG_VERMILLION, NULL, "reflected", 106.0);
     fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"2\" fill=\"" SVG_ORANGE "\"/>\n", x + 4.0, y - 4.0);
     svg_label(out, x + 12.0, y, "start", SVG_INK, "neighbours cross (caustic)");
     x += 196.0;

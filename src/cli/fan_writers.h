@@ -12,6 +12,7 @@ typedef struct fanned {
     const fan_rule *rule;
     const fan *f;
     bool whole_trees; /* drawn in place of the refracted ways alone */
+    bool as_csv;
 } fanned;
 
 /* A coordinate without what rounding leaves of a zero, for a line of text. */

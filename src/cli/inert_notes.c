@@ -73,13 +73,16 @@ static scene *in_motion(const scene *s)
     return moved;
 }
 
-static void note_changes(const scene *s, const scene_input *input)
+/* Says which changes of the command line do nothing: with a witness, only what it alone can tell. */
+static void note_changes(const scene *s, const scene_input *input, const inert_witness *witness)
 {
     for (size_t i = 0; i < input->count; i++) {
         char path[PATH_MAX_HERE];
         inert_answer answer;
-        if (path_of(input->changes[i].path, input->changes[i].text, path) && !is_set_again(input, i, path) &&
-            inert_ask(s, path, NULL, &answer) && !is_hinted(s, path))
+        if (!path_of(input->changes[i].path, input->changes[i].text, path) || is_set_again(input, i, path))
+            continue;
+        const bool is_plain = inert_ask(s, path, NULL, &answer);
+        if (witness ? !is_plain && inert_ask(s, path, witness, &answer) : is_plain && !is_hinted(s, path))
             say(&answer);
     }
 }
@@ -87,7 +90,7 @@ static void note_changes(const scene *s, const scene_input *input)
 void inert_note_changes(const scene *s, const scene_input *input)
 {
     scene *moved = input->from_beginning ? in_motion(s) : NULL;
-    note_changes(moved ? moved : s, input);
+    note_changes(moved ? moved : s, input, NULL);
     scene_destroy(moved);
 }
 
@@ -115,16 +118,8 @@ static bool is_same(void *context, const char *assignment)
 
 void inert_note_frame(const scene_input *input, job *with, const job_account *frame)
 {
-    const scene *s = frame->of;
     frame_of f = {frame, with};
-    const inert_witness witness = {&frame->result->counters, is_same, &f};
-    for (size_t i = 0; i < input->count; i++) {
-        char path[PATH_MAX_HERE];
-        inert_answer answer;
-        if (path_of(input->changes[i].path, input->changes[i].text, path) && !is_set_again(input, i, path) &&
-            !inert_ask(s, path, NULL, &answer) && inert_ask(s, path, &witness, &answer))
-            say(&answer);
-    }
+    note_changes(frame->of, input, &(inert_witness){&frame->result->counters, is_same, &f});
 }
 
 /* --- studies --- */

@@ -5,7 +5,6 @@
 #include "base/text.h"
 #include "measure/topology.h"
 #include "web/lab.h"
-#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
@@ -20,57 +19,34 @@ typedef struct lab_request {
     bool no_browser;
 } lab_request;
 
-enum { KEY_PORT = 0x100, KEY_FOLDER, KEY_RESULTS, KEY_THREADS, KEY_NO_BROWSER };
-
-static const struct argp_option options[] = {
-    {"folder", KEY_FOLDER, "DIR", 0,
+static const command_option options[] = {
+    {"folder", 0, "DIR",
      "the folder whose scenes, models and studies are there, and where files are saved; nothing outside of it is read "
-     "or written "
-     "(default: the working folder, or the scene's where that lies elsewhere)",
-     0},
-    {"results", KEY_RESULTS, "DIR", 0, "folder for rows of studies, within the other (default: results there)", 0},
-    {"port", KEY_PORT, "N", 0, "port on 127.0.0.1 (default: any that is free)", 0},
-    {"threads", KEY_THREADS, "N", 0, "threads for scenes that do not say how many (default: one a processing unit)", 0},
-    {"no-browser", KEY_NO_BROWSER, NULL, 0, "do not open the address in a browser", 0},
+     "or written (default: the working folder, or the scene's where that lies elsewhere)",
+     OPTION_FILLS(option_text, lab_request, folder)},
+    {"results", 0, "DIR", "folder for rows of studies, within the other (default: results there)",
+     OPTION_FILLS(option_text, lab_request, results)},
+    {"port", 0, "N", "port on 127.0.0.1 (default: any that is free)", OPTION_FILLS(option_integer, lab_request, port),
+     .lowest = 0, .highest = 65535},
+    {"threads", 0, "N", "threads for scenes that do not say how many (default: one a processing unit)",
+     OPTION_FILLS(option_integer, lab_request, threads), .lowest = 1, .highest = 1024},
+    {"no-browser", 0, NULL, "do not open the address in a browser", OPTION_FILLS(option_flag, lab_request, no_browser)},
     {0},
 };
 
-static error_t take_option(int key, char *value, struct argp_state *state)
-{
-    options_input *input = state->input;
-    lab_request *request = input->request;
-    switch (key) {
-    case KEY_FOLDER: request->folder = value; return 0;
-    case KEY_RESULTS: request->results = value; return 0;
-    case KEY_NO_BROWSER: request->no_browser = true; return 0;
-    case KEY_PORT:
-        return options_integer("--port", value, 0, 65535, &request->port, input->why) == STATUS_OK ? 0 : EINVAL;
-    case KEY_THREADS:
-        return options_integer("--threads", value, 1, 1024, &request->threads, input->why) == STATUS_OK ? 0 : EINVAL;
-    case ARGP_KEY_ARG:
-        if (!request->scene) {
-            request->scene = value;
-            return 0;
-        }
-        diagnose(input->why, STATUS_BAD_INPUT, "give one SCENE", "'%.128s' is one argument too many", value);
-        diagnostic_locate(input->why, "lab", 0, 0);
-        return EINVAL;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
-
-static const struct argp parser = {
+static const command_form form = {
     .options = options,
-    .parser = take_option,
-    .args_doc = "[SCENE]",
-    .doc = "Open the laboratory in the browser: look at a scene and turn every parameter of it, ask a pixel why, "
-           "compare, edit, play with a slime, run studies. "
-           "The page is served by this program on 127.0.0.1 alone, to those who know the token in the address that is "
-           "printed.\vFor example:\n"
-           "  cuvette lab experiments/scenes/rod.yaml\n"
-           "From another machine: ssh -L 8000:127.0.0.1:8000 HOST cuvette lab --port 8000 --no-browser SCENE, and open "
-           "the address that it prints here. "
-           "Ctrl-C ends it.",
+    .words = "[SCENE]",
+    .words_at = offsetof(lab_request, scene),
+    .words_most = 1,
+    .excess_remedy = "give one SCENE",
+    .excess = "'%.128s' is one argument too many",
+    .about = "Open the laboratory in the browser: look at a scene and turn every parameter of it, ask a pixel why, "
+             "compare, edit, play with a slime, run studies. The page is served by this program on 127.0.0.1 alone, to "
+             "those who know the token in the address that is printed.\vFor example:\n"
+             "  cuvette lab experiments/scenes/rod.yaml\n"
+             "From another machine: ssh -L 8000:127.0.0.1:8000 HOST cuvette lab --port 8000 --no-browser SCENE, and "
+             "open the address that it prints here. Ctrl-C ends it.",
 };
 
 /* The working folder where the scene lies below it (or is not there, which is said later), otherwise the scene's own.
@@ -146,7 +122,7 @@ static status run_lab(const lab_request *request, const char *folder, const char
 status command_lab(int argc, char **argv, diagnostic *why)
 {
     lab_request request = {.scene = NULL};
-    status code = options_parse(&parser, 0, argc, argv, &request, why);
+    status code = command_form_read(&form, argc, argv, &request, why);
     char *chosen = NULL, *results = NULL;
     if (code == STATUS_OK && !request.folder && !(chosen = choose_folder(&request)))
         code = diagnose(why, STATUS_FAILURE, "", "the working folder cannot be found");

@@ -2,36 +2,20 @@
 #include "report/json.h"
 #include "cli/options.h"
 #include "report/machine.h"
-#include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-enum { KEY_JSON = 0x100 };
-
-static const struct argp_option options[] = {
-    {"json", KEY_JSON, NULL, 0, "print JSON", 0},
+static const command_option options[] = {
+    {"json", 0, NULL, "print JSON", .take = option_flag},
     {0},
 };
 
-static error_t take_option(int key, char *value, struct argp_state *state)
-{
-    options_input *input = state->input;
-    bool *as_json = input->request;
-    if (key == KEY_JSON) {
-        *as_json = true;
-        return 0;
-    }
-    if (key != ARGP_KEY_ARG)
-        return ARGP_ERR_UNKNOWN;
-    diagnose(input->why, STATUS_BAD_INPUT, "leave it out", "'%.128s' is one argument too many", value);
-    diagnostic_locate(input->why, "machine", 0, 0);
-    return EINVAL;
-}
-
-static const struct argp parser = {
+static const command_form form = {
     .options = options,
-    .parser = take_option,
-    .doc = "Print what this machine is: its processors and caches, the step and the cost of its clocks, the vector "
-           "instructions in use, and what could disturb a measurement now.",
+    .excess_remedy = "leave it out",
+    .excess = "'%.128s' is one argument too many",
+    .about = "Print what this machine is: its processors and caches, the step and the cost of its clocks, the vector "
+             "instructions in use, and what could disturb a measurement now.",
 };
 
 static void print_text(const machine_account *a)
@@ -59,16 +43,13 @@ status command_machine(int argc, char **argv, diagnostic *why)
 {
     bool as_json = false;
     machine_account a = {0};
-    status result = options_parse(&parser, 0, argc, argv, &as_json, why);
+    status result = command_form_read(&form, argc, argv, &as_json, why);
     if (result == STATUS_OK)
         result = machine_look(&a, why);
-    if (result == STATUS_OK && as_json) {
-        json_t *account = machine_json(&a);
-        result = json_write(stdout, account, why);
-        json_decref(account);
-    } else if (result == STATUS_OK) {
+    if (result == STATUS_OK && as_json)
+        result = json_print(machine_json(&a), why);
+    else if (result == STATUS_OK)
         print_text(&a);
-    }
     machine_release(&a);
     return result;
 }

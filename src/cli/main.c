@@ -1,6 +1,7 @@
 #include "base/float_environment.h"
 #include "cli/cli.h"
 #include "cli/terminal.h"
+#include <argp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -26,9 +27,8 @@ static const command commands[] = {
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
-static const char about[] =
-    "Cuvette, a ray-tracing laboratory: describe a scene, sweep any of its parameters, get the picture, the exact "
-    "ray counts and honest times.";
+static const char about[] = "Cuvette, a ray-tracing laboratory: describe a scene, sweep any of its parameters, get the "
+                            "picture, the exact ray counts and honest times.";
 
 static status dispatch(int argc, char **argv, diagnostic *why)
 {

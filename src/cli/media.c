@@ -3,7 +3,6 @@
 #include "report/media_rows.h"
 #include "cli/options.h"
 #include "base/number.h"
-#include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -14,51 +13,34 @@ typedef struct media_request {
     bool json;
 } media_request;
 
-enum { KEY_JSON = 0x100, KEY_AT };
+static status take_wavelength(const command_option *o, void *into, const char *value, diagnostic *why)
+{
+    media_request *request = into;
+    (void)o;
+    return number_parse_real(value, &request->at_nm) && request->at_nm > 0.0
+               ? STATUS_OK
+               : options_wrong("media", NULL, why, "give nanometres, such as --at 550", "'%.128s' is no wavelength",
+                               value);
+}
 
-static const struct argp_option options[] = {
-    {"at", KEY_AT, "NM", 0, "print the index at this wavelength too", 0},
-    {"json", KEY_JSON, NULL, 0, "print JSON", 0},
+static const command_option options[] = {
+    {"at", 0, "NM", "print the index at this wavelength too", .take = take_wavelength},
+    {"json", 0, NULL, "print JSON", OPTION_FILLS(option_flag, media_request, json)},
     {0},
 };
 
-static error_t refuse(diagnostic *why, const char *remedy, const char *what, const char *value)
-{
-    diagnose(why, STATUS_BAD_INPUT, remedy, "'%.128s' %s", value, what);
-    diagnostic_locate(why, "media", 0, 0);
-    return EINVAL;
-}
-
-static error_t take_option(int key, char *value, struct argp_state *state)
-{
-    options_input *input = state->input;
-    media_request *request = input->request;
-    switch (key) {
-    case KEY_JSON: request->json = true; return 0;
-    case KEY_AT:
-        if (!number_parse_real(value, &request->at_nm) || !(request->at_nm > 0.0))
-            return refuse(input->why, "give nanometres, such as --at 550", "is no wavelength", value);
-        return 0;
-    case ARGP_KEY_ARG:
-        if (request->name)
-            return refuse(input->why, "name one medium, or none for all", "is one too many", value);
-        request->name = value;
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
-
-static const struct argp parser = {
+static const command_form form = {
     .options = options,
-    .parser = take_option,
-    .args_doc = "[NAME]",
-    .doc =
-        "Print the catalogue of media: refractive indices at the lines d, F and C, Abbe's number, the range of "
-        "wavelengths "
-        "and the temperature of the measurement, what the indices are relative to, and who measured. With a name, all "
-        "about that one: its dispersion law with every coefficient, and what to beware of.\v"
-        "Indices are as published, relative to air or to vacuum; for one medium those relative to vacuum stand beside "
-        "them. A star marks an index outside the range that was measured. --at never extrapolates.",
+    .words = "[NAME]",
+    .words_at = offsetof(media_request, name),
+    .words_most = 1,
+    .excess_remedy = "name one medium, or none for all",
+    .excess = "'%.128s' is one too many",
+    .about = "Print the catalogue of media: refractive indices at the lines d, F and C, Abbe's number, the range of "
+             "wavelengths and the temperature of the measurement, what the indices are relative to, and who measured. "
+             "With a name, all about that one: its dispersion law with every coefficient, and what to beware "
+             "of.\vIndices are as published, relative to air or to vacuum; for one medium those relative to vacuum "
+             "stand beside them. A star marks an index outside the range that was measured. --at never extrapolates.",
 };
 
 static status find(const media_request *request, const medium **out, diagnostic *why)
@@ -87,19 +69,13 @@ static status check_range(const medium *m, double at_nm, diagnostic *why)
     const bool single = m->law.low_nm == m->law.high_nm;
     snprintf(remedy, sizeof remedy, single ? "its one wavelength is %s nm" : "give a wavelength from its range, %s nm",
              media_range_text(m, range));
-    diagnose(why, STATUS_BAD_INPUT, remedy, "%s was not measured at %s nm", m->name, number_format(at_nm, at));
-    diagnostic_locate(why, "media", 0, 0);
-    return STATUS_BAD_INPUT;
+    return options_wrong("media", NULL, why, remedy, "%s was not measured at %s nm", m->name, number_format(at_nm, at));
 }
 
 static status print(const media_request *request, const medium *only, diagnostic *why)
 {
-    if (request->json) {
-        json_t *all = media_rows_json(only, request->at_nm);
-        status result = json_write(stdout, all, why);
-        json_decref(all);
-        return result;
-    }
+    if (request->json)
+        return json_print(media_rows_json(only, request->at_nm), why);
     if (only)
         media_rows_details(stdout, only, request->at_nm);
     else
@@ -111,7 +87,7 @@ status command_media(int argc, char **argv, diagnostic *why)
 {
     media_request request = {0};
     const medium *only = NULL;
-    status result = options_parse(&parser, 0, argc, argv, &request, why);
+    status result = command_form_read(&form, argc, argv, &request, why);
     if (result == STATUS_OK && request.name)
         result = find(&request, &only, why);
     if (result == STATUS_OK && only)

@@ -1,13 +1,11 @@
 #include "cli/cli.h"
 #include "report/json.h"
-#include "cli/options.h"
 #include "cli/scene_input.h"
 #include "scene/motion/motion.h"
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
 #include "softbody/trials.h"
 #include "scene/model/scene.h"
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -16,57 +14,27 @@ typedef struct motion_request {
     bool json, csv;
 } motion_request;
 
-enum { KEY_JSON = 0x100, KEY_CSV };
-
-static const struct argp_option options[] = {
-    {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'toy.dt_s=0.0005'; may be given many times", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object", 0},
-    {"csv", KEY_CSV, NULL, 0, "print the table as CSV, with all digits", 0},
+static const command_option options[] = {
+    OPTION_SET("'toy.dt_s=0.0005'"),
+    {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, motion_request, json)},
+    {"csv", 0, NULL, "print the table as CSV, with all digits", OPTION_FILLS(option_flag, motion_request, csv)},
     {0},
 };
 
-static error_t take_option(int key, char *value, struct argp_state *state)
+static status check_request(void *asked, diagnostic *why)
 {
-    options_input *input = state->input;
-    motion_request *request = input->request;
-    switch (key) {
-    case 's': scene_input_change(&request->input, "--set", NULL, value); return 0;
-    case KEY_JSON: request->json = true; return 0;
-    case KEY_CSV: request->csv = true; return 0;
-    case ARGP_KEY_ARG: return scene_input_name(&request->input, value, input->why) == STATUS_OK ? 0 : EINVAL;
-    default: return ARGP_ERR_UNKNOWN;
-    }
+    const motion_request *request = asked;
+    return request->json && request->csv
+               ? options_wrong("motion", NULL, why, "leave one of them out", "JSON and CSV do not go together")
+               : STATUS_OK;
 }
 
-static const struct argp parser = {
-    .options = options,
-    .parser = take_option,
-    .args_doc = "SCENE",
-    .doc = "Measure how each slime of the scene file SCENE moves with its stiffness, its integrator and its step, "
-           "beside the closed forms of "
-           "mechanics: a spring's swing, a fall, a bounce, what a free body keeps, its volume, the longest stable "
-           "step, and how fast it is "
-           "computed.\vFor example:\n"
-           "  cuvette motion experiments/scenes/slime.yaml\n"
-           "  cuvette motion experiments/scenes/slime.yaml --set toy.integrator=verlet --set toy.dt_s=0.0005",
-};
-
-static status check_request(const motion_request *request, diagnostic *why)
+static status check_scene(void *asked, const scene *s, diagnostic *why)
 {
-    status result = scene_input_check(&request->input, why);
-    if (result != STATUS_OK || !request->json || !request->csv)
-        return result;
-    diagnose(why, STATUS_BAD_INPUT, "leave one of them out", "JSON and CSV do not go together");
-    diagnostic_locate(why, "motion", 0, 0);
-    return STATUS_BAD_INPUT;
-}
-
-static status check_scene(const motion_request *request, const scene *s, diagnostic *why)
-{
-    if (scene_moves(s))
-        return STATUS_OK;
-    diagnostic_locate(why, request->input.path, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, "give a mesh 'generate: slime'", "nothing moves in this scene");
+    const motion_request *request = asked;
+    return scene_moves(s) ? STATUS_OK
+                          : options_wrong(request->input.path, NULL, why, "give a mesh 'generate: slime'",
+                                          "nothing moves in this scene");
 }
 
 static const char *motion_word(const mesh_entry *m)
@@ -137,13 +105,12 @@ static json_t *slime_object(const mesh_entry *m, const softbody_trial_report *r)
 static status write_json(const motion_request *request, json_t *slimes, diagnostic *why)
 {
     json_t *o = json_pack("{s:i,s:o,s:O}", "schema", 1, "scene", json_of_text(request->input.path), "slimes", slimes);
-    const status result = json_write(stdout, o, why);
-    json_decref(o);
-    return result;
+    return json_print(o, why);
 }
 
-static status measure_and_print(const motion_request *request, const scene *s, isa level, diagnostic *why)
+static status run(void *asked, scene *s, isa level, diagnostic *why)
 {
+    const motion_request *request = asked;
     json_t *slimes = json_array();
     status result = STATUS_OK;
     if (request->csv)
@@ -167,25 +134,25 @@ static status measure_and_print(const motion_request *request, const scene *s, i
     return result;
 }
 
+static const scene_command motion_command = {
+    .name = "motion",
+    .form = {.options = options,
+             .words = "SCENE",
+             SCENE_WORD("motion"),
+             .about =
+                 "Measure how each slime of the scene file SCENE moves with its stiffness, its integrator and its "
+                 "step, beside the closed forms of mechanics: a spring's swing, a fall, a bounce, what a free body "
+                 "keeps, its volume, the longest stable step, and how fast it is computed.\vFor example:\n"
+                 "  cuvette motion experiments/scenes/slime.yaml\n"
+                 "  cuvette motion experiments/scenes/slime.yaml --set toy.integrator=verlet --set toy.dt_s=0.0005"},
+    .check = check_request,
+    .check_scene = check_scene,
+    .unloaded = true, /* the trials move slimes of their own */
+    .run = run,
+};
+
 status command_motion(int argc, char **argv, diagnostic *why)
 {
     motion_request request = {.json = false};
-    scene *s = NULL;
-    isa level = ISA_SSE2;
-    status result = scene_input_prepare(&request.input, "motion", argc, why);
-    if (result == STATUS_OK)
-        result = options_parse(&parser, 0, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = check_request(&request, why);
-    if (result == STATUS_OK)
-        result = scene_input_isa(&level, why);
-    if (result == STATUS_OK)
-        result = scene_input_read(&request.input, &s, why);
-    if (result == STATUS_OK)
-        result = check_scene(&request, s, why);
-    if (result == STATUS_OK)
-        result = measure_and_print(&request, s, level, why);
-    scene_destroy(s);
-    scene_input_release(&request.input);
-    return result;
+    return scene_command_run(&motion_command, argc, argv, &request, why);
 }

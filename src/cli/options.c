@@ -1,8 +1,10 @@
 #include "cli/options.h"
 #include "base/number.h"
 #include "base/text.h"
+#include <argp.h>
 #include <errno.h>
 #include <getopt.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -122,13 +124,62 @@ void options_locate(diagnostic *why, const char *program)
     diagnostic_locate(why, words ? words + 1 : "command line", 0, 0);
 }
 
-status options_parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *request, diagnostic *why)
+/* --- command lines --- */
+
+enum { KEY_FIRST = 0x100 };
+
+typedef struct form_reading {
+    const command_form *form;
+    const char *program;
+    void *request;
+    size_t words;
+    diagnostic *why;
+} form_reading;
+
+static error_t take_word(form_reading *reading, const char *word, struct argp_state *state)
 {
-    status result = check(argp, flags, argc, argv, why);
+    const command_form *form = reading->form;
+    if (form->word)
+        return form->word(reading->request, word), 0;
+    if (reading->words == form->words_most && !form->excess)
+        return ARGP_ERR_UNKNOWN;
+    if (reading->words == form->words_most) {
+        options_wrong(NULL, NULL, reading->why, form->excess_remedy, form->excess, word);
+        options_locate(reading->why, reading->program);
+        return EINVAL;
+    }
+    ((const char **)((char *)reading->request + form->words_at))[reading->words++] = word;
+    if (form->ends_at_word)
+        state->next = state->argc;
+    return 0;
+}
+
+/* A mistake fills *why and is EINVAL. */
+static error_t take_key(int key, char *value, struct argp_state *state)
+{
+    form_reading *reading = state->input;
+    if (key == ARGP_KEY_ARG)
+        return take_word(reading, value, state);
+    for (const command_option *o = reading->form->options; o && o->name; o++)
+        if (key == o->letter || key == KEY_FIRST + (int)(o - reading->form->options))
+            return o->take(o, reading->request, value, reading->why) == STATUS_OK ? 0 : EINVAL;
+    return ARGP_ERR_UNKNOWN;
+}
+
+status command_form_read(const command_form *form, int argc, char **argv, void *request, diagnostic *why)
+{
+    struct argp_option options[OPTIONS_MAX + 1] = {{0}};
+    form_reading reading = {form, argv[0], request, 0, why};
+    const unsigned flags = form->ends_at_word ? ARGP_IN_ORDER : 0;
+    for (int i = 0; form->options && form->options[i].name && i < OPTIONS_MAX; i++) {
+        const command_option *o = &form->options[i];
+        options[i] = (struct argp_option){o->name, o->letter ? o->letter : KEY_FIRST + i, o->form, 0, o->purpose, 0};
+    }
+    const struct argp argp = {.options = options, .parser = take_key, .args_doc = form->words, .doc = form->about};
+    const status result = check(&argp, flags, argc, argv, why);
     if (result != STATUS_OK)
         return result;
-    options_input input = {request, why};
-    error_t error = argp_parse(argp, argc, argv, flags, NULL, &input);
+    const error_t error = argp_parse(&argp, argc, argv, flags, NULL, &reading);
     if (error == EINVAL)
         return STATUS_BAD_INPUT;
     if (error == ENOMEM)
@@ -136,39 +187,63 @@ status options_parse(const struct argp *argp, unsigned flags, int argc, char **a
     return error ? diagnose(why, STATUS_FAILURE, "", "cannot read the command line: %s", strerror(error)) : STATUS_OK;
 }
 
+status option_text(const command_option *o, void *request, const char *value, diagnostic *why)
+{
+    (void)why;
+    *(const char **)((char *)request + o->at) = value;
+    return STATUS_OK;
+}
+
+status option_flag(const command_option *o, void *request, const char *value, diagnostic *why)
+{
+    (void)value, (void)why;
+    *(bool *)((char *)request + o->at) = true;
+    return STATUS_OK;
+}
+
+status option_integer(const command_option *o, void *request, const char *value, diagnostic *why)
+{
+    char name[64];
+    snprintf(name, sizeof name, "--%s", o->name);
+    return options_integer(name, value, o->lowest, o->highest, (int64_t *)((char *)request + o->at), why);
+}
+
+/* --- values --- */
+
+status options_wrong(const char *where, const char *value, diagnostic *why, const char *remedy, const char *what, ...)
+{
+    char place[512], text[512];
+    va_list arguments;
+    va_start(arguments, what);
+    vsnprintf(text, sizeof text, what, arguments);
+    va_end(arguments);
+    snprintf(place, sizeof place, value ? "%s %s" : "%s", where ? where : "", value);
+    diagnostic_locate(why, place, 0, 0);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", text);
+}
+
 status options_integer(const char *option, const char *value, int64_t lowest, int64_t highest, int64_t *out,
                        diagnostic *why)
 {
     int64_t number;
     if (!number_parse_int(value, &number) || number < lowest || number > highest) {
-        char remedy[96], where[512];
+        char remedy[96];
         snprintf(remedy, sizeof remedy, "give an integer from %lld to %lld", (long long)lowest, (long long)highest);
-        snprintf(where, sizeof where, "%s %s", option, value);
         const char *digits = value + (value[0] == '-');
         bool whole = digits[0] && digits[strspn(digits, "0123456789")] == 0;
-        diagnose(why, STATUS_BAD_INPUT, remedy, whole ? "%.64s is out of range" : "'%.64s' is not an integer", value);
-        diagnostic_locate(why, where, 0, 0);
-        return STATUS_BAD_INPUT;
+        return options_wrong(option, value, why, remedy, whole ? "%.64s is out of range" : "'%.64s' is not an integer",
+                             value);
     }
     *out = number;
     return STATUS_OK;
 }
 
-static status wrong_value(const char *option, const char *value, const char *form, const char *what, diagnostic *why)
-{
-    char remedy[96], where[512];
-    snprintf(remedy, sizeof remedy, "give %s", form);
-    snprintf(where, sizeof where, "%s %s", option, value);
-    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
-    diagnostic_locate(why, where, 0, 0);
-    return STATUS_BAD_INPUT;
-}
-
 status options_reals(const char *option, const char *value, const char *form, size_t count, double *out,
                      diagnostic *why)
 {
-    char what[128];
+    char remedy[96];
     const char *at = value;
+    snprintf(remedy, sizeof remedy, "give %s", form);
     for (size_t i = 0; i < count; i++) {
         char word[64];
         at += strspn(at, " ");
@@ -177,15 +252,13 @@ status options_reals(const char *option, const char *value, const char *form, si
         snprintf(word, sizeof word, "%.*s", fits ? (int)length : 0, at);
         for (size_t end = strlen(word); end > 0 && word[end - 1] == ' ';)
             word[--end] = '\0';
-        if (!number_parse_real(word, &out[i])) {
-            snprintf(what, sizeof what, "'%.*s' is not a number", length < 64 ? (int)length : 64, at);
-            return wrong_value(option, value, form, what, why);
-        }
+        if (!number_parse_real(word, &out[i]))
+            return options_wrong(option, value, why, remedy, "'%.*s' is not a number", length < 64 ? (int)length : 64,
+                                 at);
         at += length;
-        if ((*at == ',') != (i + 1 < count)) {
-            snprintf(what, sizeof what, "there are %s than %zu numbers", *at ? "more" : "fewer", count);
-            return wrong_value(option, value, form, what, why);
-        }
+        if ((*at == ',') != (i + 1 < count))
+            return options_wrong(option, value, why, remedy, "there are %s than %zu numbers", *at ? "more" : "fewer",
+                                 count);
         at += *at == ',';
     }
     return STATUS_OK;

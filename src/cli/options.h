@@ -5,18 +5,45 @@
 #define CUVETTE_CLI_OPTIONS_H
 
 #include "base/status.h"
-#include <argp.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
-/* What a parser of parse_options gets as state->input. A parser that finds a mistake fills *why and returns EINVAL. */
-typedef struct options_input {
-    void *request;
-    diagnostic *why;
-} options_input;
+/* One option of a command, and what is done with its value. */
+typedef struct command_option {
+    const char *name; /* without its "--" */
+    int letter;       /* 'o' for -o; 0 for none */
+    const char *form; /* of its value; NULL when it takes none */
+    const char *purpose;
+    /* Fills in what lies `at` bytes into the request. value is NULL where there is none. */
+    status (*take)(const struct command_option *o, void *request, const char *value, diagnostic *why);
+    size_t at;
+    int64_t lowest, highest; /* of option_integer */
+    const char *parameter;   /* of what stands for a parameter */
+} command_option;
 
-/* flags as argp_parse's. */
-status options_parse(const struct argp *argp, unsigned flags, int argc, char **argv, void *request, diagnostic *why);
+/* How a field of the request is filled in. */
+#define OPTION_FILLS(function, type, field) .take = function, .at = offsetof(type, field)
+status option_text(const command_option *o, void *request, const char *value, diagnostic *why);    /* const char * */
+status option_flag(const command_option *o, void *request, const char *value, diagnostic *why);    /* bool */
+status option_integer(const command_option *o, void *request, const char *value, diagnostic *why); /* int64_t */
+
+/* A command line: its options, and the words that are none, which go into a list of const char *. */
+typedef struct command_form {
+    const command_option *options; /* the last has no name; NULL for none */
+    const char *words, *about;
+    size_t words_at, words_most;
+    const char *excess, *excess_remedy; /* of a further word, as "'%s' is one too many"; NULL: argp's own error */
+    void (*word)(void *request, const char *word); /* in place of a list that has an end; or NULL */
+    bool ends_at_word;                             /* what follows the first word is not read */
+} command_form;
+
+/* Reads a command line into the request. */
+status command_form_read(const command_form *form, int argc, char **argv, void *request, diagnostic *why);
+
+/* STATUS_BAD_INPUT, located: at a command or an option, and its value unless that is NULL. */
+status options_wrong(const char *where, const char *value, diagnostic *why, const char *remedy, const char *what, ...)
+    __attribute__((format(printf, 5, 6)));
 
 /* Locates a mistake on the command line: at the words of the command without the program's own ("study run"). */
 void options_locate(diagnostic *why, const char *program);

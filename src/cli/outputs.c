@@ -1,5 +1,6 @@
 #include "cli/outputs.h"
-#include "cli/scene_files.h"
+#include "base/file.h"
+#include "cli/options.h"
 #include "render/core/record.h"
 #include "scene/model/scene.h"
 #include <stdio.h>
@@ -14,28 +15,23 @@ typedef struct named_file {
 
 static status wrong(const named_file *file, diagnostic *why, const char *remedy, const char *what)
 {
-    char where[512];
-    snprintf(where, sizeof where, "%s %s", file->option, file->path);
-    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
-    diagnostic_locate(why, where, 0, 0);
-    return STATUS_BAD_INPUT;
+    return options_wrong(file->option, file->path, why, remedy, "%s", what);
 }
 
-static bool ends_with(const char *path, const char *ending)
+bool outputs_ends_with(const char *path, const char *ending)
 {
     size_t length = strlen(path), tail = strlen(ending);
     return length > tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
-static bool same_entry(const char *a, const char *b)
+bool outputs_same_entry(const char *a, const char *b)
 {
     struct stat first, second;
     return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
            first.st_ino == second.st_ino;
 }
 
-/* The folder of a path, fresh memory; a bare name lies in ".". */
-static char *folder_of(const char *path)
+char *outputs_folder_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
     if (!slash)
@@ -43,7 +39,7 @@ static char *folder_of(const char *path)
     return slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
 }
 
-static const char *name_of(const char *path)
+const char *outputs_name_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
@@ -52,10 +48,11 @@ static const char *name_of(const char *path)
 /* Do two paths, spelt as they may be, stand for one file? It need not exist yet. */
 static bool same_file(const char *a, const char *b)
 {
-    if (strcmp(a, b) == 0 || same_entry(a, b))
+    if (strcmp(a, b) == 0 || outputs_same_entry(a, b))
         return true;
-    char *first = folder_of(a), *second = folder_of(b);
-    bool same = first && second && strcmp(name_of(a), name_of(b)) == 0 && same_entry(first, second);
+    char *first = outputs_folder_of(a), *second = outputs_folder_of(b);
+    bool same =
+        first && second && strcmp(outputs_name_of(a), outputs_name_of(b)) == 0 && outputs_same_entry(first, second);
     free(first);
     free(second);
     return same;
@@ -66,12 +63,42 @@ static status check_folder(const named_file *file, diagnostic *why)
     struct stat about;
     if (stat(file->path, &about) == 0 && S_ISDIR(about.st_mode))
         return wrong(file, why, "name a file in it", "is a folder");
-    char *folder = folder_of(file->path);
+    char *folder = outputs_folder_of(file->path);
     if (!folder)
         return out_of_memory(why);
     bool there = stat(folder, &about) == 0 && S_ISDIR(about.st_mode);
     free(folder);
     return there ? STATUS_OK : wrong(file, why, "make it first, or name another", "its folder is not there");
+}
+
+typedef struct search {
+    const scene *s;
+    bool (*is_it)(void *context, const char *path);
+    void *context;
+} search;
+
+static bool ask(const search *x, const char *named)
+{
+    char *path = named && named[0] ? scene_file_path(x->s, named) : NULL;
+    const bool is_it = path && x->is_it(x->context, path);
+    free(path);
+    return is_it;
+}
+
+bool scene_files_any(const scene *s, bool (*is_it)(void *context, const char *path), void *context)
+{
+    const search x = {s, is_it, context};
+    if ((s->path && s->path[0] && is_it(context, s->path)) || ask(&x, s->background.picture_path))
+        return true;
+    for (size_t i = 0; i < s->texture_count; i++)
+        if (ask(&x, s->textures[i].path))
+            return true;
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        const mesh_entry *m = &s->meshes[i];
+        if ((m->source == MESH_FILE && ask(&x, m->path)) || (m->source == MESH_SLIME && ask(&x, m->script_path)))
+            return true;
+    }
+    return false;
 }
 
 static bool is_file_of(const char *path, const scene *s, const char *named)
@@ -123,7 +150,7 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
     status result = STATUS_OK;
     if (at < TIMELINE)
         result = check_picture(o, file, at > 0, why);
-    else if (!ends_with(file->path, ".json"))
+    else if (!outputs_ends_with(file->path, ".json"))
         result = wrong(file, why, "end it in .json", "a timeline is a JSON file");
     if (result == STATUS_OK)
         result = check_folder(file, why);
@@ -196,7 +223,7 @@ status outputs_ending(const char *option, const char *path, const char *const *e
 {
     const named_file file = {option, path};
     for (size_t i = 0; i < count; i++)
-        if (ends_with(path, endings[i])) {
+        if (outputs_ends_with(path, endings[i])) {
             *which = i;
             return STATUS_OK;
         }
@@ -222,6 +249,22 @@ status outputs_check_script(const char *option, const char *path, const scene *s
     const named_file file = {option, path};
     const bool is_read = strcmp(path, "-") != 0 && is_script_of(path, s);
     return is_read ? wrong(&file, why, "name another file", "a script of the scene is read from it") : STATUS_OK;
+}
+
+status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),
+                          const void *content, diagnostic *why)
+{
+    if (!path || strcmp(path, "-") == 0)
+        return write(content, stdout, why);
+    file_writer writer;
+    status result = file_writer_open(&writer, path, why);
+    if (result != STATUS_OK)
+        return result;
+    result = write(content, writer.stream, why);
+    if (result == STATUS_OK)
+        return file_writer_commit(&writer, why);
+    file_writer_abandon(&writer);
+    return result;
 }
 
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why)

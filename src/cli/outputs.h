@@ -5,13 +5,25 @@
 #define CUVETTE_CLI_OUTPUTS_H
 
 #include "render/core/renderer.h"
+#include <stdio.h>
 
 typedef struct outputs {
     const char *picture, *rays, *time, *noise, *timeline, *layers; /* NULL: not wanted; layers: a prefix */
     int bits;                                                      /* of a PNG picture: 8 or 16; 0 when not said */
 } outputs;
 
-/* Endings, folders, and no file named twice or in place of one that the scene reads (cli/scene_files.h). */
+/* Of a path: its folder in fresh memory, "." for a bare name, and the name in it. */
+char *outputs_folder_of(const char *path);
+const char *outputs_name_of(const char *path);
+bool outputs_same_entry(const char *a, const char *b);
+bool outputs_ends_with(const char *path, const char *ending); /* letter case ignored */
+
+/* The files that a scene reads, as they are found from the working folder: its own, its sky, its textures, its meshes
+ * and the scripts of its slimes, not those that a mesh's file names in turn. Is one of them what is looked for? Calls
+ * is_it with each until it returns true. */
+bool scene_files_any(const scene *s, bool (*is_it)(void *context, const char *path), void *context);
+
+/* Endings, folders, and no file named twice or in place of one that the scene reads. */
 status outputs_check(const outputs *o, const scene *s, diagnostic *why);
 
 /* The same for one picture by itself that no scene has to do with; read are the count files that are read. option is
@@ -24,10 +36,14 @@ status outputs_ending(const char *option, const char *path, const char *const *e
                       const char *remedy, size_t *which, diagnostic *why);
 /* Its folder alone: for what may be written in place of what was read. "-" is always right. */
 status outputs_check_folder(const char *option, const char *path, diagnostic *why);
-/* Its folder, and that the scene does not read it (cli/scene_files.h). "-" is always right. */
+/* Its folder, and that the scene does not read it. "-" is always right. */
 status outputs_check_place(const char *option, const char *path, const scene *s, diagnostic *why);
 /* That no script is read from it: for what may be written in place of the scene itself. "-" is always right. */
 status outputs_check_script(const char *option, const char *path, const scene *s, diagnostic *why);
+
+/* Writes a text file, whole or not at all; path NULL or "-": to standard output. */
+status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),
+                          const void *content, diagnostic *why);
 
 /* Writes them all; result has what was wanted, or a part of it. */
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why);

@@ -3,7 +3,6 @@
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "realism/realism.h"
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,70 +14,39 @@ typedef struct realism_request {
     int curve; /* realism_curve, or -1 */
 } realism_request;
 
-enum { KEY_JSON = 0x100, KEY_CSV, KEY_CURVE };
-
-static const struct argp_option options[] = {
-    {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'liquid.ior=1.47'; may be given many times", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object", 0},
-    {"csv", KEY_CSV, NULL, 0, "print the table as CSV, with all digits", 0},
-    {"curve", KEY_CURVE, "NAME", 0,
-     "print a curve as CSV instead, x, measured, theory: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption "
-     "or edges",
-     0},
-    {0},
-};
-
-static error_t take_curve(const char *value, realism_request *request, diagnostic *why)
+static status take_curve(const command_option *o, void *into, const char *value, diagnostic *why)
 {
+    realism_request *request = into;
     const char *names[REALISM_CURVE_COUNT];
+    (void)o;
     for (int i = 0; i < REALISM_CURVE_COUNT; i++) {
         names[i] = realism_curve_name((realism_curve)i);
         if (strcmp(value, names[i]) == 0) {
             request->curve = i;
-            return 0;
+            return STATUS_OK;
         }
     }
-    options_unknown_word("curve", value, names, REALISM_CURVE_COUNT, why);
     diagnostic_locate(why, "--curve", 0, 0);
-    return EINVAL;
+    return options_unknown_word("curve", value, names, REALISM_CURVE_COUNT, why);
 }
 
-static error_t take_option(int key, char *value, struct argp_state *state)
-{
-    options_input *input = state->input;
-    realism_request *request = input->request;
-    switch (key) {
-    case 's': scene_input_change(&request->input, "--set", NULL, value); return 0;
-    case KEY_JSON: request->json = true; return 0;
-    case KEY_CSV: request->csv = true; return 0;
-    case KEY_CURVE: return take_curve(value, request, input->why);
-    case ARGP_KEY_ARG: return scene_input_name(&request->input, value, input->why) == STATUS_OK ? 0 : EINVAL;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
-
-static const struct argp parser = {
-    .options = options,
-    .parser = take_option,
-    .args_doc = "SCENE",
-    .doc = "Measure how far what is traced lies from textbook optics, in the scene file SCENE: a vessel (a cup), a "
-           "liquid in it (a "
-           "cylinder) and a rod (a box); or a prism, a drop, or two plates. It succeeds whether the metrics pass or "
-           "not.\vFor example:\n"
-           "  cuvette realism experiments/scenes/rod.yaml\n"
-           "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set clear.reflectivity=0.1 "
-           "--set clear.transparency=0.9\n"
-           "  cuvette realism experiments/scenes/prism.yaml",
+static const command_option options[] = {
+    OPTION_SET("'liquid.ior=1.47'"),
+    {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, realism_request, json)},
+    {"csv", 0, NULL, "print the table as CSV, with all digits", OPTION_FILLS(option_flag, realism_request, csv)},
+    {"curve", 0, "NAME",
+     "print a curve as CSV instead, x, measured, theory: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption "
+     "or edges",
+     .take = take_curve},
+    {0},
 };
 
-static status check_request(const realism_request *request, diagnostic *why)
+static status check_request(void *asked, diagnostic *why)
 {
-    status result = scene_input_check(&request->input, why);
-    if (result != STATUS_OK || !request->json || (!request->csv && request->curve < 0))
-        return result;
-    diagnose(why, STATUS_BAD_INPUT, "leave one of them out", "JSON and CSV do not go together");
-    diagnostic_locate(why, "realism", 0, 0);
-    return STATUS_BAD_INPUT;
+    const realism_request *request = asked;
+    return request->json && (request->csv || request->curve >= 0)
+               ? options_wrong("realism", NULL, why, "leave one of them out", "JSON and CSV do not go together")
+               : STATUS_OK;
 }
 
 static const char *verdict(const realism_value *v)
@@ -153,9 +121,7 @@ static status print_json(const realism_request *request, const realism_report *r
     bad |= json_object_set_new(o, "defined", json_integer(defined));
     bad |= json_object_set_new(o, "passed", json_integer(passed));
     bad |= json_object_set_new(o, "values", values);
-    const status result = json_write(stdout, bad ? NULL : o, why);
-    json_decref(o);
-    return result;
+    return json_print(json_unless(bad, o), why);
 }
 
 static status print_curve(const scene *s, isa level, realism_curve which, diagnostic *why)
@@ -173,8 +139,11 @@ static status print_curve(const scene *s, isa level, realism_curve which, diagno
     return STATUS_OK;
 }
 
-static status measure_and_print(const realism_request *request, const scene *s, isa level, diagnostic *why)
+static status run(void *asked, scene *s, isa level, diagnostic *why)
 {
+    const realism_request *request = asked;
+    if (!request->json && !request->csv && request->curve < 0)
+        scene_input_note_hints(s);
     if (request->curve >= 0)
         return print_curve(s, level, (realism_curve)request->curve, why);
     realism_report report;
@@ -190,27 +159,24 @@ static status measure_and_print(const realism_request *request, const scene *s, 
     return STATUS_OK;
 }
 
+static const scene_command realism_command = {
+    .name = "realism",
+    .form = {.options = options,
+             .words = "SCENE",
+             SCENE_WORD("realism"),
+             .about = "Measure how far what is traced lies from textbook optics, in the scene file SCENE: a vessel (a "
+                      "cup), a liquid in it (a cylinder) and a rod (a box); or a prism, a drop, or two plates. It "
+                      "succeeds whether the metrics pass or not.\vFor example:\n"
+                      "  cuvette realism experiments/scenes/rod.yaml\n"
+                      "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set "
+                      "clear.reflectivity=0.1 --set clear.transparency=0.9\n"
+                      "  cuvette realism experiments/scenes/prism.yaml"},
+    .check = check_request,
+    .run = run,
+};
+
 status command_realism(int argc, char **argv, diagnostic *why)
 {
     realism_request request = {.curve = -1};
-    scene *s = NULL;
-    isa level = ISA_SSE2;
-    status result = scene_input_prepare(&request.input, "realism", argc, why);
-    if (result == STATUS_OK)
-        result = options_parse(&parser, 0, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = check_request(&request, why);
-    if (result == STATUS_OK)
-        result = scene_input_isa(&level, why);
-    if (result == STATUS_OK)
-        result = scene_input_read(&request.input, &s, why);
-    if (result == STATUS_OK)
-        result = scene_input_load(s, why);
-    if (result == STATUS_OK && !request.json && !request.csv && request.curve < 0)
-        scene_input_note_hints(s);
-    if (result == STATUS_OK)
-        result = measure_and_print(&request, s, level, why);
-    scene_destroy(s);
-    scene_input_release(&request.input);
-    return result;
+    return scene_command_run(&realism_command, argc, argv, &request, why);
 }

@@ -7,7 +7,6 @@
 #include "scene/model/params_path.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,69 +18,54 @@ typedef struct asked_edit {
 
 typedef struct scene_request {
     const char *path, *output; /* NULL: none, and standard output */
-    asked_edit *edits;         /* room for as many as the command line has words */
+    asked_edit *edits;
     size_t edit_count;
     bool begins_empty, only_checks, only_lists, writes_all;
 } scene_request;
 
-enum { KEY_NEW = 0x100, KEY_CHECK, KEY_LIST, KEY_ALL, OPTION_MAX = 16 };
-
-static const struct argp_option plain_options[] = {
-    {"new", KEY_NEW, NULL, 0, "begin with an empty scene in place of a file", 0},
-    {"check", KEY_CHECK, NULL, 0, "only say whether the scene is right, its files too, and what looks wrong in it", 0},
-    {"list", KEY_LIST, NULL, 0, "only list its objects: kind, name, and of a solid shape and material", 0},
-    {"all", KEY_ALL, NULL, 0, "write every parameter, not only what differs from the defaults", 0},
-    {"output", 'o', "FILE", 0,
-     "write there: .yaml or .yml, which may be the scene itself; standard output when not said", 0},
-    {0},
-};
+enum { OPTIONS_MOST = 16 };
 
 static status misused(diagnostic *why, const char *remedy, const char *what)
 {
-    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
-    diagnostic_locate(why, "scene", 0, 0);
-    return STATUS_BAD_INPUT;
+    return options_wrong("scene", NULL, why, remedy, "%s", what);
 }
 
-static error_t take_edit(scene_request *request, int key, const char *text)
+static status take_edit(const command_option *o, void *into, const char *text, diagnostic *why)
 {
-    for (size_t i = 0; i < scene_edit_count; i++)
-        if (scene_edits[i].key == key) {
-            request->edits[request->edit_count++] = (asked_edit){&scene_edits[i], text};
-            return 0;
-        }
-    return ARGP_ERR_UNKNOWN;
+    scene_request *request = into;
+    asked_edit *longer = realloc(request->edits, (request->edit_count + 1) * sizeof *longer);
+    if (!longer)
+        return out_of_memory(why);
+    request->edits = longer;
+    longer[request->edit_count++] = (asked_edit){&scene_edits[o->at], text};
+    return STATUS_OK;
 }
 
-static error_t take_option(int key, char *value, struct argp_state *state)
-{
-    options_input *input = state->input;
-    scene_request *request = input->request;
-    switch (key) {
-    case 'o': request->output = value; return 0;
-    case KEY_NEW: request->begins_empty = true; return 0;
-    case KEY_CHECK: request->only_checks = true; return 0;
-    case KEY_LIST: request->only_lists = true; return 0;
-    case KEY_ALL: request->writes_all = true; return 0;
-    case ARGP_KEY_ARG:
-        if (request->path) {
-            misused(input->why, "scene takes one file", "there is more than one scene");
-            return EINVAL;
-        }
-        request->path = value;
-        return 0;
-    default: return take_edit(request, key, value);
-    }
-}
+static const command_option plain_options[] = {
+    {"new", 0, NULL, "begin with an empty scene in place of a file",
+     OPTION_FILLS(option_flag, scene_request, begins_empty)},
+    {"check", 0, NULL, "only say whether the scene is right, its files too, and what looks wrong in it",
+     OPTION_FILLS(option_flag, scene_request, only_checks)},
+    {"list", 0, NULL, "only list its objects: kind, name, and of a solid shape and material",
+     OPTION_FILLS(option_flag, scene_request, only_lists)},
+    {"all", 0, NULL, "write every parameter, not only what differs from the defaults",
+     OPTION_FILLS(option_flag, scene_request, writes_all)},
+    {"output", 'o', "FILE", "write there: .yaml or .yml, which may be the scene itself; standard output when not said",
+     OPTION_FILLS(option_text, scene_request, output)},
+    {0},
+};
 
 /* The options of the edits come first, from their table. */
-static void make_options(struct argp_option options[OPTION_MAX])
+static void make_options(command_option options[OPTIONS_MOST])
 {
-    size_t count = 0;
     for (size_t i = 0; i < scene_edit_count; i++)
-        options[count++] = (struct argp_option){
-            scene_edits[i].option + 2, scene_edits[i].key, scene_edits[i].form, 0, scene_edits[i].purpose, 0};
-    memcpy(&options[count], plain_options, sizeof plain_options);
+        options[i] = (command_option){.name = scene_edits[i].option + 2,
+                                      .letter = scene_edits[i].letter,
+                                      .form = scene_edits[i].form,
+                                      .purpose = scene_edits[i].purpose,
+                                      .take = take_edit,
+                                      .at = i};
+    memcpy(&options[scene_edit_count], plain_options, sizeof plain_options);
 }
 
 static status check_request(const scene_request *request, diagnostic *why)
@@ -172,22 +156,27 @@ static status run(const scene_request *request, scene *s, diagnostic *why)
     return result == STATUS_OK ? scene_write(s, output, request->writes_all, why) : result;
 }
 
-static const char about[] = "Read a scene, or begin with an empty one; change it by the options, one after another; "
-                            "check it, and write it in one normal "
-                            "form. Only what differs from the defaults is written. Comments are not kept.\vNothing is "
-                            "written when something is wrong. For "
-                            "example:\n"
-                            "  cuvette scene rod.yaml --move rod=0,0.5,0 --turn rod=0,0,-22 -o b.yaml\n"
-                            "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8";
+static const char about[] =
+    "Read a scene, or begin with an empty one; change it by the options, one after another; check it, and write it in "
+    "one normal form. Only what differs from the defaults is written. Comments are not kept.\vNothing is written when "
+    "something is wrong. For example:\n"
+    "  cuvette scene rod.yaml --move rod=0,0.5,0 --turn rod=0,0,-22 -o b.yaml\n"
+    "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8";
 
 status command_scene(int argc, char **argv, diagnostic *why)
 {
-    struct argp_option options[OPTION_MAX];
+    command_option options[OPTIONS_MOST];
     make_options(options);
-    const struct argp parser = {.options = options, .parser = take_option, .args_doc = "[FILE]", .doc = about};
-    scene_request request = {.edits = calloc((size_t)argc + 1, sizeof *request.edits)};
+    const command_form form = {.options = options,
+                               .words = "[FILE]",
+                               .words_at = offsetof(scene_request, path),
+                               .words_most = 1,
+                               .excess_remedy = "scene takes one file",
+                               .excess = "there is more than one scene",
+                               .about = about};
+    scene_request request = {.path = NULL};
     scene *s = NULL;
-    status result = request.edits ? options_parse(&parser, 0, argc, argv, &request, why) : out_of_memory(why);
+    status result = command_form_read(&form, argc, argv, &request, why);
     if (result == STATUS_OK)
         result = check_request(&request, why);
     if (result == STATUS_OK)

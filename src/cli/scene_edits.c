@@ -14,84 +14,48 @@ static status malformed(const scene_edit *edit, const char *text, diagnostic *wh
     return diagnose(why, STATUS_BAD_INPUT, remedy, "'%.80s' is not of the form %s", text, edit->form);
 }
 
-/* What stands before the '=' in fresh memory, and where the rest begins; NULL when there is no '='. */
-static char *left_of_equals(const char *text, const char **rest)
-{
-    const char *equals = strchr(text, '=');
-    *rest = equals ? equals + 1 : NULL;
-    return equals ? strndup(text, (size_t)(equals - text)) : NULL;
-}
-
-static status apply_set(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
-{
-    const char *value;
-    char *path = left_of_equals(text, &value);
-    if (!path)
-        return malformed(edit, text, why);
-    status result = scene_put(s, path, value, why);
-    free(path);
-    return result;
-}
-
-static status apply_vector(scene *s, const scene_edit *edit, const char *text, diagnostic *why,
-                           status (*change)(scene *, const char *, vec3, diagnostic *))
-{
-    const char *value;
-    char *name = left_of_equals(text, &value);
-    double v[3];
-    if (!name)
-        return malformed(edit, text, why);
-    status result = options_reals(edit->option, value, edit->form, 3, v, why);
-    if (result == STATUS_OK)
-        result = change(s, name, vec3_make(v[0], v[1], v[2]), why);
-    free(name);
-    return result;
-}
-
-static status apply_move(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
-{
-    return apply_vector(s, edit, text, why, scene_move);
-}
-
-static status apply_turn(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
-{
-    return apply_vector(s, edit, text, why, scene_turn);
-}
-
-static status apply_scale(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
-{
-    const char *value;
-    char *name = left_of_equals(text, &value);
-    double factor;
-    if (!name)
-        return malformed(edit, text, why);
-    status result = options_reals(edit->option, value, edit->form, 1, &factor, why);
-    if (result == STATUS_OK)
-        result = scene_scale(s, name, factor, why);
-    free(name);
-    return result;
-}
-
-static status apply_rename(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
-{
-    const char *new_name;
-    char *name = left_of_equals(text, &new_name);
-    if (!name)
-        return malformed(edit, text, why);
-    status result = scene_rename(s, name, new_name, why);
-    free(name);
-    return result;
-}
-
-static status apply_delete(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
+static status apply_set(scene *s, const scene_edit *edit, const char *path, const char *value, diagnostic *why)
 {
     (void)edit;
+    return scene_put(s, path, value, why);
+}
+
+static status apply_move(scene *s, const scene_edit *edit, const char *name, const char *text, diagnostic *why)
+{
+    double v[3];
+    const status result = options_reals(edit->option, text, edit->form, 3, v, why);
+    return result == STATUS_OK ? scene_move(s, name, vec3_make(v[0], v[1], v[2]), why) : result;
+}
+
+static status apply_turn(scene *s, const scene_edit *edit, const char *name, const char *text, diagnostic *why)
+{
+    double v[3];
+    const status result = options_reals(edit->option, text, edit->form, 3, v, why);
+    return result == STATUS_OK ? scene_turn(s, name, vec3_make(v[0], v[1], v[2]), why) : result;
+}
+
+static status apply_scale(scene *s, const scene_edit *edit, const char *name, const char *text, diagnostic *why)
+{
+    double factor;
+    const status result = options_reals(edit->option, text, edit->form, 1, &factor, why);
+    return result == STATUS_OK ? scene_scale(s, name, factor, why) : result;
+}
+
+static status apply_rename(scene *s, const scene_edit *edit, const char *name, const char *new_name, diagnostic *why)
+{
+    (void)edit;
+    return scene_rename(s, name, new_name, why);
+}
+
+static status apply_delete(scene *s, const scene_edit *edit, const char *none, const char *text, diagnostic *why)
+{
+    (void)edit, (void)none;
     return scene_remove(s, text, why);
 }
 
-static status apply_title(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
+static status apply_title(scene *s, const scene_edit *edit, const char *none, const char *text, diagnostic *why)
 {
-    (void)edit;
+    (void)edit, (void)none;
     return scene_set_title(s, text, why);
 }
 
@@ -162,8 +126,9 @@ static status add_object(scene *s, const char *kind, const char *name, const cha
 }
 
 /* Cuts "solid:rod=box,size=1,2,3" into its parts. */
-static status apply_add(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
+static status apply_add(scene *s, const scene_edit *edit, const char *none, const char *text, diagnostic *why)
 {
+    (void)none;
     char *copy = strdup(text);
     if (!copy)
         return out_of_memory(why);
@@ -187,33 +152,41 @@ static status apply_add(scene *s, const scene_edit *edit, const char *text, diag
 }
 
 const scene_edit scene_edits[] = {
-    {"--add", 0x200, "KIND:NAME[=SHAPE][,PARAM=VALUE]...",
+    {"--add", 0, false, "KIND:NAME[=SHAPE][,PARAM=VALUE]...",
      "add a solid, light, material, mesh or texture, as solid:rod=box,size=0.25,3,0.25", apply_add},
-    {"--set", 's', "PATH=VALUE", "set a parameter, or NAME.material and NAME.shape of a solid", apply_set},
-    {"--move", 0x201, "NAME=DX,DY,DZ",
+    {"--set", 's', true, "PATH=VALUE", "set a parameter, or NAME.material and NAME.shape of a solid", apply_set},
+    {"--move", 0, true, "NAME=DX,DY,DZ",
      "move a solid, a light, the camera; all, solids, lights, or words joined by +, as all+camera", apply_move},
-    {"--turn", 0x202, "NAME=RX,RY,RZ",
+    {"--turn", 0, true, "NAME=RX,RY,RZ",
      "turn a solid or the camera, where it stands, or all and so on, about the origin: about the world's x, then y, "
      "then z axis, in degrees",
      apply_turn},
-    {"--scale", 0x206, "NAME=FACTOR",
+    {"--scale", 0, true, "NAME=FACTOR",
      "scale a solid or a light, where it stands, or all and so on, about the origin; with all solids, lengths in "
      "metres stay (render.unit_m)",
      apply_scale},
-    {"--rename", 0x203, "OLD=NEW", "give an object another name", apply_rename},
-    {"--delete", 0x204, "NAME", "take an object away; camera, background and render go back to their defaults",
+    {"--rename", 0, true, "OLD=NEW", "give an object another name", apply_rename},
+    {"--delete", 0, false, "NAME", "take an object away; camera, background and render go back to their defaults",
      apply_delete},
-    {"--title", 0x205, "TEXT", "give the scene another title", apply_title},
+    {"--title", 0, false, "TEXT", "give the scene another title", apply_title},
 };
 const size_t scene_edit_count = sizeof scene_edits / sizeof *scene_edits;
 
+static status apply_named(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
+{
+    const char *equals = strchr(text, '=');
+    char *name = equals ? strndup(text, (size_t)(equals - text)) : NULL;
+    const status result = name ? edit->apply(s, edit, name, equals + 1, why) : malformed(edit, text, why);
+    free(name);
+    return result;
+}
+
 status scene_edit_apply(scene *s, const scene_edit *edit, const char *text, diagnostic *why)
 {
-    status result = edit->apply(s, edit, text, why);
-    if (result != STATUS_OK) {
-        char where[512];
-        snprintf(where, sizeof where, "%s %s", edit->option, text);
+    char where[512];
+    const status result = edit->is_named ? apply_named(s, edit, text, why) : edit->apply(s, edit, NULL, text, why);
+    snprintf(where, sizeof where, "%s %s", edit->option, text);
+    if (result != STATUS_OK)
         diagnostic_locate(why, where, 0, 0);
-    }
     return result;
 }

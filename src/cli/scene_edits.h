@@ -10,10 +10,12 @@ typedef struct scene_edit scene_edit;
 /* One option that changes a scene: its name, the form of its value, what it is for, and how it is done. */
 struct scene_edit {
     const char *option; /* "--move" */
-    int key;            /* argp's */
+    int letter;         /* 0 for none */
+    bool is_named;      /* its value is NAME=TEXT */
     const char *form;   /* "NAME=DX,DY,DZ" */
     const char *purpose;
-    status (*apply)(scene *s, const scene_edit *edit, const char *text, diagnostic *why);
+    /* name is NULL, and text the whole value, where it is not named. */
+    status (*apply)(scene *s, const scene_edit *edit, const char *name, const char *text, diagnostic *why);
 };
 
 extern const scene_edit scene_edits[];

@@ -1,16 +1,12 @@
 #include "cli/scene_input.h"
+#include "cli/outputs.h"
 #include "cli/terminal.h"
 #include "scene/model/hints.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <stdio.h>
 #include <stdlib.h>
-
-status scene_input_prepare(scene_input *input, const char *command, int argc, diagnostic *why)
-{
-    *input = (scene_input){.command = command, .changes = calloc((size_t)argc + 1, sizeof *input->changes)};
-    return input->changes ? STATUS_OK : out_of_memory(why);
-}
+#include <string.h>
 
 void scene_input_release(scene_input *input)
 {
@@ -18,31 +14,59 @@ void scene_input_release(scene_input *input)
     *input = (scene_input){0};
 }
 
-status scene_input_name(scene_input *input, const char *argument, diagnostic *why)
+status option_change(const command_option *o, void *request, const char *value, diagnostic *why)
 {
-    if (!input->path) {
-        input->path = argument;
-        return STATUS_OK;
-    }
-    char remedy[128];
-    snprintf(remedy, sizeof remedy, "%s takes one scene; a parameter is set by --set PATH=VALUE", input->command);
-    diagnose(why, STATUS_BAD_INPUT, remedy, "'%.128s' is one too many", argument);
-    diagnostic_locate(why, input->command, 0, 0);
-    return STATUS_BAD_INPUT;
+    scene_input *input = request;
+    scene_change *longer = realloc(input->changes, (input->count + 1) * sizeof *longer);
+    if (!longer)
+        return out_of_memory(why);
+    input->changes = longer;
+    longer[input->count++] = (scene_change){o->name, o->parameter, value};
+    return STATUS_OK;
 }
 
-void scene_input_change(scene_input *input, const char *option, const char *path, const char *text)
+status scene_input_probe(const scene_input *input, const scene *s, isa level, probe **out, diagnostic *why)
 {
-    input->changes[input->count++] = (scene_change){option, path, text};
+    const status result = probe_create(s, level, out, why);
+    for (size_t i = 0; i < input->count && result == STATUS_OK; i++)
+        if (strcmp(input->changes[i].option, "lambda") == 0)
+            probe_one_wavelength(*out);
+    return result;
 }
 
-status scene_input_check(const scene_input *input, diagnostic *why)
+status scene_command_read(const scene_command *command, int argc, char **argv, void *request, diagnostic *why)
 {
-    if (input->path)
-        return STATUS_OK;
-    diagnose(why, STATUS_BAD_INPUT, "name a scene file, as experiments/scenes/rod.yaml", "no scene is named");
-    diagnostic_locate(why, input->command, 0, 0);
-    return STATUS_BAD_INPUT;
+    const scene_input *input = request;
+    const status result = command_form_read(&command->form, argc, argv, request, why);
+    if (result != STATUS_OK)
+        return result;
+    if (!input->path)
+        return options_wrong(command->name, NULL, why, "name a scene file, as experiments/scenes/rod.yaml",
+                             "no scene is named");
+    return command->check ? command->check(request, why) : STATUS_OK;
+}
+
+status scene_command_run(const scene_command *command, int argc, char **argv, void *request, diagnostic *why)
+{
+    scene *s = NULL;
+    isa level = ISA_SSE2;
+    status result = scene_command_read(command, argc, argv, request, why);
+    if (result == STATUS_OK)
+        result = scene_input_isa(&level, why);
+    if (result == STATUS_OK)
+        result = scene_input_read(request, &s, why);
+    const char *output = ((scene_input *)request)->output;
+    if (result == STATUS_OK && output)
+        result = outputs_check_place("-o", output, s, why);
+    if (result == STATUS_OK && command->check_scene)
+        result = command->check_scene(request, s, why);
+    if (result == STATUS_OK && !command->unloaded)
+        result = scene_input_load(s, why);
+    if (result == STATUS_OK)
+        result = command->run(request, s, level, why);
+    scene_destroy(s);
+    scene_input_release(request);
+    return result;
 }
 
 status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
@@ -53,7 +77,7 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
         result = one->path ? scene_set(*out, one->path, one->text, why) : scene_set_assignment(*out, one->text, why);
         if (result != STATUS_OK) {
             char where[512];
-            snprintf(where, sizeof where, "%s %s", one->option, one->text);
+            snprintf(where, sizeof where, "--%s %s", one->option, one->text);
             diagnostic_locate(why, where, 0, 0);
         }
     }

@@ -1,9 +1,9 @@
 #include "base/text_writer.h"
 #include "cli/cli.h"
 #include "cli/inert_notes.h"
+#include "cli/options.h"
 #include "cli/scene_input.h"
 #include "cli/study_request.h"
-#include "cli/study_table.h"
 #include "cli/terminal.h"
 #include "study/study.h"
 #include "study/summary.h"
@@ -19,7 +19,7 @@
 typedef status study_action(const study *s, const study_request *request, diagnostic *why);
 
 /* All files are read before anything is done with the first: a mistake in the last one shows at once. */
-static status for_each_study(const study_request *request, study_action *act, diagnostic *why)
+static status read_and_act(const study_request *request, study_action *act, diagnostic *why)
 {
     study **studies = calloc(request->file_count + 1, sizeof *studies);
     if (!studies)
@@ -32,6 +32,16 @@ static status for_each_study(const study_request *request, study_action *act, di
     for (size_t i = 0; i < request->file_count; i++)
         study_destroy(studies[i]);
     free(studies);
+    return result;
+}
+
+static status for_each_study(study_verb verb, study_action *act, int argc, char **argv, diagnostic *why)
+{
+    study_request request;
+    status result = study_request_parse(verb, argc, argv, &request, why);
+    if (result == STATUS_OK)
+        result = read_and_act(&request, act, why);
+    study_request_release(&request);
     return result;
 }
 
@@ -165,42 +175,22 @@ static status print_summary(const study *s, const study_request *request, diagno
 
 static status command_run(int argc, char **argv, diagnostic *why)
 {
-    study_request request;
-    status result = study_request_parse(STUDY_RUN, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = for_each_study(&request, run_one, why);
-    study_request_release(&request);
-    return result;
+    return for_each_study(STUDY_RUN, run_one, argc, argv, why);
 }
 
 static status command_status(int argc, char **argv, diagnostic *why)
 {
-    study_request request;
-    status result = study_request_parse(STUDY_STATUS, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = for_each_study(&request, print_status, why);
-    study_request_release(&request);
-    return result;
+    return for_each_study(STUDY_STATUS, print_status, argc, argv, why);
 }
 
 static status command_merge(int argc, char **argv, diagnostic *why)
 {
-    study_request request;
-    status result = study_request_parse(STUDY_MERGE, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = for_each_study(&request, merge_one, why);
-    study_request_release(&request);
-    return result;
+    return for_each_study(STUDY_MERGE, merge_one, argc, argv, why);
 }
 
 static status command_summary(int argc, char **argv, diagnostic *why)
 {
-    study_request request;
-    status result = study_request_parse(STUDY_SUMMARY, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = for_each_study(&request, print_summary, why);
-    study_request_release(&request);
-    return result;
+    return for_each_study(STUDY_SUMMARY, print_summary, argc, argv, why);
 }
 
 static int is_study_file(const struct dirent *entry)
@@ -229,12 +219,9 @@ static status list_folder(const char *folder, diagnostic *why)
 {
     struct dirent **entries = NULL;
     int count = scandir(folder, &entries, is_study_file, alphasort);
-    if (count < 0) {
-        diagnose(why, STATUS_BAD_INPUT, "name a folder with *.study files", "cannot be listed: %s",
-                 strerrordesc_np(errno));
-        diagnostic_locate(why, folder, 0, 0);
-        return STATUS_BAD_INPUT;
-    }
+    if (count < 0)
+        return options_wrong(folder, NULL, why, "name a folder with *.study files", "cannot be listed: %s",
+                             strerrordesc_np(errno));
     status result = STATUS_OK;
     for (int i = 0; i < count; i++) {
         if (result != STATUS_OK)

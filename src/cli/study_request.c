@@ -1,93 +1,75 @@
 #include "cli/study_request.h"
 #include "cli/options.h"
 #include "base/number.h"
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_SHARD = 0x100, SHARDS_MAX = 10000 };
+enum { SHARDS_MAX = 10000 };
 
-static const struct argp_option run_options[] = {
-    {"results", 'r', "DIR", 0, "put results/STUDY/ into DIR instead of results", 0},
-    {"shard", KEY_SHARD, "I/N", 0,
-     "do part I of N, counted from 0: the parts may run at one time, on one or many machines", 0},
-    {"quiet", 'q', NULL, 0, "say nothing but errors", 0},
-    {0},
-};
-
-static const struct argp_option results_options[] = {
-    {"results", 'r', "DIR", 0, "where the results are; 'results' if not said", 0},
-    {0},
-};
-
-static const struct argp_option no_options[] = {{0}};
-
-static error_t wrong_shard(const char *value, diagnostic *why)
+static status take_shard(const command_option *o, void *into, const char *value, diagnostic *why)
 {
-    char where[512];
-    snprintf(where, sizeof where, "--shard %s", value);
-    diagnose(why, STATUS_BAD_INPUT, "give I/N with 0 <= I < N, as 0/2 and 1/2", "'%.64s' names no part", value);
-    diagnostic_locate(why, where, 0, 0);
-    return EINVAL;
-}
-
-static error_t take_shard(const char *value, study_request *request, diagnostic *why)
-{
+    study_request *request = into;
     char part[24];
     int64_t shard, shards;
     const char *slash = strchr(value, '/');
-    if (!slash || (size_t)(slash - value) >= sizeof part)
-        return wrong_shard(value, why);
-    snprintf(part, sizeof part, "%.*s", (int)(slash - value), value);
-    if (!number_parse_int(part, &shard) || !number_parse_int(slash + 1, &shards))
-        return wrong_shard(value, why);
-    if (shards < 1 || shards > SHARDS_MAX || shard < 0 || shard >= shards)
-        return wrong_shard(value, why);
+    const bool fits = slash && (size_t)(slash - value) < sizeof part;
+    (void)o;
+    snprintf(part, sizeof part, "%.*s", fits ? (int)(slash - value) : 0, value);
+    if (!fits || !number_parse_int(part, &shard) || !number_parse_int(slash + 1, &shards) || shards < 1 ||
+        shards > SHARDS_MAX || shard < 0 || shard >= shards)
+        return options_wrong("--shard", value, why, "give I/N with 0 <= I < N, as 0/2 and 1/2", "'%.64s' names no part",
+                             value);
     request->shard = (long)shard;
     request->shards = (long)shards;
-    return 0;
+    return STATUS_OK;
 }
 
-static error_t take_option(int key, char *value, struct argp_state *state)
+static void take_file(void *request, const char *file)
 {
-    options_input *input = state->input;
-    study_request *request = input->request;
-    switch (key) {
-    case 'r': request->results = value; return 0;
-    case 'q': request->quiet = true; return 0;
-    case KEY_SHARD: return take_shard(value, request, input->why);
-    case ARGP_KEY_ARG: request->files[request->file_count++] = value; return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
+    study_request *r = request;
+    r->files[r->file_count++] = file;
 }
 
-static const struct argp parsers[STUDY_VERB_COUNT] = {
-    [STUDY_RUN] =
-        {.options = run_options,
-         .parser = take_option,
-         .args_doc = "FILE...",
-         .doc = "Measure what is missing of each study, row by row.\vA study that is stopped, or killed, goes on where "
-                "it was when it is run again. Rows are never rewritten."},
-    [STUDY_LIST] = {.options = no_options,
-                    .parser = take_option,
-                    .args_doc = "[DIR]",
-                    .doc = "List the study files of a folder; 'experiments' if none is named."},
+static const command_option run_options[] = {
+    {"results", 'r', "DIR", "put results/STUDY/ into DIR instead of results",
+     OPTION_FILLS(option_text, study_request, results)},
+    {"shard", 0, "I/N", "do part I of N, counted from 0: the parts may run at one time, on one or many machines",
+     .take = take_shard},
+    {"quiet", 'q', NULL, "say nothing but errors", OPTION_FILLS(option_flag, study_request, quiet)},
+    {0},
+};
+
+static const command_option results_options[] = {
+    {"results", 'r', "DIR", "where the results are; 'results' if not said",
+     OPTION_FILLS(option_text, study_request, results)},
+    {0},
+};
+
+static const command_form forms[STUDY_VERB_COUNT] = {
+    [STUDY_RUN] = {.options = run_options,
+                   .word = take_file,
+                   .words = "FILE...",
+                   .about = "Measure what is missing of each study, row by row.\vA study that is stopped, or killed, "
+                            "goes on where it was when it is run again. Rows are never rewritten."},
+    [STUDY_LIST] = {.word = take_file,
+                    .words = "[DIR]",
+                    .about = "List the study files of a folder; 'experiments' if none is named."},
     [STUDY_STATUS] =
         {.options = results_options,
-         .parser = take_option,
-         .args_doc = "FILE...",
-         .doc = "Say how many cells of each study are done, and how many rows are marked because their film differs."},
+         .word = take_file,
+         .words = "FILE...",
+         .about =
+             "Say how many cells of each study are done, and how many rows are marked because their film differs."},
     [STUDY_MERGE] = {.options = results_options,
-                     .parser = take_option,
-                     .args_doc = "FILE...",
-                     .doc = "Join the rows of a study's shards into its rows.csv."},
-    [STUDY_SUMMARY] =
-        {.options = results_options,
-         .parser = take_option,
-         .args_doc = "FILE",
-         .doc = "Print one line a cell: medians, 95% intervals, counts.\vOn a terminal the columns that one looks at "
-                "first; into a file or pipe all of them, separated by tabs."},
+                     .word = take_file,
+                     .words = "FILE...",
+                     .about = "Join the rows of a study's shards into its rows.csv."},
+    [STUDY_SUMMARY] = {.options = results_options,
+                       .word = take_file,
+                       .words = "FILE",
+                       .about = "Print one line a cell: medians, 95% intervals, counts.\vOn a terminal the columns "
+                                "that one looks at first; into a file or pipe all of them, separated by tabs."},
 };
 
 static status check_files(const study_request *request, const char *program, diagnostic *why)
@@ -104,9 +86,8 @@ static status check_files(const study_request *request, const char *program, dia
         what = "--results is empty", remedy = "name a folder";
     if (!what)
         return STATUS_OK;
-    diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
     options_locate(why, program);
-    return STATUS_BAD_INPUT;
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
 }
 
 status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why)
@@ -115,7 +96,7 @@ status study_request_parse(study_verb verb, int argc, char **argv, study_request
         .verb = verb, .results = "results", .shards = 1, .files = calloc((size_t)argc + 1, sizeof(char *))};
     if (!out->files)
         return out_of_memory(why);
-    status result = options_parse(&parsers[verb], 0, argc, argv, out, why);
+    status result = command_form_read(&forms[verb], argc, argv, out, why);
     return result == STATUS_OK ? check_files(out, argv[0], why) : result;
 }
 

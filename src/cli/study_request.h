@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 typedef enum study_verb {
     STUDY_RUN,
@@ -27,5 +28,10 @@ typedef struct study_request {
 
 status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why);
 void study_request_release(study_request *request);
+
+/* Prints the summary of a study for people: the few columns that one looks at first, aligned. They are cell, axes, n,
+ * median and 95% interval of the wall time, median of the CPU time, rays and marked rows, from the text that
+ * study_summary writes; tsv is cut apart in the course of it. */
+status study_table_print(FILE *out, char *tsv, diagnostic *why);
 
 #endif

@@ -1,4 +1,4 @@
-#include "cli/study_table.h"
+#include "cli/study_request.h"
 #include "base/number.h"
 #include "base/text.h"
 #include <stdbool.h>

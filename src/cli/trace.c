@@ -3,8 +3,6 @@
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
 #include "report/trace_writers.h"
-#include "base/file.h"
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,117 +11,70 @@ typedef enum trace_format { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_NONE } 
 
 typedef struct trace_request {
     scene_input input;
-    const char *output; /* NULL: standard output */
     trace_format format;
-    bool by_pixel, by_ray, one_wavelength;
+    bool by_pixel, by_ray;
     double pixel[2], ray[6];
 } trace_request;
 
-enum { KEY_PIXEL = 0x100, KEY_RAY, KEY_DEPTH, KEY_LAMBDA, KEY_JSON, KEY_TEXT, KEY_SVG };
-
-static const struct argp_option options[] = {
-    {"pixel", KEY_PIXEL, "X,Y", 0, "trace the camera rays of a pixel; 0,0 is at the top left", 0},
-    {"ray", KEY_RAY, "OX,OY,OZ,DX,DY,DZ", 0, "trace the ray from a point in a direction of any length", 0},
-    {"depth", KEY_DEPTH, "N", 0, "the same as --set render.depth=N", 0},
-    {"lambda", KEY_LAMBDA, "NM", 0,
-     "one wavelength for indices and for absorption by wavelength; sets render.lambda_nm", 0},
-    {"set", 's', "PATH=VALUE", 0, "set a parameter, as 'liquid.ior=1.4'; may be given many times", 0},
-    {"text", KEY_TEXT, NULL, 0, "print an indented tree, a line a ray (the default)", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object", 0},
-    {"svg", KEY_SVG, NULL, 0, "draw the tree in the plane of incidence and from above", 0},
-    {"output", 'o', "FILE", 0, "write there; without a format, the ending says which: .txt, .json, .svg", 0},
-    {0},
-};
-
-static error_t take_format(trace_request *request, trace_format format, diagnostic *why)
+static status take_format(const command_option *o, void *into, const char *value, diagnostic *why)
 {
-    if (request->format == FORMAT_NONE || request->format == format) {
-        request->format = format;
-        return 0;
-    }
-    diagnose(why, STATUS_BAD_INPUT, "give one of --text, --json, --svg", "there is more than one format");
-    diagnostic_locate(why, "trace", 0, 0);
-    return EINVAL;
+    trace_request *request = into;
+    const trace_format format = strcmp(o->name, "text") == 0   ? FORMAT_TEXT
+                                : strcmp(o->name, "json") == 0 ? FORMAT_JSON
+                                                               : FORMAT_SVG;
+    (void)value;
+    if (request->format != FORMAT_NONE && request->format != format)
+        return options_wrong("trace", NULL, why, "give one of --text, --json, --svg", "there is more than one format");
+    request->format = format;
+    return STATUS_OK;
 }
 
-static error_t take_pixel(trace_request *request, const char *value, diagnostic *why)
+static status take_pixel(const command_option *o, void *into, const char *value, diagnostic *why)
 {
+    trace_request *request = into;
+    (void)o;
     request->by_pixel = true;
-    if (options_reals("--pixel", value, "X,Y as two integers", 2, request->pixel, why) != STATUS_OK)
-        return EINVAL;
-    for (int k = 0; k < 2; k++)
-        if (floor(request->pixel[k]) != request->pixel[k] || fabs(request->pixel[k]) > 1e9) {
-            char where[512];
-            snprintf(where, sizeof where, "--pixel %s", value);
-            diagnose(why, STATUS_BAD_INPUT, "give X,Y as two integers", "there is no such pixel");
-            diagnostic_locate(why, where, 0, 0);
-            return EINVAL;
-        }
-    return 0;
-}
-
-static error_t take_option(int key, char *value, struct argp_state *state)
-{
-    options_input *input = state->input;
-    trace_request *request = input->request;
-    switch (key) {
-    case 's': scene_input_change(&request->input, "--set", NULL, value); return 0;
-    case 'o': request->output = value; return 0;
-    case KEY_DEPTH: scene_input_change(&request->input, "--depth", "render.depth", value); return 0;
-    case KEY_LAMBDA:
-        request->one_wavelength = true;
-        scene_input_change(&request->input, "--lambda", "render.lambda_nm", value);
-        return 0;
-    case KEY_PIXEL: return take_pixel(request, value, input->why);
-    case KEY_RAY:
-        request->by_ray = true;
-        return options_reals("--ray", value, "OX,OY,OZ,DX,DY,DZ", 6, request->ray, input->why) == STATUS_OK ? 0
-                                                                                                            : EINVAL;
-    case KEY_TEXT: return take_format(request, FORMAT_TEXT, input->why);
-    case KEY_JSON: return take_format(request, FORMAT_JSON, input->why);
-    case KEY_SVG: return take_format(request, FORMAT_SVG, input->why);
-    case ARGP_KEY_ARG: return scene_input_name(&request->input, value, input->why) == STATUS_OK ? 0 : EINVAL;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
-
-static const struct argp parser = {
-    .options = options,
-    .parser = take_option,
-    .args_doc = "SCENE (--pixel X,Y | --ray OX,OY,OZ,DX,DY,DZ)",
-    .doc = "Take one ray apart: the whole tree of rays that it grows into, with media, angles, reflectances and what "
-           "each brings to "
-           "the picture. The tree of a pixel has the pixel's radiance, to the bit.\vFor example:\n"
-           "  cuvette trace experiments/scenes/rod.yaml --pixel 400,300 --depth 3\n"
-           "  cuvette trace experiments/scenes/rod.yaml --ray -3,1.5,0.4,1,0,0 -o ray.svg",
-};
-
-static status check_request(trace_request *request, diagnostic *why)
-{
-    static const char *const endings[] = {".txt", ".json", ".svg"};
-    status result = scene_input_check(&request->input, why);
-    if (result == STATUS_OK && request->by_pixel == request->by_ray) {
-        result = diagnose(why, STATUS_BAD_INPUT, "give --pixel X,Y or --ray OX,OY,OZ,DX,DY,DZ",
-                          request->by_ray ? "--pixel and --ray exclude each other" : "no ray is named");
-        diagnostic_locate(why, "trace", 0, 0);
-    }
-    if (result != STATUS_OK || request->format != FORMAT_NONE)
-        return result;
-    size_t which = FORMAT_TEXT;
-    if (request->output && strcmp(request->output, "-") != 0)
-        result = outputs_ending("-o", request->output, endings, 3,
-                                "end it in .txt, .json or .svg, or give --text, --json or --svg", &which, why);
-    request->format = (trace_format)which;
+    const status result = options_reals("--pixel", value, "X,Y as two integers", 2, request->pixel, why);
+    for (int k = 0; k < 2 && result == STATUS_OK; k++)
+        if (floor(request->pixel[k]) != request->pixel[k] || fabs(request->pixel[k]) > 1e9)
+            return options_wrong("--pixel", value, why, "give X,Y as two integers", "there is no such pixel");
     return result;
 }
 
-static status load_scene(const trace_request *request, scene **out, diagnostic *why)
+static status take_ray(const command_option *o, void *into, const char *value, diagnostic *why)
 {
-    status result = scene_input_read(&request->input, out, why);
-    if (result == STATUS_OK && request->output)
-        result = outputs_check_place("-o", request->output, *out, why);
-    if (result == STATUS_OK)
-        result = scene_input_load(*out, why);
+    trace_request *request = into;
+    request->by_ray = true;
+    return options_reals("--ray", value, o->form, 6, request->ray, why);
+}
+
+static const command_option options[] = {
+    {"pixel", 0, "X,Y", "trace the camera rays of a pixel; 0,0 is at the top left", .take = take_pixel},
+    {"ray", 0, "OX,OY,OZ,DX,DY,DZ", "trace the ray from a point in a direction of any length", .take = take_ray},
+    OPTION_DEPTH,
+    OPTION_LAMBDA,
+    OPTION_SET("'liquid.ior=1.4'"),
+    {"text", 0, NULL, "print an indented tree, a line a ray (the default)", .take = take_format},
+    {"json", 0, NULL, "print one JSON object", .take = take_format},
+    {"svg", 0, NULL, "draw the tree in the plane of incidence and from above", .take = take_format},
+    OPTION_OUTPUT("write there; without a format, the ending says which: .txt, .json, .svg"),
+    {0},
+};
+
+static status check_request(void *asked, diagnostic *why)
+{
+    static const char *const endings[] = {".txt", ".json", ".svg"};
+    trace_request *request = asked;
+    if (request->by_pixel == request->by_ray)
+        return options_wrong("trace", NULL, why, "give --pixel X,Y or --ray OX,OY,OZ,DX,DY,DZ",
+                             request->by_ray ? "--pixel and --ray exclude each other" : "no ray is named");
+    size_t which = FORMAT_TEXT;
+    status result = STATUS_OK;
+    if (request->format == FORMAT_NONE && request->input.output && strcmp(request->input.output, "-") != 0)
+        result = outputs_ending("-o", request->input.output, endings, 3,
+                                "end it in .txt, .json or .svg, or give --text, --json or --svg", &which, why);
+    if (request->format == FORMAT_NONE)
+        request->format = (trace_format)which;
     return result;
 }
 
@@ -138,63 +89,58 @@ static status grow(const trace_request *request, probe *p, ray_tree *tree, diagn
     return result;
 }
 
-static status write_as(trace_format format, const traced *t, FILE *out, diagnostic *why)
+typedef struct formatted {
+    traced tree;
+    trace_format format;
+} formatted;
+
+static status write_as(const void *content, FILE *out, diagnostic *why)
 {
-    switch (format) {
-    case FORMAT_JSON: return trace_write_json(t, out, why);
-    case FORMAT_SVG: return trace_write_drawing(t, out, why);
+    const formatted *f = content;
+    switch (f->format) {
+    case FORMAT_JSON: return trace_write_json(&f->tree, out, why);
+    case FORMAT_SVG: return trace_write_drawing(&f->tree, out, why);
     case FORMAT_TEXT:
     case FORMAT_NONE: break;
     }
-    return trace_write_text(t, out, why);
+    return trace_write_text(&f->tree, out, why);
 }
 
-static status write_tree(const trace_request *request, const traced *t, diagnostic *why)
+static status run(void *asked, scene *s, isa level, diagnostic *why)
 {
-    if (!request->output || strcmp(request->output, "-") == 0)
-        return write_as(request->format, t, stdout, why);
-    file_writer writer;
-    status result = file_writer_open(&writer, request->output, why);
-    if (result != STATUS_OK)
-        return result;
-    result = write_as(request->format, t, writer.stream, why);
-    if (result == STATUS_OK)
-        return file_writer_commit(&writer, why);
-    file_writer_abandon(&writer);
-    return result;
-}
-
-status command_trace(int argc, char **argv, diagnostic *why)
-{
-    trace_request request = {0};
-    scene *s = NULL;
+    const trace_request *request = asked;
     probe *p = NULL;
     ray_tree tree = {0};
-    isa level = ISA_SSE2;
-    status result = scene_input_prepare(&request.input, "trace", argc, why);
-    request.format = FORMAT_NONE;
+    status result = scene_input_probe(&request->input, s, level, &p, why);
     if (result == STATUS_OK)
-        result = options_parse(&parser, 0, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = check_request(&request, why);
-    if (result == STATUS_OK)
-        result = scene_input_isa(&level, why);
-    if (result == STATUS_OK)
-        result = load_scene(&request, &s, why);
-    if (result == STATUS_OK)
-        result = probe_create(s, level, &p, why);
-    if (result == STATUS_OK && request.one_wavelength)
-        probe_one_wavelength(p);
-    if (result == STATUS_OK)
-        result = grow(&request, p, &tree, why);
+        result = grow(request, p, &tree, why);
     if (result == STATUS_OK) {
-        const traced t = {s, p, &tree, request.input.path};
+        const formatted f = {{s, p, &tree, request->input.path}, request->format};
         scene_input_note_tree(s);
-        result = write_tree(&request, &t, why);
+        result = outputs_write_text(request->input.output, write_as, &f, why);
     }
     ray_tree_release(&tree);
     probe_destroy(p);
-    scene_destroy(s);
-    scene_input_release(&request.input);
     return result;
+}
+
+static const scene_command trace_command = {
+    .name = "trace",
+    .form =
+        {.options = options,
+         .words = "SCENE (--pixel X,Y | --ray OX,OY,OZ,DX,DY,DZ)",
+         SCENE_WORD("trace"),
+         .about =
+             "Take one ray apart: the whole tree of rays that it grows into, with media, angles, reflectances and what "
+             "each brings to the picture. The tree of a pixel has the pixel's radiance, to the bit.\vFor example:\n"
+             "  cuvette trace experiments/scenes/rod.yaml --pixel 400,300 --depth 3\n"
+             "  cuvette trace experiments/scenes/rod.yaml --ray -3,1.5,0.4,1,0,0 -o ray.svg"},
+    .check = check_request,
+    .run = run,
+};
+
+status command_trace(int argc, char **argv, diagnostic *why)
+{
+    trace_request request = {.format = FORMAT_NONE};
+    return scene_command_run(&trace_command, argc, argv, &request, why);
 }

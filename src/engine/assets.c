@@ -7,19 +7,13 @@
 
 cuvette_status cuvette_scene_add_mesh(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name);
     return engine_report(scene_add_mesh(s->model, name, NULL, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_add_texture(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name);
     return engine_report(scene_add_texture(s->model, name, NULL, &inner), &inner, why);
 }
 
@@ -88,11 +82,7 @@ static status check_arrays(const cuvette_triangles *t, diagnostic *why)
 cuvette_status cuvette_scene_add_triangles(cuvette_scene *s, const char *name, const cuvette_triangles *triangles,
                                            cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    ENGINE_NEED(triangles, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name, triangles);
     mesh *made = NULL;
     size_t index = 0;
     status code = check_arrays(triangles, &inner);
@@ -113,11 +103,7 @@ cuvette_status cuvette_scene_add_triangles(cuvette_scene *s, const char *name, c
 cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int width, int height, const float *rgb,
                                         cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(name, why);
-    ENGINE_NEED(rgb, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, name, rgb);
     image *picture = NULL;
     texture *made = NULL;
     size_t index = 0;

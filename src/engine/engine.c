@@ -29,10 +29,8 @@ status engine_isa(const char *name, isa *out, diagnostic *why)
 
 cuvette_status cuvette_engine_create(const char *instructions, cuvette_engine **out, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(out);
     *out = NULL;
-    diagnostic inner = {.line = 0};
     cuvette_engine *e = calloc(1, sizeof *e);
     isa level = ISA_SSE2;
     status code = e ? engine_isa(instructions, &level, &inner) : out_of_memory(&inner);
@@ -214,12 +212,10 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
 cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene *s, const cuvette_request *request,
                                      cuvette_frame **out, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
+    ENGINE_ENTER();
     if (out)
         *out = NULL;
-    ENGINE_NEED(engine, why);
-    ENGINE_NEED_SCENE(s, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_NEED(engine, s);
     if (atomic_exchange(&engine->busy, true)) {
         engine_report(diagnose(&inner, STATUS_BAD_INPUT, "wait for it to end, or make a second engine",
                                "the engine is rendering"),

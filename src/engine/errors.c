@@ -1,5 +1,6 @@
 #include "engine/engine_private.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define TEXT_OF(number) #number
@@ -43,6 +44,22 @@ cuvette_status engine_missing(const char *name, cuvette_diagnostic *why)
     return engine_report(
         diagnose(&inner, STATUS_BAD_INPUT, "give what cuvette.h asks for there", "the argument '%s' is NULL", name),
         &inner, why);
+}
+
+const char engine_list_end = 0;
+
+cuvette_status engine_need(const char *names, const void *const *arguments, cuvette_diagnostic *why)
+{
+    char name[32];
+    for (; *arguments != &engine_list_end; arguments++) {
+        const size_t length = strcspn(names, ", ");
+        if (!*arguments) {
+            snprintf(name, sizeof name, "%.*s", (int)length, names);
+            return engine_missing(strcmp(name, "s") == 0 ? "scene" : name, why);
+        }
+        names += length + strspn(names + length, ", ");
+    }
+    return CUVETTE_OK;
 }
 
 cuvette_status engine_give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why)

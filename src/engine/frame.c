@@ -30,55 +30,47 @@ uint64_t cuvette_frame_hash(const cuvette_frame *frame)
     return frame ? job_account_hash(&frame->account) : 0;
 }
 
-static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, size_t stride, diagnostic *why)
+/* *stride: 0 becomes that of rows without room between them. */
+static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, size_t *stride, diagnostic *why)
 {
+    if (*stride == 0)
+        *stride = 3 * (size_t)(x1 - x0);
     if (x0 < 0 || y0 < 0 || x1 > f->width || y1 > f->height || x0 >= x1 || y0 >= y1)
         return diagnose(why, STATUS_BAD_INPUT, "keep 0 <= x0 < x1 <= width, and y likewise",
                         "no part of a picture of %d x %d lies from %d,%d to %d,%d", f->width, f->height, x0, y0, x1,
                         y1);
-    if (stride < 3 * (size_t)(x1 - x0))
+    if (*stride < 3 * (size_t)(x1 - x0))
         return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width",
-                        "a stride of %zu is shorter than a row", stride);
+                        "a stride of %zu is shorter than a row", *stride);
     return STATUS_OK;
 }
 
 cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, float *rgb, size_t stride,
                                  cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(rgb, why);
-    diagnostic inner = {.line = 0};
-    const size_t row = stride ? stride : 3 * (size_t)(x1 - x0);
-    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, row, &inner);
+    ENGINE_CALL(frame, rgb);
+    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, &stride, &inner);
     if (code == STATUS_OK)
-        film_read(frame->account.result->picture, x0, y0, x1, y1, rgb, row);
+        film_read(frame->account.result->picture, x0, y0, x1, y1, rgb, stride);
     return engine_report(code, &inner, why);
 }
 
 cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1, unsigned char *srgb,
                                   size_t stride, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(srgb, why);
-    diagnostic inner = {.line = 0};
-    const size_t row = stride ? stride : 3 * (size_t)(x1 - x0);
-    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, row, &inner);
+    ENGINE_CALL(frame, srgb);
+    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, &stride, &inner);
     if (code == STATUS_OK) {
         codec_bytes bytes;
         codec_bytes_prepare(&bytes);
-        canvas_bytes(frame->account.result->picture, &bytes, x0, y0, x1, y1, srgb, row);
+        canvas_bytes(frame->account.result->picture, &bytes, x0, y0, x1, y1, srgb, stride);
     }
     return engine_report(code, &inner, why);
 }
 
 cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path, int bits, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(path, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(frame, path);
     status code = bits == 8 || bits == 16
                       ? STATUS_OK
                       : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "a picture cannot have %d bits", bits);
@@ -91,9 +83,7 @@ _Static_assert(sizeof(((cuvette_counters *)0)->by_depth) == sizeof(((ray_counter
 
 cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counters *out, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(frame, out);
     const ray_counters *c = &frame->account.result->counters;
     cuvette_counters told = {.camera = c->camera,
                              .reflect = c->reflect,
@@ -113,10 +103,7 @@ cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counte
 cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t index, cuvette_solid_counters *out,
                                             cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(out, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(frame, out);
     if (index >= frame->solid_count)
         return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "count them from 0",
                                       "there is no solid %zu among the scene's %zu", index, frame->solid_count),
@@ -129,9 +116,7 @@ cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t i
 
 cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_statistics *out, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(frame, why);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(frame, out);
     const render_result *r = frame->account.result;
     const cuvette_statistics told = {.wall_s = r->wall_s,
                                      .cpu_s = r->cpu_s,

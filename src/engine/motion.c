@@ -38,14 +38,10 @@ static status begin(cuvette_motion *m, diagnostic *why)
 
 cuvette_status cuvette_motion_create(cuvette_scene *s, cuvette_motion **out, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(out);
     *out = NULL;
-    ENGINE_NEED_SCENE(s, why);
-    const cuvette_status held = engine_begin_advance(s, why);
-    if (held != CUVETTE_OK)
-        return held;
-    diagnostic inner = {.line = 0};
+    ENGINE_NEED(s);
+    ENGINE_TRY(engine_begin_advance(s, why));
     cuvette_motion *m = calloc(1, sizeof *m);
     status code = m ? STATUS_OK : out_of_memory(&inner);
     if (m) {
@@ -114,12 +110,8 @@ static status advance(cuvette_motion *m, double time_s, diagnostic *why)
 
 cuvette_status cuvette_motion_advance(cuvette_motion *motion, double time_s, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(motion, why);
-    const cuvette_status held = engine_begin_advance(motion->of, why);
-    if (held != CUVETTE_OK)
-        return held;
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(motion);
+    ENGINE_TRY(engine_begin_advance(motion->of, why));
     status code = check_alive(motion, &inner);
     if (code == STATUS_OK)
         code = check_time(motion, time_s, &inner);
@@ -167,14 +159,8 @@ static void put_vector(vec3 v, double *out)
 cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *name, cuvette_slime *out,
                                     cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(motion, why);
-    ENGINE_NEED(name, why);
-    ENGINE_NEED(out, why);
-    const cuvette_status alive = motion_is_alive(motion, why);
-    if (alive != CUVETTE_OK)
-        return alive;
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(motion, name, out);
+    ENGINE_TRY(motion_is_alive(motion, why));
     size_t i;
     int unused;
     const status code = motion_find(motion, name, &i, &unused, &inner);

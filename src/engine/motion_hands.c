@@ -8,24 +8,6 @@ static vec3 vector_of(const double *v)
     return vec3_make(v[0], v[1], v[2]);
 }
 
-static bool is_finite(const double *v)
-{
-    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
-}
-
-static status check_ray(const cuvette_ray *ray, diagnostic *why)
-{
-    const double *o = ray->origin, *d = ray->direction, far_origin = 1e6;
-    if (!(fabs(o[0]) <= far_origin && fabs(o[1]) <= far_origin && fabs(o[2]) <= far_origin))
-        return diagnose(why, STATUS_BAD_INPUT, "start within 1e6 scene units of the middle",
-                        "the ray starts too far away");
-    if (!is_finite(d) || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0))
-        return diagnose(why, STATUS_BAD_INPUT, "give a finite direction that is not 0,0,0", "the ray has no direction");
-    if (!(ray->reach >= 0.0))
-        return diagnose(why, STATUS_BAD_INPUT, "give a distance, or 0 for any", "the ray has a negative reach");
-    return STATUS_OK;
-}
-
 /* Under which solid the ray meets the slime of that name; best->distance is infinite where it misses. */
 static status pick(const cuvette_motion *m, const char *name, const cuvette_ray *ray, size_t *slime, motion_place *best,
                    diagnostic *why)
@@ -33,7 +15,7 @@ static status pick(const cuvette_motion *m, const char *name, const cuvette_ray 
     int only;
     status code = motion_find(m, name, slime, &only, why);
     if (code == STATUS_OK)
-        code = check_ray(ray, why);
+        code = engine_check_ray(NULL, ray, 0, why);
     if (code == STATUS_OK)
         code = scene_motion_pick(m->bodies, *slime, only < 0 ? MOTION_ANY_SOLID : only, vector_of(ray->origin),
                                  engine_unit(ray->direction), best, why);
@@ -51,15 +33,8 @@ static void tell(const motion_place *found, double *where)
 cuvette_status cuvette_motion_pick(const cuvette_motion *motion, const char *name, const cuvette_ray *ray,
                                    double *where, double *distance, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(motion, why);
-    ENGINE_NEED(name, why);
-    ENGINE_NEED(ray, why);
-    ENGINE_NEED(distance, why);
-    const cuvette_status alive = motion_is_alive(motion, why);
-    if (alive != CUVETTE_OK)
-        return alive;
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(motion, name, ray, distance);
+    ENGINE_TRY(motion_is_alive(motion, why));
     size_t slime;
     motion_place found;
     const status code = pick(motion, name, ray, &slime, &found, &inner);
@@ -73,15 +48,8 @@ cuvette_status cuvette_motion_pick(const cuvette_motion *motion, const char *nam
 cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, const cuvette_ray *ray, double reach,
                                    int *hand, double *where, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(motion, why);
-    ENGINE_NEED(name, why);
-    ENGINE_NEED(ray, why);
-    ENGINE_NEED(hand, why);
-    const cuvette_status alive = motion_is_alive(motion, why);
-    if (alive != CUVETTE_OK)
-        return alive;
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(motion, name, ray, hand);
+    ENGINE_TRY(motion_is_alive(motion, why));
     size_t slime;
     motion_place found;
     int number = CUVETTE_NO_HAND;
@@ -103,9 +71,7 @@ cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, con
 /* The hand of that number, which holds something. */
 static cuvette_status find_hand(cuvette_motion *m, int number, motion_hand **out, cuvette_diagnostic *why)
 {
-    const cuvette_status alive = motion_is_alive(m, why);
-    if (alive != CUVETTE_OK)
-        return alive;
+    ENGINE_TRY(motion_is_alive(m, why));
     diagnostic inner = {.line = 0};
     const bool is_one = number >= 0 && (size_t)number < scene_motion_count(m->bodies) * SOFTBODY_HANDS_MAX;
     const bool holds = is_one && m->hands[number].holds;
@@ -119,15 +85,10 @@ static cuvette_status find_hand(cuvette_motion *m, int number, motion_hand **out
 
 cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand, const double *by, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(motion, why);
-    ENGINE_NEED(by, why);
+    ENGINE_CALL(motion, by);
     motion_hand *h = NULL;
-    const cuvette_status code = find_hand(motion, hand, &h, why);
-    if (code != CUVETTE_OK)
-        return code;
-    diagnostic inner = {.line = 0};
-    if (!is_finite(by))
+    ENGINE_TRY(find_hand(motion, hand, &h, why));
+    if (!engine_is_finite(by))
         return engine_report(
             diagnose(&inner, STATUS_BAD_INPUT, "give three finite numbers", "the hand moves to nowhere"), &inner, why);
     h->to = motion_hand_way(h, vector_of(by));
@@ -136,12 +97,9 @@ cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand, const doubl
 
 cuvette_status cuvette_motion_release(cuvette_motion *motion, int hand, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(motion, why);
+    ENGINE_CALL(motion);
     motion_hand *h = NULL;
-    const cuvette_status code = find_hand(motion, hand, &h, why);
-    if (code != CUVETTE_OK)
-        return code;
+    ENGINE_TRY(find_hand(motion, hand, &h, why));
     const size_t slime = (size_t)hand / SOFTBODY_HANDS_MAX;
     scene_motion_release(motion->bodies, slime, &motion->hands[slime * SOFTBODY_HANDS_MAX], hand % SOFTBODY_HANDS_MAX);
     return CUVETTE_OK;

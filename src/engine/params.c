@@ -19,11 +19,7 @@ static bool is_slime(const scene *s, const char *path)
 
 cuvette_status cuvette_scene_set(cuvette_scene *s, const char *path, const char *value, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_CHANGE(s, why);
-    ENGINE_NEED(path, why);
-    ENGINE_NEED(value, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CHANGE(s, path, value);
     const bool was_slime = is_slime(s->model, path);
     const status code = scene_set(s->model, path, value, &inner);
     if (code == STATUS_OK &&
@@ -34,7 +30,7 @@ cuvette_status cuvette_scene_set(cuvette_scene *s, const char *path, const char 
 
 cuvette_status cuvette_scene_set_double(cuvette_scene *s, const char *path, double value, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
+    ENGINE_ENTER();
     char text[NUMBER_TEXT_MAX];
     return cuvette_scene_set(s, path, number_format(value, text), why);
 }
@@ -47,9 +43,7 @@ static bool is_switch(const param *row)
 
 cuvette_status cuvette_scene_set_int(cuvette_scene *s, const char *path, int64_t value, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED_SCENE(s, why);
-    ENGINE_NEED(path, why);
+    ENGINE_CALL(s, path);
     place at;
     char text[NUMBER_TEXT_MAX];
     snprintf(text, sizeof text, "%lld", (long long)value);
@@ -61,12 +55,12 @@ cuvette_status cuvette_scene_set_int(cuvette_scene *s, const char *path, int64_t
 cuvette_status cuvette_scene_set_vector(cuvette_scene *s, const char *path, const double *values, size_t count,
                                         cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
+    ENGINE_ENTER();
     enum { EACH = NUMBER_TEXT_MAX + 1, MOST = NUMBER_LIST_MAX + 1 };
     char text[MOST * EACH + 3] = "[", number[NUMBER_TEXT_MAX];
     size_t length = 1;
     if (count > 0)
-        ENGINE_NEED(values, why);
+        ENGINE_NEED(values);
     if (count > MOST) /* one too many is refused by the table, in its own words */
         count = MOST;
     for (size_t i = 0; i < count; i++)
@@ -78,8 +72,7 @@ cuvette_status cuvette_scene_set_vector(cuvette_scene *s, const char *path, cons
 
 static cuvette_status get(const cuvette_scene *s, const char *path, char **value, cuvette_diagnostic *why)
 {
-    ENGINE_NEED_SCENE(s, why);
-    ENGINE_NEED(path, why);
+    ENGINE_NEED(s, path);
     diagnostic inner = {.line = 0};
     return engine_report(scene_get(s->model, path, value, &inner), &inner, why);
 }
@@ -87,12 +80,12 @@ static cuvette_status get(const cuvette_scene *s, const char *path, char **value
 cuvette_status cuvette_scene_get(const cuvette_scene *s, const char *path, char *text, size_t size, size_t *length,
                                  cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
+    ENGINE_ENTER();
     char *value;
     if (size > 0)
-        ENGINE_NEED(text, why);
-    const cuvette_status code = get(s, path, &value, why);
-    return code == CUVETTE_OK ? engine_give_text(value, text, size, length, why) : code;
+        ENGINE_NEED(text);
+    ENGINE_TRY(get(s, path, &value, why));
+    return engine_give_text(value, text, size, length, why);
 }
 
 static cuvette_status is_no_number(const char *path, const char *value, const char *kind, cuvette_diagnostic *why)
@@ -106,13 +99,12 @@ static cuvette_status is_no_number(const char *path, const char *value, const ch
 cuvette_status cuvette_scene_get_double(const cuvette_scene *s, const char *path, double *value,
                                         cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
+    ENGINE_ENTER();
     char *text;
     double number = 0.0;
-    ENGINE_NEED(value, why);
-    cuvette_status code = get(s, path, &text, why);
-    if (code != CUVETTE_OK)
-        return code;
+    ENGINE_NEED(value);
+    ENGINE_TRY(get(s, path, &text, why));
+    cuvette_status code = CUVETTE_OK;
     if (number_parse_real(text, &number))
         *value = number;
     else
@@ -123,13 +115,12 @@ cuvette_status cuvette_scene_get_double(const cuvette_scene *s, const char *path
 
 cuvette_status cuvette_scene_get_int(const cuvette_scene *s, const char *path, int64_t *value, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
+    ENGINE_ENTER();
     char *text;
     int64_t number = 0;
-    ENGINE_NEED(value, why);
-    cuvette_status code = get(s, path, &text, why);
-    if (code != CUVETTE_OK)
-        return code;
+    ENGINE_NEED(value);
+    ENGINE_TRY(get(s, path, &text, why));
+    cuvette_status code = CUVETTE_OK;
     place at;
     if (place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row))
         *value = strcmp(text, "on") == 0;
@@ -157,22 +148,19 @@ static int parse_numbers(char *text, double numbers[NUMBER_LIST_MAX])
 cuvette_status cuvette_scene_get_vector(const cuvette_scene *s, const char *path, double *values, size_t room,
                                         size_t *count, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
+    ENGINE_ENTER();
     char *text;
     double numbers[NUMBER_LIST_MAX];
-    ENGINE_NEED(count, why);
+    ENGINE_NEED(count);
     if (room > 0)
-        ENGINE_NEED(values, why);
-    cuvette_status code = get(s, path, &text, why);
-    if (code != CUVETTE_OK)
-        return code;
+        ENGINE_NEED(values);
+    ENGINE_TRY(get(s, path, &text, why));
     const int found = parse_numbers(text, numbers);
     free(text);
     if (found < 0)
         return is_no_number(path, "a word", "vector", why);
     *count = (size_t)found;
     if ((size_t)found > room) {
-        diagnostic inner = {.line = 0};
         diagnose(&inner, STATUS_BAD_INPUT, "make room for as many as are reported", "%.128s has %d numbers", path,
                  found);
         return engine_report(STATUS_BAD_INPUT, &inner, why);
@@ -207,11 +195,9 @@ cuvette_status cuvette_scene_each_parameter(const cuvette_scene *s,
                                             bool (*visit)(void *context, const cuvette_parameter *one), void *context,
                                             cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED_SCENE(s, why);
-    ENGINE_NEED(visit, why);
+    ENGINE_CALL(s);
+    ENGINE_NEED_NAMED(visit, "visit");
     visitor v = {visit, context, &host};
-    diagnostic inner = {.line = 0};
     const status code = scene_each_param(s->model, visit_one, &v);
     if (code == STATUS_OK || code == STATUS_INTERRUPTED)
         return CUVETTE_OK;

@@ -49,11 +49,9 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
 cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instructions, cuvette_query **out,
                                     cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(out);
     *out = NULL;
-    ENGINE_NEED_SCENE(s, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_NEED(s);
     cuvette_query *q = calloc(1, sizeof *q);
     if (!q || pthread_mutex_init(&q->lock, NULL) != 0) {
         free(q);
@@ -98,10 +96,7 @@ void query_give_bench(const cuvette_query *query, bench *b)
 cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, double y, cuvette_ray *out,
                                         cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(query, why);
-    ENGINE_NEED(out, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(query, out);
     if (!isfinite(x) || !isfinite(y))
         return engine_report(
             diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point of the picture is not finite"), &inner,
@@ -116,12 +111,9 @@ cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, do
 cuvette_status cuvette_query_medium(const cuvette_query *query, const double *point, int32_t *at,
                                     cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(query, why);
-    ENGINE_NEED(point, why);
-    ENGINE_NEED_NAMED(at, "solid", why);
-    diagnostic inner = {.line = 0};
-    if (!(isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2])))
+    ENGINE_CALL(query, point);
+    ENGINE_NEED_NAMED(at, "solid");
+    if (!engine_is_finite(point))
         return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point is not finite"),
                              &inner, why);
     const arrangement *a = query->ready->solids;

@@ -13,12 +13,7 @@ static cuvette_start start_at(int64_t face, uint64_t inside)
     return (cuvette_start){{1, (uint64_t)face, inside, 0}};
 }
 
-static status wrong_ray(size_t i, const char *remedy, const char *what, diagnostic *why)
-{
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "ray %zu %s", i, what);
-}
-
-static bool is_finite_vector(const double *v)
+bool engine_is_finite(const double *v)
 {
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
@@ -38,18 +33,22 @@ static bool is_face(const arrangement *a, uint64_t word)
            mesh_face_copy(face) < p->copies[0] * p->copies[1] * p->copies[2];
 }
 
-static status check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnostic *why)
+status engine_check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnostic *why)
 {
     const double *o = ray->origin, *d = ray->direction;
+    const char *what = NULL, *remedy = NULL;
     if (!(fabs(o[0]) <= FAR_ORIGIN && fabs(o[1]) <= FAR_ORIGIN && fabs(o[2]) <= FAR_ORIGIN))
-        return wrong_ray(i, "start within 1e6 scene units of the middle", "starts too far away", why);
-    if (!is_finite_vector(d) || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0))
-        return wrong_ray(i, "give a finite direction that is not 0,0,0", "has no direction", why);
-    if (!(ray->reach >= 0.0))
-        return wrong_ray(i, "give a distance, or 0 for any", "has a negative reach", why);
-    if (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !is_face(p->solids, ray->start.word[1])))
-        return wrong_ray(i, "copy it from a hit of this query, or zero it", "has a start that no hit told", why);
-    return STATUS_OK;
+        what = "starts too far away", remedy = "start within 1e6 scene units of the middle";
+    else if (!engine_is_finite(d) || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0))
+        what = "has no direction", remedy = "give a finite direction that is not 0,0,0";
+    else if (!(ray->reach >= 0.0))
+        what = "has a negative reach", remedy = "give a distance, or 0 for any";
+    else if (p && (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !is_face(p->solids, ray->start.word[1]))))
+        what = "has a start that no hit told", remedy = "copy it from a hit of this query, or zero it";
+    if (!what)
+        return STATUS_OK;
+    return p ? diagnose(why, STATUS_BAD_INPUT, remedy, "ray %zu %s", i, what)
+             : diagnose(why, STATUS_BAD_INPUT, remedy, "the ray %s", what);
 }
 
 vec3 engine_unit(const double *d)
@@ -168,7 +167,7 @@ static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *r
 static status begin(const cuvette_query *q, const cuvette_ray *rays, size_t count, bench **out, diagnostic *why)
 {
     for (size_t i = 0; i < count; i++) {
-        const status code = check_ray(q->ready, &rays[i], i, why);
+        const status code = engine_check_ray(q->ready, &rays[i], i, why);
         if (code != STATUS_OK)
             return code;
     }
@@ -179,13 +178,10 @@ static status begin(const cuvette_query *q, const cuvette_ray *rays, size_t coun
 cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_ray *rays, size_t count,
                                      cuvette_hit *hits, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(query, why);
+    ENGINE_CALL(query);
     if (count == 0)
         return CUVETTE_OK;
-    ENGINE_NEED(rays, why);
-    ENGINE_NEED(hits, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_NEED(rays, hits);
     bench *b = NULL;
     const status code = begin(query, rays, count, &b, &inner);
     if (code != STATUS_OK)
@@ -229,13 +225,10 @@ static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, 
 cuvette_status cuvette_query_occluded(const cuvette_query *query, const cuvette_ray *rays, size_t count,
                                       unsigned char *blocked, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(query, why);
+    ENGINE_CALL(query);
     if (count == 0)
         return CUVETTE_OK;
-    ENGINE_NEED(rays, why);
-    ENGINE_NEED(blocked, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_NEED(rays, blocked);
     bench *b = NULL;
     const status code = begin(query, rays, count, &b, &inner);
     if (code != STATUS_OK)

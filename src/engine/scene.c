@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-cuvette_status engine_wrap_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why)
+/* Takes over the model; destroys it when memory is out. */
+static cuvette_status wrap(scene *model, cuvette_scene **out, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
     cuvette_scene *s = model ? calloc(1, sizeof *s) : NULL;
@@ -23,36 +24,30 @@ cuvette_status engine_wrap_scene(scene *model, cuvette_scene **out, cuvette_diag
 
 cuvette_status cuvette_scene_create(cuvette_scene **out, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(out);
     *out = NULL;
-    return engine_wrap_scene(scene_create(), out, why);
+    return wrap(scene_create(), out, why);
 }
 
 cuvette_status cuvette_scene_read(const char *path, cuvette_scene **out, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(out);
     *out = NULL;
-    ENGINE_NEED(path, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_NEED(path);
     scene *model = NULL;
     const status code = scene_read(path, &model, &inner);
-    return code == STATUS_OK ? engine_wrap_scene(model, out, why) : engine_report(code, &inner, why);
+    return code == STATUS_OK ? wrap(model, out, why) : engine_report(code, &inner, why);
 }
 
 cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_t size, cuvette_scene **out,
                                        cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(out);
     *out = NULL;
-    ENGINE_NEED(name, why);
-    ENGINE_NEED(text, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_NEED(name, text);
     scene *model = NULL;
     const status code = scene_read_text(name, text, size, &model, &inner);
-    return code == STATUS_OK ? engine_wrap_scene(model, out, why) : engine_report(code, &inner, why);
+    return code == STATUS_OK ? wrap(model, out, why) : engine_report(code, &inner, why);
 }
 
 /* What is loaded is looked at where it is there, so that nobody may be loading it meanwhile: renders of one scene may
@@ -66,14 +61,13 @@ static cuvette_scene *hold(const cuvette_scene *s)
 
 cuvette_status cuvette_scene_clone(const cuvette_scene *s, cuvette_scene **out, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED(out, why);
+    ENGINE_CALL(out);
     *out = NULL;
-    ENGINE_NEED_SCENE(s, why);
+    ENGINE_NEED(s);
     cuvette_scene *source = hold(s);
     scene *model = scene_clone(source->model);
     pthread_mutex_unlock(&source->loading);
-    return engine_wrap_scene(model, out, why);
+    return wrap(model, out, why);
 }
 
 void engine_release_scene(cuvette_scene *s)
@@ -110,11 +104,12 @@ cuvette_status engine_is_advancing(cuvette_diagnostic *why)
     return busy("wait for cuvette_motion_advance to return", "the scene's slimes are being moved", why);
 }
 
-cuvette_status engine_may_change(const cuvette_scene *s, cuvette_diagnostic *why)
+cuvette_status engine_need_change(const char *names, const void *const *arguments, cuvette_diagnostic *why)
 {
-    return atomic_load(&s->renders) > 0 ? is_rendered(why)
-           : atomic_load(&s->advancing) ? engine_is_advancing(why)
-                                        : CUVETTE_OK;
+    const cuvette_scene *s = arguments[0];
+    return s && atomic_load(&s->renders) > 0 ? is_rendered(why)
+           : s && atomic_load(&s->advancing) ? engine_is_advancing(why)
+                                             : engine_need(names, arguments, why);
 }
 
 /* Each says that it is there before it looks for the other: of two that begin at once at least one sees the other. */
@@ -165,9 +160,7 @@ status engine_check(const cuvette_scene *s, diagnostic *why)
 
 cuvette_status cuvette_scene_check(const cuvette_scene *s, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED_SCENE(s, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(s);
     return engine_report(engine_check(s, &inner), &inner, why);
 }
 
@@ -190,13 +183,11 @@ static void call_host(void *context, const scene_note *note)
 cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *context, const char *text), void *context,
                                    cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED_SCENE(s, why);
-    ENGINE_NEED(note, why);
+    ENGINE_CALL(s);
+    ENGINE_NEED_NAMED(note, "note");
     cuvette_scene *held = hold(s);
     scene *copy = scene_clone(held->model); /* the callback may use the scene */
     pthread_mutex_unlock(&held->loading);
-    diagnostic inner = {.line = 0};
     if (!copy)
         return engine_report(out_of_memory(&inner), &inner, why);
     scene_hints(copy, &(note_taker){call_host, &(host_call){note, context, &host}});
@@ -223,10 +214,7 @@ cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *
 
 cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED_SCENE(s, why);
-    ENGINE_NEED(path, why);
-    diagnostic inner = {.line = 0};
+    ENGINE_CALL(s, path);
     cuvette_scene *held = hold(s);
     const status code = scene_write(held->model, path, false, &inner);
     pthread_mutex_unlock(&held->loading);
@@ -236,11 +224,9 @@ cuvette_status cuvette_scene_write(const cuvette_scene *s, const char *path, cuv
 cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size_t size, size_t *length,
                                         cuvette_diagnostic *why)
 {
-    ENGINE_ENTER(host);
-    ENGINE_NEED_SCENE(s, why);
+    ENGINE_CALL(s);
     if (size > 0)
-        ENGINE_NEED(text, why);
-    diagnostic inner = {.line = 0};
+        ENGINE_NEED(text);
     char *content = NULL;
     cuvette_scene *held = hold(s);
     const status code = scene_write_text(held->model, NULL, false, &content, &inner);

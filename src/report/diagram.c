@@ -90,14 +90,19 @@ static bool clip(const section_plane *w, section_point *a, section_point *b)
     return true;
 }
 
-double diagram_ray_width(double weight)
-{
-    return 0.6 + 1.2 * sqrt(weight);
-}
-
-double diagram_ray_opacity(double weight)
+static double opacity_of(double weight)
 {
     return 0.25 + 0.7 * sqrt(weight);
+}
+
+bool diagram_is_cut(const ray_node *node)
+{
+    return node->end == RAY_END_CUT_DEPTH || node->end == RAY_END_CUT_WEIGHT;
+}
+
+double diagram_weight(const ray_node *node)
+{
+    return (node->throughput[0] + node->throughput[1] + node->throughput[2]) / 3.0;
 }
 
 void diagram_ray(const diagram *d, vec3 from, vec3 to, const char *color, double weight, const char *dashes)
@@ -109,7 +114,7 @@ void diagram_ray(const diagram *d, vec3 from, vec3 to, const char *color, double
     if (dashes)
         snprintf(dashed, sizeof dashed, " stroke-dasharray=\"%s\"", dashes);
     snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"%.2f\" stroke-opacity=\"%.2f\"%s", color,
-             diagram_ray_width(weight), diagram_ray_opacity(weight), dashed);
+             0.6 + 1.2 * sqrt(weight), opacity_of(weight), dashed);
     svg_line(d->out, diagram_x(d, a.u), diagram_y(d, a.v), diagram_x(d, b.u), diagram_y(d, b.v), stroke);
 }
 
@@ -130,7 +135,7 @@ void diagram_arrow(const diagram *d, vec3 from, vec3 to, const char *color, doub
     const double x = diagram_x(d, b.u), y = diagram_y(d, b.v);
     fprintf(d->out, "<path d=\"M%.2f %.2fL%.2f %.2fL%.2f %.2fZ\" fill=\"%s\" fill-opacity=\"%.2f\"/>\n",
             x + long_px * along_x, y + long_px * along_y, x - half_px * along_y, y + half_px * along_x,
-            x + half_px * along_y, y - half_px * along_x, color, diagram_ray_opacity(weight));
+            x + half_px * along_y, y - half_px * along_x, color, opacity_of(weight));
 }
 
 void diagram_dot(const diagram *d, vec3 at, double radius_px, const char *fill, const char *stroke)

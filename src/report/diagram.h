@@ -57,9 +57,11 @@ void diagram_dot(const diagram *d, vec3 at, double radius_px, const char *fill, 
 void diagram_cross(const diagram *d, vec3 at, double radius_px, const char *stroke);
 bool diagram_shows(const diagram *d, vec3 at);
 
-/* Stroke width in pixels, and opacity, of a ray of a weight. */
-double diagram_ray_width(double weight);
-double diagram_ray_opacity(double weight);
+/* Of the dashes of what was not traced on. */
+#define DIAGRAM_CUT "0.5,3"
+bool diagram_is_cut(const ray_node *node);
+/* What the node weighs, on the mean of its channels. */
+double diagram_weight(const ray_node *node);
 
 /* Samples of the media, in rows from left to right, the first at base line y; returns the last one's. out NULL: only
  * measures. */

@@ -151,3 +151,23 @@ status json_write(FILE *stream, const json_t *value, diagnostic *why)
     fputc('\n', stream);
     return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
 }
+
+status json_put(FILE *stream, json_t *value, diagnostic *why)
+{
+    const status result = json_write(stream, value, why);
+    json_decref(value);
+    return result;
+}
+
+status json_print(json_t *value, diagnostic *why)
+{
+    return json_put(stdout, value, why);
+}
+
+json_t *json_unless(int bad, json_t *value)
+{
+    if (!bad)
+        return value;
+    json_decref(value);
+    return NULL;
+}

@@ -26,5 +26,11 @@ void json_write_real(FILE *stream, double value);
 
 /* Writes the value and a newline. Errors of the stream are left in the stream. */
 status json_write(FILE *stream, const json_t *value, diagnostic *why);
+/* The same, and releases the value; json_print: to standard output. */
+status json_put(FILE *stream, json_t *value, diagnostic *why);
+status json_print(json_t *value, diagnostic *why);
+
+/* The value, or NULL, and it is released, where something of it could not be made. */
+json_t *json_unless(int bad, json_t *value);
 
 #endif

@@ -5,25 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *group_prefix(param_group group)
-{
-    switch (group) {
-    case PARAM_MESH: return "MESH";
-    case PARAM_TEXTURE: return "TEXTURE";
-    case PARAM_LIGHT: return "LIGHT";
-    case PARAM_MATERIAL: return "MATERIAL";
-    case PARAM_SOLID: return "SOLID";
-    case PARAM_RENDER:
-    case PARAM_CAMERA:
-    case PARAM_BACKGROUND:
-    case PARAM_GROUP_COUNT: break;
-    }
-    return param_group_name(group);
-}
+/* Of groups whose objects have names of their own; the others stand under the group's. */
+static const char *const prefixes[PARAM_GROUP_COUNT] = {[PARAM_MESH] = "MESH",
+                                                        [PARAM_TEXTURE] = "TEXTURE",
+                                                        [PARAM_LIGHT] = "LIGHT",
+                                                        [PARAM_MATERIAL] = "MATERIAL",
+                                                        [PARAM_SOLID] = "SOLID"};
 
 char *param_lines_path(const param *row, char *text, size_t size)
 {
-    snprintf(text, size, "%s.%s", group_prefix(row->group), row->name);
+    const char *prefix = prefixes[row->group];
+    snprintf(text, size, "%s.%s", prefix ? prefix : param_group_name(row->group), row->name);
     return text;
 }
 

@@ -85,20 +85,10 @@ status param_rows_print(FILE *stream, const scene *s, const char *filter, int co
     return result;
 }
 
-static const char *type_name(param_type type)
-{
-    switch (type) {
-    case PARAM_INT: return "integer";
-    case PARAM_REAL: return "real";
-    case PARAM_CHOICE: return "choice";
-    case PARAM_VECTOR: return "vector";
-    case PARAM_COLOR: return "color";
-    case PARAM_LIST: return "list";
-    case PARAM_PATH: return "path";
-    case PARAM_WORD: return "name";
-    }
-    return "";
-}
+static const char *const type_names[] = {
+    [PARAM_INT] = "integer", [PARAM_REAL] = "real", [PARAM_CHOICE] = "choice", [PARAM_VECTOR] = "vector",
+    [PARAM_COLOR] = "color", [PARAM_LIST] = "list", [PARAM_PATH] = "path",     [PARAM_WORD] = "name",
+};
 
 static json_t *choices(const param *row)
 {
@@ -127,7 +117,7 @@ static json_t *line_json(const param_line *l, bool has_value)
     int bad = json_object_set_new(o, "path", json_of_text(l->path));
     bad |= json_object_set_new(o, "group", json_string(param_group_name(row->group)));
     bad |= json_object_set_new(o, "name", json_string(row->name));
-    bad |= json_object_set_new(o, "type", json_string(type_name(row->type)));
+    bad |= json_object_set_new(o, "type", json_string(type_names[row->type]));
     bad |= json_object_set_new(o, "unit", json_string(row->unit));
     bad |= json_object_set_new(o, "range", json_string(param_range_text(row, range, sizeof range)));
     bad |= json_object_set_new(o, "lowest", bounded ? json_of_real(row->lowest) : json_null());
@@ -138,10 +128,7 @@ static json_t *line_json(const param_line *l, bool has_value)
     bad |= json_object_set_new(o, "default", report_value(row, row->fallback));
     bad |= has_value ? json_object_set_new(o, "value", report_value(row, l->value)) : 0;
     bad |= json_object_set_new(o, "meaning", json_string(row->meaning));
-    if (!bad)
-        return o;
-    json_decref(o);
-    return NULL;
+    return json_unless(bad, o);
 }
 
 status param_rows_json(const scene *s, const char *filter, json_t **out, diagnostic *why)
@@ -177,21 +164,16 @@ static void write_roff(FILE *stream, const char *text)
     }
 }
 
-static const char *group_title(param_group group)
-{
-    switch (group) {
-    case PARAM_RENDER: return "How it is rendered";
-    case PARAM_CAMERA: return "Camera";
-    case PARAM_BACKGROUND: return "Background";
-    case PARAM_MESH: return "A mesh, by its name";
-    case PARAM_TEXTURE: return "A texture, by its name";
-    case PARAM_LIGHT: return "A light, by its name";
-    case PARAM_MATERIAL: return "A material, by its name, or that of one solid, by the solid's";
-    case PARAM_SOLID: return "A solid, by its name";
-    case PARAM_GROUP_COUNT: break;
-    }
-    return "";
-}
+static const char *const group_titles[PARAM_GROUP_COUNT] = {
+    [PARAM_RENDER] = "How it is rendered",
+    [PARAM_CAMERA] = "Camera",
+    [PARAM_BACKGROUND] = "Background",
+    [PARAM_MESH] = "A mesh, by its name",
+    [PARAM_TEXTURE] = "A texture, by its name",
+    [PARAM_LIGHT] = "A light, by its name",
+    [PARAM_MATERIAL] = "A material, by its name, or that of one solid, by the solid's",
+    [PARAM_SOLID] = "A solid, by its name",
+};
 
 static void write_shapes(FILE *stream)
 {
@@ -212,7 +194,7 @@ void param_rows_manual(FILE *stream)
     for (size_t i = 0; i < param_count(); i++) {
         const param *row = param_at(i);
         if (i == 0 || param_at(i - 1)->group != row->group)
-            fprintf(stream, ".SS %s\n", group_title(row->group));
+            fprintf(stream, ".SS %s\n", group_titles[row->group]);
         fprintf(stream, ".TP\n.B ");
         write_roff(stream, param_lines_path(row, text, sizeof text));
         fputc('\n', stream);

@@ -45,3 +45,13 @@ void svg_label(FILE *out, double x, double y, const char *anchor, const char *co
     svg_escape(out, text);
     fputs("</text>\n", out);
 }
+
+double svg_key(FILE *out, double x, double y, const char *color, const char *dashes, const char *words, double width)
+{
+    char stroke[160];
+    snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"1.6\"%s%s%s", color,
+             dashes ? " stroke-dasharray=\"" : "", dashes ? dashes : "", dashes ? "\"" : "");
+    svg_line(out, x, y - 4.0, x + 22.0, y - 4.0, stroke);
+    svg_label(out, x + 28.0, y, "start", SVG_INK, words);
+    return x + width;
+}

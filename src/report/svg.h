@@ -25,6 +25,9 @@ void svg_line(FILE *out, double x1, double y1, double x2, double y2, const char 
 /* anchor: "start", "middle" or "end". y is the base line. */
 void svg_label(FILE *out, double x, double y, const char *anchor, const char *color, const char *text);
 
+/* A line of a key and what it stands for; returns where the next one may begin, width px on. dashes may be NULL. */
+double svg_key(FILE *out, double x, double y, const char *color, const char *dashes, const char *words, double width);
+
 /* Writes text with what XML would misread as entities, and without what it forbids. */
 void svg_escape(FILE *out, const char *text);
 

@@ -19,28 +19,17 @@ static const ray_style styles[] = {
     [RAY_SHADOW] = {SVG_ORANGE, "to a light", "5,3"},
 };
 static const ray_style blocked = {SVG_GREY, "blocked", "5,3"};
-#define CUT_DASHES "0.5,3"
 
 typedef struct picture {
     const traced *t;
     double sky_length; /* at which rays to the sky are drawn, scene units */
 } picture;
 
-static double mean(const double c[3])
-{
-    return (c[0] + c[1] + c[2]) / 3.0;
-}
-
-static bool is_cut(const ray_node *node)
-{
-    return node->end == RAY_END_CUT_DEPTH || node->end == RAY_END_CUT_WEIGHT;
-}
-
 /* A shadow ray's weight is that of the ray whose hit it leaves: its own is a radiance. */
 static double weight_of(const ray_tree *tree, const ray_node *node)
 {
     const ray_node *by = node->kind == RAY_SHADOW ? &tree->node[node->parent] : node;
-    const double weight = mean(by->throughput) / mean(tree->node[0].throughput);
+    const double weight = diagram_weight(by) / diagram_weight(&tree->node[0]);
     return weight < 1.0 ? weight : 1.0;
 }
 
@@ -55,7 +44,7 @@ static vec3 end_of(const picture *a, const ray_node *node)
         return node->hit.point;
     if (node->kind == RAY_SHADOW)
         return along(node, node->light_distance);
-    return along(node, is_cut(node) ? 0.5 * a->sky_length : a->sky_length);
+    return along(node, diagram_is_cut(node) ? 0.5 * a->sky_length : a->sky_length);
 }
 
 /* Solids that the tree's rays meet, or that are a medium on their way. */
@@ -169,7 +158,7 @@ static void draw_node(const diagram *d, const picture *a, const ray_node *node)
         return;
     const vec3 end = end_of(a, node);
     diagram_ray(d, node->origin, end, style->color, node->kind == RAY_SHADOW ? 0.3 * weight : weight,
-                is_cut(node) ? CUT_DASHES : style->dashes);
+                diagram_is_cut(node) ? DIAGRAM_CUT : style->dashes);
     if (node->end == RAY_END_SKY)
         diagram_arrow(d, node->origin, end, style->color, weight);
 }
@@ -206,24 +195,13 @@ static status draw_view(const picture *a, FILE *out, const section_plane *plane,
     return result;
 }
 
-static double key_line(FILE *out, double x, double y, const char *color, const char *dashes, const char *words,
-                       double width)
-{
-    char stroke[160];
-    snprintf(stroke, sizeof stroke, "stroke=\"%s\" stroke-width=\"1.6\"%s%s%s", color,
-             dashes ? " stroke-dasharray=\"" : "", dashes ? dashes : "", dashes ? "\"" : "");
-    svg_line(out, x, y - 4.0, x + 22.0, y - 4.0, stroke);
-    svg_label(out, x + 28.0, y, "start", SVG_INK, words);
-    return x + width;
-}
-
 static void draw_key(FILE *out, double left, double y)
 {
     double x = left;
     for (int k = RAY_CAMERA; k <= RAY_SHADOW; k++)
-        x = key_line(out, x, y, styles[k].color, styles[k].dashes, styles[k].words, 112.0);
-    x = key_line(out, x, y, blocked.color, blocked.dashes, blocked.words, 96.0);
-    x = key_line(out, x, y, SVG_GREY, CUT_DASHES, "not traced (cut)", 138.0);
+        x = svg_key(out, x, y, styles[k].color, styles[k].dashes, styles[k].words, 112.0);
+    x = svg_key(out, x, y, blocked.color, blocked.dashes, blocked.words, 96.0);
+    x = svg_key(out, x, y, SVG_GREY, DIAGRAM_CUT, "not traced (cut)", 138.0);
     fprintf(out, "<path d=\"M%.2f %.2fl7 2.5l-7 2.5z\" fill=\"" SVG_GREY "\"/>\n", x, y - 6.5);
     svg_label(out, x + 13.0, y, "start", SVG_INK, "to the sky");
     x += 92.0;
