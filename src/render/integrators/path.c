@@ -1,13 +1,15 @@
 /* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is drawn by chance,
- * weighed so that the mean over all paths is the whole tree's. What stands for the light's way: a clear surface
- * reflects or refracts with Fresnel's shares as odds, so that the weight does not change; a matte surface  is lit by
- * every light, at a point of the light's sphere drawn evenly over the cone in which it is seen (Shirley, Wang and
- * Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 15(1), 1996), and sends the path on by the
- * cosine law, or like a mirror by its reflectivity. A sphere that shines is met by rays from the eye and from clear or
- * mirror-like surfaces alone: matte ones have looked for it already. That is how light through a vessel makes caustics.
- * Beside a sphere, points of light too are blocked by clear solids. A light's radiance is intensity (reach / radius)^2,
- * so that a matte surface at its reach is as bright as in Phong's sum. Ambient light is left out: here it is what the
- * sky and the other surfaces send. */
+ * weighed so that the mean over all paths is the whole tree's. What stands for the light's way:
+ *   a clear surface  reflects or refracts with Fresnel's shares as odds, so that the weight does not change;
+ *   a matte surface  is lit by every light, at a point of the light's sphere drawn evenly over the cone in which it is
+ *                    seen (Shirley,
+ *                    Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 15(1), 1996),
+ *                    and sends the
+ *                    path on by the cosine law, or like a mirror by its reflectivity.
+ * A sphere that shines is met by rays from the eye and from clear or mirror-like surfaces alone: matte ones have looked
+ * for it already. That is how light through a vessel makes caustics. Beside a sphere, points of light too are blocked
+ * by clear solids. A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as
+ * bright as in Phong's sum. Ambient light is left out: here it is what the sky and the other surfaces send. */
 #include "render/core/tracer_private.h"
 
 #include "base/elementary.h"
