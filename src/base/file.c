@@ -295,6 +295,14 @@ void file_writer_abandon(file_writer *writer)
     release(writer);
 }
 
+status file_writer_end(file_writer *writer, status code, diagnostic *why)
+{
+    if (code == STATUS_OK)
+        return file_writer_commit(writer, why);
+    file_writer_abandon(writer);
+    return code;
+}
+
 static int make_one_directory(const char *path)
 {
     struct stat about;

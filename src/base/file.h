@@ -21,6 +21,8 @@ typedef struct file_writer {
 status file_writer_open(file_writer *writer, const char *path, diagnostic *why);
 status file_writer_commit(file_writer *writer, diagnostic *why);
 void file_writer_abandon(file_writer *writer);
+/* One or the other: commits where code, of what was to be written, is STATUS_OK; else abandons and returns it. */
+status file_writer_end(file_writer *writer, status code, diagnostic *why);
 
 /* Makes a directory and its parents; no error if it is there. */
 status file_make_directory(const char *path, diagnostic *why);

@@ -19,11 +19,11 @@
  * Every path and value is tried on the scene here, so that a study that was read can be run. */
 #include "base/file.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "scene/file/document.h"
+#include "study/cell_table.h"
 #include "study/grid.h"
 #include "study/read_grid.h"
-#include "study/metric_table.h"
-#include "study/motion_table.h"
 #include "study/reference.h"
 #include <libgen.h>
 #include <stdlib.h>
@@ -203,13 +203,8 @@ static status read_scene(study *s, const document *d, const node *root, const st
     if (!copy)
         return out_of_memory(why);
     const char *folder = dirname(copy);
-    bool as_is = n->text[0] == '/' || strcmp(folder, ".") == 0;
-    s->scene_path = malloc(strlen(folder) + strlen(n->text) + 2);
-    if (s->scene_path) {
-        strcpy(s->scene_path, as_is ? "" : folder);
-        strcat(s->scene_path, as_is ? "" : "/");
-        strcat(s->scene_path, n->text);
-    }
+    const bool as_is = n->text[0] == '/' || strcmp(folder, ".") == 0;
+    s->scene_path = text_format("%s%s%s", as_is ? "" : folder, as_is ? "" : "/", n->text);
     free(copy);
     if (!s->scene_path)
         return out_of_memory(why);
@@ -231,19 +226,14 @@ static status read_scene(study *s, const document *d, const node *root, const st
     return code == STATUS_OK ? scene_limit(s->base, below, 0, why) : code;
 }
 
-static status check_loads(const study *s, const study_guard *guard, diagnostic *why)
+static status check_loads(void *context, const study *s, size_t cell, scene *own, diagnostic *why)
 {
-    status code = STATUS_OK;
-    for (size_t cell = 0; code == STATUS_OK && cell < study_cell_count(s); cell++) {
-        scene *own = NULL, *other = NULL;
-        code = study_cell_scene(s, cell, &own, why);
-        if (code == STATUS_OK)
-            code = guard->may_load(guard->context, own, why);
-        if (code == STATUS_OK && s->reference.count && (code = reference_scene(s, cell, &other, why)) == STATUS_OK)
-            code = guard->may_load(guard->context, other, why);
-        scene_destroy(own);
-        scene_destroy(other);
-    }
+    const study_guard *guard = context;
+    scene *other = NULL;
+    status code = guard->may_load(guard->context, own, why);
+    if (code == STATUS_OK && s->reference.count && (code = reference_scene(s, cell, &other, why)) == STATUS_OK)
+        code = guard->may_load(guard->context, other, why);
+    scene_destroy(other);
     return code;
 }
 
@@ -278,13 +268,11 @@ static status read_root(study *s, const document *d, const study_guard *guard, d
     if (code == STATUS_OK)
         code = reference_check(s, why);
     if (code == STATUS_OK)
-        code = metric_table_check(s, why);
-    if (code == STATUS_OK)
-        code = motion_table_check(s, why);
+        code = cell_tables_check(s, why);
     if (code == STATUS_OK && guard)
         code = guard->may_load(guard->context, s->base, why);
     if (code == STATUS_OK && guard)
-        code = check_loads(s, guard, why);
+        code = grid_each_cell(s, check_loads, (void *)(uintptr_t)guard, why);
     if (code == STATUS_OK)
         code = grid_definition(s, &s->definition_hash, why);
     if (code == STATUS_OK)

@@ -26,12 +26,11 @@ status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why
     return code;
 }
 
-static status check_cell(const study *s, size_t cell, diagnostic *why)
+static status check_cell(void *context, const study *s, size_t cell, scene *own, diagnostic *why)
 {
-    scene *own = NULL, *other = NULL;
-    status code = study_cell_scene(s, cell, &own, why);
-    if (code == STATUS_OK)
-        code = reference_scene(s, cell, &other, why);
+    (void)context;
+    scene *other = NULL;
+    status code = reference_scene(s, cell, &other, why);
     if (code == STATUS_OK)
         code = grid_check_kept(s, &s->reference, other, why);
     if (code == STATUS_OK && (code = scene_check(other, why)) != STATUS_OK)
@@ -43,17 +42,13 @@ static status check_cell(const study *s, size_t cell, diagnostic *why)
                      other->render.width, other->render.height, cell, own->render.width, own->render.height);
         diagnostic_locate(why, s->path, s->reference.line, s->reference.column);
     }
-    scene_destroy(own);
     scene_destroy(other);
     return code;
 }
 
 status reference_check(const study *s, diagnostic *why)
 {
-    status code = STATUS_OK;
-    for (size_t cell = 0; code == STATUS_OK && s->reference.count && cell < study_cell_count(s); cell++)
-        code = check_cell(s, cell, why);
-    return code;
+    return s->reference.count ? grid_each_cell(s, check_cell, NULL, why) : STATUS_OK;
 }
 
 uint64_t reference_definition(const study *s, uint64_t definition)
