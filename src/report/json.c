@@ -151,3 +151,11 @@ status json_write(FILE *stream, const json_t *value, diagnostic *why)
     fputc('\n', stream);
     return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
 }
+
+json_t *json_whole(json_t *value, bool whole)
+{
+    if (whole)
+        return value;
+    json_decref(value);
+    return NULL;
+}

@@ -19,6 +19,9 @@ json_t *json_of_text(const char *text);
 /* {"error", "remedy"}, and "file", "line", "column" where there are any; NULL when memory is out. */
 json_t *json_of_diagnostic(const diagnostic *why);
 
+/* The value where it is whole; else NULL, and it is released. */
+json_t *json_whole(json_t *value, bool whole);
+
 /* For what is too large to build first: a text in quotes (as json_of_text), and a real with 17 significant digits,
  * printf's %.17g; null for what is not finite. */
 bool json_write_text(FILE *stream, const char *text);

@@ -3,6 +3,7 @@
 #include "scene/model/camera.h"
 #include "scene/model/params.h"
 #include "scene/model/place/new_scene.h"
+#include "report/json.h"
 #include "web/api/api.h"
 #include "web/page.h"
 #include "web/session/pins.h"
@@ -29,17 +30,13 @@ void lab_publish(lab *l, const char *event, json_t *value)
 json_t *lab_state(lab *l)
 {
     json_t *state = json_pack("{s:s}", "version", CUVETTE_VERSION);
-    bool good = state && desk_tell(l->desk, state) && painter_tell(l->painter, state);
-    good = good && json_object_set_new(state, "slime", live_tell(painter_live(l->painter))) == 0;
-    good = good && json_object_set_new(state, "pin", pins_tell(l->pins)) == 0;
-    good = good && json_object_set_new(state, "study", studies_tell(l->studies)) == 0;
-    good = good &&
-           json_object_set_new(state, "limits",
-                               json_pack("{s:i,s:i}", "pixels", DESK_PIXELS_MAX, "triangles", DESK_TRIANGLES_MAX)) == 0;
-    if (good)
-        return state;
-    json_decref(state);
-    return NULL;
+    const bool good =
+        state && desk_tell(l->desk, state) && painter_tell(l->painter, state) &&
+        json_object_update_new(state,
+                               json_pack("{s:o, s:o, s:o, s:{s:i, s:i}}", "slime", live_tell(painter_live(l->painter)),
+                                         "pin", pins_tell(l->pins), "study", studies_tell(l->studies), "limits",
+                                         "pixels", DESK_PIXELS_MAX, "triangles", DESK_TRIANGLES_MAX)) == 0;
+    return json_whole(state, good);
 }
 
 static bool is_open(lab *l)

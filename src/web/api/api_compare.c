@@ -1,6 +1,7 @@
 /* Two pictures beside each other: A, which was pinned, and B, the newest. */
 #include "web/api/api.h"
 
+#include "report/json.h"
 #include "report/report.h"
 #include "web/session/changed.h"
 #include "web/session/pins.h"
@@ -99,10 +100,7 @@ static status take_pair(call *c, pin_pair **pair, const picture **b)
 static json_t *comparison_json(const image_comparison *found)
 {
     json_t *o = json_object();
-    if (o && report_comparison(o, found))
-        return o;
-    json_decref(o);
-    return NULL;
+    return json_whole(o, o && report_comparison(o, found));
 }
 
 status api_compare(call *c)

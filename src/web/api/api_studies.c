@@ -20,10 +20,9 @@ static void add_progress(const lab *l, const study *s, json_t *told)
     status code = study_check_results(l, results, s->name, &why);
     if (code == STATUS_OK)
         code = study_status(s, results, &progress, &why);
-    json_object_set_new(told, "cells_done", json_integer((json_int_t)progress.cells_done));
-    json_object_set_new(told, "rows", json_integer((json_int_t)progress.rows));
-    json_object_set_new(told, "warmups", json_integer((json_int_t)progress.warmups));
-    json_object_set_new(told, "marked", json_integer((json_int_t)progress.rows_marked));
+    json_object_update_new(told, json_pack("{s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done,
+                                           "rows", (json_int_t)progress.rows, "warmups", (json_int_t)progress.warmups,
+                                           "marked", (json_int_t)progress.rows_marked));
     if (code != STATUS_OK)
         json_object_set_new(told, "error", json_of_diagnostic(&why));
 }
@@ -116,10 +115,10 @@ status api_study(call *c)
         json_t *told = study_json(l, http_path_value(c->request, "name"), file, s, &c->why), *summary = NULL;
         if (s && study_json_summary(s, l->settings.results, &summary, &c->why) != STATUS_OK)
             json_object_set_new(told, "error", json_of_diagnostic(&c->why));
-        json_object_set_new(told, "summary", summary ? summary : json_null());
-        json_object_set_new(told, "runs", s ? study_runs(l, s->name) : json_array());
-        json_object_set_new(told, "figures", s ? figures_of(l, s->name) : json_array());
-        json_object_set_new(told, "drawable", s ? figures_drawable(l, s->name) : json_array());
+        json_object_update_new(told, json_pack("{s:o, s:o, s:o, s:o}", "summary", summary ? summary : json_null(),
+                                               "runs", s ? study_runs(l, s->name) : json_array(), "figures",
+                                               s ? figures_of(l, s->name) : json_array(), "drawable",
+                                               s ? figures_drawable(l, s->name) : json_array()));
         api_tell(c, told);
     }
     study_destroy(s);

@@ -75,8 +75,5 @@ json_t *picture_json(const picture *p)
     int bad = !numbers || json_object_update(o, numbers);
     json_decref(numbers);
     bad |= json_object_set_new(o, "film_hash", p->final ? json_string(hash) : json_null());
-    if (!bad)
-        return o;
-    json_decref(o);
-    return NULL;
+    return json_whole(o, !bad);
 }

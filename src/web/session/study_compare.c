@@ -77,11 +77,10 @@ static json_t *cell_json(const study *s, size_t cell, const cell_times *a, const
         for (size_t i = 0; i < point->count; i++)
             json_object_set_new(told, point->paths[i], json_of_text(point->values[i]));
     }
-    json_object_set_new(told, "a", times_json(a));
-    json_object_set_new(told, "b", times_json(b));
-    json_object_set_new(told, "ratio", json_of_real(b->wall.median / a->wall.median));
-    json_object_set_new(told, "same_film",
-                        a->film && b->film ? json_boolean(strcmp(a->film, b->film) == 0) : json_null());
+    json_object_update_new(told,
+                           json_pack("{s:o, s:o, s:o, s:o}", "a", times_json(a), "b", times_json(b), "ratio",
+                                     json_of_real(b->wall.median / a->wall.median), "same_film",
+                                     a->film && b->film ? json_boolean(strcmp(a->film, b->film) == 0) : json_null()));
     return told;
 }
 
