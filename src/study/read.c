@@ -237,10 +237,13 @@ static status check_loads(void *context, const study *s, size_t cell, scene *own
     return code;
 }
 
-static status read_root(study *s, const document *d, const study_guard *guard, diagnostic *why)
+static status read_root(study *s, const document *d, const void *context, diagnostic *why)
 {
     static const char *const keys[] = {"study",     "title",       "scene",   "set",   "grid",
                                        "reference", "repetitions", "warmups", "order", "keep"};
+    static status (*const checks[])(const study *s, diagnostic *why) = {grid_check_cells, reference_check,
+                                                                        cell_tables_check};
+    const study_guard *guard = context;
     const node *root = document_root(d);
     if (!root || root->kind != NODE_MAP) {
         if (root)
@@ -263,12 +266,8 @@ static status read_root(study *s, const document *d, const study_guard *guard, d
         code = read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why);
     if (code == STATUS_OK)
         code = read_reference(s, d, node_get(root, "reference"), why);
-    if (code == STATUS_OK)
-        code = grid_check_cells(s, why);
-    if (code == STATUS_OK)
-        code = reference_check(s, why);
-    if (code == STATUS_OK)
-        code = cell_tables_check(s, why);
+    for (size_t i = 0; code == STATUS_OK && i < COUNT(checks); i++)
+        code = checks[i](s, why);
     if (code == STATUS_OK && guard)
         code = guard->may_load(guard->context, s->base, why);
     if (code == STATUS_OK && guard)
@@ -280,26 +279,31 @@ static status read_root(study *s, const document *d, const study_guard *guard, d
     return code;
 }
 
+status study_parse(study *s, const char *text, size_t size, study_parts *read, const void *context, study **out,
+                   diagnostic *why)
+{
+    document *d = NULL;
+    *out = NULL;
+    status code = document_parse(s->path, text, size, &d, why);
+    if (code == STATUS_OK)
+        code = read(s, d, context, why);
+    document_destroy(d);
+    if (code == STATUS_OK)
+        *out = s;
+    else
+        study_destroy(s);
+    return code;
+}
+
 static status read_text(const char *name, const char *text, size_t size, const study_guard *guard, study **out,
                         diagnostic *why)
 {
     *out = NULL;
     study *s = calloc(1, sizeof *s);
-    document *d = NULL;
-    if (!s || !(s->path = strdup(name)) || !(s->text = strndup(text, size))) {
-        study_destroy(s);
-        return out_of_memory(why);
-    }
-    status code = document_parse(name, text, size, &d, why);
-    if (code == STATUS_OK)
-        code = read_root(s, d, guard, why);
-    document_destroy(d);
-    if (code != STATUS_OK) {
-        study_destroy(s);
-        return code;
-    }
-    *out = s;
-    return STATUS_OK;
+    if (s && (s->path = strdup(name)) && (s->text = strndup(text, size)))
+        return study_parse(s, text, size, read_root, guard, out, why);
+    study_destroy(s);
+    return out_of_memory(why);
 }
 
 status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status read_parts(study *s, const document *d, const char *scene_text, diagnostic *why)
+static status read_parts(study *s, const document *d, const void *scene_text, diagnostic *why)
 {
     const node *root = document_root(d);
     const node *name = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
@@ -22,19 +22,8 @@ status recorded_study(const study *now, const char *text, const char *scene_text
 {
     *out = NULL;
     study *s = calloc(1, sizeof *s);
-    if (!s || !(s->path = strdup(now->path)) || !(s->scene_path = strdup(now->scene_path))) {
-        study_destroy(s);
-        return out_of_memory(why);
-    }
-    document *d = NULL;
-    status code = document_parse(s->path, text, strlen(text), &d, why);
-    if (code == STATUS_OK)
-        code = read_parts(s, d, scene_text, why);
-    document_destroy(d);
-    if (code != STATUS_OK) {
-        study_destroy(s);
-        return code;
-    }
-    *out = s;
-    return STATUS_OK;
+    if (s && (s->path = strdup(now->path)) && (s->scene_path = strdup(now->scene_path)))
+        return study_parse(s, text, strlen(text), read_parts, scene_text, out, why);
+    study_destroy(s);
+    return out_of_memory(why);
 }

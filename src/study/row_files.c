@@ -61,32 +61,23 @@ static bool parse_shard(const char *name, row_kind kind, shard_name *out)
 /* The shards' files in a folder, in order. *list is the caller's. */
 static status list_shards(const char *folder, row_kind kind, shard_name **list, size_t *count, diagnostic *why)
 {
-    *list = NULL;
+    struct dirent **entries = NULL;
+    const int found = scandir(folder, &entries, NULL, NULL);
     *count = 0;
-    DIR *open = opendir(folder);
-    if (!open) {
-        if (errno == ENOENT)
-            return STATUS_OK;
+    *list = calloc(found > 0 ? (size_t)found : 1, sizeof **list);
+    for (int i = 0; i < found; i++) {
+        *count += *list && parse_shard(entries[i]->d_name, kind, &(*list)[*count]);
+        free(entries[i]);
+    }
+    free(entries);
+    if (!*list)
+        return out_of_memory(why);
+    if (found < 0 && errno != ENOENT) {
         diagnostic_locate(why, folder, 0, 0);
         return diagnose(why, STATUS_FAILURE, "make the folder readable", "it cannot be read: %s", strerror(errno));
     }
-    status code = STATUS_OK;
-    for (struct dirent *entry; code == STATUS_OK && (entry = readdir(open));) {
-        shard_name name;
-        if (!parse_shard(entry->d_name, kind, &name))
-            continue;
-        shard_name *grown = realloc(*list, (*count + 1) * sizeof **list);
-        if (grown) {
-            *list = grown;
-            grown[(*count)++] = name;
-        } else {
-            code = out_of_memory(why);
-        }
-    }
-    closedir(open);
-    if (*count)
-        qsort(*list, *count, sizeof **list, compare_shards);
-    return code;
+    qsort(*list, *count, sizeof **list, compare_shards);
+    return STATUS_OK;
 }
 
 static status add_file(row_files *files, const study *s, char *path, diagnostic *why)
