@@ -40,6 +40,22 @@ status api_changed(call *c, status code, uint64_t generation);
 /* What a note on the scene says; NULL when memory is out. */
 json_t *api_note(const char *place, const char *text, const char *remedy);
 
+/* The scene as pages see it: its objects, and a row for each of its parameters; what GET /api/scene answers. opened:
+ * where `initial` comes from. NULL when memory is out. */
+json_t *scene_json(const scene *s, const scene *opened, uint64_t generation);
+
+/* [{"path", "a", "b"}], where two scenes differ: values as number, list or word, null where that scene has no such
+ * parameter or it is out of use there; b's in their order, then those that only a has. What a solid has from its
+ * material in both is said of the material alone. NULL when memory is out. */
+json_t *changed_params(const scene *a, const scene *b);
+
+/* The scene on the desk as the command that renders the same film. file: its name in the folder, NULL for none.
+ * *complete is false where the file is not there, or has other objects than the scene: no --set can make up for that.
+ * threads: what the laboratory gives to scenes that do not say how many they want, and does not count as a difference;
+ * 0 for none. text is fresh memory. */
+status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,
+                    diagnostic *why);
+
 /* --- what is read of a request --- */
 
 /* Numbers and words of a body. Each is false, with the diagnostic set, where the key is of another kind; a missing one

@@ -3,7 +3,6 @@
 
 #include "report/json.h"
 #include "report/report.h"
-#include "web/session/changed.h"
 #include "web/session/pins.h"
 #include <stdlib.h>
 #include <string.h>

@@ -8,8 +8,6 @@
 #include "scene/model/params.h"
 #include "scene/file/write.h"
 #include "scene/model/camera_moves.h"
-#include "web/session/command_line.h"
-#include "web/api/scene_json.h"
 #include "scene/model/open.h"
 
 #include <math.h>
@@ -33,34 +31,27 @@ status api_scene(call *c)
 
 /* --- set and reset --- */
 
-/* One number or word; fresh memory, NULL for what is neither (or memory that is out). */
-static char *item_text(const json_t *value)
+/* One number or word; false for what is neither. */
+static bool put_item(FILE *out, const json_t *value)
 {
-    if (json_is_string(value))
-        return strlen(json_string_value(value)) == json_string_length(value) ? strdup(json_string_value(value)) : NULL;
-    if (json_is_boolean(value))
-        return strdup(json_is_true(value) ? "on" : "off");
     char text[NUMBER_TEXT_MAX];
-    return json_is_number(value) && isfinite(json_number_value(value))
-               ? strdup(number_format(json_number_value(value), text))
-               : NULL;
+    const char *word = json_is_boolean(value) ? (json_is_true(value) ? "on" : "off") : json_string_value(value);
+    if (json_is_number(value) && isfinite(json_number_value(value)))
+        word = number_format(json_number_value(value), text);
+    const bool good = word && (!json_is_string(value) || strlen(word) == json_string_length(value));
+    return good && fputs(word, out) >= 0;
 }
 
-/* As scene_set takes it; likewise. */
+/* As scene_set takes it, in fresh memory; NULL for what is no value (or memory that is out). */
 static char *value_text(const json_t *value)
 {
-    if (!json_is_array(value))
-        return item_text(value);
     char *joined = NULL;
     text_writer writer;
     if (text_writer_open(&writer, NULL) != STATUS_OK)
         return NULL;
-    bool good = true;
-    for (size_t i = 0; i < json_array_size(value) && good; i++) {
-        char *one = item_text(json_array_get(value, i));
-        good = one && fprintf(writer.stream, "%s%s", i ? "," : "", one) >= 0;
-        free(one);
-    }
+    bool good = json_is_array(value) || put_item(writer.stream, value);
+    for (size_t i = 0; i < json_array_size(value) && good; i++)
+        good = (i == 0 || fputc(',', writer.stream) >= 0) && put_item(writer.stream, json_array_get(value, i));
     if (good)
         text_writer_close(&writer, &joined, NULL, NULL);
     else

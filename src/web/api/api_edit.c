@@ -1,7 +1,6 @@
 /* Objects come, go, move, turn and change their names: POST and DELETE under /api/objects. How new ones look is in
  * new_objects.c. */
 #include "web/api/api.h"
-#include "web/session/desk_bounds.h"
 #include "scene/model/place/new_objects.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
@@ -21,6 +20,7 @@ typedef struct edit {
     const folder *files;
     const scene *loaded; /* of a model */
     shape_kind shape;
+    status (*displace)(scene *s, const char *name, vec3 by, diagnostic *why);
     vec3 by;
     double factor;
     object_name made; /* what came is called that; "" for nothing */
@@ -78,18 +78,15 @@ status api_remove(call *c)
     return apply_to(c, (edit){.act = remove_it}, "remove", NULL);
 }
 
-static status move_it(edit *e, scene *s, diagnostic *why)
+static status displace_it(edit *e, scene *s, diagnostic *why)
 {
-    return scene_move(s, e->name, e->by, why);
-}
-
-static status turn_it(edit *e, scene *s, diagnostic *why)
-{
-    return scene_turn(s, e->name, e->by, why);
+    return e->displace(s, e->name, e->by, why);
 }
 
 static status displace(call *c, edit e, const char *verb)
 {
+    e.or_camera = true;
+    e.act = displace_it;
     double by[3];
     const char *gesture;
     if (!api_take_vector(c, "by", true, by) || !api_take_gesture(c, &gesture))
@@ -100,12 +97,12 @@ static status displace(call *c, edit e, const char *verb)
 
 status api_move(call *c)
 {
-    return displace(c, (edit){.or_camera = true, .act = move_it}, "move");
+    return displace(c, (edit){.displace = scene_move}, "move");
 }
 
 status api_turn(call *c)
 {
-    return displace(c, (edit){.or_camera = true, .act = turn_it}, "turn");
+    return displace(c, (edit){.displace = scene_turn}, "turn");
 }
 
 static status scale_it(edit *e, scene *s, diagnostic *why)
@@ -169,26 +166,6 @@ status api_copy(call *c)
 
 /* --- what is new --- */
 
-static status add_solid(edit *e, scene *s, diagnostic *why)
-{
-    return new_solid(s, e->shape, e->wanted, e->made, why);
-}
-
-static status add_light(edit *e, scene *s, diagnostic *why)
-{
-    return new_light(s, e->wanted, e->made, why);
-}
-
-static status add_material(edit *e, scene *s, diagnostic *why)
-{
-    return new_material(s, e->wanted, e->made, why);
-}
-
-static status add_slime(edit *e, scene *s, diagnostic *why)
-{
-    return new_slime(s, e->wanted, e->made, why);
-}
-
 /* A texture, or what was loaded of a model. */
 static status add_file(edit *e, scene *s, diagnostic *why)
 {
@@ -205,18 +182,18 @@ static status add_object(edit *e, scene *s, diagnostic *why)
 {
     static const struct {
         const char *word;
-        status (*add)(edit *e, scene *s, diagnostic *why);
+        status (*add)(scene *s, const char *wanted, object_name made, diagnostic *why); /* NULL: of a file */
     } kinds[] = {
-        {"solid", add_solid}, {"light", add_light},  {"material", add_material},
-        {"slime", add_slime}, {"texture", add_file}, {"model", add_file},
-    };
+        {"light", new_light}, {"material", new_material}, {"slime", new_slime}, {"texture", NULL}, {"model", NULL}};
     if (e->wanted && check_name_is_free(s, e->wanted, why) != STATUS_OK) {
         e->refused = 409;
         return STATUS_BAD_INPUT;
     }
+    if (strcmp(e->word, "solid") == 0)
+        return new_solid(s, e->shape, e->wanted, e->made, why);
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         if (strcmp(e->word, kinds[i].word) == 0)
-            return kinds[i].add(e, s, why);
+            return kinds[i].add ? kinds[i].add(s, e->wanted, e->made, why) : add_file(e, s, why);
     return diagnose(why, STATUS_BAD_INPUT, "the kinds are solid, light, material, model, slime and texture",
                     "no kind '%.60s'", e->word);
 }

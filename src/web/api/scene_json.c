@@ -1,4 +1,4 @@
-#include "web/api/scene_json.h"
+#include "web/api/api.h"
 #include "geometry/shapes/shape.h"
 #include "report/json.h"
 #include "report/param_rows.h"

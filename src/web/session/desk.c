@@ -2,7 +2,6 @@
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "report/json.h"
-#include "web/session/desk_bounds.h"
 #include "scene/model/scene.h"
 
 #include <pthread.h>

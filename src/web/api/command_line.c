@@ -1,4 +1,4 @@
-#include "web/session/command_line.h"
+#include "web/api/api.h"
 #include "base/text.h"
 #include "base/text_writer.h"
 #include "scene/model/params.h"

@@ -1,4 +1,4 @@
-#include "web/session/changed.h"
+#include "web/api/api.h"
 
 #include "base/text.h"
 #include "report/json.h"
