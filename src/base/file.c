@@ -237,8 +237,7 @@ status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
     return system_error(why, STATUS_FAILURE, path, "cannot write", error);
 }
 
-/* The entry in the folder must reach the disk too; some file systems cannot do that, which is no error. */
-static void flush_folder(const char *path)
+void file_flush_folder(const char *path)
 {
     char *folder = beside(path, ".");
     int fd = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
@@ -278,7 +277,7 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
                             "cannot write: a write failed");
         }
     } else if (writer->temporary) {
-        flush_folder(writer->path);
+        file_flush_folder(writer->path);
     }
     release(writer);
     return code;

@@ -42,9 +42,12 @@ static bool only_digits(const char *text)
     return *text && text[strspn(text, "0123456789")] == 0;
 }
 
+/* A node that is not there leaves *out as it is. */
 static status read_integer(const document *d, const node *n, const char *key, int64_t lowest, int64_t highest,
                            int64_t *out, diagnostic *why)
 {
+    if (!n)
+        return STATUS_OK;
     char remedy[128];
     snprintf(remedy, sizeof remedy, "write an integer from %lld to %lld", (long long)lowest, (long long)highest);
     bool is_integer = n->kind == NODE_SCALAR && number_parse_int(n->text, out);
@@ -57,8 +60,11 @@ static status read_integer(const document *d, const node *n, const char *key, in
     return node_error(d, n, why, remedy, "%s: '%.64s' is not an integer", key, n->text);
 }
 
+/* Likewise. */
 static status read_switch(const document *d, const node *n, const char *key, bool *out, diagnostic *why)
 {
+    if (!n)
+        return STATUS_OK;
     static const char *const words[] = {"off", "on", "false", "true", "no", "yes"};
     for (size_t i = 0; n->kind == NODE_SCALAR && i < COUNT(words); i++)
         if (strcmp(n->text, words[i]) == 0) {
@@ -105,9 +111,9 @@ static status read_interval_rule(study *s, const document *d, const node *n, dia
     status code = node_check_keys(d, n, keys, COUNT(keys), why);
     const node *min = node_get(n, "min"), *max = node_get(n, "max"), *width = node_get(n, "relative_width");
     int64_t least = 0, most = 0;
-    if (code == STATUS_OK && min)
+    if (code == STATUS_OK)
         code = read_integer(d, min, "min", 2, STUDY_REPETITIONS_MAX, &least, why);
-    if (code == STATUS_OK && max)
+    if (code == STATUS_OK)
         code = read_integer(d, max, "max", 2, STUDY_REPETITIONS_MAX, &most, why);
     if (code != STATUS_OK)
         return code;
@@ -132,12 +138,9 @@ static status read_interval_rule(study *s, const document *d, const node *n, dia
 
 static status read_repetitions(study *s, const document *d, const node *n, diagnostic *why)
 {
-    s->repetitions_min = s->repetitions_max = REPETITIONS_DEFAULT;
-    if (!n)
-        return STATUS_OK;
-    if (n->kind == NODE_MAP)
+    int64_t value = REPETITIONS_DEFAULT;
+    if (n && n->kind == NODE_MAP)
         return read_interval_rule(s, d, n, why);
-    int64_t value = 0;
     status code = read_integer(d, n, "repetitions", 1, STUDY_REPETITIONS_MAX, &value, why);
     s->repetitions_min = s->repetitions_max = (long)value;
     return code;
@@ -146,27 +149,21 @@ static status read_repetitions(study *s, const document *d, const node *n, diagn
 static status read_order(study *s, const document *d, const node *warmups, const node *order, diagnostic *why)
 {
     static const char *const keys[] = {"shuffle", "seed"};
-    int64_t value = 1;
-    status code = STATUS_OK;
+    int64_t count = 1, seed = 1;
+    status code = read_integer(d, warmups, "warmups", 0, STUDY_WARMUPS_MAX, &count, why);
+    s->warmups = (long)count;
     s->shuffle = true;
     s->seed = 1;
-    s->warmups = 1;
-    if (warmups) {
-        code = read_integer(d, warmups, "warmups", 0, STUDY_WARMUPS_MAX, &value, why);
-        s->warmups = (long)value;
-    }
     if (code != STATUS_OK || !order)
         return code;
     if (order->kind != NODE_MAP)
         return node_error(d, order, why, "write {shuffle: on, seed: 1}", "order is not a map");
     code = node_check_keys(d, order, keys, COUNT(keys), why);
-    const node *shuffle = node_get(order, "shuffle"), *seed = node_get(order, "seed");
-    if (code == STATUS_OK && shuffle)
-        code = read_switch(d, shuffle, "shuffle", &s->shuffle, why);
-    if (code == STATUS_OK && seed) {
-        code = read_integer(d, seed, "seed", 0, INT64_MAX, &value, why);
-        s->seed = (uint64_t)value;
-    }
+    if (code == STATUS_OK)
+        code = read_switch(d, node_get(order, "shuffle"), "shuffle", &s->shuffle, why);
+    if (code == STATUS_OK)
+        code = read_integer(d, node_get(order, "seed"), "seed", 0, INT64_MAX, &seed, why);
+    s->seed = (uint64_t)seed;
     return code;
 }
 
@@ -182,11 +179,8 @@ static status read_keep(study *s, const document *d, const node *n, diagnostic *
     if (n->kind != NODE_MAP)
         return node_error(d, n, why, "write {image: on}", "keep is not a map");
     status code = node_check_keys(d, n, keys, COUNT(keys), why);
-    for (size_t i = 0; code == STATUS_OK && i < COUNT(keys); i++) {
-        const node *value = node_get(n, keys[i]);
-        if (value)
-            code = read_switch(d, value, keys[i], kept[i], why);
-    }
+    for (size_t i = 0; code == STATUS_OK && i < COUNT(keys); i++)
+        code = read_switch(d, node_get(n, keys[i]), keys[i], kept[i], why);
     return code;
 }
 
