@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void study_point_free(study_point *point)
+static void point_free(study_point *point)
 {
     for (size_t i = 0; i < point->count; i++) {
         free(point->paths[i]);
@@ -22,13 +22,13 @@ void study_destroy(study *s)
         return;
     for (size_t axis = 0; axis < s->axis_count; axis++) {
         for (size_t i = 0; i < s->axes[axis].count; i++)
-            study_point_free(&s->axes[axis].points[i]);
+            point_free(&s->axes[axis].points[i]);
         free(s->axes[axis].points);
         free(s->axes[axis].name);
     }
     free(s->axes);
-    study_point_free(&s->fixed);
-    study_point_free(&s->reference);
+    point_free(&s->fixed);
+    point_free(&s->reference);
     free(s->path);
     free(s->name);
     free(s->title);

@@ -4,8 +4,6 @@
 
 #include "study/study.h"
 
-void study_point_free(study_point *point);
-
 /* Sets what a point sets, in its order. */
 status grid_set_point(scene *to, const study_point *point, diagnostic *why);
 

@@ -208,7 +208,7 @@ static status draw(call *c, const study *s)
     lab *l = c->l;
     char *said = NULL;
     bool whole;
-    if (studies_is_running(l->studies))
+    if (studies_runs(l->studies, NULL))
         return api_refuse(c, 409, "a study measures, and drawing would disturb it",
                           "draw when it has ended, or stop it");
     if (!studies_begin_drawing(l->studies))
