@@ -224,6 +224,8 @@ static void try_scene(int number, account *out)
 /* Ways of making a picture in which light goes on from surfaces. */
 static const char *const modes[] = {
     "render.integrator=path render.paths=4",
+    "render.integrator=aov",
+    "render.integrator=aov render.layer=albedo",
     "render.transmission=simple clear.transparency=0.8 clear.reflectivity=0.1",
     "render.weights=constant clear.transparency=0.8 clear.reflectivity=0.1",
     "render.spectrum=spectral render.wavelengths=4",
