@@ -26,38 +26,6 @@ bool solid_has(const solid *owner, const param *row)
     return row->group == PARAM_MATERIAL || !row->by_shape || shape_has(shape_of(&owner->shape), row->name);
 }
 
-size_t place_group_size(const scene *s, param_group group)
-{
-    switch (group) {
-    case PARAM_MESH: return s->mesh_count;
-    case PARAM_TEXTURE: return s->texture_count;
-    case PARAM_LIGHT: return s->light_count;
-    case PARAM_MATERIAL: return s->material_count;
-    case PARAM_SOLID: return s->solid_count;
-    case PARAM_RENDER:
-    case PARAM_CAMERA:
-    case PARAM_BACKGROUND:
-    case PARAM_GROUP_COUNT: break;
-    }
-    return 1;
-}
-
-const char *place_group_name(const scene *s, param_group group, size_t index)
-{
-    switch (group) {
-    case PARAM_MESH: return s->meshes[index].name;
-    case PARAM_TEXTURE: return s->textures[index].name;
-    case PARAM_LIGHT: return s->lights[index].name;
-    case PARAM_MATERIAL: return s->materials[index].name;
-    case PARAM_SOLID: return s->solids[index].name;
-    case PARAM_RENDER:
-    case PARAM_CAMERA:
-    case PARAM_BACKGROUND:
-    case PARAM_GROUP_COUNT: break;
-    }
-    return param_group_name(group);
-}
-
 static bool split_path(const char *path, path_words *words)
 {
     if (strlen(path) >= sizeof words->text) {

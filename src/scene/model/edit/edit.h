@@ -7,10 +7,12 @@
 #define CUVETTE_SCENE_MODEL_EDIT_EDIT_H
 
 #include "geometry/solid.h"
-#include "scene/model/open.h"
+#include "scene/model/params.h"
 
 /* One more object at the end of its section. The name must be right and free (scene/model/check.h), the limits of a
  * scene hold. index may be NULL. */
+/* A group that is not that of solids. */
+status scene_add(scene *s, param_group group, const char *name, size_t *index, diagnostic *why);
 status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why);
 status scene_add_light(scene *s, const char *name, size_t *index, diagnostic *why);
 status scene_add_material(scene *s, const char *name, size_t *index, diagnostic *why);
