@@ -130,6 +130,32 @@ void object_remove(scene *s, param_group group, size_t index)
     memmove(gap, gap + size, (left - index) * size);
 }
 
+/* Copies what the object, a copy bit by bit, still shares with another one; what was loaded has one more owner. */
+static bool own(param_group group, void *object)
+{
+    if (group == PARAM_MESH) {
+        const mesh_entry *m = object;
+        looks_retain(m->looks);
+        if (m->data) {
+            mesh_retain(m->data);
+        }
+    } else if (group == PARAM_TEXTURE && ((const texture_entry *)object)->data) {
+        texture_retain(((const texture_entry *)object)->data);
+    }
+    return each_text(group, object, copy_text);
+}
+
+bool object_assign(scene *s, param_group group, size_t to, size_t from)
+{
+    char *object = object_at(s, group, to), *name = strdup(*(char **)object);
+    release(group, object);
+    memcpy(object, object_at(s, group, from), lists[group].size);
+    const bool whole = own(group, object);
+    free(*(char **)object);
+    *(char **)object = name;
+    return whole && name;
+}
+
 static bool clone_list(scene *s, const scene *original, param_group group)
 {
     const size_t count = *count_of(original, group), size = lists[group].size;
@@ -142,18 +168,7 @@ static bool clone_list(scene *s, const scene *original, param_group group)
     *count_of(s, group) = count;
     bool whole = true;
     for (char *object = array; object < array + count * size; object += size) {
-        whole &= each_text(group, object, copy_text);
-        const mesh_entry *m = group == PARAM_MESH ? (const mesh_entry *)object : NULL;
-        const texture_entry *t = group == PARAM_TEXTURE ? (const texture_entry *)object : NULL;
-        if (m) {
-            looks_retain(m->looks);
-        }
-        if (m && m->data) {
-            mesh_retain(m->data);
-        }
-        if (t && t->data) {
-            texture_retain(t->data);
-        }
+        whole &= own(group, object);
     }
     return whole;
 }

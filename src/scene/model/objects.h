@@ -19,8 +19,11 @@ void *object_values(const scene *s, param_group group, size_t index);
 void *object_append(scene *s, param_group group, const char *name);
 void object_remove(scene *s, param_group group, size_t index);
 
-/* All that have names. Copies share what was loaded; false when memory is out, and what there is is released with the
- * scene. */
+/* All of one but its name, to another one of its group. Copies share what was loaded; false when memory is out, and
+ * what there is is released with the scene. */
+bool object_assign(scene *s, param_group group, size_t to, size_t from);
+
+/* All that have names. As object_assign. */
 bool objects_clone(scene *s, const scene *original);
 void objects_release(scene *s);
 
