@@ -70,6 +70,16 @@ const char *place_group_name(const scene *s, param_group group, size_t index)
     return group_has_names(group) ? *(char **)object_at(s, group, index) : param_group_name(group);
 }
 
+int object_find(const scene *s, param_group group, const char *name)
+{
+    for (size_t i = 0; i < place_group_size(s, group); i++) {
+        if (strcmp(place_group_name(s, group, i), name) == 0) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
 /* The texts that an object owns: its name, and the paths of its files. */
 static bool each_text(param_group group, void *object, bool (*act)(char **text))
 {

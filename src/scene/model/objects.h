@@ -15,6 +15,9 @@ static inline bool group_has_names(param_group group)
 void *object_at(const scene *s, param_group group, size_t index);
 void *object_values(const scene *s, param_group group, size_t index);
 
+/* Index of the object of that name, or -1. */
+int object_find(const scene *s, param_group group, const char *name);
+
 /* One more of a group with names, at its end: all zero but for a copy of the name; NULL when memory is out. */
 void *object_append(scene *s, param_group group, const char *name);
 void object_remove(scene *s, param_group group, size_t index);

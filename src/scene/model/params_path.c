@@ -1,5 +1,6 @@
 #include "scene/model/params_path.h"
 #include "geometry/shapes/shape.h"
+#include "scene/model/objects.h"
 #include "scene/model/suggest.h"
 #include "scene/model/scene.h"
 
@@ -67,12 +68,11 @@ static const char **group_words(const scene *s, size_t *count)
 static bool find_group(const scene *s, const char *word, place *out)
 {
     for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
-        for (size_t i = 0; i < place_group_size(s, (param_group)g); i++) {
-            if (strcmp(place_group_name(s, (param_group)g, i), word) == 0) {
-                out->group = (param_group)g;
-                out->index = i;
-                return true;
-            }
+        const int at = object_find(s, (param_group)g, word);
+        if (at >= 0) {
+            out->group = (param_group)g;
+            out->index = (size_t)at;
+            return true;
         }
     }
     return false;

@@ -112,12 +112,7 @@ status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why
 
 int scene_find_solid(const scene *s, const char *name)
 {
-    for (size_t i = 0; i < s->solid_count; i++) {
-        if (strcmp(s->solids[i].name, name) == 0) {
-            return (int)i;
-        }
-    }
-    return -1;
+    return object_find(s, PARAM_SOLID, name);
 }
 
 int scene_build_threads(const render_settings *r)

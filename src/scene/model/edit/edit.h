@@ -27,9 +27,9 @@ status scene_give_material(scene *s, const char *solid_name, const char *materia
  * scene_give_material) and NAME.shape. */
 status scene_put(scene *s, const char *path, const char *value, diagnostic *why);
 
-/* The shape of that name. */
 /* "plane, cylinder or mesh", with the conjunction "or"; returns text. */
 char *scene_shape_words(const char *conjunction, char *text, size_t size);
+/* The shape of that name. */
 status scene_shape_named(const char *word, shape_kind *out, diagnostic *why);
 
 status scene_set_title(scene *s, const char *title, diagnostic *why);

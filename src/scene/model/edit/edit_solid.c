@@ -27,12 +27,11 @@ status scene_give_material(scene *s, const char *solid_name, const char *materia
         owner->material_index = -1;
         return param_set_defaults(PARAM_MATERIAL, &owner->surface, why);
     }
-    for (size_t i = 0; i < s->material_count; i++) {
-        if (strcmp(s->materials[i].name, material_name) == 0) {
-            owner->material_index = (int)i;
-            owner->surface = s->materials[i].value;
-            return STATUS_OK;
-        }
+    const int material_index = object_find(s, PARAM_MATERIAL, material_name);
+    if (material_index >= 0) {
+        owner->material_index = material_index;
+        owner->surface = s->materials[material_index].value;
+        return STATUS_OK;
     }
     char remedy[SCENE_NAME_MAX + 80];
     return diagnose(why, STATUS_BAD_INPUT, object_remedy(s, PARAM_MATERIAL, material_name, remedy, sizeof remedy),
