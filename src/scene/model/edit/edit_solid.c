@@ -1,4 +1,5 @@
 /* What a solid is made of and what shape it has: what a file says of it beside the rows of the table. */
+#include "scene/model/suggest.h"
 #include "scene/model/edit/edit.h"
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
