@@ -264,6 +264,8 @@ static const condition conditions[] = {
     {"rod", "render.integrator=raycast", "render.depth", "no-tree", true},
     {"rod", "render.integrator=raycast", "render.beyond", "no-tree", true},
     {"rod", "clear.transparency=0", "render.transmission", "no-clear", true},
+    {"rod", "rod.visible=off vessel.visible=off liquid.visible=off ground.visible=off", "render.transmission",
+     "no-clear", false},
     {"rod", "clear.transparency=0", "render.lambda_nm", "no-clear", true},
     {"rod", "clear.transparency=0", "background.medium", "no-clear", true},
     {"absorber", "liquid.transparency=0", "render.polarisation", "no-branches", true},
