@@ -25,8 +25,8 @@ void axis_find_films(study_axis *axis);
  * contents count too. */
 status grid_definition(const study *s, uint64_t *hash, diagnostic *why);
 
-/* Goes into a fingerprint: a text; all of a scene that makes its picture, with or without the parameters that are how a frame
- * is computed (param.is_how); the paths and values of a point. The scene's files must have been loaded. */
+/* Goes into a fingerprint: a text; all of a scene that makes its picture, with or without the parameters that are how a
+ * frame is computed (param.is_how); the paths and values of a point. The scene's files must have been loaded. */
 void grid_hash_text(uint64_t *hash, const char *text);
 status grid_hash_scene(uint64_t *hash, const scene *of, bool without_how);
 /* The part of it that the parameters do not say: the sky's picture, textures, meshes and what their files say of their
