@@ -4,7 +4,8 @@
 #include "cli/terminal.h"
 #include "image/y4m.h"
 #include "render/core/record.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -164,8 +165,8 @@ static status open_stream(film_job *f, diagnostic *why)
     const animate_request *request = f->request;
     status result = file_writer_open(&f->stream, request->output, why);
     if (result == STATUS_OK)
-        result = y4m_begin(f->stream.stream, (int)f->s->render.width, (int)f->s->render.height, request->fps_num,
-                           request->fps_den, why);
+        result = y4m_begin(f->stream.stream, (int)scene_settings(f->s)->width, (int)scene_settings(f->s)->height,
+                           request->fps_num, request->fps_den, why);
     return result;
 }
 

@@ -1,11 +1,13 @@
 #include "realism/view.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
+#include "scene/model/view_settings.h"
 
 #include <math.h>
 
 view view_of(const scene *s)
 {
-    const struct camera *c = &s->camera;
+    const struct camera *c = scene_camera(s);
     const double degree = M_PI / 180.0;
     view v = {.x = c->position.x,
               .y = c->position.y,
@@ -13,8 +15,8 @@ view view_of(const scene *s)
               .yaw = c->yaw_deg * degree,
               .pitch = c->pitch_deg * degree,
               .roll = c->roll_deg * degree,
-              .width = (double)s->render.width,
-              .height = (double)s->render.height};
+              .width = (double)scene_settings(s)->width,
+              .height = (double)scene_settings(s)->height};
     if (c->aimed) {
         const double dx = c->target.x - v.x, dy = c->target.y - v.y, dz = c->target.z - v.z;
         v.yaw = atan2(dx, dz);

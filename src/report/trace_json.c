@@ -1,6 +1,7 @@
 #include "report/json.h"
 #include "report/trace_writers.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
 
 static void write_list(FILE *out, const char *key, const double *values, int count)
 {
@@ -51,7 +52,7 @@ static void write_factors(FILE *out, const ray_hit *h)
 static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
 {
     fputc('{', out);
-    bool good = write_word(out, "solid", t->s->solids[h->solid].name);
+    bool good = write_word(out, "solid", scene_solid_name(t->s, h->solid));
     fputc(',', out);
     good = write_word(out, "surface", probe_face_name(t->p, h)) && good;
     write_number(out, "t", h->t);
@@ -71,7 +72,7 @@ static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
     fprintf(out, ",\"opaque\":%s", h->opaque ? "true" : "false");
     if (h->face_solid != h->solid) {
         fputc(',', out);
-        good = write_word(out, "surface_of", t->s->solids[h->face_solid].name) && good;
+        good = write_word(out, "surface_of", scene_solid_name(t->s, h->face_solid)) && good;
     }
     write_factors(out, h);
     fputc('}', out);
@@ -82,11 +83,11 @@ static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
 static bool write_extras(const traced *t, FILE *out, const ray_node *node)
 {
     bool good = true;
-    if (t->s->render.polarisation)
+    if (scene_settings(t->s)->polarisation)
         write_list(out, "stokes", node->stokes, 4);
     if (node->kind == RAY_SHADOW && node->light >= 0) {
         fputc(',', out);
-        good = write_word(out, "light", t->s->lights[node->light].name);
+        good = write_word(out, "light", scene_light_name(t->s, node->light));
         write_number(out, "light_distance", node->light_distance);
     }
     write_list(out, "brought", node->brought, 3);
@@ -140,7 +141,7 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
         fputc(']', out);
     }
     write_number(out, "lambda_nm", tree->lambda_nm);
-    fprintf(out, ",\"carries\":\"%s\"", scene_has_basic_radiance(&t->s->render) ? "basic" : "classic");
+    fprintf(out, ",\"carries\":\"%s\"", scene_has_basic_radiance(scene_settings(t->s)) ? "basic" : "classic");
     fputs("}\n", out);
     return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "out of memory while writing JSON");
 }

@@ -1,7 +1,8 @@
 #include "study/rows.h"
 #include "base/text.h"
 #include "scene/model/params.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
 #include "study/grid.h"
 #include <inttypes.h>
 #include <stdio.h>
@@ -54,7 +55,7 @@ void row_put(csv_line *line, const quantity *q, const job_account *made, int wor
     case QUANTITY_WORD: csv_text(line, v.word); break;
     case QUANTITY_DEPTHS: put_by_depth(line, &v); break;
     case QUANTITY_SOLIDS:
-        for (size_t i = 0; i < made->of->solid_count; i++)
+        for (size_t i = 0; i < scene_solid_count(made->of); i++)
             csv_count(line, i < v.size ? (int64_t)v.list[i] : -1);
         break;
     }
@@ -142,8 +143,8 @@ static void put_name(void *context, const row_column *column)
         for (size_t k = 0; (path = study_grid_path(h->of, k)); k++)
             csv_text(line, path);
     } else {
-        for (size_t k = 0; k < h->of->base->solid_count; k++) {
-            char *text = text_format("%.*s%s", (int)(bracket - name), name, h->of->base->solids[k].name);
+        for (size_t k = 0; k < scene_solid_count(h->of->base); k++) {
+            char *text = text_format("%.*s%s", (int)(bracket - name), name, scene_solid_name(h->of->base, (int)k));
             line->failed |= !text;
             csv_text(line, text);
             free(text);

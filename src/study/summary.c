@@ -6,7 +6,7 @@
 #include "study/grid.h"
 #include "study/row_files.h"
 #include "study/rows.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -70,8 +70,8 @@ static void put_median(const cell_rows *cell, const char *name)
 
 static status put_solids(const study *s, const cell_rows *cell, diagnostic *why)
 {
-    for (size_t i = 0; i < s->base->solid_count; i++) {
-        char *name = text_format("first_hits.%s", s->base->solids[i].name);
+    for (size_t i = 0; i < scene_solid_count(s->base); i++) {
+        char *name = text_format("first_hits.%s", scene_solid_name(s->base, (int)i));
         if (!name)
             return out_of_memory(why);
         put_median(cell, name);

@@ -1,6 +1,6 @@
 #include "scene/model/camera.h"
 #include "base/elementary.h"
-#include "scene/model/scene.h"
+#include "scene/model/view_settings.h"
 
 static void aim_at_target(const struct camera *c, camera_frame *f)
 {
@@ -32,7 +32,7 @@ static void roll(camera_frame *f, double degrees)
 
 camera_frame camera_frame_level(const scene *s)
 {
-    const struct camera *c = &s->camera;
+    const struct camera *c = scene_camera(s);
     camera_frame f;
     f.eye = c->position;
     if (c->aimed)
@@ -43,13 +43,13 @@ camera_frame camera_frame_level(const scene *s)
     double sine, cosine;
     elementary_sincos_deg(0.5 * c->fov_deg, &sine, &cosine);
     f.half_height = sine / cosine;
-    f.half_width = f.half_height * ((double)s->render.width / (double)s->render.height);
+    f.half_width = f.half_height * ((double)scene_settings(s)->width / (double)scene_settings(s)->height);
     return f;
 }
 
 camera_frame camera_frame_of(const scene *s)
 {
     camera_frame f = camera_frame_level(s);
-    roll(&f, s->camera.roll_deg);
+    roll(&f, scene_camera(s)->roll_deg);
     return f;
 }

@@ -1,7 +1,6 @@
 #include "scene/model/medium.h"
 
 #include "base/elementary_inline.h"
-#include "scene/model/scene.h"
 #include <float.h>
 #include <string.h>
 
@@ -78,8 +77,8 @@ bool index_laws_match(const render_settings *r, const index_law *a, const index_
 bool material_matches_surroundings(const scene *s, const material *m)
 {
     index_law own;
-    const index_law around = surrounding_index_law(&s->background);
-    return material_index_law(m, "", &own, NULL) == STATUS_OK && index_laws_match(&s->render, &own, &around);
+    const index_law around = surrounding_index_law(scene_background(s));
+    return material_index_law(m, "", &own, NULL) == STATUS_OK && index_laws_match(scene_settings(s), &own, &around);
 }
 
 bool material_is_mirror(const material *m)

@@ -27,6 +27,9 @@ status scene_read_text(const char *name, const char *text, size_t size, scene **
 const char *scene_path(const scene *s);
 const char *scene_root(const scene *s);
 const struct render_settings *scene_settings(const scene *s);
+const struct camera *scene_camera(const scene *s);
+const struct background *scene_background(const scene *s);
+size_t scene_solid_count(const scene *s);
 const char *scene_solid_name(const scene *s, int index);
 const char *scene_light_name(const scene *s, int index);
 

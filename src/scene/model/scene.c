@@ -89,6 +89,21 @@ const render_settings *scene_settings(const scene *s)
     return &s->render;
 }
 
+const struct camera *scene_camera(const scene *s)
+{
+    return &s->camera;
+}
+
+const struct background *scene_background(const scene *s)
+{
+    return &s->background;
+}
+
+size_t scene_solid_count(const scene *s)
+{
+    return s->solid_count;
+}
+
 const char *scene_solid_name(const scene *s, int index)
 {
     return s->solids[index].name;

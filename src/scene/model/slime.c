@@ -2,7 +2,6 @@
 #include "measure/clock.h"
 #include "scene/assets/assets.h"
 #include "scene/motion/script.h"
-#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -60,7 +59,7 @@ status slime_read_script(const scene *s, const mesh_entry *m, hand_script **out,
         return out_of_memory(why);
     }
     diagnostic bad = {.what = ""};
-    const status code = script_read_below(path, s->limits.root, out, &bad);
+    const status code = script_read_below(path, scene_root(s), out, &bad);
     free(path);
     if (code != STATUS_OK && bad.line == 0) { /* no text to point at: wrong is what names it */
         return asset_error(s, m->name, m->script_line, m->script_column, &bad, code, why);
@@ -129,7 +128,7 @@ static status advance_watched(slime *x, const scene *s, const mesh_entry *m, dou
         asked_s = now_s;
         if (!watch->go_on(watch->context, (x->steps + 1.0 - first) / (last - first))) {
             x->steps += 1.0;
-            diagnostic_locate(bad, s->path, 0, 0);
+            diagnostic_locate(bad, scene_path(s), 0, 0);
             return diagnose(bad, STATUS_INTERRUPTED, "", "interrupted at %.6g s of the %.6g s that the slime moves",
                             x->steps * m->slime.dt_s, time_s);
         }

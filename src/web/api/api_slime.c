@@ -3,7 +3,8 @@
 
 #include "report/json.h"
 #include "scene/motion/motion.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -109,7 +110,7 @@ static vec3 way_to(const scene *s, double x, double y, double depth, vec3 where)
 {
     const double nearest = 0.05;
     vec3 eye, direction, forward;
-    lab_camera_ray(s, (double)s->render.width / 2.0, (double)s->render.height / 2.0, &eye, &forward);
+    lab_camera_ray(s, (double)scene_settings(s)->width / 2.0, (double)scene_settings(s)->height / 2.0, &eye, &forward);
     lab_camera_ray(s, x, y, &eye, &direction);
     const double away = vec3_dot(vec3_sub(where, eye), forward), along = fmax(away + depth, nearest * fabs(away));
     const vec3 there = vec3_add(eye, vec3_scale(direction, along / vec3_dot(direction, forward)));

@@ -2,7 +2,8 @@
 #include "measure/clock.h"
 #include "scene/model/camera.h"
 #include "report/json.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
+#include "scene/model/view_settings.h"
 
 #include <errno.h>
 #include <math.h>
@@ -213,12 +214,12 @@ static json_t *vector_json(vec3 v)
 static json_t *camera_json(const scene *s)
 {
     const camera_frame f = camera_frame_of(s);
-    const bool aimed = s->camera.aimed;
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "eye", vector_json(f.eye), "forward",
-                     vector_json(f.forward), "right", vector_json(f.right), "up", vector_json(f.up), "half_width",
-                     json_of_real(f.half_width), "half_height", json_of_real(f.half_height), "target",
-                     aimed ? vector_json(s->camera.target) : json_null(), "distance",
-                     json_of_real(aimed ? vec3_length(vec3_sub(s->camera.target, s->camera.position)) : NAN));
+    const bool aimed = scene_camera(s)->aimed;
+    return json_pack(
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "eye", vector_json(f.eye), "forward", vector_json(f.forward),
+        "right", vector_json(f.right), "up", vector_json(f.up), "half_width", json_of_real(f.half_width), "half_height",
+        json_of_real(f.half_height), "target", aimed ? vector_json(scene_camera(s)->target) : json_null(), "distance",
+        json_of_real(aimed ? vec3_length(vec3_sub(scene_camera(s)->target, scene_camera(s)->position)) : NAN));
 }
 
 bool painter_tell(painter *p, json_t *state)
