@@ -8,8 +8,8 @@
 #include <stdio.h>
 
 typedef struct outputs {
-    const char *picture, *rays, *time, *noise, *timeline; /* NULL: not wanted */
-    int bits;                                             /* of a PNG picture: 8 or 16; 0 when not said */
+    const char *picture, *rays, *time, *noise, *timeline, *layers; /* NULL: not wanted; layers: a prefix */
+    int bits;                                                      /* of a PNG picture: 8 or 16; 0 when not said */
 } outputs;
 
 /* Of a path: its folder in fresh memory, "." for a bare name, and the name in it. */

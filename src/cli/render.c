@@ -43,6 +43,8 @@ static const command_option options[] = {
      OPTION_FILLS(option_text, render_request, files.noise)},
     {"timeline", 0, "FILE", "write when each tile was taken by whom: .json, for chrome://tracing or Perfetto",
      OPTION_FILLS(option_text, render_request, files.timeline)},
+    {"layers", 0, "PREFIX", "write each named layer of an integrator that gives them as PREFIX-LAYER.pfm",
+     OPTION_FILLS(option_text, render_request, files.layers)},
     {"repeat", 0, "N", "render N times; wall_s and cpu_s are the medians",
      OPTION_FILLS(option_integer, render_request, repeat), .lowest = 1, .highest = 1000000},
     {0},
@@ -52,7 +54,8 @@ static status check_request(void *asked, diagnostic *why)
 {
     const render_request *request = asked;
     const outputs *files = &request->files;
-    if (files->picture || files->rays || files->time || files->noise || files->timeline || request->json)
+    if (files->picture || files->rays || files->time || files->noise || files->timeline || files->layers ||
+        request->json)
         return STATUS_OK;
     return options_wrong("render", NULL, why, "add -o FILE for the picture or --json for the counts",
                          "nothing is asked for");
@@ -83,6 +86,8 @@ static void print_summary(const job_account *f, const outputs *files)
             printf("%s%s", before, written[i]);
             before = ", ";
         }
+    if (files->layers)
+        printf("%s%s-*.pfm", before, files->layers);
     putchar('\n');
 }
 
@@ -121,6 +126,7 @@ static status render_and_write(const render_request *request, const scene *s, jo
     const render_options wanted = {.pixel_rays = files->rays,
                                    .pixel_time = files->time,
                                    .timeline = files->timeline,
+                                   .layers = files->layers,
                                    .progress = show_progress,
                                    .context = &line};
     job_account measured;
