@@ -4,7 +4,7 @@
 #define CUVETTE_TESTS_HTTP_FIXTURE_H
 
 #include "base/text.h"
-#include "web/http/http.h"
+#include "web/http/http_private.h"
 #include <arpa/inet.h>
 #include <stdbool.h>
 #include <dirent.h>
@@ -124,6 +124,15 @@ static inline int count_entries(const char *folder)
         count++;
     closedir(d);
     return count;
+}
+
+/* A route that answers with the request's body. */
+static inline void echo(void *context, const http_request *q, http_reply *r)
+{
+    (void)context;
+    char *copy = malloc(q->body_size + 1);
+    memcpy(copy, q->body ? q->body : "", q->body_size + 1);
+    http_reply_bytes(r, 200, "text/plain", copy, q->body_size);
 }
 
 #endif

@@ -16,18 +16,8 @@ static void hello(void *context, const http_request *q, http_reply *r)
     const char *word = http_query_value(q, "word");
     http_reply_header(r, "X-Word", "one\r\nX-Evil: two");
     http_reply_header(r, "X-Good", "three");
-    http_reply_json(
-        r, 200, json_pack("{s:s, s:s, s:s}", "hello", context, "word", word ? word : "(none)", "path", http_path(q)));
-}
-
-static void echo(void *context, const http_request *q, http_reply *r)
-{
-    (void)context;
-    size_t size;
-    const char *body = http_body(q, &size);
-    char *copy = malloc(size + 1);
-    memcpy(copy, body, size + 1);
-    http_reply_bytes(r, 200, "text/plain", copy, size);
+    http_reply_json(r, 200,
+                    json_pack("{s:s, s:s, s:s}", "hello", context, "word", word ? word : "(none)", "path", q->path));
 }
 
 static void part(void *context, const http_request *q, http_reply *r)

@@ -9,16 +9,6 @@
 #include "http_fixture.h"
 #include "random_stream.h"
 
-static void echo(void *context, const http_request *q, http_reply *r)
-{
-    (void)context;
-    size_t size;
-    const char *body = http_body(q, &size);
-    char *copy = malloc(size + 1);
-    memcpy(copy, body, size + 1);
-    http_reply_bytes(r, 200, "text/plain", copy, size);
-}
-
 static const http_route routes[] = {
     {"GET", "/events", http_events, NULL}, {"POST", "/a/{b}", echo, NULL}, {"GET", "/a/{b}", echo, NULL}};
 

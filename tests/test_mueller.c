@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "optics/mueller.h"
+#include "mueller_matrix.h"
 #include "polarised_chain.h"
 #include "random_stream.h"
 

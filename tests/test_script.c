@@ -68,7 +68,7 @@ static void a_script_says_what_its_hands_do(void **state)
 static status read_bad_script(const char *path, diagnostic *why)
 {
     hand_script *s = NULL;
-    const status code = script_read(path, &s, why);
+    const status code = script_read_below(path, NULL, &s, why);
     assert_null(s);
     assert_true(!why || why->remedy[0]);
     return code;
@@ -105,10 +105,10 @@ static void what_is_no_file_or_too_large_a_one_is_refused(void **state)
     (void)state;
     diagnostic why = {.what = ""};
     hand_script *s;
-    assert_int_equal(script_read(FOLDER "no-such.yaml", &s, &why), STATUS_BAD_INPUT);
+    assert_int_equal(script_read_below(FOLDER "no-such.yaml", NULL, &s, &why), STATUS_BAD_INPUT);
     assert_string_equal(why.file, FOLDER "no-such.yaml");
     assert_null(s);
-    assert_int_equal(script_read("tests", &s, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(script_read_below("tests", NULL, &s, NULL), STATUS_BAD_INPUT);
     const size_t size = (1 << 20) + 1;
     char *huge = malloc(size);
     assert_non_null(huge);

@@ -39,7 +39,7 @@ static hand_script *recorded_grab(void)
 {
     hand_script *script;
     diagnostic why = {.what = ""};
-    const status code = script_read("experiments/hands/tug.yaml", &script, &why);
+    const status code = script_read_below("experiments/hands/tug.yaml", NULL, &script, &why);
     assert_string_equal(why.what, "");
     assert_int_equal(code, STATUS_OK);
     return script;

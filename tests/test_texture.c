@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "image/texture.h"
+#include "texture_fixture.h"
 #include <float.h>
 #include <math.h>
 #include <pthread.h>

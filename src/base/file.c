@@ -237,8 +237,7 @@ status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
     return system_error(why, STATUS_FAILURE, path, "cannot write", error);
 }
 
-/* The entry in the folder must reach the disk too; some file systems cannot do that, which is no error. */
-static void flush_folder(const char *path)
+void file_flush_folder(const char *path)
 {
     char *folder = beside(path, ".");
     int fd = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
@@ -278,7 +277,7 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
                             "cannot write: a write failed");
         }
     } else if (writer->temporary) {
-        flush_folder(writer->path);
+        file_flush_folder(writer->path);
     }
     release(writer);
     return code;
@@ -293,6 +292,14 @@ void file_writer_abandon(file_writer *writer)
         unlink(writer->temporary);
     }
     release(writer);
+}
+
+status file_writer_end(file_writer *writer, status code, diagnostic *why)
+{
+    if (code == STATUS_OK)
+        return file_writer_commit(writer, why);
+    file_writer_abandon(writer);
+    return code;
 }
 
 static int make_one_directory(const char *path)

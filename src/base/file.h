@@ -21,6 +21,11 @@ typedef struct file_writer {
 status file_writer_open(file_writer *writer, const char *path, diagnostic *why);
 status file_writer_commit(file_writer *writer, diagnostic *why);
 void file_writer_abandon(file_writer *writer);
+/* One or the other: commits where code, of what was to be written, is STATUS_OK; else abandons and returns it. */
+status file_writer_end(file_writer *writer, status code, diagnostic *why);
+
+/* The entry of a file in its folder must reach the disk too; some file systems cannot do that, which is no error. */
+void file_flush_folder(const char *path);
 
 /* Makes a directory and its parents; no error if it is there. */
 status file_make_directory(const char *path, diagnostic *why);

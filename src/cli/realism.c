@@ -115,7 +115,7 @@ static status print_json(const realism_request *request, const realism_report *r
     bad |= json_object_set_new(o, "defined", json_integer(defined));
     bad |= json_object_set_new(o, "passed", json_integer(passed));
     bad |= json_object_set_new(o, "values", values);
-    return json_print(json_unless(bad, o), why);
+    return json_print(json_whole(o, bad == 0), why);
 }
 
 static status print_curve(const scene *s, isa level, realism_curve which, diagnostic *why)

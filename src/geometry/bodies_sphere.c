@@ -78,23 +78,6 @@ static void place_flat(mesh *m, size_t face, size_t f)
     }
 }
 
-status body_sphere(size_t count, mesh **out, diagnostic *why)
-{
-    if (count < 1 || count > MESH_TRIANGLES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "a sphere of %zu triangles", count);
-    size_t f = (size_t)floor(sqrt((double)count / 20.0) + 0.5);
-    f = f < 1 ? 1 : f;
-    mesh *m;
-    status result = make_grids(f, &m, why);
-    if (result != STATUS_OK)
-        return result;
-    for (size_t face = 0; face < 20; face++) {
-        place_flat(m, face, f);
-        clothe(m, face, row_start(f + 1));
-    }
-    return body_end(m, true, out, why);
-}
-
 /* Points between those that are `step` rows apart, until all f + 1 rows are there. */
 static void place_bisected(mesh *m, size_t face, size_t f)
 {
@@ -115,18 +98,30 @@ static void place_bisected(mesh *m, size_t face, size_t f)
     }
 }
 
-status body_icosphere(int level, mesh **out, diagnostic *why)
+static status make_sphere(size_t f, void (*place)(mesh *m, size_t face, size_t f), mesh **out, diagnostic *why)
 {
-    if (level < 0 || level > BODY_LEVEL_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 11", "level %d of an icosphere", level);
-    const size_t f = (size_t)1 << level;
     mesh *m;
     status result = make_grids(f, &m, why);
     if (result != STATUS_OK)
         return result;
     for (size_t face = 0; face < 20; face++) {
-        place_bisected(m, face, f);
+        place(m, face, f);
         clothe(m, face, row_start(f + 1));
     }
     return body_end(m, true, out, why);
+}
+
+status body_sphere(size_t count, mesh **out, diagnostic *why)
+{
+    if (count < 1 || count > MESH_TRIANGLES_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "a sphere of %zu triangles", count);
+    const size_t f = (size_t)floor(sqrt((double)count / 20.0) + 0.5);
+    return make_sphere(f < 1 ? 1 : f, place_flat, out, why);
+}
+
+status body_icosphere(int level, mesh **out, diagnostic *why)
+{
+    if (level < 0 || level > BODY_LEVEL_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 11", "level %d of an icosphere", level);
+    return make_sphere((size_t)1 << level, place_bisected, out, why);
 }

@@ -111,15 +111,12 @@ status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diag
     if (code != STATUS_OK) {
         return code;
     }
-    image *picture;
-    code = image_create((int)header.width, (int)header.height, &picture, why);
+    image *picture = NULL;
+    float *linear = NULL;
+    code = codec_begin(header.width, header.height, size, 255, &picture, &linear, why);
     if (code != STATUS_OK) {
-        return code;
-    }
-    float *linear = codec_decode_table(255);
-    if (!linear) {
         image_destroy(picture);
-        return out_of_memory(why);
+        return code;
     }
     const size_t width = (size_t)header.width, height = (size_t)header.height;
     for (size_t row = 0; row < height; row++) {

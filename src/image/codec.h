@@ -22,6 +22,11 @@
 /* STATUS_BAD_INPUT unless a file of so many bytes may have this size. */
 status codec_check_size(long long width, long long height, size_t file_bytes, diagnostic *why);
 
+/* A picture of the size that a file of so many bytes claims, and the decoding table of its values 0..maximum. Both are
+ * the caller's, also of what there is when this fails. */
+status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **picture,
+                   float **linear, diagnostic *why);
+
 /* sRGB-encoded and correctly rounded to 0..maximum; NaN is 0. */
 unsigned codec_quantize(float linear, unsigned maximum);
 

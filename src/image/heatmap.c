@@ -2,6 +2,7 @@
 
 #include "base/number.h"
 #include "image/codec.h"
+#include "image/color_map.h"
 #include "image/font.h"
 #include <math.h>
 #include <stdbool.h>
@@ -9,20 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* viridis by S. van der Walt and N. Smith for matplotlib 2015 (CC0), every fifth of its 256 colours; straight lines
- * between them stay within 1/255 of the rest. */
-enum { VIRIDIS_KNOTS = 52 };
-static const unsigned char VIRIDIS[VIRIDIS_KNOTS][3] = {
-    {68, 1, 84},    {70, 8, 92},    {71, 16, 99},   {72, 23, 105},  {72, 29, 111},  {72, 36, 117},  {71, 42, 122},
-    {70, 48, 126},  {69, 55, 129},  {67, 61, 132},  {65, 66, 135},  {63, 72, 137},  {61, 78, 138},  {58, 83, 139},
-    {56, 89, 140},  {53, 94, 141},  {51, 99, 141},  {49, 104, 142}, {46, 109, 142}, {44, 113, 142}, {42, 118, 142},
-    {41, 123, 142}, {39, 128, 142}, {37, 132, 142}, {35, 137, 142}, {33, 142, 141}, {32, 146, 140}, {31, 151, 139},
-    {30, 156, 137}, {31, 161, 136}, {33, 165, 133}, {36, 170, 131}, {40, 174, 128}, {46, 179, 124}, {53, 183, 121},
-    {61, 188, 116}, {70, 192, 111}, {80, 196, 106}, {90, 200, 100}, {101, 203, 94}, {112, 207, 87}, {124, 210, 80},
-    {137, 213, 72}, {149, 216, 64}, {162, 218, 55}, {176, 221, 47}, {189, 223, 38}, {202, 225, 31}, {216, 226, 25},
-    {229, 228, 25}, {241, 229, 29}, {253, 231, 37},
-};
 
 static const unsigned char PAPER[3] = {255, 255, 255}, INK[3] = {34, 34, 34}, FRAME[3] = {120, 120, 120};
 
@@ -42,11 +29,10 @@ typedef struct key_scale {
 
 void heatmap_color(double t, unsigned char rgb[3])
 {
-    double at = (t > 0 ? t < 1 ? t : 1 : 0) * (VIRIDIS_KNOTS - 1); /* NaN is 0 */
-    int knot = at < VIRIDIS_KNOTS - 2 ? (int)at : VIRIDIS_KNOTS - 2;
+    double exact[3];
+    color_map_at(VIRIDIS, t, exact);
     for (int channel = 0; channel < 3; channel++) {
-        double from = VIRIDIS[knot][channel], to = VIRIDIS[knot + 1][channel];
-        rgb[channel] = (unsigned char)floor(from + (to - from) * (at - knot) + 0.5);
+        rgb[channel] = (unsigned char)floor(exact[channel] + 0.5);
     }
 }
 

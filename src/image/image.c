@@ -82,6 +82,19 @@ status codec_check_size(long long width, long long height, size_t file_bytes, di
     return STATUS_OK;
 }
 
+status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **picture,
+                   float **linear, diagnostic *why)
+{
+    status code = codec_check_size(width, height, file_bytes, why);
+    if (code == STATUS_OK) {
+        code = image_create((int)width, (int)height, picture, why);
+    }
+    if (code == STATUS_OK && !(*linear = codec_decode_table(maximum))) {
+        code = out_of_memory(why);
+    }
+    return code;
+}
+
 static status write_as(const image *picture, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
 {
     switch (format) {

@@ -139,20 +139,11 @@ static bool choose_colors(jpeg_job *job, j_decompress_ptr cinfo)
 
 static bool allocate(jpeg_job *job, long long width, long long height, size_t file_bytes)
 {
-    job->code = codec_check_size(width, height, file_bytes, job->why);
-    if (job->code == STATUS_OK) {
-        job->code = image_create((int)width, (int)height, &job->picture, job->why);
-    }
-    if (job->code != STATUS_OK) {
-        return false;
-    }
-    job->linear = codec_decode_table(255);
-    job->row = malloc((size_t)width * 3);
-    if (!job->linear || !job->row) {
+    job->code = codec_begin(width, height, file_bytes, 255, &job->picture, &job->linear, job->why);
+    if (job->code == STATUS_OK && !(job->row = malloc((size_t)width * 3))) {
         job->code = out_of_memory(job->why);
-        return false;
     }
-    return true;
+    return job->code == STATUS_OK;
 }
 
 static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progress_mgr *progress,

@@ -139,21 +139,17 @@ static void store_row(png_job *job, const unsigned char *row, int y, size_t chan
 
 static bool allocate(png_job *job, long long width, long long height, bool interlaced)
 {
-    job->code = codec_check_size(width, height, job->size, job->why);
-    if (job->code == STATUS_OK) {
-        job->code = image_create((int)width, (int)height, &job->picture, job->why);
-    }
+    job->code =
+        codec_begin(width, height, job->size, job->bits == 8 ? 255 : 65535, &job->picture, &job->linear, job->why);
     if (job->code != STATUS_OK) {
         return false;
     }
-    job->linear = codec_decode_table(job->bits == 8 ? 255 : 65535);
     /* Zeroed, because an interlaced picture is read by combining with what was there. */
     job->raw = calloc(interlaced ? (size_t)height : 1, png_get_rowbytes(job->png, job->info));
-    if (!job->linear || !job->raw) {
+    if (!job->raw) {
         job->code = out_of_memory(job->why);
-        return false;
     }
-    return true;
+    return job->raw;
 }
 
 static bool read_rows(png_job *job)

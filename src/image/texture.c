@@ -99,12 +99,6 @@ status texture_create(const image *picture, texture_space space, texture_wrap wr
     return STATUS_OK;
 }
 
-status texture_read(const char *path, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
-                    texture_filter filter, texture **out, diagnostic *why)
-{
-    return texture_read_below(path, NULL, space, wrap_u, wrap_v, filter, out, why);
-}
-
 status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u,
                           texture_wrap wrap_v, texture_filter filter, texture **out, diagnostic *why)
 {
@@ -135,24 +129,6 @@ void texture_release(const texture *t)
     }
 }
 
-int texture_levels(const texture *t)
-{
-    return t->levels;
-}
-
-void texture_size(const texture *t, int level, int *width, int *height)
-{
-    *width = t->level[level].width;
-    *height = t->level[level].height;
-}
-
-vec3 texture_texel(const texture *t, int level, int x, int y)
-{
-    const texture_level *from = &t->level[level];
-    const texel *c = &from->texels[(size_t)y * (size_t)from->width + (size_t)x];
-    return vec3_make((double)c->r, (double)c->g, (double)c->b);
-}
-
 uint64_t texture_hash(const texture *t, uint64_t hash)
 {
     const texture_level *l = &t->level[0];
@@ -163,9 +139,4 @@ uint64_t texture_hash(const texture *t, uint64_t hash)
         hash = hash_bytes(hash, c, sizeof c);
     }
     return hash;
-}
-
-size_t texture_bytes(const texture *t)
-{
-    return sizeof *t + t->block_bytes;
 }

@@ -36,10 +36,7 @@ typedef struct texture texture;
 status texture_create(const image *picture, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
                       texture_filter filter, texture **out, diagnostic *why);
 
-/* The same from a file: image_read's diagnostics and limits. */
-status texture_read(const char *path, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
-                    texture_filter filter, texture **out, diagnostic *why);
-/* The same of a file that lies below root (base/below.h). */
+/* The same from a file that lies below root (base/below.h; NULL: anywhere): image_read's diagnostics and limits. */
 status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u,
                           texture_wrap wrap_v, texture_filter filter, texture **out, diagnostic *why);
 
@@ -54,16 +51,7 @@ void texture_release(const texture *t); /* NULL is allowed */
  * 0, and so does a footprint that is negative or not a number. */
 vec3 texture_sample(const texture *t, double u, double v, double footprint);
 
-/* The pyramid: number of levels (1 unless TEXTURE_TRILINEAR), size of one (level k has floor(w / 2^k) x floor(h / 2^k)
- * texels, at least 1 x 1), and one texel, x from the left, y from below. Each level's mean is the picture's. */
-int texture_levels(const texture *t);
-void texture_size(const texture *t, int level, int *width, int *height);
-vec3 texture_texel(const texture *t, int level, int x, int y);
-
 /* Goes into a fingerprint (base/hash.h): size and texels of the picture itself. */
 uint64_t texture_hash(const texture *t, uint64_t hash);
-
-/* Memory that it takes. */
-size_t texture_bytes(const texture *t);
 
 #endif

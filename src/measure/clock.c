@@ -23,6 +23,12 @@ double clock_wall_s(void)
     return read_s(CLOCK_MONOTONIC);
 }
 
+struct timespec clock_after(double seconds)
+{
+    const int64_t at_ns = clock_wall_ns() + (int64_t)(seconds * 1e9);
+    return (struct timespec){(time_t)(at_ns / 1000000000), (long)(at_ns % 1000000000)};
+}
+
 int64_t clock_wall_ns(void)
 {
     return read_ns(CLOCK_MONOTONIC);

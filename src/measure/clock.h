@@ -4,11 +4,15 @@
 #define CUVETTE_MEASURE_CLOCK_H
 
 #include <stdint.h>
+#include <time.h>
 
 double clock_wall_s(void);
 int64_t clock_wall_ns(void);
 double clock_thread_cpu_s(void);
 double clock_process_cpu_s(void);
+
+/* CLOCK_MONOTONIC that long from now: until when pthread_cond_clockwait waits. */
+struct timespec clock_after(double seconds);
 
 /* What a clock can resolve, measured now: the smallest step seen, and the cost of one reading, in seconds. */
 typedef struct clock_quality {

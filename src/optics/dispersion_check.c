@@ -5,36 +5,31 @@
 
 static const double index_low = 0.1, index_high = 100.0;
 
+/* How many numbers a law takes: each count from `first` on in steps of `step`, up to `most`. */
+static const struct {
+    const char *remedy;
+    int first, step, most;
+} numbers[DISPERSION_KIND_COUNT] = {
+    [DISPERSION_CONSTANT] = {"give one number, n", 1, 1, 1},
+    [DISPERSION_SELLMEIER] = {"give pairs B C, with C in um^2", 2, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_SELLMEIER_LENGTHS] = {"give pairs B C, with C in um", 2, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_POLYNOMIAL] = {"give a0, then pairs of a coefficient and its power", 1, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_CAUCHY_POWERS] = {"give a0, then pairs of a coefficient and its power", 1, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_CAUCHY] = {"give A, then B in um^2, C in um^4 and so on", 1, 1, DISPERSION_TERMS_MAX},
+    [DISPERSION_GAS] = {"give pairs B C, both in um^-2", 2, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_TABLE] = {"give pairs of a wavelength in nm and an index, by ascending wavelength", 2, 2,
+                          DISPERSION_TERMS_MAX},
+};
+
 static const char *coefficients_of(dispersion_kind kind)
 {
-    switch (kind) {
-    case DISPERSION_CONSTANT: return "give one number, n";
-    case DISPERSION_SELLMEIER: return "give pairs B C, with C in um^2";
-    case DISPERSION_SELLMEIER_LENGTHS: return "give pairs B C, with C in um";
-    case DISPERSION_POLYNOMIAL:
-    case DISPERSION_CAUCHY_POWERS: return "give a0, then pairs of a coefficient and its power";
-    case DISPERSION_CAUCHY: return "give A, then B in um^2, C in um^4 and so on";
-    case DISPERSION_GAS: return "give pairs B C, both in um^-2";
-    case DISPERSION_TABLE: return "give pairs of a wavelength in nm and an index, by ascending wavelength";
-    }
-    return "";
+    return numbers[kind].remedy;
 }
 
 static bool count_fits(dispersion_kind kind, int count)
 {
-    if (count < 1 || count > DISPERSION_TERMS_MAX)
-        return false;
-    switch (kind) {
-    case DISPERSION_CONSTANT: return count == 1;
-    case DISPERSION_SELLMEIER:
-    case DISPERSION_SELLMEIER_LENGTHS:
-    case DISPERSION_GAS:
-    case DISPERSION_TABLE: return count % 2 == 0;
-    case DISPERSION_POLYNOMIAL:
-    case DISPERSION_CAUCHY_POWERS: return count % 2 == 1;
-    case DISPERSION_CAUCHY: return true;
-    }
-    return false;
+    const int first = numbers[kind].first;
+    return count >= first && count <= numbers[kind].most && (count - first) % numbers[kind].step == 0;
 }
 
 static status check_numbers(const dispersion *law, diagnostic *why)

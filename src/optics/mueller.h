@@ -1,4 +1,4 @@
-/* Polarised light at smooth interfaces: Stokes vectors, Mueller matrices, and what a ray that is followed backwards
+/* Polarised light at smooth interfaces: Stokes vectors, and what a ray that is followed backwards
  * from the eye carries instead of them. What a tracer calls for every ray is inline and without branches (+ - * / sqrt
  * alone), so that kernels and tests use the one formula. Pure; cannot fail; all values, nothing is owned.
  *
@@ -29,9 +29,6 @@
 typedef struct stokes {
     double i, q, u, v;
 } stokes;
-typedef struct mueller {
-    double m[4][4];
-} mueller; /* row: light that leaves; column: light that arrives */
 
 /* --- frames --- */
 
@@ -183,18 +180,5 @@ static inline stokes analyser_mirror(stokes row, vec3 d, vec3 n, vec3 reflected)
 {
     return analyser_across(row, d, n, reflected, sp_mirror());
 }
-
-/* --- forwards: whole matrices, for tables and tests --- */
-
-mueller mueller_from(sp_response r);
-/* Of light that arrives at cos_i in n_from, from its s/p frame into that of the light that leaves. m[0][0] is the share
- * of unpolarised light. */
-mueller mueller_reflect(double cos_i, double n_from, double n_to);
-mueller mueller_refract(double cos_i, double n_from, double n_to);
-/* Into a frame turned by a. */
-mueller mueller_rotation(double cos_2a, double sin_2a);
-/* a b: light meets b first. */
-mueller mueller_multiply(mueller a, mueller b);
-stokes mueller_apply(mueller m, stokes s);
 
 #endif

@@ -5,7 +5,6 @@
 
 #include "geometry/shapes/shape.h"
 
-#include "optics/media.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <string.h>
@@ -28,15 +27,10 @@ bool drop_is_there(const scene *s)
 /* A copy in which the drop is alone. */
 static scene *drop_alone(const scene *s, double lambda_nm)
 {
-    scene *copy = scene_clone(s);
+    scene *copy = arrange_at(s, lambda_nm);
     const int drop = drop_of(s);
     for (size_t i = 0; copy && i < copy->solid_count; i++)
         copy->solids[i].visible = (int)i == drop;
-    if (copy) {
-        copy->render.lambda_nm = lambda_nm;
-        copy->render.depth = 8;
-        copy->render.min_weight = 0.0;
-    }
     return copy;
 }
 
@@ -94,22 +88,11 @@ static status at_line(const metrics *m, double lambda_nm, double *measured, doub
 
 status realism_drop(const metrics *m, diagnostic *why)
 {
-    static const struct line {
-        const char *metric, *what;
-        double lambda_nm;
-    } lines[] = {
-        {"rainbow.F", "angle of the first rainbow at the F line, 486.1 nm", LINE_HYDROGEN_F_NM},
-        {"rainbow.d", "angle of the first rainbow at the d line, 587.6 nm", LINE_HELIUM_D_NM},
-        {"rainbow.C", "angle of the first rainbow at the C line, 656.3 nm", LINE_HYDROGEN_C_NM},
-        {"rainbow.own", "angle of the first rainbow at render.lambda_nm", 0.0},
-    };
-    status code = STATUS_OK;
-    for (int i = 0; i < 4 && code == STATUS_OK; i++) {
-        double measured, theory;
-        code = at_line(m, i < 3 ? lines[i].lambda_nm : m->traced->render.lambda_nm, &measured, &theory, why);
-        metrics_add(m, (realism_value){lines[i].metric,
-                                       isnan(theory) ? "an index outside 1..2 makes no rainbow" : lines[i].what, "rad",
-                                       measured, theory, ANGLE_TOLERANCE});
-    }
-    return code;
+    static const char *const names[] = {"rainbow.F", "rainbow.d", "rainbow.C", "rainbow.own"};
+    static const char *const what[] = {
+        "angle of the first rainbow at the F line, 486.1 nm", "angle of the first rainbow at the d line, 587.6 nm",
+        "angle of the first rainbow at the C line, 656.3 nm", "angle of the first rainbow at render.lambda_nm"};
+    double unused[2];
+    return metrics_at_lines(m, names, what, "an index outside 1..2 makes no rainbow", at_line, ANGLE_TOLERANCE, unused,
+                            why);
 }

@@ -13,33 +13,17 @@
 #define RATIO_TOLERANCE 1e-10 /* an edge's, over a rod that is some ten px wide or more */
 enum { SCAN_STEPS = 1024 };
 
-typedef struct line {
-    trial *t;
-    int rod;
-    double py;
-    status code;
-    diagnostic *why;
-} line;
-
-static bool traced_sees(void *context, double x)
-{
-    line *l = context;
-    const vec3 d = probe_camera_direction(l->t->p, x, l->py);
-    return trial_meets(l->t, l->t->s->camera.position, d, l->rod, true, &l->code, l->why);
-}
-
 /* Edges by the tracer, in a scene that it takes over; NaN where there are none. */
 static status traced_edges(scene *taken, const metrics *m, const double range[2], double py, double edge[2],
                            diagnostic *why)
 {
     trial t;
     status code = trial_start(&t, taken, m->level, why);
-    line l = {&t, m->at.rod, py, code, why};
     edge[0] = edge[1] = NAN;
-    if (code == STATUS_OK && !find_edges(traced_sees, &l, range[0], range[1], SCAN_STEPS, edge))
-        edge[0] = edge[1] = NAN;
+    if (code == STATUS_OK)
+        code = trial_edges(&t, m->at.rod, true, py, range, SCAN_STEPS, edge, why);
     trial_end(&t);
-    return l.code;
+    return code;
 }
 
 typedef struct theory_line {

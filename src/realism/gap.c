@@ -15,27 +15,16 @@ static const double narrow = 1e-7, wide = 1e-3; /* scene units */
 
 static scene *gap_scene(const scene *s, const setup *at, double gap, bool far_solid)
 {
-    scene *copy = arrange_empty(s);
+    scene *copy = arrange_shining(s, at, box_at(vec3_make(0.0, 0.5, 0.0), vec3_make(100.0, 1.0, 100.0)), -gap);
     if (!copy)
         return NULL;
-    solid *above = &copy->solids[at->vessel], *shining = &copy->solids[at->rod];
-    above->visible = shining->visible = 1;
-    above->priority = 2, shining->priority = 0;
-    above->shape = box_at(vec3_make(0.0, 0.5, 0.0), vec3_make(100.0, 1.0, 100.0));
-    above->surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
-    above->surface.absorb_spectrum.count = 0;
-    shining->shape = ground_at(-gap);
-    shining->surface = (material){.color = {1.0, 1.0, 1.0}, .ambient = 1.0, .ior = 1.0};
+    copy->solids[at->vessel].priority = 2, copy->solids[at->rod].priority = 0;
     if (far_solid) {
         solid *far = &copy->solids[at->liquid];
         far->visible = 1;
         far->priority = 9;
         far->shape = ball_at(vec3_make(0.0, 1e5, 0.0), 1.0);
     }
-    copy->background.ambient = vec3_make(1.0, 1.0, 1.0);
-    copy->background.kind = BACKGROUND_UNIFORM;
-    copy->background.color = vec3_make(0.0, 0.0, 0.0);
-    copy->render.beyond = BEYOND_BLACK;
     copy->render.depth = 1;
     return copy;
 }

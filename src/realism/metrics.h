@@ -84,4 +84,17 @@ double least_value(double (*f)(void *context, double x), void *context, double l
 typedef bool seen_at(void *context, double x);
 bool find_edges(seen_at *seen, void *context, double from, double to, int steps, double edge[2]);
 
+/* The same of a solid in a line of the traced picture, as trial_meets says; NaN where it has no edges. */
+status trial_edges(trial *t, int which, bool upright, double py, const double range[2], int steps, double edge[2],
+                   diagnostic *why);
+
+/* Adds an angle at the F, d and C lines and at render.lambda_nm; difference: of F less C, measured and in theory. none
+ * says why there is no theory, where that can be. */
+typedef status at_line_call(const metrics *m, double lambda_nm, double *measured, double *theory, diagnostic *why);
+status metrics_at_lines(const metrics *m, const char *const names[4], const char *const what[4], const char *none,
+                        at_line_call *at_line, double tolerance, double difference[2], diagnostic *why);
+
+/* A copy at a wavelength, with settings that trace what such an angle needs; NULL without memory. */
+scene *arrange_at(const scene *s, double lambda_nm);
+
 #endif

@@ -4,7 +4,6 @@
  * Least deviation is flat in the angle of incidence, so that its value is good to rounding however it is found. */
 #include "realism/metrics.h"
 
-#include "optics/media.h"
 #include "scene/model/scene.h"
 #include <math.h>
 
@@ -87,18 +86,12 @@ static double theory_least_deviation(double apex, double n)
 
 static status at_line(const metrics *m, double lambda_nm, double *measured, double *theory, diagnostic *why)
 {
-    scene *s = scene_clone(m->traced);
-    if (s) {
-        s->render.lambda_nm = lambda_nm;
-        s->render.depth = 8;
-        s->render.min_weight = 0.0;
-    }
     const prism_faces supposed = faces_of(m->supposed);
     const double apex = M_PI - acos(vec3_dot(supposed.left, supposed.right));
     *theory = theory_least_deviation(apex, relative_index(m->supposed, supposed.body, lambda_nm));
     trial t;
     search look = {.t = &t, .at = faces_of(m->traced), .why = why};
-    look.code = trial_start(&t, s, m->level, why);
+    look.code = trial_start(&t, arrange_at(m->traced, lambda_nm), m->level, why);
     *measured = look.code == STATUS_OK ? least_deviation(&look) : NAN;
     trial_end(&t);
     return look.code;
@@ -106,23 +99,14 @@ static status at_line(const metrics *m, double lambda_nm, double *measured, doub
 
 status realism_prism(const metrics *m, diagnostic *why)
 {
-    static const struct line {
-        const char *metric, *what;
-        double lambda_nm;
-    } lines[] = {
-        {"prism.F", "least deviation at the F line, 486.1 nm", LINE_HYDROGEN_F_NM},
-        {"prism.d", "least deviation at the d line, 587.6 nm", LINE_HELIUM_D_NM},
-        {"prism.C", "least deviation at the C line, 656.3 nm", LINE_HYDROGEN_C_NM},
-        {"prism.own", "least deviation at render.lambda_nm", 0.0},
-    };
-    double measured[4], theory[4];
-    status code = STATUS_OK;
-    for (int i = 0; i < 4 && code == STATUS_OK; i++) {
-        code = at_line(m, i < 3 ? lines[i].lambda_nm : m->traced->render.lambda_nm, &measured[i], &theory[i], why);
-        metrics_add(m, (realism_value){lines[i].metric, lines[i].what, "rad", measured[i], theory[i], ANGLE_TOLERANCE});
-    }
+    static const char *const names[] = {"prism.F", "prism.d", "prism.C", "prism.own"};
+    static const char *const what[] = {
+        "least deviation at the F line, 486.1 nm", "least deviation at the d line, 587.6 nm",
+        "least deviation at the C line, 656.3 nm", "least deviation at render.lambda_nm"};
+    double off[2];
+    const status code = metrics_at_lines(m, names, what, NULL, at_line, ANGLE_TOLERANCE, off, why);
     if (code == STATUS_OK)
-        metrics_add(m, (realism_value){"prism.F-C", "that at the F line less that at the C line", "rad",
-                                       measured[0] - measured[2], theory[0] - theory[2], 2.0 * ANGLE_TOLERANCE});
+        metrics_add(m, (realism_value){"prism.F-C", "that at the F line less that at the C line", "rad", off[0], off[1],
+                                       2.0 * ANGLE_TOLERANCE});
     return code;
 }

@@ -202,3 +202,22 @@ scene *arrange_interface(const scene *s, const setup *at, setup_medium from, set
     *start_y = below ? -1.0 : 1.0;
     return copy;
 }
+
+scene *arrange_shining(const scene *s, const setup *at, solid_shape slab, double y)
+{
+    scene *copy = arrange_empty(s);
+    if (!copy)
+        return NULL;
+    solid *clear = &copy->solids[at->vessel], *shining = &copy->solids[at->rod];
+    clear->visible = shining->visible = 1;
+    clear->shape = slab;
+    clear->surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
+    clear->surface.absorb_spectrum.count = 0;
+    shining->shape = ground_at(y);
+    shining->surface = (material){.color = {1.0, 1.0, 1.0}, .ambient = 1.0, .ior = 1.0};
+    copy->background.ambient = vec3_make(1.0, 1.0, 1.0);
+    copy->background.kind = BACKGROUND_UNIFORM;
+    copy->background.color = vec3_make(0.0, 0.0, 0.0);
+    copy->render.beyond = BEYOND_BLACK;
+    return copy;
+}

@@ -39,6 +39,11 @@ scene *arrange_empty(const scene *s);
 /* The vessel with its liquid alone. */
 scene *arrange_vessel(const scene *s, const setup *at);
 
+/* A slab of the vessel's medium without absorption, and below y a surface that shines with radiance 1 under a black
+ * sky.
+ */
+scene *arrange_shining(const scene *s, const setup *at, solid_shape slab, double y);
+
 /* Two media that meet at y = 0, a ray coming from (0, *start_y, 0); one of them may be SETUP_OUTSIDE, none a missing
  * liquid. */
 scene *arrange_interface(const scene *s, const setup *at, setup_medium from, setup_medium to, double *start_y);

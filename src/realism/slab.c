@@ -15,20 +15,9 @@ enum { DEPTH_MAX = 12 };
 
 static scene *slab_scene(const scene *s, const setup *at, int depth, bool polarised)
 {
-    scene *copy = arrange_empty(s);
+    scene *copy = arrange_shining(s, at, box_at(vec3_make(0.0, 0.0, 0.0), vec3_make(10.0, 0.1, 10.0)), -1.0);
     if (!copy)
         return NULL;
-    solid *slab = &copy->solids[at->vessel], *shining = &copy->solids[at->rod];
-    slab->visible = shining->visible = 1;
-    slab->shape = box_at(vec3_make(0.0, 0.0, 0.0), vec3_make(10.0, 0.1, 10.0));
-    slab->surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
-    slab->surface.absorb_spectrum.count = 0;
-    shining->shape = ground_at(-1.0);
-    shining->surface = (material){.color = {1.0, 1.0, 1.0}, .ambient = 1.0, .ior = 1.0};
-    copy->background.ambient = vec3_make(1.0, 1.0, 1.0);
-    copy->background.kind = BACKGROUND_UNIFORM;
-    copy->background.color = vec3_make(0.0, 0.0, 0.0);
-    copy->render.beyond = BEYOND_BLACK;
     copy->render.depth = depth;
     copy->render.polarisation = polarised;
     return copy;

@@ -1,5 +1,6 @@
 #include "realism/metrics.h"
 
+#include "optics/media.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include <math.h>
@@ -92,4 +93,58 @@ bool find_edges(seen_at *seen, void *context, double from, double to, int steps,
     edge[0] = bisect(seen, context, from + (first - 1) * step, from + first * step, false);
     edge[1] = bisect(seen, context, from + last * step, from + (last + 1) * step, true);
     return true;
+}
+
+typedef struct picture_line {
+    trial *t;
+    int which;
+    bool upright;
+    double py;
+    status code;
+    diagnostic *why;
+} picture_line;
+
+static bool traced_sees(void *context, double x)
+{
+    picture_line *l = context;
+    return trial_meets(l->t, l->t->s->camera.position, probe_camera_direction(l->t->p, x, l->py), l->which, l->upright,
+                       &l->code, l->why);
+}
+
+status trial_edges(trial *t, int which, bool upright, double py, const double range[2], int steps, double edge[2],
+                   diagnostic *why)
+{
+    picture_line l = {t, which, upright, py, STATUS_OK, why};
+    if (!find_edges(traced_sees, &l, range[0], range[1], steps, edge))
+        edge[0] = edge[1] = NAN;
+    return l.code;
+}
+
+status metrics_at_lines(const metrics *m, const char *const names[4], const char *const what[4], const char *none,
+                        at_line_call *at_line, double tolerance, double difference[2], diagnostic *why)
+{
+    const double lambda_nm[] = {LINE_HYDROGEN_F_NM, LINE_HELIUM_D_NM, LINE_HYDROGEN_C_NM, m->traced->render.lambda_nm};
+    double measured[4], theory[4];
+    status code = STATUS_OK;
+    for (int i = 0; i < 4 && code == STATUS_OK; i++) {
+        code = at_line(m, lambda_nm[i], &measured[i], &theory[i], why);
+        metrics_add(m, (realism_value){names[i], none && isnan(theory[i]) ? none : what[i], "rad", measured[i],
+                                       theory[i], tolerance});
+    }
+    if (code == STATUS_OK) {
+        difference[0] = measured[0] - measured[2];
+        difference[1] = theory[0] - theory[2];
+    }
+    return code;
+}
+
+scene *arrange_at(const scene *s, double lambda_nm)
+{
+    scene *copy = scene_clone(s);
+    if (copy) {
+        copy->render.lambda_nm = lambda_nm;
+        copy->render.depth = 8;
+        copy->render.min_weight = 0.0;
+    }
+    return copy;
 }

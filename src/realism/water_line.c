@@ -106,32 +106,16 @@ static double theory_break(const scene *arranged, const setup *at)
     return break_deg(x);
 }
 
-typedef struct line {
-    trial *t;
-    int rod;
-    double py;
-    status code;
-    diagnostic *why;
-} line;
-
-static bool traced_sees(void *context, double x)
-{
-    line *l = context;
-    return trial_meets(l->t, l->t->s->camera.position, probe_camera_direction(l->t->p, x, l->py), l->rod, false,
-                       &l->code, l->why);
-}
-
 static status measure_break(const metrics *m, scene *arranged, double *degrees, diagnostic *why)
 {
     trial t;
     status code = trial_start(&t, arranged, m->level, why);
     double x[LINES] = {NAN, NAN, NAN, NAN};
     for (int i = 0; i < LINES && code == STATUS_OK; i++) {
-        line l = {&t, m->at.rod, 300.0 + line_at[i], STATUS_OK, why};
+        const double range[2] = {200.0, 600.0};
         double edge[2];
-        if (find_edges(traced_sees, &l, 200.0, 600.0, 256, edge))
-            x[i] = edge[0];
-        code = l.code;
+        code = trial_edges(&t, m->at.rod, false, 300.0 + line_at[i], range, 256, edge, why);
+        x[i] = edge[0];
     }
     *degrees = break_deg(x);
     trial_end(&t);

@@ -164,9 +164,9 @@ status json_print(json_t *value, diagnostic *why)
     return json_put(stdout, value, why);
 }
 
-json_t *json_unless(int bad, json_t *value)
+json_t *json_whole(json_t *value, bool whole)
 {
-    if (!bad)
+    if (whole)
         return value;
     json_decref(value);
     return NULL;

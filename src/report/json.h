@@ -19,6 +19,9 @@ json_t *json_of_text(const char *text);
 /* {"error", "remedy"}, and "file", "line", "column" where there are any; NULL when memory is out. */
 json_t *json_of_diagnostic(const diagnostic *why);
 
+/* The value where it is whole; else NULL, and it is released. */
+json_t *json_whole(json_t *value, bool whole);
+
 /* For what is too large to build first: a text in quotes (as json_of_text), and a real with 17 significant digits,
  * printf's %.17g; null for what is not finite. */
 bool json_write_text(FILE *stream, const char *text);
@@ -29,8 +32,5 @@ status json_write(FILE *stream, const json_t *value, diagnostic *why);
 /* The same, and releases the value; json_print: to standard output. */
 status json_put(FILE *stream, json_t *value, diagnostic *why);
 status json_print(json_t *value, diagnostic *why);
-
-/* The value, or NULL, and it is released, where something of it could not be made. */
-json_t *json_unless(int bad, json_t *value);
 
 #endif

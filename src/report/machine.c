@@ -66,7 +66,7 @@ json_t *machine_json(const machine_account *a)
     bad |= json_object_set_new(o, "flags", json_string(CUVETTE_COMPILER_FLAGS));
     bad |= json_object_set(o, "disturbances", a->disturbances);
     free(summary);
-    return json_unless(bad, o);
+    return json_whole(o, bad == 0);
 }
 
 void machine_release(machine_account *a)

@@ -118,7 +118,7 @@ static json_t *indices_json(const medium *m, bool absolute)
         bad |= json_object_set_new(o, lines[i].name, json_of_real(n));
     }
     bad |= absolute ? 0 : json_object_set_new(o, "V_d", json_of_real(dispersion_abbe_number(&m->law)));
-    return json_unless(bad, o);
+    return json_whole(o, bad == 0);
 }
 
 static json_t *extrapolated_json(const medium *m)
@@ -165,7 +165,7 @@ static json_t *medium_json(const medium *m, double at_nm)
     bad |= json_object_set_new(o, "source", json_string(m->source));
     bad |= json_object_set_new(o, "verified", json_string(m->verified));
     bad |= json_object_set_new(o, "note", json_string(m->note));
-    return json_unless(bad, o);
+    return json_whole(o, bad == 0);
 }
 
 json_t *media_rows_json(const medium *only, double at_nm)

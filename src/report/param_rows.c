@@ -127,7 +127,7 @@ static json_t *line_json(const param_line *l, bool has_value)
     bad |= json_object_set_new(o, "default", report_value(row, row->fallback));
     bad |= has_value ? json_object_set_new(o, "value", report_value(row, l->value)) : 0;
     bad |= json_object_set_new(o, "meaning", json_string(row->meaning));
-    return json_unless(bad, o);
+    return json_whole(o, bad == 0);
 }
 
 status param_rows_json(const scene *s, const char *filter, json_t **out, diagnostic *why)

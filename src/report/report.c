@@ -193,7 +193,7 @@ json_t *report_create(const job_account *a, bool repeated)
     bad |= json_object_set_new(o, "version", json_string(CUVETTE_VERSION));
     bad |= json_object_set_new(o, "scene", json_of_text(a->of->path ? a->of->path : ""));
     bad |= json_object_set_new(o, "params", report_params(a->of));
-    return json_unless(bad, o);
+    return json_whole(o, bad == 0);
 }
 
 json_t *report_page(const job_account *a)
@@ -203,7 +203,7 @@ json_t *report_page(const job_account *a)
     for (size_t i = 0; i < frame_quantity_count; i++)
         if (frame_quantities[i].page)
             bad |= json_object_set_new(o, frame_quantities[i].page, report_quantity(&frame_quantities[i], a, -1));
-    return json_unless(bad, o);
+    return json_whole(o, bad == 0);
 }
 
 bool report_comparison(json_t *o, const image_comparison *c)

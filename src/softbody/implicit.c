@@ -101,7 +101,7 @@ bool softbody_solve(softbody *b)
 {
     b->solver_dt_s = b->pushing.dt_s;
     softbody_for_chunks(b, clear_chunk);
-    softbody_find_forces(b, WITH_NONE); /* damping is the matrix's */
+    softbody_find_forces(b, &b->change); /* damping is the matrix's */
     softbody_for_chunks(b, stiffen);
     softbody_for_chunks(b, press_velocity);
     b->pressing = pressing(b);

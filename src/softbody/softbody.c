@@ -12,13 +12,13 @@ double *softbody_array(size_t count)
     return array;
 }
 
-bool softbody_vectors(vectors *v, size_t stride)
+static bool make_vectors(vectors *v, size_t stride)
 {
     *v = (vectors){softbody_array(stride), softbody_array(stride), softbody_array(stride)};
     return v->x && v->y && v->z;
 }
 
-void softbody_vectors_free(vectors v)
+static void free_vectors(vectors v)
 {
     free(v.x);
     free(v.y);
@@ -33,7 +33,7 @@ static bool make_solver(softbody *b)
     vectors *const all[] = {&b->change, &b->residual, &b->direction, &b->image};
     bool made = b->stiff.nx && b->stiff.ny && b->stiff.nz && b->stiff.across && b->stiff.along;
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-        made &= softbody_vectors(all[i], b->net.stride);
+        made &= make_vectors(all[i], b->net.stride);
     return made;
 }
 
@@ -46,10 +46,10 @@ static bool make_arrays(softbody *b)
     b->bad = calloc(chunks + 1, sizeof *b->bad);
     b->state = softbody_array(STATE * stride);
     bool made = b->mass_kg && b->inverse_mass && b->sums && b->bad && b->state;
-    made &= softbody_vectors(&b->at, stride) && softbody_vectors(&b->velocity, stride) &&
-            softbody_vectors(&b->force, stride) && softbody_vectors(&b->gradient, stride);
+    made &= make_vectors(&b->at, stride) && make_vectors(&b->velocity, stride) && make_vectors(&b->force, stride) &&
+            make_vectors(&b->gradient, stride);
     if (b->set.integrator == SOFTBODY_VERLET)
-        made &= softbody_vectors(&b->acceleration, stride) && softbody_vectors(&b->guess, stride);
+        made &= make_vectors(&b->acceleration, stride) && make_vectors(&b->guess, stride);
     return made && (b->set.integrator != SOFTBODY_IMPLICIT || make_solver(b));
 }
 
@@ -145,7 +145,7 @@ static status fill(softbody *b, const softbody_net *net, diagnostic *why)
     if (b->set.ground && softbody_measure(b).low < b->set.ground_y - 1e-9 * b->set.radius)
         return diagnose(why, STATUS_BAD_INPUT, "raise its position, or lower ground_y",
                         "the slime begins at %g, under its floor at %g", softbody_measure(b).low, b->set.ground_y);
-    softbody_find_forces(b, WITH_OWN);
+    softbody_find_forces(b, &b->velocity);
     b->volume_at_rest = b->face_count > 0 ? softbody_volume_of_gradient(b) : 0.0;
     if (b->face_count > 0 && !(b->volume_at_rest > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "turn the faces round", "the faces enclose no volume");
@@ -240,7 +240,7 @@ void softbody_destroy(softbody *b)
     const vectors all[] = {b->at,    b->velocity, b->force,    b->gradient,  b->acceleration,
                            b->guess, b->change,   b->residual, b->direction, b->image};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-        softbody_vectors_free(all[i]);
+        free_vectors(all[i]);
     double *const stiff[] = {b->stiff.nx, b->stiff.ny, b->stiff.nz, b->stiff.across, b->stiff.along};
     for (size_t i = 0; i < sizeof stiff / sizeof stiff[0]; i++)
         free(stiff[i]);

@@ -101,8 +101,9 @@ struct softbody {
     vectors acceleration, guess; /* verlet's */
     stiff_slots stiff;           /* implicit's, and its solver's vectors */
     vectors change, residual, direction, image;
-    double *sums; /* by chunk */
-    int64_t *bad; /* by chunk */
+    const vectors *damped; /* velocities with which forces are being found */
+    double *sums;          /* by chunk */
+    int64_t *bad;          /* by chunk */
     double volume_at_rest;
     double size; /* largest extent at the beginning */
     double stable_dt_s;
@@ -141,8 +142,6 @@ static inline size_t softbody_chunks(const softbody *b)
 
 /* An array of doubles for every mass, zero, 64-byte aligned; NULL when memory is out. */
 double *softbody_array(size_t count);
-bool softbody_vectors(vectors *v, size_t stride);
-void softbody_vectors_free(vectors v);
 
 /* The net of the toy, for softbody_create: arrays are the caller's (free), also mass_of by vertex of body_icosphere's
  * mesh. */
@@ -160,10 +159,9 @@ void toy_net_release(toy_net *n);
 status springs_build(springs *s, const softbody_net *net, diagnostic *why);
 void springs_release(springs *s);
 
-/* Forces of springs and the volume's gradient as the body lies, with the body's velocities, with verlet's guess, or
- * with none (`change` is zero then); then the pressure. */
-typedef enum forces_with { WITH_OWN, WITH_GUESS, WITH_NONE } forces_with;
-void softbody_find_forces(softbody *b, forces_with which);
+/* Forces of springs and the volume's gradient as the body lies, then the pressure. The damping is found with these
+ * velocities: the body's own; verlet's guess; or none, which is what `change` has then. */
+void softbody_find_forces(softbody *b, const vectors *velocity);
 /* Volume by the gradient, which find_forces has just left. */
 double softbody_volume_of_gradient(softbody *b);
 

@@ -38,9 +38,10 @@ double softbody_sum(const softbody *b)
     return sum;
 }
 
-static void pack_with(softbody *b, size_t begin, size_t end, vectors velocity)
+static void pack(softbody *b, size_t begin, size_t end, size_t chunk)
 {
-    b->kernels->pack(b->at, velocity, b->state, begin, end);
+    (void)chunk;
+    b->kernels->pack(b->at, *b->damped, b->state, begin, end);
 }
 
 /* Volume is of degree 3 in the places, so a third of the sum of place times gradient (Euler); seen from one mass, where
@@ -55,36 +56,10 @@ static double volume_of_chunk(const softbody *b, size_t begin, size_t end)
     return sum;
 }
 
-static void find_with(softbody *b, size_t begin, size_t end, size_t chunk, vectors velocity)
+static void find(softbody *b, size_t begin, size_t end, size_t chunk)
 {
-    b->kernels->forces(&b->net, b->state, b->at, velocity, b->force, b->gradient, begin, end);
+    b->kernels->forces(&b->net, b->state, b->at, *b->damped, b->force, b->gradient, begin, end);
     b->sums[chunk] = b->face_count > 0 ? volume_of_chunk(b, begin, end) : 0.0;
-}
-
-/* With which velocities the damping is found: the body's own; verlet's guess; none, which is what `change` has then. */
-static void pack_own(softbody *b, size_t begin, size_t end, size_t chunk)
-{
-    (void)chunk, pack_with(b, begin, end, b->velocity);
-}
-static void pack_guess(softbody *b, size_t begin, size_t end, size_t chunk)
-{
-    (void)chunk, pack_with(b, begin, end, b->guess);
-}
-static void pack_none(softbody *b, size_t begin, size_t end, size_t chunk)
-{
-    (void)chunk, pack_with(b, begin, end, b->change);
-}
-static void find_own(softbody *b, size_t begin, size_t end, size_t chunk)
-{
-    find_with(b, begin, end, chunk, b->velocity);
-}
-static void find_guess(softbody *b, size_t begin, size_t end, size_t chunk)
-{
-    find_with(b, begin, end, chunk, b->guess);
-}
-static void find_none(softbody *b, size_t begin, size_t end, size_t chunk)
-{
-    find_with(b, begin, end, chunk, b->change);
 }
 
 double softbody_volume_of_gradient(softbody *b)
@@ -92,12 +67,11 @@ double softbody_volume_of_gradient(softbody *b)
     return softbody_sum(b) / 18.0;
 }
 
-void softbody_find_forces(softbody *b, forces_with which)
+void softbody_find_forces(softbody *b, const vectors *velocity)
 {
-    static chunk_work *const packs[] = {pack_own, pack_guess, pack_none}, *const finds[] = {find_own, find_guess,
-                                                                                            find_none};
-    softbody_for_chunks(b, packs[which]);
-    softbody_for_chunks(b, finds[which]);
+    b->damped = velocity;
+    softbody_for_chunks(b, pack);
+    softbody_for_chunks(b, find);
     const double at_rest = b->volume_at_rest;
     b->pushing.pressure =
         at_rest > 0.0 ? b->set.pressure * (at_rest - softbody_volume_of_gradient(b)) / at_rest / 6.0 : 0.0;
@@ -130,7 +104,7 @@ static void push_settle(softbody *b, size_t begin, size_t end, size_t chunk)
 static void find_acceleration(softbody *b)
 {
     const push step = b->pushing;
-    softbody_find_forces(b, WITH_OWN);
+    softbody_find_forces(b, &b->velocity);
     b->pushing.dt_s = 0.0;
     b->pushing.ground_y = -INFINITY;
     softbody_for_chunks(b, push_kick);
@@ -143,7 +117,7 @@ static void substep_verlet(softbody *b)
     if (!b->has_acceleration)
         find_acceleration(b);
     softbody_for_chunks(b, push_drift);
-    softbody_find_forces(b, WITH_GUESS);
+    softbody_find_forces(b, &b->guess);
     softbody_for_chunks(b, push_kick);
 }
 
@@ -160,7 +134,7 @@ static bool substep(softbody *b, double dt_s)
     b->pushing.speed_limit = b->size > 0.0 ? b->size / dt_s : 1e150;
     switch ((softbody_integrator)s->integrator) {
     case SOFTBODY_EULER:
-        softbody_find_forces(b, WITH_OWN);
+        softbody_find_forces(b, &b->velocity);
         softbody_for_chunks(b, push_euler);
         break;
     case SOFTBODY_VERLET: substep_verlet(b); break;

@@ -3,52 +3,44 @@
 #include <stdlib.h>
 
 /* HLW: Hairer, Lubich, Wanner, "Geometric numerical integration", 2nd edition. */
-static const softbody_trial trial_table[SOFTBODY_TRIAL_COUNT] = {
+static const struct {
+    const char *name, *unit, *what;
+} trial_table[SOFTBODY_TRIAL_COUNT] = {
     [SPRING_PERIOD] = {"spring.period_s", "s",
-                       "two masses on one spring: period; theory 2 pi sqrt(m / 2k) (Goldstein 3.1)", NAN, NAN},
+                       "two masses on one spring: period; theory 2 pi sqrt(m / 2k) (Goldstein 3.1)"},
     [SPRING_PERIOD_DISCRETE] = {"spring.period_discrete_s", "s",
                                 "the same; theory the integrator's own: pi dt / asin(omega dt / 2), implicit 2 pi dt / "
-                                "atan(omega dt) (HLW I.1)",
-                                NAN, NAN},
+                                "atan(omega dt) (HLW I.1)"},
     [SPRING_DECAY] = {"spring.decay", "",
-                      "factor of the swing in one step; theory 1, implicit 1 / sqrt(1 + (omega dt)^2) (HLW I.1)", NAN,
-                      NAN},
+                      "factor of the swing in one step; theory 1, implicit 1 / sqrt(1 + (omega dt)^2) (HLW I.1)"},
     [SPRING_ORDER] =
         {"spring.order", "",
-         "log2 of the error with dt over that with dt / 2, after a quarter swing; theory 1, verlet 2 (HLW I.1)", NAN,
-         NAN},
-    [FALL_DEPTH] = {"fall.depth", "scene units", "fall of one mass in 1 s (whole steps); theory g t^2 / 2 (Galilei)",
-                    NAN, NAN},
+         "log2 of the error with dt over that with dt / 2, after a quarter swing; theory 1, verlet 2 (HLW I.1)"},
+    [FALL_DEPTH] = {"fall.depth", "scene units", "fall of one mass in 1 s (whole steps); theory g t^2 / 2 (Galilei)"},
     [FALL_DEPTH_DISCRETE] = {"fall.depth_discrete", "scene units",
-                             "the same; theory the integrator's own: g t (t + dt) / 2, verlet g t^2 / 2", NAN, NAN},
+                             "the same; theory the integrator's own: g t (t + dt) / 2, verlet g t^2 / 2"},
     [BOUNCE_HEIGHT] = {"bounce.height", "scene units",
-                       "how high a mass rises again that falls by 1; theory restitution^2 (Newton)", NAN, NAN},
+                       "how high a mass rises again that falls by 1; theory restitution^2 (Newton)"},
     [BOUNCE_BODY] = {"bounce.body", "",
-                     "how high the toy's centre rises again over its height at rest, of a fall by its radius", NAN,
-                     NAN},
-    [ENERGY_DRIFT] = {"energy.drift", "", "free toy without damping, 1 s: largest |E - E0| / E0; theory 0", NAN, NAN},
-    [ENERGY_END] = {"energy.end", "", "the same at its end: E / E0 - 1; theory 0", NAN, NAN},
+                     "how high the toy's centre rises again over its height at rest, of a fall by its radius"},
+    [ENERGY_DRIFT] = {"energy.drift", "", "free toy without damping, 1 s: largest |E - E0| / E0; theory 0"},
+    [ENERGY_END] = {"energy.end", "", "the same at its end: E / E0 - 1; theory 0"},
     [ENERGY_RISE] = {"energy.rise", "",
-                     "free toy with damping, 1 s: largest rise of E from one step to the next, over E0; theory 0", NAN,
-                     NAN},
+                     "free toy with damping, 1 s: largest rise of E from one step to the next, over E0; theory 0"},
     [MOMENTUM_DRIFT] = {"momentum.drift", "",
-                        "free toy that turns, 1 s: largest change of momentum over the sum of |m v|; theory 0", NAN,
-                        NAN},
+                        "free toy that turns, 1 s: largest change of momentum over the sum of |m v|; theory 0"},
     [ANGULAR_MOMENTUM_DRIFT] = {"angular_momentum.drift", "",
-                                "the same of angular momentum, over the sum of |m x cross v|; theory 0", NAN, NAN},
+                                "the same of angular momentum, over the sum of |m x cross v|; theory 0"},
     [VOLUME_DRIFT] =
         {"volume.drift", "",
-         "toy after 3 s on its floor: volume over that at rest, less 1; theory 0, for a pressure without limit", NAN,
-         NAN},
+         "toy after 3 s on its floor: volume over that at rest, less 1; theory 0, for a pressure without limit"},
     [STABLE_SPRING] = {"stable_dt.spring_s", "s",
-                       "largest dt with which the spring's swing does not grow; theory 2 / omega; none for implicit",
-                       NAN, NAN},
+                       "largest dt with which the spring's swing does not grow; theory 2 / omega; none for implicit"},
     [STABLE_TOY] = {"stable_dt.toy_s", "s",
-                    "the same of the free toy, 1000 steps; theory a bound from below (Gershgorin); none for implicit",
-                    NAN, NAN},
-    [RATE_SUBSTEPS] = {"rate.substeps", "", "steps that each step is split into, on the floor", NAN, NAN},
-    [RATE_STEP] = {"rate.step_s", "s", "wall time of a step: median of 64", NAN, NAN},
-    [RATE_SIMULATED] = {"rate.simulated_s_per_s", "", "simulated over wall time", NAN, NAN},
+                    "the same of the free toy, 1000 steps; theory a bound from below (Gershgorin); none for implicit"},
+    [RATE_SUBSTEPS] = {"rate.substeps", "", "steps that each step is split into, on the floor"},
+    [RATE_STEP] = {"rate.step_s", "s", "wall time of a step: median of 64"},
+    [RATE_SIMULATED] = {"rate.simulated_s_per_s", "", "simulated over wall time"},
 };
 
 status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why)
@@ -57,7 +49,7 @@ status softbody_trials(const softbody_settings *s, isa level, softbody_trial_rep
                                                     trials_free,   trials_rest, trials_stable};
     const trials t = {s, level, out, why};
     for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++)
-        out->value[i] = trial_table[i];
+        out->value[i] = (softbody_trial){trial_table[i].name, trial_table[i].unit, trial_table[i].what, NAN, NAN};
     status code = softbody_check(s, why);
     for (size_t i = 0; i < sizeof all / sizeof all[0] && code == STATUS_OK; i++)
         code = all[i](&t);
@@ -142,20 +134,33 @@ swing_state trial_swing_state(const softbody *b, double omega)
     return (swing_state){at[1].x - at[0].x - 1.0, (velocity[1].x - velocity[0].x) / omega};
 }
 
-status trial_stir(softbody *b, const trial_field *field, diagnostic *why)
+status trial_each_mass(softbody *b, trial_mass *act, const void *context, bool place, diagnostic *why)
 {
     const size_t count = softbody_mass_count(b);
     vec3 *at = malloc(count * sizeof *at), *velocity = malloc(count * sizeof *velocity);
     const bool made = at && velocity;
     if (made) {
         softbody_positions(b, at);
-        for (size_t i = 0; i < count; i++) {
-            const vec3 wobble = vec3_scale(vec3_make(at[i].x, -2.0 * at[i].y, at[i].z), field->wobble);
-            velocity[i] = vec3_add(vec3_add(wobble, vec3_cross(field->turn, at[i])), field->drift);
-        }
-        softbody_place(b, at, velocity);
+        softbody_velocities(b, velocity);
+        for (size_t i = 0; i < count; i++)
+            act(context, i, &at[i], &velocity[i]);
     }
+    if (made && place)
+        softbody_place(b, at, velocity);
     free(at);
     free(velocity);
     return made ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory");
+}
+
+static void stir(const void *context, size_t i, vec3 *at, vec3 *velocity)
+{
+    (void)i;
+    const trial_field *field = context;
+    const vec3 wobble = vec3_scale(vec3_make(at->x, -2.0 * at->y, at->z), field->wobble);
+    *velocity = vec3_add(vec3_add(wobble, vec3_cross(field->turn, *at)), field->drift);
+}
+
+status trial_stir(softbody *b, const trial_field *field, diagnostic *why)
+{
+    return trial_each_mass(b, stir, field, true, why);
 }

@@ -64,23 +64,16 @@ static bool watch_momenta(const softbody *b, void *context)
 }
 
 /* Sums over the masses of |v| and |x cross v|. */
-static status sizes_of(const trials *t, const softbody *b, double *speeds, double *moments)
+typedef struct sizes {
+    double *speeds, *moments;
+} sizes;
+
+static void add_sizes(const void *context, size_t i, vec3 *at, vec3 *velocity)
 {
-    const size_t count = softbody_mass_count(b);
-    vec3 *at = malloc(count * sizeof *at), *velocity = malloc(count * sizeof *velocity);
-    const bool made = at && velocity;
-    *speeds = *moments = 0.0;
-    if (made) {
-        softbody_positions(b, at);
-        softbody_velocities(b, velocity);
-    }
-    for (size_t i = 0; made && i < count; i++) {
-        *speeds += vec3_length(velocity[i]);
-        *moments += vec3_length(vec3_cross(at[i], velocity[i]));
-    }
-    free(at);
-    free(velocity);
-    return made ? STATUS_OK : diagnose(t->why, STATUS_FAILURE, "use a lower level", "out of memory");
+    (void)i;
+    const sizes *sum = context;
+    *sum->speeds += vec3_length(*velocity);
+    *sum->moments += vec3_length(vec3_cross(*at, *velocity));
 }
 
 static status follow_momenta(const trials *t)
@@ -94,7 +87,7 @@ static status follow_momenta(const trials *t)
     momenta m = {0};
     status code = free_toy(t, t->set->damping, &field, &b);
     if (code == STATUS_OK)
-        code = sizes_of(t, b, &speeds, &moments);
+        code = trial_each_mass(b, add_sizes, &(sizes){&speeds, &moments}, false, t->why);
     if (code == STATUS_OK) {
         m.first = softbody_measure(b);
         code = trial_run(b, trial_steps(t->set, 1.0), watch_momenta, &m, &held, t->why);

@@ -73,6 +73,10 @@ typedef struct swing_state {
 } swing_state;
 swing_state trial_swing_state(const softbody *b, double omega);
 
+/* Shows every mass's place and velocity to act, and puts the masses where it leaves them if that is wanted. */
+typedef void trial_mass(const void *context, size_t i, vec3 *at, vec3 *velocity);
+status trial_each_mass(softbody *b, trial_mass *act, const void *context, bool place, diagnostic *why);
+
 /* A velocity field u = wobble (x, -2 y, z), which keeps the volume at first, + turn x (place) + drift. */
 typedef struct trial_field {
     double wobble;

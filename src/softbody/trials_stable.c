@@ -2,7 +2,6 @@
 #include "softbody/trials_private.h"
 
 #include "base/random.h"
-#include <stdlib.h>
 
 enum { STEPS = 1000, LOOK = 50, WIDENINGS = 12 };
 
@@ -80,26 +79,15 @@ static bool watch_energy(const softbody *b, void *context)
     return !g->grown;
 }
 
-/* Puts every mass off its place by up to 1e-4 of the radius, so that all modes swing. */
-static status shake(const trials *t, softbody *b)
+/* Puts a mass off its place by up to 1e-4 of the radius, so that all modes swing; at rest. */
+static void shake(const void *context, size_t i, vec3 *at, vec3 *velocity)
 {
-    const size_t count = softbody_mass_count(b);
-    const double reach = 2e-4 * t->set->radius;
-    vec3 *at = malloc(count * sizeof *at), *velocity = calloc(count, sizeof *velocity);
-    const bool made = at && velocity;
-    if (made)
-        softbody_positions(b, at);
-    for (size_t i = 0; made && i < count; i++) {
-        const random_words r = random_at(1, (uint32_t)i, 0, 0, 0);
-        const vec3 off =
-            vec3_make(random_unit(r.word[0]) - 0.5, random_unit(r.word[1]) - 0.5, random_unit(r.word[2]) - 0.5);
-        at[i] = vec3_add(at[i], vec3_scale(off, reach));
-    }
-    if (made)
-        softbody_place(b, at, velocity);
-    free(at);
-    free(velocity);
-    return made ? STATUS_OK : diagnose(t->why, STATUS_FAILURE, "use a lower level", "out of memory");
+    const double *reach = context;
+    const random_words r = random_at(1, (uint32_t)i, 0, 0, 0);
+    const vec3 off =
+        vec3_make(random_unit(r.word[0]) - 0.5, random_unit(r.word[1]) - 0.5, random_unit(r.word[2]) - 0.5);
+    *at = vec3_add(*at, vec3_scale(off, *reach));
+    *velocity = vec3_make(0.0, 0.0, 0.0);
 }
 
 static status toy_holds(const trials *t, double dt_s, bool *holds)
@@ -111,7 +99,7 @@ static status toy_holds(const trials *t, double dt_s, bool *holds)
     softbody *b;
     status code = softbody_create(&s, t->level, &b, t->why);
     if (code == STATUS_OK)
-        code = shake(t, b);
+        code = trial_each_mass(b, shake, &(double){2e-4 * t->set->radius}, true, t->why);
     if (code == STATUS_OK) {
         g.first = trial_energy(b);
         code = trial_run(b, STEPS, watch_energy, &g, &held, t->why);

@@ -5,9 +5,10 @@
 #include "study/grid.h"
 #include "study/manifest.h"
 #include "study/meaning.h"
-#include "study/recorded.h"
+#include "study/read_grid.h"
 #include "study/reference.h"
 #include "scene/model/open.h"
+#include "scene/file/document.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,33 @@ void accepted_start(accepted *a, const study *s, const char *folder)
 static void accept(accepted *a, uint64_t definition)
 {
     a->older[a->count++] = definition;
+}
+
+static status read_parts(study *s, const document *d, const void *scene_text, diagnostic *why)
+{
+    const node *root = document_root(d);
+    const node *name = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
+    if (!name || name->kind != NODE_SCALAR)
+        return diagnose(why, STATUS_BAD_INPUT, "", "it is not a study");
+    s->name = strdup(name->text);
+    status code =
+        s->name ? scene_read_text(s->scene_path, scene_text, strlen(scene_text), &s->base, why) : out_of_memory(why);
+    if (code == STATUS_OK)
+        code = read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why);
+    return code == STATUS_OK ? read_reference(s, d, node_get(root, "reference"), why) : code;
+}
+
+/* The study of texts that a manifest keeps, in the place of `now`: its scene stands where that one's file does, so that
+ * the files it names are looked for there. Nothing is opened, loaded or checked beyond what reading takes; fit for
+ * meaning_of_study alone. */
+static status recorded_study(const study *now, const char *text, const char *scene_text, study **out, diagnostic *why)
+{
+    *out = NULL;
+    study *s = calloc(1, sizeof *s);
+    if (s && (s->path = strdup(now->path)) && (s->scene_path = strdup(now->scene_path)))
+        return study_parse(s, text, strlen(text), read_parts, scene_text, out, why);
+    study_destroy(s);
+    return out_of_memory(why);
 }
 
 /* Do the recorded texts mean what the study means? The difference goes into why_not. */

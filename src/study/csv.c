@@ -122,66 +122,38 @@ static status damaged(const char *path, long line, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "move the file away, or take this line out of a copy", "the row is damaged");
 }
 
-/* Counts lines and columns, and finds where rows start. */
-static status measure(csv *table, const char *path, diagnostic *why)
+/* Finds where rows start, and cuts them apart. */
+static status split_all(csv *table, const char *path, diagnostic *why)
 {
-    size_t lines = 0;
-    for (size_t i = 0; i < table->whole; i++)
+    size_t lines = 0, places = 0; /* of fields, at most: a quoted comma counts too */
+    for (size_t i = 0; i < table->whole; i++) {
         lines += table->raw[i] == '\n';
+        places += table->raw[i] == '\n' || table->raw[i] == ',';
+    }
     if (lines == 0)
         return STATUS_OK;
     if (memchr(table->raw, 0, table->whole))
         return damaged(path, 1, why);
-    table->row_count = lines - 1;
     table->start = malloc(lines * sizeof *table->start);
     table->split = malloc(table->whole);
-    if (!table->start || !table->split)
+    table->header = calloc(places, sizeof *table->header);
+    if (!table->start || !table->split || !table->header)
         return out_of_memory(why);
     memcpy(table->split, table->raw, table->whole);
-    size_t line = 0;
-    table->column_count = 1;
-    for (size_t i = 0; i < table->whole; i++) {
-        table->column_count += line == 0 && table->raw[i] == ','; /* at most: a quoted comma counts too */
+    for (size_t i = 0, line = 0; i < table->whole; i++)
         if (table->raw[i] == '\n') {
             table->split[i] = 0;
             table->start[line++] = i + 1;
         }
-    }
-    return STATUS_OK;
-}
-
-static status split_all(csv *table, const char *path, diagnostic *why)
-{
-    status code = measure(table, path, why);
-    if (code != STATUS_OK || !table->split)
-        return code;
-    table->header = calloc(table->column_count, sizeof *table->header);
-    if (!table->header)
-        return out_of_memory(why);
+    table->row_count = lines - 1;
     table->column_count = csv_split(table->split, table->header);
+    table->fields = table->header + table->column_count;
     if (table->column_count == 0)
         return damaged(path, 1, why);
-    table->fields = calloc(table->row_count * table->column_count + 1, sizeof *table->fields);
-    if (!table->fields)
-        return out_of_memory(why);
-    for (size_t row = 0; row < table->row_count; row++) {
-        char *text = table->split + table->start[row];
-        /* A quoted field may hold commas, so a line is counted before its fields are kept. */
-        size_t commas = 1;
-        for (const char *c = text; *c; c++)
-            commas += *c == ',';
-        if (commas < table->column_count)
+    for (size_t row = 0; row < table->row_count; row++)
+        if (csv_split(table->split + table->start[row], table->fields + row * table->column_count) !=
+            table->column_count)
             return damaged(path, (long)row + 2, why);
-        char **fields = malloc(commas * sizeof *fields);
-        if (!fields)
-            return out_of_memory(why);
-        bool right = csv_split(text, fields) == table->column_count;
-        if (right)
-            memcpy(table->fields + row * table->column_count, fields, table->column_count * sizeof *fields);
-        free(fields);
-        if (!right)
-            return damaged(path, (long)row + 2, why);
-    }
     return STATUS_OK;
 }
 
@@ -219,7 +191,6 @@ void csv_destroy(csv *table)
     free(table->raw);
     free(table->split);
     free(table->header);
-    free(table->fields);
     free(table->start);
     free(table);
 }

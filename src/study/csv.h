@@ -34,7 +34,7 @@ typedef struct csv {
     size_t column_count;
     char **header; /* column_count names */
     size_t row_count;
-    char **fields; /* row_count * column_count */
+    char **fields; /* row_count * column_count, behind the header's */
     size_t *start; /* where row i begins in raw; start[row_count] = whole */
 } csv;
 

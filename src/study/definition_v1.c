@@ -84,11 +84,6 @@ static bool is_default(const param *row, const char *value)
     return same;
 }
 
-static void hash_text(uint64_t *hash, const char *text)
-{
-    *hash = hash_bytes(*hash, text, strlen(text) + 1);
-}
-
 static void hash_integer(uint64_t *hash, int64_t value)
 {
     *hash = hash_words(*hash, &value, 1);
@@ -98,8 +93,8 @@ static status hash_param(void *context, const char *path, const param *row, cons
 {
     visit_state *state = context;
     if (was_there(state->of, path, row)) {
-        hash_text(&state->hash, path);
-        hash_text(&state->hash, value);
+        grid_hash_text(&state->hash, path);
+        grid_hash_text(&state->hash, value);
     } else {
         state->later |= !is_default(row, value);
     }
@@ -116,7 +111,7 @@ static void hash_axis(uint64_t *hash, const study_axis *axis)
 bool definition_v1(const study *s, uint64_t *hash)
 {
     visit_state state = {.of = s->base, .hash = HASH_START};
-    hash_text(&state.hash, s->name);
+    grid_hash_text(&state.hash, s->name);
     if (scene_each_param(s->base, hash_param, &state) != STATUS_OK || state.later)
         return false;
     hash_integer(&state.hash, s->base->camera.aimed);

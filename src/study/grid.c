@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void study_point_free(study_point *point)
+static void point_free(study_point *point)
 {
     for (size_t i = 0; i < point->count; i++) {
         free(point->paths[i]);
@@ -22,13 +22,13 @@ void study_destroy(study *s)
         return;
     for (size_t axis = 0; axis < s->axis_count; axis++) {
         for (size_t i = 0; i < s->axes[axis].count; i++)
-            study_point_free(&s->axes[axis].points[i]);
+            point_free(&s->axes[axis].points[i]);
         free(s->axes[axis].points);
         free(s->axes[axis].name);
     }
     free(s->axes);
-    study_point_free(&s->fixed);
-    study_point_free(&s->reference);
+    point_free(&s->fixed);
+    point_free(&s->reference);
     free(s->path);
     free(s->name);
     free(s->title);
@@ -141,40 +141,39 @@ status grid_check_kept(const study *s, const study_point *point, const scene *se
     return STATUS_OK;
 }
 
-static status check_all_kept(const study *s, size_t cell, const scene *setting, diagnostic *why)
+status grid_each_cell(const study *s, grid_look *look, void *context, diagnostic *why)
 {
+    status code = STATUS_OK;
+    for (size_t cell = 0, count = study_cell_count(s); code == STATUS_OK && cell < count; cell++) {
+        scene *setting = NULL;
+        code = study_cell_scene(s, cell, &setting, why);
+        if (code == STATUS_OK)
+            code = look(context, s, cell, setting, why);
+        scene_destroy(setting);
+    }
+    return code;
+}
+
+static status check_cell(void *context, const study *s, size_t cell, scene *setting, diagnostic *why)
+{
+    (void)context;
+    const study_point *last = &s->fixed;
     status code = grid_check_kept(s, &s->fixed, setting, why);
-    for (size_t axis = 0; code == STATUS_OK && axis < s->axis_count; axis++)
-        code = grid_check_kept(s, &s->axes[axis].points[study_cell_point(s, cell, axis)], setting, why);
+    for (size_t axis = 0; code == STATUS_OK && axis < s->axis_count; axis++) {
+        last = &s->axes[axis].points[study_cell_point(s, cell, axis)];
+        code = grid_check_kept(s, last, setting, why);
+    }
+    if (code == STATUS_OK && (code = scene_check(setting, why)) != STATUS_OK)
+        diagnostic_locate(why, s->path, last->line, last->column);
     return code;
 }
 
 status grid_check_cells(const study *s, diagnostic *why)
 {
-    for (size_t cell = 0, count = study_cell_count(s); cell < count; cell++) {
-        scene *setting;
-        status code = study_cell_scene(s, cell, &setting, why);
-        if (code != STATUS_OK)
-            return code;
-        status kept = check_all_kept(s, cell, setting, why);
-        code = kept == STATUS_OK ? scene_check(setting, why) : kept;
-        scene_destroy(setting);
-        if (kept != STATUS_OK)
-            return kept;
-        if (code == STATUS_OK)
-            continue;
-        const study_point *at = &s->fixed;
-        if (s->axis_count) {
-            const study_axis *last = &s->axes[s->axis_count - 1];
-            at = &last->points[study_cell_point(s, cell, s->axis_count - 1)];
-        }
-        diagnostic_locate(why, s->path, at->line, at->column);
-        return code;
-    }
-    return STATUS_OK;
+    return grid_each_cell(s, check_cell, NULL, why);
 }
 
-static void hash_text(uint64_t *hash, const char *text)
+void grid_hash_text(uint64_t *hash, const char *text)
 {
     *hash = hash_bytes(*hash, text, strlen(text) + 1);
 }
@@ -193,8 +192,8 @@ status grid_hash_scene(uint64_t *hash, const scene *of, bool without_how)
 void grid_hash_point(uint64_t *hash, const study_point *point)
 {
     for (size_t i = 0; i < point->count; i++) {
-        hash_text(hash, point->paths[i]);
-        hash_text(hash, point->values[i]);
+        grid_hash_text(hash, point->paths[i]);
+        grid_hash_text(hash, point->values[i]);
     }
 }
 
@@ -210,6 +209,24 @@ status grid_definition(const study *s, uint64_t *hash, diagnostic *why)
     grid_hash_files(hash, s->base);
     *hash = hash_finish(*hash);
     return code;
+}
+
+const char *study_grid_path(const study *s, size_t index)
+{
+    for (size_t axis = 0; axis < s->axis_count; axis++) {
+        const study_point *first = &s->axes[axis].points[0];
+        if (index < first->count)
+            return first->paths[index];
+        index -= first->count;
+    }
+    return NULL;
+}
+
+void grid_put_paths(const study *s, FILE *out)
+{
+    const char *path;
+    for (size_t i = 0; (path = study_grid_path(s, i)); i++)
+        fprintf(out, "\t%s", path);
 }
 
 void grid_put_values(const study *s, size_t cell, FILE *out)

@@ -2,67 +2,54 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "render/core/record.h"
+#include "study/cell_table.h"
 #include "study/grid.h"
-#include "study/metric_table.h"
-#include "study/motion_table.h"
-#include "study/rows.h"
 #include <fcntl.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <unistd.h>
 
-typedef enum kept {
-    KEPT_PNG,
-    KEPT_PFM,
-    KEPT_RAYS_PNG,
-    KEPT_RAYS_PFM,
-    KEPT_NS_PNG,
-    KEPT_NS_PFM,
-    KEPT_TIMELINE,
-    KEPT_METRICS,
-    KEPT_CURVES,
-    KEPT_MOTION,
-    KEPT_COUNT
-} kept;
+/* The files of a cell, and what of the study says whether they are wanted. */
+static const struct {
+    size_t wish; /* of study: a bool */
+    const char *ending;
+} files[] = {
+    {offsetof(study, keep_image), ".png"},
+    {offsetof(study, keep_pfm), ".pfm"},
+    {offsetof(study, keep_pixel_rays), "-rays.png"},
+    {offsetof(study, keep_pixel_rays), "-rays.pfm"},
+    {offsetof(study, keep_pixel_time), "-ns.png"},
+    {offsetof(study, keep_pixel_time), "-ns.pfm"},
+    {offsetof(study, keep_timeline), "-timeline.json"},
+    {offsetof(study, keep_metrics), "-metrics.tsv"},
+    {offsetof(study, keep_curves), "-curves.tsv"},
+    {offsetof(study, keep_motion), "-motion.tsv"},
+};
+enum { KEPT_COUNT = sizeof files / sizeof *files };
 
-static bool wanted(const study *s, kept what)
+static bool wanted(const study *s, size_t what)
 {
-    switch (what) {
-    case KEPT_PNG: return s->keep_image;
-    case KEPT_PFM: return s->keep_pfm;
-    case KEPT_RAYS_PNG:
-    case KEPT_RAYS_PFM: return s->keep_pixel_rays;
-    case KEPT_NS_PNG:
-    case KEPT_NS_PFM: return s->keep_pixel_time;
-    case KEPT_TIMELINE: return s->keep_timeline;
-    case KEPT_METRICS: return s->keep_metrics;
-    case KEPT_CURVES: return s->keep_curves;
-    case KEPT_MOTION: return s->keep_motion;
-    case KEPT_COUNT: break;
-    }
-    return false;
+    return *(const bool *)((const char *)s + files[what].wish);
 }
 
 bool study_keeps_files(const study *s)
 {
-    for (kept what = 0; what < KEPT_COUNT; what++)
+    for (size_t what = 0; what < KEPT_COUNT; what++)
         if (wanted(s, what))
             return true;
     return false;
 }
 
-static char *kept_path(const char *folder, size_t cell, kept what)
+static char *kept_path(const char *folder, size_t cell, size_t what)
 {
-    static const char *const endings[KEPT_COUNT] = {".png",        ".pfm",       "-rays.png",      "-rays.pfm",
-                                                    "-ns.png",     "-ns.pfm",    "-timeline.json", "-metrics.tsv",
-                                                    "-curves.tsv", "-motion.tsv"};
-    return text_format("%s/images/%04zu%s", folder, cell, endings[what]);
+    return text_format("%s/images/%04zu%s", folder, cell, files[what].ending);
 }
 
 bool keep_missing(const study *s, const char *folder, size_t cell)
 {
-    for (kept what = 0; what < KEPT_COUNT; what++) {
+    for (size_t what = 0; what < KEPT_COUNT; what++) {
         char *path = wanted(s, what) ? kept_path(folder, cell, what) : NULL;
         bool missing = path && access(path, F_OK) != 0;
         free(path);
@@ -78,23 +65,22 @@ render_options keep_options(const study *s)
         .pixel_rays = s->keep_pixel_rays, .pixel_time = s->keep_pixel_time, .timeline = s->keep_timeline};
 }
 
-static status write_kept(const study *s, const kept_cell *c, kept what, const char *path, diagnostic *why)
+static status write_kept(const study *s, const kept_cell *c, size_t what, const char *path, diagnostic *why)
 {
     const render_result *frame = c->made->result;
-    switch (what) {
-    case KEPT_PNG:
-    case KEPT_PFM: return record_picture(frame->picture, path, 8, why);
-    case KEPT_RAYS_PNG:
-    case KEPT_RAYS_PFM: return record_map(frame->pixel_rays, frame->picture, "rays per pixel", path, why);
-    case KEPT_NS_PNG:
-    case KEPT_NS_PFM: return record_map(frame->pixel_ns, frame->picture, "nanoseconds per pixel", path, why);
-    case KEPT_TIMELINE: return record_timeline(frame, path, why);
-    case KEPT_METRICS: return metric_table_write(s, c->cell, c->made->of, c->made->level, path, why);
-    case KEPT_CURVES: return curve_table_write(s, c->cell, c->made->of, c->made->level, path, why);
-    case KEPT_MOTION: return motion_table_write(s, c->cell, c->made->of, c->made->level, path, why);
-    case KEPT_COUNT: break;
-    }
-    return STATUS_OK;
+    const size_t wish = files[what].wish;
+    if (wish == offsetof(study, keep_pixel_rays))
+        return record_map(frame->pixel_rays, frame->picture, "rays per pixel", path, why);
+    if (wish == offsetof(study, keep_pixel_time))
+        return record_map(frame->pixel_ns, frame->picture, "nanoseconds per pixel", path, why);
+    if (wish == offsetof(study, keep_timeline))
+        return record_timeline(frame, path, why);
+    if (wish == offsetof(study, keep_image) || wish == offsetof(study, keep_pfm))
+        return record_picture(frame->picture, path, 8, why);
+    const cell_table which = wish == offsetof(study, keep_metrics)  ? CELL_METRICS
+                             : wish == offsetof(study, keep_curves) ? CELL_CURVES
+                                                                    : CELL_MOTION;
+    return cell_table_write(which, s, c->cell, c->made->of, c->made->level, path, why);
 }
 
 status keep_write(const study *s, const char *folder, const kept_cell *c, diagnostic *why)
@@ -102,7 +88,7 @@ status keep_write(const study *s, const char *folder, const kept_cell *c, diagno
     char *images = text_format("%s/images", folder);
     status code = images ? file_make_directory(images, why) : out_of_memory(why);
     free(images);
-    for (kept what = 0; code == STATUS_OK && what < KEPT_COUNT; what++) {
+    for (size_t what = 0; code == STATUS_OK && what < KEPT_COUNT; what++) {
         if (!wanted(s, what))
             continue;
         char *path = kept_path(folder, c->cell, what);
@@ -112,32 +98,21 @@ status keep_write(const study *s, const char *folder, const kept_cell *c, diagno
     return code;
 }
 
-static void index_header(const study *s, FILE *out)
-{
-    const char *path;
-    fputs("file\tcell", out);
-    for (size_t i = 0; (path = study_grid_path(s, i)); i++)
-        fprintf(out, "\t%s", path);
-    fputc('\n', out);
-}
-
-static void index_line(const study *s, const char *path, size_t cell, FILE *out)
-{
-    fprintf(out, "%s\t%zu", strrchr(path, '/') + 1, cell);
-    grid_put_values(s, cell, out);
-    fputc('\n', out);
-}
-
 static status list_kept(const study *s, const char *folder, FILE *out, diagnostic *why)
 {
-    index_header(s, out);
+    fputs("file\tcell", out);
+    grid_put_paths(s, out);
+    fputc('\n', out);
     for (size_t cell = 0; cell < study_cell_count(s); cell++)
-        for (kept what = 0; what < KEPT_COUNT; what++) {
+        for (size_t what = 0; what < KEPT_COUNT; what++) {
             char *path = kept_path(folder, cell, what);
             if (!path)
                 return out_of_memory(why);
-            if (access(path, F_OK) == 0)
-                index_line(s, path, cell, out);
+            if (access(path, F_OK) == 0) {
+                fprintf(out, "%s\t%zu", strrchr(path, '/') + 1, cell);
+                grid_put_values(s, cell, out);
+                fputc('\n', out);
+            }
             free(path);
         }
     return STATUS_OK;
@@ -155,10 +130,8 @@ status keep_index(const study *s, const char *folder, bool renew, diagnostic *wh
         if (lock >= 0)
             flock(lock, LOCK_EX);
         code = file_writer_open(&writer, path, why);
-        if (code == STATUS_OK && (code = list_kept(s, folder, writer.stream, why)) != STATUS_OK)
-            file_writer_abandon(&writer);
-        else if (code == STATUS_OK)
-            code = file_writer_commit(&writer, why);
+        if (code == STATUS_OK)
+            code = file_writer_end(&writer, list_kept(s, folder, writer.stream, why), why);
         if (lock >= 0)
             close(lock);
     }

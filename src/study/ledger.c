@@ -29,11 +29,6 @@ status ledger_add(ledger *l, const ledger_entry *entry, diagnostic *why)
     return STATUS_OK;
 }
 
-static uint64_t field_hash(const row_ref *ref, const char *name)
-{
-    return strtoull(csv_field(ref->table, ref->row, csv_column(ref->table, name)), NULL, 16);
-}
-
 status ledger_read(const study *s, const char *results, ledger **out, diagnostic *why)
 {
     *out = NULL;
@@ -53,8 +48,8 @@ status ledger_read(const study *s, const char *results, ledger **out, diagnostic
         ledger_entry entry = {.cell = ref->cell,
                               .repetition = ref->repetition,
                               .warmup = ref->warmup,
-                              .film_hash = field_hash(ref, "film_hash"),
-                              .wall_s = csv_field_real(ref->table, ref->row, csv_column(ref->table, "wall_s"))};
+                              .film_hash = strtoull(row_field(ref, "film_hash"), NULL, 16),
+                              .wall_s = row_field_real(ref, "wall_s")};
         code = ledger_add(l, &entry, why);
     }
     row_files_destroy(files);

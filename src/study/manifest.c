@@ -1,5 +1,4 @@
 #include "study/manifest.h"
-#include "base/file.h"
 #include "base/hash.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -11,8 +10,6 @@
 #include "scene/model/open.h"
 #include <fcntl.h>
 #include <hwloc.h>
-#include <inttypes.h>
-#include <jansson.h>
 #include <jpeglib.h>
 #include <libgen.h>
 #include <png.h>
@@ -97,22 +94,17 @@ static json_t *machine_facts(const topology *machine)
                      "hwloc_xml", taken(xml));
 }
 
-static json_t *hash_text(uint64_t value)
-{
-    return json_sprintf("%016" PRIx64, value);
-}
-
 static json_t *files_hash(const study *s)
 {
     uint64_t hash = HASH_START;
     grid_hash_files(&hash, s->base);
-    return hash_text(hash);
+    return facts_hash(hash);
 }
 
 static json_t *study_facts(const study *s)
 {
     return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title),
-                     "definition", hash_text(s->definition_hash), "files", files_hash(s), "cells",
+                     "definition", facts_hash(s->definition_hash), "files", files_hash(s), "cells",
                      (json_int_t)study_cell_count(s), "file", borrowed(file_name(s->path)), "text", borrowed(s->text),
                      "scene_file", borrowed(file_name(s->scene_path)), "scene_text", borrowed(s->scene_text));
 }
@@ -145,15 +137,11 @@ static json_t *run_facts(const study *s, const topology *machine, isa level, lon
 /* The manifest that is there, or a new one. */
 static status load(const study *s, const char *path, const topology *machine, json_t **out, diagnostic *why)
 {
-    char *text;
-    size_t size;
     *out = NULL;
     if (access(path, F_OK) == 0) {
-        status code = file_read_below(path, scene_root(s->base), MANIFEST_BYTES_MAX, &text, &size, why);
+        const status code = facts_read(path, scene_root(s->base), out, why);
         if (code != STATUS_OK)
             return code;
-        *out = json_loadb(text, size, 0, NULL);
-        free(text);
         if (!json_is_array(json_object_get(*out, "runs"))) {
             json_decref(*out);
             diagnostic_locate(why, path, 0, 0);
@@ -163,22 +151,6 @@ static status load(const study *s, const char *path, const topology *machine, js
     }
     *out = json_pack("{s:o, s:o, s:[]}", "study", study_facts(s), "machine", machine_facts(machine), "runs");
     return *out ? STATUS_OK : out_of_memory(why);
-}
-
-static status save(const json_t *manifest, const char *path, diagnostic *why)
-{
-    /* jansson writes reals in the C locale's form by itself. */
-    char *text = json_dumps(manifest, JSON_INDENT(2) | JSON_REAL_PRECISION(6));
-    if (!text)
-        return out_of_memory(why);
-    file_writer writer;
-    status code = file_writer_open(&writer, path, why);
-    if (code == STATUS_OK) {
-        fprintf(writer.stream, "%s\n", text);
-        code = file_writer_commit(&writer, why);
-    }
-    free(text);
-    return code;
 }
 
 status manifest_write(const study *s, const char *folder, const topology *machine, isa level, long shard, long shards,
@@ -195,7 +167,7 @@ status manifest_write(const study *s, const char *folder, const topology *machin
         code = load(s, path, machine, &manifest, why);
     if (code == STATUS_OK) {
         json_array_append(json_object_get(manifest, "runs"), run);
-        code = save(manifest, path, why);
+        code = facts_write(manifest, JSON_REAL_PRECISION(6), path, why);
     }
     if (lock >= 0)
         close(lock);

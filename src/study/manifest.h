@@ -8,8 +8,7 @@
 #include "base/isa.h"
 #include "measure/topology.h"
 #include "study/study.h"
-
-enum { MANIFEST_BYTES_MAX = 64 << 20 };
+#include <jansson.h>
 
 /* shard of shards, as in study_options. Waits while another shard's process writes it. */
 status manifest_write(const study *s, const char *folder, const topology *machine, isa level, long shard, long shards,
@@ -27,5 +26,13 @@ typedef struct manifest_study {
  * releases. */
 status manifest_read(const char *path, const char *root, manifest_study *out, diagnostic *why);
 void manifest_study_free(manifest_study *m);
+
+/* Facts that stand as JSON beside rows. A fingerprint is 16 hex digits: as a value, and under a key, false and 0 where
+ * there is none. */
+json_t *facts_hash(uint64_t value);
+bool facts_get_hash(const json_t *facts, const char *key, uint64_t *out);
+/* A file below root (base/below.h), NULL with STATUS_OK for what is no JSON; and the whole of one. flags: jansson's. */
+status facts_read(const char *path, const char *root, json_t **out, diagnostic *why);
+status facts_write(const json_t *facts, size_t flags, const char *path, diagnostic *why);
 
 #endif

@@ -1,7 +1,7 @@
-/* What rows of an earlier version meant, from the manifest beside them. */
+/* Facts as JSON beside rows; and what rows of an earlier version meant, from the manifest. */
 #include "base/file.h"
 #include "study/manifest.h"
-#include <jansson.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,31 +11,59 @@ static char *copy_text(const json_t *object, const char *key)
     return text ? strdup(text) : NULL;
 }
 
-/* 16 hex digits under a key. */
-static bool get_hash(const json_t *object, const char *key, uint64_t *out)
+json_t *facts_hash(uint64_t value)
 {
-    const char *text = json_string_value(json_object_get(object, key));
-    if (!text || strlen(text) != 16 || strspn(text, "0123456789abcdef") != 16)
-        return false;
-    *out = strtoull(text, NULL, 16);
-    return true;
+    return json_sprintf("%016" PRIx64, value);
+}
+
+bool facts_get_hash(const json_t *facts, const char *key, uint64_t *out)
+{
+    const char *text = json_string_value(json_object_get(facts, key));
+    const bool is_one = text && strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16;
+    *out = is_one ? strtoull(text, NULL, 16) : 0;
+    return is_one;
+}
+
+status facts_read(const char *path, const char *root, json_t **out, diagnostic *why)
+{
+    enum { FACTS_BYTES_MAX = 64 << 20 };
+    char *text;
+    size_t size;
+    *out = NULL;
+    const status code = file_read_below(path, root, FACTS_BYTES_MAX, &text, &size, why);
+    if (code != STATUS_OK)
+        return code;
+    *out = json_loadb(text, size, 0, NULL);
+    free(text);
+    return STATUS_OK;
+}
+
+status facts_write(const json_t *facts, size_t flags, const char *path, diagnostic *why)
+{
+    /* jansson writes reals in the C locale's form by itself. */
+    char *text = json_dumps(facts, JSON_INDENT(2) | flags);
+    file_writer writer;
+    status code = text ? file_writer_open(&writer, path, why) : out_of_memory(why);
+    if (code == STATUS_OK) {
+        fprintf(writer.stream, "%s\n", text);
+        code = file_writer_commit(&writer, why);
+    }
+    free(text);
+    return code;
 }
 
 status manifest_read(const char *path, const char *root, manifest_study *out, diagnostic *why)
 {
-    char *text;
-    size_t size;
+    json_t *whole;
     *out = (manifest_study){0};
-    status code = file_read_below(path, root, MANIFEST_BYTES_MAX, &text, &size, why);
+    const status code = facts_read(path, root, &whole, why);
     if (code != STATUS_OK)
         return code;
-    json_t *whole = json_loadb(text, size, 0, NULL);
     const json_t *about = json_object_get(whole, "study");
-    free(text);
     out->text = copy_text(about, "text");
     out->scene_text = copy_text(about, "scene_text");
-    out->has_files = get_hash(about, "files", &out->files);
-    const bool has_definition = get_hash(about, "definition", &out->definition);
+    out->has_files = facts_get_hash(about, "files", &out->files);
+    const bool has_definition = facts_get_hash(about, "definition", &out->definition);
     json_decref(whole);
     if (out->text && out->scene_text && has_definition)
         return STATUS_OK;

@@ -61,10 +61,7 @@ static status write_joined(const row_files *files, const char *path, const char 
         code = write_rows(writer.stream, files, from, to, all, why);
     }
     free(all);
-    if (code == STATUS_OK)
-        return file_writer_commit(&writer, why);
-    file_writer_abandon(&writer);
-    return code;
+    return file_writer_end(&writer, code, why);
 }
 
 /* Every file is locked meanwhile, so that no row is written into one that is being replaced. */

@@ -19,11 +19,11 @@
  * Every path and value is tried on the scene here, so that a study that was read can be run. */
 #include "base/file.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "scene/file/document.h"
+#include "study/cell_table.h"
 #include "study/grid.h"
 #include "study/read_grid.h"
-#include "study/metric_table.h"
-#include "study/motion_table.h"
 #include "study/reference.h"
 #include <libgen.h>
 #include <stdlib.h>
@@ -42,9 +42,12 @@ static bool only_digits(const char *text)
     return *text && text[strspn(text, "0123456789")] == 0;
 }
 
+/* A node that is not there leaves *out as it is. */
 static status read_integer(const document *d, const node *n, const char *key, int64_t lowest, int64_t highest,
                            int64_t *out, diagnostic *why)
 {
+    if (!n)
+        return STATUS_OK;
     char remedy[128];
     snprintf(remedy, sizeof remedy, "write an integer from %lld to %lld", (long long)lowest, (long long)highest);
     bool is_integer = n->kind == NODE_SCALAR && number_parse_int(n->text, out);
@@ -57,8 +60,11 @@ static status read_integer(const document *d, const node *n, const char *key, in
     return node_error(d, n, why, remedy, "%s: '%.64s' is not an integer", key, n->text);
 }
 
+/* Likewise. */
 static status read_switch(const document *d, const node *n, const char *key, bool *out, diagnostic *why)
 {
+    if (!n)
+        return STATUS_OK;
     static const char *const words[] = {"off", "on", "false", "true", "no", "yes"};
     for (size_t i = 0; n->kind == NODE_SCALAR && i < COUNT(words); i++)
         if (strcmp(n->text, words[i]) == 0) {
@@ -105,9 +111,9 @@ static status read_interval_rule(study *s, const document *d, const node *n, dia
     status code = node_check_keys(d, n, keys, COUNT(keys), why);
     const node *min = node_get(n, "min"), *max = node_get(n, "max"), *width = node_get(n, "relative_width");
     int64_t least = 0, most = 0;
-    if (code == STATUS_OK && min)
+    if (code == STATUS_OK)
         code = read_integer(d, min, "min", 2, STUDY_REPETITIONS_MAX, &least, why);
-    if (code == STATUS_OK && max)
+    if (code == STATUS_OK)
         code = read_integer(d, max, "max", 2, STUDY_REPETITIONS_MAX, &most, why);
     if (code != STATUS_OK)
         return code;
@@ -132,12 +138,9 @@ static status read_interval_rule(study *s, const document *d, const node *n, dia
 
 static status read_repetitions(study *s, const document *d, const node *n, diagnostic *why)
 {
-    s->repetitions_min = s->repetitions_max = REPETITIONS_DEFAULT;
-    if (!n)
-        return STATUS_OK;
-    if (n->kind == NODE_MAP)
+    int64_t value = REPETITIONS_DEFAULT;
+    if (n && n->kind == NODE_MAP)
         return read_interval_rule(s, d, n, why);
-    int64_t value = 0;
     status code = read_integer(d, n, "repetitions", 1, STUDY_REPETITIONS_MAX, &value, why);
     s->repetitions_min = s->repetitions_max = (long)value;
     return code;
@@ -146,27 +149,21 @@ static status read_repetitions(study *s, const document *d, const node *n, diagn
 static status read_order(study *s, const document *d, const node *warmups, const node *order, diagnostic *why)
 {
     static const char *const keys[] = {"shuffle", "seed"};
-    int64_t value = 1;
-    status code = STATUS_OK;
+    int64_t count = 1, seed = 1;
+    status code = read_integer(d, warmups, "warmups", 0, STUDY_WARMUPS_MAX, &count, why);
+    s->warmups = (long)count;
     s->shuffle = true;
     s->seed = 1;
-    s->warmups = 1;
-    if (warmups) {
-        code = read_integer(d, warmups, "warmups", 0, STUDY_WARMUPS_MAX, &value, why);
-        s->warmups = (long)value;
-    }
     if (code != STATUS_OK || !order)
         return code;
     if (order->kind != NODE_MAP)
         return node_error(d, order, why, "write {shuffle: on, seed: 1}", "order is not a map");
     code = node_check_keys(d, order, keys, COUNT(keys), why);
-    const node *shuffle = node_get(order, "shuffle"), *seed = node_get(order, "seed");
-    if (code == STATUS_OK && shuffle)
-        code = read_switch(d, shuffle, "shuffle", &s->shuffle, why);
-    if (code == STATUS_OK && seed) {
-        code = read_integer(d, seed, "seed", 0, INT64_MAX, &value, why);
-        s->seed = (uint64_t)value;
-    }
+    if (code == STATUS_OK)
+        code = read_switch(d, node_get(order, "shuffle"), "shuffle", &s->shuffle, why);
+    if (code == STATUS_OK)
+        code = read_integer(d, node_get(order, "seed"), "seed", 0, INT64_MAX, &seed, why);
+    s->seed = (uint64_t)seed;
     return code;
 }
 
@@ -182,11 +179,8 @@ static status read_keep(study *s, const document *d, const node *n, diagnostic *
     if (n->kind != NODE_MAP)
         return node_error(d, n, why, "write {image: on}", "keep is not a map");
     status code = node_check_keys(d, n, keys, COUNT(keys), why);
-    for (size_t i = 0; code == STATUS_OK && i < COUNT(keys); i++) {
-        const node *value = node_get(n, keys[i]);
-        if (value)
-            code = read_switch(d, value, keys[i], kept[i], why);
-    }
+    for (size_t i = 0; code == STATUS_OK && i < COUNT(keys); i++)
+        code = read_switch(d, node_get(n, keys[i]), keys[i], kept[i], why);
     return code;
 }
 
@@ -203,13 +197,8 @@ static status read_scene(study *s, const document *d, const node *root, const st
     if (!copy)
         return out_of_memory(why);
     const char *folder = dirname(copy);
-    bool as_is = n->text[0] == '/' || strcmp(folder, ".") == 0;
-    s->scene_path = malloc(strlen(folder) + strlen(n->text) + 2);
-    if (s->scene_path) {
-        strcpy(s->scene_path, as_is ? "" : folder);
-        strcat(s->scene_path, as_is ? "" : "/");
-        strcat(s->scene_path, n->text);
-    }
+    const bool as_is = n->text[0] == '/' || strcmp(folder, ".") == 0;
+    s->scene_path = text_format("%s%s%s", as_is ? "" : folder, as_is ? "" : "/", n->text);
     free(copy);
     if (!s->scene_path)
         return out_of_memory(why);
@@ -231,26 +220,24 @@ static status read_scene(study *s, const document *d, const node *root, const st
     return code == STATUS_OK ? scene_limit(s->base, below, 0, why) : code;
 }
 
-static status check_loads(const study *s, const study_guard *guard, diagnostic *why)
+static status check_loads(void *context, const study *s, size_t cell, scene *own, diagnostic *why)
 {
-    status code = STATUS_OK;
-    for (size_t cell = 0; code == STATUS_OK && cell < study_cell_count(s); cell++) {
-        scene *own = NULL, *other = NULL;
-        code = study_cell_scene(s, cell, &own, why);
-        if (code == STATUS_OK)
-            code = guard->may_load(guard->context, own, why);
-        if (code == STATUS_OK && s->reference.count && (code = reference_scene(s, cell, &other, why)) == STATUS_OK)
-            code = guard->may_load(guard->context, other, why);
-        scene_destroy(own);
-        scene_destroy(other);
-    }
+    const study_guard *guard = context;
+    scene *other = NULL;
+    status code = guard->may_load(guard->context, own, why);
+    if (code == STATUS_OK && s->reference.count && (code = reference_scene(s, cell, &other, why)) == STATUS_OK)
+        code = guard->may_load(guard->context, other, why);
+    scene_destroy(other);
     return code;
 }
 
-static status read_root(study *s, const document *d, const study_guard *guard, diagnostic *why)
+static status read_root(study *s, const document *d, const void *context, diagnostic *why)
 {
     static const char *const keys[] = {"study",     "title",       "scene",   "set",   "grid",
                                        "reference", "repetitions", "warmups", "order", "keep"};
+    static status (*const checks[])(const study *s, diagnostic *why) = {grid_check_cells, reference_check,
+                                                                        cell_tables_check};
+    const study_guard *guard = context;
     const node *root = document_root(d);
     if (!root || root->kind != NODE_MAP) {
         if (root)
@@ -273,22 +260,32 @@ static status read_root(study *s, const document *d, const study_guard *guard, d
         code = read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why);
     if (code == STATUS_OK)
         code = read_reference(s, d, node_get(root, "reference"), why);
-    if (code == STATUS_OK)
-        code = grid_check_cells(s, why);
-    if (code == STATUS_OK)
-        code = reference_check(s, why);
-    if (code == STATUS_OK)
-        code = metric_table_check(s, why);
-    if (code == STATUS_OK)
-        code = motion_table_check(s, why);
+    for (size_t i = 0; code == STATUS_OK && i < COUNT(checks); i++)
+        code = checks[i](s, why);
     if (code == STATUS_OK && guard)
         code = guard->may_load(guard->context, s->base, why);
     if (code == STATUS_OK && guard)
-        code = check_loads(s, guard, why);
+        code = grid_each_cell(s, check_loads, (void *)(uintptr_t)guard, why);
     if (code == STATUS_OK)
         code = grid_definition(s, &s->definition_hash, why);
     if (code == STATUS_OK)
         s->compare_hash = reference_definition(s, s->definition_hash);
+    return code;
+}
+
+status study_parse(study *s, const char *text, size_t size, study_parts *read, const void *context, study **out,
+                   diagnostic *why)
+{
+    document *d = NULL;
+    *out = NULL;
+    status code = document_parse(s->path, text, size, &d, why);
+    if (code == STATUS_OK)
+        code = read(s, d, context, why);
+    document_destroy(d);
+    if (code == STATUS_OK)
+        *out = s;
+    else
+        study_destroy(s);
     return code;
 }
 
@@ -297,21 +294,10 @@ static status read_text(const char *name, const char *text, size_t size, const s
 {
     *out = NULL;
     study *s = calloc(1, sizeof *s);
-    document *d = NULL;
-    if (!s || !(s->path = strdup(name)) || !(s->text = strndup(text, size))) {
-        study_destroy(s);
-        return out_of_memory(why);
-    }
-    status code = document_parse(name, text, size, &d, why);
-    if (code == STATUS_OK)
-        code = read_root(s, d, guard, why);
-    document_destroy(d);
-    if (code != STATUS_OK) {
-        study_destroy(s);
-        return code;
-    }
-    *out = s;
-    return STATUS_OK;
+    if (s && (s->path = strdup(name)) && (s->text = strndup(text, size)))
+        return study_parse(s, text, size, read_root, guard, out, why);
+    study_destroy(s);
+    return out_of_memory(why);
 }
 
 status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why)

@@ -12,6 +12,12 @@ status read_grid(study *s, const document *d, const node *set, const node *grid,
 /* Tries the reference's paths and values, on a copy of s->base, and fills s->reference. reference may be NULL. */
 status read_reference(study *s, const document *d, const node *reference, diagnostic *why);
 
+/* Reads a study from its text into s, which has its path; what read makes of it is *out, else s is released. context is
+ * read's. */
+typedef status study_parts(study *s, const document *d, const void *context, diagnostic *why);
+status study_parse(study *s, const char *text, size_t size, study_parts *read, const void *context, study **out,
+                   diagnostic *why);
+
 /* Has the text no control characters? A row is one line. */
 bool read_grid_plain(const char *text);
 

@@ -5,15 +5,13 @@
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "study/grid.h"
+#include "study/manifest.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-enum { FACTS_BYTES_MAX = 1 << 20 };
 
 status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why)
 {
@@ -26,12 +24,11 @@ status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why
     return code;
 }
 
-static status check_cell(const study *s, size_t cell, diagnostic *why)
+static status check_cell(void *context, const study *s, size_t cell, scene *own, diagnostic *why)
 {
-    scene *own = NULL, *other = NULL;
-    status code = study_cell_scene(s, cell, &own, why);
-    if (code == STATUS_OK)
-        code = reference_scene(s, cell, &other, why);
+    (void)context;
+    scene *other = NULL;
+    status code = reference_scene(s, cell, &other, why);
     if (code == STATUS_OK)
         code = grid_check_kept(s, &s->reference, other, why);
     if (code == STATUS_OK && (code = scene_check(other, why)) != STATUS_OK)
@@ -43,17 +40,13 @@ static status check_cell(const study *s, size_t cell, diagnostic *why)
                      other->render.width, other->render.height, cell, own->render.width, own->render.height);
         diagnostic_locate(why, s->path, s->reference.line, s->reference.column);
     }
-    scene_destroy(own);
     scene_destroy(other);
     return code;
 }
 
 status reference_check(const study *s, diagnostic *why)
 {
-    status code = STATUS_OK;
-    for (size_t cell = 0; code == STATUS_OK && s->reference.count && cell < study_cell_count(s); cell++)
-        code = check_cell(s, cell, why);
-    return code;
+    return s->reference.count ? grid_each_cell(s, check_cell, NULL, why) : STATUS_OK;
 }
 
 uint64_t reference_definition(const study *s, uint64_t definition)
@@ -89,27 +82,17 @@ static status damaged(const char *path, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "move it away: it is rendered again", "the reference is damaged");
 }
 
-/* 16 hex digits under a key; 0 when they are not there. */
-static uint64_t get_hash(const json_t *facts, const char *key)
-{
-    const char *text = json_string_value(json_object_get(facts, key));
-    return text ? strtoull(text, NULL, 16) : 0;
-}
-
 static status load_facts(const char *path, const char *root, reference *out, uint64_t *pixels, diagnostic *why)
 {
-    char *text;
-    size_t size;
-    status code = file_read_below(path, root, FACTS_BYTES_MAX, &text, &size, why);
+    json_t *facts;
+    status code = facts_read(path, root, &facts, why);
     if (code != STATUS_OK)
         return code;
-    json_t *facts = json_loadb(text, size, 0, NULL);
-    free(text);
     const json_t *noise = json_object_get(facts, "noise_rms");
-    out->film_hash = get_hash(facts, "film_hash");
+    facts_get_hash(facts, "film_hash", &out->film_hash);
+    facts_get_hash(facts, "pixel_hash", pixels);
     out->noise_rms = json_is_number(noise) ? json_number_value(noise) : NAN;
-    *pixels = get_hash(facts, "pixel_hash");
-    code = json_is_object(facts) && noise ? STATUS_OK : damaged(path, why);
+    code = noise ? STATUS_OK : damaged(path, why);
     json_decref(facts);
     return code;
 }
@@ -140,29 +123,15 @@ static status add_param(void *context, const char *path, const param *row, const
     return row->is_how || json_object_set_new(context, path, json_string(value)) == 0 ? STATUS_OK : STATUS_FAILURE;
 }
 
-static json_t *hash_text(uint64_t value)
-{
-    return json_sprintf("%016" PRIx64, value);
-}
-
 static status save_facts(const reference *of, const scene *setting, const char *path, diagnostic *why)
 {
     json_t *params = json_object();
     status code = scene_each_param(setting, add_param, params);
-    json_t *facts = json_pack("{s:o, s:o, s:o, s:o}", "film_hash", hash_text(of->film_hash), "noise_rms",
+    json_t *facts = json_pack("{s:o, s:o, s:o, s:o}", "film_hash", facts_hash(of->film_hash), "noise_rms",
                               isnan(of->noise_rms) ? json_null() : json_real(of->noise_rms), "pixel_hash",
-                              hash_text(pixel_hash(of->picture)), "parameters", params);
-    char *text = code == STATUS_OK && facts ? json_dumps(facts, JSON_INDENT(2)) : NULL;
+                              facts_hash(pixel_hash(of->picture)), "parameters", params);
+    code = code == STATUS_OK && facts ? facts_write(facts, 0, path, why) : out_of_memory(why);
     json_decref(facts);
-    if (!text)
-        return out_of_memory(why);
-    file_writer writer;
-    code = file_writer_open(&writer, path, why);
-    if (code == STATUS_OK) {
-        fprintf(writer.stream, "%s\n", text);
-        code = file_writer_commit(&writer, why);
-    }
-    free(text);
     return code;
 }
 

@@ -61,32 +61,23 @@ static bool parse_shard(const char *name, row_kind kind, shard_name *out)
 /* The shards' files in a folder, in order. *list is the caller's. */
 static status list_shards(const char *folder, row_kind kind, shard_name **list, size_t *count, diagnostic *why)
 {
-    *list = NULL;
+    struct dirent **entries = NULL;
+    const int found = scandir(folder, &entries, NULL, NULL);
     *count = 0;
-    DIR *open = opendir(folder);
-    if (!open) {
-        if (errno == ENOENT)
-            return STATUS_OK;
+    *list = calloc(found > 0 ? (size_t)found : 1, sizeof **list);
+    for (int i = 0; i < found; i++) {
+        *count += *list && parse_shard(entries[i]->d_name, kind, &(*list)[*count]);
+        free(entries[i]);
+    }
+    free(entries);
+    if (!*list)
+        return out_of_memory(why);
+    if (found < 0 && errno != ENOENT) {
         diagnostic_locate(why, folder, 0, 0);
         return diagnose(why, STATUS_FAILURE, "make the folder readable", "it cannot be read: %s", strerror(errno));
     }
-    status code = STATUS_OK;
-    for (struct dirent *entry; code == STATUS_OK && (entry = readdir(open));) {
-        shard_name name;
-        if (!parse_shard(entry->d_name, kind, &name))
-            continue;
-        shard_name *grown = realloc(*list, (*count + 1) * sizeof **list);
-        if (grown) {
-            *list = grown;
-            grown[(*count)++] = name;
-        } else {
-            code = out_of_memory(why);
-        }
-    }
-    closedir(open);
-    if (*count)
-        qsort(*list, *count, sizeof **list, compare_shards);
-    return code;
+    qsort(*list, *count, sizeof **list, compare_shards);
+    return STATUS_OK;
 }
 
 static status add_file(row_files *files, const study *s, char *path, diagnostic *why)
@@ -131,25 +122,35 @@ static status another_definition(const char *path, long line, row_kind kind, con
                     "these rows are of another definition%s%s", reason[0] ? ": " : "", reason);
 }
 
-/* A whole number from 0 to highest in the column of that name. */
-static bool field_integer(const csv *table, size_t row, const char *name, int64_t highest, int64_t *out)
+const char *row_field(const row_ref *ref, const char *name)
 {
-    return number_parse_int(csv_field(table, row, csv_column(table, name)), out) && *out >= 0 && *out <= highest;
+    return csv_field(ref->table, ref->row, csv_column(ref->table, name));
+}
+
+double row_field_real(const row_ref *ref, const char *name)
+{
+    return csv_field_real(ref->table, ref->row, csv_column(ref->table, name));
+}
+
+/* A whole number from 0 to highest in the column of that name. */
+static bool field_integer(const row_ref *ref, const char *name, int64_t highest, int64_t *out)
+{
+    return number_parse_int(row_field(ref, name), out) && *out >= 0 && *out <= highest;
 }
 
 static status read_row(const study *s, row_ref *ref, const char *path, row_kind kind, accepted *known, diagnostic *why)
 {
     const long line = (long)ref->row + 2;
-    const char *definition = csv_field(ref->table, ref->row, csv_column(ref->table, "definition"));
-    if (strcmp(csv_field(ref->table, ref->row, csv_column(ref->table, "study")), s->name) != 0)
+    const char *definition = row_field(ref, "definition");
+    if (strcmp(row_field(ref, "study"), s->name) != 0)
         return another_definition(path, line, kind, "they are of another study", why);
     if (!accepted_has(known, definition, kind == COMPARE_ROWS))
         return another_definition(path, line, kind, accepted_why_not(known), why);
     int64_t cell, repetition = 0, warmup = 0, worker = 0;
-    if (!field_integer(ref->table, ref->row, "cell", (int64_t)study_cell_count(s) - 1, &cell) ||
-        (kind != COMPARE_ROWS && (!field_integer(ref->table, ref->row, "repetition", INT32_MAX, &repetition) ||
-                                  !field_integer(ref->table, ref->row, "warmup", 1, &warmup))) ||
-        (kind == WORKER_ROWS && !field_integer(ref->table, ref->row, "worker", INT32_MAX, &worker))) {
+    if (!field_integer(ref, "cell", (int64_t)study_cell_count(s) - 1, &cell) ||
+        (kind != COMPARE_ROWS &&
+         (!field_integer(ref, "repetition", INT32_MAX, &repetition) || !field_integer(ref, "warmup", 1, &warmup))) ||
+        (kind == WORKER_ROWS && !field_integer(ref, "worker", INT32_MAX, &worker))) {
         diagnostic_locate(why, path, line, 1);
         return diagnose(why, STATUS_BAD_INPUT, "move the file away, or take this line out of a copy",
                         "the row is damaged");

@@ -17,6 +17,10 @@ typedef struct row_ref {
     bool warmup;
 } row_ref;
 
+/* What the row has in the column of that name; "NA" and NaN where there is none. */
+const char *row_field(const row_ref *ref, const char *name);
+double row_field_real(const row_ref *ref, const char *name);
+
 typedef struct row_files {
     char **paths; /* rows.csv first if it is there, then the shards in order */
     csv **tables;

@@ -2,22 +2,12 @@
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
+#include "study/grid.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-
-const char *study_grid_path(const study *s, size_t index)
-{
-    for (size_t axis = 0; axis < s->axis_count; axis++) {
-        const study_point *first = &s->axes[axis].points[0];
-        if (index < first->count)
-            return first->paths[index];
-        index -= first->count;
-    }
-    return NULL;
-}
 
 char *row_time(int64_t ms, char text[ROW_TIME_MAX])
 {

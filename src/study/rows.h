@@ -45,7 +45,4 @@ void row_put(csv_line *line, const quantity *q, const job_account *made, int wor
 enum { ROW_TIME_MAX = 32 };
 char *row_time(int64_t ms, char text[ROW_TIME_MAX]);
 
-/* The paths of the grid, in its order, one at a time: NULL behind the last. */
-const char *study_grid_path(const study *s, size_t index);
-
 #endif

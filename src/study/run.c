@@ -23,19 +23,24 @@ static void choose_cells(run *r)
         r->cells[r->cell_count++] = r->order[i];
 }
 
+status run_append(table *to, csv_line *lines, diagnostic *why)
+{
+    const status code = lines->failed ? out_of_memory(why) : table_append(to, lines->text, lines->size, why);
+    csv_line_free(lines);
+    return code;
+}
+
 static status append_row(run *r, const study_row *row, diagnostic *why)
 {
     csv_line line = {0};
     status code = STATUS_OK;
     if (r->workers) {
         worker_rows_write(&line, row);
-        code = line.failed ? out_of_memory(why) : table_append(r->workers, line.text, line.size, why);
-        csv_line_free(&line);
+        code = run_append(r->workers, &line, why);
     }
     if (code == STATUS_OK) {
         row_write(&line, row);
-        code = line.failed ? out_of_memory(why) : table_append(r->rows, line.text, line.size, why);
-        csv_line_free(&line);
+        code = run_append(r->rows, &line, why);
     }
     if (code != STATUS_OK)
         return code;

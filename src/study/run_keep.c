@@ -81,8 +81,7 @@ static status compare_cell(run *r, size_t cell, const scene *setting, const rend
     if (code != STATUS_OK)
         return code;
     compare_row_write(&line, &row);
-    code = line.failed ? out_of_memory(why) : table_append(r->compares, line.text, line.size, why);
-    csv_line_free(&line);
+    code = run_append(r->compares, &line, why);
     r->compared[cell] = code == STATUS_OK;
     return code;
 }

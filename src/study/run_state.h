@@ -4,6 +4,7 @@
 #define CUVETTE_STUDY_RUN_STATE_H
 
 #include "job/job.h"
+#include "study/csv.h"
 #include "study/ledger.h"
 #include "study/progress.h"
 #include "study/reference.h"
@@ -36,6 +37,9 @@ status run_find_compared(run *r, diagnostic *why);
 
 /* Is there a row, a picture or a comparison to make? */
 bool run_complete(const run *r);
+
+/* Adds the lines to the table, and frees them. */
+status run_append(table *to, csv_line *lines, diagnostic *why);
 
 /* Loads what the scene names. */
 status run_load(run *r, scene *setting, diagnostic *why);

@@ -1,8 +1,9 @@
 #include "study/summary.h"
-#include "base/number.h"
 #include "base/text.h"
 #include "measure/statistics.h"
+#include "study/cell_table.h"
 #include "study/compare_rows.h"
+#include "study/grid.h"
 #include "study/row_files.h"
 #include "study/rows.h"
 #include "scene/model/scene.h"
@@ -21,7 +22,11 @@ static const char *const after_marked[] = {
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
+/* The rows of a cell, of which a line is made; or of none, for the line of the columns' names. */
 typedef struct cell_rows {
+    bool header;
+    size_t number;
+    const char *film_expected; /* NULL without a row */
     const row_ref **rows;
     size_t count, marked;
     double *values;
@@ -29,23 +34,12 @@ typedef struct cell_rows {
     FILE *out;
 } cell_rows;
 
-static const char *field(const row_ref *ref, const char *name)
-{
-    return csv_field(ref->table, ref->row, csv_column(ref->table, name));
-}
-
-static void put_real(FILE *out, double value)
-{
-    char text[NUMBER_TEXT_MAX];
-    fprintf(out, "\t%s", isfinite(value) ? number_format(value, text) : "NA");
-}
-
 /* Known values of one column over the cell's rows. */
 static summary summarize_column(const cell_rows *cell, const char *name)
 {
     size_t count = 0;
     for (size_t i = 0; i < cell->count; i++) {
-        double value = csv_field_real(cell->rows[i]->table, cell->rows[i]->row, csv_column(cell->rows[i]->table, name));
+        const double value = row_field_real(cell->rows[i], name);
         if (!isnan(value))
             cell->values[count++] = value;
     }
@@ -56,30 +50,31 @@ static summary summarize_column(const cell_rows *cell, const char *name)
 
 static void put_timed(const cell_rows *cell, const char *name)
 {
-    summary s = summarize_column(cell, name);
-    put_real(cell->out, s.median);
-    put_real(cell->out, s.median_low);
-    put_real(cell->out, s.median_high);
-    put_real(cell->out, s.mean);
-    put_real(cell->out, s.minimum);
-    put_real(cell->out, s.maximum);
+    static const char *const parts[] = {"median", "low", "high", "mean", "min", "max"};
+    const summary s = cell->header ? (summary){0} : summarize_column(cell, name);
+    const double values[] = {s.median, s.median_low, s.median_high, s.mean, s.minimum, s.maximum};
+    for (size_t part = 0; part < COUNT(parts); part++)
+        if (cell->header)
+            fprintf(cell->out, "\t%s_%s", name, parts[part]);
+        else
+            cell_table_number(cell->out, values[part]);
 }
 
 static void put_median(const cell_rows *cell, const char *name)
 {
-    put_real(cell->out, summarize_column(cell, name).median);
+    if (cell->header)
+        fprintf(cell->out, "\t%s", name);
+    else
+        cell_table_number(cell->out, summarize_column(cell, name).median);
 }
 
-static status put_solids(const study *s, const cell_rows *cell, bool header, diagnostic *why)
+static status put_solids(const study *s, const cell_rows *cell, diagnostic *why)
 {
     for (size_t i = 0; i < s->base->solid_count; i++) {
         char *name = text_format("first_hits.%s", s->base->solids[i].name);
         if (!name)
             return out_of_memory(why);
-        if (header)
-            fprintf(cell->out, "\t%s", name);
-        else
-            put_median(cell, name);
+        put_median(cell, name);
         free(name);
     }
     return STATUS_OK;
@@ -89,49 +84,34 @@ static status put_solids(const study *s, const cell_rows *cell, bool header, dia
 static void put_compared(const study *s, const cell_rows *cell)
 {
     for (size_t i = 0; s->reference.count && i < compare_shown_count; i++)
-        fprintf(cell->out, "\t%s", cell->compared ? field(cell->compared, compare_shown[i]) : "NA");
+        fprintf(cell->out, "\t%s",
+                cell->header     ? compare_shown[i]
+                : cell->compared ? row_field(cell->compared, compare_shown[i])
+                                 : "NA");
 }
 
-static status put_header(const study *s, FILE *out, diagnostic *why)
+static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
 {
-    static const char *const parts[] = {"median", "low", "high", "mean", "min", "max"};
-    const char *path;
-    fputs("cell", out);
-    for (size_t i = 0; (path = study_grid_path(s, i)); i++)
-        fprintf(out, "\t%s", path);
-    fputs("\tn", out);
-    for (size_t i = 0; i < COUNT(timed); i++)
-        for (size_t part = 0; part < COUNT(parts); part++)
-            fprintf(out, "\t%s_%s", timed[i], parts[part]);
-    for (size_t i = 0; i < COUNT(before_hash); i++)
-        fprintf(out, "\t%s", before_hash[i]);
-    fputs("\tfilm_hash\tmarked", out);
-    for (size_t i = 0; i < COUNT(after_marked); i++)
-        fprintf(out, "\t%s", after_marked[i]);
-    status code = put_solids(s, &(cell_rows){.out = out}, true, why);
-    for (size_t i = 0; s->reference.count && i < compare_shown_count; i++)
-        fprintf(out, "\t%s", compare_shown[i]);
-    fputc('\n', out);
-    return code;
-}
-
-static status put_cell(const study *s, size_t number, const char *film_expected, const cell_rows *cell, diagnostic *why)
-{
-    fprintf(cell->out, "%zu", number);
-    for (size_t axis = 0; axis < s->axis_count; axis++) {
-        const study_point *point = &s->axes[axis].points[study_cell_point(s, number, axis)];
-        for (size_t i = 0; i < point->count; i++)
-            fprintf(cell->out, "\t%s", point->values[i]);
+    if (cell->header) {
+        fputs("cell", cell->out);
+        grid_put_paths(s, cell->out);
+        fputs("\tn", cell->out);
+    } else {
+        fprintf(cell->out, "%zu", cell->number);
+        grid_put_values(s, cell->number, cell->out);
+        fprintf(cell->out, "\t%zu", cell->count);
     }
-    fprintf(cell->out, "\t%zu", cell->count);
     for (size_t i = 0; i < COUNT(timed); i++)
         put_timed(cell, timed[i]);
     for (size_t i = 0; i < COUNT(before_hash); i++)
         put_median(cell, before_hash[i]);
-    fprintf(cell->out, "\t%s\t%zu", film_expected ? film_expected : "NA", cell->marked);
+    if (cell->header)
+        fputs("\tfilm_hash\tmarked", cell->out);
+    else
+        fprintf(cell->out, "\t%s\t%zu", cell->film_expected ? cell->film_expected : "NA", cell->marked);
     for (size_t i = 0; i < COUNT(after_marked); i++)
         put_median(cell, after_marked[i]);
-    status code = put_solids(s, cell, false, why);
+    const status code = put_solids(s, cell, why);
     put_compared(s, cell);
     fputc('\n', cell->out);
     return code;
@@ -145,14 +125,15 @@ static status put_cells(const study *s, const row_files *files, const row_files 
         .rows = malloc(room * sizeof *cell.rows), .values = malloc(room * sizeof *cell.values), .out = out};
     status code = cell.rows && cell.values ? STATUS_OK : out_of_memory(why);
     for (size_t number = 0; code == STATUS_OK && number < study_cell_count(s); number++) {
-        const char *film_expected = NULL;
+        cell.number = number;
+        cell.film_expected = NULL;
         cell.count = cell.marked = 0;
         for (size_t i = 0; i < files->row_count; i++) {
             const row_ref *ref = &files->rows[i];
             if (ref->cell != number)
                 continue;
-            bool marked = strcmp(field(ref, "marked"), "0") != 0;
-            film_expected = film_expected ? film_expected : field(ref, "film_expected");
+            const bool marked = strcmp(row_field(ref, "marked"), "0") != 0;
+            cell.film_expected = cell.film_expected ? cell.film_expected : row_field(ref, "film_expected");
             cell.marked += marked;
             if (!marked && !ref->warmup)
                 cell.rows[cell.count++] = ref;
@@ -161,7 +142,7 @@ static status put_cells(const study *s, const row_files *files, const row_files 
         for (size_t i = 0; compared && i < compared->row_count && !cell.compared; i++)
             if (compared->rows[i].cell == number)
                 cell.compared = &compared->rows[i];
-        code = put_cell(s, number, film_expected, &cell, why);
+        code = put_line(s, &cell, why);
     }
     free(cell.rows);
     free(cell.values);
@@ -182,7 +163,7 @@ status study_summary(const study *s, const char *results, FILE *out, diagnostic 
     if (code == STATUS_OK && s->reference.count)
         code = row_files_read(s, results, COMPARE_ROWS, &compared, why);
     if (code == STATUS_OK)
-        code = put_header(s, out, why);
+        code = put_line(s, &(cell_rows){.header = true, .out = out}, why);
     if (code == STATUS_OK)
         code = put_cells(s, files, compared, out, why);
     row_files_destroy(compared);

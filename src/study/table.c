@@ -1,9 +1,9 @@
 #include "study/table.h"
+#include "base/file.h"
 #include "base/text.h"
-#include "study/table_columns.h"
+#include "study/csv_layout.h"
 #include <errno.h>
 #include <fcntl.h>
-#include <libgen.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -24,18 +24,6 @@ static status failed(const char *path, const char *doing, int error, diagnostic 
                              ? "make room and run it again: it goes on where it stopped"
                              : "make the folder writable and run it again: it goes on where it stopped";
     return diagnose(why, STATUS_FAILURE, remedy, "%s failed: %s", doing, strerror(error));
-}
-
-/* Makes a new name last through a power failure: its folder is flushed too. */
-static void flush_folder(const char *path)
-{
-    char *copy = strdup(path);
-    int fd = copy ? open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
-    if (fd >= 0) {
-        fsync(fd);
-        close(fd);
-    }
-    free(copy);
 }
 
 /* All of bytes at the end of the file, flushed; on failure the file is cut back and errno tells why. */
@@ -82,7 +70,7 @@ static status keep_torn(const char *path, const char *bytes, size_t size, diagno
         code = failed(torn, "setting a torn row aside", errno, why);
     if (fd >= 0)
         close(fd);
-    flush_folder(torn);
+    file_flush_folder(torn);
     free(torn);
     return code;
 }
@@ -178,7 +166,7 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
         code = table_set_aside(t, end, why);
     if (code == STATUS_OK && end == 0) {
         code = append(t, header, strlen(header), why);
-        flush_folder(path);
+        file_flush_folder(path);
         t->settled = true;
     }
     if (code != STATUS_OK) {
@@ -193,9 +181,9 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
 static status settle(table *t, diagnostic *why)
 {
     bool replaced = false;
-    status code = table_columns_settle(t->path, t->header, &t->layout, &replaced, why);
+    status code = csv_layout_settle(t->path, t->header, &t->layout, &replaced, why);
     if (code == STATUS_OK && replaced) {
-        flush_folder(t->path);
+        file_flush_folder(t->path);
         close(t->fd);
         code = lock(t, why);
     }

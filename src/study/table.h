@@ -2,7 +2,7 @@
  * process at a time (flock). What a killed process left half written is moved aside when the file is opened again: the
  * torn end of x.csv is appended to x.torn.csv, on disk, before x.csv is cut back to its last whole line. Nothing else
  * is ever taken out of the file or changed in it; one with other columns gets what it lacks before the first new row
- * (study/table_columns.h). Ownership: table_open gives, table_close releases. Errors name the file, and leave whole
+ * (study/csv_layout.h). Ownership: table_open gives, table_close releases. Errors name the file, and leave whole
  * what is in it. */
 #ifndef CUVETTE_STUDY_TABLE_H
 #define CUVETTE_STUDY_TABLE_H

@@ -1,7 +1,10 @@
 #include "web/lab_private.h"
 #include "base/text.h"
+#include "scene/model/camera.h"
 #include "scene/model/params.h"
 #include "scene/model/place/new_scene.h"
+#include "report/json.h"
+#include "web/api/api.h"
 #include "web/page.h"
 #include "web/session/pins.h"
 #include "web/session/studies.h"
@@ -27,17 +30,13 @@ void lab_publish(lab *l, const char *event, json_t *value)
 json_t *lab_state(lab *l)
 {
     json_t *state = json_pack("{s:s}", "version", CUVETTE_VERSION);
-    bool good = state && desk_tell(l->desk, state) && painter_tell(l->painter, state);
-    good = good && json_object_set_new(state, "slime", live_tell(painter_live(l->painter))) == 0;
-    good = good && json_object_set_new(state, "pin", pins_tell(l->pins)) == 0;
-    good = good && json_object_set_new(state, "study", studies_tell(l->studies)) == 0;
-    good = good &&
-           json_object_set_new(state, "limits",
-                               json_pack("{s:i,s:i}", "pixels", DESK_PIXELS_MAX, "triangles", DESK_TRIANGLES_MAX)) == 0;
-    if (good)
-        return state;
-    json_decref(state);
-    return NULL;
+    const bool good =
+        state && desk_tell(l->desk, state) && painter_tell(l->painter, state) &&
+        json_object_update_new(state,
+                               json_pack("{s:o, s:o, s:o, s:{s:i, s:i}}", "slime", live_tell(painter_live(l->painter)),
+                                         "pin", pins_tell(l->pins), "study", studies_tell(l->studies), "limits",
+                                         "pixels", DESK_PIXELS_MAX, "triangles", DESK_TRIANGLES_MAX)) == 0;
+    return json_whole(state, good);
 }
 
 static bool is_open(lab *l)
@@ -141,30 +140,10 @@ static status open_desk(lab *l, diagnostic *why)
     return code;
 }
 
-/* All tables of routes in one, with the lab as their context. */
-static status join_routes(lab *l, size_t *count, diagnostic *why)
-{
-    const lab_routes *const tables[] = {&desk_routes, &picture_routes, &trace_routes, &compare_routes, &edit_routes,
-                                        &file_routes, &slime_routes,   &study_routes, &note_routes};
-    *count = 0;
-    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
-        *count += tables[i]->count;
-    l->routes = calloc(*count, sizeof *l->routes);
-    if (!l->routes)
-        return out_of_memory(why);
-    size_t at = 0;
-    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
-        for (size_t k = 0; k < tables[i]->count; k++) {
-            l->routes[at] = tables[i]->routes[k];
-            l->routes[at++].context = l;
-        }
-    return STATUS_OK;
-}
-
 static status serve(lab *l, diagnostic *why)
 {
     size_t count;
-    status code = join_routes(l, &count, why);
+    status code = api_bind(l, &count, why);
     const http_settings settings = {.port = l->settings.port,
                                     .routes = l->routes,
                                     .route_count = count,
@@ -235,6 +214,7 @@ void lab_stop(lab *l)
     folder_close(l->files);
     pthread_mutex_destroy(&l->publish_lock);
     pthread_mutex_destroy(&l->tell_lock);
+    free(l->bound);
     free(l->routes);
     free(l);
 }
@@ -247,4 +227,11 @@ const char *lab_address(const lab *l)
 const http_server *lab_server(const lab *l)
 {
     return l->server;
+}
+
+void lab_camera_ray(const scene *s, double x, double y, vec3 *origin, vec3 *direction)
+{
+    const camera_frame f = camera_frame_of(s);
+    *origin = f.eye;
+    *direction = camera_direction(&f, scene_settings(s), x, y);
 }

@@ -3,6 +3,7 @@
 #include "geometry/shapes/shape.h"
 #include "scene/assets/assets.h"
 #include "scene/model/looks.h"
+#include "scene/model/objects.h"
 #include "scene/model/params_value.h"
 #include "scene/assets/mesh_make.h"
 #include "scene/model/slime.h"
@@ -29,12 +30,8 @@ void texture_entry_unload(texture_entry *t)
 
 const mesh_entry *scene_find_mesh(const scene *s, const char *name)
 {
-    for (size_t i = 0; i < s->mesh_count; i++) {
-        if (strcmp(s->meshes[i].name, name) == 0) {
-            return &s->meshes[i];
-        }
-    }
-    return NULL;
+    const int at = object_find(s, PARAM_MESH, name);
+    return at < 0 ? NULL : &s->meshes[at];
 }
 
 const mesh_entry *scene_mesh_of(const scene *s, const solid *owner)
@@ -57,12 +54,8 @@ bool solid_shows(const solid *owner, const char *mesh_name)
 
 const texture_entry *scene_find_texture(const scene *s, const char *name)
 {
-    for (size_t i = 0; i < s->texture_count; i++) {
-        if (strcmp(s->textures[i].name, name) == 0) {
-            return &s->textures[i];
-        }
-    }
-    return NULL;
+    const int at = object_find(s, PARAM_TEXTURE, name);
+    return at < 0 ? NULL : &s->textures[at];
 }
 
 status asset_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code,

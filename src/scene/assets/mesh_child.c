@@ -45,19 +45,27 @@ static void hear(mesh_child *child)
     child->said_length += kept;
 }
 
+/* poll for as long as the deadline leaves; 0, and late, when that is over. */
+static int wait_until_late(mesh_child *child, struct pollfd *files, nfds_t count)
+{
+    const double left_s = child->deadline_s - mesh_child_now_s();
+    child->late = left_s <= 0;
+    return child->late ? 0 : poll(files, count, left_s < 1000 ? (int)(left_s * 1000) + 1 : 1000000);
+}
+
+static bool is_passing(int error)
+{
+    return error == EINTR || error == EAGAIN;
+}
+
 /* Waits until there is something on standard output (true) or nothing will come. */
 static bool wait_for_bytes(mesh_child *child)
 {
     while (child->out >= 0) {
-        double left_s = child->deadline_s - mesh_child_now_s();
-        if (left_s <= 0) {
-            child->late = true;
-            return false;
-        }
         struct pollfd both[] = {{.fd = child->out, .events = POLLIN},
                                 {.fd = child->err, .events = POLLIN}}; /* -1 is left out */
-        int ready = poll(both, 2, left_s < 1000 ? (int)(left_s * 1000) + 1 : 1000000);
-        if (ready < 0 && errno != EINTR && errno != EAGAIN) {
+        const int ready = wait_until_late(child, both, 2);
+        if (child->late || (ready < 0 && !is_passing(errno))) {
             return false;
         }
         if (ready > 0 && both[1].revents) {
@@ -111,13 +119,11 @@ status mesh_child_end(void *context, diagnostic *why)
 static int reap(mesh_child *child, bool still_wanted)
 {
     while (still_wanted && child->err >= 0 && !child->late) { /* what it still has to say; its end closes this too */
-        double left_s = child->deadline_s - mesh_child_now_s();
         struct pollfd one = {.fd = child->err, .events = POLLIN};
-        int ready = left_s > 0 ? poll(&one, 1, left_s < 1000 ? (int)(left_s * 1000) + 1 : 1000000) : 0;
-        child->late = left_s <= 0;
+        const int ready = wait_until_late(child, &one, 1);
         if (ready > 0) {
             hear(child);
-        } else if (ready < 0 && errno != EINTR && errno != EAGAIN) {
+        } else if (ready < 0 && !is_passing(errno)) {
             break;
         }
     }

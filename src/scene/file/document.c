@@ -37,7 +37,7 @@ static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, nod
     }
     node *n = calloc(1, sizeof *n);
     if (!n) {
-        return events_out_of_memory(r);
+        return out_of_memory(r->why);
     }
     n->kind = kind;
     n->line = (long)mark.line + 1;
@@ -54,13 +54,13 @@ static status node_append(event_reader *r, node *parent, node *key, node *value)
         size_t room = count ? count * 2 : 1;
         node **items = realloc(parent->items, room * sizeof *items);
         if (!items) {
-            return events_out_of_memory(r);
+            return out_of_memory(r->why);
         }
         parent->items = items;
         if (key) {
             node **keys = realloc(parent->keys, room * sizeof *keys);
             if (!keys) {
-                return events_out_of_memory(r);
+                return out_of_memory(r->why);
             }
             parent->keys = keys;
         }
@@ -89,7 +89,7 @@ static status read_scalar(event_reader *r, const yaml_event_t *event, node **out
     n->text = strdup(value);
     if (!n->text) {
         node_destroy(n);
-        return events_out_of_memory(r);
+        return out_of_memory(r->why);
     }
     *out = n;
     return STATUS_OK;
@@ -113,7 +113,7 @@ static status check_unique_keys(event_reader *r, const node *map)
     }
     node **sorted = malloc(map->count * sizeof(node *));
     if (!sorted) {
-        return events_out_of_memory(r);
+        return out_of_memory(r->why);
     }
     memcpy(sorted, map->keys, map->count * sizeof(node *));
     qsort(sorted, map->count, sizeof(node *), compare_keys);
@@ -265,7 +265,7 @@ status document_parse(const char *name, const char *text, size_t size, document 
         return events_error(&r, (yaml_mark_t){0}, "give the file that describes it", "this is a picture, not a scene");
     }
     if (!yaml_parser_initialize(&r.parser)) {
-        return events_out_of_memory(&r);
+        return out_of_memory(r.why);
     }
     yaml_parser_set_encoding(&r.parser, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&r.parser, (const unsigned char *)text, size);
@@ -277,11 +277,6 @@ status document_parse(const char *name, const char *text, size_t size, document 
         return code;
     }
     return wrap(name, root, out, why);
-}
-
-status document_read(const char *path, document **out, diagnostic *why)
-{
-    return document_read_below(path, NULL, out, why);
 }
 
 status document_read_below(const char *path, const char *root, document **out, diagnostic *why)

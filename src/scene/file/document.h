@@ -23,10 +23,9 @@ typedef struct node {
 typedef struct document document;
 
 /* Limits: 1 MiB, depth 16, 65536 nodes. name is the file's, for diagnostics. */
-status document_read(const char *path, document **out, diagnostic *why);
-/* The same of a file that lies below root (base/below.h). */
-status document_read_below(const char *path, const char *root, document **out, diagnostic *why);
 status document_parse(const char *name, const char *text, size_t size, document **out, diagnostic *why);
+/* The same from a file that lies below root (base/below.h; NULL: anywhere). */
+status document_read_below(const char *path, const char *root, document **out, diagnostic *why);
 void document_destroy(document *d);
 
 const node *document_root(const document *d);

@@ -3,11 +3,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-status events_out_of_memory(event_reader *r)
-{
-    return out_of_memory(r->why);
-}
-
 status events_error(event_reader *r, yaml_mark_t mark, const char *remedy, const char *what)
 {
     diagnostic_locate(r->why, r->name, (long)mark.line + 1, (long)mark.column + 1);
@@ -50,7 +45,7 @@ static status syntax_error(event_reader *r)
 {
     const yaml_parser_t *p = &r->parser;
     switch (p->error) {
-    case YAML_MEMORY_ERROR: return events_out_of_memory(r);
+    case YAML_MEMORY_ERROR: return out_of_memory(r->why);
     case YAML_READER_ERROR:
         return events_error(r, mark_of_byte(r, p->problem_offset), "save the file as plain UTF-8 text",
                             p->problem ? p->problem : "the file is not text");

@@ -13,7 +13,6 @@ typedef struct event_reader {
     diagnostic *why;
 } event_reader;
 
-status events_out_of_memory(event_reader *r);
 /* STATUS_BAD_INPUT, located at mark. */
 status events_error(event_reader *r, yaml_mark_t mark, const char *remedy, const char *what);
 /* The next event. Aliases, anchors and tags are refused here, and so is what is not YAML or not UTF-8. */

@@ -22,47 +22,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static status read_settings(const scene_reader *r, param_group group, const node *map)
+/* A picture that is named, of a background that is said to be of another kind? */
+static status check_sky(const scene_reader *r, const node *map)
 {
-    const char *name = param_group_name(group);
-    status code = read_expect_map(r, map, name);
-    if (code == STATUS_OK) {
-        code = read_check_keys(r, group, map);
-    }
-    return code == STATUS_OK ? read_entries(r, name, group, map) : code;
-}
-
-static status read_render(const scene_reader *r, const char *name, const node *map)
-{
-    (void)name;
-    status code = read_settings(r, PARAM_RENDER, map);
-    return code == STATUS_OK ? read_located(r, map, check_render(r->scene, r->why)) : code;
-}
-
-static status read_camera(const scene_reader *r, const char *name, const node *map)
-{
-    (void)name;
-    const node *target = node_get(map, "target"), *yaw = node_get(map, "yaw_deg"), *pitch = node_get(map, "pitch_deg");
-    if (target && (yaw || pitch)) {
-        return node_error(r->file, yaw ? yaw : pitch, r->why, "keep the target, or the angles",
-                          "the camera has a target and %s too", yaw ? "yaw_deg" : "pitch_deg");
-    }
-    if (yaw || pitch) { /* the angle left out is 0, not the default target's */
-        r->scene->camera.aimed = 0;
-    }
-    status code = read_settings(r, PARAM_CAMERA, map);
-    return code == STATUS_OK ? read_located(r, map, check_camera(r->scene, r->why)) : code;
-}
-
-static status read_background(const scene_reader *r, const char *name, const node *map)
-{
-    (void)name;
     const node *kind = node_get(map, "kind"), *picture = node_get(map, "picture");
     bool shown = picture && picture->kind == NODE_SCALAR && picture->text[0];
-    status code = read_settings(r, PARAM_BACKGROUND, map);
-    if (code == STATUS_OK) {
-        code = read_one_medium(r, map);
-    }
+    status code = read_one_medium(r, map);
     if (code == STATUS_OK && shown) {
         r->scene->background.picture_line = picture->line;
         r->scene->background.picture_column = picture->column;
@@ -71,11 +36,41 @@ static status read_background(const scene_reader *r, const char *name, const nod
         return node_error(r->file, kind, r->why, "set it to picture, or take the picture away",
                           "background.kind is %s, and there is a picture", kind->text);
     }
-    return code == STATUS_OK ? read_located(r, map, check_background(r->scene, r->why)) : code;
+    return code;
 }
 
-static status read_title(const scene_reader *r, const char *name, const node *value)
+/* A section that is one object. */
+static status read_settings(const scene_reader *r, const char *name, param_group group, const node *map)
 {
+    status code = read_expect_map(r, map, name);
+    if (code == STATUS_OK) {
+        code = read_check_keys(r, group, map);
+    }
+    if (code == STATUS_OK) {
+        code = read_entries(r, name, group, map);
+    }
+    if (code == STATUS_OK && group == PARAM_BACKGROUND) {
+        code = check_sky(r, map);
+    }
+    return code == STATUS_OK ? read_located(r, map, check_object(r->scene, group, 0, r->why)) : code;
+}
+
+static status read_camera(const scene_reader *r, const char *name, param_group group, const node *map)
+{
+    const node *target = node_get(map, "target"), *yaw = node_get(map, "yaw_deg"), *pitch = node_get(map, "pitch_deg");
+    if (target && (yaw || pitch)) {
+        return node_error(r->file, yaw ? yaw : pitch, r->why, "keep the target, or the angles",
+                          "the camera has a target and %s too", yaw ? "yaw_deg" : "pitch_deg");
+    }
+    if (yaw || pitch) { /* the angle left out is 0, not the default target's */
+        r->scene->camera.aimed = 0;
+    }
+    return read_settings(r, name, group, map);
+}
+
+static status read_title(const scene_reader *r, const char *name, param_group group, const node *value)
+{
+    (void)group;
     status code = read_expect_word(r, value, name);
     return code == STATUS_OK ? scene_set_title(r->scene, value->text, r->why) : code;
 }
@@ -85,11 +80,14 @@ static status read_sections(const scene_reader *r)
     /* Not in the file's order: solids refer to materials, and are checked under the weights of render. */
     static const struct section {
         const char *name;
-        status (*read)(const scene_reader *, const char *, const node *);
+        status (*read)(const scene_reader *, const char *, param_group, const node *);
+        param_group group;
     } sections[] = {
-        {"title", read_title},           {"render", read_render}, {"camera", read_camera},
-        {"background", read_background}, {"meshes", read_meshes}, {"textures", read_textures},
-        {"materials", read_materials},   {"lights", read_lights}, {"solids", read_solids},
+        {"title", read_title, PARAM_GROUP_COUNT},    {"render", read_settings, PARAM_RENDER},
+        {"camera", read_camera, PARAM_CAMERA},       {"background", read_settings, PARAM_BACKGROUND},
+        {"meshes", read_objects, PARAM_MESH},        {"textures", read_objects, PARAM_TEXTURE},
+        {"materials", read_objects, PARAM_MATERIAL}, {"lights", read_objects, PARAM_LIGHT},
+        {"solids", read_objects, PARAM_SOLID},
     };
     enum { COUNT = sizeof sections / sizeof sections[0] };
     const node *root = document_root(r->file);
@@ -109,7 +107,7 @@ static status read_sections(const scene_reader *r)
     status code = node_check_keys(r->file, root, names, COUNT, r->why);
     for (size_t i = 0; i < COUNT && code == STATUS_OK; i++) {
         const node *value = node_get(root, names[i]);
-        code = value ? sections[i].read(r, names[i], value) : STATUS_OK;
+        code = value ? sections[i].read(r, names[i], sections[i].group, value) : STATUS_OK;
     }
     return code;
 }

@@ -14,11 +14,6 @@ status read_located(const scene_reader *r, const node *at, status code)
     return code;
 }
 
-status read_out_of_memory(const scene_reader *r)
-{
-    return out_of_memory(r->why);
-}
-
 static bool is_empty(const node *n)
 {
     return n->kind == NODE_SCALAR && !n->quoted && !n->text[0];

@@ -15,7 +15,6 @@ typedef struct scene_reader {
 /* Returns code; on a failure, puts the node's place into a diagnostic that a function without knowledge of the
  * file filled. */
 status read_located(const scene_reader *r, const node *at, status code);
-status read_out_of_memory(const scene_reader *r);
 
 /* A map, or nothing at all (which counts as a map without entries). */
 status read_expect_map(const scene_reader *r, const node *n, const char *name);
@@ -31,15 +30,8 @@ status read_check_keys(const scene_reader *r, param_group group, const node *map
  * caller. */
 status read_entries(const scene_reader *r, const char *name, param_group group, const node *map);
 
-/* A section of named objects: key and map of each go to read_object. */
-typedef status read_object_call(const scene_reader *r, const node *key, const node *map);
-status read_objects(const scene_reader *r, const char *name, const node *map, read_object_call *read_object);
-
-/* The sections of named objects. Materials come before solids, which refer to them. */
-status read_meshes(const scene_reader *r, const char *name, const node *map);
-status read_textures(const scene_reader *r, const char *name, const node *map);
-status read_materials(const scene_reader *r, const char *name, const node *map);
-status read_lights(const scene_reader *r, const char *name, const node *map);
-status read_solids(const scene_reader *r, const char *name, const node *map);
+/* A section of named objects: each is added to the scene, and checked. Materials come before solids, which refer to
+ * them. */
+status read_objects(const scene_reader *r, const char *name, param_group group, const node *map);
 
 #endif

@@ -1,35 +1,10 @@
-/* Materials, lights and solids of a scene file. */
+/* Meshes, textures, materials, lights and solids of a scene file. */
+#include "scene/file/read_entries.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
-#include "scene/file/read_entries.h"
 #include "scene/model/scene.h"
 
 #include <string.h>
-
-static status read_material(const scene_reader *r, const node *key, const node *map)
-{
-    status code = read_located(r, key, scene_add_material(r->scene, key->text, NULL, r->why));
-    if (code == STATUS_OK) {
-        code = read_check_keys(r, PARAM_MATERIAL, map);
-    }
-    if (code == STATUS_OK) {
-        code = read_one_medium(r, map);
-    }
-    return code == STATUS_OK ? read_entries(r, key->text, PARAM_MATERIAL, map) : code;
-}
-
-static status read_light(const scene_reader *r, const node *key, const node *map)
-{
-    size_t index = 0;
-    status code = read_located(r, key, scene_add_light(r->scene, key->text, &index, r->why));
-    if (code == STATUS_OK) {
-        code = read_check_keys(r, PARAM_LIGHT, map);
-    }
-    if (code == STATUS_OK) {
-        code = read_entries(r, key->text, PARAM_LIGHT, map);
-    }
-    return code == STATUS_OK ? read_located(r, key, check_light(r->scene, &r->scene->lights[index], r->why)) : code;
-}
 
 static status read_shape(const scene_reader *r, const node *key, const node *map, shape_kind *out)
 {
@@ -56,10 +31,10 @@ static status read_material_name(const scene_reader *r, const node *key, const n
                              : code;
 }
 
-static status read_solid(const scene_reader *r, const node *key, const node *map)
+/* A new solid, whose shape and material are no rows of the table. */
+static status begin_solid(const scene_reader *r, const node *key, const node *map, size_t *index)
 {
     shape_kind shape = {0};
-    size_t index = 0;
     status code = read_check_keys(r, PARAM_SOLID, map);
     if (code == STATUS_OK) {
         code = read_one_medium(r, map);
@@ -68,40 +43,75 @@ static status read_solid(const scene_reader *r, const node *key, const node *map
         code = read_shape(r, key, map, &shape);
     }
     if (code == STATUS_OK) {
-        code = read_located(r, key, scene_add_solid(r->scene, key->text, shape, &index, r->why));
+        code = read_located(r, key, scene_add_solid(r->scene, key->text, shape, index, r->why));
     }
-    if (code == STATUS_OK) {
-        code = read_material_name(r, key, map);
-    }
-    if (code == STATUS_OK) {
-        code = read_entries(r, key->text, PARAM_SOLID, map);
-    }
-    return code == STATUS_OK ? read_located(r, key, check_solid(r->scene, &r->scene->solids[index], r->why)) : code;
+    return code == STATUS_OK ? read_material_name(r, key, map) : code;
 }
 
-status read_objects(const scene_reader *r, const char *name, const node *map, read_object_call *read_object)
+static status begin_object(const scene_reader *r, param_group group, const node *key, const node *map, size_t *index)
+{
+    if (group == PARAM_SOLID) {
+        return begin_solid(r, key, map, index);
+    }
+    status code = read_located(r, key, scene_add(r->scene, group, key->text, index, r->why));
+    if (code == STATUS_OK) {
+        code = read_check_keys(r, group, map);
+    }
+    if (code == STATUS_OK && group == PARAM_MATERIAL) {
+        code = read_one_medium(r, map);
+    }
+    const node *generate = node_get(map, "generate");
+    if (code == STATUS_OK && group == PARAM_MESH && generate && node_get(map, "file")) {
+        return node_error(r->file, generate, r->why, "keep one of them", "%.80s has a file, and is generated too",
+                          key->text);
+    }
+    return code;
+}
+
+static void note_place(const node *file, long *line, long *column)
+{
+    if (file) {
+        *line = file->line;
+        *column = file->column;
+    }
+}
+
+/* Where files that are named stand, for diagnostics when they are read. */
+static void note_places(const scene_reader *r, param_group group, size_t index, const node *map)
+{
+    const node *file = node_get(map, "file");
+    if (group == PARAM_MESH) {
+        mesh_entry *m = &r->scene->meshes[index];
+        note_place(file ? file : node_get(map, "generate"), &m->path_line, &m->path_column);
+        note_place(node_get(map, "script"), &m->script_line, &m->script_column);
+    } else if (group == PARAM_TEXTURE) {
+        texture_entry *t = &r->scene->textures[index];
+        note_place(file, &t->path_line, &t->path_column);
+    }
+}
+
+static status read_object(const scene_reader *r, param_group group, const node *key, const node *map)
+{
+    size_t index = 0;
+    status code = begin_object(r, group, key, map, &index);
+    if (code == STATUS_OK) {
+        code = read_entries(r, key->text, group, map);
+    }
+    if (code != STATUS_OK) {
+        return code;
+    }
+    note_places(r, group, index, map);
+    return read_located(r, key, check_object(r->scene, group, index, r->why));
+}
+
+status read_objects(const scene_reader *r, const char *name, param_group group, const node *map)
 {
     status code = read_expect_map(r, map, name);
     for (size_t i = 0; i < map->count && code == STATUS_OK; i++) {
         code = read_expect_map(r, map->items[i], map->keys[i]->text);
         if (code == STATUS_OK) {
-            code = read_object(r, map->keys[i], map->items[i]);
+            code = read_object(r, group, map->keys[i], map->items[i]);
         }
     }
     return code;
-}
-
-status read_materials(const scene_reader *r, const char *name, const node *map)
-{
-    return read_objects(r, name, map, read_material);
-}
-
-status read_lights(const scene_reader *r, const char *name, const node *map)
-{
-    return read_objects(r, name, map, read_light);
-}
-
-status read_solids(const scene_reader *r, const char *name, const node *map)
-{
-    return read_objects(r, name, map, read_solid);
 }

@@ -3,9 +3,9 @@
 #include "base/counters.h"
 #include "scene/model/looks.h"
 #include "scene/model/medium.h"
-#include "scene/model/params.h"
+#include "scene/model/objects.h"
+#include "scene/model/params_path.h"
 #include "scene/model/slime.h"
-#include "scene/model/suggest.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>
@@ -56,20 +56,10 @@ status check_name(const char *name, diagnostic *why)
 static size_t count_name(const scene *s, const char *name)
 {
     size_t count = 0;
-    for (size_t i = 0; i < s->mesh_count; i++) {
-        count += strcmp(s->meshes[i].name, name) == 0;
-    }
-    for (size_t i = 0; i < s->texture_count; i++) {
-        count += strcmp(s->textures[i].name, name) == 0;
-    }
-    for (size_t i = 0; i < s->light_count; i++) {
-        count += strcmp(s->lights[i].name, name) == 0;
-    }
-    for (size_t i = 0; i < s->material_count; i++) {
-        count += strcmp(s->materials[i].name, name) == 0;
-    }
-    for (size_t i = 0; i < s->solid_count; i++) {
-        count += strcmp(s->solids[i].name, name) == 0;
+    for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++) {
+        for (size_t i = 0; i < place_group_size(s, (param_group)g); i++) {
+            count += strcmp(place_group_name(s, (param_group)g, i), name) == 0;
+        }
     }
     return count;
 }
@@ -92,7 +82,7 @@ static status check_own_name(const scene *s, const char *name, diagnostic *why)
     return code != STATUS_OK || count_name(s, name) == 1 ? code : name_taken(name, why);
 }
 
-status check_render(const scene *s, diagnostic *why)
+static status check_render(const scene *s, diagnostic *why)
 {
     if (s->render.width > SCENE_PIXELS_MAX / s->render.height) {
         return diagnose(why, STATUS_BAD_INPUT, "keep width times height within 268435456",
@@ -124,7 +114,7 @@ status check_render(const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-status check_light(const scene *s, const light *lamp, diagnostic *why)
+static status check_light(const scene *s, const light *lamp, diagnostic *why)
 {
     if (integrator_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0) {
         return diagnose(why, STATUS_BAD_INPUT,
@@ -139,7 +129,7 @@ status check_light(const scene *s, const light *lamp, diagnostic *why)
     return STATUS_OK;
 }
 
-status check_camera(const scene *s, diagnostic *why)
+static status check_camera(const scene *s, diagnostic *why)
 {
     vec3 d = vec3_sub(s->camera.target, s->camera.position);
     if (s->camera.aimed && !(vec3_dot(d, d) > 0.0)) {
@@ -149,7 +139,7 @@ status check_camera(const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-status check_background(const scene *s, diagnostic *why)
+static status check_background(const scene *s, diagnostic *why)
 {
     if (s->background.kind == BACKGROUND_PICTURE && !s->background.picture_path[0]) {
         return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG, PFM or 24-bit BMP file",
@@ -158,7 +148,7 @@ status check_background(const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-status check_mesh(const mesh_entry *m, diagnostic *why)
+static status check_mesh(const mesh_entry *m, diagnostic *why)
 {
     if (m->source == MESH_FILE && !m->path[0]) {
         return diagnose(why, STATUS_BAD_INPUT,
@@ -172,7 +162,7 @@ status check_mesh(const mesh_entry *m, diagnostic *why)
     return m->source == MESH_SLIME ? slime_check(m, why) : STATUS_OK;
 }
 
-status check_texture(const texture_entry *t, diagnostic *why)
+static status check_texture(const texture_entry *t, diagnostic *why)
 {
     if (!t->path[0] && !t->data) {
         return diagnose(why, STATUS_BAD_INPUT, "give it a file, as 'file: wood.png'",
@@ -184,23 +174,10 @@ status check_texture(const texture_entry *t, diagnostic *why)
 /* Texture or mesh: group says which. */
 static status unknown(const scene *s, param_group group, const char *owner, const char *name, diagnostic *why)
 {
-    enum { ROOM = SCENE_MESHES_MAX > SCENE_TEXTURES_MAX ? (int)SCENE_MESHES_MAX : (int)SCENE_TEXTURES_MAX };
-    const char *words[ROOM], *what = param_group_name(group);
-    size_t count = 0;
-    for (size_t i = 0; group == PARAM_MESH && i < s->mesh_count; i++) {
-        words[count++] = s->meshes[i].name;
-    }
-    for (size_t i = 0; group == PARAM_TEXTURE && i < s->texture_count; i++) {
-        words[count++] = s->textures[i].name;
-    }
-    const char *nearest = suggest_word(name, words, count);
     char remedy[SCENE_NAME_MAX + 80];
-    if (nearest) {
-        snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
-    } else {
-        snprintf(remedy, sizeof remedy, "add it to %s%s", what, group == PARAM_MESH ? "es" : "s");
-    }
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: there is no %s '%.80s'", owner, what, name);
+    object_remedy(s, group, name, remedy, sizeof remedy);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: there is no %s '%.80s'", owner, param_group_name(group),
+                    name);
 }
 
 /* A clear solid bends light by what is inside it: an open mesh has no inside. */
@@ -268,7 +245,7 @@ static status check_faces(const scene *s, const solid *owner, diagnostic *why)
     return STATUS_OK;
 }
 
-status check_solid(const scene *s, const solid *owner, diagnostic *why)
+static status check_solid(const scene *s, const solid *owner, diagnostic *why)
 {
     diagnostic shape = {.what = ""};
     status code = solid_shape_check(&owner->shape, &shape);
@@ -327,57 +304,40 @@ status check_limits(const scene *s, diagnostic *why)
 static status check_names(const scene *s, diagnostic *why)
 {
     status code = STATUS_OK;
-    for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
-        code = check_own_name(s, s->meshes[i].name, why);
-    }
-    for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++) {
-        code = check_own_name(s, s->textures[i].name, why);
-    }
-    for (size_t i = 0; i < s->light_count && code == STATUS_OK; i++) {
-        code = check_own_name(s, s->lights[i].name, why);
-    }
-    for (size_t i = 0; i < s->material_count && code == STATUS_OK; i++) {
-        code = check_own_name(s, s->materials[i].name, why);
-    }
-    for (size_t i = 0; i < s->solid_count && code == STATUS_OK; i++) {
-        code = check_own_name(s, s->solids[i].name, why);
+    for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++) {
+        for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++) {
+            code = check_own_name(s, place_group_name(s, (param_group)g, i), why);
+        }
     }
     return code;
 }
 
-status scene_check(const scene *s, diagnostic *why)
+status check_object(const scene *s, param_group group, size_t index, diagnostic *why)
 {
-    status (*const checks[])(const scene *, diagnostic *) = {check_limits, check_names, check_render, check_camera,
-                                                             check_background};
-    for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
-        status code = checks[i](s, why);
-        if (code != STATUS_OK) {
-            return code;
-        }
-    }
-    for (size_t i = 0; i < s->mesh_count; i++) {
-        status code = check_mesh(&s->meshes[i], why);
-        if (code != STATUS_OK) {
-            return code;
-        }
-    }
-    for (size_t i = 0; i < s->texture_count; i++) {
-        status code = check_texture(&s->textures[i], why);
-        if (code != STATUS_OK) {
-            return code;
-        }
-    }
-    for (size_t i = 0; i < s->light_count; i++) {
-        status code = check_light(s, &s->lights[i], why);
-        if (code != STATUS_OK) {
-            return code;
-        }
-    }
-    for (size_t i = 0; i < s->solid_count; i++) {
-        status code = check_solid(s, &s->solids[i], why);
-        if (code != STATUS_OK) {
-            return code;
-        }
+    switch (group) {
+    case PARAM_RENDER: return check_render(s, why);
+    case PARAM_CAMERA: return check_camera(s, why);
+    case PARAM_BACKGROUND: return check_background(s, why);
+    case PARAM_MESH: return check_mesh(&s->meshes[index], why);
+    case PARAM_TEXTURE: return check_texture(&s->textures[index], why);
+    case PARAM_LIGHT: return check_light(s, &s->lights[index], why);
+    case PARAM_SOLID: return check_solid(s, &s->solids[index], why);
+    case PARAM_MATERIAL: /* where a solid shows it */
+    case PARAM_GROUP_COUNT: break;
     }
     return STATUS_OK;
+}
+
+status scene_check(const scene *s, diagnostic *why)
+{
+    status code = check_limits(s, why);
+    if (code == STATUS_OK) {
+        code = check_names(s, why);
+    }
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
+        for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++) {
+            code = check_object(s, (param_group)g, i, why);
+        }
+    }
+    return code;
 }

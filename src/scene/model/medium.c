@@ -56,7 +56,7 @@ double index_law_at(const index_law *law, double lambda_nm)
     return law->relative_to_air ? n * medium_index(media_at(0), lambda_nm) : n;
 }
 
-bool index_laws_equal(const index_law *a, const index_law *b)
+static bool index_laws_equal(const index_law *a, const index_law *b)
 {
     if (a->law.kind != b->law.kind || a->law.count != b->law.count || a->relative_to_air != b->relative_to_air) {
         return false;

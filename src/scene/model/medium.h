@@ -28,7 +28,6 @@ status material_index_law(const material *m, const char *label, index_law *out, 
 index_law surrounding_index_law(const background *b);
 
 double index_law_at(const index_law *law, double lambda_nm);
-bool index_laws_equal(const index_law *a, const index_law *b);
 /* No light is bent where two laws meet: at the one wavelength of an rgb film, or at all of them. */
 bool index_laws_match(const render_settings *r, const index_law *a, const index_law *b);
 /* The material's index is that of the scene's surroundings. */

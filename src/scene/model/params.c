@@ -2,6 +2,7 @@
 #include "base/elementary.h"
 #include "base/text.h"
 #include "scene/model/medium.h"
+#include "scene/model/objects.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
@@ -11,23 +12,10 @@
 #include <string.h>
 
 /* The struct that holds a place's row. */
-static void *place_base(scene *s, const place *at)
+static void *place_base(const scene *s, const place *at)
 {
-    switch (at->group) {
-    case PARAM_RENDER: return &s->render;
-    case PARAM_CAMERA: return &s->camera;
-    case PARAM_BACKGROUND: return &s->background;
-    case PARAM_MESH: return &s->meshes[at->index];
-    case PARAM_TEXTURE: return &s->textures[at->index];
-    case PARAM_LIGHT: return &s->lights[at->index];
-    case PARAM_MATERIAL: return &s->materials[at->index].value;
-    case PARAM_SOLID: {
-        solid *owner = &s->solids[at->index];
-        return at->row->group == PARAM_MATERIAL ? (void *)&owner->surface : (void *)owner;
-    }
-    case PARAM_GROUP_COUNT: break;
-    }
-    return NULL;
+    const bool of_surface = at->group == PARAM_SOLID && at->row->group == PARAM_MATERIAL;
+    return of_surface ? (void *)&s->solids[at->index].surface : object_values(s, at->group, at->index);
 }
 
 static bool is_camera_row(const param *row, size_t offset)
@@ -162,7 +150,7 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
 static char *place_text(const scene *s, const place *at)
 {
     camera both = camera_with_both(s->camera);
-    const char *base = at->group == PARAM_CAMERA ? (const char *)&both : place_base((scene *)(uintptr_t)s, at);
+    const char *base = at->group == PARAM_CAMERA ? (const char *)&both : place_base(s, at);
     return param_value_text(at->row, at->element, base + at->row->offset);
 }
 

@@ -1,5 +1,6 @@
 #include "scene/model/params_path.h"
 #include "geometry/shapes/shape.h"
+#include "scene/model/objects.h"
 #include "scene/model/suggest.h"
 #include "scene/model/scene.h"
 
@@ -24,38 +25,6 @@ const char *shape_name(shape_kind kind)
 bool solid_has(const solid *owner, const param *row)
 {
     return row->group == PARAM_MATERIAL || !row->by_shape || shape_has(shape_of(&owner->shape), row->name);
-}
-
-size_t place_group_size(const scene *s, param_group group)
-{
-    switch (group) {
-    case PARAM_MESH: return s->mesh_count;
-    case PARAM_TEXTURE: return s->texture_count;
-    case PARAM_LIGHT: return s->light_count;
-    case PARAM_MATERIAL: return s->material_count;
-    case PARAM_SOLID: return s->solid_count;
-    case PARAM_RENDER:
-    case PARAM_CAMERA:
-    case PARAM_BACKGROUND:
-    case PARAM_GROUP_COUNT: break;
-    }
-    return 1;
-}
-
-const char *place_group_name(const scene *s, param_group group, size_t index)
-{
-    switch (group) {
-    case PARAM_MESH: return s->meshes[index].name;
-    case PARAM_TEXTURE: return s->textures[index].name;
-    case PARAM_LIGHT: return s->lights[index].name;
-    case PARAM_MATERIAL: return s->materials[index].name;
-    case PARAM_SOLID: return s->solids[index].name;
-    case PARAM_RENDER:
-    case PARAM_CAMERA:
-    case PARAM_BACKGROUND:
-    case PARAM_GROUP_COUNT: break;
-    }
-    return param_group_name(group);
 }
 
 static bool split_path(const char *path, path_words *words)
@@ -99,12 +68,11 @@ static const char **group_words(const scene *s, size_t *count)
 static bool find_group(const scene *s, const char *word, place *out)
 {
     for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
-        for (size_t i = 0; i < place_group_size(s, (param_group)g); i++) {
-            if (strcmp(place_group_name(s, (param_group)g, i), word) == 0) {
-                out->group = (param_group)g;
-                out->index = i;
-                return true;
-            }
+        const int at = object_find(s, (param_group)g, word);
+        if (at >= 0) {
+            out->group = (param_group)g;
+            out->index = (size_t)at;
+            return true;
         }
     }
     return false;

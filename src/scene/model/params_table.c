@@ -40,80 +40,47 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 /* Well under the film's 524288, with room for many lights. */
 #define BRIGHT 1e4
 
-#define INTEGER(group, type, field, unit, low, high, fallback, meaning)                    \
-    {                                                                                      \
-        group, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, ON_ALL, \
-            .offset = offsetof(type, field)                                                \
+/* A row whose name is that of its field, or of the field's last part; further members follow the place. */
+#define ROW(group, name, kind, unit, low, high, above, fallback, meaning, words, ...)    \
+    {                                                                                    \
+        group, name, kind, unit, low, high, above, fallback, meaning, words, __VA_ARGS__ \
     }
-#define REAL(group, type, field, unit, low, high, fallback, meaning)                        \
-    {                                                                                       \
-        group, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, ON_ALL, \
-            .offset = offsetof(type, field)                                                 \
-    }
+#define OF(type, field) ON_ALL, .offset = offsetof(type, field)
 /* How, not what: see param.is_how. */
-#define HOW_INTEGER(field, unit, low, high, fallback, meaning)                                    \
-    {                                                                                             \
-        PARAM_RENDER, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, ON_ALL, \
-            .offset = offsetof(render_settings, field), .is_how = true                            \
-    }
-#define HOW_CHOICE(field, words, fallback, meaning)                                            \
-    {                                                                                          \
-        PARAM_RENDER, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, ON_ALL, \
-            .offset = offsetof(render_settings, field), .is_how = true                         \
-    }
-#define HOW_REAL(field, unit, low, high, fallback, meaning)                                        \
-    {                                                                                              \
-        PARAM_RENDER, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, ON_ALL, \
-            .offset = offsetof(render_settings, field), .is_how = true                             \
-    }
+#define HOW(field) OF(render_settings, field), .is_how = true
 /* Of a slime alone. */
-#define SLIME_REAL(field, unit, low, high, above, fallback, meaning)                               \
-    {                                                                                              \
-        PARAM_MESH, #field, PARAM_REAL, unit, low, high, above, fallback, meaning, NULL, ON_SLIME, \
-            .offset = offsetof(mesh_entry, slime.field)                                            \
-    }
-#define SLIME_VECTOR(field, unit, high, fallback, meaning)                                               \
-    {                                                                                                    \
-        PARAM_MESH, #field, PARAM_VECTOR, unit, -(high), high, false, fallback, meaning, NULL, ON_SLIME, \
-            .offset = offsetof(mesh_entry, slime.field)                                                  \
-    }
-#define SLIME_CHOICE(field, words, fallback, meaning)                                          \
-    {                                                                                          \
-        PARAM_MESH, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, ON_SLIME, \
-            .offset = offsetof(mesh_entry, slime.field)                                        \
-    }
-#define POSITIVE(group, type, field, unit, high, fallback, meaning)                      \
-    {                                                                                    \
-        group, #field, PARAM_REAL, unit, 0, high, true, fallback, meaning, NULL, ON_ALL, \
-            .offset = offsetof(type, field)                                              \
-    }
-#define CHOICE(group, type, field, words, fallback, meaning)                            \
-    {                                                                                   \
-        group, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, ON_ALL, \
-            .offset = offsetof(type, field)                                             \
-    }
-#define VECTOR(group, type, field, fallback, meaning)                                                  \
-    {                                                                                                  \
-        group, #field, PARAM_VECTOR, "scene units", -FAR, FAR, false, fallback, meaning, NULL, ON_ALL, \
-            .offset = offsetof(type, field)                                                            \
-    }
-#define COLOR(group, type, field, high, fallback, meaning)                               \
-    {                                                                                    \
-        group, #field, PARAM_COLOR, "", 0, high, false, fallback, meaning, NULL, ON_ALL, \
-            .offset = offsetof(type, field)                                              \
-    }
+#define SLIME(field) ON_SLIME, .offset = offsetof(mesh_entry, slime.field)
 /* Of some shapes: see geometry/shapes/shape.h. */
-#define LENGTH(field, fallback, meaning)                                                               \
-    {                                                                                                  \
-        PARAM_SOLID, #field, PARAM_REAL, "scene units", 0, FAR, true, fallback, meaning, NULL, ON_ALL, \
-            .offset = offsetof(solid, shape.field), .by_shape = true                                   \
-    }
+#define SHAPE(field) OF(solid, field), .by_shape = true
 
-#define LIST(group, type, field, unit, high, fallback, meaning)                                 \
-    {                                                                                           \
-        group, #field, PARAM_LIST, unit, -(high), high, false, fallback, meaning, NULL, ON_ALL, \
-            .offset = offsetof(type, field)                                                     \
-    }
+#define INTEGER(group, type, field, unit, low, high, fallback, meaning) \
+    ROW(group, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, OF(type, field))
+#define REAL(group, type, field, unit, low, high, fallback, meaning) \
+    ROW(group, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, OF(type, field))
+#define POSITIVE(group, type, field, unit, high, fallback, meaning) \
+    ROW(group, #field, PARAM_REAL, unit, 0, high, true, fallback, meaning, NULL, OF(type, field))
+#define CHOICE(group, type, field, words, fallback, meaning) \
+    ROW(group, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, OF(type, field))
+#define VECTOR(group, type, field, fallback, meaning) \
+    ROW(group, #field, PARAM_VECTOR, "scene units", -FAR, FAR, false, fallback, meaning, NULL, OF(type, field))
+#define COLOR(group, type, field, high, fallback, meaning) \
+    ROW(group, #field, PARAM_COLOR, "", 0, high, false, fallback, meaning, NULL, OF(type, field))
+#define LIST(group, type, field, unit, high, fallback, meaning) \
+    ROW(group, #field, PARAM_LIST, unit, -(high), high, false, fallback, meaning, NULL, OF(type, field))
+#define HOW_INTEGER(field, unit, low, high, fallback, meaning) \
+    ROW(PARAM_RENDER, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, HOW(field))
+#define HOW_CHOICE(field, words, fallback, meaning) \
+    ROW(PARAM_RENDER, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, HOW(field))
+#define HOW_REAL(field, unit, low, high, fallback, meaning) \
+    ROW(PARAM_RENDER, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, HOW(field))
+#define SLIME_REAL(field, unit, low, high, above, fallback, meaning) \
+    ROW(PARAM_MESH, #field, PARAM_REAL, unit, low, high, above, fallback, meaning, NULL, SLIME(field))
+#define SLIME_VECTOR(field, unit, high, fallback, meaning) \
+    ROW(PARAM_MESH, #field, PARAM_VECTOR, unit, -(high), high, false, fallback, meaning, NULL, SLIME(field))
+#define SLIME_CHOICE(field, words, fallback, meaning) \
+    ROW(PARAM_MESH, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, SLIME(field))
+#define LENGTH(field, fallback, meaning) \
+    ROW(PARAM_SOLID, #field, PARAM_REAL, "scene units", 0, FAR, true, fallback, meaning, NULL, SHAPE(shape.field))
 
 /* In the order in which they are listed and printed; the groups stand together.
  *
@@ -126,8 +93,8 @@ static const param table[] = {
     INTEGER(PARAM_RENDER, render_settings, height, "px", 1, 65536, "600", "height of the picture"),
     INTEGER(PARAM_RENDER, render_settings, depth, "", 0, 64, "4", "recursion depth: 0 follows camera rays only"),
     {PARAM_RENDER, "samples", PARAM_INT, "", 1, SCENE_SAMPLES_MAX, false, "1",
-     "camera rays a pixel, through the middles of as many equal cells; 1 for no antialiasing", sample_counts, ON_ALL,
-     .offset = offsetof(render_settings, samples)},
+     "camera rays a pixel, through the middles of as many equal cells; 1 for no antialiasing", sample_counts,
+     OF(render_settings, samples)},
     CHOICE(PARAM_RENDER, render_settings, integrator, integrator_words, "whitted",
            "how light is followed: to the first surface, through reflections and refractions, along random paths, or "
            "not: a depth buffer, or layers of what camera rays meet first"),
@@ -200,8 +167,8 @@ static const param table[] = {
     COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
           "linear colour of a gradient at the horizon and below"),
     {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
-     "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder; makes the kind picture", NULL, ON_ALL,
-     .offset = offsetof(background, picture_path)},
+     "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder; makes the kind picture", NULL,
+     OF(background, picture_path)},
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of Phong's sum"),
 
     REAL(PARAM_BACKGROUND, background, ior, "", 0.1, 100, "1",
@@ -213,9 +180,9 @@ static const param table[] = {
           "it arrives"),
 
     {PARAM_MESH, "generate", PARAM_CHOICE, "", 0, 0, false, "file", "which body is computed; file: it is read",
-     source_words, ON_ALL, .offset = offsetof(mesh_entry, source)},
+     source_words, OF(mesh_entry, source)},
     {PARAM_MESH, "file", PARAM_PATH, "", 0, 0, false, "", "OBJ, PLY, STL or glTF file, from the scene file's folder",
-     NULL, ON_ALL, .offset = offsetof(mesh_entry, path)},
+     NULL, OF(mesh_entry, path)},
     INTEGER(PARAM_MESH, mesh_entry, count, "", 1, 100000000, "10000",
             "triangles of sparse and dense; of sphere, the nearest 20 f^2"),
     INTEGER(PARAM_MESH, mesh_entry, level, "", 0, 11, "4",
@@ -232,8 +199,7 @@ static const param table[] = {
     REAL(PARAM_MESH, mesh_entry, crease_deg, "deg", 0, 180, "30",
          "a lathe's profile keeps an edge where it turns by more"),
     {PARAM_MESH, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1",
-     "edges of a box; of terrain, with the height of its hills as y", NULL, ON_ALL,
-     .offset = offsetof(mesh_entry, size)},
+     "edges of a box; of terrain, with the height of its hills as y", NULL, OF(mesh_entry, size)},
     REAL(PARAM_MESH, mesh_entry, depth, "scene units", 0, FAR, "0",
          "of terrain: its flat bottom lies so far below y = 0; 0 leaves it open"),
     INTEGER(PARAM_MESH, mesh_entry, seed, "", 0, 2147483647, "1", "of terrain: which hills"),
@@ -270,8 +236,7 @@ static const param table[] = {
      .offset = offsetof(mesh_entry, slime.threads), .is_how = true},
 
     {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "",
-     "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder", NULL, ON_ALL,
-     .offset = offsetof(texture_entry, path)},
+     "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder", NULL, OF(texture_entry, path)},
     CHOICE(PARAM_TEXTURE, texture_entry, filter, filter_words, "trilinear",
            "one texel, the four around the point, or these of two of a pyramid of smaller pictures"),
     CHOICE(PARAM_TEXTURE, texture_entry, wrap_u, wrap_words, "repeat",
@@ -325,7 +290,7 @@ static const param table[] = {
     POSITIVE(PARAM_MATERIAL, material, tint_distance, "scene units", FAR, "1",
              "way inside a clear solid after which white light has its color; beside what absorb_per_m takes"),
     {PARAM_MATERIAL, "texture", PARAM_WORD, "", 0, 0, false, "", "name of a texture, whose colour multiplies color",
-     NULL, ON_ALL, .offset = offsetof(material, texture)},
+     NULL, OF(material, texture)},
     REAL(PARAM_MATERIAL, material, texture_size, "scene units", 0, FAR, "0",
          "edge of one picture of the texture on solids that are no meshes; 0 spreads one over each face (of a plane: "
          "1)"),
@@ -334,33 +299,29 @@ static const param table[] = {
     COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of every second checker cell"),
 
     {PARAM_SOLID, "position", PARAM_VECTOR, "scene units", -FAR, FAR, false, "0,0,0",
-     "centre of a box or sphere, of the base of a cylinder or cup, a point of a plane, a mesh's origin", NULL, ON_ALL,
-     .offset = offsetof(solid, shape.position)},
+     "centre of a box or sphere, of the base of a cylinder or cup, a point of a plane, a mesh's origin", NULL,
+     OF(solid, shape.position)},
     {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0", "turn about x, then y, then z", NULL,
-     ON_ALL, .offset = offsetof(solid, shape.rotation_deg)},
+     OF(solid, shape.rotation_deg)},
     LENGTH(radius, "1", "radius; of a cup, of its outside"),
     LENGTH(height, "1", "height above the base"),
     {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1",
-     "ellipse x^2 + m^2 z^2 = radius^2, of a cup's hollow too, with inner_radius; 1 is a circle", NULL, ON_ALL,
-     .offset = offsetof(solid, shape.m), .by_shape = true},
+     "ellipse x^2 + m^2 z^2 = radius^2, of a cup's hollow too, with inner_radius; 1 is a circle", NULL, SHAPE(shape.m)},
     LENGTH(inner_radius, "0.9",
            "radius of the hollow; the wall is radius - inner_radius thick along x, 1/m of that along z"),
     LENGTH(floor, "0.1", "thickness of the bottom"),
-    {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges along x, y and z", NULL, ON_ALL,
-     .offset = offsetof(solid, shape.size), .by_shape = true},
-    {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, ON_ALL,
-     .offset = offsetof(solid, mesh), .by_shape = true},
-    {PARAM_SOLID, "scale", PARAM_VECTOR, "", 0, FAR, true, "1,1,1", "of a mesh, along its own axes", NULL, ON_ALL,
-     .offset = offsetof(solid, shape.scale), .by_shape = true},
+    {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges along x, y and z", NULL,
+     SHAPE(shape.size)},
+    {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, SHAPE(mesh)},
+    {PARAM_SOLID, "scale", PARAM_VECTOR, "", 0, FAR, true, "1,1,1", "of a mesh, along its own axes", NULL,
+     SHAPE(shape.scale)},
     {PARAM_SOLID, "copies", PARAM_VECTOR, "", 1, 100000, false, "1,1,1",
-     "how often a mesh stands along each of its own axes", NULL, ON_ALL, .offset = offsetof(solid, shape.copies),
-     .by_shape = true},
+     "how often a mesh stands along each of its own axes", NULL, SHAPE(shape.copies)},
     {PARAM_SOLID, "spacing", PARAM_VECTOR, "scene units", -FAR, FAR, false, "1,1,1",
-     "from copy to copy along its own axes, after scale; copies may touch, not overlap", NULL, ON_ALL,
-     .offset = offsetof(solid, shape.spacing), .by_shape = true},
+     "from copy to copy along its own axes, after scale; copies may touch, not overlap", NULL, SHAPE(shape.spacing)},
     {PARAM_SOLID, "shading", PARAM_CHOICE, "", 0, 0, false, "smooth",
-     "of a mesh: by its triangles, by normals between its vertices, or light between them", shading_words, ON_ALL,
-     .offset = offsetof(solid, shading), .by_shape = true},
+     "of a mesh: by its triangles, by normals between its vertices, or light between them", shading_words,
+     SHAPE(shading)},
     INTEGER(PARAM_SOLID, solid, priority, "", -1000000, 1000000, "0",
             "where solids overlap the highest one is there; of equal ones the first listed"),
     CHOICE(PARAM_SOLID, solid, visible, off_on, "on", "off leaves the solid out of the picture altogether"),

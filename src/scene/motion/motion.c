@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static size_t count_slimes(const scene *s)
+size_t motion_count_slimes(const scene *s)
 {
     size_t count = 0;
     for (size_t i = 0; i < s->mesh_count; i++) {
@@ -16,7 +16,7 @@ static size_t count_slimes(const scene *s)
 
 bool scene_moves(const scene *s)
 {
-    return count_slimes(s) > 0;
+    return motion_count_slimes(s) > 0;
 }
 
 status motion_give_skin(const scene_motion *m, const moving_slime *one, diagnostic *why)
@@ -99,7 +99,7 @@ static status begin(scene_motion *m, diagnostic *why)
 status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
 {
     *out = NULL;
-    const size_t count = count_slimes(s);
+    const size_t count = motion_count_slimes(s);
     if (count == 0) {
         return diagnose(why, STATUS_BAD_INPUT, "give a mesh 'generate: slime'", "nothing moves in this scene");
     }

@@ -37,9 +37,7 @@ static inline mesh_entry *motion_entry(const scene_motion *m, const moving_slime
     return &m->s->meshes[one->entry];
 }
 
-/* What it is made of, as one text: its parameters but for time_s, and where its script lies. NULL when memory is out.
- */
-char *motion_parameters(const scene *s, const mesh_entry *entry);
+size_t motion_count_slimes(const scene *s);
 
 /* Remembers what the entry is and has. STATUS_FAILURE when memory is out. */
 status motion_remember(scene_motion *m, moving_slime *one, diagnostic *why);

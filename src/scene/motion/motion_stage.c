@@ -14,7 +14,9 @@ static bool is_of_the_body(const param *row)
     return row->group == PARAM_MESH && row->offset != offsetof(mesh_entry, time_s);
 }
 
-char *motion_parameters(const scene *s, const mesh_entry *entry)
+/* What it is made of, as one text: its parameters but for time_s, and where its script lies. NULL when memory is out.
+ */
+static char *motion_parameters(const scene *s, const mesh_entry *entry)
 {
     char *text = NULL, *script = scene_file_path(s, entry->script_path);
     text_writer writer;
@@ -127,11 +129,7 @@ static void put_into(scene_motion *m, moving_slime *one)
 
 status scene_motion_join(scene_motion *m, scene *s, bool *joined, diagnostic *why)
 {
-    size_t slimes = 0;
-    for (size_t i = 0; i < s->mesh_count; i++) {
-        slimes += s->meshes[i].source == MESH_SLIME;
-    }
-    *joined = slimes == m->count;
+    *joined = motion_count_slimes(s) == m->count;
     size_t places[SCENE_MESHES_MAX];
     status code = STATUS_OK;
     for (size_t i = 0; i < m->count && *joined && code == STATUS_OK; i++) {

@@ -242,11 +242,6 @@ static status build_and_release(document *file, hand_script **out, diagnostic *w
     return STATUS_OK;
 }
 
-status script_read(const char *path, hand_script **out, diagnostic *why)
-{
-    return script_read_below(path, NULL, out, why);
-}
-
 status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why)
 {
     *out = NULL;

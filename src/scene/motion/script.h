@@ -15,8 +15,7 @@
 
 #include "softbody/hand.h"
 
-status script_read(const char *path, hand_script **out, diagnostic *why);
-/* The same of a file that lies below root (base/below.h). */
+/* From a file that lies below root (base/below.h; NULL: anywhere). */
 status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why);
 /* The same from memory; name stands for the file in diagnostics. */
 status script_read_text(const char *name, const char *text, size_t size, hand_script **out, diagnostic *why);

@@ -1,5 +1,5 @@
 /* The desk's part of the API: the state, the scene, its parameters, undo, the camera. See web/README.md. */
-#include "web/lab_private.h"
+#include "web/api/api.h"
 #include "base/number.h"
 #include "base/text_writer.h"
 #include "report/json.h"
@@ -8,62 +8,50 @@
 #include "scene/model/params.h"
 #include "scene/file/write.h"
 #include "scene/model/camera_moves.h"
-#include "web/session/command_line.h"
-#include "web/api/scene_json.h"
 #include "scene/model/open.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static void get_state(void *of, const http_request *q, http_reply *r)
+status api_state(call *c)
 {
-    (void)q;
-    http_reply_json(r, 200, lab_state(of));
+    return api_tell(c, lab_state(c->l));
 }
 
-static void get_scene(void *of, const http_request *q, http_reply *r)
+status api_scene(call *c)
 {
-    lab *l = of;
-    (void)q;
     uint64_t generation;
-    scene *now = desk_take(l->desk, &generation), *opened = desk_take_opened(l->desk);
-    json_t *told = now && opened ? scene_json(now, opened, generation) : NULL;
+    scene *now = desk_take(c->l->desk, &generation), *opened = desk_take_opened(c->l->desk);
+    api_tell(c, now && opened ? scene_json(now, opened, generation) : NULL);
     scene_destroy(now);
     scene_destroy(opened);
-    http_reply_json(r, 200, told);
+    return STATUS_OK;
 }
 
 /* --- set and reset --- */
 
-/* One number or word; fresh memory, NULL for what is neither (or memory that is out). */
-static char *item_text(const json_t *value)
+/* One number or word; false for what is neither. */
+static bool put_item(FILE *out, const json_t *value)
 {
-    if (json_is_string(value))
-        return strlen(json_string_value(value)) == json_string_length(value) ? strdup(json_string_value(value)) : NULL;
-    if (json_is_boolean(value))
-        return strdup(json_is_true(value) ? "on" : "off");
     char text[NUMBER_TEXT_MAX];
-    return json_is_number(value) && isfinite(json_number_value(value))
-               ? strdup(number_format(json_number_value(value), text))
-               : NULL;
+    const char *word = json_is_boolean(value) ? (json_is_true(value) ? "on" : "off") : json_string_value(value);
+    if (json_is_number(value) && isfinite(json_number_value(value)))
+        word = number_format(json_number_value(value), text);
+    const bool good = word && (!json_is_string(value) || strlen(word) == json_string_length(value));
+    return good && fputs(word, out) >= 0;
 }
 
-/* As scene_set takes it; likewise. */
+/* As scene_set takes it, in fresh memory; NULL for what is no value (or memory that is out). */
 static char *value_text(const json_t *value)
 {
-    if (!json_is_array(value))
-        return item_text(value);
     char *joined = NULL;
     text_writer writer;
     if (text_writer_open(&writer, NULL) != STATUS_OK)
         return NULL;
-    bool good = true;
-    for (size_t i = 0; i < json_array_size(value) && good; i++) {
-        char *one = item_text(json_array_get(value, i));
-        good = one && fprintf(writer.stream, "%s%s", i ? "," : "", one) >= 0;
-        free(one);
-    }
+    bool good = json_is_array(value) || put_item(writer.stream, value);
+    for (size_t i = 0; i < json_array_size(value) && good; i++)
+        good = (i == 0 || fputc(',', writer.stream) >= 0) && put_item(writer.stream, json_array_get(value, i));
     if (good)
         text_writer_close(&writer, &joined, NULL, NULL);
     else
@@ -88,9 +76,7 @@ static void note_inert(set_request *x, const scene *s)
         if (!inert_ask(s, path, NULL, &answer) || strcmp(answer.rule, "time-0") == 0)
             continue;
         x->notes = x->notes ? x->notes : json_array();
-        json_array_append_new(x->notes,
-                              json_pack("{s:o, s:o, s:o}", "place", json_of_text(answer.note.place), "text",
-                                        json_of_text(answer.note.text), "remedy", json_of_text(answer.note.remedy)));
+        json_array_append_new(x->notes, api_note(answer.note.place, answer.note.text, answer.note.remedy));
     }
 }
 
@@ -118,91 +104,71 @@ static status set_all(void *of, scene *s, diagnostic *why)
     return code;
 }
 
-static void post_set(void *of, const http_request *q, http_reply *r)
+status api_set(call *c)
 {
-    lab *l = of;
-    json_t *body = http_body_json(q, r);
-    if (!body)
-        return;
-    json_t *values = json_object_get(body, "set");
+    json_t *values = json_object_get(c->body, "set");
     const char *gesture;
-    if (!json_is_object(values) || json_object_size(values) == 0) {
-        http_reply_error(r, 400, "there is nothing to set", "give {\"set\": {PATH: VALUE}}");
-    } else if (lab_take_gesture(body, &gesture, r)) {
-        diagnostic why = {.line = 0};
-        uint64_t generation = 0;
-        char what[128];
-        snprintf(what, sizeof what, "set %.100s", json_object_iter_key(json_object_iter(values)));
-        set_request x = {values, NULL};
-        const status code = desk_apply(l->desk, what, gesture, set_all, &x, &generation, &why);
-        if (code == STATUS_OK && x.notes)
-            http_reply_json(r, 200, json_pack("{s:I, s:O}", "generation", (json_int_t)generation, "notes", x.notes));
-        else
-            lab_reply_generation(r, code, generation, &why);
-        json_decref(x.notes);
-    }
-    json_decref(body);
+    uint64_t generation = 0;
+    char what[128];
+    if (!json_is_object(values) || json_object_size(values) == 0)
+        return api_refuse(c, 400, "there is nothing to set", "give {\"set\": {PATH: VALUE}}");
+    if (!api_take_gesture(c, &gesture))
+        return STATUS_BAD_INPUT;
+    snprintf(what, sizeof what, "set %.100s", json_object_iter_key(json_object_iter(values)));
+    set_request x = {values, NULL};
+    const status code = desk_apply(c->l->desk, what, gesture, set_all, &x, &generation, &c->why);
+    if (code == STATUS_OK && x.notes)
+        api_tell(c, json_pack("{s:I, s:O}", "generation", (json_int_t)generation, "notes", x.notes));
+    else
+        api_changed(c, code, generation);
+    json_decref(x.notes);
+    return code;
 }
 
-static void post_reset(void *of, const http_request *q, http_reply *r)
+status api_reset(call *c)
 {
     enum { PATHS_MAX = 1000 };
-    lab *l = of;
-    json_t *body = http_body_json(q, r);
-    if (!body)
-        return;
-    const json_t *paths = json_object_get(body, "paths");
+    const json_t *paths = json_object_get(c->body, "paths");
     const size_t count = json_array_size(paths);
     const char **text = calloc(count + 1, sizeof *text);
-    bool good = text && json_is_object(body) && (!paths || (json_is_array(paths) && count > 0 && count <= PATHS_MAX));
+    uint64_t generation = 0;
+    bool good =
+        text && json_is_object(c->body) && (!paths || (json_is_array(paths) && count > 0 && count <= PATHS_MAX));
     for (size_t i = 0; i < count && good; i++)
         good = (text[i] = json_string_value(json_array_get(paths, i))) != NULL;
-    if (good) {
-        diagnostic why = {.line = 0};
-        uint64_t generation = 0;
-        const status code = desk_reset(l->desk, text, count, &generation, &why);
-        lab_reply_generation(r, code, generation, &why);
-    } else {
-        http_reply_error(r, 400, "'paths' is no list of paths", "give {\"paths\": [PATH, ..]}, or {} for all");
-    }
+    const status code =
+        good ? desk_reset(c->l->desk, text, count, &generation, &c->why)
+             : api_refuse(c, 400, "'paths' is no list of paths", "give {\"paths\": [PATH, ..]}, or {} for all");
     free(text);
-    json_decref(body);
+    return api_changed(c, code, generation);
 }
 
-static void go_back(lab *l, bool redo, http_reply *r)
+static status go_back(call *c, bool redo)
 {
-    diagnostic why = {.line = 0};
     uint64_t generation = 0;
-    const status code = desk_undo(l->desk, redo, &generation, &why);
-    if (code == STATUS_BAD_INPUT)
-        http_reply_error(r, 409, why.what, why.remedy);
-    else
-        lab_reply_generation(r, code, generation, &why);
+    c->refused = 409;
+    return api_changed(c, desk_undo(c->l->desk, redo, &generation, &c->why), generation);
 }
 
-static void post_undo(void *of, const http_request *q, http_reply *r)
+status api_undo(call *c)
 {
-    (void)q;
-    go_back(of, false, r);
+    return go_back(c, false);
 }
 
-static void post_redo(void *of, const http_request *q, http_reply *r)
+status api_redo(call *c)
 {
-    (void)q;
-    go_back(of, true, r);
+    return go_back(c, true);
 }
 
 /* --- the camera --- */
 
-static bool take_pair(const json_t *body, const char *key, double pair[2], http_reply *r)
+static bool take_pair(call *c, const char *key, double pair[2])
 {
-    const json_t *given = json_object_get(body, key);
-    if (!given)
-        return true;
-    for (size_t i = 0; i < 2; i++) {
+    const json_t *given = json_object_get(c->body, key);
+    for (size_t i = 0; given && i < 2; i++) {
         const json_t *item = json_array_get(given, i);
         if (json_array_size(given) != 2 || !json_is_number(item) || !(fabs(json_number_value(item)) <= 1e6)) {
-            http_reply_error(r, 400, "an angle of the camera is no number", "give [YAW, PITCH] in degrees");
+            api_refuse(c, 400, "an angle of the camera is no number", "give [YAW, PITCH] in degrees");
             return false;
         }
         pair[i] = json_number_value(item);
@@ -210,71 +176,44 @@ static bool take_pair(const json_t *body, const char *key, double pair[2], http_
     return true;
 }
 
-static void post_camera(void *of, const http_request *q, http_reply *r)
+status api_camera(call *c)
 {
-    lab *l = of;
-    json_t *body = http_body_json(q, r);
-    if (!body)
-        return;
     camera_move move = {.step = {0.0, 0.0, 0.0}};
     const char *gesture;
-    if (take_pair(body, "orbit", move.orbit_deg, r) && take_pair(body, "turn", move.turn_deg, r) &&
-        lab_take_vector(body, "step", false, move.step, r) && lab_take_gesture(body, &gesture, r)) {
-        diagnostic why = {.line = 0};
-        uint64_t generation = 0;
-        const status code =
-            desk_apply(l->desk, "move the camera", gesture, camera_move_apply, &move, &generation, &why);
-        lab_reply_generation(r, code, generation, &why);
-    }
-    json_decref(body);
+    uint64_t generation = 0;
+    if (!take_pair(c, "orbit", move.orbit_deg) || !take_pair(c, "turn", move.turn_deg) ||
+        !api_take_vector(c, "step", false, move.step) || !api_take_gesture(c, &gesture))
+        return STATUS_BAD_INPUT;
+    return api_changed(
+        c, desk_apply(c->l->desk, "move the camera", gesture, camera_move_apply, &move, &generation, &c->why),
+        generation);
 }
 
 /* --- the scene as a file, and as a command --- */
 
-static void get_file(void *of, const http_request *q, http_reply *r)
+status api_scene_file(call *c)
 {
-    lab *l = of;
-    (void)q;
-    diagnostic why = {.line = 0};
     char *text = NULL;
-    scene *now = desk_take(l->desk, NULL);
+    scene *now = desk_take(c->l->desk, NULL);
     if (now)
-        lab_forget_threads(l, now);
-    const status code = now ? scene_write_text(now, scene_path(now), false, &text, &why) : out_of_memory(&why);
+        lab_forget_threads(c->l, now);
+    const status code = now ? scene_write_text(now, scene_path(now), false, &text, &c->why) : out_of_memory(&c->why);
     scene_destroy(now);
-    if (code == STATUS_OK)
-        http_reply_bytes(r, 200, "application/yaml; charset=utf-8", text, strlen(text));
-    else
-        http_reply_diagnostic(r, code, &why);
+    return code == STATUS_OK ? api_send(c, "application/yaml; charset=utf-8", text, strlen(text)) : code;
 }
 
-static void get_command(void *of, const http_request *q, http_reply *r)
+status api_command(call *c)
 {
-    lab *l = of;
-    (void)q;
-    diagnostic why = {.line = 0};
-    char *text = NULL;
+    char *text = NULL, *file = api_desk_file(c);
     bool complete = false;
-    scene *now = desk_take(l->desk, NULL);
-    json_t *told = json_object();
-    const bool known = now && told && desk_tell(l->desk, told);
-    const char *file = known ? json_string_value(json_object_get(told, "file")) : NULL;
-    const status code =
-        known ? command_line(l->files, file, now, l->settings.threads, &text, &complete, &why) : out_of_memory(&why);
+    scene *now = desk_take(c->l->desk, NULL);
+    const status code = now && file ? command_line(c->l->files, *file ? file : NULL, now, c->l->settings.threads, &text,
+                                                   &complete, &c->why)
+                                    : out_of_memory(&c->why);
     if (code == STATUS_OK)
-        http_reply_json(r, 200, json_pack("{s:o,s:b}", "command", json_of_text(text), "complete", (int)complete));
-    else
-        http_reply_diagnostic(r, code, &why);
+        api_tell(c, json_pack("{s:o,s:b}", "command", json_of_text(text), "complete", (int)complete));
     free(text);
-    json_decref(told);
+    free(file);
     scene_destroy(now);
+    return code;
 }
-
-static const http_route routes[] = {
-    {"GET", "/api/state", get_state, NULL},     {"GET", "/api/scene", get_scene, NULL},
-    {"POST", "/api/set", post_set, NULL},       {"POST", "/api/reset", post_reset, NULL},
-    {"POST", "/api/undo", post_undo, NULL},     {"POST", "/api/redo", post_redo, NULL},
-    {"POST", "/api/camera", post_camera, NULL}, {"GET", "/api/scene.yaml", get_file, NULL},
-    {"GET", "/api/command", get_command, NULL}, {"GET", "/api/events", http_events, NULL},
-};
-const lab_routes desk_routes = {routes, sizeof routes / sizeof *routes};

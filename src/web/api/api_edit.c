@@ -1,7 +1,6 @@
 /* Objects come, go, move, turn and change their names: POST and DELETE under /api/objects. How new ones look is in
  * new_objects.c. */
-#include "web/lab_private.h"
-#include "web/session/desk_bounds.h"
+#include "web/api/api.h"
 #include "scene/model/place/new_objects.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
@@ -21,6 +20,7 @@ typedef struct edit {
     const folder *files;
     const scene *loaded; /* of a model */
     shape_kind shape;
+    status (*displace)(scene *s, const char *name, vec3 by, diagnostic *why);
     vec3 by;
     double factor;
     object_name made; /* what came is called that; "" for nothing */
@@ -46,19 +46,22 @@ static status change(void *context, scene *s, diagnostic *why)
 }
 
 /* verb: with the object's name after it, for undo. Answers the generation, and the name of what came. */
-static void answer(lab *l, edit *e, const char *verb, const char *name, const char *gesture, http_reply *r)
+static status apply(call *c, edit *e, const char *verb, const char *name, const char *gesture)
 {
-    diagnostic why = {.what = ""};
     uint64_t generation = 0;
     char words[128];
     snprintf(words, sizeof words, "%s %.80s", verb, name);
-    const status code = desk_apply(l->desk, words, gesture, change, e, &generation, &why);
+    const status code = desk_apply(c->l->desk, words, gesture, change, e, &generation, &c->why);
+    c->refused = e->refused;
     if (code == STATUS_OK && e->made[0])
-        http_reply_json(r, 200, json_pack("{s:I, s:s}", "generation", (json_int_t)generation, "name", e->made));
-    else if (code == STATUS_BAD_INPUT && e->refused)
-        http_reply_error(r, e->refused, why.what, why.remedy);
-    else
-        lab_reply_generation(r, code, generation, &why);
+        return api_tell(c, json_pack("{s:I, s:s}", "generation", (json_int_t)generation, "name", e->made));
+    return api_changed(c, code, generation);
+}
+
+static status apply_to(call *c, edit e, const char *verb, const char *gesture)
+{
+    e.name = http_path_value(c->request, "name");
+    return apply(c, &e, verb, e.name, gesture);
 }
 
 /* --- what is there --- */
@@ -70,42 +73,36 @@ static status remove_it(edit *e, scene *s, diagnostic *why)
     return code;
 }
 
-static void remove_object(void *context, const http_request *q, http_reply *r)
+status api_remove(call *c)
 {
-    edit e = {.name = http_path_value(q, "name"), .act = remove_it};
-    answer(context, &e, "remove", e.name, NULL, r);
+    return apply_to(c, (edit){.act = remove_it}, "remove", NULL);
 }
 
-static status move_it(edit *e, scene *s, diagnostic *why)
+static status displace_it(edit *e, scene *s, diagnostic *why)
 {
-    return scene_move(s, e->name, e->by, why);
+    return e->displace(s, e->name, e->by, why);
 }
 
-static status turn_it(edit *e, scene *s, diagnostic *why)
+static status displace(call *c, edit e, const char *verb)
 {
-    return scene_turn(s, e->name, e->by, why);
-}
-
-static void displace(lab *l, const http_request *q, http_reply *r, edit *e, const char *verb)
-{
-    json_t *body = http_body_json(q, r);
+    e.or_camera = true;
+    e.act = displace_it;
     double by[3];
-    const char *gesture = NULL;
-    if (body && lab_take_vector(body, "by", true, by, r) && lab_take_gesture(body, &gesture, r)) {
-        e->by = vec3_make(by[0], by[1], by[2]);
-        answer(l, e, verb, e->name, gesture, r);
-    }
-    json_decref(body);
+    const char *gesture;
+    if (!api_take_vector(c, "by", true, by) || !api_take_gesture(c, &gesture))
+        return STATUS_BAD_INPUT;
+    e.by = vec3_make(by[0], by[1], by[2]);
+    return apply_to(c, e, verb, gesture);
 }
 
-static void move_object(void *context, const http_request *q, http_reply *r)
+status api_move(call *c)
 {
-    displace(context, q, r, &(edit){.name = http_path_value(q, "name"), .or_camera = true, .act = move_it}, "move");
+    return displace(c, (edit){.displace = scene_move}, "move");
 }
 
-static void turn_object(void *context, const http_request *q, http_reply *r)
+status api_turn(call *c)
 {
-    displace(context, q, r, &(edit){.name = http_path_value(q, "name"), .or_camera = true, .act = turn_it}, "turn");
+    return displace(c, (edit){.displace = scene_turn}, "turn");
 }
 
 static status scale_it(edit *e, scene *s, diagnostic *why)
@@ -113,18 +110,16 @@ static status scale_it(edit *e, scene *s, diagnostic *why)
     return scene_scale(s, e->name, e->factor, why);
 }
 
-static void scale_object(void *context, const http_request *q, http_reply *r)
+status api_scale(call *c)
 {
-    json_t *body = http_body_json(q, r);
-    edit e = {.name = http_path_value(q, "name"), .or_camera = true, .act = scale_it};
-    const char *gesture = NULL;
-    if (body && !json_is_number(json_object_get(body, "factor")))
-        http_reply_error(r, 400, "'factor' is no number", "give a factor above 0");
-    else if (body && lab_take_gesture(body, &gesture, r)) {
-        e.factor = json_number_value(json_object_get(body, "factor"));
-        answer(context, &e, "scale", e.name, gesture, r);
-    }
-    json_decref(body);
+    const json_t *factor = json_object_get(c->body, "factor");
+    const char *gesture;
+    if (!json_is_number(factor))
+        return api_refuse(c, 400, "'factor' is no number", "give a factor above 0");
+    if (!api_take_gesture(c, &gesture))
+        return STATUS_BAD_INPUT;
+    return apply_to(c, (edit){.or_camera = true, .factor = json_number_value(factor), .act = scale_it}, "scale",
+                    gesture);
 }
 
 static status rename_it(edit *e, scene *s, diagnostic *why)
@@ -135,13 +130,10 @@ static status rename_it(edit *e, scene *s, diagnostic *why)
     return code;
 }
 
-static void rename_object(void *context, const http_request *q, http_reply *r)
+status api_rename(call *c)
 {
-    json_t *body = http_body_json(q, r);
-    edit e = {.name = http_path_value(q, "name"), .act = rename_it};
-    if (body && lab_take_text(body, "to", true, &e.word, r))
-        answer(context, &e, "rename", e.name, NULL, r);
-    json_decref(body);
+    edit e = {.act = rename_it};
+    return api_take_text(c, "to", true, &e.word) ? apply_to(c, e, "rename", NULL) : STATUS_BAD_INPUT;
 }
 
 /* A solid that loses its material looks as before, for itself alone: the defaults would be black. */
@@ -154,13 +146,12 @@ static status give_material(edit *e, scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-static void change_material(void *context, const http_request *q, http_reply *r)
+status api_material(call *c)
 {
-    json_t *body = http_body_json(q, r);
-    edit e = {.name = http_path_value(q, "name"), .act = give_material};
-    if (body && (json_is_null(json_object_get(body, "material")) || lab_take_text(body, "material", true, &e.word, r)))
-        answer(context, &e, e.word ? "give a material to" : "take the material of", e.name, NULL, r);
-    json_decref(body);
+    edit e = {.act = give_material};
+    if (!json_is_null(json_object_get(c->body, "material")) && !api_take_text(c, "material", true, &e.word))
+        return STATUS_BAD_INPUT;
+    return apply_to(c, e, e.word ? "give a material to" : "take the material of", NULL);
 }
 
 static status copy_it(edit *e, scene *s, diagnostic *why)
@@ -168,50 +159,21 @@ static status copy_it(edit *e, scene *s, diagnostic *why)
     return new_copy(s, e->name, e->made, why);
 }
 
-static void copy_object(void *context, const http_request *q, http_reply *r)
+status api_copy(call *c)
 {
-    edit e = {.name = http_path_value(q, "name"), .act = copy_it};
-    answer(context, &e, "copy", e.name, NULL, r);
+    return apply_to(c, (edit){.act = copy_it}, "copy", NULL);
 }
 
 /* --- what is new --- */
 
-static status add_solid(edit *e, scene *s, diagnostic *why)
-{
-    return new_solid(s, e->shape, e->wanted, e->made, why);
-}
-
-static status add_light(edit *e, scene *s, diagnostic *why)
-{
-    return new_light(s, e->wanted, e->made, why);
-}
-
-static status add_material(edit *e, scene *s, diagnostic *why)
-{
-    return new_material(s, e->wanted, e->made, why);
-}
-
-static status add_slime(edit *e, scene *s, diagnostic *why)
-{
-    return new_slime(s, e->wanted, e->made, why);
-}
-
-static status add_texture(edit *e, scene *s, diagnostic *why)
+/* A texture, or what was loaded of a model. */
+static status add_file(edit *e, scene *s, diagnostic *why)
 {
     char *path;
     status code = folder_path_from(e->files, e->file, s->path, &path, why);
     if (code == STATUS_OK)
-        code = new_texture(s, path, e->wanted, e->made, why);
-    free(path);
-    return code;
-}
-
-static status add_model(edit *e, scene *s, diagnostic *why)
-{
-    char *path;
-    status code = folder_path_from(e->files, e->file, s->path, &path, why);
-    if (code == STATUS_OK)
-        code = new_model(s, e->loaded, path, e->wanted, e->made, why);
+        code = strcmp(e->word, "model") == 0 ? new_model(s, e->loaded, path, e->wanted, e->made, why)
+                                             : new_texture(s, path, e->wanted, e->made, why);
     free(path);
     return code;
 }
@@ -220,18 +182,18 @@ static status add_object(edit *e, scene *s, diagnostic *why)
 {
     static const struct {
         const char *word;
-        status (*add)(edit *e, scene *s, diagnostic *why);
+        status (*add)(scene *s, const char *wanted, object_name made, diagnostic *why); /* NULL: of a file */
     } kinds[] = {
-        {"solid", add_solid}, {"light", add_light},     {"material", add_material},
-        {"slime", add_slime}, {"texture", add_texture}, {"model", add_model},
-    };
+        {"light", new_light}, {"material", new_material}, {"slime", new_slime}, {"texture", NULL}, {"model", NULL}};
     if (e->wanted && check_name_is_free(s, e->wanted, why) != STATUS_OK) {
         e->refused = 409;
         return STATUS_BAD_INPUT;
     }
+    if (strcmp(e->word, "solid") == 0)
+        return new_solid(s, e->shape, e->wanted, e->made, why);
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         if (strcmp(e->word, kinds[i].word) == 0)
-            return kinds[i].add(e, s, why);
+            return kinds[i].add ? kinds[i].add(s, e->wanted, e->made, why) : add_file(e, s, why);
     return diagnose(why, STATUS_BAD_INPUT, "the kinds are solid, light, material, model, slime and texture",
                     "no kind '%.60s'", e->word);
 }
@@ -261,53 +223,35 @@ static status load_alone(lab *l, const char *file, bool is_model, scene **out, d
     return code;
 }
 
-static bool take_new(lab *l, const json_t *body, edit *e, scene **loaded, http_reply *r)
+static status take_new(call *c, edit *e, scene **loaded)
 {
     const char *shape = NULL;
-    if (!lab_take_text(body, "kind", true, &e->word, r) || !lab_take_text(body, "name", false, &e->wanted, r))
-        return false;
-    const bool is_model = strcmp(e->word, "model") == 0, is_texture = strcmp(e->word, "texture") == 0,
+    if (!api_take_text(c, "kind", true, &e->word) || !api_take_text(c, "name", false, &e->wanted))
+        return STATUS_BAD_INPUT;
+    const bool is_model = strcmp(e->word, "model") == 0, is_file = is_model || strcmp(e->word, "texture") == 0,
                is_solid = strcmp(e->word, "solid") == 0;
-    if (!lab_take_text(body, "shape", is_solid, &shape, r) ||
-        !lab_take_text(body, "file", is_model || is_texture, &e->file, r))
-        return false;
-    diagnostic why = {.what = ""};
-    status code = is_solid ? scene_shape_named(shape, &e->shape, &why) : STATUS_OK;
-    if ((is_model || is_texture) && (code = gate_enter(l->heavy, &why)) == STATUS_OK) {
-        code = load_alone(l, e->file, is_model, loaded, &why);
-        gate_leave(l->heavy);
+    if (!api_take_text(c, "shape", is_solid, &shape) || !api_take_text(c, "file", is_file, &e->file))
+        return STATUS_BAD_INPUT;
+    status code = is_solid ? scene_shape_named(shape, &e->shape, &c->why) : STATUS_OK;
+    if (is_file && (code = gate_enter(c->l->heavy, &c->why)) == STATUS_OK) {
+        code = load_alone(c->l, e->file, is_model, loaded, &c->why);
+        gate_leave(c->l->heavy);
     }
-    if (code != STATUS_OK)
-        http_reply_diagnostic(r, code, &why);
-    return code == STATUS_OK;
+    return code;
 }
 
-static void add(void *context, const http_request *q, http_reply *r)
+status api_add(call *c)
 {
-    lab *l = context;
-    json_t *body = http_body_json(q, r);
-    edit e = {.act = add_object, .files = l->files};
+    edit e = {.act = add_object, .files = c->l->files};
     scene *loaded = NULL;
-    if (body && take_new(l, body, &e, &loaded, r)) {
-        e.loaded = loaded;
-        answer(l, &e, "add",
-               e.wanted                       ? e.wanted
-               : strcmp(e.word, "solid") == 0 ? shape_name(e.shape)
-                                              : e.word,
-               NULL, r);
-    }
+    status code = take_new(c, &e, &loaded);
+    e.loaded = loaded;
+    if (code == STATUS_OK)
+        code = apply(c, &e, "add",
+                     e.wanted                       ? e.wanted
+                     : strcmp(e.word, "solid") == 0 ? shape_name(e.shape)
+                                                    : e.word,
+                     NULL);
     scene_destroy(loaded);
-    json_decref(body);
+    return code;
 }
-
-static const http_route routes[] = {
-    {"POST", "/api/objects", add, NULL},
-    {"DELETE", "/api/objects/{name}", remove_object, NULL},
-    {"POST", "/api/objects/{name}/move", move_object, NULL},
-    {"POST", "/api/objects/{name}/turn", turn_object, NULL},
-    {"POST", "/api/objects/{name}/scale", scale_object, NULL},
-    {"POST", "/api/objects/{name}/rename", rename_object, NULL},
-    {"POST", "/api/objects/{name}/material", change_material, NULL},
-    {"POST", "/api/objects/{name}/copy", copy_object, NULL},
-};
-const lab_routes edit_routes = {routes, sizeof routes / sizeof *routes};

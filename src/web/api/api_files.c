@@ -1,7 +1,8 @@
-/* Files of the folder: which there are, opening and saving; and the catalogue of media. */
-#include "web/lab_private.h"
+/* Files of the folder: which there are, opening and saving; the catalogue of media; and the machine. */
+#include "web/api/api.h"
 #include "scene/model/place/new_scene.h"
 #include "report/json.h"
+#include "report/machine.h"
 #include "report/media_rows.h"
 #include "scene/file/write.h"
 #include "scene/model/open.h"
@@ -24,79 +25,64 @@ static char *prefix_of(const lab *l)
     return path;
 }
 
-static void tell_files(void *context, const http_request *q, http_reply *r)
+status api_files(call *c)
 {
-    (void)q;
-    const lab *l = context;
-    json_t *all = folder_tell(l->files);
-    char *prefix = prefix_of(l);
-    if (!all || !prefix || json_object_set_new(all, "prefix", json_of_text(prefix)) != 0) {
-        json_decref(all);
-        all = NULL;
-    }
+    json_t *all = folder_tell(c->l->files);
+    char *prefix = prefix_of(c->l);
+    if (all && prefix && json_object_set_new(all, "prefix", json_of_text(prefix)) == 0)
+        api_tell(c, json_incref(all));
+    json_decref(all);
     free(prefix);
-    http_reply_json(r, 200, all);
+    return STATUS_OK;
 }
 
-static void tell_media(void *context, const http_request *q, http_reply *r)
+status api_media(call *c)
 {
-    (void)context, (void)q;
-    http_reply_json(r, 200, media_rows_json(NULL, 0.0));
+    return api_tell(c, media_rows_json(NULL, 0.0));
+}
+
+status api_machine(call *c)
+{
+    machine_account account = {0};
+    const status code = machine_look(&account, &c->why);
+    if (code == STATUS_OK)
+        api_tell(c, machine_json(&account));
+    machine_release(&account);
+    return code;
 }
 
 /* --- opening --- */
 
-/* False, with the reply set, where it cannot be read; 404 for a name that is right and of nothing. */
-static bool read_scene(const lab *l, const char *name, scene **out, http_reply *r)
+/* 404 for a name that is right and of nothing. */
+static status read_scene(call *c, const char *name, scene **out)
 {
-    diagnostic why = {.what = ""};
+    const folder *files = c->l->files;
     char *path = NULL;
-    status code = folder_path(l->files, name, true, &path, &why);
-    if (code == STATUS_OK) {
-        code = scene_read_below(path, folder_real(l->files), out, &why);
-        if (code != STATUS_OK)
-            http_reply_diagnostic(r, code, &why);
-    } else if (code == STATUS_BAD_INPUT && folder_path(l->files, name, false, &path, NULL) == STATUS_OK) {
-        http_reply_error(r, 404, why.what, why.remedy);
-    } else {
-        http_reply_diagnostic(r, code, &why);
-    }
+    status code = folder_path(files, name, true, &path, &c->why);
+    if (code == STATUS_OK)
+        code = scene_read_below(path, folder_real(files), out, &c->why);
+    else if (code == STATUS_BAD_INPUT && folder_path(files, name, false, &path, NULL) == STATUS_OK)
+        c->refused = 404;
     free(path);
-    return code == STATUS_OK;
+    return code;
 }
 
-static void answer_open(lab *l, scene *s, const char *name, http_reply *r)
+status api_open(call *c)
 {
-    diagnostic why = {.what = ""};
-    uint64_t generation = 0;
-    lab_give_threads(l, s);
-    const status code = desk_open(l->desk, s, name, &generation, &why);
-    lab_reply_generation(r, code, generation, &why);
-}
-
-static void open_file(void *context, const http_request *q, http_reply *r)
-{
-    json_t *body = http_body_json(q, r);
     const char *name = NULL;
     bool fresh = false;
     scene *s = NULL;
-    if (!body || !lab_take_flag(body, "new", &fresh, r) || !lab_take_text(body, "file", !fresh, &name, r)) {
-        json_decref(body);
-        return;
-    }
-    diagnostic why = {.what = ""};
-    if (fresh && name) {
-        http_reply_error(r, 400, "a new scene has no file yet", "give a file, or new");
-    } else if (fresh) {
-        const status code = new_scene(&s, &why);
-        if (code != STATUS_OK)
-            http_reply_diagnostic(r, code, &why);
-    } else {
-        read_scene(context, name, &s, r);
-    }
-    if (s)
-        answer_open(context, s, name, r);
-    json_decref(body);
+    uint64_t generation = 0;
+    if (!api_take_flag(c, "new", &fresh) || !api_take_text(c, "file", !fresh, &name))
+        return STATUS_BAD_INPUT;
+    if (fresh && name)
+        return api_refuse(c, 400, "a new scene has no file yet", "give a file, or new");
+    status code = fresh ? new_scene(&s, &c->why) : read_scene(c, name, &s);
+    if (code != STATUS_OK)
+        return code;
+    lab_give_threads(c->l, s);
+    code = desk_open(c->l->desk, s, name, &generation, &c->why);
+    return api_changed(c, code, generation);
 }
 
 /* --- saving --- */
@@ -110,59 +96,42 @@ static bool is_scene_name(const char *name)
 }
 
 /* Is it the file that is on the desk? */
-static bool is_open(const lab *l, const char *name)
+static bool is_open(const call *c, const char *name)
 {
-    json_t *state = json_object();
-    const char *file = state && desk_tell(l->desk, state) ? json_string_value(json_object_get(state, "file")) : NULL;
+    char *file = api_desk_file(c);
     const bool same = file && strcmp(file, name) == 0;
-    json_decref(state);
+    free(file);
     return same;
 }
 
-static void write_file(lab *l, const char *name, const char *path, http_reply *r)
+static status write_file(call *c, const char *name, const char *path)
 {
-    diagnostic why = {.what = ""};
     uint64_t generation = 0;
-    scene *s = desk_take(l->desk, &generation);
+    scene *s = desk_take(c->l->desk, &generation);
     if (s)
-        lab_forget_threads(l, s);
-    const status code = s ? scene_write(s, path, false, &why) : out_of_memory(&why);
+        lab_forget_threads(c->l, s);
+    const status code = s ? scene_write(s, path, false, &c->why) : out_of_memory(&c->why);
     scene_destroy(s);
     if (code == STATUS_OK)
-        desk_saved(l->desk, name, generation);
-    lab_reply_generation(r, code, generation, &why);
+        desk_saved(c->l->desk, name, generation);
+    return api_changed(c, code, generation);
 }
 
-static void save_file(void *context, const http_request *q, http_reply *r)
+status api_save(call *c)
 {
-    lab *l = context;
-    json_t *body = http_body_json(q, r);
     const char *name = NULL;
     char *path = NULL;
     bool replace = false;
-    diagnostic why = {.what = ""};
-    if (!body || !lab_take_text(body, "file", true, &name, r) || !lab_take_flag(body, "replace", &replace, r)) {
-        json_decref(body);
-        return;
-    }
-    status code = folder_path(l->files, name, false, &path, &why);
+    if (!api_take_text(c, "file", true, &name) || !api_take_flag(c, "replace", &replace))
+        return STATUS_BAD_INPUT;
+    status code = folder_path(c->l->files, name, false, &path, &c->why);
     if (code == STATUS_OK && !is_scene_name(name))
-        code = diagnose(&why, STATUS_BAD_INPUT, "let it end in .yaml, and no part of it begin with a dot",
+        code = diagnose(&c->why, STATUS_BAD_INPUT, "let it end in .yaml, and no part of it begin with a dot",
                         "'%.200s' is no name for a scene", name);
-    if (code != STATUS_OK)
-        http_reply_diagnostic(r, code, &why);
-    else if (!replace && access(path, F_OK) == 0 && !is_open(l, name))
-        http_reply_error(r, 409, "there is a file of that name already", "choose another name, or replace it");
-    else
-        write_file(l, name, path, r);
+    else if (code == STATUS_OK && !replace && access(path, F_OK) == 0 && !is_open(c, name))
+        code = api_refuse(c, 409, "there is a file of that name already", "choose another name, or replace it");
+    else if (code == STATUS_OK)
+        code = write_file(c, name, path);
     free(path);
-    json_decref(body);
+    return code;
 }
-
-static const http_route routes[] = {
-    {"GET", "/api/files", tell_files, NULL},
-    {"POST", "/api/open", open_file, NULL},
-    {"POST", "/api/save", save_file, NULL},
-    {"GET", "/api/media", tell_media, NULL},
-};
-const lab_routes file_routes = {routes, sizeof routes / sizeof *routes};

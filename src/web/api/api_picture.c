@@ -1,13 +1,10 @@
 /* The picture's part of the API. See web/README.md. */
-#include "web/lab_private.h"
-#include "base/number.h"
+#include "web/api/api.h"
 
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double final_wait_s = 120.0;
 
 static void add_number(http_reply *r, const char *name, uint64_t value)
 {
@@ -25,21 +22,6 @@ static void name_download(http_reply *r, const char *name)
         *at++ = isalnum((unsigned char)*c) || strchr("._-", *c) ? *c : '_';
     snprintf(at, 2, "\"");
     http_reply_header(r, "Content-Disposition", text);
-}
-
-static const picture *take(lab *l, bool final, http_reply *r)
-{
-    const picture *p = NULL;
-    if (!final) {
-        p = painter_take(l->painter);
-        if (!p)
-            http_reply_error(r, 404, "there is no picture yet", "ask with ?wait=1");
-        return p;
-    }
-    diagnostic why = {.line = 0};
-    if (painter_take_final(l->painter, final_wait_s, &p, &why) != STATUS_OK)
-        http_reply_error(r, 409, why.what, why.remedy);
-    return p;
 }
 
 /* A reply's own bytes. */
@@ -73,48 +55,41 @@ static status encode(lab *l, const picture *p, image_format format, int bits, un
     return code;
 }
 
-static void reply_picture(lab *l, const http_request *q, http_reply *r, image_format format, const char *type)
+static status reply_picture(call *c, image_format format, const char *type)
 {
-    const char *wait = http_query_value(q, "wait"), *bits_text = http_query_value(q, "bits"),
-               *download = http_query_value(q, "download");
-    int64_t bits = 8;
-    if (bits_text && !(number_parse_int(bits_text, &bits) && (bits == 8 || bits == 16))) {
-        http_reply_error(r, 400, "a picture has no such number of bits", "give 8 or 16");
-        return;
-    }
-    const picture *p = take(l, wait && strcmp(wait, "0") != 0, r);
-    if (!p)
-        return;
-    diagnostic why = {.line = 0};
+    const char *download = http_query_value(c->request, "download");
+    const picture *p = NULL;
     unsigned char *bytes = NULL;
     size_t size;
-    const status code = encode(l, p, format, (int)bits, &bytes, &size, &why);
+    int bits;
+    if (!api_take_bits(c, &bits))
+        return api_refuse(c, 400, "a picture has no such number of bits", "give 8 or 16");
+    if (api_asks_for(c, "wait") && api_wait_for_final(c, &p) != STATUS_OK) {
+        c->refused = 409;
+        return STATUS_INTERRUPTED;
+    }
+    if (!p && !(p = painter_take(c->l->painter)))
+        return api_refuse(c, 404, "there is no picture yet", "ask with ?wait=1");
+    const status code = encode(c->l, p, format, bits, &bytes, &size, &c->why);
     if (code == STATUS_OK) {
-        http_reply_bytes(r, 200, type, bytes, size);
-        add_number(r, "X-Cuvette-Serial", p->serial);
-        add_number(r, "X-Cuvette-Generation", p->generation);
-        add_number(r, "X-Cuvette-Pass", (uint64_t)p->pass);
-        add_number(r, "X-Cuvette-Final", p->final);
+        api_send(c, type, bytes, size);
+        add_number(c->reply, "X-Cuvette-Serial", p->serial);
+        add_number(c->reply, "X-Cuvette-Generation", p->generation);
+        add_number(c->reply, "X-Cuvette-Pass", (uint64_t)p->pass);
+        add_number(c->reply, "X-Cuvette-Final", p->final);
         if (download)
-            name_download(r, download);
-    } else {
-        http_reply_diagnostic(r, code, &why);
+            name_download(c->reply, download);
     }
     picture_release(p);
+    return code;
 }
 
-static void get_png(void *of, const http_request *q, http_reply *r)
+status api_picture_png(call *c)
 {
-    reply_picture(of, q, r, IMAGE_PNG, "image/png");
+    return reply_picture(c, IMAGE_PNG, "image/png");
 }
 
-static void get_jpeg(void *of, const http_request *q, http_reply *r)
+status api_picture_jpeg(call *c)
 {
-    reply_picture(of, q, r, IMAGE_JPEG, "image/jpeg");
+    return reply_picture(c, IMAGE_JPEG, "image/jpeg");
 }
-
-static const http_route routes[] = {
-    {"GET", "/api/picture.png", get_png, NULL},
-    {"GET", "/api/picture.jpg", get_jpeg, NULL},
-};
-const lab_routes picture_routes = {routes, sizeof routes / sizeof *routes};

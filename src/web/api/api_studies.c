@@ -2,22 +2,13 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "report/json.h"
-#include "web/api/api_machine.h"
 #include "web/session/figures.h"
-#include "web/lab_private.h"
+#include "web/api/api.h"
 #include "web/session/studies.h"
 #include "web/session/study_files.h"
 #include "web/api/study_json.h"
 #include <stdlib.h>
 #include <string.h>
-
-static void reply(http_reply *r, status code, json_t *value, const diagnostic *why)
-{
-    if (code == STATUS_OK)
-        http_reply_json(r, 200, value);
-    else
-        http_reply_diagnostic(r, code, why);
-}
 
 /* --- what there is --- */
 
@@ -29,10 +20,9 @@ static void add_progress(const lab *l, const study *s, json_t *told)
     status code = study_check_results(l, results, s->name, &why);
     if (code == STATUS_OK)
         code = study_status(s, results, &progress, &why);
-    json_object_set_new(told, "cells_done", json_integer((json_int_t)progress.cells_done));
-    json_object_set_new(told, "rows", json_integer((json_int_t)progress.rows));
-    json_object_set_new(told, "warmups", json_integer((json_int_t)progress.warmups));
-    json_object_set_new(told, "marked", json_integer((json_int_t)progress.rows_marked));
+    json_object_update_new(told, json_pack("{s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done,
+                                           "rows", (json_int_t)progress.rows, "warmups", (json_int_t)progress.warmups,
+                                           "marked", (json_int_t)progress.rows_marked));
     if (code != STATUS_OK)
         json_object_set_new(told, "error", json_of_diagnostic(&why));
 }
@@ -74,232 +64,170 @@ static bool list_one(void *context, const char *name, const char *file)
     return true;
 }
 
-static void get_studies(void *context, const http_request *q, http_reply *r)
+status api_studies(call *c)
 {
-    (void)q;
-    const lab *l = context;
+    const lab *l = c->l;
     listing list = {.l = l, .studies = json_array(), .names = json_object()};
-    diagnostic why = {.what = ""};
-    const status code = study_each(l, list_one, &list, &why);
+    const status code = study_each(l, list_one, &list, &c->why);
     char *results = folder_name(l->files, l->settings.results);
-    json_t *told =
-        json_pack("{s:o, s:O}", "results", results ? json_of_text(results) : json_null(), "studies", list.studies);
+    api_tell(
+        c, json_pack("{s:o, s:o}", "results", results ? json_of_text(results) : json_null(), "studies", list.studies));
     free(results);
     json_decref(list.names);
-    json_decref(list.studies);
-    if (code == STATUS_OK)
-        http_reply_json(r, 200, told);
-    else
-        reply(r, code, NULL, &why);
-    if (code != STATUS_OK)
-        json_decref(told);
+    return code;
 }
 
-/* The study of the path's {name}; false with the reply set. One that is there and cannot be read gives *file all the
- * same. */
-static status take_study(const lab *l, const http_request *q, study **s, char **file, http_reply *r, diagnostic *why)
+/* The study of the path's {name}. One that is there and cannot be read gives *file all the same. */
+static status find_study(call *c, study **s, char **file)
 {
-    const char *name = http_path_value(q, "name");
     *s = NULL;
     *file = NULL;
-    status code = study_find(l, name, file, why);
-    if (code == STATUS_OK && !*file) {
-        http_reply_error(r, 404, "there is no study of that name", "GET /api/studies lists them");
-        return STATUS_BAD_INPUT;
-    }
+    status code = study_find(c->l, http_path_value(c->request, "name"), file, &c->why);
+    if (code == STATUS_OK && !*file)
+        return api_refuse(c, 404, "there is no study of that name", "GET /api/studies lists them");
     if (code == STATUS_OK)
-        code = study_open(l, *file, s, why);
+        code = study_open(c->l, *file, s, &c->why);
     if (code == STATUS_OK)
-        code = study_check_results(l, l->settings.results, (*s)->name, why);
+        code = study_check_results(c->l, c->l->settings.results, (*s)->name, &c->why);
     if (code != STATUS_OK) {
         study_destroy(*s);
         *s = NULL;
-        reply(r, code, NULL, why);
     }
     return code;
 }
 
-static void get_study(void *context, const http_request *q, http_reply *r)
+static status take_study(call *c, study **s)
 {
-    const lab *l = context;
+    char *file;
+    const status code = find_study(c, s, &file);
+    free(file);
+    return code;
+}
+
+/* One that cannot be read is told with its error. */
+status api_study(call *c)
+{
+    const lab *l = c->l;
     study *s;
     char *file;
-    diagnostic why = {.what = ""};
-    const status code = take_study(l, q, &s, &file, r, &why);
-    if (file) {
-        const char *name = http_path_value(q, "name");
-        json_t *told = study_json(l, name, file, s, &why), *summary = NULL;
-        if (s && study_json_summary(s, l->settings.results, &summary, &why) != STATUS_OK)
-            json_object_set_new(told, "error", json_of_diagnostic(&why));
-        json_object_set_new(told, "summary", summary ? summary : json_null());
-        json_object_set_new(told, "runs", s ? study_runs(l, s->name) : json_array());
-        json_object_set_new(told, "figures", s ? figures_of(l, s->name) : json_array());
-        json_object_set_new(told, "drawable", s ? figures_drawable(l, s->name) : json_array());
-        if (code == STATUS_OK || code == STATUS_BAD_INPUT)
-            http_reply_json(r, 200, told);
-        else
-            json_decref(told);
+    const status code = find_study(c, &s, &file);
+    if (file && (code == STATUS_OK || code == STATUS_BAD_INPUT)) {
+        json_t *told = study_json(l, http_path_value(c->request, "name"), file, s, &c->why), *summary = NULL;
+        if (s && study_json_summary(s, l->settings.results, &summary, &c->why) != STATUS_OK)
+            json_object_set_new(told, "error", json_of_diagnostic(&c->why));
+        json_object_update_new(told, json_pack("{s:o, s:o, s:o, s:o}", "summary", summary ? summary : json_null(),
+                                               "runs", s ? study_runs(l, s->name) : json_array(), "figures",
+                                               s ? figures_of(l, s->name) : json_array(), "drawable",
+                                               s ? figures_drawable(l, s->name) : json_array()));
+        api_tell(c, told);
     }
     study_destroy(s);
     free(file);
+    return c->told ? STATUS_OK : code;
 }
 
 /* --- run and stop --- */
 
-static void reply_state(lab *l, status code, http_reply *r, const diagnostic *why)
+static status tell_run(call *c, status code)
 {
-    reply(r, code, code == STATUS_OK ? studies_tell(l->studies) : NULL, why);
+    return code == STATUS_OK ? api_tell(c, studies_tell(c->l->studies)) : code;
 }
 
-static bool take_nothing(const http_request *q, http_reply *r)
+status api_study_run(call *c)
 {
-    json_t *body = http_body_json(q, r);
-    const bool fits = json_is_object(body) && json_object_size(body) == 0;
-    if (body && !fits)
-        http_reply_error(r, 400, "there is nothing to say here", "send {}");
-    json_decref(body);
-    return fits;
-}
-
-static void post_run(void *context, const http_request *q, http_reply *r)
-{
-    lab *l = context;
     study *s;
-    char *file = NULL;
-    diagnostic why = {.what = ""};
-    if (take_nothing(q, r) && take_study(l, q, &s, &file, r, &why) == STATUS_OK)
-        reply_state(l, studies_start(l->studies, s, &why), r, &why);
-    free(file);
+    const status code = take_study(c, &s);
+    return code == STATUS_OK ? tell_run(c, studies_start(c->l->studies, s, &c->why)) : code;
 }
 
-static void post_stop(void *context, const http_request *q, http_reply *r)
+status api_study_stop(call *c)
 {
-    lab *l = context;
-    diagnostic why = {.what = ""};
-    if (take_nothing(q, r))
-        reply_state(l, studies_stop(l->studies, http_path_value(q, "name"), &why), r, &why);
+    return tell_run(c, studies_stop(c->l->studies, http_path_value(c->request, "name"), &c->why));
 }
 
 /* --- what was measured --- */
 
-static void get_rows(void *context, const http_request *q, http_reply *r)
+status api_study_rows(call *c)
 {
-    const lab *l = context;
-    const char *text = http_query_value(q, "from");
+    const char *text = http_query_value(c->request, "from");
     int64_t from = 0;
     study *s;
-    char *file;
-    json_t *told = NULL;
-    diagnostic why = {.what = ""};
-    if (text && (!number_parse_int(text, &from) || from < 0)) {
-        http_reply_error(r, 400, "from is not a number of rows", "write ?from=N with N from 0");
-        return;
-    }
-    if (take_study(l, q, &s, &file, r, &why) == STATUS_OK) {
-        const status code = study_json_rows(s, l->settings.results, (size_t)from, &told, &why);
-        reply(r, code, told, &why);
-    }
+    if (text && (!number_parse_int(text, &from) || from < 0))
+        return api_refuse(c, 400, "from is not a number of rows", "write ?from=N with N from 0");
+    status code = take_study(c, &s);
+    if (code == STATUS_OK)
+        code = study_json_rows(s, c->l->settings.results, (size_t)from, &c->told, &c->why);
     study_destroy(s);
-    free(file);
+    return code;
 }
 
 /* The folder of results of that name, which holds rows of the study. */
-static status take_run(const lab *l, const char *run, const study *s, char **results, diagnostic *why)
+static status take_run(call *c, const char *run, const study *s, char **results)
 {
     char *rows = text_format("%s/%s/rows.csv", run, s->name);
-    status code = rows ? folder_path(l->files, rows, true, results, why) : out_of_memory(why);
+    status code = rows ? folder_path(c->l->files, rows, true, results, &c->why) : out_of_memory(&c->why);
     if (code == STATUS_OK) {
         (*results)[strlen(*results) - strlen(rows) + strlen(run)] = 0;
-        code = study_check_results(l, *results, s->name, why);
+        code = study_check_results(c->l, *results, s->name, &c->why);
     }
     free(rows);
     return code;
 }
 
-static void get_compare(void *context, const http_request *q, http_reply *r)
+status api_study_compare(call *c)
 {
-    const lab *l = context;
-    const char *with = http_query_value(q, "with");
+    const char *with = http_query_value(c->request, "with");
     study *s;
-    char *file, *other = NULL;
-    json_t *told = NULL;
-    diagnostic why = {.what = ""};
-    if (!with || !with[0]) {
-        http_reply_error(r, 400, "with what is not said", "write ?with=FOLDER, one of the study's runs");
-        return;
-    }
-    if (take_study(l, q, &s, &file, r, &why) == STATUS_OK) {
-        status code = take_run(l, with, s, &other, &why);
-        if (code == STATUS_OK)
-            code = study_json_compare(s, l->settings.results, other, &told, &why);
-        reply(r, code, told, &why);
-    }
+    char *other = NULL;
+    if (!with || !with[0])
+        return api_refuse(c, 400, "with what is not said", "write ?with=FOLDER, one of the study's runs");
+    status code = take_study(c, &s);
+    if (code == STATUS_OK)
+        code = take_run(c, with, s, &other);
+    if (code == STATUS_OK)
+        code = study_json_compare(s, c->l->settings.results, other, &c->told, &c->why);
     free(other);
     study_destroy(s);
-    free(file);
+    return code;
 }
 
 /* --- figures --- */
 
-static void get_figure(void *context, const http_request *q, http_reply *r)
+status api_figure(call *c)
 {
-    const lab *l = context;
     char *svg = NULL;
     size_t size = 0;
-    diagnostic why = {.what = ""};
-    const status code = figure_read(l, http_path_value(q, "name"), &svg, &size, &why);
-    if (code == STATUS_OK)
-        http_reply_bytes(r, 200, "image/svg+xml", svg, size);
-    else if (code == STATUS_BAD_INPUT)
-        http_reply_error(r, 404, "there is no such figure", "GET /api/studies/{name} lists those of a study");
-    else
-        reply(r, code, NULL, &why);
+    const status code = figure_read(c->l, http_path_value(c->request, "name"), &svg, &size, &c->why);
+    if (code == STATUS_BAD_INPUT)
+        return api_refuse(c, 404, "there is no such figure", "GET /api/studies/{name} lists those of a study");
+    return code == STATUS_OK ? api_send(c, "image/svg+xml", svg, size) : code;
 }
 
-static void draw(lab *l, const study *s, http_reply *r)
+static status draw(call *c, const study *s)
 {
+    lab *l = c->l;
     char *said = NULL;
     bool whole;
-    diagnostic why = {.what = ""};
-    if (studies_is_running(l->studies)) {
-        http_reply_error(r, 409, "a study measures, and drawing would disturb it",
-                         "draw when it has ended, or stop it");
-        return;
-    }
-    if (!studies_begin_drawing(l->studies)) {
-        http_reply_error(r, 409, "figures are being drawn", "wait for them");
-        return;
-    }
-    const status code = figures_draw(l, s, &said, &whole, &why);
+    if (studies_runs(l->studies, NULL))
+        return api_refuse(c, 409, "a study measures, and drawing would disturb it",
+                          "draw when it has ended, or stop it");
+    if (!studies_begin_drawing(l->studies))
+        return api_refuse(c, 409, "figures are being drawn", "wait for them");
+    const status code = figures_draw(l, s, &said, &whole, &c->why);
     studies_end_drawing(l->studies);
-    json_t *told = code == STATUS_OK ? json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said",
-                                                 json_of_text(said), "complete", whole)
-                                     : NULL;
-    reply(r, code, told, &why);
+    if (code == STATUS_OK)
+        api_tell(c, json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said", json_of_text(said),
+                              "complete", whole));
     free(said);
+    return code;
 }
 
-static void post_draw(void *context, const http_request *q, http_reply *r)
+status api_study_draw(call *c)
 {
-    lab *l = context;
-    study *s = NULL;
-    char *file = NULL;
-    diagnostic why = {.what = ""};
-    if (take_nothing(q, r) && take_study(l, q, &s, &file, r, &why) == STATUS_OK)
-        draw(l, s, r);
+    study *s;
+    status code = take_study(c, &s);
+    if (code == STATUS_OK)
+        code = draw(c, s);
     study_destroy(s);
-    free(file);
+    return code;
 }
-
-static const http_route routes[] = {
-    {"GET", "/api/studies", get_studies, NULL},
-    {"GET", "/api/studies/{name}", get_study, NULL},
-    {"POST", "/api/studies/{name}/run", post_run, NULL},
-    {"POST", "/api/studies/{name}/stop", post_stop, NULL},
-    {"GET", "/api/studies/{name}/rows", get_rows, NULL},
-    {"GET", "/api/studies/{name}/compare", get_compare, NULL},
-    {"POST", "/api/studies/{name}/draw", post_draw, NULL},
-    {"GET", "/api/figures/{name}", get_figure, NULL},
-    {"GET", "/api/machine", api_machine, NULL},
-};
-const lab_routes study_routes = {routes, sizeof routes / sizeof *routes};

@@ -1,8 +1,10 @@
-/* What a pixel's ray grows into: its tree as JSON, as text, as a drawing; what `cuvette trace` writes. */
-#include "web/lab_private.h"
+/* What a pixel's ray grows into: its tree as JSON, as text, as a drawing; what `cuvette trace` writes. And what
+ * looks wrong in the scene. */
+#include "web/api/api.h"
 
 #include "base/number.h"
 #include "base/text_writer.h"
+#include "lint/lint.h"
 #include "report/trace_writers.h"
 #include <limits.h>
 #include <stdlib.h>
@@ -52,59 +54,64 @@ static status grow_and_write(void *context, scene *s, diagnostic *why)
     return code;
 }
 
-static bool take_place(const http_request *request, const char *key, int *place, http_reply *reply)
+static bool take_place(call *c, const char *key, int *place)
 {
-    const char *text = http_query_value(request, key);
+    const char *text = http_query_value(c->request, key);
     int64_t value;
-    if (text && number_parse_int(text, &value) && value >= INT_MIN && value <= INT_MAX) {
+    const bool good = text && number_parse_int(text, &value) && value >= INT_MIN && value <= INT_MAX;
+    if (good)
         *place = (int)value;
-        return true;
-    }
-    char what[256];
-    snprintf(what, sizeof what, text ? "%s is no integer: '%.128s'" : "%s is missing", key, text);
-    http_reply_error(reply, 400, what, "ask for a pixel as ?x=X&y=Y, counted from 0,0 at the top left");
-    return false;
+    else
+        diagnose(&c->why, STATUS_BAD_INPUT, "ask for a pixel as ?x=X&y=Y, counted from 0,0 at the top left",
+                 text ? "%s is no integer: '%.128s'" : "%s is missing", key, text);
+    return good;
 }
 
-static void reply_trace(lab *l, const http_request *request, http_reply *reply, trace_writer *write, const char *type)
+static status reply_trace(call *c, trace_writer *write, const char *type)
 {
-    trace_question q = {.lab = l, .write = write};
-    if (!take_place(request, "x", &q.x, reply) || !take_place(request, "y", &q.y, reply))
-        return;
-    diagnostic why = {0};
-    json_t *told = json_object();
-    const bool known = told && desk_tell(l->desk, told);
-    const char *file = json_string_value(json_object_get(told, "file"));
-    q.scene_name = file ? file : "";
-    const status code = known ? painter_with_scene(l->painter, grow_and_write, &q, &why)
-                              : diagnose(&why, STATUS_FAILURE, "", "no memory for the scene's name");
-    if (code == STATUS_OK) {
-        http_reply_bytes(reply, 200, type, q.bytes, q.size);
-    } else {
-        free(q.bytes);
-        http_reply_diagnostic(reply, code, &why);
-    }
-    json_decref(told);
+    trace_question q = {.lab = c->l, .write = write};
+    if (!take_place(c, "x", &q.x) || !take_place(c, "y", &q.y))
+        return STATUS_BAD_INPUT;
+    char *file = api_desk_file(c);
+    q.scene_name = file;
+    const status code = file ? painter_with_scene(c->l->painter, grow_and_write, &q, &c->why) : out_of_memory(&c->why);
+    free(file);
+    if (code == STATUS_OK)
+        return api_send(c, type, q.bytes, q.size);
+    free(q.bytes);
+    return code;
 }
 
-static void get_json(void *context, const http_request *request, http_reply *reply)
+status api_trace_json(call *c)
 {
-    reply_trace(context, request, reply, trace_write_json, "application/json");
+    return reply_trace(c, trace_write_json, "application/json");
 }
 
-static void get_text(void *context, const http_request *request, http_reply *reply)
+status api_trace_text(call *c)
 {
-    reply_trace(context, request, reply, trace_write_text, "text/plain; charset=utf-8");
+    return reply_trace(c, trace_write_text, "text/plain; charset=utf-8");
 }
 
-static void get_drawing(void *context, const http_request *request, http_reply *reply)
+status api_trace_drawing(call *c)
 {
-    reply_trace(context, request, reply, trace_write_drawing, "image/svg+xml");
+    return reply_trace(c, trace_write_drawing, "image/svg+xml");
 }
 
-static const http_route routes[] = {
-    {"GET", "/api/trace", get_json, NULL},
-    {"GET", "/api/trace.txt", get_text, NULL},
-    {"GET", "/api/trace.svg", get_drawing, NULL},
-};
-const lab_routes trace_routes = {routes, sizeof routes / sizeof *routes};
+/* --- the linter's notes on the scene as it is shown now --- */
+
+static void take_note(void *list, const scene_note *note)
+{
+    json_array_append_new(list, api_note(note->place, note->text, note->remedy));
+}
+
+static status look_for_notes(void *context, scene *s, diagnostic *why)
+{
+    call *c = context;
+    return lint_scene(s, c->l->settings.level, &(note_taker){take_note, json_object_get(c->told, "notes")}, why);
+}
+
+status api_notes(call *c)
+{
+    api_tell(c, json_pack("{s:[]}", "notes"));
+    return painter_with_scene(c->l->painter, look_for_notes, c, &c->why);
+}

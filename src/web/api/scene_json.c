@@ -1,4 +1,4 @@
-#include "web/api/scene_json.h"
+#include "web/api/api.h"
 #include "geometry/shapes/shape.h"
 #include "report/json.h"
 #include "report/param_rows.h"
@@ -20,16 +20,14 @@ static json_t *solid_json(const scene *s, const solid *one)
         o, "material", one->material_index >= 0 ? json_of_text(s->materials[one->material_index].name) : json_null());
     if (shape_of(&one->shape)->triangles)
         bad |= json_object_set_new(o, "mesh", json_of_text(one->mesh));
-    if (!bad)
-        return o;
-    json_decref(o);
-    return NULL;
+    return json_whole(o, !bad);
 }
 
 static json_t *objects_json(const scene *s)
 {
+    static const param_group rest[] = {PARAM_MATERIAL, PARAM_MESH, PARAM_TEXTURE};
     json_t *list = json_array();
-    int bad = !list;
+    int bad = 0;
     for (size_t i = 0; i < s->solid_count; i++)
         bad |= json_array_append_new(list, solid_json(s, &s->solids[i]));
     for (size_t i = 0; i < s->light_count; i++) {
@@ -37,16 +35,11 @@ static json_t *objects_json(const scene *s)
         bad |= json_object_set_new(o, "light", json_string(light_words[s->lights[i].kind]));
         bad |= json_array_append_new(list, o);
     }
-    for (size_t i = 0; i < s->material_count; i++)
-        bad |= json_array_append_new(list, object_json(s->materials[i].name, "material"));
-    for (size_t i = 0; i < s->mesh_count; i++)
-        bad |= json_array_append_new(list, object_json(s->meshes[i].name, "mesh"));
-    for (size_t i = 0; i < s->texture_count; i++)
-        bad |= json_array_append_new(list, object_json(s->textures[i].name, "texture"));
-    if (!bad)
-        return list;
-    json_decref(list);
-    return NULL;
+    for (size_t group = 0; group < sizeof rest / sizeof *rest; group++)
+        for (size_t i = 0; i < place_group_size(s, rest[group]); i++)
+            bad |= json_array_append_new(
+                list, object_json(place_group_name(s, rest[group], i), param_group_name(rest[group])));
+    return json_whole(list, !bad);
 }
 
 /* [[ring..]..] by convex part, each [y, x, z, corners, from_deg] as shape_ring has them. */

@@ -35,28 +35,24 @@ static const char *unit_of(const study *s, const char *path)
 static json_t *axis_json(const study *s, const study_axis *axis)
 {
     json_t *paths = json_array(), *units = json_array();
-    bool bad = !paths || !units;
-    for (size_t i = 0; !bad && i < axis->points[0].count; i++) {
-        bad |= json_array_append_new(paths, json_of_text(axis->points[0].paths[i])) != 0;
-        bad |= json_array_append_new(units, json_of_text(unit_of(s, axis->points[0].paths[i]))) != 0;
+    int bad = 0;
+    for (size_t i = 0; i < axis->points[0].count; i++) {
+        bad |= json_array_append_new(paths, json_of_text(axis->points[0].paths[i]));
+        bad |= json_array_append_new(units, json_of_text(unit_of(s, axis->points[0].paths[i])));
     }
-    if (!bad)
-        return json_pack("{s:o, s:o, s:o, s:I}", "name", json_of_text(axis->name), "paths", paths, "units", units,
-                         "count", (json_int_t)axis->count);
-    json_decref(paths);
-    json_decref(units);
-    return NULL;
+    json_t *told = json_pack("{s:o, s:o, s:o, s:I}", "name", json_of_text(axis->name), "paths", paths, "units", units,
+                             "count", (json_int_t)axis->count);
+    return json_whole(told, !bad);
 }
 
 bool study_json_about(const study *s, json_t *into)
 {
     json_t *axes = json_array();
-    bool bad = !axes;
-    for (size_t i = 0; !bad && i < s->axis_count; i++)
-        bad |= json_array_append_new(axes, axis_json(s, &s->axes[i])) != 0;
-    bad |= json_object_set_new(into, "title", json_of_text(s->title)) != 0;
-    bad |= json_object_set_new(into, "cells", json_integer((json_int_t)study_cell_count(s))) != 0;
-    bad |= json_object_set_new(into, "axes", axes) != 0;
+    int bad = 0;
+    for (size_t i = 0; i < s->axis_count; i++)
+        bad |= json_array_append_new(axes, axis_json(s, &s->axes[i]));
+    bad |= json_object_update_new(into, json_pack("{s:o, s:I, s:o}", "title", json_of_text(s->title), "cells",
+                                                  (json_int_t)study_cell_count(s), "axes", axes));
     return !bad;
 }
 
@@ -66,12 +62,10 @@ bool study_json_about(const study *s, json_t *into)
 static json_t *fields_json(char *line)
 {
     json_t *fields = json_array();
+    int bad = 0;
     for (char *field; (field = strsep(&line, "\t"));)
-        if (json_array_append_new(fields, json_of_text(field)) != 0) {
-            json_decref(fields);
-            return NULL;
-        }
-    return fields;
+        bad |= json_array_append_new(fields, json_of_text(field));
+    return json_whole(fields, !bad);
 }
 
 static json_t *table_json(json_t *columns, json_t *rows, size_t count)
@@ -84,15 +78,11 @@ static json_t *lines_json(char *text)
     char *line = strsep(&text, "\n");
     json_t *columns = fields_json(line), *rows = json_array();
     size_t count = 0;
-    bool bad = !columns || !rows;
-    while (!bad && (line = strsep(&text, "\n")) && *line)
+    int bad = 0;
+    while ((line = strsep(&text, "\n")) && *line)
         if (count++ < STUDY_JSON_CELLS_MAX)
-            bad |= json_array_append_new(rows, fields_json(line)) != 0;
-    if (!bad)
-        return table_json(columns, rows, count);
-    json_decref(columns);
-    json_decref(rows);
-    return NULL;
+            bad |= json_array_append_new(rows, fields_json(line));
+    return json_whole(table_json(columns, rows, count), !bad);
 }
 
 status study_json_summary(const study *s, const char *results, json_t **out, diagnostic *why)
@@ -124,15 +114,13 @@ status study_json_summary(const study *s, const char *results, json_t **out, dia
 static json_t *row_json(const csv *columns, const row_ref *of)
 {
     json_t *row = json_array();
-    for (size_t i = 0; i < columns->column_count; i++) {
+    int bad = 0;
+    for (size_t i = 0; columns && i < columns->column_count; i++) {
         const char *name = columns->header[i];
         const int at = of && of->table != columns ? csv_column(of->table, name) : (int)i;
-        if (json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, at) : name)) != 0) {
-            json_decref(row);
-            return NULL;
-        }
+        bad |= json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, at) : name));
     }
-    return row;
+    return json_whole(row, !bad);
 }
 
 status study_json_rows(const study *s, const char *results, size_t from, json_t **out, diagnostic *why)
@@ -145,16 +133,11 @@ status study_json_rows(const study *s, const char *results, size_t from, json_t 
     const csv *first = NULL;
     for (size_t i = 0; !first && i < files->count; i++)
         first = files->tables[i]->header ? files->tables[i] : NULL;
-    json_t *columns = first ? row_json(first, NULL) : json_array(), *rows = json_array();
-    bool bad = !columns || !rows;
-    for (size_t i = from; !bad && i < files->row_count && i - from < STUDY_JSON_ROWS_MAX; i++)
-        bad |= json_array_append_new(rows, row_json(first, &files->rows[i])) != 0;
-    if (!bad) {
-        *out = table_json(columns, rows, files->row_count);
-    } else {
-        json_decref(columns);
-        json_decref(rows);
-    }
+    json_t *rows = json_array();
+    int bad = 0;
+    for (size_t i = from; i < files->row_count && i - from < STUDY_JSON_ROWS_MAX; i++)
+        bad |= json_array_append_new(rows, row_json(first, &files->rows[i]));
+    *out = json_whole(table_json(row_json(first, NULL), rows, files->row_count), !bad);
     row_files_destroy(files);
     return *out ? STATUS_OK : out_of_memory(why);
 }

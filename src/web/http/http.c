@@ -109,11 +109,7 @@ status http_start(const http_settings *settings, http_server **out, diagnostic *
     pthread_mutex_init(&s->bucket_lock, NULL);
     pthread_mutex_init(&s->watch_lock, NULL);
     pthread_mutex_init(&s->event_lock, NULL);
-    pthread_condattr_t monotonic;
-    pthread_condattr_init(&monotonic);
-    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
-    pthread_cond_init(&s->watch_wake, &monotonic);
-    pthread_condattr_destroy(&monotonic);
+    pthread_cond_init(&s->watch_wake, NULL);
     status code = check(&s->settings, why);
     if (code == STATUS_OK)
         code = make_token(s, why);

@@ -89,14 +89,10 @@ http_address(const http_server *server); /* "http://127.0.0.1:PORT/?token=TOKEN"
 
 /* --- a request --- */
 
-const char *http_method(const http_request *request);
-const char *http_path(const http_request *request); /* decoded, without the query */
 const char *http_path_value(const http_request *request,
                             const char *name); /* what {name} stood for; NULL: not in the pattern */
 const char *http_query_value(const http_request *request, const char *name); /* decoded; NULL: none; "" for ?name */
 const char *http_header(const http_request *request, const char *name);      /* the first of that name; NULL: none */
-const char *http_body(const http_request *request,
-                      size_t *size); /* a 0 follows its last byte; "" for none. size may be NULL */
 /* The body as JSON (a new reference); NULL where it is none: the reply is then 400 with line and column. */
 json_t *http_body_json(const http_request *request, http_reply *reply);
 

@@ -28,7 +28,8 @@ static bool stays_below(const char *path)
     return true;
 }
 
-char *http_safe_path(const char *target, bool *no_memory)
+/* Path of a target, decoded; NULL for one that climbs or cannot be read. *no_memory tells the two NULLs apart. */
+static char *safe_path(const char *target, bool *no_memory)
 {
     *no_memory = false;
     if (target[0] != '/')
@@ -63,7 +64,7 @@ char *http_safe_path(const char *target, bool *no_memory)
 }
 
 /* Takes as long for every text of that length, wherever it differs. */
-bool http_same_token(const char *token, const char *given)
+static bool same_token(const char *token, const char *given)
 {
     if (!given || strlen(given) != HTTP_TOKEN_DIGITS)
         return false;
@@ -73,7 +74,8 @@ bool http_same_token(const char *token, const char *given)
     return difference == 0;
 }
 
-char *http_clean_target(const char *target)
+/* The target without its token. NULL: memory. */
+static char *clean_target(const char *target)
 {
     char *clean = malloc(strlen(target) + 1);
     if (!clean)
@@ -151,7 +153,7 @@ static int refuse(http_request *q, int code, const char *what, const char *remed
 /* The page's first address: remembers the token where no script can read it, and leaves it out of the address. */
 static int let_in(http_request *q)
 {
-    char *clean = http_clean_target(q->target), cookie[128];
+    char *clean = clean_target(q->target), cookie[128];
     snprintf(cookie, sizeof cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict", q->server->cookie, q->server->token);
     http_reply_static(&q->reply, 303, "text/plain; charset=utf-8", "", 0);
     http_reply_header(&q->reply, "Set-Cookie", cookie);
@@ -163,10 +165,9 @@ static int let_in(http_request *q)
 static bool has_token(const http_request *q)
 {
     const char *bearer = MHD_lookup_connection_value(q->connection, MHD_HEADER_KIND, "Authorization");
-    if (bearer && strncasecmp(bearer, "Bearer ", 7) == 0 && http_same_token(q->server->token, bearer + 7))
+    if (bearer && strncasecmp(bearer, "Bearer ", 7) == 0 && same_token(q->server->token, bearer + 7))
         return true;
-    return http_same_token(q->server->token,
-                           MHD_lookup_connection_value(q->connection, MHD_COOKIE_KIND, q->server->cookie));
+    return same_token(q->server->token, MHD_lookup_connection_value(q->connection, MHD_COOKIE_KIND, q->server->cookie));
 }
 
 /* What is not about the token: nothing that another site's page can do gets past here. */
@@ -177,7 +178,7 @@ static int guard_site(http_request *q, const char *version)
     MHD_get_connection_values(q->connection, MHD_HEADER_KIND, look, &h);
     if (strcmp(version, "HTTP/1.1") != 0 && strcmp(version, "HTTP/1.0") != 0)
         return refuse(q, 400, "this is not HTTP/1.1", "send HTTP/1.1");
-    q->path = http_safe_path(q->target, &no_memory);
+    q->path = safe_path(q->target, &no_memory);
     if (no_memory)
         return refuse(q, 500, "no memory for a request", "try again later");
     if (!q->path)
@@ -200,7 +201,7 @@ int http_guard(http_request *q, const char *version)
     const char *asked = strcmp(q->method, "GET") == 0
                             ? MHD_lookup_connection_value(q->connection, MHD_GET_ARGUMENT_KIND, "token")
                             : NULL;
-    const bool in_address = http_same_token(q->server->token, asked), known = in_address || has_token(q);
+    const bool in_address = same_token(q->server->token, asked), known = in_address || has_token(q);
     if (!within_rate(q->server, known)) {
         http_reply_header(&q->reply, "Retry-After", "1");
         return refuse(q, 429, "too many requests at once", "wait a second");

@@ -75,12 +75,7 @@ struct http_request {
 
 /* --- http_guard.c: may it pass? Each answers 0, or the code with the reply set. --- */
 
-/* Path of a target, decoded; NULL for one that climbs or cannot be read. *no_memory tells the two NULLs apart. */
-char *http_safe_path(const char *target, bool *no_memory);
-bool http_same_token(const char *token, const char *given);
 int http_guard(http_request *q, const char *version);
-/* The target without its token. NULL: memory. */
-char *http_clean_target(const char *target);
 
 /* --- http_route.c --- */
 int http_find_route(http_request *q);

@@ -139,16 +139,6 @@ enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const ch
     return http_reply_send(&q->reply);
 }
 
-const char *http_method(const http_request *q)
-{
-    return q->method;
-}
-
-const char *http_path(const http_request *q)
-{
-    return q->path;
-}
-
 const char *http_query_value(const http_request *q, const char *name)
 {
     const char *value = NULL;
@@ -162,13 +152,6 @@ const char *http_query_value(const http_request *q, const char *name)
 const char *http_header(const http_request *q, const char *name)
 {
     return MHD_lookup_connection_value(q->connection, MHD_HEADER_KIND, name);
-}
-
-const char *http_body(const http_request *q, size_t *size)
-{
-    if (size)
-        *size = q->body_size;
-    return q->body ? q->body : "";
 }
 
 json_t *http_body_json(const http_request *q, http_reply *r)

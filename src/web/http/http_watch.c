@@ -7,7 +7,6 @@
 #include "measure/clock.h"
 #include <stdlib.h>
 #include <sys/socket.h>
-#include <time.h>
 
 static void *watch(void *context)
 {
@@ -23,10 +22,8 @@ static void *watch(void *context)
                 p->deadline_s = 0;
             }
         }
-        struct timespec next;
-        clock_gettime(CLOCK_MONOTONIC, &next);
-        next.tv_sec++;
-        pthread_cond_timedwait(&s->watch_wake, &s->watch_lock, &next);
+        const struct timespec next = clock_after(1.0);
+        pthread_cond_clockwait(&s->watch_wake, &s->watch_lock, CLOCK_MONOTONIC, &next);
     }
     pthread_mutex_unlock(&s->watch_lock);
     return NULL;

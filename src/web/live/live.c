@@ -1,11 +1,11 @@
 /* What any thread may ask of the live slime. */
 #include "web/live/live_private.h"
 
+#include "measure/clock.h"
 #include "report/json.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
 live *live_create(void (*wake)(void *context), void *context)
 {
@@ -16,11 +16,7 @@ live *live_create(void (*wake)(void *context), void *context)
     l->context = context;
     l->moved_at_s = NAN;
     pthread_mutex_init(&l->lock, NULL);
-    pthread_condattr_t by;
-    pthread_condattr_init(&by);
-    pthread_condattr_setclock(&by, CLOCK_MONOTONIC);
-    pthread_cond_init(&l->answered, &by);
-    pthread_condattr_destroy(&by);
+    pthread_cond_init(&l->answered, NULL);
     return l;
 }
 
@@ -80,14 +76,6 @@ void live_stop(live *l)
     pthread_mutex_unlock(&l->lock);
 }
 
-static struct timespec limit(void)
-{
-    struct timespec at;
-    clock_gettime(CLOCK_MONOTONIC, &at);
-    at.tv_sec += (time_t)LIVE_WAIT_S;
-    return at;
-}
-
 static void withdraw(live *l, const grab_request *q)
 {
     grab_request **at = &l->first;
@@ -100,10 +88,10 @@ static void withdraw(live *l, const grab_request *q)
 /* The lock is held, but while it waits. */
 static status wait_for(live *l, grab_request *q, diagnostic *why)
 {
-    const struct timespec until = limit();
+    const struct timespec until = clock_after(LIVE_WAIT_S);
     int waited = 0;
     while (!q->done && !l->stopped && waited != ETIMEDOUT)
-        waited = pthread_cond_timedwait(&l->answered, &l->lock, &until);
+        waited = pthread_cond_clockwait(&l->answered, &l->lock, CLOCK_MONOTONIC, &until);
     if (q->done)
         return q->code;
     withdraw(l, q);

@@ -68,11 +68,6 @@ struct live {
     bool moved, changed; /* the stage looks otherwise; what is told is other than by mere motion */
 };
 
-/* --- live_stage.c --- */
-
-/* It can go on no more, and says why. */
-void live_fail(live *l, const diagnostic *why);
-
 /* --- live_move.c --- */
 
 /* Moves by the wall time since the last call, at most about most_s of work. The lock is not held. STATUS_BAD_INPUT: the

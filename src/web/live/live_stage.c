@@ -50,7 +50,8 @@ static void end(live *l)
     forget_motion(l);
 }
 
-void live_fail(live *l, const diagnostic *why)
+/* It can go on no more, and says why. */
+static void fail(live *l, const diagnostic *why)
 {
     pthread_mutex_lock(&l->lock);
     l->account.in_trouble = true;
@@ -70,7 +71,7 @@ static status begin(live *l, diagnostic *why)
     }
     if (code != STATUS_OK) {
         end(l);
-        live_fail(l, &bad);
+        fail(l, &bad);
         if (why)
             *why = bad;
         return code;
@@ -246,7 +247,7 @@ static void stop(live *l, const diagnostic *why)
 {
     if (!has_skins(l))
         end(l);
-    live_fail(l, why);
+    fail(l, why);
 }
 
 status live_advance(live *l, double most_s, bool *told, diagnostic *why)

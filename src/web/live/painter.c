@@ -1,4 +1,5 @@
 #include "web/live/painter_private.h"
+#include "measure/clock.h"
 #include "scene/model/camera.h"
 #include "report/json.h"
 #include "scene/model/scene.h"
@@ -7,7 +8,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* How long those who want a scene as it is now wait for it. */
 static const double scene_wait_s = 60.0;
@@ -50,21 +50,21 @@ const picture *painter_take(painter *p)
     return newest;
 }
 
-static struct timespec after(double seconds)
+/* With the lock held: until there is news, or none can come. */
+static status wait_for_news(painter *p, const struct timespec *until, const char *stands_still, const char *is_late,
+                            diagnostic *why)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    t.tv_sec += (time_t)seconds;
-    t.tv_nsec += (long)((seconds - floor(seconds)) * 1e9);
-    t.tv_sec += t.tv_nsec / 1000000000;
-    t.tv_nsec %= 1000000000;
-    return t;
+    if (p->waiting)
+        return diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "%s: %.200s", stands_still, p->waiting);
+    if (p->stop || pthread_cond_clockwait(&p->news, &p->lock, CLOCK_MONOTONIC, until) == ETIMEDOUT)
+        return diagnose(why, STATUS_INTERRUPTED, "ask again", "%s", is_late);
+    return STATUS_OK;
 }
 
 status painter_take_final(painter *p, double limit_s, const picture **out, diagnostic *why)
 {
     const uint64_t wanted = desk_generation(p->desk);
-    const struct timespec until = after(limit_s);
+    const struct timespec until = clock_after(limit_s);
     status code = STATUS_OK;
     *out = NULL;
     pthread_mutex_lock(&p->lock);
@@ -74,11 +74,8 @@ status painter_take_final(painter *p, double limit_s, const picture **out, diagn
         } else if (p->trouble_code != STATUS_OK && p->stage_generation >= wanted) {
             *why = p->trouble;
             code = p->trouble_code;
-        } else if (p->waiting) {
-            code = diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "nothing is rendered now: %.200s",
-                            p->waiting);
-        } else if (p->stop || pthread_cond_timedwait(&p->news, &p->lock, &until) == ETIMEDOUT) {
-            code = diagnose(why, STATUS_INTERRUPTED, "ask again", "the picture is not finished yet");
+        } else {
+            code = wait_for_news(p, &until, "nothing is rendered now", "the picture is not finished yet", why);
         }
     }
     pthread_mutex_unlock(&p->lock);
@@ -99,16 +96,11 @@ static bool is_settled(const painter *p, uint64_t wanted)
 static status wait_for_scene(painter *p, diagnostic *why)
 {
     const uint64_t wanted = desk_generation(p->desk);
-    const struct timespec until = after(scene_wait_s);
+    const struct timespec until = clock_after(scene_wait_s);
     status code = STATUS_OK;
     pthread_mutex_lock(&p->lock);
-    while (!is_settled(p, wanted) && code == STATUS_OK) {
-        if (p->waiting)
-            code = diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "nothing is traced now: %.200s",
-                            p->waiting);
-        else if (p->stop || pthread_cond_timedwait(&p->news, &p->lock, &until) == ETIMEDOUT)
-            code = diagnose(why, STATUS_INTERRUPTED, "ask again", "the scene is still being loaded");
-    }
+    while (!is_settled(p, wanted) && code == STATUS_OK)
+        code = wait_for_news(p, &until, "nothing is traced now", "the scene is still being loaded", why);
     if (code == STATUS_OK && !p->stage_ready) {
         *why = p->trouble;
         code = p->trouble_code;
@@ -146,21 +138,14 @@ status painter_with_scene(painter *p, status (*look)(void *context, scene *s, di
 
 static bool prepare_locks(painter *p)
 {
-    pthread_condattr_t monotonic;
-    if (pthread_condattr_init(&monotonic) != 0)
-        return false;
-    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
     pthread_rwlockattr_t kind;
-    if (pthread_rwlockattr_init(&kind) != 0) {
-        pthread_condattr_destroy(&monotonic);
+    if (pthread_rwlockattr_init(&kind) != 0)
         return false;
-    }
     /* Those who look, one after another without a gap, shall not keep the painter from going on. */
     pthread_rwlockattr_setkind_np(&kind, PTHREAD_RWLOCK_PREFER_WRITER_NONRECURSIVE_NP);
     const bool good = pthread_mutex_init(&p->lock, NULL) == 0 && pthread_rwlock_init(&p->stage_lock, &kind) == 0 &&
-                      pthread_cond_init(&p->wake, NULL) == 0 && pthread_cond_init(&p->news, &monotonic) == 0;
+                      pthread_cond_init(&p->wake, NULL) == 0 && pthread_cond_init(&p->news, NULL) == 0;
     pthread_rwlockattr_destroy(&kind);
-    pthread_condattr_destroy(&monotonic);
     return good;
 }
 
@@ -228,27 +213,23 @@ static json_t *vector_json(vec3 v)
 static json_t *camera_json(const scene *s)
 {
     const camera_frame f = camera_frame_of(s);
-    const double distance = s->camera.aimed ? vec3_length(vec3_sub(s->camera.target, s->camera.position)) : 0.0;
-    json_t *o = json_pack("{s:o,s:o,s:o,s:o,s:o,s:o}", "eye", vector_json(f.eye), "forward", vector_json(f.forward),
-                          "right", vector_json(f.right), "up", vector_json(f.up), "half_width",
-                          json_of_real(f.half_width), "half_height", json_of_real(f.half_height));
-    if (!o)
-        return NULL;
-    json_object_set_new(o, "target", s->camera.aimed ? vector_json(s->camera.target) : json_null());
-    json_object_set_new(o, "distance", s->camera.aimed ? json_of_real(distance) : json_null());
-    return o;
+    const bool aimed = s->camera.aimed;
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "eye", vector_json(f.eye), "forward",
+                     vector_json(f.forward), "right", vector_json(f.right), "up", vector_json(f.up), "half_width",
+                     json_of_real(f.half_width), "half_height", json_of_real(f.half_height), "target",
+                     aimed ? vector_json(s->camera.target) : json_null(), "distance",
+                     json_of_real(aimed ? vec3_length(vec3_sub(s->camera.target, s->camera.position)) : NAN));
 }
 
 bool painter_tell(painter *p, json_t *state)
 {
     scene *now = desk_take(p->desk, NULL);
     pthread_mutex_lock(&p->lock);
-    int bad = json_object_set_new(state, "trouble",
-                                  p->trouble_code != STATUS_OK ? json_of_diagnostic(&p->trouble) : json_null());
-    bad |= json_object_set_new(state, "waiting", p->waiting ? json_of_text(p->waiting) : json_null());
-    bad |= json_object_set_new(state, "picture", p->newest ? picture_json(p->newest) : json_null());
+    json_t *told = json_pack(
+        "{s:o, s:o, s:o, s:o}", "trouble", p->trouble_code != STATUS_OK ? json_of_diagnostic(&p->trouble) : json_null(),
+        "waiting", p->waiting ? json_of_text(p->waiting) : json_null(), "picture",
+        p->newest ? picture_json(p->newest) : json_null(), "camera", now ? camera_json(now) : NULL);
     pthread_mutex_unlock(&p->lock);
-    bad |= now ? json_object_set_new(state, "camera", camera_json(now)) : 1;
     scene_destroy(now);
-    return !bad;
+    return json_object_update_new(state, told) == 0;
 }

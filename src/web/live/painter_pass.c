@@ -2,7 +2,6 @@
 #include "web/live/painter_private.h"
 #include "measure/clock.h"
 #include "report/report.h"
-#include "web/live/picture.h"
 #include "scene/model/scene.h"
 
 #include <stdlib.h>

@@ -62,6 +62,11 @@ void painter_move_stage(painter *p);
 /* The next pass, and its picture. */
 void painter_paint_pass(painter *p);
 
+/* Frees what a picture that is not shared holds. */
+void picture_drop(const picture *p);
+/* One owner; takes what shown holds. NULL when memory is out: it is then the caller's still. */
+const picture *picture_create(const picture *shown);
+
 /* Pages are to be told the state. */
 void painter_say(painter *p);
 /* The stage's trouble is this; with the lock held, true where pages are to be told; the other one locks and tells. */

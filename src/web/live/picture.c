@@ -1,16 +1,18 @@
 /* Pictures that are shared: see web/live/painter.h. */
-#include "web/live/picture.h"
+#include "web/live/painter_private.h"
 #include "report/json.h"
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
-struct shared_picture {
+typedef struct shared_picture {
     picture shown; /* first: a picture's address is this one's */
     atomic_int owners;
     pthread_mutex_t lock;
     unsigned char *png;
     size_t png_size;
-};
+} shared_picture;
 
 static shared_picture *whole(const picture *p)
 {
@@ -75,8 +77,5 @@ json_t *picture_json(const picture *p)
     int bad = !numbers || json_object_update(o, numbers);
     json_decref(numbers);
     bad |= json_object_set_new(o, "film_hash", p->final ? json_string(hash) : json_null());
-    if (!bad)
-        return o;
-    json_decref(o);
-    return NULL;
+    return json_whole(o, !bad);
 }

@@ -2,7 +2,6 @@
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "report/json.h"
-#include "web/session/desk_bounds.h"
 #include "scene/model/scene.h"
 
 #include <pthread.h>
@@ -341,12 +340,10 @@ static json_t *top_of(const pile *p)
 bool desk_tell(desk *d, json_t *state)
 {
     pthread_mutex_lock(&d->lock);
-    int bad = json_object_set_new(state, "generation", json_integer((json_int_t)d->generation));
-    bad |= json_object_set_new(state, "file", d->now.file ? json_of_text(d->now.file) : json_null());
-    bad |= json_object_set_new(state, "title", json_of_text(d->now.s->title));
-    bad |= json_object_set_new(state, "saved", json_boolean(d->now.number == d->saved_number));
-    bad |= json_object_set_new(state, "undo", top_of(&d->undo));
-    bad |= json_object_set_new(state, "redo", top_of(&d->redo));
+    json_t *told =
+        json_pack("{s:I, s:o, s:o, s:b, s:o, s:o}", "generation", (json_int_t)d->generation, "file",
+                  d->now.file ? json_of_text(d->now.file) : json_null(), "title", json_of_text(d->now.s->title),
+                  "saved", d->now.number == d->saved_number, "undo", top_of(&d->undo), "redo", top_of(&d->redo));
     pthread_mutex_unlock(&d->lock);
-    return !bad;
+    return json_object_update_new(state, told) == 0;
 }

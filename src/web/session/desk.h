@@ -15,6 +15,12 @@ typedef struct desk desk;
 enum { DESK_PIXELS_MAX = 16777216, DESK_TRIANGLES_MAX = 4000000, DESK_UNDO_MAX = 200 };
 #define DESK_WORK_MAX 1e12 /* pixels * (samples or paths) * wavelengths */
 
+/* What may lie on the desk: scenes that are right, name nothing outside of the folder, and ask for a bounded amount of
+ * memory and work. The check looks at what a scene names; the limits hold while it is loaded, for what its files name
+ * in turn and for triangles, which only files themselves know. files: NULL for anywhere. */
+status desk_check(const scene *s, const folder *files, diagnostic *why);
+status desk_limit(scene *s, const folder *files, diagnostic *why);
+
 /* Takes the scene, also after an error. changed is called, with the desk unlocked, after each change. file: its name as
  * pages see it, NULL for a new one. files is borrowed: what a scene names must lie in it, and nothing else is opened
  * when a copy of it is loaded. */

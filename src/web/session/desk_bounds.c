@@ -1,4 +1,3 @@
-#include "web/session/desk_bounds.h"
 #include "web/session/desk.h"
 #include "web/live/passes.h"
 #include "scene/model/check.h"

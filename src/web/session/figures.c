@@ -7,7 +7,7 @@
 
 enum { FIGURE_NAME_MAX = 64, FIGURES_MAX = 200, SVG_MAX = 32 << 20, SCRIPT_MAX = 1 << 20 };
 
-bool figure_name_is_fit(const char *name)
+static bool name_is_fit(const char *name)
 {
     const size_t length = strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789-");
     return length > 0 && length <= FIGURE_NAME_MAX && !name[length];
@@ -35,10 +35,9 @@ static status inner_path(const lab *l, const char *in, const char *name, const c
 status figure_read(const lab *l, const char *name, char **svg, size_t *size, diagnostic *why)
 {
     char *in = figures_folder(l), *path = NULL;
-    status code =
-        figure_name_is_fit(name)
-            ? inner_path(l, in, name, ".svg", &path, why)
-            : diagnose(why, STATUS_BAD_INPUT, "small letters, digits and - name a figure", "this names no figure");
+    status code = name_is_fit(name) ? inner_path(l, in, name, ".svg", &path, why)
+                                    : diagnose(why, STATUS_BAD_INPUT, "small letters, digits and - name a figure",
+                                               "this names no figure");
     if (code == STATUS_OK)
         code = file_read_below(path, folder_real(l->files), SVG_MAX, svg, size, why);
     free(path);
@@ -112,7 +111,7 @@ static json_t *names_in(const char *path, const char *ending, bool (*wanted)(con
         const bool ends = dot && strcmp(dot, ending) == 0;
         if (ends)
             *dot = 0;
-        if (ends && names && json_array_size(names) < FIGURES_MAX && figure_name_is_fit(entries[i]->d_name) &&
+        if (ends && names && json_array_size(names) < FIGURES_MAX && name_is_fit(entries[i]->d_name) &&
             wanted(l, entries[i]->d_name, of))
             json_array_append_new(names, json_string(entries[i]->d_name));
         free(entries[i]);

@@ -8,7 +8,6 @@
 #include "study/study.h"
 #include "web/lab_private.h"
 
-bool figure_name_is_fit(const char *name);
 /* The figure as it was drawn last; STATUS_BAD_INPUT where there is none. */
 status figure_read(const lab *l, const char *name, char **svg, size_t *size, diagnostic *why);
 

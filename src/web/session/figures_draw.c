@@ -18,14 +18,10 @@ enum { PART_MAX = 64 << 20 };
 static status write_summary(const study *s, const char *results, const char *path, diagnostic *why)
 {
     file_writer file;
-    status code = file_writer_open(&file, path, why);
+    const status code = file_writer_open(&file, path, why);
     if (code != STATUS_OK)
         return code;
-    code = study_summary(s, results, file.stream, why);
-    if (code == STATUS_OK)
-        return file_writer_commit(&file, why);
-    file_writer_abandon(&file);
-    return code;
+    return file_writer_end(&file, study_summary(s, results, file.stream, why), why);
 }
 
 static char *part_path(const study *s, const char *results, size_t cell, const char *kind)
@@ -63,10 +59,7 @@ static status string_parts(const study *s, const char *results, const char *kind
             code = append_part(file.stream, part, scene_root(s->base), &headed, why);
         free(part);
     }
-    if (code == STATUS_OK)
-        return file_writer_commit(&file, why);
-    file_writer_abandon(&file);
-    return code;
+    return file_writer_end(&file, code, why);
 }
 
 static status write_tables(const study *s, const char *results, diagnostic *why)

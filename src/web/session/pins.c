@@ -1,17 +1,21 @@
 #include "web/session/pins.h"
-#include <stdatomic.h>
 
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 
+/* Was it measured, or is it known why not? */
+typedef struct measured {
+    bool is;
+    status code;
+    diagnostic why;
+} measured;
+
 struct pin_pair {
     const picture *a, *b;
     atomic_int owners;
-    pthread_mutex_t lock;      /* of what follows: who has it measures, others wait for that */
-    bool has_numbers, has_map; /* or knows why not */
-    status numbers_code, map_code;
-    diagnostic numbers_why, map_why;
+    pthread_mutex_t lock; /* of what follows: who has it measures, others wait for that */
+    measured numbers, map;
     image_comparison found;
     unsigned char *map_bytes;
     size_t map_size;
@@ -126,22 +130,29 @@ bool pin_pair_fits(const pin_pair *pair)
     return pair->a->width == pair->b->width && pair->a->height == pair->b->height;
 }
 
-static void copy_diagnostic(diagnostic *why, const diagnostic *from)
+/* With the lock held. */
+static status measure_once(pin_pair *pair, measured *m, status (*measure)(pin_pair *pair, diagnostic *why),
+                           diagnostic *why)
 {
+    if (!m->is) {
+        m->code = measure(pair, &m->why);
+        m->is = m->code != STATUS_FAILURE; /* memory may be there the next time */
+    }
     if (why)
-        *why = *from;
+        *why = m->why;
+    return m->code;
+}
+
+static status compare(pin_pair *pair, diagnostic *why)
+{
+    return image_compare(pair->a->linear, pair->b->linear, &pair->found, why);
 }
 
 status pin_pair_numbers(pin_pair *pair, image_comparison *out, diagnostic *why)
 {
     pthread_mutex_lock(&pair->lock);
-    if (!pair->has_numbers) {
-        pair->numbers_code = image_compare(pair->a->linear, pair->b->linear, &pair->found, &pair->numbers_why);
-        pair->has_numbers = pair->numbers_code != STATUS_FAILURE; /* memory may be there the next time */
-    }
-    const status code = pair->numbers_code;
+    const status code = measure_once(pair, &pair->numbers, compare, why);
     *out = pair->found;
-    copy_diagnostic(why, &pair->numbers_why);
     pthread_mutex_unlock(&pair->lock);
     return code;
 }
@@ -159,14 +170,9 @@ static status draw_map(pin_pair *pair, diagnostic *why)
 status pin_pair_map(pin_pair *pair, const unsigned char **bytes, size_t *size, diagnostic *why)
 {
     pthread_mutex_lock(&pair->lock);
-    if (!pair->has_map) {
-        pair->map_code = draw_map(pair, &pair->map_why);
-        pair->has_map = pair->map_code != STATUS_FAILURE;
-    }
-    const status code = pair->map_code;
+    const status code = measure_once(pair, &pair->map, draw_map, why);
     *bytes = pair->map_bytes;
     *size = pair->map_size;
-    copy_diagnostic(why, &pair->map_why);
     pthread_mutex_unlock(&pair->lock);
     return code;
 }

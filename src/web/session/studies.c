@@ -197,7 +197,7 @@ status studies_start(studies *st, study *s, diagnostic *why)
 bool studies_runs(studies *st, const char *name)
 {
     pthread_mutex_lock(&st->lock);
-    const bool runs = st->running && strcmp(st->name, name) == 0;
+    const bool runs = st->running && (!name || strcmp(st->name, name) == 0);
     pthread_mutex_unlock(&st->lock);
     return runs;
 }
@@ -215,14 +215,6 @@ status studies_stop(studies *st, const char *name, diagnostic *why)
 const atomic_bool *studies_ending(const studies *st)
 {
     return &st->ending;
-}
-
-bool studies_is_running(studies *st)
-{
-    pthread_mutex_lock(&st->lock);
-    const bool running = st->running;
-    pthread_mutex_unlock(&st->lock);
-    return running;
 }
 
 bool studies_begin_drawing(studies *st)

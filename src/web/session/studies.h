@@ -19,16 +19,13 @@ void studies_destroy(studies *st);
 status studies_start(studies *st, study *s, diagnostic *why);
 /* The rows so far are kept. Returns at once. */
 status studies_stop(studies *st, const char *name, diagnostic *why);
-bool studies_runs(studies *st, const char *name);
+bool studies_runs(studies *st, const char *name); /* NULL: does any? */
 
 /* The state's part, null before the first study; NULL when memory is out. */
 json_t *studies_tell(studies *st);
 
 /* Set when the laboratory ends: for what takes long. And one at a time may draw figures: false where another does. */
 const atomic_bool *studies_ending(const studies *st);
-/* Is one being measured now? */
-bool studies_is_running(studies *st);
-
 bool studies_begin_drawing(studies *st);
 void studies_end_drawing(studies *st);
 

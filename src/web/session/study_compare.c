@@ -2,7 +2,7 @@
 #include "measure/statistics.h"
 #include "report/json.h"
 #include "study/row_files.h"
-#include "study/rows.h"
+#include "study/grid.h"
 #include "web/api/study_json.h"
 #include <math.h>
 #include <stdlib.h>
@@ -47,11 +47,6 @@ static void release(sorted_rows *rows)
     free(rows->values);
 }
 
-static const char *field(const row_ref *ref, const char *name)
-{
-    return csv_field(ref->table, ref->row, csv_column(ref->table, name));
-}
-
 /* As in a summary: without warm-ups and marked rows. */
 static cell_times take_cell(sorted_rows *rows, size_t cell)
 {
@@ -59,9 +54,9 @@ static cell_times take_cell(sorted_rows *rows, size_t cell)
     const char *seen = NULL;
     for (; rows->at < rows->files->row_count && rows->files->rows[rows->at].cell == cell; rows->at++) {
         const row_ref *ref = &rows->files->rows[rows->at];
-        seen = seen ? seen : field(ref, "film_expected");
-        const double wall_s = csv_field_real(ref->table, ref->row, csv_column(ref->table, "wall_s"));
-        if (!ref->warmup && strcmp(field(ref, "marked"), "0") == 0 && !isnan(wall_s))
+        seen = seen ? seen : row_field(ref, "film_expected");
+        const double wall_s = row_field_real(ref, "wall_s");
+        if (!ref->warmup && strcmp(row_field(ref, "marked"), "0") == 0 && !isnan(wall_s))
             rows->values[count++] = wall_s;
     }
     return (cell_times){summarize(rows->values, count), seen};
@@ -82,11 +77,10 @@ static json_t *cell_json(const study *s, size_t cell, const cell_times *a, const
         for (size_t i = 0; i < point->count; i++)
             json_object_set_new(told, point->paths[i], json_of_text(point->values[i]));
     }
-    json_object_set_new(told, "a", times_json(a));
-    json_object_set_new(told, "b", times_json(b));
-    json_object_set_new(told, "ratio", json_of_real(b->wall.median / a->wall.median));
-    json_object_set_new(told, "same_film",
-                        a->film && b->film ? json_boolean(strcmp(a->film, b->film) == 0) : json_null());
+    json_object_update_new(told,
+                           json_pack("{s:o, s:o, s:o, s:o}", "a", times_json(a), "b", times_json(b), "ratio",
+                                     json_of_real(b->wall.median / a->wall.median), "same_film",
+                                     a->film && b->film ? json_boolean(strcmp(a->film, b->film) == 0) : json_null()));
     return told;
 }
 

@@ -2,6 +2,7 @@
  * things move in edit_place.c. */
 #include "scene/model/edit/edit.h"
 #include "scene/model/check.h"
+#include "scene/model/objects.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
@@ -9,14 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Takes one element out of an array, whose name was released. */
-static void close_gap(void *array, size_t *count, size_t size, size_t index)
-{
-    char *gap = (char *)array + index * size;
-    memmove(gap, gap + size, (*count - index - 1) * size);
-    --*count;
-}
 
 static status remove_material(scene *s, size_t index, diagnostic *why)
 {
@@ -36,8 +29,7 @@ static status remove_material(scene *s, size_t index, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "give those another material first, or remove them",
                         "%.80s is the material of %.80s%s", s->materials[index].name, user, others);
     }
-    free(s->materials[index].name);
-    close_gap(s->materials, &s->material_count, sizeof *s->materials, index);
+    object_remove(s, PARAM_MATERIAL, index);
     for (size_t i = 0; i < s->solid_count; i++) {
         s->solids[i].material_index -= s->solids[i].material_index > (int)index;
     }
@@ -52,23 +44,19 @@ static status in_use(const char *what, const char *name, const char *user, diagn
 
 static status remove_mesh(scene *s, size_t index, diagnostic *why)
 {
-    mesh_entry *m = &s->meshes[index];
+    const mesh_entry *m = &s->meshes[index];
     for (size_t i = 0; i < s->solid_count; i++) {
         if (solid_shows(&s->solids[i], m->name)) {
             return in_use("mesh", m->name, s->solids[i].name, why);
         }
     }
-    mesh_entry_unload(m);
-    free(m->name);
-    free(m->path);
-    free(m->script_path);
-    close_gap(s->meshes, &s->mesh_count, sizeof *s->meshes, index);
+    object_remove(s, PARAM_MESH, index);
     return STATUS_OK;
 }
 
 static status remove_texture(scene *s, size_t index, diagnostic *why)
 {
-    texture_entry *t = &s->textures[index];
+    const texture_entry *t = &s->textures[index];
     for (size_t i = 0; i < s->material_count; i++) {
         if (strcmp(s->materials[i].value.texture, t->name) == 0) {
             return in_use("texture", t->name, s->materials[i].name, why);
@@ -79,10 +67,7 @@ static status remove_texture(scene *s, size_t index, diagnostic *why)
             return in_use("texture", t->name, s->solids[i].name, why);
         }
     }
-    texture_entry_unload(t);
-    free(t->name);
-    free(t->path);
-    close_gap(s->textures, &s->texture_count, sizeof *s->textures, index);
+    object_remove(s, PARAM_TEXTURE, index);
     return STATUS_OK;
 }
 
@@ -98,13 +83,7 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
     case PARAM_TEXTURE: return remove_texture(s, at.index, why);
     case PARAM_MATERIAL: return remove_material(s, at.index, why);
     case PARAM_LIGHT:
-        free(s->lights[at.index].name);
-        close_gap(s->lights, &s->light_count, sizeof *s->lights, at.index);
-        return STATUS_OK;
-    case PARAM_SOLID:
-        free(s->solids[at.index].name);
-        close_gap(s->solids, &s->solid_count, sizeof *s->solids, at.index);
-        return STATUS_OK;
+    case PARAM_SOLID: object_remove(s, at.group, at.index); return STATUS_OK;
     case PARAM_RENDER: return param_set_defaults(PARAM_RENDER, &s->render, why);
     case PARAM_CAMERA: s->camera.aimed = 1; return param_set_defaults(PARAM_CAMERA, &s->camera, why);
     case PARAM_BACKGROUND:
@@ -115,23 +94,6 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
     case PARAM_GROUP_COUNT: break;
     }
     return STATUS_FAILURE;
-}
-
-/* Where an object keeps its name; NULL for what has none of its own. */
-static char **name_field(scene *s, const place *at)
-{
-    switch (at->group) {
-    case PARAM_MESH: return &s->meshes[at->index].name;
-    case PARAM_TEXTURE: return &s->textures[at->index].name;
-    case PARAM_LIGHT: return &s->lights[at->index].name;
-    case PARAM_MATERIAL: return &s->materials[at->index].name;
-    case PARAM_SOLID: return &s->solids[at->index].name;
-    case PARAM_RENDER:
-    case PARAM_CAMERA:
-    case PARAM_BACKGROUND:
-    case PARAM_GROUP_COUNT: break;
-    }
-    return NULL;
 }
 
 /* Solids and materials refer to meshes and textures by name. */
@@ -160,8 +122,8 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     if (code != STATUS_OK) {
         return code;
     }
-    char **field = name_field(s, &at), *copy = NULL;
-    if (!field) {
+    char *copy = NULL;
+    if (!group_has_names(at.group)) {
         return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid",
                         "the %s has no name of its own", name);
     }
@@ -177,6 +139,7 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     }
     if (code == STATUS_OK) {
         follow_name(s, &at, name, copy);
+        char **field = object_at(s, at.group, at.index);
         free(*field);
         *field = copy;
     }

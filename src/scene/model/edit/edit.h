@@ -7,10 +7,12 @@
 #define CUVETTE_SCENE_MODEL_EDIT_EDIT_H
 
 #include "geometry/solid.h"
-#include "scene/model/open.h"
+#include "scene/model/params.h"
 
 /* One more object at the end of its section. The name must be right and free (scene/model/check.h), the limits of a
  * scene hold. index may be NULL. */
+/* A group that is not that of solids. */
+status scene_add(scene *s, param_group group, const char *name, size_t *index, diagnostic *why);
 status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why);
 status scene_add_light(scene *s, const char *name, size_t *index, diagnostic *why);
 status scene_add_material(scene *s, const char *name, size_t *index, diagnostic *why);
@@ -25,9 +27,9 @@ status scene_give_material(scene *s, const char *solid_name, const char *materia
  * scene_give_material) and NAME.shape. */
 status scene_put(scene *s, const char *path, const char *value, diagnostic *why);
 
-/* The shape of that name. */
 /* "plane, cylinder or mesh", with the conjunction "or"; returns text. */
 char *scene_shape_words(const char *conjunction, char *text, size_t size);
+/* The shape of that name. */
 status scene_shape_named(const char *word, shape_kind *out, diagnostic *why);
 
 status scene_set_title(scene *s, const char *title, diagnostic *why);

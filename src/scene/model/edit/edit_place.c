@@ -68,17 +68,14 @@ status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
     if (code != STATUS_OK) {
         return code;
     }
-    switch (at.group) {
-    case PARAM_CAMERA: return move_camera(s, delta, why);
-    case PARAM_LIGHT: return move_light(s, at.index, delta, why);
-    case PARAM_SOLID:
+    if (at.group == PARAM_CAMERA) {
+        return move_camera(s, delta, why);
+    }
+    if (at.group == PARAM_LIGHT) {
+        return move_light(s, at.index, delta, why);
+    }
+    if (at.group == PARAM_SOLID) {
         return edit_set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
-    case PARAM_RENDER:
-    case PARAM_BACKGROUND:
-    case PARAM_MESH:
-    case PARAM_TEXTURE:
-    case PARAM_MATERIAL:
-    case PARAM_GROUP_COUNT: break;
     }
     return has_no(name, at.group, "place", "move a solid, a light or the camera", why);
 }
@@ -201,21 +198,14 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
     if (is_many) {
         return scene_turn_parts(s, parts, degrees, why);
     }
-    switch (at.group) {
-    case PARAM_CAMERA: return turn_camera(s, degrees, why);
-    case PARAM_LIGHT:
-        if (s->lights[at.index].kind != LIGHT_POINT) {
-            return turn_light(s, &s->lights[at.index], degrees, why);
-        }
-        break;
-    case PARAM_SOLID:
+    if (at.group == PARAM_CAMERA) {
+        return turn_camera(s, degrees, why);
+    }
+    if (at.group == PARAM_LIGHT && s->lights[at.index].kind != LIGHT_POINT) {
+        return turn_light(s, &s->lights[at.index], degrees, why);
+    }
+    if (at.group == PARAM_SOLID) {
         return edit_set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
-    case PARAM_RENDER:
-    case PARAM_BACKGROUND:
-    case PARAM_MESH:
-    case PARAM_TEXTURE:
-    case PARAM_MATERIAL:
-    case PARAM_GROUP_COUNT: break;
     }
     return has_no(name, at.group, "direction", "turn a solid, a cone of light or the camera", why);
 }

@@ -1,30 +1,16 @@
 /* What a solid is made of and what shape it has: what a file says of it beside the rows of the table. */
+#include "scene/model/suggest.h"
 #include "scene/model/edit/edit.h"
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/check.h"
+#include "scene/model/objects.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
-#include "scene/model/suggest.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <string.h>
-
-static status no_material(const scene *s, const char *name, diagnostic *why)
-{
-    const char *words[SCENE_MATERIALS_MAX];
-    size_t count = 0;
-    for (; count < s->material_count && count < SCENE_MATERIALS_MAX; count++) {
-        words[count] = s->materials[count].name;
-    }
-    const char *nearest = suggest_word(name, words, count);
-    char remedy[SCENE_NAME_MAX + 80] = "add it to materials";
-    if (nearest) {
-        snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
-    }
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "no material '%.80s'", name);
-}
 
 status scene_give_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why)
 {
@@ -42,14 +28,15 @@ status scene_give_material(scene *s, const char *solid_name, const char *materia
         owner->material_index = -1;
         return param_set_defaults(PARAM_MATERIAL, &owner->surface, why);
     }
-    for (size_t i = 0; i < s->material_count; i++) {
-        if (strcmp(s->materials[i].name, material_name) == 0) {
-            owner->material_index = (int)i;
-            owner->surface = s->materials[i].value;
-            return STATUS_OK;
-        }
+    const int material_index = object_find(s, PARAM_MATERIAL, material_name);
+    if (material_index >= 0) {
+        owner->material_index = material_index;
+        owner->surface = s->materials[material_index].value;
+        return STATUS_OK;
     }
-    return no_material(s, material_name, why);
+    char remedy[SCENE_NAME_MAX + 80];
+    return diagnose(why, STATUS_BAD_INPUT, object_remedy(s, PARAM_MATERIAL, material_name, remedy, sizeof remedy),
+                    "no material '%.80s'", material_name);
 }
 
 enum { SHAPES_MAX = 64 };

@@ -26,6 +26,16 @@ inert_remedy inert_set(const char *format, ...)
     return r;
 }
 
+inert_remedy inert_set_on(const solid *one, const char *assignment)
+{
+    return one ? inert_set("%s.%s", one->name, assignment) : (inert_remedy){"add a solid"};
+}
+
+inert_remedy inert_set_clear(const solid *one)
+{
+    return one ? inert_set("%s.transparency=0.9 and %s.ior=1.5", one->name, one->name) : inert_set_on(one, "");
+}
+
 bool inert_same(const inert_case *c, const char *format, ...)
 {
     char assignment[NOTE_TEXT_MAX];

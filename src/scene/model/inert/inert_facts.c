@@ -21,7 +21,7 @@ bool follows_rays(const scene *s)
 
 bool draws_through(const scene *s)
 {
-    return integrator_of(&s->render)->drawn && s->render.lighting == LIGHTING_WHITTED && first_clear(s);
+    return integrator_of(&s->render)->drawn && s->render.lighting == LIGHTING_WHITTED && first_visible(s, is_clear);
 }
 
 /* Shadow rays pass clear solids where shadows are attenuated. */
@@ -37,6 +37,29 @@ bool say_no_tree(const inert_case *c)
     const bool whitted = integrator_of(&c->s->render)->tree;
     return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : "set render.integrator=whitted",
                      "no ray goes on from a surface under this render.%s", whitted ? "lighting" : "integrator");
+}
+
+bool no_lamp(const inert_case *c)
+{
+    return shining_lights(c->s) == 0 && inert_say(c, "no-lamp", lamp_remedy(c->s).text, "no light shines");
+}
+
+bool no_ambient_on_paths(const inert_case *c)
+{
+    return is_path(c->s) &&
+           inert_say(c, "path-ambient", "set render.integrator=whitted", "the path integrator has no ambient light");
+}
+
+bool goes_straight(const inert_case *c)
+{
+    return c->s->render.transmission == TRANSMISSION_SIMPLE &&
+           inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
+}
+
+bool say_not_bent(const inert_case *c)
+{
+    return inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
+                     "no ray goes on through a surface: all that counts is which indices are equal");
 }
 
 bool is_dark_beyond(const scene *s)
@@ -77,26 +100,25 @@ bool may_look_by_face(const scene *s, const solid *owner)
     return m && (m->source == MESH_FILE || m->source == MESH_ARRAYS);
 }
 
-const solid *first_visible(const scene *s)
+const solid *first_visible(const scene *s, solid_is *is)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
-        if (s->solids[i].visible) {
+        if (s->solids[i].visible && (!is || is(s, &s->solids[i]))) {
             return &s->solids[i];
         }
     }
     return NULL;
 }
 
-const solid *first_clear(const scene *s)
+bool is_clear(const scene *s, const solid *one)
 {
-    for (size_t i = 0; i < s->solid_count; i++) {
-        const solid *one = &s->solids[i];
-        const bool by_face = s->render.transmission == TRANSMISSION_SIMPLE && may_look_by_face(s, one);
-        if (one->visible && (one->surface.transparency > 0.0 || by_face)) {
-            return one;
-        }
-    }
-    return NULL;
+    return one->surface.transparency > 0.0 ||
+           (s->render.transmission == TRANSMISSION_SIMPLE && may_look_by_face(s, one));
+}
+
+bool shows_lamps(const scene *s, const solid *one)
+{
+    return is_lit_by_lamps(s, &one->surface) || may_look_by_face(s, one);
 }
 
 static bool has_color(const material *m)

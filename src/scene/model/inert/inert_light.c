@@ -16,15 +16,9 @@ static bool lights_nothing(const inert_case *c, const light *l)
     light white = *l;
     white.color = vec3_make(1.0, 1.0, 1.0), white.intensity = 1.0;
     lit.lights = &white, lit.light_count = 1;
-    for (size_t i = 0; i < s->solid_count; i++) {
-        const solid *one = &s->solids[i];
-        if (one->visible && (is_lit_by_lamps(&lit, &one->surface) || may_look_by_face(s, one))) {
-            return false;
-        }
-    }
-    const solid *first = first_visible(s);
-    const inert_remedy remedy = first ? inert_set("%s.diffuse=0.7", first->name) : (inert_remedy){"add a solid"};
-    return inert_say(c, "lights-nothing", remedy.text, "no visible surface shows a lamp's light");
+    const inert_remedy remedy = inert_set_on(first_visible(s, NULL), "diffuse=0.7");
+    return !first_visible(&lit, shows_lamps) &&
+           inert_say(c, "lights-nothing", remedy.text, "no visible surface shows a lamp's light");
 }
 
 bool inert_light(const inert_case *c)
@@ -72,52 +66,38 @@ static bool kind(const inert_case *c)
                      "horizon is the color, too: a gradient between them is uniform");
 }
 
+static bool has_ambient(const scene *s, const solid *one)
+{
+    return shows_ambient(s, &one->surface) || may_look_by_face(s, one);
+}
+
 static bool ambient(const inert_case *c)
 {
     const scene *s = c->s;
-    if (is_path(s)) {
-        return inert_say(c, "path-ambient", "set render.integrator=whitted",
-                         "the path integrator has no ambient light");
+    if (no_ambient_on_paths(c)) {
+        return true;
     }
     scene bright = *s; /* borrows what s owns */
     bright.background.ambient = vec3_make(1.0, 1.0, 1.0);
-    for (size_t i = 0; i < s->solid_count; i++) {
-        const solid *one = &s->solids[i];
-        if (one->visible && (shows_ambient(&bright, &one->surface) || may_look_by_face(s, one))) {
-            return false;
-        }
-    }
-    const solid *first = first_visible(s);
-    const inert_remedy remedy = first ? inert_set("%s.ambient=0.5", first->name) : (inert_remedy){"add a solid"};
-    return inert_say(c, "no-ambient", remedy.text, "no visible surface has an ambient term");
+    const inert_remedy remedy = inert_set_on(first_visible(s, NULL), "ambient=0.5");
+    return !first_visible(&bright, has_ambient) &&
+           inert_say(c, "no-ambient", remedy.text, "no visible surface has an ambient term");
 }
 
-static bool some_match_surroundings(const scene *s)
+static bool matches_surroundings(const scene *s, const solid *one)
 {
-    for (size_t i = 0; i < s->solid_count; i++) {
-        const solid *one = &s->solids[i];
-        if (one->visible && !material_is_opaque(&one->surface) && material_matches_surroundings(s, &one->surface)) {
-            return true;
-        }
-    }
-    return false;
+    return !material_is_opaque(&one->surface) && material_matches_surroundings(s, &one->surface);
 }
 
 static bool surrounding_index(const inert_case *c)
 {
     const scene *s = c->s;
-    const solid *first = first_visible(s);
-    if (!first_clear(s)) {
-        const inert_remedy remedy = first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name)
-                                          : (inert_remedy){"add a solid"};
-        return inert_say(c, "no-clear", remedy.text, "no visible solid is transparent: no light is bent");
+    if (!first_visible(s, is_clear)) {
+        return inert_say(c, "no-clear", inert_set_clear(first_visible(s, NULL)).text,
+                         "no visible solid is transparent: no light is bent");
     }
-    if (s->render.transmission == TRANSMISSION_SIMPLE) {
-        return inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
-    }
-    return !follows_rays(s) && !draws_through(s) && !s->render.radiance && !some_match_surroundings(s) &&
-           inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
-                     "no ray goes on through a surface: all that counts is which indices are equal");
+    return goes_straight(c) || (!follows_rays(s) && !draws_through(s) && !s->render.radiance &&
+                                !first_visible(s, matches_surroundings) && say_not_bent(c));
 }
 
 static bool surrounding_absorption(const inert_case *c)

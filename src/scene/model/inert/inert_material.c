@@ -45,14 +45,12 @@ static bool not_bent(const inert_case *c)
     if (material_is_mirror(c->m)) {
         return false;
     }
-    if (s->render.transmission == TRANSMISSION_SIMPLE) {
-        return inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
+    if (goes_straight(c)) {
+        return true;
     }
     const bool makes_equal = c->at.group == PARAM_MATERIAL && clear_users(c) > 1;
     return !follows_rays(s) && !draws_through(s) && !s->render.radiance && !material_matches_surroundings(s, c->m) &&
-           !makes_equal &&
-           inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
-                     "no ray goes on through a surface: all that counts is which indices are equal");
+           !makes_equal && say_not_bent(c);
 }
 
 static bool index_rule(const inert_case *c)
@@ -103,19 +101,9 @@ static bool is_black_surface(const inert_case *c)
 
 static bool ambient_rule(const inert_case *c)
 {
-    const scene *s = c->s;
-    if (is_path(s)) {
-        return inert_say(c, "path-ambient", "set render.integrator=whitted",
-                         "the path integrator has no ambient light");
-    }
-    return is_black_surface(c) ||
-           (is_black(s->background.ambient) &&
+    return no_ambient_on_paths(c) || is_black_surface(c) ||
+           (is_black(c->s->background.ambient) &&
             inert_say(c, "dark-ambient", "set background.ambient=1,1,1", "background.ambient is black"));
-}
-
-static bool no_lamp(const inert_case *c)
-{
-    return shining_lights(c->s) == 0 && inert_say(c, "no-lamp", lamp_remedy(c->s).text, "no light shines");
 }
 
 static bool diffuse_rule(const inert_case *c)

@@ -70,24 +70,16 @@ static bool unused_mesh(const inert_case *c)
 static bool at_rest(const inert_case *c, const mesh_entry *m)
 {
     static const char *const always[] = {"time_s", "radius", "position", "dt_s", NULL};
-    for (size_t i = 0; always[i]; i++) {
-        if (strcmp(always[i], c->at.row->name) == 0) {
-            return false;
-        }
-    }
-    return rint(m->time_s / m->slime.dt_s) < 1.0 && inert_say(c, "time-0", inert_set("%s.time_s=0.5", c->name).text,
-                                                              "time_s is %g: the slime has not moved yet", m->time_s);
+    return !is_among(c, always) && rint(m->time_s / m->slime.dt_s) < 1.0 &&
+           inert_say(c, "time-0", inert_set("%s.time_s=0.5", c->name).text, "time_s is %g: the slime has not moved yet",
+                     m->time_s);
 }
 
 static bool no_floor(const inert_case *c, const mesh_entry *m)
 {
     static const char *const of_floor[] = {"ground_y", "restitution", "friction", NULL};
-    for (size_t i = 0; of_floor[i] && !m->slime.ground; i++) {
-        if (strcmp(of_floor[i], c->at.row->name) == 0) {
-            return inert_say(c, "no-floor", inert_set("%s.ground=on", c->name).text, "the slime has no floor");
-        }
-    }
-    return false;
+    return !m->slime.ground && is_among(c, of_floor) &&
+           inert_say(c, "no-floor", inert_set("%s.ground=on", c->name).text, "the slime has no floor");
 }
 
 bool inert_mesh(const inert_case *c)
@@ -126,7 +118,7 @@ static bool unused_texture(const inert_case *c)
         return inert_say(c, "unused-texture", color_remedy(s, &dull->surface, dull->name).text,
                          "no light shows the colour of what has it");
     }
-    const inert_remedy remedy = bare ? inert_set("%s.texture=%s", bare->name, c->name) : (inert_remedy){"add a solid"};
+    const inert_remedy remedy = bare ? inert_set("%s.texture=%s", bare->name, c->name) : inert_set_on(NULL, "");
     return inert_say(c, "unused-texture", remedy.text, "no visible solid has this texture");
 }
 

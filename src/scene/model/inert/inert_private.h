@@ -40,6 +40,9 @@ typedef struct inert_remedy {
     char text[NOTE_TEXT_MAX];
 } inert_remedy;
 inert_remedy inert_set(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* One that sets a parameter of a solid ("diffuse=0.7"), or makes it clear; or adds a solid where there is none. */
+inert_remedy inert_set_on(const solid *one, const char *assignment);
+inert_remedy inert_set_clear(const solid *one);
 
 bool inert_render(const inert_case *c);
 bool inert_background(const inert_case *c);
@@ -74,6 +77,11 @@ bool follows_rays(const scene *s);
 bool draws_through(const scene *s);
 /* Neither rays nor the depth buffer's view nor a lamp's light pass a clear surface. */
 bool nothing_passes(const scene *s);
+/* Answers that several parameters share; false where they are not so. */
+bool no_lamp(const inert_case *c);
+bool no_ambient_on_paths(const inert_case *c);
+bool goes_straight(const inert_case *c);
+bool say_not_bent(const inert_case *c);
 /* The word of render that stops rays at surfaces, and what to set. */
 bool say_no_tree(const inert_case *c);
 /* Light from beyond the depth limit is black. */
@@ -85,9 +93,12 @@ bool only_spheres_shine(const scene *s);
 
 /* The faces may look as the mesh's file says, and not as the solid's surface does. */
 bool may_look_by_face(const scene *s, const solid *owner);
-/* The first visible solid, of those clear if that is wanted; NULL if there is none. */
-const solid *first_visible(const scene *s);
-const solid *first_clear(const scene *s);
+/* The first visible solid that is so (NULL: any); NULL if there is none. */
+typedef bool solid_is(const scene *s, const solid *one);
+const solid *first_visible(const scene *s, solid_is *is);
+bool is_clear(const scene *s, const solid *one);
+/* Light of a lamp shows on it, or may on its faces. */
+bool shows_lamps(const scene *s, const solid *one);
 
 /* Terms of Phong's sum, and what stands for them on random paths, that are not 0. */
 bool shows_ambient(const scene *s, const material *m);

@@ -33,21 +33,14 @@ static bool roulette(const inert_case *c)
                      (long long)c->s->render.depth);
 }
 
-/* The first visible solid whose surface sends rays on, or one that could. */
 static bool nothing_goes_on(const scene *s)
 {
-    for (size_t i = 0; i < s->solid_count; i++) {
-        if (s->solids[i].visible && sends_rays_on(s, &s->solids[i])) {
-            return false;
-        }
-    }
-    return true;
+    return !first_visible(s, sends_rays_on);
 }
 
 static inert_remedy mirror_remedy(const scene *s)
 {
-    const solid *first = first_visible(s);
-    return first ? inert_set("%s.reflectivity=0.5", first->name) : (inert_remedy){"add a solid"};
+    return inert_set_on(first_visible(s, NULL), "reflectivity=0.5");
 }
 
 /* No ray has children. */
@@ -93,7 +86,7 @@ static bool lighting(const inert_case *c)
     }
     scene shiny = *s; /* borrows what s owns */
     shiny.render.lighting = LIGHTING_PHONG;
-    bool highlight = integrator_of(&s->render)->drawn && first_clear(s);
+    bool highlight = integrator_of(&s->render)->drawn && first_visible(s, is_clear);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         highlight |= one->visible && (shows_specular(&shiny, &one->surface) || may_look_by_face(s, one));
@@ -112,17 +105,17 @@ static bool lighting(const inert_case *c)
 /* A plane alone shows little of what a clear solid does. */
 static inert_remedy clear_remedy(const scene *s)
 {
-    const solid *first = first_visible(s);
+    const solid *first = first_visible(s, NULL);
     for (size_t i = 0; i < s->solid_count; i++) {
         first = first && shape_of(&first->shape)->unbounded && s->solids[i].visible ? &s->solids[i] : first;
     }
-    return first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name)
-                 : (inert_remedy){"add a solid"};
+    return inert_set_clear(first);
 }
 
 static bool no_clear(const inert_case *c)
 {
-    return !first_clear(c->s) && inert_say(c, "no-clear", clear_remedy(c->s).text, "no visible solid is transparent");
+    return !first_visible(c->s, is_clear) &&
+           inert_say(c, "no-clear", clear_remedy(c->s).text, "no visible solid is transparent");
 }
 
 /* Of two words the film with the other one tells. */
@@ -135,10 +128,8 @@ static bool same_but_for(const inert_case *c, const char *one, const char *other
 
 static bool transmission(const inert_case *c)
 {
-    for (size_t i = 0; i < c->s->solid_count; i++) {
-        if (c->s->solids[i].visible && may_look_by_face(c->s, &c->s->solids[i])) {
-            return false; /* a file's faces may be clear where light goes straight on */
-        }
+    if (first_visible(c->s, may_look_by_face)) {
+        return false; /* a file's faces may be clear where light goes straight on */
     }
     return no_clear(c) || same_but_for(c, "refract", "simple", c->s->render.transmission != TRANSMISSION_SIMPLE);
 }
@@ -159,18 +150,9 @@ static bool polarisation(const inert_case *c)
 static bool nothing_lit(const inert_case *c)
 {
     const scene *s = c->s;
-    if (shining_lights(s) == 0) {
-        return inert_say(c, "no-lamp", lamp_remedy(s).text, "no light shines");
-    }
-    for (size_t i = 0; i < s->solid_count; i++) {
-        const solid *one = &s->solids[i];
-        if (one->visible && (is_lit_by_lamps(s, &one->surface) || may_look_by_face(s, one))) {
-            return false;
-        }
-    }
-    const solid *first = first_visible(s);
-    const inert_remedy remedy = first ? inert_set("%s.diffuse=0.7", first->name) : (inert_remedy){"add a solid"};
-    return inert_say(c, "nothing-lit", remedy.text, "no lamp's light shows on anything visible");
+    return no_lamp(c) || (!first_visible(s, shows_lamps) &&
+                          inert_say(c, "nothing-lit", inert_set_on(first_visible(s, NULL), "diffuse=0.7").text,
+                                    "no lamp's light shows on anything visible"));
 }
 
 static bool shadows(const inert_case *c)
@@ -204,6 +186,14 @@ static bool is_dispersive(const index_law *law)
     return law->law.kind != DISPERSION_CONSTANT || law->relative_to_air;
 }
 
+static bool has_dispersion(const scene *s, const solid *one)
+{
+    index_law law;
+    (void)s;
+    return one->surface.transparency > 0.0 && material_index_law(&one->surface, "", &law, NULL) == STATUS_OK &&
+           is_dispersive(&law);
+}
+
 static bool lambda(const inert_case *c)
 {
     const scene *s = c->s;
@@ -211,43 +201,31 @@ static bool lambda(const inert_case *c)
         return inert_say(c, "rgb-only", "set render.spectrum=rgb",
                          "the spectral film takes each wavelength's own index");
     }
-    if (no_clear(c)) {
-        return true;
-    }
-    index_law law = surrounding_index_law(&s->background);
-    bool disperses = is_dispersive(&law);
-    for (size_t i = 0; i < s->solid_count; i++) {
-        const solid *one = &s->solids[i];
-        const bool clear = one->visible && one->surface.transparency > 0.0;
-        disperses |= clear && material_index_law(&one->surface, "", &law, NULL) == STATUS_OK && is_dispersive(&law);
-    }
-    return !disperses && inert_say(c, "no-dispersion", inert_set("%s.medium=bk7", first_clear(s)->name).text,
-                                   "no clear medium's index depends on the wavelength");
+    const index_law around = surrounding_index_law(&s->background);
+    return no_clear(c) || (!is_dispersive(&around) && !first_visible(s, has_dispersion) &&
+                           inert_say(c, "no-dispersion", inert_set_on(first_visible(s, is_clear), "medium=bk7").text,
+                                     "no clear medium's index depends on the wavelength"));
+}
+
+static bool absorbs(const scene *s, const solid *one)
+{
+    (void)s;
+    return !material_is_opaque(&one->surface) && material_absorbs(&one->surface);
 }
 
 static bool unit(const inert_case *c)
 {
     const scene *s = c->s;
-    bool absorbs = surroundings_absorb(&s->background);
-    for (size_t i = 0; i < s->solid_count; i++) {
-        const solid *one = &s->solids[i];
-        absorbs |= one->visible && !material_is_opaque(&one->surface) && material_absorbs(&one->surface);
-    }
-    const solid *clear = first_clear(s);
+    const solid *clear = first_visible(s, is_clear);
     const inert_remedy remedy = clear ? inert_set("%s.absorb_per_m=0.2,0.4,0.8", clear->name)
                                       : inert_set("background.absorb_per_m=0.01,0.02,0.04");
-    return !absorbs && inert_say(c, "no-absorption", remedy.text, "nothing that light passes absorbs");
+    return !surroundings_absorb(&s->background) && !first_visible(s, absorbs) &&
+           inert_say(c, "no-absorption", remedy.text, "nothing that light passes absorbs");
 }
 
-static bool shows_texture(const scene *s)
+static bool shows_texture(const scene *s, const solid *one)
 {
-    for (size_t i = 0; i < s->solid_count; i++) {
-        const solid *one = &s->solids[i];
-        if (one->visible && ((one->surface.texture[0] && shows_color(s, &one->surface)) || may_look_by_face(s, one))) {
-            return true;
-        }
-    }
-    return false;
+    return (one->surface.texture[0] && shows_color(s, &one->surface)) || may_look_by_face(s, one);
 }
 
 static bool texturing(const inert_case *c)
@@ -256,11 +234,12 @@ static bool texturing(const inert_case *c)
         return inert_say(c, "zbuffer-only", "set render.integrator=zbuffer",
                          "rays always meet a texture in perspective");
     }
-    const solid *first = first_visible(c->s);
+    const solid *first = first_visible(c->s, NULL);
     const inert_remedy remedy = first && c->s->texture_count > 0
                                     ? inert_set("%s.texture=%s", first->name, c->s->textures[0].name)
                                     : (inert_remedy){"give a visible solid a texture"};
-    return !shows_texture(c->s) && inert_say(c, "untextured", remedy.text, "nothing visible has a texture");
+    return !first_visible(c->s, shows_texture) &&
+           inert_say(c, "untextured", remedy.text, "nothing visible has a texture");
 }
 
 bool inert_render(const inert_case *c)

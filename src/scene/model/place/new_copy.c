@@ -1,13 +1,12 @@
 /* A second object like another. */
 #include "scene/model/place/new_objects.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/looks.h"
+#include "scene/model/objects.h"
 #include "scene/model/params_path.h"
 #include "scene/model/place/spot.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static vec3 rounded(vec3 v, double size)
@@ -70,6 +69,17 @@ static vec3 step_beside(const scene *s, const spot *where, const solid *of, vec3
     return best;
 }
 
+static status copy_object(scene *s, param_group group, size_t of, const char *name, diagnostic *why)
+{
+    size_t index;
+    const status code = group == PARAM_SOLID ? scene_add_solid(s, name, s->solids[of].shape.kind, &index, why)
+                                             : scene_add(s, group, name, &index, why);
+    if (code != STATUS_OK || object_assign(s, group, index, of))
+        return code;
+    object_remove(s, group, index);
+    return out_of_memory(why);
+}
+
 /* A plane's stands behind its surface, where it changes nothing before it is moved. */
 static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
 {
@@ -79,81 +89,17 @@ static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
     double radius;
     if (spot_ball(s, &s->solids[of], &centre, &radius))
         step = step_beside(s, &where, &s->solids[of], centre, radius);
-    size_t index;
-    const status code = scene_add_solid(s, name, s->solids[of].shape.kind, &index, why);
-    if (code != STATUS_OK)
-        return code;
-    char *own = s->solids[index].name;
-    s->solids[index] = s->solids[of];
-    s->solids[index].name = own;
-    return scene_move(s, name, step, why);
+    const status code = copy_object(s, PARAM_SOLID, of, name, why);
+    return code == STATUS_OK ? scene_move(s, name, step, why) : code;
 }
 
 static status copy_light(scene *s, size_t of, const char *name, diagnostic *why)
 {
-    size_t index;
-    const status code = scene_add_light(s, name, &index, why);
+    const status code = copy_object(s, PARAM_LIGHT, of, name, why);
     if (code != STATUS_OK)
         return code;
-    char *own = s->lights[index].name;
-    s->lights[index] = s->lights[of];
-    s->lights[index].name = own;
     const spot where = spot_of(s);
     return scene_move(s, name, rounded(vec3_scale(where.right, where.size), where.size), why);
-}
-
-static status copy_material(scene *s, size_t of, const char *name, diagnostic *why)
-{
-    size_t index;
-    const status code = scene_add_material(s, name, &index, why);
-    if (code == STATUS_OK)
-        s->materials[index].value = s->materials[of].value;
-    return code;
-}
-
-/* Loaded anew where it was not computed from the same parameters. */
-static status copy_mesh(scene *s, size_t of, const char *name, diagnostic *why)
-{
-    char *path = strdup(s->meshes[of].path), *script = strdup(s->meshes[of].script_path);
-    size_t index;
-    const status code = path && script ? scene_add_mesh(s, name, &index, why) : out_of_memory(why);
-    if (code != STATUS_OK) {
-        free(path);
-        free(script);
-        return code;
-    }
-    mesh_entry *new = &s->meshes[index];
-    char *own = new->name;
-    free(new->path);
-    free(new->script_path);
-    *new = s->meshes[of];
-    new->name = own;
-    new->path = path;
-    new->script_path = script;
-    if (new->data)
-        mesh_retain(new->data);
-    looks_retain(new->looks);
-    return STATUS_OK;
-}
-
-static status copy_texture(scene *s, size_t of, const char *name, diagnostic *why)
-{
-    char *path = strdup(s->textures[of].path);
-    size_t index;
-    const status code = path ? scene_add_texture(s, name, &index, why) : out_of_memory(why);
-    if (code != STATUS_OK) {
-        free(path);
-        return code;
-    }
-    texture_entry *new = &s->textures[index];
-    char *own = new->name;
-    free(new->path);
-    *new = s->textures[of];
-    new->name = own;
-    new->path = path;
-    if (new->data)
-        texture_retain(new->data);
-    return STATUS_OK;
 }
 
 status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
@@ -171,9 +117,9 @@ status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
     switch (at.group) {
     case PARAM_SOLID: return copy_solid(s, at.index, name, why);
     case PARAM_LIGHT: return copy_light(s, at.index, name, why);
-    case PARAM_MATERIAL: return copy_material(s, at.index, name, why);
-    case PARAM_MESH: return copy_mesh(s, at.index, name, why);
-    case PARAM_TEXTURE: return copy_texture(s, at.index, name, why);
+    case PARAM_MATERIAL:
+    case PARAM_MESH:
+    case PARAM_TEXTURE: return copy_object(s, at.group, at.index, name, why);
     case PARAM_RENDER:
     case PARAM_CAMERA:
     case PARAM_BACKGROUND:

@@ -111,7 +111,8 @@ spot spot_of(const scene *s)
     return where;
 }
 
-double spot_overlap(const scene *s, vec3 centre, double radius)
+/* How deep a ball would lie in the balls of all that can be seen, together; 0 where it is free. */
+static double overlap(const scene *s, vec3 centre, double radius)
 {
     double sum = 0.0;
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -155,7 +156,7 @@ vec3 spot_free(const scene *s, const spot *where, double size)
         if (!spot_ground(s, at.x, at.z, &at.y) || !is_in_view(&view, vec3_add(at, half_up)))
             at.y = in_the_air;
         const vec3 centre = vec3_add(at, half_up);
-        const double deep = spot_overlap(s, centre, 0.5 * size) + (is_in_view(&view, centre) ? 0.0 : size);
+        const double deep = overlap(s, centre, 0.5 * size) + (is_in_view(&view, centre) ? 0.0 : size);
         if (deep < least) {
             least = deep;
             best = at;

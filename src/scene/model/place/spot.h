@@ -23,9 +23,6 @@ vec3 spot_free(const scene *s, const spot *where, double size);
 /* The height of the highest plane that lies under the eye like a floor, at x and z; false for none. */
 bool spot_ground(const scene *s, double x, double z, double *y);
 
-/* How deep a ball would lie in the balls of all that can be seen, together; 0 where it is free. */
-double spot_overlap(const scene *s, vec3 centre, double radius);
-
 /* A ball that holds the solid, as far as is known; false for a plane. */
 bool spot_ball(const scene *s, const solid *of, vec3 *centre, double *radius);
 

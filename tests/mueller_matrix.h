@@ -1,6 +1,14 @@
+/* Forwards: whole Mueller matrices, which a tracer that works backwards from the eye does without. */
+#ifndef CUVETTE_TESTS_MUELLER_MATRIX_H
+#define CUVETTE_TESTS_MUELLER_MATRIX_H
+
 #include "optics/mueller.h"
 
-mueller mueller_from(sp_response r)
+typedef struct mueller {
+    double m[4][4];
+} mueller; /* row: light that leaves; column: light that arrives */
+
+static inline mueller mueller_from(sp_response r)
 {
     mueller m = {{{r.mean, r.half, 0.0, 0.0},
                   {r.half, r.mean, 0.0, 0.0},
@@ -9,23 +17,27 @@ mueller mueller_from(sp_response r)
     return m;
 }
 
-mueller mueller_reflect(double cos_i, double n_from, double n_to)
+/* Of light that arrives at cos_i in n_from, from its s/p frame into that of the light that leaves. m[0][0] is the share
+ * of unpolarised light. */
+static inline mueller mueller_reflect(double cos_i, double n_from, double n_to)
 {
     return mueller_from(sp_reflect(fresnel_dielectric(cos_i, n_from, n_to), cos_i));
 }
 
-mueller mueller_refract(double cos_i, double n_from, double n_to)
+static inline mueller mueller_refract(double cos_i, double n_from, double n_to)
 {
     return mueller_from(sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
 }
 
-mueller mueller_rotation(double cos_2a, double sin_2a)
+/* Into a frame turned by a. */
+static inline mueller mueller_rotation(double cos_2a, double sin_2a)
 {
     mueller m = {{{1.0, 0.0, 0.0, 0.0}, {0.0, cos_2a, sin_2a, 0.0}, {0.0, -sin_2a, cos_2a, 0.0}, {0.0, 0.0, 0.0, 1.0}}};
     return m;
 }
 
-mueller mueller_multiply(mueller a, mueller b)
+/* a b: light meets b first. */
+static inline mueller mueller_multiply(mueller a, mueller b)
 {
     mueller product;
     for (int row = 0; row < 4; row++)
@@ -38,7 +50,7 @@ mueller mueller_multiply(mueller a, mueller b)
     return product;
 }
 
-stokes mueller_apply(mueller m, stokes s)
+static inline stokes mueller_apply(mueller m, stokes s)
 {
     const double in[4] = {s.i, s.q, s.u, s.v};
     double out[4] = {0.0, 0.0, 0.0, 0.0};
@@ -48,3 +60,5 @@ stokes mueller_apply(mueller m, stokes s)
     stokes result = {out[0], out[1], out[2], out[3]};
     return result;
 }
+
+#endif

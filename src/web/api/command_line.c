@@ -1,7 +1,8 @@
-#include "web/session/command_line.h"
+#include "web/api/api.h"
 #include "base/text.h"
 #include "base/text_writer.h"
 #include "scene/model/params.h"
+#include "scene/model/params_path.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
 
@@ -28,29 +29,19 @@ static const char *material_of(const scene *s, const solid *one)
     return one->material_index >= 0 ? s->materials[one->material_index].name : "";
 }
 
-static bool same_solids(const scene *a, const scene *b)
-{
-    bool same = a->solid_count == b->solid_count;
-    for (size_t i = 0; i < a->solid_count && same; i++)
-        same = strcmp(a->solids[i].name, b->solids[i].name) == 0 &&
-               a->solids[i].shape.kind == b->solids[i].shape.kind &&
-               strcmp(material_of(a, &a->solids[i]), material_of(b, &b->solids[i])) == 0;
-    return same;
-}
-
 /* Have they the same objects, so that parameters alone tell them apart? */
 static bool same_objects(const scene *a, const scene *b)
 {
-    bool same = same_solids(a, b) && a->light_count == b->light_count && a->material_count == b->material_count &&
-                a->mesh_count == b->mesh_count && a->texture_count == b->texture_count;
-    for (size_t i = 0; i < a->light_count && same; i++)
-        same = strcmp(a->lights[i].name, b->lights[i].name) == 0;
-    for (size_t i = 0; i < a->material_count && same; i++)
-        same = strcmp(a->materials[i].name, b->materials[i].name) == 0;
-    for (size_t i = 0; i < a->mesh_count && same; i++)
-        same = strcmp(a->meshes[i].name, b->meshes[i].name) == 0;
-    for (size_t i = 0; i < a->texture_count && same; i++)
-        same = strcmp(a->textures[i].name, b->textures[i].name) == 0;
+    static const param_group groups[] = {PARAM_SOLID, PARAM_LIGHT, PARAM_MATERIAL, PARAM_MESH, PARAM_TEXTURE};
+    bool same = true;
+    for (size_t g = 0; g < sizeof groups / sizeof *groups && same; g++) {
+        same = place_group_size(a, groups[g]) == place_group_size(b, groups[g]);
+        for (size_t i = 0; i < place_group_size(a, groups[g]) && same; i++)
+            same = strcmp(place_group_name(a, groups[g], i), place_group_name(b, groups[g], i)) == 0;
+    }
+    for (size_t i = 0; i < a->solid_count && same; i++)
+        same = a->solids[i].shape.kind == b->solids[i].shape.kind &&
+               strcmp(material_of(a, &a->solids[i]), material_of(b, &b->solids[i])) == 0;
     return same;
 }
 

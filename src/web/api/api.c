@@ -1,0 +1,145 @@
+#include "web/api/api.h"
+#include "report/json.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+status api_tell(call *c, json_t *told)
+{
+    c->told = told;
+    return STATUS_OK;
+}
+
+status api_send(call *c, const char *type, void *bytes, size_t size)
+{
+    http_reply_bytes(c->reply, 200, type, bytes, size);
+    c->sent = true;
+    return STATUS_OK;
+}
+
+status api_refuse(call *c, int code, const char *what, const char *remedy)
+{
+    c->refused = code;
+    return diagnose(&c->why, STATUS_BAD_INPUT, remedy, "%s", what);
+}
+
+status api_changed(call *c, status code, uint64_t generation)
+{
+    return code == STATUS_OK ? api_tell(c, json_pack("{s:I}", "generation", (json_int_t)generation)) : code;
+}
+
+json_t *api_note(const char *place, const char *text, const char *remedy)
+{
+    return json_pack("{s:o, s:o, s:o}", "place", json_of_text(place), "text", json_of_text(text), "remedy",
+                     json_of_text(remedy));
+}
+
+/* --- bodies --- */
+
+/* Reads value, if it is of that kind. */
+typedef bool reader(const json_t *given, void *value);
+
+static bool take(call *c, const char *key, bool needed, const char *form, reader *read, void *value)
+{
+    const json_t *given = json_object_get(c->body, key);
+    const bool missing = !given || json_is_null(given);
+    if (missing ? !needed : read(given, value))
+        return true;
+    diagnose(&c->why, STATUS_BAD_INPUT, form, "'%s' is not given as %s", key, form);
+    return false;
+}
+
+static bool read_number(const json_t *given, void *value)
+{
+    if (!json_is_number(given) || !isfinite(json_number_value(given)))
+        return false;
+    *(double *)value = json_number_value(given);
+    return true;
+}
+
+static bool read_vector(const json_t *given, void *value)
+{
+    bool good = json_array_size(given) == 3;
+    for (size_t i = 0; i < 3 && good; i++)
+        good = read_number(json_array_get(given, i), (double *)value + i);
+    return good;
+}
+
+static bool read_text(const json_t *given, void *value)
+{
+    if (!json_is_string(given) || strlen(json_string_value(given)) != json_string_length(given))
+        return false;
+    *(const char **)value = json_string_value(given);
+    return true;
+}
+
+static bool read_short(const json_t *given, void *value)
+{
+    enum { GESTURE_MAX = 64 };
+    return json_string_length(given) <= GESTURE_MAX && read_text(given, value);
+}
+
+static bool read_flag(const json_t *given, void *value)
+{
+    *(bool *)value = json_is_true(given);
+    return json_is_boolean(given);
+}
+
+bool api_take_number(call *c, const char *key, bool needed, double *value)
+{
+    return take(c, key, needed, "a number", read_number, value);
+}
+
+bool api_take_vector(call *c, const char *key, bool needed, double value[3])
+{
+    return take(c, key, needed, "a list of three numbers", read_vector, value);
+}
+
+bool api_take_text(call *c, const char *key, bool needed, const char **value)
+{
+    return take(c, key, needed, "a text", read_text, value);
+}
+
+bool api_take_flag(call *c, const char *key, bool *value)
+{
+    return take(c, key, false, "true or false", read_flag, value);
+}
+
+bool api_take_gesture(call *c, const char **gesture)
+{
+    *gesture = NULL;
+    return api_take_text(c, "gesture", false, gesture) &&
+           take(c, "gesture", false, "a text of at most 64 characters", read_short, gesture);
+}
+
+/* --- queries, and what is there --- */
+
+bool api_asks_for(const call *c, const char *key)
+{
+    const char *value = http_query_value(c->request, key);
+    return value && strcmp(value, "0") != 0;
+}
+
+bool api_take_bits(const call *c, int *bits)
+{
+    const char *given = http_query_value(c->request, "bits");
+    *bits = given ? atoi(given) : 8;
+    return !given || strcmp(given, "8") == 0 || strcmp(given, "16") == 0;
+}
+
+status api_wait_for_final(call *c, const picture **out)
+{
+    const double most_s = 120.0;
+    return painter_take_final(c->l->painter, most_s, out, &c->why);
+}
+
+char *api_desk_file(const call *c)
+{
+    json_t *told = json_object();
+    const bool known = told && desk_tell(c->l->desk, told);
+    const char *file = json_string_value(json_object_get(told, "file"));
+    char *copy = known ? strdup(file ? file : "") : NULL;
+    json_decref(told);
+    return copy;
+}

@@ -1,0 +1,39 @@
+/* What a texture holds, and one from a file. */
+#ifndef CUVETTE_TESTS_TEXTURE_FIXTURE_H
+#define CUVETTE_TESTS_TEXTURE_FIXTURE_H
+
+#include "image/texture_parts.h"
+
+static inline status texture_read(const char *path, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
+                                  texture_filter filter, texture **out, diagnostic *why)
+{
+    return texture_read_below(path, NULL, space, wrap_u, wrap_v, filter, out, why);
+}
+
+/* The pyramid: number of levels (1 unless TEXTURE_TRILINEAR), size of one (level k has floor(w / 2^k) x floor(h / 2^k)
+ * texels, at least 1 x 1), and one texel, x from the left, y from below. Each level's mean is the picture's. */
+static inline int texture_levels(const texture *t)
+{
+    return t->levels;
+}
+
+static inline void texture_size(const texture *t, int level, int *width, int *height)
+{
+    *width = t->level[level].width;
+    *height = t->level[level].height;
+}
+
+static inline vec3 texture_texel(const texture *t, int level, int x, int y)
+{
+    const texture_level *from = &t->level[level];
+    const texel *c = &from->texels[(size_t)y * (size_t)from->width + (size_t)x];
+    return vec3_make((double)c->r, (double)c->g, (double)c->b);
+}
+
+/* Memory that it takes. */
+static inline size_t texture_bytes(const texture *t)
+{
+    return sizeof *t + t->block_bytes;
+}
+
+#endif
