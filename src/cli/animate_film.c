@@ -1,6 +1,5 @@
 #include "cli/animate.h"
 #include "base/file.h"
-#include "cli/animate_rows.h"
 #include "cli/terminal.h"
 #include "image/y4m.h"
 #include "render/core/record.h"

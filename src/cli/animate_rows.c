@@ -1,4 +1,4 @@
-#include "cli/animate_rows.h"
+#include "cli/animate.h"
 #include "base/number.h"
 #include "study/csv.h"
 #include "study/rows.h"

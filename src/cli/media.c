@@ -50,12 +50,9 @@ static status find(const media_request *request, const medium **out, diagnostic 
         return out_of_memory(why);
     for (size_t i = 0; i < media_count(); i++)
         names[i] = media_at(i)->name;
-    *out = media_find(request->name);
-    status result = STATUS_OK;
-    if (!*out) {
-        result = options_unknown_word("medium", request->name, names, media_count(), why);
-        diagnostic_locate(why, "media", 0, 0);
-    }
+    int which = 0;
+    const status result = options_choice("media", "medium", request->name, names, media_count(), &which, why);
+    *out = media_at((size_t)which);
     free(names);
     return result;
 }

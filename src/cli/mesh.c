@@ -17,7 +17,7 @@ typedef struct mesh_request {
     scene *around; /* holds the one mesh */
     const char *file;
     bool generate;
-    mesh_format format; /* MESH_FORMAT_COUNT: describe it */
+    int format;         /* mesh_format; MESH_FORMAT_COUNT: describe it */
     const char *output; /* NULL: standard output */
     bool json;
 } mesh_request;
@@ -27,15 +27,9 @@ static status take_format(const command_option *o, void *into, const char *value
     mesh_request *request = into;
     (void)o;
     const char *names[MESH_FORMAT_COUNT];
-    for (int format = 0; format < MESH_FORMAT_COUNT; format++) {
+    for (int format = 0; format < MESH_FORMAT_COUNT; format++)
         names[format] = mesh_format_name((mesh_format)format);
-        if (strcmp(value, names[format]) == 0) {
-            request->format = (mesh_format)format;
-            return STATUS_OK;
-        }
-    }
-    diagnostic_locate(why, "--format", 0, 0);
-    return options_unknown_word("format", value, names, MESH_FORMAT_COUNT, why);
+    return options_choice("--format", "format", value, names, MESH_FORMAT_COUNT, &request->format, why);
 }
 
 static status take_parameter(const command_option *o, void *into, const char *value, diagnostic *why)
@@ -111,7 +105,7 @@ static status choose_format(mesh_request *request, diagnostic *why)
         return STATUS_OK;
     for (int format = 0; format < MESH_FORMAT_COUNT; format++)
         if (strcmp(dot + 1, mesh_format_name((mesh_format)format)) == 0) {
-            request->format = (mesh_format)format;
+            request->format = format;
             return STATUS_OK;
         }
     if (strcmp(dot, ".txt") == 0)
@@ -139,7 +133,7 @@ static status write_to(const void *content, FILE *stream, diagnostic *why)
     const mesh_request *request = content;
     const mesh *m = request->around->meshes[0].data;
     if (request->format != MESH_FORMAT_COUNT)
-        mesh_write(m, request->format, stream);
+        mesh_write(m, (mesh_format)request->format, stream);
     else if (request->json)
         return json_put(stream, mesh_rows_json(m), why);
     else

@@ -277,3 +277,15 @@ status options_unknown_word(const char *what, const char *wrong, const char *con
     }
     return diagnose(why, STATUS_BAD_INPUT, remedy, "there is no %s '%.64s'", what, wrong);
 }
+
+status options_choice(const char *where, const char *what, const char *value, const char *const *words, size_t count,
+                      int *which, diagnostic *why)
+{
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(value, words[i]) == 0) {
+            *which = (int)i;
+            return STATUS_OK;
+        }
+    diagnostic_locate(why, where, 0, 0);
+    return options_unknown_word(what, value, words, count, why);
+}

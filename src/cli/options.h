@@ -57,6 +57,11 @@ status options_integer(const char *option, const char *value, int64_t lowest, in
 status options_reals(const char *option, const char *value, const char *form, size_t count, double *out,
                      diagnostic *why);
 
+/* Which of the words value is, by its number; else *which stays, and the mistake is as of options_unknown_word, located
+ * at a command or an option. */
+status options_choice(const char *where, const char *what, const char *value, const char *const *words, size_t count,
+                      int *which, diagnostic *why);
+
 /* "there is no WHAT 'wrong'", with the nearest of words as the remedy, or else all of them. */
 status options_unknown_word(const char *what, const char *wrong, const char *const *words, size_t count,
                             diagnostic *why);

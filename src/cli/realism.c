@@ -19,15 +19,9 @@ static status take_curve(const command_option *o, void *into, const char *value,
     realism_request *request = into;
     const char *names[REALISM_CURVE_COUNT];
     (void)o;
-    for (int i = 0; i < REALISM_CURVE_COUNT; i++) {
+    for (int i = 0; i < REALISM_CURVE_COUNT; i++)
         names[i] = realism_curve_name((realism_curve)i);
-        if (strcmp(value, names[i]) == 0) {
-            request->curve = i;
-            return STATUS_OK;
-        }
-    }
-    diagnostic_locate(why, "--curve", 0, 0);
-    return options_unknown_word("curve", value, names, REALISM_CURVE_COUNT, why);
+    return options_choice("--curve", "curve", value, names, REALISM_CURVE_COUNT, &request->curve, why);
 }
 
 static const command_option options[] = {

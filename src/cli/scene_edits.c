@@ -119,10 +119,10 @@ static status add_object(scene *s, const char *kind, const char *name, const cha
         return diagnose(why, STATUS_BAD_INPUT, "leave it out", "a %.20s has no shape", kind);
     status (*const adders[])(scene *, const char *, size_t *, diagnostic *) = {
         NULL, scene_add_light, scene_add_material, scene_add_mesh, scene_add_texture};
-    for (size_t i = 1; i < sizeof kinds / sizeof *kinds; i++)
-        if (strcmp(kind, kinds[i]) == 0)
-            return adders[i](s, name, NULL, why);
-    return options_unknown_word("kind of object", kind, kinds, sizeof kinds / sizeof *kinds, why);
+    int which = 0;
+    const status result =
+        options_choice(NULL, "kind of object", kind, kinds, sizeof kinds / sizeof *kinds, &which, why);
+    return result == STATUS_OK ? adders[which](s, name, NULL, why) : result;
 }
 
 /* Cuts "solid:rod=box,size=1,2,3" into its parts. */

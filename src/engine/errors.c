@@ -51,15 +51,15 @@ const char engine_list_end = 0;
 cuvette_status engine_need(const char *names, const void *const *arguments, cuvette_diagnostic *why)
 {
     char name[32];
-    for (; *arguments != &engine_list_end; arguments++) {
-        const size_t length = strcspn(names, ", ");
-        if (!*arguments) {
-            snprintf(name, sizeof name, "%.*s", (int)length, names);
-            return engine_missing(strcmp(name, "s") == 0 ? "scene" : name, why);
-        }
-        names += length + strspn(names + length, ", ");
-    }
-    return CUVETTE_OK;
+    size_t missing = 0;
+    while (arguments[missing] && arguments[missing] != &engine_list_end)
+        missing++;
+    if (arguments[missing])
+        return CUVETTE_OK;
+    for (; missing > 0; missing--)
+        names += strcspn(names, ",") + strlen(", ");
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(names, ","), names);
+    return engine_missing(strcmp(name, "s") == 0 ? "scene" : name, why);
 }
 
 cuvette_status engine_give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why)

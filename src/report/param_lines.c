@@ -1,4 +1,4 @@
-#include "report/param_lines.h"
+#include "report/param_rows.h"
 #include "base/text.h"
 #include <stdbool.h>
 #include <stdio.h>

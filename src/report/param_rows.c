@@ -2,7 +2,6 @@
 #include "report/param_rows.h"
 #include "geometry/shapes/shape.h"
 #include "report/json.h"
-#include "report/param_lines.h"
 #include "report/report.h"
 #include <stdbool.h>
 #include <string.h>

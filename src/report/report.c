@@ -1,6 +1,6 @@
 #include "report/report.h"
 #include "report/json.h"
-#include "report/param_lines.h"
+#include "report/param_rows.h"
 #include "base/number.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>
