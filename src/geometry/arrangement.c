@@ -1,7 +1,13 @@
 #include "geometry/arrangement.h"
 #include "geometry/forest.h"
+#include "geometry/primitives/primitive.h"
 
 #include <stdlib.h>
+
+PRIMITIVE_RULE(halfspace);
+PRIMITIVE_RULE(cylinder);
+PRIMITIVE_RULE(box);
+PRIMITIVE_RULE(sphere);
 
 static double largest3(double a, double b, double c)
 {
@@ -9,9 +15,10 @@ static double largest3(double a, double b, double c)
     return m > c ? m : c;
 }
 
-static primitive primitive_placed(const solid_shape *shape, primitive_kind kind, double reach)
+static primitive primitive_placed(const solid_shape *shape, primitive_kind kind, const primitive_rule *rule,
+                                  double reach)
 {
-    primitive p = {.kind = kind, .origin = shape->position, .m2 = 1.0};
+    primitive p = {.kind = kind, .rule = rule, .origin = shape->position, .m2 = 1.0};
     vec3 r = shape->rotation_deg;
     p.rotation = rotation_from_deg(r);
     p.turned = r.x != 0.0 || r.y != 0.0 || r.z != 0.0;
@@ -21,7 +28,7 @@ static primitive primitive_placed(const solid_shape *shape, primitive_kind kind,
 
 static primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top)
 {
-    primitive p = primitive_placed(shape, PRIMITIVE_CYLINDER, shape->height + radius);
+    primitive p = primitive_placed(shape, PRIMITIVE_CYLINDER, &cylinder_rule, shape->height + radius);
     p.radius = radius;
     p.m2 = shape->m * shape->m;
     p.bottom = bottom;
@@ -46,21 +53,22 @@ static double mesh_extent(const solid_shape *shape)
 static int primitives_of(const solid_shape *shape, primitive out[2])
 {
     switch (shape->kind) {
-    case SHAPE_PLANE: out[0] = primitive_placed(shape, PRIMITIVE_HALFSPACE, 0.0); return 1;
+    case SHAPE_PLANE: out[0] = primitive_placed(shape, PRIMITIVE_HALFSPACE, &halfspace_rule, 0.0); return 1;
     case SHAPE_CYLINDER: out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height); return 1;
     case SHAPE_CUP:
         out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
         out[1] = cylinder_placed(shape, shape->inner_radius, shape->floor, HUGE_VAL);
         return 2;
     case SHAPE_BOX:
-        out[0] = primitive_placed(shape, PRIMITIVE_BOX, largest3(shape->size.x, shape->size.y, shape->size.z));
+        out[0] =
+            primitive_placed(shape, PRIMITIVE_BOX, &box_rule, largest3(shape->size.x, shape->size.y, shape->size.z));
         out[0].half = vec3_scale(shape->size, 0.5);
         return 1;
     case SHAPE_SPHERE:
-        out[0] = primitive_placed(shape, PRIMITIVE_SPHERE, shape->radius);
+        out[0] = primitive_placed(shape, PRIMITIVE_SPHERE, &sphere_rule, shape->radius);
         out[0].radius = shape->radius;
         return 1;
-    case SHAPE_MESH: out[0] = primitive_placed(shape, PRIMITIVE_MESH, mesh_extent(shape)); return 1;
+    case SHAPE_MESH: out[0] = primitive_placed(shape, PRIMITIVE_MESH, NULL, mesh_extent(shape)); return 1;
     case SHAPE_COUNT: break;
     }
     return 0;
@@ -175,20 +183,6 @@ void arrangement_destroy(arrangement *a)
 void arrangement_surroundings_absorb(arrangement *a)
 {
     a->bodies[0].absorbs = a->absorbs = true;
-}
-
-bool primitive_contains(const primitive *p, vec3 point)
-{
-    vec3 q = mat3_apply_transposed(p->rotation, vec3_sub(point, p->origin));
-    switch (p->kind) {
-    case PRIMITIVE_HALFSPACE: return q.y <= 0.0;
-    case PRIMITIVE_CYLINDER:
-        return q.x * q.x + p->m2 * q.z * q.z <= p->radius * p->radius && q.y >= p->bottom && q.y <= p->top;
-    case PRIMITIVE_BOX: return fabs(q.x) <= p->half.x && fabs(q.y) <= p->half.y && fabs(q.z) <= p->half.z;
-    case PRIMITIVE_SPHERE: return vec3_dot(q, q) <= p->radius * p->radius;
-    case PRIMITIVE_MESH: break; /* see forest_inside */
-    }
-    return false;
 }
 
 uint64_t arrangement_inside(const arrangement *a, vec3 point)

@@ -32,9 +32,10 @@ typedef enum primitive_kind {
     PRIMITIVE_MESH
 } primitive_kind;
 
-/* Faces: half-space 0. Cylinder 0 side, 1 bottom, 2 top. Box 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. Sphere 0.
- * Meshes number theirs otherwise: see forest.h. */
+/* The files of primitives/ say what a kind is and how its faces are numbered. Meshes number theirs otherwise: see
+ * forest.h. */
 typedef struct primitive {
+    const struct primitive_rule *rule; /* of its kind (primitives/primitive.h); NULL for a mesh */
     primitive_kind kind;
     bool turned;        /* rotation is not the identity */
     mat3 rotation;      /* local to world */
@@ -100,9 +101,6 @@ void arrangement_surroundings_absorb(arrangement *a);
 
 /* The set of primitives that contain a point, bit by bit, by the primitives' own definitions (surfaces included). */
 uint64_t arrangement_inside(const arrangement *a, vec3 point);
-
-/* Does it contain the point? No mesh does here. */
-bool primitive_contains(const primitive *p, vec3 point);
 
 /* The rank of the body whose surface an interface between two ranks is: an opaque body's if either is opaque (the one
  * behind, if both are), else that of the higher rank. */

@@ -2,7 +2,7 @@
  *
  * Two boundaries that a ray crosses at t1 and t2 are in contact when these distances are equal within the boundaries'
  * own error bounds at these crossings: |t1 - t2| <= e1 / cos1 + e2 / cos2. e is the bound on a point's error across its
- * surface (surface_kernel.c); the cosine carries it over to the ray. Nothing else enters: no other solid, no extent of
+ * surface (primitives/kind.h); the cosine carries it over to the ray. Nothing else enters: no other solid, no extent of
  * the scene. The narrowest gap that is seen is therefore e1 + e2, the sum of both surfaces' 16 DBL_EPSILON (|start| +
  * |path| + extent): 2e-14 to 1.4e-13 scene units in the scene of the rod.
  *
@@ -11,6 +11,7 @@
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"
+#include "geometry/primitives/primitive.h"
 
 /* What column k crosses, its error bound along the ray, and how far the solid or copy extends. */
 typedef struct crossing {
@@ -37,7 +38,7 @@ static crossing crossing_of(const arrangement *a, const ray_batch *rays, int i, 
     const uint64_t inside = (uint64_t)leaving << p;
     const ray_batch one = ray_of(rays, i, &inside);
     surface_batch point;
-    KERNEL(surface_points)(&a->primitives[p], &one, &t, p, &point);
+    a->primitives[p].rule->KERNEL_ISA->points(&a->primitives[p], &one, &t, p, &point);
     return (crossing){p, t, point.error[0] / facing(&point, &one), a->primitives[p].extent};
 }
 

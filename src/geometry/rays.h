@@ -12,7 +12,7 @@
 enum { BATCH = 128, LANES_MAX = 8 /* doubles in the widest vector */, ROW = BATCH + LANES_MAX };
 
 /* A computed point may be off by this share of the sum of all magnitudes that it is computed from: see
- * surface_kernel.c. */
+ * primitives/kind.h. */
 #define POINT_ERROR (16.0 * DBL_EPSILON)
 
 /* A view of up to BATCH rays. Directions of rays that look for their nearest interface are unit vectors; a shadow

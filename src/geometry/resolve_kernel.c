@@ -11,6 +11,7 @@
 
 #include "base/lanes.h"
 #include "geometry/forest.h"
+#include "geometry/primitives/primitive.h"
 #include <float.h>
 #include <math.h>
 
@@ -489,4 +490,9 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
     }
 }
 
-const geometry_kernels KERNEL(geometry_kernels) = {nearest, shadow, KERNEL(surface_points)};
+static void surface(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points)
+{
+    p->rule->KERNEL_ISA->points(p, rays, t, bit, points);
+}
+
+const geometry_kernels KERNEL(geometry_kernels) = {nearest, shadow, surface};

@@ -3,6 +3,7 @@
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "base/elementary.h"
+#include "geometry/primitives/primitive.h"
 
 static bounds3 box_around(const primitive *p, const arrangement *a)
 {

@@ -1,0 +1,116 @@
+/* What the files of the kinds of primitives share: the loops over rays, of which each kind gives the inside.
+ *
+ * Third pass, for the rays that met one primitive: the point, put back exactly on the surface, the normal there, the
+ * face, and a bound on the point's error.
+ *
+ * The bound: local coordinates come out of at most 8 roundings of numbers no larger than the ray's start, the
+ * way t d and the frame's origin; the root's own error moves the point along the ray, and putting it back on the
+ * surface leaves what is across it. 32 half-ulps of the sum of these magnitudes covers it with room to spare (Higham,
+ * Accuracy and Stability of Numerical Algorithms, 3.1: gamma_n), which the tests check against quadruple precision.
+ * Pure; cannot fail. */
+#ifndef CUVETTE_GEOMETRY_PRIMITIVES_KIND_H
+#define CUVETTE_GEOMETRY_PRIMITIVES_KIND_H
+
+#include "geometry/kernels.h"
+#include "geometry/primitives/primitive.h"
+
+static inline interval interval_both(interval a, interval b)
+{
+    return (interval){fmax(a.in, b.in), fmin(a.out, b.out)};
+}
+
+static inline interval interval_of_quadric(quadric_roots q)
+{
+    return q.hit ? (interval){q.in, q.out} : (interval){HUGE_VAL, -HUGE_VAL};
+}
+
+static inline interval interval_of_slab(double y, double dy, double low, double high)
+{
+    const slab_roots s = slab_cross(y, inverse_of_component(dy), low, high, 0, 0);
+    return (interval){s.in, s.out};
+}
+
+/* Of a convex primitive. */
+static inline int one_chord(interval chord, interval chords[CHORDS_MAX])
+{
+    chords[0] = chord;
+    return chord.in < chord.out;
+}
+
+/* The one interval of a convex primitive, as the ray's set and the face that it starts on have it: see
+ * intervals_kernel.c. */
+ALWAYS_INLINE void store_interval(double near, double far, int64_t hit, int64_t own, int64_t inside, double *in,
+                                  double *out)
+{
+    int64_t ahead = hit & ~own & mask_less(0.0, near + far);
+    double outside_in = blend(ahead, greater(near, 0.0), HUGE_VAL), outside_out = blend(ahead, far, -HUGE_VAL);
+    *in = blend(inside, -HUGE_VAL, outside_in);
+    *out = blend(inside, blend(hit, greater(far, 0.0), 0.0), outside_out);
+}
+
+ALWAYS_INLINE int64_t inside_mask(uint64_t set, int shift)
+{
+    return -(int64_t)((set & (uint64_t)1 << shift) != 0);
+}
+
+typedef struct local_point {
+    vec3 point, normal; /* the normal leads outwards */
+    int64_t face;
+} local_point;
+
+/* q, where r is at t, put back on the surface; at: the face that r starts on, from 0. */
+typedef local_point point_function(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving);
+
+ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool general, const ray_batch *rays,
+                             const double *__restrict t, int bit, surface_batch *__restrict s)
+{
+    /* VECTORISE */
+    for (int i = 0; i < rays->count; i++) {
+        local_ray r =
+            ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        vec3 d = vec3_make(r.dx, r.dy, r.dz), o = vec3_make(r.x, r.y, r.z), way = vec3_scale(d, t[i]),
+             q = vec3_add(o, way);
+        int64_t at = rays->start[i] - p->first_face, leaving = -(int64_t)((rays->inside[i] & (uint64_t)1 << bit) != 0);
+        local_point l = put_back(p, general, r, q, at, leaving);
+        double side = blend(leaving, -1.0, 1.0); /* the normal faces the ray */
+        vec3 n = vec3_scale(l.normal, side), point = l.point;
+        double cosine = -vec3_dot(d, n);
+        double size =
+            magnitude(o.x) + magnitude(o.y) + magnitude(o.z) + magnitude(way.x) + magnitude(way.y) + magnitude(way.z);
+        if (general) {
+            n = mat3_apply(p->rotation, n);
+            point = mat3_apply(p->rotation, point);
+        }
+        s->px[i] = point.x + p->origin.x;
+        s->py[i] = point.y + p->origin.y;
+        s->pz[i] = point.z + p->origin.z;
+        s->nx[i] = n.x;
+        s->ny[i] = n.y;
+        s->nz[i] = n.z;
+        s->cos_i[i] = lesser(greater(cosine, DBL_MIN), 1.0);
+        s->error[i] = POINT_ERROR * (size + p->extent);
+        s->face[i] = l.face;
+    }
+}
+
+/* Defines `name`(p, ...) by body(p, ..., general, ...): the body is compiled for both answers of is_general, whether
+ * rays must be turned into the primitive's frame, or it is scaled. It works on a copy, which no store can alias. */
+#define ROWS_OF(body)                                                                               \
+    static void rows(const primitive *__restrict p, int bit, const ray_batch *rays, ray_scratch *s) \
+    {                                                                                               \
+        if (is_general(p))                                                                          \
+            body(p, true, bit, rays, s);                                                            \
+        else                                                                                        \
+            body(p, false, bit, rays, s);                                                           \
+    }
+#define POINTS_OF(point)                                                                               \
+    static void points(const primitive *__restrict p, const ray_batch *rays, const double *t, int bit, \
+                       surface_batch *met)                                                             \
+    {                                                                                                  \
+        if (is_general(p))                                                                             \
+            points_on(p, point, true, rays, t, bit, met);                                              \
+        else                                                                                           \
+            points_on(p, point, false, rays, t, bit, met);                                             \
+    }
+
+#endif
