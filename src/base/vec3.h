@@ -3,6 +3,7 @@
 #define CUVETTE_BASE_VEC3_H
 
 #include <math.h>
+#include <stdbool.h>
 
 typedef struct vec3 {
     double x, y, z;
@@ -48,6 +49,10 @@ static inline vec3 vec3_normalize(vec3 a)
 {
     double l = vec3_length(a);
     return vec3_make(a.x / l, a.y / l, a.z / l);
+}
+static inline bool vec3_is_finite(vec3 v)
+{
+    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
 }
 
 /* m v, and its transpose times v (the inverse, for a rotation). */

@@ -1,78 +1,9 @@
 #include "geometry/arrangement.h"
 #include "geometry/forest.h"
 #include "geometry/primitives/primitive.h"
+#include "geometry/shapes/shape.h"
 
 #include <stdlib.h>
-
-PRIMITIVE_RULE(halfspace);
-PRIMITIVE_RULE(cylinder);
-PRIMITIVE_RULE(box);
-PRIMITIVE_RULE(sphere);
-
-static double largest3(double a, double b, double c)
-{
-    double m = a > b ? a : b;
-    return m > c ? m : c;
-}
-
-static primitive primitive_placed(const solid_shape *shape, primitive_kind kind, const primitive_rule *rule,
-                                  double reach)
-{
-    primitive p = {.kind = kind, .rule = rule, .origin = shape->position, .m2 = 1.0};
-    vec3 r = shape->rotation_deg;
-    p.rotation = rotation_from_deg(r);
-    p.turned = r.x != 0.0 || r.y != 0.0 || r.z != 0.0;
-    p.extent = largest3(fabs(p.origin.x), fabs(p.origin.y), fabs(p.origin.z)) + reach;
-    return p;
-}
-
-static primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top)
-{
-    primitive p = primitive_placed(shape, PRIMITIVE_CYLINDER, &cylinder_rule, shape->height + radius);
-    p.radius = radius;
-    p.m2 = shape->m * shape->m;
-    p.bottom = bottom;
-    p.top = top;
-    if (p.m2 < 1.0) /* the long axis is radius / m */
-        p.extent += radius / shape->m;
-    return p;
-}
-
-/* How far a mesh's copies reach from its position. */
-static double mesh_extent(const solid_shape *shape)
-{
-    const bounds3 b = shape->mesh->bounds;
-    const vec3 low = b.low, high = b.high, scale = shape->scale, n = shape->copies, step = shape->spacing;
-    const double x = largest3(fabs(low.x), fabs(high.x), 0.0) * scale.x + (n.x - 1.0) * fabs(step.x);
-    const double y = largest3(fabs(low.y), fabs(high.y), 0.0) * scale.y + (n.y - 1.0) * fabs(step.y);
-    const double z = largest3(fabs(low.z), fabs(high.z), 0.0) * scale.z + (n.z - 1.0) * fabs(step.z);
-    return shape->mesh->triangle_count > 0 ? x + y + z : 0.0;
-}
-
-/* Writes the one or two primitives of a shape; returns how many. */
-static int primitives_of(const solid_shape *shape, primitive out[2])
-{
-    switch (shape->kind) {
-    case SHAPE_PLANE: out[0] = primitive_placed(shape, PRIMITIVE_HALFSPACE, &halfspace_rule, 0.0); return 1;
-    case SHAPE_CYLINDER: out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height); return 1;
-    case SHAPE_CUP:
-        out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
-        out[1] = cylinder_placed(shape, shape->inner_radius, shape->floor, HUGE_VAL);
-        return 2;
-    case SHAPE_BOX:
-        out[0] =
-            primitive_placed(shape, PRIMITIVE_BOX, &box_rule, largest3(shape->size.x, shape->size.y, shape->size.z));
-        out[0].half = vec3_scale(shape->size, 0.5);
-        return 1;
-    case SHAPE_SPHERE:
-        out[0] = primitive_placed(shape, PRIMITIVE_SPHERE, &sphere_rule, shape->radius);
-        out[0].radius = shape->radius;
-        return 1;
-    case SHAPE_MESH: out[0] = primitive_placed(shape, PRIMITIVE_MESH, NULL, mesh_extent(shape)); return 1;
-    case SHAPE_COUNT: break;
-    }
-    return 0;
-}
 
 /* Indices of the sources, lowest rank first: ascending priority, and of equals the later one first. */
 static void order_by_priority(const body_source *sources, int count, int *order)
@@ -89,8 +20,10 @@ static void order_by_priority(const body_source *sources, int count, int *order)
 
 static void add_body(arrangement *a, int rank, const body_source *source)
 {
-    primitive parts[2];
-    int n = primitives_of(source->shape, parts);
+    primitive parts[SHAPE_PRIMITIVES];
+    const shape_rule *shape = shape_of(source->shape);
+    const int n = shape->primitive_count;
+    shape->primitives(source->shape, parts);
     a->opaque_ranks |= (uint64_t)source->opaque << (rank - 1);
     body *b = &a->bodies[rank];
     *b = (body){.outside = a->primitive_count,
@@ -128,7 +61,7 @@ static status plant_meshes(arrangement *a, const body_source *sources, const int
     int count = 0;
     for (int r = 1; r <= a->body_count; r++) {
         const body_source *source = &sources[order[r - 1]];
-        if (source->shape->kind == SHAPE_MESH)
+        if (shape_of(source->shape)->triangles)
             planted[count++] = (forest_source){source->shape, source->tree, a->bodies[r].outside, r};
     }
     return count > 0 ? forest_build(planted, count, &a->meshes, why) : STATUS_OK;
@@ -139,7 +72,7 @@ status arrangement_build(const body_source *sources, int count, int64_t outside_
 {
     int primitives = 0;
     for (int i = 0; i < count; i++)
-        primitives += sources[i].shape->kind == SHAPE_CUP ? 2 : 1;
+        primitives += shape_of(sources[i].shape)->primitive_count;
     if (primitives > PRIMITIVES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 64 in all; a cup counts as two",
                         "the visible solids make %d primitives", primitives);

@@ -158,7 +158,7 @@ status forest_build(const forest_source *sources, int count, forest **out, diagn
             if (parts[i].closed && parts[i].rank < rank)
                 f->closed_under[rank] |= (uint64_t)1 << parts[i].primitive;
     status code = STATUS_OK;
-    if (f->instance_count > SHAPE_COPIES_MAX)
+    if (f->instance_count > COPIES_MAX)
         code = diagnose(why, STATUS_BAD_INPUT, "use fewer copies",
                         "the meshes have %zu copies together, more than 4194304", f->instance_count);
     if (code == STATUS_OK && f->instance_count > 1)

@@ -1,15 +1,8 @@
-/* The analytic solids, as a person describes them, and the convex primitives that the kernels work on.
- * A solid stands in a frame of its own: local y is its axis; it is turned by rotation_deg (about x, then y,
- * then z, right-hand rule on the axes' names) and then moved to position.
+/* Solids, as a person describes them. Each shape is a row of SHAPES here and a file in geometry/shapes/ with all that
+ * the program knows of it (geometry/shapes/shape.h); the kernels work on the primitives that a shape is made of.
  *
- *   plane     the half-space y <= 0
- *   cylinder  x^2 + m^2 z^2 <= radius^2, 0 <= y <= height (position is the centre of its base)
- *   cup       a cylinder of radius, m and height less one of inner_radius and the same m that stands on the floor's
- *             thickness and is open at the top (position is the centre of its base): the ellipses are similar, so that
- * the wall is radius - inner_radius thick along x, and 1 / m of that along z box       |x| <= size.x/2 and so on
- * (position is its centre) sphere    x^2 + y^2 + z^2 <= radius^2 mesh      a triangle mesh, each axis times scale, as
- * often as copies says, spacing apart. A closed mesh is solid; an open one is a skin, which contains nothing. Copies
- * may touch but not overlap, and a mesh's own parts neither
+ * A solid stands in a frame of its own: local y is its axis; it is turned by rotation_deg (about x, then y, then z,
+ * right-hand rule on the axes' names) and then moved to position.
  *
  * Pure; ownership: values; a shape borrows its mesh. */
 #ifndef CUVETTE_GEOMETRY_SOLID_H
@@ -20,15 +13,18 @@
 #include "geometry/mesh.h"
 #include <stdbool.h>
 
-typedef enum shape_kind {
-    SHAPE_PLANE,
-    SHAPE_CYLINDER,
-    SHAPE_CUP,
-    SHAPE_BOX,
-    SHAPE_SPHERE,
-    SHAPE_MESH,
-    SHAPE_COUNT
-} shape_kind;
+/* In files' order of age: rows of studies hold a kind's number, so that a new one comes last. */
+#define SHAPES(X)         \
+    X(PLANE, plane)       \
+    X(CYLINDER, cylinder) \
+    X(CUP, cup)           \
+    X(BOX, box)           \
+    X(SPHERE, sphere)     \
+    X(MESH, mesh)
+
+#define SHAPE_KIND(KIND, file) SHAPE_##KIND,
+typedef enum shape_kind { SHAPES(SHAPE_KIND) SHAPE_COUNT } shape_kind;
+#undef SHAPE_KIND
 
 typedef struct solid_shape {
     shape_kind kind;
@@ -42,14 +38,18 @@ typedef struct solid_shape {
     vec3 spacing;            /* from copy to copy, in that frame */
 } solid_shape;
 
-/* Of all copies together, and of shapes of all kinds at most. */
-enum { SHAPE_COPIES_MAX = 1 << 22 };
+/* Copies of one mesh, and of all meshes together. */
+enum { COPIES_MAX = 1 << 22 };
+
+/* All that is known of the shape's kind: geometry/shapes/shape.h. */
+struct shape_rule;
+const struct shape_rule *shape_of(const solid_shape *shape);
 
 /* Checks what single ranges cannot: inner_radius < radius, floor < height. */
 status solid_shape_check(const solid_shape *shape, diagnostic *why);
 
-/* Does the closed solid contain the point? By its definition above; for tests and for hints. Of a mesh it is not known
- * here, and false. */
+/* Does the closed solid contain the point? By its definition; for tests and for hints. Of a mesh it is not known here,
+ * and false. */
 bool solid_shape_contains(const solid_shape *shape, vec3 point);
 
 /* The rotation of rotation_deg: local to world. */

@@ -80,11 +80,6 @@ void live_stop(live *l)
     pthread_mutex_unlock(&l->lock);
 }
 
-static bool is_finite(vec3 v)
-{
-    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
-}
-
 static struct timespec limit(void)
 {
     struct timespec at;
@@ -129,7 +124,7 @@ static status check_on(const live *l, diagnostic *why)
 status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, vec3 *where, diagnostic *why)
 {
     const double length = vec3_length(direction);
-    if (!is_finite(origin) || !(length > 0.0 && isfinite(length)) || !(reach >= 0.0 && isfinite(reach)))
+    if (!vec3_is_finite(origin) || !(length > 0.0 && isfinite(length)) || !(reach >= 0.0 && isfinite(reach)))
         return diagnose(why, STATUS_BAD_INPUT, "give a finite ray, and a reach that is not below 0",
                         "it grabs along no ray");
     grab_request q = {.origin = origin, .direction = vec3_scale(direction, 1.0 / length), .reach = reach, .why = why};

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* The shape with its triangles where they are loaded. */
-static solid_shape shape_of(const scene *s, const solid *one)
+static solid_shape loaded_shape(const scene *s, const solid *one)
 {
     solid_shape shape = one->shape;
     const mesh_entry *m = shape.kind == SHAPE_MESH ? scene_find_mesh(s, one->mesh) : NULL;
@@ -24,7 +24,7 @@ static bool is_opaque_pair(const solid *a, const solid *b)
 static bool meets_unseen(const scene *s, const solid *a, const solid *b)
 {
     const solid eye = {.shape = {.kind = SHAPE_SPHERE, .position = s->camera.position}};
-    const solid_shape of_a = shape_of(s, a), of_b = shape_of(s, b);
+    const solid_shape of_a = loaded_shape(s, a), of_b = loaded_shape(s, b);
     return scene_apart(s, a, &eye) && scene_apart(s, b, &eye) && !solid_shapes_may_share_faces(&of_a, &of_b);
 }
 
