@@ -109,7 +109,7 @@ static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int 
         h.slot = (int32_t)b->on_mesh.slot[k];
         h.u = b->on_mesh.weight[1][k], h.v = b->on_mesh.weight[2][k];
     } else {
-        h.face = (int32_t)(s->face[k] % FACES_MAX) + (met == bounded->hollow ? FACES_MAX : 0);
+        h.face = (int32_t)(s->face[k] % FACES_MAX) + (met == bounded->hollow ? HOLLOW_FACES : 0);
     }
     h.reflected = start_at(s->face[k], hits->inside_before[column]);
     h.transmitted = start_at(s->face[k], hits->inside_after[column]);

@@ -162,8 +162,9 @@ static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k,
     }
     for (int piece = 0; piece < 2 && pieces[piece] >= 0; piece++) {
         const int p = pieces[piece];
-        for (int leaving = 0; leaving < 2; leaving++) {
-            const double t = leaving ? s->out[p][k] : s->in[p][k];
+        for (int end = 0; end < 2 * a->primitives[p].rows; end++) {
+            const bool leaving = end % 2;
+            const double t = leaving ? s->out[p + end / 2][k] : s->in[p + end / 2][k];
             if (side_of(a, rays, s->ray[k], at, p, t, leaving) == 0) {
                 c->t[k] = t;
                 c->crossed[k] = p;
@@ -183,10 +184,15 @@ void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, 
     for (int p = 0; p < a->primitive_count; p++) {
         if (!((s->near[k] & ~meshes) >> p & 1))
             continue;
-        const int entry = side_of(a, rays, i, &at, p, s->in[p][k], false),
-                  exit = side_of(a, rays, i, &at, p, s->out[p][k], true);
-        set_bit(&c->inside_before[k], p, entry < 0 && exit >= 0);
-        set_bit(&c->inside_after[k], p, entry <= 0 && exit > 0);
+        bool before = false, after = false;
+        for (int row = p; row < p + a->primitives[p].rows; row++) {
+            const int entry = side_of(a, rays, i, &at, p, s->in[row][k], false),
+                      exit = side_of(a, rays, i, &at, p, s->out[row][k], true);
+            before |= entry < 0 && exit >= 0;
+            after |= entry <= 0 && exit > 0;
+        }
+        set_bit(&c->inside_before[k], p, before);
+        set_bit(&c->inside_after[k], p, after);
     }
     if (a->meshes)
         merge_meshes(a, rays, k, s, c, &at);

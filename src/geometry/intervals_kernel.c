@@ -42,6 +42,8 @@ void KERNEL(intervals_of)(const arrangement *a, const ray_batch *rays, uint64_t 
         if (!(wanted >> k & 1))
             continue;
         const primitive *p = &a->primitives[k];
+        if (a->further >> k & 1)
+            continue;
         if (p->rule)
             p->rule->KERNEL_ISA->rows(p, k, rays, s);
         else

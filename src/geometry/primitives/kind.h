@@ -53,6 +53,48 @@ ALWAYS_INLINE int64_t inside_mask(uint64_t set, int shift)
     return -(int64_t)((set & (uint64_t)1 << shift) != 0);
 }
 
+/* Where a line crosses a primitive that is not convex: an even number of times in all, in order. */
+enum { CROSSINGS_OF_ONE_MAX = 2 * CHORDS_MAX };
+typedef struct crossings_of_one {
+    int count;
+    double t[CROSSINGS_OF_ONE_MAX];
+} crossings_of_one;
+
+/* The crossings ahead of a ray, of those of its line but for that of its own face: an odd number if it is inside, else
+ * an even one. Where it is not so, the set is believed. A ray that starts on another face starts on this surface to
+ * within rounding: the crossing nearest to its start is on the wrong side of it. Of one that starts on this surface the
+ * direction contradicts the set: it leaves at once, or does not enter and passes the matter; unless it grazes the
+ * hollow side of the surface, and a crossing within `grazing` is its own once more, on the wrong side. */
+static inline crossings_of_one crossings_ahead(const crossings_of_one *line, bool own, bool inside, double grazing)
+{
+    int first = 0;
+    while (first < line->count && line->t[first] <= 0.0)
+        first++;
+    crossings_of_one ahead = {0};
+    if ((line->count - first) % 2 != (int)inside) {
+        const double behind = first > 0 ? -line->t[first - 1] : HUGE_VAL;
+        const double next = first < line->count ? line->t[first] : HUGE_VAL;
+        const bool now = !own ? behind <= next : inside ? next > grazing : behind <= grazing;
+        if (now)
+            ahead.t[ahead.count++] = 0.0; /* it crosses there and then */
+        else
+            first++; /* that is behind it */
+    }
+    for (int k = first; k < line->count; k++)
+        ahead.t[ahead.count++] = line->t[k];
+    return ahead;
+}
+
+/* The intervals ahead, by rows. */
+static inline void store_rows(const crossings_of_one *ahead, bool inside, int bit, int i, ray_scratch *s)
+{
+    int next = 0;
+    for (int row = bit; row < bit + CHORDS_MAX; row++) {
+        s->in[row][i] = row == bit && inside ? -HUGE_VAL : next < ahead->count ? ahead->t[next++] : HUGE_VAL;
+        s->out[row][i] = next < ahead->count ? ahead->t[next++] : -HUGE_VAL;
+    }
+}
+
 typedef struct local_point {
     vec3 point, normal; /* the normal leads outwards */
     int64_t face;

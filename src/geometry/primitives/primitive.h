@@ -15,7 +15,7 @@ typedef struct interval {
     double in, out;
 } interval;
 
-enum { CHORDS_MAX = 1 };
+enum { CHORDS_MAX = 2 };
 
 /* A face on which a local coordinate is constant: axis 0 x, 1 y, 2 z. `outwards` is the side of the face that the
  * primitive is not on: +1 or -1; 0 for a surface that is looked up where it lies. */
@@ -26,7 +26,8 @@ typedef struct flat_face {
 } flat_face;
 
 typedef struct primitive_functions {
-    /* First pass (intervals_kernel.c): s->in[bit] and s->out[bit] for every ray. */
+    int intervals; /* in which a line is in it, at most: 1 if it is convex, else CHORDS_MAX or fewer */
+    /* First pass (intervals_kernel.c): s->in[bit] and s->out[bit] for every ray, and so many rows. */
     void (*rows)(const primitive *p, int bit, const ray_batch *rays, ray_scratch *s);
     /* Third pass: geometry_kernels.surface. */
     void (*points)(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points);

@@ -25,10 +25,17 @@ typedef struct shape_rule {
     bool (*contains)(const solid_shape *shape, vec3 local);
     /* Writes what the kernels intersect: primitive_count of them, the second one hollows the first one out. */
     int primitive_count;
+    int further_rows; /* how many more than one each of them takes: see geometry/arrangement.h */
     void (*primitives)(const solid_shape *shape, struct primitive *out);
 } shape_rule;
 
 const shape_rule *shape_of_kind(shape_kind kind);
+
+/* What the shape takes of an arrangement's places, PRIMITIVES_MAX in all. */
+static inline int shape_places(const solid_shape *shape)
+{
+    return shape_of(shape)->primitive_count + shape_of(shape)->further_rows;
+}
 
 #define SHAPE_DECLARED(KIND, file) extern const shape_rule shape_##file;
 SHAPES(SHAPE_DECLARED)

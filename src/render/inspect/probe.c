@@ -202,9 +202,9 @@ const char *probe_face_name(const probe *p, const ray_hit *hit)
     static const char *const cup_hollow[] = {"inner side", "floor", "rim"};
     static const char *const box[] = {"-x side", "+x side", "bottom", "top", "-z side", "+z side"};
     switch (p->setting->solids[hit->face_solid].shape.kind) {
-    case SHAPE_CYLINDER: return cylinder[hit->face % FACES_MAX];
-    case SHAPE_CUP: return (hit->face < FACES_MAX ? cup_outside : cup_hollow)[hit->face % FACES_MAX];
-    case SHAPE_BOX: return box[hit->face % FACES_MAX];
+    case SHAPE_CYLINDER: return cylinder[hit->face];
+    case SHAPE_CUP: return (hit->face < HOLLOW_FACES ? cup_outside : cup_hollow)[hit->face % HOLLOW_FACES];
+    case SHAPE_BOX: return box[hit->face];
     case SHAPE_PLANE:
     case SHAPE_SPHERE:
     case SHAPE_MESH:

@@ -1,4 +1,5 @@
 #include "scene/model/check.h"
+#include "geometry/shapes/shape.h"
 #include "base/counters.h"
 #include "scene/model/looks.h"
 #include "scene/model/medium.h"
@@ -299,10 +300,11 @@ status check_limits(const scene *s, diagnostic *why)
 {
     size_t primitives = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
-        primitives += s->solids[i].shape.kind == SHAPE_CUP ? 2 : 1;
+        primitives += (size_t)shape_places(&s->solids[i].shape);
     }
     if (primitives > SCENE_PRIMITIVES_MAX) {
-        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64, and a cup counts as two", "more than 64 solids");
+        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64; a cup and a torus count as two",
+                        "more than 64 solids");
     }
     if (s->light_count > SCENE_LIGHTS_MAX) {
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64", "more than 64 lights");
