@@ -8,6 +8,7 @@
 #include "render/core/renderer.h"
 #include "scene/model/inert/inert.h"
 #include "scene/model/params_path.h"
+#include "scene/model/scene.h"
 
 /* Bodies of fewer triangles, fewer wavelengths: what is tried stays what it is. */
 typedef struct acts_small {

@@ -5,6 +5,7 @@
 #define CUVETTE_TESTS_ACTS_VALUES_H
 
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,6 +5,7 @@
 
 #include "law_pairs.h"
 #include "reversal_fixture.h"
+#include "scene/model/scene.h"
 
 typedef enum verdict { HELD, SKIPPED, BROKEN } verdict;
 

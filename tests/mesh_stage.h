@@ -4,6 +4,7 @@
 #define CUVETTE_TESTS_MESH_STAGE_H
 
 #include "probe_fixture.h"
+#include "scene/model/scene.h"
 
 /* A texture of the scene from texels of 0..1, line by line from the lowest one on, red green blue. */
 static inline void give_texture(scene *s, const char *name, const double *texels, int width, int height)

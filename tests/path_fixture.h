@@ -4,6 +4,7 @@
 #ifndef CUVETTE_TESTS_PATH_FIXTURE_H
 #define CUVETTE_TESTS_PATH_FIXTURE_H
 
+#include "scene/model/scene.h"
 #include "render_fixture.h"
 #include <math.h>
 

@@ -4,6 +4,7 @@
 #ifndef CUVETTE_TESTS_PROBE_FIXTURE_H
 #define CUVETTE_TESTS_PROBE_FIXTURE_H
 
+#include "scene/model/scene.h"
 #include "optics/interface.h"
 #include "quad.h"
 #include "render/inspect/probe.h"

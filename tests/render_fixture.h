@@ -3,6 +3,7 @@
 #ifndef CUVETTE_TESTS_RENDER_FIXTURE_H
 #define CUVETTE_TESTS_RENDER_FIXTURE_H
 
+#include "scene/model/scene.h"
 #include "render/core/renderer.h"
 #include "scene/model/params.h"
 #include <stdio.h>

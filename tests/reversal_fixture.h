@@ -3,6 +3,7 @@
 #define CUVETTE_TESTS_REVERSAL_FIXTURE_H
 
 #include "probe_fixture.h"
+#include "scene/model/scene.h"
 
 /* A path of light is the same in both directions (Hecht, 4.5: Fermat's principle and reversibility; 4.10: Stokes's
  * relations), and so is the share of power that goes along it: R and T = n_t cos_t / (n_i cos_i) |t|^2 of an interface

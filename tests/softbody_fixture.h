@@ -5,6 +5,7 @@
 #include "scene/model/edit/edit.h"
 #include "scene/model/slime.h"
 #include "softbody/softbody.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <setjmp.h>

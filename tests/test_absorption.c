@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "probe_fixture.h"
+#include "scene/model/scene.h"
 
 /* Beer and Lambert: what is left behind a length d of a medium is exp(-a d) (Hecht, 4.8.1, eq. 4.79), at every place
  * where light goes through one: slabs with their reflections, bodies that bend nothing, and the straight way to a

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "random_scene.h"
+#include "scene/model/scene.h"
 
 /* What rays lose on their way in random scenes, against the integral of the absorption coefficient along it (Beer and
  * Lambert; Born and Wolf, 7th ed., 4.11.4): the media on the way are read from the solids' own shapes, at many points,

@@ -10,6 +10,7 @@
 #include "render/inspect/probe.h"
 #include "render_fixture.h"
 #include "scene/model/camera.h"
+#include "scene/model/scene.h"
 
 /* Camera roll against closed forms: Rodrigues' formula for the frame, and the image turned by quarters. The image of
  * roll 90 shows at column x, row y what the level one shows at column side - 1 - y, row x: it is turned counter-

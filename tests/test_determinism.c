@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 /* One picture, whatever made it: threads, schedules, tiles, pool, instruction sets. The counters too. */
 

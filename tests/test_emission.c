@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "path_fixture.h"
+#include "scene/model/scene.h"
 
 /* Surfaces that shine by themselves: k_e times their colour, whoever follows the light, and as lamps of random paths.
  * */

@@ -10,6 +10,7 @@
 #include "render_fixture.h"
 #include "scene/model/camera.h"
 #include "scene/file/write.h"
+#include "scene/model/scene.h"
 
 static lab_room room;
 

@@ -10,6 +10,7 @@
 #include "scene/model/camera.h"
 #include "scene/model/camera_moves.h"
 #include "web/lab_private.h"
+#include "scene/model/scene.h"
 
 /* The page's camera where it is rolled: its moves follow the image, and a place of the image is the tracer's ray
  * there. */

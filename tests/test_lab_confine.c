@@ -12,6 +12,7 @@
 #include "lab_fixture.h"
 #include "study/study.h"
 #include "web/lab_private.h"
+#include "scene/model/scene.h"
 
 /* The laboratory's folder is above/lab. Every file is in both, but for links and scenes. */
 typedef struct room {

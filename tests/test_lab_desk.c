@@ -8,6 +8,7 @@
 #include "lab_fixture.h"
 #include "render_fixture.h"
 #include "web/session/desk.h"
+#include "scene/model/scene.h"
 #include <pthread.h>
 
 static int changes_seen;

@@ -16,6 +16,7 @@
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "web/live/live.h"
+#include "scene/model/scene.h"
 
 /* It lies on a floor at once and comes to rest soon. */
 static const char toys[] =

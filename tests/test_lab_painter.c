@@ -10,6 +10,7 @@
 #include "render_fixture.h"
 #include "web/live/painter.h"
 #include "web/live/passes.h"
+#include "scene/model/scene.h"
 #include <pthread.h>
 #include <stdatomic.h>
 #include <time.h>

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 /* The lighting models, one within the next, and how a light falls off; at a point worked out by hand. */
 

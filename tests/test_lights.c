@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "probe_fixture.h"
+#include "scene/model/scene.h"
 
 /* Spotlights: what a cone and a soft cone leave of a light, by the angle from their axis, to every integrator and film.
  */

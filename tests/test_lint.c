@@ -14,6 +14,7 @@
 #include "law_judge.h"
 #include "lint/lint.h"
 #include "lint_oracle.h"
+#include "scene/model/scene.h"
 
 enum { NOTES_MAX = 64 };
 

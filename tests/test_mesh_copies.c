@@ -8,6 +8,7 @@
 #include "base/counters.h"
 #include "measure/clock.h"
 #include "mesh_stage.h"
+#include "scene/model/scene.h"
 
 /* Copies of meshes, and one picture however it is made. */
 

@@ -9,6 +9,7 @@
 
 #include "mesh_stage.h"
 #include "random_stream.h"
+#include "scene/model/scene.h"
 
 /* What meshes look like at points where it can be worked out: Phong's sum with flat, interpolated and corner values;
  * textures; and what shading normals must not do. */

@@ -7,6 +7,7 @@
 
 #include "render_fixture.h"
 #include "scene/motion/motion.h"
+#include "scene/model/scene.h"
 
 static const char toys[] =
     "render: {width: 64, height: 48, depth: 3}\n"

@@ -7,6 +7,7 @@
 
 #include "base/number.h"
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

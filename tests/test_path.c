@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "path_fixture.h"
+#include "scene/model/scene.h"
 
 /* Random paths against Whitted's trees where both see the same light, and against closed forms where only they do. */
 

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 /* Random paths, wavelengths and Stokes vectors too make one picture, whoever traces them, and in whatever batches. */
 

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 /* Local light at points worked out by hand: Phong's sum, shadows, checkers. One pixel, which looks along the
  * camera's axis. */

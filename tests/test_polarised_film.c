@@ -8,6 +8,7 @@
 #include "polarised_chain.h"
 #include "render/inspect/probe.h"
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 /* Films of rays that carry Stokes vectors: Brewster, Malus, the pile of plates, chains of total reflections, energy. */
 

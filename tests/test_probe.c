@@ -8,6 +8,7 @@
 #include "render/inspect/probe.h"
 #include "geometry/arrangement.h"
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 /* One ray taken apart: what the tree says is what the film holds, to the bit, and what it says of a hit is what the
  * laws say. */

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 /* Whole pictures against closed forms: slabs, furnaces, Phong's sum at points worked out by hand. */
 

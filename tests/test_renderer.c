@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 /* What a renderer promises beside its picture: errors by value, interruption, no state shared between two of them. */
 

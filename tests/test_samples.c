@@ -7,6 +7,7 @@
 
 #include "render/core/ticket.h"
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 /* Samples of a pixel: the middles of k x k cells. One pixel sees, at z = 1, the square from -1 to 1, and in it a white
  * wall that ends at an edge: its share is that of the cells whose middle it covers. */

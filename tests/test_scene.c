@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>

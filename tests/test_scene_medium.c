@@ -7,6 +7,7 @@
 
 #include "render_fixture.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 
 static double index_at(const scene *s, const char *name, double lambda_nm)

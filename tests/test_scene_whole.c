@@ -8,6 +8,7 @@
 
 #include "render_fixture.h"
 #include "scene/model/edit/edit.h"
+#include "scene/model/scene.h"
 
 /* A whole scene moves, turns and is scaled: with its camera the film is the same up to rounding; of its parts only
  * those that are named change; and when one of them would leave its range, nothing does. */

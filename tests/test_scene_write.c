@@ -10,6 +10,7 @@
 #include "scene/model/edit/edit.h"
 #include "scene/model/params_path.h"
 #include "scene/file/write.h"
+#include "scene/model/scene.h"
 #include <dirent.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -214,7 +215,7 @@ static void every_parameter_survives_away_from_its_default(void **state)
             snprintf(path, sizeof path, "%s.%s", owners[o], param_at(i)->name);
             if (place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
                 continue;
-            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->shapes               ? "toy"
+            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->makers               ? "toy"
                                                             : at.row->type == PARAM_PATH ? "model"
                                                                                          : "body") != 0)
                 continue; /* a file takes the place of what is generated, which a mesh that has a file is not; a slime's

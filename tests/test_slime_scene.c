@@ -5,6 +5,7 @@
 #include "scene/model/slime.h"
 #include "scene/file/write.h"
 #include "study/shelf.h"
+#include "scene/model/scene.h"
 #include <limits.h>
 
 static const char tug[] = "hands:\n"

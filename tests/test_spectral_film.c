@@ -8,6 +8,7 @@
 
 #include "color_difference.h"
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 /* Films traced wavelength by wavelength: the colours of white skies, matte patches, absorbers and picture skies, by how
  * different they look from what they should (CIEDE2000), and a prism's edges by Snell's law at each wavelength. */

@@ -11,6 +11,7 @@
 #include "study/meaning.h"
 #include "study/row_files.h"
 #include "study/summary.h"
+#include "scene/model/scene.h"
 #include <dirent.h>
 #include <inttypes.h>
 

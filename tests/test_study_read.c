@@ -1,5 +1,6 @@
 #include "study_fixture.h"
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 #include <dirent.h>
 
 static const char bad_folder[] = "tests/bad-studies";

@@ -273,7 +273,7 @@ static void is_on_one_side_or_the_other(const arrangement *a, const one_hit *h, 
     const one_hit out =
         nearest_interface(a, (one_ray){h->point, vec3_normalize(vec3_add(along, outward)), FACE_NONE, inside});
     if (inside) {
-        assert_true(in.before == 1 && in.t > 0.0 && (in.crossed == 0 || a->primitives[0].kind == PRIMITIVE_HALFSPACE));
+        assert_true(in.before == 1 && in.t > 0.0 && (in.crossed == 0 || a->shapes[1].kind == SHAPE_PLANE));
         assert_true(out.crossed == 0 && out.before == 1 && out.t <= 1e-13);
     } else {
         assert_true(in.crossed == 0 && in.before == 0 && in.after == 1 && in.t <= 1e-13);

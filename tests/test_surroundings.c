@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "probe_fixture.h"
+#include "scene/model/scene.h"
 
 /* Surroundings that absorb (Beer and Lambert: Hecht, 4.8.1, eq. 4.79): exp(-a d) over the whole way from the eye, by
  * mirrors, to what sends the light, as long as it lies outside all solids; and nothing on a way to the sky. */

@@ -9,6 +9,7 @@
 
 #include "render/core/tracer_set.h"
 #include "render_fixture.h"
+#include "scene/model/scene.h"
 
 enum { WORKERS = 4 };
 

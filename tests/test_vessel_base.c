@@ -15,6 +15,7 @@
 #include "base/isa.h"
 #include "render/core/renderer.h"
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 static const double GLASS = 1.5, LIQUID = 1.33;

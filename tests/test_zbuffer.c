@@ -10,6 +10,7 @@
 #include "mesh_fixture.h"
 #include "random_stream.h"
 #include "zbuffer_fixture.h"
+#include "scene/model/scene.h"
 
 /* The depth buffer against the ray caster, which finds surfaces in another way, and against closed forms: what
  * interpolating straight and in perspective gives on a tilted square, and how often each point is covered. */

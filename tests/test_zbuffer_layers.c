@@ -7,6 +7,7 @@
 
 #include "image/compare.h"
 #include "zbuffer_fixture.h"
+#include "scene/model/scene.h"
 
 /* What the depth buffer shows behind clear solids: against Fresnel's and Beer's formulas along one view, against
  * Whitted's rays where nothing bends them, and the furnace. */

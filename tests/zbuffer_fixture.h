@@ -3,6 +3,7 @@
 #ifndef CUVETTE_TESTS_ZBUFFER_FIXTURE_H
 #define CUVETTE_TESTS_ZBUFFER_FIXTURE_H
 
+#include "scene/model/scene.h"
 #include "render_fixture.h"
 
 static inline scene *scene_loaded(const char *text, const char *assignments)

@@ -7,6 +7,7 @@
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
 #include "base/text.h"
+#include "scene/model/scene.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

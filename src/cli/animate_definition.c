@@ -6,6 +6,7 @@
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
 #include "study/grid.h"
+#include "scene/model/scene.h"
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>

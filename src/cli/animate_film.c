@@ -4,6 +4,7 @@
 #include "cli/terminal.h"
 #include "image/y4m.h"
 #include "render/core/record.h"
+#include "scene/model/scene.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>

@@ -1,5 +1,6 @@
 #include "cli/fan_writers.h"
 #include "study/csv.h"
+#include "scene/model/open.h"
 
 static void add_vector(csv_line *line, bool there, vec3 v)
 {
@@ -13,7 +14,7 @@ static const char *end_words(const fanned *t, const fan_ray *ray)
 {
     const ray_node *last = &t->f->node[ray->first + ray->count - 1];
     if (last->end == RAY_END_HIT)
-        return t->s->solids[last->hit.solid].name;
+        return scene_solid_name(t->s, last->hit.solid);
     return last->end == RAY_END_SKY ? "sky" : "cut";
 }
 

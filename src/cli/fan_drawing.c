@@ -2,6 +2,7 @@
 #include "report/diagram.h"
 #include "cli/fan_writers.h"
 #include "report/svg.h"
+#include "scene/model/scene.h"
 
 /* Branches lighter than this are not drawn with whole trees; nor is a wider picture made for a caustic farther off than
  * this share of the rest. */

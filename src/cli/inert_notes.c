@@ -3,6 +3,7 @@
 #include "render/core/renderer.h"
 #include "scene/model/hints.h"
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -9,6 +9,7 @@
 #include "scene/model/edit/edit.h"
 #include "scene/assets/mesh_write.h"
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

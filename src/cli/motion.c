@@ -6,6 +6,7 @@
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
 #include "softbody/trials.h"
+#include "scene/model/scene.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>

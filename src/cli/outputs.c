@@ -1,6 +1,7 @@
 #include "cli/outputs.h"
 #include "cli/scene_files.h"
 #include "render/core/record.h"
+#include "scene/model/scene.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

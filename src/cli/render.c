@@ -8,6 +8,7 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "measure/statistics.h"
+#include "scene/model/scene.h"
 #include <errno.h>
 #include <stdio.h>
 

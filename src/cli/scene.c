@@ -6,6 +6,7 @@
 #include "cli/scene_input.h"
 #include "scene/model/params_path.h"
 #include "scene/file/write.h"
+#include "scene/model/scene.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,6 +2,7 @@
 #include "cli/options.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
+#include "scene/model/material.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

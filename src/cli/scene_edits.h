@@ -3,7 +3,7 @@
 #ifndef CUVETTE_CLI_SCENE_EDITS_H
 #define CUVETTE_CLI_SCENE_EDITS_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef struct scene_edit scene_edit;
 

@@ -1,4 +1,5 @@
 #include "cli/scene_files.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 
 typedef struct search {

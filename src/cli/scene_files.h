@@ -3,7 +3,7 @@
 #ifndef CUVETTE_CLI_SCENE_FILES_H
 #define CUVETTE_CLI_SCENE_FILES_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 /* Is one of them what is looked for? Calls is_it with each until it returns true. */
 bool scene_files_any(const scene *s, bool (*is_it)(void *context, const char *path), void *context);

@@ -2,6 +2,7 @@
 #include "cli/terminal.h"
 #include "scene/model/hints.h"
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 #include <stdio.h>
 #include <stdlib.h>
 

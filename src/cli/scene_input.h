@@ -6,7 +6,7 @@
 
 #include "base/isa.h"
 #include "lint/lint.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef struct scene_change {
     const char *option; /* "--set" */

@@ -7,6 +7,7 @@
 #include "cli/terminal.h"
 #include "study/study.h"
 #include "study/summary.h"
+#include "scene/model/scene.h"
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>

@@ -2,6 +2,7 @@
 #include "engine/engine_private.h"
 
 #include "scene/model/edit/edit.h"
+#include "scene/model/scene.h"
 #include <string.h>
 
 cuvette_status cuvette_scene_add_mesh(cuvette_scene *s, const char *name, cuvette_diagnostic *why)

@@ -3,6 +3,7 @@
 #include "engine/engine_private.h"
 
 #include "measure/clock.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,11 +3,12 @@
 #ifndef CUVETTE_ENGINE_ENGINE_PRIVATE_H
 #define CUVETTE_ENGINE_ENGINE_PRIVATE_H
 
+#include "base/vec3.h"
 #include "base/float_environment.h"
 #include "base/isa.h"
 #include "cuvette.h"
 #include "render/core/renderer.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include <pthread.h>
 #include <stdatomic.h>
 

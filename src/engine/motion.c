@@ -1,8 +1,10 @@
 /* Motions: the slimes of a scene from their beginning on, as far as the scene stays the one that they were made of. */
 #include "engine/motion_private.h"
 
+#include "geometry/shapes/shape.h"
 #include "scene/model/params_path.h"
 #include "scene/model/slime.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -146,7 +148,7 @@ status motion_find(const cuvette_motion *m, const char *name, size_t *index, int
     const status code = place_find_object(s, name, &at, why);
     if (code != STATUS_OK)
         return code;
-    const bool is_solid = at.group == PARAM_SOLID && s->solids[at.index].shape.kind == SHAPE_MESH;
+    const bool is_solid = at.group == PARAM_SOLID && shape_of(&s->solids[at.index].shape)->triangles;
     const char *mesh_name = is_solid ? s->solids[at.index].mesh : name;
     *solid_or_none = is_solid ? (int)at.index : -1;
     for (size_t i = 0; (is_solid || at.group == PARAM_MESH) && i < scene_motion_count(m->bodies); i++)

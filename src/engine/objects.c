@@ -2,6 +2,7 @@
 #include "engine/engine_private.h"
 
 #include "scene/model/edit/edit.h"
+#include "scene/model/scene.h"
 
 cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
@@ -29,7 +30,7 @@ cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const
     ENGINE_NEED(name, why);
     ENGINE_NEED(shape, why);
     diagnostic inner = {.line = 0};
-    shape_kind kind = SHAPE_SPHERE;
+    shape_kind kind = {0};
     status code = scene_shape_named(shape, &kind, &inner);
     if (code == STATUS_OK)
         code = scene_add_solid(s->model, name, kind, NULL, &inner);

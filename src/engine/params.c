@@ -5,6 +5,7 @@
 #include "base/number.h"
 #include "scene/model/params.h"
 #include "scene/model/params_path.h"
+#include "scene/model/scene.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

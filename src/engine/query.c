@@ -1,6 +1,7 @@
 /* A scene made ready for rays of the caller's. A query is not changed once it is made; what a call works on (a bench)
  * is taken from a shelf and put back, so that any number of threads may ask, and a single ray costs no allocation. */
 #include "engine/query_private.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -127,7 +127,7 @@ static void tell_group(const cuvette_query *q, bench *b, int met, int count, cuv
     }
     const ray_batch rays = {count, b->gox, b->goy, b->goz, b->gdx, b->gdy, b->gdz, b->gstart, b->ginside};
     const arrangement *a = q->ready->solids;
-    if (a->primitives[met].kind == PRIMITIVE_MESH) {
+    if (!a->primitives[met].rule) {
         for (int k = 0; k < count; k++)
             b->mesh_hits[k] = b->meshes.hit[b->list[k]];
         forest_surface(a->meshes, &rays, b->mesh_hits, false, &b->points, &b->on_mesh);

@@ -57,6 +57,7 @@ static void add_body(arrangement *a, int rank, const body_source *source)
     shape->primitives(source->shape, parts);
     a->opaque_ranks |= (uint64_t)source->opaque << (rank - 1);
     body *b = &a->bodies[rank];
+    a->shapes[rank] = *source->shape;
     *b = (body){.outside = a->primitive_count,
                 .hollow = n == 2 ? a->primitive_count + 1 : -1,
                 .medium = source->medium,
@@ -107,9 +108,10 @@ status arrangement_build(const body_source *sources, int count, int64_t outside_
     if (a) {
         a->primitives = calloc((size_t)primitives + 1, sizeof *a->primitives);
         a->bodies = calloc((size_t)count + 1, sizeof *a->bodies);
+        a->shapes = calloc((size_t)count + 1, sizeof *a->shapes);
         a->normals = calloc((size_t)primitives * FACES_MAX + 1, sizeof *a->normals);
     }
-    if (!a || !order || !a->primitives || !a->bodies || !a->normals) {
+    if (!a || !order || !a->primitives || !a->bodies || !a->shapes || !a->normals) {
         free(order);
         arrangement_destroy(a);
         return out_of_memory(why);
@@ -138,6 +140,7 @@ void arrangement_destroy(arrangement *a)
     free(a->primitives);
     free(a->bodies);
     free(a->normals);
+    free(a->shapes);
     free(a);
 }
 

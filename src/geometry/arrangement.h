@@ -29,28 +29,19 @@ enum {
     FACE_NONE = -1
 };
 
-typedef enum primitive_kind {
-    PRIMITIVE_HALFSPACE,
-    PRIMITIVE_CYLINDER,
-    PRIMITIVE_BOX,
-    PRIMITIVE_SPHERE,
-    PRIMITIVE_MESH
-} primitive_kind;
-
 /* The files of primitives/ say what a kind is and how its faces are numbered. Meshes number theirs otherwise: see
  * forest.h. */
 typedef struct primitive {
     const struct primitive_rule *rule; /* of its kind (primitives/primitive.h); NULL for a mesh */
-    primitive_kind kind;
-    bool turned;          /* rotation is not the identity */
-    mat3 rotation;        /* local to world */
-    vec3 origin;          /* of the local frame, in the world */
-    double radius, m2;    /* cylinder x^2 + m2 z^2 <= radius^2; others (m2 = 1) */
-    double bottom, top;   /* local y; a cylinder's top may be infinite */
-    vec3 half;            /* box */
-    double second_radius; /* a second length across, of those kinds that have one */
-    int sides;            /* that are alike and stand around the axis; 0 for none */
-    const vec3 *normals;  /* of the sides; the arrangement's own */
+    bool turned;                       /* rotation is not the identity */
+    mat3 rotation;                     /* local to world */
+    vec3 origin;                       /* of the local frame, in the world */
+    double radius, m2;                 /* cylinder x^2 + m2 z^2 <= radius^2; others (m2 = 1) */
+    double bottom, top;                /* local y; a cylinder's top may be infinite */
+    vec3 half;                         /* box */
+    double second_radius;              /* a second length across, of those kinds that have one */
+    int sides;                         /* that are alike and stand around the axis; 0 for none */
+    const vec3 *normals;               /* of the sides; the arrangement's own */
     int64_t first_face;
     int rows;      /* of the scratch: from its own on, so many intervals as a ray has at most in it */
     int rank;      /* of its body */
@@ -74,6 +65,7 @@ typedef struct arrangement {
     primitive *primitives;
     int body_count;        /* ranks 1 .. body_count */
     body *bodies;          /* [0] is the surrounding medium */
+    solid_shape *shapes;   /* by rank, what the bodies were made of; [0] is none */
     double extent;         /* largest of the primitives' */
     uint64_t further;      /* rows that hold further intervals of a primitive before them */
     uint64_t opaque_ranks; /* bit r - 1: the body of rank r is opaque */

@@ -1,14 +1,46 @@
 #include "geometry/shapes/shape.h"
 
 #include "base/elementary.h"
+#include "geometry/arrangement.h"
 #include <math.h>
+#include <string.h>
 
 #define SHAPE_RULE(KIND, file) [SHAPE_##KIND] = &shape_##file,
 static const shape_rule *const rules[SHAPE_COUNT] = {SHAPES(SHAPE_RULE)};
 
 const shape_rule *shape_of_kind(shape_kind kind)
 {
-    return rules[kind];
+    return (size_t)kind < SHAPE_COUNT ? rules[kind] : NULL;
+}
+
+bool shape_named(const char *word, shape_kind *out)
+{
+    for (int k = 0; k < SHAPE_COUNT; k++) {
+        if (strcmp(rules[k]->word, word) == 0) {
+            *out = (shape_kind)k;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool shape_has(const shape_rule *rule, const char *parameter)
+{
+    for (const char *const *name = rule->parameters; name && *name; name++) {
+        if (strcmp(*name, parameter) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+const char *shape_face_name(const shape_rule *rule, int64_t face)
+{
+    const char *const *names = rule->triangles ? NULL : rule->faces[face >= HOLLOW_FACES && rule->primitive_count > 1];
+    for (int64_t i = rule->primitive_count > 1 ? face % HOLLOW_FACES : face; names && i > 0 && names[1]; i--) {
+        names++;
+    }
+    return names ? *names : "surface";
 }
 
 const shape_rule *shape_of(const solid_shape *shape)
@@ -21,10 +53,10 @@ status solid_shape_check(const solid_shape *shape, diagnostic *why)
     if (!vec3_is_finite(shape->position) || !vec3_is_finite(shape->rotation_deg)) {
         return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "position or rotation is not finite");
     }
-    if ((size_t)shape->kind >= SHAPE_COUNT) {
+    const shape_rule *rule = shape_of_kind(shape->kind);
+    if (!rule) {
         return diagnose(why, STATUS_BAD_INPUT, "", "no such shape");
     }
-    const shape_rule *rule = shape_of(shape);
     return rule->check ? rule->check(shape, why) : STATUS_OK;
 }
 

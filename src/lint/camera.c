@@ -1,5 +1,7 @@
 #include "lint/parts.h"
 
+#include "geometry/shapes/shape.h"
+
 #include <math.h>
 
 #define CAMERA_CLOSE 1e-9 /* share of the scene's extent: a camera so close to a surface is not inside */
@@ -26,13 +28,13 @@ void lint_camera(const lint_room *room)
         return;
     const solid *around = lint_solid(room, rank);
     const bool opaque = room->made->solids->bodies[rank].opaque;
-    if (opaque && around->shape.kind == SHAPE_PLANE)
+    if (opaque && shape_of(&around->shape)->unbounded)
         note_give(room->taker, "camera", "position", "move the camera to the other side of the plane",
                   "the camera is under the surface of %s, which is opaque", around->name);
     else if (opaque)
         note_give(room->taker, "camera", "position", "move the camera out of it",
                   "the camera is inside %s, which is opaque", around->name);
-    else if (around->shape.kind == SHAPE_CUP)
+    else if (shape_of(&around->shape)->hollow)
         note_give(room->taker, "camera", "position", "move the camera out of the wall, into the vessel or away from it",
                   "the camera is inside the wall of %s", around->name);
 }

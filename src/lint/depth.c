@@ -2,6 +2,7 @@
  * spent. */
 #include "lint/parts.h"
 #include "render/core/tracer.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdio.h>

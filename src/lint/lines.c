@@ -83,7 +83,7 @@ bool line_through(const arrangement *a, const body *b, const line *l, line_spans
 {
     out->count = 0;
     const primitive *p = &a->primitives[b->outside];
-    if (p->kind == PRIMITIVE_MESH)
+    if (!p->rule)
         return through_mesh(&a->meshes->parts[a->meshes->by_primitive[b->outside]], l, out);
     interval whole[CHORDS_MAX], hollow[CHORDS_MAX] = {{HUGE_VAL, HUGE_VAL}};
     const int count = primitive_chords(p, l->origin, l->direction, whole);
@@ -94,78 +94,4 @@ bool line_through(const arrangement *a, const body *b, const line *l, line_spans
         add_span(out, fmax(whole[i].in, hollow[0].out), whole[i].out);
     }
     return true;
-}
-
-static bounds3 box_about(vec3 middle, vec3 half)
-{
-    return (bounds3){vec3_sub(middle, half), vec3_add(middle, half)};
-}
-
-/* How far the mesh or box of these half lengths in a turned frame reaches along the world's axes. */
-static vec3 turned_half(const mat3 *turn, vec3 half)
-{
-    double h[3];
-    for (int k = 0; k < 3; k++)
-        h[k] = fabs(turn->row[k].x) * half.x + fabs(turn->row[k].y) * half.y + fabs(turn->row[k].z) * half.z;
-    return vec3_make(h[0], h[1], h[2]);
-}
-
-static bounds3 mesh_box(const forest_part *p)
-{
-    const bounds3 b = p->triangles->bounds;
-    const vec3 s = p->scale, n = vec3_make(p->copies[0] - 1.0, p->copies[1] - 1.0, p->copies[2] - 1.0),
-               step = p->spacing;
-    const vec3 low = vec3_make(b.low.x * s.x + fmin(0.0, n.x * step.x), b.low.y * s.y + fmin(0.0, n.y * step.y),
-                               b.low.z * s.z + fmin(0.0, n.z * step.z));
-    const vec3 high = vec3_make(b.high.x * s.x + fmax(0.0, n.x * step.x), b.high.y * s.y + fmax(0.0, n.y * step.y),
-                                b.high.z * s.z + fmax(0.0, n.z * step.z));
-    const vec3 middle = vec3_scale(vec3_add(low, high), 0.5);
-    return box_about(vec3_add(p->origin, mat3_apply(p->rotation, middle)),
-                     turned_half(&p->rotation, vec3_scale(vec3_sub(high, low), 0.5)));
-}
-
-static bounds3 cylinder_box(const primitive *p)
-{
-    const double deep = p->radius / sqrt(p->m2), half = 0.5 * (p->top - p->bottom);
-    const vec3 middle = vec3_add(p->origin, mat3_apply(p->rotation, vec3_make(0.0, p->bottom + half, 0.0)));
-    double h[3];
-    for (int k = 0; k < 3; k++)
-        h[k] = fabs(p->rotation.row[k].y) * half + hypot(p->rotation.row[k].x * p->radius, p->rotation.row[k].z * deep);
-    return box_about(middle, vec3_make(h[0], h[1], h[2]));
-}
-
-bounds3 bounds_of_body(const arrangement *a, const body *b)
-{
-    const primitive *p = &a->primitives[b->outside];
-    switch (p->kind) {
-    case PRIMITIVE_CYLINDER: return cylinder_box(p);
-    case PRIMITIVE_BOX: return box_about(p->origin, turned_half(&p->rotation, p->half));
-    case PRIMITIVE_SPHERE: return box_about(p->origin, vec3_make(p->radius, p->radius, p->radius));
-    case PRIMITIVE_MESH: return mesh_box(&a->meshes->parts[a->meshes->by_primitive[b->outside]]);
-    case PRIMITIVE_HALFSPACE: break;
-    }
-    const vec3 ever = vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL);
-    return (bounds3){vec3_scale(ever, -1.0), ever};
-}
-
-static double least_of_three(vec3 v)
-{
-    return fmin(v.x, fmin(v.y, v.z));
-}
-
-double shape_thickness(const solid_shape *shape)
-{
-    switch (shape->kind) {
-    case SHAPE_PLANE: return HUGE_VAL;
-    case SHAPE_CYLINDER: return fmin(shape->height, 2.0 * fmin(shape->radius, shape->radius / shape->m));
-    case SHAPE_CUP: return fmin((shape->radius - shape->inner_radius) * fmin(1.0, 1.0 / shape->m), shape->floor);
-    case SHAPE_BOX: return least_of_three(shape->size);
-    case SHAPE_SPHERE: return 2.0 * shape->radius;
-    case SHAPE_MESH: {
-        const double area = mesh_area(shape->mesh);
-        return area > 0.0 ? 2.0 * fabs(mesh_volume(shape->mesh)) / area * least_of_three(shape->scale) : 0.0;
-    }
-    case SHAPE_COUNT: break;
-    }
-    return 0.0;
 }

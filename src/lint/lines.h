@@ -20,11 +20,4 @@ typedef struct line_spans {
  * taken for none or two. */
 bool line_through(const arrangement *a, const body *b, const line *l, line_spans *out);
 
-/* The box around a body; infinite along the axes in which it is. */
-bounds3 bounds_of_body(const arrangement *a, const body *b);
-
-/* How thick a solid is where it is thinnest: of a cup its wall or floor, of a mesh twice its volume over its area,
- * which of a plate is its thickness, and of no convex body more than its width. */
-double shape_thickness(const solid_shape *shape);
-
 #endif

@@ -1,7 +1,9 @@
 #include "lint/lint.h"
 
+#include "geometry/shapes/shape.h"
 #include "lint/parts.h"
 #include "scene/model/hints.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,7 +13,7 @@ static bool has_meshes(const scene *s)
 {
     bool any = false;
     for (size_t i = 0; i < s->solid_count; i++)
-        any |= s->solids[i].visible && s->solids[i].shape.kind == SHAPE_MESH;
+        any |= s->solids[i].visible && shape_of(&s->solids[i].shape)->triangles;
     return any;
 }
 
@@ -29,7 +31,7 @@ static void shrink(render_settings *r, double most)
 static bool is_loaded(const scene *s)
 {
     for (size_t i = 0; i < s->solid_count; i++)
-        if (s->solids[i].visible && s->solids[i].shape.kind == SHAPE_MESH) {
+        if (s->solids[i].visible && shape_of(&s->solids[i].shape)->triangles) {
             const mesh_entry *m = scene_find_mesh(s, s->solids[i].mesh);
             if (!m || !m->data)
                 return false;

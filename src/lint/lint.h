@@ -10,6 +10,7 @@
 
 #include "base/isa.h"
 #include "scene/model/inert/note.h"
+#include "scene/model/open.h"
 
 /* Of a scene that is not loaded (scene_load) and has meshes only what it says is looked at. level: from isa_choose. */
 status lint_scene(const scene *s, isa level, const note_taker *taker, diagnostic *why);

@@ -1,6 +1,7 @@
 /* Pairs of solids along a lattice of lines through the region that both reach. What a line shows is tried again by
  * points around it before it becomes a note: a touch is no overlap, and one narrow place of two curved surfaces is
  * no gap. */
+#include "geometry/shapes/shape.h"
 #include "lint/lines.h"
 #include "lint/parts.h"
 #include "scene/model/cover.h"
@@ -313,13 +314,10 @@ status lint_neighbours(const lint_room *room, diagnostic *why)
     for (int rank = 1; there && rank <= a->body_count; rank++) {
         const body *b = &a->bodies[rank];
         const solid *said = lint_solid(room, rank);
-        solid_shape shape = said->shape;
-        if (shape.kind == SHAPE_MESH) {
-            shape.mesh = scene_find_mesh(room->of, said->mesh)->data;
-            if (!shape.mesh->closed)
-                continue; /* it contains nothing */
-        }
-        all[count++] = (neighbour){b, said, bounds_of_body(a, b), shape_thickness(&shape), rank};
+        const solid_shape shape = scene_loaded_shape(room->of, said);
+        if (shape.mesh && !shape.mesh->closed)
+            continue; /* it contains nothing */
+        all[count++] = (neighbour){b, said, shape_world_box(&shape), shape_of(&shape)->thickness(&shape), rank};
     }
     if (there)
         look_at_all(room, all, count, gap, middle);

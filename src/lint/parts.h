@@ -4,6 +4,7 @@
 
 #include "render/core/plan.h"
 #include "scene/model/inert/note.h"
+#include "scene/model/scene.h"
 
 typedef struct lint_room {
     const scene *of; /* what is looked at, as the caller has it */

@@ -6,6 +6,7 @@
 #include "realism/metrics.h"
 
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 #define ABSORPTION_TOLERANCE 1e-10 /* relative, at an optical depth of 1e-4 and more */
@@ -23,9 +24,8 @@ scene *attenuation_scene(const scene *s, const setup *at)
     const double width = 0.1 * liquid->shape.radius;
     solid *rod = &copy->solids[at->rod];
     rod->visible = 1;
-    rod->shape = (solid_shape){.kind = SHAPE_BOX,
-                               .position = {width / 2.0, liquid->shape.height / 2.0, 0.0},
-                               .size = {width, liquid->shape.height / 2.0, width}};
+    rod->shape = box_at(vec3_make(width / 2.0, liquid->shape.height / 2.0, 0.0),
+                        vec3_make(width, liquid->shape.height / 2.0, width));
     if (!material_absorbs(&liquid->surface)) {
         const double one = 1.0 / (liquid->shape.radius * s->render.unit_m);
         liquid->surface.absorb_per_m = vec3_make(one, one / 2.0, one / 4.0);

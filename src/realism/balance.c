@@ -4,6 +4,7 @@
  *
  * Tolerance: half a unit of the film, 2.9e-14, for each of the up to 512 rays of a tree that end in the sky. */
 #include "realism/metrics.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 

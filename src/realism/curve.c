@@ -1,6 +1,7 @@
 #include "realism/metrics.h"
 
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 #define DEGREE (M_PI / 180.0)

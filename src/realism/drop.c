@@ -3,7 +3,10 @@
  * the light. */
 #include "realism/metrics.h"
 
+#include "geometry/shapes/shape.h"
+
 #include "optics/media.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +15,7 @@
 static int drop_of(const scene *s)
 {
     for (size_t i = 0; i < s->solid_count; i++)
-        if (strncmp(s->solids[i].name, "drop", 4) == 0 && s->solids[i].shape.kind == SHAPE_SPHERE)
+        if (strncmp(s->solids[i].name, "drop", 4) == 0 && shape_of(&s->solids[i].shape)->isotropic)
             return (int)i;
     return -1;
 }

@@ -5,6 +5,7 @@
  * units, which at a few hundred px a unit is as much; times the lens's own magnification of errors towards its rim. */
 #include "realism/metrics.h"
 #include "realism/level_section.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 
@@ -144,11 +145,7 @@ static scene *round_rod(const metrics *m, double radius, double distance)
     const double height = m->at.high - m->at.low, middle = (m->at.low + m->at.high) / 2.0;
     solid *rod = &s->solids[m->at.rod];
     rod->visible = 1;
-    rod->shape = (solid_shape){.kind = SHAPE_CYLINDER,
-                               .position = {m->at.x, m->at.low + height / 4.0, m->at.z},
-                               .radius = radius,
-                               .height = height / 2.0,
-                               .m = 1.0};
+    rod->shape = cylinder_at(vec3_make(m->at.x, m->at.low + height / 4.0, m->at.z), radius, height / 2.0);
     s->camera = (struct camera){.position = {m->at.x, middle, m->at.z - distance}, .fov_deg = 45.0};
     return s;
 }

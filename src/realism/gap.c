@@ -6,6 +6,7 @@
  * the critical angle, where R has an infinite slope, the root of a rounding times the angle's distance from it, a
  * degree at the least. */
 #include "realism/metrics.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 
@@ -20,16 +21,16 @@ static scene *gap_scene(const scene *s, const setup *at, double gap, bool far_so
     solid *above = &copy->solids[at->vessel], *shining = &copy->solids[at->rod];
     above->visible = shining->visible = 1;
     above->priority = 2, shining->priority = 0;
-    above->shape = (solid_shape){.kind = SHAPE_BOX, .position = {0.0, 0.5, 0.0}, .size = {100.0, 1.0, 100.0}};
+    above->shape = box_at(vec3_make(0.0, 0.5, 0.0), vec3_make(100.0, 1.0, 100.0));
     above->surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
     above->surface.absorb_spectrum.count = 0;
-    shining->shape = (solid_shape){.kind = SHAPE_PLANE, .position = {0.0, -gap, 0.0}};
+    shining->shape = ground_at(-gap);
     shining->surface = (material){.color = {1.0, 1.0, 1.0}, .ambient = 1.0, .ior = 1.0};
     if (far_solid) {
         solid *far = &copy->solids[at->liquid];
         far->visible = 1;
         far->priority = 9;
-        far->shape = (solid_shape){.kind = SHAPE_SPHERE, .position = {0.0, 1e5, 0.0}, .radius = 1.0};
+        far->shape = ball_at(vec3_make(0.0, 1e5, 0.0), 1.0);
     }
     copy->background.ambient = vec3_make(1.0, 1.0, 1.0);
     copy->background.kind = BACKGROUND_UNIFORM;

@@ -9,6 +9,7 @@
 #include "optics/media.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 #define ANGLE_TOLERANCE 1e-11

@@ -1,4 +1,5 @@
 #include "realism/level_section.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 

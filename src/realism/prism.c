@@ -5,6 +5,7 @@
 #include "realism/metrics.h"
 
 #include "optics/media.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 #define ANGLE_TOLERANCE 1e-12 /* rad */

@@ -7,6 +7,7 @@
 #include "realism/metrics.h"
 
 #include "scene/model/edit/edit.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 #define RADIANCE_TOLERANCE 1e-11
@@ -25,11 +26,11 @@ static scene *pond(const scene *s, const setup *at, look which)
     solid *water = &copy->solids[at->liquid], *ground = &copy->solids[at->rod];
     water->visible = 1, ground->visible = which != LOOK_SKY;
     water->priority = 1, ground->priority = 2;
-    water->shape = (solid_shape){.kind = SHAPE_BOX, .position = {0.0, 0.0, 0.0}, .size = {1e4, 2.0, 1e4}};
+    water->shape = box_at(vec3_make(0.0, 0.0, 0.0), vec3_make(1e4, 2.0, 1e4));
     water->surface.ambient = water->surface.diffuse = water->surface.specular = 0.0; /* no light of the surface's own */
     water->surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
     water->surface.absorb_spectrum.count = 0;
-    ground->shape = (solid_shape){.kind = SHAPE_PLANE};
+    ground->shape = ground_at(0.0);
     ground->surface = (material){.color = {1.0, 1.0, 1.0}, .ior = 1.0};
     *(which == LOOK_LAMP ? &ground->surface.diffuse : &ground->surface.ambient) = 1.0;
     copy->background.ambient = vec3_make(1.0, 1.0, 1.0);

@@ -20,7 +20,7 @@
 
 #include "base/isa.h"
 #include "base/status.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include <stdbool.h>
 
 typedef struct realism_value {

@@ -1,6 +1,7 @@
 #include "realism/setup.h"
 
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 static status wrong(const scene *s, diagnostic *why, const char *remedy, const char *what)
@@ -158,12 +159,32 @@ scene *arrange_vessel(const scene *s, const setup *at)
     return copy;
 }
 
+solid_shape ground_at(double y)
+{
+    return (solid_shape){.kind = SHAPE_PLANE, .position = {0.0, y, 0.0}};
+}
+
+solid_shape box_at(vec3 position, vec3 size)
+{
+    return (solid_shape){.kind = SHAPE_BOX, .position = position, .size = size};
+}
+
+solid_shape ball_at(vec3 position, double radius)
+{
+    return (solid_shape){.kind = SHAPE_SPHERE, .position = position, .radius = radius};
+}
+
+solid_shape cylinder_at(vec3 position, double radius, double height)
+{
+    return (solid_shape){.kind = SHAPE_CYLINDER, .position = position, .radius = radius, .height = height, .m = 1.0};
+}
+
 static void lay(scene *s, int which, double top, int priority)
 {
     if (which < 0)
         return;
     solid *one = &s->solids[which];
-    one->shape = (solid_shape){.kind = SHAPE_PLANE, .position = {0.0, top, 0.0}};
+    one->shape = ground_at(top);
     one->priority = priority;
     one->visible = 1;
 }

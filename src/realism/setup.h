@@ -3,8 +3,9 @@
 #ifndef CUVETTE_REALISM_SETUP_H
 #define CUVETTE_REALISM_SETUP_H
 
+#include "geometry/solid.h"
 #include "realism/theory.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef enum setup_medium { SETUP_OUTSIDE, SETUP_VESSEL, SETUP_LIQUID, SETUP_MEDIA } setup_medium;
 
@@ -20,6 +21,13 @@ typedef struct setup {
 status setup_read(const scene *s, setup *out, diagnostic *why);
 
 theory_shells setup_shells(const setup *at);
+
+/* The shapes that closed forms are about, upright: a half-space below y; boxes and balls about their centre; a round
+ * cylinder above the middle of its base. */
+solid_shape ground_at(double y);
+solid_shape box_at(vec3 position, vec3 size);
+solid_shape ball_at(vec3 position, double radius);
+solid_shape cylinder_at(vec3 position, double radius, double height);
 
 /* Takes off what the closed forms know nothing of: clear solids' tints, and their coatings under Fresnel's weights. */
 void arrange_bare(scene *s);

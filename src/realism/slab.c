@@ -5,6 +5,7 @@
  *
  * Tolerance: some film units, 5.7e-14 each, and a few roundings. */
 #include "realism/metrics.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 
@@ -19,10 +20,10 @@ static scene *slab_scene(const scene *s, const setup *at, int depth, bool polari
         return NULL;
     solid *slab = &copy->solids[at->vessel], *shining = &copy->solids[at->rod];
     slab->visible = shining->visible = 1;
-    slab->shape = (solid_shape){.kind = SHAPE_BOX, .size = {10.0, 0.1, 10.0}};
+    slab->shape = box_at(vec3_make(0.0, 0.0, 0.0), vec3_make(10.0, 0.1, 10.0));
     slab->surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
     slab->surface.absorb_spectrum.count = 0;
-    shining->shape = (solid_shape){.kind = SHAPE_PLANE, .position = {0.0, -1.0, 0.0}};
+    shining->shape = ground_at(-1.0);
     shining->surface = (material){.color = {1.0, 1.0, 1.0}, .ambient = 1.0, .ior = 1.0};
     copy->background.ambient = vec3_make(1.0, 1.0, 1.0);
     copy->background.kind = BACKGROUND_UNIFORM;

@@ -6,6 +6,7 @@
 
 #include "realism/setup.h"
 #include "realism/theory.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 #define WEIGHT_TOLERANCE 1e-13

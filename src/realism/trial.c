@@ -1,6 +1,7 @@
 #include "realism/metrics.h"
 
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 status trial_start(trial *t, scene *taken, isa level, diagnostic *why)

@@ -1,4 +1,5 @@
 #include "realism/view.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 

@@ -4,7 +4,7 @@
 #ifndef CUVETTE_REALISM_VIEW_H
 #define CUVETTE_REALISM_VIEW_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef struct view {
     double x, y, z;       /* of the eye */

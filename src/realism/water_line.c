@@ -6,6 +6,7 @@
  * Tolerance: edges are good to 1e-11 px; over a secant of 50 px that is 1e-11 degrees. */
 #include "realism/metrics.h"
 #include "realism/view.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 
@@ -26,13 +27,13 @@ static scene *leaning_rod(const scene *s, const setup *at)
     solid *rod = &copy->solids[at->rod];
     rod->visible = 1;
     rod->priority = 2;
-    rod->shape = (solid_shape){
-        .kind = SHAPE_BOX, .rotation_deg = {0.0, 0.0, -LEAN_DEG}, .size = {ROD_WIDTH, ROD_LENGTH, ROD_WIDTH}};
+    rod->shape = box_at(vec3_make(0.0, 0.0, 0.0), vec3_make(ROD_WIDTH, ROD_LENGTH, ROD_WIDTH));
+    rod->shape.rotation_deg.z = -LEAN_DEG;
     if (at->liquid >= 0) {
         solid *water = &copy->solids[at->liquid];
         water->visible = 1;
         water->priority = 1;
-        water->shape = (solid_shape){.kind = SHAPE_PLANE};
+        water->shape = ground_at(0.0);
     }
     copy->camera =
         (struct camera){.position = {0.0, 3.0, -2.5}, .target = {0.0, 0.0, 0.0}, .aimed = 1, .fov_deg = 30.0};

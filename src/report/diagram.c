@@ -1,4 +1,7 @@
 #include "report/diagram_parts.h"
+
+#include "geometry/shapes/shape.h"
+#include "scene/model/solids.h"
 #include <stdlib.h>
 
 void diagram_include(diagram_box *box, const section_plane *plane, vec3 p)
@@ -16,20 +19,14 @@ bool diagram_box_is_empty(const diagram_box *box)
 void diagram_include_solid(diagram_box *box, const section_plane *plane, const solid *one)
 {
     const solid_shape *shape = &one->shape;
-    vec3 half = vec3_make(shape->radius, shape->radius, shape->radius), middle = vec3_make(0, 0, 0);
-    switch (shape->kind) {
-    case SHAPE_CYLINDER:
-    case SHAPE_CUP: half.z /= shape->m, half.y = middle.y = 0.5 * shape->height; break;
-    case SHAPE_BOX: half = vec3_scale(shape->size, 0.5); break;
-    case SHAPE_SPHERE: break;
-    case SHAPE_PLANE:
-    case SHAPE_MESH:
-    case SHAPE_COUNT: return;
-    }
+    const shape_rule *rule = shape_of(shape);
+    if (rule->unbounded || rule->triangles)
+        return;
+    const bounds3 b = rule->extent(shape).box;
     const mat3 rotation = rotation_from_deg(shape->rotation_deg);
     for (int k = 0; k < 8; k++) {
-        const vec3 corner = vec3_make(middle.x + (k & 1 ? half.x : -half.x), middle.y + (k & 2 ? half.y : -half.y),
-                                      middle.z + (k & 4 ? half.z : -half.z));
+        const vec3 corner =
+            vec3_make(k & 1 ? b.high.x : b.low.x, k & 2 ? b.high.y : b.low.y, k & 4 ? b.high.z : b.low.z);
         diagram_include(box, plane, vec3_add(shape->position, mat3_apply(rotation, corner)));
     }
 }

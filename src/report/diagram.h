@@ -7,6 +7,7 @@
 #define CUVETTE_REPORT_DIAGRAM_H
 
 #include "render/inspect/section.h"
+#include "scene/model/solids.h"
 #include <stdio.h>
 
 /* A box in the plane's coordinates that grows; empty while u0 > u1. */

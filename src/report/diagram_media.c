@@ -2,6 +2,7 @@
 #include "report/diagram_parts.h"
 #include "scene/model/medium.h"
 #include "image/image.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

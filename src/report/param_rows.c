@@ -1,4 +1,6 @@
+#include "geometry/solid.h"
 #include "report/param_rows.h"
+#include "geometry/shapes/shape.h"
 #include "report/json.h"
 #include "report/param_lines.h"
 #include "report/report.h"
@@ -108,11 +110,11 @@ static json_t *choices(const param *row)
 
 static json_t *shapes(const param *row)
 {
-    static const char *const names[SHAPE_COUNT] = {"plane", "cylinder", "cup", "box", "sphere", "mesh"};
     json_t *list = json_array();
-    for (int i = 0; list && i < SHAPE_COUNT; i++)
-        if (row->shapes == 0 || (row->shapes & 1u << i))
-            json_array_append_new(list, json_string(names[i]));
+    const shape_rule *rule;
+    for (int i = 0; list && (rule = shape_of_kind((shape_kind)i)); i++)
+        if (!row->by_shape || shape_has(rule, row->name))
+            json_array_append_new(list, json_string(rule->word));
     return list;
 }
 

@@ -3,6 +3,7 @@
 #include "report/param_lines.h"
 #include "base/number.h"
 #include "measure/statistics.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

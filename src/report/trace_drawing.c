@@ -2,6 +2,7 @@
 #include "report/diagram.h"
 #include "report/svg.h"
 #include "report/trace_writers.h"
+#include "scene/model/scene.h"
 
 /* Rays lighter than this share of the root's are not drawn. */
 #define LIGHTEST 0.002

@@ -1,5 +1,6 @@
 #include "report/json.h"
 #include "report/trace_writers.h"
+#include "scene/model/scene.h"
 
 static void write_list(FILE *out, const char *key, const double *values, int count)
 {

@@ -1,5 +1,6 @@
 #include "report/trace_writers.h"
 #include "base/elementary.h"
+#include "scene/model/open.h"
 #include <math.h>
 
 const char *const trace_kind_words[] = {"camera", "reflect", "refract", "shadow"};
@@ -21,9 +22,9 @@ static double angle_deg(double cosine)
 
 static void write_hit(const traced *t, FILE *out, const ray_hit *h)
 {
-    fprintf(out, "  %s %s  t %.9g", t->s->solids[h->solid].name, probe_face_name(t->p, h), h->t);
+    fprintf(out, "  %s %s  t %.9g", scene_solid_name(t->s, h->solid), probe_face_name(t->p, h), h->t);
     if (h->face_solid != h->solid)
-        fprintf(out, " (a face of %s)", t->s->solids[h->face_solid].name);
+        fprintf(out, " (a face of %s)", scene_solid_name(t->s, h->face_solid));
     if (h->opaque) {
         fprintf(out, "  %.4f deg, opaque, reflects %.6g", angle_deg(h->cos_i), h->R);
     } else {
@@ -46,7 +47,7 @@ static void write_line(const traced *t, FILE *out, const ray_node *node, int ind
             probe_medium_name(t->p, node->medium), node->n);
     write_channels(out, node->throughput);
     if (node->light >= 0)
-        fprintf(out, "  to %s at %.9g", t->s->lights[node->light].name, node->light_distance);
+        fprintf(out, "  to %s at %.9g", scene_light_name(t->s, node->light), node->light_distance);
     fprintf(out, "  %s", trace_end_words[node->end]);
     if (node->end == RAY_END_LIT)
         fprintf(out, ", let through %.6g", node->let_through);

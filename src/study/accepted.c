@@ -7,6 +7,7 @@
 #include "study/meaning.h"
 #include "study/recorded.h"
 #include "study/reference.h"
+#include "scene/model/open.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,7 +62,7 @@ static void look_into_manifest(accepted *a, const char *path)
         snprintf(a->why_not, sizeof a->why_not, "no manifest.json beside them says what they mean");
         return;
     }
-    if (manifest_read(path, a->s->base->limits.root, &recorded, &why) != STATUS_OK) {
+    if (manifest_read(path, scene_root(a->s->base), &recorded, &why) != STATUS_OK) {
         snprintf(a->why_not, sizeof a->why_not, "%.300s", why.what);
         return;
     }

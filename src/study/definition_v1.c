@@ -1,7 +1,9 @@
 #include "study/definition_v1.h"
 #include "base/hash.h"
+#include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
 #include "study/grid.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,15 +26,14 @@ static const char *const names[PARAM_GROUP_COUNT] = {
 
 /* Its shapes by their numbers, and what each had besides. */
 static const struct {
-    shape_kind kind;
-    const char *names;
+    const char *word, *names;
 } shapes[] = {
-    {SHAPE_PLANE, ""},
-    {SHAPE_CYLINDER, "radius height m"},
-    {SHAPE_CUP, "radius height inner_radius floor"},
-    {SHAPE_BOX, "size"},
-    {SHAPE_SPHERE, "radius"},
-    {SHAPE_MESH, "mesh scale copies spacing shading"},
+    {"plane", ""},
+    {"cylinder", "radius height m"},
+    {"cup", "radius height inner_radius floor"},
+    {"box", "size"},
+    {"sphere", "radius"},
+    {"mesh", "mesh scale copies spacing shading"},
 };
 
 typedef struct visit_state {
@@ -54,7 +55,7 @@ static bool is_word_of(const char *word, const char *words)
 static int shape_number(const solid *of)
 {
     for (int i = 0; i < (int)(sizeof shapes / sizeof *shapes); i++)
-        if (shapes[i].kind == of->shape.kind)
+        if (strcmp(shapes[i].word, shape_name(of->shape.kind)) == 0)
             return i;
     return -1;
 }

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "scene/model/looks.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -8,6 +8,7 @@
 #include "study/grid.h"
 #include "study/provenance.h"
 #include "study/rows.h"
+#include "scene/model/open.h"
 #include <fcntl.h>
 #include <hwloc.h>
 #include <inttypes.h>
@@ -149,7 +150,7 @@ static status load(const study *s, const char *path, const topology *machine, js
     size_t size;
     *out = NULL;
     if (access(path, F_OK) == 0) {
-        status code = file_read_below(path, s->base->limits.root, MANIFEST_BYTES_MAX, &text, &size, why);
+        status code = file_read_below(path, scene_root(s->base), MANIFEST_BYTES_MAX, &text, &size, why);
         if (code != STATUS_OK)
             return code;
         *out = json_loadb(text, size, 0, NULL);

@@ -6,6 +6,7 @@
 #include "softbody/trials.h"
 #include "study/cell_table.h"
 #include "study/grid.h"
+#include "scene/model/scene.h"
 
 status motion_table_check(const study *s, diagnostic *why)
 {

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "study/grid.h"
+#include "scene/model/scene.h"
 #include <inttypes.h>
 #include <jansson.h>
 #include <math.h>

@@ -5,6 +5,7 @@
 #include "study/compare_rows.h"
 #include "study/row_check.h"
 #include "study/rows.h"
+#include "scene/model/open.h"
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -93,7 +94,7 @@ static status add_file(row_files *files, const study *s, char *path, diagnostic 
     if (!path)
         return out_of_memory(why);
     csv *table;
-    status code = csv_read_below(path, s->base->limits.root, &table, why);
+    status code = csv_read_below(path, scene_root(s->base), &table, why);
     if (code != STATUS_OK || !table) {
         free(path);
         return code;

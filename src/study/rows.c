@@ -1,6 +1,7 @@
 #include "study/rows.h"
 #include "base/text.h"
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

@@ -4,6 +4,7 @@
 #include "study/keep.h"
 #include "study/row_files.h"
 #include "study/run_state.h"
+#include "scene/model/open.h"
 
 status run_find_compared(run *r, diagnostic *why)
 {
@@ -72,7 +73,7 @@ static status hold_reference(run *r, size_t cell, diagnostic *why)
         code = reference_scene_hash(setting, &hash);
     if (code == STATUS_OK && (!r->held.picture || r->held.scene_hash != hash)) {
         reference_release(&r->held);
-        code = reference_load(r->folder, r->s->base->limits.root, hash, &r->held, why);
+        code = reference_load(r->folder, scene_root(r->s->base), hash, &r->held, why);
         if (code == STATUS_OK && !r->held.picture)
             code = render_reference(r, setting, &r->held, why);
         if (code != STATUS_OK)

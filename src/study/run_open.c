@@ -2,6 +2,7 @@
 #include "study/manifest.h"
 #include "study/row_files.h"
 #include "study/run_state.h"
+#include "scene/model/open.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +11,7 @@
 static status set_orphans_aside(run *r, const csv *rows, const char *path, diagnostic *why)
 {
     csv *workers = NULL;
-    status code = csv_read_below(path, r->s->base->limits.root, &workers, why);
+    status code = csv_read_below(path, scene_root(r->s->base), &workers, why);
     if (code != STATUS_OK || !workers || !workers->header) {
         csv_destroy(workers);
         return code;
@@ -44,7 +45,7 @@ static status open_tables(run *r, diagnostic *why)
     char *path = NULL, *workers_path = NULL, *compare_path = NULL;
     csv *rows = NULL;
     status code = open_table(r, ROWS, &r->rows, &path, why);
-    if (code == STATUS_OK && (code = csv_read_below(path, r->s->base->limits.root, &rows, why)) == STATUS_OK && rows)
+    if (code == STATUS_OK && (code = csv_read_below(path, scene_root(r->s->base), &rows, why)) == STATUS_OK && rows)
         r->row_number = rows->row_count;
     if (code == STATUS_OK && r->s->keep_workers)
         code = open_table(r, WORKER_ROWS, &r->workers, &workers_path, why);

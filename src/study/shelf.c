@@ -1,4 +1,5 @@
 #include "study/shelf.h"
+#include "scene/model/scene.h"
 
 void shelf_clear(shelf *s)
 {

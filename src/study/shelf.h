@@ -4,7 +4,7 @@
 #ifndef CUVETTE_STUDY_SHELF_H
 #define CUVETTE_STUDY_SHELF_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 enum { SHELF_SCENES = 64 };
 #define SHELF_TRIANGLES \

@@ -7,7 +7,7 @@
 #define CUVETTE_STUDY_STUDY_H
 
 #include "base/status.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>

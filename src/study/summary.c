@@ -5,6 +5,7 @@
 #include "study/compare_rows.h"
 #include "study/row_files.h"
 #include "study/rows.h"
+#include "scene/model/scene.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>

@@ -5,6 +5,7 @@
 #include "web/page.h"
 #include "web/session/pins.h"
 #include "web/session/studies.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <string.h>

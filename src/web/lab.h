@@ -7,7 +7,7 @@
 #define CUVETTE_WEB_LAB_H
 
 #include "base/isa.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef struct lab lab;
 

@@ -2,6 +2,7 @@
 #ifndef CUVETTE_WEB_LAB_PRIVATE_H
 #define CUVETTE_WEB_LAB_PRIVATE_H
 
+#include "base/vec3.h"
 #include "web/session/desk.h"
 #include "web/session/folder.h"
 #include "web/session/gate.h"
@@ -9,6 +10,7 @@
 #include "web/lab.h"
 #include "web/live/painter.h"
 #include <pthread.h>
+#include <stdint.h>
 
 typedef struct pins pins;       /* web/session/pins.h */
 typedef struct studies studies; /* web/session/studies.h */

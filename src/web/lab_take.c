@@ -2,6 +2,7 @@
 #include "web/lab_private.h"
 #include "base/text.h"
 #include "scene/model/camera.h"
+#include "scene/model/open.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -101,5 +102,5 @@ void lab_camera_ray(const scene *s, double x, double y, vec3 *origin, vec3 *dire
 {
     const camera_frame f = camera_frame_of(s);
     *origin = f.eye;
-    *direction = camera_direction(&f, &s->render, x, y);
+    *direction = camera_direction(&f, scene_settings(s), x, y);
 }

@@ -3,11 +3,9 @@
  * radius - inner_radius thick along x, and 1 / m of that along z. */
 #include "geometry/shapes/parts.h"
 
-#include <math.h>
-
 static status check(const solid_shape *shape, diagnostic *why)
 {
-    status code = check_cylinder(shape, why);
+    status code = cylinder_check(shape, why);
     if (code == STATUS_OK) {
         code = check_length(shape->inner_radius, "inner_radius", why);
     }
@@ -41,10 +39,74 @@ static void primitives(const solid_shape *shape, primitive *out)
     out[1] = cylinder_placed(shape, shape->inner_radius, shape->floor, HUGE_VAL);
 }
 
+static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
+{
+    return level_faces((const double[]){0.0, shape->height, shape->floor}, 3, i, normal, point);
+}
+
+/* Clear of the hollow: below the floor, or to one side of it. */
+static bool avoids_hollow(const placed_shape *cover, const placed_shape *hidden)
+{
+    const solid_shape *cup = &cover->shape;
+    const vec3 up = placed_axis(&cover->turn, 1);
+    if (is_within(placed_farthest(hidden, up), vec3_dot(up, cup->position) + cup->floor, cup->height)) {
+        return true;
+    }
+    const vec3 local = mat3_apply_transposed(cover->turn, vec3_sub(hidden->shape.position, cup->position));
+    const double r = hypot(local.x, local.z);
+    if (r == 0.0) {
+        return false;
+    }
+    const vec3 out = mat3_apply(cover->turn, vec3_make(local.x / r, 0.0, local.z / r));
+    const double hollow = cup->inner_radius * hypot(local.x / r, local.z / (r * cup->m));
+    return is_within(placed_farthest(hidden, vec3_scale(out, -1.0)), -vec3_dot(out, cup->position) - hollow,
+                     cup->radius);
+}
+
+static bool covers(const placed_shape *cover, const placed_shape *hidden)
+{
+    return cylinder_covers(cover, hidden) && avoids_hollow(cover, hidden);
+}
+
+/* Its wall or its floor. */
+static double thickness(const solid_shape *shape)
+{
+    return fmin((shape->radius - shape->inner_radius) * fmin(1.0, 1.0 / shape->m), shape->floor);
+}
+
+static void fit(solid_shape *shape, double size)
+{
+    cylinder_fit(shape, size);
+    shape->inner_radius = 0.9 * shape->radius;
+    shape->floor = 0.1 * size;
+}
+
+/* Its outside, whose top is a ring; and the wall and the floor of its hollow. */
+static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
+{
+    const double r = shape->radius, inner = shape->inner_radius, low = shape->floor, h = shape->height;
+    const profile_point outside[4] = {{0.0, 0.0}, {r, 0.0}, {r, h}, {inner, h}};
+    const profile_point hollow[3] = {{0.0, low}, {inner, low}, {inner, h}};
+    return part == 0 ? tessellate_lathe(outside, 4, out, why) : tessellate_lathe(hollow, 3, out, why);
+}
+
 const shape_rule shape_cup = {
     .word = "cup",
+    .parameters = WORDS("radius", "height", "m", "inner_radius", "floor"),
+    .hollow = true,
+    .curved = true,
     .check = check,
     .contains = contains,
     .primitive_count = 2,
     .primitives = primitives,
+    .faces = {WORDS("outer side", "bottom", "rim"), WORDS("inner side", "floor", "rim")},
+    .flat = flat,
+    .extent = cylinder_extent,
+    .farthest = cylinder_farthest,
+    .farthest_from = cylinder_farthest_from,
+    .covers = covers,
+    .thickness = thickness,
+    .fit = fit,
+    .tessellation = tessellation,
+    .tessellation_scale = cylinder_tessellation_scale,
 };

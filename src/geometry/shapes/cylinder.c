@@ -1,15 +1,120 @@
-/* cylinder: x^2 + m^2 z^2 <= radius^2, 0 <= y <= height. Its position is the centre of its base. */
+/* cylinder: x^2 + m^2 z^2 <= radius^2, 0 <= y <= height. Its position is the centre of its base. What a cup's outside
+ * shares with it stands here, too. */
 #include "geometry/shapes/parts.h"
+
+PRIMITIVE_RULE(cylinder);
+
+status cylinder_check(const solid_shape *shape, diagnostic *why)
+{
+    status code = check_length(shape->radius, "radius", why);
+    if (code == STATUS_OK) {
+        code = check_length(shape->height, "height", why);
+    }
+    return code == STATUS_OK ? check_length(shape->m, "m", why) : code;
+}
+
+bool cylinder_contains(const solid_shape *shape, vec3 p)
+{
+    const double m = shape->m, r = shape->radius;
+    return p.x * p.x + m * m * p.z * p.z <= r * r && p.y >= 0.0 && p.y <= shape->height;
+}
+
+primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top)
+{
+    primitive p = primitive_placed(shape, &cylinder_rule, shape->height + radius);
+    p.radius = radius;
+    p.m2 = shape->m * shape->m;
+    p.bottom = bottom;
+    p.top = top;
+    if (p.m2 < 1.0) { /* the long axis is radius / m */
+        p.extent += radius / shape->m;
+    }
+    return p;
+}
 
 static void primitives(const solid_shape *shape, primitive *out)
 {
     out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
 }
 
+static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
+{
+    return level_faces((const double[]){0.0, shape->height}, 2, i, normal, point);
+}
+
+shape_extent cylinder_extent(const solid_shape *shape)
+{
+    const double r = shape->radius, deep = r / shape->m;
+    return (shape_extent){{vec3_make(-r, 0.0, -deep), vec3_make(r, shape->height, deep)},
+                          hypot(r / fmin(shape->m, 1.0), 0.5 * shape->height)};
+}
+
+double cylinder_farthest(const solid_shape *shape, vec3 d)
+{
+    return fmax(0.0, shape->height * d.y) + shape->radius * hypot(d.x, d.z / shape->m);
+}
+
+/* Exact around a point if it is round, and about an axis if it is round and stands along it; else too far rather than
+ * too near. */
+double cylinder_farthest_from(const placed_shape *placed, const round_frame *f)
+{
+    const solid_shape *s = &placed->shape;
+    const double wide = s->radius * fmax(1.0, 1.0 / s->m);
+    if (f->from_point) {
+        const vec3 p = mat3_apply_transposed(placed->turn, vec3_sub(f->origin, s->position));
+        return hypot(hypot(p.x, p.z) + wide, fmax(fabs(p.y), fabs(p.y - s->height)));
+    }
+    const vec3 top = vec3_add(s->position, vec3_scale(placed_axis(&placed->turn, 1), s->height));
+    return fmax(round_distance(f, s->position), round_distance(f, top)) + wide * fmax(1.0, f->m);
+}
+
+bool cylinder_covers(const placed_shape *cover, const placed_shape *hidden)
+{
+    const solid_shape *c = &cover->shape;
+    const round_frame frame = {c->position, cover->turn, c->m, false};
+    return placed_is_between(cover, hidden, 1, 0.0, c->height) &&
+           is_within(placed_farthest_from(hidden, &frame), c->radius, c->radius);
+}
+
+static double thickness(const solid_shape *shape)
+{
+    return fmin(shape->height, 2.0 * fmin(shape->radius, shape->radius / shape->m));
+}
+
+void cylinder_fit(solid_shape *shape, double size)
+{
+    shape->radius = 0.5 * size;
+    shape->height = size;
+}
+
+static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
+{
+    (void)part;
+    const double r = shape->radius, h = shape->height;
+    return tessellate_lathe((const profile_point[]){{0.0, 0.0}, {r, 0.0}, {r, h}, {0.0, h}}, 4, out, why);
+}
+
+vec3 cylinder_tessellation_scale(const solid_shape *shape)
+{
+    return vec3_make(1.0, 1.0, 1.0 / shape->m);
+}
+
 const shape_rule shape_cylinder = {
     .word = "cylinder",
-    .check = check_cylinder,
+    .parameters = WORDS("radius", "height", "m"),
+    .curved = true,
+    .check = cylinder_check,
     .contains = cylinder_contains,
     .primitive_count = 1,
     .primitives = primitives,
+    .faces = {WORDS("side", "bottom", "top")},
+    .flat = flat,
+    .extent = cylinder_extent,
+    .farthest = cylinder_farthest,
+    .farthest_from = cylinder_farthest_from,
+    .covers = cylinder_covers,
+    .thickness = thickness,
+    .fit = cylinder_fit,
+    .tessellation = tessellation,
+    .tessellation_scale = cylinder_tessellation_scale,
 };

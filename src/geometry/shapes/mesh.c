@@ -2,8 +2,6 @@
  * one is a skin, which contains nothing. Copies may touch but not overlap, and a mesh's own parts neither. */
 #include "geometry/shapes/parts.h"
 
-#include <math.h>
-
 static bool is_whole(double value)
 {
     return value >= 1.0 && value <= COPIES_MAX && value == floor(value);
@@ -35,13 +33,110 @@ static double reach(const solid_shape *shape)
 
 static void primitives(const solid_shape *shape, primitive *out)
 {
-    out[0] = primitive_placed(shape, PRIMITIVE_MESH, NULL, reach(shape));
+    out[0] = primitive_placed(shape, NULL, reach(shape));
+}
+
+static vec3 times(vec3 a, vec3 b)
+{
+    return vec3_make(a.x * b.x, a.y * b.y, a.z * b.z);
+}
+
+/* From the first copy to the last one. */
+static vec3 copies_reach(const solid_shape *shape)
+{
+    return times(vec3_sub(shape->copies, vec3_make(1.0, 1.0, 1.0)), shape->spacing);
+}
+
+/* One triangle each, of the first copy. */
+static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
+{
+    if (i >= shape->mesh->triangle_count) {
+        return false;
+    }
+    vec3 corner[3];
+    for (int k = 0; k < 3; k++) {
+        corner[k] = times(shape->mesh->vertices[shape->mesh->triangles[i].corner[k]], shape->scale);
+    }
+    *normal = vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0]));
+    *point = corner[0];
+    return true;
+}
+
+static shape_extent extent(const solid_shape *shape)
+{
+    const vec3 more = copies_reach(shape);
+    bounds3 b = {times(shape->mesh->bounds.low, shape->scale), times(shape->mesh->bounds.high, shape->scale)};
+    b.low = vec3_add(b.low, vec3_make(fmin(more.x, 0.0), fmin(more.y, 0.0), fmin(more.z, 0.0)));
+    b.high = vec3_add(b.high, vec3_make(fmax(more.x, 0.0), fmax(more.y, 0.0), fmax(more.z, 0.0)));
+    return (shape_extent){b, 0.5 * vec3_length(vec3_sub(b.high, b.low))};
+}
+
+/* The most that measure gives of the vertices of the copies at the corners, whose hull is that of all. */
+typedef double point_measure(const void *context, vec3 local);
+
+static double most_of_vertices(const solid_shape *s, point_measure *measure, const void *context)
+{
+    if (!s->mesh) {
+        return INFINITY;
+    }
+    const vec3 more = copies_reach(s);
+    double most = -INFINITY;
+    for (int i = 0; i < 8; i++) {
+        const vec3 offset = vec3_make(i & 1 ? more.x : 0.0, i & 2 ? more.y : 0.0, i & 4 ? more.z : 0.0);
+        if ((i & 1 && s->copies.x == 1.0) || (i & 2 && s->copies.y == 1.0) || (i & 4 && s->copies.z == 1.0)) {
+            continue;
+        }
+        for (size_t k = 0; k < s->mesh->vertex_count; k++) {
+            most = fmax(most, measure(context, vec3_add(times(s->mesh->vertices[k], s->scale), offset)));
+        }
+    }
+    return most;
+}
+
+static double along(const void *direction, vec3 local)
+{
+    return vec3_dot(*(const vec3 *)direction, local);
+}
+
+static double farthest(const solid_shape *shape, vec3 direction)
+{
+    return most_of_vertices(shape, along, &direction);
+}
+
+typedef struct around {
+    const placed_shape *placed;
+    const round_frame *frame;
+} around;
+
+static double distance(const void *context, vec3 local)
+{
+    const around *a = context;
+    return round_distance(a->frame, vec3_add(a->placed->shape.position, mat3_apply(a->placed->turn, local)));
+}
+
+static double farthest_from(const placed_shape *placed, const round_frame *frame)
+{
+    return most_of_vertices(&placed->shape, distance, &(around){placed, frame});
+}
+
+/* Twice the volume over the area: of a plate its thickness, and of no convex body more than its width. */
+static double thickness(const solid_shape *shape)
+{
+    const double area = mesh_area(shape->mesh);
+    return area > 0.0 ? 2.0 * fabs(mesh_volume(shape->mesh)) / area * least_of_three(shape->scale) : 0.0;
 }
 
 const shape_rule shape_mesh = {
     .word = "mesh",
+    .added_as = "torus",
+    .parameters = WORDS("mesh", "scale", "copies", "spacing", "shading"),
     .triangles = true,
     .check = check,
     .primitive_count = 1,
     .primitives = primitives,
+    .flat = flat,
+    .extent = extent,
+    .farthest = farthest,
+    .farthest_from = farthest_from,
+    .thickness = thickness,
 };

@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-PRIMITIVE_RULE(cylinder);
-
 status check_length(double value, const char *name, diagnostic *why)
 {
     if (isfinite(value) && value > 0.0) {
@@ -12,9 +10,9 @@ status check_length(double value, const char *name, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "give a length above 0", "%s is %g", name, value);
 }
 
-primitive primitive_placed(const solid_shape *shape, primitive_kind kind, const primitive_rule *rule, double reach)
+primitive primitive_placed(const solid_shape *shape, const primitive_rule *rule, double reach)
 {
-    primitive p = {.kind = kind, .rule = rule, .origin = shape->position, .m2 = 1.0};
+    primitive p = {.rule = rule, .origin = shape->position, .m2 = 1.0};
     const vec3 r = shape->rotation_deg;
     p.rotation = rotation_from_deg(r);
     p.turned = r.x != 0.0 || r.y != 0.0 || r.z != 0.0;
@@ -22,30 +20,20 @@ primitive primitive_placed(const solid_shape *shape, primitive_kind kind, const 
     return p;
 }
 
-primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top)
+shape_extent extent_of_size(vec3 size)
 {
-    primitive p = primitive_placed(shape, PRIMITIVE_CYLINDER, &cylinder_rule, shape->height + radius);
-    p.radius = radius;
-    p.m2 = shape->m * shape->m;
-    p.bottom = bottom;
-    p.top = top;
-    if (p.m2 < 1.0) { /* the long axis is radius / m */
-        p.extent += radius / shape->m;
-    }
-    return p;
+    const vec3 half = vec3_scale(size, 0.5);
+    return (shape_extent){{vec3_scale(half, -1.0), half}, 0.5 * vec3_length(size)};
 }
 
-status check_cylinder(const solid_shape *shape, diagnostic *why)
+status tessellate_lathe(const profile_point *profile, size_t count, mesh **out, diagnostic *why)
 {
-    status code = check_length(shape->radius, "radius", why);
-    if (code == STATUS_OK) {
-        code = check_length(shape->height, "height", why);
-    }
-    return code == STATUS_OK ? check_length(shape->m, "m", why) : code;
+    return body_lathe(profile, count, ROUND_SEGMENTS, 30.0, out, why);
 }
 
-bool cylinder_contains(const solid_shape *shape, vec3 p)
+bool level_faces(const double *heights, size_t count, size_t i, vec3 *normal, vec3 *point)
 {
-    const double m = shape->m, r = shape->radius;
-    return p.x * p.x + m * m * p.z * p.z <= r * r && p.y >= 0.0 && p.y <= shape->height;
+    *normal = vec3_make(0.0, 1.0, 0.0);
+    *point = vec3_make(0.0, i < count ? heights[i] : 0.0, 0.0);
+    return i < count;
 }

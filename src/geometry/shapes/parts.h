@@ -3,8 +3,15 @@
 #define CUVETTE_GEOMETRY_SHAPES_PARTS_H
 
 #include "geometry/arrangement.h"
+#include "geometry/bodies.h"
 #include "geometry/primitives/primitive.h"
-#include "geometry/shapes/shape.h"
+#include "geometry/shapes/placed.h"
+
+/* A list of words with NULL behind. */
+#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+/* Segments of a round edge: it stays within 8e-5 of its radius of the circle (1 - cos(180 deg / 256)). */
+enum { ROUND_SEGMENTS = 256 };
 
 /* STATUS_BAD_INPUT unless it is finite and above 0. */
 status check_length(double value, const char *name, diagnostic *why);
@@ -15,13 +22,32 @@ static inline double largest_of(double a, double b, double c)
     return m > c ? m : c;
 }
 
-/* In the shape's place; reach: how far it extends from its position. */
-primitive primitive_placed(const solid_shape *shape, primitive_kind kind, const primitive_rule *rule, double reach);
+/* In the shape's place; rule: NULL of a mesh; reach: how far it extends from its position. */
+primitive primitive_placed(const solid_shape *shape, const primitive_rule *rule, double reach);
 /* Of the shape's m. */
 primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top);
 
-/* radius, height and m of a cylinder or cup. */
-status check_cylinder(const solid_shape *shape, diagnostic *why);
+static inline double least_of_three(vec3 v)
+{
+    return fmin(v.x, fmin(v.y, v.z));
+}
+
+/* About the origin. */
+shape_extent extent_of_size(vec3 size);
+
+/* A profile turned about y, with edges where it turns by more than 30 degrees. */
+status tessellate_lathe(const profile_point *profile, size_t count, mesh **out, diagnostic *why);
+
+/* What a cylinder and the outside of a cup have in common: radius, height and m. */
+status cylinder_check(const solid_shape *shape, diagnostic *why);
 bool cylinder_contains(const solid_shape *shape, vec3 local);
+shape_extent cylinder_extent(const solid_shape *shape);
+double cylinder_farthest(const solid_shape *shape, vec3 direction);
+double cylinder_farthest_from(const placed_shape *placed, const round_frame *frame);
+bool cylinder_covers(const placed_shape *cover, const placed_shape *hidden);
+void cylinder_fit(solid_shape *shape, double size);
+vec3 cylinder_tessellation_scale(const solid_shape *shape);
+/* Level faces at these heights, for a rule's flat. */
+bool level_faces(const double *heights, size_t count, size_t i, vec3 *normal, vec3 *point);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "base/random.h"
 #include "render/core/ticket.h"
-#include "scene/model/scene.h"
+#include "scene/model/light.h"
 #include <assert.h>
 
 /* These numbers are part of every image and never change. A new purpose counts on from DRAW_NEXT: those from DRAW_LIGHT

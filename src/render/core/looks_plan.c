@@ -1,5 +1,6 @@
 /* How each body's surface looks: its own material, or those that its mesh's file gives to its faces. */
 #include "render/core/plan.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 

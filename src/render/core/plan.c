@@ -1,6 +1,8 @@
 #include "render/core/plan.h"
+#include "geometry/shapes/shape.h"
 
 #include "render/shade/sky.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,7 +40,7 @@ static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hi
     if (s->render.keep)
         return hierarchy_of_mesh(m, kind, scene_build_threads(&s->render), out, why);
     for (size_t k = 0; k < i; k++) {
-        const mesh_entry *other = s->solids[k].shape.kind == SHAPE_MESH ? scene_find_mesh(s, s->solids[k].mesh) : NULL;
+        const mesh_entry *other = scene_mesh_of(s, &s->solids[k]);
         if (p->own_trees[k] && other && other->data == m) {
             *out = p->own_trees[k];
             return STATUS_OK;
@@ -78,8 +80,7 @@ static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, 
     const status code = tree_of(s, i, p, m->data, &source->tree, why);
     bool first = true;
     for (size_t k = 0; k < i; k++)
-        first &= !(s->solids[k].visible && s->solids[k].shape.kind == SHAPE_MESH &&
-                   strcmp(s->solids[k].mesh, one->mesh) == 0);
+        first &= !(s->solids[k].visible && solid_shows(&s->solids[k], one->mesh));
     if (code == STATUS_OK)
         report_mesh(p, m, shape, source->tree, first);
     return code;
@@ -115,7 +116,7 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
                                        .absorbs = material_dims(&one->surface),
                                        .reflects = p->basic && !scene_has_constant_shares(&s->render),
                                        .solid = i};
-        if (code == STATUS_OK && one->shape.kind == SHAPE_MESH)
+        if (code == STATUS_OK && shape_of(&one->shape)->triangles)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
     }

@@ -12,7 +12,12 @@
 #include "scene/model/camera.h"
 #include "scene/model/looks.h"
 #include "scene/model/medium.h"
-#include "scene/model/scene.h"
+#include "scene/model/light.h"
+#include "scene/model/material.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
+#include "scene/model/solids.h"
+#include "scene/model/view_settings.h"
 
 /* By a mesh's slots, or one for all. */
 typedef struct body_look {

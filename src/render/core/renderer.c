@@ -6,6 +6,7 @@
 #include "render/core/schedule.h"
 #include "render/core/tracer_set.h"
 #include "render/zbuffer/zbuffer.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

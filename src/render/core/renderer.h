@@ -11,7 +11,7 @@
 #include "measure/topology.h"
 #include "render/core/film.h"
 #include "render/core/mesh_report.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include <stdbool.h>
 
 typedef struct renderer renderer;

@@ -4,7 +4,7 @@
 #ifndef CUVETTE_RENDER_CORE_SCHEDULE_H
 #define CUVETTE_RENDER_CORE_SCHEDULE_H
 
-#include "scene/model/scene.h"
+#include "scene/model/render_settings.h"
 #include <stdatomic.h>
 
 typedef struct span {

@@ -1,8 +1,10 @@
 #include "render/inspect/probe.h"
+#include "geometry/shapes/shape.h"
 
 #include "optics/interface.h"
 #include "scene/model/medium.h"
 #include "render/inspect/probe_private.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -197,18 +199,5 @@ vec3 probe_camera_direction(const probe *p, double x, double y)
 
 const char *probe_face_name(const probe *p, const ray_hit *hit)
 {
-    static const char *const cylinder[] = {"side", "bottom", "top"};
-    static const char *const cup_outside[] = {"outer side", "bottom", "rim"};
-    static const char *const cup_hollow[] = {"inner side", "floor", "rim"};
-    static const char *const box[] = {"-x side", "+x side", "bottom", "top", "-z side", "+z side"};
-    switch (p->setting->solids[hit->face_solid].shape.kind) {
-    case SHAPE_CYLINDER: return cylinder[hit->face];
-    case SHAPE_CUP: return (hit->face < HOLLOW_FACES ? cup_outside : cup_hollow)[hit->face % HOLLOW_FACES];
-    case SHAPE_BOX: return box[hit->face];
-    case SHAPE_PLANE:
-    case SHAPE_SPHERE:
-    case SHAPE_MESH:
-    case SHAPE_COUNT: break;
-    }
-    return "surface";
+    return shape_face_name(shape_of(&p->setting->solids[hit->face_solid].shape), hit->face);
 }

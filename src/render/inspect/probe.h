@@ -11,7 +11,7 @@
 #include "base/isa.h"
 #include "base/status.h"
 #include "base/vec3.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include <stdbool.h>
 #include <stddef.h>
 

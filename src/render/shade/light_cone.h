@@ -7,7 +7,8 @@
 #include "base/elementary.h"
 #include "base/lanes.h"
 #include "base/vec3.h"
-#include "scene/model/scene.h"
+#include "scene/model/light.h"
+#include <stdbool.h>
 
 typedef struct light_cone {
     vec3 axis;      /* unit vector, from the light */

@@ -344,7 +344,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
     if (p->render.polarisation)
         polarised_gather(t, &t->waiting[depth], first, list);
     const ray_batch rays = {g->padded, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
-    t->on_mesh = surface->kind == PRIMITIVE_MESH;
+    t->on_mesh = !surface->rule;
     if (t->on_mesh)
         mesh_surface(t, rank, list);
     else

@@ -3,7 +3,7 @@
 #ifndef CUVETTE_RENDER_SHADE_SKY_H
 #define CUVETTE_RENDER_SHADE_SKY_H
 
-#include "scene/model/scene.h"
+#include "scene/model/view_settings.h"
 
 /* direction: unit vector. */
 vec3 sky_radiance(const background *sky, vec3 direction);

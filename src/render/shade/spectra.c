@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "render/core/draw.h"
 #include "render/shade/sky.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 
 /* Colours lifted, before they are looked up at each wavelength. */

@@ -8,7 +8,10 @@
 #include "optics/lift.h"
 #include "render/core/ticket.h"
 #include "scene/model/medium.h"
-#include "scene/model/scene.h"
+#include "scene/model/material.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
+#include "scene/model/view_settings.h"
 
 /* A number of wavelengths that puts each of the observer's 5 nm into 50 of them. */
 enum { SPECTRA_COUNT = 10 * (OBSERVER_HIGH_NM - OBSERVER_LOW_NM), SKY_BASIS_COUNT = 7, SKY_BASIS_WHITE = 0 };

@@ -2,11 +2,7 @@
  * itself, so that the triangles show in outlines alone. */
 #include "render/zbuffer/zbuffer_private.h"
 
-#include "geometry/bodies.h"
-
-/* A round edge stays within 8e-5 of its radius of the circle (1 - cos(180 deg / 256)), a sphere's outline within 2e-4
- * (20 4^5 triangles). */
-enum { AROUND = 256, SPHERE_LEVEL = 5 };
+#include "geometry/shapes/shape.h"
 
 static forest_part part_of(const primitive *p, const mesh *triangles, vec3 scale)
 {
@@ -21,32 +17,19 @@ static forest_part part_of(const primitive *p, const mesh *triangles, vec3 scale
                          .copies = {1, 1, 1}};
 }
 
-/* A cylinder from its base to its top, or a cup's outside, whose top is a ring. */
-static status cut_cylinder(const primitive *p, double inner_radius, mesh **out, diagnostic *why)
+/* The triangles of a primitive: its own, or those of another solid where only the scale tells them apart. */
+static status cut(const zbuffer *z, const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
-    const profile_point profile[4] = {
-        {0.0, p->bottom}, {p->radius, p->bottom}, {p->radius, p->top}, {inner_radius, p->top}};
-    return body_lathe(profile, 4, AROUND, 30.0, out, why);
-}
-
-/* The wall and the floor of a cup's hollow. */
-static status cut_hollow(const primitive *p, double top, mesh **out, diagnostic *why)
-{
-    const profile_point profile[3] = {{0.0, p->bottom}, {p->radius, p->bottom}, {p->radius, top}};
-    return body_lathe(profile, 3, AROUND, 30.0, out, why);
-}
-
-static status cut_sphere(const zbuffer *z, mesh **out, diagnostic *why)
-{
-    const primitive *all = z->scene->solids->primitives;
-    for (int k = 0; k < z->part_count; k++) {
-        if (all[z->parts[k].met].kind == PRIMITIVE_SPHERE) {
+    const arrangement *a = z->scene->solids;
+    const shape_rule *rule = shape_of(shape);
+    for (int k = 0; rule->one_tessellation && k < z->part_count; k++) {
+        if (shape_of(&a->shapes[a->primitives[z->parts[k].met].rank]) == rule) {
             *out = z->parts[k].own;
             mesh_retain(*out);
             return STATUS_OK;
         }
     }
-    return body_icosphere(SPHERE_LEVEL, out, why);
+    return rule->tessellation(shape, part, out, why);
 }
 
 static double nearest_depth(const primitive *p, vec3 eye)
@@ -60,28 +43,17 @@ static status add(zbuffer *z, const body *b, int met, diagnostic *why)
     const arrangement *a = z->scene->solids;
     const primitive *p = &a->primitives[met];
     drawn_part *part = &z->parts[z->part_count];
-    vec3 scale = vec3_make(1.0, 1.0, 1.0);
+    const solid_shape *shape = &a->shapes[p->rank];
+    const shape_rule *rule = shape_of(shape);
     *part = (drawn_part){.met = met, .hollow = met == b->hollow, .nearest = nearest_depth(p, z->scene->view.eye)};
-    status code = STATUS_OK;
-    switch (p->kind) {
-    case PRIMITIVE_HALFSPACE: part->plane = true; break;
-    case PRIMITIVE_BOX: code = body_box(vec3_scale(p->half, 2.0), &part->own, why); break;
-    case PRIMITIVE_SPHERE:
-        scale = vec3_make(p->radius, p->radius, p->radius);
-        code = cut_sphere(z, &part->own, why);
-        break;
-    case PRIMITIVE_CYLINDER:
-        scale.z = 1.0 / sqrt(p->m2);
-        if (met == b->hollow)
-            code = cut_hollow(p, a->primitives[b->outside].top, &part->own, why);
-        else
-            code = cut_cylinder(p, b->hollow < 0 ? 0.0 : a->primitives[b->hollow].radius, &part->own, why);
-        break;
-    case PRIMITIVE_MESH:
+    if (rule->triangles) {
         part->at = a->meshes->parts[a->meshes->by_primitive[met]];
         z->part_count++;
         return STATUS_OK;
     }
+    part->plane = rule->unbounded;
+    const status code = rule->tessellation ? cut(z, shape, part->hollow, &part->own, why) : STATUS_OK;
+    const vec3 scale = rule->tessellation_scale ? rule->tessellation_scale(shape) : vec3_make(1.0, 1.0, 1.0);
     part->at = part_of(p, part->own, scale);
     z->part_count += code == STATUS_OK;
     return code;

@@ -1,10 +1,12 @@
 /* What a scene names and does not hold in itself: meshes, textures and the sky's picture. */
 #include "base/text.h"
+#include "geometry/shapes/shape.h"
 #include "scene/assets/assets.h"
 #include "scene/model/looks.h"
 #include "scene/model/params_value.h"
 #include "scene/assets/mesh_make.h"
 #include "scene/model/slime.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -33,6 +35,24 @@ const mesh_entry *scene_find_mesh(const scene *s, const char *name)
         }
     }
     return NULL;
+}
+
+const mesh_entry *scene_mesh_of(const scene *s, const solid *owner)
+{
+    return shape_of(&owner->shape)->triangles ? scene_find_mesh(s, owner->mesh) : NULL;
+}
+
+solid_shape scene_loaded_shape(const scene *s, const solid *owner)
+{
+    solid_shape shape = owner->shape;
+    const mesh_entry *m = scene_mesh_of(s, owner);
+    shape.mesh = m ? m->data : NULL;
+    return shape;
+}
+
+bool solid_shows(const solid *owner, const char *mesh_name)
+{
+    return shape_of(&owner->shape)->triangles && strcmp(owner->mesh, mesh_name) == 0;
 }
 
 const texture_entry *scene_find_texture(const scene *s, const char *name)

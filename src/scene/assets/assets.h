@@ -2,7 +2,7 @@
 #ifndef CUVETTE_SCENE_ASSETS_ASSETS_H
 #define CUVETTE_SCENE_ASSETS_ASSETS_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 /* Passes on what is wrong with an asset (its name, in messages): located where the scene file names it, at line and
  * column, or where bad is, if line is 0. Returns code. */

@@ -3,7 +3,7 @@
 #ifndef CUVETTE_SCENE_ASSETS_MESH_MAKE_H
 #define CUVETTE_SCENE_ASSETS_MESH_MAKE_H
 
-#include "scene/model/scene.h"
+#include "scene/model/mesh_entry.h"
 
 /* Of an entry whose source is no file and that has no data. */
 status mesh_make(mesh_entry *m, diagnostic *why);

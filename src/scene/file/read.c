@@ -18,6 +18,7 @@
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/file/read_entries.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,6 +2,7 @@
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/file/read_entries.h"
+#include "scene/model/scene.h"
 
 static status no_name(const scene_reader *r, const node *key, status code)
 {

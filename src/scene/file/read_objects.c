@@ -2,6 +2,9 @@
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/file/read_entries.h"
+#include "scene/model/scene.h"
+
+#include <string.h>
 
 static status read_material(const scene_reader *r, const node *key, const node *map)
 {
@@ -32,8 +35,10 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
 {
     const node *shape = node_get(map, "shape");
     if (!shape) {
-        return node_error(r->file, key, r->why, "add shape: plane, cylinder, cup, box, sphere or mesh",
-                          "%s has no shape", key->text);
+        char remedy[200] = "add shape: ";
+        const size_t used = strlen(remedy);
+        scene_shape_words("or", remedy + used, sizeof remedy - used);
+        return node_error(r->file, key, r->why, remedy, "%s has no shape", key->text);
     }
     status code = read_expect_word(r, shape, "shape");
     return code == STATUS_OK ? read_located(r, shape, scene_shape_named(shape->text, out, r->why)) : code;
@@ -53,7 +58,7 @@ static status read_material_name(const scene_reader *r, const node *key, const n
 
 static status read_solid(const scene_reader *r, const node *key, const node *map)
 {
-    shape_kind shape = SHAPE_COUNT;
+    shape_kind shape = {0};
     size_t index = 0;
     status code = read_check_keys(r, PARAM_SOLID, map);
     if (code == STATUS_OK) {

@@ -7,6 +7,7 @@
 #include "scene/model/params_path.h"
 #include "scene/file/write_parts.h"
 #include "scene/file/write_wanted.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <string.h>

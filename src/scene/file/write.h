@@ -6,7 +6,7 @@
 #ifndef CUVETTE_SCENE_FILE_WRITE_H
 #define CUVETTE_SCENE_FILE_WRITE_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 /* path is where the text will stand: paths of files in it are written relative to that folder, or absolute where the
  * two folders have nothing in common. NULL or "" stands for a file in the working folder. all writes every parameter in

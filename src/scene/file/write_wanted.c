@@ -1,6 +1,7 @@
 #include "scene/file/write_wanted.h"
 #include "scene/model/medium.h"
 #include "scene/model/params_value.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,6 @@
 #include "scene/model/camera.h"
 #include "base/elementary.h"
+#include "scene/model/scene.h"
 
 static void aim_at_target(const struct camera *c, camera_frame *f)
 {

@@ -2,7 +2,9 @@
 #ifndef CUVETTE_SCENE_MODEL_CAMERA_H
 #define CUVETTE_SCENE_MODEL_CAMERA_H
 
-#include "scene/model/scene.h"
+#include "base/vec3.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
 
 /* Directions of camera rays: forward + u right + v up, for u in (-half_width, half_width), v likewise. */
 typedef struct camera_frame {

@@ -3,6 +3,7 @@
 #include "scene/model/edit/edit.h"
 
 #include "base/elementary.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 static const double pitch_max_deg = 89.5;

@@ -2,7 +2,7 @@
 #ifndef CUVETTE_SCENE_MODEL_CAMERA_MOVES_H
 #define CUVETTE_SCENE_MODEL_CAMERA_MOVES_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef struct camera_move {
     double orbit_deg[2]; /* the camera goes to the image's left and looks further to the right; it goes up. Without

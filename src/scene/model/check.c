@@ -6,6 +6,7 @@
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
 #include "scene/model/suggest.h"
+#include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -227,11 +228,11 @@ static status check_colors(const scene *s, const solid *owner, const mesh_entry 
 /* What the solid names is there. */
 static status check_references(const scene *s, const solid *owner, diagnostic *why)
 {
-    const mesh_entry *m = scene_find_mesh(s, owner->mesh);
+    const mesh_entry *m = scene_mesh_of(s, owner);
     if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture)) {
         return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
     }
-    if (owner->shape.kind != SHAPE_MESH) {
+    if (!shape_of(&owner->shape)->triangles) {
         return check_colors(s, owner, NULL, why);
     }
     if (!owner->mesh[0]) {

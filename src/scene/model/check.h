@@ -2,7 +2,10 @@
 #ifndef CUVETTE_SCENE_MODEL_CHECK_H
 #define CUVETTE_SCENE_MODEL_CHECK_H
 
-#include "scene/model/scene.h"
+#include "scene/model/light.h"
+#include "scene/model/mesh_entry.h"
+#include "scene/model/open.h"
+#include "scene/model/solids.h"
 
 /* Letters, digits, _ and -, a letter or _ first, at most SCENE_NAME_MAX, and not a word that paths or scene
  * files use. */

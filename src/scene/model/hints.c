@@ -2,6 +2,7 @@
 #include "scene/model/cover.h"
 #include "scene/model/looks.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,6 +3,7 @@
 #define CUVETTE_SCENE_MODEL_HINTS_H
 
 #include "scene/model/inert/note.h"
+#include "scene/model/open.h"
 
 /* Gives a note for each: no visible solid; no light where something would be lit; a visible solid that is black,
  * that is transparent and bends no light, that is opaque and has a refractive index, or that lies wholly inside

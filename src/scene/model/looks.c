@@ -1,4 +1,5 @@
 #include "scene/model/looks.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -120,8 +121,7 @@ void looks_release(const face_looks *l)
 
 bool looks_by_face(const scene *s, const solid *owner)
 {
-    const mesh_entry *m =
-        owner->shape.kind == SHAPE_MESH && owner->material_index < 0 ? scene_find_mesh(s, owner->mesh) : NULL;
+    const mesh_entry *m = owner->material_index < 0 ? scene_mesh_of(s, owner) : NULL;
     return m && m->data && (m->looks || m->data->slot_count > 1);
 }
 

@@ -4,7 +4,10 @@
 #define CUVETTE_SCENE_MODEL_LOOKS_H
 
 #include "scene/assets/mesh_stream.h"
-#include "scene/model/scene.h"
+#include "scene/model/material.h"
+#include "scene/model/mesh_entry.h"
+#include "scene/model/open.h"
+#include "scene/model/solids.h"
 
 typedef struct face_look {
     char name[SCENE_NAME_MAX + 1]; /* cut off where it is longer; "" for none */

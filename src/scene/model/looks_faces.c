@@ -1,6 +1,7 @@
 #include "scene/model/looks.h"
 
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 #include <string.h>
 
 /* The material of that name in the scene, which goes before the file's. */
@@ -20,14 +21,9 @@ static const texture *picture_of(const scene *s, const material *m)
     return t ? t->data : NULL;
 }
 
-static const mesh_entry *mesh_of(const scene *s, const solid *owner)
-{
-    return owner->shape.kind == SHAPE_MESH ? scene_find_mesh(s, owner->mesh) : NULL;
-}
-
 void looks_source(const scene *s, const solid *owner, int slot, const material **named, const face_look **given)
 {
-    const mesh_entry *m = mesh_of(s, owner);
+    const mesh_entry *m = scene_mesh_of(s, owner);
     const char *name = m->data->slot_names[slot];
     *named = named_material_of(s, name ? name : "");
     *given =
@@ -78,7 +74,7 @@ surface_look looks_whole(const scene *s, const material *own)
 
 int looks_slots(const scene *s, const solid *owner)
 {
-    return looks_by_face(s, owner) ? mesh_of(s, owner)->data->slot_count : 0;
+    return looks_by_face(s, owner) ? scene_mesh_of(s, owner)->data->slot_count : 0;
 }
 
 bool looks_opaque(const scene *s, const solid *owner)

@@ -1,6 +1,7 @@
 #include "scene/model/medium.h"
 
 #include "base/elementary_inline.h"
+#include "scene/model/scene.h"
 #include <float.h>
 #include <string.h>
 

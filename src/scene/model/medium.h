@@ -6,7 +6,10 @@
 
 #include "optics/dispersion.h"
 #include "optics/media.h"
-#include "scene/model/scene.h"
+#include "scene/model/material.h"
+#include "scene/model/open.h"
+#include "scene/model/render_settings.h"
+#include "scene/model/view_settings.h"
 
 enum { MEDIUM_IOR, MEDIUM_SELLMEIER, MEDIUM_CAUCHY, MEDIUM_TABLE, MEDIUM_CATALOGUE };
 extern const char *const medium_words[];

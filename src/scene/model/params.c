@@ -4,6 +4,7 @@
 #include "scene/model/medium.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
+#include "scene/model/scene.h"
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -192,8 +193,8 @@ static status visit_one(const scene *s, const place *at, param_visit *visit, voi
 static bool is_in_use(const scene *s, const place *at)
 {
     const param *row = at->row;
-    if (row->group == PARAM_MESH && row->shapes != 0) {
-        return (row->shapes & 1u << s->meshes[at->index].source) != 0;
+    if (row->group == PARAM_MESH && row->makers != 0) {
+        return (row->makers & 1u << s->meshes[at->index].source) != 0;
     }
     if (row->type == PARAM_PATH && row->group == PARAM_MESH) {
         return s->meshes[at->index].source == MESH_FILE;

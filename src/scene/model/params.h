@@ -9,7 +9,7 @@
 #ifndef CUVETTE_SCENE_MODEL_PARAMS_H
 #define CUVETTE_SCENE_MODEL_PARAMS_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef enum param_group {
     PARAM_RENDER,
@@ -45,10 +45,10 @@ typedef struct param {
     const char *const *choices; /* PARAM_CHOICE: words by value, NULL at the end; switches are {"off", "on"},
                                  * and no, yes, false and true are read as these.
                                  * PARAM_INT: the only numbers allowed, or NULL */
-    unsigned shapes; /* PARAM_SOLID geometry: bit 1 << shape_kind for the kinds that have it; PARAM_MESH: 1 <<
-                      * mesh_maker, only listed and written for those; 0 = all */
-    size_t offset;   /* within the group's struct */
-    bool is_how;     /* of how a frame is computed: the film is the same whatever it is */
+    unsigned makers;            /* PARAM_MESH: 1 << mesh_maker, only listed and written for those; 0 = all */
+    size_t offset;              /* within the group's struct */
+    bool is_how;                /* of how a frame is computed: the film is the same whatever it is */
+    bool by_shape;              /* PARAM_SOLID: only solids have it whose shape's rule names it */
 } param;
 
 size_t param_count(void);

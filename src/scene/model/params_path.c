@@ -1,5 +1,7 @@
 #include "scene/model/params_path.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/suggest.h"
+#include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,13 +17,13 @@ typedef struct path_words {
 
 const char *shape_name(shape_kind kind)
 {
-    static const char *const names[] = {"plane", "cylinder", "cup", "box", "sphere", "mesh"};
-    return (size_t)kind < SHAPE_COUNT ? names[kind] : "";
+    const shape_rule *rule = shape_of_kind(kind);
+    return rule ? rule->word : "";
 }
 
 bool solid_has(const solid *owner, const param *row)
 {
-    return row->group == PARAM_MATERIAL || row->shapes == 0 || (row->shapes & (1u << owner->shape.kind)) != 0;
+    return row->group == PARAM_MATERIAL || !row->by_shape || shape_has(shape_of(&owner->shape), row->name);
 }
 
 size_t place_group_size(const scene *s, param_group group)

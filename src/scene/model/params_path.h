@@ -3,7 +3,9 @@
 #ifndef CUVETTE_SCENE_MODEL_PARAMS_PATH_H
 #define CUVETTE_SCENE_MODEL_PARAMS_PATH_H
 
+#include "geometry/solid.h"
 #include "scene/model/params.h"
+#include "scene/model/solids.h"
 
 typedef struct place {
     const param *row;

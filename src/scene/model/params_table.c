@@ -1,6 +1,9 @@
 /* The table itself: a new parameter is one new row here, and a field in scene.h. */
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
+#include "scene/model/mesh_entry.h"
+#include "scene/model/light.h"
+#include "scene/model/solids.h"
 
 #include <stddef.h>
 #include <stdio.h>
@@ -30,16 +33,7 @@ static const char *const space_words[] = {"srgb", "linear", NULL};
 static const char *const light_words[] = {"point", "cone", "soft_cone", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "picture", NULL};
 
-enum {
-    ON_PLANE = 1 << SHAPE_PLANE,
-    ON_CYLINDER = 1 << SHAPE_CYLINDER,
-    ON_CUP = 1 << SHAPE_CUP,
-    ON_BOX = 1 << SHAPE_BOX,
-    ON_SPHERE = 1 << SHAPE_SPHERE,
-    ON_MESH = 1 << SHAPE_MESH,
-    ON_SLIME = 1 << MESH_SLIME,
-    ON_ALL = 0
-};
+enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 
 /* Positions and lengths stay where doubles still resolve 1e-10 of a scene unit. */
 #define FAR 1e6
@@ -108,10 +102,11 @@ enum {
         group, #field, PARAM_COLOR, "", 0, high, false, fallback, meaning, NULL, ON_ALL, \
             .offset = offsetof(type, field)                                              \
     }
-#define LENGTH(field, shapes, fallback, meaning)                                                       \
+/* Of some shapes: see geometry/shapes/shape.h. */
+#define LENGTH(field, fallback, meaning)                                                               \
     {                                                                                                  \
-        PARAM_SOLID, #field, PARAM_REAL, "scene units", 0, FAR, true, fallback, meaning, NULL, shapes, \
-            .offset = offsetof(solid, shape.field)                                                     \
+        PARAM_SOLID, #field, PARAM_REAL, "scene units", 0, FAR, true, fallback, meaning, NULL, ON_ALL, \
+            .offset = offsetof(solid, shape.field), .by_shape = true                                   \
     }
 
 #define LIST(group, type, field, unit, high, fallback, meaning)                                 \
@@ -340,28 +335,29 @@ static const param table[] = {
      .offset = offsetof(solid, shape.position)},
     {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0", "turn about x, then y, then z", NULL,
      ON_ALL, .offset = offsetof(solid, shape.rotation_deg)},
-    LENGTH(radius, ON_CYLINDER | ON_CUP | ON_SPHERE, "1", "radius; of a cup, of its outside"),
-    LENGTH(height, ON_CYLINDER | ON_CUP, "1", "height above the base"),
+    LENGTH(radius, "1", "radius; of a cup, of its outside"),
+    LENGTH(height, "1", "height above the base"),
     {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1",
-     "ellipse x^2 + m^2 z^2 = radius^2, of a cup's hollow too, with inner_radius; 1 is a circle", NULL,
-     ON_CYLINDER | ON_CUP, .offset = offsetof(solid, shape.m)},
-    LENGTH(inner_radius, ON_CUP, "0.9",
+     "ellipse x^2 + m^2 z^2 = radius^2, of a cup's hollow too, with inner_radius; 1 is a circle", NULL, ON_ALL,
+     .offset = offsetof(solid, shape.m), .by_shape = true},
+    LENGTH(inner_radius, "0.9",
            "radius of the hollow; the wall is radius - inner_radius thick along x, 1/m of that along z"),
-    LENGTH(floor, ON_CUP, "0.1", "thickness of the bottom"),
-    {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges along x, y and z", NULL, ON_BOX,
-     .offset = offsetof(solid, shape.size)},
-    {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, ON_MESH,
-     .offset = offsetof(solid, mesh)},
-    {PARAM_SOLID, "scale", PARAM_VECTOR, "", 0, FAR, true, "1,1,1", "of a mesh, along its own axes", NULL, ON_MESH,
-     .offset = offsetof(solid, shape.scale)},
+    LENGTH(floor, "0.1", "thickness of the bottom"),
+    {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edges along x, y and z", NULL, ON_ALL,
+     .offset = offsetof(solid, shape.size), .by_shape = true},
+    {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, ON_ALL,
+     .offset = offsetof(solid, mesh), .by_shape = true},
+    {PARAM_SOLID, "scale", PARAM_VECTOR, "", 0, FAR, true, "1,1,1", "of a mesh, along its own axes", NULL, ON_ALL,
+     .offset = offsetof(solid, shape.scale), .by_shape = true},
     {PARAM_SOLID, "copies", PARAM_VECTOR, "", 1, 100000, false, "1,1,1",
-     "how often a mesh stands along each of its own axes", NULL, ON_MESH, .offset = offsetof(solid, shape.copies)},
+     "how often a mesh stands along each of its own axes", NULL, ON_ALL, .offset = offsetof(solid, shape.copies),
+     .by_shape = true},
     {PARAM_SOLID, "spacing", PARAM_VECTOR, "scene units", -FAR, FAR, false, "1,1,1",
-     "from copy to copy along its own axes, after scale; copies may touch, not overlap", NULL, ON_MESH,
-     .offset = offsetof(solid, shape.spacing)},
+     "from copy to copy along its own axes, after scale; copies may touch, not overlap", NULL, ON_ALL,
+     .offset = offsetof(solid, shape.spacing), .by_shape = true},
     {PARAM_SOLID, "shading", PARAM_CHOICE, "", 0, 0, false, "smooth",
-     "of a mesh: by its triangles, by normals between its vertices, or light between them", shading_words, ON_MESH,
-     .offset = offsetof(solid, shading)},
+     "of a mesh: by its triangles, by normals between its vertices, or light between them", shading_words, ON_ALL,
+     .offset = offsetof(solid, shading), .by_shape = true},
     INTEGER(PARAM_SOLID, solid, priority, "", -1000000, 1000000, "0",
             "where solids overlap the highest one is there; of equal ones the first listed"),
     CHOICE(PARAM_SOLID, solid, visible, off_on, "on", "off leaves the solid out of the picture altogether"),

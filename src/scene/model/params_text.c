@@ -2,6 +2,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/model/params_value.h"
+#include "scene/model/material.h"
 
 #include <stdio.h>
 #include <stdlib.h>

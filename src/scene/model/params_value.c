@@ -2,6 +2,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/model/check.h"
+#include "scene/model/material.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -4,6 +4,7 @@
 #define CUVETTE_SCENE_MODEL_PARAMS_VALUE_H
 
 #include "scene/model/params.h"
+#include "scene/model/material.h"
 
 typedef union param_value {
     int64_t integer;

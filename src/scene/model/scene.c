@@ -1,7 +1,8 @@
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include "base/text.h"
 #include "scene/model/looks.h"
 #include "scene/model/params_value.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -151,6 +152,31 @@ scene *scene_clone(const scene *original)
         return NULL;
     }
     return s;
+}
+
+const char *scene_path(const scene *s)
+{
+    return s->path;
+}
+
+const char *scene_root(const scene *s)
+{
+    return s->limits.root ? s->limits.root : "";
+}
+
+const render_settings *scene_settings(const scene *s)
+{
+    return &s->render;
+}
+
+const char *scene_solid_name(const scene *s, int solid)
+{
+    return s->solids[solid].name;
+}
+
+const char *scene_light_name(const scene *s, int light)
+{
+    return s->lights[light].name;
 }
 
 status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why)

@@ -2,6 +2,7 @@
 #include "measure/clock.h"
 #include "scene/assets/assets.h"
 #include "scene/motion/script.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdlib.h>

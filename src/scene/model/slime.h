@@ -4,7 +4,8 @@
 #ifndef CUVETTE_SCENE_MODEL_SLIME_H
 #define CUVETTE_SCENE_MODEL_SLIME_H
 
-#include "scene/model/scene.h"
+#include "scene/model/mesh_entry.h"
+#include "scene/model/open.h"
 
 /* Those of its body: the level is the entry's. */
 softbody_settings slime_settings(const mesh_entry *m);

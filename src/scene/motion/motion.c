@@ -1,6 +1,7 @@
 #include "scene/motion/motion_private.h"
 
 #include "measure/clock.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
 

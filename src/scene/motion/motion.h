@@ -8,8 +8,9 @@
 #ifndef CUVETTE_SCENE_MOTION_MOTION_H
 #define CUVETTE_SCENE_MOTION_MOTION_H
 
+#include "softbody/softbody.h"
 #include "geometry/hierarchy.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 typedef struct scene_motion scene_motion;
 

@@ -1,5 +1,6 @@
 #include "scene/motion/motion_hands.h"
 #include "scene/motion/motion_private.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <string.h>
@@ -80,7 +81,7 @@ static void pick_copies(const search *q, motion_place *best)
 
 static bool is_wanted(const solid *one, const char *mesh_name, int solid_or_any, size_t index)
 {
-    const bool shows = one->shape.kind == SHAPE_MESH && strcmp(one->mesh, mesh_name) == 0;
+    const bool shows = solid_shows(one, mesh_name);
     return solid_or_any == MOTION_ANY_SOLID ? shows && one->visible : solid_or_any == (int)index;
 }
 

@@ -5,6 +5,7 @@
 
 #include "scene/motion/motion.h"
 #include "scene/model/slime.h"
+#include "scene/model/scene.h"
 
 /* What the scene has of a slime before it moves, and gets back. */
 typedef struct given_slime {

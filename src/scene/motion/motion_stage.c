@@ -4,6 +4,7 @@
 #include "base/text_writer.h"
 #include "scene/model/params.h"
 #include "scene/model/params_value.h"
+#include "scene/model/scene.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -10,6 +10,7 @@
 #include "scene/model/camera_moves.h"
 #include "web/session/command_line.h"
 #include "web/api/scene_json.h"
+#include "scene/model/open.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -239,7 +240,7 @@ static void get_file(void *of, const http_request *q, http_reply *r)
     scene *now = desk_take(l->desk, NULL);
     if (now)
         lab_forget_threads(l, now);
-    const status code = now ? scene_write_text(now, now->path, false, &text, &why) : out_of_memory(&why);
+    const status code = now ? scene_write_text(now, scene_path(now), false, &text, &why) : out_of_memory(&why);
     scene_destroy(now);
     if (code == STATUS_OK)
         http_reply_bytes(r, 200, "application/yaml; charset=utf-8", text, strlen(text));

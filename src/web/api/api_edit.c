@@ -6,6 +6,7 @@
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params_path.h"
+#include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,6 +4,7 @@
 #include "report/json.h"
 #include "report/media_rows.h"
 #include "scene/file/write.h"
+#include "scene/model/open.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +17,7 @@ static char *prefix_of(const lab *l)
     static const char any[] = "name";
     scene *s = desk_take(l->desk, NULL);
     char *path = NULL;
-    const status code = s ? folder_path_from(l->files, any, s->path, &path, NULL) : STATUS_FAILURE;
+    const status code = s ? folder_path_from(l->files, any, scene_path(s), &path, NULL) : STATUS_FAILURE;
     scene_destroy(s);
     if (code == STATUS_OK)
         path[strlen(path) - strlen(any)] = 0;

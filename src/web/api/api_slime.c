@@ -3,6 +3,7 @@
 
 #include "report/json.h"
 #include "scene/motion/motion.h"
+#include "scene/model/scene.h"
 #include <limits.h>
 #include <math.h>
 #include <string.h>

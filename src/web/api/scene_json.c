@@ -1,7 +1,9 @@
 #include "web/api/scene_json.h"
+#include "geometry/shapes/shape.h"
 #include "report/json.h"
 #include "report/param_rows.h"
 #include "scene/model/params_path.h"
+#include "scene/model/scene.h"
 
 static const char *const light_words[] = {"point", "cone", "soft-cone"};
 
@@ -16,7 +18,7 @@ static json_t *solid_json(const scene *s, const solid *one)
     int bad = json_object_set_new(o, "shape", json_string(shape_name(one->shape.kind)));
     bad |= json_object_set_new(
         o, "material", one->material_index >= 0 ? json_of_text(s->materials[one->material_index].name) : json_null());
-    if (one->shape.kind == SHAPE_MESH)
+    if (shape_of(&one->shape)->triangles)
         bad |= json_object_set_new(o, "mesh", json_of_text(one->mesh));
     if (!bad)
         return o;

@@ -2,8 +2,9 @@
 #ifndef CUVETTE_WEB_API_SCENE_JSON_H
 #define CUVETTE_WEB_API_SCENE_JSON_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include <jansson.h>
+#include <stdint.h>
 
 /* What GET /api/scene answers. opened: where `initial` comes from. NULL when memory is out. */
 json_t *scene_json(const scene *s, const scene *opened, uint64_t generation);

@@ -8,8 +8,10 @@
 #ifndef CUVETTE_WEB_LIVE_LIVE_H
 #define CUVETTE_WEB_LIVE_LIVE_H
 
-#include "scene/model/scene.h"
+#include "base/vec3.h"
+#include "scene/model/open.h"
 #include <jansson.h>
+#include <stdint.h>
 
 typedef struct live live;
 

@@ -3,6 +3,7 @@
 #include "web/live/live_private.h"
 
 #include "measure/clock.h"
+#include "scene/model/scene.h"
 #include <math.h>
 
 /* A pause in which nothing was rendered is not caught up with. */

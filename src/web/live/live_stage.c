@@ -1,5 +1,6 @@
 /* Which scene the live slime is in, what was ordered, and who takes hold of it: the painter's side. */
 #include "web/live/live_private.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 #include "web/live/painter_private.h"
 #include "scene/model/camera.h"
 #include "report/json.h"
+#include "scene/model/scene.h"
 
 #include <errno.h>
 #include <math.h>

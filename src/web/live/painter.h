@@ -5,9 +5,11 @@
 #ifndef CUVETTE_WEB_LIVE_PAINTER_H
 #define CUVETTE_WEB_LIVE_PAINTER_H
 
+#include "base/isa.h"
 #include "image/image.h"
 #include "web/session/desk.h"
 #include "web/live/live.h"
+#include <stdint.h>
 
 typedef struct painter painter;
 

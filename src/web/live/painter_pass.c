@@ -2,6 +2,7 @@
 #include "web/live/painter_private.h"
 #include "measure/clock.h"
 #include "web/live/picture.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 

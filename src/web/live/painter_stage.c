@@ -3,6 +3,7 @@
 #include "web/live/painter_private.h"
 #include "measure/clock.h"
 #include "scene/motion/motion.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <string.h>

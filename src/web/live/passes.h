@@ -3,7 +3,7 @@
 #ifndef CUVETTE_WEB_LIVE_PASSES_H
 #define CUVETTE_WEB_LIVE_PASSES_H
 
-#include "scene/model/scene.h"
+#include "scene/model/render_settings.h"
 #include <stdbool.h>
 
 enum { PASSES_MAX = 6 };

@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "report/report.h"
+#include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
 

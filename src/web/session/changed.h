@@ -2,7 +2,7 @@
 #ifndef CUVETTE_WEB_SESSION_CHANGED_H
 #define CUVETTE_WEB_SESSION_CHANGED_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include <jansson.h>
 
 /* [{"path", "a", "b"}]: values as number, list or word, null where that scene has no such parameter or it is out of use

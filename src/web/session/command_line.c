@@ -3,6 +3,7 @@
 #include "base/text_writer.h"
 #include "scene/model/params.h"
 #include "scene/file/write.h"
+#include "scene/model/scene.h"
 
 #include <ctype.h>
 #include <stdio.h>

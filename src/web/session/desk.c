@@ -3,6 +3,7 @@
 #include "scene/model/params.h"
 #include "report/json.h"
 #include "web/session/desk_bounds.h"
+#include "scene/model/scene.h"
 
 #include <pthread.h>
 #include <stdlib.h>

@@ -7,6 +7,7 @@
 #define CUVETTE_WEB_SESSION_DESK_H
 
 #include "web/session/folder.h"
+#include <stdint.h>
 
 typedef struct desk desk;
 

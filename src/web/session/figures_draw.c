@@ -5,6 +5,7 @@
 #include "web/session/figures.h"
 #include "web/session/studies.h"
 #include "web/session/study_files.h"
+#include "scene/model/open.h"
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -59,7 +60,7 @@ static status string_parts(const study *s, const char *results, const char *kind
         if (!part)
             code = out_of_memory(why);
         else if (access(part, R_OK) == 0)
-            code = append_part(file.stream, part, s->base->limits.root, &headed, why);
+            code = append_part(file.stream, part, scene_root(s->base), &headed, why);
         free(part);
     }
     if (code == STATUS_OK)

@@ -2,6 +2,7 @@
 #include "web/session/folder.h"
 #include "base/text.h"
 #include "scene/file/write_parts.h"
+#include "scene/model/scene.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -4,7 +4,7 @@
 #ifndef CUVETTE_WEB_SESSION_FOLDER_H
 #define CUVETTE_WEB_SESSION_FOLDER_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 #include <jansson.h>
 
 typedef struct folder folder;

@@ -4,6 +4,7 @@
 #include "scene/model/check.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
+#include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,7 +54,7 @@ static status remove_mesh(scene *s, size_t index, diagnostic *why)
 {
     mesh_entry *m = &s->meshes[index];
     for (size_t i = 0; i < s->solid_count; i++) {
-        if (s->solids[i].shape.kind == SHAPE_MESH && strcmp(s->solids[i].mesh, m->name) == 0) {
+        if (solid_shows(&s->solids[i], m->name)) {
             return in_use("mesh", m->name, s->solids[i].name, why);
         }
     }

@@ -6,7 +6,8 @@
 #ifndef CUVETTE_SCENE_MODEL_EDIT_EDIT_H
 #define CUVETTE_SCENE_MODEL_EDIT_EDIT_H
 
-#include "scene/model/scene.h"
+#include "geometry/solid.h"
+#include "scene/model/open.h"
 
 /* One more object at the end of its section. The name must be right and free (scene/model/check.h), the limits of a
  * scene hold. index may be NULL. */
@@ -25,6 +26,8 @@ status scene_give_material(scene *s, const char *solid_name, const char *materia
 status scene_put(scene *s, const char *path, const char *value, diagnostic *why);
 
 /* The shape of that name. */
+/* "plane, cylinder or mesh", with the conjunction "or"; returns text. */
+char *scene_shape_words(const char *conjunction, char *text, size_t size);
 status scene_shape_named(const char *word, shape_kind *out, diagnostic *why);
 
 status scene_set_title(scene *s, const char *title, diagnostic *why);

@@ -2,6 +2,7 @@
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params_value.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,6 +5,8 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/model/params_path.h"
+#include "scene/model/light.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 

@@ -1,10 +1,12 @@
 /* What a solid is made of and what shape it has: what a file says of it beside the rows of the table. */
 #include "scene/model/edit/edit.h"
 #include "base/text.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/check.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
 #include "scene/model/suggest.h"
+#include "scene/model/scene.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -50,20 +52,38 @@ status scene_give_material(scene *s, const char *solid_name, const char *materia
     return no_material(s, material_name, why);
 }
 
+char *scene_shape_words(const char *conjunction, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = 0;
+    const shape_rule *rule;
+    for (int k = 0; (rule = shape_of_kind((shape_kind)k)) && used < size; k++) {
+        const bool last = !shape_of_kind((shape_kind)(k + 1));
+        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s",
+                                 k == 0 ? ""
+                                 : last ? " "
+                                        : ", ",
+                                 last ? conjunction : "", last ? " " : "", rule->word);
+    }
+    return text;
+}
+
 status scene_shape_named(const char *word, shape_kind *out, diagnostic *why)
 {
-    const char *words[SHAPE_COUNT];
-    for (int k = 0; k < SHAPE_COUNT; k++) {
-        words[k] = shape_name((shape_kind)k);
-        if (strcmp(words[k], word) == 0) {
-            *out = (shape_kind)k;
-            return STATUS_OK;
-        }
+    if (shape_named(word, out)) {
+        return STATUS_OK;
     }
-    const char *nearest = text_nearest(word, words, SHAPE_COUNT);
-    char remedy[100];
-    snprintf(remedy, sizeof remedy,
-             nearest ? "did you mean '%s'?" : "the shapes are plane, cylinder, cup, box, sphere and mesh", nearest);
+    enum { SHAPES_MAX = 64 };
+    const char *words[SHAPES_MAX];
+    size_t count = 0;
+    const shape_rule *rule;
+    while (count < SHAPES_MAX && (rule = shape_of_kind((shape_kind)count))) {
+        words[count++] = rule->word;
+    }
+    const char *nearest = text_nearest(word, words, count);
+    char remedy[200], all[160];
+    snprintf(remedy, sizeof remedy, nearest ? "did you mean '%s'?" : "the shapes are %s",
+             nearest ? nearest : scene_shape_words("and", all, sizeof all));
     return diagnose(why, STATUS_BAD_INPUT, remedy, "no shape '%.60s'", word);
 }
 

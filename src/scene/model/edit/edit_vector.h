@@ -3,7 +3,7 @@
 #define CUVETTE_SCENE_MODEL_EDIT_EDIT_VECTOR_H
 
 #include "scene/model/params_path.h"
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 /* Sets a vector by its path, so that its range is checked as a person's would be. */
 status edit_set_vector(scene *s, const char *name, const char *row, vec3 v, diagnostic *why);

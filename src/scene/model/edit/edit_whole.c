@@ -5,9 +5,11 @@
 #include "base/elementary.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
+#include "scene/model/scene.h"
 
 #include <stdlib.h>
 #include <stdio.h>
@@ -228,13 +230,13 @@ static status scale_row(void *context, const char *path, const param *row, const
     return code;
 }
 
-/* Of a plane a texture size of 0 means 1, which is a length. */
-static void scale_planes(whole_edit *e)
+/* Of what has no extent a texture size of 0 means 1, which is a length. */
+static void scale_unbounded(whole_edit *e)
 {
     for (size_t i = 0; i < e->s->solid_count; i++) {
         solid *one = &e->s->solids[i];
         const bool is_wanted = e->only ? strcmp(one->name, e->only) == 0 : e->parts.solids;
-        if (is_wanted && one->shape.kind == SHAPE_PLANE && one->surface.texture[0] &&
+        if (is_wanted && shape_of(&one->shape)->unbounded && one->surface.texture[0] &&
             one->surface.texture_size == 0.0) {
             one->surface.texture_size = e->factor;
         }
@@ -252,7 +254,7 @@ static status scale_parts(whole_edit *e)
 {
     const status code = scene_each_param(e->before, scale_row, e);
     if (code == STATUS_OK) {
-        scale_planes(e);
+        scale_unbounded(e);
     }
     return code == STATUS_OK && e->parts.solids ? keep_metres(e) : code;
 }

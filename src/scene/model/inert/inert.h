@@ -7,6 +7,8 @@
 
 #include "base/counters.h"
 #include "scene/model/inert/note.h"
+#include "scene/model/open.h"
+#include <stdbool.h>
 
 typedef struct inert_answer {
     const char *rule; /* a word for the condition, constant text */

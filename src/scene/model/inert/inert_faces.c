@@ -2,6 +2,7 @@
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/looks.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 #include <string.h>
 

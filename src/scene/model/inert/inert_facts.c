@@ -2,6 +2,7 @@
  * render/shade/shading.c, render/integrators/path.c and render/core/plan.c. */
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 bool is_black(vec3 color)
 {
@@ -72,8 +73,7 @@ bool only_spheres_shine(const scene *s)
 
 bool may_look_by_face(const scene *s, const solid *owner)
 {
-    const mesh_entry *m =
-        owner->shape.kind == SHAPE_MESH && owner->material_index < 0 ? scene_find_mesh(s, owner->mesh) : NULL;
+    const mesh_entry *m = owner->material_index < 0 ? scene_mesh_of(s, owner) : NULL;
     return m && (m->source == MESH_FILE || m->source == MESH_ARRAYS);
 }
 

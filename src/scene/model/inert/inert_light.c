@@ -1,6 +1,7 @@
 /* Why a light's or the background's parameter does nothing in a scene. */
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 #include <string.h>
 

@@ -1,7 +1,9 @@
 /* Why a material's parameter does nothing on the solids that have it. */
 #include "scene/model/inert/inert_private.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/cover.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 #include <string.h>
 
@@ -12,7 +14,7 @@ static inert_remedy set_on(const inert_case *c, const char *assignment)
 
 static bool is_open(const inert_case *c)
 {
-    const mesh_entry *m = c->owner->shape.kind == SHAPE_MESH ? scene_find_mesh(c->s, c->owner->mesh) : NULL;
+    const mesh_entry *m = scene_mesh_of(c->s, c->owner);
     return m && m->data && !m->data->closed;
 }
 
@@ -61,8 +63,7 @@ static bool index_rule(const inert_case *c)
 /* Light in the solid is that of an eye in it alone. */
 static bool unpassed(const inert_case *c)
 {
-    const solid eye = {.shape = {.kind = SHAPE_SPHERE, .position = c->s->camera.position}};
-    return nothing_passes(c->s) && scene_apart(c->s, c->owner, &eye) && say_no_tree(c);
+    return nothing_passes(c->s) && scene_apart_from_eye(c->s, c->owner) && say_no_tree(c);
 }
 
 static bool absorption_rule(const inert_case *c)
@@ -215,7 +216,7 @@ static bool texture_rule(const inert_case *c)
 
 static bool texture_size_rule(const inert_case *c)
 {
-    if (c->owner->shape.kind == SHAPE_MESH) {
+    if (shape_of(&c->owner->shape)->triangles) {
         return inert_say(c, "mesh-texture", "set it on a solid that is no mesh",
                          "a mesh has texture coordinates of its own");
     }

@@ -1,11 +1,13 @@
 /* Why a mesh's or a texture's parameter does nothing in a scene. */
 #include "scene/model/inert/inert_private.h"
+#include "geometry/shapes/shape.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <string.h>
 #include <strings.h>
 
-/* Which bodies a parameter makes, and one of them as a remedy. Of slimes alone (param.shapes) are the rows that none
+/* Which bodies a parameter makes, and one of them as a remedy. Of slimes alone (param.makers) are the rows that none
  * else has. */
 typedef struct maker_row {
     const char *name;
@@ -51,12 +53,12 @@ static bool unused_mesh(const inert_case *c)
     const solid *hidden = NULL, *other = NULL;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        const bool shows = one->shape.kind == SHAPE_MESH && strcmp(one->mesh, c->name) == 0;
+        const bool shows = solid_shows(one, c->name);
         if (shows && one->visible) {
             return false;
         }
         hidden = shows ? one : hidden;
-        other = !shows && one->visible && one->shape.kind == SHAPE_MESH ? one : other;
+        other = !shows && one->visible && shape_of(&one->shape)->triangles ? one : other;
     }
     const inert_remedy remedy = hidden  ? inert_set("%s.visible=on", hidden->name)
                                 : other ? inert_set("%s.mesh=%s", other->name, c->name)
@@ -94,7 +96,7 @@ bool inert_mesh(const inert_case *c)
     if (unused_mesh(c) || other_maker(c, m)) {
         return true;
     }
-    const bool of_slimes = c->at.row->shapes != 0 && m->source == MESH_SLIME;
+    const bool of_slimes = c->at.row->makers != 0 && m->source == MESH_SLIME;
     return of_slimes && ((strcmp(c->at.row->name, "dt_s") == 0 && m->time_s == 0.0 &&
                           inert_say(c, "time-0", inert_set("%s.time_s=0.5", c->name).text,
                                     "time_s is 0: the slime has not moved yet")) ||

@@ -5,6 +5,8 @@
 
 #include "scene/model/inert/inert.h"
 #include "scene/model/params_path.h"
+#include "scene/model/light.h"
+#include "scene/model/solids.h"
 
 typedef struct inert_case {
     const scene *s;

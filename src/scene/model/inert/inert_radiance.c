@@ -3,6 +3,7 @@
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/cover.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 static bool is_bare(const background *b)
 {
@@ -38,10 +39,18 @@ static bool may_lie_in_dense(const scene *s, const solid *one)
     return false;
 }
 
+static bool eye_may_lie_in_dense(const scene *s)
+{
+    bool may = false;
+    for (size_t i = 0; i < s->solid_count && !may; i++) {
+        may = is_dense(&s->solids[i]) && !scene_apart_from_eye(s, &s->solids[i]);
+    }
+    return may;
+}
+
 static bool light_begins_in_dense(const scene *s)
 {
-    const solid eye = {.shape = {.kind = SHAPE_SPHERE, .position = s->camera.position}};
-    bool begins = may_lie_in_dense(s, &eye);
+    bool begins = eye_may_lie_in_dense(s);
     for (size_t i = 0; i < s->solid_count && !begins; i++) {
         const solid *one = &s->solids[i];
         const bool glows = one->surface.emission > 0.0 || shows_ambient(s, &one->surface) || may_look_by_face(s, one);

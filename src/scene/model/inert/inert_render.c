@@ -1,6 +1,8 @@
 /* Why a setting of the renderer does nothing in a scene. */
 #include "scene/model/inert/inert_private.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/medium.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 
@@ -112,7 +114,7 @@ static inert_remedy clear_remedy(const scene *s)
 {
     const solid *first = first_visible(s);
     for (size_t i = 0; i < s->solid_count; i++) {
-        first = first->shape.kind == SHAPE_PLANE && s->solids[i].visible ? &s->solids[i] : first;
+        first = shape_of(&first->shape)->unbounded && s->solids[i].visible ? &s->solids[i] : first;
     }
     return first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name)
                  : (inert_remedy){"add a solid"};

@@ -1,18 +1,11 @@
 /* Why a solid's parameter does nothing in a scene. */
 #include "scene/model/inert/inert_private.h"
+#include "geometry/shapes/shape.h"
 #include "geometry/shared_faces.h"
 #include "scene/model/cover.h"
+#include "scene/model/scene.h"
 
 #include <string.h>
-
-/* The shape with its triangles where they are loaded. */
-static solid_shape loaded_shape(const scene *s, const solid *one)
-{
-    solid_shape shape = one->shape;
-    const mesh_entry *m = shape.kind == SHAPE_MESH ? scene_find_mesh(s, one->mesh) : NULL;
-    shape.mesh = m ? m->data : NULL;
-    return shape;
-}
 
 static bool is_opaque_pair(const solid *a, const solid *b)
 {
@@ -23,9 +16,8 @@ static bool is_opaque_pair(const solid *a, const solid *b)
  * union, and each point of that has one owner, unless faces of both lie in one another. An eye inside would see it. */
 static bool meets_unseen(const scene *s, const solid *a, const solid *b)
 {
-    const solid eye = {.shape = {.kind = SHAPE_SPHERE, .position = s->camera.position}};
-    const solid_shape of_a = loaded_shape(s, a), of_b = loaded_shape(s, b);
-    return scene_apart(s, a, &eye) && scene_apart(s, b, &eye) && !solid_shapes_may_share_faces(&of_a, &of_b);
+    const solid_shape of_a = scene_loaded_shape(s, a), of_b = scene_loaded_shape(s, b);
+    return scene_apart_from_eye(s, a) && scene_apart_from_eye(s, b) && !solid_shapes_may_share_faces(&of_a, &of_b);
 }
 
 static bool priority_rule(const inert_case *c)
@@ -60,14 +52,15 @@ static bool is_plain(const scene *s, const material *m)
 static bool rotation_rule(const inert_case *c)
 {
     /* The depth buffer draws a sphere of triangles, which turn with it. */
-    if (c->owner->shape.kind != SHAPE_SPHERE || !is_plain(c->s, c->m) || integrator_of(&c->s->render)->drawn) {
+    if (!shape_of(&c->owner->shape)->isotropic || !is_plain(c->s, c->m) || integrator_of(&c->s->render)->drawn) {
         return false;
     }
     const inert_remedy color = color_remedy(c->s, c->m, c->name);
     const inert_remedy remedy = shows_color(c->s, c->m)
                                     ? inert_set("%s.checker=0.2 and %s.checker_color=0.3,0.5,0.7", c->name, c->name)
                                     : inert_set("%s.checker=0.2 and %s", c->name, color.text + strlen("set "));
-    return inert_say(c, "round", remedy.text, "a sphere without checker or texture looks the same from all sides");
+    return inert_say(c, "round", remedy.text, "a %s without checker or texture looks the same from all sides",
+                     shape_of(&c->owner->shape)->word);
 }
 
 static bool spacing_rule(const inert_case *c)

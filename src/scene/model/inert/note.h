@@ -4,7 +4,8 @@
 #ifndef CUVETTE_SCENE_MODEL_INERT_NOTE_H
 #define CUVETTE_SCENE_MODEL_INERT_NOTE_H
 
-#include "scene/model/scene.h"
+#include "scene/model/material.h"
+#include <stddef.h>
 
 enum { NOTE_PLACE_MAX = 2 * SCENE_NAME_MAX, NOTE_TEXT_MAX = 256, NOTE_LINE_MAX = 768 };
 

@@ -4,6 +4,7 @@
 #include "scene/model/looks.h"
 #include "scene/model/params_path.h"
 #include "scene/model/place/spot.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdlib.h>

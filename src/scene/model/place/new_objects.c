@@ -1,10 +1,13 @@
 #include "scene/model/place/new_objects.h"
 #include "base/text.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/looks.h"
 #include "scene/model/params_path.h"
+#include "scene/model/params_value.h"
 #include "scene/model/place/spot.h"
+#include "scene/model/scene.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -101,35 +104,39 @@ static void put_plane(scene *s, status *code, diagnostic *why, const char *name,
                vec3_make(spot_round(at.x, where->size), spot_round(at.y, where->size), spot_round(at.z, where->size)));
 }
 
-static void put_shape(scene *s, status *code, diagnostic *why, const char *name, shape_kind shape, const spot *where)
+/* A shape of a size, written with no more digits than it needs. */
+static void put_sizes(scene *s, status *code, diagnostic *why, const char *name, const spot *where)
 {
-    const double size = where->size, half = 0.5 * size;
-    const vec3 low = spot_free(s, where, size);
-    put_vector(s, code, why, name, "position",
-               shape == SHAPE_BOX || shape == SHAPE_SPHERE ? vec3_add(low, vec3_make(0, half, 0)) : low);
-    if (shape == SHAPE_BOX) {
-        put_vector(s, code, why, name, "size", vec3_make(size, size, size));
-        return;
+    solid fitted = s->solids[s->solid_count - 1];
+    const shape_rule *rule = shape_of(&fitted.shape);
+    rule->fit(&fitted.shape, where->size);
+    for (const char *const *parameter = rule->parameters; *parameter; parameter++) {
+        const param *row = param_find(PARAM_SOLID, *parameter);
+        void *field = (char *)&fitted + row->offset;
+        if (row->type == PARAM_REAL)
+            *(double *)field = spot_round(*(double *)field, 0.1 * *(double *)field);
+        char *text = param_value_text(row, -1, field);
+        if (!text && *code == STATUS_OK)
+            *code = out_of_memory(why);
+        put(s, code, why, name, *parameter, "%s", text ? text : "");
+        free(text);
     }
-    put_number(s, code, why, name, "radius", half);
-    if (shape == SHAPE_CYLINDER || shape == SHAPE_CUP)
-        put_number(s, code, why, name, "height", size);
-    if (shape == SHAPE_CUP) {
-        put_number(s, code, why, name, "inner_radius", spot_round(0.9 * half, 0.1 * half));
-        put_number(s, code, why, name, "floor", spot_round(0.1 * size, 0.1 * size));
-    }
+    const vec3 low = spot_free(s, where, where->size);
+    put_vector(s, code, why, name, "position", vec3_sub(low, vec3_make(0, rule->extent(&fitted.shape).box.low.y, 0)));
 }
 
 /* A mesh and the solid that shows it. */
 static status add_mesh_solid(scene *s, const char *solid_name, object_name mesh_name, diagnostic *why)
 {
     object_name base;
+    shape_kind mesh_shape = {0};
+    shape_named("mesh", &mesh_shape);
     snprintf(base, sizeof base, "%.*s-mesh", SCENE_NAME_MAX - 9, solid_name);
     status code = new_name(s, base, mesh_name, why);
     if (code == STATUS_OK)
         code = scene_add_mesh(s, mesh_name, NULL, why);
     if (code == STATUS_OK)
-        code = scene_add_solid(s, solid_name, SHAPE_MESH, NULL, why);
+        code = scene_add_solid(s, solid_name, mesh_shape, NULL, why);
     put(s, &code, why, solid_name, "mesh", "%s", mesh_name);
     return code;
 }
@@ -151,21 +158,22 @@ status new_solid(scene *s, shape_kind shape, const char *wanted, object_name nam
 {
     const spot where = spot_of(s);
     const size_t count = s->solid_count;
-    status code = name_for(s, wanted, shape == SHAPE_MESH ? "torus" : shape_name(shape), name, why);
+    const shape_rule *rule = shape_of_kind(shape);
+    status code = name_for(s, wanted, rule->added_as ? rule->added_as : rule->word, name, why);
     if (code != STATUS_OK)
         return code;
-    if (shape == SHAPE_MESH) {
+    if (rule->triangles) {
         code = new_torus(s, name, &where, why);
     } else if ((code = scene_add_solid(s, name, shape, NULL, why)) == STATUS_OK) {
         s->solids[s->solid_count - 1].visible = 0; /* it is not in its own way */
-        if (shape == SHAPE_PLANE)
+        if (rule->unbounded)
             put_plane(s, &code, why, name, &where);
         else
-            put_shape(s, &code, why, name, shape, &where);
+            put_sizes(s, &code, why, name, &where);
         s->solids[s->solid_count - 1].visible = 1;
     }
     put_look(s, &code, why, name, count);
-    if (shape == SHAPE_PLANE)
+    if (rule->unbounded)
         put(s, &code, why, name, "color", "0.72,0.7,0.66");
     put_above_others(s, &code, why, name);
     return code;

@@ -5,7 +5,9 @@
 #ifndef CUVETTE_SCENE_MODEL_PLACE_NEW_OBJECTS_H
 #define CUVETTE_SCENE_MODEL_PLACE_NEW_OBJECTS_H
 
-#include "scene/model/scene.h"
+#include "geometry/solid.h"
+#include "scene/model/material.h"
+#include "scene/model/open.h"
 
 typedef char object_name[SCENE_NAME_MAX + 1];
 

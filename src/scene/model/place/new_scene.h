@@ -3,7 +3,7 @@
 #ifndef CUVETTE_SCENE_MODEL_PLACE_NEW_SCENE_H
 #define CUVETTE_SCENE_MODEL_PLACE_NEW_SCENE_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
 
 status new_scene(scene **out, diagnostic *why);
 

@@ -1,5 +1,7 @@
 #include "scene/model/place/spot.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -21,7 +23,7 @@ bool spot_ground(const scene *s, double x, double z, double *y)
     bool found = false;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid_shape *shape = &s->solids[i].shape;
-        if (shape->kind != SHAPE_PLANE || !s->solids[i].visible)
+        if (!shape_of(shape)->unbounded || !s->solids[i].visible)
             continue;
         const vec3 up = mat3_apply(rotation_from_deg(shape->rotation_deg), vec3_make(0, 1, 0));
         if (up.y < FLOOR_Y)
@@ -36,72 +38,42 @@ bool spot_ground(const scene *s, double x, double z, double *y)
     return found;
 }
 
-/* Of a mesh's bounds, all copies together, in the solid's frame. */
-static bounds3 mesh_box(const scene *s, const solid *of)
+/* The solid's shape with a mesh that has bounds: of one that is not loaded, those of a slime's ball, or of one about
+ * the origin. */
+static solid_shape with_bounds(const scene *s, const solid *of, mesh *guess)
 {
-    const solid_shape *shape = &of->shape;
-    const mesh_entry *m = scene_find_mesh(s, of->mesh);
-    const double r = m && m->source == MESH_SLIME ? m->slime.radius : 1.0;
-    const vec3 at = m && m->source == MESH_SLIME ? m->slime.position : vec3_make(0, 0, 0);
-    bounds3 b = {vec3_make(at.x - r, at.y - r, at.z - r), vec3_make(at.x + r, at.y + r, at.z + r)};
-    if (m && m->data && m->data->triangle_count)
-        b = m->data->bounds;
-    const vec3 more = vec3_make((shape->copies.x - 1) * shape->spacing.x, (shape->copies.y - 1) * shape->spacing.y,
-                                (shape->copies.z - 1) * shape->spacing.z);
-    b.low = vec3_make(b.low.x * shape->scale.x + fmin(more.x, 0), b.low.y * shape->scale.y + fmin(more.y, 0),
-                      b.low.z * shape->scale.z + fmin(more.z, 0));
-    b.high = vec3_make(b.high.x * shape->scale.x + fmax(more.x, 0), b.high.y * shape->scale.y + fmax(more.y, 0),
-                       b.high.z * shape->scale.z + fmax(more.z, 0));
-    return b;
+    solid_shape shape = scene_loaded_shape(s, of);
+    if (!shape.mesh || !shape.mesh->triangle_count) {
+        const mesh_entry *m = scene_mesh_of(s, of);
+        const bool slime = m && m->source == MESH_SLIME;
+        const double r = slime ? m->slime.radius : 1.0;
+        const vec3 at = slime ? m->slime.position : vec3_make(0, 0, 0), half = vec3_make(r, r, r);
+        guess->bounds = (bounds3){vec3_sub(at, half), vec3_add(at, half)};
+        shape.mesh = guess;
+    }
+    return shape;
 }
 
 bool spot_ball(const scene *s, const solid *of, vec3 *centre, double *radius)
 {
-    const solid_shape *shape = &of->shape;
-    vec3 middle = vec3_make(0, 0, 0);
-    switch (shape->kind) {
-    case SHAPE_CYLINDER:
-    case SHAPE_CUP:
-        middle.y = 0.5 * shape->height;
-        *radius = hypot(shape->radius / fmin(shape->m, 1.0), middle.y);
-        break;
-    case SHAPE_BOX: *radius = 0.5 * vec3_length(shape->size); break;
-    case SHAPE_SPHERE: *radius = shape->radius; break;
-    case SHAPE_MESH: {
-        const bounds3 b = mesh_box(s, of);
-        middle = vec3_scale(vec3_add(b.low, b.high), 0.5);
-        *radius = 0.5 * vec3_length(vec3_sub(b.high, b.low));
-        break;
-    }
-    case SHAPE_PLANE:
-    case SHAPE_COUNT: return false;
-    }
-    *centre = vec3_add(shape->position, mat3_apply(rotation_from_deg(shape->rotation_deg), middle));
+    mesh guess;
+    const solid_shape shape = with_bounds(s, of, &guess);
+    if (shape_of(&shape)->unbounded)
+        return false;
+    const shape_extent e = shape_of(&shape)->extent(&shape);
+    const vec3 middle = vec3_scale(vec3_add(e.box.low, e.box.high), 0.5);
+    *radius = e.ball;
+    *centre = vec3_add(shape.position, mat3_apply(rotation_from_deg(shape.rotation_deg), middle));
     return true;
 }
 
 double spot_half_size(const scene *s, const solid *of, vec3 along)
 {
-    const solid_shape *shape = &of->shape;
-    const mat3 turn = rotation_from_deg(shape->rotation_deg);
-    const double x = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(1, 0, 0)))),
-                 y = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(0, 1, 0)))),
-                 z = fabs(vec3_dot(along, mat3_apply(turn, vec3_make(0, 0, 1))));
-    vec3 size = shape->size;
-    switch (shape->kind) {
-    case SHAPE_CYLINDER:
-    case SHAPE_CUP: return 0.5 * y * shape->height + hypot(x, z) * shape->radius / fmin(shape->m, 1.0);
-    case SHAPE_SPHERE: return shape->radius;
-    case SHAPE_MESH: {
-        const bounds3 b = mesh_box(s, of);
-        size = vec3_sub(b.high, b.low);
-        break;
-    }
-    case SHAPE_BOX: break;
-    case SHAPE_PLANE:
-    case SHAPE_COUNT: return 0.0;
-    }
-    return 0.5 * (x * fabs(size.x) + y * fabs(size.y) + z * fabs(size.z));
+    mesh guess;
+    const solid_shape shape = with_bounds(s, of, &guess);
+    const vec3 d = mat3_apply_transposed(rotation_from_deg(shape.rotation_deg), along);
+    return shape_of(&shape)->unbounded ? 0.0
+                                       : 0.5 * (shape_reach(&shape, d) + shape_reach(&shape, vec3_scale(d, -1.0)));
 }
 
 /* How far away is what the camera looks at that is not aimed at a point? */

@@ -4,7 +4,8 @@
 #ifndef CUVETTE_SCENE_MODEL_PLACE_SPOT_H
 #define CUVETTE_SCENE_MODEL_PLACE_SPOT_H
 
-#include "scene/model/scene.h"
+#include "scene/model/open.h"
+#include "scene/model/solids.h"
 #include <stdbool.h>
 
 typedef struct spot {
