@@ -32,7 +32,8 @@ PACKAGES := libpng libjpeg hwloc yaml-0.1 jansson
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla
 # A user's newer compiler may warn of more: warnings end a build in CI (STRICT=1) and in the tests' own programs alone.
 STRICT ?=
-errors := $(if $(STRICT),-Werror)
+# A function that is called undeclared is an error everywhere: its pointers would be cut.
+errors := -Werror=implicit-function-declaration $(if $(STRICT),-Werror)
 # Instrumented code hides from gcc which values a number can take; its guess about printf's output is then wrong.
 ifneq ($(filter sanitize tsan,$(config)),)
 warnings += $(if $(clang),,-Wno-format-truncation)
@@ -92,7 +93,7 @@ web_objects := $(web:src/%.c=$(build)/obj/%.o) $(build)/web/page_files.o
 importer_objects := $(importer:src/%.c=$(build)/plain/%.o)
 tests := $(wildcard tests/test_*.c)
 test_programs := $(tests:tests/%.c=$(build)/tests/%)
-web_tests := $(filter $(addprefix $(build)/tests/test_,http% lab%),$(test_programs))
+web_tests := $(filter $(addprefix $(build)/tests/test_,http% lab% quantities),$(test_programs))
 benches := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/bench_*.c))
 fuzzers := $(patsubst tests/%.c,$(build)/tests/%,$(wildcard tests/fuzz_*.c))
 
@@ -238,6 +239,11 @@ tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(buil
 test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c alone
 	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
+
+# What people read of the list of quantities (src/job/quantities.c); the test compares them.
+.PHONY: dictionary
+dictionary: $(build)/tests/test_quantities ## renew the tables of results/README.md and the manual's account
+	@CUVETTE_RENEW=1 $< >/dev/null 2>&1 && $<
 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for pictures of every view. After what else
 # installs or measures.

@@ -187,9 +187,8 @@ typedef enum cuvette_object {
 
 CUVETTE_API cuvette_status cuvette_scene_add_light(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_scene_add_material(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
-/* shape: "plane", "cylinder", "cup", "box", "sphere", "mesh" (cuvette(1) says what stands where in each). material: the
- * name of one, or NULL for a surface of the solid's own. Everything else is at its default, and is turned by its path.
- */
+/* shape: "sphere" or another word of cuvette(1), which says what stands where in each. material: the name of one, or
+ * NULL for a surface of the solid's own. Everything else is at its default, and is turned by its path. */
 CUVETTE_API cuvette_status cuvette_scene_add_solid(cuvette_scene *scene, const char *name, const char *shape,
                                                    const char *material, cuvette_diagnostic *why);
 

@@ -1,7 +1,9 @@
 #!/bin/bash
 # A file under src/ includes only from its own room and from floors below it, written from src/. Reads the #include
-# lines;
-# then plants bad ones in a copy, to see that they are caught.
+# lines; then plants bad ones in a copy, to see that they are caught.
+#
+# One door leads sideways: cli/lab.c includes web/lab.h, since `cuvette lab` starts the laboratory, which stands beside
+# the program's other commands. No other file of cli may look into web, and none of web into cli.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 
@@ -9,8 +11,8 @@ cd "$(dirname "$0")/.."
 check() {
     (cd "$1" && find . -name '*.[ch]' -printf '%P\n' | sort | xargs awk '
         BEGIN {
-            split("base 0 optics 1 geometry 1 measure 1 softbody 2 image 2 scene 3 render 4 realism 4.5 lint 4.5 " \
-                  "study 5 report 5.5 engine 6 web 6.5 cli 7 mpi 7 import 7", word)
+            split("base 0 optics 1 geometry 1 measure 1 image 1 import 1 softbody 2 scene 3 render 4 " \
+                  "realism 5 lint 5 job 6 study 7 report 7 engine 8 web 9 cli 9 mpi 9 python 9", word)
             for (i = 1; i in word; i += 2) floor[word[i]] = word[i + 1]
         }
         function room(path) { return path ~ /\// ? substr(path, 1, index(path, "/") - 1) : "engine" }
@@ -22,7 +24,7 @@ check() {
             else if (target !~ /\// && target != "cuvette.h") complain("\"" target "\" is not written from src/")
             else if (!(other in floor)) complain("\"" target "\" leads to a room that stands on no floor")
             else if (other != own && floor[other] > floor[own]) complain("\"" target "\" climbs from " own " to " other)
-            else if (other != own && floor[other] == floor[own])
+            else if (other != own && floor[other] == floor[own] && FILENAME " " target != "cli/lab.c web/lab.h")
                 complain("\"" target "\" goes sideways from " own " to " other)
         }' /dev/null)
 }
@@ -62,12 +64,18 @@ report 'includes stay on their floors' "$(check src)"
 plant base/a.h '"optics/interface.h"' climbs
 plant render/a.c '"cuvette.h"' climbs
 plant geometry/a.c '"measure/clock.h"' sideways
-plant cli/a.c '"web/page.h"' ''
+plant cli/a.c '"web/page.h"' sideways
+plant cli/lab.c '"web/lab.h"' ''
+plant cli/lab.c '"web/http/http.h"' sideways
+plant cli/a.c '"job/job.h"' ''
+plant job/a.c '"study/study.h"' climbs
+plant job/a.c '"render/core/renderer.h"' ''
+plant render/a.c '"job/job.h"' climbs
 plant cli/a.c '"mpi/shards.h"' sideways
-plant web/a.c '"cli/cli.h"' climbs
+plant web/a.c '"cli/cli.h"' sideways
 plant web/a.c '"report/json.h"' ''
 plant report/a.c '"cuvette.h"' climbs
-plant study/a.c '"report/json.h"' climbs
+plant study/a.c '"report/json.h"' sideways
 plant web/a.c '"cuvette.h"' ''
 plant cuvette.c '"web/http/http.h"' climbs
 plant scene/a.c '"params.h"' 'not written from src/'
@@ -80,7 +88,6 @@ plant cuvette.c '"cli/cli.h"' climbs
 plant cuvette.c '"study/study.h"' ''
 plant cli/a.c '"cuvette.h"' ''
 plant scene/a.c '"scene/model/scene.h"' ''
-plant scene/a.c '"import/import.h"' climbs
-plant cli/a.c '"import/import.h"' sideways
-plant import/a.c '"scene/assets/mesh_wire.h"' ''
+plant scene/a.c '"import/mesh_wire.h"' ''
+plant import/a.c '"scene/assets/mesh_stream.h"' climbs
 exit $failed

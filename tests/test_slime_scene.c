@@ -4,7 +4,7 @@
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
 #include "scene/file/write.h"
-#include "study/shelf.h"
+#include "job/shelf.h"
 #include "scene/model/scene.h"
 #include <limits.h>
 

@@ -100,7 +100,7 @@ static status print_account(const animate_request *request, const scene *s, cons
     return result;
 }
 
-static status make(const animate_request *request, const animate_names *names, isa level, scene *s, diagnostic *why)
+static status make(const animate_request *request, const animate_names *names, job *with, scene *s, diagnostic *why)
 {
     scene_motion *motion = NULL;
     animate_definition d = {0};
@@ -111,9 +111,9 @@ static status make(const animate_request *request, const animate_names *names, i
     if (result == STATUS_OK && names)
         result = animate_ledger_check(names, &d, animate_count(request), request->restart, why);
     if (result == STATUS_OK)
-        result = animate_film(request, names, &d, level, s, motion, &account, why);
+        result = animate_film(request, names, &d, with, s, motion, &account, why);
     if (result == STATUS_OK && request->json)
-        result = print_account(request, s, &d, level, &account, why);
+        result = print_account(request, s, &d, job_isa(with), &account, why);
     else if (result == STATUS_OK && strcmp(request->output, "-") != 0)
         print_summary(request, s, &account);
     animate_definition_release(&d);
@@ -126,21 +126,22 @@ status command_animate(int argc, char **argv, diagnostic *why)
     animate_request request;
     animate_names names = {0};
     scene *s = NULL;
-    isa level = ISA_SSE2;
+    job *with = NULL;
     status result = animate_request_parse(argc, argv, &request, why);
     const bool in_files = result == STATUS_OK && !animate_is_stream(&request);
     if (in_files)
         result = animate_names_parse(request.output, &names, why);
     if (result == STATUS_OK)
-        result = scene_input_isa(&level, why);
+        result = scene_input_job(false, &with, why);
     if (result == STATUS_OK)
         result = read_scene(&request, in_files ? &names : NULL, &s, why);
     if (result == STATUS_OK && !request.json)
-        result = scene_input_lint(s, level, NULL, why);
+        result = scene_input_lint(s, job_isa(with), NULL, why);
     if (result == STATUS_OK && !request.json)
         inert_note_changes(s, &request.input);
     if (result == STATUS_OK)
-        result = make(&request, in_files ? &names : NULL, level, s, why);
+        result = make(&request, in_files ? &names : NULL, with, s, why);
+    job_destroy(with);
     scene_destroy(s);
     animate_names_release(&names);
     animate_request_release(&request);

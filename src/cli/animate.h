@@ -95,7 +95,7 @@ typedef struct animate_account {
 
 /* The film, frame by frame. names is NULL for a stream. STATUS_INTERRUPTED after a signal: the frames that are there
  * are whole. */
-status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, isa level,
+status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, job *with,
                     scene *s, scene_motion *motion, animate_account *account, diagnostic *why);
 
 #endif

@@ -18,8 +18,7 @@ typedef struct film_job {
     uint64_t definition;
     scene *s;
     scene_motion *motion;
-    isa level;
-    renderer *r;
+    job *with;
     file_writer stream;
     animate_rows *rows; /* NULL: none wanted */
     int64_t frame, count;
@@ -31,69 +30,69 @@ typedef struct film_job {
 
 static bool show_progress(void *context, double share_done)
 {
-    film_job *job = context;
-    progress_draw(&job->line, ((double)job->frame + share_done) / (double)job->count);
-    return !terminal_stop_asked();
+    film_job *f = context;
+    progress_draw(&f->line, ((double)f->frame + share_done) / (double)f->count);
+    return !terminal_stop_asked(NULL);
 }
 
-static status say_interrupted(const film_job *job, diagnostic *why)
+static status say_interrupted(const film_job *f, diagnostic *why)
 {
-    const char *remedy = job->names ? "run it again, and it goes on there" : "";
-    diagnostic_locate(why, job->request->output, 0, 0);
-    return diagnose(why, STATUS_INTERRUPTED, remedy, "interrupted at %s%s", job->label,
-                    job->stream.temporary ? ", and nothing is left of the film" : "");
+    const char *remedy = f->names ? "run it again, and it goes on there" : "";
+    diagnostic_locate(why, f->request->output, 0, 0);
+    return diagnose(why, STATUS_INTERRUPTED, remedy, "interrupted at %s%s", f->label,
+                    f->stream.temporary ? ", and nothing is left of the film" : "");
 }
 
 /* Is that frame's picture there, and its row where rows are wanted? */
-static bool is_there(const film_job *job, const char *path)
+static bool is_there(const film_job *f, const char *path)
 {
-    return path && access(path, F_OK) == 0 && (!job->rows || animate_rows_have(job->rows, job->frame));
+    return path && access(path, F_OK) == 0 && (!f->rows || animate_rows_have(f->rows, f->frame));
 }
 
 /* Frames are of equal length but for the way to the first one, which has a line of its own. */
 static bool show_motion(void *context, double share_done)
 {
-    film_job *job = context;
-    if (job->frame > 0)
-        return show_progress(job, 0);
-    progress_draw(&job->line, share_done);
-    return !terminal_stop_asked();
+    film_job *f = context;
+    if (f->frame > 0)
+        return show_progress(f, 0);
+    progress_draw(&f->line, share_done);
+    return !terminal_stop_asked(NULL);
 }
 
-static status advance(film_job *job, double to_s, bool skins, diagnostic *why)
+static status advance(film_job *f, double to_s, bool skins, diagnostic *why)
 {
-    const load_watch watch = {show_motion, job};
-    const bool own_line = job->frame == 0 && to_s > 0;
+    const load_watch watch = {show_motion, f};
+    const bool own_line = f->frame == 0 && to_s > 0;
     if (own_line)
-        progress_start(&job->line, "moving to the first frame");
-    status result = scene_motion_advance_until(job->motion, to_s, skins, &watch, why);
+        progress_start(&f->line, "moving to the first frame");
+    status result = scene_motion_advance_until(f->motion, to_s, skins, &watch, why);
     if (own_line) {
-        progress_erase(&job->line);
-        progress_start(&job->line, job->label);
+        progress_erase(&f->line);
+        progress_start(&f->line, f->label);
     }
     if (result != STATUS_OK)
-        return result == STATUS_INTERRUPTED ? say_interrupted(job, why) : result;
-    job->moved = scene_motion_last(job->motion);
-    animate_account *account = job->account;
-    account->steps += job->moved.steps;
-    account->step_s += job->moved.step_s;
-    account->skin_s += job->moved.skin_s;
+        return result == STATUS_INTERRUPTED ? say_interrupted(f, why) : result;
+    f->moved = scene_motion_last(f->motion);
+    animate_account *account = f->account;
+    account->steps += f->moved.steps;
+    account->step_s += f->moved.step_s;
+    account->skin_s += f->moved.skin_s;
     account->simulated_s = to_s;
     return STATUS_OK;
 }
 
 /* A reader has each frame at once; one who left is a failure without words, as for all that goes to standard output. */
-static status flush_stream(film_job *job, diagnostic *why)
+static status flush_stream(film_job *f, diagnostic *why)
 {
-    if (fflush(job->stream.stream) == 0 && !ferror(job->stream.stream))
+    if (fflush(f->stream.stream) == 0 && !ferror(f->stream.stream))
         return STATUS_OK;
     if (errno == EPIPE)
         return STATUS_FAILURE;
-    status result = file_writer_commit(&job->stream, why); /* knows best why it failed */
+    status result = file_writer_commit(&f->stream, why); /* knows best why it failed */
     return result == STATUS_OK ? diagnose(why, STATUS_FAILURE, "", "cannot write the film") : result;
 }
 
-static status write_picture(film_job *job, const char *path, const film *picture, diagnostic *why)
+static status write_picture(film_job *f, const char *path, const film *picture, diagnostic *why)
 {
     if (path)
         return record_picture(picture, path, 8, why);
@@ -101,123 +100,111 @@ static status write_picture(film_job *job, const char *path, const film *picture
     status result = film_image(picture, &frame, why);
     errno = 0;
     if (result == STATUS_OK)
-        result = y4m_frame(job->stream.stream, frame, why);
+        result = y4m_frame(f->stream.stream, frame, why);
     image_destroy(frame);
-    return result == STATUS_OK ? flush_stream(job, why) : result;
+    return result == STATUS_OK ? flush_stream(f, why) : result;
 }
 
-static status render_frame(film_job *job, const char *path, diagnostic *why)
+static status render_frame(film_job *f, const char *path, diagnostic *why)
 {
-    const render_options options = {.progress = show_progress, .context = job};
-    render_result *result = NULL;
-    status ended = renderer_render(job->r, job->s, &options, &result, why);
+    const render_options options = {.progress = show_progress, .context = f};
+    job_account made;
+    status ended = job_render(f->with, f->s, &options, &made, why);
     if (ended == STATUS_INTERRUPTED)
-        ended = say_interrupted(job, why);
+        ended = say_interrupted(f, why);
     if (ended == STATUS_OK)
-        ended = write_picture(job, path, result->picture, why);
-    if (ended == STATUS_OK && job->rows) {
-        const animate_row row = {.definition = job->definition,
-                                 .frame = job->frame,
-                                 .time_s = animate_time_s(job->request, job->frame),
-                                 .result = result,
-                                 .moved = job->moved,
-                                 .body = scene_motion_body(job->motion, 0),
-                                 .level = job->level};
-        ended = animate_rows_add(job->rows, &row, why);
+        ended = write_picture(f, path, made.result->picture, why);
+    if (ended == STATUS_OK && f->rows) {
+        const animate_row row = {.definition = f->definition,
+                                 .frame = f->frame,
+                                 .time_s = animate_time_s(f->request, f->frame),
+                                 .made = &made,
+                                 .moved = f->moved,
+                                 .body = scene_motion_body(f->motion, 0)};
+        ended = animate_rows_add(f->rows, &row, why);
     }
     if (ended == STATUS_OK) {
-        job->account->rendered++;
-        job->account->wall_s += result->wall_s;
+        f->account->rendered++;
+        f->account->wall_s += made.result->wall_s;
     }
-    render_result_destroy(result);
+    job_account_release(&made);
     return ended;
 }
 
-static status make_frame(film_job *job, diagnostic *why)
+static status make_frame(film_job *f, diagnostic *why)
 {
-    char *path = job->names ? animate_name(job->names, job->frame) : NULL;
-    if (job->names && !path)
+    char *path = f->names ? animate_name(f->names, f->frame) : NULL;
+    if (f->names && !path)
         return out_of_memory(why);
-    const bool kept = is_there(job, path);
-    snprintf(job->label, sizeof job->label, "frame %" PRId64 " of %" PRId64, job->frame + 1, job->count);
-    status result = show_progress(job, 0) ? STATUS_OK : say_interrupted(job, why);
+    const bool kept = is_there(f, path);
+    snprintf(f->label, sizeof f->label, "frame %" PRId64 " of %" PRId64, f->frame + 1, f->count);
+    status result = show_progress(f, 0) ? STATUS_OK : say_interrupted(f, why);
     if (result == STATUS_OK)
-        result = advance(job, animate_time_s(job->request, job->frame), !kept, why);
+        result = advance(f, animate_time_s(f->request, f->frame), !kept, why);
     if (result == STATUS_OK && kept)
-        job->account->kept++;
+        f->account->kept++;
     else if (result == STATUS_OK)
-        result = render_frame(job, path, why);
+        result = render_frame(f, path, why);
     free(path);
     return result;
 }
 
-static status make_frames(film_job *job, diagnostic *why)
+static status make_frames(film_job *f, diagnostic *why)
 {
     status result = STATUS_OK;
-    progress_start(&job->line, job->label);
-    for (; job->frame < job->count && result == STATUS_OK; job->frame += result == STATUS_OK)
-        result = make_frame(job, why);
-    progress_erase(&job->line);
+    progress_start(&f->line, f->label);
+    for (; f->frame < f->count && result == STATUS_OK; f->frame += result == STATUS_OK)
+        result = make_frame(f, why);
+    progress_erase(&f->line);
     return result;
 }
 
-static status open_stream(film_job *job, diagnostic *why)
+static status open_stream(film_job *f, diagnostic *why)
 {
-    const animate_request *request = job->request;
-    status result = file_writer_open(&job->stream, request->output, why);
+    const animate_request *request = f->request;
+    status result = file_writer_open(&f->stream, request->output, why);
     if (result == STATUS_OK)
-        result = y4m_begin(job->stream.stream, (int)job->s->render.width, (int)job->s->render.height, request->fps_num,
+        result = y4m_begin(f->stream.stream, (int)f->s->render.width, (int)f->s->render.height, request->fps_num,
                            request->fps_den, why);
     return result;
 }
 
-static status close_stream(film_job *job, status ended, diagnostic *why)
+static status close_stream(film_job *f, status ended, diagnostic *why)
 {
-    if (!job->stream.stream)
+    if (!f->stream.stream)
         return ended;
     if (ended == STATUS_OK)
-        return file_writer_commit(&job->stream, why);
-    file_writer_abandon(&job->stream);
+        return file_writer_commit(&f->stream, why);
+    file_writer_abandon(&f->stream);
     return ended;
 }
 
-static status make_film(film_job *job, diagnostic *why)
+static status make_film(film_job *f, diagnostic *why)
 {
-    topology *machine = NULL;
-    status result = topology_create(&machine, why);
+    status result = f->names ? STATUS_OK : open_stream(f, why);
     if (result == STATUS_OK)
-        result = renderer_create(job->level, machine, &job->r, why);
-    if (result == STATUS_OK)
-        result = renderer_prepare(job->r, job->s, why);
-    if (result == STATUS_OK && !job->names)
-        result = open_stream(job, why);
-    if (result == STATUS_OK)
-        result = make_frames(job, why);
-    result = close_stream(job, result, why);
-    renderer_destroy(job->r);
-    topology_destroy(machine);
-    return result;
+        result = make_frames(f, why);
+    return close_stream(f, result, why);
 }
 
-status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, isa level,
+status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, job *with,
                     scene *s, scene_motion *motion, animate_account *account, diagnostic *why)
 {
-    film_job job = {.request = request,
-                    .names = names,
-                    .definition = d->hash,
-                    .s = s,
-                    .motion = motion,
-                    .level = level,
-                    .count = animate_count(request),
-                    .account = account};
+    film_job f = {.request = request,
+                  .names = names,
+                  .definition = d->hash,
+                  .s = s,
+                  .motion = motion,
+                  .with = with,
+                  .count = animate_count(request),
+                  .account = account};
     *account = (animate_account){0};
-    status result = request->rows
-                        ? animate_rows_open(request->rows, d->hash, request->restart || !names, &job.rows, why)
-                        : STATUS_OK;
+    status result =
+        request->rows ? animate_rows_open(request->rows, d->hash, request->restart || !names, &f.rows, why) : STATUS_OK;
     if (result == STATUS_OK && names)
-        result = animate_ledger_begin(names, d, job.count, request->restart, why);
+        result = animate_ledger_begin(names, d, f.count, request->restart, why);
     if (result == STATUS_OK)
-        result = make_film(&job, why);
-    animate_rows_close(job.rows);
+        result = make_film(&f, why);
+    animate_rows_close(f.rows);
     return result;
 }

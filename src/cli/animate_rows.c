@@ -20,45 +20,44 @@ typedef struct film_row {
     char film_hash[32];
 } film_row;
 
-static void put_config(csv_line *line)
+static void put(csv_line *line, const animate_row *r, const char *name)
 {
-    char text[ROW_TIME_MAX];
-    csv_text(line, row_build_config(text));
+    row_put(line, frame_quantity(name), r->made, -1);
 }
 
-/* A column's name and how it is written stand together, so that header and row cannot part. line; r: the row; c: its
- * ray counts; m: the motion's report; b: the first slime's account. */
-#define COLUMNS(X)                                                        \
-    X("definition", csv_hash(line, r->definition))                        \
-    X("frame", csv_count(line, r->frame))                                 \
-    X("time_s", csv_real(line, r->time_s))                                \
-    X("film_hash", csv_hash(line, film_hash(r->result->picture)))         \
-    X("wall_s", csv_real(line, r->result->wall_s))                        \
-    X("cpu_s", csv_real(line, r->result->cpu_s))                          \
-    X("rays_total", csv_count(line, (int64_t)ray_counters_total(c)))      \
-    X("triangles", csv_count(line, (int64_t)r->result->meshes.triangles)) \
-    X("steps", csv_count(line, (int64_t)m.steps))                         \
-    X("step_s", csv_real(line, m.step_s))                                 \
-    X("skin_s", csv_real(line, m.skin_s))                                 \
-    X("refitted", csv_count(line, m.hierarchies.refitted))                \
-    X("rebuilt", csv_count(line, m.hierarchies.rebuilt))                  \
-    X("refit_s", csv_real(line, m.hierarchies.refit_s))                   \
-    X("build_s", csv_real(line, m.hierarchies.build_s))                   \
-    X("growth", csv_real(line, m.hierarchies.growth))                     \
-    X("kinetic", csv_real(line, b.kinetic))                               \
-    X("elastic", csv_real(line, b.elastic))                               \
-    X("compression", csv_real(line, b.compression))                       \
-    X("gravity", csv_real(line, b.gravity))                               \
-    X("volume", csv_real(line, b.volume))                                 \
-    X("center_x", csv_real(line, b.center.x))                             \
-    X("center_y", csv_real(line, b.center.y))                             \
-    X("center_z", csv_real(line, b.center.z))                             \
-    X("low", csv_real(line, b.low))                                       \
-    X("high", csv_real(line, b.high))                                     \
-    X("speed_max", csv_real(line, b.speed_max))                           \
-    X("held", csv_count(line, (int64_t)b.held))                           \
-    X("isa", csv_text(line, isa_name(r->level)))                          \
-    X("config", put_config(line))
+/* A column's name and how it is written stand together, so that header and row cannot part. line; r: the row; m: the
+ * motion's report; b: the first slime's account. */
+#define COLUMNS(X)                                         \
+    X("definition", csv_hash(line, r->definition))         \
+    X("frame", csv_count(line, r->frame))                  \
+    X("time_s", csv_real(line, r->time_s))                 \
+    X("film_hash", put(line, r, "film_hash"))              \
+    X("wall_s", put(line, r, "wall_s"))                    \
+    X("cpu_s", put(line, r, "cpu_s"))                      \
+    X("rays_total", put(line, r, "rays_total"))            \
+    X("triangles", put(line, r, "triangles"))              \
+    X("steps", csv_count(line, (int64_t)m.steps))          \
+    X("step_s", csv_real(line, m.step_s))                  \
+    X("skin_s", csv_real(line, m.skin_s))                  \
+    X("refitted", csv_count(line, m.hierarchies.refitted)) \
+    X("rebuilt", csv_count(line, m.hierarchies.rebuilt))   \
+    X("refit_s", csv_real(line, m.hierarchies.refit_s))    \
+    X("build_s", csv_real(line, m.hierarchies.build_s))    \
+    X("growth", csv_real(line, m.hierarchies.growth))      \
+    X("kinetic", csv_real(line, b.kinetic))                \
+    X("elastic", csv_real(line, b.elastic))                \
+    X("compression", csv_real(line, b.compression))        \
+    X("gravity", csv_real(line, b.gravity))                \
+    X("volume", csv_real(line, b.volume))                  \
+    X("center_x", csv_real(line, b.center.x))              \
+    X("center_y", csv_real(line, b.center.y))              \
+    X("center_z", csv_real(line, b.center.z))              \
+    X("low", csv_real(line, b.low))                        \
+    X("high", csv_real(line, b.high))                      \
+    X("speed_max", csv_real(line, b.speed_max))            \
+    X("held", csv_count(line, (int64_t)b.held))            \
+    X("isa", put(line, r, "isa"))                          \
+    X("config", put(line, r, "config"))
 
 static void put_header(csv_line *line)
 {
@@ -70,7 +69,6 @@ static void put_header(csv_line *line)
 
 static void put_row(csv_line *line, const animate_row *r)
 {
-    const ray_counters *c = &r->result->counters;
     const scene_motion_report m = r->moved;
     const softbody_account b = softbody_measure(r->body);
 #define VALUE(name, put) put;
@@ -184,7 +182,7 @@ status animate_rows_add(animate_rows *rows, const animate_row *row, diagnostic *
 {
     char hash[32];
     const film_row *there = find(rows, row->frame);
-    snprintf(hash, sizeof hash, "%016" PRIx64, film_hash(row->result->picture));
+    snprintf(hash, sizeof hash, "%016" PRIx64, job_account_hash(row->made));
     if (there && strcmp(there->film_hash, hash) != 0) {
         diagnostic_locate(why, rows->path, 0, 0);
         return diagnose(why, STATUS_BAD_INPUT, "make the film anew, with --restart and another file by --rows",

@@ -4,7 +4,7 @@
 #ifndef CUVETTE_CLI_ANIMATE_ROWS_H
 #define CUVETTE_CLI_ANIMATE_ROWS_H
 
-#include "render/core/renderer.h"
+#include "job/account.h"
 #include "scene/motion/motion.h"
 
 typedef struct animate_rows animate_rows;
@@ -22,10 +22,9 @@ typedef struct animate_row {
     uint64_t definition;
     int64_t frame;
     double time_s;
-    const render_result *result;
+    const job_account *made;
     scene_motion_report moved; /* since the frame before, or the beginning */
     const softbody *body;
-    isa level;
 } animate_row;
 
 /* Nothing where the same row is there: a frame has one. STATUS_BAD_INPUT where that is of another picture. */

@@ -1,6 +1,5 @@
 #include "cli/inert_notes.h"
 #include "cli/terminal.h"
-#include "render/core/renderer.h"
 #include "scene/model/hints.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
@@ -95,35 +94,30 @@ void inert_note_changes(const scene *s, const scene_input *input)
 /* --- what a frame tells --- */
 
 typedef struct frame_of {
-    const scene *s;
-    const render_result *frame;
-    isa level;
+    const job_account *frame;
+    job *with;
 } frame_of;
 
 static bool is_same(void *context, const char *assignment)
 {
     const double moment_s = 1.0;
     const frame_of *f = context;
-    renderer *r = NULL;
-    render_result *other = NULL;
-    scene *s = f->frame->wall_s < moment_s ? scene_clone(f->s) : NULL;
+    scene *s = f->frame->result->wall_s < moment_s ? scene_clone(f->frame->of) : NULL;
+    job_account other = {.result = NULL};
     const bool rendered = s && scene_set_assignment(s, assignment, NULL) == STATUS_OK &&
-                          scene_check(s, NULL) == STATUS_OK && scene_load(s, NULL) == STATUS_OK &&
-                          renderer_create(f->level, NULL, &r, NULL) == STATUS_OK &&
-                          renderer_render(r, s, NULL, &other, NULL) == STATUS_OK;
-    const bool same = rendered && film_hash(other->picture) == film_hash(f->frame->picture);
-    if (other)
-        render_result_destroy(other);
-    if (r)
-        renderer_destroy(r);
+                          job_load(f->with, s, NULL, NULL) == STATUS_OK &&
+                          job_render(f->with, s, NULL, &other, NULL) == STATUS_OK;
+    const bool same = rendered && job_account_hash(&other) == job_account_hash(f->frame);
+    job_account_release(&other);
     scene_destroy(s);
     return same;
 }
 
-void inert_note_frame(const scene *s, const scene_input *input, isa level, const render_result *frame)
+void inert_note_frame(const scene_input *input, job *with, const job_account *frame)
 {
-    frame_of f = {s, frame, level};
-    const inert_witness witness = {&frame->counters, is_same, &f};
+    const scene *s = frame->of;
+    frame_of f = {frame, with};
+    const inert_witness witness = {&frame->result->counters, is_same, &f};
     for (size_t i = 0; i < input->count; i++) {
         char path[PATH_MAX_HERE];
         inert_answer answer;

@@ -4,16 +4,15 @@
 #define CUVETTE_CLI_INERT_NOTES_H
 
 #include "cli/scene_input.h"
-#include "render/core/renderer.h"
 #include "scene/model/inert/inert.h"
 #include "study/study.h"
 
 /* Of the command line. s: as it changed it. */
 void inert_note_changes(const scene *s, const scene_input *input);
 
-/* Of the command line, too, what shows only in a frame: of s, with these counters, in that time. Renders another one
+/* Of the command line, too, what shows only in a frame: rendered by this job. Renders another one
  * where a note depends on it, if that takes no more than a moment. */
-void inert_note_frame(const scene *s, const scene_input *input, isa level, const render_result *frame);
+void inert_note_frame(const scene_input *input, job *with, const job_account *frame);
 
 /* Of one PATH=VALUE. */
 void inert_note_assignment(const scene *s, const char *assignment);

@@ -112,7 +112,7 @@ static void open_browser(const char *address)
 
 static void wait_for_stop(void)
 {
-    while (!terminal_stop_asked())
+    while (!terminal_stop_asked(NULL))
         usleep(50000);
 }
 

@@ -1,5 +1,4 @@
 #include "cli/cli.h"
-#include "cli/frames.h"
 #include "report/json.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
@@ -7,7 +6,6 @@
 #include "cli/inert_notes.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
-#include "measure/statistics.h"
 #include "scene/model/scene.h"
 #include <errno.h>
 #include <stdio.h>
@@ -104,15 +102,16 @@ static status load_scene(const render_request *request, scene **out, diagnostic 
 }
 
 /* One line for people; programs take --json. */
-static void print_summary(const scene *s, const frames *f, const outputs *files)
+static void print_summary(const job_account *f, const outputs *files)
 {
+    const scene *s = f->of;
     const char *const written[] = {files->picture, files->rays, files->time, files->noise, files->timeline};
     uint64_t rays = ray_counters_total(&f->result->counters);
-    double wall_s = f->count ? summarize(f->wall_s, f->count).median : f->result->wall_s;
+    const double wall_s = job_account_wall_s(f);
     printf("%s%lldx%lld pixels, depth %lld: %llu rays in %.3f s (%.1f million a second), film %016llx",
            f->whole ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height,
            (long long)s->render.depth, (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
-           (unsigned long long)film_hash(f->result->picture));
+           (unsigned long long)job_account_hash(f));
     if (f->result->variance)
         printf(", noise %.4f rms", render_noise_rms(f->result));
     const char *before = " -> ";
@@ -124,26 +123,26 @@ static void print_summary(const scene *s, const frames *f, const outputs *files)
     putchar('\n');
 }
 
-static status print_report(const scene *s, isa level, const frames *f, bool repeated, diagnostic *why)
+static status print_report(const job_account *f, bool repeated, diagnostic *why)
 {
-    json_t *account = report_create(s, level, f, repeated);
+    json_t *account = report_create(f, repeated);
     status result = json_write(stdout, account, why);
     json_decref(account);
     return result;
 }
 
-static status write_results(const render_request *request, const scene *s, isa level, const frames *f, diagnostic *why)
+static status write_results(const render_request *request, const job_account *f, diagnostic *why)
 {
     status result = outputs_write(&request->files, f->result, why);
     if (result != STATUS_OK)
         return result;
     if (request->json)
-        return print_report(s, level, f, request->repeated, why);
-    print_summary(s, f, &request->files);
+        return print_report(f, request->repeated, why);
+    print_summary(f, &request->files);
     return STATUS_OK;
 }
 
-static status say_interrupted(const render_request *request, const frames *f, diagnostic *why)
+static status say_interrupted(const render_request *request, const job_account *f, diagnostic *why)
 {
     if (!f->result)
         return diagnose(why, STATUS_INTERRUPTED, "", "interrupted before the first pixel");
@@ -154,21 +153,34 @@ static status say_interrupted(const render_request *request, const frames *f, di
     return STATUS_INTERRUPTED;
 }
 
-static status render_and_write(const render_request *request, const scene *s, isa level, diagnostic *why)
+static bool show_progress(void *context, double share_done)
+{
+    progress_draw(context, share_done);
+    return true;
+}
+
+static status render_and_write(const render_request *request, const scene *s, job *with, diagnostic *why)
 {
     const outputs *files = &request->files;
-    const render_options wanted = {.pixel_rays = files->rays, .pixel_time = files->time, .timeline = files->timeline};
-    frames measured;
-    status result = frames_render(s, level, (size_t)request->repeat, &wanted, &measured, why);
+    progress_line line;
+    const render_options wanted = {.pixel_rays = files->rays,
+                                   .pixel_time = files->time,
+                                   .timeline = files->timeline,
+                                   .progress = show_progress,
+                                   .context = &line};
+    job_account measured;
+    progress_start(&line, "rendering");
+    status result = job_repeat(with, s, (size_t)request->repeat, &wanted, &measured, why);
+    progress_erase(&line);
     if ((result == STATUS_OK || result == STATUS_INTERRUPTED) && measured.result) {
-        status written = write_results(request, s, level, &measured, why);
+        status written = write_results(request, &measured, why);
         result = written == STATUS_OK ? result : written;
     }
     if (result == STATUS_OK && !request->json)
-        inert_note_frame(s, &request->input, level, measured.result);
+        inert_note_frame(&request->input, with, &measured);
     if (result == STATUS_INTERRUPTED)
         result = say_interrupted(request, &measured, why);
-    frames_release(&measured);
+    job_account_release(&measured);
     return result;
 }
 
@@ -176,22 +188,23 @@ status command_render(int argc, char **argv, diagnostic *why)
 {
     render_request request = {.repeat = 1};
     scene *s = NULL;
-    isa level = ISA_SSE2;
+    job *with = NULL;
     status result = scene_input_prepare(&request.input, "render", argc, why);
     if (result == STATUS_OK)
         result = options_parse(&parser, 0, argc, argv, &request, why);
     if (result == STATUS_OK)
         result = check_request(&request, why);
     if (result == STATUS_OK)
-        result = scene_input_isa(&level, why);
+        result = scene_input_job(true, &with, why);
     if (result == STATUS_OK)
         result = load_scene(&request, &s, why);
     if (result == STATUS_OK && !request.json) {
-        result = scene_input_lint(s, level, NULL, why);
+        result = scene_input_lint(s, job_isa(with), NULL, why);
         inert_note_changes(s, &request.input);
     }
     if (result == STATUS_OK)
-        result = render_and_write(&request, s, level, why);
+        result = render_and_write(&request, s, with, why);
+    job_destroy(with);
     scene_destroy(s);
     scene_input_release(&request.input);
     return result;

@@ -69,7 +69,7 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
 static bool show_motion(void *context, double share_done)
 {
     progress_draw(context, share_done);
-    return !terminal_stop_asked();
+    return !terminal_stop_asked(NULL);
 }
 
 status scene_input_load(scene *s, diagnostic *why)
@@ -88,6 +88,14 @@ status scene_input_isa(isa *level, diagnostic *why)
     if (result != STATUS_OK)
         diagnostic_locate(why, "environment", 0, 0);
     return result;
+}
+
+status scene_input_job(bool measured, job **out, diagnostic *why)
+{
+    isa level = ISA_SSE2;
+    const job_settings settings = {.level = &level, .measured = measured, .stop = terminal_stop_asked};
+    const status result = scene_input_isa(&level, why);
+    return result == STATUS_OK ? job_create(&settings, out, why) : result;
 }
 
 static void print_note(void *context, const scene_note *note)

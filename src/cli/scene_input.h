@@ -4,7 +4,7 @@
 #ifndef CUVETTE_CLI_SCENE_INPUT_H
 #define CUVETTE_CLI_SCENE_INPUT_H
 
-#include "base/isa.h"
+#include "job/job.h"
 #include "lint/lint.h"
 #include "scene/model/open.h"
 
@@ -54,5 +54,8 @@ status scene_input_lint(const scene *s, isa level, const lint_filter *varies, di
 
 /* isa_choose, located. */
 status scene_input_isa(isa *level, diagnostic *why);
+
+/* A job that ends at SIGINT and SIGTERM. measured: as in job_settings. */
+status scene_input_job(bool measured, job **out, diagnostic *why);
 
 #endif

@@ -35,12 +35,6 @@ static status for_each_study(const study_request *request, study_action *act, di
     return result;
 }
 
-static bool stop_asked(void *context)
-{
-    (void)context;
-    return terminal_stop_asked();
-}
-
 /* Is the path the place, or a part of it, or the other way round? */
 static bool is_part(const char *place, const char *path)
 {
@@ -107,7 +101,7 @@ static status run_one(const study *s, const study_request *request, diagnostic *
                                    .shard = request->shard,
                                    .shards = request->shards,
                                    .progress = terminal,
-                                   .stop = stop_asked};
+                                   .stop = terminal_stop_asked};
     size_t rows = 0;
     status result = request->quiet ? STATUS_OK : lint(s, request, why);
     if (result == STATUS_OK)

@@ -19,8 +19,9 @@ static void ask_stop(int signal_number)
     stop_asked = 1;
 }
 
-bool terminal_stop_asked(void)
+bool terminal_stop_asked(void *unused)
 {
+    (void)unused;
     return stop_asked != 0;
 }
 

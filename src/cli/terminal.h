@@ -11,8 +11,8 @@
  * one kills), and has exit() check that standard output was written. Call it first. */
 void terminal_prepare(void);
 
-/* Has SIGINT or SIGTERM come? */
-bool terminal_stop_asked(void);
+/* Has SIGINT or SIGTERM come? unused: so that others can be told to ask. */
+bool terminal_stop_asked(void *unused);
 
 /* Flushes standard output; failure if something could not be written. The reader of a pipe who left is a failure
  * without words: *why is then left empty. */

@@ -34,9 +34,10 @@ cuvette_status cuvette_engine_create(const char *instructions, cuvette_engine **
     *out = NULL;
     diagnostic inner = {.line = 0};
     cuvette_engine *e = calloc(1, sizeof *e);
-    status code = e ? engine_isa(instructions, &e->level, &inner) : out_of_memory(&inner);
+    isa level = ISA_SSE2;
+    status code = e ? engine_isa(instructions, &level, &inner) : out_of_memory(&inner);
     if (code == STATUS_OK)
-        code = renderer_create(e->level, NULL, &e->workers, &inner);
+        code = job_create(&(job_settings){.level = &level}, &e->workers, &inner);
     if (code != STATUS_OK) {
         free(e);
         return engine_report(code, &inner, why);
@@ -49,15 +50,14 @@ void cuvette_engine_destroy(cuvette_engine *engine)
 {
     if (!engine)
         return;
-    renderer_destroy(engine->workers);
-    topology_destroy(engine->machine);
+    job_destroy(engine->workers);
     free(engine);
 }
 
 void cuvette_engine_cancel(cuvette_engine *engine)
 {
     if (engine)
-        atomic_store(&engine->cancelled, true);
+        job_cancel(engine->workers);
 }
 
 /* One render under way. */
@@ -84,8 +84,8 @@ static bool report_share(stage *now, double share)
     if (share > now->share)
         now->share = share;
     if (now->request->progress && !caller_goes_on(now))
-        atomic_store(&now->engine->cancelled, true);
-    return !atomic_load(&now->engine->cancelled);
+        job_cancel(now->engine->workers);
+    return !job_must_stop(now->engine->workers);
 }
 
 static bool watch(void *context, double share)
@@ -133,25 +133,6 @@ static status read_request(const cuvette_request *given, const scene *s, cuvette
     return STATUS_OK;
 }
 
-/* Threads are placed only where a scene asks for it: reading the machine takes longer than many a frame. */
-static status know_machine(cuvette_engine *e, const scene *s, diagnostic *why)
-{
-    if (e->machine || s->render.pin == PIN_RULE_NONE)
-        return STATUS_OK;
-    renderer *aware = NULL;
-    status code = topology_create(&e->machine, why);
-    if (code == STATUS_OK)
-        code = renderer_create(e->level, e->machine, &aware, why);
-    if (code != STATUS_OK) {
-        topology_destroy(e->machine);
-        e->machine = NULL;
-        return code;
-    }
-    renderer_destroy(e->workers);
-    e->workers = aware;
-    return STATUS_OK;
-}
-
 /* The whole picture at a part of its size. */
 static status render_preview(stage *now, const scene *s, diagnostic *why)
 {
@@ -160,17 +141,18 @@ static status render_preview(stage *now, const scene *s, diagnostic *why)
     small.render.width = (s->render.width + coarse - 1) / coarse;
     small.render.height = (s->render.height + coarse - 1) / coarse;
     const render_options options = {.progress = watch, .context = now};
-    render_result *result = NULL;
+    job_account made;
     now->is_preview = true;
-    const status code = renderer_render(now->engine->workers, &small, &options, &result, why);
+    const status code = job_render(now->engine->workers, &small, &options, &made, why);
     now->is_preview = false;
     if (code == STATUS_OK) {
-        canvas_fill(&now->buffers, result->picture, 0, 0, (int)small.render.width, (int)small.render.height, coarse);
+        canvas_fill(&now->buffers, made.result->picture, 0, 0, (int)small.render.width, (int)small.render.height,
+                    coarse);
         if (now->request->piece)
             canvas_hand_piece(&now->buffers,
                               &(cuvette_piece){0, 0, (int)s->render.width, (int)s->render.height, coarse});
     }
-    render_result_destroy(result);
+    job_account_release(&made);
     return code;
 }
 
@@ -178,13 +160,12 @@ static status render_frame(stage *now, const scene *s, cuvette_frame *frame, dia
 {
     const cuvette_request *r = now->request;
     const render_options options = {.progress = watch, .piece_done = r->piece ? take_piece : NULL, .context = now};
-    status code = renderer_render(now->engine->workers, s, &options, &frame->result, why);
-    const bool kept = code == STATUS_OK || code == STATUS_INTERRUPTED;
-    if (kept && r->piece && now->noted == STATUS_OK)
+    status code = job_render(now->engine->workers, s, &options, &frame->account, why);
+    const film *picture = frame->account.result ? frame->account.result->picture : NULL;
+    if (picture && r->piece && now->noted == STATUS_OK)
         now->noted = canvas_hand_out(&now->buffers, why);
-    else if (kept && !r->piece)
-        canvas_fill(&now->buffers, frame->result->picture, 0, 0, frame->result->picture->width,
-                    frame->result->picture->height, 1);
+    else if (picture && !r->piece)
+        canvas_fill(&now->buffers, picture, 0, 0, picture->width, picture->height, 1);
     if (code == STATUS_OK && now->noted != STATUS_OK)
         code = diagnose(why, now->noted, "", "out of memory for the list of finished pieces");
     if (code == STATUS_OK)
@@ -221,8 +202,6 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
     if (code == STATUS_OK)
         code = read_request(given, s->model, &request, why);
     if (code == STATUS_OK)
-        code = know_machine(engine, s->model, why);
-    if (code == STATUS_OK)
         code = canvas_open(&request, host, &now.buffers, why);
     if (code != STATUS_OK)
         return code;
@@ -253,12 +232,12 @@ cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene
         atomic_store(&engine->busy, false);
         return begun;
     }
-    atomic_store(&engine->cancelled, false);
+    job_renew(engine->workers);
     cuvette_frame *frame = calloc(1, sizeof *frame);
     const status code = frame ? render_held(engine, held, request, &host, frame, &inner) : out_of_memory(&inner);
     engine_end_render(held);
     atomic_store(&engine->busy, false);
-    if (out && frame && frame->result)
+    if (out && frame && frame->account.result)
         *out = frame;
     else
         cuvette_frame_destroy(frame);

@@ -7,7 +7,7 @@
 #include "base/float_environment.h"
 #include "base/isa.h"
 #include "cuvette.h"
-#include "render/core/renderer.h"
+#include "job/job.h"
 #include "scene/model/open.h"
 #include <pthread.h>
 #include <stdatomic.h>
@@ -23,14 +23,12 @@ struct cuvette_scene {
 };
 
 struct cuvette_engine {
-    isa level;
-    topology *machine; /* NULL until a scene wants its threads pinned */
-    renderer *workers;
-    atomic_bool busy, cancelled;
+    job *workers;
+    atomic_bool busy;
 };
 
 struct cuvette_frame {
-    render_result *result;
+    job_account account;
     size_t solid_count;
     double preview_s;
 };

@@ -11,23 +11,23 @@ void cuvette_frame_destroy(cuvette_frame *frame)
 {
     if (!frame)
         return;
-    render_result_destroy(frame->result);
+    job_account_release(&frame->account);
     free(frame);
 }
 
 int cuvette_frame_width(const cuvette_frame *frame)
 {
-    return frame ? frame->result->picture->width : 0;
+    return frame ? frame->account.result->picture->width : 0;
 }
 
 int cuvette_frame_height(const cuvette_frame *frame)
 {
-    return frame ? frame->result->picture->height : 0;
+    return frame ? frame->account.result->picture->height : 0;
 }
 
 uint64_t cuvette_frame_hash(const cuvette_frame *frame)
 {
-    return frame ? film_hash(frame->result->picture) : 0;
+    return frame ? job_account_hash(&frame->account) : 0;
 }
 
 static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, size_t stride, diagnostic *why)
@@ -50,9 +50,9 @@ cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int
     ENGINE_NEED(rgb, why);
     diagnostic inner = {.line = 0};
     const size_t row = stride ? stride : 3 * (size_t)(x1 - x0);
-    const status code = check_rectangle(frame->result->picture, x0, y0, x1, y1, row, &inner);
+    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, row, &inner);
     if (code == STATUS_OK)
-        film_read(frame->result->picture, x0, y0, x1, y1, rgb, row);
+        film_read(frame->account.result->picture, x0, y0, x1, y1, rgb, row);
     return engine_report(code, &inner, why);
 }
 
@@ -64,11 +64,11 @@ cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, in
     ENGINE_NEED(srgb, why);
     diagnostic inner = {.line = 0};
     const size_t row = stride ? stride : 3 * (size_t)(x1 - x0);
-    const status code = check_rectangle(frame->result->picture, x0, y0, x1, y1, row, &inner);
+    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, row, &inner);
     if (code == STATUS_OK) {
         codec_bytes bytes;
         codec_bytes_prepare(&bytes);
-        canvas_bytes(frame->result->picture, &bytes, x0, y0, x1, y1, srgb, row);
+        canvas_bytes(frame->account.result->picture, &bytes, x0, y0, x1, y1, srgb, row);
     }
     return engine_report(code, &inner, why);
 }
@@ -83,7 +83,7 @@ cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path,
                       ? STATUS_OK
                       : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "a picture cannot have %d bits", bits);
     if (code == STATUS_OK)
-        code = record_picture(frame->result->picture, path, bits, &inner);
+        code = record_picture(frame->account.result->picture, path, bits, &inner);
     return engine_report(code, &inner, why);
 }
 
@@ -94,7 +94,7 @@ cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counte
     ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
     ENGINE_NEED(out, why);
-    const ray_counters *c = &frame->result->counters;
+    const ray_counters *c = &frame->account.result->counters;
     cuvette_counters told = {.camera = c->camera,
                              .reflect = c->reflect,
                              .refract = c->refract,
@@ -121,7 +121,7 @@ cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t i
         return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "count them from 0",
                                       "there is no solid %zu among the scene's %zu", index, frame->solid_count),
                              &inner, why);
-    const ray_counters *c = &frame->result->counters;
+    const ray_counters *c = &frame->account.result->counters;
     const cuvette_solid_counters told = {
         .tests = c->tests[index], .hits = c->hits[index], .first_hits = c->first_hits[index]};
     return engine_give_struct(&told, sizeof told, out, why);
@@ -132,7 +132,7 @@ cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_stat
     ENGINE_ENTER(host);
     ENGINE_NEED(frame, why);
     ENGINE_NEED(out, why);
-    const render_result *r = frame->result;
+    const render_result *r = frame->account.result;
     const cuvette_statistics told = {.wall_s = r->wall_s,
                                      .cpu_s = r->cpu_s,
                                      .preview_s = frame->preview_s,

@@ -13,7 +13,7 @@
 #include "geometry/mesh.h"
 #include <stdbool.h>
 
-/* In files' order of age: rows of studies hold a kind's number, so that a new one comes last. */
+/* By age: studies' hashes hold a kind's number, so that a new one comes last. */
 #define SHAPES(X)         \
     X(PLANE, plane)       \
     X(CYLINDER, cylinder) \

@@ -1,5 +1,5 @@
 /* The program cuvette-import: reads one mesh file with assimp under limits that it sets itself, and writes the
- * triangles on standard output as scene/assets/mesh_wire.h says. It is a program of its own so that a file that crashes
+ * triangles on standard output as import/mesh_wire.h says. It is a program of its own so that a file that crashes
  * or fills a reader takes nothing else down. Its parts, one file each. Ownership: what is allocated is never given
  * back; the process ends as soon as the mesh is written, and with it all of it goes. Errors: STATUS_BAD_INPUT and the
  * reason in the diagnostic; memory that is not there is the file's fault, too, because the limit on it is ours. */
@@ -8,7 +8,7 @@
 
 #include "base/status.h"
 #include "base/vec3.h"
-#include "scene/assets/mesh_wire.h"
+#include "import/mesh_wire.h"
 #include <assimp/cfileio.h>
 #include <assimp/scene.h>
 #include <stdbool.h>

@@ -14,6 +14,8 @@ typedef struct usage {
 } usage;
 
 usage usage_now(void);
+/* Has the highest resident memory count from here on, where the system lets that be: Linux does. */
+void usage_forget_peak(void);
 /* What passed between an earlier reading and now. */
 usage usage_since(const usage *before);
 /* Share of the machine that others used during a difference, 0..1; NaN if unknown. /proc/stat ticks in 10 ms, so

@@ -193,6 +193,19 @@ static const char *group_title(param_group group)
     return "";
 }
 
+static void write_shapes(FILE *stream)
+{
+    const shape_rule *rule;
+    fprintf(stream, ".SS The shape of a solid, in its own frame\n");
+    for (int k = 0; (rule = shape_of_kind((shape_kind)k)); k++) {
+        fprintf(stream, ".TP\n.B %s\n", rule->word);
+        write_roff(stream, rule->meaning);
+        fprintf(stream, rule->parameters ? ".\n(parameters " : ".\n");
+        for (const char *const *name = rule->parameters; name && *name; name++)
+            fprintf(stream, "%s%s", *name, name[1] ? ", " : ")\n");
+    }
+}
+
 void param_rows_manual(FILE *stream)
 {
     char text[PARAM_PATH_MAX];
@@ -212,4 +225,5 @@ void param_rows_manual(FILE *stream)
         write_roff(stream, row->fallback[0] ? row->fallback : "none");
         fprintf(stream, ")\n");
     }
+    write_shapes(stream);
 }

@@ -2,12 +2,11 @@
 #include "report/json.h"
 #include "report/param_lines.h"
 #include "base/number.h"
-#include "measure/statistics.h"
 #include "scene/model/scene.h"
+#include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef json_int_t count_type;
 
 /* "0,2.75,-6", with or without brackets, as a list of numbers. */
 static json_t *list_of_numbers(const char *text)
@@ -86,69 +85,7 @@ json_t *report_params(const scene *s)
     return NULL;
 }
 
-static json_t *by_kind(uint64_t primary, uint64_t reflect, uint64_t refract, uint64_t shadow)
-{
-    return json_pack("{s:I,s:I,s:I,s:I,s:I}", "camera", (count_type)primary, "reflect", (count_type)reflect, "refract",
-                     (count_type)refract, "shadow", (count_type)shadow, "total",
-                     (count_type)(primary + reflect + refract + shadow));
-}
-
-static json_t *rays(const ray_counters *c)
-{
-    return by_kind(c->camera, c->reflect, c->refract, c->shadow);
-}
-
-static json_t *rays_by_depth(const scene *s, const ray_counters *c)
-{
-    json_t *list = json_array();
-    for (int64_t depth = 0; list && depth <= s->render.depth && depth <= COUNTERS_DEPTH_MAX; depth++)
-        json_array_append_new(list, json_integer((count_type)c->by_depth[depth]));
-    return list;
-}
-
-static json_t *by_solid(const scene *s, const uint64_t *counts)
-{
-    json_t *object = json_object();
-    for (size_t i = 0; object && i < s->solid_count && i < COUNTERS_SOLID_MAX; i++)
-        json_object_set_new(object, s->solids[i].name, json_integer((count_type)counts[i]));
-    return object;
-}
-
-static json_t *cut(uint64_t count, const int64_t throughput[3])
-{
-    return json_pack("{s:I,s:[o,o,o]}", "rays", (count_type)count, "throughput",
-                     json_of_real((double)throughput[0] / COUNTERS_CUT_ONE),
-                     json_of_real((double)throughput[1] / COUNTERS_CUT_ONE),
-                     json_of_real((double)throughput[2] / COUNTERS_CUT_ONE));
-}
-
-/* Mean over RGB of the throughput of all the rays that were not traced. */
-static double cut_throughput(const ray_counters *c)
-{
-    double sum = 0;
-    for (int channel = 0; channel < 3; channel++)
-        sum += (double)(c->cut_depth_throughput[channel] + c->cut_weight_throughput[channel]);
-    return sum / 3 / COUNTERS_CUT_ONE;
-}
-
-static json_t *worker(int index, const worker_report *w)
-{
-    return json_pack("{s:i,s:o,s:o,s:o,s:o,s:o,s:I,s:o,s:i}", "worker", index, "wall_s", json_of_real(w->wall_s),
-                     "cpu_s", json_of_real(w->cpu_s), "start_s", json_of_real(w->start_s), "busy_s",
-                     json_of_real(w->busy_s), "waiting_s", json_of_real(w->waiting_s), "tiles", (count_type)w->tiles,
-                     "rays", by_kind(w->camera, w->reflect, w->refract, w->shadow), "pu", w->pu);
-}
-
-static json_t *workers(const render_result *result)
-{
-    json_t *list = json_array();
-    for (int i = 0; list && i < result->worker_count; i++)
-        if (json_array_append_new(list, worker(i, &result->workers[i]))) {
-            json_decref(list);
-            return NULL;
-        }
-    return list;
-}
+/* --- frames --- */
 
 static json_t *list_of_reals(const double *values, size_t count)
 {
@@ -158,109 +95,117 @@ static json_t *list_of_reals(const double *values, size_t count)
     return list;
 }
 
-/* The median of all the finished frames; of a frame that was broken off, what it took. */
-static json_t *median(const double *values, size_t count, double otherwise)
+static json_t *by_depth(const quantity_value *v)
 {
-    double *sorted = malloc((count + 1) * sizeof *sorted);
-    if (!sorted)
-        return NULL;
-    memcpy(sorted, values, count * sizeof *sorted);
-    json_t *result = json_of_real(count ? summarize(sorted, count).median : otherwise);
-    free(sorted);
-    return result;
+    json_t *list = json_array();
+    for (size_t i = 0; list && i < v->size; i++)
+        json_array_append_new(list, json_integer((json_int_t)v->list[i]));
+    return list;
 }
 
-static json_t *hardware(const hardware_counts *h)
+static json_t *by_solid(const scene *s, const quantity_value *v)
 {
-    return json_pack("{s:o,s:o,s:o,s:o}", "cycles", json_of_count(h->cycles), "instructions",
-                     json_of_count(h->instructions), "branch_misses", json_of_count(h->branch_misses), "cache_misses",
-                     json_of_count(h->cache_misses));
+    json_t *object = json_object();
+    for (size_t i = 0; object && i < v->size; i++)
+        json_object_set_new(object, s->solids[i].name, json_integer((json_int_t)v->list[i]));
+    return object;
 }
 
-static int add_times(json_t *o, const frames *f, bool repeated)
+json_t *report_quantity(const quantity *q, const job_account *a, int worker)
 {
-    int bad = json_object_set_new(o, "wall_s", median(f->wall_s, f->count, f->result->wall_s));
-    bad |= json_object_set_new(o, "cpu_s", median(f->cpu_s, f->count, f->result->cpu_s));
-    if (repeated) {
-        bad |= json_object_set_new(o, "repeat", json_integer((count_type)f->count));
-        bad |= json_object_set_new(o, "wall_s_all", list_of_reals(f->wall_s, f->count));
-        bad |= json_object_set_new(o, "cpu_s_all", list_of_reals(f->cpu_s, f->count));
+    const quantity_value v = q->read(a, worker);
+    char hash[17];
+    switch (q->type) {
+    case QUANTITY_COUNT: return json_of_count(v.count);
+    case QUANTITY_NUMBER: return json_integer(v.count);
+    case QUANTITY_TRUTH: return json_boolean(v.count);
+    case QUANTITY_REAL: return json_of_real(v.real[0]);
+    case QUANTITY_COLOR: return list_of_reals(v.real, 3);
+    case QUANTITY_HASH: snprintf(hash, sizeof hash, "%016" PRIx64, v.hash); return json_string(hash);
+    case QUANTITY_WORD: return json_string(v.word);
+    case QUANTITY_DEPTHS: return by_depth(&v);
+    case QUANTITY_SOLIDS: return by_solid(a->of, &v);
     }
+    return NULL;
+}
+
+/* Groups that are null where there is nothing to say of them: noise of what is not drawn by chance, meshes of a scene
+ * without any. */
+static bool is_void(const job_account *a, const char *key)
+{
+    const mesh_report *m = &a->result->meshes;
+    return (strncmp(key, "noise.", 6) == 0 && !a->result->variance) ||
+           (strncmp(key, "meshes.", 7) == 0 && m->triangles == 0 && m->drawn == 0);
+}
+
+/* Takes over value: under "rays.camera" as camera in the object rays. NULL for value makes the group null. */
+static int put(json_t *o, const char *key, json_t *value)
+{
+    char group[64];
+    const size_t length = strcspn(key, ".");
+    if (key[length] == '\0')
+        return json_object_set_new(o, key, value);
+    snprintf(group, sizeof group, "%.*s", (int)length, key);
+    if (!value)
+        return json_object_set_new(o, group, json_null());
+    json_t *inner = json_object_get(o, group);
+    if (!inner && json_object_set_new(o, group, inner = json_object()) != 0) {
+        json_decref(value);
+        return -1;
+    }
+    return put(inner, key + length + 1, value);
+}
+
+static int put_all(json_t *o, const quantity *list, size_t count, const job_account *a, int worker)
+{
+    int bad = 0;
+    for (size_t i = 0; i < count; i++)
+        if (list[i].json)
+            bad |= put(o, list[i].json, is_void(a, list[i].json) ? NULL : report_quantity(&list[i], a, worker));
     return bad;
 }
 
-static int add_counts(json_t *o, const scene *s, const ray_counters *c)
+static json_t *workers(const job_account *a)
 {
-    int bad = json_object_set_new(o, "rays", rays(c));
-    bad |= json_object_set_new(o, "rays_by_depth", rays_by_depth(s, c));
-    bad |= json_object_set_new(o, "total_internal", json_integer((count_type)c->total_internal));
-    bad |= json_object_set_new(o, "first_hits", by_solid(s, c->first_hits));
-    bad |= json_object_set_new(o, "hits", by_solid(s, c->hits));
-    bad |= json_object_set_new(o, "tests", by_solid(s, c->tests));
-    bad |= json_object_set_new(o, "cut",
-                               json_pack("{s:o,s:o}", "depth", cut(c->cut_depth, c->cut_depth_throughput), "weight",
-                                         cut(c->cut_weight, c->cut_weight_throughput)));
-    bad |= json_object_set_new(o, "cut_throughput", json_of_real(cut_throughput(c)));
-    return bad;
+    json_t *list = json_array();
+    for (int i = 0; list && i < a->result->worker_count; i++) {
+        json_t *one = json_object();
+        if (put_all(one, worker_quantities, worker_quantity_count, a, i) | json_array_append_new(list, one)) {
+            json_decref(list);
+            return NULL;
+        }
+    }
+    return list;
 }
 
-/* Mean variance of the film's values by channel, in the film's own space, and the root of its mean; null where nothing
- * is drawn by chance. */
-static json_t *noise(const render_result *r)
+json_t *report_create(const job_account *a, bool repeated)
 {
-    double mean[3] = {0.0, 0.0, 0.0};
-    const size_t pixels = (size_t)r->picture->width * (size_t)r->picture->height;
-    if (!r->variance)
-        return json_null();
-    for (size_t i = 0; i < 3 * pixels; i++)
-        mean[i % 3] += r->variance[i] / (double)pixels;
-    return json_pack("{s:o,s:[o,o,o]}", "rms", json_of_real(render_noise_rms(r)), "variance", json_of_real(mean[0]),
-                     json_of_real(mean[1]), json_of_real(mean[2]));
-}
-
-/* null where a scene has no meshes and none are drawn. */
-static json_t *meshes(const mesh_report *m)
-{
-    if (m->triangles == 0 && m->drawn == 0)
-        return json_null();
-    const double each = m->triangles > 0 ? (double)m->bytes / (double)m->triangles : (double)NAN;
-    json_t *o = json_pack("{s:o,s:o,s:o}", "triangles", json_of_count((int64_t)m->triangles), "instances",
-                          json_of_count((int64_t)m->instances), "accel_bytes", json_of_count((int64_t)m->bytes));
-    int bad = json_object_set_new(o, "bytes_per_triangle", json_of_real(each));
-    bad |= json_object_set_new(o, "build_s", json_of_real(m->build_s));
-    bad |= json_object_set_new(o, "drawn", json_of_count((int64_t)m->drawn));
-    bad |= json_object_set_new(o, "drawn_bytes", json_of_count((int64_t)m->drawn_bytes));
+    json_t *o = json_pack("{s:i}", "schema", REPORT_SCHEMA);
+    if (!o)
+        return NULL;
+    int bad = put_all(o, frame_quantities, frame_quantity_count, a, -1);
+    if (repeated) {
+        bad |= json_object_set_new(o, "repeat", json_integer((json_int_t)a->count));
+        bad |= json_object_set_new(o, "wall_s_all", list_of_reals(a->wall_s, a->count));
+        bad |= json_object_set_new(o, "cpu_s_all", list_of_reals(a->cpu_s, a->count));
+    }
+    bad |= json_object_set_new(o, "threads", workers(a));
+    bad |= json_object_set_new(o, "version", json_string(CUVETTE_VERSION));
+    bad |= json_object_set_new(o, "scene", json_of_text(a->of->path ? a->of->path : ""));
+    bad |= json_object_set_new(o, "params", report_params(a->of));
     if (!bad)
         return o;
     json_decref(o);
     return NULL;
 }
 
-static int add_process(json_t *o, const frames *f)
+json_t *report_page(const job_account *a)
 {
-    int bad = json_object_set_new(o, "threads", workers(f->result));
-    bad |= json_object_set_new(o, "peak_rss_bytes", json_of_count(f->spent.peak_rss_bytes));
-    bad |= json_object_set_new(o, "voluntary_switches", json_of_count(f->spent.voluntary_switches));
-    bad |= json_object_set_new(o, "involuntary_switches", json_of_count(f->spent.involuntary_switches));
-    bad |= json_object_set_new(o, "others_share", json_of_real(usage_others_share(&f->spent)));
-    bad |= json_object_set_new(o, "hardware", hardware(&f->hardware));
-    return bad;
-}
-
-json_t *report_create(const scene *s, isa level, const frames *f, bool repeated)
-{
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)film_hash(f->result->picture));
-    json_t *o = json_pack("{s:i,s:s,s:b}", "schema", REPORT_SCHEMA, "film_hash", hash, "whole", (int)f->whole);
-    if (!o)
-        return NULL;
-    int bad = add_times(o, f, repeated) | add_counts(o, s, &f->result->counters) | add_process(o, f);
-    bad |= json_object_set_new(o, "noise", noise(f->result));
-    bad |= json_object_set_new(o, "meshes", meshes(&f->result->meshes));
-    bad |= json_object_set_new(o, "isa", json_string(isa_name(level)));
-    bad |= json_object_set_new(o, "version", json_string(CUVETTE_VERSION));
-    bad |= json_object_set_new(o, "scene", json_of_text(s->path ? s->path : ""));
-    bad |= json_object_set_new(o, "params", report_params(s));
+    json_t *o = json_object();
+    int bad = !o;
+    for (size_t i = 0; i < frame_quantity_count; i++)
+        if (frame_quantities[i].page)
+            bad |= json_object_set_new(o, frame_quantities[i].page, report_quantity(&frame_quantities[i], a, -1));
     if (!bad)
         return o;
     json_decref(o);

@@ -1,29 +1,25 @@
-/* The JSON account of a render: what `cuvette render --json` prints. The manual page names the keys. */
+/* The JSON account of a render, made from the list of job/quantities.h: what `cuvette render --json` prints, and what
+ * the page shows of an image. The manual page names the keys. Ownership: new references, NULL when memory is out. */
 #ifndef CUVETTE_REPORT_REPORT_H
 #define CUVETTE_REPORT_REPORT_H
 
 #include "image/compare.h"
-#include "measure/usage.h"
-#include "render/core/renderer.h"
+#include "job/quantities.h"
 #include "scene/model/params.h"
 #include <jansson.h>
 #include <stdbool.h>
-
-/* Frames of one scene, rendered one after another and measured. */
-typedef struct frames {
-    render_result *result;    /* of the last whole frame; a partial one if none was finished */
-    bool whole;               /* all that were asked for are finished */
-    size_t count;             /* finished frames */
-    double *wall_s, *cpu_s;   /* of each finished frame, in order */
-    usage spent;              /* over all the frames */
-    hardware_counts hardware; /* over all the frames, pool threads included; -1 where absent */
-} frames;
 
 enum { REPORT_SCHEMA = 1 }; /* goes up when a key changes its meaning or goes away */
 
 /* The account of measured frames, with at least one result; NULL when memory is out. repeated: asked for by
  * --repeat. */
-json_t *report_create(const scene *s, isa level, const frames *f, bool repeated);
+json_t *report_create(const job_account *a, bool repeated);
+
+/* One quantity of it. worker: as for its read. */
+json_t *report_quantity(const quantity *q, const job_account *a, int worker);
+
+/* The numbers of an image that the laboratory's page shows. */
+json_t *report_page(const job_account *a);
 
 /* Each parameter of the scene under its path, as number, list or word; NULL when memory is out. */
 json_t *report_params(const scene *s);

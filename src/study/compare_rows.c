@@ -55,20 +55,17 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
     X("noise_rms", "radiance", "as in rows.csv", csv_real(line, r->noise_rms))                                         \
     X("reference_noise_rms", "radiance", "the same of the reference", csv_real(line, r->against->noise_rms))
 
-#define DESCRIBE(name, unit, meaning, put) {name, unit, meaning},
+#define DESCRIBE(name, unit, meaning, put) take(context, &(row_column){name, unit, meaning});
 #define PUT(name, unit, meaning, put) put;
 
-const row_column compare_columns[] = {COMPARE_COLUMNS(DESCRIBE)};
-const size_t compare_column_count = sizeof compare_columns / sizeof compare_columns[0];
+void compare_each_column(row_column_taker *take, void *context)
+{
+    COMPARE_COLUMNS(DESCRIBE)
+}
 
 const char *const compare_shown[] = {
     "reference", "mse", "psnr_db", "ssim", "flip", "largest", "differing_share", "error_rms", "reference_noise_rms"};
 const size_t compare_shown_count = sizeof compare_shown / sizeof compare_shown[0];
-
-void compare_header(csv_line *line, const study *s)
-{
-    row_columns_header(line, s, compare_columns, compare_column_count);
-}
 
 void compare_row_write(csv_line *line, const compare_row *r)
 {

@@ -9,8 +9,7 @@
 #include "study/reference.h"
 #include "study/rows.h"
 
-extern const row_column compare_columns[];
-extern const size_t compare_column_count;
+row_columns compare_each_column;
 /* Those that a summary shows beside a cell's times, by name. */
 extern const char *const compare_shown[];
 extern const size_t compare_shown_count;
@@ -30,7 +29,6 @@ typedef struct compare_row {
 /* Measures how far the frame's picture lies from row->against: fills film_hash, noise_rms, lies and error_rms. */
 status compare_row_measure(compare_row *row, const render_result *frame, diagnostic *why);
 
-void compare_header(csv_line *line, const study *s);
 void compare_row_write(csv_line *line, const compare_row *r);
 
 #endif

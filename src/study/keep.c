@@ -80,7 +80,7 @@ render_options keep_options(const study *s)
 
 static status write_kept(const study *s, const kept_cell *c, kept what, const char *path, diagnostic *why)
 {
-    const render_result *frame = c->frame;
+    const render_result *frame = c->made->result;
     switch (what) {
     case KEPT_PNG:
     case KEPT_PFM: return record_picture(frame->picture, path, 8, why);
@@ -89,9 +89,9 @@ static status write_kept(const study *s, const kept_cell *c, kept what, const ch
     case KEPT_NS_PNG:
     case KEPT_NS_PFM: return record_map(frame->pixel_ns, frame->picture, "nanoseconds per pixel", path, why);
     case KEPT_TIMELINE: return record_timeline(frame, path, why);
-    case KEPT_METRICS: return metric_table_write(s, c->cell, c->setting, c->level, path, why);
-    case KEPT_CURVES: return curve_table_write(s, c->cell, c->setting, c->level, path, why);
-    case KEPT_MOTION: return motion_table_write(s, c->cell, c->setting, c->level, path, why);
+    case KEPT_METRICS: return metric_table_write(s, c->cell, c->made->of, c->made->level, path, why);
+    case KEPT_CURVES: return curve_table_write(s, c->cell, c->made->of, c->made->level, path, why);
+    case KEPT_MOTION: return motion_table_write(s, c->cell, c->made->of, c->made->level, path, why);
     case KEPT_COUNT: break;
     }
     return STATUS_OK;

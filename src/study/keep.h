@@ -4,7 +4,7 @@
 #ifndef CUVETTE_STUDY_KEEP_H
 #define CUVETTE_STUDY_KEEP_H
 
-#include "render/core/renderer.h"
+#include "job/account.h"
 #include "study/study.h"
 
 /* Does the cell lack a file that the study keeps? */
@@ -13,12 +13,10 @@ bool keep_missing(const study *s, const char *folder, size_t cell);
 /* The frame's options for what is kept; progress and context are left NULL. */
 render_options keep_options(const study *s);
 
-/* A cell, its scene, and its frame rendered with those options. Borrowed. */
+/* A cell, and its frame rendered with those options. Borrowed. */
 typedef struct kept_cell {
     size_t cell;
-    const scene *setting;
-    const render_result *frame;
-    isa level;
+    const job_account *made;
 } kept_cell;
 
 /* Writes the cell's files. */

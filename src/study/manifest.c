@@ -125,7 +125,6 @@ static void add_disturbance(void *list, const char *text)
 /* What may differ from one run of a study to the next; of its file the repetitions, the order, what is kept. */
 static json_t *run_facts(const study *s, const topology *machine, isa level, long shard, long shards)
 {
-    char config[ROW_TIME_MAX];
     char *folder = strdup(s->path);
     bool dirty = false;
     char *commit = folder ? provenance_git_commit(dirname(folder), &dirty) : NULL;
@@ -133,14 +132,14 @@ static json_t *run_facts(const study *s, const topology *machine, isa level, lon
     json_t *disturbances = json_array();
     usage_disturbances(load_sample_s, add_disturbance, disturbances);
     json_t *is_dirty = commit ? json_boolean(dirty) : json_null();
-    return json_pack("{s:o, s:i, s:i, s:o, s:o, s:s, s:o, s:o, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o}",
-                     "started_utc", time_text(), "shard", (int)shard, "shards", (int)(shards > 1 ? shards : 1),
-                     "cpu_model", taken(provenance_cpu_model()), "topology", taken(topology_summary(machine)),
-                     "version", CUVETTE_VERSION, "git_commit", taken(commit), "git_dirty", is_dirty, "compiler",
-                     COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config", row_build_config(config), "isa",
-                     isa_name(level), "kernel", taken(provenance_kernel()), "governor", taken(provenance_governor()),
-                     "binding", taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances,
-                     "study_text", borrowed(s->text));
+    return json_pack(
+        "{s:o, s:i, s:i, s:o, s:o, s:s, s:o, s:o, s:s, s:s, s:s#, s:s, s:o, s:o, s:o, s:o, s:o, s:o}", "started_utc",
+        time_text(), "shard", (int)shard, "shards", (int)(shards > 1 ? shards : 1), "cpu_model",
+        taken(provenance_cpu_model()), "topology", taken(topology_summary(machine)), "version", CUVETTE_VERSION,
+        "git_commit", taken(commit), "git_dirty", is_dirty, "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS,
+        "config", CUVETTE_COMPILER_FLAGS, (int)strcspn(CUVETTE_COMPILER_FLAGS, ":"), "isa", isa_name(level), "kernel",
+        taken(provenance_kernel()), "governor", taken(provenance_governor()), "binding", taken(provenance_binding()),
+        "libraries", libraries(), "disturbances", disturbances, "study_text", borrowed(s->text));
 }
 
 /* The manifest that is there, or a new one. */

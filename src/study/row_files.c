@@ -26,9 +26,9 @@ char *row_file_path(const char *folder, row_kind kind, long shard, long shards)
 
 char *row_file_header(const study *s, row_kind kind)
 {
-    static void (*const headers[])(csv_line *, const study *) = {row_header, worker_header, compare_header};
+    static row_columns *const columns[] = {row_each_column, worker_each_column, compare_each_column};
     csv_line line = {0};
-    headers[kind](&line, s);
+    row_columns_header(&line, s, columns[kind]);
     if (!line.failed)
         return line.text;
     csv_line_free(&line);

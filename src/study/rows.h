@@ -1,12 +1,10 @@
-/* The rows of a study: what stands in each column of rows.csv and workers.csv, and the one way to write them.
- * results/README.md is the data dictionary: it lists every column of the two tables here. Pure but for memory; a
- * csv_line that ran out of it has failed set. */
+/* The rows of a study: rows.csv and workers.csv, and the one way to write them. Their columns are a study's own and the
+ * quantities of job/quantities.h; results/README.md is their dictionary. Pure but for memory; a csv_line that ran out
+ * of it has failed set. */
 #ifndef CUVETTE_STUDY_ROWS_H
 #define CUVETTE_STUDY_ROWS_H
 
-#include "base/isa.h"
-#include "measure/usage.h"
-#include "render/core/renderer.h"
+#include "job/quantities.h"
 #include "study/csv.h"
 #include "study/study.h"
 
@@ -16,37 +14,32 @@ typedef struct row_column {
     const char *name, *unit, *meaning;
 } row_column;
 
-extern const row_column row_columns[];
-extern const size_t row_column_count;
-extern const row_column worker_columns[];
-extern const size_t worker_column_count;
+/* Calls take for each column of a table, in order. */
+typedef void row_column_taker(void *context, const row_column *column);
+typedef void row_columns(row_column_taker *take, void *context);
+
+row_columns row_each_column, worker_each_column;
 
 /* One repetition. Everything is borrowed. */
 typedef struct study_row {
     const study *of;
     size_t cell;
-    const scene *setting; /* the cell's scene */
-    long repetition;      /* running number in the cell, warm-ups counted */
+    long repetition; /* running number in the cell, warm-ups counted */
     bool warmup;
-    size_t order;    /* running number in the file */
-    int64_t time_ms; /* since 1970 UTC, when the frame had ended */
-    uint64_t film_hash, film_expected;
-    const render_result *frame;
-    usage used;               /* over the frame */
-    hardware_counts hardware; /* over the frame */
-    isa level;
+    size_t order; /* running number in the file */
+    uint64_t film_expected;
+    const job_account *made;
 } study_row;
 
-/* The header lines. */
-void row_header(csv_line *line, const study *s);
-void worker_header(csv_line *line, const study *s);
 /* A line of rows.csv; the lines of workers.csv, one a worker. */
 void row_write(csv_line *line, const study_row *r);
 void worker_rows_write(csv_line *line, const study_row *r);
 
-/* A header line of these columns. The values of the grid's parameters, one field each. */
-void row_columns_header(csv_line *line, const study *s, const row_column *columns, size_t count);
+/* A header line of these columns. The values of the grid's parameters, one field each. A quantity of a frame, or of a
+ * worker. */
+void row_columns_header(csv_line *line, const study *s, row_columns *each);
 void row_put_axes(csv_line *line, const study *s, const scene *setting);
+void row_put(csv_line *line, const quantity *q, const job_account *made, int worker);
 
 /* "2026-01-31T12:00:00.250Z"; text holds ROW_TIME_MAX. */
 enum { ROW_TIME_MAX = 32 };
@@ -54,8 +47,5 @@ char *row_time(int64_t ms, char text[ROW_TIME_MAX]);
 
 /* The paths of the grid, in its order, one at a time: NULL behind the last. */
 const char *study_grid_path(const study *s, size_t index);
-
-/* "release" of "release: -O3 ...": what this program was built as. */
-const char *row_build_config(char text[ROW_TIME_MAX]);
 
 #endif

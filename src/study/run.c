@@ -8,27 +8,7 @@
 #include "study/row_files.h"
 #include "study/rows.h"
 #include "study/run_state.h"
-#include <fcntl.h>
 #include <stdlib.h>
-#include <time.h>
-#include <unistd.h>
-
-status run_interrupted(diagnostic *why)
-{
-    return diagnose(why, STATUS_INTERRUPTED, "run it again: it goes on from here", "stopped; all rows so far are kept");
-}
-
-bool run_should_stop(const run *r)
-{
-    return r->options->stop && r->options->stop(r->options->context);
-}
-
-bool run_frame_progress(void *of, double share_done)
-{
-    run *r = of;
-    progress_show(r->line, share_done);
-    return !run_should_stop(r);
-}
 
 static void choose_cells(run *r)
 {
@@ -41,17 +21,6 @@ static void choose_cells(run *r)
         order_shuffle(r->s->seed, ORDER_STREAM_SHARDS, r->order, total);
     for (size_t i = shard; i < total; i += shards)
         r->cells[r->cell_count++] = r->order[i];
-}
-
-/* Linux forgets the highest resident memory so far when 5 is written there (proc(5)); elsewhere it stays as it is. */
-static void reset_peak_memory(void)
-{
-    int fd = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
-    if (fd < 0)
-        return;
-    ssize_t written = write(fd, "5", 1);
-    (void)written;
-    close(fd);
 }
 
 static status append_row(run *r, const study_row *row, diagnostic *why)
@@ -72,67 +41,63 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
         return code;
     r->row_number++;
     r->ran++;
-    ledger_entry entry = {row->cell, row->repetition, row->warmup, row->film_hash, row->frame->wall_s};
+    ledger_entry entry = {row->cell, row->repetition, row->warmup, row->made->film_hash, row->made->result->wall_s};
     return ledger_add(r->done, &entry, why);
 }
 
 static bool show_motion(void *of, double share_done)
 {
-    run *r = of;
-    progress_moving(r->line, share_done);
-    return !run_should_stop(r);
+    progress_moving(((run *)of)->line, share_done);
+    return true;
 }
 
-status run_prepare_scene(run *r, scene *setting, diagnostic *why)
+static bool show_frame(void *of, double share_done)
 {
-    const load_watch watch = {show_motion, r};
-    status code = shelf_load(&r->meshes, setting, &watch, why);
-    if (code == STATUS_INTERRUPTED)
-        return run_interrupted(why);
-    return code == STATUS_OK ? renderer_prepare(r->tracer, setting, why) : code;
+    progress_show(((run *)of)->line, share_done);
+    return true;
+}
+
+static status say_interrupted(status code, diagnostic *why)
+{
+    return code != STATUS_INTERRUPTED
+               ? code
+               : diagnose(why, code, "run it again: it goes on from here", "stopped; all rows so far are kept");
+}
+
+status run_load(run *r, scene *setting, diagnostic *why)
+{
+    return say_interrupted(job_load(r->with, setting, &(load_watch){show_motion, r}, why), why);
+}
+
+status run_render(run *r, const scene *setting, const render_options *wanted, job_account *out, diagnostic *why)
+{
+    render_options options = wanted ? *wanted : (render_options){.progress = NULL};
+    options.progress = show_frame;
+    options.context = r;
+    return say_interrupted(job_render(r->with, setting, &options, out, why), why);
 }
 
 /* One frame, one row. */
 static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
 {
-    if (run_should_stop(r))
-        return run_interrupted(why);
     scene *setting = NULL;
+    job_account made = {.result = NULL};
     status code = study_cell_scene(r->s, cell, &setting, why);
     if (code == STATUS_OK)
-        code = run_prepare_scene(r, setting, why);
-    if (code != STATUS_OK) {
-        scene_destroy(setting);
-        return code;
-    }
-    const ledger_cell *known = &r->done->cells[cell];
-    study_row row = {.of = r->s,
-                     .cell = cell,
-                     .setting = setting,
-                     .repetition = known->next_repetition,
-                     .warmup = warmup,
-                     .order = r->row_number,
-                     .level = r->level};
-    render_options options = {.progress = run_frame_progress, .context = r};
-    render_result *frame = NULL;
-    reset_peak_memory();
-    hardware_counts counted = hardware_counter_read(r->hardware);
-    usage used = usage_now();
-    code = renderer_render(r->tracer, setting, &options, &frame, why);
-    row.used = usage_since(&used);
-    row.hardware = hardware_counts_since(r->hardware, &counted);
+        code = run_load(r, setting, why);
+    if (code == STATUS_OK)
+        code = run_render(r, setting, NULL, &made, why);
     if (code == STATUS_OK) {
-        struct timespec now;
-        clock_gettime(CLOCK_REALTIME, &now);
-        row.time_ms = (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
-        row.frame = frame;
-        row.film_hash = film_hash(frame->picture);
-        row.film_expected = ledger_film(r->done, cell, row.film_hash);
+        const study_row row = {.of = r->s,
+                               .cell = cell,
+                               .repetition = r->done->cells[cell].next_repetition,
+                               .warmup = warmup,
+                               .order = r->row_number,
+                               .film_expected = ledger_film(r->done, cell, made.film_hash),
+                               .made = &made};
         code = append_row(r, &row, why);
-    } else if (code == STATUS_INTERRUPTED) {
-        code = run_interrupted(why);
     }
-    render_result_destroy(frame);
+    job_account_release(&made);
     scene_destroy(setting);
     return code;
 }

@@ -36,28 +36,18 @@ bool run_complete(const run *r)
     return true;
 }
 
-static status render(run *r, const scene *setting, render_options options, render_result **frame, diagnostic *why)
-{
-    if (run_should_stop(r))
-        return run_interrupted(why);
-    options.progress = run_frame_progress;
-    options.context = r;
-    status code = renderer_render(r->tracer, setting, &options, frame, why);
-    return code == STATUS_INTERRUPTED ? run_interrupted(why) : code;
-}
-
 static status render_reference(run *r, const scene *setting, reference *out, diagnostic *why)
 {
-    render_result *frame = NULL;
-    status code = render(r, setting, (render_options){0}, &frame, why);
+    job_account frame;
+    status code = run_render(r, setting, NULL, &frame, why);
     if (code == STATUS_OK)
-        code = film_image(frame->picture, &out->picture, why);
+        code = film_image(frame.result->picture, &out->picture, why);
     if (code == STATUS_OK) {
-        out->film_hash = film_hash(frame->picture);
-        out->noise_rms = render_noise_rms(frame);
+        out->film_hash = frame.film_hash;
+        out->noise_rms = render_noise_rms(frame.result);
         code = reference_save(r->s, r->folder, out, setting, why);
     }
-    render_result_destroy(frame);
+    job_account_release(&frame);
     return code;
 }
 
@@ -68,7 +58,7 @@ static status hold_reference(run *r, size_t cell, diagnostic *why)
     uint64_t hash = 0;
     status code = reference_scene(r->s, cell, &setting, why);
     if (code == STATUS_OK)
-        code = run_prepare_scene(r, setting, why);
+        code = run_load(r, setting, why);
     if (code == STATUS_OK)
         code = reference_scene_hash(setting, &hash);
     if (code == STATUS_OK && (!r->held.picture || r->held.scene_hash != hash)) {
@@ -100,24 +90,24 @@ static status compare_cell(run *r, size_t cell, const scene *setting, const rend
 static status keep_cell(run *r, size_t cell, diagnostic *why)
 {
     scene *setting = NULL;
-    render_result *frame = NULL;
+    job_account frame = {.result = NULL};
+    const render_options wanted = keep_options(r->s);
     bool keeps = keep_missing(r->s, r->folder, cell), compares = lacks_comparison(r, cell);
     status code = compares ? hold_reference(r, cell, why) : STATUS_OK;
     if (code == STATUS_OK)
         code = study_cell_scene(r->s, cell, &setting, why);
     if (code == STATUS_OK)
-        code = run_prepare_scene(r, setting, why);
+        code = run_load(r, setting, why);
     if (code == STATUS_OK)
-        code = render(r, setting, keeps ? keep_options(r->s) : (render_options){0}, &frame, why);
-    uint64_t seen = code == STATUS_OK ? film_hash(frame->picture) : 0;
-    if (code == STATUS_OK && seen != ledger_film(r->done, cell, seen))
+        code = run_render(r, setting, keeps ? &wanted : NULL, &frame, why);
+    if (code == STATUS_OK && frame.film_hash != ledger_film(r->done, cell, frame.film_hash))
         code = diagnose(why, STATUS_FAILURE, "look for marked rows; the image must depend on the scene alone",
                         "the picture of cell %zu is not the one that its rows saw", cell);
     if (code == STATUS_OK && keeps)
-        code = keep_write(r->s, r->folder, &(kept_cell){cell, setting, frame, r->level}, why);
+        code = keep_write(r->s, r->folder, &(kept_cell){cell, &frame}, why);
     if (code == STATUS_OK && compares)
-        code = compare_cell(r, cell, setting, frame, why);
-    render_result_destroy(frame);
+        code = compare_cell(r, cell, setting, frame.result, why);
+    job_account_release(&frame);
     scene_destroy(setting);
     return code;
 }

@@ -60,10 +60,16 @@ static status open_tables(run *r, diagnostic *why)
     return code;
 }
 
-/* Folder, locks, the rows so far (read again under the lock), manifest, machine, renderer. */
+/* Folder, locks, the rows so far (read again under the lock), manifest, job. */
 status run_prepare(run *r, diagnostic *why)
 {
-    status code = isa_choose(&r->level, why);
+    const job_settings settings = {.measured = true,
+                                   .fresh_peak = true,
+                                   .keeps_meshes = true,
+                                   .stop = r->options->stop,
+                                   .context = r->options->context};
+    const topology *machine = NULL;
+    status code = job_create(&settings, &r->with, why);
     if (code == STATUS_OK)
         code = file_make_directory(r->folder, why);
     if (code == STATUS_OK)
@@ -75,22 +81,16 @@ status run_prepare(run *r, diagnostic *why)
     if (code == STATUS_OK)
         code = run_find_compared(r, why);
     if (code == STATUS_OK)
-        code = topology_create(&r->machine, why);
+        code = job_machine(r->with, &machine, why);
     if (code == STATUS_OK)
-        code = manifest_write(r->s, r->folder, r->machine, r->level, r->options->shard, r->options->shards, why);
-    /* Counts the threads that start after it, so it comes before the pool. */
-    r->hardware = hardware_counter_create();
-    return code == STATUS_OK ? renderer_create(r->level, r->machine, &r->tracer, why) : code;
+        code = manifest_write(r->s, r->folder, machine, job_isa(r->with), r->options->shard, r->options->shards, why);
+    return code;
 }
 
 void run_release(run *r)
 {
     progress_end(r->line);
-    shelf_clear(&r->meshes);
-    renderer_destroy(r->tracer);
-    if (r->hardware)
-        hardware_counter_destroy(r->hardware);
-    topology_destroy(r->machine);
+    job_destroy(r->with);
     reference_release(&r->held);
     table_close(r->compares);
     table_close(r->workers);

@@ -3,12 +3,10 @@
 #ifndef CUVETTE_STUDY_RUN_STATE_H
 #define CUVETTE_STUDY_RUN_STATE_H
 
-#include "measure/usage.h"
-#include "render/core/renderer.h"
+#include "job/job.h"
 #include "study/ledger.h"
 #include "study/progress.h"
 #include "study/reference.h"
-#include "study/shelf.h"
 #include "study/table.h"
 
 typedef struct run {
@@ -24,15 +22,11 @@ typedef struct run {
     table *compares;       /* NULL without a reference */
     reference held;        /* the last one used */
     size_t row_number, ran;
-    isa level;
-    topology *machine;
-    hardware_counter *hardware;
-    renderer *tracer;
+    job *with;
     progress_line *line;
-    shelf meshes;
 } run;
 
-/* Folder, locks, the rows so far (read again under the lock), manifest, machine, renderer. What was opened when it
+/* Folder, locks, the rows so far (read again under the lock), manifest, job. What was opened when it
  * fails is released by run_release too. */
 status run_prepare(run *r, diagnostic *why);
 void run_release(run *r);
@@ -43,13 +37,11 @@ status run_find_compared(run *r, diagnostic *why);
 /* Is there a row, a picture or a comparison to make? */
 bool run_complete(const run *r);
 
-/* Asks the caller; what the frame calls meanwhile, with the run as context; and the error that follows. */
-bool run_should_stop(const run *r);
-bool run_frame_progress(void *of, double share_done);
-status run_interrupted(diagnostic *why);
+/* Loads what the scene names. */
+status run_load(run *r, scene *setting, diagnostic *why);
 
-/* Loads what the scene names and makes the renderer ready for it. */
-status run_prepare_scene(run *r, scene *setting, diagnostic *why);
+/* One frame, with a line of progress; *out is to be released whatever is returned. options may be NULL. */
+status run_render(run *r, const scene *setting, const render_options *options, job_account *out, diagnostic *why);
 
 /* Makes what is kept of each cell and compares it with its reference, outside of all that is measured. */
 status run_keep_all(run *r, diagnostic *why);

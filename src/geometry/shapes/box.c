@@ -61,6 +61,19 @@ static void fit(solid_shape *shape, double size)
     shape->size = vec3_make(size, size, size);
 }
 
+static int rings(const solid_shape *shape, shape_ring *out)
+{
+    const vec3 half = vec3_scale(shape->size, 0.5);
+    for (int i = 0; i < 2; i++) {
+        out[i] = (shape_ring){.y = i == 0 ? -half.y : half.y,
+                              .x = sqrt(2.0) * half.x,
+                              .z = sqrt(2.0) * half.z,
+                              .corners = 4,
+                              .from_deg = 45.0};
+    }
+    return 2;
+}
+
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     (void)part;
@@ -69,6 +82,7 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
 
 const shape_rule shape_box = {
     .word = "box",
+    .meaning = "|x|, |y| and |z| at most half of its size; its position is its centre",
     .parameters = WORDS("size"),
     .check = check,
     .contains = contains,
@@ -81,5 +95,6 @@ const shape_rule shape_box = {
     .covers = covers,
     .thickness = thickness,
     .fit = fit,
+    .rings = rings,
     .tessellation = tessellation,
 };

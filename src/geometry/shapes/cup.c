@@ -81,6 +81,15 @@ static void fit(solid_shape *shape, double size)
     shape->floor = 0.1 * size;
 }
 
+static int rings(const solid_shape *shape, shape_ring *out)
+{
+    const double r = shape->inner_radius;
+    const int outside = cylinder_rings(shape, out);
+    out[outside] = (shape_ring){.part = 1, .y = shape->floor, .x = r, .z = r / shape->m};
+    out[outside + 1] = (shape_ring){.part = 1, .y = shape->height, .x = r, .z = r / shape->m};
+    return outside + 2;
+}
+
 /* Its outside, whose top is a ring; and the wall and the floor of its hollow. */
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
@@ -92,6 +101,8 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
 
 const shape_rule shape_cup = {
     .word = "cup",
+    .meaning = "a cylinder less one of inner_radius that stands on its floor and is open at the top; its "
+               "position is the centre of its base",
     .parameters = WORDS("radius", "height", "m", "inner_radius", "floor"),
     .hollow = true,
     .curved = true,
@@ -107,6 +118,7 @@ const shape_rule shape_cup = {
     .covers = covers,
     .thickness = thickness,
     .fit = fit,
+    .rings = rings,
     .tessellation = tessellation,
     .tessellation_scale = cylinder_tessellation_scale,
 };

@@ -87,6 +87,14 @@ void cylinder_fit(solid_shape *shape, double size)
     shape->height = size;
 }
 
+int cylinder_rings(const solid_shape *shape, shape_ring *out)
+{
+    const double r = shape->radius;
+    out[0] = (shape_ring){.x = r, .z = r / shape->m};
+    out[1] = (shape_ring){.y = shape->height, .x = r, .z = r / shape->m};
+    return 2;
+}
+
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     (void)part;
@@ -101,6 +109,7 @@ vec3 cylinder_tessellation_scale(const solid_shape *shape)
 
 const shape_rule shape_cylinder = {
     .word = "cylinder",
+    .meaning = "x^2 + m^2 z^2 <= radius^2, 0 <= y <= height; its position is the centre of its base",
     .parameters = WORDS("radius", "height", "m"),
     .curved = true,
     .check = cylinder_check,
@@ -115,6 +124,7 @@ const shape_rule shape_cylinder = {
     .covers = cylinder_covers,
     .thickness = thickness,
     .fit = cylinder_fit,
+    .rings = cylinder_rings,
     .tessellation = tessellation,
     .tessellation_scale = cylinder_tessellation_scale,
 };

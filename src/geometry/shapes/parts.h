@@ -46,6 +46,7 @@ double cylinder_farthest(const solid_shape *shape, vec3 direction);
 double cylinder_farthest_from(const placed_shape *placed, const round_frame *frame);
 bool cylinder_covers(const placed_shape *cover, const placed_shape *hidden);
 void cylinder_fit(solid_shape *shape, double size);
+int cylinder_rings(const solid_shape *shape, shape_ring *out);
 vec3 cylinder_tessellation_scale(const solid_shape *shape);
 /* Level faces at these heights, for a rule's flat. */
 bool level_faces(const double *heights, size_t count, size_t i, vec3 *normal, vec3 *point);

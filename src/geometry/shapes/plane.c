@@ -40,6 +40,7 @@ static double thickness(const solid_shape *shape)
 
 const shape_rule shape_plane = {
     .word = "plane",
+    .meaning = "the half-space y <= 0; its position is a point of its surface",
     .unbounded = true,
     .contains = contains,
     .primitive_count = 1,

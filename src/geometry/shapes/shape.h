@@ -12,13 +12,22 @@
 
 struct primitive;
 
-enum { SHAPE_PRIMITIVES = 2 }; /* of one shape, at most */
+enum { SHAPE_PRIMITIVES = 2, SHAPE_RINGS = 16 }; /* of one shape, at most */
 
 /* The least box around a shape in its own frame, and the radius of a ball about that box's middle that holds it. */
 typedef struct shape_extent {
     bounds3 box;
     double ball;
 } shape_extent;
+
+/* Corners of a level ring in a drawing: at height y, of the ellipse of half axes x and z, the first one so many degrees
+ * from +x towards +z. */
+typedef struct shape_ring {
+    int part; /* a convex piece, drawn as the outline of all its rings */
+    double y, x, z;
+    int corners; /* 0: it is round */
+    double from_deg;
+} shape_ring;
 
 /* A shape and its rotation, local to world. */
 typedef struct placed_shape {
@@ -36,6 +45,7 @@ typedef struct round_frame {
 
 typedef struct shape_rule {
     const char *word;              /* in files: "cylinder" */
+    const char *meaning;           /* one line for the manual, in its own frame, no full stop */
     const char *added_as;          /* what a new one is called; NULL: by its word */
     const char *const *parameters; /* of the parameter table, those that it has and not every solid, with NULL behind;
                                     * NULL for none */
@@ -74,6 +84,8 @@ typedef struct shape_rule {
     /* Makes it fill about a cube of that edge. NULL where there is nothing to set. */
     void (*fit)(solid_shape *shape, double size);
 
+    /* Writes what it is drawn by in outline, and returns how many. NULL: it has none, or none that is known here. */
+    int (*rings)(const solid_shape *shape, shape_ring out[SHAPE_RINGS]);
     /* The surface of one of its primitives, part, as triangles in its own frame, to be scaled by tessellation_scale.
      * NULL: it is drawn otherwise. */
     status (*tessellation)(const solid_shape *shape, int part, mesh **out, diagnostic *why);
@@ -89,6 +101,8 @@ bool shape_has(const shape_rule *rule, const char *parameter);
 /* "surface" where it has no name. face: of the solid, a hollow's from HOLLOW_FACES on. */
 const char *shape_face_name(const shape_rule *rule, int64_t face);
 
+/* A point, as a solid that holds nothing else. */
+solid_shape shape_point(vec3 at);
 placed_shape shape_placed(const solid_shape *shape);
 /* How far it reaches along a local direction: as farthest says, of triangles as the box around them does. */
 double shape_reach(const solid_shape *shape, vec3 direction);

@@ -1,6 +1,8 @@
 /* sphere: x^2 + y^2 + z^2 <= radius^2. Its position is its centre. */
 #include "geometry/shapes/parts.h"
 
+#include "base/elementary.h"
+
 PRIMITIVE_RULE(sphere);
 
 static status check(const solid_shape *shape, diagnostic *why)
@@ -53,6 +55,17 @@ static void fit(solid_shape *shape, double size)
     shape->radius = 0.5 * size;
 }
 
+static int rings(const solid_shape *shape, shape_ring *out)
+{
+    enum { CIRCLES = 13 }; /* every 15 degrees of latitude */
+    for (int i = 0; i < CIRCLES; i++) {
+        double sine, cosine;
+        elementary_sincos_deg(15.0 * i - 90.0, &sine, &cosine);
+        out[i] = (shape_ring){.y = shape->radius * sine, .x = shape->radius * cosine, .z = shape->radius * cosine};
+    }
+    return CIRCLES;
+}
+
 /* Of radius 1. Its outline stays within 2e-4 of its radius of the circle (20 4^5 triangles). */
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
@@ -65,8 +78,14 @@ static vec3 tessellation_scale(const solid_shape *shape)
     return vec3_make(shape->radius, shape->radius, shape->radius);
 }
 
+solid_shape shape_point(vec3 at)
+{
+    return (solid_shape){.kind = SHAPE_SPHERE, .position = at};
+}
+
 const shape_rule shape_sphere = {
     .word = "sphere",
+    .meaning = "x^2 + y^2 + z^2 <= radius^2; its position is its centre",
     .parameters = WORDS("radius"),
     .isotropic = true,
     .curved = true,
@@ -80,6 +99,7 @@ const shape_rule shape_sphere = {
     .covers = covers,
     .thickness = thickness,
     .fit = fit,
+    .rings = rings,
     .tessellation = tessellation,
     .tessellation_scale = tessellation_scale,
     .one_tessellation = true,

@@ -68,6 +68,11 @@ void renderer_destroy(renderer *r)
     free(r);
 }
 
+void renderer_know_machine(renderer *r, const topology *machine)
+{
+    r->machine = machine;
+}
+
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why)
 {
     return s->render.pool ? pool_reserve(r->threads, (int)s->render.threads, why) : STATUS_OK;
@@ -264,6 +269,13 @@ static int layers_of(const scene *s)
     while (r->paths / r->samples % layers != 0)
         layers--;
     return layers;
+}
+
+uint64_t renderer_result_bytes(const scene *s, const render_options *options)
+{
+    const uint64_t layers = (uint64_t)layers_of(s), pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
+    const uint64_t maps = options ? (uint64_t)options->pixel_rays + (uint64_t)options->pixel_time : 0;
+    return pixels * (3 * sizeof(int64_t) * layers + (layers > 1 ? 3 * sizeof(double) : 0) + maps * sizeof(double));
 }
 
 static status make_result(const scene *s, const render_options *options, render_result **out, diagnostic *why)

@@ -20,6 +20,9 @@ typedef struct renderer renderer;
 status renderer_create(isa level, const topology *machine, renderer **out, diagnostic *why);
 void renderer_destroy(renderer *r);
 
+/* The same machine, known later. */
+void renderer_know_machine(renderer *r, const topology *machine);
+
 /* One worker's account of a frame; seconds from the frame's start. */
 typedef struct worker_report {
     double wall_s;       /* from its first instruction to its last in this frame */
@@ -84,6 +87,9 @@ double render_noise_rms(const render_result *result);
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out,
                        diagnostic *why);
 void render_result_destroy(render_result *result);
+
+/* What the film and the maps of such a frame take. */
+uint64_t renderer_result_bytes(const scene *s, const render_options *options);
 
 /* Makes the pool as large as s asks for beforehand (render.pool on), so that the first frame does not pay for it. */
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why);

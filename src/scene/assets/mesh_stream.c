@@ -1,6 +1,6 @@
 #include "scene/assets/mesh_stream.h"
 
-#include "scene/assets/mesh_wire.h"
+#include "import/mesh_wire.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

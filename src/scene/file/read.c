@@ -11,10 +11,9 @@
  *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
  *
  * A background with a picture is of the kind picture, which need not be said. Switches are on or off, also written
- * yes or no, true or false.
- * SHAPE is plane, cylinder, cup, box, sphere or mesh. The parameters are the rows of the table (scene/model/params.h);
- * a solid also takes those of a material, for itself alone. Vectors and colours are lists: [0, 1, 2]. The file's order
- * is kept. Sections and objects may be empty. */
+ * yes or no, true or false. SHAPE is the word of a rule in geometry/shapes/. The parameters are the rows of the table
+ * (scene/model/params.h); a solid also takes those of a material, for itself alone. Vectors and colours are lists:
+ * [0, 1, 2]. The file's order is kept. Sections and objects may be empty. */
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/file/read_entries.h"

@@ -38,37 +38,28 @@ static bool apart_along(const placed_shape *a, const placed_shape *b, vec3 d)
     return placed_limit(a, d) <= -placed_limit(b, back) || placed_limit(b, d) <= -placed_limit(a, back);
 }
 
+static bool are_apart(const placed_shape *a, const placed_shape *b)
+{
+    bool apart = false;
+    for (int k = 0; k < 3 && !apart; k++)
+        apart = apart_along(a, b, vec3_make(k == 0, k == 1, k == 2)) || apart_along(a, b, placed_axis(&a->turn, k)) ||
+                apart_along(a, b, placed_axis(&b->turn, k));
+    const vec3 between = vec3_sub(b->shape.position, a->shape.position), level = vec3_make(between.x, 0.0, between.z);
+    return apart || (vec3_length(between) > 0.0 && apart_along(a, b, vec3_normalize(between))) ||
+           (vec3_length(level) > 0.0 && apart_along(a, b, vec3_normalize(level)));
+}
+
 bool scene_apart(const scene *s, const solid *a, const solid *b)
 {
     const placed_shape one = placed(s, a), two = placed(s, b);
-    bool apart = false;
-    for (int k = 0; k < 3 && !apart; k++)
-        apart = apart_along(&one, &two, vec3_make(k == 0, k == 1, k == 2)) ||
-                apart_along(&one, &two, placed_axis(&one.turn, k)) ||
-                apart_along(&one, &two, placed_axis(&two.turn, k));
-    const vec3 between = vec3_sub(b->shape.position, a->shape.position), level = vec3_make(between.x, 0.0, between.z);
-    return apart || (vec3_length(between) > 0.0 && apart_along(&one, &two, vec3_normalize(between))) ||
-           (vec3_length(level) > 0.0 && apart_along(&one, &two, vec3_normalize(level)));
-}
-
-/* Does the solid end before the point along d or against it? */
-static bool ends_before(const placed_shape *a, vec3 point, vec3 d)
-{
-    const vec3 back = vec3_scale(d, -1.0);
-    return placed_limit(a, d) <= vec3_dot(d, point) || placed_limit(a, back) <= vec3_dot(back, point);
+    return are_apart(&one, &two);
 }
 
 bool scene_apart_from_eye(const scene *s, const solid *owner)
 {
-    const placed_shape one = placed(s, owner);
-    const vec3 eye = s->camera.position, between = vec3_sub(eye, owner->shape.position),
-               level = vec3_make(between.x, 0.0, between.z);
-    bool apart = false;
-    for (int k = 0; k < 3 && !apart; k++)
-        apart = ends_before(&one, eye, vec3_make(k == 0, k == 1, k == 2)) ||
-                ends_before(&one, eye, placed_axis(&one.turn, k));
-    return apart || (vec3_length(between) > 0.0 && ends_before(&one, eye, vec3_normalize(between))) ||
-           (vec3_length(level) > 0.0 && ends_before(&one, eye, vec3_normalize(level)));
+    const solid_shape point = shape_point(s->camera.position);
+    const placed_shape one = placed(s, owner), eye = shape_placed(&point);
+    return are_apart(&one, &eye);
 }
 
 bool scene_is_behind_camera(const scene *s, const solid *owner)

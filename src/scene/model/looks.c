@@ -1,6 +1,7 @@
 #include "scene/model/looks.h"
 #include "scene/model/scene.h"
 
+#include "scene/model/scene.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>

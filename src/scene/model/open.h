@@ -27,8 +27,8 @@ status scene_read_text(const char *name, const char *text, size_t size, scene **
 const char *scene_path(const scene *s);
 const char *scene_root(const scene *s);
 const struct render_settings *scene_settings(const scene *s);
-const char *scene_solid_name(const scene *s, int solid);
-const char *scene_light_name(const scene *s, int light);
+const char *scene_solid_name(const scene *s, int index);
+const char *scene_light_name(const scene *s, int index);
 
 /* Sets its limits; root is copied. What was loaded stays. */
 status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why);

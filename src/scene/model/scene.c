@@ -169,14 +169,14 @@ const render_settings *scene_settings(const scene *s)
     return &s->render;
 }
 
-const char *scene_solid_name(const scene *s, int solid)
+const char *scene_solid_name(const scene *s, int index)
 {
-    return s->solids[solid].name;
+    return s->solids[index].name;
 }
 
-const char *scene_light_name(const scene *s, int light)
+const char *scene_light_name(const scene *s, int index)
 {
-    return s->lights[light].name;
+    return s->lights[index].name;
 }
 
 status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why)

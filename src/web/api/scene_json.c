@@ -49,6 +49,43 @@ static json_t *objects_json(const scene *s)
     return NULL;
 }
 
+/* [[ring..]..] by convex part, each [y, x, z, corners, from_deg] as shape_ring has them. */
+static json_t *outline_json(const solid_shape *shape)
+{
+    shape_ring rings[SHAPE_RINGS];
+    const int count = shape_of(shape)->rings(shape, rings);
+    json_t *parts = json_array(), *part = NULL;
+    for (int i = 0; i < count; i++) {
+        const shape_ring *r = &rings[i];
+        if (i == 0 || r->part != rings[i - 1].part)
+            json_array_append_new(parts, part = json_array());
+        json_array_append_new(part, json_pack("[f,f,f,i,f]", r->y, r->x, r->z, r->corners, r->from_deg));
+    }
+    return parts;
+}
+
+/* {name of a solid: outline} of those that have one and can be seen. */
+static json_t *outlines_json(const scene *s)
+{
+    json_t *all = json_object();
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (s->solids[i].visible && shape_of(&s->solids[i].shape)->rings)
+            json_object_set_new(all, s->solids[i].name, outline_json(&s->solids[i].shape));
+    return all;
+}
+
+/* Every shape that there is. */
+static json_t *shapes_json(void)
+{
+    json_t *list = json_array();
+    const shape_rule *rule;
+    for (int k = 0; (rule = shape_of_kind((shape_kind)k)); k++)
+        json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:b}", "shape", rule->word, "meaning", rule->meaning,
+                                              "added_as", rule->added_as ? rule->added_as : rule->word, "unbounded",
+                                              (int)rule->unbounded));
+    return list;
+}
+
 /* {path: value}, borrowed from rows. */
 static json_t *values_by_path(const json_t *rows)
 {
@@ -79,8 +116,9 @@ json_t *scene_json(const scene *s, const scene *opened, uint64_t generation)
     if (param_rows_json(s, NULL, &rows, NULL) == STATUS_OK &&
         param_rows_json(opened, NULL, &before, NULL) == STATUS_OK &&
         add_initial(json_object_get(rows, "params"), json_object_get(before, "params")))
-        o = json_pack("{s:I,s:o,s:o,s:O}", "generation", (json_int_t)generation, "title", json_of_text(s->title),
-                      "objects", objects_json(s), "params", json_object_get(rows, "params"));
+        o = json_pack("{s:I,s:o,s:o,s:o,s:o,s:O}", "generation", (json_int_t)generation, "title",
+                      json_of_text(s->title), "objects", objects_json(s), "outlines", outlines_json(s), "shapes",
+                      shapes_json(), "params", json_object_get(rows, "params"));
     json_decref(rows);
     json_decref(before);
     return o;

@@ -170,8 +170,7 @@ static void release(painter *p)
     live_destroy(p->toy);
     scene_destroy(p->stage);
     picture_release(p->newest);
-    renderer_destroy(p->tracer);
-    topology_destroy(p->machine);
+    job_destroy(p->tracer);
     pthread_rwlock_destroy(&p->stage_lock);
     pthread_cond_destroy(&p->wake);
     pthread_cond_destroy(&p->news);
@@ -188,13 +187,11 @@ status painter_create(desk *d, isa level, const painter_listener *listener, pain
         return out_of_memory(why);
     }
     p->desk = d;
-    p->level = level;
     p->listener = *listener;
     p->traced.step = p->raster.step = 3; /* until it is known how long frames take */
     p->toy = live_create(wake, p);
-    status code = p->toy ? topology_create(&p->machine, why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        code = renderer_create(level, p->machine, &p->tracer, why);
+    const job_settings settings = {.level = &level, .stop = painter_must_end, .context = p};
+    status code = p->toy ? job_create(&settings, &p->tracer, why) : out_of_memory(why);
     if (code == STATUS_OK && pthread_create(&p->thread, NULL, painter_thread, p) != 0)
         code = diagnose(why, STATUS_FAILURE, "end other programs", "no thread can be started");
     if (code == STATUS_OK)

@@ -20,10 +20,8 @@ typedef struct picture {
     bool final;        /* the film that the scene makes */
     int width, height; /* of this pass */
     int full_width, full_height;
-    double wall_s, cpu_s;
-    uint64_t rays, film_hash; /* film_hash: of the final one */
-    double noise;             /* of random paths; NaN for none */
-    int threads;
+    const json_t *numbers; /* report_page's */
+    uint64_t film_hash;    /* of the final one */
     const image *linear;
     const scene *of; /* final: the scene that it shows; else NULL */
 } picture;

@@ -1,6 +1,7 @@
 /* One pass of the painter: how it is rendered, and the picture that comes of it. See web/live/painter_private.h. */
 #include "web/live/painter_private.h"
 #include "measure/clock.h"
+#include "report/report.h"
 #include "web/live/picture.h"
 #include "scene/model/scene.h"
 
@@ -16,8 +17,7 @@ static void publish(painter *p, picture *shown)
     pthread_mutex_unlock(&p->lock);
     const picture *made = picture_create(shown);
     if (!made) {
-        image_destroy((image *)(uintptr_t)shown->linear);
-        scene_destroy((scene *)(uintptr_t)shown->of);
+        picture_drop(shown);
         return;
     }
     picture_keep(made); /* for the listener */
@@ -29,12 +29,6 @@ static void publish(painter *p, picture *shown)
     picture_release(before);
     p->listener.published(p->listener.context, made);
     picture_release(made);
-}
-
-static bool go_on_rendering(void *of, double share_done)
-{
-    (void)share_done;
-    return !painter_must_end(of);
 }
 
 static bool is_raster(painter *p, bool moving)
@@ -55,35 +49,29 @@ static scene pass_scene(const painter *p, int pass, const pace *tempo, bool rast
     return view;
 }
 
-static bool describe(painter *p, const render_result *made, int pass, bool moving, picture *out)
+static bool describe(painter *p, const job_account *made, int pass, bool moving, picture *out)
 {
+    const film *shown = made->result->picture;
     image *linear = NULL;
-    if (film_image(made->picture, &linear, NULL) != STATUS_OK)
+    if (film_image(shown, &linear, NULL) != STATUS_OK)
         return false;
     const bool final = !moving && pass == p->plan.count - 1;
     *out = (picture){.generation = p->stage_generation,
                      .pass = pass + 1,
                      .passes = p->plan.count,
                      .final = final,
-                     .width = made->picture->width,
-                     .height = made->picture->height,
+                     .width = shown->width,
+                     .height = shown->height,
                      .full_width = (int)p->stage->render.width,
                      .full_height = (int)p->stage->render.height,
-                     .wall_s = made->wall_s,
-                     .cpu_s = made->cpu_s,
-                     .rays = ray_counters_total(&made->counters),
-                     .noise = render_noise_rms(made),
-                     .threads = made->worker_count,
-                     .linear = linear};
-    if (final) {
-        out->film_hash = film_hash(made->picture);
-        out->of = scene_clone(p->stage);
-        if (!out->of) {
-            image_destroy(linear);
-            return false;
-        }
-    }
-    return true;
+                     .numbers = report_page(made),
+                     .film_hash = final ? job_account_hash(made) : 0,
+                     .linear = linear,
+                     .of = final ? scene_clone(p->stage) : NULL};
+    if (out->numbers && (out->of || !final))
+        return true;
+    picture_drop(out);
+    return false;
 }
 
 static void take_rate(painter *p, int pass, const render_result *made)
@@ -99,16 +87,17 @@ void painter_paint_pass(painter *p)
     const bool raster = is_raster(p, moving);
     pace *tempo = !moving ? NULL : raster ? &p->raster : &p->traced;
     const scene view = pass_scene(p, pass, tempo, raster);
-    const render_options options = {.progress = go_on_rendering, .progress_s = look_up_s, .context = p};
+    const render_options options = {.progress_s = look_up_s};
     diagnostic why = {.line = 0};
-    render_result *made = NULL;
+    job_account account;
     picture shown;
     bool good = false;
     p->begun_s = clock_wall_s();
     pthread_rwlock_rdlock(&p->stage_lock);
-    const status code = renderer_render(p->tracer, &view, &options, &made, &why);
+    const status code = job_render(p->tracer, &view, &options, &account, &why);
+    const render_result *made = account.result;
     if (code == STATUS_OK)
-        good = describe(p, made, pass, moving, &shown);
+        good = describe(p, &account, pass, moving, &shown);
     pthread_rwlock_unlock(&p->stage_lock);
     if (code == STATUS_OK) {
         if (tempo)
@@ -122,7 +111,7 @@ void painter_paint_pass(painter *p)
     } else {
         p->pass = p->plan.count;
     }
-    render_result_destroy(made);
+    job_account_release(&account);
     if (code != STATUS_INTERRUPTED)
         painter_set_trouble(p, code, &why);
     if (good)

@@ -4,8 +4,7 @@
 #ifndef CUVETTE_WEB_LIVE_PAINTER_PRIVATE_H
 #define CUVETTE_WEB_LIVE_PAINTER_PRIVATE_H
 
-#include "measure/topology.h"
-#include "render/core/renderer.h"
+#include "job/job.h"
 #include "web/live/pace.h"
 #include "web/live/painter.h"
 #include "web/live/passes.h"
@@ -14,11 +13,9 @@
 struct painter {
     struct desk *desk;
     struct live *toy;
-    isa level;
     painter_listener listener;
     pthread_t thread;
-    renderer *tracer;
-    topology *machine;
+    job *tracer;
 
     pthread_mutex_t lock; /* of what follows */
     pthread_cond_t wake, news;
@@ -56,8 +53,8 @@ void *painter_thread(void *of);
 
 /* Is there something newer on the desk than the stage is of? */
 bool painter_is_stale(painter *p);
-/* Shall what is on its way end? */
-bool painter_must_end(painter *p);
+/* Shall what is on its way end? of is the painter. */
+bool painter_must_end(void *of);
 /* The stage becomes what is on the desk. */
 void painter_renew_stage(painter *p);
 /* The slime's orders and its motion. */

@@ -22,8 +22,9 @@ bool painter_is_stale(painter *p)
 }
 
 /* Shall what is on its way end? A first pass that was ended too often goes on for a while. */
-bool painter_must_end(painter *p)
+bool painter_must_end(void *of)
 {
+    painter *p = of;
     pthread_mutex_lock(&p->lock);
     const bool now = p->stop || p->waiting;
     pthread_mutex_unlock(&p->lock);
@@ -36,14 +37,14 @@ bool painter_must_end(painter *p)
 static bool go_on_loading(void *of, double share_done)
 {
     (void)share_done;
-    return !painter_must_end(of) && !live_is_due(((painter *)of)->toy);
+    return !live_is_due(((painter *)of)->toy);
 }
 
 static status load_stage(painter *p, diagnostic *why)
 {
     const load_watch watch = {go_on_loading, p};
     p->begun_s = clock_wall_s();
-    return scene_load_until(p->stage, &watch, why);
+    return job_load(p->tracer, p->stage, &watch, why);
 }
 
 static bool has_slime(const painter *p)

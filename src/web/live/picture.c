@@ -17,6 +17,13 @@ static shared_picture *whole(const picture *p)
     return (shared_picture *)(uintptr_t)p;
 }
 
+void picture_drop(const picture *p)
+{
+    image_destroy((image *)(uintptr_t)p->linear);
+    scene_destroy((scene *)(uintptr_t)p->of);
+    json_decref((json_t *)(uintptr_t)p->numbers);
+}
+
 const picture *picture_create(const picture *shown)
 {
     shared_picture *p = malloc(sizeof *p);
@@ -35,8 +42,7 @@ void picture_release(const picture *p)
 {
     if (!p || atomic_fetch_sub(&whole(p)->owners, 1) > 1)
         return;
-    image_destroy((image *)(uintptr_t)p->linear);
-    scene_destroy((scene *)(uintptr_t)p->of);
+    picture_drop(p);
     pthread_mutex_destroy(&whole(p)->lock);
     free(whole(p)->png);
     free(whole(p));
@@ -59,15 +65,15 @@ json_t *picture_json(const picture *p)
 {
     char hash[17];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)p->film_hash);
-    json_t *o = json_pack("{s:I,s:I,s:i,s:i,s:b,s:i,s:i,s:i,s:i,s:I,s:i}", "serial", (json_int_t)p->serial,
-                          "generation", (json_int_t)p->generation, "pass", p->pass, "passes", p->passes, "final",
-                          (int)p->final, "width", p->width, "height", p->height, "full_width", p->full_width,
-                          "full_height", p->full_height, "rays", (json_int_t)p->rays, "threads", p->threads);
+    json_t *o =
+        json_pack("{s:I,s:I,s:i,s:i,s:b,s:i,s:i,s:i,s:i}", "serial", (json_int_t)p->serial, "generation",
+                  (json_int_t)p->generation, "pass", p->pass, "passes", p->passes, "final", (int)p->final, "width",
+                  p->width, "height", p->height, "full_width", p->full_width, "full_height", p->full_height);
     if (!o)
         return NULL;
-    int bad = json_object_set_new(o, "wall_s", json_of_real(p->wall_s));
-    bad |= json_object_set_new(o, "cpu_s", json_of_real(p->cpu_s));
-    bad |= json_object_set_new(o, "noise", json_of_real(p->noise));
+    json_t *numbers = json_deep_copy(p->numbers); /* references are not counted across threads */
+    int bad = !numbers || json_object_update(o, numbers);
+    json_decref(numbers);
     bad |= json_object_set_new(o, "film_hash", p->final ? json_string(hash) : json_null());
     if (!bad)
         return o;

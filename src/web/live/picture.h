@@ -8,7 +8,10 @@
 
 typedef struct shared_picture shared_picture;
 
-/* One owner; takes shown's image and scene. NULL when memory is out: they are then the caller's still. */
+/* Frees what a picture that is not shared holds. */
+void picture_drop(const picture *p);
+
+/* One owner; takes what shown holds. NULL when memory is out: it is then the caller's still. */
 const picture *picture_create(const picture *shown);
 
 #endif

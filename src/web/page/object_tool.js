@@ -1,6 +1,6 @@
 /* Object: a click in the picture chooses what is there, dragging moves it parallel to the picture, as far from the eye
- * as it is. Planes are chosen but not
- * dragged: on them, on the sky, and with Shift anywhere, dragging moves what is chosen already.
+ * as it is. What has no bounds (a plane) is chosen but
+ * not dragged: on it, on the sky, and with Shift anywhere, dragging moves what is chosen already.
  * exports: objectTool(lab, choice, mark) */
 
 import { gesture } from './ui.js';
@@ -10,13 +10,13 @@ const STILL_PX = 3;
 const KEY_PX = 8;
 const PAUSE_MS = 600;
 
-const isPlane = (object) => object?.kind === 'solid' && object.shape === 'plane';
-const moves = (object) => object && (object.kind === 'solid' || object.kind === 'light') && !isPlane(object);
-
 export function objectTool(lab, choice, mark) {
   const { view } = lab;
   let drag = null;
   let keys = null;
+
+  const isUnbounded = (object) => lab.scene.shapes.find((each) => each.shape === object.shape)?.unbounded;
+  const moves = (object) => object && (object.kind === 'light' || (object.kind === 'solid' && !isUnbounded(object)));
 
   view.tool('object', {
     label: 'Object',

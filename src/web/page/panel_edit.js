@@ -10,15 +10,6 @@ import { createWhole } from './object_whole.js';
 import { createMark } from './object_mark.js';
 import { objectTool } from './object_tool.js';
 
-const SHAPES = [
-  ['plane', 'Plane'],
-  ['cylinder', 'Cylinder'],
-  ['cup', 'Cup'],
-  ['box', 'Box'],
-  ['sphere', 'Sphere'],
-  ['mesh', 'Torus'],
-];
-
 let choice = null;
 let files = null;
 
@@ -42,16 +33,27 @@ function fileButtons() {
   );
 }
 
-function addButtons() {
+/* What there is to add is known with the first scene. */
+function shapeButtons(lab) {
+  const node = element('div', { class: 'buttons', role: 'group', 'aria-label': 'Add a solid' });
+  const fill = () => {
+    if (node.firstChild || !lab.scene) return;
+    for (const { shape, meaning, added_as: name } of lab.scene.shapes) {
+      const label = name[0].toUpperCase() + name.slice(1);
+      node.append(button(label, () => choice.add({ kind: 'solid', shape }), { small: true, title: meaning }));
+    }
+  };
+  lab.on('scene', fill);
+  fill();
+  return node;
+}
+
+function addButtons(lab) {
   const small = (label, act, icon) => button(label, act, { small: true, icon });
   return group(
     'Add',
     { id: 'edit.add' },
-    element(
-      'div',
-      { class: 'buttons', role: 'group', 'aria-label': 'Add a solid' },
-      SHAPES.map(([shape, label]) => small(label, () => choice.add({ kind: 'solid', shape }))),
-    ),
+    shapeButtons(lab),
     element(
       'div',
       { class: 'buttons', role: 'group', 'aria-label': 'Add something else' },
@@ -69,7 +71,7 @@ function create(root, lab) {
   start(lab);
   root.append(
     fileButtons(),
-    addButtons(),
+    addButtons(lab),
     createList(lab, choice).node,
     createDetails(lab, choice, files).node,
     createWhole(lab),

@@ -2,46 +2,20 @@
  * exports: solidPoints(lab) -> [{name, points: [[[x,y,z]..]..]}]    for each solid, the points of each of its convex
  *                                                                   parts, in scene units;
  *          hull(points) -> points                                   the convex hull of [u, v], counter-clockwise
- * Planes have no outline and meshes no cheap one: they are left out. */
+ * Solids whose shape has no outline (planes) or no cheap one (meshes) are left out. */
 
 import { add } from './ray_vectors.js';
 
 const RIM = 48;
 
-function circle(radius, m, y) {
-  return Array.from({ length: RIM }, (_, k) => {
-    const angle = (2 * Math.PI * k) / RIM;
-    return [radius * Math.cos(angle), y, (radius / m) * Math.sin(angle)];
+/* A ring as the laboratory gives it: height, half axes, corners (0: round) and the angle of the first one. */
+function ring([y, x, z, corners, from]) {
+  const count = corners || RIM;
+  return Array.from({ length: count }, (_, k) => {
+    const angle = (from / 180) * Math.PI + (2 * Math.PI * k) / count;
+    return [x * Math.cos(angle), y, z * Math.sin(angle)];
   });
 }
-
-const tube = (radius, m, low, high) => [...circle(radius, m, low), ...circle(radius, m, high)];
-
-function ball(radius) {
-  const points = [];
-  for (let k = -6; k <= 6; k++) {
-    const angle = (k * Math.PI) / 12;
-    points.push(...circle(radius * Math.cos(angle), 1, radius * Math.sin(angle)));
-  }
-  return points;
-}
-
-function box([x, y, z]) {
-  const points = [];
-  for (const i of [-0.5, 0.5])
-    for (const j of [-0.5, 0.5]) for (const k of [-0.5, 0.5]) points.push([i * x, j * y, k * z]);
-  return points;
-}
-
-const shapes = {
-  box: (of) => [box(of('size'))],
-  sphere: (of) => [ball(of('radius'))],
-  cylinder: (of) => [tube(of('radius'), of('m') || 1, 0, of('height'))],
-  cup: (of) => [
-    tube(of('radius'), of('m') || 1, 0, of('height')),
-    tube(of('inner_radius'), of('m') || 1, of('floor'), of('height')),
-  ],
-};
 
 /* About x, then y, then z, as the scene says it. */
 function turn(point, [a, b, c]) {
@@ -56,17 +30,11 @@ function turn(point, [a, b, c]) {
 }
 
 export function solidPoints(lab) {
-  const solids = [];
-  for (const object of lab.scene?.objects || []) {
-    const of = (name) => lab.param(`${object.name}.${name}`)?.value;
-    const position = of('position');
-    if (object.kind !== 'solid' || !shapes[object.shape] || !position || of('visible') === 'off') continue;
-    const parts = shapes[object.shape](of).map((points) =>
-      points.map((point) => add(turn(point, of('rotation') || [0, 0, 0]), position)),
-    );
-    solids.push({ name: object.name, points: parts });
-  }
-  return solids;
+  return Object.entries(lab.scene?.outlines || {}).map(([name, parts]) => {
+    const of = (row) => lab.param(`${name}.${row}`)?.value || [0, 0, 0];
+    const placed = (point) => add(turn(point, of('rotation')), of('position'));
+    return { name, points: parts.map((rings) => rings.flatMap((each) => ring(each).map(placed))) };
+  });
 }
 
 /* Andrew's monotone chain. */

@@ -52,19 +52,24 @@ status scene_give_material(scene *s, const char *solid_name, const char *materia
     return no_material(s, material_name, why);
 }
 
+enum { SHAPES_MAX = 64 };
+
+static size_t shape_words(const char *words[SHAPES_MAX])
+{
+    size_t count = 0;
+    for (const shape_rule *rule; count < SHAPES_MAX && (rule = shape_of_kind((shape_kind)count)); count++) {
+        words[count] = rule->word;
+    }
+    return count;
+}
+
 char *scene_shape_words(const char *conjunction, char *text, size_t size)
 {
-    size_t used = 0;
-    text[0] = 0;
-    const shape_rule *rule;
-    for (int k = 0; (rule = shape_of_kind((shape_kind)k)) && used < size; k++) {
-        const bool last = !shape_of_kind((shape_kind)(k + 1));
-        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s",
-                                 k == 0 ? ""
-                                 : last ? " "
-                                        : ", ",
-                                 last ? conjunction : "", last ? " " : "", rule->word);
-    }
+    const char *words[SHAPES_MAX];
+    const size_t last = shape_words(words) - 1;
+    suggest_list("", words, last, text, size);
+    const size_t used = strlen(text);
+    snprintf(text + used, size - used, " %s %s", conjunction, words[last]);
     return text;
 }
 
@@ -73,14 +78,7 @@ status scene_shape_named(const char *word, shape_kind *out, diagnostic *why)
     if (shape_named(word, out)) {
         return STATUS_OK;
     }
-    enum { SHAPES_MAX = 64 };
-    const char *words[SHAPES_MAX];
-    size_t count = 0;
-    const shape_rule *rule;
-    while (count < SHAPES_MAX && (rule = shape_of_kind((shape_kind)count))) {
-        words[count++] = rule->word;
-    }
-    const char *nearest = text_nearest(word, words, count);
+    const char *words[SHAPES_MAX], *nearest = text_nearest(word, words, shape_words(words));
     char remedy[200], all[160];
     snprintf(remedy, sizeof remedy, nearest ? "did you mean '%s'?" : "the shapes are %s",
              nearest ? nearest : scene_shape_words("and", all, sizeof all));

@@ -1,4 +1,4 @@
-#include "study/shelf.h"
+#include "job/shelf.h"
 #include "scene/model/scene.h"
 
 void shelf_clear(shelf *s)

@@ -1,11 +1,17 @@
 /* The bytes that cuvette-import writes on its standard output for the program that started it, both of one build and on
- * one machine: numbers in the machine's own order, no padding. header positions   vertex_count x 3 doubles normals the
- * same, with MESH_WIRE_NORMALS; of any length uvs         vertex_count x 2 doubles, with MESH_WIRE_UVS triangles
- * triangle_count x 3 uint32 slots       triangle_count x 1 byte: index of the material materials   material_count of:
- * record, name, texture (texts without a final 0, of the lengths in the record) MESH_WIRE_END Who reads them believes
- * nothing (scene/assets/mesh_stream.h). */
-#ifndef CUVETTE_SCENE_ASSETS_MESH_WIRE_H
-#define CUVETTE_SCENE_ASSETS_MESH_WIRE_H
+ * one machine: numbers in the machine's own order, no padding. Who reads them believes nothing
+ * (scene/assets/mesh_stream.h). In this order:
+ *
+ * - the header;
+ * - positions: vertex_count x 3 doubles;
+ * - normals, with MESH_WIRE_NORMALS: the same, of any length;
+ * - uvs, with MESH_WIRE_UVS: vertex_count x 2 doubles;
+ * - triangles: triangle_count x 3 uint32;
+ * - slots: triangle_count x 1 byte, the index of the material;
+ * - materials: material_count of record, name, texture (texts without a final 0, of the lengths in the record);
+ * - MESH_WIRE_END. */
+#ifndef CUVETTE_IMPORT_MESH_WIRE_H
+#define CUVETTE_IMPORT_MESH_WIRE_H
 
 #include <stdint.h>
 

@@ -1,8 +1,8 @@
-/* Meshes of the cells of a study that were measured last, so that a repetition does not make its triangles and
+/* Meshes of the scenes that were loaded last, so that one which comes again does not make its triangles and
  * hierarchies again. Ownership: a shelf owns copies of scenes, which share their meshes; shelf_clear lets go of them.
  */
-#ifndef CUVETTE_STUDY_SHELF_H
-#define CUVETTE_STUDY_SHELF_H
+#ifndef CUVETTE_JOB_SHELF_H
+#define CUVETTE_JOB_SHELF_H
 
 #include "scene/model/open.h"
 

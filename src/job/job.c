@@ -1,0 +1,297 @@
+#include "job/job.h"
+
+#include "job/shelf.h"
+#include "measure/clock.h"
+#include "scene/model/scene.h"
+#include <inttypes.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <time.h>
+
+struct job {
+    isa level;
+    job_settings settings;
+    renderer *tracer;
+    topology *machine;          /* NULL until it is needed: reading it takes longer than many a frame */
+    hardware_counter *hardware; /* NULL unless measured */
+    shelf meshes;               /* empty unless kept */
+    atomic_bool cancelled;
+};
+
+status job_create(const job_settings *settings, job **out, diagnostic *why)
+{
+    *out = NULL;
+    job *j = calloc(1, sizeof *j);
+    if (!j)
+        return out_of_memory(why);
+    j->settings = *settings;
+    if (settings->measured)
+        j->hardware = hardware_counter_create(); /* before the pool: it counts threads that start after it */
+    status code = STATUS_OK;
+    if (settings->level)
+        j->level = *settings->level;
+    else
+        code = isa_choose(&j->level, why);
+    if (code == STATUS_OK)
+        code = renderer_create(j->level, NULL, &j->tracer, why);
+    if (code == STATUS_OK)
+        *out = j;
+    else
+        job_destroy(j);
+    return code;
+}
+
+void job_destroy(job *j)
+{
+    if (!j)
+        return;
+    shelf_clear(&j->meshes);
+    renderer_destroy(j->tracer);
+    topology_destroy(j->machine);
+    if (j->hardware)
+        hardware_counter_destroy(j->hardware);
+    free(j);
+}
+
+isa job_isa(const job *j)
+{
+    return j->level;
+}
+
+status job_machine(job *j, const topology **out, diagnostic *why)
+{
+    const status code = j->machine ? STATUS_OK : topology_create(&j->machine, why);
+    *out = j->machine;
+    return code;
+}
+
+/* --- the wish to stop --- */
+
+void job_cancel(job *j)
+{
+    atomic_store(&j->cancelled, true);
+}
+
+void job_renew(job *j)
+{
+    atomic_store(&j->cancelled, false);
+}
+
+bool job_must_stop(const job *j)
+{
+    return atomic_load(&j->cancelled) || (j->settings.stop && j->settings.stop(j->settings.context));
+}
+
+static status interrupted(diagnostic *why)
+{
+    return diagnose(why, STATUS_INTERRUPTED, "", "interrupted");
+}
+
+/* --- loading --- */
+
+typedef struct loading {
+    const job *of;
+    const load_watch *watch;
+} loading;
+
+static bool go_on_loading(void *of, double share_done)
+{
+    const loading *l = of;
+    return !job_must_stop(l->of) && (!l->watch || l->watch->go_on(l->watch->context, share_done));
+}
+
+status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why)
+{
+    loading l = {j, watch};
+    const load_watch watched = {go_on_loading, &l};
+    if (job_must_stop(j))
+        return interrupted(why);
+    const status code = scene_check(s, why);
+    if (code != STATUS_OK)
+        return code;
+    return j->settings.keeps_meshes ? shelf_load(&j->meshes, s, &watched, why) : scene_load_until(s, &watched, why);
+}
+
+/* --- frames --- */
+
+/* Frames under way. */
+typedef struct work {
+    job *of;
+    const render_options *wanted;
+    size_t frame, frames; /* now, of how many */
+    double begun_s;       /* this frame */
+    bool late;
+} work;
+
+static bool go_on(void *of, double share_done)
+{
+    work *w = of;
+    const double limit_s = w->of->settings.time_s;
+    w->late |= limit_s > 0.0 && clock_wall_s() - w->begun_s > limit_s;
+    if (w->late || job_must_stop(w->of))
+        return false;
+    return !w->wanted->progress ||
+           w->wanted->progress(w->wanted->context, ((double)w->frame + share_done) / (double)w->frames);
+}
+
+static void pass_on_piece(void *of, const film *picture, int x0, int y0, int x1, int y1)
+{
+    const work *w = of;
+    w->wanted->piece_done(w->wanted->context, picture, x0, y0, x1, y1);
+}
+
+static status check_quota(const job *j, const scene *s, const render_options *wanted, diagnostic *why)
+{
+    const uint64_t quota = j->settings.memory_bytes, needed = renderer_result_bytes(s, wanted);
+    if (quota == 0 || needed <= quota)
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "render a smaller image, or keep fewer maps of it",
+                    "the film and its maps take %" PRIu64 " bytes, and the quota is %" PRIu64, needed, quota);
+}
+
+/* All that comes before a frame and is not measured. */
+static status prepare(job *j, const scene *s, const render_options *wanted, diagnostic *why)
+{
+    const topology *machine = NULL;
+    if (job_must_stop(j))
+        return interrupted(why);
+    status code = scene_check(s, why);
+    if (code == STATUS_OK)
+        code = check_quota(j, s, wanted, why);
+    if (code == STATUS_OK && s->render.pin != PIN_RULE_NONE)
+        code = job_machine(j, &machine, why);
+    if (code != STATUS_OK)
+        return code;
+    if (machine)
+        renderer_know_machine(j->tracer, machine);
+    return renderer_prepare(j->tracer, s, why);
+}
+
+/* With the maps or without. */
+static status trace(work *w, const scene *s, bool maps, render_result **out, diagnostic *why)
+{
+    render_options options = {.progress = go_on, .progress_s = w->wanted->progress_s, .context = w};
+    if (w->wanted->piece_done)
+        options.piece_done = pass_on_piece;
+    if (maps) {
+        options.pixel_rays = w->wanted->pixel_rays;
+        options.pixel_time = w->wanted->pixel_time;
+        options.timeline = w->wanted->timeline;
+    }
+    w->begun_s = clock_wall_s();
+    w->late = false;
+    *out = NULL;
+    const status code = renderer_render(w->of->tracer, s, &options, out, why);
+    if (code != STATUS_INTERRUPTED)
+        return code;
+    if (!w->late)
+        return interrupted(why);
+    render_result_destroy(*out);
+    *out = NULL;
+    return diagnose(why, STATUS_FAILURE, "render less, or allow more time", "the frame is not finished after %.3g s",
+                    w->of->settings.time_s);
+}
+
+/* Takes the new result in place of the one before, if it may. A whole frame says more than a part of one. */
+static status keep(job_account *a, render_result *result, status ended, diagnostic *why)
+{
+    if (ended == STATUS_INTERRUPTED && a->result) {
+        render_result_destroy(result);
+        return ended;
+    }
+    const uint64_t hash = a->result ? film_hash(result->picture) : 0;
+    if (a->result && job_account_hash(a) != hash) {
+        render_result_destroy(result);
+        return diagnose(why, STATUS_FAILURE, "report this as a bug, with the scene", "two frames of one scene differ");
+    }
+    render_result_destroy(a->result);
+    a->result = result;
+    a->film_hash = hash;
+    return ended;
+}
+
+static status render_one(work *w, const scene *s, bool maps, job_account *a, diagnostic *why)
+{
+    render_result *result = NULL;
+    status code = trace(w, s, maps, &result, why);
+    if (!result)
+        return code;
+    const double wall_s = result->wall_s, cpu_s = result->cpu_s;
+    code = keep(a, result, code, why);
+    if (code == STATUS_OK) {
+        a->wall_s[a->count] = wall_s;
+        a->cpu_s[a->count++] = cpu_s;
+    }
+    return code;
+}
+
+/* The maps of one further frame go to the result of the last measured one, whose times stay undisturbed. */
+static status add_maps(work *w, const scene *s, job_account *a, diagnostic *why)
+{
+    render_result *result = NULL, *measured = a->result;
+    const status code = trace(w, s, true, &result, why);
+    if (code == STATUS_OK) {
+        const render_result bare = *measured;
+        measured->pixel_rays = result->pixel_rays, result->pixel_rays = bare.pixel_rays;
+        measured->pixel_ns = result->pixel_ns, result->pixel_ns = bare.pixel_ns;
+        measured->events = result->events, result->events = bare.events;
+        measured->event_count = result->event_count, result->event_count = bare.event_count;
+    }
+    render_result_destroy(result);
+    return code;
+}
+
+static int64_t now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+/* Counters read first and last, so that they hold the frames and nothing else. */
+static status measure_all(work *w, const scene *s, size_t count, bool maps, job_account *a, diagnostic *why)
+{
+    const job *j = w->of;
+    const bool measured = j->settings.measured;
+    hardware_counts counted = a->hardware;
+    usage used = a->spent;
+    if (j->settings.fresh_peak)
+        usage_forget_peak();
+    if (measured) {
+        used = usage_now();
+        counted = hardware_counter_read(j->hardware);
+    }
+    status code = STATUS_OK;
+    for (; code == STATUS_OK && w->frame < count; w->frame++)
+        code = render_one(w, s, maps, a, why);
+    if (measured) {
+        a->hardware = hardware_counts_since(j->hardware, &counted);
+        a->spent = usage_since(&used);
+        a->film_hash = a->result ? job_account_hash(a) : 0;
+    }
+    a->ended_ms = now_ms();
+    return code;
+}
+
+status job_repeat(job *j, const scene *s, size_t frames, const render_options *options, job_account *out,
+                  diagnostic *why)
+{
+    static const render_options none = {.progress = NULL};
+    const render_options *wanted = options ? options : &none;
+    const bool maps = wanted->pixel_rays || wanted->pixel_time || wanted->timeline, extra = frames > 1 && maps;
+    work w = {.of = j, .wanted = wanted, .frames = frames + extra};
+    status code = job_account_begin(s, j->level, frames, out, why);
+    if (code == STATUS_OK)
+        code = prepare(j, s, wanted, why);
+    if (code == STATUS_OK)
+        code = measure_all(&w, s, frames, maps && !extra, out, why);
+    if (code == STATUS_OK && extra)
+        code = add_maps(&w, s, out, why);
+    out->whole = code == STATUS_OK;
+    return code;
+}
+
+status job_render(job *j, const scene *s, const render_options *options, job_account *out, diagnostic *why)
+{
+    return job_repeat(j, s, 1, options, out, why);
+}

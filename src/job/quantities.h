@@ -1,0 +1,63 @@
+/* The one list of what is known of frames: name, unit, type and meaning of each quantity, how several frames make one
+ * value of it, where it is shown, and how it is read from an account. Columns of rows.csv and workers.csv
+ * (study/rows.c), `cuvette render --json` and the page's numbers (report/report.c), the dictionary in results/README.md
+ * and the manual's part on the JSON account are all made from it (make dictionary renews the last two). A new quantity
+ * is one new line in quantities.c. Ownership: constant; values borrow from the account. Nothing fails. */
+#ifndef CUVETTE_JOB_QUANTITIES_H
+#define CUVETTE_JOB_QUANTITIES_H
+
+#include "job/account.h"
+
+typedef enum quantity_type {
+    QUANTITY_COUNT,  /* value.count; under 0: not known */
+    QUANTITY_NUMBER, /* the same, but JSON has -1 for what is not known */
+    QUANTITY_TRUTH,  /* value.count, 0 or 1 */
+    QUANTITY_REAL,   /* value.real[0]; NaN: not known */
+    QUANTITY_COLOR,  /* value.real */
+    QUANTITY_HASH,   /* value.hash */
+    QUANTITY_WORD,   /* value.word */
+    QUANTITY_DEPTHS, /* value.list: a count for each depth, from 0 to render.depth */
+    QUANTITY_SOLIDS  /* value.list: a count for each of the scene's solids; a column for each, NAME.<solid> */
+} quantity_type;
+
+/* Frames of one scene, rendered one after another. */
+typedef enum quantity_merge {
+    QUANTITY_SAME,   /* each has the same */
+    QUANTITY_MEDIAN, /* of all frames */
+    QUANTITY_OVER,   /* from the beginning of the first to the end of the last */
+    QUANTITY_LAST    /* of the last one */
+} quantity_merge;
+
+typedef struct quantity_value {
+    int64_t count;
+    double real[3];
+    uint64_t hash;
+    const uint64_t *list;
+    size_t size;
+    char word[32];
+} quantity_value;
+
+typedef struct quantity {
+    const char *name, *unit, *meaning;
+    quantity_type type;
+    quantity_merge merge;
+    bool column;      /* of rows.csv or workers.csv, under its name */
+    const char *json; /* key in the JSON account, "rays.camera" for one in an object; NULL: not there */
+    const char *page; /* key in the page's numbers of an image; NULL: not there */
+    quantity_value (*read)(const job_account *a, int worker);
+} quantity;
+
+/* Of frames: worker is not looked at. In the order of the columns, the film's hash first. */
+extern const quantity frame_quantities[];
+extern const size_t frame_quantity_count;
+/* Of one worker, by its number. In JSON in the objects of the list `threads`. */
+extern const quantity worker_quantities[];
+extern const size_t worker_quantity_count;
+
+/* How, for people; "" for QUANTITY_SAME. */
+const char *quantity_merge_text(quantity_merge merge);
+
+/* The frame's quantity of that name, or NULL. */
+const quantity *frame_quantity(const char *name);
+
+#endif

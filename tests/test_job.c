@@ -1,0 +1,341 @@
+/* The frame job: what ends it before, during and after a frame, what it refuses, what its accounts hold, and that all
+ * who hold one make the same film. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "cuvette.h"
+#include "job/job.h"
+#include "render_fixture.h"
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static scene *small_scene(void)
+{
+    scene *s = scene_create();
+    assert_non_null(s);
+    s->render.width = 32, s->render.height = 24;
+    return s;
+}
+
+static job *job_with(job_settings settings)
+{
+    job *j = NULL;
+    diagnostic why = {.what = ""};
+    worked(job_create(&settings, &j, &why), &why);
+    return j;
+}
+
+typedef struct caller {
+    job *of;
+    int asked, limit; /* ends when it is asked that often */
+    double share;
+} caller;
+
+static bool has_enough(void *context)
+{
+    caller *c = context;
+    return ++c->asked >= c->limit;
+}
+
+/* Cancels from within the frame, as another thread would. */
+static bool cancel_soon(void *context, double share_done)
+{
+    caller *c = context;
+    c->share = share_done;
+    if (++c->asked == c->limit)
+        job_cancel(c->of);
+    return true;
+}
+
+static bool refuse(void *context, double share_done)
+{
+    (void)share_done;
+    return ++((caller *)context)->asked < 1;
+}
+
+static void a_cancelled_job_begins_nothing(void **state)
+{
+    (void)state;
+    scene *s = small_scene();
+    job *j = job_with((job_settings){.measured = true});
+    job_account made;
+    diagnostic why = {.what = ""};
+    job_cancel(j);
+    assert_true(job_must_stop(j));
+    assert_int_equal(job_load(j, s, NULL, &why), STATUS_INTERRUPTED);
+    assert_int_equal(job_render(j, s, NULL, &made, &why), STATUS_INTERRUPTED);
+    assert_null(made.result);
+    assert_int_equal(made.count, 0);
+    assert_false(made.whole);
+    assert_string_equal(why.what, "interrupted");
+    job_account_release(&made);
+    job_renew(j);
+    assert_int_equal(job_render(j, s, NULL, &made, &why), STATUS_OK);
+    assert_true(made.whole);
+    job_account_release(&made);
+    job_cancel(j); /* after it: nothing happens to what is there */
+    job_destroy(j);
+    scene_destroy(s);
+}
+
+/* Long enough that nobody is fast enough to end before the first look. */
+static scene *long_scene(void)
+{
+    scene *s = small_scene();
+    s->render.width = s->render.height = 2048;
+    s->render.samples = 64;
+    return s;
+}
+
+static void a_frame_ends_when_it_is_cancelled(void **state)
+{
+    (void)state;
+    scene *s = long_scene();
+    job *j = job_with((job_settings){.measured = true});
+    caller c = {.of = j, .limit = 2};
+    const render_options options = {.progress = cancel_soon, .progress_s = 0.001, .context = &c};
+    job_account made;
+    assert_int_equal(job_render(j, s, &options, &made, NULL), STATUS_INTERRUPTED);
+    assert_non_null(made.result); /* a part of it */
+    assert_false(made.whole);
+    assert_int_equal(made.count, 0);
+    assert_true(c.share < 1.0);
+    assert_true(made.result->counters.camera < 2048u * 2048u * 64u);
+    job_account_release(&made);
+
+    c = (caller){.of = j};
+    job_renew(j);
+    const render_options refused = {.progress = refuse, .progress_s = 0.001, .context = &c};
+    assert_int_equal(job_render(j, s, &refused, &made, NULL), STATUS_INTERRUPTED);
+    job_account_release(&made);
+    assert_false(job_must_stop(j)); /* that was of one frame */
+    job_destroy(j);
+    scene_destroy(s);
+}
+
+static void a_wish_to_stop_is_heard(void **state)
+{
+    (void)state;
+    scene *s = long_scene();
+    caller c = {.limit = 3};
+    job *j = job_with((job_settings){.stop = has_enough, .context = &c});
+    const render_options options = {.progress_s = 0.001};
+    job_account made;
+    assert_int_equal(job_render(j, s, &options, &made, NULL), STATUS_INTERRUPTED);
+    assert_int_equal(c.asked, 3);
+    job_account_release(&made);
+    job_destroy(j);
+    scene_destroy(s);
+}
+
+/* Whole frames stay when a later one is broken off. */
+static bool is_third(void *context, double share_done)
+{
+    (void)context;
+    return share_done < 0.667;
+}
+
+static void finished_frames_are_kept(void **state)
+{
+    (void)state;
+    scene *s = small_scene();
+    job *j = job_with((job_settings){.measured = true});
+    s->render.width = s->render.height = 512;
+    s->render.samples = 16;
+    const render_options options = {.progress = is_third, .progress_s = 0.0001};
+    job_account made;
+    assert_int_equal(job_repeat(j, s, 3, &options, &made, NULL), STATUS_INTERRUPTED);
+    assert_int_equal(made.count, 2);
+    assert_false(made.whole);
+    assert_int_equal(made.result->counters.camera, 512 * 512 * 16);
+    assert_true(made.film_hash == film_hash(made.result->picture));
+    job_account_release(&made);
+    job_destroy(j);
+    scene_destroy(s);
+}
+
+static void expect_refusal(job_settings settings, scene *s, const render_options *options, status code,
+                           const char *what)
+{
+    job *j = job_with(settings);
+    job_account made;
+    diagnostic why = {.what = ""};
+    assert_int_equal(job_render(j, s, options, &made, &why), code);
+    if (!strstr(why.what, what))
+        fail_msg("'%s' is not about '%s'", why.what, what);
+    assert_null(made.result);
+    job_account_release(&made);
+    scene *good = small_scene(); /* the job goes on */
+    assert_int_equal(job_render(j, good, NULL, &made, &why), STATUS_OK);
+    job_account_release(&made);
+    scene_destroy(good);
+    job_destroy(j);
+    scene_destroy(s);
+}
+
+static void wrong_scenes_are_refused(void **state)
+{
+    (void)state;
+    scene *s = small_scene();
+    s->camera.target = s->camera.position;
+    s->camera.aimed = true;
+    expect_refusal((job_settings){.measured = true}, s, NULL, STATUS_BAD_INPUT, "target");
+}
+
+/* More threads than there is memory for their stacks: in a process of its own, whose address space is bounded. */
+static int ask_for_too_many(void)
+{
+    scene *s = small_scene();
+    job *j = job_with((job_settings){.measured = false});
+    job_account made;
+    diagnostic why = {.what = ""};
+    struct rlimit room = {.rlim_cur = 256u << 20, .rlim_max = RLIM_INFINITY};
+    s->render.threads = 1024;
+    if (setrlimit(RLIMIT_AS, &room) != 0)
+        return 1;
+    if (job_render(j, s, NULL, &made, &why) != STATUS_FAILURE || made.result || !strstr(why.what, "thread"))
+        return 2;
+    job_account_release(&made);
+    s->render.threads = 2; /* the job goes on with fewer */
+    if (job_render(j, s, NULL, &made, &why) != STATUS_OK)
+        return 3;
+    job_account_release(&made);
+    job_destroy(j);
+    scene_destroy(s);
+    return 0;
+}
+
+static void too_many_threads_are_an_error(void **state)
+{
+    (void)state;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    skip(); /* whose shadow memory is larger than any bound */
+#endif
+    int ended;
+    const pid_t child = fork();
+    if (child == 0)
+        _exit(ask_for_too_many());
+    assert_true(child > 0 && waitpid(child, &ended, 0) == child);
+    assert_true(WIFEXITED(ended));
+    assert_int_equal(WEXITSTATUS(ended), 0);
+}
+
+static void limits_hold(void **state)
+{
+    (void)state;
+    const uint64_t sums = 32 * 24 * 3 * 8, map = 32 * 24 * 8;
+    const render_options mapped = {.pixel_rays = true};
+    job_account made;
+    scene *s = small_scene();
+    job *j = job_with((job_settings){.memory_bytes = sums});
+    assert_int_equal(job_render(j, s, NULL, &made, NULL), STATUS_OK);
+    job_account_release(&made);
+    job_destroy(j);
+    expect_refusal((job_settings){.memory_bytes = sums + map - 1}, s, &mapped, STATUS_BAD_INPUT, "quota");
+    expect_refusal((job_settings){.time_s = 1e-9}, long_scene(), &(render_options){.progress_s = 0.001}, STATUS_FAILURE,
+                   "not finished");
+}
+
+static void an_account_says_what_was_measured(void **state)
+{
+    (void)state;
+    scene *s = small_scene();
+    for (int measured = 0; measured < 2; measured++) {
+        job *j = job_with((job_settings){.measured = measured, .fresh_peak = measured});
+        job_account made;
+        const render_options options = {.pixel_rays = true, .timeline = true};
+        assert_int_equal(job_repeat(j, s, 2, &options, &made, NULL), STATUS_OK);
+        assert_int_equal(made.count, 2);
+        assert_non_null(made.result->pixel_rays); /* of a third one */
+        assert_true(made.result->event_count > 0);
+        assert_true(made.of == s && made.level == job_isa(j) && made.ended_ms > 0);
+        assert_int_equal(made.spent.peak_rss_bytes > 0, measured);
+        assert_true(isnan(made.spent.wall_s) == !measured);
+        assert_true(made.film_hash != 0);
+        assert_true(job_account_hash(&made) == film_hash(made.result->picture));
+        job_account_release(&made);
+        job_destroy(j);
+    }
+    scene_destroy(s);
+}
+
+/* Threads are put in their places, and the machine is read for that alone. */
+static void pinned_scenes_have_the_same_film(void **state)
+{
+    (void)state;
+    scene *s = small_scene();
+    job *j = job_with((job_settings){.measured = false});
+    uint64_t hash[3];
+    const pin_rule rules[] = {PIN_RULE_NONE, PIN_RULE_COMPACT, PIN_RULE_NONE};
+    for (int i = 0; i < 3; i++) {
+        job_account made;
+        s->render.pin = rules[i];
+        assert_int_equal(job_render(j, s, NULL, &made, NULL), STATUS_OK);
+        hash[i] = job_account_hash(&made);
+        job_account_release(&made);
+    }
+    assert_true(hash[0] == hash[1] && hash[1] == hash[2]);
+    const topology *machine = NULL, *again = NULL;
+    assert_int_equal(job_machine(j, &machine, NULL), STATUS_OK);
+    assert_int_equal(job_machine(j, &again, NULL), STATUS_OK);
+    assert_true(machine && machine == again);
+    job_destroy(j);
+    scene_destroy(s);
+}
+
+/* The engine's frame, the job's own, and one of a job that keeps meshes. */
+static void all_callers_make_the_same_film(void **state)
+{
+    (void)state;
+    const char *path = "experiments/scenes/models.yaml";
+    cuvette_engine *engine;
+    cuvette_scene *handle;
+    cuvette_frame *frame;
+    cuvette_diagnostic said;
+    assert_int_equal(cuvette_engine_create(NULL, &engine, &said), CUVETTE_OK);
+    assert_int_equal(cuvette_scene_read(path, &handle, &said), CUVETTE_OK);
+    assert_int_equal(cuvette_scene_set(handle, "render.width", "60", &said), CUVETTE_OK);
+    assert_int_equal(cuvette_scene_set(handle, "render.height", "40", &said), CUVETTE_OK);
+    assert_int_equal(cuvette_engine_render(engine, handle, NULL, &frame, &said), CUVETTE_OK);
+    for (int keeps = 0; keeps < 2; keeps++) {
+        job *j = job_with((job_settings){.keeps_meshes = keeps, .measured = keeps});
+        for (int times = 0; times < 2; times++) {
+            scene *s;
+            job_account made;
+            diagnostic why = {.what = ""};
+            worked(scene_read(path, &s, &why), &why);
+            s->render.width = 60, s->render.height = 40;
+            worked(job_load(j, s, NULL, &why), &why);
+            worked(job_render(j, s, NULL, &made, &why), &why);
+            assert_true(job_account_hash(&made) == cuvette_frame_hash(frame));
+            job_account_release(&made);
+            scene_destroy(s);
+        }
+        job_destroy(j);
+    }
+    cuvette_frame_destroy(frame);
+    cuvette_scene_destroy(handle);
+    cuvette_engine_destroy(engine);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_cancelled_job_begins_nothing),
+        cmocka_unit_test(a_frame_ends_when_it_is_cancelled),
+        cmocka_unit_test(a_wish_to_stop_is_heard),
+        cmocka_unit_test(finished_frames_are_kept),
+        cmocka_unit_test(wrong_scenes_are_refused),
+        cmocka_unit_test(too_many_threads_are_an_error),
+        cmocka_unit_test(limits_hold),
+        cmocka_unit_test(an_account_says_what_was_measured),
+        cmocka_unit_test(pinned_scenes_have_the_same_film),
+        cmocka_unit_test(all_callers_make_the_same_film),
+    };
+    return cmocka_run_group_tests_name("job", tests, NULL, NULL);
+}

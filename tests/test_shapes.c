@@ -1,0 +1,235 @@
+/* Each shape's rule is of one piece: what it says of its sizes, its primitives and its drawings holds for the points
+ * that it contains. A new shape is tested here without a line of its own. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "geometry/arrangement.h"
+#include "geometry/shapes/placed.h"
+#include "random_stream.h"
+#include "scene/model/params_value.h"
+#include "scene/model/scene.h"
+#include <math.h>
+#include <string.h>
+
+enum { POINTS = 20000, DIRECTIONS = 24 };
+#define SLACK 1e-9
+
+static uint64_t seed = 20260101;
+
+/* At its defaults, fitted to a cube of 2, turned, and elliptic where it can be. */
+static solid_shape an_example(shape_kind kind)
+{
+    solid one = {.shape.kind = kind};
+    assert_int_equal(param_set_defaults(PARAM_SOLID, &one, NULL), STATUS_OK);
+    one.shape.kind = kind;
+    shape_of_kind(kind)->fit(&one.shape, 2.0);
+    one.shape.m = shape_has(shape_of_kind(kind), "m") ? 0.7 : 1.0;
+    one.shape.position = vec3_make(0.3, -0.2, 0.5);
+    one.shape.rotation_deg = vec3_make(30.0, -50.0, 110.0);
+    return one.shape;
+}
+
+/* Calls test for each shape whose sizes are known without a mesh. */
+static void each_bounded(void test(const shape_rule *rule, const placed_shape *placed))
+{
+    const shape_rule *rule;
+    int count = 0;
+    for (int k = 0; (rule = shape_of_kind((shape_kind)k)); k++) {
+        if (rule->unbounded || rule->triangles)
+            continue;
+        const solid_shape shape = an_example((shape_kind)k);
+        assert_int_equal(solid_shape_check(&shape, NULL), STATUS_OK);
+        const placed_shape placed = shape_placed(&shape);
+        test(rule, &placed);
+        count++;
+    }
+    assert_true(count >= 4);
+}
+
+static vec3 point_in(bounds3 b, double around)
+{
+    return vec3_make(random_real(&seed, b.low.x - around, b.high.x + around),
+                     random_real(&seed, b.low.y - around, b.high.y + around),
+                     random_real(&seed, b.low.z - around, b.high.z + around));
+}
+
+static vec3 in_world(const placed_shape *placed, vec3 local)
+{
+    return vec3_add(placed->shape.position, mat3_apply(placed->turn, local));
+}
+
+static bool is_in(bounds3 b, vec3 p)
+{
+    return p.x >= b.low.x - SLACK && p.x <= b.high.x + SLACK && p.y >= b.low.y - SLACK && p.y <= b.high.y + SLACK &&
+           p.z >= b.low.z - SLACK && p.z <= b.high.z + SLACK;
+}
+
+static void every_parameter_has_a_row(void **state)
+{
+    (void)state;
+    const shape_rule *rule;
+    for (int k = 0; (rule = shape_of_kind((shape_kind)k)); k++) {
+        shape_kind named;
+        assert_true(shape_named(rule->word, &named) && (int)named == k && rule->meaning);
+        for (const char *const *name = rule->parameters; name && *name; name++) {
+            const param *row = param_find(PARAM_SOLID, *name);
+            assert_true(row && row->group == PARAM_SOLID && row->by_shape);
+        }
+    }
+    for (size_t i = 0; i < param_count(); i++) {
+        bool used = !param_at(i)->by_shape;
+        for (int k = 0; (rule = shape_of_kind((shape_kind)k)); k++)
+            used |= shape_has(rule, param_at(i)->name);
+        assert_true(used);
+    }
+}
+
+static void sizes(const shape_rule *rule, const placed_shape *placed)
+{
+    const solid_shape *shape = &placed->shape;
+    const shape_extent e = rule->extent(shape);
+    const bounds3 world = shape_world_box(shape);
+    const vec3 middle = vec3_scale(vec3_add(e.box.low, e.box.high), 0.5);
+    const round_frame frames[2] = {{random_direction(&seed), rotation_from_deg(vec3_make(10, 20, 30)), 0.8, false},
+                                   {random_direction(&seed), rotation_from_deg(vec3_make(0, 0, 0)), 1.0, true}};
+    vec3 along[DIRECTIONS];
+    double most[DIRECTIONS];
+    for (int i = 0; i < DIRECTIONS; i++)
+        along[i] = random_direction(&seed), most[i] = -INFINITY;
+    for (int n = 0; n < POINTS; n++) {
+        const vec3 p = point_in(e.box, 0.1), at = in_world(placed, p);
+        if (!rule->contains(shape, p))
+            continue;
+        assert_true(is_in(e.box, p) && is_in(world, at));
+        assert_true(vec3_length(vec3_sub(p, middle)) <= e.ball + SLACK);
+        for (int i = 0; i < 2; i++)
+            assert_true(round_distance(&frames[i], at) <= placed_farthest_from(placed, &frames[i]) + SLACK);
+        for (int i = 0; i < DIRECTIONS; i++)
+            most[i] = fmax(most[i], vec3_dot(along[i], p));
+    }
+    for (int i = 0; i < DIRECTIONS; i++) {
+        assert_true(most[i] <= rule->farthest(shape, along[i]) + SLACK);
+        assert_true(most[i] >= rule->farthest(shape, along[i]) - 0.3 * e.ball);
+    }
+    assert_true(rule->thickness(shape) > 0.0 && rule->thickness(shape) <= 2.0 * e.ball + SLACK);
+}
+
+static void what_it_contains_is_within_its_sizes(void **state)
+{
+    (void)state;
+    each_bounded(sizes);
+}
+
+static void primitives(const shape_rule *rule, const placed_shape *placed)
+{
+    primitive parts[SHAPE_PRIMITIVES];
+    const solid_shape *shape = &placed->shape;
+    rule->primitives(shape, parts);
+    for (int n = 0; n < POINTS; n++) {
+        const vec3 p = point_in(rule->extent(shape).box, 0.3), at = in_world(placed, p);
+        bool inside = primitive_contains(&parts[0], at);
+        for (int i = 1; i < rule->primitive_count; i++)
+            inside &= !primitive_contains(&parts[i], at);
+        assert_int_equal(inside, rule->contains(shape, p));
+        assert_int_equal(inside, solid_shape_contains(shape, at));
+    }
+}
+
+static void its_primitives_contain_what_it_contains(void **state)
+{
+    (void)state;
+    each_bounded(primitives);
+}
+
+static void covers(const shape_rule *rule, const placed_shape *placed)
+{
+    int covered = 0, contained = 0;
+    for (int n = 0; n < POINTS && rule->covers; n++) {
+        const vec3 p = point_in(rule->extent(&placed->shape).box, 0.2);
+        const solid_shape point = shape_point(in_world(placed, p));
+        const placed_shape hidden = shape_placed(&point);
+        const bool is_covered = rule->covers(placed, &hidden), is_contained = rule->contains(&placed->shape, p);
+        assert_true(!is_covered || is_contained);
+        covered += is_covered, contained += is_contained;
+    }
+    assert_true(!rule->covers || covered > contained / 2);
+}
+
+static void it_covers_points_that_it_contains(void **state)
+{
+    (void)state;
+    each_bounded(covers);
+}
+
+static void drawings(const shape_rule *rule, const placed_shape *placed)
+{
+    const solid_shape *shape = &placed->shape;
+    const bounds3 box = rule->extent(shape).box;
+    shape_ring rings[SHAPE_RINGS];
+    const int count = rule->rings ? rule->rings(shape, rings) : 0;
+    assert_true(count <= SHAPE_RINGS);
+    for (int i = 0; i < count; i++) {
+        const int corners = rings[i].corners ? rings[i].corners : 48;
+        for (int k = 0; k < corners; k++) {
+            const double angle = (rings[i].from_deg + 360.0 * k / corners) * (M_PI / 180.0);
+            assert_true(is_in(box, vec3_make(rings[i].x * cos(angle), rings[i].y, rings[i].z * sin(angle))));
+        }
+    }
+    const vec3 scale = rule->tessellation_scale ? rule->tessellation_scale(shape) : vec3_make(1, 1, 1);
+    for (int part = 0; part < rule->primitive_count; part++) {
+        mesh *m = NULL;
+        assert_int_equal(rule->tessellation(shape, part, &m, NULL), STATUS_OK);
+        for (size_t i = 0; i < m->vertex_count; i++) {
+            const vec3 v = m->vertices[i];
+            assert_true(is_in(box, vec3_make(v.x * scale.x, v.y * scale.y, v.z * scale.z)));
+        }
+        mesh_release(m);
+    }
+    assert_true(strlen(shape_face_name(rule, 0)) > 0);
+}
+
+static void its_drawings_lie_in_its_box(void **state)
+{
+    (void)state;
+    each_bounded(drawings);
+}
+
+static void its_flat_faces_bound_it(void **state)
+{
+    (void)state;
+    const shape_rule *rule;
+    for (int k = 0; (rule = shape_of_kind((shape_kind)k)); k++) {
+        if (rule->unbounded || rule->triangles || !rule->flat)
+            continue;
+        const solid_shape shape = an_example((shape_kind)k);
+        vec3 normal, point;
+        size_t i = 0;
+        for (; rule->flat(&shape, i, &normal, &point); i++) {
+            bool below = false, above = false;
+            for (int n = 0; n < POINTS; n++) { /* near the plane some point is in, on one side or on either */
+                const vec3 p = point_in(rule->extent(&shape).box, 0.1);
+                const double side = vec3_dot(vec3_normalize(normal), vec3_sub(p, point));
+                below |= fabs(side) < 0.05 && side < 0.0 && rule->contains(&shape, p);
+                above |= fabs(side) < 0.05 && side > 0.0 && rule->contains(&shape, p);
+            }
+            assert_true(below || above);
+        }
+        assert_true(i > 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_parameter_has_a_row),
+        cmocka_unit_test(what_it_contains_is_within_its_sizes),
+        cmocka_unit_test(its_primitives_contain_what_it_contains),
+        cmocka_unit_test(it_covers_points_that_it_contains),
+        cmocka_unit_test(its_drawings_lie_in_its_box),
+        cmocka_unit_test(its_flat_faces_bound_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
