@@ -160,7 +160,10 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     const double wall = random_gap(seed), least = fmin(fmin(shape->radius, shape->height),
                                                        shape->kind == SHAPE_BOX ? smallest(shape->size) : 1.0);
     const double step = random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
-    shape->radius += step;
+    if (shape->kind == SHAPE_TORUS)
+        shape->tube_radius = fmin(shape->tube_radius + step, 0.99 * shape->radius);
+    else
+        shape->radius += step;
     shape->inner_radius += 0.5 * step;
     shape->size = vec3_add(shape->size, vec3_make(2.0 * step, 2.0 * step, 2.0 * step));
     if (shape->kind == SHAPE_CYLINDER || shape->kind == SHAPE_CUP) {
@@ -349,6 +352,7 @@ static inline ball ball_around(const law_solid *s)
     switch (shape->kind) {
     case SHAPE_SPHERE: return (ball){shape->position, shape->radius};
     case SHAPE_BOX: return (ball){shape->position, 0.5 * vec3_length(shape->size)};
+    case SHAPE_TORUS: return (ball){shape->position, shape->radius + shape->tube_radius};
     case SHAPE_CYLINDER:
     case SHAPE_CUP: return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0), hypot(0.5 * shape->height, wide)};
     case SHAPE_MESH: {

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "geometry/arrangement.h"
+#include "geometry/primitives/primitive.h"
 #include "geometry/shapes/placed.h"
 #include "random_stream.h"
 #include "scene/model/params_value.h"

@@ -43,6 +43,9 @@ static const solid_shape shapes[] = {
      .floor = 0.1},
     {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
     {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
+    {.kind = SHAPE_TORUS, .position = {0.1, 0.2, 0.3}, .radius = 0.7, .tube_radius = 0.25},
+    {.kind = SHAPE_TORUS, .position = {-0.1, 0.2, 0.0}, .radius = 0.6, .tube_radius = 0.599},
+    {.kind = SHAPE_TORUS, .position = {0.1, -0.2, 0.3}, .radius = 0.9, .tube_radius = 0.002},
 };
 static const vec3 turns[] = {
     {0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}, {0.0, 0.0, 30.0}, {90.0, 0.0, 0.0}, {0.1, 180.0, -0.3}};
@@ -97,7 +100,10 @@ static quad3 normal_of(const solid_shape *s, int64_t face, quad3 p)
         n.y = 1;
     else if (s->kind == SHAPE_SPHERE)
         n = p;
-    else if (s->kind == SHAPE_BOX)
+    else if (s->kind == SHAPE_TORUS) {
+        const quad share = 1 - s->radius / quad_sqrt(p.x * p.x + p.z * p.z);
+        n = quad3_make(p.x * share, p.y, p.z * share);
+    } else if (s->kind == SHAPE_BOX)
         *(own < 2 ? &n.x : own < 4 ? &n.y : &n.z) = own % 2 ? 1 : -1;
     else if (own > 0)
         n.y = own == 2 ? 1 : -1;
@@ -124,6 +130,8 @@ static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
     case SHAPE_CYLINDER:
         return own == 0 ? quad_abs(reference_from_side(p, s->m, s->radius))
                         : quad_abs(p.y - (own == 1 ? 0.0 : s->height));
+    case SHAPE_TORUS:
+        return quad_abs(reference_distance(s, quad3_add(quad3_turn(p, s->rotation_deg, 0), quad3_from(s->position))));
     case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }
@@ -133,6 +141,8 @@ static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
 /* The smallest radius of curvature. */
 static double least_radius(const solid_shape *s)
 {
+    if (s->kind == SHAPE_TORUS)
+        return fmin(s->tube_radius, s->radius - s->tube_radius);
     const double m = s->kind == SHAPE_CYLINDER || s->kind == SHAPE_CUP ? s->m : 1.0;
     return (s->kind == SHAPE_CUP ? s->inner_radius : s->radius) * (m > 1.0 ? 1.0 / (m * m) : m);
 }
@@ -235,7 +245,11 @@ static vec3 place_on(const solid_shape *s, uint64_t *seed)
     if (s->kind == SHAPE_BOX && random_below(seed, 3))
         p = vec3_make(eighths[random_below(seed, 4)] * s->size.x / 2, eighths[random_below(seed, 4)] * s->size.y / 2,
                       eighths[random_below(seed, 4)] * s->size.z / 2);
-    else if (s->radius > 0.0 && s->height > 0.0 && random_below(seed, 3))
+    else if (s->kind == SHAPE_TORUS && random_below(seed, 3)) {
+        const double across = eighths[random_below(seed, 4)], up = eighths[random_below(seed, 4)],
+                     from_axis = s->radius + across * s->tube_radius;
+        p = vec3_make(from_axis * cos(turn), up * s->tube_radius, from_axis * sin(turn));
+    } else if (s->radius > 0.0 && s->height > 0.0 && random_below(seed, 3))
         p = s->kind == SHAPE_CUP && random_below(seed, 2)
                 ? vec3_make(s->inner_radius * cos(turn), level > 0.0 ? level : s->floor,
                             s->inner_radius * sin(turn) / s->m)
