@@ -70,7 +70,7 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
                  size = far ? fmin(0.002 * distance, pow(10.0, random_real(seed, -3.0, 3.0))) : distance;
     s.shape.position = far ? vec3_scale(random_direction(seed), distance) : random_point(seed, 1.5);
     s.shape.radius *= size, s.shape.inner_radius *= size, s.shape.height *= size, s.shape.floor *= size;
-    s.shape.tube_radius *= size;
+    s.shape.tube_radius *= size, s.shape.top_radius *= size;
     s.shape.size = vec3_scale(s.shape.size, size);
     s.shape.scale = vec3_scale(s.shape.scale, size);
     s.shape.spacing = vec3_scale(s.shape.spacing, size);

@@ -139,6 +139,14 @@ static inline int reference_crossings(const solid_shape *s, const reference_line
         n += reference_side(&l, s->m, s->radius, t);
         n += reference_level(l.o.y, l.d.y, 0, t + n);
         return n + reference_level(l.o.y, l.d.y, s->height, t + n);
+    case SHAPE_CONE: {
+        const quad slope = ((quad)s->top_radius - s->radius) / s->height, w = s->radius + slope * l.o.y,
+                   dw = slope * l.d.y;
+        n += reference_quadratic(l.d.x * l.d.x + l.d.z * l.d.z - dw * dw, l.o.x * l.d.x + l.o.z * l.d.z - w * dw,
+                                 l.o.x * l.o.x + l.o.z * l.o.z - w * w, t);
+        n += reference_level(l.o.y, l.d.y, 0, t + n);
+        return n + reference_level(l.o.y, l.d.y, s->height, t + n);
+    }
     case SHAPE_TORUS: return reference_torus(&l, s->radius, s->tube_radius, t);
     case SHAPE_MESH:
     case SHAPE_COUNT: break;
@@ -182,6 +190,11 @@ static inline quad reference_distance(const solid_shape *s, quad3 point)
         return quad_max(reference_from_cylinder(p, s->m, s->radius, 0, s->height), -hollow);
     }
     case SHAPE_CYLINDER: return reference_from_cylinder(p, s->m, s->radius, 0, s->height);
+    case SHAPE_CONE: {
+        const quad slope = ((quad)s->top_radius - s->radius) / s->height, slant = quad_sqrt(1 + slope * slope);
+        const quad side = (quad_sqrt(p.x * p.x + p.z * p.z) - s->radius - slope * p.y) / slant;
+        return quad_max(side, quad_max(-p.y, p.y - s->height));
+    }
     case SHAPE_TORUS: {
         const quad apart = quad_sqrt(p.x * p.x + p.z * p.z) - s->radius;
         return quad_sqrt(apart * apart + p.y * p.y) - s->tube_radius;
