@@ -103,36 +103,41 @@ typedef struct local_point {
 /* q, where r is at t, put back on the surface; at: the face that r starts on, from 0. */
 typedef local_point point_function(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving);
 
+/* Of ray i. */
+ALWAYS_INLINE void store_point(const primitive *p, point_function *put_back, bool general, const ray_batch *rays,
+                               const double *__restrict t, int i, int bit, surface_batch *__restrict s)
+{
+    local_ray r =
+        ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+    vec3 d = vec3_make(r.dx, r.dy, r.dz), o = vec3_make(r.x, r.y, r.z), way = vec3_scale(d, t[i]), q = vec3_add(o, way);
+    int64_t at = rays->start[i] - p->first_face, leaving = -(int64_t)((rays->inside[i] & (uint64_t)1 << bit) != 0);
+    local_point l = put_back(p, general, r, q, at, leaving);
+    double side = blend(leaving, -1.0, 1.0); /* the normal faces the ray */
+    vec3 n = vec3_scale(l.normal, side), point = l.point;
+    double cosine = -vec3_dot(d, n);
+    double size =
+        magnitude(o.x) + magnitude(o.y) + magnitude(o.z) + magnitude(way.x) + magnitude(way.y) + magnitude(way.z);
+    if (general) {
+        n = mat3_apply(p->rotation, n);
+        point = mat3_apply(p->rotation, point);
+    }
+    s->px[i] = point.x + p->origin.x;
+    s->py[i] = point.y + p->origin.y;
+    s->pz[i] = point.z + p->origin.z;
+    s->nx[i] = n.x;
+    s->ny[i] = n.y;
+    s->nz[i] = n.z;
+    s->cos_i[i] = lesser(greater(cosine, DBL_MIN), 1.0);
+    s->error[i] = POINT_ERROR * (size + p->extent);
+    s->face[i] = l.face;
+}
+
 ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool general, const ray_batch *rays,
                              const double *__restrict t, int bit, surface_batch *__restrict s)
 {
     /* VECTORISE */
-    for (int i = 0; i < rays->count; i++) {
-        local_ray r =
-            ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
-        vec3 d = vec3_make(r.dx, r.dy, r.dz), o = vec3_make(r.x, r.y, r.z), way = vec3_scale(d, t[i]),
-             q = vec3_add(o, way);
-        int64_t at = rays->start[i] - p->first_face, leaving = -(int64_t)((rays->inside[i] & (uint64_t)1 << bit) != 0);
-        local_point l = put_back(p, general, r, q, at, leaving);
-        double side = blend(leaving, -1.0, 1.0); /* the normal faces the ray */
-        vec3 n = vec3_scale(l.normal, side), point = l.point;
-        double cosine = -vec3_dot(d, n);
-        double size =
-            magnitude(o.x) + magnitude(o.y) + magnitude(o.z) + magnitude(way.x) + magnitude(way.y) + magnitude(way.z);
-        if (general) {
-            n = mat3_apply(p->rotation, n);
-            point = mat3_apply(p->rotation, point);
-        }
-        s->px[i] = point.x + p->origin.x;
-        s->py[i] = point.y + p->origin.y;
-        s->pz[i] = point.z + p->origin.z;
-        s->nx[i] = n.x;
-        s->ny[i] = n.y;
-        s->nz[i] = n.z;
-        s->cos_i[i] = lesser(greater(cosine, DBL_MIN), 1.0);
-        s->error[i] = POINT_ERROR * (size + p->extent);
-        s->face[i] = l.face;
-    }
+    for (int i = 0; i < rays->count; i++)
+        store_point(p, put_back, general, rays, t, i, bit, s);
 }
 
 /* Defines `name`(p, ...) by body(p, ..., general, ...): the body is compiled for both answers of is_general, whether
