@@ -111,7 +111,8 @@ static inline void place_mesh(law_solid *s, uint64_t *seed)
 /* Half the height of a solid along its own y, and where its middle is; 0 for those that have no flat top. */
 static inline double flat_half(const law_solid *s, double *middle)
 {
-    *middle = s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP || s->shape.kind == SHAPE_CONE
+    *middle = s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP || s->shape.kind == SHAPE_CONE ||
+                      s->shape.kind == SHAPE_PRISM
                   ? 0.5 * s->shape.height
                   : 0.0;
     if (s->mesh)
@@ -169,7 +170,8 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     shape->top_radius = fmax(shape->top_radius + step, 0.0);
     shape->inner_radius += 0.5 * step;
     shape->size = vec3_add(shape->size, vec3_make(2.0 * step, 2.0 * step, 2.0 * step));
-    if (shape->kind == SHAPE_CYLINDER || shape->kind == SHAPE_CUP || shape->kind == SHAPE_CONE) {
+    if (shape->kind == SHAPE_CYLINDER || shape->kind == SHAPE_CUP || shape->kind == SHAPE_CONE ||
+        shape->kind == SHAPE_PRISM) {
         shape->position = in_frame_of(&base->shape, 0.0, -step, 0.0);
         shape->height += 2.0 * step;
     }
@@ -355,6 +357,7 @@ static inline ball ball_around(const law_solid *s)
     switch (shape->kind) {
     case SHAPE_SPHERE: return (ball){shape->position, shape->radius};
     case SHAPE_BOX: return (ball){shape->position, 0.5 * vec3_length(shape->size)};
+    case SHAPE_PRISM:
     case SHAPE_CONE:
         return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0),
                       hypot(0.5 * shape->height, fmax(shape->radius, shape->top_radius))};

@@ -24,6 +24,9 @@ static inline void add_shape(scene_text *t, const solid_shape *s)
     case SHAPE_CONE:
         add(t, "shape: cone, radius: %.17g, top_radius: %.17g, height: %.17g", s->radius, s->top_radius, s->height);
         break;
+    case SHAPE_PRISM:
+        add(t, "shape: prism, radius: %.17g, sides: %d, height: %.17g", s->radius, (int)s->sides, s->height);
+        break;
     case SHAPE_TORUS: add(t, "shape: torus, radius: %.17g, tube_radius: %.17g", s->radius, s->tube_radius); break;
     case SHAPE_PLANE:
     case SHAPE_MESH:

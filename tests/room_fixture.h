@@ -138,6 +138,7 @@ static inline solid_shape random_shape(uint64_t *seed)
     s.m = random_below(seed, 2) ? 1.0 : random_real(seed, 0.5, 2.0);
     s.inner_radius = s.radius * random_real(seed, 0.4, 0.95);
     s.floor = s.height * random_real(seed, 0.05, 0.6);
+    s.sides = 3 + random_below(seed, 6);
     s.top_radius = random_below(seed, 3) ? s.radius * random_real(seed, 0.1, 1.5) : 0.0;
     s.tube_radius = s.radius * random_real(seed, 0.1, 0.9);
     s.size = vec3_make(random_real(seed, 0.2, 2.0), random_real(seed, 0.2, 2.0), random_real(seed, 0.2, 2.0));
@@ -175,6 +176,7 @@ static inline void room_fill_on_a_grid(room *m, uint64_t *seed)
         s->floor = 0.25;
         s->m = 1.0;
         s->tube_radius = 0.25;
+        s->sides = 4;
         s->top_radius = 0.25 * random_below(seed, 4);
         s->size = vec3_make(0.5 * (1 + random_below(seed, 3)), 0.5 * (1 + random_below(seed, 3)),
                             0.5 * (1 + random_below(seed, 3)));

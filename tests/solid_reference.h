@@ -7,7 +7,7 @@
 #include "geometry/solid.h"
 #include "quad.h"
 
-enum { REFERENCE_CROSSINGS_MAX = 8 }; /* of one shape with a line */
+enum { REFERENCE_CROSSINGS_MAX = 16 }; /* of one shape with a line */
 
 typedef struct reference_line {
     quad3 o, d;
@@ -23,6 +23,16 @@ static inline reference_line reference_local(const solid_shape *s, const referen
     reference_line l = {quad3_turn(quad3_sub(line->o, quad3_from(s->position)), s->rotation_deg, 1),
                         quad3_turn(line->d, s->rotation_deg, 1)};
     return l;
+}
+
+/* The normal of a prism's side, and its distance from the axis. */
+static inline quad3 reference_prism_side(const solid_shape *s, int k, quad *apart)
+{
+    quad sine, cosine, half_sine;
+    quad_sincos_deg((quad)180 * (2 * k + 1) / (quad)s->sides, &sine, &cosine);
+    quad_sincos_deg((quad)180 / (quad)s->sides, &half_sine, apart);
+    *apart *= s->radius;
+    return quad3_make(sine, 0, -cosine);
 }
 
 /* a t^2 + 2 b t + c = 0 */
@@ -147,6 +157,14 @@ static inline int reference_crossings(const solid_shape *s, const reference_line
         n += reference_level(l.o.y, l.d.y, 0, t + n);
         return n + reference_level(l.o.y, l.d.y, s->height, t + n);
     }
+    case SHAPE_PRISM:
+        for (int k = 0; k < s->sides; k++) {
+            quad apart;
+            const quad3 normal = reference_prism_side(s, k, &apart);
+            n += reference_level(quad3_dot(normal, l.o), quad3_dot(normal, l.d), apart, t + n);
+        }
+        n += reference_level(l.o.y, l.d.y, 0, t + n);
+        return n + reference_level(l.o.y, l.d.y, s->height, t + n);
     case SHAPE_TORUS: return reference_torus(&l, s->radius, s->tube_radius, t);
     case SHAPE_MESH:
     case SHAPE_COUNT: break;
@@ -194,6 +212,15 @@ static inline quad reference_distance(const solid_shape *s, quad3 point)
         const quad slope = ((quad)s->top_radius - s->radius) / s->height, slant = quad_sqrt(1 + slope * slope);
         const quad side = (quad_sqrt(p.x * p.x + p.z * p.z) - s->radius - slope * p.y) / slant;
         return quad_max(side, quad_max(-p.y, p.y - s->height));
+    }
+    case SHAPE_PRISM: {
+        quad most = quad_max(-p.y, p.y - s->height);
+        for (int k = 0; k < s->sides; k++) {
+            quad apart;
+            const quad3 normal = reference_prism_side(s, k, &apart);
+            most = quad_max(most, quad3_dot(normal, p) - apart);
+        }
+        return most;
     }
     case SHAPE_TORUS: {
         const quad apart = quad_sqrt(p.x * p.x + p.z * p.z) - s->radius;

@@ -47,6 +47,9 @@ static const solid_shape shapes[] = {
     {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .top_radius = 0.4, .height = 0.9, .m = 1.0},
     {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.1, .top_radius = 1.0, .height = 1.1, .m = 1.0},
     {.kind = SHAPE_CONE, .position = {0.1, -0.2, 0.2}, .radius = 1.0, .top_radius = 0.02, .height = 0.05, .m = 1.0},
+    {.kind = SHAPE_PRISM, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .sides = 3, .height = 1.5, .m = 1.0},
+    {.kind = SHAPE_PRISM, .position = {0.1, -0.3, 0.2}, .radius = 0.8, .sides = 6, .height = 0.7, .m = 1.0},
+    {.kind = SHAPE_PRISM, .position = {0.1, -0.3, 0.2}, .radius = 0.9, .sides = 13, .height = 0.9, .m = 1.0},
     {.kind = SHAPE_TORUS, .position = {0.1, 0.2, 0.3}, .radius = 0.7, .tube_radius = 0.25},
     {.kind = SHAPE_TORUS, .position = {-0.1, 0.2, 0.0}, .radius = 0.6, .tube_radius = 0.599},
     {.kind = SHAPE_TORUS, .position = {0.1, -0.2, 0.3}, .radius = 0.9, .tube_radius = 0.002},
@@ -100,6 +103,7 @@ static quad3 normal_of(const solid_shape *s, int64_t face, quad3 p)
 {
     const int own = (int)(face % FACES_MAX);
     quad3 n = quad3_make(0, 0, 0);
+    quad apart;
     if (s->kind == SHAPE_PLANE)
         n.y = 1;
     else if (s->kind == SHAPE_SPHERE)
@@ -109,6 +113,10 @@ static quad3 normal_of(const solid_shape *s, int64_t face, quad3 p)
         n = quad3_make(p.x * share, p.y, p.z * share);
     } else if (s->kind == SHAPE_BOX)
         *(own < 2 ? &n.x : own < 4 ? &n.y : &n.z) = own % 2 ? 1 : -1;
+    else if (s->kind == SHAPE_PRISM && own < 2)
+        n.y = own == 1 ? 1 : -1;
+    else if (s->kind == SHAPE_PRISM)
+        n = reference_prism_side(s, own - 2, &apart);
     else if (own > 0)
         n.y = own == 2 ? 1 : -1;
     else if (s->kind == SHAPE_CONE && p.x == 0 && p.z == 0)
@@ -138,6 +146,11 @@ static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
     case SHAPE_CYLINDER:
         return own == 0 ? quad_abs(reference_from_side(p, s->m, s->radius))
                         : quad_abs(p.y - (own == 1 ? 0.0 : s->height));
+    case SHAPE_PRISM: {
+        quad apart;
+        const quad3 normal = reference_prism_side(s, own - 2, &apart);
+        return quad_abs(own < 2 ? p.y - own * s->height : quad3_dot(normal, p) - apart);
+    }
     case SHAPE_CONE:
         if (own == 0) {
             const quad slope = ((quad)s->top_radius - s->radius) / s->height;
@@ -178,7 +191,9 @@ static void check_point(const solid_shape *s, const arrangement *a, const refere
     /* 16 roundings of what was added up, and not more */
     expect(h->error <= 4e-15 * (3.0 * vec3_length(double_of(line->o)) + 2.0 * h->t + 6.0 * a->extent), s, line, h);
     const quad3 outward = quad3_turn(normal_of(s, h->face, local), s->rotation_deg, 0);
-    const double curved = s->kind == SHAPE_PLANE || s->kind == SHAPE_BOX ? 0.0 : h->error / least_radius(s, local);
+    const double curved = s->kind == SHAPE_PLANE || s->kind == SHAPE_BOX || s->kind == SHAPE_PRISM
+                              ? 0.0
+                              : h->error / least_radius(s, local);
     expect(quad_abs(quad3_length(n) - 1) <= 1e-15, s, line, h);
     expect(quad3_length(quad3_sub(n, quad3_scale(outward, quad3_dot(outward, n) < 0 ? -1 : 1))) <= 2e-15 + curved, s,
            line, h);

@@ -121,6 +121,7 @@ static void nothing_escapes_from_a_closed_mirror(void **state)
         {.kind = SHAPE_BOX, .position = {20.0, 10.0, -30.0}, .size = {1.0, 1.0, 1.0}},
         {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
         {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .top_radius = 0.3, .height = 1.2},
+        {.kind = SHAPE_PRISM, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .sides = 3, .height = 1.2},
     };
     uint64_t seed = 3;
     for (size_t i = 0; i < COUNT(shapes); i++) {
@@ -128,7 +129,7 @@ static void nothing_escapes_from_a_closed_mirror(void **state)
             solid_shape s = shapes[i];
             s.rotation_deg = turns[trial % 2];
             arrangement *a = arrange_one(&s);
-            const double up = s.kind == SHAPE_CYLINDER || s.kind == SHAPE_CONE ? s.height / 2 : 0.0;
+            const double up = s.height > 0.0 ? s.height / 2 : 0.0;
             quad3 middle = quad3_turn(quad3_make(0, up, 0), s.rotation_deg, 0);
             one_ray r = {.o = vec3_add(s.position, vec3_make((double)middle.x, (double)middle.y, (double)middle.z)),
                          .d = random_direction(&seed),
@@ -173,6 +174,7 @@ static void convex_solids_are_met_twice_and_no_more(void **state)
         {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
         {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
         {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .top_radius = 0.3, .height = 1.2},
+        {.kind = SHAPE_PRISM, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .sides = 3, .height = 1.2},
     };
     uint64_t seed = 5;
     int entered = 0;
@@ -215,6 +217,7 @@ static void on_all_faces(face_check *check)
         {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
         {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
         {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .top_radius = 0.3, .height = 1.2},
+        {.kind = SHAPE_PRISM, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .sides = 3, .height = 1.2},
     };
     uint64_t seed = 6;
     int faces[COUNT(shapes)] = {0};
@@ -234,7 +237,7 @@ static void on_all_faces(face_check *check)
         }
         arrangement_destroy(a);
     }
-    static const int all[COUNT(shapes)] = {1, 7, 7, 63, 1, 7};
+    static const int all[COUNT(shapes)] = {1, 7, 7, 63, 1, 7, 31};
     assert_memory_equal(faces, all, sizeof all);
 }
 

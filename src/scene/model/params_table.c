@@ -331,12 +331,14 @@ static const param table[] = {
     COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of every second checker cell"),
 
     {PARAM_SOLID, "position", PARAM_VECTOR, "scene units", -FAR, FAR, false, "0,0,0",
-     "centre of a box, sphere or torus, of the base of a cylinder, cup or cone, a point of a plane, a mesh's origin",
+     "centre of a box, sphere or torus, of the base of a cylinder, cup, cone or prism, a point of a plane, a mesh's "
+     "origin",
      NULL, ON_ALL, .offset = offsetof(solid, shape.position)},
     {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0", "turn about x, then y, then z", NULL,
      ON_ALL, .offset = offsetof(solid, shape.rotation_deg)},
     LENGTH(radius, "1",
-           "radius; of a cup, of its outside; of a cone, at its base; of a torus, of the circle in the middle of its "
+           "radius; of a cup, of its outside; of a cone, at its base; of a prism, of the circle about its corners; of "
+           "a torus, of the circle in the middle of its "
            "tube"),
     LENGTH(height, "1", "height above the base"),
     {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1",
@@ -345,6 +347,8 @@ static const param table[] = {
     LENGTH(inner_radius, "0.9",
            "radius of the hollow; the wall is radius - inner_radius thick along x, 1/m of that along z"),
     LENGTH(floor, "0.1", "thickness of the bottom"),
+    {PARAM_SOLID, "sides", PARAM_INT, "", 3, 60, false, "6", "of a prism: 3 has a triangle for its base", NULL, ON_ALL,
+     .offset = offsetof(solid, shape.sides), .by_shape = true},
     {PARAM_SOLID, "top_radius", PARAM_REAL, "scene units", 0, FAR, false, "0",
      "of a cone, at its top: 0 for a point, else it is a frustum", NULL, ON_ALL,
      .offset = offsetof(solid, shape.top_radius), .by_shape = true},
