@@ -137,7 +137,7 @@ static inline void stack_on(law_solid *s, const law_solid *base, uint64_t *seed)
         shape->position = in_frame_of(&base->shape, 0.1, top + gap + 0.5 * shape->scale.y, 0.0);
         return;
     }
-    if (shape->kind == SHAPE_PLANE || shape->kind == SHAPE_SPHERE || thin)
+    if (shape->kind == SHAPE_PLANE || shape->kind == SHAPE_SPHERE || shape->kind == SHAPE_TORUS || thin)
         shape->kind = SHAPE_BOX;
     if (thin) {
         const double thickness = gap > 0.0 ? gap : 0.125;
@@ -162,7 +162,9 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     solid_shape *shape = &s->shape;
     const double wall = random_gap(seed), least = fmin(fmin(shape->radius, shape->height),
                                                        shape->kind == SHAPE_BOX ? smallest(shape->size) : 1.0);
-    const double step = random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
+    double step = random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
+    if (shape->kind == SHAPE_CONE && fabs(step) < 1e-9)
+        step = 0.0; /* its slant is moved by another length: wide, or none, or the sides cross */
     if (shape->kind == SHAPE_TORUS)
         shape->tube_radius = fmin(shape->tube_radius + step, 0.99 * shape->radius);
     else
