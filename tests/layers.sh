@@ -61,6 +61,8 @@ failed=0
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 report 'includes stay on their floors' "$(check src)"
+callers=$(grep -rl --include='*.c' 'renderer_render(' src | grep -vx -e src/render/core/renderer.c -e src/job/job.c)
+report 'frames are rendered by the job alone' "${callers#src/}"
 plant base/a.h '"optics/interface.h"' climbs
 plant render/a.c '"cuvette.h"' climbs
 plant geometry/a.c '"measure/clock.h"' sideways

@@ -224,6 +224,8 @@ static void try_scene(int number, account *out)
 /* Ways of making a picture in which light goes on from surfaces. */
 static const char *const modes[] = {
     "render.integrator=path render.paths=4",
+    "render.integrator=aov",
+    "render.integrator=aov render.layer=albedo",
     "render.transmission=simple clear.transparency=0.8 clear.reflectivity=0.1",
     "render.weights=constant clear.transparency=0.8 clear.reflectivity=0.1",
     "render.spectrum=spectral render.wavelengths=4",
@@ -262,6 +264,8 @@ static const condition conditions[] = {
     {"rod", "render.integrator=raycast", "render.depth", "no-tree", true},
     {"rod", "render.integrator=raycast", "render.beyond", "no-tree", true},
     {"rod", "clear.transparency=0", "render.transmission", "no-clear", true},
+    {"rod", "rod.visible=off vessel.visible=off liquid.visible=off ground.visible=off", "render.transmission",
+     "no-clear", false},
     {"rod", "clear.transparency=0", "render.lambda_nm", "no-clear", true},
     {"rod", "clear.transparency=0", "background.medium", "no-clear", true},
     {"absorber", "liquid.transparency=0", "render.polarisation", "no-branches", true},

@@ -104,7 +104,7 @@ check "one account a worker" is "$(json 'threads[].worker')" "$(lines 0 1 2)"
 check "the workers' rays add up" is "$(json 'threads[].rays.total' | sum)" "$total"
 check "their kinds too" is "$(json 'threads[].rays.shadow' | sum)" "$(json rays.shadow)"
 check "keys of a worker" is "$(json 'threads[0]@keys' | sort | tr '\n' ' ')" \
-    "busy_s cpu_s pu rays start_s tiles waiting_s wall_s worker "
+    "busy_s cpu_s pu rays start_s tiles visibility_s waiting_s wall_s worker "
 check "times and process" holds "$(json wall_s) > 0 && $(json cpu_s) > 0 && $(json peak_rss_bytes) > 0"
 check "switches and others" json voluntary_switches involuntary_switches others_share
 check "without chance there is no noise" is "$(json noise@type)" null
@@ -658,6 +658,26 @@ for signal in INT TERM; do
     check "SIG$signal: the picture so far is there" magic part.png 89504e47
     check "SIG$signal: one line says so" is "$(grep -c interrupted err)" 1
     check "SIG$signal: the account says that it is a part" is "$(json whole)" false
+done
+# A tree of rays without an end, and a mesh that takes long to make: the program hears of it in any part of its work.
+{
+    echo 'meshes: {many: {generate: icosphere, level: 9}}'
+    echo 'solids: {ball: {shape: mesh, mesh: many, transparency: 1, ior: 1.5}}'
+} >many.yaml
+for signal in INT TERM; do
+    for words in "$scene --set render.depth=40" "many.yaml --set render.depth=40 --set render.samples=64"; do
+        rm -f part.png
+        # shellcheck disable=SC2086
+        "$program" render $words --set render.width=160 --set render.height=120 -o part.png >out 2>err &
+        job=$!
+        sleep 0.4
+        kill -"$signal" $job
+        wait $job
+        check "SIG$signal ends ${words##*/} with 130" is $? 130
+        check "SIG$signal: ${words##*/} leaves a whole image or none" \
+            eval '[[ ! -e part.png ]] || "$program" compare part.png part.png'
+        check "SIG$signal: no other file is left of ${words##*/}" is "$(find . -name '.cuvette-*.part')" ""
+    done
 done
 sed -e 's/^study: .*/study: long/' -e 's/render.width: 40, render.height: 30/render.width: 1000, render.height: 750/' \
     -e 's/repetitions: 2/repetitions: 500/' studies/tiny.study >studies/long.study

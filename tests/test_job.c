@@ -127,7 +127,7 @@ static void a_wish_to_stop_is_heard(void **state)
     const render_options options = {.progress_s = 0.001};
     job_account made;
     assert_int_equal(job_render(j, s, &options, &made, NULL), STATUS_INTERRUPTED);
-    assert_int_equal(c.asked, 3);
+    assert_true(c.asked >= 3); /* workers may still be ending when it is asked once more */
     job_account_release(&made);
     job_destroy(j);
     scene_destroy(s);

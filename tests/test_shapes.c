@@ -171,9 +171,9 @@ static void drawings(const shape_rule *rule, const placed_shape *placed)
 {
     const solid_shape *shape = &placed->shape;
     const bounds3 box = rule->extent(shape).box;
-    shape_ring rings[SHAPE_RINGS];
+    shape_ring rings[RINGS_MAX];
     const int count = rule->rings ? rule->rings(shape, rings) : 0;
-    assert_true(count <= SHAPE_RINGS);
+    assert_true(count <= RINGS_MAX);
     for (int i = 0; i < count; i++) {
         const int corners = rings[i].corners ? rings[i].corners : 48;
         for (int k = 0; k < corners; k++) {

@@ -135,6 +135,31 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
     return result;
 }
 
+/* Each layer's file, as if it were named. */
+static status check_layers(const outputs *o, const named_file *files, size_t count, const scene *s, diagnostic *why)
+{
+    const named_file prefix = {"--layers", o->layers};
+    const char *word = integrator_with_layers();
+    if (!integrator_of(&s->render)->layers) {
+        char remedy[64];
+        snprintf(remedy, sizeof remedy, "set render.integrator to %s", word ? word : "one that gives layers");
+        return wrong(&prefix, why, remedy, "this render.integrator gives no layers");
+    }
+    status result = STATUS_OK;
+    for (int i = 0; i < LAYER_COUNT && result == STATUS_OK; i++) {
+        char *path = record_layer_path(o->layers, i);
+        const named_file file = {"--layers", path};
+        result = path ? check_folder(&file, why) : out_of_memory(why);
+        if (result == STATUS_OK)
+            result = check_not_read(&file, s, why);
+        for (size_t k = 0; k < count && result == STATUS_OK; k++)
+            if (files[k].path && same_file(path, files[k].path))
+                result = wrong(&file, why, "give another prefix", "two results cannot go into one file");
+        free(path);
+    }
+    return result;
+}
+
 status outputs_check(const outputs *o, const scene *s, diagnostic *why)
 {
     const named_file files[] = {{"-o", o->picture},
@@ -150,7 +175,7 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why)
         if (result != STATUS_OK)
             return result;
     }
-    return STATUS_OK;
+    return o->layers ? check_layers(o, files, sizeof files / sizeof files[0], s, why) : STATUS_OK;
 }
 
 status outputs_check_picture(const char *option, const char *path, const char *const *read, size_t count,
@@ -212,5 +237,7 @@ status outputs_write(const outputs *o, const render_result *result, diagnostic *
         ended = record_noise(result, o->noise, why);
     if (ended == STATUS_OK && o->timeline && result->events)
         ended = record_timeline(result, o->timeline, why);
+    if (ended == STATUS_OK && o->layers && result->layers)
+        ended = record_layers(result, o->layers, why);
     return ended;
 }

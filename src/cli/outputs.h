@@ -7,8 +7,8 @@
 #include "render/core/renderer.h"
 
 typedef struct outputs {
-    const char *picture, *rays, *time, *noise, *timeline; /* NULL: not wanted */
-    int bits;                                             /* of a PNG picture: 8 or 16; 0 when not said */
+    const char *picture, *rays, *time, *noise, *timeline, *layers; /* NULL: not wanted; layers: a prefix */
+    int bits;                                                      /* of a PNG picture: 8 or 16; 0 when not said */
 } outputs;
 
 /* Endings, folders, and no file named twice or in place of one that the scene reads (cli/scene_files.h). */

@@ -17,7 +17,7 @@ typedef struct render_request {
     int64_t repeat;
 } render_request;
 
-enum { KEY_JSON = 0x100, KEY_BITS, KEY_RAYS, KEY_TIME, KEY_NOISE, KEY_TIMELINE, KEY_REPEAT };
+enum { KEY_JSON = 0x100, KEY_BITS, KEY_RAYS, KEY_TIME, KEY_NOISE, KEY_TIMELINE, KEY_LAYERS, KEY_REPEAT };
 
 static const struct argp_option options[] = {
     {"output", 'o', "FILE", 0, "write the picture: .png, .jpg or .pfm (linear floats)", 0},
@@ -30,6 +30,8 @@ static const struct argp_option options[] = {
     {"noise", KEY_NOISE, "FILE", 0, "write the standard error of random paths by pixel: .png with a key, or .pfm", 0},
     {"timeline", KEY_TIMELINE, "FILE", 0,
      "write when each tile was taken by whom: .json, for chrome://tracing or Perfetto", 0},
+    {"layers", KEY_LAYERS, "PREFIX", 0, "write each named layer of an integrator that gives them as PREFIX-LAYER.pfm",
+     0},
     {"repeat", KEY_REPEAT, "N", 0, "render N times; wall_s and cpu_s are the medians", 0},
     {0},
 };
@@ -61,6 +63,7 @@ static error_t take_option(int key, char *value, struct argp_state *state)
     case KEY_TIME: request->files.time = value; return 0;
     case KEY_NOISE: request->files.noise = value; return 0;
     case KEY_TIMELINE: request->files.timeline = value; return 0;
+    case KEY_LAYERS: request->files.layers = value; return 0;
     case KEY_REPEAT:
         request->repeated = true;
         return options_integer("--repeat", value, 1, 1000000, &request->repeat, input->why) == STATUS_OK ? 0 : EINVAL;
@@ -83,7 +86,7 @@ static status check_request(const render_request *request, diagnostic *why)
     const outputs *files = &request->files;
     status result = scene_input_check(&request->input, why);
     if (result != STATUS_OK || files->picture || files->rays || files->time || files->noise || files->timeline ||
-        request->json)
+        files->layers || request->json)
         return result;
     diagnose(why, STATUS_BAD_INPUT, "add -o FILE for the picture or --json for the counts", "nothing is asked for");
     diagnostic_locate(why, "render", 0, 0);
@@ -120,6 +123,8 @@ static void print_summary(const job_account *f, const outputs *files)
             printf("%s%s", before, written[i]);
             before = ", ";
         }
+    if (files->layers)
+        printf("%s%s-*.pfm", before, files->layers);
     putchar('\n');
 }
 
@@ -166,6 +171,7 @@ static status render_and_write(const render_request *request, const scene *s, jo
     const render_options wanted = {.pixel_rays = files->rays,
                                    .pixel_time = files->time,
                                    .timeline = files->timeline,
+                                   .layers = files->layers,
                                    .progress = show_progress,
                                    .context = &line};
     job_account measured;

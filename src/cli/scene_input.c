@@ -119,19 +119,21 @@ status scene_input_lint(const scene *s, isa level, const lint_filter *varies, di
 
 void scene_input_note_tree(const scene *s)
 {
-    const bool path = integrator_of(&s->render)->by_chance, drawn = integrator_of(&s->render)->drawn;
+    const bool path = integrator_of(&s->render)->by_chance, drawn = integrator_of(&s->render)->drawn,
+               layers = integrator_of(&s->render)->layers;
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
     scene one_lambda = *s; /* borrows what s owns */
     one_lambda.render.spectrum = SPECTRUM_RGB;
     scene_range_hints(&one_lambda, &printer);
     char text[160];
-    if (!path && !drawn && !spectral)
+    if (!path && !drawn && !layers && !spectral)
         return;
     snprintf(text, sizeof text,
              "the scene's picture is %s%s%s; rays are here traced as Whitted did, at render.lambda_nm = %.6g",
-             path    ? "made of random paths"
-             : drawn ? "drawn into a depth buffer"
-                     : "",
+             path     ? "made of random paths"
+             : drawn  ? "drawn into a depth buffer"
+             : layers ? "a layer of what camera rays meet first"
+                      : "",
              path && spectral ? " and " : "", spectral ? "spectral" : "", s->render.lambda_nm);
     terminal_note(text);
 }

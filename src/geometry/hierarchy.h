@@ -5,8 +5,9 @@
  *   none     no hierarchy: every triangle is tested
  *   sphere   one bounding sphere around the mesh
  *   octant   the report's tree of spheres: a shell's triangles go to eight octants, those larger than a quarter of its
- * radius stay bvh      surface-area heuristic, eight children a node, single-precision boxes rounded outwards embree
- * Embree's, where it was there at build time: a yardstick; single precision
+ *            radius stay
+ *   bvh      surface-area heuristic, eight children a node, single-precision boxes rounded outwards
+ *   embree   Embree's, where it was there at build time: a yardstick; single precision
  *
  * A hierarchy borrows its mesh, which must outlive it; it is not changed once it is built (but for hierarchy_refit and
  * hierarchy_follow), and any number of threads may use it. */

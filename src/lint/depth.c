@@ -34,7 +34,7 @@ static status trace_image(depth_probe *p, int deeper, diagnostic *why)
     const status code = film_create(whole.x1, whole.y1, 1, FILM_RGB, &p->image[deeper], why);
     if (code != STATUS_OK)
         return code;
-    const tracer_target target = {p->made, p->image[deeper], p->pixel_rays, NULL, NULL};
+    const tracer_target target = {.scene = p->made, .picture = p->image[deeper], .pixel_rays = p->pixel_rays};
     for (size_t i = 0; i < pixels; i++)
         p->pixel_rays[i] = 0.0;
     if (!tracer_begin(p->rays, &target))

@@ -8,11 +8,12 @@
  *   q > 0: the field lies along x, q < 0: along y,
  *   u > 0: the field lies at +45 degrees, from x towards y,
  *   v > 0: the field turns from x towards y: clockwise for the eye that the light runs into, which is right-handed
- * light in Hecht's and Born and Wolf's sense. (Of light that travels along +d the same v is left-handed.) In complex
- * amplitudes with exp(-i omega t), as in Born and Wolf: u + i v = 2 conj(E_x) E_y. In an s/p frame x = s = d x n / |d x
- * n| and y = p = d x s, for each ray its own p: at normal incidence the reflected p is the other way round, r_p = -r_s,
- * and nothing jumps. The normal n faces the ray: cos_i = -d.n >= 0; n_from is the index on the side of the ray that
- * comes from the eye, n_to the one beyond.
+ *   light
+ *          in Hecht's and Born and Wolf's sense. (Of light that travels along +d the same v is left-handed.)
+ * In complex amplitudes with exp(-i omega t), as in Born and Wolf: u + i v = 2 conj(E_x) E_y. In an s/p frame x = s = d
+ * x n / |d x n| and y = p = d x s, for each ray its own p: at normal incidence the reflected p is the other way round,
+ * r_p = -r_s, and nothing jumps. The normal n faces the ray: cos_i = -d.n >= 0; n_from is the index on the side of the
+ * ray that comes from the eye, n_to the one beyond.
  *
  * Transmittance is that of power, n_t cos_t / (n_i cos_i) |t|^2 = 1 - R, the same number from either side. The factor
  * n^2 that radiance takes on behind an interface is left out, as renderers commonly do: eye and lights stand in one

@@ -4,11 +4,13 @@
  *
  * Forces on a mass, x to it from the other end of a spring, v its velocity against that end, l the length at rest:
  *   gravity m g; Hooke -k (|x| - l) x / |x|; damping -k_d (v.x) / (x.x) x; pressure K (V0 - V) / V0 along each face's
- * area, a third to each of its corners. Gravity and Hooke are eqs. 2.1 and 2.2 of the slime report. Its damping,
- * eq. 2.3, is printed with x / |x| in place of the last x: it falls with the spring's length and its k_d is in N s,
- * where ours is k_d times the velocity along the spring, whatever its length. (2.2 and 2.3 print x_j - x_i in the force
- * on i, with which a drawn spring would push.) They are gathered a vertex at a time, in one fixed order, and sums over
- * all vertices go by blocks of fixed size: the same bits for any number of threads and any instruction set.
+ *   area, a third to
+ *   each of its corners.
+ * Gravity and Hooke are eqs. 2.1 and 2.2 of the slime report. Its damping, eq. 2.3, is printed with x / |x| in place of
+ * the last x: it falls with the spring's length and its k_d is in N s, where ours is k_d times the velocity along the
+ * spring, whatever its length. (2.2 and 2.3 print x_j - x_i in the force on i, with which a drawn spring would push.)
+ * They are gathered a vertex at a time, in one fixed order, and sums over all vertices go by blocks of fixed size: the
+ * same bits for any number of threads and any instruction set.
  *
  * Units: lengths in scene units, time in seconds, masses in kilograms; a force is kg scene units / s^2, called N here.
  * Ownership: *_create gives, *_destroy releases; scripts are borrowed. Errors: STATUS_BAD_INPUT for settings that make

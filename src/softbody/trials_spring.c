@@ -3,7 +3,7 @@
 #include "softbody/trials_private.h"
 
 enum { SAMPLES = 64 };
-#define SWING                                                                                                        \
+#define SWING \
     1e-3 /* of the length at rest: the ends do not meet even where a step near its limit makes the swing hundreds of \
             times longer */
 

@@ -14,7 +14,7 @@
  *   warmups: 1
  *   order: {shuffle: on, seed: 1}
  *   keep: {image: on, pfm: off, workers: off, pixel_rays: off, pixel_time: off, timeline: off, metrics: off, curves:
- * off, motion: off}
+ *   off, motion: off}
  *
  * Every path and value is tried on the scene here, so that a study that was read can be run. */
 #include "base/file.h"

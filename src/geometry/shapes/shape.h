@@ -12,7 +12,7 @@
 
 struct primitive;
 
-enum { SHAPE_PRIMITIVES = 2, SHAPE_RINGS = 16 }; /* of one shape, at most */
+enum { SHAPE_PRIMITIVES = 2, RINGS_MAX = 16 }; /* of one shape, at most */
 
 /* The least box around a shape in its own frame, and the radius of a ball about that box's middle that holds it. */
 typedef struct shape_extent {
@@ -85,7 +85,7 @@ typedef struct shape_rule {
     void (*fit)(solid_shape *shape, double size);
 
     /* Writes what it is drawn by in outline, and returns how many. NULL: it has none, or none that is known here. */
-    int (*rings)(const solid_shape *shape, shape_ring out[SHAPE_RINGS]);
+    int (*rings)(const solid_shape *shape, shape_ring out[RINGS_MAX]);
     /* The surface of one of its primitives, part, as triangles in its own frame, to be scaled by tessellation_scale.
      * NULL: it is drawn otherwise. */
     status (*tessellation)(const solid_shape *shape, int part, mesh **out, diagnostic *why);

@@ -1,27 +1,17 @@
 /* Where the rays of the camera go through the picture. */
-#include "render/core/tracer_private.h"
+#include "render/shade/shading.h"
 
-int64_t camera_rays_a_pixel(const render_settings *r)
+camera_need camera_samples(const render_settings *r)
 {
-    if (integrator_of(r)->by_chance)
-        return r->paths;
-    return r->spectrum == SPECTRUM_SPECTRAL ? r->samples * r->wavelengths : r->samples;
+    const int64_t together = r->spectrum == SPECTRUM_SPECTRAL ? r->wavelengths : 1;
+    return (camera_need){.rays = r->samples * together, .points = r->samples, .together = together};
 }
 
-/* The point of a pixel that a ray goes through: the middle of one of its k x k cells, line by line. */
-static int64_t point_of(const render_settings *r, int64_t cells, int64_t ray)
+/* Cells across the largest square grid of no more than so many. */
+static int64_t cells_across(int64_t points)
 {
-    const bool wavelengths_inside = !integrator_of(r)->by_chance && r->spectrum == SPECTRUM_SPECTRAL;
-    return wavelengths_inside ? ray / r->wavelengths : ray % (cells * cells);
-}
-
-/* k: how many cells a pixel has across. Fewer where there are fewer paths than samples: the first lines of cells alone
- * would move the picture. */
-static int64_t cells_across(const render_settings *r)
-{
-    const int64_t most = integrator_of(r)->by_chance && r->paths < r->samples ? r->paths : r->samples;
     int64_t k = 1;
-    while ((k + 1) * (k + 1) <= most)
+    while ((k + 1) * (k + 1) <= points)
         k++;
     return k;
 }
@@ -30,23 +20,22 @@ void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
 {
     const plan *p = t->target.scene;
     const render_settings *r = &p->render;
-    ray_queue *q = &t->waiting[0];
+    ray_queue *q = &t->queues.waiting[0];
     double u[ROW], v[ROW];
-    const double across = 2.0 * p->view.half_width / (double)r->width,
-                 down = 2.0 * p->view.half_height / (double)r->height;
-    const int64_t each = camera_rays_a_pixel(r), flag = integrator_of(r)->by_chance ? TICKET_SEES_LIGHTS : 0;
-    const int64_t cells = cells_across(r);
+    const camera_pixel pixel = camera_pixel_of(&p->view, r);
+    const camera_need need = t->rule->camera(r);
+    const int64_t each = need.rays, cells = cells_across(need.points);
     const int at = q->count;
     for (int k = 0; k < count; k++) {
         int64_t x = x0 + first + k, ray = 0;
         double sx = 0.5, sy = 0.5;
         if (each > 1) { /* else nothing needs to be divided */
             x = x0 + (first + k) / each, ray = (first + k) % each;
-            const int64_t s = point_of(r, cells, ray);
+            const int64_t s = ray / need.together % (cells * cells); /* line by line */
             sx = ((double)(s % cells) + 0.5) / (double)cells, sy = ((double)(s / cells) + 0.5) / (double)cells;
         }
-        u[k] = ((double)x + sx) * across - p->view.half_width;
-        v[k] = p->view.half_height - (y + sy) * down;
+        u[k] = camera_u(&p->view, pixel, (double)x + sx);
+        v[k] = camera_v(&p->view, pixel, y + sy);
         const int i = at + k;
         q->ox[i] = p->view.eye.x, q->oy[i] = p->view.eye.y, q->oz[i] = p->view.eye.z;
         q->wr[i] = q->wg[i] = q->wb[i] = 1.0 / (double)each;
@@ -57,7 +46,7 @@ void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
             q->ticket[i] = spectra_choose(p->spectral, r, q->ticket[i], &white);
             q->wr[i] *= white[0], q->wg[i] *= white[1], q->wb[i] *= white[2];
         }
-        q->ticket[i] |= flag;
+        q->ticket[i] |= need.marks;
         q->inside[i] = p->eye_inside;
         q->sq[i] = q->su[i] = q->sv[i] = 0.0;
     }

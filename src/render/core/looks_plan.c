@@ -4,6 +4,16 @@
 
 #include <stdlib.h>
 
+/* See surface_look. A copy of a scene's material that was changed keeps its number. */
+static int number_of(const scene *s, const solid *owner, const material *named)
+{
+    for (size_t i = 0; named && i < s->material_count; i++)
+        if (named == &s->materials[i].value)
+            return (int)i + 1;
+    return !named && owner->material_index >= 0 ? owner->material_index + 1
+                                                : (int)(s->material_count + (size_t)(owner - s->solids)) + 1;
+}
+
 bool body_look_make(const scene *s, const solid *owner, const material *surface, body_look *out)
 {
     const int slots = looks_slots(s, owner);
@@ -13,8 +23,14 @@ bool body_look_make(const scene *s, const solid *owner, const material *surface,
     if (!out->look)
         return false;
     out->look[0] = looks_whole(s, surface);
-    for (int slot = 0; slot < slots; slot++)
+    out->look[0].number = number_of(s, owner, NULL);
+    for (int slot = 0; slot < slots; slot++) {
+        const material *named;
+        const face_look *given;
+        looks_source(s, owner, slot, &named, &given);
         out->look[slot] = looks_face(s, owner, surface, slot);
+        out->look[slot].number = number_of(s, owner, named);
+    }
     return true;
 }
 

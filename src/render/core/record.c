@@ -5,6 +5,7 @@
 #include "image/heatmap.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 status record_picture(const film *f, const char *path, int bits, diagnostic *why)
 {
@@ -49,6 +50,39 @@ status record_noise(const render_result *result, const char *path, diagnostic *w
     }
     status code = record_map(error, result->picture, "standard error per pixel", path, why);
     free(error);
+    return code;
+}
+
+char *record_layer_path(const char *prefix, int layer)
+{
+    const size_t size = strlen(prefix) + strlen(layer_words[layer]) + sizeof "-.pfm";
+    char *path = malloc(size);
+    if (path)
+        snprintf(path, size, "%s-%s.pfm", prefix, layer_words[layer]);
+    return path;
+}
+
+static status record_layer(const float *values, int channels, const film *f, const char *path, diagnostic *why)
+{
+    image *picture = NULL;
+    status code = image_create(f->width, f->height, &picture, why);
+    for (size_t i = 0; code == STATUS_OK && i < 3 * (size_t)f->width * (size_t)f->height; i++)
+        picture->pixel[i] = values[channels == 3 ? i : i / 3];
+    if (code == STATUS_OK)
+        code = image_write(picture, path, 8, why);
+    image_destroy(picture);
+    return code;
+}
+
+status record_layers(const render_result *result, const char *prefix, diagnostic *why)
+{
+    status code = STATUS_OK;
+    for (int i = 0; i < LAYER_COUNT && code == STATUS_OK; i++) {
+        char *path = record_layer_path(prefix, i);
+        code = path ? record_layer(result->layers->values[i], layer_channels[i], result->picture, path, why)
+                    : out_of_memory(why);
+        free(path);
+    }
     return code;
 }
 

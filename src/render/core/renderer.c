@@ -5,7 +5,7 @@
 #include "render/core/pool.h"
 #include "render/core/schedule.h"
 #include "render/core/tracer_set.h"
-#include "render/zbuffer/zbuffer.h"
+#include "render/integrators/integrator.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
@@ -36,7 +36,9 @@ typedef struct frame {
     const render_options *options;
     const plan *scene;
     const film *picture;
-    zbuffer *depths; /* of a frame that is drawn, else NULL */
+    const integrator *rule;
+    void *kept;               /* what the integrator keeps for the frame */
+    void (*step)(void *kept); /* of its pre-pass: the one that is being done */
     schedule pieces;
     worker_account *accounts;
     double began_s;
@@ -235,7 +237,7 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
         misplaced |= d->misplaced;
     }
     const bool overflow = tracer_set_collect(f->owner->tracers, &result->counters) || !in_range;
-    if (!f->depths)
+    if (f->rule->traced)
         count_tests(f->scene, &result->counters);
     if (f->options && f->options->timeline)
         out_of_memory |= !join_events(f->accounts, count, result);
@@ -260,22 +262,19 @@ static double *make_map(size_t pixels)
     return map;
 }
 
-/* As many equal shares of a pixel's paths as there can be, to tell how they differ. Each has all of the pixel's points.
- */
 static int layers_of(const scene *s)
 {
-    const render_settings *r = &s->render;
-    int layers = integrator_of(r)->by_chance && r->paths % r->samples == 0 ? FILM_LAYERS_MAX : 1;
-    while (r->paths / r->samples % layers != 0)
-        layers--;
-    return layers;
+    const integrator *rule = integrator_for(&s->render);
+    return rule->shares ? rule->shares(&s->render) : 1;
 }
 
 uint64_t renderer_result_bytes(const scene *s, const render_options *options)
 {
     const uint64_t layers = (uint64_t)layers_of(s), pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
     const uint64_t maps = options ? (uint64_t)options->pixel_rays + (uint64_t)options->pixel_time : 0;
-    return pixels * (3 * sizeof(int64_t) * layers + (layers > 1 ? 3 * sizeof(double) : 0) + maps * sizeof(double));
+    const uint64_t named = options && options->layers && integrator_of(&s->render)->layers ? layers_bytes() : 0;
+    return pixels *
+           (named + 3 * sizeof(int64_t) * layers + (layers > 1 ? 3 * sizeof(double) : 0) + maps * sizeof(double));
 }
 
 static status make_result(const scene *s, const render_options *options, render_result **out, diagnostic *why)
@@ -294,6 +293,8 @@ static status make_result(const scene *s, const render_options *options, render_
             missing |= !(result->pixel_rays = make_map(pixels));
         if (options && options->pixel_time)
             missing |= !(result->pixel_ns = make_map(pixels));
+        if (options && options->layers && integrator_of(&s->render)->layers)
+            missing |= !(result->layers = layers_create((int)s->render.width, (int)s->render.height));
         if (layers_of(s) > 1)
             missing |= !(result->variance = make_map(3 * pixels));
         if (missing)
@@ -315,29 +316,33 @@ static worker_account *make_accounts(int count)
     return accounts;
 }
 
-static void project(void *context, int worker)
+static void run_step(void *context, int worker)
 {
     const frame *f = context;
     (void)worker;
-    zbuffer_project(f->depths);
+    f->step(f->kept);
 }
 
-/* Of a frame that is drawn, the triangles must be sorted before any piece of the picture can be made. */
-static status prepare_drawing(frame *f, int count, diagnostic *why)
+/* What the integrator does before any piece of the image can be made. */
+static status run_steps(frame *f, int count, diagnostic *why)
 {
-    if (!f->depths)
-        return STATUS_OK;
-    const status code = pool_run(f->owner->threads, count, f->s->render.pool, project, NULL, 0.0, f, why);
-    return code == STATUS_OK ? zbuffer_sort(f->depths, why) : code;
+    status code = STATUS_OK;
+    for (const integrator_step *step = f->rule->steps; step && step->together && code == STATUS_OK; step++) {
+        f->step = step->together;
+        code = pool_run(f->owner->threads, count, f->s->render.pool, run_step, NULL, 0.0, f, why);
+        if (code == STATUS_OK && step->alone)
+            code = step->alone(f->kept, why);
+    }
+    return code;
 }
 
-static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, zbuffer *depths,
+static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, void *kept,
                         render_result *result, diagnostic *why)
 {
     const int count = (int)s->render.threads;
     frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
     worker_account *accounts = make_accounts(count);
-    const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns, depths};
+    const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns, kept, result->layers};
     bool has_memory = f && accounts && tracer_set_begin(r->tracers, count, &target);
     status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
     if (code == STATUS_OK) {
@@ -347,12 +352,13 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->options = options;
         f->scene = p;
         f->picture = result->picture;
-        f->depths = depths;
+        f->rule = integrator_for(&s->render);
+        f->kept = kept;
         f->accounts = accounts;
         schedule_start(&f->pieces, &s->render);
         const double cpu_s = clock_process_cpu_s();
         f->began_s = clock_wall_s();
-        code = prepare_drawing(f, count, why);
+        code = run_steps(f, count, why);
         if (code == STATUS_OK)
             code = pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL,
                             options && options->progress_s > 0 ? options->progress_s : 0.1, f, why);
@@ -361,9 +367,8 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         if (code == STATUS_OK) {
             const bool in_range = film_add_layers(result->picture, result->variance);
             code = collect(f, in_range, result, why);
-            if (code == STATUS_OK && depths && zbuffer_failed(depths))
-                code = diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer clear solids",
-                                "out of memory for the layers of clear solids");
+            if (code == STATUS_OK && f->rule->finish)
+                code = f->rule->finish(kept, &result->meshes, why);
         }
         for (int i = 0; i < count; i++)
             free(accounts[i].events.event);
@@ -377,25 +382,23 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
 {
     status code = scene_check(s, why);
     plan *p = NULL;
-    zbuffer *depths = NULL;
+    void *kept = NULL;
     render_result *result = NULL;
     if (code == STATUS_OK && s->background.kind == BACKGROUND_PICTURE && !s->background.picture)
         code = diagnose(why, STATUS_FAILURE, "call scene_load before", "the sky's picture is not loaded");
     if (code == STATUS_OK)
         code = plan_build(s, &p, why);
-    if (code == STATUS_OK && integrator_of(&s->render)->drawn)
-        code = zbuffer_create(p, &depths, why);
+    const integrator *rule = code == STATUS_OK ? integrator_for(&s->render) : NULL;
+    if (rule && rule->prepare)
+        code = rule->prepare(p, &kept, why);
     if (code == STATUS_OK)
         code = make_result(s, options, &result, why);
-    if (code == STATUS_OK)
-        code = run_frame(r, s, options, p, depths, result, why);
-    if (result && p)
+    if (code == STATUS_OK) {
         result->meshes = p->meshes;
-    if (code == STATUS_OK && depths) {
-        result->meshes.drawn = zbuffer_triangles(depths);
-        result->meshes.drawn_bytes = zbuffer_bytes(depths);
+        code = run_frame(r, s, options, p, kept, result, why);
     }
-    zbuffer_destroy(depths);
+    if (rule && rule->release)
+        rule->release(kept);
     plan_destroy(p);
     if (code != STATUS_OK && code != STATUS_INTERRUPTED) {
         render_result_destroy(result);

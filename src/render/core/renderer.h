@@ -10,6 +10,7 @@
 #include "base/status.h"
 #include "measure/topology.h"
 #include "render/core/film.h"
+#include "render/core/layers.h"
 #include "render/core/mesh_report.h"
 #include "scene/model/open.h"
 #include <stdbool.h>
@@ -47,6 +48,7 @@ typedef struct tile_event {
 typedef struct render_options {
     bool pixel_rays; /* rays of all kinds by pixel */
     bool pixel_time; /* nanoseconds by pixel; a batch's time is shared among its rays */
+    bool layers;     /* named layers, of an integrator that gives them */
     bool timeline;   /* when each tile was taken, and by whom */
     /* Called every progress_s (0: 0.1) seconds from the thread that called render; return false to stop the frame. May
      * be NULL. */
@@ -77,6 +79,7 @@ typedef struct render_result {
     tile_event *events; /* in order of begin_s; NULL unless wanted */
     size_t event_count;
     mesh_report meshes;
+    layer_set *layers; /* NULL unless wanted and given */
 } render_result;
 
 /* Root of the mean variance over pixels and channels: how far off a value of the film typically is by chance. NaN where

@@ -1,7 +1,10 @@
 /* What a ray knows of where it belongs, in one number: the pixel, and for films of more than one sample a pixel
  * (spectral ones, those of random paths) the sample too, and of spectral ones the wavelength. An rgb film of Whitted's
- * rays has the pixel alone. bits 0..27 the pixel, fewer than SCENE_PIXELS_MAX 28..49 the sample: at most 1048576 paths,
- * 64 x 65536 wavelengths 50..61 the wavelength's number (render/shade/spectra.h) 62     see TICKET_SEES_LIGHTS */
+ * rays has the pixel alone.
+ *     bits 0..27 the pixel, fewer than SCENE_PIXELS_MAX
+ *          28..49 the sample: at most 1048576 paths, 64 x 65536 wavelengths
+ *          50..61 the wavelength's number (render/shade/spectra.h)
+ *          62     see TICKET_SEES_LIGHTS */
 #ifndef CUVETTE_RENDER_CORE_TICKET_H
 #define CUVETTE_RENDER_CORE_TICKET_H
 

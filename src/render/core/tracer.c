@@ -1,7 +1,7 @@
 #include "render/core/tracer.h"
 
 #include "measure/clock.h"
-#include "render/core/tracer_private.h"
+#include "render/shade/shading.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,13 +10,7 @@ tracer *tracer_create(isa level)
     tracer *t = aligned_alloc(64, (sizeof(tracer) + 63) / 64 * 64);
     if (!t)
         return NULL;
-    memset(t, 0, offsetof(tracer, scratch));
-    t->ways = NULL;
-    t->meshes = NULL;
-    t->drawn = NULL;
-    t->basic = t->basic_memory = NULL;
-    t->scratch.crossings = NULL;
-    t->scratch.meshes = NULL;
+    memset(t, 0, offsetof(tracer, batch));
     t->geometry = level == ISA_AVX512 ? &geometry_kernels_avx512
                   : level == ISA_AVX2 ? &geometry_kernels_avx2
                                       : &geometry_kernels_sse2;
@@ -26,99 +20,97 @@ tracer *tracer_create(isa level)
     return t;
 }
 
+static void forget_integrator(tracer *t)
+{
+    if (t->rule && t->rule->end)
+        t->rule->end(t->own);
+    t->own = NULL;
+}
+
 void tracer_destroy(tracer *t)
 {
     if (!t)
         return;
-    for (int d = 0; d < t->queue_count; d++)
-        queue_destroy(&t->waiting[d]);
-    free(t->waiting);
-    free(t->ways);
-    free(t->meshes);
-    if (t->drawn)
-        zbuffer_square_release(&t->drawn->square);
-    free(t->drawn);
-    free(t->basic_memory);
-    queue_destroy(&t->shadows);
+    for (int d = 0; d < t->queues.made; d++)
+        queue_destroy(&t->queues.waiting[d]);
+    free(t->queues.waiting);
+    absorption_end(t);
+    mesh_end(t);
+    radiance_end(t);
+    forget_integrator(t);
+    queue_destroy(&t->queues.shadows);
     free(t);
 }
 
 /* Each depth gets at most two children for every ray of a batch, on top of less than a batch that waits. */
 static bool make_queues(tracer *t, int depths)
 {
-    if (depths <= t->queue_count)
+    if (depths <= t->queues.made)
         return true;
-    ray_queue *grown = realloc(t->waiting, (size_t)depths * sizeof *grown);
+    ray_queue *grown = realloc(t->queues.waiting, (size_t)depths * sizeof *grown);
     if (!grown)
         return false;
-    t->waiting = grown;
-    for (; t->queue_count < depths; t->queue_count++)
-        if (!queue_create(&grown[t->queue_count], 3 * BATCH + LANES_MAX))
+    t->queues.waiting = grown;
+    for (; t->queues.made < depths; t->queues.made++)
+        if (!queue_create(&grown[t->queues.made], 3 * BATCH + LANES_MAX))
             return false;
     return true;
 }
 
 static void drop_all(tracer *t)
 {
-    for (int d = 0; d < t->queue_count; d++)
-        t->waiting[d].count = 0;
-    t->shadows.count = 0;
+    for (int d = 0; d < t->queues.made; d++)
+        t->queues.waiting[d].count = 0;
+    t->queues.shadows.count = 0;
+}
+
+static bool take_integrator(tracer *t)
+{
+    const integrator *rule = integrator_for(&t->target.scene->render);
+    if (rule != t->rule)
+        forget_integrator(t);
+    t->rule = rule;
+    return !rule->begin || rule->begin(t);
 }
 
 bool tracer_begin(tracer *t, const tracer_target *target)
 {
+    const plan *p = target->scene;
+    const render_settings *r = &p->render;
     t->target = *target;
-    const render_settings *r = &target->scene->render;
-    t->depth_limit = (int)r->depth;
-    t->branching = (integrator_of(r)->tree || target->depths) && r->lighting == LIGHTING_WHITTED;
-    t->by_ticket =
-        integrator_of(r)->by_chance || r->spectrum == SPECTRUM_SPECTRAL || target->depths || target->scene->basic;
+    t->queues.depth_limit = (int)r->depth;
     /* Of a spectral film a camera ray is one for each wavelength, each with its part of the weight. */
     t->least_weight = r->spectrum == SPECTRUM_SPECTRAL ? r->min_weight / (double)r->wavelengths : r->min_weight;
-    int shadows_at_once = BATCH * (target->scene->light_count + 1);
-    if (t->shadows.capacity < shadows_at_once) {
-        queue_destroy(&t->shadows);
-        if (!queue_create(&t->shadows, shadows_at_once))
+    const int shadows_at_once = BATCH * (p->light_count + 1);
+    if (t->queues.shadows.capacity < shadows_at_once) {
+        queue_destroy(&t->queues.shadows);
+        if (!queue_create(&t->queues.shadows, shadows_at_once))
             return false;
     }
-    if (!make_queues(t, t->depth_limit + 1))
+    if (!make_queues(t, t->queues.depth_limit + 1) || !mesh_begin(t) || !radiance_begin(t) || !take_integrator(t) ||
+        !absorption_begin(t, p->solids->absorbs && t->rule->traced))
         return false;
-    if (target->scene->solids->meshes && !t->meshes && !(t->meshes = malloc(sizeof *t->meshes)))
-        return false;
-    t->scratch.meshes = t->meshes ? &t->meshes->scratch : NULL;
-    if (target->depths && !t->drawn && !(t->drawn = calloc(1, sizeof *t->drawn)))
-        return false;
-    if (t->drawn)
-        zbuffer_square_begin(&t->drawn->square);
-    t->straight = target->depths && r->texturing == TEXTURING_AFFINE;
-    const bool absorbs = target->scene->solids->absorbs && !target->depths;
-    if (absorbs && !t->ways && !(t->ways = malloc(sizeof *t->ways)))
-        return false;
-    t->scratch.ways = absorbs ? t->ways : NULL;
-    if (target->scene->basic && !t->basic_memory && !(t->basic_memory = malloc(sizeof *t->basic_memory)))
-        return false;
-    t->basic = target->scene->basic ? t->basic_memory : NULL;
-    t->scratch.crossings = t->basic ? &t->basic->crossings : NULL;
+    t->by_ticket = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic;
     drop_all(t);
-    memset(&t->counters, 0, sizeof t->counters);
-    t->visibility_ns = 0;
-    t->overflow = 0;
+    memset(&t->account.counters, 0, sizeof t->account.counters);
+    t->account.visibility_ns = 0;
+    t->account.overflow = 0;
     return true;
 }
 
 const ray_counters *tracer_counters(const tracer *t)
 {
-    return &t->counters;
+    return &t->account.counters;
 }
 
 double tracer_visibility_s(const tracer *t)
 {
-    return 1e-9 * (double)t->visibility_ns;
+    return 1e-9 * (double)t->account.visibility_ns;
 }
 
 bool tracer_overflowed(const tracer *t)
 {
-    return t->overflow < 0;
+    return t->account.overflow < 0;
 }
 
 /* Rays by the primitive they met. Those that met another body's surface there (an opaque one behind a clear one's, or
@@ -127,15 +119,15 @@ static void sort_by_primitive(tracer *t, int count)
 {
     const arrangement *a = t->target.scene->solids;
     const int foreign = a->primitive_count, none = foreign + 1;
-    memset(t->listed, 0, ((size_t)none + 1) * sizeof *t->listed);
+    memset(t->batch.listed, 0, ((size_t)none + 1) * sizeof *t->batch.listed);
     for (int i = 0; i < count;) {
-        const int64_t met = t->hits.crossed[i], rank = t->hits.surface[i];
+        const int64_t met = t->batch.hits.crossed[i], rank = t->batch.hits.surface[i];
         const int at = met < 0 ? none : rank == a->primitives[met].rank ? (int)met : foreign;
-        int *list = t->list[at], listed = t->listed[at];
+        int *list = t->batch.list[at], listed = t->batch.listed[at];
         do /* neighbours often meet the same */
             list[listed++] = i++;
-        while (i < count && t->hits.crossed[i] == met && (t->hits.surface[i] == rank || met < 0));
-        t->listed[at] = listed;
+        while (i < count && t->batch.hits.crossed[i] == met && (t->batch.hits.surface[i] == rank || met < 0));
+        t->batch.listed[at] = listed;
     }
 }
 
@@ -143,13 +135,13 @@ static void sort_by_primitive(tracer *t, int count)
 static void shade_foreign(tracer *t, int depth, int first)
 {
     const int foreign = t->target.scene->solids->primitive_count;
-    int *list = t->list[foreign], left = t->listed[foreign], same[BATCH];
+    int *list = t->batch.list[foreign], left = t->batch.listed[foreign], same[BATCH];
     while (left > 0) {
-        const int64_t met = t->hits.crossed[list[0]], rank = t->hits.surface[list[0]];
+        const int64_t met = t->batch.hits.crossed[list[0]], rank = t->batch.hits.surface[list[0]];
         int count = 0, others = 0;
         for (int k = 0; k < left; k++) {
             const int i = list[k];
-            if (t->hits.crossed[i] == met && t->hits.surface[i] == rank)
+            if (t->batch.hits.crossed[i] == met && t->batch.hits.surface[i] == rank)
                 same[count++] = i;
             else
                 list[others++] = i;
@@ -157,6 +149,12 @@ static void shade_foreign(tracer *t, int depth, int first)
         shading_group(t, depth, first, (int)met, (int)rank, same, count);
         left = others;
     }
+}
+
+/* What a depth buffer shows behind a layer is no other ray. */
+static bool is_counted(const tracer *t, int depth)
+{
+    return depth == 0 || t->rule->traced;
 }
 
 static int64_t visibility_begins(const tracer *t)
@@ -167,71 +165,57 @@ static int64_t visibility_begins(const tracer *t)
 static void visibility_ends(tracer *t, int64_t began_ns)
 {
     if (t->target.scene->solids->meshes)
-        t->visibility_ns += clock_wall_ns() - began_ns;
+        t->account.visibility_ns += clock_wall_ns() - began_ns;
 }
 
 static void trace_batch(tracer *t, int depth)
 {
     const plan *p = t->target.scene;
-    ray_queue *q = &t->waiting[depth];
+    ray_queue *q = &t->queues.waiting[depth];
     int first;
     const ray_batch rays = queue_take(q, &first);
-    if (depth == 0 || !t->target.depths) /* what is seen behind a layer is no other ray */
-        COUNT(t->counters.by_depth[depth] += (uint64_t)rays.count);
+    if (is_counted(t, depth))
+        COUNT(t->account.counters.by_depth[depth] += (uint64_t)rays.count);
     if (depth == 0)
-        COUNT(t->counters.camera += (uint64_t)rays.count);
-    if (t->scratch.ways)
-        absorption_begin(t, q->ticket + first, rays.count);
+        COUNT(t->account.counters.camera += (uint64_t)rays.count);
+    if (t->batch.scratch.ways)
+        absorption_announce(t, q->ticket + first, rays.count);
     const int64_t began_ns = visibility_begins(t);
-    if (t->target.depths)
-        drawn_hits(t, q, first, depth, &rays);
-    else
-        t->geometry->nearest(p->solids, &rays, &t->scratch, &t->hits);
+    t->rule->meet(t, q, first, depth, &rays);
     visibility_ends(t, began_ns);
-    const bool random_paths = integrator_of(&p->render)->by_chance;
-    if (random_paths)
-        path_meet_lights(t, q, first, rays.count);
-    if (t->scratch.ways) {
+    if (t->batch.scratch.ways) {
         absorption_spare_sky(t);
         absorption_dim(t, q, first, rays.count);
     }
     sort_by_primitive(t, rays.count);
     const int primitives = p->solids->primitive_count, none = primitives + 1;
-    for (int k = 0; k < t->listed[none]; k++) {
-        const int i = t->list[none][k], at = first + i;
-        if (random_paths && t->met_light[i] >= 0)
-            path_expose_light(t, q->ticket[at], t->met_light[i], (int)t->hits.before[i],
-                              vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at], q->wb[at]);
-        else
-            shading_expose_sky(t, q->ticket[at], vec3_make(rays.dx[i], rays.dy[i], rays.dz[i]), q->wr[at], q->wg[at],
-                               q->wb[at]);
-    }
+    if (t->batch.listed[none] > 0)
+        t->rule->background(t, q, first, t->batch.list[none], t->batch.listed[none]);
     for (int met = 0; met < primitives; met++)
-        if (t->listed[met] > 0)
-            shading_group(t, depth, first, met, p->solids->primitives[met].rank, t->list[met], t->listed[met]);
+        if (t->batch.listed[met] > 0)
+            shading_group(t, depth, first, met, p->solids->primitives[met].rank, t->batch.list[met],
+                          t->batch.listed[met]);
     shade_foreign(t, depth, first);
 }
 
 static void trace_shadows(tracer *t)
 {
     const plan *p = t->target.scene;
-    ray_queue *q = &t->shadows;
+    ray_queue *q = &t->queues.shadows;
     int first;
     const ray_batch rays = queue_take(q, &first);
-    COUNT(t->counters.shadow += (uint64_t)rays.count);
+    COUNT(t->account.counters.shadow += (uint64_t)rays.count);
     if (p->solids->absorbs)
-        absorption_begin(t, q->ticket + first, rays.count);
-    if (t->basic)
-        radiance_begin_shadows(t, &rays, q->ticket + first);
+        absorption_announce(t, q->ticket + first, rays.count);
+    radiance_begin_shadows(t, &rays, q->ticket + first);
     const int64_t began_ns = visibility_begins(t);
-    t->geometry->shadow(p->solids, &rays, p->solid_shadows, &t->scratch, t->transmitted);
+    t->geometry->shadow(p->solids, &rays, p->solid_shadows, &t->batch.scratch, t->batch.transmitted);
     visibility_ends(t, began_ns);
     if (p->solids->absorbs)
         absorption_dim(t, q, first, rays.count);
-    if (t->basic)
-        radiance_end_shadows(t);
+    radiance_end_shadows(t);
     for (int i = 0; i < rays.count; i++) {
-        const double share = t->transmitted[i];
+        const double share = t->batch.transmitted[i];
         const int at = first + i;
         if (share > 0.0)
             shading_expose(t, q->ticket[at], share * q->wr[at], share * q->wg[at], share * q->wb[at]);
@@ -245,7 +229,7 @@ void tracer_run_batch(tracer *t, int depth)
         depth < 0 ? trace_shadows(t) : trace_batch(t, depth);
         return;
     }
-    const ray_queue *q = depth < 0 ? &t->shadows : &t->waiting[depth];
+    const ray_queue *q = depth < 0 ? &t->queues.shadows : &t->queues.waiting[depth];
     ray_queue view = *q;
     int first;
     const int count = queue_take(&view, &first).count;
@@ -253,7 +237,7 @@ void tracer_run_batch(tracer *t, int depth)
     depth < 0 ? trace_shadows(t) : trace_batch(t, depth);
     double share = (double)(clock_wall_ns() - began) / count;
     for (int i = first; i < first + count; i++) {
-        if (target->pixel_rays && !(target->depths && depth > 0))
+        if (target->pixel_rays && (depth < 0 || is_counted(t, depth)))
             target->pixel_rays[ticket_pixel(q->ticket[i])] += 1.0;
         if (target->pixel_ns)
             target->pixel_ns[ticket_pixel(q->ticket[i])] += share;
@@ -263,12 +247,12 @@ void tracer_run_batch(tracer *t, int depth)
 /* The deepest full batch, shadow rays before all; false when there is none. */
 static bool run_full(tracer *t)
 {
-    if (t->shadows.count >= BATCH) {
+    if (t->queues.shadows.count >= BATCH) {
         tracer_run_batch(t, -1);
         return true;
     }
-    for (int d = t->depth_limit; d >= 0; d--) {
-        if (t->waiting[d].count >= BATCH) {
+    for (int d = t->queues.depth_limit; d >= 0; d--) {
+        if (t->queues.waiting[d].count >= BATCH) {
             tracer_run_batch(t, d);
             return true;
         }
@@ -289,16 +273,16 @@ static int rays_at_once(int64_t each)
 
 int tracer_camera_rays(tracer *t, int x, int y)
 {
-    const int count = (int)camera_rays_a_pixel(&t->target.scene->render);
+    const int count = (int)t->rule->camera(&t->target.scene->render).rays;
     camera_rays_put_in_line(t, y, x, 0, count);
     return count;
 }
 
-/* Its pixels have equal shares of the time. */
-static void draw(tracer *t, const span *piece)
+/* What the integrator does before a piece: its pixels have equal shares of the time. */
+static void begin_piece(tracer *t, const span *piece)
 {
     const int64_t began = t->target.pixel_ns ? clock_wall_ns() : 0;
-    zbuffer_draw(t->target.depths, piece, &t->drawn->square);
+    t->rule->piece(t, piece);
     if (!t->target.pixel_ns)
         return;
     const double pixels = (double)(piece->x1 - piece->x0) * (double)(piece->y1 - piece->y0),
@@ -338,9 +322,9 @@ static bool trace_row(tracer *t, int y, int x0, int x1, int64_t each, const atom
 
 void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop)
 {
-    if (t->target.depths)
-        draw(t, piece);
-    const int64_t each = camera_rays_a_pixel(&t->target.scene->render);
+    if (t->rule->piece)
+        begin_piece(t, piece);
+    const int64_t each = t->rule->camera(&t->target.scene->render).rays;
     const pixel_block block = block_of(t->target.scene, piece, each);
     for (int top = piece->y0; top < piece->y1; top += block.height) {
         const int bottom = top + block.height < piece->y1 ? top + block.height : piece->y1;
@@ -358,13 +342,13 @@ void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, cons
 /* With no full batch left anywhere, the shallowest rays go first: their children fill the deeper queues again. */
 void tracer_finish(tracer *t, const atomic_bool *stop)
 {
-    for (int d = 0; d <= t->depth_limit && !stopped(stop); d++) {
-        while (t->waiting[d].count > 0 && !stopped(stop))
+    for (int d = 0; d <= t->queues.depth_limit && !stopped(stop); d++) {
+        while (t->queues.waiting[d].count > 0 && !stopped(stop))
             tracer_run_batch(t, d);
         while (run_full(t) && !stopped(stop))
             ;
     }
-    while (t->shadows.count > 0 && !stopped(stop))
+    while (t->queues.shadows.count > 0 && !stopped(stop))
         tracer_run_batch(t, -1);
     drop_all(t);
 }

@@ -7,19 +7,21 @@
 #include "base/counters.h"
 #include "base/isa.h"
 #include "render/core/film.h"
+#include "render/core/layers.h"
 #include "render/core/plan.h"
 #include "render/core/schedule.h"
 #include <stdatomic.h>
 
 typedef struct tracer tracer;
 
-/* What a frame is traced into. pixel_rays and pixel_ns may be NULL; so is depths, but for a frame that is drawn
- * instead. */
+/* What a frame is traced into. pixel_rays and pixel_ns may be NULL; kept is what the integrator keeps for the frame,
+ * layers where it puts named layers if they are wanted; else NULL. */
 typedef struct tracer_target {
     const plan *scene;
     film *picture;
     double *pixel_rays, *pixel_ns;
-    struct zbuffer *depths;
+    void *kept;
+    layer_set *layers;
 } tracer_target;
 
 tracer *tracer_create(isa level);

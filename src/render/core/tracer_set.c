@@ -62,13 +62,13 @@ tracer *tracer_set_take(tracer_set *set)
     if (!t && (t = tracer_create(set->level)))
         set->all[set->count++] = t;
     pthread_mutex_unlock(&set->lock);
-    if (!t || t->frame == set->frame)
+    if (!t || t->account.frame == set->frame)
         return t;
     if (!tracer_begin(t, &set->target)) {
         tracer_set_give(set, t);
         return NULL;
     }
-    t->frame = set->frame;
+    t->account.frame = set->frame;
     return t;
 }
 
@@ -83,7 +83,7 @@ bool tracer_set_collect(const tracer_set *set, ray_counters *sum)
 {
     bool overflow = false;
     for (int i = 0; i < set->count; i++) {
-        if (set->all[i]->frame != set->frame)
+        if (set->all[i]->account.frame != set->frame)
             continue;
         ray_counters_add(sum, tracer_counters(set->all[i]));
         overflow |= tracer_overflowed(set->all[i]);

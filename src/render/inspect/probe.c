@@ -20,7 +20,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         render_settings *r = &p->setting->render;
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
         r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
-        if (integrator_of(r)->by_chance || integrator_of(r)->drawn)
+        if (integrator_of(r)->by_chance || integrator_of(r)->drawn || integrator_of(r)->layers)
             trace_trees(r); /* all branches, not one by chance or none */
         code = scene_check(p->setting, why);
     }
@@ -86,7 +86,7 @@ void ray_tree_release(ray_tree *tree)
 
 static status begin(probe *p, ray_tree *tree, diagnostic *why)
 {
-    const tracer_target target = {p->scene, p->picture, NULL, NULL, NULL};
+    const tracer_target target = {.scene = p->scene, .picture = p->picture};
     memset(p->picture->sum, 0, 3 * sizeof *p->picture->sum);
     tree->count = 0;
     tree->depth_limit = (int)p->scene->render.depth;
@@ -119,7 +119,7 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
     const int count = tracer_camera_rays(p->rays, x, y);
     for (int i = 0; i < count; i++)
         probe_take(p, 0, i, &roots[i]);
-    p->rays->waiting[0].count = 0;
+    p->rays->queues.waiting[0].count = 0;
     size_t last = 0;
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         size_t root;

@@ -49,7 +49,7 @@ static void take(const ray_queue *q, int i, ray_record *out)
 
 void probe_take(const probe *p, int depth, int i, ray_record *out)
 {
-    take(&p->rays->waiting[depth], i, out);
+    take(&p->rays->queues.waiting[depth], i, out);
     if (!p->scene->render.polarisation)
         memset(out->stokes, 0, sizeof out->stokes);
     out->depth = depth;
@@ -122,7 +122,7 @@ static void hang(ray_tree *tree, int parent, size_t child)
 static void read_gain(const probe *p, ray_hit *h)
 {
     const render_settings *r = &p->scene->render;
-    const material *m = &p->rays->look->surface;
+    const material *m = &p->rays->surface.look->surface;
     if (h->opaque || h->tir)
         return;
     h->T = m->transparency * (scene_has_constant_shares(r) ? 1.0 : 1.0 - h->R);
@@ -136,11 +136,11 @@ static bool read_hit(const probe *p, ray_node *node)
 {
     const tracer *t = p->rays;
     const arrangement *a = p->scene->solids;
-    if (t->hits.crossed[0] < 0)
+    if (t->batch.hits.crossed[0] < 0)
         return false;
-    const group *g = &t->gathered;
+    const group *g = &t->surface.gathered;
     const surface_batch *s = &g->points;
-    const int crossed = (int)t->hits.crossed[0], rank = (int)t->hits.surface[0];
+    const int crossed = (int)t->batch.hits.crossed[0], rank = (int)t->batch.hits.surface[0];
     const body *owner = &a->bodies[rank], *bounded = &a->bodies[a->primitives[crossed].rank];
     const fresnel f = fresnel_dielectric(s->cos_i[0], g->n_from[0], g->n_to[0]);
     const bool opaque = surface_is_opaque(t, rank);
@@ -148,11 +148,11 @@ static bool read_hit(const probe *p, ray_node *node)
     *h = (ray_hit){.solid = owner->solid,
                    .face_solid = bounded->solid,
                    .opaque = opaque,
-                   .t = t->hits.t[0],
+                   .t = t->batch.hits.t[0],
                    .point = vec3_make(s->px[0], s->py[0], s->pz[0]),
                    .normal = vec3_make(s->nx[0], s->ny[0], s->nz[0]),
-                   .from = a->bodies[t->hits.before[0]].solid,
-                   .to = a->bodies[t->hits.after[0]].solid,
+                   .from = a->bodies[t->batch.hits.before[0]].solid,
+                   .to = a->bodies[t->batch.hits.after[0]].solid,
                    .n_from = g->n_from[0],
                    .n_to = g->n_to[0],
                    .cos_i = s->cos_i[0],
@@ -165,22 +165,22 @@ static bool read_hit(const probe *p, ray_node *node)
     h->face = is_mesh_face(s->face[0])
                   ? (int)mesh_face_triangle(s->face[0])
                   : (int)(s->face[0] % FACES_MAX) + (crossed == bounded->hollow ? HOLLOW_FACES : 0);
-    const double coating = opaque ? 0.0 : material_coating(&t->look->surface, &p->scene->render);
+    const double coating = opaque ? 0.0 : material_coating(&t->surface.look->surface, &p->scene->render);
     h->R_s += (1.0 - h->R_s) * coating, h->R_p += (1.0 - h->R_p) * coating, h->R += (1.0 - h->R) * coating;
     if (opaque) {
-        h->R_s = h->R_p = h->R = t->look->surface.reflectivity;
+        h->R_s = h->R_p = h->R = t->surface.look->surface.reflectivity;
         h->cos_t = 0.0;
         h->tir = false;
     }
     if (!opaque && p->scene->render.transmission == TRANSMISSION_SIMPLE) {
-        h->R_s = h->R_p = h->R = t->look->surface.reflectivity;
+        h->R_s = h->R_p = h->R = t->surface.look->surface.reflectivity;
         h->cos_t = h->cos_i;
         h->tir = false;
     }
     read_gain(p, h);
     h->path_length_m = h->t * p->scene->render.unit_m;
     for (int c = 0; c < 3; c++)
-        h->transmittance[c] = a->absorbs ? t->kept[c][0] : 1.0;
+        h->transmittance[c] = a->absorbs ? t->media->kept[c][0] : 1.0;
     node->end = RAY_END_HIT;
     return true;
 }
@@ -201,8 +201,8 @@ static bool is_too_light(const double weight[3], double least)
 static void add_branch(const probe *p, int depth, bool reflected, int *queued, branches *out)
 {
     const tracer *t = p->rays;
-    const branch_group *b = &t->branches;
-    const group *g = &t->gathered;
+    const branch_group *b = &t->surface.branches;
+    const group *g = &t->surface.gathered;
     const double share = reflected ? b->reflect[0] : b->refract[0];
     if (!(share > 0.0))
         return;
@@ -215,16 +215,16 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
                       .start = g->points.face[0],
                       .inside = reflected ? g->inside_before[0] : g->inside_after[0],
                       .depth = depth + 1,
-                      .medium_rank = (int)(reflected ? t->hits.before[0] : t->hits.after[0])};
+                      .medium_rank = (int)(reflected ? t->batch.hits.before[0] : t->batch.hits.after[0])};
     if (p->scene->render.polarisation) {
-        const polar_group *v = &t->polar;
+        const polar_group *v = &t->surface.polar;
         r->stokes[0] = reflected ? v->rq[0] : v->tq[0];
         r->stokes[1] = reflected ? v->ru[0] : v->tu[0];
         r->stokes[2] = reflected ? v->rv[0] : v->tv[0];
     }
     out->kind[i] = reflected ? RAY_REFLECT : RAY_REFRACT;
     out->end[i] = RAY_END_CUT_DEPTH;
-    if (depth == t->depth_limit)
+    if (depth == t->queues.depth_limit)
         return;
     if (is_too_light(r->weight, p->scene->render.min_weight)) {
         out->end[i] = RAY_END_CUT_WEIGHT;
@@ -237,11 +237,11 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
 static void read_branches(const probe *p, int depth, branches *out)
 {
     const tracer *t = p->rays;
-    const int rank = (int)t->hits.surface[0];
+    const int rank = (int)t->batch.hits.surface[0];
     const bool opaque = surface_is_opaque(t, rank);
     int queued = 0;
     out->count = 0;
-    if (!t->branching || (opaque && t->look->surface.reflectivity == 0.0))
+    if (!follows_trees(&p->scene->render) || (opaque && t->surface.look->surface.reflectivity == 0.0))
         return;
     add_branch(p, depth, true, &queued, out);
     add_branch(p, depth, false, &queued, out);
@@ -265,11 +265,11 @@ static status grow_shadows(probe *p, ray_tree *tree, int parent, diagnostic *why
     enum { LIGHTS = SCENE_LIGHTS_MAX };
     tracer *t = p->rays;
     ray_record record[LIGHTS];
-    const int count = t->shadows.count;
-    const int depth = tree->node[parent].depth, rank = (int)t->hits.before[0];
+    const int count = t->queues.shadows.count;
+    const int depth = tree->node[parent].depth, rank = (int)t->batch.hits.before[0];
     for (int i = 0; i < count; i++)
-        take(&t->shadows, i, &record[i]);
-    t->shadows.count = 0;
+        take(&t->queues.shadows, i, &record[i]);
+    t->queues.shadows.count = 0;
     status code = STATUS_OK;
     for (int i = 0, lamp = 0; i < count && code == STATUS_OK; i++) {
         ray_record *r = &record[i];
@@ -280,11 +280,11 @@ static status grow_shadows(probe *p, ray_tree *tree, int parent, diagnostic *why
         code = add_node(p, tree, r, RAY_SHADOW, parent, &at, why);
         if (code != STATUS_OK)
             break;
-        put(&t->shadows, r);
+        put(&t->queues.shadows, r);
         ray_node *node = &tree->node[at];
         run_one(p, -1, node->brought);
-        node->end = t->transmitted[0] > 0.0 ? RAY_END_LIT : RAY_END_BLOCKED;
-        node->let_through = t->transmitted[0];
+        node->end = t->batch.transmitted[0] > 0.0 ? RAY_END_LIT : RAY_END_BLOCKED;
+        node->let_through = t->batch.transmitted[0];
         node->light = light_of(p->scene, r, lamp);
         node->light_distance = vec3_length(r->direction);
         node->direction = vec3_scale(r->direction, 1.0 / node->light_distance);
@@ -299,13 +299,13 @@ static void trace_node(probe *p, ray_tree *tree, size_t at, const ray_record *ra
 {
     tracer *t = p->rays;
     ray_node *node = &tree->node[at];
-    put(&t->waiting[ray->depth], ray);
+    put(&t->queues.waiting[ray->depth], ray);
     run_one(p, ray->depth, node->brought);
     out->count = 0;
     if (read_hit(p, node))
         read_branches(p, ray->depth, out);
-    if (ray->depth < t->depth_limit)
-        t->waiting[ray->depth + 1].count = 0;
+    if (ray->depth < t->queues.depth_limit)
+        t->queues.waiting[ray->depth + 1].count = 0;
 }
 
 static status add_cut(probe *p, ray_tree *tree, int parent, const branches *b, int i, diagnostic *why)
@@ -354,7 +354,7 @@ status probe_follow(probe *p, ray_tree *tree, const ray_record *ray, int reflect
             hang(tree, parent, at);
         branches next;
         trace_node(p, tree, at, &now, &next);
-        p->rays->shadows.count = 0;
+        p->rays->queues.shadows.count = 0;
         if (next.count == 0)
             return STATUS_OK;
         /* The refracted branch stands last. */

@@ -3,7 +3,7 @@
 #define CUVETTE_RENDER_INSPECT_PROBE_PRIVATE_H
 
 #include "render/inspect/probe.h"
-#include "render/core/tracer_private.h"
+#include "render/shade/shading.h"
 
 struct probe {
     scene *setting; /* its own copy */

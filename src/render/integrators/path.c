@@ -1,14 +1,15 @@
 /* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is drawn by chance,
- * weighed so that the mean over all paths is the whole tree's. What stands for the light's way: a clear surface
- * reflects or refracts with Fresnel's shares as odds, so that the weight does not change; a matte surface  is lit by
- * every light, at a point of the light's sphere drawn evenly over the cone in which it is seen (Shirley, Wang and
- * Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 15(1), 1996), and sends the path on by the
- * cosine law, or like a mirror by its reflectivity. A sphere that shines is met by rays from the eye and from clear or
- * mirror-like surfaces alone: matte ones have looked for it already. That is how light through a vessel makes caustics.
- * Beside a sphere, points of light too are blocked by clear solids. A light's radiance is intensity (reach / radius)^2,
- * so that a matte surface at its reach is as bright as in Phong's sum. Ambient light is left out: here it is what the
- * sky and the other surfaces send. */
-#include "render/core/tracer_private.h"
+ * weighed so that the mean over all paths is the whole tree's. What stands for the light's way:
+ *   a clear surface  reflects or refracts with Fresnel's shares as odds, so that the weight does not change;
+ *   a matte surface  is lit by every light, at a point of the light's sphere drawn evenly over the cone in which it is
+ *                    seen (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting
+ *                    Calculations", TOG 15(1), 1996), and sends the path on by the cosine law, or like a
+ *                    mirror by its reflectivity.
+ * A sphere that shines is met by rays from the eye and from clear or mirror-like surfaces alone: matte ones have looked
+ * for it already. That is how light through a vessel makes caustics. Beside a sphere, points of light too are blocked
+ * by clear solids. A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as
+ * bright as in Phong's sum. Ambient light is left out: here it is what the sky and the other surfaces send. */
+#include "render/shade/shading.h"
 
 #include "base/elementary.h"
 #include "optics/mueller.h"
@@ -62,37 +63,66 @@ static void clip_stretches(ray_ways *w, int ray, double end)
     }
 }
 
-void path_meet_lights(tracer *t, const ray_queue *q, int first, int count)
+/* Rays that end at a light's sphere are marked by its number in hits.crossed. */
+static int64_t mark_of(int lamp)
 {
-    const plan *p = t->target.scene;
-    for (int i = 0; i < count; i++) {
-        const int at = first + i;
-        double nearest = t->hits.t[i];
-        t->met_light[i] = -1;
-        for (int k = 0; k < p->light_count && q->ticket[at] & TICKET_SEES_LIGHTS; k++) {
-            if (p->lights[k].radius == 0.0)
-                continue;
-            const vec3 origin = vec3_make(q->ox[at], q->oy[at], q->oz[at]);
-            const double distance =
-                distance_to_light(&p->lights[k], origin, vec3_make(q->dx[at], q->dy[at], q->dz[at]));
-            if (distance < nearest) {
-                nearest = distance;
-                t->met_light[i] = k;
-            }
-        }
-        if (t->met_light[i] < 0)
-            continue;
-        t->hits.crossed[i] = -1;
-        clip_stretches(t->scratch.ways, i, nearest);
-    }
+    return -2 - lamp;
 }
 
-void path_expose_light(tracer *t, int64_t ticket, int lamp, int rank, vec3 direction, double wr, double wg, double wb)
+static int lamp_of(int64_t crossed)
+{
+    return (int)(-2 - crossed);
+}
+
+static void meet_lights(tracer *t, const ray_queue *q, int first, int i)
 {
     const plan *p = t->target.scene;
-    const double radiance = radiance_along(p, lamp, direction) * (t->basic ? radiance_share(p, ticket, rank) : 1.0);
+    const int at = first + i;
+    double nearest = t->batch.hits.t[i];
+    int met = -1;
+    for (int k = 0; k < p->light_count && q->ticket[at] & TICKET_SEES_LIGHTS; k++) {
+        if (p->lights[k].radius == 0.0)
+            continue;
+        const vec3 origin = vec3_make(q->ox[at], q->oy[at], q->oz[at]);
+        const double distance = distance_to_light(&p->lights[k], origin, vec3_make(q->dx[at], q->dy[at], q->dz[at]));
+        if (distance < nearest) {
+            nearest = distance;
+            met = k;
+        }
+    }
+    if (met < 0)
+        return;
+    t->batch.hits.crossed[i] = mark_of(met);
+    clip_stretches(t->batch.scratch.ways, i, nearest);
+}
+
+static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
+{
+    meet_nearest(t, q, first, depth, rays);
+    for (int i = 0; i < rays->count; i++)
+        meet_lights(t, q, first, i);
+}
+
+static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int rank)
+{
+    const plan *p = t->target.scene;
+    const int64_t ticket = q->ticket[at];
+    const double radiance = radiance_along(p, lamp, vec3_make(q->dx[at], q->dy[at], q->dz[at])) *
+                            (p->basic ? radiance_share(p, ticket, rank) : 1.0);
     const vec3 l = vec3_scale(light_color(t, lamp, ticket), radiance);
-    shading_expose(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+    shading_expose(t, ticket, q->wr[at] * l.x, q->wg[at] * l.y, q->wb[at] * l.z);
+}
+
+static void expose_background(tracer *t, const ray_queue *q, int first, const int *list, int count)
+{
+    for (int k = 0; k < count; k++) {
+        const int i = list[k];
+        const int64_t met = t->batch.hits.crossed[i];
+        if (met == -1)
+            background_sky(t, q, first, &i, 1);
+        else
+            expose_light(t, q, first + i, lamp_of(met), (int)t->batch.hits.before[i]);
+    }
 }
 
 /* A unit vector at the angle whose cosine and sine are given, about an axis. */
@@ -110,7 +140,7 @@ static vec3 direction_about(vec3 axis, double cosine, double sine, double turn)
 static void look_for_light(tracer *t, int k, const material *m, bool opaque, int lamp, int depth)
 {
     const plan *p = t->target.scene;
-    const group *g = &t->gathered;
+    const group *g = &t->surface.gathered;
     const light *l = &p->lights[lamp];
     const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
     const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]), way = vec3_sub(l->position, point);
@@ -135,7 +165,7 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
                              : 0.0;
     const double seen = 2.0 * cap * radiance, diffuse = m->diffuse * n_l;
     const vec3 color = vec3_scale(light_color(t, lamp, g->ticket[k]), seen);
-    ray_queue *q = &t->shadows;
+    ray_queue *q = &t->queues.shadows;
     const int at = q->count++;
     q->ox[at] = point.x, q->oy[at] = point.y, q->oz[at] = point.z;
     q->dx[at] = to.x * reach, q->dy[at] = to.y * reach, q->dz[at] = to.z * reach;
@@ -154,13 +184,13 @@ typedef struct continuation {
 
 static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
 {
-    const branch_group *b = &t->branches;
+    const branch_group *b = &t->surface.branches;
     const double both = b->reflect[k] + b->refract[k];
     if (!(both > 0.0))
         return false;
     c->refracted = chance * both >= b->reflect[k] && b->refract[k] > 0.0;
     c->direction = c->refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
-    c->inside = c->refracted ? t->gathered.inside_after[k] : t->gathered.inside_before[k];
+    c->inside = c->refracted ? t->surface.gathered.inside_after[k] : t->surface.gathered.inside_before[k];
     c->share = vec3_make(both, both, both);
     c->sees_lights = true;
     return true;
@@ -168,7 +198,7 @@ static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
 
 static bool draw_matte(const tracer *t, const material *m, int k, int depth, double chance, continuation *c)
 {
-    const group *g = &t->gathered;
+    const group *g = &t->surface.gathered;
     const double brightest = fmax(g->cr[k], fmax(g->cg[k], g->cb[k])), matte = m->diffuse * brightest,
                  mirror = m->reflectivity;
     if (!(matte + mirror > 0.0))
@@ -179,7 +209,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, int depth, dou
     c->refracted = false;
     c->sees_lights = mirrored;
     if (mirrored) {
-        c->direction = vec3_make(t->branches.rx[k], t->branches.ry[k], t->branches.rz[k]);
+        c->direction = vec3_make(t->surface.branches.rx[k], t->surface.branches.ry[k], t->surface.branches.rz[k]);
         c->share = vec3_make(mirror / odds, mirror / odds, mirror / odds);
         return true;
     }
@@ -195,7 +225,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, int depth, dou
 static bool survives(const tracer *t, int k, int depth, vec3 *share)
 {
     const render_settings *r = &t->target.scene->render;
-    const group *g = &t->gathered;
+    const group *g = &t->surface.gathered;
     if (!r->roulette || depth < ROULETTE_DEPTH)
         return true;
     const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)r->paths;
@@ -209,58 +239,78 @@ static bool survives(const tracer *t, int k, int depth, vec3 *share)
 
 static void cut(tracer *t, int k, const continuation *c)
 {
-    const group *g = &t->gathered;
+    const group *g = &t->surface.gathered;
     const double r = g->wr[k] * c->share.x, gr = g->wg[k] * c->share.y, b = g->wb[k] * c->share.z;
-    COUNT(t->counters.cut_depth++);
-    COUNT(t->counters.cut_depth_throughput[0] += counters_cut_units(r));
-    COUNT(t->counters.cut_depth_throughput[1] += counters_cut_units(gr));
-    COUNT(t->counters.cut_depth_throughput[2] += counters_cut_units(b));
+    COUNT(t->account.counters.cut_depth++);
+    COUNT(t->account.counters.cut_depth_throughput[0] += counters_cut_units(r));
+    COUNT(t->account.counters.cut_depth_throughput[1] += counters_cut_units(gr));
+    COUNT(t->account.counters.cut_depth_throughput[2] += counters_cut_units(b));
     shading_expose_beyond(t, g->ticket[k], c->direction, r, gr, b);
 }
 
 static void go_on(tracer *t, int k, int depth, const continuation *c)
 {
-    const group *g = &t->gathered;
-    ray_queue *q = &t->waiting[depth + 1];
+    const group *g = &t->surface.gathered;
+    ray_queue *q = &t->queues.waiting[depth + 1];
     const int at = q->count++;
     q->ox[at] = g->points.px[k], q->oy[at] = g->points.py[k], q->oz[at] = g->points.pz[k];
     q->dx[at] = c->direction.x, q->dy[at] = c->direction.y, q->dz[at] = c->direction.z;
     q->wr[at] = g->wr[k] * c->share.x, q->wg[at] = g->wg[k] * c->share.y, q->wb[at] = g->wb[k] * c->share.z;
     q->start[at] = g->points.face[k], q->inside[at] = c->inside;
     q->ticket[at] = (g->ticket[k] & ~TICKET_SEES_LIGHTS) | (c->sees_lights ? TICKET_SEES_LIGHTS : 0);
-    COUNT(c->refracted ? t->counters.refract++ : t->counters.reflect++);
+    COUNT(c->refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
 }
 
 static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth)
 {
-    const random_words drawn = draw(t->target.scene->render.seed, t->gathered.ticket[k], depth, DRAW_BRANCH);
+    const random_words drawn = draw(t->target.scene->render.seed, t->surface.gathered.ticket[k], depth, DRAW_BRANCH);
     const double chance = random_unit(drawn.word[0]);
     continuation c = {.refracted = false};
     if (!(opaque ? draw_matte(t, m, k, depth, chance, &c) : draw_clear(t, k, chance, &c)))
         return;
-    if (depth == t->depth_limit)
+    if (depth == t->queues.depth_limit)
         cut(t, k, &c);
     else if (survives(t, k, depth, &c.share))
         go_on(t, k, depth, &c);
 }
 
-void path_group(tracer *t, int depth, int rank)
+static void shade(tracer *t, int depth, int rank)
 {
     const plan *p = t->target.scene;
-    const material *m = &t->look->surface;
+    const material *m = &t->surface.look->surface;
     const bool opaque = surface_is_opaque(t, rank), lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
-    local_light(t, rank); /* of points; spheres follow */
-    if (t->basic)
-        radiance_weigh(t);
-    for (int k = 0; lit && k < t->gathered.count; k++)
+    local_light(t, rank, (light_terms){.highlights = true}); /* of points; spheres follow */
+    radiance_weigh(t);
+    for (int k = 0; lit && k < t->surface.gathered.count; k++)
         for (int lamp = 0; lamp < p->light_count; lamp++)
             if (p->lights[lamp].radius > 0.0)
                 look_for_light(t, k, m, opaque, lamp, depth);
-    if (t->basic)
-        radiance_weigh_back(t);
+    radiance_weigh_back(t);
     shading_branches(t, opaque);
-    if (!opaque)
-        COUNT(t->counters.total_internal += (uint64_t)t->branches.total);
-    for (int k = 0; k < t->gathered.count; k++)
+    for (int k = 0; k < t->surface.gathered.count; k++)
         continue_one(t, m, opaque, k, depth);
 }
+
+/* Fewer points where there are fewer paths than samples: the first lines of the grid alone would move the picture. */
+static camera_need paths_of(const render_settings *r)
+{
+    const int64_t points = r->paths < r->samples ? r->paths : r->samples;
+    return (camera_need){.rays = r->paths, .points = points, .together = 1, .marks = TICKET_SEES_LIGHTS};
+}
+
+/* As many as there can be. Each has all of the pixel's points. */
+static int shares(const render_settings *r)
+{
+    int count = r->paths % r->samples == 0 ? FILM_LAYERS_MAX : 1;
+    while (r->paths / r->samples % count != 0)
+        count--;
+    return count;
+}
+
+const integrator integrator_of_path = {.traced = true,
+                                       .by_sample = true,
+                                       .camera = paths_of,
+                                       .shares = shares,
+                                       .meet = meet,
+                                       .background = expose_background,
+                                       .shade = shade};

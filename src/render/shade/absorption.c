@@ -1,7 +1,8 @@
 /* Beer and Lambert: light falls by exp(-a d) over a length d of a medium with absorption coefficient a. */
-#include "render/core/tracer_private.h"
+#include "render/shade/shading.h"
 
 #include "base/elementary_inline.h"
+#include <stdlib.h>
 
 #define LOG2_E 1.4426950408889634074
 
@@ -23,17 +24,17 @@ double absorption_left(double optical_depth)
 static void add_depths(tracer *t)
 {
     const plan *p = t->target.scene;
-    const int64_t *tickets = t->ways_tickets;
-    for (int k = 0; k < t->scratch.ways->count; k++) {
-        const stretch *s = &t->scratch.ways->stretches[k];
+    const int64_t *tickets = t->media->tickets;
+    for (int k = 0; k < t->batch.scratch.ways->count; k++) {
+        const stretch *s = &t->batch.scratch.ways->stretches[k];
         if (!p->solids->bodies[s->rank].absorbs)
             continue;
         const vec3 a = coefficients(p, s->rank, tickets[s->ray]);
-        t->kept[0][s->ray] += a.x * s->length;
-        t->kept[1][s->ray] += a.y * s->length;
-        t->kept[2][s->ray] += a.z * s->length;
+        t->media->kept[0][s->ray] += a.x * s->length;
+        t->media->kept[1][s->ray] += a.y * s->length;
+        t->media->kept[2][s->ray] += a.z * s->length;
     }
-    t->scratch.ways->count = 0;
+    t->batch.scratch.ways->count = 0;
 }
 
 /* A way to the sky is spared here too: it is as long as can be. */
@@ -41,19 +42,32 @@ static void make_room(void *context)
 {
     tracer *t = context;
     const double for_ever = 1e100;
-    for (int k = 0; k < t->scratch.ways->count; k++)
-        if (t->scratch.ways->stretches[k].rank == 0 && t->scratch.ways->stretches[k].length > for_ever)
-            t->scratch.ways->stretches[k].length = 0.0;
+    for (int k = 0; k < t->batch.scratch.ways->count; k++)
+        if (t->batch.scratch.ways->stretches[k].rank == 0 && t->batch.scratch.ways->stretches[k].length > for_ever)
+            t->batch.scratch.ways->stretches[k].length = 0.0;
     add_depths(t);
 }
 
-void absorption_begin(tracer *t, const int64_t *tickets, int count)
+bool absorption_begin(tracer *t, bool absorbs)
 {
-    t->ways_tickets = tickets;
-    t->scratch.ways->full = make_room;
-    t->scratch.ways->context = t;
+    if (absorbs && !t->media && !(t->media = malloc(sizeof *t->media)))
+        return false;
+    t->batch.scratch.ways = absorbs ? &t->media->ways : NULL;
+    return true;
+}
+
+void absorption_end(tracer *t)
+{
+    free(t->media);
+}
+
+void absorption_announce(tracer *t, const int64_t *tickets, int count)
+{
+    t->media->tickets = tickets;
+    t->batch.scratch.ways->full = make_room;
+    t->batch.scratch.ways->context = t;
     for (int i = 0; i < count; i++)
-        t->kept[0][i] = t->kept[1][i] = t->kept[2][i] = 0.0; /* optical depths first */
+        t->media->kept[0][i] = t->media->kept[1][i] = t->media->kept[2][i] = 0.0; /* optical depths first */
 }
 
 static void absorption_shares(tracer *t, int count)
@@ -61,7 +75,7 @@ static void absorption_shares(tracer *t, int count)
     add_depths(t);
     for (int i = 0; i < count; i++)
         for (int c = 0; c < 3; c++)
-            t->kept[c][i] = t->kept[c][i] > 0.0 ? absorption_left(t->kept[c][i]) : 1.0;
+            t->media->kept[c][i] = t->media->kept[c][i] > 0.0 ? absorption_left(t->media->kept[c][i]) : 1.0;
 }
 
 /* A way to the sky has no length to be dimmed over: its light is given where it arrives, at the surface that it goes on
@@ -69,11 +83,9 @@ static void absorption_shares(tracer *t, int count)
 void absorption_spare_sky(tracer *t)
 {
     const plan *p = t->target.scene;
-    const bool random_paths = integrator_of(&p->render)->by_chance;
-    for (int k = 0; p->solids->bodies[0].absorbs && k < t->scratch.ways->count; k++) {
-        stretch *s = &t->scratch.ways->stretches[k];
-        const bool to_light = random_paths && t->met_light[s->ray] >= 0;
-        if (s->rank == 0 && t->hits.crossed[s->ray] < 0 && !to_light)
+    for (int k = 0; p->solids->bodies[0].absorbs && k < t->batch.scratch.ways->count; k++) {
+        stretch *s = &t->batch.scratch.ways->stretches[k];
+        if (s->rank == 0 && t->batch.hits.crossed[s->ray] == -1)
             s->length = 0.0;
     }
 }
@@ -82,8 +94,8 @@ void absorption_dim(tracer *t, ray_queue *q, int first, int count)
 {
     absorption_shares(t, count);
     for (int i = 0; i < count; i++) {
-        q->wr[first + i] *= t->kept[0][i];
-        q->wg[first + i] *= t->kept[1][i];
-        q->wb[first + i] *= t->kept[2][i];
+        q->wr[first + i] *= t->media->kept[0][i];
+        q->wg[first + i] *= t->media->kept[1][i];
+        q->wb[first + i] *= t->media->kept[2][i];
     }
 }

@@ -1,8 +1,22 @@
 /* Rays that met meshes: where, with which normal, and what a triangle that a normal only pretends to be curved lets
  * through. */
-#include "render/core/tracer_private.h"
+#include "render/shade/shading.h"
 
 #include "render/core/film.h"
+#include <stdlib.h>
+
+bool mesh_begin(tracer *t)
+{
+    if (t->target.scene->solids->meshes && !t->meshes && !(t->meshes = malloc(sizeof *t->meshes)))
+        return false;
+    t->batch.scratch.meshes = t->meshes ? &t->meshes->scratch : NULL;
+    return true;
+}
+
+void mesh_end(tracer *t)
+{
+    free(t->meshes);
+}
 
 static void copy_point(surface_batch *s, mesh_points *m, int to, int from)
 {
@@ -16,7 +30,7 @@ void mesh_surface(tracer *t, int rank, const int *list)
 {
     const plan *p = t->target.scene;
     const shading_rule shading = p->looks[rank].shading;
-    group *g = &t->gathered;
+    group *g = &t->surface.gathered;
     mesh_work *w = t->meshes;
     for (int k = 0; k < g->count; k++)
         w->hits[k] = w->scratch.hit[list[k]];
@@ -33,14 +47,14 @@ static vec3 geometric(const mesh_work *w, int k)
 
 bool mesh_lets_out(const tracer *t, int k, vec3 direction)
 {
-    return !t->on_mesh || vec3_dot(geometric(t->meshes, k), direction) > 0.0;
+    return !t->surface.on_mesh || vec3_dot(geometric(t->meshes, k), direction) > 0.0;
 }
 
 /* No light reaches the ray's side of a triangle from behind it, whatever its normal. */
 void mesh_bound_light(tracer *t)
 {
-    lit_group *l = &t->lit;
-    for (int k = 0; k < t->gathered.count; k++) {
+    lit_group *l = &t->surface.lit;
+    for (int k = 0; k < t->surface.gathered.count; k++) {
         if (mesh_lets_out(t, k, vec3_make(l->lx[k], l->ly[k], l->lz[k])))
             continue;
         l->r[k] = l->g[k] = l->b[k] = 0.0;
@@ -52,8 +66,8 @@ void mesh_bound_light(tracer *t)
  * refracted ray back, all of the light is reflected, as at total reflection. */
 void mesh_bound_branches(tracer *t)
 {
-    branch_group *b = &t->branches;
-    const group *g = &t->gathered;
+    branch_group *b = &t->surface.branches;
+    const group *g = &t->surface.gathered;
     for (int k = 0; k < g->count; k++) {
         const vec3 n = geometric(t->meshes, k);
         if (b->refract[k] > 0.0 && !(vec3_dot(n, vec3_make(b->tx[k], b->ty[k], b->tz[k])) < 0.0)) {
@@ -70,14 +84,14 @@ void mesh_bound_branches(tracer *t)
 
 bool mesh_has_corner_light(const tracer *t, int rank)
 {
-    return t->on_mesh && t->target.scene->looks[rank].shading == SHADING_GOURAUD;
+    return t->surface.on_mesh && t->target.scene->looks[rank].shading == SHADING_GOURAUD;
 }
 
 /* The group as it would be if its rays met one corner of their triangles each. */
 static void move_to_corner(tracer *t, int corner, const forest_part *part)
 {
     group *c = &t->meshes->corner;
-    const group *g = &t->gathered;
+    const group *g = &t->surface.gathered;
     const mesh_points *m = &t->meshes->points;
     for (int k = 0; k < g->count; k++) {
         const uint32_t vertex = m->corner[corner][k];
@@ -101,8 +115,8 @@ static void move_to_corner(tracer *t, int corner, const forest_part *part)
 void mesh_corner_light(tracer *t, const material *m, const light *lamp, int rank)
 {
     mesh_work *w = t->meshes;
-    lit_group *l = &t->lit;
-    const group *g = &t->gathered;
+    lit_group *l = &t->surface.lit;
+    const group *g = &t->surface.gathered;
     const forest *f = t->target.scene->solids->meshes;
     const forest_part *part = &f->parts[f->by_primitive[t->target.scene->solids->bodies[rank].outside]];
     t->shade->direct(m, lamp, g, l); /* for the ways to the light */

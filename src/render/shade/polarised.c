@@ -1,15 +1,15 @@
 /* Polarised light on its way back to the eye: each ray carries the analyser's Stokes vector (optics/mueller.h), of
  * which the first element is in its throughput and the others, relative to that, in the queue. Light comes unpolarised
  * from the sky, from lights and from matte surfaces, so that the first element alone weighs it. */
-#include "render/core/tracer_private.h"
+#include "render/shade/shading.h"
 
 #include "optics/mueller.h"
 #include "scene/model/medium.h"
 
 void polarised_gather(tracer *t, const ray_queue *q, int first, const int *list)
 {
-    polar_group *p = &t->polar;
-    for (int k = 0; k < t->gathered.count; k++) {
+    polar_group *p = &t->surface.polar;
+    for (int k = 0; k < t->surface.gathered.count; k++) {
         const int at = first + list[k];
         p->q[k] = q->sq[at], p->u[k] = q->su[at], p->v[k] = q->sv[at];
     }
@@ -31,9 +31,9 @@ static double take_apart(stokes s, double *q, double *u, double *v)
 /* After the branches' directions and unpolarised weights are known. */
 void polarised_branches(tracer *t, const material *m, bool opaque)
 {
-    const group *g = &t->gathered;
-    branch_group *b = &t->branches;
-    polar_group *p = &t->polar;
+    const group *g = &t->surface.gathered;
+    branch_group *b = &t->surface.branches;
+    polar_group *p = &t->surface.polar;
     const double coating = material_coating(m, &t->target.scene->render);
     for (int k = 0; k < g->count; k++) {
         const stokes row = {1.0, p->q[k], p->u[k], p->v[k]};

@@ -10,10 +10,36 @@
  * T, with each interface's unpolarised transmittance. It is straight where light is bent. Its angle at an interface
  * is taken on the side of the lower index: there it is the true one for a lamp far above water, and for a pane in air
  * on both of its faces; and no angle there is beyond the critical one. */
-#include "render/core/tracer_private.h"
+#include "render/shade/shading.h"
 
 #include "optics/interface.h"
+#include <stdlib.h>
 #include <string.h>
+
+struct radiance_work {
+    ray_crossings crossings;
+    ray_batch rays;                   /* the shadow rays that crossings are noted of, ... */
+    const int64_t *tickets;           /* ... their tickets, ... */
+    double through[ROW];              /* ... and the product of the interfaces' transmittances, by ray */
+    double kept[CROSSINGS_MAX];       /* transmittances, by crossing */
+    double wr[ROW], wg[ROW], wb[ROW]; /* the gathered group's throughput, while what its surface sends out is weighed */
+    surface_batch points;
+    mesh_points on_mesh;
+};
+
+bool radiance_begin(tracer *t)
+{
+    const bool basic = t->target.scene->basic;
+    if (basic && !t->basic && !(t->basic = malloc(sizeof *t->basic)))
+        return false;
+    t->batch.scratch.crossings = basic ? &t->basic->crossings : NULL;
+    return true;
+}
+
+void radiance_end(tracer *t)
+{
+    free(t->basic);
+}
 
 static double index_of(const plan *p, int64_t ticket, int rank)
 {
@@ -29,7 +55,9 @@ double radiance_share(const plan *p, int64_t ticket, int rank)
 void radiance_weigh(tracer *t)
 {
     const plan *p = t->target.scene;
-    group *g = &t->gathered;
+    if (!p->basic)
+        return;
+    group *g = &t->surface.gathered;
     radiance_work *w = t->basic;
     const size_t bytes = (size_t)g->padded * sizeof(double);
     memcpy(w->wr, g->wr, bytes), memcpy(w->wg, g->wg, bytes), memcpy(w->wb, g->wb, bytes);
@@ -41,7 +69,9 @@ void radiance_weigh(tracer *t)
 
 void radiance_weigh_back(tracer *t)
 {
-    group *g = &t->gathered;
+    if (!t->target.scene->basic)
+        return;
+    group *g = &t->surface.gathered;
     const radiance_work *w = t->basic;
     const size_t bytes = (size_t)g->padded * sizeof(double);
     memcpy(g->wr, w->wr, bytes), memcpy(g->wg, w->wg, bytes), memcpy(g->wb, w->wb, bytes);
@@ -124,6 +154,8 @@ static void take_crossings(void *context)
 void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *tickets)
 {
     radiance_work *w = t->basic;
+    if (!t->target.scene->basic)
+        return;
     w->rays = *rays;
     w->tickets = tickets;
     w->crossings.full = take_crossings;
@@ -135,7 +167,9 @@ void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *tic
 void radiance_end_shadows(tracer *t)
 {
     const radiance_work *w = t->basic;
+    if (!t->target.scene->basic)
+        return;
     take_crossings(t);
     for (int i = 0; i < w->rays.count; i++)
-        t->transmitted[i] *= w->through[i];
+        t->batch.transmitted[i] *= w->through[i];
 }

@@ -290,8 +290,7 @@ static void camera_directions(const camera_frame *view, int count, const double 
     const camera_frame f = *view;
     /* VECTORISE */
     for (int i = 0; i < count; i++) {
-        vec3 d = vec3_add(f.forward, vec3_add(vec3_scale(f.right, u[i]), vec3_scale(f.up, v[i])));
-        d = vec3_normalize(d);
+        const vec3 d = camera_toward(&f, u[i], v[i]);
         dx[i] = d.x;
         dy[i] = d.y;
         dz[i] = d.z;

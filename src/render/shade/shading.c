@@ -1,5 +1,5 @@
 /* What becomes of rays that met a surface: local light, shadow rays, reflected and refracted children, and the film. */
-#include "render/core/tracer_private.h"
+#include "render/shade/shading.h"
 
 #include "render/shade/sky.h"
 #include <string.h>
@@ -19,7 +19,7 @@ static inline int64_t in_film_units(double radiance)
 static inline void expose_at(tracer *t, int64_t place, double r, double g, double b)
 {
     if (!((int)is_exposable(r) & (int)is_exposable(g) & (int)is_exposable(b))) {
-        t->overflow = -1;
+        t->account.overflow = -1;
         return;
     }
     int64_t *sum = &t->target.picture->sum[place * 3];
@@ -27,7 +27,7 @@ static inline void expose_at(tracer *t, int64_t place, double r, double g, doubl
     const int64_t green = (int64_t)((uint64_t)sum[1] + (uint64_t)in_film_units(g));
     const int64_t blue = (int64_t)((uint64_t)sum[2] + (uint64_t)in_film_units(b));
     sum[0] = red, sum[1] = green, sum[2] = blue;
-    t->overflow |= red | green | blue;
+    t->account.overflow |= red | green | blue;
 }
 
 /* The ticket's layer and pixel; of a spectral film as what the eye makes of its wavelength. Never inline, so that the
@@ -105,13 +105,12 @@ void shading_expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr,
         expose_beyond(t, ticket, direction, wr, wg, wb);
 }
 
-/* Light that needs no lamp: ambient, which random paths find by themselves, and emitted; of a spectral film as
- * daylight, white's spectrum. */
-static void expose_own_light(tracer *t, const material *m)
+/* Light that needs no lamp: ambient and emitted; of a spectral film as daylight, white's spectrum. */
+static void expose_own_light(tracer *t, const material *m, bool ambient)
 {
-    const group *g = &t->gathered;
+    const group *g = &t->surface.gathered;
     const plan *p = t->target.scene;
-    const double k_a = integrator_of(&p->render)->by_chance ? 0.0 : m->ambient, k_e = m->emission;
+    const double k_a = ambient ? m->ambient : 0.0, k_e = m->emission;
     if (k_a == 0.0 && k_e == 0.0)
         return;
     if (p->spectral) {
@@ -130,9 +129,9 @@ static void expose_own_light(tracer *t, const material *m)
 /* A shadow ray is worth its while only if its light can change the film. */
 static void put_shadow_rays_in_line(tracer *t)
 {
-    const group *g = &t->gathered;
-    const lit_group *l = &t->lit;
-    ray_queue *q = &t->shadows;
+    const group *g = &t->surface.gathered;
+    const lit_group *l = &t->surface.lit;
+    ray_queue *q = &t->queues.shadows;
     int worth[ROW], count = 0;
     for (int i = 0; i < g->count; i++) {
         worth[count] = i;
@@ -157,64 +156,66 @@ static void direct_light(tracer *t, const material *m, int lamp, int rank)
     if (mesh_has_corner_light(t, rank))
         mesh_corner_light(t, m, &l, rank);
     else
-        t->shade->direct(m, &l, &t->gathered, &t->lit);
+        t->shade->direct(m, &l, &t->surface.gathered, &t->surface.lit);
     if (l.kind != LIGHT_POINT)
-        t->shade->spot(&p->cones[lamp], l.kind == LIGHT_SOFT_CONE, &t->gathered, &t->lit);
-    if (t->on_mesh)
+        t->shade->spot(&p->cones[lamp], l.kind == LIGHT_SOFT_CONE, &t->surface.gathered, &t->surface.lit);
+    if (t->surface.on_mesh)
         mesh_bound_light(t);
     if (p->spectral)
         spectral_light(t, lamp);
 }
 
 /* All that the surface sends out by itself, weighted. */
-static void send_out(tracer *t, int rank)
+static void send_out(tracer *t, int rank, light_terms terms)
 {
     const plan *p = t->target.scene;
-    const material *m = &t->look->surface;
+    const material *m = &t->surface.look->surface;
     material dull;
-    if (p->render.lighting == LIGHTING_LAMBERT && !integrator_of(&p->render)->by_chance) {
+    if (!terms.highlights) {
         dull = *m;
         dull.specular = 0.0;
         m = &dull;
     }
-    expose_own_light(t, m);
+    expose_own_light(t, m, terms.ambient);
     if (m->diffuse == 0.0 && m->specular == 0.0)
         return;
     for (int k = 0; k < p->light_count; k++) {
-        if (integrator_of(&p->render)->by_chance && p->lights[k].radius > 0.0)
+        if (!terms.spheres && p->lights[k].radius > 0.0)
             continue;
         direct_light(t, m, k, rank);
         if (p->render.shadows != SHADOWS_OFF) {
             put_shadow_rays_in_line(t);
             continue;
         }
-        for (int i = 0; i < t->gathered.count; i++)
-            if (t->lit.shows[i])
-                expose(t, t->gathered.ticket[i], t->lit.r[i], t->lit.g[i], t->lit.b[i]);
+        for (int i = 0; i < t->surface.gathered.count; i++)
+            if (t->surface.lit.shows[i])
+                expose(t, t->surface.gathered.ticket[i], t->surface.lit.r[i], t->surface.lit.g[i], t->surface.lit.b[i]);
     }
 }
 
-void local_light(tracer *t, int rank)
+void local_light(tracer *t, int rank, light_terms terms)
 {
-    if (t->basic)
-        radiance_weigh(t);
-    send_out(t, rank);
-    if (t->basic)
-        radiance_weigh_back(t);
+    radiance_weigh(t);
+    send_out(t, rank, terms);
+    radiance_weigh_back(t);
 }
 
-/* Branches that the depth limit cuts off: counted, and given what lies beyond it. */
-static void cut_branches(tracer *t)
+light_terms light_terms_of(const render_settings *r)
 {
-    const group *g = &t->gathered;
-    const branch_group *b = &t->branches;
+    return (light_terms){.ambient = true, .highlights = r->lighting != LIGHTING_LAMBERT, .spheres = true};
+}
+
+void cut_branches(tracer *t)
+{
+    const group *g = &t->surface.gathered;
+    const branch_group *b = &t->surface.branches;
     const plan *p = t->target.scene;
     if (CUVETTE_COUNTERS) {
         cut_sum sum;
         t->shade->cut(g, b, &sum);
-        t->counters.cut_depth += (uint64_t)sum.branches;
+        t->account.counters.cut_depth += (uint64_t)sum.branches;
         for (int c = 0; c < 3; c++)
-            t->counters.cut_depth_throughput[c] += sum.throughput[c];
+            t->account.counters.cut_depth_throughput[c] += sum.throughput[c];
     }
     if (p->render.beyond == BEYOND_BLACK)
         return;
@@ -236,22 +237,22 @@ static bool too_light(tracer *t, const ray_queue *q, int i, double least)
 {
     if (q->wr[i] >= least || q->wg[i] >= least || q->wb[i] >= least)
         return false;
-    COUNT(t->counters.cut_weight++);
-    COUNT(t->counters.cut_weight_throughput[0] += counters_cut_units(q->wr[i]));
-    COUNT(t->counters.cut_weight_throughput[1] += counters_cut_units(q->wg[i]));
-    COUNT(t->counters.cut_weight_throughput[2] += counters_cut_units(q->wb[i]));
+    COUNT(t->account.counters.cut_weight++);
+    COUNT(t->account.counters.cut_weight_throughput[0] += counters_cut_units(q->wr[i]));
+    COUNT(t->account.counters.cut_weight_throughput[1] += counters_cut_units(q->wg[i]));
+    COUNT(t->account.counters.cut_weight_throughput[2] += counters_cut_units(q->wb[i]));
     return true;
 }
 
 /* The same as below, with the Stokes vectors. */
 static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, const double *weight, double least)
 {
-    const polar_group *p = &t->polar;
-    const size_t bytes = (size_t)t->gathered.count * sizeof(double);
+    const polar_group *p = &t->surface.polar;
+    const size_t bytes = (size_t)t->surface.gathered.count * sizeof(double);
     memcpy(q->sq + first, reflected ? p->rq : p->tq, bytes);
     memcpy(q->su + first, reflected ? p->ru : p->tu, bytes);
     memcpy(q->sv + first, reflected ? p->rv : p->tv, bytes);
-    for (int i = t->gathered.count - 1; i >= 0; i--)
+    for (int i = t->surface.gathered.count - 1; i >= 0; i--)
         if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
             queue_move_polarised(q, first + i, --q->count);
     return q->count - first;
@@ -262,13 +263,13 @@ static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, co
 int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz,
                          const double *weight, const uint64_t *inside)
 {
-    ray_queue *q = &t->waiting[depth];
+    ray_queue *q = &t->queues.waiting[depth];
     const double least = t->least_weight;
     const int first = q->count;
-    t->shade->append(&t->gathered, dx, dy, dz, weight, inside, q);
+    t->shade->append(&t->surface.gathered, dx, dy, dz, weight, inside, q);
     if (t->target.scene->render.polarisation)
-        return keep_polarised(t, q, first, dx == t->branches.rx, weight, least);
-    for (int i = t->gathered.count - 1; i >= 0; i--)
+        return keep_polarised(t, q, first, dx == t->surface.branches.rx, weight, least);
+    for (int i = t->surface.gathered.count - 1; i >= 0; i--)
         if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
             queue_move(q, first + i, --q->count);
     return q->count - first;
@@ -277,41 +278,34 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
 void shading_branches(tracer *t, bool opaque)
 {
     const plan *p = t->target.scene;
-    const material *m = &t->look->surface;
+    const material *m = &t->surface.look->surface;
     if (!opaque && p->render.transmission == TRANSMISSION_SIMPLE)
-        t->shade->straight_branches(m, &t->gathered, &t->branches);
+        t->shade->straight_branches(m, &t->surface.gathered, &t->surface.branches);
     else if (opaque || p->render.weights == WEIGHTS_CONSTANT)
-        t->shade->constant_branches(m, opaque, &t->gathered, &t->branches);
+        t->shade->constant_branches(m, opaque, &t->surface.gathered, &t->surface.branches);
     else
-        t->shade->fresnel_branches(m, &t->gathered, &t->branches);
+        t->shade->fresnel_branches(m, &t->surface.gathered, &t->surface.branches);
     if (p->render.polarisation)
         polarised_branches(t, m, opaque);
-    if (t->on_mesh)
+    if (t->surface.on_mesh)
         mesh_bound_branches(t);
+    if (!opaque)
+        COUNT(t->account.counters.total_internal += (uint64_t)t->surface.branches.total);
 }
 
-static void branch(tracer *t, int depth, bool opaque)
+void meet_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
-    const material *m = &t->look->surface;
-    group *g = &t->gathered;
-    branch_group *b = &t->branches;
-    if (opaque && (m->reflectivity == 0.0 || t->target.depths))
-        return;
-    shading_branches(t, opaque);
-    if (!opaque)
-        COUNT(t->counters.total_internal += (uint64_t)b->total);
-    if (depth == t->depth_limit) {
-        cut_branches(t);
-        return;
+    (void)q, (void)first, (void)depth;
+    t->geometry->nearest(t->target.scene->solids, rays, &t->batch.scratch, &t->batch.hits);
+}
+
+void background_sky(tracer *t, const ray_queue *q, int first, const int *list, int count)
+{
+    for (int k = 0; k < count; k++) {
+        const int at = first + list[k];
+        shading_expose_sky(t, q->ticket[at], vec3_make(q->dx[at], q->dy[at], q->dz[at]), q->wr[at], q->wg[at],
+                           q->wb[at]);
     }
-    if (t->target.depths) {
-        drawn_branches(t, depth);
-        return;
-    }
-    int reflected = put_children_in_line(t, depth + 1, b->rx, b->ry, b->rz, b->reflect, g->inside_before);
-    int refracted = put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
-    COUNT(t->counters.reflect += (uint64_t)reflected);
-    COUNT(t->counters.refract += (uint64_t)refracted);
 }
 
 /* A checker's cells lie in the frame of the solid whose surface it is, also where another solid's face exposes it. */
@@ -320,16 +314,16 @@ static void color(tracer *t, int rank, const primitive *surface)
     const plan *p = t->target.scene;
     const primitive *frame = surface->rank == rank ? surface : &p->solids->primitives[p->solids->bodies[rank].outside];
     if (!p->spectral) {
-        t->shade->color(&t->look->surface, frame, &t->gathered);
-        if (t->look->picture)
+        t->shade->color(&t->surface.look->surface, frame, &t->surface.gathered);
+        if (t->surface.look->picture)
             texture_colors(t, surface);
         return;
     }
     /* Which of the two colours, and then its spectrum. */
-    material marked = t->look->surface;
+    material marked = t->surface.look->surface;
     marked.color = vec3_make(1.0, 0.0, 0.0);
     marked.checker_color = vec3_make(0.0, 1.0, 0.0);
-    t->shade->color(&marked, frame, &t->gathered);
+    t->shade->color(&marked, frame, &t->surface.gathered);
     spectral_colors(t, rank);
 }
 
@@ -337,40 +331,33 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
 {
     const plan *p = t->target.scene;
     const primitive *surface = &p->solids->primitives[met];
-    group *g = &t->gathered;
-    group_gather(&t->waiting[depth], first, &t->hits, p->ior, list, count, g);
+    group *g = &t->surface.gathered;
+    group_gather(&t->queues.waiting[depth], first, &t->batch.hits, p->ior, list, count, g);
     if (p->spectral)
         spectral_indices(t, list);
     if (p->render.polarisation)
-        polarised_gather(t, &t->waiting[depth], first, list);
+        polarised_gather(t, &t->queues.waiting[depth], first, list);
     const ray_batch rays = {g->padded, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
-    t->on_mesh = !surface->rule;
-    if (t->on_mesh)
+    t->surface.on_mesh = !surface->rule;
+    if (t->surface.on_mesh)
         mesh_surface(t, rank, list);
     else
         t->geometry->surface(surface, &rays, g->t, met, &g->points);
-    if (t->target.depths)
-        drawn_bend(t, list);
+    t->surface.texture_at = NULL;
+    if (t->rule->place)
+        t->rule->place(t, list);
     const int owner = p->solids->bodies[rank].solid;
-    COUNT(t->counters.hits[owner] += (uint64_t)count);
+    COUNT(t->account.counters.hits[owner] += (uint64_t)count);
     if (depth == 0)
-        COUNT(t->counters.first_hits[owner] += (uint64_t)count);
-    if (t->straight && t->look->picture)
-        drawn_straighten(t, list);
+        COUNT(t->account.counters.first_hits[owner] += (uint64_t)count);
     color(t, rank, surface);
-    if (integrator_of(&p->render)->by_chance) {
-        path_group(t, depth, rank);
-        return;
-    }
-    local_light(t, rank);
-    if (t->branching)
-        branch(t, depth, surface_is_opaque(t, rank));
+    t->rule->shade(t, depth, rank);
 }
 
 void shading_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
 {
     const body_look *looks = &t->target.scene->looks[rank];
-    t->look = looks->look;
+    t->surface.look = looks->look;
     if (looks->count == 1) {
         shade_alike(t, depth, first, met, rank, list, count);
         return;
@@ -380,7 +367,7 @@ void shading_group(tracer *t, int depth, int first, int met, int rank, const int
     for (int begin = 0; begin < count;) {
         int slot;
         const int alike = mesh_next_look(t, left + begin, count - begin, &slot);
-        t->look = &looks->look[slot < looks->count ? slot : 0];
+        t->surface.look = &looks->look[slot < looks->count ? slot : 0];
         shade_alike(t, depth, first, met, rank, left + begin, alike);
         begin += alike;
     }

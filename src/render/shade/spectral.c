@@ -1,15 +1,15 @@
 /* What a group of rays of different wavelengths sees: each its own index, reflectance and light. */
-#include "render/core/tracer_private.h"
+#include "render/shade/shading.h"
 
 #include "render/core/film.h"
 
 void spectral_indices(tracer *t, const int *list)
 {
-    group *g = &t->gathered;
+    group *g = &t->surface.gathered;
     const spectra *s = t->target.scene->spectral;
     for (int k = 0; k < g->count; k++) {
-        g->n_from[k] = spectra_body(s, g->ticket[k], t->hits.before[list[k]])->index;
-        g->n_to[k] = spectra_body(s, g->ticket[k], t->hits.after[list[k]])->index;
+        g->n_from[k] = spectra_body(s, g->ticket[k], t->batch.hits.before[list[k]])->index;
+        g->n_to[k] = spectra_body(s, g->ticket[k], t->batch.hits.after[list[k]])->index;
     }
     for (int k = g->count; k < g->padded; k++)
         g->n_from[k] = g->n_from[g->count - 1], g->n_to[k] = g->n_to[g->count - 1];
@@ -18,7 +18,7 @@ void spectral_indices(tracer *t, const int *list)
 /* The group's colours are (1, 0, 0) where the material's first colour is, else (0, 1, 0). */
 void spectral_colors(tracer *t, int rank)
 {
-    group *g = &t->gathered;
+    group *g = &t->surface.gathered;
     for (int k = 0; k < g->count; k++) {
         const body_spectrum *here = spectra_body(t->target.scene->spectral, g->ticket[k], rank);
         g->cr[k] = g->cg[k] = g->cb[k] = g->cr[k] > 0.5 ? here->color : here->checker_color;
@@ -28,8 +28,8 @@ void spectral_colors(tracer *t, int rank)
 /* The group's light was reckoned for a lamp of radiance 1. */
 void spectral_light(tracer *t, int lamp)
 {
-    const group *g = &t->gathered;
-    lit_group *l = &t->lit;
+    const group *g = &t->surface.gathered;
+    lit_group *l = &t->surface.lit;
     const double least = 0.5 / FILM_ONE;
     for (int k = 0; k < g->count; k++) {
         const double radiance = spectra_light(t->target.scene->spectral, g->ticket[k], lamp);

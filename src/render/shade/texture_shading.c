@@ -1,5 +1,5 @@
 /* Textures on what rays met: coordinates of the point, how far a pixel reaches there, and the picture's colour. */
-#include "render/core/tracer_private.h"
+#include "render/shade/shading.h"
 
 #include "geometry/primitives/primitive.h"
 
@@ -13,16 +13,18 @@ static double pixel_width(const plan *p, vec3 point)
 void texture_colors(tracer *t, const primitive *surface)
 {
     const plan *p = t->target.scene;
-    group *g = &t->gathered;
-    const double size = t->look->surface.texture_size;
+    group *g = &t->surface.gathered;
+    const double size = t->surface.look->surface.texture_size;
     for (int k = 0; k < g->count; k++) {
         const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
         const surface_mapping m =
-            t->on_mesh ? (surface_mapping){t->meshes->points.tu[k], t->meshes->points.tv[k],
-                                           t->meshes->points.uv_per_length[k]}
-                       : primitive_mapping(surface, g->points.face[k], t->straight ? t->drawn->at[k] : point, size);
+            t->surface.on_mesh ? (surface_mapping){t->meshes->points.tu[k], t->meshes->points.tv[k],
+                                                   t->meshes->points.uv_per_length[k]}
+                               : primitive_mapping(surface, g->points.face[k],
+                                                   t->surface.texture_at ? t->surface.texture_at[k] : point, size);
         const double cosine = g->points.cos_i[k] > 0.05 ? g->points.cos_i[k] : 0.05;
-        const vec3 c = texture_sample(t->look->picture, m.u, m.v, pixel_width(p, point) / cosine * m.per_length);
+        const vec3 c =
+            texture_sample(t->surface.look->picture, m.u, m.v, pixel_width(p, point) / cosine * m.per_length);
         g->cr[k] *= c.x, g->cg[k] *= c.y, g->cb[k] *= c.z;
     }
 }

@@ -6,7 +6,7 @@
  *   pov      a scene for POV-Ray 3.7 with the camera and light of the speed study
  *   tachyon  the same for Tachyon
  *   ply      Stanford, binary, little-endian: all that the mesh has (normals nx ny nz, texture coordinates s t, slots
- * as material_index)
+ *            as material_index)
  *
  * Coordinates that are floats are written with 9 significant digits (tachyon: 9 decimals), others with 17, so that they
  * read back the same. */

@@ -53,10 +53,3 @@ camera_frame camera_frame_of(const scene *s)
     roll(&f, s->camera.roll_deg);
     return f;
 }
-
-vec3 camera_direction(const camera_frame *f, const render_settings *picture, double x, double y)
-{
-    const double u = (2.0 * x / (double)picture->width - 1.0) * f->half_width;
-    const double v = (1.0 - 2.0 * y / (double)picture->height) * f->half_height;
-    return vec3_normalize(vec3_add(f->forward, vec3_add(vec3_scale(f->right, u), vec3_scale(f->up, v))));
-}

@@ -108,6 +108,11 @@ status check_render(const scene *s, diagnostic *why)
                         "the depth buffer draws red, green and blue: it knows no %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
     }
+    if (integrator_of(&s->render)->layers && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL)) {
+        return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
+                        "layers are of no light: they know no %s",
+                        s->render.polarisation ? "polarisation" : "spectrum");
+    }
     if (s->render.polarisation && s->render.weights == WEIGHTS_CONSTANT) {
         return diagnose(why, STATUS_BAD_INPUT, "set render.weights to fresnel",
                         "constant weights know no polarisation, which Fresnel's equations give");

@@ -2,8 +2,16 @@
 
 #include <stddef.h>
 
-#define WORD(name, word, ...) word,
+#define WORD(name, word, ...) #word,
 const char *const integrator_words[] = {INTEGRATORS(WORD) NULL};
 
-#define TRAITS(name, word, ...) [INTEGRATOR_##name] = {__VA_ARGS__},
-const integrator_traits integrator_table[INTEGRATOR_COUNT] = {INTEGRATORS(TRAITS)};
+#define TRAITS(name, word, ...) {__VA_ARGS__},
+const integrator_traits integrator_table[] = {INTEGRATORS(TRAITS)};
+
+const char *integrator_with_layers(void)
+{
+    for (int i = 0; integrator_words[i]; i++)
+        if (integrator_table[i].layers)
+            return integrator_words[i];
+    return NULL;
+}

@@ -31,6 +31,8 @@ bool looks_by_face(const scene *s, const solid *owner);
 typedef struct surface_look {
     material surface;
     const texture *picture;
+    int number; /* of a scene's material: 1 for the first; of a surface that is none of them: how many there are, and
+                   the solid's number, 1 for the first */
 } surface_look;
 
 /* What says how a slot's faces look: the scene's material of its name, else what the file gives; both NULL where the

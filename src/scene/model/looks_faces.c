@@ -48,7 +48,7 @@ surface_look looks_face(const scene *s, const solid *owner, const material *own,
     const material *named;
     const face_look *given;
     looks_source(s, owner, slot, &named, &given);
-    surface_look l = {*own, picture_of(s, named ? named : own)};
+    surface_look l = {.surface = *own, .picture = picture_of(s, named ? named : own)};
     if (named) {
         l.surface = *named;
     } else if (given) {
@@ -69,7 +69,7 @@ surface_look looks_face(const scene *s, const solid *owner, const material *own,
 
 surface_look looks_whole(const scene *s, const material *own)
 {
-    return (surface_look){*own, picture_of(s, own)};
+    return (surface_look){.surface = *own, .picture = picture_of(s, own)};
 }
 
 int looks_slots(const scene *s, const solid *owner)

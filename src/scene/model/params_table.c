@@ -130,7 +130,10 @@ static const param table[] = {
      .offset = offsetof(render_settings, samples)},
     CHOICE(PARAM_RENDER, render_settings, integrator, integrator_words, "whitted",
            "how light is followed: to the first surface, through reflections and refractions, along random paths, or "
-           "not: a depth buffer"),
+           "not: a depth buffer, or layers of what camera rays meet first"),
+    CHOICE(PARAM_RENDER, render_settings, layer, layer_words, "normal",
+           "which layer the image shows under integrator aov: the normal, colour, distance, number of the solid or of "
+           "its material, or position of the point that is met first"),
     CHOICE(PARAM_RENDER, render_settings, lighting, lighting_words, "whitted",
            "diffuse light alone, specular light too, or reflected and refracted light as well; not of the path "
            "integrator"),

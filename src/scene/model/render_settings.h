@@ -4,6 +4,7 @@
 #define CUVETTE_SCENE_MODEL_RENDER_SETTINGS_H
 
 #include "scene/model/integrators.h"
+#include "scene/model/layers.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -26,6 +27,7 @@ typedef struct render_settings {
     int64_t depth;         /* recursion depth; 0 = camera rays only */
     int64_t samples;       /* a pixel: a whole square, at most SCENE_SAMPLES_MAX */
     int64_t integrator;    /* integrator_rule */
+    int64_t layer;         /* layer_rule: which one the film shows, of an integrator that gives layers */
     int64_t lighting;      /* lighting_rule */
     int64_t weights;       /* weights_rule */
     int64_t transmission;  /* transmission_rule */
@@ -57,6 +59,12 @@ typedef struct render_settings {
 static inline const integrator_traits *integrator_of(const render_settings *r)
 {
     return &integrator_table[r->integrator];
+}
+
+/* Both branches of each ray are followed. */
+static inline bool follows_trees(const render_settings *r)
+{
+    return integrator_of(r)->tree && r->lighting == LIGHTING_WHITTED;
 }
 
 /* All branches of each ray, for what looks into a scene; or a preview of triangles. */

@@ -52,7 +52,7 @@ static json_t *objects_json(const scene *s)
 /* [[ring..]..] by convex part, each [y, x, z, corners, from_deg] as shape_ring has them. */
 static json_t *outline_json(const solid_shape *shape)
 {
-    shape_ring rings[SHAPE_RINGS];
+    shape_ring rings[RINGS_MAX];
     const int count = shape_of(shape)->rings(shape, rings);
     json_t *parts = json_array(), *part = NULL;
     for (int i = 0; i < count; i++) {

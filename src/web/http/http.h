@@ -1,25 +1,32 @@
 /* A small HTTP server for one person at one machine: the lab's page, its requests and its streams of events. It listens
  * on 127.0.0.1 alone and serves nobody who does not know its token.
  *
- *     static void now(void *context, const http_request *q, http_reply *r) { http_reply_json(r, 200, json_pack("{s:i}",
- * "n", 1)); } const http_route routes[] = {{"GET", "/api/now", now, NULL}, {"GET", "/api/events", http_events, NULL}};
+ *     static void now(void *context, const http_request *q, http_reply *r)
+ *     {
+ *         http_reply_json(r, 200, json_pack("{s:i}", "n", 1));
+ *     }
+ *     const http_route routes[] = {{"GET", "/api/now", now, NULL}, {"GET", "/api/events", http_events, NULL}};
  *     http_settings s = {.routes = routes, .route_count = 2, .files = page_files, .file_count = page_file_count};
  *     status code = http_start(&s, &server, why);          then open http_address(server) in a browser
  *     http_publish(server, "tick", value, why);            from any thread
  *     http_stop(server);
  *
  * What each request goes through, and what it is told where it fails; the first that fails answers, as {"error": ..,
- * "remedy": ..}: 400  HTTP/1.0 or 1.1 with one Host; a path of printable characters without "." or ".." as a part,
- * "//", "\", %00, %2f or %5c, however they are written; libmicrohttpd ends the line at a NUL that is not 421  Host is
- * 127.0.0.1, localhost or [::1] with this port: other names are another site's that was led here (DNS rebinding) 403
- * Origin, where there is one, is that same host 401  the token, as "Authorization: Bearer TOKEN" or in the cookie
- * cuvette_PORT; or, for GET, as ?token=TOKEN, which answers 303 with that cookie (HttpOnly, SameSite=Strict) and the
- * same address without the token 429  requests_per_s, with a second's worth saved up; those who know the token are not
- * held up by those who do not 404  a route or file of that path;  405  of that method (Allow says which); HEAD goes
- * where GET goes 415  Content-Type: application/json for every method but GET and HEAD, which a foreign page cannot
- * send unasked 413  body_max A request has timeout_s to come in whole, a reply as long to be taken; slower ones are cut
- * off. Each reply forbids that a browser keeps it, frames it, guesses its type or loads anything from elsewhere for it
- * (Content-Security-Policy and its kin); libmicrohttpd's own answers to what is not HTTP are bare.
+ * "remedy": ..}:
+ *   400  HTTP/1.0 or 1.1 with one Host; a path of printable characters without "." or ".." as a part, "//", "\", %00,
+ *        %2f or %5c, however they are written; libmicrohttpd ends the line at a NUL that is not
+ *   421  Host is 127.0.0.1, localhost or [::1] with this port: other names are another site's that was led here (DNS
+ *        rebinding)
+ *   403  Origin, where there is one, is that same host
+ *   401  the token, as "Authorization: Bearer TOKEN" or in the cookie cuvette_PORT; or, for GET, as ?token=TOKEN, which
+ *        answers 303 with that cookie (HttpOnly, SameSite=Strict) and the same address without the token
+ *   429  requests_per_s, with a second's worth saved up; those who know the token are not held up by those who do not
+ *   404  a route or file of that path;  405  of that method (Allow says which); HEAD goes where GET goes
+ *   415  Content-Type: application/json for every method but GET and HEAD, which a foreign page cannot send unasked
+ *   413  body_max
+ * A request has timeout_s to come in whole, a reply as long to be taken; slower ones are cut off. Each reply forbids
+ * that a browser keeps it, frames it, guesses its type or loads anything from elsewhere for it (Content-Security-Policy
+ * and its kin); libmicrohttpd's own answers to what is not HTTP are bare.
  *
  * Threads: one for each connection, so that a handler may take its time and blocks nobody; handlers of one server run
  * beside each other. Memory: connections * (body_max + 64 KiB) and what the handlers reply with; an event is kept once

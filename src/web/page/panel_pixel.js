@@ -146,6 +146,8 @@ function otherwise(lab) {
       'way of matt surfaces.'
     );
   if (how === 'zbuffer') return 'The picture is drawn into a depth buffer: this tree is what tracing rays would give.';
+  if (how && how !== 'whitted' && how !== 'raycast')
+    return 'The picture shows no light: this tree is what tracing rays would give.';
   if (lab.param('render.spectrum')?.value === 'spectral')
     return 'The picture is spectral: this tree is that of one wavelength.';
   return null;

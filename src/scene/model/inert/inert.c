@@ -72,7 +72,7 @@ bool inert_ask(const scene *s, const char *path, const inert_witness *witness, i
         return false;
     }
     c.name = place_group_name(s, c.at.group, c.at.index);
-    if (!ask_group(&c)) {
+    if (!inert_layers(&c) && !ask_group(&c) && !inert_unmet(&c, path)) {
         return false;
     }
     snprintf(out->note.place, sizeof out->note.place, "%s", path);

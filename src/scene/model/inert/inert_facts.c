@@ -16,7 +16,7 @@ bool is_path(const scene *s)
 
 bool follows_rays(const scene *s)
 {
-    return is_path(s) || (integrator_of(&s->render)->tree && s->render.lighting == LIGHTING_WHITTED);
+    return is_path(s) || follows_trees(&s->render);
 }
 
 bool draws_through(const scene *s)
@@ -27,8 +27,8 @@ bool draws_through(const scene *s)
 /* Shadow rays pass clear solids where shadows are attenuated. */
 bool nothing_passes(const scene *s)
 {
-    const bool lit_through =
-        !integrator_of(&s->render)->drawn && s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
+    const bool lit_through = !integrator_of(&s->render)->drawn && !integrator_of(&s->render)->layers &&
+                             s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
     return !follows_rays(s) && !draws_through(s) && !lit_through;
 }
 
@@ -124,11 +124,15 @@ bool shows_specular(const scene *s, const material *m)
 
 bool is_lit_by_lamps(const scene *s, const material *m)
 {
-    return shows_specular(s, m) || (shining_lights(s) > 0 && m->diffuse > 0.0 && has_color(m));
+    return !integrator_of(&s->render)->layers &&
+           (shows_specular(s, m) || (shining_lights(s) > 0 && m->diffuse > 0.0 && has_color(m)));
 }
 
 bool shows_color(const scene *s, const material *m)
 {
+    if (integrator_of(&s->render)->layers) {
+        return s->render.layer == LAYER_ALBEDO;
+    }
     material white = *m;
     white.color = vec3_make(1.0, 1.0, 1.0);
     return m->emission > 0.0 || shows_ambient(s, &white) || shows_diffuse(s, &white);
@@ -154,6 +158,9 @@ inert_remedy lamp_remedy(const scene *s)
 
 inert_remedy color_remedy(const scene *s, const material *m, const char *name)
 {
+    if (integrator_of(&s->render)->layers) {
+        return inert_set("render.layer=albedo");
+    }
     material coated = *m;
     coated.diffuse = 0.7;
     if (shows_color(s, &coated)) {

@@ -75,14 +75,16 @@ static bool absorption_rule(const inert_case *c)
 
 static bool no_color(const inert_case *c)
 {
-    return !shows_color(c->s, c->m) && inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text,
-                                                 "no ambient or diffuse light shows this surface's colour");
+    const char *text = integrator_of(&c->s->render)->layers ? "the layer that the image shows has no colours"
+                                                            : "no ambient or diffuse light shows this surface's colour";
+    return !shows_color(c->s, c->m) && inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text, "%s", text);
 }
 
 /* A clear solid has a tint, too. */
 static bool color_rule(const inert_case *c)
 {
-    return material_is_opaque(c->m) ? no_color(c) : !shows_color(c->s, c->m) && unpassed(c);
+    const bool tints = !material_is_opaque(c->m) && !integrator_of(&c->s->render)->layers;
+    return !tints ? no_color(c) : !shows_color(c->s, c->m) && unpassed(c);
 }
 
 static bool tint_distance_rule(const inert_case *c)
@@ -155,6 +157,10 @@ static bool mirrors_black(const inert_case *c)
 
 static bool say_unseen(const inert_case *c)
 {
+    if (integrator_of(&c->s->render)->layers) {
+        return inert_say(c, "unseen", "set render.integrator=whitted", "no camera ray of this image meets %s first",
+                         c->owner->name);
+    }
     int64_t highest = c->owner->priority;
     for (size_t i = 0; i < c->s->solid_count; i++) {
         const solid *one = &c->s->solids[i];

@@ -45,6 +45,10 @@ bool inert_render(const inert_case *c);
 bool inert_background(const inert_case *c);
 /* Of render.radiance. */
 bool inert_radiance(const inert_case *c);
+/* Light that an integrator with layers does not follow. */
+bool inert_layers(const inert_case *c);
+/* A parameter without which camera rays meet the same first. */
+bool inert_unmet(const inert_case *c, const char *path);
 bool inert_mesh(const inert_case *c);
 bool inert_texture(const inert_case *c);
 bool inert_light(const inert_case *c);

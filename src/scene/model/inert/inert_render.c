@@ -114,7 +114,7 @@ static inert_remedy clear_remedy(const scene *s)
 {
     const solid *first = first_visible(s);
     for (size_t i = 0; i < s->solid_count; i++) {
-        first = shape_of(&first->shape)->unbounded && s->solids[i].visible ? &s->solids[i] : first;
+        first = first && shape_of(&first->shape)->unbounded && s->solids[i].visible ? &s->solids[i] : first;
     }
     return first ? inert_set("%s.transparency=0.9 and %s.ior=1.5", first->name, first->name)
                  : (inert_remedy){"add a solid"};

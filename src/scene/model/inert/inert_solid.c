@@ -78,6 +78,10 @@ static bool mesh_shading(const inert_case *c)
         (follows_rays(s) && sends_rays_on(s, c->owner))) {
         return false;
     }
+    if (integrator_of(&s->render)->layers) {
+        return s->render.layer != LAYER_NORMAL &&
+               inert_say(c, "no-normals", "set render.layer=normal", "the layer that the image shows has no normals");
+    }
     const inert_remedy remedy = shining_lights(s) > 0 ? inert_set("%s.diffuse=0.7", c->name) : lamp_remedy(s);
     return inert_say(c, "unshaded", remedy.text, "no lamp's light shows on it, and it sends no ray on");
 }

@@ -1,9 +1,42 @@
-/* What the depth buffer shows at the tracer's camera rays, as if they had been traced there. */
-#include "render/core/tracer_private.h"
+/* The preview by a depth buffer (render/zbuffer): what it shows at the tracer's camera rays is shaded as if they had
+ * been traced there. Its pre-pass takes the triangles into the picture; each piece is drawn before its rays set out. */
+#include "render/shade/shading.h"
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "base/lanes.h"
+#include <stdlib.h>
 #include <string.h>
+
+/* One worker's: a square of the depth buffer, and of each ray of the batch the point of the grid and the triangle
+ * there. */
+typedef struct drawn_work {
+    zbuffer_square square;
+    int x[ROW], y[ROW];
+    uint32_t number[ROW];
+    bool straight[ROW];               /* it meets a curved surface and looks straight on */
+    double vx[ROW], vy[ROW], vz[ROW]; /* and the straight view's direction there, of a frame with layers */
+    vec3 at[ROW]; /* of the gathered group: where a texture is looked up that runs straight across the picture */
+} drawn_work;
+
+static bool begin(tracer *t)
+{
+    if (!t->own && !(t->own = calloc(1, sizeof(drawn_work))))
+        return false;
+    zbuffer_square_begin(&((drawn_work *)t->own)->square);
+    return true;
+}
+
+static void end(void *own)
+{
+    if (own)
+        zbuffer_square_release(&((drawn_work *)own)->square);
+    free(own);
+}
+
+static void draw_piece(tracer *t, const span *piece)
+{
+    zbuffer_draw(t->target.kept, piece, &((drawn_work *)t->own)->square);
+}
 
 /* The point of the grid that a ray goes through. */
 static size_t point_of(const zbuffer *z, int64_t ticket, int *x, int *y)
@@ -64,9 +97,9 @@ static met met_depth(const zbuffer *z, const screen_triangle *s, int x, int y, v
 
 static void note_nothing(tracer *t, int i)
 {
-    t->hits.t[i] = HUGE_VAL;
-    t->hits.crossed[i] = -1;
-    t->hits.surface[i] = 0;
+    t->batch.hits.t[i] = HUGE_VAL;
+    t->batch.hits.crossed[i] = -1;
+    t->batch.hits.surface[i] = 0;
 }
 
 static met met_by(const zbuffer *z, const screen_triangle *s, vec3 d)
@@ -78,10 +111,10 @@ static met met_by(const zbuffer *z, const screen_triangle *s, vec3 d)
 
 static void note_hit(tracer *t, int i, const screen_triangle *s, met m)
 {
-    const zbuffer *z = t->target.depths;
+    const zbuffer *z = t->target.kept;
     const drawn_part *p = &z->parts[s->part];
     const primitive *surface = &z->scene->solids->primitives[p->met];
-    hit_batch *h = &t->hits;
+    hit_batch *h = &t->batch.hits;
     h->t[i] = m.t;
     h->crossed[i] = p->met;
     h->surface[i] = h->after[i] = surface->rank;
@@ -95,9 +128,9 @@ static void note_hit(tracer *t, int i, const screen_triangle *s, met m)
 /* The straight views of a batch, whose directions may be bent: through the points of the grid. */
 static void straight_views(tracer *t, int count)
 {
-    const zbuffer *z = t->target.depths;
+    const zbuffer *z = t->target.kept;
     const camera_frame *view = &z->scene->view;
-    drawn_work *w = t->drawn;
+    drawn_work *w = t->own;
     const double across = 1.0 / z->units_x, down = 1.0 / z->units_y;
     double u[ROW], v[ROW];
     for (int i = 0; i < count; i++) {
@@ -111,7 +144,8 @@ static void straight_views(tracer *t, int count)
 static void first_views(tracer *t, const ray_batch *rays)
 {
     const size_t bytes = (size_t)rays->count * sizeof(double);
-    memcpy(t->drawn->vx, rays->dx, bytes), memcpy(t->drawn->vy, rays->dy, bytes), memcpy(t->drawn->vz, rays->dz, bytes);
+    drawn_work *w = t->own;
+    memcpy(w->vx, rays->dx, bytes), memcpy(w->vy, rays->dy, bytes), memcpy(w->vz, rays->dz, bytes);
 }
 
 /* The straight way to a layer goes through one medium, which takes its share of the light. */
@@ -131,8 +165,8 @@ static const drawn_layer *layer_at(const zbuffer *z, uint32_t place)
 
 static inline met met_layer(const tracer *t, int i, const drawn_layer *l)
 {
-    const zbuffer *z = t->target.depths;
-    const drawn_work *w = t->drawn;
+    const zbuffer *z = t->target.kept;
+    const drawn_work *w = t->own;
     const screen_triangle *s = &z->triangles[l->number - 1];
     const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
     met m = l->ends || !z->parts[s->part].own ? met_by(z, s, view) : met_depth(z, s, w->x[i], w->y[i], view);
@@ -145,18 +179,19 @@ static inline met met_layer(const tracer *t, int i, const drawn_layer *l)
  * takes along as its set. */
 static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 {
-    const zbuffer *z = t->target.depths;
+    const zbuffer *z = t->target.kept;
     const plan *p = z->scene;
     const drawn_layer *l = layer_at(z, place);
-    const vec3 view = vec3_make(t->drawn->vx[i], t->drawn->vy[i], t->drawn->vz[i]);
+    drawn_work *w = t->own;
+    const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
     double passed = vec3_dot(vec3_sub(vec3_make(q->ox[at], q->oy[at], q->oz[at]), p->view.eye), view);
-    t->drawn->straight[i] = false;
+    w->straight[i] = false;
     for (; l->passed; l = layer_at(z, ++place)) {
         const double end = greater(met_layer(t, i, l).t, passed);
         dim(p, q, at, l->before, end - passed);
         passed = end;
     }
-    t->drawn->number[i] = l->number - 1;
+    w->number[i] = l->number - 1;
     if (l->number == 0) {
         const double for_ever = 1e100;
         note_nothing(t, i);
@@ -167,24 +202,24 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     const vec3 point = vec3_add(p->view.eye, vec3_scale(view, m.t));
     const double length = greater(m.t - passed, 0.0);
     const screen_triangle *s = &z->triangles[l->number - 1];
-    t->drawn->straight[i] = s->curved;
+    w->straight[i] = s->curved;
     if (s->curved)
         q->dx[at] = view.x, q->dy[at] = view.y, q->dz[at] = view.z;
     m.t = length;
     const vec3 set_out = vec3_sub(point, vec3_scale(vec3_make(q->dx[at], q->dy[at], q->dz[at]), length));
     q->ox[at] = set_out.x, q->oy[at] = set_out.y, q->oz[at] = set_out.z;
     note_hit(t, i, s, m);
-    t->hits.before[i] = l->before;
-    t->hits.after[i] = l->after;
-    t->hits.surface[i] = l->surface;
-    t->hits.inside_after[i] = place + 1;
+    t->batch.hits.before[i] = l->before;
+    t->batch.hits.after[i] = l->after;
+    t->batch.hits.surface[i] = l->surface;
+    t->batch.hits.inside_after[i] = place + 1;
     dim(p, q, at, l->before, length);
 }
 
-void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
+static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
-    const zbuffer *z = t->target.depths;
-    drawn_work *w = t->drawn;
+    const zbuffer *z = t->target.kept;
+    drawn_work *w = t->own;
     uint32_t seen[ROW];
     for (int i = 0; i < rays->count; i++)
         seen[i] = z->seen[point_of(z, q->ticket[first + i], &w->x[i], &w->y[i])];
@@ -193,8 +228,8 @@ void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *
     else
         straight_views(t, rays->count);
     for (int i = 0; i < rays->count; i++) {
-        t->hits.before[i] = t->hits.after[i] = 0;
-        t->hits.inside_before[i] = t->hits.inside_after[i] = 0;
+        t->batch.hits.before[i] = t->batch.hits.after[i] = 0;
+        t->batch.hits.inside_before[i] = t->batch.hits.inside_after[i] = 0;
         if (t->meshes)
             t->meshes->scratch.hit[i].face = FACE_NONE;
         if (z->layered && seen[i] & SEEN_LAYERS) {
@@ -216,15 +251,16 @@ void drawn_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *
  * the normal is another than where the ray does, and light that came in would not get out. So the view is bent there as
  * between the surface and one like it that it came in by: the part along the surface is as n sin is, the same in all
  * layers. */
-void drawn_bend(tracer *t, const int *list)
+static void bend(tracer *t, const int *list)
 {
-    const zbuffer *z = t->target.depths;
-    group *g = &t->gathered;
+    const drawn_work *w = t->own;
+    const zbuffer *z = t->target.kept;
+    group *g = &t->surface.gathered;
     if (!z->layered || z->scene->render.transmission == TRANSMISSION_SIMPLE)
         return;
     for (int k = 0; k < g->count; k++) {
         const double eta = z->eye_index / g->n_from[k], cosine = g->points.cos_i[k];
-        if (!t->drawn->straight[list[k]] || eta == 1.0)
+        if (!w->straight[list[k]] || eta == 1.0)
             continue;
         const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
         const vec3 along = vec3_scale(vec3_add(vec3_make(g->dx[k], g->dy[k], g->dz[k]), vec3_scale(n, cosine)), eta);
@@ -235,19 +271,6 @@ void drawn_bend(tracer *t, const int *list)
         const vec3 d = vec3_sub(along, vec3_scale(n, g->points.cos_i[k]));
         g->dx[k] = d.x, g->dy[k] = d.y, g->dz[k] = d.z;
     }
-}
-
-/* What a clear surface does with the view: the sky's light along the reflected direction, and on to the next layer with
- * what is left. */
-void drawn_branches(tracer *t, int depth)
-{
-    const group *g = &t->gathered;
-    const branch_group *b = &t->branches;
-    for (int i = 0; i < g->count; i++)
-        if (b->reflect[i] > 0.0)
-            shading_expose_sky(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * b->reflect[i],
-                               g->wg[i] * b->reflect[i], g->wb[i] * b->reflect[i]);
-    put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
 }
 
 /* Weights straight across the picture, of the polygon that the planes left: not what they are in space, unless all
@@ -284,12 +307,12 @@ static void straighten_uv(tracer *t, const drawn_part *p, const screen_triangle 
 }
 
 /* A plane's corners are infinitely far, where no straight way leads to. */
-void drawn_straighten(tracer *t, const int *list)
+static void straighten(tracer *t, const int *list)
 {
-    const zbuffer *z = t->target.depths;
-    const surface_batch *points = &t->gathered.points;
-    drawn_work *w = t->drawn;
-    for (int k = 0; k < t->gathered.count; k++) {
+    const zbuffer *z = t->target.kept;
+    const surface_batch *points = &t->surface.gathered.points;
+    drawn_work *w = t->own;
+    for (int k = 0; k < t->surface.gathered.count; k++) {
         const int i = list[k];
         const screen_triangle *s = &z->triangles[w->number[i]];
         const drawn_part *p = &z->parts[s->part];
@@ -298,7 +321,7 @@ void drawn_straighten(tracer *t, const int *list)
             continue;
         double weight[3];
         straight_weights(z, s, w->x[i] + 0.5, w->y[i] + 0.5, weight);
-        if (t->on_mesh) {
+        if (t->surface.on_mesh) {
             straighten_uv(t, p, s, weight, k);
             continue;
         }
@@ -309,3 +332,87 @@ void drawn_straighten(tracer *t, const int *list)
         w->at[k] = at;
     }
 }
+
+static void place(tracer *t, const int *list)
+{
+    drawn_work *w = t->own;
+    bend(t, list);
+    if (t->target.scene->render.texturing != TEXTURING_AFFINE || !t->surface.look->picture)
+        return;
+    straighten(t, list);
+    t->surface.texture_at = w->at;
+}
+
+/* What a clear surface does with the view: the sky's light along the reflected direction, and on to the next layer with
+ * what is left. */
+static void branch(tracer *t, int depth)
+{
+    const group *g = &t->surface.gathered;
+    const branch_group *b = &t->surface.branches;
+    shading_branches(t, false);
+    if (depth == t->queues.depth_limit) {
+        cut_branches(t);
+        return;
+    }
+    for (int i = 0; i < g->count; i++)
+        if (b->reflect[i] > 0.0)
+            shading_expose_sky(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * b->reflect[i],
+                               g->wg[i] * b->reflect[i], g->wb[i] * b->reflect[i]);
+    put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
+}
+
+static void shade(tracer *t, int depth, int rank)
+{
+    const render_settings *r = &t->target.scene->render;
+    local_light(t, rank, light_terms_of(r));
+    if (r->lighting == LIGHTING_WHITTED && !surface_is_opaque(t, rank))
+        branch(t, depth);
+}
+
+static status prepare(const plan *p, void **frame, diagnostic *why)
+{
+    zbuffer *z = NULL;
+    const status code = zbuffer_create(p, &z, why);
+    *frame = z;
+    return code;
+}
+
+static void project(void *frame)
+{
+    zbuffer_project(frame);
+}
+
+static status sort(void *frame, diagnostic *why)
+{
+    return zbuffer_sort(frame, why);
+}
+
+static status finish(void *frame, mesh_report *report, diagnostic *why)
+{
+    report->drawn = zbuffer_triangles(frame);
+    report->drawn_bytes = zbuffer_bytes(frame);
+    return zbuffer_failed(frame) ? diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer clear solids",
+                                            "out of memory for the layers of clear solids")
+                                 : STATUS_OK;
+}
+
+static void release(void *frame)
+{
+    zbuffer_destroy(frame);
+}
+
+static const integrator_step steps[] = {{project, sort}, {NULL, NULL}};
+
+const integrator integrator_of_zbuffer = {.by_sample = true,
+                                          .camera = camera_samples,
+                                          .prepare = prepare,
+                                          .steps = steps,
+                                          .finish = finish,
+                                          .release = release,
+                                          .begin = begin,
+                                          .end = end,
+                                          .piece = draw_piece,
+                                          .meet = meet,
+                                          .background = background_sky,
+                                          .place = place,
+                                          .shade = shade};

@@ -1,0 +1,137 @@
+/* Layers of what camera rays meet first ("arbitrary output variables", as renderers' hosts call them): one ray through
+ * the middle of each pixel, to the nearest interface, and of the point there
+ *   normal    the unit normal against the ray, of a smooth mesh the interpolated one
+ *   albedo    the surface's colour C, with its checker and texture; linear RGB
+ *   depth     the distance along the ray, scene units
+ *   solid     the solid whose surface it is: 1 for the first of the scene
+ *   material  1 for the scene's first; of a surface that is none of them their number and the solid's
+ *   position  the point, scene units
+ * and 0 in all of them where nothing is met. The film shows one of them, render.layer, as a display would: normals as
+ * (n + 1) / 2, as normal maps do; depths d as s / (s + d), with s how far solids are away, and positions likewise, 1/2
+ * at 0; numbers by colours that keep apart. */
+#include "render/shade/shading.h"
+
+#include "geometry/shapes/shape.h"
+#include "image/image.h"
+#include <math.h>
+#include <stdlib.h>
+
+static camera_need one_ray(const render_settings *r)
+{
+    (void)r;
+    return (camera_need){.rays = 1, .points = 1, .together = 1};
+}
+
+/* --- what a frame keeps: the length that views of lengths are relative to --- */
+
+static status prepare(const plan *p, void **frame, diagnostic *why)
+{
+    double *scale = malloc(sizeof *scale), sum = 0.0;
+    int count = 0;
+    if (!scale)
+        return out_of_memory(why);
+    for (int i = 0; i < p->solids->primitive_count; i++) {
+        const primitive *one = &p->solids->primitives[i];
+        if (p->solids->further >> i & 1 || shape_of(&p->solids->shapes[one->rank])->unbounded)
+            continue;
+        sum += vec3_length(vec3_sub(one->origin, p->view.eye));
+        count++;
+    }
+    *scale = sum > 0.0 ? sum / count : 1.0;
+    *frame = scale;
+    return STATUS_OK;
+}
+
+/* --- views: linear light that a display shows as the number meant --- */
+
+static double shown(double share)
+{
+    return srgb_decode(share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share);
+}
+
+/* Hues a golden section of the circle apart: no two near numbers look alike. */
+static vec3 color_of(double number)
+{
+    const double turns = 0.618033988749895 * number, hue = 6.0 * (turns - floor(turns));
+    double rgb[3];
+    for (int c = 0; c < 3; c++) {
+        const double from = fabs(fmod(hue + 2.0 * c, 6.0) - 3.0) - 1.0;
+        rgb[c] = shown(0.25 + 0.7 * (from < 0.0 ? 0.0 : from > 1.0 ? 1.0 : from));
+    }
+    return vec3_make(rgb[0], rgb[1], rgb[2]);
+}
+
+static double signed_share(double x, double scale)
+{
+    return shown(0.5 + 0.5 * x / (scale + fabs(x)));
+}
+
+static vec3 view_of(layer_rule layer, vec3 v, double scale)
+{
+    switch (layer) {
+    case LAYER_NORMAL: return vec3_make(shown(0.5 + 0.5 * v.x), shown(0.5 + 0.5 * v.y), shown(0.5 + 0.5 * v.z));
+    case LAYER_DEPTH: {
+        const double near = shown(scale / (scale + v.x));
+        return vec3_make(near, near, near);
+    }
+    case LAYER_SOLID:
+    case LAYER_MATERIAL: return color_of(v.x);
+    case LAYER_POSITION: return vec3_make(signed_share(v.x, scale), signed_share(v.y, scale), signed_share(v.z, scale));
+    case LAYER_ALBEDO:
+    case LAYER_COUNT: break;
+    }
+    return v;
+}
+
+/* --- a batch --- */
+
+static vec3 value_of(const tracer *t, layer_rule layer, int rank, int k)
+{
+    const group *g = &t->surface.gathered;
+    const surface_batch *s = &g->points;
+    switch (layer) {
+    case LAYER_NORMAL: return vec3_make(s->nx[k], s->ny[k], s->nz[k]);
+    case LAYER_ALBEDO: return vec3_make(g->cr[k], g->cg[k], g->cb[k]);
+    case LAYER_DEPTH: return vec3_make(g->t[k], 0.0, 0.0);
+    case LAYER_SOLID: return vec3_make(t->target.scene->solids->bodies[rank].solid + 1.0, 0.0, 0.0);
+    case LAYER_MATERIAL: return vec3_make(t->surface.look->number, 0.0, 0.0);
+    case LAYER_POSITION: return vec3_make(s->px[k], s->py[k], s->pz[k]);
+    case LAYER_COUNT: break;
+    }
+    return vec3_make(0.0, 0.0, 0.0);
+}
+
+static void shade(tracer *t, int depth, int rank)
+{
+    const group *g = &t->surface.gathered;
+    const layer_rule show = (layer_rule)t->target.scene->render.layer;
+    const double *scale = t->target.kept;
+    (void)depth;
+    for (int layer = 0; layer < LAYER_COUNT; layer++) {
+        if (!t->target.layers && layer != (int)show)
+            continue;
+        for (int k = 0; k < g->count; k++) {
+            const vec3 value = value_of(t, (layer_rule)layer, rank, k);
+            if (t->target.layers)
+                layers_put(t->target.layers, (layer_rule)layer, ticket_pixel(g->ticket[k]), value);
+            if (layer != (int)show)
+                continue;
+            const vec3 view = view_of(show, value, *scale);
+            shading_expose(t, g->ticket[k], view.x, view.y, view.z);
+        }
+    }
+}
+
+/* Nothing is met: all stays 0. */
+static void leave_empty(tracer *t, const ray_queue *q, int first, const int *list, int count)
+{
+    (void)t, (void)q, (void)first, (void)list, (void)count;
+}
+
+const integrator integrator_of_aov = {.traced = true,
+                                      .camera = one_ray,
+                                      .prepare = prepare,
+                                      .release = free,
+                                      .meet = meet_nearest,
+                                      .background = leave_empty,
+                                      .shade = shade};

@@ -1,0 +1,12 @@
+/* Ray casting (Appel, "Some techniques for shading machine renderings of solids", AFIPS 1968): the local light of what
+ * camera rays meet, with its shadows. No ray goes on. */
+#include "render/shade/shading.h"
+
+static void shade(tracer *t, int depth, int rank)
+{
+    (void)depth;
+    local_light(t, rank, light_terms_of(&t->target.scene->render));
+}
+
+const integrator integrator_of_raycast = {
+    .traced = true, .camera = camera_samples, .meet = meet_nearest, .background = background_sky, .shade = shade};

@@ -1,0 +1,31 @@
+/* Whitted's recursion ("An improved illumination model for shaded display", CACM 23(6), 1980): Phong's local light, and
+ * where render.lighting follows them both branches of each ray, reflected and refracted, with their weights. */
+#include "render/shade/shading.h"
+
+static void branch(tracer *t, int depth, bool opaque)
+{
+    const group *g = &t->surface.gathered;
+    const branch_group *b = &t->surface.branches;
+    if (opaque && t->surface.look->surface.reflectivity == 0.0)
+        return;
+    shading_branches(t, opaque);
+    if (depth == t->queues.depth_limit) {
+        cut_branches(t);
+        return;
+    }
+    const int reflected = put_children_in_line(t, depth + 1, b->rx, b->ry, b->rz, b->reflect, g->inside_before);
+    const int refracted = put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
+    COUNT(t->account.counters.reflect += (uint64_t)reflected);
+    COUNT(t->account.counters.refract += (uint64_t)refracted);
+}
+
+static void shade(tracer *t, int depth, int rank)
+{
+    const render_settings *r = &t->target.scene->render;
+    local_light(t, rank, light_terms_of(r));
+    if (r->lighting == LIGHTING_WHITTED)
+        branch(t, depth, surface_is_opaque(t, rank));
+}
+
+const integrator integrator_of_whitted = {
+    .traced = true, .camera = camera_samples, .meet = meet_nearest, .background = background_sky, .shade = shade};

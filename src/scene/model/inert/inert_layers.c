@@ -1,0 +1,85 @@
+/* Why a parameter does nothing under an integrator that gives named layers of what camera rays meet first: it follows
+ * no light. And why no other integrator shows a layer. */
+#include "scene/model/inert/inert_private.h"
+
+#include "scene/model/params.h"
+#include "scene/model/scene.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* By group: what is about light alone. */
+static bool is_of_light(const inert_case *c)
+{
+    static const char *const of_render[] = {
+        "samples",  "depth",    "beyond",       "lighting",  "shadows",     "min_weight", "paths",   "roulette", "seed",
+        "radiance", "spectrum", "polarisation", "lambda_nm", "wavelengths", "unit_m",     "weights", NULL};
+    static const char *const of_sky[] = {"kind", "color", "horizon", "picture", "ambient", "absorb_per_m", NULL};
+    static const char *const of_surface[] = {"ambient",      "diffuse",         "specular",      "shininess",
+                                             "absorb_per_m", "absorb_spectrum", "tint_distance", NULL};
+    switch (c->at.group) {
+    case PARAM_LIGHT: return true;
+    case PARAM_RENDER: return is_among(c, of_render);
+    case PARAM_BACKGROUND: return is_among(c, of_sky);
+    case PARAM_MATERIAL: return is_among(c, of_surface);
+    case PARAM_SOLID: return c->at.row->group == PARAM_MATERIAL && is_among(c, of_surface);
+    case PARAM_CAMERA:
+    case PARAM_MESH:
+    case PARAM_TEXTURE:
+    case PARAM_GROUP_COUNT: break;
+    }
+    return false;
+}
+
+bool inert_layers(const inert_case *c)
+{
+    const char *word = integrator_with_layers();
+    const bool given = integrator_of(&c->s->render)->layers;
+    if (!given)
+        return c->at.group == PARAM_RENDER && strcmp(c->at.row->name, "layer") == 0 && word &&
+               inert_say(c, "layers-only", inert_set("render.integrator=%s", word).text,
+                         "this render.integrator gives no layers");
+    return is_of_light(c) && inert_say(c, "no-light", "set render.integrator=whitted",
+                                       "the image shows a layer of what camera rays meet: no light is followed");
+}
+
+/* Does the film stay as it is with the parameter that many times as large? */
+static bool same_times(const inert_case *c, const char *path, double factor)
+{
+    char *now = NULL;
+    if (scene_get(c->s, path, &now, NULL) != STATUS_OK)
+        return false;
+    const double value = strtod(now, NULL) * factor;
+    free(now);
+    return inert_same(c, "%s=%.6g", path, value);
+}
+
+/* What stands behind, and what of a surface only decides whether it is one, may be so or not in this image: the witness
+ * tells. */
+bool inert_unmet(const inert_case *c, const char *path)
+{
+    static const struct {
+        const char *name, *values[3];
+    } rows[] = {
+        {"emission", {"0", "1", NULL}},
+        {"transparency", {"0", "0.5", "1"}},
+        {"ior", {"1.1", "1.9", NULL}},
+        {"medium", {"water", "diamond", "bk7"}},
+        {"priority", {"-1000", "0", "1000"}},
+        {"visible", {"on", "off", NULL}},
+        {"color", {"0,0,0", "1,1,1", NULL}},
+        {"inner_radius", {NULL}},
+        {"floor", {NULL}},
+    };
+    if (!integrator_of(&c->s->render)->layers || !c->witness->same)
+        return false;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (strcmp(rows[i].name, c->at.row->name) != 0)
+            continue;
+        bool same = rows[i].values[0] || (same_times(c, path, 0.5) && same_times(c, path, 1.05));
+        for (size_t k = 0; k < 3 && rows[i].values[k] && same; k++)
+            same = inert_same(c, "%s=%s", path, rows[i].values[k]);
+        return same && inert_say(c, "met-first", "set render.integrator=whitted",
+                                 "what the camera rays of this image meet first stays as it is");
+    }
+    return false;
+}

@@ -1,0 +1,21 @@
+/* Named layers: what an integrator may give of each pixel beside the film, and render.layer's words. Constant. */
+#ifndef CUVETTE_SCENE_MODEL_LAYERS_H
+#define CUVETTE_SCENE_MODEL_LAYERS_H
+
+/* Name, word, numbers a pixel. */
+#define LAYERS(X)            \
+    X(NORMAL, normal, 3)     \
+    X(ALBEDO, albedo, 3)     \
+    X(DEPTH, depth, 1)       \
+    X(SOLID, solid, 1)       \
+    X(MATERIAL, material, 1) \
+    X(POSITION, position, 3)
+
+#define LAYER_NUMBER(name, word, channels) LAYER_##name,
+typedef enum layer_rule { LAYERS(LAYER_NUMBER) LAYER_COUNT } layer_rule;
+#undef LAYER_NUMBER
+
+extern const char *const layer_words[]; /* ends with NULL */
+extern const int layer_channels[LAYER_COUNT];
+
+#endif

@@ -1,0 +1,250 @@
+/* Named layers of the integrator aov against closed forms: planes at known distances, a sphere's normals, a checker's
+ * cells, numbers in the scene's order, nothing behind a clear surface, zeros where nothing is; the same bits whoever
+ * renders; and the files read back. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "image/image.h"
+#include "render/core/record.h"
+#include "render_fixture.h"
+
+enum { WIDTH = 48, HEIGHT = 32 };
+#define EYE 3.0
+#define PITCH_DEG (-30.0)
+#define FOV_DEG 50.0
+#define DEGREE (3.14159265358979323846 / 180.0)
+#define HEAD                                                                            \
+    "render: {width: 48, height: 32, integrator: aov}\n"                                \
+    "camera: {position: [0, 3, 0], pitch_deg: -30, fov_deg: 50}\n"                      \
+    "background: {color: [0.5, 0.6, 0.7]}\n"                                            \
+    "materials:\n"                                                                      \
+    "  tiles: {color: [0.8, 0.7, 0.6], checker: 0.5, checker_color: [0.1, 0.2, 0.3]}\n" \
+    "  red: {color: [0.9, 0.1, 0.05]}\n"                                                \
+    "solids:\n"
+
+static const char room[] = HEAD "  ground: {shape: plane, material: tiles}\n"
+                                "  ball: {shape: sphere, radius: 1, position: [-1, 1, 4], material: red}\n"
+                                "  own: {shape: sphere, radius: 0.5, position: [1.5, 0.5, 3], color: [0, 1, 0]}\n"
+                                "  glass: {shape: sphere, radius: 0.6, position: [1, 2, 4.5], transparency: 1, "
+                                "ior: 1.5, material: red}\n";
+
+/* The direction through the middle of a pixel, by the textbook: the camera looks along +z, pitched down. */
+static vec3 direction(int x, int y)
+{
+    const double half = tan(0.5 * FOV_DEG * DEGREE), u = (2.0 * (x + 0.5) / WIDTH - 1.0) * half * WIDTH / HEIGHT,
+                 v = (1.0 - 2.0 * (y + 0.5) / HEIGHT) * half;
+    const double s = sin(PITCH_DEG * DEGREE), c = cos(PITCH_DEG * DEGREE);
+    return vec3_normalize(vec3_make(u, s + v * c, c - v * s));
+}
+
+static double distance_to_sphere(vec3 d, vec3 center, double radius)
+{
+    const vec3 way = vec3_sub(center, vec3_make(0.0, EYE, 0.0));
+    const double along = vec3_dot(way, d), rest = radius * radius - vec3_dot(way, way) + along * along;
+    return rest > 0.0 ? along - sqrt(rest) : (double)HUGE_VAL;
+}
+
+typedef struct ball {
+    double solid, material, radius;
+    vec3 center, color;
+} ball;
+/* Materials: tiles 1, red 2; a surface of its own is 2 and the solid's number. */
+static const ball balls[] = {{2, 2, 1.0, {-1.0, 1.0, 4.0}, {0.9, 0.1, 0.05}},
+                             {3, 2 + 3, 0.5, {1.5, 0.5, 3.0}, {0.0, 1.0, 0.0}},
+                             {4, 2, 0.6, {1.0, 2.0, 4.5}, {0.9, 0.1, 0.05}}};
+
+static render_result *layers_at(const scene *s, isa level)
+{
+    render_result *r = render_at(s, level, &(render_options){.layers = true});
+    assert_non_null(r->layers);
+    return r;
+}
+
+static vec3 value(const render_result *r, layer_rule which, int x, int y)
+{
+    const int channels = layer_channels[which];
+    const float *at = r->layers->values[which] + ((size_t)y * WIDTH + (size_t)x) * (size_t)channels;
+    return channels == 3 ? vec3_make((double)at[0], (double)at[1], (double)at[2]) : vec3_make((double)at[0], 0.0, 0.0);
+}
+
+static void near(vec3 a, vec3 b, double within)
+{
+    assert_true(vec3_length(vec3_sub(a, b)) <= within);
+}
+
+/* What is met first at a pixel: of the balls and the ground, the nearest. */
+static int check_pixel(const render_result *r, int x, int y)
+{
+    const vec3 d = direction(x, y), eye = vec3_make(0.0, EYE, 0.0);
+    double t = d.y < 0.0 ? -EYE / d.y : (double)HUGE_VAL;
+    const ball *met = NULL;
+    for (size_t i = 0; i < sizeof balls / sizeof *balls; i++) {
+        const double at = distance_to_sphere(d, balls[i].center, balls[i].radius);
+        if (at < t)
+            t = at, met = &balls[i];
+    }
+    if (isinf(t)) {
+        for (int i = 0; i < LAYER_COUNT; i++)
+            near(value(r, (layer_rule)i, x, y), vec3_make(0.0, 0.0, 0.0), 0.0);
+        return 0;
+    }
+    const vec3 p = vec3_add(eye, vec3_scale(d, t)), wanted = {t, 0.0, 0.0};
+    near(value(r, LAYER_DEPTH, x, y), wanted, 2e-6 * t);
+    near(value(r, LAYER_POSITION, x, y), p, 2e-6 * t);
+    if (met) {
+        near(value(r, LAYER_NORMAL, x, y), vec3_scale(vec3_sub(p, met->center), 1.0 / met->radius), 1e-5);
+        near(value(r, LAYER_ALBEDO, x, y), met->color, 1e-6);
+        near(value(r, LAYER_SOLID, x, y), vec3_make(met->solid, 0.0, 0.0), 0.0);
+        near(value(r, LAYER_MATERIAL, x, y), vec3_make(met->material, 0.0, 0.0), 0.0);
+        return 1 << (int)met->solid;
+    }
+    const bool even = ((int)floor(p.x / 0.5) + (int)floor(p.z / 0.5)) % 2 == 0;
+    near(value(r, LAYER_NORMAL, x, y), vec3_make(0.0, 1.0, 0.0), 0.0);
+    near(value(r, LAYER_ALBEDO, x, y), even ? vec3_make(0.8, 0.7, 0.6) : vec3_make(0.1, 0.2, 0.3), 1e-6);
+    near(value(r, LAYER_SOLID, x, y), vec3_make(1.0, 0.0, 0.0), 0.0);
+    near(value(r, LAYER_MATERIAL, x, y), vec3_make(1.0, 0.0, 0.0), 0.0);
+    return even ? 1 << 10 : 1 << 11;
+}
+
+static void closed_forms(void **state)
+{
+    (void)state;
+    scene *s = scene_from(room);
+    set(s, "render.samples=4"); /* still the pixel's middle */
+    for (int turn = 0; turn < 2; turn++) {
+        int seen = 0;
+        render_result *r = layers_at(s, isa_best());
+        for (int y = 0; y < HEIGHT; y++)
+            for (int x = 0; x < WIDTH; x++)
+                seen |= check_pixel(r, x, y);
+        assert_int_equal(seen, 1 << 2 | 1 << 3 | 1 << 4 | 1 << 10 | 1 << 11);
+        render_result_destroy(r);
+        set(s, "render.layer=solid"); /* which one is shown makes no difference */
+    }
+    scene_destroy(s);
+}
+
+static void nothing_is_zero(void **state)
+{
+    (void)state;
+    scene *s = scene_from(HEAD "  ball: {shape: sphere, radius: 0.5, position: [0, 1, 3]}\n");
+    render_result *r = layers_at(s, isa_best());
+    int empty = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const bool miss = isinf(distance_to_sphere(direction(x, y), vec3_make(0.0, 1.0, 3.0), 0.5));
+            empty += miss;
+            assert_true(miss == (value(r, LAYER_SOLID, x, y).x == 0.0));
+            for (int i = 0; i < LAYER_COUNT && miss; i++)
+                near(value(r, (layer_rule)i, x, y), vec3_make(0.0, 0.0, 0.0), 0.0);
+            for (int c = 0; c < 3 && miss; c++)
+                assert_true(film_value(r->picture, x, y, c) == 0.0);
+        }
+    assert_in_range(empty, WIDTH * HEIGHT / 2, WIDTH * HEIGHT - 9);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
+/* The view of normals is what normal maps hold: (n + 1) / 2 as encoded numbers. */
+static void normals_as_normal_maps(void **state)
+{
+    (void)state;
+    scene *s = scene_from(room);
+    render_result *r = layers_at(s, isa_best());
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const vec3 n = value(r, LAYER_NORMAL, x, y);
+            const double wanted[3] = {0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0.5 + 0.5 * n.z};
+            for (int c = 0; c < 3 && value(r, LAYER_SOLID, x, y).x > 0.0; c++)
+                assert_true(fabs(srgb_encode(film_value(r->picture, x, y, c)) - wanted[c]) < 1e-6);
+        }
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
+static void same(const render_result *a, const render_result *b)
+{
+    assert_true(film_hash(a->picture) == film_hash(b->picture));
+    for (int i = 0; i < LAYER_COUNT; i++)
+        assert_memory_equal(a->layers->values[i], b->layers->values[i],
+                            WIDTH * HEIGHT * sizeof(float) * (size_t)layer_channels[i]);
+}
+
+static void threads_and_instruction_sets(void **state)
+{
+    (void)state;
+    scene *s = scene_from(room);
+    for (int layer = 0; layer < LAYER_COUNT; layer++) {
+        s->render.layer = layer;
+        s->render.threads = 1;
+        render_result *wanted = layers_at(s, ISA_SSE2);
+        for (int level = ISA_SSE2; level <= (int)isa_best(); level++) {
+            s->render.threads = 8;
+            s->render.schedule = SCHEDULE_DYNAMIC, s->render.tile = 8;
+            render_result *r = layers_at(s, (isa)level);
+            same(r, wanted);
+            render_result_destroy(r);
+        }
+        render_result_destroy(wanted);
+    }
+    scene_destroy(s);
+}
+
+static void files_read_back(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/cuvette-aov-XXXXXX", prefix[64];
+    diagnostic why = {0};
+    scene *s = scene_from(room);
+    render_result *r = layers_at(s, isa_best());
+    assert_non_null(mkdtemp(folder));
+    snprintf(prefix, sizeof prefix, "%s/a", folder);
+    worked(record_layers(r, prefix, &why), &why);
+    for (int i = 0; i < LAYER_COUNT; i++) {
+        image *back = NULL;
+        char *path = record_layer_path(prefix, i);
+        worked(image_read(path, &back, NULL, &why), &why);
+        assert_true(back->width == WIDTH && back->height == HEIGHT);
+        for (size_t k = 0; k < 3 * WIDTH * HEIGHT; k++) {
+            const float *values = r->layers->values[i];
+            assert_true(back->pixel[k] == values[layer_channels[i] == 3 ? k : k / 3]);
+        }
+        image_destroy(back);
+        unlink(path);
+        free(path);
+    }
+    assert_int_equal(rmdir(folder), 0);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
+/* Without the wish for layers there are none, nor under another integrator. */
+static void only_when_wanted(void **state)
+{
+    (void)state;
+    scene *s = scene_from(room);
+    render_result *r = render(s);
+    assert_null(r->layers);
+    render_result_destroy(r);
+    set(s, "render.integrator=whitted");
+    r = render_at(s, isa_best(), &(render_options){.layers = true});
+    assert_null(r->layers);
+    render_result_destroy(r);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(closed_forms),           cmocka_unit_test(nothing_is_zero),
+        cmocka_unit_test(normals_as_normal_maps), cmocka_unit_test(threads_and_instruction_sets),
+        cmocka_unit_test(files_read_back),        cmocka_unit_test(only_when_wanted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
