@@ -66,10 +66,12 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
     s.priority = random_below(seed, 12) - 4;
     const bool far = random_below(seed, 3) != 0;
     const double power = far ? random_real(seed, 1.0, 5.9) : random_real(seed, -6.0, -3.0);
-    const double distance = pow(10.0, power),
-                 size = far ? fmin(0.002 * distance, pow(10.0, random_real(seed, -3.0, 3.0))) : distance;
+    const double distance = pow(10.0, power), largest = fmax(s.shape.scale.x, s.shape.scale.y),
+                 wanted = far ? fmin(0.002 * distance, pow(10.0, random_real(seed, -3.0, 3.0))) : distance,
+                 size = fmin(wanted, 1e6 / largest); /* a mesh's scale ends there */
     s.shape.position = far ? vec3_scale(random_direction(seed), distance) : random_point(seed, 1.5);
     s.shape.radius *= size, s.shape.inner_radius *= size, s.shape.height *= size, s.shape.floor *= size;
+    s.shape.tube_radius *= size, s.shape.top_radius *= size;
     s.shape.size = vec3_scale(s.shape.size, size);
     s.shape.scale = vec3_scale(s.shape.scale, size);
     s.shape.spacing = vec3_scale(s.shape.spacing, size);

@@ -111,7 +111,10 @@ static inline void place_mesh(law_solid *s, uint64_t *seed)
 /* Half the height of a solid along its own y, and where its middle is; 0 for those that have no flat top. */
 static inline double flat_half(const law_solid *s, double *middle)
 {
-    *middle = s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP ? 0.5 * s->shape.height : 0.0;
+    *middle = s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP || s->shape.kind == SHAPE_CONE ||
+                      s->shape.kind == SHAPE_PRISM
+                  ? 0.5 * s->shape.height
+                  : 0.0;
     if (s->mesh)
         return is_mesh_named(s, "cube") ? 0.5 * s->shape.scale.y : 0.0;
     return s->shape.kind == SHAPE_BOX ? 0.5 * s->shape.size.y : *middle;
@@ -134,7 +137,7 @@ static inline void stack_on(law_solid *s, const law_solid *base, uint64_t *seed)
         shape->position = in_frame_of(&base->shape, 0.1, top + gap + 0.5 * shape->scale.y, 0.0);
         return;
     }
-    if (shape->kind == SHAPE_PLANE || shape->kind == SHAPE_SPHERE || thin)
+    if (shape->kind == SHAPE_PLANE || shape->kind == SHAPE_SPHERE || shape->kind == SHAPE_TORUS || thin)
         shape->kind = SHAPE_BOX;
     if (thin) {
         const double thickness = gap > 0.0 ? gap : 0.125;
@@ -159,11 +162,18 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     solid_shape *shape = &s->shape;
     const double wall = random_gap(seed), least = fmin(fmin(shape->radius, shape->height),
                                                        shape->kind == SHAPE_BOX ? smallest(shape->size) : 1.0);
-    const double step = random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
-    shape->radius += step;
+    double step = random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
+    if (shape->kind == SHAPE_CONE && fabs(step) < 1e-9)
+        step = 0.0; /* its slant is moved by another length: wide, or none, or the sides cross */
+    if (shape->kind == SHAPE_TORUS)
+        shape->tube_radius = fmin(shape->tube_radius + step, 0.99 * shape->radius);
+    else
+        shape->radius += step;
+    shape->top_radius = fmax(shape->top_radius + step, 0.0);
     shape->inner_radius += 0.5 * step;
     shape->size = vec3_add(shape->size, vec3_make(2.0 * step, 2.0 * step, 2.0 * step));
-    if (shape->kind == SHAPE_CYLINDER || shape->kind == SHAPE_CUP) {
+    if (shape->kind == SHAPE_CYLINDER || shape->kind == SHAPE_CUP || shape->kind == SHAPE_CONE ||
+        shape->kind == SHAPE_PRISM) {
         shape->position = in_frame_of(&base->shape, 0.0, -step, 0.0);
         shape->height += 2.0 * step;
     }
@@ -349,6 +359,11 @@ static inline ball ball_around(const law_solid *s)
     switch (shape->kind) {
     case SHAPE_SPHERE: return (ball){shape->position, shape->radius};
     case SHAPE_BOX: return (ball){shape->position, 0.5 * vec3_length(shape->size)};
+    case SHAPE_PRISM:
+    case SHAPE_CONE:
+        return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0),
+                      hypot(0.5 * shape->height, fmax(shape->radius, shape->top_radius))};
+    case SHAPE_TORUS: return (ball){shape->position, shape->radius + shape->tube_radius};
     case SHAPE_CYLINDER:
     case SHAPE_CUP: return (ball){in_frame_of(shape, 0.0, 0.5 * shape->height, 0.0), hypot(0.5 * shape->height, wide)};
     case SHAPE_MESH: {

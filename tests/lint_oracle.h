@@ -203,6 +203,9 @@ static inline double oracle_thickness(const solid *x)
     case SHAPE_CUP: return fmin((s->radius - s->inner_radius) * fmin(1.0, 1.0 / s->m), s->floor);
     case SHAPE_BOX: return smallest(s->size);
     case SHAPE_SPHERE: return 2.0 * s->radius;
+    case SHAPE_CONE: return fmin(s->height, s->radius + s->top_radius);
+    case SHAPE_PRISM: return fmin(s->height, 2.0 * s->radius);
+    case SHAPE_TORUS: return 2.0 * s->tube_radius;
     case SHAPE_MESH: return 2.0 * ball_of(x).radius;
     case SHAPE_PLANE:
     case SHAPE_COUNT: break;

@@ -21,6 +21,13 @@ static inline void add_shape(scene_text *t, const solid_shape *s)
         break;
     case SHAPE_BOX: add(t, "shape: box, size: [%.17g, %.17g, %.17g]", s->size.x, s->size.y, s->size.z); break;
     case SHAPE_SPHERE: add(t, "shape: sphere, radius: %.17g", s->radius); break;
+    case SHAPE_CONE:
+        add(t, "shape: cone, radius: %.17g, top_radius: %.17g, height: %.17g", s->radius, s->top_radius, s->height);
+        break;
+    case SHAPE_PRISM:
+        add(t, "shape: prism, radius: %.17g, sides: %d, height: %.17g", s->radius, (int)s->sides, s->height);
+        break;
+    case SHAPE_TORUS: add(t, "shape: torus, radius: %.17g, tube_radius: %.17g", s->radius, s->tube_radius); break;
     case SHAPE_PLANE:
     case SHAPE_MESH:
     case SHAPE_COUNT: add(t, "shape: plane"); break;

@@ -55,7 +55,7 @@ static inline one_hit nearest_interface(const arrangement *a, one_ray r)
     if (h.crossed < 0)
         return h;
     r.inside = h.inside_before;
-    if (a->primitives[h.crossed].kind == PRIMITIVE_MESH)
+    if (!a->primitives[h.crossed].rule)
         forest_surface(a->meshes, &batch, meshes.hit, false, &points, NULL);
     else
         kernels->surface(&a->primitives[h.crossed], &batch, hits.t, h.crossed, &points);

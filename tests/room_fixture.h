@@ -121,9 +121,16 @@ static inline int changes_of(const room *m, const reference_line *line, change *
     return count;
 }
 
+/* Of the analytic ones. */
+static inline shape_kind random_kind(uint64_t *seed)
+{
+    const int kind = random_below(seed, SHAPE_COUNT - 1);
+    return (shape_kind)(kind < SHAPE_MESH ? kind : kind + 1);
+}
+
 static inline solid_shape random_shape(uint64_t *seed)
 {
-    solid_shape s = {.kind = (shape_kind)random_below(seed, SHAPE_MESH), .position = random_point(seed, 0.8)};
+    solid_shape s = {.kind = random_kind(seed), .position = random_point(seed, 0.8)};
     if (random_below(seed, 3))
         s.rotation_deg = random_point(seed, 180.0);
     s.radius = random_real(seed, 0.3, 1.2);
@@ -131,6 +138,9 @@ static inline solid_shape random_shape(uint64_t *seed)
     s.m = random_below(seed, 2) ? 1.0 : random_real(seed, 0.5, 2.0);
     s.inner_radius = s.radius * random_real(seed, 0.4, 0.95);
     s.floor = s.height * random_real(seed, 0.05, 0.6);
+    s.sides = 3 + random_below(seed, 6);
+    s.top_radius = random_below(seed, 3) ? s.radius * random_real(seed, 0.1, 1.5) : 0.0;
+    s.tube_radius = s.radius * random_real(seed, 0.1, 0.9);
     s.size = vec3_make(random_real(seed, 0.2, 2.0), random_real(seed, 0.2, 2.0), random_real(seed, 0.2, 2.0));
     return s;
 }
@@ -165,6 +175,9 @@ static inline void room_fill_on_a_grid(room *m, uint64_t *seed)
         s->height = 0.25 * (2 + random_below(seed, 5));
         s->floor = 0.25;
         s->m = 1.0;
+        s->tube_radius = 0.25;
+        s->sides = 4;
+        s->top_radius = 0.25 * random_below(seed, 4);
         s->size = vec3_make(0.5 * (1 + random_below(seed, 3)), 0.5 * (1 + random_below(seed, 3)),
                             0.5 * (1 + random_below(seed, 3)));
     }

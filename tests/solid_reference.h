@@ -7,7 +7,7 @@
 #include "geometry/solid.h"
 #include "quad.h"
 
-enum { REFERENCE_CROSSINGS_MAX = 8 }; /* of one shape with a line */
+enum { REFERENCE_CROSSINGS_MAX = 16 }; /* of one shape with a line */
 
 typedef struct reference_line {
     quad3 o, d;
@@ -23,6 +23,16 @@ static inline reference_line reference_local(const solid_shape *s, const referen
     reference_line l = {quad3_turn(quad3_sub(line->o, quad3_from(s->position)), s->rotation_deg, 1),
                         quad3_turn(line->d, s->rotation_deg, 1)};
     return l;
+}
+
+/* The normal of a prism's side, and its distance from the axis. */
+static inline quad3 reference_prism_side(const solid_shape *s, int k, quad *apart)
+{
+    quad sine, cosine, half_sine;
+    quad_sincos_deg((quad)180 * (2 * k + 1) / (quad)s->sides, &sine, &cosine);
+    quad_sincos_deg((quad)180 / (quad)s->sides, &half_sine, apart);
+    *apart *= s->radius;
+    return quad3_make(sine, 0, -cosine);
 }
 
 /* a t^2 + 2 b t + c = 0 */
@@ -47,6 +57,68 @@ static inline int reference_level(quad o, quad d, quad level, quad *t)
 {
     *t = d == 0 ? 0 : (level - o) / d;
     return d != 0;
+}
+
+static inline quad reference_polynomial(const quad *c, int degree, quad t)
+{
+    quad sum = c[degree];
+    for (int k = degree - 1; k >= 0; k--)
+        sum = sum * t + c[k];
+    return sum;
+}
+
+/* Roots of c[0] + c[1] t + ... between low and high, ascending: between its extremes, by bisection and Newton's steps.
+ */
+static inline int reference_roots(const quad *c, int degree, quad low, quad high, quad *roots)
+{
+    quad slope[4], ends[5];
+    int count = 0;
+    ends[0] = low;
+    if (degree > 1) {
+        for (int k = 0; k < degree; k++)
+            slope[k] = (k + 1) * c[k + 1];
+        count = reference_roots(slope, degree - 1, low, high, ends + 1);
+    }
+    ends[count + 1] = high;
+    int found = 0;
+    for (int k = 0; k <= count; k++) {
+        quad a = ends[k], b = ends[k + 1], at_a = reference_polynomial(c, degree, a);
+        if ((at_a < 0) == (reference_polynomial(c, degree, b) < 0))
+            continue;
+        quad t = (a + b) / 2;
+        for (int step = 0; step < 200 && b - a > (quad)1e-33 * (1 + quad_abs(t)); step++) {
+            const quad here = reference_polynomial(c, degree, t);
+            if ((here < 0) == (at_a < 0))
+                a = t;
+            else
+                b = t;
+            quad fall = degree * c[degree]; /* the derivative */
+            for (int i = degree - 1; i > 0; i--)
+                fall = fall * t + i * c[i];
+            const quad next = step % 3 == 2 || fall == 0 ? (a + b) / 2 : t - here / fall;
+            if (next == t)
+                break;
+            t = next > a && next < b ? next : (a + b) / 2;
+        }
+        roots[found++] = t;
+    }
+    return found;
+}
+
+/* (|p|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + z^2), t counted from the point nearest to the centre. */
+static inline int reference_torus(const reference_line *l, quad R, quad r, quad *t)
+{
+    const quad a = quad3_dot(l->d, l->d), middle = -quad3_dot(l->o, l->d) / a;
+    const quad3 q = reference_at(l, middle);
+    const quad k = quad3_dot(q, q) + R * R - r * r, b = quad3_dot(q, l->d);
+    const quad across = l->d.x * l->d.x + l->d.z * l->d.z, rises = q.x * l->d.x + q.z * l->d.z;
+    const quad c[5] = {k * k - 4 * R * R * (q.x * q.x + q.z * q.z), 4 * k * b - 8 * R * R * rises,
+                       4 * b * b + 2 * a * k - 4 * R * R * across, 4 * a * b, a * a};
+    const quad reach = 2 * (R + r) / quad_sqrt(a);
+    const int n = reference_roots(c, 4, -reach, reach, t);
+    for (int i = 0; i < n; i++)
+        t[i] += middle;
+    return n;
 }
 
 /* Every t, before and behind, where the line meets one of the shape's surfaces or their continuations; unordered. */
@@ -77,6 +149,23 @@ static inline int reference_crossings(const solid_shape *s, const reference_line
         n += reference_side(&l, s->m, s->radius, t);
         n += reference_level(l.o.y, l.d.y, 0, t + n);
         return n + reference_level(l.o.y, l.d.y, s->height, t + n);
+    case SHAPE_CONE: {
+        const quad slope = ((quad)s->top_radius - s->radius) / s->height, w = s->radius + slope * l.o.y,
+                   dw = slope * l.d.y;
+        n += reference_quadratic(l.d.x * l.d.x + l.d.z * l.d.z - dw * dw, l.o.x * l.d.x + l.o.z * l.d.z - w * dw,
+                                 l.o.x * l.o.x + l.o.z * l.o.z - w * w, t);
+        n += reference_level(l.o.y, l.d.y, 0, t + n);
+        return n + reference_level(l.o.y, l.d.y, s->height, t + n);
+    }
+    case SHAPE_PRISM:
+        for (int k = 0; k < s->sides; k++) {
+            quad apart;
+            const quad3 normal = reference_prism_side(s, k, &apart);
+            n += reference_level(quad3_dot(normal, l.o), quad3_dot(normal, l.d), apart, t + n);
+        }
+        n += reference_level(l.o.y, l.d.y, 0, t + n);
+        return n + reference_level(l.o.y, l.d.y, s->height, t + n);
+    case SHAPE_TORUS: return reference_torus(&l, s->radius, s->tube_radius, t);
     case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }
@@ -119,6 +208,24 @@ static inline quad reference_distance(const solid_shape *s, quad3 point)
         return quad_max(reference_from_cylinder(p, s->m, s->radius, 0, s->height), -hollow);
     }
     case SHAPE_CYLINDER: return reference_from_cylinder(p, s->m, s->radius, 0, s->height);
+    case SHAPE_CONE: {
+        const quad slope = ((quad)s->top_radius - s->radius) / s->height, slant = quad_sqrt(1 + slope * slope);
+        const quad side = (quad_sqrt(p.x * p.x + p.z * p.z) - s->radius - slope * p.y) / slant;
+        return quad_max(side, quad_max(-p.y, p.y - s->height));
+    }
+    case SHAPE_PRISM: {
+        quad most = quad_max(-p.y, p.y - s->height);
+        for (int k = 0; k < s->sides; k++) {
+            quad apart;
+            const quad3 normal = reference_prism_side(s, k, &apart);
+            most = quad_max(most, quad3_dot(normal, p) - apart);
+        }
+        return most;
+    }
+    case SHAPE_TORUS: {
+        const quad apart = quad_sqrt(p.x * p.x + p.z * p.z) - s->radius;
+        return quad_sqrt(apart * apart + p.y * p.y) - s->tube_radius;
+    }
     case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }

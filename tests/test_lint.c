@@ -309,6 +309,7 @@ static void shipped_scenes_have_true_notes_alone(void **state)
         {"rod-leaning", "render.depth"},
         {"rod", "render.depth"},
         {"slime", NULL},
+        {"shapes", NULL},
         {"solids", NULL},
         {"soup", NULL},
         {"vessel-mesh", "render.depth"},

@@ -239,7 +239,7 @@ static void instruction_sets_agree_to_the_bit_on_meshes(void **state)
             scratch.meshes = &meshes[level];
             kernels->nearest(m.r.solids, &rays, &scratch, &hits[level]);
             for (int i = 0; i < count && level > 0; i++) {
-                if (hits[0].crossed[i] < 0 || m.r.solids->primitives[hits[0].crossed[i]].kind != PRIMITIVE_MESH)
+                if (hits[0].crossed[i] < 0 || m.r.solids->primitives[hits[0].crossed[i]].rule)
                     continue;
                 assert_int_equal(meshes[level].hit[i].face, meshes[0].hit[i].face);
                 assert_memory_equal(&meshes[level].hit[i].u, &meshes[0].hit[i].u, 2 * sizeof(double));

@@ -262,8 +262,8 @@ static void faces_of_a_cups_hollow_are_told_apart(void **state)
         int face;
     } ways[] = {{{5, 1, 0}, {0, 1, 0}, 0},
                 {{0, -5, 0}, {0, 0, 0}, 1},
-                {{0, 1, 0}, {1, 1, 0}, FACES_MAX},
-                {{0, 5, 0}, {0, 0, 0}, FACES_MAX + 1}};
+                {{0, 1, 0}, {1, 1, 0}, HOLLOW_FACES},
+                {{0, 5, 0}, {0, 0, 0}, HOLLOW_FACES + 1}};
     scene *s = scene_from("solids: {cup: {shape: cup, transparency: 1, ior: 1.5, radius: 1, inner_radius: 0.9, height: "
                           "3, floor: 0.1}}\n");
     probe *p = probe_of(s);

@@ -39,7 +39,7 @@ static void assert_vector(vec3 v, double x, double y, double z)
 static void what_is_added_is_as_a_file_has_it(void **state)
 {
     (void)state;
-    static const char *const shapes[] = {"plane", "cylinder", "cup", "box", "sphere", "mesh"};
+    static const char *const shapes[] = {"plane", "cylinder", "cup", "box", "sphere", "mesh", "torus", "cone", "prism"};
     assert_int_equal(sizeof shapes / sizeof *shapes, SHAPE_COUNT);
     for (int k = 0; k < SHAPE_COUNT; k++) {
         char file[300];

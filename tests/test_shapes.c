@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "geometry/arrangement.h"
+#include "geometry/primitives/primitive.h"
 #include "geometry/shapes/placed.h"
 #include "random_stream.h"
 #include "scene/model/params_value.h"
@@ -125,17 +126,19 @@ static void what_it_contains_is_within_its_sizes(void **state)
 
 static void primitives(const shape_rule *rule, const placed_shape *placed)
 {
-    primitive parts[SHAPE_PRIMITIVES];
     const solid_shape *shape = &placed->shape;
-    rule->primitives(shape, parts);
+    const body_source source = {.shape = shape, .medium = 1, .clearness = 1.0};
+    arrangement *a = NULL;
+    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
     for (int n = 0; n < POINTS; n++) {
         const vec3 p = point_in(rule->extent(shape).box, 0.3), at = in_world(placed, p);
-        bool inside = primitive_contains(&parts[0], at);
+        bool inside = primitive_contains(&a->primitives[0], at);
         for (int i = 1; i < rule->primitive_count; i++)
-            inside &= !primitive_contains(&parts[i], at);
+            inside &= !primitive_contains(&a->primitives[i], at);
         assert_int_equal(inside, rule->contains(shape, p));
         assert_int_equal(inside, solid_shape_contains(shape, at));
     }
+    arrangement_destroy(a);
 }
 
 static void its_primitives_contain_what_it_contains(void **state)

@@ -43,6 +43,16 @@ static const solid_shape shapes[] = {
      .floor = 0.1},
     {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
     {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
+    {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .height = 1.5, .m = 1.0},
+    {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .top_radius = 0.4, .height = 0.9, .m = 1.0},
+    {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.1, .top_radius = 1.0, .height = 1.1, .m = 1.0},
+    {.kind = SHAPE_CONE, .position = {0.1, -0.2, 0.2}, .radius = 1.0, .top_radius = 0.02, .height = 0.05, .m = 1.0},
+    {.kind = SHAPE_PRISM, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .sides = 3, .height = 1.5, .m = 1.0},
+    {.kind = SHAPE_PRISM, .position = {0.1, -0.3, 0.2}, .radius = 0.8, .sides = 6, .height = 0.7, .m = 1.0},
+    {.kind = SHAPE_PRISM, .position = {0.1, -0.3, 0.2}, .radius = 0.9, .sides = 13, .height = 0.9, .m = 1.0},
+    {.kind = SHAPE_TORUS, .position = {0.1, 0.2, 0.3}, .radius = 0.7, .tube_radius = 0.25},
+    {.kind = SHAPE_TORUS, .position = {-0.1, 0.2, 0.0}, .radius = 0.6, .tube_radius = 0.599},
+    {.kind = SHAPE_TORUS, .position = {0.1, -0.2, 0.3}, .radius = 0.9, .tube_radius = 0.002},
 };
 static const vec3 turns[] = {
     {0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}, {0.0, 0.0, 30.0}, {90.0, 0.0, 0.0}, {0.1, 180.0, -0.3}};
@@ -93,14 +103,26 @@ static quad3 normal_of(const solid_shape *s, int64_t face, quad3 p)
 {
     const int own = (int)(face % FACES_MAX);
     quad3 n = quad3_make(0, 0, 0);
+    quad apart;
     if (s->kind == SHAPE_PLANE)
         n.y = 1;
     else if (s->kind == SHAPE_SPHERE)
         n = p;
-    else if (s->kind == SHAPE_BOX)
+    else if (s->kind == SHAPE_TORUS) {
+        const quad share = 1 - s->radius / quad_sqrt(p.x * p.x + p.z * p.z);
+        n = quad3_make(p.x * share, p.y, p.z * share);
+    } else if (s->kind == SHAPE_BOX)
         *(own < 2 ? &n.x : own < 4 ? &n.y : &n.z) = own % 2 ? 1 : -1;
+    else if (s->kind == SHAPE_PRISM && own < 2)
+        n.y = own == 1 ? 1 : -1;
+    else if (s->kind == SHAPE_PRISM)
+        n = reference_prism_side(s, own - 2, &apart);
     else if (own > 0)
         n.y = own == 2 ? 1 : -1;
+    else if (s->kind == SHAPE_CONE && p.x == 0 && p.z == 0)
+        n.y = 1; /* the point of a cone has any */
+    else if (s->kind == SHAPE_CONE)
+        n = quad3_make(p.x, quad_sqrt(p.x * p.x + p.z * p.z) * ((quad)s->radius - s->top_radius) / s->height, p.z);
     else
         n = quad3_make(p.x, 0, p.z * (quad)s->m * s->m);
     return quad3_scale(n, 1 / quad3_length(n));
@@ -124,15 +146,33 @@ static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
     case SHAPE_CYLINDER:
         return own == 0 ? quad_abs(reference_from_side(p, s->m, s->radius))
                         : quad_abs(p.y - (own == 1 ? 0.0 : s->height));
+    case SHAPE_PRISM: {
+        quad apart;
+        const quad3 normal = reference_prism_side(s, own - 2, &apart);
+        return quad_abs(own < 2 ? p.y - own * s->height : quad3_dot(normal, p) - apart);
+    }
+    case SHAPE_CONE:
+        if (own == 0) {
+            const quad slope = ((quad)s->top_radius - s->radius) / s->height;
+            const quad apart = quad_sqrt(p.x * p.x + p.z * p.z) - s->radius - slope * p.y;
+            return quad_abs(apart) / quad_sqrt(1 + slope * slope);
+        }
+        return quad_abs(p.y - (own == 1 ? 0.0 : s->height));
+    case SHAPE_TORUS:
+        return quad_abs(reference_distance(s, quad3_add(quad3_turn(p, s->rotation_deg, 0), quad3_from(s->position))));
     case SHAPE_MESH:
     case SHAPE_COUNT: break;
     }
     return 1;
 }
 
-/* The smallest radius of curvature. */
-static double least_radius(const solid_shape *s)
+/* The smallest radius of curvature; of a cone, that of its circle at the point. */
+static double least_radius(const solid_shape *s, quad3 p)
 {
+    if (s->kind == SHAPE_CONE)
+        return (double)quad_sqrt(p.x * p.x + p.z * p.z);
+    if (s->kind == SHAPE_TORUS)
+        return fmin(s->tube_radius, s->radius - s->tube_radius);
     const double m = s->kind == SHAPE_CYLINDER || s->kind == SHAPE_CUP ? s->m : 1.0;
     return (s->kind == SHAPE_CUP ? s->inner_radius : s->radius) * (m > 1.0 ? 1.0 / (m * m) : m);
 }
@@ -151,7 +191,9 @@ static void check_point(const solid_shape *s, const arrangement *a, const refere
     /* 16 roundings of what was added up, and not more */
     expect(h->error <= 4e-15 * (3.0 * vec3_length(double_of(line->o)) + 2.0 * h->t + 6.0 * a->extent), s, line, h);
     const quad3 outward = quad3_turn(normal_of(s, h->face, local), s->rotation_deg, 0);
-    const double curved = s->kind == SHAPE_PLANE || s->kind == SHAPE_BOX ? 0.0 : h->error / least_radius(s);
+    const double curved = s->kind == SHAPE_PLANE || s->kind == SHAPE_BOX || s->kind == SHAPE_PRISM
+                              ? 0.0
+                              : h->error / least_radius(s, local);
     expect(quad_abs(quad3_length(n) - 1) <= 1e-15, s, line, h);
     expect(quad3_length(quad3_sub(n, quad3_scale(outward, quad3_dot(outward, n) < 0 ? -1 : 1))) <= 2e-15 + curved, s,
            line, h);
@@ -235,7 +277,15 @@ static vec3 place_on(const solid_shape *s, uint64_t *seed)
     if (s->kind == SHAPE_BOX && random_below(seed, 3))
         p = vec3_make(eighths[random_below(seed, 4)] * s->size.x / 2, eighths[random_below(seed, 4)] * s->size.y / 2,
                       eighths[random_below(seed, 4)] * s->size.z / 2);
-    else if (s->radius > 0.0 && s->height > 0.0 && random_below(seed, 3))
+    else if (s->kind == SHAPE_TORUS && random_below(seed, 3)) {
+        const double across = eighths[random_below(seed, 4)], up = eighths[random_below(seed, 4)],
+                     from_axis = s->radius + across * s->tube_radius;
+        p = vec3_make(from_axis * cos(turn), up * s->tube_radius, from_axis * sin(turn));
+    } else if (s->kind == SHAPE_CONE && random_below(seed, 3)) {
+        const double up = random_below(seed, 2) ? level : random_real(seed, 0.0, s->height);
+        const double w = s->radius + (s->top_radius - s->radius) * (up / s->height);
+        p = vec3_make(w * cos(turn), up, w * sin(turn));
+    } else if (s->radius > 0.0 && s->height > 0.0 && random_below(seed, 3))
         p = s->kind == SHAPE_CUP && random_below(seed, 2)
                 ? vec3_make(s->inner_radius * cos(turn), level > 0.0 ? level : s->floor,
                             s->inner_radius * sin(turn) / s->m)

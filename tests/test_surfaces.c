@@ -120,6 +120,8 @@ static void nothing_escapes_from_a_closed_mirror(void **state)
         {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
         {.kind = SHAPE_BOX, .position = {20.0, 10.0, -30.0}, .size = {1.0, 1.0, 1.0}},
         {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
+        {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .top_radius = 0.3, .height = 1.2},
+        {.kind = SHAPE_PRISM, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .sides = 3, .height = 1.2},
     };
     uint64_t seed = 3;
     for (size_t i = 0; i < COUNT(shapes); i++) {
@@ -127,7 +129,7 @@ static void nothing_escapes_from_a_closed_mirror(void **state)
             solid_shape s = shapes[i];
             s.rotation_deg = turns[trial % 2];
             arrangement *a = arrange_one(&s);
-            const double up = s.kind == SHAPE_CYLINDER ? s.height / 2 : 0.0;
+            const double up = s.height > 0.0 ? s.height / 2 : 0.0;
             quad3 middle = quad3_turn(quad3_make(0, up, 0), s.rotation_deg, 0);
             one_ray r = {.o = vec3_add(s.position, vec3_make((double)middle.x, (double)middle.y, (double)middle.z)),
                          .d = random_direction(&seed),
@@ -171,12 +173,14 @@ static void convex_solids_are_met_twice_and_no_more(void **state)
         {.kind = SHAPE_CYLINDER, .position = {-0.1, -0.4, 0.2}, .radius = 0.8, .height = 1.1, .m = 2.5},
         {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
         {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
+        {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .top_radius = 0.3, .height = 1.2},
+        {.kind = SHAPE_PRISM, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .sides = 3, .height = 1.2},
     };
     uint64_t seed = 5;
     int entered = 0;
     for (int trial = 0; trial < 20000; trial++) {
         solid_shape s = shapes[trial % (int)COUNT(shapes)];
-        s.rotation_deg = turns[trial / 4 % 2];
+        s.rotation_deg = turns[trial / (int)COUNT(shapes) % 2];
         arrangement *a = arrange_one(&s);
         vec3 from = vec3_scale(random_direction(&seed), 5.0), to = random_point(&seed, 1.0);
         one_ray r = {.o = from, .d = vec3_normalize(vec3_sub(to, from)), .start = FACE_NONE, .inside = 0};
@@ -212,13 +216,15 @@ static void on_all_faces(face_check *check)
         {.kind = SHAPE_CYLINDER, .position = {-0.1, -0.4, 0.2}, .radius = 0.8, .height = 1.1, .m = 2.5},
         {.kind = SHAPE_BOX, .position = {0.2, 0.1, 0.0}, .size = {0.25, 3.0, 0.5}},
         {.kind = SHAPE_SPHERE, .position = {0.1, 0.2, 0.3}, .radius = 0.9},
+        {.kind = SHAPE_CONE, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .top_radius = 0.3, .height = 1.2},
+        {.kind = SHAPE_PRISM, .position = {0.1, -0.7, 0.2}, .radius = 0.95, .sides = 3, .height = 1.2},
     };
     uint64_t seed = 6;
     int faces[COUNT(shapes)] = {0};
     for (int trial = 0; trial < 20000; trial++) {
         const int which = trial % (int)COUNT(shapes);
         solid_shape s = shapes[which];
-        s.rotation_deg = turns[trial / 5 % 2];
+        s.rotation_deg = turns[trial / (int)COUNT(shapes) % 2];
         arrangement *a = arrange_one(&s);
         vec3 from = vec3_scale(random_direction(&seed), 5.0), to = random_point(&seed, 1.0);
         const one_ray r = {from, vec3_normalize(vec3_sub(to, from)), FACE_NONE, arrangement_inside(a, from)};
@@ -231,7 +237,7 @@ static void on_all_faces(face_check *check)
         }
         arrangement_destroy(a);
     }
-    static const int all[COUNT(shapes)] = {1, 7, 7, 63, 1};
+    static const int all[COUNT(shapes)] = {1, 7, 7, 63, 1, 7, 31};
     assert_memory_equal(faces, all, sizeof all);
 }
 
@@ -273,7 +279,7 @@ static void is_on_one_side_or_the_other(const arrangement *a, const one_hit *h, 
     const one_hit out =
         nearest_interface(a, (one_ray){h->point, vec3_normalize(vec3_add(along, outward)), FACE_NONE, inside});
     if (inside) {
-        assert_true(in.before == 1 && in.t > 0.0 && (in.crossed == 0 || a->primitives[0].kind == PRIMITIVE_HALFSPACE));
+        assert_true(in.before == 1 && in.t > 0.0 && (in.crossed == 0 || a->shapes[1].kind == SHAPE_PLANE));
         assert_true(out.crossed == 0 && out.before == 1 && out.t <= 1e-13);
     } else {
         assert_true(in.crossed == 0 && in.before == 0 && in.after == 1 && in.t <= 1e-13);

@@ -18,28 +18,36 @@ trap 'rm -rf "$folder"' EXIT
 case_number=0 failed=0
 read -ra flags <<<"$KERNEL_FLAGS"
 
-# report FILE ISA: compiles, and prints "line bytes" for every loop of the file itself that was vectorised.
+# report FILE ISA: compiles, and writes "file:line bytes" for every loop that was vectorised.
 report() {
     local isa_flags=KERNEL_FLAGS_$2
     read -ra isa_flags <<<"${!isa_flags}"
+    rm -f "$folder/all" # gcc appends
     "$cc" "${flags[@]}" "${isa_flags[@]}" -DKERNEL_ISA="$2" -fopt-info-vec="$folder/all" \
         -fdump-tree-vect-details="$folder/details" -c -o "$folder/object" "$1" || return
-    awk -F: -v file="$1" '$1 == file && /loop vectorized using/ {
+    awk -F: '/loop vectorized using/ {
         match($0, /using [0-9]+/); bytes = substr($0, RSTART + 6, RLENGTH - 6) + 0
-        if (bytes > width[$2]) width[$2] = bytes }
-        END { for (line in width) print line, width[line] }' "$folder/all" | sort -n >"$folder/vectorised"
+        if (bytes > width[$1 ":" $2]) width[$1 ":" $2] = bytes }
+        END { for (line in width) print line, width[line] }' "$folder/all" | sort -t: -k1,1 -k2n >"$folder/vectorised"
 }
 
 # Why a loop stayed scalar: gcc's first objection, which is about the widest vectors; its short report gives the last
 # one.
-reason() { # reason FILE LINE
-    awk -v loop="Analyzing loop at $1:$2" '/Analyzing loop at/ { mine = $0 == loop }
+reason() { # reason FILE:LINE
+    awk -v loop="Analyzing loop at $1" '/Analyzing loop at/ { mine = $0 == loop }
         mine && sub(/.*not vectorized: /, "") { print; exit }' "$folder/details"
 }
 
+# with_headers FILE: the file and the headers with marked loops that it includes.
+with_headers() {
+    echo "$1"
+    "$cc" "${flags[@]}" -DKERNEL_ISA=sse2 -MM "$1" | grep -o 'src/[^ ]*\.h' | sort -u |
+        xargs grep -l '/\* VECTORISE \*/'
+}
+
 while read -r file; do
-    marks=$(awk '/\/\* VECTORISE \*\// { marked = 1; next }
-        marked { print FNR ($0 ~ /for *\(/ ? "" : "!"); marked = 0 }' "$file")
+    marks=$(with_headers "$file" | xargs awk '/\/\* VECTORISE \*\// { marked = 1; next }
+        marked { print FILENAME ":" FNR ($0 ~ /for *\(/ ? "" : "!"); marked = 0 }')
     for isa in sse2 avx2 avx512; do
         case_number=$((case_number + 1))
         if ! report "$file" "$isa"; then
@@ -49,9 +57,11 @@ while read -r file; do
         fi
         scalar=()
         for line in $marks; do
+            # a header's loop that this file does not use is not compiled
+            [[ $line == "$file":* ]] || grep -q "Analyzing loop at $line$" "$folder/details" || continue
             grep -q "^$line " "$folder/vectorised" || scalar+=("$line")
         done
-        summary=$(awk '{ printf " %s(%s)", $1, $2 }' "$folder/vectorised")
+        summary=$(awk -v own="$file:" '{ sub(own, ""); printf " %s(%s)", $1, $2 }' "$folder/vectorised")
         if ((${#scalar[@]})) && [[ $isa != sse2 ]]; then
             echo "not ok $case_number - $file for $isa"
             failed=1
@@ -60,8 +70,8 @@ while read -r file; do
         fi
         echo "# $isa: $file: lines (bytes of a vector):${summary:- none}"
         for line in "${scalar[@]}"; do
-            echo "# $isa: $file:${line%!}: scalar, $([[ $line == *! ]] && echo 'no for loop follows the mark' ||
-                reason "$file" "$line")"
+            echo "# $isa: ${line%!}: scalar, $([[ $line == *! ]] && echo 'no for loop follows the mark' ||
+                reason "$line")"
         done
     done
 done < <(find src -name '*_kernel.c' | sort)

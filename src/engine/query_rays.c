@@ -108,7 +108,7 @@ static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int 
         h.slot = (int32_t)b->on_mesh.slot[k];
         h.u = b->on_mesh.weight[1][k], h.v = b->on_mesh.weight[2][k];
     } else {
-        h.face = (int32_t)(s->face[k] % FACES_MAX) + (met == bounded->hollow ? FACES_MAX : 0);
+        h.face = (int32_t)(s->face[k] % FACES_MAX) + (met == bounded->hollow ? HOLLOW_FACES : 0);
     }
     h.reflected = start_at(s->face[k], hits->inside_before[column]);
     h.transmitted = start_at(s->face[k], hits->inside_after[column]);
@@ -126,7 +126,7 @@ static void tell_group(const cuvette_query *q, bench *b, int met, int count, cuv
     }
     const ray_batch rays = {count, b->gox, b->goy, b->goz, b->gdx, b->gdy, b->gdz, b->gstart, b->ginside};
     const arrangement *a = q->ready->solids;
-    if (a->primitives[met].kind == PRIMITIVE_MESH) {
+    if (!a->primitives[met].rule) {
         for (int k = 0; k < count; k++)
             b->mesh_hits[k] = b->meshes.hit[b->list[k]];
         forest_surface(a->meshes, &rays, b->mesh_hits, false, &b->points, &b->on_mesh);

@@ -1,5 +1,7 @@
 #include "geometry/arrangement.h"
+#include "base/elementary.h"
 #include "geometry/forest.h"
+#include "geometry/primitives/primitive.h"
 #include "geometry/shapes/shape.h"
 
 #include <stdlib.h>
@@ -14,6 +16,36 @@ static void order_by_priority(const body_source *sources, int count, int *order)
             at--;
         }
         order[at] = i;
+    }
+}
+
+/* Unit vectors outwards; the corner before the first side lies in front, at -z, the next ones to its right, as seen
+ * from outside. */
+static const vec3 *add_normals(arrangement *a, int sides)
+{
+    vec3 *normals = a->normals + a->normal_count;
+    for (int k = 0; k < sides; k++) {
+        double sine, cosine;
+        elementary_sincos_deg(180.0 * (2 * k + 1) / sides, &sine, &cosine);
+        normals[k] = vec3_make(sine, 0.0, -cosine);
+    }
+    a->normal_count += sides;
+    return normals;
+}
+
+static void add_primitive(arrangement *a, int rank, const primitive *part)
+{
+    primitive *p = &a->primitives[a->primitive_count];
+    *p = *part;
+    p->rank = rank;
+    p->first_face = (int64_t)a->primitive_count++ * FACES_MAX;
+    p->rows = p->rule ? p->rule->sse2->intervals : 1;
+    p->normals = p->sides > 0 ? add_normals(a, p->sides) : NULL;
+    if (p->extent > a->extent)
+        a->extent = p->extent;
+    for (int row = 1; row < p->rows; row++) {
+        a->further |= (uint64_t)1 << a->primitive_count;
+        a->primitives[a->primitive_count++] = (primitive){.rank = rank, .rows = 1};
     }
 }
 
@@ -36,13 +68,8 @@ static void add_body(arrangement *a, int rank, const body_source *source)
                 .reflects = source->reflects && !source->opaque,
                 .solid = source->solid};
     a->absorbs |= b->absorbs;
-    for (int k = 0; k < n; k++) {
-        parts[k].rank = rank;
-        parts[k].first_face = (int64_t)a->primitive_count * FACES_MAX;
-        if (parts[k].extent > a->extent)
-            a->extent = parts[k].extent;
-        a->primitives[a->primitive_count++] = parts[k];
-    }
+    for (int k = 0; k < n; k++)
+        add_primitive(a, rank, &parts[k]);
 }
 
 static bool media_are_distinct(const arrangement *a)
@@ -72,9 +99,9 @@ status arrangement_build(const body_source *sources, int count, int64_t outside_
 {
     int primitives = 0;
     for (int i = 0; i < count; i++)
-        primitives += shape_of(sources[i].shape)->primitive_count;
+        primitives += shape_places(sources[i].shape);
     if (primitives > PRIMITIVES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 64 in all; a cup counts as two",
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 64 in all; a cup and a torus count as two",
                         "the visible solids make %d primitives", primitives);
     arrangement *a = calloc(1, sizeof *a);
     int *order = calloc((size_t)count + 1, sizeof *order);
@@ -82,8 +109,9 @@ status arrangement_build(const body_source *sources, int count, int64_t outside_
         a->primitives = calloc((size_t)primitives + 1, sizeof *a->primitives);
         a->bodies = calloc((size_t)count + 1, sizeof *a->bodies);
         a->shapes = calloc((size_t)count + 1, sizeof *a->shapes);
+        a->normals = calloc((size_t)primitives * FACES_MAX + 1, sizeof *a->normals);
     }
-    if (!a || !order || !a->primitives || !a->bodies || !a->shapes) {
+    if (!a || !order || !a->primitives || !a->bodies || !a->shapes || !a->normals) {
         free(order);
         arrangement_destroy(a);
         return out_of_memory(why);
@@ -111,6 +139,7 @@ void arrangement_destroy(arrangement *a)
     forest_destroy(a->meshes);
     free(a->primitives);
     free(a->bodies);
+    free(a->normals);
     free(a->shapes);
     free(a);
 }
@@ -118,20 +147,6 @@ void arrangement_destroy(arrangement *a)
 void arrangement_surroundings_absorb(arrangement *a)
 {
     a->bodies[0].absorbs = a->absorbs = true;
-}
-
-bool primitive_contains(const primitive *p, vec3 point)
-{
-    vec3 q = mat3_apply_transposed(p->rotation, vec3_sub(point, p->origin));
-    switch (p->kind) {
-    case PRIMITIVE_HALFSPACE: return q.y <= 0.0;
-    case PRIMITIVE_CYLINDER:
-        return q.x * q.x + p->m2 * q.z * q.z <= p->radius * p->radius && q.y >= p->bottom && q.y <= p->top;
-    case PRIMITIVE_BOX: return fabs(q.x) <= p->half.x && fabs(q.y) <= p->half.y && fabs(q.z) <= p->half.z;
-    case PRIMITIVE_SPHERE: return vec3_dot(q, q) <= p->radius * p->radius;
-    case PRIMITIVE_MESH: break; /* see forest_inside */
-    }
-    return false;
 }
 
 uint64_t arrangement_inside(const arrangement *a, vec3 point)

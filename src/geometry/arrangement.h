@@ -1,5 +1,9 @@
-/* Solids as the kernels see them: convex primitives, and bodies ordered by priority. A body is one primitive,
- * or one less another (a cup: its outside less its hollow), so that every solid is at most two intervals on a ray.
+/* Solids as the kernels see them: primitives, and bodies ordered by priority. A body is one primitive, or a convex one
+ * less another convex one (a cup: its outside less its hollow).
+ *
+ * A primitive that is not convex owns several rows of the scratch for a ray (ray_scratch): its next intervals ahead, in
+ * order. The places behind its own in the list of primitives hold these rows and nothing else; a ray's set never has
+ * their bits.
  *
  * The medium at a point is the body of the highest rank that contains it (rank 0: none, the surrounding medium). A ray
  * carries one bit for each primitive that it is in. A closed mesh is a primitive too, though not convex; an open one is
@@ -20,29 +24,26 @@
 
 enum {
     PRIMITIVES_MAX = 64, /* one bit each in a ray's set */
-    FACES_MAX = 8,       /* a face's number is primitive * FACES_MAX + face */
+    FACES_MAX = 64,      /* a face's number is primitive * FACES_MAX + face; a power of two */
+    HOLLOW_FACES = 8,    /* a hollow's faces, as one of its solid's: from here */
     FACE_NONE = -1
 };
 
-typedef enum primitive_kind {
-    PRIMITIVE_HALFSPACE,
-    PRIMITIVE_CYLINDER,
-    PRIMITIVE_BOX,
-    PRIMITIVE_SPHERE,
-    PRIMITIVE_MESH
-} primitive_kind;
-
-/* Faces: half-space 0. Cylinder 0 side, 1 bottom, 2 top. Box 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. Sphere 0.
- * Meshes number theirs otherwise: see forest.h. */
+/* The files of primitives/ say what a kind is and how its faces are numbered. Meshes number theirs otherwise: see
+ * forest.h. */
 typedef struct primitive {
-    primitive_kind kind;
-    bool turned;        /* rotation is not the identity */
-    mat3 rotation;      /* local to world */
-    vec3 origin;        /* of the local frame, in the world */
-    double radius, m2;  /* cylinder x^2 + m2 z^2 <= radius^2; sphere (m2 = 1) */
-    double bottom, top; /* of a cylinder, local y; top may be infinite */
-    vec3 half;          /* box */
+    const struct primitive_rule *rule; /* of its kind (primitives/primitive.h); NULL for a mesh */
+    bool turned;                       /* rotation is not the identity */
+    mat3 rotation;                     /* local to world */
+    vec3 origin;                       /* of the local frame, in the world */
+    double radius, m2;                 /* cylinder x^2 + m2 z^2 <= radius^2; others (m2 = 1) */
+    double bottom, top;                /* local y; a cylinder's top may be infinite */
+    vec3 half;                         /* box */
+    double second_radius;              /* a second length across, of those kinds that have one */
+    int sides;                         /* that are alike and stand around the axis; 0 for none */
+    const vec3 *normals;               /* of the sides; the arrangement's own */
     int64_t first_face;
+    int rows;      /* of the scratch: from its own on, so many intervals as a ray has at most in it */
     int rank;      /* of its body */
     double extent; /* farthest finite coordinate from the world's origin, for error bounds */
 } primitive;
@@ -66,10 +67,13 @@ typedef struct arrangement {
     body *bodies;          /* [0] is the surrounding medium */
     solid_shape *shapes;   /* by rank, what the bodies were made of; [0] is none */
     double extent;         /* largest of the primitives' */
+    uint64_t further;      /* rows that hold further intervals of a primitive before them */
     uint64_t opaque_ranks; /* bit r - 1: the body of rank r is opaque */
     bool distinct;         /* no two bodies are of one medium, nor is any of the surrounding one */
     bool absorbs;          /* one of the bodies does, or the surrounding medium */
     struct forest *meshes; /* all of them; NULL when there is none */
+    vec3 *normals;         /* of all primitives with sides */
+    int normal_count;
 } arrangement;
 
 /* Can a body take light away from a shadow ray by itself? With solid_shadows every body does. */
@@ -101,9 +105,6 @@ void arrangement_surroundings_absorb(arrangement *a);
 
 /* The set of primitives that contain a point, bit by bit, by the primitives' own definitions (surfaces included). */
 uint64_t arrangement_inside(const arrangement *a, vec3 point);
-
-/* Does it contain the point? No mesh does here. */
-bool primitive_contains(const primitive *p, vec3 point);
 
 /* The rank of the body whose surface an interface between two ranks is: an opaque body's if either is opaque (the one
  * behind, if both are), else that of the higher rank. */

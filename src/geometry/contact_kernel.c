@@ -2,7 +2,7 @@
  *
  * Two boundaries that a ray crosses at t1 and t2 are in contact when these distances are equal within the boundaries'
  * own error bounds at these crossings: |t1 - t2| <= e1 / cos1 + e2 / cos2. e is the bound on a point's error across its
- * surface (surface_kernel.c); the cosine carries it over to the ray. Nothing else enters: no other solid, no extent of
+ * surface (primitives/kind.h); the cosine carries it over to the ray. Nothing else enters: no other solid, no extent of
  * the scene. The narrowest gap that is seen is therefore e1 + e2, the sum of both surfaces' 16 DBL_EPSILON (|start| +
  * |path| + extent): 2e-14 to 1.4e-13 scene units in the scene of the rod.
  *
@@ -11,6 +11,7 @@
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"
+#include "geometry/primitives/primitive.h"
 
 /* What column k crosses, its error bound along the ray, and how far the solid or copy extends. */
 typedef struct crossing {
@@ -37,7 +38,7 @@ static crossing crossing_of(const arrangement *a, const ray_batch *rays, int i, 
     const uint64_t inside = (uint64_t)leaving << p;
     const ray_batch one = ray_of(rays, i, &inside);
     surface_batch point;
-    KERNEL(surface_points)(&a->primitives[p], &one, &t, p, &point);
+    a->primitives[p].rule->KERNEL_ISA->points(&a->primitives[p], &one, &t, p, &point);
     return (crossing){p, t, point.error[0] / facing(&point, &one), a->primitives[p].extent};
 }
 
@@ -161,8 +162,9 @@ static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k,
     }
     for (int piece = 0; piece < 2 && pieces[piece] >= 0; piece++) {
         const int p = pieces[piece];
-        for (int leaving = 0; leaving < 2; leaving++) {
-            const double t = leaving ? s->out[p][k] : s->in[p][k];
+        for (int end = 0; end < 2 * a->primitives[p].rows; end++) {
+            const bool leaving = end % 2;
+            const double t = leaving ? s->out[p + end / 2][k] : s->in[p + end / 2][k];
             if (side_of(a, rays, s->ray[k], at, p, t, leaving) == 0) {
                 c->t[k] = t;
                 c->crossed[k] = p;
@@ -182,10 +184,15 @@ void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, 
     for (int p = 0; p < a->primitive_count; p++) {
         if (!((s->near[k] & ~meshes) >> p & 1))
             continue;
-        const int entry = side_of(a, rays, i, &at, p, s->in[p][k], false),
-                  exit = side_of(a, rays, i, &at, p, s->out[p][k], true);
-        set_bit(&c->inside_before[k], p, entry < 0 && exit >= 0);
-        set_bit(&c->inside_after[k], p, entry <= 0 && exit > 0);
+        bool before = false, after = false;
+        for (int row = p; row < p + a->primitives[p].rows; row++) {
+            const int entry = side_of(a, rays, i, &at, p, s->in[row][k], false),
+                      exit = side_of(a, rays, i, &at, p, s->out[row][k], true);
+            before |= entry < 0 && exit >= 0;
+            after |= entry <= 0 && exit > 0;
+        }
+        set_bit(&c->inside_before[k], p, before);
+        set_bit(&c->inside_after[k], p, after);
     }
     if (a->meshes)
         merge_meshes(a, rays, k, s, c, &at);

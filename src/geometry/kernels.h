@@ -10,8 +10,6 @@
 /* scratch->in and out of every wanted primitive (a set) for every ray; scratch->slack is not touched. */
 void KERNEL(intervals_of)(const arrangement *a, const ray_batch *rays, uint64_t wanted, ray_scratch *scratch);
 
-void KERNEL(surface_points)(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points);
-
 /* A share of the distance and of the scene geometry's extent: boundaries within it of a crossing are compared with the
  * crossing one by one (contact_kernel.c). It filters and decides nothing: a contact is never wider than half of it. */
 #define BOUNDARY_CLOSE 0x1p-24

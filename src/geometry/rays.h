@@ -12,7 +12,7 @@
 enum { BATCH = 128, LANES_MAX = 8 /* doubles in the widest vector */, ROW = BATCH + LANES_MAX };
 
 /* A computed point may be off by this share of the sum of all magnitudes that it is computed from: see
- * surface_kernel.c. */
+ * primitives/kind.h. */
 #define POINT_ERROR (16.0 * DBL_EPSILON)
 
 /* A view of up to BATCH rays. Directions of rays that look for their nearest interface are unit vectors; a shadow
@@ -60,8 +60,8 @@ typedef struct mesh_scratch {
                            crossed */
 } mesh_scratch;
 
-/* Of convex solids no batch has more. Rays through many meshes may: then what there is is handed over to `full`, which
- * empties the list. */
+/* Of analytic solids no batch has more. Rays through many meshes may: then what there is is handed over to `full`,
+ * which empties the list. */
 enum { STRETCHES_MAX = BATCH * (2 * PRIMITIVES_MAX + 2) };
 
 /* The media that each ray of a batch went through, up to its hit or its light; those of one ray in order. Kept apart
@@ -93,7 +93,7 @@ typedef struct ray_crossings {
     ray_crossing crossings[CROSSINGS_MAX];
 } ray_crossings;
 
-/* Intervals [in, out] by primitive and ray, and what is derived from them. Contents but ways mean nothing between
+/* Intervals [in, out] by row and ray, and what is derived from them. Contents but ways mean nothing between
  * calls. */
 typedef struct ray_scratch {
     double in[PRIMITIVES_MAX][ROW], out[PRIMITIVES_MAX][ROW];

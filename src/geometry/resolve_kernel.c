@@ -11,6 +11,7 @@
 
 #include "base/lanes.h"
 #include "geometry/forest.h"
+#include "geometry/primitives/primitive.h"
 #include <float.h>
 #include <math.h>
 
@@ -95,6 +96,22 @@ ALWAYS_INLINE void sets_around(int n, int first, int many, ray_scratch *restrict
     }
 }
 
+/* The bit of a row of further intervals becomes its primitive's. */
+static void fold_row(const arrangement *a, int row, int n, ray_scratch *restrict s, hit_batch *restrict c)
+{
+    int p = row;
+    while (a->further >> p & 1)
+        p--;
+    const uint64_t bit = (uint64_t)1 << row, keep = ~bit;
+    const int down = row - p;
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        c->inside_before[i] = (c->inside_before[i] & keep) | (c->inside_before[i] & bit) >> down;
+        c->inside_after[i] = (c->inside_after[i] & keep) | (c->inside_after[i] & bit) >> down;
+        s->near[i] = (s->near[i] & keep) | (s->near[i] & bit) >> down;
+    }
+}
+
 /* Constant counts, so that the inner loop unrolls. */
 static void all_sets_around(const arrangement *a, int n, ray_scratch *s, hit_batch *c)
 {
@@ -114,6 +131,8 @@ static void all_sets_around(const arrangement *a, int n, ray_scratch *s, hit_bat
     /* VECTORISE */
     for (int i = 0; i < n; i++)
         s->near[i] &= ~(c->inside_before[i] & c->inside_after[i]);
+    for (uint64_t left = a->further; left; left &= left - 1)
+        fold_row(a, __builtin_ctzll(left), n, s, c);
 }
 
 /* -1 where the body of that rank is opaque: bit rank - 1 of the set. */
@@ -202,6 +221,24 @@ static bool is_interface(const arrangement *a, const ray_batch *rays, int k, ray
     return a->bodies[c->before[k]].medium != a->bodies[c->after[k]].medium;
 }
 
+/* The rows of a primitive of several intervals, behind t: those that are spent give way to the next. */
+static void pass_rows(int first, int rows, bool inside, int k, int m, double t, ray_scratch *s)
+{
+    int spent = 0;
+    while (spent < rows && (inside ? s->out[first + spent][k] : s->in[first + spent][k]) <= t)
+        spent++;
+    const bool leaves_now = inside && spent == rows;
+    for (int j = 0; j < rows; j++) {
+        const bool left = j + spent < rows;
+        s->in[first + j][m] = left ? s->in[first + spent + j][k] : HUGE_VAL;
+        s->out[first + j][m] = left ? s->out[first + spent + j][k] : -HUGE_VAL;
+    }
+    if (inside)
+        s->in[first][m] = -HUGE_VAL;
+    if (leaves_now)
+        s->out[first][m] = t;
+}
+
 /* Column k crosses without effect: what lies behind the crossing becomes column m, to be looked at again. */
 static void pass_on(const arrangement *a, int k, int m, ray_scratch *s, const hit_batch *c, const forest_hit *mesh_hits)
 {
@@ -210,6 +247,12 @@ static void pass_on(const arrangement *a, int k, int m, ray_scratch *s, const hi
     for (int p = 0; p < a->primitive_count; p++) {
         double in = s->in[p][k], out = s->out[p][k];
         const bool endless = is_mesh(a, p);
+        if (a->primitives[p].rows > 1) {
+            const int rows = a->primitives[p].rows;
+            pass_rows(p, rows, set >> p & 1, k, m, t, s);
+            p += rows - 1;
+            continue;
+        }
         bool inside = set >> p & 1, spent = !inside && in <= t;
         s->in[p][m] = inside ? -HUGE_VAL : spent ? HUGE_VAL : in;
         s->out[p][m] = spent ? -HUGE_VAL : inside && out < t ? t : out;
@@ -308,12 +351,13 @@ static void nearest(const arrangement *a, const ray_batch *rays, ray_scratch *s,
         hits->inside_after[i] &= ~a->meshes->skins; /* nothing is ever in a skin */
 }
 
-/* Does the path from 0 to 1 go through the body's matter, whatever hides it? Where the ends of a piece of it lie within
- * the filter's window they may be in contact: then, and where the body is doubtful, it is undecided. */
-static void touching(const arrangement *a, const body *b, bool doubtful, int n, const double *restrict steps,
+/* Does the path from 0 to 1 go through the body's matter in the interval of that row, whatever hides it? Where the ends
+ * of a piece of it lie within the filter's window they may be in contact: then, and where the body is doubtful, it is
+ * undecided. */
+static void touching(const arrangement *a, const body *b, int row, bool doubtful, int n, const double *restrict steps,
                      const ray_scratch *restrict s, int64_t *restrict blocked, int64_t *restrict undecided)
 {
-    const double *restrict in = s->in[b->outside], *restrict out = s->out[b->outside];
+    const double *restrict in = s->in[row], *restrict out = s->out[row];
     const double extent = a->primitives[b->outside].extent;
     const int64_t certain = ~mask_of(doubtful);
     if (b->hollow < 0) {
@@ -378,7 +422,8 @@ static void first_sight(const arrangement *a, const ray_batch *rays, int solid_s
         if (casts && is_mesh(a, b->outside))
             *(doubtful ? &unsure : &sure) |= (uint64_t)1 << b->outside;
         else if (casts)
-            touching(a, b, doubtful, n, s->low, s, s->blocked, s->undecided);
+            for (int k = 0; k < a->primitives[b->outside].rows; k++)
+                touching(a, b, b->outside + k, doubtful, n, s->low, s, s->blocked, s->undecided);
         hidden |= !b->opaque;
     }
     if (sure)
@@ -489,4 +534,9 @@ static void shadow(const arrangement *a, const ray_batch *rays, int solid_shadow
     }
 }
 
-const geometry_kernels KERNEL(geometry_kernels) = {nearest, shadow, KERNEL(surface_points)};
+static void surface(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points)
+{
+    p->rule->KERNEL_ISA->points(p, rays, t, bit, points);
+}
+
+const geometry_kernels KERNEL(geometry_kernels) = {nearest, shadow, surface};

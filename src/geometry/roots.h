@@ -1,5 +1,5 @@
-/* Where a straight line enters and leaves each convex primitive, in the primitive's own frame: the one set of
- * formulas, used by the pass over all rays and again for the face of a hit. No branches; pure.
+/* Where a straight line crosses planes and quadrics in a primitive's own frame: the one set of formulas, used by the
+ * pass over all rays and again for the face of a hit (primitives/). No branches; pure.
  *
  * The root of the face that a ray starts on is zero exactly, not nearly. A component of a direction that
  * is zero is taken as 1e-300, and a line along a cylinder's axis as leaning by 1e-140: the crossings that this makes
@@ -73,22 +73,6 @@ ALWAYS_INLINE double cylinder_dx(double dx, double dz)
 ALWAYS_INLINE double cylinder_axial(double dx, double dz, double m2)
 {
     return dx * dx + m2 * dz * dz;
-}
-
-/* The endless cylinder x^2 + m2 z^2 = radius^2; dx as cylinder_dx gives it, inverse_a = 1/a. The discriminant is
- * a r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does not cancel as b^2 - a c does far from the cylinder. */
-ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, double x, double z, double dx, double dz, double a,
-                                          double inverse_a, int64_t own)
-{
-    double r2 = p->radius * p->radius, cross = x * dz - z * dx;
-    return quadric_cross(x * dx + p->m2 * z * dz, inverse_a, a * r2 - p->m2 * (cross * cross), own);
-}
-
-ALWAYS_INLINE quadric_roots sphere_cross(const primitive *p, local_ray r, int64_t own)
-{
-    vec3 o = vec3_make(r.x, r.y, r.z), d = vec3_make(r.dx, r.dy, r.dz), cross = vec3_cross(o, d);
-    double a = vec3_dot(d, d);
-    return quadric_cross(vec3_dot(o, d), 1.0 / a, a * (p->radius * p->radius) - vec3_dot(cross, cross), own);
 }
 
 #endif

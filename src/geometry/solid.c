@@ -36,8 +36,8 @@ bool shape_has(const shape_rule *rule, const char *parameter)
 
 const char *shape_face_name(const shape_rule *rule, int64_t face)
 {
-    const char *const *names = rule->triangles ? NULL : rule->faces[face >= FACES_MAX];
-    for (int64_t i = face % FACES_MAX; names && i > 0 && names[1]; i--) {
+    const char *const *names = rule->triangles ? NULL : rule->faces[face >= HOLLOW_FACES && rule->primitive_count > 1];
+    for (int64_t i = rule->primitive_count > 1 ? face % HOLLOW_FACES : face; names && i > 0 && names[1]; i--) {
         names++;
     }
     return names ? *names : "surface";

@@ -20,7 +20,10 @@
     X(CUP, cup)           \
     X(BOX, box)           \
     X(SPHERE, sphere)     \
-    X(MESH, mesh)
+    X(MESH, mesh)         \
+    X(TORUS, torus)       \
+    X(CONE, cone)         \
+    X(PRISM, prism)
 
 #define SHAPE_KIND(KIND, file) SHAPE_##KIND,
 typedef enum shape_kind { SHAPES(SHAPE_KIND) SHAPE_COUNT } shape_kind;
@@ -31,6 +34,8 @@ typedef struct solid_shape {
     vec3 position;                                 /* scene units */
     vec3 rotation_deg;                             /* about x, then y, then z */
     double radius, height, m, inner_radius, floor; /* those that kind has; the others are ignored */
+    double tube_radius, top_radius;
+    int64_t sides;
     vec3 size;
     const struct mesh *mesh; /* NULL until it is there */
     vec3 scale;              /* above 0 */

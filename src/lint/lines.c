@@ -1,53 +1,8 @@
 #include "lint/lines.h"
 
-#include "geometry/roots.h"
+#include "geometry/primitives/primitive.h"
 #include <math.h>
 #include <string.h>
-
-typedef struct span_ends {
-    double in, out;
-} span_ends;
-
-static span_ends through_slab(double y, double dy, double low, double high)
-{
-    const slab_roots s = slab_cross(y, inverse_of_component(dy), low, high, 0, 0);
-    return (span_ends){s.in, s.out};
-}
-
-static span_ends through_both(span_ends a, span_ends b)
-{
-    return (span_ends){fmax(a.in, b.in), fmin(a.out, b.out)};
-}
-
-static span_ends through_quadric(quadric_roots q)
-{
-    return q.hit ? (span_ends){q.in, q.out} : (span_ends){HUGE_VAL, -HUGE_VAL};
-}
-
-/* Of a convex primitive; in >= out where it is missed. */
-static span_ends through_primitive(const primitive *p, const line *l)
-{
-    const local_ray r =
-        ray_to_local(p, true, l->origin.x, l->origin.y, l->origin.z, l->direction.x, l->direction.y, l->direction.z);
-    switch (p->kind) {
-    case PRIMITIVE_HALFSPACE: {
-        const double t = -r.y * inverse_of_component(r.dy);
-        return r.dy < 0.0 ? (span_ends){t, HUGE_VAL} : (span_ends){-HUGE_VAL, t};
-    }
-    case PRIMITIVE_CYLINDER: {
-        const double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, p->m2);
-        return through_both(through_quadric(cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, 0)),
-                            through_slab(r.y, r.dy, p->bottom, p->top));
-    }
-    case PRIMITIVE_BOX:
-        return through_both(through_slab(r.x, r.dx, -p->half.x, p->half.x),
-                            through_both(through_slab(r.y, r.dy, -p->half.y, p->half.y),
-                                         through_slab(r.z, r.dz, -p->half.z, p->half.z)));
-    case PRIMITIVE_SPHERE: return through_quadric(sphere_cross(p, r, 0));
-    case PRIMITIVE_MESH: break;
-    }
-    return (span_ends){HUGE_VAL, -HUGE_VAL};
-}
 
 static void add_span(line_spans *s, double in, double out)
 {
@@ -106,7 +61,7 @@ static void sort_spans(line_spans *s)
 {
     for (int i = 1; i < s->count; i++)
         for (int k = i; k > 0 && s->in[k - 1] > s->in[k]; k--) {
-            const span_ends swap = {s->in[k], s->out[k]};
+            const interval swap = {s->in[k], s->out[k]};
             s->in[k] = s->in[k - 1], s->out[k] = s->out[k - 1];
             s->in[k - 1] = swap.in, s->out[k - 1] = swap.out;
         }
@@ -128,16 +83,15 @@ bool line_through(const arrangement *a, const body *b, const line *l, line_spans
 {
     out->count = 0;
     const primitive *p = &a->primitives[b->outside];
-    if (p->kind == PRIMITIVE_MESH)
+    if (!p->rule)
         return through_mesh(&a->meshes->parts[a->meshes->by_primitive[b->outside]], l, out);
-    const span_ends whole = through_primitive(p, l);
-    span_ends hollow = {HUGE_VAL, HUGE_VAL};
-    if (b->hollow >= 0) {
-        hollow = through_primitive(&a->primitives[b->hollow], l);
-        if (!(hollow.in < hollow.out))
-            hollow = (span_ends){HUGE_VAL, HUGE_VAL};
+    interval whole[CHORDS_MAX], hollow[CHORDS_MAX] = {{HUGE_VAL, HUGE_VAL}};
+    const int count = primitive_chords(p, l->origin, l->direction, whole);
+    if (b->hollow >= 0 && primitive_chords(&a->primitives[b->hollow], l->origin, l->direction, hollow) == 0)
+        hollow[0] = (interval){HUGE_VAL, HUGE_VAL};
+    for (int i = 0; i < count; i++) {
+        add_span(out, whole[i].in, fmin(whole[i].out, hollow[0].in));
+        add_span(out, fmax(whole[i].in, hollow[0].out), whole[i].out);
     }
-    add_span(out, whole.in, fmin(whole.out, hollow.in));
-    add_span(out, fmax(whole.in, hollow.out), whole.out);
     return true;
 }

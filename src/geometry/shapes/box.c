@@ -1,6 +1,8 @@
 /* box: |x| <= size.x / 2, |y| <= size.y / 2, |z| <= size.z / 2. Its position is its centre. */
 #include "geometry/shapes/parts.h"
 
+PRIMITIVE_RULE(box);
+
 static status check(const solid_shape *shape, diagnostic *why)
 {
     status code = check_length(shape->size.x, "size.x", why);
@@ -18,7 +20,7 @@ static bool contains(const solid_shape *shape, vec3 p)
 
 static void primitives(const solid_shape *shape, primitive *out)
 {
-    out[0] = primitive_placed(shape, PRIMITIVE_BOX, largest_of(shape->size.x, shape->size.y, shape->size.z));
+    out[0] = primitive_placed(shape, &box_rule, largest_of(shape->size.x, shape->size.y, shape->size.z));
     out[0].half = vec3_scale(shape->size, 0.5);
 }
 

@@ -2,6 +2,8 @@
  * shares with it stands here, too. */
 #include "geometry/shapes/parts.h"
 
+PRIMITIVE_RULE(cylinder);
+
 status cylinder_check(const solid_shape *shape, diagnostic *why)
 {
     status code = check_length(shape->radius, "radius", why);
@@ -19,7 +21,7 @@ bool cylinder_contains(const solid_shape *shape, vec3 p)
 
 primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top)
 {
-    primitive p = primitive_placed(shape, PRIMITIVE_CYLINDER, shape->height + radius);
+    primitive p = primitive_placed(shape, &cylinder_rule, shape->height + radius);
     p.radius = radius;
     p.m2 = shape->m * shape->m;
     p.bottom = bottom;

@@ -33,7 +33,7 @@ static double reach(const solid_shape *shape)
 
 static void primitives(const solid_shape *shape, primitive *out)
 {
-    out[0] = primitive_placed(shape, PRIMITIVE_MESH, reach(shape));
+    out[0] = primitive_placed(shape, NULL, reach(shape));
 }
 
 static vec3 times(vec3 a, vec3 b)

@@ -10,9 +10,9 @@ status check_length(double value, const char *name, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "give a length above 0", "%s is %g", name, value);
 }
 
-primitive primitive_placed(const solid_shape *shape, primitive_kind kind, double reach)
+primitive primitive_placed(const solid_shape *shape, const primitive_rule *rule, double reach)
 {
-    primitive p = {.kind = kind, .origin = shape->position, .m2 = 1.0};
+    primitive p = {.rule = rule, .origin = shape->position, .m2 = 1.0};
     const vec3 r = shape->rotation_deg;
     p.rotation = rotation_from_deg(r);
     p.turned = r.x != 0.0 || r.y != 0.0 || r.z != 0.0;

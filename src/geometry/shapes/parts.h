@@ -4,6 +4,7 @@
 
 #include "geometry/arrangement.h"
 #include "geometry/bodies.h"
+#include "geometry/primitives/primitive.h"
 #include "geometry/shapes/placed.h"
 
 /* A list of words with NULL behind. */
@@ -21,8 +22,8 @@ static inline double largest_of(double a, double b, double c)
     return m > c ? m : c;
 }
 
-/* In the shape's place; reach: how far it extends from its position. */
-primitive primitive_placed(const solid_shape *shape, primitive_kind kind, double reach);
+/* In the shape's place; rule: NULL of a mesh; reach: how far it extends from its position. */
+primitive primitive_placed(const solid_shape *shape, const primitive_rule *rule, double reach);
 /* Of the shape's m. */
 primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top);
 

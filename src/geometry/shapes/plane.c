@@ -1,6 +1,8 @@
 /* plane: the half-space y <= 0. */
 #include "geometry/shapes/parts.h"
 
+PRIMITIVE_RULE(halfspace);
+
 static bool contains(const solid_shape *shape, vec3 p)
 {
     (void)shape;
@@ -9,7 +11,7 @@ static bool contains(const solid_shape *shape, vec3 p)
 
 static void primitives(const solid_shape *shape, primitive *out)
 {
-    out[0] = primitive_placed(shape, PRIMITIVE_HALFSPACE, 0.0);
+    out[0] = primitive_placed(shape, &halfspace_rule, 0.0);
 }
 
 static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)

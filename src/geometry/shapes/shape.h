@@ -64,6 +64,7 @@ typedef struct shape_rule {
     bool (*contains)(const solid_shape *shape, vec3 local);
     /* Writes what the kernels intersect: primitive_count of them, the second one hollows the first one out. */
     int primitive_count;
+    int further_rows; /* how many more than one each of them takes: see geometry/arrangement.h */
     void (*primitives)(const solid_shape *shape, struct primitive *out);
     /* By primitive, names of its faces by their number there; the last one is that of all that follow. */
     const char *const *faces[SHAPE_PRIMITIVES];
@@ -97,7 +98,7 @@ const shape_rule *shape_of_kind(shape_kind kind);
 /* False when there is none. */
 bool shape_named(const char *word, shape_kind *out);
 bool shape_has(const shape_rule *rule, const char *parameter);
-/* "surface" where it has no name. face: of the body, primitive * FACES_MAX + face. */
+/* "surface" where it has no name. face: of the solid, a hollow's from HOLLOW_FACES on. */
 const char *shape_face_name(const shape_rule *rule, int64_t face);
 
 /* A point, as a solid that holds nothing else. */
@@ -107,6 +108,12 @@ placed_shape shape_placed(const solid_shape *shape);
 double shape_reach(const solid_shape *shape, vec3 direction);
 /* The box around it in the world, that of a mesh around its local box; infinite for an unbounded one. */
 bounds3 shape_world_box(const solid_shape *shape);
+
+/* What the shape takes of an arrangement's places, PRIMITIVES_MAX in all. */
+static inline int shape_places(const solid_shape *shape)
+{
+    return shape_of(shape)->primitive_count + shape_of(shape)->further_rows;
+}
 
 #define SHAPE_DECLARED(KIND, file) extern const shape_rule shape_##file;
 SHAPES(SHAPE_DECLARED)

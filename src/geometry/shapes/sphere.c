@@ -3,6 +3,8 @@
 
 #include "base/elementary.h"
 
+PRIMITIVE_RULE(sphere);
+
 static status check(const solid_shape *shape, diagnostic *why)
 {
     return check_length(shape->radius, "radius", why);
@@ -15,7 +17,7 @@ static bool contains(const solid_shape *shape, vec3 p)
 
 static void primitives(const solid_shape *shape, primitive *out)
 {
-    out[0] = primitive_placed(shape, PRIMITIVE_SPHERE, shape->radius);
+    out[0] = primitive_placed(shape, &sphere_rule, shape->radius);
     out[0].radius = shape->radius;
 }
 

@@ -162,8 +162,9 @@ static bool read_hit(const probe *p, ray_node *node)
                    .R = f.R,
                    .tir = f.total != 0,
                    .error_bound = s->error[0]};
-    h->face = is_mesh_face(s->face[0]) ? (int)mesh_face_triangle(s->face[0])
-                                       : (int)(s->face[0] % FACES_MAX) + (crossed == bounded->hollow ? FACES_MAX : 0);
+    h->face = is_mesh_face(s->face[0])
+                  ? (int)mesh_face_triangle(s->face[0])
+                  : (int)(s->face[0] % FACES_MAX) + (crossed == bounded->hollow ? HOLLOW_FACES : 0);
     const double coating = opaque ? 0.0 : material_coating(&t->surface.look->surface, &p->scene->render);
     h->R_s += (1.0 - h->R_s) * coating, h->R_p += (1.0 - h->R_p) * coating, h->R += (1.0 - h->R) * coating;
     if (opaque) {

@@ -11,6 +11,7 @@
  * at 0; numbers by colours that keep apart. */
 #include "render/shade/shading.h"
 
+#include "geometry/shapes/shape.h"
 #include "image/image.h"
 #include <math.h>
 #include <stdlib.h>
@@ -31,7 +32,7 @@ static status prepare(const plan *p, void **frame, diagnostic *why)
         return out_of_memory(why);
     for (int i = 0; i < p->solids->primitive_count; i++) {
         const primitive *one = &p->solids->primitives[i];
-        if (one->kind == PRIMITIVE_HALFSPACE)
+        if (p->solids->further >> i & 1 || shape_of(&p->solids->shapes[one->rank])->unbounded)
             continue;
         sum += vec3_length(vec3_sub(one->origin, p->view.eye));
         count++;

@@ -119,7 +119,7 @@ static void note_hit(tracer *t, int i, const screen_triangle *s, met m)
     h->crossed[i] = p->met;
     h->surface[i] = h->after[i] = surface->rank;
     h->inside_before[i] = m.leaving ? (uint64_t)1 << p->met : 0;
-    if (surface->kind != PRIMITIVE_MESH)
+    if (surface->rule)
         return;
     const int64_t face = mesh_face_number(p->met, s->copy, s->triangle);
     t->meshes->scratch.hit[i] = (forest_hit){m.t, m.u, m.v, face, m.leaving ? FACING_BACK : FACING_FRONT};

@@ -115,7 +115,7 @@ static void cross_surface(tracer *t, int met, straight_rays *s)
     radiance_work *w = t->basic;
     const primitive *surface = &p->solids->primitives[met];
     const ray_batch rays = {s->count, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, s->start, s->inside};
-    if (surface->kind == PRIMITIVE_MESH)
+    if (!surface->rule)
         forest_surface(p->solids->meshes, &rays, s->mesh, p->looks[surface->rank].shading == SHADING_SMOOTH, &w->points,
                        &w->on_mesh);
     else

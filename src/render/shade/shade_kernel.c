@@ -3,6 +3,7 @@
 #include "base/counters.h"
 #include "base/elementary_inline.h"
 #include "base/kernel.h"
+#include "geometry/primitives/primitive.h"
 #include "optics/interface.h"
 #include "render/core/film.h"
 
@@ -40,31 +41,25 @@ static void raise_to(double exponent, int count, double *restrict base)
 
 /* For each flat face of a primitive: which coordinate is constant there, and the one to look up the cell with instead,
  * half a cell inside; of a half-space the surface itself. Rounding across the face must not choose the cell. */
-enum { FLAT_FACES = 6 };
 typedef struct flat_faces {
-    int64_t is_x[FLAT_FACES], is_y[FLAT_FACES], is_z[FLAT_FACES]; /* masks */
-    double at[FLAT_FACES];
+    int64_t face[FLATS_MAX];                                   /* FACE_NONE behind the last */
+    int64_t is_x[FLATS_MAX], is_y[FLATS_MAX], is_z[FLATS_MAX]; /* masks */
+    double at[FLATS_MAX];
 } flat_faces;
 
 static flat_faces flat_faces_of(const primitive *p, double cell)
 {
-    flat_faces f = {{0}, {0}, {0}, {0}};
-    const double half[3] = {p->half.x, p->half.y, p->half.z};
-    switch (p->kind) {
-    case PRIMITIVE_HALFSPACE: f.is_y[0] = -1; break;
-    case PRIMITIVE_CYLINDER:
-        f.is_y[1] = f.is_y[2] = -1;
-        f.at[1] = p->bottom + 0.5 * cell;
-        f.at[2] = p->top - 0.5 * cell;
-        break;
-    case PRIMITIVE_BOX:
-        for (int k = 0; k < FLAT_FACES; k++) {
-            f.is_x[k] = mask_of(k / 2 == 0), f.is_y[k] = mask_of(k / 2 == 1), f.is_z[k] = mask_of(k / 2 == 2);
-            f.at[k] = k % 2 ? half[k / 2] - 0.5 * cell : 0.5 * cell - half[k / 2];
-        }
-        break;
-    case PRIMITIVE_MESH:
-    case PRIMITIVE_SPHERE: break;
+    flat_faces f = {{0}, {0}, {0}, {0}, {0}};
+    flat_face flat[FLATS_MAX];
+    const int count = primitive_flats(p, flat);
+    for (int k = 0; k < FLATS_MAX; k++) {
+        f.face[k] = FACE_NONE;
+        if (k >= count)
+            continue;
+        f.face[k] = p->first_face + flat[k].face;
+        f.is_x[k] = mask_of(flat[k].axis == 0), f.is_y[k] = mask_of(flat[k].axis == 1);
+        f.is_z[k] = mask_of(flat[k].axis == 2);
+        f.at[k] = flat[k].at - flat[k].outwards * (0.5 * cell);
     }
     return f;
 }
@@ -81,13 +76,12 @@ static void color(const material *m, const primitive *p, group *restrict g)
     const vec3 origin = p->origin;
     const mat3 rotation = p->rotation; /* the identity where it is not turned, which changes no bit */
     const double size = m->checker;
-    const int64_t first = p->first_face;
     const flat_faces flat = flat_faces_of(p, size);
     for (int i = 0; i < count; i++) {
         vec3 q = vec3_make(g->points.px[i] - origin.x, g->points.py[i] - origin.y, g->points.pz[i] - origin.z);
         q = mat3_apply_transposed(rotation, q);
-        for (int k = 0; k < FLAT_FACES; k++) {
-            const int64_t here = mask_same(g->points.face[i], first + k);
+        for (int k = 0; k < FLATS_MAX; k++) {
+            const int64_t here = mask_same(g->points.face[i], flat.face[k]);
             q.x = blend(here & flat.is_x[k], flat.at[k], q.x);
             q.y = blend(here & flat.is_y[k], flat.at[k], q.y);
             q.z = blend(here & flat.is_z[k], flat.at[k], q.z);

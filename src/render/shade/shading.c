@@ -338,7 +338,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
     if (p->render.polarisation)
         polarised_gather(t, &t->queues.waiting[depth], first, list);
     const ray_batch rays = {g->padded, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
-    t->surface.on_mesh = surface->kind == PRIMITIVE_MESH;
+    t->surface.on_mesh = !surface->rule;
     if (t->surface.on_mesh)
         mesh_surface(t, rank, list);
     else

@@ -3,44 +3,8 @@
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "base/elementary.h"
-
-static bounds3 box_around(const primitive *p, const arrangement *a)
-{
-    vec3 low, high;
-    const forest_part *part =
-        p->kind == PRIMITIVE_MESH ? &a->meshes->parts[a->meshes->by_primitive[p->first_face / FACES_MAX]] : NULL;
-    switch (p->kind) {
-    case PRIMITIVE_BOX: low = vec3_scale(p->half, -1.0), high = p->half; break;
-    case PRIMITIVE_CYLINDER:
-        high = vec3_make(p->radius, p->top, p->radius / sqrt(p->m2));
-        low = vec3_make(-high.x, p->bottom, -high.z);
-        break;
-    case PRIMITIVE_MESH: {
-        const vec3 s = part->scale,
-                   steps = vec3_make(part->spacing.x * (part->copies[0] - 1), part->spacing.y * (part->copies[1] - 1),
-                                     part->spacing.z * (part->copies[2] - 1));
-        const bounds3 b = part->triangles->bounds;
-        low = vec3_make(b.low.x * s.x + fmin(steps.x, 0.0), b.low.y * s.y + fmin(steps.y, 0.0),
-                        b.low.z * s.z + fmin(steps.z, 0.0));
-        high = vec3_make(b.high.x * s.x + fmax(steps.x, 0.0), b.high.y * s.y + fmax(steps.y, 0.0),
-                         b.high.z * s.z + fmax(steps.z, 0.0));
-        break;
-    }
-    case PRIMITIVE_SPHERE:
-    case PRIMITIVE_HALFSPACE: /* which has none */
-    default:
-        low = vec3_make(-p->radius, -p->radius, -p->radius), high = vec3_make(p->radius, p->radius, p->radius);
-        break;
-    }
-    bounds3 world = {vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL), vec3_make(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL)};
-    for (int k = 0; k < 8; k++) {
-        const vec3 corner = vec3_make(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z);
-        const vec3 at = vec3_add(p->origin, mat3_apply(p->rotation, corner));
-        world.low = vec3_make(fmin(world.low.x, at.x), fmin(world.low.y, at.y), fmin(world.low.z, at.z));
-        world.high = vec3_make(fmax(world.high.x, at.x), fmax(world.high.y, at.y), fmax(world.high.z, at.z));
-    }
-    return world;
-}
+#include "geometry/primitives/primitive.h"
+#include "geometry/shapes/shape.h"
 
 /* Does the box reach below the half-space's plane? */
 static bool dips_into(const primitive *half, bounds3 b)
@@ -51,14 +15,15 @@ static bool dips_into(const primitive *half, bounds3 b)
     return vec3_dot(n, vec3_sub(lowest, half->origin)) <= 0.0;
 }
 
-static bool may_touch(const primitive *p, const primitive *q, const arrangement *a)
+static bool may_touch(const arrangement *a, int rank, int other)
 {
-    if (p->kind == PRIMITIVE_HALFSPACE || q->kind == PRIMITIVE_HALFSPACE) {
-        if (p->kind == q->kind)
-            return true;
-        return p->kind == PRIMITIVE_HALFSPACE ? dips_into(p, box_around(q, a)) : dips_into(q, box_around(p, a));
-    }
-    const bounds3 b = box_around(p, a), c = box_around(q, a);
+    const solid_shape *s = &a->shapes[rank], *t = &a->shapes[other];
+    const bool endless = shape_of(s)->unbounded, other_endless = shape_of(t)->unbounded;
+    if (endless && other_endless)
+        return true;
+    if (endless || other_endless)
+        return dips_into(&a->primitives[a->bodies[endless ? rank : other].outside], shape_world_box(endless ? t : s));
+    const bounds3 b = shape_world_box(s), c = shape_world_box(t);
     return b.low.x <= c.high.x && c.low.x <= b.high.x && b.low.y <= c.high.y && c.low.y <= b.high.y &&
            b.low.z <= c.high.z && c.low.z <= b.high.z;
 }
@@ -68,8 +33,7 @@ static bool is_layered(const arrangement *a, int rank)
     const body *b = &a->bodies[rank];
     bool layered = !b->opaque;
     for (int r = rank + 1; r <= a->body_count && !layered; r++)
-        layered =
-            !a->bodies[r].opaque && may_touch(&a->primitives[b->outside], &a->primitives[a->bodies[r].outside], a);
+        layered = !a->bodies[r].opaque && may_touch(a, rank, r);
     return layered;
 }
 
@@ -102,7 +66,7 @@ static bool eye_in_mesh(const forest_part *p, vec3 eye)
 static bool eye_in(const arrangement *a, const body *b, vec3 eye)
 {
     const primitive *p = &a->primitives[b->outside];
-    if (p->kind != PRIMITIVE_MESH)
+    if (p->rule)
         return primitive_contains(p, eye) && !(b->hollow >= 0 && primitive_contains(&a->primitives[b->hollow], eye));
     const forest_part *part = &a->meshes->parts[a->meshes->by_primitive[b->outside]];
     return part->closed && eye_in_mesh(part, eye);

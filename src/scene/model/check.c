@@ -283,10 +283,11 @@ status check_limits(const scene *s, diagnostic *why)
 {
     size_t primitives = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
-        primitives += (size_t)shape_of(&s->solids[i].shape)->primitive_count;
+        primitives += (size_t)shape_places(&s->solids[i].shape);
     }
     if (primitives > SCENE_PRIMITIVES_MAX) {
-        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64, and a cup counts as two", "more than 64 solids");
+        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64; a cup and a torus count as two",
+                        "more than 64 solids");
     }
     if (s->light_count > SCENE_LIGHTS_MAX) {
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64", "more than 64 lights");

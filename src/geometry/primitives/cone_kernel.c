@@ -1,0 +1,121 @@
+/* The cone or frustum x^2 + z^2 <= w^2, 0 <= y <= top, w = radius + slope y, slope = (second_radius - radius) / top;
+ * second_radius, at the top, may be 0. Faces: 0 side, 1 bottom, 2 top.
+ *
+ * The side is half of a double cone, a t^2 + 2 b t + c <= 0: a line that is less steep than the side (a > 0) is in one
+ * of the halves between its roots, a steeper one in each of them beyond a root. In the half that counts w is above 0.
+ */
+#include "geometry/primitives/kind.h"
+
+static bool is_general(const primitive *p)
+{
+    return p->turned;
+}
+
+ALWAYS_INLINE double cone_slope(const primitive *p)
+{
+    return (p->second_radius - p->radius) / p->top;
+}
+
+/* What the endless side's half holds of a ray; the discriminant is Lagrange's identity for x^2 + z^2 - w^2, and t is
+ * counted from the point nearest to the solid's middle, but on the side itself from the ray's start, where c = 0. */
+ALWAYS_INLINE quadric_roots cone_side(const primitive *p, local_ray r, int64_t own)
+{
+    const double slope = cone_slope(p), dx = cylinder_dx(r.dx, r.dz), dw = slope * r.dy;
+    double up = r.y - 0.5 * p->top;
+    double nearest = -(r.x * r.dx + up * r.dy + r.z * r.dz) / (r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
+    double from = blend(own, 0.0, nearest);
+    double x = r.x + from * dx, z = r.z + from * r.dz, w = p->radius + slope * (r.y + from * r.dy);
+    double a = dx * dx + r.dz * r.dz - dw * dw, b = x * dx + z * r.dz - w * dw;
+    double c = blend(own, 0.0, x * x + z * z - w * w);
+    double mx = x * dw - w * dx, mz = z * dw - w * r.dz, mw = x * r.dz - z * dx;
+    double discriminant = blend(own, b * b, mx * mx + mz * mz - mw * mw);
+    double root = sqrt(greater(discriminant, 0.0));
+    double q = -(b + blend(mask_less(b, 0.0), -root, root));
+    double far = q * inverse_of_component(a), close = c * inverse_of_component(q);
+    double first = lesser(far, close), second = greater(far, close);
+    int64_t steep = mask_less(a, 0.0), opens = mask_less(0.0, dw);
+    int64_t upper = mask_less(0.0, w - dw * (b * inverse_of_component(a))); /* halfway between the roots */
+    quadric_roots s;
+    s.in = from + blend(steep, blend(opens, second, -HUGE_VAL), first);
+    s.out = from + blend(steep, blend(opens, HUGE_VAL, first), second);
+    s.hit = steep | (upper & (own | mask_less(0.0, discriminant)));
+    return s;
+}
+
+ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
+{
+    double *restrict in = s->in[bit], *restrict out = s->out[bit];
+    const int64_t first = p->first_face;
+    /* VECTORISE */
+    for (int i = 0; i < rays->count; i++) {
+        local_ray r =
+            ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        int64_t on_side = mask_same(rays->start[i], first), on_bottom = mask_same(rays->start[i], first + 1),
+                on_top = mask_same(rays->start[i], first + 2);
+        quadric_roots side = cone_side(p, r, on_side);
+        slab_roots caps = slab_cross(r.y, inverse_of_component(r.dy), 0.0, p->top, on_bottom, on_top);
+        double near = greater(side.in, caps.in), far = lesser(side.out, caps.out);
+        store_interval(near, far, side.hit & mask_less(near, far), on_side | on_bottom | on_top,
+                       inside_mask(rays->inside[i], bit), &in[i], &out[i]);
+    }
+}
+
+ROWS_OF(loop)
+
+/* The face by the same comparisons as in the first pass. The side is reached across it; at the apex its normal is the
+ * axis. */
+ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
+{
+    (void)general;
+    const double slope = cone_slope(p), share = 1.0 / (1.0 + slope * slope);
+    double inverse_y = inverse_of_component(r.dy);
+    quadric_roots side = cone_side(p, r, mask_same(at, 0));
+    slab_roots caps = slab_cross(r.y, inverse_y, 0.0, p->top, mask_same(at, 1), mask_same(at, 2));
+    int64_t is_side = blend_int(leaving, ~mask_less_equal(caps.out, side.out), mask_less(caps.in, side.in));
+    int64_t is_top = leaving ^ mask_less(inverse_y, 0.0);
+    double around = sqrt(q.x * q.x + q.z * q.z), inverse = inverse_of_component(around);
+    double ux = q.x * inverse, uz = q.z * inverse, norm = 1.0 / sqrt(ux * ux + uz * uz + slope * slope);
+    double off = (around - (p->radius + slope * q.y)) * share, on = around - off;
+    double cap = blend(is_top, p->top, 0.0), up = blend(is_top, 1.0, -1.0);
+    local_point l;
+    l.point =
+        vec3_make(blend(is_side, ux * on, q.x), blend(is_side, q.y + slope * off, cap), blend(is_side, uz * on, q.z));
+    l.normal =
+        vec3_make(blend(is_side, ux * norm, 0.0), blend(is_side, -slope * norm, up), blend(is_side, uz * norm, 0.0));
+    l.face = p->first_face + blend_int(is_side, 0, blend_int(is_top, 2, 1));
+    return l;
+}
+
+POINTS_OF(point)
+
+static bool contains(const primitive *p, vec3 q)
+{
+    const double w = p->radius + cone_slope(p) * q.y;
+    return q.x * q.x + q.z * q.z <= w * w && q.y >= 0.0 && q.y <= p->top;
+}
+
+static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
+{
+    return one_chord(interval_both(interval_of_quadric(cone_side(p, r, 0)), interval_of_slab(r.y, r.dy, 0.0, p->top)),
+                     found);
+}
+
+static int flats(const primitive *p, flat_face flat[FLATS_MAX])
+{
+    flat[0] = (flat_face){1, 1, 0.0, -1.0};
+    flat[1] = (flat_face){2, 1, p->top, 1.0};
+    return 2;
+}
+
+/* The side once around, with the picture's middle in front, and along its slant; lengths are those of the wider end.
+ * Caps as a cylinder's. */
+static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
+{
+    const double slope = cone_slope(p), slant = sqrt(1.0 + slope * slope);
+    const double r = face == 1 ? p->radius : face == 2 ? p->second_radius : fmax(p->radius, p->second_radius);
+    if (face == 0)
+        return mapping_around(q.x, q.z, r, q.y * slant, p->top * slant, size);
+    return mapping_flat(q.x + r, face == 1 ? r - q.z : q.z + r, 2.0 * r, 2.0 * r, size);
+}
+
+const primitive_functions KERNEL(cone_functions) = {1, rows, points, contains, chords, flats, mapping};

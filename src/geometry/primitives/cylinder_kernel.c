@@ -1,0 +1,98 @@
+/* The cylinder x^2 + m2 z^2 <= radius^2, bottom <= y <= top; top may be infinite, as of a cup's hollow. Faces: 0 side,
+ * 1 bottom, 2 top. */
+#include "geometry/primitives/kind.h"
+
+/* An upright elliptic cylinder is turned by the identity, which changes no bit. */
+static bool is_general(const primitive *p)
+{
+    return p->turned || p->m2 != 1.0;
+}
+
+/* The endless cylinder x^2 + m2 z^2 = radius^2; dx as cylinder_dx gives it, inverse_a = 1/a. The discriminant is
+ * a r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does not cancel as b^2 - a c does far from the cylinder. */
+ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, double x, double z, double dx, double dz, double a,
+                                          double inverse_a, int64_t own)
+{
+    double r2 = p->radius * p->radius, cross = x * dz - z * dx;
+    return quadric_cross(x * dx + p->m2 * z * dz, inverse_a, a * r2 - p->m2 * (cross * cross), own);
+}
+
+ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
+{
+    double *restrict in = s->in[bit], *restrict out = s->out[bit];
+    const int64_t first = p->first_face;
+    /* VECTORISE */
+    for (int i = 0; i < rays->count; i++) {
+        local_ray r =
+            ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        int64_t on_side = mask_same(rays->start[i], first), on_bottom = mask_same(rays->start[i], first + 1),
+                on_top = mask_same(rays->start[i], first + 2);
+        double dx = general ? cylinder_dx(r.dx, r.dz) : s->axial_dx[i];
+        double a = general ? cylinder_axial(dx, r.dz, p->m2) : s->axial[i]; /* upright round cylinders share it */
+        double inverse_a = general ? 1.0 / a : s->inverse_axial[i];
+        double inverse_y = general ? inverse_of_component(r.dy) : s->inverse_y[i];
+        quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, inverse_a, on_side);
+        slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, on_bottom, on_top);
+        double near = greater(side.in, caps.in), far = lesser(side.out, caps.out);
+        store_interval(near, far, side.hit & mask_less(near, far), on_side | on_bottom | on_top,
+                       inside_mask(rays->inside[i], bit), &in[i], &out[i]);
+    }
+}
+
+ROWS_OF(loop)
+
+/* The same comparisons of the same roots as in the first pass: the face is the one that bounded the interval there. */
+ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
+{
+    double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, p->m2), inverse_y = inverse_of_component(r.dy);
+    quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, mask_same(at, 0));
+    slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, mask_same(at, 1), mask_same(at, 2));
+    /* A ray that is in it by its set and misses it by a rounding, past an edge, leaves at once (store_interval), and by
+     * the side: the top of a hollow is nowhere. Its roots are no numbers then. */
+    int64_t is_side = blend_int(leaving, ~mask_less_equal(caps.out, side.out), mask_less(caps.in, side.in));
+    /* in from above or out upwards; -0.0 is downwards, as for the roots */
+    int64_t is_top = leaving ^ mask_less(inverse_y, 0.0);
+    double inverse = 1.0 / sqrt(q.x * q.x + p->m2 * q.z * q.z);
+    double ux = q.x * inverse, uz = q.z * inverse, x = p->radius * ux, z = p->radius * uz;
+    double slope = p->m2 * uz, norm = general ? 1.0 / sqrt(ux * ux + slope * slope) : 1.0;
+    double cap = blend(is_top, p->top, p->bottom), up = blend(is_top, 1.0, -1.0);
+    local_point l;
+    l.point = vec3_make(blend(is_side, x, q.x), blend(is_side, q.y, cap), blend(is_side, z, q.z));
+    l.normal = vec3_make(blend(is_side, ux * norm, 0.0), blend(is_side, 0.0, up), blend(is_side, slope * norm, 0.0));
+    l.face = p->first_face + blend_int(is_side, 0, blend_int(is_top, 2, 1));
+    return l;
+}
+
+POINTS_OF(point)
+
+static bool contains(const primitive *p, vec3 q)
+{
+    return q.x * q.x + p->m2 * q.z * q.z <= p->radius * p->radius && q.y >= p->bottom && q.y <= p->top;
+}
+
+static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
+{
+    const double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, p->m2);
+    return one_chord(interval_both(interval_of_quadric(cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, 0)),
+                                   interval_of_slab(r.y, r.dy, p->bottom, p->top)),
+                     found);
+}
+
+static int flats(const primitive *p, flat_face flat[FLATS_MAX])
+{
+    flat[0] = (flat_face){1, 1, p->bottom, -1.0};
+    flat[1] = (flat_face){2, 1, p->top, 1.0};
+    return 2;
+}
+
+/* A cup's hollow has no top; it is seen from within. */
+static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
+{
+    const double r = p->radius, whole = 2.0 * r;
+    const bool hollow = !(p->top < HUGE_VAL);
+    if (face == 0)
+        return mapping_around(hollow ? -q.x : q.x, q.z, r, q.y - p->bottom, hollow ? whole : p->top - p->bottom, size);
+    return mapping_flat(q.x + r, face == 1 && !hollow ? r - q.z : q.z + r, whole, whole, size);
+}
+
+const primitive_functions KERNEL(cylinder_functions) = {1, rows, points, contains, chords, flats, mapping};

@@ -1,0 +1,63 @@
+/* The half-space y <= 0. Face 0. */
+#include "geometry/primitives/kind.h"
+
+static bool is_general(const primitive *p)
+{
+    return p->turned;
+}
+
+ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
+{
+    double *restrict in = s->in[bit], *restrict out = s->out[bit];
+    const int64_t first = p->first_face;
+    /* VECTORISE */
+    for (int i = 0; i < rays->count; i++) {
+        local_ray r =
+            ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        int64_t own = mask_same(rays->start[i], first);
+        double inverse = general ? inverse_of_component(r.dy) : s->inverse_y[i];
+        double t = blend(own, 0.0, -r.y * inverse);
+        int64_t down = mask_less(inverse, 0.0);
+        store_interval(blend(down, t, -HUGE_VAL), blend(down, HUGE_VAL, t), -1, own, inside_mask(rays->inside[i], bit),
+                       &in[i], &out[i]);
+    }
+}
+
+ROWS_OF(loop)
+
+ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
+{
+    (void)general, (void)r, (void)at, (void)leaving;
+    local_point l = {vec3_make(q.x, 0.0, q.z), vec3_make(0.0, 1.0, 0.0), p->first_face};
+    return l;
+}
+
+POINTS_OF(point)
+
+static bool contains(const primitive *p, vec3 q)
+{
+    (void)p;
+    return q.y <= 0.0;
+}
+
+static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
+{
+    (void)p;
+    const double t = -r.y * inverse_of_component(r.dy);
+    return one_chord(r.dy < 0.0 ? (interval){t, HUGE_VAL} : (interval){-HUGE_VAL, t}, found);
+}
+
+static int flats(const primitive *p, flat_face flat[FLATS_MAX])
+{
+    (void)p;
+    flat[0] = (flat_face){0, 1, 0.0, 0.0};
+    return 1;
+}
+
+static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
+{
+    (void)p, (void)face;
+    return mapping_flat(q.x, q.z, 1.0, 1.0, size);
+}
+
+const primitive_functions KERNEL(halfspace_functions) = {1, rows, points, contains, chords, flats, mapping};

@@ -1,0 +1,163 @@
+/* What the files of the kinds of primitives share: the loops over rays, of which each kind gives the inside.
+ *
+ * Third pass, for the rays that met one primitive: the point, put back exactly on the surface, the normal there, the
+ * face, and a bound on the point's error.
+ *
+ * The bound: local coordinates come out of at most 8 roundings of numbers no larger than the ray's start, the
+ * way t d and the frame's origin; the root's own error moves the point along the ray, and putting it back on the
+ * surface leaves what is across it. 32 half-ulps of the sum of these magnitudes covers it with room to spare (Higham,
+ * Accuracy and Stability of Numerical Algorithms, 3.1: gamma_n), which the tests check against quadruple precision.
+ * Pure; cannot fail. */
+#ifndef CUVETTE_GEOMETRY_PRIMITIVES_KIND_H
+#define CUVETTE_GEOMETRY_PRIMITIVES_KIND_H
+
+#include "geometry/kernels.h"
+#include "geometry/primitives/primitive.h"
+
+static inline interval interval_both(interval a, interval b)
+{
+    return (interval){fmax(a.in, b.in), fmin(a.out, b.out)};
+}
+
+static inline interval interval_of_quadric(quadric_roots q)
+{
+    return q.hit ? (interval){q.in, q.out} : (interval){HUGE_VAL, -HUGE_VAL};
+}
+
+static inline interval interval_of_slab(double y, double dy, double low, double high)
+{
+    const slab_roots s = slab_cross(y, inverse_of_component(dy), low, high, 0, 0);
+    return (interval){s.in, s.out};
+}
+
+/* Of a convex primitive. */
+static inline int one_chord(interval chord, interval chords[CHORDS_MAX])
+{
+    chords[0] = chord;
+    return chord.in < chord.out;
+}
+
+/* The one interval of a convex primitive, as the ray's set and the face that it starts on have it: see
+ * intervals_kernel.c. */
+ALWAYS_INLINE void store_interval(double near, double far, int64_t hit, int64_t own, int64_t inside, double *in,
+                                  double *out)
+{
+    int64_t ahead = hit & ~own & mask_less(0.0, near + far);
+    double outside_in = blend(ahead, greater(near, 0.0), HUGE_VAL), outside_out = blend(ahead, far, -HUGE_VAL);
+    *in = blend(inside, -HUGE_VAL, outside_in);
+    *out = blend(inside, blend(hit, greater(far, 0.0), 0.0), outside_out);
+}
+
+ALWAYS_INLINE int64_t inside_mask(uint64_t set, int shift)
+{
+    return -(int64_t)((set & (uint64_t)1 << shift) != 0);
+}
+
+/* Where a line crosses a primitive that is not convex: an even number of times in all, in order. */
+enum { CROSSINGS_OF_ONE_MAX = 2 * CHORDS_MAX };
+typedef struct crossings_of_one {
+    int count;
+    double t[CROSSINGS_OF_ONE_MAX];
+} crossings_of_one;
+
+/* The crossings ahead of a ray, of those of its line but for that of its own face: an odd number if it is inside, else
+ * an even one. Where it is not so, the set is believed. A ray that starts on another face starts on this surface to
+ * within rounding: the crossing nearest to its start is on the wrong side of it. Of one that starts on this surface the
+ * direction contradicts the set: it leaves at once, or does not enter and passes the matter; unless it grazes the
+ * hollow side of the surface, and a crossing within `grazing` is its own once more, on the wrong side. */
+static inline crossings_of_one crossings_ahead(const crossings_of_one *line, bool own, bool inside, double grazing)
+{
+    int first = 0;
+    while (first < line->count && line->t[first] <= 0.0)
+        first++;
+    crossings_of_one ahead = {0};
+    if ((line->count - first) % 2 != (int)inside) {
+        const double behind = first > 0 ? -line->t[first - 1] : HUGE_VAL;
+        const double next = first < line->count ? line->t[first] : HUGE_VAL;
+        const bool now = !own ? behind <= next : inside ? next > grazing : behind <= grazing;
+        if (now)
+            ahead.t[ahead.count++] = 0.0; /* it crosses there and then */
+        else
+            first++; /* that is behind it */
+    }
+    for (int k = first; k < line->count; k++)
+        ahead.t[ahead.count++] = line->t[k];
+    return ahead;
+}
+
+/* The intervals ahead, by rows. */
+static inline void store_rows(const crossings_of_one *ahead, bool inside, int bit, int i, ray_scratch *s)
+{
+    int next = 0;
+    for (int row = bit; row < bit + CHORDS_MAX; row++) {
+        s->in[row][i] = row == bit && inside ? -HUGE_VAL : next < ahead->count ? ahead->t[next++] : HUGE_VAL;
+        s->out[row][i] = next < ahead->count ? ahead->t[next++] : -HUGE_VAL;
+    }
+}
+
+typedef struct local_point {
+    vec3 point, normal; /* the normal leads outwards */
+    int64_t face;
+} local_point;
+
+/* q, where r is at t, put back on the surface; at: the face that r starts on, from 0. */
+typedef local_point point_function(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving);
+
+/* Of ray i. */
+ALWAYS_INLINE void store_point(const primitive *p, point_function *put_back, bool general, const ray_batch *rays,
+                               const double *__restrict t, int i, int bit, surface_batch *__restrict s)
+{
+    local_ray r =
+        ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+    vec3 d = vec3_make(r.dx, r.dy, r.dz), o = vec3_make(r.x, r.y, r.z), way = vec3_scale(d, t[i]), q = vec3_add(o, way);
+    int64_t at = rays->start[i] - p->first_face, leaving = -(int64_t)((rays->inside[i] & (uint64_t)1 << bit) != 0);
+    local_point l = put_back(p, general, r, q, at, leaving);
+    double side = blend(leaving, -1.0, 1.0); /* the normal faces the ray */
+    vec3 n = vec3_scale(l.normal, side), point = l.point;
+    double cosine = -vec3_dot(d, n);
+    double size =
+        magnitude(o.x) + magnitude(o.y) + magnitude(o.z) + magnitude(way.x) + magnitude(way.y) + magnitude(way.z);
+    if (general) {
+        n = mat3_apply(p->rotation, n);
+        point = mat3_apply(p->rotation, point);
+    }
+    s->px[i] = point.x + p->origin.x;
+    s->py[i] = point.y + p->origin.y;
+    s->pz[i] = point.z + p->origin.z;
+    s->nx[i] = n.x;
+    s->ny[i] = n.y;
+    s->nz[i] = n.z;
+    s->cos_i[i] = lesser(greater(cosine, DBL_MIN), 1.0);
+    s->error[i] = POINT_ERROR * (size + p->extent);
+    s->face[i] = l.face;
+}
+
+ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool general, const ray_batch *rays,
+                             const double *__restrict t, int bit, surface_batch *__restrict s)
+{
+    /* VECTORISE */
+    for (int i = 0; i < rays->count; i++)
+        store_point(p, put_back, general, rays, t, i, bit, s);
+}
+
+/* Defines `name`(p, ...) by body(p, ..., general, ...): the body is compiled for both answers of is_general, whether
+ * rays must be turned into the primitive's frame, or it is scaled. It works on a copy, which no store can alias. */
+#define ROWS_OF(body)                                                                               \
+    static void rows(const primitive *__restrict p, int bit, const ray_batch *rays, ray_scratch *s) \
+    {                                                                                               \
+        if (is_general(p))                                                                          \
+            body(p, true, bit, rays, s);                                                            \
+        else                                                                                        \
+            body(p, false, bit, rays, s);                                                           \
+    }
+#define POINTS_OF(point)                                                                               \
+    static void points(const primitive *__restrict p, const ray_batch *rays, const double *t, int bit, \
+                       surface_batch *met)                                                             \
+    {                                                                                                  \
+        if (is_general(p))                                                                             \
+            points_on(p, point, true, rays, t, bit, met);                                              \
+        else                                                                                           \
+            points_on(p, point, false, rays, t, bit, met);                                             \
+    }
+
+#endif

@@ -1,0 +1,65 @@
+/* The sphere x^2 + y^2 + z^2 <= radius^2. Face 0. */
+#include "geometry/primitives/kind.h"
+
+/* It is turned for its textures alone. */
+static bool is_general(const primitive *p)
+{
+    (void)p;
+    return false;
+}
+
+ALWAYS_INLINE quadric_roots sphere_cross(const primitive *p, local_ray r, int64_t own)
+{
+    vec3 o = vec3_make(r.x, r.y, r.z), d = vec3_make(r.dx, r.dy, r.dz), cross = vec3_cross(o, d);
+    double a = vec3_dot(d, d);
+    return quadric_cross(vec3_dot(o, d), 1.0 / a, a * (p->radius * p->radius) - vec3_dot(cross, cross), own);
+}
+
+ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
+{
+    double *restrict in = s->in[bit], *restrict out = s->out[bit];
+    const int64_t first = p->first_face;
+    (void)general;
+    /* VECTORISE */
+    for (int i = 0; i < rays->count; i++) {
+        local_ray r =
+            ray_to_local(p, false, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        int64_t own = mask_same(rays->start[i], first);
+        quadric_roots q = sphere_cross(p, r, own);
+        store_interval(q.in, q.out, q.hit, own, inside_mask(rays->inside[i], bit), &in[i], &out[i]);
+    }
+}
+
+ROWS_OF(loop)
+
+ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
+{
+    (void)general, (void)r, (void)at, (void)leaving;
+    double inverse = 1.0 / vec3_length(q);
+    local_point l;
+    l.normal = vec3_scale(q, inverse);
+    l.point = vec3_scale(l.normal, p->radius);
+    l.face = p->first_face;
+    return l;
+}
+
+POINTS_OF(point)
+
+static bool contains(const primitive *p, vec3 q)
+{
+    return vec3_dot(q, q) <= p->radius * p->radius;
+}
+
+static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
+{
+    return one_chord(interval_of_quadric(sphere_cross(p, r, 0)), found);
+}
+
+static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
+{
+    (void)face;
+    const double latitude = 90.0 + elementary_atan2_deg(q.y, sqrt(q.x * q.x + q.z * q.z)), r = p->radius;
+    return mapping_around(q.x, q.z, r, latitude / 180.0 * 3.141592653589793 * r, 3.141592653589793 * r, size);
+}
+
+const primitive_functions KERNEL(sphere_functions) = {1, rows, points, contains, chords, NULL, mapping};

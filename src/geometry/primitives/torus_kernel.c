@@ -1,0 +1,221 @@
+/* The torus (sqrt(x^2 + z^2) - radius)^2 + y^2 <= second_radius^2 around local y; second_radius, of the tube, is the
+ * smaller one. Face 0.
+ *
+ * With rho = sqrt(x^2 + z^2), R = radius and r = second_radius, a line o + t d crosses it at the roots of the quartic
+ * (|p|^2 + R^2 - r^2)^2 - 4 R^2 rho^2 = D ((rho + R)^2 + y^2 - r^2), D = (rho - R)^2 + y^2 - r^2, whose second factor
+ * is above 0. Between two roots lies a zero of the derivative: a cubic, without a square term where t is counted from
+ * the point nearest to the centre, whose own derivative has known zeros. So signs between known points tell where the
+ * roots are. The signs are those of D, which rounds as lengths do and not as their fourth powers: a root is as exact as
+ * D.
+ *
+ * Of a ray that starts on the surface D / t takes D's place: with D(0) = 0 for exact it is a sum of terms that need no
+ * division by t, and the root of the ray's own face is gone. */
+#include "geometry/primitives/kind.h"
+
+static bool is_general(const primitive *p)
+{
+    return p->turned;
+}
+
+/* Counted from its base: its point nearest to the torus's centre, or, on the surface, the ray's start. */
+typedef struct torus_line {
+    double R, r;
+    local_ray base;
+    double from;          /* t of the base */
+    double rho, rises;    /* at the base: rho, and half the derivative of rho^2 */
+    double across2;       /* dx^2 + dz^2 */
+    bool own;             /* the base is on the surface, and that root is not sought */
+    double near;          /* within this of the base, D / t is computed by its terms */
+    double least;         /* a step that is none */
+    double middle;        /* the point nearest to the centre, from the base */
+    double cubic, square; /* the derivative is s^3 + cubic s + square, but for a factor, s from the middle */
+} torus_line;
+
+typedef double torus_value(const torus_line *l, double t);
+
+/* D, or D / t. */
+static double torus_depth(const torus_line *l, double t)
+{
+    const local_ray *o = &l->base;
+    const double x = o->x + t * o->dx, y = o->y + t * o->dy, z = o->z + t * o->dz;
+    const double rho = sqrt(x * x + z * z), apart = rho - l->R;
+    if (l->own && magnitude(t) < l->near) {
+        const double sum = rho + l->rho;
+        return (2.0 * l->rises + t * l->across2) * ((sum - 2.0 * l->R) / sum) + o->dy * (2.0 * o->y + t * o->dy);
+    }
+    const double depth = (apart * apart + y * y) - l->r * l->r;
+    return l->own ? depth / t : depth;
+}
+
+static double torus_slope(const torus_line *l, double s)
+{
+    return (s * s + l->cubic) * s + l->square;
+}
+
+/* A zero between a and b, where the value's signs differ: false position in the Illinois variant (Dowell and Jarratt,
+ * BIT 11, 1971), with a bisection now and then, until a step is but a rounding. */
+static double zero_between(torus_value *value, const torus_line *l, double a, double b, double at_a, double at_b)
+{
+    double last = a;
+    int kept = 0; /* the end that the last step kept: -1 a, 1 b */
+    for (int step = 1; step < 200; step++) {
+        double t = step % 8 ? a + (b - a) * (at_a / (at_a - at_b)) : 0.5 * (a + b);
+        if (!(t > a && t < b))
+            t = 0.5 * (a + b);
+        const double here = value(l, t);
+        if (here == 0.0 || magnitude(t - last) <= l->least + 0x1p-53 * magnitude(t))
+            return t;
+        last = t;
+        if ((here < 0.0) == (at_a < 0.0)) {
+            a = t, at_a = here;
+            at_b *= kept == 1 ? 0.5 : 1.0;
+            kept = 1;
+        } else {
+            b = t, at_b = here;
+            at_a *= kept == -1 ? 0.5 : 1.0;
+            kept = -1;
+        }
+    }
+    return last;
+}
+
+/* Zeros of the value between the given points, which lie in order and apart: at most one between two neighbours. */
+static int zeros_between(torus_value *value, const torus_line *l, const double *points, int count, double *zeros)
+{
+    int found = 0;
+    double before = value(l, points[0]);
+    for (int k = 1; k < count; k++) {
+        const double here = value(l, points[k]);
+        if ((before < 0.0) != (here < 0.0))
+            zeros[found++] = zero_between(value, l, points[k - 1], points[k], before, here);
+        before = here;
+    }
+    return found;
+}
+
+/* Ascending points strictly between low and high are put between these two. */
+static int points_within(double low, double high, const double *given, int count, double *points)
+{
+    int n = 0;
+    points[n++] = low;
+    for (int k = 0; k < count; k++)
+        if (given[k] > points[n - 1] && given[k] < high)
+            points[n++] = given[k];
+    points[n++] = high;
+    return n;
+}
+
+/* Where the line comes near: within a ball and a slab a little larger than the torus. middle: the ray at the point
+ * nearest to the centre. */
+static bool torus_reach(const primitive *p, local_ray middle, double length2, double *low, double *high)
+{
+    const double whole = p->radius + p->second_radius, thick = 1.125 * p->second_radius;
+    const vec3 q = vec3_make(middle.x, middle.y, middle.z);
+    const double half2 = (1.25 * whole * whole - vec3_dot(q, q)) / length2;
+    if (!(half2 > 0.0))
+        return false;
+    const double half = sqrt(half2);
+    const slab_roots slab = slab_cross(middle.y, inverse_of_component(middle.dy), -thick, thick, 0, 0);
+    *low = greater(-half, slab.in);
+    *high = lesser(half, slab.out);
+    return *low < *high;
+}
+
+static local_ray moved(local_ray r, double t)
+{
+    return (local_ray){r.x + t * r.dx, r.y + t * r.dy, r.z + t * r.dz, r.dx, r.dy, r.dz};
+}
+
+/* Where r's line crosses the torus, but for the root of the face that r starts on. */
+static crossings_of_one torus_cross(const primitive *p, local_ray r, bool own)
+{
+    crossings_of_one found = {0};
+    const double R = p->radius, r2 = p->second_radius * p->second_radius;
+    const vec3 d = vec3_make(r.dx, r.dy, r.dz);
+    const double length2 = vec3_dot(d, d), middle = -vec3_dot(vec3_make(r.x, r.y, r.z), d) / length2;
+    const local_ray m = moved(r, middle);
+    double low, high;
+    if (!torus_reach(p, m, length2, &low, &high))
+        return found;
+    const double inverse = 1.0 / length2, across2 = d.x * d.x + d.z * d.z;
+    const double least = (m.x * m.x + m.y * m.y + m.z * m.z) + R * R - r2;
+    torus_line l = {.R = R,
+                    .r = p->second_radius,
+                    .base = own ? r : m,
+                    .from = own ? 0.0 : middle,
+                    .across2 = across2,
+                    .own = own,
+                    .near = p->second_radius * sqrt(inverse),
+                    .least = 0x1p-55 * R * sqrt(inverse),
+                    .middle = own ? middle : 0.0,
+                    .cubic = (least - 2.0 * R * R * (across2 * inverse)) * inverse,
+                    .square = -2.0 * R * R * ((m.x * d.x + m.z * d.z) * inverse) * inverse};
+    l.rho = sqrt(l.base.x * l.base.x + l.base.z * l.base.z);
+    l.rises = l.base.x * d.x + l.base.z * d.z;
+    double turn[2], points[5], flat[3];
+    turn[1] = l.cubic < 0.0 ? sqrt(-l.cubic / 3.0) : 0.0, turn[0] = -turn[1];
+    const int flats = zeros_between(torus_slope, &l, points, points_within(low, high, turn, 2, points), flat);
+    for (int k = 0; k < flats; k++)
+        flat[k] += l.middle;
+    const int ends = points_within(low + l.middle, high + l.middle, flat, flats, points);
+    found.count = zeros_between(torus_depth, &l, points, ends, found.t);
+    for (int k = 0; k < found.count; k++)
+        found.t[k] += l.from;
+    return found;
+}
+
+/* Few rays meet a torus: a loop over all of them at once would do for each what is needed for few. */
+static void rows(const primitive *p, int bit, const ray_batch *rays, ray_scratch *s)
+{
+    for (int i = 0; i < rays->count; i++) {
+        const bool inside = rays->inside[i] >> bit & 1, own = rays->start[i] == p->first_face;
+        const local_ray r =
+            ray_to_local(p, p->turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        const crossings_of_one line = torus_cross(p, r, own);
+        const double length = sqrt(r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
+        const crossings_of_one ahead = crossings_ahead(&line, own, inside, 0x1p-20 * p->second_radius / length);
+        store_rows(&ahead, inside, bit, i, s);
+    }
+}
+
+ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
+{
+    (void)general, (void)r, (void)at, (void)leaving;
+    double rho = sqrt(q.x * q.x + q.z * q.z), inverse = 1.0 / rho, apart = rho - p->radius;
+    double outwards = 1.0 / sqrt(apart * apart + q.y * q.y);
+    double ux = q.x * inverse, uz = q.z * inverse, across = apart * outwards;
+    double ring = p->radius + p->second_radius * across;
+    local_point l;
+    l.normal = vec3_make(ux * across, q.y * outwards, uz * across);
+    l.point = vec3_make(ux * ring, p->second_radius * l.normal.y, uz * ring);
+    l.face = p->first_face;
+    return l;
+}
+
+POINTS_OF(point)
+
+static bool contains(const primitive *p, vec3 q)
+{
+    const double apart = sqrt(q.x * q.x + q.z * q.z) - p->radius;
+    return apart * apart + q.y * q.y <= p->second_radius * p->second_radius;
+}
+
+static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
+{
+    const crossings_of_one line = torus_cross(p, r, false);
+    for (int k = 0; k < line.count / 2; k++)
+        found[k] = (interval){line.t[2 * k], line.t[2 * k + 1]};
+    return line.count / 2;
+}
+
+/* Once around, with the picture's middle in front, and once around the tube, with its middle on the outermost circle;
+ * lengths are those of the circle in the tube's middle and of the tube's own. */
+static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
+{
+    (void)face;
+    const double apart = sqrt(q.x * q.x + q.z * q.z) - p->radius, arc = 6.283185307179586 * p->second_radius;
+    const double turn = 0.5 + elementary_atan2_deg(q.y, apart) / 360.0;
+    return mapping_around(q.x, q.z, p->radius, turn * arc, arc, size);
+}
+
+const primitive_functions KERNEL(torus_functions) = {2, rows, points, contains, chords, NULL, mapping};
