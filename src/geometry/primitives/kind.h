@@ -70,7 +70,7 @@ static inline crossings_of_one crossings_ahead(const crossings_of_one *line, boo
     int first = 0;
     while (first < line->count && line->t[first] <= 0.0)
         first++;
-    crossings_of_one ahead = {0};
+    crossings_of_one ahead = {0, {0.0}};
     if ((line->count - first) % 2 != (int)inside) {
         const double behind = first > 0 ? -line->t[first - 1] : HUGE_VAL;
         const double next = first < line->count ? line->t[first] : HUGE_VAL;
