@@ -96,7 +96,7 @@ static inline int reference_roots(const quad *c, int degree, quad low, quad high
             for (int i = degree - 1; i > 0; i--)
                 fall = fall * t + i * c[i];
             const quad next = step % 3 == 2 || fall == 0 ? (a + b) / 2 : t - here / fall;
-            if (next == t)
+            if (quad_abs(next - t) <= (quad)1e-32 * (1 + quad_abs(t)))
                 break;
             t = next > a && next < b ? next : (a + b) / 2;
         }
