@@ -304,7 +304,7 @@ bad_scene "an alias" ":1:" 'render: &a {width: 8}\ncamera: *a\n'
 bad_scene "binary" "" '\x00\x01\x02\xff'
 bad_scene "not closed" ":" 'render: {width: 8\n'
 bad_scene "a key twice" ":1:" 'render: {width: 8, width: 9}\n'
-bad_scene "unknown shape" ":2:" 'solids:\n  a: {shape: torus}\n'
+bad_scene "unknown shape" ":2:" 'solids:\n  a: {shape: moebius}\n'
 bad_scene "a material that is not there" ":2:" 'solids:\n  a: {shape: box, material: gold}\n'
 bad_scene "a list instead of a map" ":1:" '- a\n- b\n'
 bad_study() { # WHAT PATTERN TEXT

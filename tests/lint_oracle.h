@@ -10,7 +10,7 @@
 #include "solid_reference.h"
 #include "scene/model/scene.h"
 
-enum { ORACLE_CROSSINGS_MAX = 512, ORACLE_LINES = 2000 };
+enum { ORACLE_CROSSINGS_MAX = 512, ORACLE_LINES = 4000 };
 
 typedef struct oracle {
     const scene *s;
@@ -125,13 +125,14 @@ static inline ball ball_of(const solid *x)
     return ball_around(&s);
 }
 
-/* A corner, or a point of a rim, a little inside: what is there alone is met by few lines through the whole. */
+/* A corner, or a point of an edge or a rim, a little inside: what is there alone is met by few lines through the whole. */
 static inline vec3 oracle_corner(oracle *o, const solid *x)
 {
     const solid_shape *s = &x->shape;
     const mesh *m = oracle_mesh(o, x);
-    const double in = 1.0 - 0.02 * random_real(&o->seed, 0.0, 1.0),
-                 turn = random_real(&o->seed, 0.0, 360.0) * M_PI / 180.0;
+    const double depth = random_real(&o->seed, 0.0, 1.0),
+                 in = 1.0 - 0.02 * (random_below(&o->seed, 2) ? depth : depth * depth * depth);
+    const double turn = random_real(&o->seed, 0.0, 360.0) * M_PI / 180.0;
     const vec3 half = vec3_scale(s->size, 0.5 * in);
     vec3 p = {0.0, 0.0, 0.0};
     if (m) {
@@ -146,6 +147,20 @@ static inline vec3 oracle_corner(oracle *o, const solid *x)
                       in * s->radius * sin(turn) / s->m);
     else if (s->kind == SHAPE_SPHERE)
         p = vec3_scale(random_direction(&o->seed), in * s->radius);
+    else if (s->kind == SHAPE_PRISM) { /* an edge along the axis, or a corner */
+        const double corner = 2.0 * M_PI * random_below(&o->seed, (int)s->sides) / (double)s->sides;
+        const double share =
+            random_below(&o->seed, 2) ? random_real(&o->seed, 0.0, 1.0) : (random_below(&o->seed, 2) ? in : 1.0 - in);
+        p = vec3_make(in * s->radius * sin(corner), share * s->height, -in * s->radius * cos(corner));
+    } else if (s->kind == SHAPE_CONE) {
+        const bool top = random_below(&o->seed, 2);
+        const double radius = in * (top ? s->top_radius : s->radius);
+        p = vec3_make(radius * cos(turn), (top ? in : 1.0 - in) * s->height, radius * sin(turn));
+    } else if (s->kind == SHAPE_TORUS) {
+        const double around = random_real(&o->seed, 0.0, 2.0 * M_PI);
+        const double away = s->radius + in * s->tube_radius * cos(around);
+        p = vec3_make(away * cos(turn), in * s->tube_radius * sin(around), away * sin(turn));
+    }
     return vec3_add(s->position, mat3_apply(rotation_from_deg(s->rotation_deg), p));
 }
 

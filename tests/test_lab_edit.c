@@ -384,7 +384,7 @@ static void test_others_come(void **state)
     film(r, hash);
     assert_string_not_equal(hash, next);
     static const char *const bad[] = {"{\"kind\": \"solid\"}",
-                                      "{\"kind\": \"solid\", \"shape\": \"cone\"}",
+                                      "{\"kind\": \"solid\", \"shape\": \"moebius\"}",
                                       "{\"kind\": \"cloud\"}",
                                       "{}",
                                       "{\"kind\": 1}",

@@ -63,7 +63,7 @@ static walks walk_about(int trials, uint64_t seed, bool on_a_grid)
 static void rooms_with_meshes_agree_with_brute_force(void **state)
 {
     (void)state;
-    const walks sum = walk_about(400, 41, false);
+    const walks sum = walk_about(440, 41, false);
     assert_true(sum.interfaces > 8000 && sum.seen_meshes > 3000 && sum.skipped < 200);
 }
 
