@@ -333,18 +333,22 @@ static void test_paths_of_parameters(void **state)
 static void test_each_solid_comes_and_shows(void **state)
 {
     const room *r = *state;
-    static const char *const shapes[] = {"plane", "cylinder", "cup", "box", "sphere", "mesh"};
+    static const char *const shapes[] = {"torus", "cone", "prism", "plane", "cylinder", "cup", "box", "sphere", "mesh"};
+    enum { ALONE = 3 }; /* so many of them go again: nine at one place would hide one another */
     char before[64], after[64], word[64];
     film(r, before);
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         char *body = text_format("{\"kind\": \"solid\", \"shape\": \"%s\"}", shapes[i]);
         json_t *reply = ask(r, 200, "POST", "/api/objects", body);
         const char *name = json_string_value(json_object_get(reply, "name"));
-        assert_string_equal(name, strcmp(shapes[i], "mesh") == 0 ? "torus" : shapes[i]);
+        assert_string_equal(name, strcmp(shapes[i], "mesh") == 0 ? "ring" : shapes[i]);
         assert_string_equal(word_of(r, name, "shape", word), shapes[i]);
         film(r, after);
         assert_string_not_equal(before, after);
-        memcpy(before, after, sizeof before);
+        if (i < ALONE)
+            tell(r, 200, "POST", "/api/undo", "{}");
+        else
+            memcpy(before, after, sizeof before);
         json_decref(reply);
         free(body);
     }

@@ -138,7 +138,8 @@ export const cases = {
     const screen = await t.open(lab);
     await screen.showPanel('Objects');
     const first = await names(lab);
-    for (const shape of ['Box', 'Sphere', 'Cylinder', 'Cup', 'Plane', 'Torus', 'Light', 'Material']) {
+    const added = ['Box', 'Sphere', 'Cylinder', 'Cup', 'Plane', 'Torus', 'Cone', 'Prism', 'Mesh', 'Light', 'Material'];
+    for (const shape of added) {
       const known = await names(lab);
       const { trouble } = await change(screen, () =>
         screen.page

@@ -130,7 +130,6 @@ const shape_rule shape_mesh = {
     .word = "mesh",
     .meaning = "the triangles of a mesh, each axis times scale, as often as copies says, spacing apart; its "
                "position is the mesh's origin",
-    .added_as = "torus",
     .parameters = WORDS("mesh", "scale", "copies", "spacing", "shading"),
     .triangles = true,
     .check = check,

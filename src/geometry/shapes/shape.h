@@ -46,7 +46,6 @@ typedef struct round_frame {
 typedef struct shape_rule {
     const char *word;              /* in files: "cylinder" */
     const char *meaning;           /* one line for the manual, in its own frame, no full stop */
-    const char *added_as;          /* what a new one is called; NULL: by its word */
     const char *const *parameters; /* of the parameter table, those that it has and not every solid, with NULL behind;
                                     * NULL for none */
 

@@ -73,9 +73,8 @@ static json_t *shapes_json(void)
     json_t *list = json_array();
     const shape_rule *rule;
     for (int k = 0; (rule = shape_of_kind((shape_kind)k)); k++)
-        json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:b}", "shape", rule->word, "meaning", rule->meaning,
-                                              "added_as", rule->added_as ? rule->added_as : rule->word, "unbounded",
-                                              (int)rule->unbounded));
+        json_array_append_new(list, json_pack("{s:s,s:s,s:b}", "shape", rule->word, "meaning", rule->meaning,
+                                              "unbounded", (int)rule->unbounded));
     return list;
 }
 

@@ -38,8 +38,8 @@ function shapeButtons(lab) {
   const node = element('div', { class: 'buttons', role: 'group', 'aria-label': 'Add a solid' });
   const fill = () => {
     if (node.firstChild || !lab.scene) return;
-    for (const { shape, meaning, added_as: name } of lab.scene.shapes) {
-      const label = name[0].toUpperCase() + name.slice(1);
+    for (const { shape, meaning } of lab.scene.shapes) {
+      const label = shape[0].toUpperCase() + shape.slice(1);
       node.append(button(label, () => choice.add({ kind: 'solid', shape }), { small: true, title: meaning }));
     }
   };

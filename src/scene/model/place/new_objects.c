@@ -141,7 +141,7 @@ static status add_mesh_solid(scene *s, const char *solid_name, object_name mesh_
     return code;
 }
 
-static status new_torus(scene *s, const char *name, const spot *where, diagnostic *why)
+static status new_mesh(scene *s, const char *name, const spot *where, diagnostic *why)
 {
     object_name mesh_name;
     const vec3 low = spot_free(s, where, where->size);
@@ -159,11 +159,11 @@ status new_solid(scene *s, shape_kind shape, const char *wanted, object_name nam
     const spot where = spot_of(s);
     const size_t count = s->solid_count;
     const shape_rule *rule = shape_of_kind(shape);
-    status code = name_for(s, wanted, rule->added_as ? rule->added_as : rule->word, name, why);
+    status code = name_for(s, wanted, rule->triangles ? "ring" : rule->word, name, why);
     if (code != STATUS_OK)
         return code;
     if (rule->triangles) {
-        code = new_torus(s, name, &where, why);
+        code = new_mesh(s, name, &where, why);
     } else if ((code = scene_add_solid(s, name, shape, NULL, why)) == STATUS_OK) {
         s->solids[s->solid_count - 1].visible = 0; /* it is not in its own way */
         if (rule->unbounded)
