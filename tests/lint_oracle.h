@@ -125,7 +125,8 @@ static inline ball ball_of(const solid *x)
     return ball_around(&s);
 }
 
-/* A corner, or a point of an edge or a rim, a little inside: what is there alone is met by few lines through the whole. */
+/* A corner, or a point of an edge or a rim, a little inside: what is there alone is met by few lines through the
+ * whole. */
 static inline vec3 oracle_corner(oracle *o, const solid *x)
 {
     const solid_shape *s = &x->shape;
