@@ -1,6 +1,5 @@
 /* A slime that is taken hold of under a pixel, drawn aside and let go, by the engine alone: five moments side by side
  * in a PPM on standard output, and what became of the slime on standard error.
- *
  *   cc -o slime slime.c $(pkg-config --cflags --libs cuvette) && ./slime >slime.ppm */
 #include <cuvette.h>
 #include <stdio.h>

@@ -134,6 +134,7 @@ typedef struct form_reading {
     void *request;
     size_t words;
     diagnostic *why;
+    status wrong; /* what EINVAL stands for */
 } form_reading;
 
 static error_t take_word(form_reading *reading, const char *word, struct argp_state *state)
@@ -161,15 +162,18 @@ static error_t take_key(int key, char *value, struct argp_state *state)
     if (key == ARGP_KEY_ARG)
         return take_word(reading, value, state);
     for (const command_option *o = reading->form->options; o && o->name; o++)
-        if (key == o->letter || key == KEY_FIRST + (int)(o - reading->form->options))
-            return o->take(o, reading->request, value, reading->why) == STATUS_OK ? 0 : EINVAL;
+        if (key == o->letter || key == KEY_FIRST + (int)(o - reading->form->options)) {
+            const status taken = o->take(o, reading->request, value, reading->why);
+            reading->wrong = taken == STATUS_OK ? reading->wrong : taken;
+            return taken == STATUS_OK ? 0 : EINVAL;
+        }
     return ARGP_ERR_UNKNOWN;
 }
 
 status command_form_read(const command_form *form, int argc, char **argv, void *request, diagnostic *why)
 {
     struct argp_option options[OPTIONS_MAX + 1] = {{0}};
-    form_reading reading = {form, argv[0], request, 0, why};
+    form_reading reading = {form, argv[0], request, 0, why, STATUS_BAD_INPUT};
     const unsigned flags = form->ends_at_word ? ARGP_IN_ORDER : 0;
     for (int i = 0; form->options && form->options[i].name && i < OPTIONS_MAX; i++) {
         const command_option *o = &form->options[i];
@@ -181,7 +185,7 @@ status command_form_read(const command_form *form, int argc, char **argv, void *
         return result;
     const error_t error = argp_parse(&argp, argc, argv, flags, NULL, &reading);
     if (error == EINVAL)
-        return STATUS_BAD_INPUT;
+        return reading.wrong;
     if (error == ENOMEM)
         return out_of_memory(why);
     return error ? diagnose(why, STATUS_FAILURE, "", "cannot read the command line: %s", strerror(error)) : STATUS_OK;
