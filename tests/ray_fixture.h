@@ -78,4 +78,16 @@ static inline double light_through(const arrangement *a, one_ray r, int solid_sh
     return transmitted[0];
 }
 
+/* Shapes of different clear media, the first with the highest priority; release with arrangement_destroy. */
+static inline arrangement *arrangement_of(const solid_shape *shapes, int count)
+{
+    body_source sources[8];
+    for (int i = 0; i < count; i++)
+        sources[i] =
+            (body_source){.shape = &shapes[i], .priority = count - i, .medium = i + 1, .clearness = 1.0, .solid = i};
+    arrangement *a = NULL;
+    assert_int_equal(arrangement_build(sources, count, 0, &a, NULL), STATUS_OK);
+    return a;
+}
+
 #endif

@@ -11,17 +11,6 @@
 
 /* What a cone has that no other solid has: a point, a double that is not there, and a cylinder as its limit. */
 
-static arrangement *arrange(const solid_shape *shapes, int count)
-{
-    body_source sources[8];
-    for (int i = 0; i < count; i++)
-        sources[i] =
-            (body_source){.shape = &shapes[i], .priority = count - i, .medium = i + 1, .clearness = 1.0, .solid = i};
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(sources, count, 0, &a, NULL), STATUS_OK);
-    return a;
-}
-
 static solid_shape cone_of(double radius, double top_radius, double height)
 {
     return (solid_shape){.kind = SHAPE_CONE, .radius = radius, .top_radius = top_radius, .height = height};
@@ -43,7 +32,7 @@ static void with_equal_radii_it_is_a_cylinder(void **state)
         cone.rotation_deg = trial % 2 ? vec3_make(17.0, -33.0, 71.0) : vec3_make(0.0, 0.0, 0.0);
         solid_shape cylinder = cone;
         cylinder.kind = SHAPE_CYLINDER, cylinder.m = 1.0;
-        arrangement *a = arrange(&cone, 1), *b = arrange(&cylinder, 1);
+        arrangement *a = arrangement_of(&cone, 1), *b = arrangement_of(&cylinder, 1);
         one_ray r = random_ray(&seed, 1.3);
         if (trial % 16 == 0) /* along the axis */
             r = (one_ray){vec3_make(0.3, -2.0, 0.2), vec3_make(0.0, 1.0, 0.0), FACE_NONE, 0};
@@ -70,7 +59,7 @@ static void its_volume_is_that_of_a_frustum(void **state)
     for (int k = 0; k < 3; k++) {
         solid_shape s = cone_of(0.9, tops[k], 1.6);
         s.rotation_deg = vec3_make(20.0, 40.0, 60.0);
-        arrangement *a = arrange(&s, 1);
+        arrangement *a = arrangement_of(&s, 1);
         int inside = 0;
         for (int i = 0; i < POINTS; i++)
             inside += arrangement_inside(a, random_point(&seed, 2.0)) == 1;
@@ -86,7 +75,7 @@ static void chords_through_the_middle(void **state)
 {
     (void)state;
     const solid_shape s = cone_of(1.0, 0.5, 2.0);
-    arrangement *a = arrange(&s, 1);
+    arrangement *a = arrangement_of(&s, 1);
     const one_hit in = nearest_interface(a, (one_ray){{-3.0, 1.0, 0.0}, {1.0, 0.0, 0.0}, FACE_NONE, 0});
     const one_hit out = nearest_interface(a, (one_ray){in.point, {1.0, 0.0, 0.0}, in.face, in.inside_after});
     assert_true(fabs(out.t - 1.5) < 1e-15 && in.face == 0 && out.face == 0);
@@ -104,7 +93,7 @@ static void the_point_is_met_and_its_double_is_not(void **state)
     (void)state;
     uint64_t seed = 3;
     const solid_shape s = cone_of(0.7, 0.0, 1.1);
-    arrangement *a = arrange(&s, 1);
+    arrangement *a = arrangement_of(&s, 1);
     const vec3 tip = vec3_make(0.0, 1.1, 0.0);
     const one_hit down = nearest_interface(a, (one_ray){{0.0, 3.0, 0.0}, {0.0, -1.0, 0.0}, FACE_NONE, 0});
     assert_true(down.crossed == 0 && fabs(down.t - 1.9) < 1e-14 && down.normal.y == 1.0 && down.cos_i == 1.0);
@@ -141,7 +130,7 @@ static void a_liquid_reaches_into_the_wall(void **state)
     const solid_shape shapes[2] = {
         {.kind = SHAPE_CUP, .m = 1.0, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1},
         {.kind = SHAPE_CONE, .position = {0.0, 0.05, 0.0}, .radius = 0.85, .top_radius = 0.95, .height = 2.0}};
-    arrangement *a = arrange(shapes, 2);
+    arrangement *a = arrangement_of(shapes, 2);
     static const int high[4] = {0, 1, 0, -1}, low[6] = {0, -1, 1, -1, 0, -1};
     for (int k = 0; k < 2; k++) {
         one_ray r = {{-3.0, k ? 0.5 : 1.8, 0.0}, {1.0, 0.0, 0.0}, FACE_NONE, 0};

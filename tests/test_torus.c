@@ -12,17 +12,6 @@
 
 /* What a torus has that no other solid has: up to four crossings with a line. */
 
-static arrangement *arrange(const solid_shape *shapes, int count)
-{
-    body_source sources[8];
-    for (int i = 0; i < count; i++)
-        sources[i] =
-            (body_source){.shape = &shapes[i], .priority = count - i, .medium = i + 1, .clearness = 1.0, .solid = i};
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(sources, count, 0, &a, NULL), STATUS_OK);
-    return a;
-}
-
 static solid_shape torus_of(double radius, double tube_radius)
 {
     return (solid_shape){.kind = SHAPE_TORUS, .radius = radius, .tube_radius = tube_radius};
@@ -44,7 +33,7 @@ static void a_line_through_both_tubes_crosses_four_times(void **state)
 {
     (void)state;
     const solid_shape s = torus_of(1.0, 0.25);
-    arrangement *a = arrange(&s, 1);
+    arrangement *a = arrangement_of(&s, 1);
     one_hit hits[8];
     const one_ray across = {{-3.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, FACE_NONE, 0};
     assert_int_equal(walk(a, across, hits, 8), 4);
@@ -78,7 +67,7 @@ static void crossings_agree_with_quadruple_precision(void **state)
         s.position = random_point(&seed, random_below(&seed, 4) ? 1.0 : 1000.0);
         if (random_below(&seed, 2))
             s.rotation_deg = random_point(&seed, 180.0);
-        arrangement *a = arrange(&s, 1);
+        arrangement *a = arrangement_of(&s, 1);
         const double size = R + s.tube_radius, off = exp(random_real(&seed, 0.5, random_below(&seed, 8) ? 1.0 : 9.0));
         const vec3 from = vec3_add(s.position, vec3_scale(random_direction(&seed), size * off));
         const vec3 to = vec3_add(s.position, vec3_scale(random_direction(&seed), size * random_real(&seed, 0.0, 1.0)));
@@ -122,7 +111,7 @@ static void its_volume_is_that_of_pappus(void **state)
     solid_shape s = torus_of(0.8, 0.3);
     s.position = vec3_make(0.1, -0.2, 0.3);
     s.rotation_deg = vec3_make(20.0, 40.0, 60.0);
-    arrangement *a = arrange(&s, 1);
+    arrangement *a = arrangement_of(&s, 1);
     int inside = 0;
     for (int i = 0; i < POINTS; i++)
         inside += arrangement_inside(a, vec3_add(s.position, random_point(&seed, 1.2))) == 1;
@@ -137,7 +126,7 @@ static void what_reaches_into_the_tube_is_hidden_there(void **state)
 {
     (void)state;
     const solid_shape shapes[2] = {torus_of(1.0, 0.25), {.kind = SHAPE_SPHERE, .radius = 0.9}};
-    arrangement *a = arrange(shapes, 2);
+    arrangement *a = arrangement_of(shapes, 2);
     const one_ray across = {{-3.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, FACE_NONE, 0};
     one_hit hits[8];
     assert_int_equal(walk(a, across, hits, 8), 4);
@@ -149,7 +138,7 @@ static void what_reaches_into_the_tube_is_hidden_there(void **state)
     }
     arrangement_destroy(a);
     const solid_shape over[2] = {shapes[1], shapes[0]}; /* now the ball wins, and hides two of the tube's crossings */
-    a = arrange(over, 2);
+    a = arrangement_of(over, 2);
     assert_int_equal(walk(a, across, hits, 8), 4);
     static const int covered[5] = {-1, 1, 0, 1, -1};
     for (int k = 0; k < 4; k++)
@@ -188,7 +177,7 @@ static void nothing_escapes_from_a_mirrored_tube(void **state)
     for (int trial = 0; trial < 20; trial++) {
         solid_shape s = torus_of(1.0, random_real(&seed, 0.02, 0.98));
         s.rotation_deg = trial % 2 ? vec3_make(17.0, -33.0, 71.0) : vec3_make(0.0, 0.0, 0.0);
-        arrangement *a = arrange(&s, 1);
+        arrangement *a = arrangement_of(&s, 1);
         const quad3 middle = quad3_turn(quad3_make(1, 0, 0), s.rotation_deg, 0);
         one_ray r = {vec3_make((double)middle.x, (double)middle.y, (double)middle.z), random_direction(&seed),
                      FACE_NONE, 1};
@@ -210,7 +199,7 @@ static void the_set_is_believed_on_its_own_surface(void **state)
     (void)state;
     uint64_t seed = 4;
     const solid_shape s = torus_of(1.0, 0.4);
-    arrangement *a = arrange(&s, 1);
+    arrangement *a = arrangement_of(&s, 1);
     for (int trial = 0; trial < 20000; trial++) {
         const double around = random_real(&seed, 0.0, 6.3), tube = random_real(&seed, 0.0, 6.3);
         const vec3 n = vec3_make(cos(tube) * cos(around), sin(tube), cos(tube) * sin(around));
