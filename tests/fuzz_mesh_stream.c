@@ -17,9 +17,8 @@ typedef struct rest {
 static status take(void *context, void *bytes, size_t size, diagnostic *why)
 {
     rest *r = context;
-    if (size > r->size) {
+    if (size > r->size)
         return diagnose(why, STATUS_BAD_INPUT, NULL, "ends early");
-    }
     memcpy(bytes, r->at, size);
     r->at += size;
     r->size -= size;
@@ -33,9 +32,8 @@ static status end(void *context, diagnostic *why)
 
 static void must(bool sound)
 {
-    if (!sound) {
+    if (!sound)
         abort();
-    }
 }
 
 static void check(const mesh_import *got)
@@ -45,9 +43,8 @@ static void check(const mesh_import *got)
          got->material_count == m->slot_count);
     for (size_t t = 0; t < m->triangle_count; t++) {
         must(m->slots[t] < got->material_count);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++)
             must(m->triangles[t].corner[k] < m->vertex_count);
-        }
     }
     for (size_t i = 0; i < m->vertex_count; i++) {
         must(vec3_length(m->vertices[i]) < 2e9); /* false for NaN */

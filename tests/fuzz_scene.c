@@ -19,15 +19,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     diagnostic why = {.what = ""};
     status code = scene_read_text("fuzz.yaml", (const char *)data, size, &s, &why);
     if (code != STATUS_OK) {
-        if (code != STATUS_BAD_INPUT || why.line < 1 || why.column < 1 || !why.what[0]) {
+        if (code != STATUS_BAD_INPUT || why.line < 1 || why.column < 1 || !why.what[0])
             abort();
-        }
         return 0;
     }
     scene *copy = scene_clone(s);
-    if (!copy || scene_each_param(s, set_again, copy) != STATUS_OK || scene_check(copy, NULL) != STATUS_OK) {
+    if (!copy || scene_each_param(s, set_again, copy) != STATUS_OK || scene_check(copy, NULL) != STATUS_OK)
         abort();
-    }
     scene_destroy(copy);
     scene_destroy(s);
     return 0;

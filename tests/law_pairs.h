@@ -313,11 +313,11 @@ static inline bool add_same(law_scene *w, uint64_t *seed)
         return false;
     const double r = (random_below(seed, 2) ? 1.0 : 0.9) * fmin(space, 2.0); /* it may touch */
     const int kind = random_below(seed, 4);
-    if (kind == 3) {
+    if (kind == 3)
         do
             place_mesh(&s, seed);
         while (is_mesh_named(&s, "hills"));
-    } else
+    else
         s.shape.kind = kind == 0 ? SHAPE_SPHERE : kind == 1 ? SHAPE_BOX : SHAPE_CYLINDER;
     s.shape.position = best;
     s.shape.radius = s.shape.kind == SHAPE_SPHERE ? r : 0.5 * r;

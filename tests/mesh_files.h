@@ -26,9 +26,8 @@ static int remove_folder(void **state)
     DIR *entries = opendir(folder);
     for (struct dirent *entry; entries && (entry = readdir(entries));) {
         char *path = text_format("%s/%s", folder, entry->d_name);
-        if (unlink(path) != 0) {
+        if (unlink(path) != 0)
             rmdir(path);
-        }
         free(path);
     }
     closedir(entries);
@@ -104,9 +103,8 @@ static inline bytes binary_stl(void)
     add_u32(&b, 4);
     for (int f = 0; f < 4; f++) {
         add(&b, (float[3]){0, 0, 1}, 12);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++)
             add(&b, corners[faces[f][k]], 12);
-        }
         add(&b, "\0\0", 2);
     }
     return b;
@@ -122,9 +120,8 @@ static inline bytes binary_ply(void)
     add(&b, corners, sizeof corners);
     for (int f = 0; f < 4; f++) {
         add(&b, "\3", 1);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++)
             add_u32(&b, faces[f][k]);
-        }
     }
     return b;
 }

@@ -37,13 +37,11 @@ static void refuse_within(const char *name, const mesh_limits *within, const cha
     status code = mesh_read_file(path, within, &got, &why);
     double took_s = now_s() - start;
     diagnostic_text(&why, text, sizeof text);
-    if (getenv("SHOW")) {
+    if (getenv("SHOW"))
         fprintf(stderr, "%.3f s %d %s\n", took_s, (int)code, text);
-    }
     if (code != STATUS_BAD_INPUT || got || !why.what[0] || strchr(text, '\n') ||
-        strncmp(why.file, path, strlen(path)) != 0 || !strstr(text, pattern)) {
+        strncmp(why.file, path, strlen(path)) != 0 || !strstr(text, pattern))
         fail_msg("%s: status %d, '%s'", name, (int)code, text);
-    }
     if (took_s > longest_s) {
         longest_s = took_s;
         snprintf(slowest, sizeof slowest, "%s", name);
@@ -72,9 +70,8 @@ static void small_bad_files_are_refused(void **state)
     assert_int_equal(mkfifo(fifo, 0666), 0);
     free(path);
     free(fifo);
-    for (size_t i = 0; i < sizeof companions / sizeof *companions; i++) {
+    for (size_t i = 0; i < sizeof companions / sizeof *companions; i++)
         put_text(companions[i].name, companions[i].text);
-    }
     for (size_t i = 0; i < sizeof bad_meshes / sizeof *bad_meshes; i++) {
         put_text(bad_meshes[i].name, bad_meshes[i].text);
         refuse(bad_meshes[i].name);
@@ -131,9 +128,8 @@ static void noise_is_refused_under_every_name(void **state)
                 random = random * 6364136223846793005u + 1442695040888963407u;
                 noise[k] = sort == 1 ? 0 : (unsigned char)(random >> 56);
             }
-            if (sort == 2) {
+            if (sort == 2)
                 memcpy(noise, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
-            }
             put(names[i], noise, sizeof noise);
             refuse(names[i]);
         }
@@ -337,9 +333,8 @@ static void with_importer(const char *script, const char *pattern, status expect
     double start = now_s();
     status code = mesh_read_file(mesh_path, &brief, &got, &why);
     setenv("CUVETTE_IMPORT", old, 1);
-    if (code != expected || got || !strstr(why.what, pattern) || now_s() - start > 10) {
+    if (code != expected || got || !strstr(why.what, pattern) || now_s() - start > 10)
         fail_msg("%s: status %d, '%s' after %g s", script, (int)code, why.what, now_s() - start);
-    }
     free(old);
     free(mesh_path);
     free(path);
@@ -377,9 +372,8 @@ static int open_descriptors(void)
 {
     DIR *entries = opendir("/proc/self/fd");
     int count = 0;
-    while (readdir(entries)) {
+    while (readdir(entries))
         count++;
-    }
     closedir(entries);
     return count;
 }
@@ -388,9 +382,8 @@ static void nothing_is_left_behind(void **state)
 {
     (void)state;
     int before = open_descriptors();
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 5; i++)
         refuse("three.obj/nothing.obj");
-    }
     with_importer("#!/bin/sh\nexec sleep 100\n", "longer than the limit", STATUS_BAD_INPUT);
     assert_int_equal(open_descriptors(), before);
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1); /* no child, not even a dead one */
@@ -409,9 +402,8 @@ static void all_of_it_was_bounded(void **state)
     assert_true(refusals >= 60);
     assert_true(longest_s < limits.wall_s + 5);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    if (!getenv("RUNNER")) { /* valgrind has memory of its own */
+    if (!getenv("RUNNER")) /* valgrind has memory of its own */
         assert_true(ours.ru_maxrss < 256 << 10);
-    }
 #endif
     assert_true(theirs.ru_maxrss < (long)(limits.memory_bytes >> 10)); /* it is built without sanitizers */
 }

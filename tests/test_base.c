@@ -73,9 +73,8 @@ static void diagnostics_stay_one_line_of_valid_text(void **state)
 
     char many[600]; /* two-byte letters at odd places: the cut falls into one */
     memset(many, 'a', sizeof many);
-    for (size_t i = 1; i + 2 < sizeof many; i += 2) {
+    for (size_t i = 1; i + 2 < sizeof many; i += 2)
         memcpy(many + i, "\xc3\xa9", 2);
-    }
     many[sizeof many - 1] = 0;
     diagnose(&why, STATUS_BAD_INPUT, many + 1, "%s", many);
     assert_int_equal(strlen(why.what), sizeof why.what - 1);
@@ -216,12 +215,10 @@ static void numbers_ignore_the_locale(void **state)
     static const char *const with_comma[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "fr_FR.utf8",
                                              "de_DE",       "fr_FR",      "it_IT.UTF-8"};
     const char *found = NULL;
-    for (size_t i = 0; i < sizeof with_comma / sizeof *with_comma && !found; i++) {
+    for (size_t i = 0; i < sizeof with_comma / sizeof *with_comma && !found; i++)
         found = setlocale(LC_NUMERIC, with_comma[i]);
-    }
-    if (!found) {
+    if (!found)
         skip(); /* no locale with a decimal comma is installed */
-    }
     char text[NUMBER_TEXT_MAX];
     double value = 0;
     bool parsed = number_parse_real("1.5", &value), comma = number_parse_real("1,5", &(double){0});
@@ -343,17 +340,15 @@ static void remove_tree(const char *path)
         if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0) {
             char *inner = text_format("%s/%s", path, entry->d_name);
             struct stat about;
-            if (lstat(inner, &about) == 0 && S_ISDIR(about.st_mode)) {
+            if (lstat(inner, &about) == 0 && S_ISDIR(about.st_mode))
                 remove_tree(inner);
-            } else {
+            else
                 unlink(inner);
-            }
             free(inner);
         }
     }
-    if (entries) {
+    if (entries)
         closedir(entries);
-    }
     rmdir(path);
 }
 
@@ -377,9 +372,8 @@ static int entries_in(const char *path)
     DIR *entries = opendir(path);
     int count = 0;
     assert_non_null(entries);
-    while (readdir(entries)) {
+    while (readdir(entries))
         count++;
-    }
     closedir(entries);
     return count - 2; /* . and .. */
 }
@@ -431,15 +425,13 @@ static void large_files_read_back(void **state)
     size_t size, count = 300001;
     file_writer writer;
     assert_int_equal(file_writer_open(&writer, path, NULL), STATUS_OK);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         putc((int)(i * 7 % 256), writer.stream);
-    }
     assert_int_equal(file_writer_commit(&writer, NULL), STATUS_OK);
     assert_int_equal(file_read(path, SIZE_MAX, &text, &size, NULL), STATUS_OK);
     assert_int_equal(size, count);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         assert_int_equal((unsigned char)text[i], i * 7 % 256);
-    }
     free(text);
     free(path);
 }
@@ -578,9 +570,8 @@ static void devices_are_written_straight(void **state)
     assert_string_equal(why.file, "/dev/full");
     assert_non_null(strstr(why.what, "No space left"));
     assert_int_equal(file_writer_open(&writer, "/dev/full", NULL), STATUS_OK);
-    for (int i = 0; i < 100000; i++) { /* the error comes early and must still be known at the end */
+    for (int i = 0; i < 100000; i++) /* the error comes early and must still be known at the end */
         putc('x', writer.stream);
-    }
     assert_int_equal(file_writer_commit(&writer, NULL), STATUS_FAILURE);
 }
 
@@ -599,9 +590,8 @@ static void a_full_disk_keeps_the_old_file(void **state)
     diagnostic why = {0};
     status opened = file_writer_open(&writer, path, NULL), committed = STATUS_OK;
     if (opened == STATUS_OK) {
-        for (int i = 0; i < 20000; i++) {
+        for (int i = 0; i < 20000; i++)
             putc('x', writer.stream);
-        }
         committed = file_writer_commit(&writer, &why);
     }
     setrlimit(RLIMIT_FSIZE, &before);
@@ -658,14 +648,12 @@ static void unwritable_places_are_refused(void **state)
     assert_int_equal(chmod(read_only, 0444), 0);
     uid_t user = geteuid();
     assert_int_equal(chmod(folder, 0777), 0);
-    if (user == 0) {
+    if (user == 0)
         assert_int_equal(seteuid(65534), 0); /* root may write everywhere */
-    }
     status code = file_writer_open(&writer, inside, &why), kept = file_writer_open(&writer, read_only, NULL);
     status made = file_make_directory(inside, NULL);
-    if (user == 0) {
+    if (user == 0)
         assert_int_equal(seteuid(0), 0);
-    }
     assert_int_equal(code, STATUS_FAILURE);
     assert_non_null(strstr(why.what, "Permission denied"));
     assert_int_equal(kept, STATUS_FAILURE);

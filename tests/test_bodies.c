@@ -300,10 +300,9 @@ static void an_apex_is_round_below_the_crease(void **state)
     for (int sharp = 0; sharp < 2; sharp++) {
         mesh *m = turned(lens, 3, 12, sharp ? 11.0 : 12.0);
         assert_sound(m, 2);
-        for (size_t v = 0; v < m->vertex_count; v++) {
+        for (size_t v = 0; v < m->vertex_count; v++)
             if (m->vertices[v].y > 0.0)
                 assert_near(m->normals[v].y, sharp ? 1.0 / sqrt(1.01) : 1.0, 1e-15);
-        }
         mesh_release(m);
     }
 }

@@ -51,9 +51,8 @@ static image *make(int width, int height, formula *of, int variant)
 {
     image *picture;
     assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
-    for (int i = 0; i < 3 * width * height; i++) {
+    for (int i = 0; i < 3 * width * height; i++)
         picture->pixel[i] = (float)of(i / 3 % width, i / 3 / width, i % 3, variant) / 256.0f;
-    }
     return picture;
 }
 
@@ -61,9 +60,8 @@ static image *constant(int width, int height, double linear)
 {
     image *picture;
     assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
-    for (int i = 0; i < 3 * width * height; i++) {
+    for (int i = 0; i < 3 * width * height; i++)
         picture->pixel[i] = (float)linear;
-    }
     return picture;
 }
 
@@ -86,9 +84,8 @@ static image_comparison compare_once(image *a, image *b)
 
 static void assert_near(double value, double expected, double within)
 {
-    if (!(fabs(value - expected) <= within)) {
+    if (!(fabs(value - expected) <= within))
         fail_msg("%.12g is not %.12g within %g", value, expected, within);
-    }
 }
 
 /* Where the numbers come from, all computed in double precision from the formulas above, encoded by IEC 61966-2-1: mse,
@@ -198,9 +195,8 @@ static void flip_of_green_and_blue_is_one(void **state)
 {
     (void)state;
     image *green = constant(12, 12, 0), *blue = constant(12, 12, 0);
-    for (int i = 0; i < 144; i++) {
+    for (int i = 0; i < 144; i++)
         green->pixel[3 * i + 1] = blue->pixel[3 * i + 2] = 1.0f;
-    }
     assert_near(compare_once(green, blue).flip, 1.0, 1e-12);
 }
 
@@ -280,9 +276,8 @@ static void assert_color(const image *map, int x, int y, int red, int green, int
     const int expected[3] = {red, green, blue};
     for (int channel = 0; channel < 3; channel++) {
         int difference = (int)codec_quantize(pixel[channel], 255) - expected[channel];
-        if (abs(difference) > 1) {
+        if (abs(difference) > 1)
             fail_msg("channel %d at %d,%d is off by %d", channel, x, y, difference);
-        }
     }
 }
 

@@ -77,9 +77,8 @@ static char *repeat(const char *head, const char *part, size_t count, const char
     char *text = malloc(strlen(head) + strlen(part) * count + strlen(tail) + 1), *end;
     assert_non_null(text);
     end = stpcpy(text, head);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         end = stpcpy(end, part);
-    }
     stpcpy(end, tail);
     return text;
 }
@@ -199,11 +198,10 @@ static void value_text_is_what_the_command_line_takes(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         document *d = parse(cases[i].yaml);
         char *text = node_value_text(node_get(document_root(d), "v"));
-        if (cases[i].text) {
+        if (cases[i].text)
             assert_string_equal(text, cases[i].text);
-        } else {
+        else
             assert_null(text);
-        }
         free(text);
         document_destroy(d);
     }

@@ -26,13 +26,12 @@ static void check_power(double x, double y)
     long double t = (long double)y * log2l((long double)x), wanted = powl((long double)x, (long double)y);
     double got = elementary_pow(x, y);
     assert_true(got == elementary_pow_inline(x, y));
-    if (t < -1001.0L) {
+    if (t < -1001.0L)
         assert_true(got == 0.0);
-    } else if (t > 1001.0L) {
+    else if (t > 1001.0L)
         assert_true(got >= 0x1p999 && got <= 0x1p1001);
-    } else if (t > -999.0L && t < 999.0L) {
+    else if (t > -999.0L && t < 999.0L)
         assert_true(fabsl((long double)got - wanted) <= 4e-16L * (2.0L + fabsl(t)) * wanted);
-    }
 }
 
 static void power_keeps_its_bound_over_the_range(void **state)

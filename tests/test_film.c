@@ -85,9 +85,8 @@ static void a_queue_gives_back_the_last_first(void **state)
     ray_queue q;
     assert_true(queue_create(&q, 3 * BATCH + LANES_MAX));
     for (int count = 1; count <= 3 * BATCH + LANES_MAX; count++) {
-        for (int i = 0; i < count; i++) {
+        for (int i = 0; i < count; i++)
             q.ox[i] = i, q.inside[i] = (uint64_t)i, q.ticket[i] = i, q.wb[i] = -i;
-        }
         q.count = count;
         int first, left = count;
         while (left > 0) {

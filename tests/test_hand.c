@@ -37,9 +37,8 @@ static hand_script *create(void)
 static void add(hand_script *s, const char *hand, hand_key key)
 {
     diagnostic why = {.what = ""};
-    if (hand_script_add(s, hand, &key, &why) != STATUS_OK) {
+    if (hand_script_add(s, hand, &key, &why) != STATUS_OK)
         fail_msg("%s; %s", why.what, why.remedy);
-    }
 }
 
 static void refuse(hand_script *s, const char *hand, hand_key key, const char *what)
@@ -47,9 +46,8 @@ static void refuse(hand_script *s, const char *hand, hand_key key, const char *w
     diagnostic why = {.what = ""};
     const size_t tracks = s->track_count, keys = tracks ? s->tracks[0].key_count : 0;
     assert_int_equal(hand_script_add(s, hand, &key, &why), STATUS_BAD_INPUT);
-    if (!strstr(why.what, what)) {
+    if (!strstr(why.what, what))
         fail_msg("'%s' is not in '%s'", what, why.what);
-    }
     assert_true(why.remedy[0] != 0 && why.file[0] == 0);
     assert_int_equal(s->track_count, tracks);
     assert_true(tracks == 0 || s->tracks[0].key_count == keys);

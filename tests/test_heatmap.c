@@ -25,11 +25,9 @@ static bool pixel_is(const image *picture, int x, int y, int red, int green, int
 static int ink_in(const image *picture, int left, int right, int top, int bottom)
 {
     int count = 0;
-    for (int y = top; y < bottom; y++) {
-        for (int x = left; x < right; x++) {
+    for (int y = top; y < bottom; y++)
+        for (int x = left; x < right; x++)
             count += pixel_is(picture, x, y, 34, 34, 34);
-        }
-    }
     return count;
 }
 
@@ -45,9 +43,8 @@ static double *make_values(int width, int height, double largest)
 {
     double *values = malloc((size_t)width * (size_t)height * sizeof *values);
     assert_non_null(values);
-    for (int i = 0; i < width * height; i++) {
+    for (int i = 0; i < width * height; i++)
         values[i] = largest * i / (width * height - 1);
-    }
     return values;
 }
 
@@ -74,9 +71,8 @@ static void viridis_has_its_published_colors(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         unsigned char rgb[3];
         heatmap_color(cases[i].t, rgb);
-        for (int channel = 0; channel < 3; channel++) {
+        for (int channel = 0; channel < 3; channel++)
             assert_in_range(rgb[channel] + 1, cases[i].rgb[channel], cases[i].rgb[channel] + 2);
-        }
     }
 }
 
@@ -115,9 +111,8 @@ static void more_is_brighter(void **state)
 static void print_glyph(char character, char drawn[FONT_HEIGHT * (FONT_WIDTH + 1) + 1])
 {
     for (int row = 0; row < FONT_HEIGHT; row++) {
-        for (int column = 0; column < FONT_WIDTH; column++) {
+        for (int column = 0; column < FONT_WIDTH; column++)
             *drawn++ = font_dot(character, column, row) ? '#' : '.';
-        }
         *drawn++ = '\n';
     }
     *drawn = 0;
@@ -139,9 +134,8 @@ static void glyphs_differ(void **state)
     static char drawn[95][FONT_HEIGHT * (FONT_WIDTH + 1) + 1];
     for (int i = 0; i < 95; i++) {
         print_glyph((char)(' ' + i), drawn[i]);
-        for (int j = 0; j < i; j++) {
+        for (int j = 0; j < i; j++)
             assert_string_not_equal(drawn[i], drawn[j]);
-        }
     }
     char other[FONT_HEIGHT * (FONT_WIDTH + 1) + 1];
     static const char unprintable[] = {'\n', '\x7f', (char)0xff, (char)0x80, 0};
@@ -198,9 +192,8 @@ static bool shows(const image *picture, int top, const char *text)
                 bool dot = font_dot(text[column / FONT_ADVANCE], column % FONT_ADVANCE, row);
                 same = dot == pixel_is(picture, x + column, y + row, 34, 34, 34);
             }
-            if (same) {
+            if (same)
                 return true;
-            }
         }
     }
     return false;
@@ -211,11 +204,9 @@ static void check_key(double largest, const char *const numbers[5])
     double *values = make_values(300, 3, largest);
     image *picture = draw(values, 300, 3, "cost, in rays");
     assert_true(shows(picture, 3, "cost, in rays"));
-    for (int i = 0; i < 5; i++) {
-        if (!shows(picture, 3, numbers[i])) {
+    for (int i = 0; i < 5; i++)
+        if (!shows(picture, 3, numbers[i]))
             fail_msg("the key up to %g does not show %s", largest, numbers[i]);
-        }
-    }
     assert_false(shows(picture, 3, "cost, in rayz"));
     image_destroy(picture);
     free(values);
@@ -244,9 +235,8 @@ static void whole_values_have_whole_numbers_at_the_scale(void **state)
         {118, "30", "29.5"}, {118, "118", "88.5"}, {3, "2", "1.5"}, {1, "1", "0.5"}, {50000, "12.5k", "12500"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         double values[300];
-        for (int x = 0; x < 300; x++) {
+        for (int x = 0; x < 300; x++)
             values[x] = x % 2 * cases[i].largest;
-        }
         image *picture = draw(values, 300, 1, "");
         assert_true(shows(picture, 1, "0") && shows(picture, 1, cases[i].shown));
         assert_false(shows(picture, 1, cases[i].hidden));
@@ -258,9 +248,8 @@ static void the_scale_is_not_set_by_a_few_outliers(void **state)
 {
     (void)state;
     double values[1200];
-    for (int i = 0; i < 1200; i++) {
+    for (int i = 0; i < 1200; i++)
         values[i] = i * 7 % 1200 / 2.0 + 0.25;
-    }
     values[0] = 1e9;
     image *picture = draw(values, 300, 4, "t"); /* 6 of 1200 are above the percentile: the outlier, and 5 more */
     assert_true(shows(picture, 4, ">=597.3"));
@@ -273,9 +262,8 @@ static void the_scale_is_not_set_by_a_few_outliers(void **state)
     picture = draw(values, 300, 4, "t");
     assert_true(shows(picture, 4, "1190") && !shows(picture, 4, ">=1190"));
     image_destroy(picture);
-    for (int i = 0; i < 1200; i++) {
+    for (int i = 0; i < 1200; i++)
         values[i] = i == 7 ? 5 : -0.0; /* the percentile is 0 */
-    }
     picture = draw(values, 300, 4, "t");
     assert_true(shows(picture, 4, "5") && pixel_is(picture, 7, 0, 253, 231, 37) && pixel_is(picture, 8, 0, 68, 1, 84));
     image_destroy(picture);
@@ -312,9 +300,8 @@ static void text_grows_with_the_picture(void **state)
 {
     (void)state;
     double *values = make_values(1600, 2, 1.0);
-    for (int i = 0; i < 1600 * 2; i++) { /* the same numbers at the scale of both */
+    for (int i = 0; i < 1600 * 2; i++) /* the same numbers at the scale of both */
         values[i] = i % 5 / 4.0;
-    }
     image *small = draw(values, 400, 2, "title"), *large = draw(values, 1600, 2, "title");
     assert_int_equal((large->height - 2), 4 * (small->height - 2));
     assert_int_equal(ink_in(large, 0, 1600, 2, large->height), 16 * ink_in(small, 0, 400, 2, small->height));

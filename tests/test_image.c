@@ -41,9 +41,8 @@ static int empty_folder(void)
         count += unlink(path) == 0;
         free(path);
     }
-    if (entries) {
+    if (entries)
         closedir(entries);
-    }
     return count;
 }
 
@@ -84,9 +83,8 @@ static void put(const char *path, const void *bytes, size_t size)
 
 static void assert_close(double value, double expected, double tolerance)
 {
-    if (!(fabs(value - expected) <= tolerance)) {
+    if (!(fabs(value - expected) <= tolerance))
         fail_msg("%.17g is not %.17g within %g", value, expected, tolerance);
-    }
 }
 
 static uint32_t next_random(uint32_t *state)
@@ -137,9 +135,8 @@ static void srgb_has_its_published_values(void **state)
         {0.5f, 188}, {0.18f, 118}, {0.25f, 137}, {0.75f, 225}, {0.1f, 89},
         {0.01f, 25}, {0.001f, 3},  {1.0f, 255},  {0.0f, 0},
     };
-    for (size_t i = 0; i < sizeof bytes / sizeof *bytes; i++) {
+    for (size_t i = 0; i < sizeof bytes / sizeof *bytes; i++)
         assert_int_equal(codec_quantize(bytes[i].linear, 255), bytes[i].byte);
-    }
 }
 
 static void srgb_agrees_with_libm(void **state)
@@ -186,9 +183,8 @@ static void formats_are_told_by_their_endings(void **state)
     assert_int_equal(image_format_of("-"), IMAGE_PNG);
     assert_int_equal(image_format_of("/dev/null"), IMAGE_PNG);
     static const char *const unknown[] = {"", "png", ".png", "x.gif", "x.png.gz", "x.png/", "x."};
-    for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++) {
+    for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++)
         assert_int_equal(image_format_of(unknown[i]), IMAGE_UNKNOWN);
-    }
 }
 
 static void pictures_have_limits(void **state)
@@ -217,17 +213,15 @@ static void check_png_depth(int bits, int width, int height)
     int file_bits = 0;
     char *path = in_folder("depth.png");
     assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
-    for (int i = 0; i < width * height * 3; i++) {
+    for (int i = 0; i < width * height * 3; i++)
         picture->pixel[i] = (float)srgb_decode((double)((unsigned)i % (maximum + 1)) / maximum);
-    }
     assert_int_equal(image_write(picture, path, bits, NULL), STATUS_OK);
     assert_int_equal(image_read(path, &back, &file_bits, NULL), STATUS_OK);
     assert_int_equal(file_bits, bits);
     assert_int_equal(back->width, width);
     assert_int_equal(back->height, height);
-    for (int i = 0; i < width * height * 3; i++) {
+    for (int i = 0; i < width * height * 3; i++)
         assert_true(same_float(back->pixel[i], picture->pixel[i]));
-    }
     image_destroy(picture);
     image_destroy(back);
     free(path);
@@ -253,9 +247,8 @@ static void values_out_of_range_are_clamped(void **state)
         memcpy(picture->pixel, values, sizeof values);
         assert_int_equal(image_write(picture, path, bits, NULL), STATUS_OK);
         assert_int_equal(image_read(path, &back, NULL, NULL), STATUS_OK);
-        for (int i = 0; i < 6; i++) {
+        for (int i = 0; i < 6; i++)
             assert_float_equal(back->pixel[i], expected[i], bits == 8 ? 0.003f : 2e-5f);
-        }
         image_destroy(picture);
         image_destroy(back);
         free(path);
@@ -311,9 +304,8 @@ static void jpeg_is_close(void **state)
     image *picture = make_picture(50, 33), *back;
     char *path = in_folder("a.jpeg");
     int bits = 0;
-    for (int i = 0; i < 50 * 33 * 3; i++) { /* without the grain */
+    for (int i = 0; i < 50 * 33 * 3; i++) /* without the grain */
         picture->pixel[i] = (float)(0.5 + 0.4 * sin(0.1 * (i / 3 % 50) + i % 3));
-    }
     assert_int_equal(image_write(picture, path, 8, NULL), STATUS_OK);
     assert_int_equal(image_read(path, &back, &bits, NULL), STATUS_OK);
     assert_int_equal(bits, 8);
@@ -498,16 +490,14 @@ static void write_kind(const png_kind *kind, const char *path)
         palette[i] = palette_entry(i);
         alphas[i] = (png_byte)(i * 53);
     }
-    if (kind->color == PNG_COLOR_TYPE_PALETTE) {
+    if (kind->color == PNG_COLOR_TYPE_PALETTE)
         png_set_PLTE(png, info, palette, 1 << kind->depth);
-    }
     png_color_16 key = {0, 0, 0, 0, 0};
     key.gray = key.red = (png_uint_16)sample_at(kind, 2, 3, 0);
     key.green = (png_uint_16)sample_at(kind, 2, 3, 1);
     key.blue = (png_uint_16)sample_at(kind, 2, 3, 2);
-    if (kind->transparent) {
+    if (kind->transparent)
         png_set_tRNS(png, info, alphas, 1 << kind->depth, &key);
-    }
     png_write_info(png, info);
     unsigned char rows[KIND_HEIGHT][KIND_WIDTH * 8], *pointers[KIND_HEIGHT];
     for (int y = 0; y < KIND_HEIGHT; y++) {
@@ -534,9 +524,8 @@ static double expected_channel(const png_kind *kind, int x, int y, int channel)
         alpha = sample_at(kind, x, y, channels - 1) / full;
     } else if (kind->transparent) {
         bool same = true;
-        for (int c = 0; c < channels; c++) {
+        for (int c = 0; c < channels; c++)
             same = same && sample_at(kind, x, y, c) == sample_at(kind, 2, 3, c);
-        }
         alpha = same ? 0.0 : 1.0;
     }
     return alpha * srgb_decode(sample_at(kind, x, y, channels >= 3 ? channel : 0) / full);
@@ -628,9 +617,8 @@ static void write_bomb(const char *path, png_uint_32 side, int bits, int color, 
     int passes = png_set_interlace_handling(png);
     unsigned char *row = calloc(png_get_rowbytes(png, info), 1);
     assert_non_null(row);
-    for (png_uint_32 y = 0; y < side * (png_uint_32)passes; y++) {
+    for (png_uint_32 y = 0; y < side * (png_uint_32)passes; y++)
         png_write_row(png, row);
-    }
     png_write_end(png, info);
     free(row);
     png_destroy_write_struct(&png, &info);
@@ -687,15 +675,13 @@ static void write_jpeg_kind(const char *path, J_COLOR_SPACE space, int channels,
     jpeg_set_defaults(&cinfo);
     jpeg_set_quality(&cinfo, 95, TRUE);
     cinfo.comp_info[0].h_samp_factor = cinfo.comp_info[0].v_samp_factor = subsampling;
-    if (progressive) {
+    if (progressive)
         jpeg_simple_progression(&cinfo);
-    }
     jpeg_start_compress(&cinfo, TRUE);
     while (cinfo.next_scanline < cinfo.image_height) {
         unsigned char row[40 * 4];
-        for (int i = 0; i < 40 * channels; i++) {
+        for (int i = 0; i < 40 * channels; i++)
             row[i] = (unsigned char)(60 + i / channels * 3 + (int)cinfo.next_scanline);
-        }
         JSAMPROW rows = row;
         jpeg_write_scanlines(&cinfo, &rows, 1);
     }
@@ -744,9 +730,8 @@ static void jpeg_that_claims_another_size_is_refused(void **state)
             blob b = get(path);
             size_t at = 0;
             while (at + 9 < b.size && !((unsigned char)b.bytes[at] == 0xff &&
-                                        (unsigned char)b.bytes[at + 1] == (progressive ? 0xc2 : 0xc0))) {
+                                        (unsigned char)b.bytes[at + 1] == (progressive ? 0xc2 : 0xc0)))
                 at++;
-            }
             assert_true(at + 9 < b.size);
             memcpy(b.bytes + at + 5, sizes[i], 4);
             put(path, b.bytes, b.size);
@@ -793,13 +778,12 @@ static void make_victims(victim victims[VICTIMS])
     image *picture = make_picture(19, 14);
     for (int i = 0; i < VICTIMS; i++) {
         char *path = in_folder(names[i]);
-        if (i == 2) {
+        if (i == 2)
             write_kind(&(png_kind){PNG_COLOR_TYPE_RGBA, 8, PNG_INTERLACE_ADAM7, false}, path);
-        } else if (i == 4 || i == 5) {
+        else if (i == 4 || i == 5)
             write_jpeg_kind(path, i == 4 ? JCS_RGB : JCS_GRAYSCALE, i == 4 ? 3 : 1, i == 4, 1);
-        } else {
+        else
             assert_int_equal(image_write(picture, path, i == 1 ? 16 : 8, NULL), STATUS_OK);
-        }
         victims[i] = (victim){names[i], get(path), i <= 2};
         free(path);
     }
@@ -834,11 +818,9 @@ static void truncated_files_are_refused(void **state)
         size_t size = victims[v].file.size;
         assert_int_equal(check_damaged(victims[v].file.bytes, size), STATUS_OK);
         size_t step = size / 250 + 1;
-        for (size_t length = 0; length < size; length += length + 40 < size ? step : 1, cut++) {
-            if (check_damaged(victims[v].file.bytes, length) == STATUS_OK) {
+        for (size_t length = 0; length < size; length += length + 40 < size ? step : 1, cut++)
+            if (check_damaged(victims[v].file.bytes, length) == STATUS_OK)
                 fail_msg("%s cut to %zu of %zu bytes is read", victims[v].name, length, size);
-            }
-        }
         free(victims[v].file.bytes);
     }
     assert_true(cut > 1000);
@@ -855,9 +837,8 @@ static void corrupted_files_do_no_harm(void **state)
             size_t at = trial < 40 ? (size_t)trial : next_random(&random) % victims[v].file.size;
             char *byte = &victims[v].file.bytes[at], before = *byte;
             *byte = (char)((unsigned char)*byte ^ (1 + next_random(&random) % 255));
-            if (check_damaged(victims[v].file.bytes, victims[v].file.size) == STATUS_OK && victims[v].checked) {
+            if (check_damaged(victims[v].file.bytes, victims[v].file.size) == STATUS_OK && victims[v].checked)
                 fail_msg("%s with byte %zu changed is read", victims[v].name, at);
-            }
             *byte = before;
         }
         free(victims[v].file.bytes);
@@ -875,9 +856,8 @@ static void many_corruptions_do_no_harm(void **state)
         assert_non_null(copy);
         for (int trial = 0; trial < 100; trial++) {
             memcpy(copy, victims[v].file.bytes, victims[v].file.size);
-            for (int change = 0; change < 8; change++) {
+            for (int change = 0; change < 8; change++)
                 copy[next_random(&random) % victims[v].file.size] = (char)next_random(&random);
-            }
             check_damaged(copy, victims[v].file.size);
         }
         free(copy);

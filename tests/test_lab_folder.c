@@ -147,10 +147,9 @@ static void test_names_that_lead_out(void **state)
                                "a\nb.yaml",
                                absolute,
                                longest};
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         if (leads(r, bad[i], true) || leads(r, bad[i], false))
             fail_msg("'%.80s' was let in", bad[i]);
-    }
     /* Through a link and back is within, whatever the way. */
     assert_true(leads(r, "up/lab/a scene.yaml", true));
     free(absolute);

@@ -13,9 +13,8 @@ static mesh_import *read_mesh(const char *name)
     char *path = in_folder(name), text[DIAGNOSTIC_TEXT_MAX];
     mesh_import *got;
     diagnostic why = {.what = ""};
-    if (mesh_read_file(path, NULL, &got, &why) != STATUS_OK) {
+    if (mesh_read_file(path, NULL, &got, &why) != STATUS_OK)
         fail_msg("%s", diagnostic_text(&why, text, sizeof text));
-    }
     free(path);
     return got;
 }
@@ -35,9 +34,8 @@ static mesh_import *read_bytes(const char *name, bytes b)
 
 static void assert_vec3(vec3 got, double x, double y, double z)
 {
-    if (!(got.x == x && got.y == y && got.z == z)) { /* exactly */
+    if (!(got.x == x && got.y == y && got.z == z)) /* exactly */
         fail_msg("%.17g %.17g %.17g is not %.17g %.17g %.17g", got.x, got.y, got.z, x, y, z);
-    }
 }
 
 static vec3 corner(const mesh *m, size_t triangle, int k)
@@ -277,9 +275,8 @@ static void awkward_names_are_only_names(void **state)
 {
     (void)state;
     static const char *const names[] = {"-o.obj", "a b;c: d.obj", "$(touch x).obj", "LOUD.OBJ"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         mesh_import_destroy(read_text(names[i], "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
-    }
 }
 
 int main(void)

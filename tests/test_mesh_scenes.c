@@ -21,12 +21,11 @@ static scene_text with_boxes(const char *solids, bool as_mesh)
 {
     scene_text t = {.length = 0};
     add(&t, "%s%ssolids:\n", FRAME, as_mesh ? "meshes: {block: {generate: box}}\n" : "");
-    for (const char *c = solids; *c; c++) {
+    for (const char *c = solids; *c; c++)
         if (*c == '@')
             add(&t, "%s", as_mesh ? "shape: mesh, mesh: block, scale: " : "shape: box, size: ");
         else
             add(&t, "%c", *c);
-    }
     return t;
 }
 

@@ -142,9 +142,8 @@ static void every_scene_of_the_project_is_right(void **state)
     assert_false(solid_shape_contains(&find(inside, "vessel")->shape, inside->camera.position));
     assert_false(solid_shape_contains(&find(inside, "rod")->shape, inside->camera.position));
     unsigned shapes = 0;
-    for (size_t i = 0; i < solids->solid_count; i++) {
+    for (size_t i = 0; i < solids->solid_count; i++)
         shapes |= 1u << solids->solids[i].shape.kind;
-    }
     assert_int_equal(shapes, (1u << SHAPE_MESH) - 1); /* all analytic ones */
     /* The leaning rod stays clear of the vessel. */
     const solid *rod = find(leaning, "rod"), *vessel = find(leaning, "vessel");

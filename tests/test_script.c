@@ -31,9 +31,8 @@ static hand_script *read_good(void)
 {
     hand_script *s = NULL;
     diagnostic why = {.what = ""};
-    if (script_read_text("good.yaml", good, sizeof good - 1, &s, &why) != STATUS_OK) {
+    if (script_read_text("good.yaml", good, sizeof good - 1, &s, &why) != STATUS_OK)
         fail_msg("%ld: %s", why.line, why.what);
-    }
     return s;
 }
 

@@ -21,9 +21,8 @@
 
 static void assert_near(double a, double b, double tolerance)
 {
-    if (!(fabs(a - b) <= tolerance)) {
+    if (!(fabs(a - b) <= tolerance))
         fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
-    }
 }
 
 static void assert_same(vec3 a, vec3 b, double tolerance)
@@ -53,9 +52,8 @@ static image *noise(int width, int height)
 {
     image *picture = blank(width, height);
     uint64_t s = 7;
-    for (int i = 0; i < 3 * width * height; i++) {
+    for (int i = 0; i < 3 * width * height; i++)
         picture->pixel[i] = (float)random_real(&s, 0.0, 1.0);
-    }
     return picture;
 }
 
@@ -107,9 +105,8 @@ static void the_lower_left_corner_of_the_picture_is_the_origin(void **state)
 {
     (void)state;
     image *picture = blank(4, 2);
-    for (int i = 0; i < 24; i++) {
+    for (int i = 0; i < 24; i++)
         picture->pixel[i] = (float)i; /* rows from the top: pixel 4 is the left one of the lower row */
-    }
     texture *t = owned(picture, TEXTURE_CLAMP, TEXTURE_NEAREST);
     assert_same(texture_sample(t, 0.0, 0.0, 0.0), vec3_make(12.0, 13.0, 14.0), 0.0);
     assert_same(texture_sample(t, 1.0, 0.0, 0.0), vec3_make(21.0, 22.0, 23.0), 0.0);
@@ -147,9 +144,8 @@ static void a_linear_ramp_is_reproduced_between_the_outer_centres_and_is_flat_be
     (void)state;
     const int width = 16, height = 6;
     image *picture = blank(width, height);
-    for (int i = 0; i < width * height; i++) {
+    for (int i = 0; i < width * height; i++)
         set(picture, i % width, i / width, 3 + 5 * (i % width) - 2 * (i / width), i % width, i / width);
-    }
     texture *t = owned(picture, TEXTURE_CLAMP, TEXTURE_BILINEAR);
     for (int i = 0; i <= 200; i++) {
         for (int j = 0; j <= 20; j++) {
@@ -213,9 +209,8 @@ static void each_axis_has_a_wrap_mode_of_its_own(void **state)
 {
     (void)state;
     image *picture = blank(4, 4);
-    for (int i = 0; i < 16; i++) {
+    for (int i = 0; i < 16; i++)
         set(picture, i % 4, i / 4, i % 4, i / 4, 0);
-    }
     for (int i = 0; i < 9; i++) {
         texture *t;
         assert_int_equal(
@@ -254,9 +249,8 @@ static void each_level_has_half_the_size_and_the_mean_of_the_picture(void **stat
         int width = sizes[s][0], height = sizes[s][1];
         image *picture = noise(width, height);
         double sum[3] = {0.0, 0.0, 0.0};
-        for (int i = 0; i < 3 * width * height; i++) {
+        for (int i = 0; i < 3 * width * height; i++)
             sum[i % 3] += (double)picture->pixel[i] / (width * height);
-        }
         texture *t = owned(picture, TEXTURE_REPEAT, TEXTURE_TRILINEAR);
         for (int level = 0; level < texture_levels(t); level++) {
             int w, h;
@@ -265,9 +259,8 @@ static void each_level_has_half_the_size_and_the_mean_of_the_picture(void **stat
             assert_int_equal(h, height >> level > 1 ? height >> level : 1);
             assert_true(level == texture_levels(t) - 1 ? w == 1 && h == 1 : w > 1 || h > 1);
             vec3 mean = vec3_make(0.0, 0.0, 0.0);
-            for (int i = 0; i < w * h; i++) {
+            for (int i = 0; i < w * h; i++)
                 mean = vec3_add(mean, vec3_scale(texture_texel(t, level, i % w, i / w), 1.0 / (w * h)));
-            }
             /* Texels are floats: 2^-24 a level. */
             assert_same(mean, vec3_make(sum[0], sum[1], sum[2]), 6e-8 * level + 1e-14);
         }
@@ -280,9 +273,8 @@ static void odd_sizes_are_shared_out_by_area(void **state)
 {
     (void)state;
     image *picture = blank(5, 3);
-    for (int i = 0; i < 15; i++) {
+    for (int i = 0; i < 15; i++)
         set(picture, i % 5, i / 5, i % 5 == 0, i % 5 == 2, (i % 5 == 4) * (i / 5 == 1));
-    }
     texture *t = owned(picture, TEXTURE_CLAMP, TEXTURE_TRILINEAR);
     assert_int_equal(texture_levels(t), 3);
     assert_same(texture_texel(t, 1, 0, 0), vec3_make(0.4, 0.2, 0.0), 3e-8);
@@ -329,9 +321,8 @@ static void a_checkerboard_from_far_is_half_the_light_of_white(void **state)
     }
     texture *t;
     write_then_read(board, ".png", 8, TEXTURE_SRGB, TEXTURE_TRILINEAR, &t);
-    for (double footprint = 2.0 / 64; footprint < 9.0; footprint *= 1.7) {
+    for (double footprint = 2.0 / 64; footprint < 9.0; footprint *= 1.7)
         assert_same(texture_sample(t, 0.3, 0.7, footprint), vec3_make(0.5, 0.5, 0.5), 0.0);
-    }
     assert_near(srgb_encode(texture_sample(t, 0.1, 0.2, 1.0).x), 1.055 * pow(0.5, 1.0 / 2.4) - 0.055, 1e-12);
     texture_release(t);
     /* the byte 128 as light, and as a number */
@@ -376,9 +367,8 @@ static void a_linear_picture_gives_back_the_numbers_in_its_file(void **state)
     texture_release(light);
     texture *grey;
     image *middle = blank(8, 8);
-    for (int i = 0; i < 192; i++) {
+    for (int i = 0; i < 192; i++)
         middle->pixel[i] = (float)pow((128.0 / 255.0 + 0.055) / 1.055, 2.4); /* JPEG keeps a plain grey to the byte */
-    }
     write_then_read(middle, ".jpg", 0, TEXTURE_LINEAR, TEXTURE_TRILINEAR, &grey);
     assert_near(texture_sample(grey, 0.5, 0.5, 1.0).x, (double)(float)(128.0 / 255.0), 0.0);
     texture_release(grey);
@@ -395,9 +385,8 @@ static void the_level_is_the_logarithm_of_the_footprint_in_texels(void **state)
     set(picture, 0, 0, 1, 1, 1);
     texture *t = owned(picture, TEXTURE_CLAMP, TEXTURE_TRILINEAR);
     static const double light[] = {1.0, 0.5, 0.25, 0.125};
-    for (int level = 0; level <= 3; level++) {
+    for (int level = 0; level <= 3; level++)
         assert_near(texture_sample(t, 0.0, 0.5, (1 << level) / 8.0).x, light[level], 0.0);
-    }
     for (double level = 0.0; level < 3.0; level += 0.01) {
         int k = (int)level;
         double expected = light[k] + (level - k) * (light[k + 1] - light[k]);
@@ -423,9 +412,8 @@ static void trilinear_has_no_step_where_the_level_changes(void **state)
         }
     }
     /* nor anywhere else: a level has a slope of at most 1, the range of the texels */
-    for (double footprint = 0.01; footprint < 2.0; footprint *= 1.001) {
+    for (double footprint = 0.01; footprint < 2.0; footprint *= 1.001)
         assert_same(texture_sample(t, 0.4, 0.6, footprint * 1.001), texture_sample(t, 0.4, 0.6, footprint), 1.5e-3);
-    }
     texture_release(t);
 }
 
@@ -475,9 +463,8 @@ static void a_plain_picture_is_plain_everywhere(void **state)
     (void)state;
     for (size_t k = 0; k < COUNT(sizes); k++) {
         image *picture = blank(sizes[k][0], sizes[k][1]);
-        for (int i = 0; i < sizes[k][0] * sizes[k][1]; i++) {
+        for (int i = 0; i < sizes[k][0] * sizes[k][1]; i++)
             set(picture, i % sizes[k][0], i / sizes[k][0], 0.1, 0.7, (double)FLT_MAX);
-        }
         for (size_t i = 0; i < COUNT(wraps) * COUNT(filters); i++) {
             texture *t = textured(picture, wraps[i / 3], filters[i % 3]);
             for (int j = 0; j < 300; j++) {
@@ -573,9 +560,8 @@ static void owners_share_a_texture_and_the_last_one_releases_it(void **state)
         texture_retain(t);
         assert_int_equal(pthread_create(&threads[i], NULL, take_and_leave, t), 0);
     }
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++)
         pthread_join(threads[i], NULL);
-    }
     assert_same(texture_sample(t, 0.2, 0.3, 0.1), before, 0.0);
     texture_release(t);
 }

@@ -34,13 +34,11 @@ static bool lies_below(const char *name, const char *root)
 
 int below_open(const char *path, const char *root)
 {
-    if (!root || !*root) {
+    if (!root || !*root)
         return open(path, FLAGS);
-    }
     const int place = open(path, O_PATH | O_CLOEXEC); /* of devices, too, nothing happens by that */
-    if (place < 0) {
+    if (place < 0)
         return -1;
-    }
     const shown file = show(place);
     int fd = -1, error = EXDEV;
     if (lies_below(file.name, root)) {

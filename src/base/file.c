@@ -47,9 +47,8 @@ static status read_descriptor(int fd, const char *path, size_t limit, size_t exp
     char *buffer = malloc(capacity + 1);
     while (buffer) {
         ssize_t got = read(fd, buffer + used, capacity - used);
-        if (got < 0 && errno == EINTR) {
+        if (got < 0 && errno == EINTR)
             continue;
-        }
         if (got < 0) {
             status code = system_error(why, STATUS_FAILURE, path, "cannot read", errno);
             free(buffer);
@@ -71,9 +70,8 @@ static status read_descriptor(int fd, const char *path, size_t limit, size_t exp
             capacity = capacity > limit / 2 ? limit + 1 : capacity * 2 + 4096;
             capacity = capacity > limit + 1 ? limit + 1 : capacity;
             char *larger = realloc(buffer, capacity + 1);
-            if (!larger) {
+            if (!larger)
                 free(buffer);
-            }
             buffer = larger;
         }
     }
@@ -107,9 +105,8 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
         code = diagnose(why, STATUS_BAD_INPUT, "name a file", "%s",
                         S_ISDIR(about.st_mode) ? "is a folder" : "is not a regular file");
     } else {
-        if (limit > SIZE_MAX / 4) {
+        if (limit > SIZE_MAX / 4)
             limit = SIZE_MAX / 4;
-        }
         size_t expected = about.st_size > 0 ? (size_t)about.st_size : 4096;
         code = read_descriptor(fd, path, limit, expected, text, size, why);
     }
@@ -132,9 +129,8 @@ static char *resolve(const char *path)
     for (int links = 0; current && links < 40; links++) { /* as many as Linux follows, path_resolution(7) */
         char target[PATH_MAX];
         ssize_t length = readlink(current, target, sizeof target - 1);
-        if (length < 0) {
+        if (length < 0)
             return current;
-        }
         target[length] = 0;
         char *next = target[0] == '/' ? strdup(target) : beside(current, target);
         free(current);
@@ -159,9 +155,8 @@ static int open_temporary(file_writer *writer)
             return -1;
         }
         int fd = open(writer->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0 || errno != EEXIST) {
+        if (fd >= 0 || errno != EEXIST)
             return fd;
-        }
     }
     return -1;
 }
@@ -173,22 +168,18 @@ static int open_target(file_writer *writer)
         return fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
     }
     char *resolved = resolve(writer->path);
-    if (!resolved) {
+    if (!resolved)
         return -1;
-    }
     free(writer->path);
     writer->path = resolved;
     struct stat about;
     bool exists = stat(resolved, &about) == 0;
-    if (!exists && errno != ENOENT) {
+    if (!exists && errno != ENOENT)
         return -1;
-    }
-    if (exists && !S_ISREG(about.st_mode)) {
+    if (exists && !S_ISREG(about.st_mode))
         return open(resolved, O_WRONLY | O_CLOEXEC | O_NOCTTY); /* devices and pipes have no other version to keep */
-    }
-    if (exists && euidaccess(resolved, W_OK) != 0) {
+    if (exists && euidaccess(resolved, W_OK) != 0)
         return -1;
-    }
     int fd = open_temporary(writer);
     if (fd >= 0 && exists && fchmod(fd, about.st_mode & 0777) != 0 && errno != EPERM && errno != EOPNOTSUPP) {
         int error = errno;
@@ -216,22 +207,18 @@ status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
                         "the name of the file to write is empty");
     }
     writer->path = strdup(path);
-    if (!writer->path) {
+    if (!writer->path)
         return no_room(why, path);
-    }
     int fd = open_target(writer);
-    if (fd >= 0) {
+    if (fd >= 0)
         writer->stream = fdopen(fd, "wb");
-    }
-    if (writer->stream) {
+    if (writer->stream)
         return STATUS_OK;
-    }
     int error = errno;
     if (fd >= 0) {
         close(fd);
-        if (writer->temporary) {
+        if (writer->temporary)
             unlink(writer->temporary);
-        }
     }
     release(writer);
     return system_error(why, STATUS_FAILURE, path, "cannot write", error);
@@ -266,9 +253,8 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
     }
     status code = STATUS_OK;
     if (failed) {
-        if (writer->temporary) {
+        if (writer->temporary)
             unlink(writer->temporary);
-        }
         if (error) {
             code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error);
         } else {
@@ -285,12 +271,10 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
 
 void file_writer_abandon(file_writer *writer)
 {
-    if (writer->stream) {
+    if (writer->stream)
         fclose(writer->stream);
-    }
-    if (writer->temporary) {
+    if (writer->temporary)
         unlink(writer->temporary);
-    }
     release(writer);
 }
 
@@ -305,22 +289,19 @@ status file_writer_end(file_writer *writer, status code, diagnostic *why)
 static int make_one_directory(const char *path)
 {
     struct stat about;
-    if (mkdir(path, 0777) == 0) {
+    if (mkdir(path, 0777) == 0)
         return 0;
-    }
     int error = errno;
-    if (stat(path, &about) == 0) {
+    if (stat(path, &about) == 0)
         return S_ISDIR(about.st_mode) ? 0 : ENOTDIR;
-    }
     return error;
 }
 
 status file_make_directory(const char *path, diagnostic *why)
 {
     char *part = strdup(path);
-    if (!part) {
+    if (!part)
         return no_room(why, path);
-    }
     int error = *path ? 0 : ENOENT;
     for (char *c = part; *c && !error; c++) {
         if (*c == '/' && c > part && c[-1] != '/') {
@@ -329,9 +310,8 @@ status file_make_directory(const char *path, diagnostic *why)
             *c = '/';
         }
     }
-    if (!error) {
+    if (!error)
         error = make_one_directory(part);
-    }
     free(part);
     return error ? system_error(why, STATUS_FAILURE, path, "cannot make the folder", error) : STATUS_OK;
 }

@@ -11,18 +11,16 @@ static uint64_t step(uint64_t hash, uint64_t word)
 
 uint64_t hash_words(uint64_t hash, const int64_t *words, size_t count)
 {
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         hash = step(hash, (uint64_t)words[i]);
-    }
     return hash;
 }
 
 uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
 {
     const unsigned char *byte = bytes;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         hash = step(hash, byte[i]);
-    }
     return hash;
 }
 

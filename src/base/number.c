@@ -15,9 +15,8 @@ static const char *skip_sign(const char *c)
 
 static const char *skip_digits(const char *c)
 {
-    while (*c >= '0' && *c <= '9') {
+    while (*c >= '0' && *c <= '9')
         c++;
-    }
     return c;
 }
 
@@ -31,15 +30,13 @@ static bool is_decimal(const char *text)
         c = skip_digits(fraction);
         has_digits = has_digits || c > fraction;
     }
-    if (!has_digits) {
+    if (!has_digits)
         return false;
-    }
     if (*c == 'e' || *c == 'E') {
         const char *exponent = skip_sign(c + 1);
         c = skip_digits(exponent);
-        if (c == exponent) {
+        if (c == exponent)
             return false;
-        }
     }
     return *c == 0;
 }
@@ -52,34 +49,29 @@ static locale_t c_locale(void)
 
 bool number_parse_real(const char *text, double *value)
 {
-    if (!text || !is_decimal(text)) {
+    if (!text || !is_decimal(text))
         return false;
-    }
     double parsed = strtod_l(text, NULL, c_locale());
-    if (!isfinite(parsed)) {
+    if (!isfinite(parsed))
         return false;
-    }
     *value = parsed;
     return true;
 }
 
 bool number_parse_int(const char *text, int64_t *value)
 {
-    if (!text) {
+    if (!text)
         return false;
-    }
     const char *digits = skip_sign(text), *end = skip_digits(digits);
-    if (end == digits || *end) {
+    if (end == digits || *end)
         return false;
-    }
     int before = errno;
     errno = 0;
     long long parsed = strtoll(text, NULL, 10);
     bool fits = errno == 0;
     errno = before;
-    if (fits) {
+    if (fits)
         *value = parsed;
-    }
     return fits;
 }
 
@@ -93,17 +85,15 @@ char *number_format_digits(double value, int digits, char text[NUMBER_TEXT_MAX])
 
 char *number_format(double value, char text[NUMBER_TEXT_MAX])
 {
-    if (isnan(value) || isinf(value)) {
+    if (isnan(value) || isinf(value))
         return strcpy(text, isnan(value) ? "nan" : value < 0 ? "-inf" : "inf");
-    }
     /* 15 digits always survive in a normal double and 17 always tell it, so the first that reads back is the
      * shortest; %g drops trailing zeros. Subnormal numbers hold fewer digits. */
     for (int digits = fabs(value) < DBL_MIN ? 1 : 15; digits <= 17; digits++) {
         number_format_digits(value, digits, text);
         double back = strtod_l(text, NULL, c_locale());
-        if (!(back < value) && !(back > value)) {
+        if (!(back < value) && !(back > value))
             break;
-        }
     }
     return text;
 }

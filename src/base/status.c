@@ -22,40 +22,34 @@ static void make_one_line(char *text)
 static void drop_cut_sequence(char *text)
 {
     size_t length = strlen(text), start = length;
-    while (start > 0 && length - start < 4 && ((unsigned char)text[start - 1] & 0xc0) == 0x80) {
+    while (start > 0 && length - start < 4 && ((unsigned char)text[start - 1] & 0xc0) == 0x80)
         start--;
-    }
-    if (start == 0 || (unsigned char)text[start - 1] < 0xc0) {
+    if (start == 0 || (unsigned char)text[start - 1] < 0xc0)
         return;
-    }
     unsigned char lead = (unsigned char)text[start - 1];
     size_t needed = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : 1;
-    if (length - start < needed) {
+    if (length - start < needed)
         text[start - 1] = 0;
-    }
 }
 
 static void copy_line(char *to, size_t size, const char *from)
 {
-    if (snprintf(to, size, "%s", from) >= (int)size) {
+    if (snprintf(to, size, "%s", from) >= (int)size)
         drop_cut_sequence(to);
-    }
     make_one_line(to);
 }
 
 status diagnose(diagnostic *why, status code, const char *remedy, const char *what, ...)
 {
-    if (!why) {
+    if (!why)
         return code;
-    }
     /* Through copies, because the arguments may lie in *why itself. */
     char what_text[sizeof why->what + 1], remedy_text[sizeof why->remedy];
     copy_line(remedy_text, sizeof remedy_text, remedy ? remedy : "");
     va_list arguments;
     va_start(arguments, what);
-    if (vsnprintf(what_text, sizeof what_text, what, arguments) < 0) {
+    if (vsnprintf(what_text, sizeof what_text, what, arguments) < 0)
         what_text[0] = 0;
-    }
     va_end(arguments);
     copy_line(why->what, sizeof why->what, what_text);
     memcpy(why->remedy, remedy_text, sizeof remedy_text);
@@ -69,9 +63,8 @@ status out_of_memory(diagnostic *why)
 
 void diagnostic_locate(diagnostic *why, const char *file, long line, long column)
 {
-    if (!why) {
+    if (!why)
         return;
-    }
     char name[sizeof why->file];
     copy_line(name, sizeof name, file ? file : "");
     memcpy(why->file, name, sizeof name);
@@ -84,9 +77,8 @@ char *diagnostic_text(const diagnostic *why, char *text, size_t size)
     char line[24] = "", column[24] = "";
     if (why->line > 0) {
         snprintf(line, sizeof line, "%s%ld", why->file[0] ? ":" : "", why->line);
-        if (why->column > 0) {
+        if (why->column > 0)
             snprintf(column, sizeof column, ":%ld", why->column);
-        }
     }
     bool located = why->file[0] || line[0];
     snprintf(text, size, "%s%s%s%s%s%s%s", why->file, line, column, located ? ": " : "", why->what,

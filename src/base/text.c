@@ -31,9 +31,8 @@ unsigned text_distance(const char *a, const char *b)
         for (size_t j = 1; j <= b_length; j++) {
             char x = lower(a[i - 1]), y = lower(b[j - 1]);
             current[j] = least(least(previous[j], current[j - 1]) + 1, previous[j - 1] + (x != y));
-            if (i > 1 && j > 1 && x == lower(b[j - 2]) && lower(a[i - 2]) == y) {
+            if (i > 1 && j > 1 && x == lower(b[j - 2]) && lower(a[i - 2]) == y)
                 current[j] = least(current[j], two_back[j - 2] + 1);
-            }
         }
         unsigned *oldest = two_back;
         two_back = previous;

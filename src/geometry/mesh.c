@@ -13,10 +13,9 @@ static void mesh_free(mesh *m)
 {
     struct mesh_share *share = m->share;
     if (share) {
-        for (int kind = 0; kind < HIERARCHY_KIND_COUNT; kind++) {
+        for (int kind = 0; kind < HIERARCHY_KIND_COUNT; kind++)
             if (share->hierarchies[kind])
                 share->destroy(share->hierarchies[kind]);
-        }
         pthread_mutex_destroy(&share->mutex);
         free(share);
     }

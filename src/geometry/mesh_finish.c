@@ -83,10 +83,9 @@ void mesh_normalize(mesh *m)
                 mesh_triangle_normal(m, t, normal);
         }
     }
-    for (size_t v = 0; missing && v < m->vertex_count; v++) {
+    for (size_t v = 0; missing && v < m->vertex_count; v++)
         if (largest(m->normals[v]) == 0.0)
             m->normals[v] = vec3_make(0.0, 1.0, 0.0); /* no triangle with an area is there */
-    }
 }
 
 void mesh_find_bounds(mesh *m)

@@ -73,9 +73,8 @@ bool mesh_orient(mesh *m, mesh_neighbours *n, size_t *at)
             return false;
         settle(m, n, first, end);
     }
-    for (size_t t = 0; t < m->triangle_count; t++) {
+    for (size_t t = 0; t < m->triangle_count; t++)
         if (n->turned[t])
             mesh_turn(m, t);
-    }
     return true;
 }

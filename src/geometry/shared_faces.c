@@ -15,9 +15,8 @@ static bool flat_at(const solid_shape *s, size_t i, flat *out)
 {
     vec3 normal, point;
     const shape_rule *rule = shape_of(s);
-    if (!rule->flat || !rule->flat(s, i, &normal, &point)) {
+    if (!rule->flat || !rule->flat(s, i, &normal, &point))
         return false;
-    }
     const mat3 turn = rotation_from_deg(s->rotation_deg);
     out->n = mat3_apply(turn, vec3_normalize(normal));
     out->at = vec3_dot(out->n, vec3_add(s->position, mat3_apply(turn, point)));
@@ -27,9 +26,8 @@ static bool flat_at(const solid_shape *s, size_t i, flat *out)
 static size_t flat_count(const solid_shape *s)
 {
     size_t count = 0;
-    for (flat unused; count <= COMPARED_MAX && flat_at(s, count, &unused);) {
+    for (flat unused; count <= COMPARED_MAX && flat_at(s, count, &unused);)
         count++;
-    }
     return count;
 }
 
@@ -48,20 +46,16 @@ static bool is_unknown(const solid_shape *s)
 
 bool solid_shapes_may_share_faces(const solid_shape *a, const solid_shape *b)
 {
-    if ((shape_of(a)->curved && shape_of(b)->curved) || is_unknown(a) || is_unknown(b)) {
+    if ((shape_of(a)->curved && shape_of(b)->curved) || is_unknown(a) || is_unknown(b))
         return true;
-    }
     const size_t of_a = flat_count(a), of_b = flat_count(b);
-    if (of_b > 0 && of_a > COMPARED_MAX / of_b) {
+    if (of_b > 0 && of_a > COMPARED_MAX / of_b)
         return true;
-    }
     flat one, other;
     for (size_t i = 0; flat_at(a, i, &one); i++) {
-        for (size_t k = 0; flat_at(b, k, &other); k++) {
-            if (is_one_plane(one, other)) {
+        for (size_t k = 0; flat_at(b, k, &other); k++)
+            if (is_one_plane(one, other))
                 return true;
-            }
-        }
     }
     return false;
 }

@@ -26,20 +26,17 @@ bool shape_named(const char *word, shape_kind *out)
 
 bool shape_has(const shape_rule *rule, const char *parameter)
 {
-    for (const char *const *name = rule->parameters; name && *name; name++) {
-        if (strcmp(*name, parameter) == 0) {
+    for (const char *const *name = rule->parameters; name && *name; name++)
+        if (strcmp(*name, parameter) == 0)
             return true;
-        }
-    }
     return false;
 }
 
 const char *shape_face_name(const shape_rule *rule, int64_t face)
 {
     const char *const *names = rule->triangles ? NULL : rule->faces[face >= HOLLOW_FACES && rule->primitive_count > 1];
-    for (int64_t i = rule->primitive_count > 1 ? face % HOLLOW_FACES : face; names && i > 0 && names[1]; i--) {
+    for (int64_t i = rule->primitive_count > 1 ? face % HOLLOW_FACES : face; names && i > 0 && names[1]; i--)
         names++;
-    }
     return names ? *names : "surface";
 }
 
@@ -50,13 +47,11 @@ const shape_rule *shape_of(const solid_shape *shape)
 
 status solid_shape_check(const solid_shape *shape, diagnostic *why)
 {
-    if (!vec3_is_finite(shape->position) || !vec3_is_finite(shape->rotation_deg)) {
+    if (!vec3_is_finite(shape->position) || !vec3_is_finite(shape->rotation_deg))
         return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "position or rotation is not finite");
-    }
     const shape_rule *rule = shape_of_kind(shape->kind);
-    if (!rule) {
+    if (!rule)
         return diagnose(why, STATUS_BAD_INPUT, "", "no such shape");
-    }
     return rule->check ? rule->check(shape, why) : STATUS_OK;
 }
 

@@ -24,9 +24,8 @@ enum { UNCOMPRESSED, RLE8, RLE4 }; /* the header's compression */
 static uint32_t number_at(const unsigned char *b, int bytes)
 {
     uint32_t value = 0;
-    for (int i = 0; i < bytes; i++) {
+    for (int i = 0; i < bytes; i++)
         value |= (uint32_t)b[i] << 8 * i;
-    }
     return value;
 }
 
@@ -47,9 +46,8 @@ typedef struct bmp_header {
 static status check_kind(const unsigned char *bytes, size_t size, diagnostic *why)
 {
     const uint32_t header = size >= FILE_HEADER + 4 ? number_at(bytes + FILE_HEADER, 4) : 0;
-    if (header == OS2_HEADER || header == OS2_HEADER_2 || header == OS2_HEADER_2_SHORT) {
+    if (header == OS2_HEADER || header == OS2_HEADER_2 || header == OS2_HEADER_2_SHORT)
         return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is one of OS/2, which is not read");
-    }
     if (size < FILE_HEADER + INFO_HEADER || (header <= V5_HEADER && header > size - FILE_HEADER)) {
         return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is truncated: %zu bytes have no whole header",
                         size);
@@ -59,9 +57,8 @@ static status check_kind(const unsigned char *bytes, size_t size, diagnostic *wh
                         "the header of the BMP file is damaged: it claims to have %lu bytes", (unsigned long)header);
     }
     const uint32_t bits = number_at(bytes + 28, 2), compression = number_at(bytes + 30, 4);
-    if (compression == RLE8 || compression == RLE4) {
+    if (compression == RLE8 || compression == RLE4)
         return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is compressed by run lengths, which is not read");
-    }
     if (bits != 24) {
         return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has %lu bits a pixel; only 24 are read",
                         (unsigned long)bits);
@@ -76,18 +73,16 @@ static status check_kind(const unsigned char *bytes, size_t size, diagnostic *wh
 static status read_header(const unsigned char *bytes, size_t size, bmp_header *out, diagnostic *why)
 {
     status code = check_kind(bytes, size, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     const int64_t height = signed_at(bytes + 22);
     *out = (bmp_header){.width = signed_at(bytes + 18),
                         .height = height < 0 ? -height : height,
                         .from_top = height < 0,
                         .offset = number_at(bytes + 10, 4)};
     code = codec_check_size(out->width, out->height, size, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     out->row_bytes = ((size_t)out->width * 3 + 3) / 4 * 4;
     if (out->offset < FILE_HEADER + number_at(bytes + FILE_HEADER, 4) || out->offset > size) {
         return diagnose(why, STATUS_BAD_INPUT, DAMAGED,
@@ -108,9 +103,8 @@ status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diag
     bmp_header header;
     *out = NULL;
     status code = read_header(bytes, size, &header, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     image *picture = NULL;
     float *linear = NULL;
     code = codec_begin(header.width, header.height, size, 255, &picture, &linear, why);
@@ -122,9 +116,8 @@ status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diag
     for (size_t row = 0; row < height; row++) {
         const unsigned char *from = bytes + header.offset + row * header.row_bytes;
         float *pixel = picture->pixel + (header.from_top ? row : height - 1 - row) * width * 3;
-        for (size_t x = 0; x < width; x++, from += 3, pixel += 3) {
+        for (size_t x = 0; x < width; x++, from += 3, pixel += 3)
             pixel[0] = linear[from[2]], pixel[1] = linear[from[1]], pixel[2] = linear[from[0]];
-        }
     }
     free(linear);
     *out = picture;

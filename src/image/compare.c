@@ -75,18 +75,16 @@ static void compare_pixels(const image *a, const image *b, double *luma_a, doubl
 static double mean(const double *values, size_t count)
 {
     double sum = 0.0;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         sum += values[i];
-    }
     return sum / (double)count;
 }
 
 status image_compare(const image *a, const image *b, image_comparison *out, diagnostic *why)
 {
     status code = compare_check(a, b, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     size_t count = pixels_of(a);
     double *first = malloc(count * sizeof *first), *second = malloc(count * sizeof *second);
     if (!first || !second) {
@@ -96,12 +94,10 @@ status image_compare(const image *a, const image *b, image_comparison *out, diag
         compare_pixels(a, b, first, second, out);
         code = compare_ssim(first, second, a->width, a->height, &out->ssim, why);
     }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = compare_flip(a, b, first, why);
-    }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         out->flip = mean(first, count);
-    }
     free(first);
     free(second);
     return code;

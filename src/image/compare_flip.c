@@ -34,17 +34,15 @@ static status lay_out_planes(work_planes *d, const image *picture, diagnostic *w
     *d = (work_planes){.width = picture->width, .height = picture->height};
     d->count = (size_t)d->width * (size_t)d->height;
     d->memory = calloc(d->count, PLANES * sizeof *d->memory);
-    if (!d->memory) {
+    if (!d->memory)
         return diagnose(why, STATUS_FAILURE, NULL, "out of memory for the FLIP error");
-    }
     double *next = d->memory;
     for (int i = 0; i < SEEN; i++, next += 2 * d->count) {
         d->a.plane[i] = next;
         d->b.plane[i] = next + d->count;
     }
-    for (int i = 0; i < 3; i++, next += d->count) {
+    for (int i = 0; i < 3; i++, next += d->count)
         d->opponent[i] = next;
-    }
     d->scratch = next;
     return STATUS_OK;
 }
@@ -88,9 +86,8 @@ static void balance(convolve_taps *taps)
         positive += taps->weight[i] > 0 ? taps->weight[i] : 0.0;
         negative -= taps->weight[i] < 0 ? taps->weight[i] : 0.0;
     }
-    for (int i = 0; i < taps->count; i++) {
+    for (int i = 0; i < taps->count; i++)
         taps->weight[i] /= taps->weight[i] > 0 ? positive : negative;
-    }
 }
 
 /* Section 4.2: first and second derivatives of a Gaussian whose sigma is half of 0.082 degrees, the width of the edges
@@ -113,14 +110,12 @@ static void make_detectors(convolve_taps *smooth, convolve_taps *edge, convolve_
 static void detect(const work_planes *d, const convolve_taps *detector, const convolve_taps *smooth, double *across,
                    double *down, double *strength)
 {
-    for (size_t i = 0; i < d->count; i++) {
+    for (size_t i = 0; i < d->count; i++)
         across[i] = down[i] = 0.0;
-    }
     convolve_add(d->opponent[0], d->width, d->height, detector, smooth, 1.0, d->scratch, across);
     convolve_add(d->opponent[0], d->width, d->height, smooth, detector, 1.0, d->scratch, down);
-    for (size_t i = 0; i < d->count; i++) {
+    for (size_t i = 0; i < d->count; i++)
         strength[i] = sqrt(across[i] * across[i] + down[i] * down[i]);
-    }
 }
 
 static void look_at(const work_planes *d, const image *picture, const sight *s)
@@ -128,9 +123,8 @@ static void look_at(const work_planes *d, const image *picture, const sight *s)
     for (size_t i = 0; i < d->count; i++) {
         double opponent[3];
         flip_opponent(picture->pixel + 3 * i, opponent);
-        for (int channel = 0; channel < 3; channel++) {
+        for (int channel = 0; channel < 3; channel++)
             d->opponent[channel][i] = opponent[channel];
-        }
     }
     filter_colors(d, s);
     convolve_taps smooth, edge, point;
@@ -161,15 +155,13 @@ status compare_flip(const image *a, const image *b, double *errors, diagnostic *
 {
     work_planes d;
     status code = lay_out_planes(&d, a, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     look_at(&d, a, &d.a);
     look_at(&d, b, &d.b);
     double farthest = flip_farthest();
-    for (size_t i = 0; i < d.count; i++) {
+    for (size_t i = 0; i < d.count; i++)
         errors[i] = error_at(&d.a, &d.b, i, farthest);
-    }
     free(d.memory);
     return STATUS_OK;
 }

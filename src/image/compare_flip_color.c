@@ -28,9 +28,8 @@ static double clamp(double value)
 
 static void multiply(const double matrix[3][3], const double in[3], double out[3])
 {
-    for (int row = 0; row < 3; row++) {
+    for (int row = 0; row < 3; row++)
         out[row] = matrix[row][0] * in[0] + matrix[row][1] * in[1] + matrix[row][2] * in[2];
-    }
 }
 
 void flip_opponent(const float rgb[3], double opponent[3])
@@ -53,9 +52,8 @@ void flip_hunt_lab(const double opponent[3], double lab[3])
 {
     double xyz[3] = {opponent[0] + opponent[1], opponent[0], opponent[0] - opponent[2]}, rgb[3];
     multiply(RGB_OF_XYZ, xyz, rgb);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         rgb[i] = clamp(rgb[i]);
-    }
     multiply(XYZ_OF_RGB, rgb, xyz);
     double x = lab_root(xyz[0]), y = lab_root(xyz[1]), z = lab_root(xyz[2]);
     lab[0] = 116.0 * y - 16.0;

@@ -9,9 +9,8 @@ static void magma(double t, float linear[3])
 {
     double rgb[3];
     color_map_at(MAGMA, t, rgb);
-    for (int channel = 0; channel < 3; channel++) {
+    for (int channel = 0; channel < 3; channel++)
         linear[channel] = (float)srgb_decode(rgb[channel] / 255.0);
-    }
 }
 
 status image_compare_map(const image *a, const image *b, image **map, diagnostic *why)
@@ -19,19 +18,16 @@ status image_compare_map(const image *a, const image *b, image **map, diagnostic
     image *picture = NULL;
     *map = NULL;
     status code = compare_check(a, b, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     size_t count = (size_t)a->width * (size_t)a->height;
     double *errors = malloc(count * sizeof *errors);
     code = errors ? image_create(a->width, a->height, &picture, why)
                   : diagnose(why, STATUS_FAILURE, NULL, "out of memory for the map of errors");
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = compare_flip(a, b, errors, why);
-    }
-    for (size_t i = 0; code == STATUS_OK && i < count; i++) {
+    for (size_t i = 0; code == STATUS_OK && i < count; i++)
         magma(errors[i], picture->pixel + 3 * i);
-    }
     free(errors);
     if (code != STATUS_OK) {
         image_destroy(picture);

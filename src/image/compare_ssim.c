@@ -23,9 +23,8 @@ static void gather(statistics *s, const double *a, const double *b, const convol
     const double *const factors[SUMS][2] = {{a, NULL}, {b, NULL}, {a, a}, {b, b}, {a, b}};
     for (int sum = 0; sum < SUMS; sum++) {
         const double *first = factors[sum][0], *second = factors[sum][1];
-        for (size_t i = 0; i < s->count; i++) {
+        for (size_t i = 0; i < s->count; i++)
             s->terms[i] = second ? first[i] * second[i] : first[i];
-        }
         convolve_add(s->terms, s->width, s->height, across, down, 1.0, s->scratch, s->sums[sum]);
     }
 }
@@ -44,12 +43,10 @@ status compare_ssim(const double *a, const double *b, int width, int height, dou
 {
     statistics s = {.width = width, .height = height, .count = (size_t)width * (size_t)height};
     double *planes = calloc(s.count, (SUMS + 2) * sizeof *planes);
-    if (!planes) {
+    if (!planes)
         return diagnose(why, STATUS_FAILURE, NULL, "out of memory for the structural similarity");
-    }
-    for (int sum = 0; sum < SUMS; sum++) {
+    for (int sum = 0; sum < SUMS; sum++)
         s.sums[sum] = planes + (size_t)sum * s.count;
-    }
     s.terms = planes + SUMS * s.count;
     s.scratch = s.terms + s.count;
     convolve_taps across = convolve_gaussian(width < WINDOW ? width : WINDOW, 1.5);
@@ -57,11 +54,9 @@ status compare_ssim(const double *a, const double *b, int width, int height, dou
     gather(&s, a, b, &across, &down);
     int columns = width - across.count + 1, rows = height - down.count + 1;
     double sum = 0.0;
-    for (int y = 0; y < rows; y++) {
-        for (int x = 0; x < columns; x++) {
+    for (int y = 0; y < rows; y++)
+        for (int x = 0; x < columns; x++)
             sum += similarity(&s, (size_t)(y + down.before) * (size_t)width + (size_t)(x + across.before));
-        }
-    }
     *mean = sum / ((double)rows * columns);
     free(planes);
     return STATUS_OK;

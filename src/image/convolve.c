@@ -15,9 +15,8 @@ convolve_taps convolve_gaussian(int count, double sigma)
         taps.weight[i] = elementary_pow(E, -x * x / (2.0 * sigma * sigma));
         sum += taps.weight[i];
     }
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         taps.weight[i] /= sum;
-    }
     return taps;
 }
 
@@ -31,15 +30,12 @@ static void add_shifted_row(const double *restrict row, int width, int shift, do
 {
     int first = shift < 0 ? within(-shift, width + 1) : 0;
     int last = shift > 0 ? within(width - shift, width + 1) : width;
-    for (int x = 0; x < first; x++) {
+    for (int x = 0; x < first; x++)
         out[x] += weight * row[0];
-    }
-    for (int x = first; x < last; x++) {
+    for (int x = first; x < last; x++)
         out[x] += weight * row[x + shift];
-    }
-    for (int x = last; x < width; x++) {
+    for (int x = last; x < width; x++)
         out[x] += weight * row[width - 1];
-    }
 }
 
 void convolve_add(const double *plane, int width, int height, const convolve_taps *across, const convolve_taps *down,

@@ -38,9 +38,8 @@ static const unsigned char GLYPHS[95][FONT_WIDTH] = {
 
 bool font_dot(char character, int column, int row)
 {
-    if (column < 0 || column >= FONT_WIDTH || row < 0 || row >= FONT_HEIGHT) {
+    if (column < 0 || column >= FONT_WIDTH || row < 0 || row >= FONT_HEIGHT)
         return false;
-    }
     char shown = character >= ' ' && character <= '~' ? character : '?';
     return GLYPHS[shown - ' '][column] >> row & 1;
 }

@@ -31,9 +31,8 @@ void heatmap_color(double t, unsigned char rgb[3])
 {
     double exact[3];
     color_map_at(VIRIDIS, t, exact);
-    for (int channel = 0; channel < 3; channel++) {
+    for (int channel = 0; channel < 3; channel++)
         rgb[channel] = (unsigned char)floor(exact[channel] + 0.5);
-    }
 }
 
 /* A picture and the linear light of the 256 encoded values. */
@@ -48,11 +47,9 @@ static void fill(const canvas *on, int x, int y, int width, int height, const un
     float linear[3] = {on->decoded[rgb[0]], on->decoded[rgb[1]], on->decoded[rgb[2]]};
     int right = x + width < picture->width ? x + width : picture->width;
     int bottom = y + height < picture->height ? y + height : picture->height;
-    for (int row = y > 0 ? y : 0; row < bottom; row++) {
-        for (int column = x > 0 ? x : 0; column < right; column++) {
+    for (int row = y > 0 ? y : 0; row < bottom; row++)
+        for (int column = x > 0 ? x : 0; column < right; column++)
             memcpy(picture->pixel + ((size_t)row * (size_t)picture->width + (size_t)column) * 3, linear, sizeof linear);
-        }
-    }
 }
 
 static int text_width(size_t length, int scale)
@@ -65,9 +62,8 @@ static void draw_text(const canvas *on, int x, int y, int scale, const char *tex
     for (; *text; text++, x += FONT_ADVANCE * scale) {
         for (int dot = 0; dot < FONT_WIDTH * FONT_HEIGHT; dot++) {
             int column = dot % FONT_WIDTH, row = dot / FONT_WIDTH;
-            if (font_dot(*text, column, row)) {
+            if (font_dot(*text, column, row))
                 fill(on, x + column * scale, y + row * scale, scale, scale, INK);
-            }
         }
     }
 }
@@ -87,9 +83,8 @@ static void format_key(double value, double largest, char text[NUMBER_TEXT_MAX +
         }
     }
     double scaled = value / prefixes[i].unit, power = 1.0;
-    while (scaled > 0 && scaled * power < 999.95 && power < 1e15) {
+    while (scaled > 0 && scaled * power < 999.95 && power < 1e15)
         power *= 10.0;
-    }
     number_format(floor(scaled * power + 0.5) / power, text);
     strcat(text, scaled > 0 ? prefixes[i].prefix : "");
 }
@@ -116,9 +111,8 @@ static void draw_title(const canvas *on, const key_layout *key, int top, const c
     room = room < sizeof shown ? room : sizeof shown - 1;
     size_t length = strlen(title);
     snprintf(shown, room + 1, "%s", title);
-    if (length > room && room > 3) {
+    if (length > room && room > 3)
         memcpy(shown + room - 3, "...", 3);
-    }
     int x = (on->picture->width - text_width(strlen(shown), key->scale)) / 2;
     draw_text(on, x, top + key->title_y, key->scale, shown);
 }
@@ -157,9 +151,8 @@ static void draw_key(const canvas *on, const key_layout *key, int top, const key
     for (int quarter = 0; quarter <= (scale->end > 0 ? 4 : 0); quarter++) {
         double value = scale->end * quarter / 4.0;
         value = scale->whole ? floor(value + 0.5) : value;
-        if (value > before) {
+        if (value > before)
             draw_tick(on, key, top, value, scale);
-        }
         before = value;
     }
     draw_title(on, key, top, title);
@@ -192,14 +185,12 @@ static double nth_smallest(const double *values, size_t count, size_t rank)
             double value = values[i] + 0.0; /* -0 becomes 0 */
             uint64_t bits;
             memcpy(&bits, &value, sizeof bits);
-            if (shift == 56 || bits >> (shift + 8) == found) {
+            if (shift == 56 || bits >> (shift + 8) == found)
                 counts[bits >> shift & 255]++;
-            }
         }
         unsigned byte = 0;
-        while (rank >= counts[byte]) {
+        while (rank >= counts[byte])
             rank -= counts[byte++];
-        }
         found = found << 8 | byte;
     }
     double value;
@@ -211,9 +202,8 @@ static status find_scale(const double *values, size_t count, key_scale *out, dia
 {
     double largest;
     status code = inspect(values, count, &largest, &out->whole, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     double percentile = nth_smallest(values, count, count - 1 - count / 200); /* the 99.5th, by nearest rank */
     out->cut = percentile > 0 && largest > 2 * percentile; /* of little but zeros the percentile says nothing */
     out->end = out->cut ? percentile : largest;
@@ -249,16 +239,14 @@ status heatmap_create(const double *values, int width, int height, const char *t
                         "a heat map of %d x %d values is not possible", width, height);
     }
     status code = find_scale(values, (size_t)width * (size_t)height, &scale, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     int picture_width = width < WIDTH_MIN ? WIDTH_MIN : width;
     key_layout key = lay_out_key(picture_width);
     float *decoded = codec_decode_table(255);
     image *picture = NULL;
-    if (!decoded) {
+    if (!decoded)
         return out_of_memory(why);
-    }
     code = image_create(picture_width, height + key.height, &picture, why);
     if (code == STATUS_OK) {
         draw(&(canvas){picture, decoded}, values, width, height, &scale, title ? title : "", &key);

@@ -60,9 +60,8 @@ image_format image_format_of(const char *path)
     size_t length = strlen(path);
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         size_t ending = strlen(endings[i].ending);
-        if (length > ending && strcasecmp(path + length - ending, endings[i].ending) == 0) {
+        if (length > ending && strcasecmp(path + length - ending, endings[i].ending) == 0)
             return endings[i].format;
-        }
     }
     bool nameless = strcmp(path, "-") == 0 || strncmp(path, "/dev/", 5) == 0;
     return nameless ? IMAGE_PNG : IMAGE_UNKNOWN;
@@ -86,12 +85,10 @@ status codec_begin(long long width, long long height, size_t file_bytes, unsigne
                    float **linear, diagnostic *why)
 {
     status code = codec_check_size(width, height, file_bytes, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = image_create((int)width, (int)height, picture, why);
-    }
-    if (code == STATUS_OK && !(*linear = codec_decode_table(maximum))) {
+    if (code == STATUS_OK && !(*linear = codec_decode_table(maximum)))
         code = out_of_memory(why);
-    }
     return code;
 }
 
@@ -138,13 +135,11 @@ status image_write(const image *picture, const char *path, int bits, diagnostic 
     }
     file_writer writer;
     status code = file_writer_open(&writer, path, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     code = write_as(picture, format, writer.stream, bits, false, why);
-    if (code == STATUS_OK || ferror(writer.stream)) {
+    if (code == STATUS_OK || ferror(writer.stream))
         return file_writer_commit(&writer, why); /* knows best why the stream failed */
-    }
     file_writer_abandon(&writer);
     diagnostic_locate(why, path, 0, 0);
     return code;
@@ -153,15 +148,12 @@ status image_write(const image *picture, const char *path, int bits, diagnostic 
 /* The formats' signatures: PNG specification 5.2; JPEG's SOI and the next marker; PFM's PF or Pf; BMP's BM. */
 static image_format format_of_bytes(const unsigned char *bytes, size_t size)
 {
-    if (size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0) {
+    if (size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0)
         return IMAGE_PNG;
-    }
-    if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0) {
+    if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0)
         return IMAGE_JPEG;
-    }
-    if (size >= 2 && memcmp(bytes, "BM", 2) == 0) {
+    if (size >= 2 && memcmp(bytes, "BM", 2) == 0)
         return IMAGE_BMP;
-    }
     bool pfm = size >= 3 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f') &&
                (bytes[2] == '\n' || bytes[2] == '\r' || bytes[2] == ' ');
     return pfm ? IMAGE_PFM : IMAGE_UNKNOWN;
@@ -192,9 +184,8 @@ status image_read_below(const char *path, const char *root, image **out, int *fi
     int bits = 0;
     *out = NULL;
     status code = file_read_below(path, root, FILE_BYTES_MAX, &bytes, &size, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     code = decode((const unsigned char *)bytes, size, out, &bits, why);
     free(bytes);
     if (code != STATUS_OK) {
@@ -202,8 +193,7 @@ status image_read_below(const char *path, const char *root, image **out, int *fi
         return code;
     }
     (*out)->coded_bits = bits == 32 ? 0 : bits;
-    if (file_bits) {
+    if (file_bits)
         *file_bits = bits;
-    }
     return STATUS_OK;
 }

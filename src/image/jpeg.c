@@ -33,9 +33,8 @@ static void on_message(j_common_ptr cinfo, int level)
 {
     int message = cinfo->err->msg_code;
     bool harmless = message == JWRN_EXTRANEOUS_DATA || message == JWRN_JFIF_MAJOR || message == JWRN_ADOBE_XFORM;
-    if (level < 0 && !harmless) {
+    if (level < 0 && !harmless)
         on_error(cinfo);
-    }
 }
 
 static void no_output(j_common_ptr cinfo)
@@ -73,9 +72,8 @@ static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const 
     size_t count = (size_t)picture->width * 3;
     while (cinfo->next_scanline < cinfo->image_height) {
         const float *pixel = picture->pixel + cinfo->next_scanline * count;
-        for (size_t i = 0; i < count; i++) {
+        for (size_t i = 0; i < count; i++)
             job->row[i] = codec_byte(&bytes, pixel[i]);
-        }
         JSAMPROW row = job->row;
         jpeg_write_scanlines(cinfo, &row, 1);
     }
@@ -84,9 +82,8 @@ static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const 
 
 static bool write_guarded(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image *picture, FILE *stream)
 {
-    if (setjmp(job->escape)) {
+    if (setjmp(job->escape))
         return false;
-    }
     write_rows(job, cinfo, picture, stream);
     return true;
 }
@@ -103,13 +100,12 @@ status codec_jpeg_write(const image *picture, FILE *stream, diagnostic *why)
     prepare(&job);
     cinfo.err = &job.errors;
     job.row = malloc((size_t)picture->width * 3);
-    if (!job.row) {
+    if (!job.row)
         diagnose(why, code, NULL, "out of memory");
-    } else if (!write_guarded(&job, &cinfo, picture, stream)) {
+    else if (!write_guarded(&job, &cinfo, picture, stream))
         diagnose(why, code, NULL, "cannot write the JPEG file: %s", job.message);
-    } else {
+    else
         code = STATUS_OK;
-    }
     jpeg_destroy_compress(&cinfo);
     free(job.row);
     return code;
@@ -120,9 +116,8 @@ status codec_jpeg_write(const image *picture, FILE *stream, diagnostic *why)
 /* A small progressive file can ask for scan after scan over a huge picture. */
 static void limit_scans(j_common_ptr cinfo)
 {
-    if (((j_decompress_ptr)cinfo)->input_scan_number > SCANS_MAX) {
+    if (((j_decompress_ptr)cinfo)->input_scan_number > SCANS_MAX)
         ERREXIT(cinfo, JERR_BAD_PROGRESSION);
-    }
 }
 
 static bool choose_colors(jpeg_job *job, j_decompress_ptr cinfo)
@@ -140,9 +135,8 @@ static bool choose_colors(jpeg_job *job, j_decompress_ptr cinfo)
 static bool allocate(jpeg_job *job, long long width, long long height, size_t file_bytes)
 {
     job->code = codec_begin(width, height, file_bytes, 255, &job->picture, &job->linear, job->why);
-    if (job->code == STATUS_OK && !(job->row = malloc((size_t)width * 3))) {
+    if (job->code == STATUS_OK && !(job->row = malloc((size_t)width * 3)))
         job->code = out_of_memory(job->why);
-    }
     return job->code == STATUS_OK;
 }
 
@@ -154,9 +148,8 @@ static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progres
     cinfo->progress = progress;
     jpeg_mem_src(cinfo, bytes, size);
     jpeg_read_header(cinfo, TRUE);
-    if (!choose_colors(job, cinfo) || !allocate(job, cinfo->image_width, cinfo->image_height, size)) {
+    if (!choose_colors(job, cinfo) || !allocate(job, cinfo->image_width, cinfo->image_height, size))
         return false;
-    }
     cinfo->dct_method = JDCT_ISLOW;
     jpeg_start_decompress(cinfo);
     size_t width = (size_t)job->picture->width, channels = (size_t)cinfo->output_components;
@@ -164,9 +157,8 @@ static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progres
         float *pixel = job->picture->pixel + cinfo->output_scanline * width * 3;
         JSAMPROW row = job->row;
         jpeg_read_scanlines(cinfo, &row, 1);
-        for (size_t i = 0; i < width * 3; i++) {
+        for (size_t i = 0; i < width * 3; i++)
             pixel[i] = job->linear[job->row[channels == 3 ? i : i / 3]];
-        }
     }
     jpeg_finish_decompress(cinfo); /* reads on to the end of the image, which must be there */
     return true;
@@ -181,9 +173,8 @@ static void read_guarded(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_prog
                              memory ? "" : "the JPEG file is damaged: ", job->message);
         return;
     }
-    if (read_rows(job, cinfo, progress, bytes, size)) {
+    if (read_rows(job, cinfo, progress, bytes, size))
         job->code = STATUS_OK;
-    }
 }
 
 status codec_jpeg_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why)

@@ -14,22 +14,19 @@ status codec_pfm_write(const image *picture, FILE *stream, diagnostic *why)
 {
     size_t count = (size_t)picture->width * 3;
     unsigned char *row = malloc(count * 4);
-    if (!row) {
+    if (!row)
         return out_of_memory(why);
-    }
     fprintf(stream, "PF\n%d %d\n-1.0\n", picture->width, picture->height);
     for (int y = picture->height - 1; y >= 0; y--) {
         const float *pixel = picture->pixel + (size_t)y * count;
         for (size_t i = 0; i < count; i++) {
             uint32_t word;
             memcpy(&word, &pixel[i], sizeof word);
-            for (int byte = 0; byte < 4; byte++) {
+            for (int byte = 0; byte < 4; byte++)
                 row[4 * i + (size_t)byte] = (unsigned char)(word >> 8 * byte);
-            }
         }
-        if (fwrite(row, 4, count, stream) != count) {
+        if (fwrite(row, 4, count, stream) != count)
             break; /* the stream remembers */
-        }
     }
     free(row);
     return STATUS_OK;
@@ -48,12 +45,10 @@ static bool is_blank(unsigned char c)
 static bool read_word(cursor *c, char word[NUMBER_TEXT_MAX])
 {
     size_t length = 0;
-    while (c->at < c->end && is_blank(*c->at)) {
+    while (c->at < c->end && is_blank(*c->at))
         c->at++;
-    }
-    while (c->at < c->end && !is_blank(*c->at) && length < NUMBER_TEXT_MAX - 1) {
+    while (c->at < c->end && !is_blank(*c->at) && length < NUMBER_TEXT_MAX - 1)
         word[length++] = (char)*c->at++;
-    }
     word[length] = 0;
     return length > 0 && c->at < c->end && is_blank(*c->at);
 }
@@ -101,9 +96,8 @@ status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diag
     }
     c.at++;
     status code = codec_check_size(width, height, size, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     size_t expected = (size_t)width * (size_t)height * (size_t)channels * 4, got = (size_t)(c.end - c.at);
     if (got != expected) {
         return diagnose(why, STATUS_BAD_INPUT, NULL, "the PFM file is %s: %zu bytes of pixels where %zu should be",
@@ -111,9 +105,8 @@ status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diag
     }
     image *picture;
     code = image_create((int)width, (int)height, &picture, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     code = read_pixels(c.at, channels, scale < 0, picture, why);
     if (code != STATUS_OK) {
         image_destroy(picture);

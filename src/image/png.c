@@ -69,9 +69,8 @@ static void write_rows(png_job *job, const image *picture, FILE *stream)
 
 static bool write_guarded(png_job *job, const image *picture, FILE *stream)
 {
-    if (setjmp(png_jmpbuf(job->png))) {
+    if (setjmp(png_jmpbuf(job->png)))
         return false;
-    }
     write_rows(job, picture, stream);
     return true;
 }
@@ -83,13 +82,12 @@ status codec_png_write(const image *picture, FILE *stream, int bits, bool fast, 
     job.raw = malloc((size_t)picture->width * 3 * (size_t)(bits / 8));
     job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
     job.info = job.png ? png_create_info_struct(job.png) : NULL;
-    if (!job.raw || !job.info) {
+    if (!job.raw || !job.info)
         diagnose(why, code, NULL, "out of memory");
-    } else if (!write_guarded(&job, picture, stream)) {
+    else if (!write_guarded(&job, picture, stream))
         diagnose(why, code, NULL, "cannot write the PNG file: %s", job.message);
-    } else {
+    else
         code = STATUS_OK;
-    }
     png_destroy_write_struct(&job.png, &job.info);
     free(job.raw);
     return code;
@@ -100,9 +98,8 @@ status codec_png_write(const image *picture, FILE *stream, int bits, bool fast, 
 static void take_bytes(png_structp png, png_bytep to, size_t count)
 {
     png_job *job = png_get_io_ptr(png);
-    if (count > job->size - job->used) {
+    if (count > job->size - job->used)
         png_error(png, "the file is truncated");
-    }
     memcpy(to, job->bytes + job->used, count);
     job->used += count;
 }
@@ -125,14 +122,12 @@ static void store_row(png_job *job, const unsigned char *row, int y, size_t chan
 {
     float *pixel = job->picture->pixel + (size_t)y * (size_t)job->picture->width * 3;
     for (size_t x = 0; x < (size_t)job->picture->width; x++) {
-        for (size_t channel = 0; channel < 3; channel++) {
+        for (size_t channel = 0; channel < 3; channel++)
             pixel[3 * x + channel] = job->linear[sample(job, row, channels * x + channel)];
-        }
         if (channels == 4) {
             double alpha = (double)sample(job, row, 4 * x + 3) / (job->bits == 8 ? 255.0 : 65535.0);
-            for (size_t channel = 0; channel < 3; channel++) {
+            for (size_t channel = 0; channel < 3; channel++)
                 pixel[3 * x + channel] = (float)(alpha * (double)pixel[3 * x + channel]);
-            }
         }
     }
 }
@@ -141,14 +136,12 @@ static bool allocate(png_job *job, long long width, long long height, bool inter
 {
     job->code =
         codec_begin(width, height, job->size, job->bits == 8 ? 255 : 65535, &job->picture, &job->linear, job->why);
-    if (job->code != STATUS_OK) {
+    if (job->code != STATUS_OK)
         return false;
-    }
     /* Zeroed, because an interlaced picture is read by combining with what was there. */
     job->raw = calloc(interlaced ? (size_t)height : 1, png_get_rowbytes(job->png, job->info));
-    if (!job->raw) {
+    if (!job->raw)
         job->code = out_of_memory(job->why);
-    }
     return job->raw;
 }
 
@@ -165,17 +158,15 @@ static bool read_rows(png_job *job)
     int passes = png_set_interlace_handling(job->png);
     png_read_update_info(job->png, job->info);
     png_uint_32 width = png_get_image_width(job->png, job->info), height = png_get_image_height(job->png, job->info);
-    if (!allocate(job, width, height, passes > 1)) {
+    if (!allocate(job, width, height, passes > 1))
         return false;
-    }
     size_t channels = png_get_channels(job->png, job->info), row_bytes = png_get_rowbytes(job->png, job->info);
     for (int pass = 0; pass < passes; pass++) {
         for (int y = 0; y < job->picture->height; y++) {
             unsigned char *row = job->raw + (passes > 1 ? (size_t)y * row_bytes : 0);
             png_read_row(job->png, row, NULL);
-            if (pass == passes - 1) {
+            if (pass == passes - 1)
                 store_row(job, row, y, channels);
-            }
         }
     }
     png_read_end(job->png, NULL); /* the rest must be whole too */
@@ -188,9 +179,8 @@ static void read_guarded(png_job *job)
         job->code = diagnose(job->why, STATUS_BAD_INPUT, NULL, "the PNG file is damaged: %s", job->message);
         return;
     }
-    if (read_rows(job)) {
+    if (read_rows(job))
         job->code = STATUS_OK;
-    }
 }
 
 status codec_png_read(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why)
@@ -199,11 +189,10 @@ status codec_png_read(const unsigned char *bytes, size_t size, image **out, int 
     *out = NULL;
     job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
     job.info = job.png ? png_create_info_struct(job.png) : NULL;
-    if (!job.info) {
+    if (!job.info)
         out_of_memory(why);
-    } else {
+    else
         read_guarded(&job);
-    }
     png_destroy_read_struct(&job.png, &job.info, NULL);
     free(job.raw);
     free(job.linear);

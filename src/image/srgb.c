@@ -9,12 +9,10 @@
 /* IEC 61966-2-1, the standard's own rounded constants. */
 double srgb_encode(double linear)
 {
-    if (!(linear > 0.0)) { /* NaN too */
+    if (!(linear > 0.0)) /* NaN too */
         return 0.0;
-    }
-    if (linear >= 1.0) {
+    if (linear >= 1.0)
         return 1.0;
-    }
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * elementary_pow(linear, 1.0 / 2.4) - 0.055;
 }
 
@@ -36,11 +34,10 @@ static float least_value(unsigned byte)
     while (enough - under > 1) {
         uint32_t middle = under + (enough - under) / 2;
         memcpy(&value, &middle, sizeof value);
-        if (codec_quantize(value, 255) >= byte) {
+        if (codec_quantize(value, 255) >= byte)
             enough = middle;
-        } else {
+        else
             under = middle;
-        }
     }
     memcpy(&value, &enough, sizeof value);
     return value;
@@ -49,25 +46,22 @@ static float least_value(unsigned byte)
 void codec_bytes_prepare(codec_bytes *table)
 {
     table->least[0] = 0.0f;
-    for (unsigned byte = 1; byte < 256; byte++) {
+    for (unsigned byte = 1; byte < 256; byte++)
         table->least[byte] = least_value(byte);
-    }
 }
 
 unsigned char codec_byte(const codec_bytes *table, float linear)
 {
     unsigned byte = 0;
-    for (unsigned step = 128; step > 0; step /= 2) {
+    for (unsigned step = 128; step > 0; step /= 2)
         byte += linear >= table->least[byte + step] ? step : 0; /* never true for NaN */
-    }
     return (unsigned char)byte;
 }
 
 float *codec_decode_table(unsigned maximum)
 {
     float *table = malloc(((size_t)maximum + 1) * sizeof *table);
-    for (unsigned i = 0; table && i <= maximum; i++) {
+    for (unsigned i = 0; table && i <= maximum; i++)
         table[i] = (float)srgb_decode((double)i / maximum);
-    }
     return table;
 }

@@ -32,17 +32,15 @@ static bool allocate(texture *t, int width, int height)
         t->level[t->levels] = (texture_level){.width = width, .height = height};
         start[t->levels++] = count;
         count += (size_t)width * (size_t)height;
-        if (width == 1 && height == 1) {
+        if (width == 1 && height == 1)
             break;
-        }
         width = width > 1 ? width / 2 : 1;
         height = height > 1 ? height / 2 : 1;
     } while (t->filter == TEXTURE_TRILINEAR);
     t->block_bytes = (count * sizeof(texel) + 63) / 64 * 64;
     t->block = aligned_alloc(64, t->block_bytes);
-    for (int level = 0; t->block && level < t->levels; level++) {
+    for (int level = 0; t->block && level < t->levels; level++)
         t->level[level].texels = t->block + start[level];
-    }
     return t->block;
 }
 
@@ -58,9 +56,8 @@ static float restore(const codec_bytes *bytes, int coded_bits, float linear)
 static void copy_pixels(texture *t, const image *picture, int coded_bits)
 {
     codec_bytes bytes;
-    if (coded_bits == 8) {
+    if (coded_bits == 8)
         codec_bytes_prepare(&bytes);
-    }
     const texture_level *to = &t->level[0];
     for (int y = 0; y < to->height; y++) {
         const float *from = picture->pixel + (size_t)(to->height - 1 - y) * (size_t)to->width * 3;
@@ -78,9 +75,8 @@ status texture_create(const image *picture, texture_space space, texture_wrap wr
 {
     *out = NULL;
     status code = check(picture, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     texture *t = calloc(1, sizeof *t);
     if (t) {
         t->wrap_u = wrap_u;
@@ -105,13 +101,11 @@ status texture_read_below(const char *path, const char *root, texture_space spac
     image *picture;
     *out = NULL;
     status code = image_read_below(path, root, &picture, NULL, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     code = texture_create(picture, space, wrap_u, wrap_v, filter, out, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         diagnostic_locate(why, path, 0, 0);
-    }
     image_destroy(picture);
     return code;
 }

@@ -11,12 +11,10 @@ typedef struct cover {
 
 static cover cover_of(int texel_index, int from, int to)
 {
-    if (from == to) {
+    if (from == to)
         return (cover){.first = texel_index, .count = 1, .share = {1.0, 0.0, 0.0}};
-    }
-    if (from % 2 == 0) {
+    if (from % 2 == 0)
         return (cover){.first = 2 * texel_index, .count = 2, .share = {0.5, 0.5, 0.0}};
-    }
     double n = from;
     return (cover){
         .first = 2 * texel_index, .count = 3, .share = {(to - texel_index) / n, to / n, (texel_index + 1) / n}};

@@ -80,12 +80,10 @@ static inline vec3 trilinear(const texture *t, double u, double v, double footpr
     int side = t->level[0].width > t->level[0].height ? t->level[0].width : t->level[0].height;
     int last = t->levels - 1;
     double texels = footprint * side;
-    if (!(texels > 1.0)) {
+    if (!(texels > 1.0))
         return bilinear(t, 0, u, v);
-    }
-    if (texels >= (double)(1 << last)) {
+    if (texels >= (double)(1 << last))
         return bilinear(t, last, u, v);
-    }
     /* Williams 1983: the level at which a texel is as wide as the pixel. */
     double height = elementary_log2_inline(texels);
     int level = (int)height;

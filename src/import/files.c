@@ -24,9 +24,8 @@ static FILE *open_regular(const char *path, const char *root, const char **reaso
         stream = fdopen(fd, "rb");
         *reason = stream ? NULL : strerrordesc_np(errno);
     }
-    if (fd >= 0 && !stream) {
+    if (fd >= 0 && !stream)
         close(fd);
-    }
     return stream;
 }
 
@@ -43,9 +42,8 @@ status files_check(const request *asked, diagnostic *why)
     bool outside;
     diagnostic_locate(why, asked->path, 0, 0);
     FILE *stream = open_regular(asked->path, asked->root, &reason, &outside);
-    if (outside) {
+    if (outside)
         return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
-    }
     if (!stream) {
         return diagnose(why, STATUS_BAD_INPUT, "name a mesh file that can be read", "cannot open: %s",
                         reason ? reason : "unknown error");

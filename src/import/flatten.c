@@ -30,9 +30,8 @@ static affine compose(const affine *a, const struct aiMatrix4x4 *b)
     for (int row = 0; row < 3; row++) {
         for (int column = 0; column < 4; column++) {
             double sum = 0;
-            for (int k = 0; k < 4; k++) {
+            for (int k = 0; k < 4; k++)
                 sum += a->m[row][k] * c[k][column];
-            }
             product.m[row][column] = sum;
         }
     }
@@ -47,12 +46,10 @@ static status visit_node(walk *w, const struct aiNode *node, const affine *paren
     }
     affine place = compose(parent, &node->mTransformation);
     status code = STATUS_OK;
-    for (unsigned i = 0; i < node->mNumMeshes && code == STATUS_OK; i++) {
+    for (unsigned i = 0; i < node->mNumMeshes && code == STATUS_OK; i++)
         code = w->visit(w, w->scene->mMeshes[node->mMeshes[i]], &place);
-    }
-    for (unsigned i = 0; i < node->mNumChildren && code == STATUS_OK; i++) {
+    for (unsigned i = 0; i < node->mNumChildren && code == STATUS_OK; i++)
         code = visit_node(w, node->mChildren[i], &place, depth + 1);
-    }
     return code;
 }
 
@@ -69,16 +66,14 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
 {
     (void)place;
     uint64_t before = w->triangles;
-    for (unsigned i = 0; i < mesh->mNumFaces; i++) {
+    for (unsigned i = 0; i < mesh->mNumFaces; i++)
         w->triangles += mesh->mFaces[i].mNumIndices == 3;
-    }
     if (w->triangles > w->asked->triangles) {
         return diagnose(w->why, STATUS_BAD_INPUT, "take a mesh of less detail", "more triangles than the limit of %llu",
                         (unsigned long long)w->asked->triangles);
     }
-    if (w->triangles == before) {
+    if (w->triangles == before)
         return STATUS_OK;
-    }
     if (mesh->mMaterialIndex >= w->scene->mNumMaterials ||
         mesh->mMaterialIndex >= sizeof w->slot_of / sizeof *w->slot_of) {
         return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again",
@@ -128,17 +123,15 @@ static affine normal_transform(const affine *a, double *determinant)
         }
     }
     *determinant = a->m[0][0] * c.m[0][0] + a->m[0][1] * c.m[0][1] + a->m[0][2] * c.m[0][2];
-    for (int i = 0; i < 9 && *determinant < 0; i++) {
+    for (int i = 0; i < 9 && *determinant < 0; i++)
         c.m[i / 3][i % 3] = -c.m[i / 3][i % 3];
-    }
     return c;
 }
 
 static void apply(const affine *a, struct aiVector3D v, double to[3])
 {
-    for (int row = 0; row < 3; row++) {
+    for (int row = 0; row < 3; row++)
         to[row] = a->m[row][0] * (double)v.x + a->m[row][1] * (double)v.y + a->m[row][2] * (double)v.z + a->m[row][3];
-    }
 }
 
 typedef struct placed {
@@ -151,23 +144,20 @@ static void gather(const walk *w, const struct aiMesh *mesh, const placed *at, u
     memset(numbers, 0, 8 * sizeof *numbers);
     struct aiVector3D p = mesh->mVertices[i];
     memcpy(numbers, (double[3]){p.x, p.y, p.z}, 3 * sizeof *numbers);
-    if (!at->identity) {
+    if (!at->identity)
         apply(&at->place, p, numbers);
-    }
     if (w->flat->with_normals && mesh->mNormals) {
         struct aiVector3D n = mesh->mNormals[i];
         memcpy(numbers + 3, (double[3]){n.x, n.y, n.z}, 3 * sizeof *numbers);
-        if (!at->identity) {
+        if (!at->identity)
             apply(&at->turn, n, numbers + 3);
-        }
     }
     if (mesh->mTextureCoords[0]) {
         numbers[6] = (double)mesh->mTextureCoords[0][i].x;
         numbers[7] = (double)mesh->mTextureCoords[0][i].y;
     }
-    for (int k = 0; k < 8; k++) {
+    for (int k = 0; k < 8; k++)
         numbers[k] += 0.0; /* -0 becomes 0, so that both are joined */
-    }
 }
 
 /* index[i] is where vertex i went; those of no triangle stay behind. */
@@ -186,9 +176,8 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
     }
     for (unsigned i = 0; i < mesh->mNumVertices; i++) {
         double numbers[8];
-        if (index[i] == UNUSED) {
+        if (index[i] == UNUSED)
             continue;
-        }
         gather(w, mesh, at, i, numbers);
         switch (join_vertex(&w->join, w->flat, w->asked->vertices, numbers, &index[i])) {
         case JOINED: break;
@@ -207,9 +196,8 @@ static status take_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
     placed at = {.place = *place, .turn = normal_transform(place, &determinant), .identity = is_identity(place)};
     at.mirrored = determinant < 0;
     uint32_t *index = calloc((size_t)mesh->mNumVertices + 1, sizeof *index);
-    if (!index) {
+    if (!index)
         return no_memory_for(w->asked, w->why);
-    }
     status code = take_vertices(w, mesh, &at, index);
     for (unsigned f = 0; f < mesh->mNumFaces && code == STATUS_OK; f++) {
         const unsigned *corner = mesh->mFaces[f].mIndices;
@@ -234,12 +222,10 @@ status flatten(const request *asked, const struct aiScene *scene, flat_mesh *fla
         code = diagnose(why, STATUS_BAD_INPUT, "points and lines are not drawn; give it faces",
                         "there are no triangles in this file");
     }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = number_slots(&w);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     flat->triangles = malloc((size_t)w.triangles * sizeof *flat->triangles);
     flat->slots = malloc((size_t)w.triangles);
     return flat->triangles && flat->slots ? visit_all(&w, take_mesh) : no_memory_for(asked, why);

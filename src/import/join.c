@@ -28,9 +28,8 @@ static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[
     while (j->table[at]) {
         double other[NUMBERS];
         vertex_numbers(flat, j->table[at] - 1, other);
-        if (memcmp(other, numbers, sizeof other) == 0) {
+        if (memcmp(other, numbers, sizeof other) == 0)
             break;
-        }
         at = (at + 1) & (j->size - 1);
     }
     return at;
@@ -40,9 +39,8 @@ static bool grow_table(joiner *j, const flat_mesh *flat)
 {
     joiner larger = {.size = j->size ? j->size * 2 : 1024, .room = j->room};
     larger.table = calloc(larger.size, sizeof *larger.table);
-    if (!larger.table) {
+    if (!larger.table)
         return false;
-    }
     for (size_t i = 0; i < flat->vertex_count; i++) {
         double numbers[NUMBERS];
         vertex_numbers(flat, (uint32_t)i, numbers);
@@ -62,35 +60,30 @@ static bool grow_arrays(joiner *j, flat_mesh *flat)
     flat->normals = normals ? normals : flat->normals;
     void *uvs = flat->with_uvs ? realloc(flat->uvs, room * sizeof *flat->uvs) : NULL;
     flat->uvs = uvs ? uvs : flat->uvs;
-    if (!positions || (flat->with_normals && !normals) || (flat->with_uvs && !uvs)) {
+    if (!positions || (flat->with_normals && !normals) || (flat->with_uvs && !uvs))
         return false;
-    }
     j->room = room;
     return true;
 }
 
 enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double numbers[NUMBERS], uint32_t *index)
 {
-    if (flat->vertex_count * 2 >= j->size && !grow_table(j, flat)) {
+    if (flat->vertex_count * 2 >= j->size && !grow_table(j, flat))
         return JOIN_NO_MEMORY;
-    }
     size_t at = find(j, flat, numbers);
     if (j->table[at]) {
         *index = j->table[at] - 1;
         return JOINED;
     }
-    if (flat->vertex_count >= limit) {
+    if (flat->vertex_count >= limit)
         return JOIN_TOO_MANY;
-    }
-    if (flat->vertex_count >= j->room && !grow_arrays(j, flat)) {
+    if (flat->vertex_count >= j->room && !grow_arrays(j, flat))
         return JOIN_NO_MEMORY;
-    }
     *index = (uint32_t)flat->vertex_count++;
     j->table[at] = *index + 1;
     flat->positions[*index] = vec3_make(numbers[0], numbers[1], numbers[2]);
-    if (flat->with_normals) {
+    if (flat->with_normals)
         flat->normals[*index] = vec3_make(numbers[3], numbers[4], numbers[5]);
-    }
     if (flat->with_uvs) {
         flat->uvs[*index].u = numbers[6];
         flat->uvs[*index].v = numbers[7];

@@ -18,11 +18,9 @@ static file_kind kind_of(const char *path)
     static const char *const endings[] = {
         [FILE_OBJ] = ".obj", [FILE_PLY] = ".ply", [FILE_STL] = ".stl", [FILE_GLTF] = ".gltf", [FILE_GLB] = ".glb"};
     const char *ending = strrchr(path, '.');
-    for (int kind = 0; ending && kind < FILE_UNKNOWN; kind++) {
-        if (strcasecmp(ending, endings[kind]) == 0) {
+    for (int kind = 0; ending && kind < FILE_UNKNOWN; kind++)
+        if (strcasecmp(ending, endings[kind]) == 0)
             return (file_kind)kind;
-        }
-    }
     return FILE_UNKNOWN;
 }
 
@@ -40,15 +38,13 @@ static error_t parse_option(int key, char *value, struct argp_state *state)
     case 's':
     case 't':
     case 'v':
-        if (!number_parse_int(value, &got) || got < 1) {
+        if (!number_parse_int(value, &got) || got < 1)
             argp_error(state, "'%s' is not a number from 1", value);
-        }
         *number = (uint64_t)got;
         return 0;
     case ARGP_KEY_ARG:
-        if (asked->path) {
+        if (asked->path)
             argp_error(state, "'%s' is one file too many", value);
-        }
         asked->path = value;
         return 0;
     case ARGP_KEY_NO_ARGS: argp_error(state, "no file is named"); return 0;
@@ -96,9 +92,8 @@ static status convert(const request *asked, diagnostic *why)
     const struct aiScene *scene;
     flat_mesh flat = {0};
     status code = read_scene(asked, &scene, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = flatten(asked, scene, &flat, why);
-    }
     return code == STATUS_OK ? write_mesh(asked, scene, &flat, stdout, why) : code;
 }
 

@@ -18,9 +18,8 @@ static bool locate_json(const request *asked, diagnostic *why)
 {
     json_error_t error;
     FILE *stream = files_open(asked);
-    if (!stream) {
+    if (!stream)
         return false;
-    }
     json_t *root = json_loadf(stream, JSON_REJECT_DUPLICATES, &error);
     fclose(stream);
     if (!root) {
@@ -45,12 +44,10 @@ static status explain(const request *asked, const file_access *access, const cha
                         access->reason ? access->reason : "cannot be opened");
     }
     if (strstr(said, "bad_alloc") || strstr(said, "length_error") || strstr(said, "bad_array_new_length") ||
-        strstr(said, "_M_") || strstr(said, "max_size")) {
+        strstr(said, "_M_") || strstr(said, "max_size"))
         return no_memory_for(asked, why);
-    }
-    if (asked->kind == FILE_GLTF && locate_json(asked, why)) {
+    if (asked->kind == FILE_GLTF && locate_json(asked, why))
         return STATUS_BAD_INPUT;
-    }
     if (!*said || strstr(said, "No suitable reader")) {
         return diagnose(why, STATUS_BAD_INPUT, "check that it is whole and what its name says",
                         "this is not a file of the kind %s", names[asked->kind]);
@@ -63,17 +60,15 @@ status read_scene(const request *asked, const struct aiScene **out, diagnostic *
     file_access access;
     diagnostic_locate(why, asked->path, 0, 0);
     status code = files_check(asked, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     if (asked->kind == FILE_UNKNOWN) {
         return diagnose(why, STATUS_BAD_INPUT, "name a file that ends in .obj, .ply, .stl, .gltf or .glb",
                         "unknown kind of mesh");
     }
     code = check_whole(asked, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     files_prepare(&access, asked);
     /* Equal vertices are joined in join.c: assimp's own step moves those together that lie within 1e-5. */
     const struct aiScene *scene =

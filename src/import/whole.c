@@ -51,11 +51,9 @@ static int type_bytes(const char *type)
         {"int16", 2}, {"uint16", 2},  {"int", 4},    {"uint", 4},    {"int32", 4}, {"uint32", 4},
         {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8},
     };
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
-        if (strcmp(type, types[i].name) == 0) {
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+        if (strcmp(type, types[i].name) == 0)
             return types[i].bytes;
-        }
-    }
     return 0;
 }
 
@@ -67,32 +65,27 @@ static status bad_header(ply *p, const char *what)
 
 static status take_property(ply *p, char words[6][WORD_MAX + 1], int count)
 {
-    if (p->element_count == 0) {
+    if (p->element_count == 0)
         return bad_header(p, "a property of no element");
-    }
     struct element *e = &p->elements[p->element_count - 1];
     bool list = count >= 5 && strcmp(words[1], "list") == 0;
     property got = {.count_bytes = list ? type_bytes(words[2]) : 0, .bytes = type_bytes(words[list ? 3 : 1])};
-    if (!got.bytes || (list && !got.count_bytes)) {
+    if (!got.bytes || (list && !got.count_bytes))
         return bad_header(p, "a property of unknown type");
-    }
-    if (e->property_count == PROPERTIES_MAX) {
+    if (e->property_count == PROPERTIES_MAX)
         return bad_header(p, "more than 64 properties");
-    }
     e->properties[e->property_count++] = got;
     return STATUS_OK;
 }
 
 static status take_element(ply *p, const char *name, const char *number)
 {
-    if (p->element_count == (int)(sizeof p->elements / sizeof *p->elements)) {
+    if (p->element_count == (int)(sizeof p->elements / sizeof *p->elements))
         return bad_header(p, "more than 16 elements");
-    }
     char *end = NULL;
     uint64_t count = isdigit((unsigned char)*number) && strlen(number) < 19 ? strtoull(number, &end, 10) : 0;
-    if (!end || *end) {
+    if (!end || *end)
         return bad_header(p, "the number of an element is no number that can be");
-    }
     struct element *e = &p->elements[p->element_count++];
     e->count = count;
     strcpy(e->name, name);
@@ -104,19 +97,16 @@ static int next_line(ply *p, char words[6][WORD_MAX + 1])
 {
     const char *end = p->at < p->end ? memchr(p->at, '\n', (size_t)(p->end - p->at)) : NULL;
     int count = 0;
-    if (!end) {
+    if (!end)
         return -1;
-    }
     p->line++;
     for (const char *at = p->at; at < end && count < 6;) {
         int length = 0;
         for (; at < end && isspace((unsigned char)*at); at++) {
         }
-        for (; at < end && !isspace((unsigned char)*at); at++) {
-            if (length < WORD_MAX) {
+        for (; at < end && !isspace((unsigned char)*at); at++)
+            if (length < WORD_MAX)
                 words[count][length++] = *at;
-            }
-        }
         words[count][length] = 0;
         count += length > 0;
     }
@@ -130,18 +120,14 @@ static status read_header(ply *p)
     for (bool format = false;;) {
         int count = next_line(p, words);
         status code = STATUS_OK;
-        if (count < 0) {
+        if (count < 0)
             return bad_header(p, "the header has no end");
-        }
-        if (count == 0) {
+        if (count == 0)
             continue;
-        }
-        if (strcmp(words[0], "end_header") == 0) {
+        if (strcmp(words[0], "end_header") == 0)
             return format ? STATUS_OK : bad_header(p, "the header names no format");
-        }
-        if (p->line == 1 && strcasecmp(words[0], "ply") != 0) {
+        if (p->line == 1 && strcasecmp(words[0], "ply") != 0)
             return bad_header(p, "a PLY file begins with the line 'ply'");
-        }
         if (strcmp(words[0], "format") == 0 && count >= 2) {
             p->ascii = strcmp(words[1], "ascii") == 0;
             p->big = strcmp(words[1], "binary_big_endian") == 0;
@@ -153,9 +139,8 @@ static status read_header(ply *p)
         } else if (strcmp(words[0], "property") == 0 && count >= 3) {
             code = take_property(p, words, count);
         }
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
     }
 }
 
@@ -169,18 +154,14 @@ static bool skip_words(ply *p, uint64_t count, double *number)
         }
         char text[32];
         size_t length = 0;
-        for (; p->at < p->end && !isspace((unsigned char)*p->at); p->at++) {
-            if (length < sizeof text - 1) {
+        for (; p->at < p->end && !isspace((unsigned char)*p->at); p->at++)
+            if (length < sizeof text - 1)
                 text[length++] = *p->at;
-            }
-        }
-        if (length == 0) {
+        if (length == 0)
             return false;
-        }
         text[length] = 0;
-        if (number && count == 1) {
+        if (number && count == 1)
             *number = strtod(text, NULL);
-        }
     }
     return true;
 }
@@ -196,9 +177,8 @@ static bool skip_bytes(ply *p, uint64_t count)
  * list. */
 static bool read_length(ply *p, int bytes, uint64_t *length)
 {
-    if (p->end - p->at < bytes) {
+    if (p->end - p->at < bytes)
         return false;
-    }
     *length = 0;
     for (int i = 0; i < bytes; i++) {
         uint64_t byte = (unsigned char)p->at[p->big ? bytes - 1 - i : i];
@@ -213,9 +193,8 @@ static bool skip_property(ply *p, const property *of)
     uint64_t length = 1;
     if (p->ascii) {
         double number = 1;
-        if (of->count_bytes && (!skip_words(p, 1, &number) || !(number >= 0 && number < 1e12))) {
+        if (of->count_bytes && (!skip_words(p, 1, &number) || !(number >= 0 && number < 1e12)))
             return false;
-        }
         return skip_words(p, (uint64_t)number, NULL);
     }
     return (!of->count_bytes || read_length(p, of->count_bytes, &length)) &&
@@ -228,11 +207,9 @@ static status check_ply(ply *p)
     for (int i = 0; i < p->element_count && code == STATUS_OK; i++) {
         const struct element *e = &p->elements[i];
         for (uint64_t k = 0; e->property_count && k < e->count; k++) {
-            for (int q = 0; q < e->property_count; q++) {
-                if (!skip_property(p, &e->properties[q])) {
+            for (int q = 0; q < e->property_count; q++)
+                if (!skip_property(p, &e->properties[q]))
                     return truncated(p->why, e->name, k, e->count);
-                }
-            }
         }
     }
     return code;
@@ -241,19 +218,15 @@ static status check_ply(ply *p)
 static status check_stl(const char *bytes, size_t size, diagnostic *why)
 {
     uint32_t count = 0;
-    if (size >= 84) {
+    if (size >= 84)
         memcpy(&count, bytes + 80, sizeof count); /* little-endian, as this machine */
-    }
     uint64_t needed = 84 + 50 * (uint64_t)count;
-    if (size >= 84 && size == needed) {
+    if (size >= 84 && size == needed)
         return STATUS_OK;
-    }
     if (strncasecmp(bytes, "solid", size < 5 ? size : 5) == 0 && size > 5) {
-        for (size_t i = size < 4096 ? 0 : size - 4096; i + 8 <= size; i++) {
-            if (strncasecmp(bytes + i, "endsolid", 8) == 0) {
+        for (size_t i = size < 4096 ? 0 : size - 4096; i + 8 <= size; i++)
+            if (strncasecmp(bytes + i, "endsolid", 8) == 0)
                 return STATUS_OK;
-            }
-        }
         return diagnose(why, STATUS_BAD_INPUT, "the file is truncated; export it again",
                         "the text does not end in 'endsolid'");
     }
@@ -266,19 +239,16 @@ static status check_stl(const char *bytes, size_t size, diagnostic *why)
 
 status check_whole(const request *asked, diagnostic *why)
 {
-    if (asked->kind != FILE_PLY && asked->kind != FILE_STL) {
+    if (asked->kind != FILE_PLY && asked->kind != FILE_STL)
         return STATUS_OK;
-    }
     struct stat about;
     int fd = below_open(asked->path, asked->root);
     void *bytes = fd >= 0 && fstat(fd, &about) == 0 ? mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, fd, 0)
                                                     : MAP_FAILED;
-    if (fd >= 0) {
+    if (fd >= 0)
         close(fd);
-    }
-    if (bytes == MAP_FAILED) {
+    if (bytes == MAP_FAILED)
         return no_memory_for(asked, why);
-    }
     ply p = {.at = bytes, .end = (const char *)bytes + about.st_size, .why = why};
     diagnostic_locate(why, asked->path, 0, 0);
     status code = asked->kind == FILE_PLY ? check_ply(&p) : check_stl(bytes, (size_t)about.st_size, why);

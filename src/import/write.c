@@ -16,9 +16,8 @@ static void get_color(const struct aiMaterial *material, const char *key, double
 static void get_number(const struct aiMaterial *material, const char *key, double *to)
 {
     float value;
-    if (aiGetMaterialFloatArray(material, key, 0, 0, &value, NULL) == aiReturn_SUCCESS) {
+    if (aiGetMaterialFloatArray(material, key, 0, 0, &value, NULL) == aiReturn_SUCCESS)
         *to = (double)value;
-    }
 }
 
 /* assimp gives triangles without a material one of this name; in a PLY file one without a name; in a glTF file the one
@@ -38,33 +37,29 @@ static mesh_wire_material describe(const request *asked, const struct aiScene *s
     float alpha = 1, unused;
     double strength = 1; /* glTF's KHR_materials_emissive_strength */
     *name = *texture = (struct aiString){0};
-    if (aiGetMaterialString(material, AI_MATKEY_NAME, name) != aiReturn_SUCCESS) {
+    if (aiGetMaterialString(material, AI_MATKEY_NAME, name) != aiReturn_SUCCESS)
         *name = (struct aiString){0}; /* which it leaves undefined */
-    }
     get_color(material, "$clr.diffuse", m.diffuse, &alpha);
     get_color(material, "$clr.ambient", m.ambient, &unused);
     get_color(material, "$clr.specular", m.specular, &unused);
     get_color(material, "$clr.emissive", m.emissive, &unused);
     get_number(material, "$mat.emissiveIntensity", &strength);
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3; c++)
         m.emissive[c] *= strength;
-    }
     get_number(material, "$mat.shininess", &m.shininess);
     get_number(material, "$mat.refracti", &m.ior);
     m.opacity = (double)alpha;
     get_number(material, "$mat.opacity", &m.opacity);
     if (aiGetMaterialTexture(material, aiTextureType_DIFFUSE, 0, texture, NULL, NULL, NULL, NULL, NULL, NULL) !=
-        aiReturn_SUCCESS) {
+        aiReturn_SUCCESS)
         *texture = (struct aiString){0};
-    }
     m.flags = is_given(asked, scene, index, name) ? MESH_WIRE_GIVEN : 0;
     if (texture->data[0] == '*') { /* the index of a picture inside the file */
         m.flags |= MESH_WIRE_TEXTURE_INSIDE;
         *texture = (struct aiString){0};
     }
-    if (!(m.flags & MESH_WIRE_GIVEN)) {
+    if (!(m.flags & MESH_WIRE_GIVEN))
         *name = (struct aiString){0};
-    }
     m.name_length = (uint32_t)strnlen(name->data, MESH_WIRE_TEXT_MAX);
     m.texture_length = (uint32_t)strnlen(texture->data, MESH_WIRE_TEXT_MAX);
     return m;
@@ -93,12 +88,10 @@ status write_mesh(const request *asked, const struct aiScene *scene, const flat_
     };
     fwrite(&header, sizeof header, 1, to);
     fwrite(flat->positions, sizeof *flat->positions, flat->vertex_count, to);
-    if (flat->with_normals) {
+    if (flat->with_normals)
         fwrite(flat->normals, sizeof *flat->normals, flat->vertex_count, to);
-    }
-    if (flat->with_uvs) {
+    if (flat->with_uvs)
         fwrite(flat->uvs, sizeof *flat->uvs, flat->vertex_count, to);
-    }
     fwrite(flat->triangles, sizeof *flat->triangles, flat->triangle_count, to);
     fwrite(flat->slots, 1, flat->triangle_count, to);
     write_materials(asked, scene, flat, to);

@@ -151,7 +151,7 @@ status param_rows_json(const scene *s, const char *filter, json_t **out, diagnos
 static void write_roff(FILE *stream, const char *text)
 {
     fputs(*text == '.' || *text == '\'' ? "\\&" : "", stream);
-    for (const char *c = text; *c; c++) {
+    for (const char *c = text; *c; c++)
         if (*c == '-')
             fputs("\\-", stream);
         else if (*c == '\\')
@@ -160,7 +160,6 @@ static void write_roff(FILE *stream, const char *text)
             fputs("\\(ha", stream);
         else
             fputc(*c, stream);
-    }
 }
 
 static const char *const group_titles[PARAM_GROUP_COUNT] = {

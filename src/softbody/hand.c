@@ -21,12 +21,10 @@ hand_script *hand_script_create(const char *path)
 
 void hand_script_destroy(hand_script *s)
 {
-    if (!s) {
+    if (!s)
         return;
-    }
-    for (size_t i = 0; i < s->track_count; i++) {
+    for (size_t i = 0; i < s->track_count; i++)
         free(s->tracks[i].keys);
-    }
     free(s->tracks);
     free(s->path);
     free(s);
@@ -34,11 +32,9 @@ void hand_script_destroy(hand_script *s)
 
 static hand_track *find_track(const hand_script *s, const char *hand)
 {
-    for (size_t i = 0; i < s->track_count; i++) {
-        if (strcmp(s->tracks[i].name, hand) == 0) {
+    for (size_t i = 0; i < s->track_count; i++)
+        if (strcmp(s->tracks[i].name, hand) == 0)
             return &s->tracks[i];
-        }
-    }
     return NULL;
 }
 
@@ -54,18 +50,14 @@ static status check_numbers(const char *hand, const hand_key *key, diagnostic *w
         return diagnose(why, STATUS_BAD_INPUT, "give a time from 0 on", "%s: %g is no time in seconds", hand,
                         key->time_s);
     }
-    if (key->act == HAND_MOVE && !is_point(key->by)) {
+    if (key->act == HAND_MOVE && !is_point(key->by))
         return diagnose(why, STATUS_BAD_INPUT, "give three finite numbers", "%s: it moves to nowhere", hand);
-    }
-    if (key->act != HAND_GRAB) {
+    if (key->act != HAND_GRAB)
         return STATUS_OK;
-    }
-    if (!is_point(key->origin) || !is_point(key->direction) || !(vec3_dot(key->direction, key->direction) > 0.0)) {
+    if (!is_point(key->origin) || !is_point(key->direction) || !(vec3_dot(key->direction, key->direction) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "give a direction that is not zero", "%s: it grabs along no ray", hand);
-    }
-    if (!(key->reach > 0.0 && isfinite(key->reach))) {
+    if (!(key->reach > 0.0 && isfinite(key->reach)))
         return diagnose(why, STATUS_BAD_INPUT, "give a length greater than 0", "%s: a reach of %g", hand, key->reach);
-    }
     return STATUS_OK;
 }
 
@@ -91,9 +83,8 @@ static status check_order(const char *hand, const hand_track *track, const hand_
 
 static status check_hand(const hand_script *s, const char *hand, const hand_track *track, diagnostic *why)
 {
-    if (!hand[0] || strlen(hand) > HAND_NAME_MAX) {
+    if (!hand[0] || strlen(hand) > HAND_NAME_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a name has 1 to 63 bytes", "'%.80s' cannot be a hand's name", hand);
-    }
     if (!track && s->track_count == SOFTBODY_HANDS_MAX) {
         return diagnose(why, STATUS_BAD_INPUT, "a script has 16; one that has let go can grab again",
                         "%s is one hand too many", hand);
@@ -105,9 +96,8 @@ static status check_hand(const hand_script *s, const char *hand, const hand_trac
  */
 static void *grow(void *array, size_t count, size_t size)
 {
-    if ((count & (count - 1)) != 0) {
+    if ((count & (count - 1)) != 0)
         return array;
-    }
     const size_t room = count ? 2 * count : 1;
     return room <= SIZE_MAX / size ? realloc(array, room * size) : NULL;
 }
@@ -115,9 +105,8 @@ static void *grow(void *array, size_t count, size_t size)
 static hand_track *add_track(hand_script *s, const char *hand)
 {
     hand_track *tracks = grow(s->tracks, s->track_count, sizeof *tracks);
-    if (!tracks) {
+    if (!tracks)
         return NULL;
-    }
     s->tracks = tracks;
     hand_track *added = &tracks[s->track_count];
     *added = (hand_track){.keys = NULL};
@@ -129,21 +118,17 @@ status hand_script_add(hand_script *s, const char *hand, const hand_key *key, di
 {
     hand_track *track = find_track(s, hand);
     status code = check_hand(s, hand, track, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_numbers(hand, key, why);
-    }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_order(hand, track, key, why);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     const bool is_new = !track;
     track = is_new ? add_track(s, hand) : track;
     hand_key *keys = track ? grow(track->keys, track->key_count, sizeof *keys) : NULL;
-    if (!keys) {
+    if (!keys)
         return out_of_memory(why);
-    }
     track->keys = keys;
     track->keys[track->key_count++] = *key;
     s->track_count += is_new;

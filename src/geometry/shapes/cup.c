@@ -6,15 +6,12 @@
 static status check(const solid_shape *shape, diagnostic *why)
 {
     status code = cylinder_check(shape, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_length(shape->inner_radius, "inner_radius", why);
-    }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_length(shape->floor, "floor", why);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     if (shape->inner_radius >= shape->radius) {
         return diagnose(why, STATUS_BAD_INPUT, "make inner_radius smaller than radius, or the cup has no wall",
                         "inner_radius %g is not smaller than radius %g", shape->inner_radius, shape->radius);
@@ -49,14 +46,12 @@ static bool avoids_hollow(const placed_shape *cover, const placed_shape *hidden)
 {
     const solid_shape *cup = &cover->shape;
     const vec3 up = placed_axis(&cover->turn, 1);
-    if (is_within(placed_farthest(hidden, up), vec3_dot(up, cup->position) + cup->floor, cup->height)) {
+    if (is_within(placed_farthest(hidden, up), vec3_dot(up, cup->position) + cup->floor, cup->height))
         return true;
-    }
     const vec3 local = mat3_apply_transposed(cover->turn, vec3_sub(hidden->shape.position, cup->position));
     const double r = hypot(local.x, local.z);
-    if (r == 0.0) {
+    if (r == 0.0)
         return false;
-    }
     const vec3 out = mat3_apply(cover->turn, vec3_make(local.x / r, 0.0, local.z / r));
     const double hollow = cup->inner_radius * hypot(local.x / r, local.z / (r * cup->m));
     return is_within(placed_farthest(hidden, vec3_scale(out, -1.0)), -vec3_dot(out, cup->position) - hollow,

@@ -7,9 +7,8 @@ PRIMITIVE_RULE(cylinder);
 status cylinder_check(const solid_shape *shape, diagnostic *why)
 {
     status code = check_length(shape->radius, "radius", why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_length(shape->height, "height", why);
-    }
     return code == STATUS_OK ? check_length(shape->m, "m", why) : code;
 }
 
@@ -26,9 +25,8 @@ primitive cylinder_placed(const solid_shape *shape, double radius, double bottom
     p.m2 = shape->m * shape->m;
     p.bottom = bottom;
     p.top = top;
-    if (p.m2 < 1.0) { /* the long axis is radius / m */
+    if (p.m2 < 1.0) /* the long axis is radius / m */
         p.extent += radius / shape->m;
-    }
     return p;
 }
 

@@ -14,9 +14,8 @@ static status check(const solid_shape *shape, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "give three whole numbers from 1, at most 4194304 copies in all",
                         "copies is %g, %g, %g", n.x, n.y, n.z);
     }
-    if (!(s.x > 0.0 && s.y > 0.0 && s.z > 0.0) || !vec3_is_finite(s) || !vec3_is_finite(step)) {
+    if (!(s.x > 0.0 && s.y > 0.0 && s.z > 0.0) || !vec3_is_finite(s) || !vec3_is_finite(step))
         return diagnose(why, STATUS_BAD_INPUT, "give numbers above 0", "scale is %g, %g, %g", s.x, s.y, s.z);
-    }
     return STATUS_OK;
 }
 
@@ -50,13 +49,11 @@ static vec3 copies_reach(const solid_shape *shape)
 /* One triangle each, of the first copy. */
 static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
 {
-    if (i >= shape->mesh->triangle_count) {
+    if (i >= shape->mesh->triangle_count)
         return false;
-    }
     vec3 corner[3];
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
         corner[k] = times(shape->mesh->vertices[shape->mesh->triangles[i].corner[k]], shape->scale);
-    }
     *normal = vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0]));
     *point = corner[0];
     return true;
@@ -76,19 +73,16 @@ typedef double point_measure(const void *context, vec3 local);
 
 static double most_of_vertices(const solid_shape *s, point_measure *measure, const void *context)
 {
-    if (!s->mesh) {
+    if (!s->mesh)
         return INFINITY;
-    }
     const vec3 more = copies_reach(s);
     double most = -INFINITY;
     for (int i = 0; i < 8; i++) {
         const vec3 offset = vec3_make(i & 1 ? more.x : 0.0, i & 2 ? more.y : 0.0, i & 4 ? more.z : 0.0);
-        if ((i & 1 && s->copies.x == 1.0) || (i & 2 && s->copies.y == 1.0) || (i & 4 && s->copies.z == 1.0)) {
+        if ((i & 1 && s->copies.x == 1.0) || (i & 2 && s->copies.y == 1.0) || (i & 4 && s->copies.z == 1.0))
             continue;
-        }
-        for (size_t k = 0; k < s->mesh->vertex_count; k++) {
+        for (size_t k = 0; k < s->mesh->vertex_count; k++)
             most = fmax(most, measure(context, vec3_add(times(s->mesh->vertices[k], s->scale), offset)));
-        }
     }
     return most;
 }

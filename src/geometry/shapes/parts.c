@@ -4,9 +4,8 @@
 
 status check_length(double value, const char *name, diagnostic *why)
 {
-    if (isfinite(value) && value > 0.0) {
+    if (isfinite(value) && value > 0.0)
         return STATUS_OK;
-    }
     return diagnose(why, STATUS_BAD_INPUT, "give a length above 0", "%s is %g", name, value);
 }
 

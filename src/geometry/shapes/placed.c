@@ -39,12 +39,10 @@ double placed_farthest_from(const placed_shape *placed, const round_frame *frame
 {
     const solid_shape *shape = &placed->shape;
     const shape_rule *rule = shape_of(shape);
-    if (rule->unbounded) {
+    if (rule->unbounded)
         return INFINITY;
-    }
-    if (rule->farthest_from) {
+    if (rule->farthest_from)
         return rule->farthest_from(placed, frame);
-    }
     const bounds3 box = rule->extent(shape).box;
     double most = -INFINITY;
     for (int i = 0; i < 8; i++) {
@@ -65,9 +63,8 @@ bool placed_is_between(const placed_shape *cover, const placed_shape *hidden, in
 double shape_reach(const solid_shape *shape, vec3 d)
 {
     const shape_rule *rule = shape_of(shape);
-    if (!rule->triangles) {
+    if (!rule->triangles)
         return rule->farthest(shape, d);
-    }
     const bounds3 b = rule->extent(shape).box;
     return (d.x > 0.0 ? b.high.x : b.low.x) * d.x + (d.y > 0.0 ? b.high.y : b.low.y) * d.y +
            (d.z > 0.0 ? b.high.z : b.low.z) * d.z;
@@ -76,9 +73,8 @@ double shape_reach(const solid_shape *shape, vec3 d)
 bounds3 shape_world_box(const solid_shape *shape)
 {
     const vec3 ever = vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL), at = shape->position;
-    if (shape_of(shape)->unbounded) {
+    if (shape_of(shape)->unbounded)
         return (bounds3){vec3_scale(ever, -1.0), ever};
-    }
     const mat3 turn = rotation_from_deg(shape->rotation_deg);
     double low[3], high[3];
     for (int k = 0; k < 3; k++) { /* the world's axes as the solid has them */

@@ -11,9 +11,8 @@ PRIMITIVE_RULE(prism);
 static status check(const solid_shape *shape, diagnostic *why)
 {
     status code = check_length(shape->radius, "radius", why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_length(shape->height, "height", why);
-    }
     if (code == STATUS_OK && (shape->sides < 3 || shape->sides > SIDES_MAX)) {
         code = diagnose(why, STATUS_BAD_INPUT, "use 3 to 60; a cylinder is round", "a prism of %lld sides",
                         (long long)shape->sides);
@@ -38,9 +37,8 @@ static double within(const solid_shape *shape)
 static bool contains(const solid_shape *shape, vec3 p)
 {
     bool inside = p.y >= 0.0 && p.y <= shape->height;
-    for (int64_t k = 0; k < shape->sides; k++) {
+    for (int64_t k = 0; k < shape->sides; k++)
         inside &= vec3_dot(direction(shape, 2 * k + 1), vec3_make(p.x, 0.0, p.z)) <= within(shape);
-    }
     return inside;
 }
 
@@ -55,9 +53,8 @@ static void primitives(const solid_shape *shape, primitive *out)
 
 static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
 {
-    if (i < 2) {
+    if (i < 2)
         return level_faces((const double[]){0.0, shape->height}, 2, i, normal, point);
-    }
     *normal = direction(shape, 2 * ((int64_t)i - 2) + 1);
     *point = vec3_scale(*normal, within(shape));
     return i < (size_t)shape->sides + 2;
@@ -66,9 +63,8 @@ static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
 static double farthest(const solid_shape *shape, vec3 d)
 {
     double most = 0.0;
-    for (int64_t k = 0; k < shape->sides; k++) {
+    for (int64_t k = 0; k < shape->sides; k++)
         most = fmax(most, vec3_dot(direction(shape, 2 * k), vec3_make(d.x, 0.0, d.z)));
-    }
     return shape->radius * most + fmax(0.0, shape->height * d.y);
 }
 
@@ -111,9 +107,8 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
     const uint32_t n = (uint32_t)shape->sides;
     mesh *m = NULL;
     status code = mesh_create(2 * n, 4 * (size_t)n - 4, false, false, false, &m, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     mesh_triangle *next = m->triangles;
     for (uint32_t k = 0; k < n; k++) {
         const vec3 corner = vec3_scale(direction(shape, 2 * k), shape->radius);
@@ -128,11 +123,10 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
         }
     }
     code = mesh_finish(m, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         *out = m;
-    } else {
+    else
         mesh_release(m);
-    }
     return code;
 }
 

@@ -157,12 +157,11 @@ int mesh_next_look(const tracer *t, int *list, int count, int *slot)
 {
     int others[BATCH], alike = 0, left = 0;
     *slot = slot_of(t, list[0]);
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; k++)
         if (slot_of(t, list[k]) == *slot)
             list[alike++] = list[k];
         else
             others[left++] = list[k];
-    }
     for (int k = 0; k < left; k++)
         list[alike + k] = others[k];
     return alike;

@@ -98,13 +98,11 @@ static status check_sky(const image *sky, const char *path, diagnostic *bad)
 static status load_sky(scene *s, diagnostic *why)
 {
     background *sky = &s->background;
-    if (sky->kind != BACKGROUND_PICTURE || sky->picture || !sky->picture_path[0]) {
+    if (sky->kind != BACKGROUND_PICTURE || sky->picture || !sky->picture_path[0])
         return STATUS_OK;
-    }
     char *path = scene_file_path(s, sky->picture_path);
-    if (!path) {
+    if (!path)
         return out_of_memory(why);
-    }
     diagnostic bad = {.what = ""};
     status code = image_read_below(path, s->limits.root, &sky->picture, NULL, &bad);
     if (code == STATUS_OK && (code = check_sky(sky->picture, path, &bad)) != STATUS_OK) {
@@ -120,9 +118,8 @@ static status load_sky(scene *s, diagnostic *why)
 static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
 {
     char *path = scene_file_path(s, t->path);
-    if (!path) {
+    if (!path)
         return out_of_memory(why);
-    }
     diagnostic bad = {.what = ""};
     texture *data = NULL;
     const status code = texture_read_below(path, s->limits.root, (texture_space)t->space, (texture_wrap)t->wrap_u,
@@ -158,9 +155,8 @@ void scene_borrow_meshes(scene *s, const scene *from)
         const bool own = m->source == MESH_SLIME && !s->render.keep;
         for (size_t k = 0; k < from->mesh_count && !m->data && !own; k++) {
             const mesh_entry *other = &from->meshes[k];
-            if (!other->data || !same_mesh(m, other)) {
+            if (!other->data || !same_mesh(m, other))
                 continue;
-            }
             m->data = other->data;
             m->looks = other->looks;
             m->account = other->account;
@@ -173,13 +169,11 @@ void scene_borrow_meshes(scene *s, const scene *from)
 
 static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
 {
-    if (m->source != MESH_FILE) {
+    if (m->source != MESH_FILE)
         return mesh_make(m, why);
-    }
     char *path = scene_file_path(s, m->path);
-    if (!path) {
+    if (!path)
         return out_of_memory(why);
-    }
     diagnostic bad = {.what = ""};
     const status code = mesh_make_from_file(m, path, &s->limits, &bad);
     free(path);
@@ -190,12 +184,10 @@ static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
 static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
 {
     size_t all = 0;
-    for (size_t i = 0; i < s->mesh_count; i++) {
+    for (size_t i = 0; i < s->mesh_count; i++)
         all += s->meshes[i].data ? s->meshes[i].data->triangle_count : 0;
-    }
-    if (!s->limits.triangles || all <= s->limits.triangles) {
+    if (!s->limits.triangles || all <= s->limits.triangles)
         return STATUS_OK;
-    }
     diagnostic bad = {.what = ""};
     const status code =
         diagnose(&bad, STATUS_BAD_INPUT, "use smaller meshes, or fewer",
@@ -208,11 +200,9 @@ static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
 static status load_pictures(scene *s, diagnostic *why)
 {
     status code = load_sky(s, why);
-    for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++) {
-        if (!s->textures[i].data) {
+    for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++)
+        if (!s->textures[i].data)
             code = load_texture(s, &s->textures[i], why);
-        }
-    }
     return code;
 }
 
@@ -236,21 +226,18 @@ static double work_of(const mesh_entry *m)
 static status load_meshes(scene *s, const load_watch *watch, diagnostic *why)
 {
     shared_watch shared = {.whole = watch};
-    for (size_t i = 0; i < s->mesh_count; i++) {
+    for (size_t i = 0; i < s->mesh_count; i++)
         shared.all += work_of(&s->meshes[i]);
-    }
     status code = STATUS_OK;
     for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
         mesh_entry *m = &s->meshes[i];
         shared.own = work_of(m);
-        if (!m->data && m->source == MESH_SLIME) {
+        if (!m->data && m->source == MESH_SLIME)
             code = slime_make(s, m, watch ? &(load_watch){go_on_all, &shared} : NULL, why);
-        } else if (!m->data) {
+        else if (!m->data)
             code = load_mesh(s, m, why);
-        }
-        if (code == STATUS_OK) {
+        if (code == STATUS_OK)
             code = check_triangles(s, m, why);
-        }
         shared.before += shared.own;
     }
     return code;
@@ -274,9 +261,8 @@ status scene_load_files(scene *s, diagnostic *why)
         mesh_entry *m = &s->meshes[i];
         if (m->source == MESH_FILE && !m->data) {
             code = load_mesh(s, m, why);
-            if (code == STATUS_OK) {
+            if (code == STATUS_OK)
                 code = check_triangles(s, m, why);
-            }
         } else if (m->source == MESH_SLIME) {
             hand_script *script;
             code = slime_read_script(s, m, &script, why);

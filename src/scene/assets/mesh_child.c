@@ -33,9 +33,8 @@ static void hear(mesh_child *child)
 {
     char buffer[4096];
     ssize_t got = read(child->err, buffer, sizeof buffer);
-    if (got < 0 && errno == EINTR) {
+    if (got < 0 && errno == EINTR)
         return;
-    }
     if (got <= 0) {
         hang_up(&child->err);
         return;
@@ -65,15 +64,12 @@ static bool wait_for_bytes(mesh_child *child)
         struct pollfd both[] = {{.fd = child->out, .events = POLLIN},
                                 {.fd = child->err, .events = POLLIN}}; /* -1 is left out */
         const int ready = wait_until_late(child, both, 2);
-        if (child->late || (ready < 0 && !is_passing(errno))) {
+        if (child->late || (ready < 0 && !is_passing(errno)))
             return false;
-        }
-        if (ready > 0 && both[1].revents) {
+        if (ready > 0 && both[1].revents)
             hear(child);
-        }
-        if (ready > 0 && both[0].revents) {
+        if (ready > 0 && both[0].revents)
             return true;
-        }
     }
     return false;
 }
@@ -83,12 +79,10 @@ static size_t take(mesh_child *child, void *bytes, size_t size)
 {
     while (wait_for_bytes(child)) {
         ssize_t got = read(child->out, bytes, size);
-        if (got > 0) {
+        if (got > 0)
             return (size_t)got;
-        }
-        if (got == 0 || errno != EINTR) {
+        if (got == 0 || errno != EINTR)
             hang_up(&child->out);
-        }
     }
     return 0;
 }
@@ -97,9 +91,8 @@ status mesh_child_read(void *context, void *bytes, size_t size, diagnostic *why)
 {
     for (size_t done = 0; done < size;) {
         size_t got = take(context, (char *)bytes + done, size - done);
-        if (got == 0) {
+        if (got == 0)
             return diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer ends early");
-        }
         done += got;
     }
     return STATUS_OK;
@@ -121,27 +114,23 @@ static int reap(mesh_child *child, bool still_wanted)
     while (still_wanted && child->err >= 0 && !child->late) { /* what it still has to say; its end closes this too */
         struct pollfd one = {.fd = child->err, .events = POLLIN};
         const int ready = wait_until_late(child, &one, 1);
-        if (ready > 0) {
+        if (ready > 0)
             hear(child);
-        } else if (ready < 0 && !is_passing(errno)) {
+        else if (ready < 0 && !is_passing(errno))
             break;
-        }
     }
     /* One that ends just now keeps its own exit status: a process that is exiting takes no more signals. */
-    if (child->handle >= 0) {
+    if (child->handle >= 0)
         pidfd_send_signal(child->handle, SIGKILL, NULL, 0);
-    } else {
+    else
         kill(child->pid, SIGKILL);
-    }
     hang_up(&child->handle);
     hang_up(&child->out);
     hang_up(&child->err);
     int state = -1;
-    while (waitpid(child->pid, &state, 0) < 0) {
-        if (errno != EINTR) {
+    while (waitpid(child->pid, &state, 0) < 0)
+        if (errno != EINTR)
             return -1;
-        }
-    }
     return state;
 }
 
@@ -157,9 +146,8 @@ static bool repeat(mesh_child *child, const char *path, diagnostic *why)
     bool ours = prefix && strncmp(line, prefix, length) == 0;
     free(prefix);
     char *end = strchr(line, '\n');
-    if (!ours || !end) {
+    if (!ours || !end)
         return false;
-    }
     *end = 0;
     char *at = line + length;
     long place[2] = {0, 0};
@@ -187,29 +175,25 @@ status mesh_child_close(mesh_child *child, const char *path, const mesh_limits *
         return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
                         "reading it took longer than the limit of %g s", limits->wall_s);
     }
-    if (state == -1) {
+    if (state == -1)
         return code != STATUS_OK && repeat(child, path, why) ? STATUS_BAD_INPUT : code;
-    }
     if (WIFSIGNALED(state)) {
         int signal = WTERMSIG(state);
         const char *name = sigdescr_np(signal);
-        if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP) {
+        if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP)
             return diagnose(why, STATUS_INTERRUPTED, NULL, "reading it was interrupted");
-        }
         if (signal == SIGXCPU) {
             return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
                             "reading it took more processor time than the limit of %g s", limits->wall_s);
         }
-        if (signal == SIGKILL && code != STATUS_OK) {
+        if (signal == SIGKILL && code != STATUS_OK)
             return code;
-        }
         return diagnose(why, STATUS_BAD_INPUT, "check that the file is whole, and export it again",
                         "the importer was stopped by signal %d (%s)", signal, name ? name : "unknown");
     }
     int exit_code = WEXITSTATUS(state);
-    if (exit_code == 0) {
+    if (exit_code == 0)
         return code;
-    }
     if (!repeat(child, path, why)) {
         diagnose(why, STATUS_FAILURE, NULL, "the importer ended with exit code %d and did not say why", exit_code);
         return STATUS_FAILURE;

@@ -21,20 +21,17 @@ static status machine_error(diagnostic *why, const char *doing, int error)
 static int open_pipe(int ends[2])
 {
     int low[2];
-    if (pipe2(low, O_CLOEXEC) != 0) {
+    if (pipe2(low, O_CLOEXEC) != 0)
         return errno;
-    }
     ends[0] = fcntl(low[0], F_DUPFD_CLOEXEC, 3);
     ends[1] = fcntl(low[1], F_DUPFD_CLOEXEC, 3);
     int error = ends[0] < 0 || ends[1] < 0 ? errno : 0;
     close(low[0]);
     close(low[1]);
     if (error) {
-        for (int i = 0; i < 2; i++) {
-            if (ends[i] >= 0) {
+        for (int i = 0; i < 2; i++)
+            if (ends[i] >= 0)
                 close(ends[i]);
-            }
-        }
     }
     return error;
 }
@@ -43,17 +40,15 @@ static int spawn_with_pipes(mesh_child *child, const char *program, char *const 
 {
     int out[2], err[2];
     int error = open_pipe(out);
-    if (error) {
+    if (error)
         return error;
-    }
     error = open_pipe(err);
     if (!error) {
         fcntl(out[0], F_SETPIPE_SZ, 1 << 20); /* fewer switches between the two; it works without */
         error = spawn_program(&child->pid, program, arguments, out[1], err[1], false);
         close(err[1]);
-        if (error) {
+        if (error)
             close(err[0]);
-        }
     }
     close(out[1]);
     if (error) {

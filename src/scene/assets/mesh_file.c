@@ -52,9 +52,8 @@ static status resolve_texture(const char *path, imported_material *m, diagnostic
         }
         free(respelt);
     }
-    if (!found) {
+    if (!found)
         return out_of_memory(why);
-    }
     if (!is_file(found)) {
         diagnose(why, STATUS_BAD_INPUT, "put it where the mesh file says, or take the line that names it out",
                  "the picture '%.200s' of material '%.100s' is not there", m->texture, m->name ? m->name : "");
@@ -72,9 +71,8 @@ status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import *
     mesh_child child;
     diagnostic said = {.what = ""};
     *out = NULL;
-    if (!*path) {
+    if (!*path)
         return diagnose(why, STATUS_BAD_INPUT, "name a mesh file", "the name of the mesh file is empty");
-    }
     status code = mesh_child_open(&child, path, &all, &said);
     mesh_import *fresh = NULL;
     if (code == STATUS_OK) {
@@ -82,14 +80,12 @@ status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import *
         code = mesh_stream_read(&source, &all, &fresh, &said);
         code = mesh_child_close(&child, path, &all, code, &said);
     }
-    for (int i = 0; i < (fresh ? fresh->material_count : 0) && code == STATUS_OK; i++) {
+    for (int i = 0; i < (fresh ? fresh->material_count : 0) && code == STATUS_OK; i++)
         code = fresh->materials[i].texture ? resolve_texture(path, &fresh->materials[i], &said) : STATUS_OK;
-    }
     if (code != STATUS_OK) {
         mesh_import_destroy(fresh);
-        if (why) {
+        if (why)
             *why = said;
-        }
         return code;
     }
     *out = fresh;

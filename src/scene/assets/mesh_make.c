@@ -29,15 +29,13 @@ static status make_terrain(const mesh_entry *m, mesh **out, diagnostic *why)
     enum { OCTAVES = 5, CELLS = 4 };
     const int columns = (int)m->around + 1, rows = (int)m->tube + 1;
     double *heights = malloc((size_t)columns * (size_t)rows * sizeof *heights);
-    if (!heights) {
+    if (!heights)
         return out_of_memory(why);
-    }
     for (int row = 0; row < rows; row++) {
         for (int column = 0; column < columns; column++) {
             double sum = 0.0, weight = 0.5, fine = CELLS;
-            for (uint32_t k = 0; k < OCTAVES; k++, weight *= 0.5, fine *= 2.0) {
+            for (uint32_t k = 0; k < OCTAVES; k++, weight *= 0.5, fine *= 2.0)
                 sum += weight * noise(m->seed, k, fine * column / (columns - 1), fine * row / (rows - 1));
-            }
             heights[(size_t)row * (size_t)columns + (size_t)column] = m->size.y * sum;
         }
     }
@@ -50,9 +48,8 @@ static status make_lathe(const mesh_entry *m, mesh **out, diagnostic *why)
 {
     profile_point profile[NUMBER_LIST_MAX / 2];
     const size_t count = (size_t)m->profile.count / 2;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         profile[i] = (profile_point){m->profile.value[2 * i], m->profile.value[2 * i + 1]};
-    }
     return body_lathe(profile, count, (int)m->around, m->crease_deg, out, why);
 }
 
@@ -87,9 +84,8 @@ status mesh_make_from_file(mesh_entry *m, const char *path, const load_limits *l
     const mesh_limits own = {.root = limits->root, .triangles = limits->triangles};
     mesh_import *imported;
     status code = mesh_read_file(path, &own, &imported, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     code = looks_create(imported, limits->root, &m->looks, why);
     if (code == STATUS_OK) {
         m->data = imported->mesh;

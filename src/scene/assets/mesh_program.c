@@ -21,15 +21,13 @@ static char *near(char *file)
 {
     static const char *const places[] = {"", "/../libexec/cuvette", "/../../libexec/cuvette"};
     char *slash = strrchr(file, '/');
-    if (!slash) {
+    if (!slash)
         return NULL;
-    }
     *slash = 0;
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         char *path = text_format("%s%s/" PROGRAM, file, places[i]);
-        if (path && access(path, X_OK) == 0) {
+        if (path && access(path, X_OK) == 0)
             return path;
-        }
         free(path);
     }
     return NULL;
@@ -38,9 +36,8 @@ static char *near(char *file)
 char *mesh_child_program(void)
 {
     const char *asked = getenv("CUVETTE_IMPORT");
-    if (asked && *asked) {
+    if (asked && *asked)
         return strdup(asked);
-    }
     char own[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
     own[length > 0 ? length : 0] = 0;

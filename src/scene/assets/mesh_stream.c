@@ -26,9 +26,8 @@ mesh_limits mesh_limits_complete(const mesh_limits *limits)
 
 void mesh_import_destroy(mesh_import *imported)
 {
-    if (!imported) {
+    if (!imported)
         return;
-    }
     for (int i = 0; imported->materials && i < imported->material_count; i++) {
         free(imported->materials[i].name);
         free(imported->materials[i].texture);
@@ -53,21 +52,16 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
                           diagnostic *why)
 {
     status code = source->read(source->context, header, sizeof *header, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
-    if (memcmp(header->magic, MESH_WIRE_MAGIC, sizeof header->magic) != 0 || header->version != MESH_WIRE_VERSION) {
+    if (memcmp(header->magic, MESH_WIRE_MAGIC, sizeof header->magic) != 0 || header->version != MESH_WIRE_VERSION)
         return damaged(why, "its first bytes are not those of a mesh of this version");
-    }
-    if (header->flags & ~(uint32_t)(MESH_WIRE_NORMALS | MESH_WIRE_UVS) || header->reserved) {
+    if (header->flags & ~(uint32_t)(MESH_WIRE_NORMALS | MESH_WIRE_UVS) || header->reserved)
         return damaged(why, "unknown flags");
-    }
-    if (header->material_count < 1 || header->material_count > MESH_SLOTS_MAX) {
+    if (header->material_count < 1 || header->material_count > MESH_SLOTS_MAX)
         return damaged(why, "the number of materials is out of range");
-    }
-    if (!header->triangle_count || !header->vertex_count) {
+    if (!header->triangle_count || !header->vertex_count)
         return damaged(why, "no triangles");
-    }
     if (header->triangle_count > limits->triangles) {
         return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail",
                         "%llu triangles are more than the limit of %zu", (unsigned long long)header->triangle_count,
@@ -96,9 +90,8 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
     };
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         status code = arrays[i].size ? source->read(source->context, arrays[i].bytes, arrays[i].size, why) : STATUS_OK;
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
     }
     for (size_t i = 0; m->uvs && i < m->vertex_count; i++) {
         if (!isfinite(m->uvs[i].u) || !isfinite(m->uvs[i].v)) {
@@ -106,11 +99,9 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
                             "vertex %zu has a texture coordinate that is no number", i);
         }
     }
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        if (m->slots[t] >= m->slot_count) {
+    for (size_t t = 0; t < m->triangle_count; t++)
+        if (m->slots[t] >= m->slot_count)
             return damaged(why, "a triangle's material is out of range");
-        }
-    }
     return STATUS_OK;
 }
 
@@ -119,16 +110,13 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
 static status read_text(const mesh_source *source, uint32_t length, char **text, diagnostic *why)
 {
     *text = NULL;
-    if (length == 0) {
+    if (length == 0)
         return STATUS_OK;
-    }
-    if (length > MESH_WIRE_TEXT_MAX) {
+    if (length > MESH_WIRE_TEXT_MAX)
         return damaged(why, "a text is too long");
-    }
     char *fresh = malloc(length + 1);
-    if (!fresh) {
+    if (!fresh)
         return no_room(why);
-    }
     status code = source->read(source->context, fresh, length, why);
     fresh[length] = 0;
     for (uint32_t i = 0; i < length && code == STATUS_OK; i++) {
@@ -147,11 +135,9 @@ static status read_text(const mesh_source *source, uint32_t length, char **text,
 
 static bool within(const double *values, int count, double low, double high)
 {
-    for (int i = 0; i < count; i++) {
-        if (!(values[i] >= low && values[i] <= high)) { /* NaN is not within */
+    for (int i = 0; i < count; i++)
+        if (!(values[i] >= low && values[i] <= high)) /* NaN is not within */
             return false;
-        }
-    }
     return true;
 }
 
@@ -174,12 +160,10 @@ static status read_material(const mesh_source *source, imported_material *m, dia
 {
     mesh_wire_material record;
     status code = source->read(source->context, &record, sizeof record, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
-    if (record.flags & ~(uint32_t)(MESH_WIRE_GIVEN | MESH_WIRE_TEXTURE_INSIDE) || record.reserved) {
+    if (record.flags & ~(uint32_t)(MESH_WIRE_GIVEN | MESH_WIRE_TEXTURE_INSIDE) || record.reserved)
         return damaged(why, "unknown flags of a material");
-    }
     m->given = record.flags & MESH_WIRE_GIVEN;
     m->texture_inside = record.flags & MESH_WIRE_TEXTURE_INSIDE;
     memcpy(m->color, record.diffuse, sizeof m->color);
@@ -190,9 +174,8 @@ static status read_material(const mesh_source *source, imported_material *m, dia
     m->opacity = record.opacity;
     m->ior = record.ior;
     code = read_text(source, record.name_length, &m->name, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_text(source, record.texture_length, &m->texture, why);
-    }
     return code == STATUS_OK ? check_numbers(m, why) : code;
 }
 
@@ -201,18 +184,15 @@ static status read_materials(const mesh_source *source, mesh_import *into, diagn
     for (int i = 0; i < into->material_count; i++) {
         imported_material *m = &into->materials[i];
         status code = read_material(source, m, why);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
-        if (m->name && !(into->mesh->slot_names[i] = strdup(m->name))) {
+        if (m->name && !(into->mesh->slot_names[i] = strdup(m->name)))
             return no_room(why);
-        }
     }
     char end[sizeof MESH_WIRE_END - 1];
     status code = source->read(source->context, end, sizeof end, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     return memcmp(end, MESH_WIRE_END, sizeof end) == 0 ? source->end(source->context, why)
                                                        : damaged(why, "its end is not where it should be");
 }
@@ -221,23 +201,19 @@ static status read_all(const mesh_source *source, const mesh_limits *limits, mes
 {
     mesh_wire_header header;
     status code = read_header(source, limits, &header, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     code = mesh_create((size_t)header.vertex_count, (size_t)header.triangle_count, header.flags & MESH_WIRE_NORMALS,
                        header.flags & MESH_WIRE_UVS, true, &into->mesh, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     into->mesh->slot_count = into->material_count = (int)header.material_count;
     into->materials = calloc(header.material_count, sizeof *into->materials);
-    if (!into->materials) {
+    if (!into->materials)
         return no_room(why);
-    }
     code = read_arrays(source, into->mesh, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_materials(source, into, why);
-    }
     return code == STATUS_OK ? mesh_finish(into->mesh, why) : code;
 }
 
@@ -246,9 +222,8 @@ status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, me
     mesh_limits all = mesh_limits_complete(limits);
     *out = NULL;
     mesh_import *fresh = calloc(1, sizeof *fresh);
-    if (!fresh) {
+    if (!fresh)
         return no_room(why);
-    }
     status code = read_all(source, &all, fresh, why);
     if (code != STATUS_OK) {
         mesh_import_destroy(fresh);

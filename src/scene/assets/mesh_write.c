@@ -85,10 +85,9 @@ static void put_vector(vec3 v, bool single, FILE *stream)
 
 static void write_bin(const mesh *m, FILE *stream)
 {
-    for (size_t t = 0; t < m->triangle_count; t++) {
+    for (size_t t = 0; t < m->triangle_count; t++)
         for (int k = 0; k < 3; k++)
             put_vector(m->vertices[m->triangles[t].corner[k]], true, stream);
-    }
 }
 
 static void write_ply(const mesh *m, FILE *stream)

@@ -15,14 +15,12 @@ struct document {
 
 static void node_destroy(node *n)
 {
-    if (!n) {
+    if (!n)
         return;
-    }
     for (size_t i = 0; i < n->count; i++) {
         node_destroy(n->items[i]);
-        if (n->keys) {
+        if (n->keys)
             node_destroy(n->keys[i]);
-        }
     }
     free(n->items);
     free(n->keys);
@@ -32,13 +30,11 @@ static void node_destroy(node *n)
 
 static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, node **out)
 {
-    if (++r->node_count > NODE_LIMIT) {
+    if (++r->node_count > NODE_LIMIT)
         return events_error(r, mark, "make the file smaller", "more than 65536 values in one file");
-    }
     node *n = calloc(1, sizeof *n);
-    if (!n) {
+    if (!n)
         return out_of_memory(r->why);
-    }
     n->kind = kind;
     n->line = (long)mark.line + 1;
     n->column = (long)mark.column + 1;
@@ -53,22 +49,19 @@ static status node_append(event_reader *r, node *parent, node *key, node *value)
     if ((count & (count - 1)) == 0) { /* the room is always a power of two */
         size_t room = count ? count * 2 : 1;
         node **items = realloc(parent->items, room * sizeof *items);
-        if (!items) {
+        if (!items)
             return out_of_memory(r->why);
-        }
         parent->items = items;
         if (key) {
             node **keys = realloc(parent->keys, room * sizeof *keys);
-            if (!keys) {
+            if (!keys)
                 return out_of_memory(r->why);
-            }
             parent->keys = keys;
         }
     }
     parent->items[count] = value;
-    if (key) {
+    if (key)
         parent->keys[count] = key;
-    }
     parent->count++;
     return STATUS_OK;
 }
@@ -77,14 +70,12 @@ static status read_scalar(event_reader *r, const yaml_event_t *event, node **out
 {
     const char *value = (const char *)event->data.scalar.value;
     size_t length = event->data.scalar.length;
-    if (memchr(value, 0, length)) {
+    if (memchr(value, 0, length))
         return events_error(r, event->start_mark, "remove it", "a text holds a NUL character");
-    }
     node *n = NULL;
     status code = node_create(r, NODE_SCALAR, event->start_mark, &n);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     n->quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
     n->text = strdup(value);
     if (!n->text) {
@@ -99,22 +90,19 @@ static int compare_keys(const void *a, const void *b)
 {
     const node *x = *(node *const *)a, *y = *(node *const *)b;
     int order = strcmp(x->text, y->text);
-    if (order != 0) {
+    if (order != 0)
         return order;
-    }
     return x->line != y->line ? (x->line > y->line) - (x->line < y->line)
                               : (x->column > y->column) - (x->column < y->column);
 }
 
 static status check_unique_keys(event_reader *r, const node *map)
 {
-    if (map->count < 2) {
+    if (map->count < 2)
         return STATUS_OK;
-    }
     node **sorted = malloc(map->count * sizeof(node *));
-    if (!sorted) {
+    if (!sorted)
         return out_of_memory(r->why);
-    }
     memcpy(sorted, map->keys, map->count * sizeof(node *));
     qsort(sorted, map->count, sizeof(node *), compare_keys);
     status code = STATUS_OK;
@@ -133,9 +121,8 @@ static status read_node(event_reader *r, yaml_event_t *event, int depth, node **
 
 static status read_key(event_reader *r, yaml_event_t *event, node **key)
 {
-    if (event->type != YAML_SCALAR_EVENT || event->data.scalar.length == 0) {
+    if (event->type != YAML_SCALAR_EVENT || event->data.scalar.length == 0)
         return events_error(r, event->start_mark, "begin the entry with a name and a colon", "a key is not a word");
-    }
     return read_scalar(r, event, key);
 }
 
@@ -145,9 +132,8 @@ static status read_entries(event_reader *r, yaml_event_type_t end, int depth, no
     for (;;) {
         yaml_event_t event;
         status code = events_next(r, &event);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
         if (event.type == end) {
             yaml_event_delete(&event);
             return n->kind == NODE_MAP ? check_unique_keys(r, n) : STATUS_OK;
@@ -156,17 +142,15 @@ static status read_entries(event_reader *r, yaml_event_type_t end, int depth, no
         if (n->kind == NODE_MAP) {
             code = read_key(r, &event, &key);
             yaml_event_delete(&event);
-            if (code == STATUS_OK) {
+            if (code == STATUS_OK)
                 code = events_next(r, &event);
-            }
         }
         if (code == STATUS_OK) {
             code = read_node(r, &event, depth + 1, &value);
             yaml_event_delete(&event);
         }
-        if (code == STATUS_OK) {
+        if (code == STATUS_OK)
             code = node_append(r, n, key, value);
-        }
         if (code != STATUS_OK) {
             node_destroy(key);
             node_destroy(value);
@@ -178,9 +162,8 @@ static status read_entries(event_reader *r, yaml_event_type_t end, int depth, no
 /* Reads the node that *event begins; the event stays the caller's. *out is set only on success. */
 static status read_node(event_reader *r, yaml_event_t *event, int depth, node **out)
 {
-    if (event->type == YAML_SCALAR_EVENT) {
+    if (event->type == YAML_SCALAR_EVENT)
         return read_scalar(r, event, out);
-    }
     if (depth > DEPTH_LIMIT) {
         return events_error(r, event->start_mark, "a scene or study needs four levels at most",
                             "nested deeper than 16 levels");
@@ -188,9 +171,8 @@ static status read_node(event_reader *r, yaml_event_t *event, int depth, node **
     bool map = event->type == YAML_MAPPING_START_EVENT;
     node *n = NULL;
     status code = node_create(r, map ? NODE_MAP : NODE_LIST, event->start_mark, &n);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     code = read_entries(r, map ? YAML_MAPPING_END_EVENT : YAML_SEQUENCE_END_EVENT, depth, n);
     if (code != STATUS_OK) {
         node_destroy(n);
@@ -206,9 +188,8 @@ static status read_stream(event_reader *r, node **root)
     for (;;) {
         yaml_event_t event;
         status code = events_next(r, &event);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
         yaml_event_type_t type = event.type;
         if (type == YAML_DOCUMENT_START_EVENT && *root) {
             code = events_error(r, event.start_mark, "put it into a file of its own", "a second document begins here");
@@ -221,9 +202,8 @@ static status read_stream(event_reader *r, node **root)
             code = read_node(r, &event, 1, root);
         }
         yaml_event_delete(&event);
-        if (code != STATUS_OK || type == YAML_STREAM_END_EVENT) {
+        if (code != STATUS_OK || type == YAML_STREAM_END_EVENT)
             return code;
-        }
     }
 }
 
@@ -261,12 +241,10 @@ status document_parse(const char *name, const char *text, size_t size, document 
         diagnostic_locate(why, name, 1, 1);
         return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 1 MiB");
     }
-    if (is_picture(text, size)) {
+    if (is_picture(text, size))
         return events_error(&r, (yaml_mark_t){0}, "give the file that describes it", "this is a picture, not a scene");
-    }
-    if (!yaml_parser_initialize(&r.parser)) {
+    if (!yaml_parser_initialize(&r.parser))
         return out_of_memory(r.why);
-    }
     yaml_parser_set_encoding(&r.parser, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&r.parser, (const unsigned char *)text, size);
     node *root = NULL;
@@ -285,9 +263,8 @@ status document_read_below(const char *path, const char *root, document **out, d
     char *text;
     size_t size;
     status code = file_read_below(path, root, SIZE_LIMIT, &text, &size, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     code = document_parse(path, text, size, out, why);
     free(text);
     return code;

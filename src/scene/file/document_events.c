@@ -32,12 +32,10 @@ static yaml_mark_t mark_of_byte(const event_reader *r, size_t offset)
 static bool tab_stands_at(const event_reader *r, yaml_mark_t mark)
 {
     size_t line = 0, i = 0;
-    while (i < r->size && line < mark.line) {
+    while (i < r->size && line < mark.line)
         line += r->text[i++] == '\n';
-    }
-    for (size_t column = 0; i < r->size && r->text[i] != '\n' && column < mark.column; column++) {
+    for (size_t column = 0; i < r->size && r->text[i] != '\n' && column < mark.column; column++)
         i++;
-    }
     return i < r->size && r->text[i] == '\t';
 }
 
@@ -66,22 +64,19 @@ static status syntax_error(event_reader *r)
 /* The next event; what the grammar of scene and study files leaves out (aliases, anchors, tags) ends here. */
 status events_next(event_reader *r, yaml_event_t *event)
 {
-    if (!yaml_parser_parse(&r->parser, event)) {
+    if (!yaml_parser_parse(&r->parser, event))
         return syntax_error(r);
-    }
     const yaml_char_t *anchor = NULL, *tag = NULL;
-    if (event->type == YAML_ALIAS_EVENT) {
+    if (event->type == YAML_ALIAS_EVENT)
         anchor = event->data.alias.anchor;
-    } else if (event->type == YAML_SCALAR_EVENT) {
+    else if (event->type == YAML_SCALAR_EVENT)
         anchor = event->data.scalar.anchor, tag = event->data.scalar.tag;
-    } else if (event->type == YAML_SEQUENCE_START_EVENT) {
+    else if (event->type == YAML_SEQUENCE_START_EVENT)
         anchor = event->data.sequence_start.anchor, tag = event->data.sequence_start.tag;
-    } else if (event->type == YAML_MAPPING_START_EVENT) {
+    else if (event->type == YAML_MAPPING_START_EVENT)
         anchor = event->data.mapping_start.anchor, tag = event->data.mapping_start.tag;
-    }
-    if (!anchor && !tag) {
+    if (!anchor && !tag)
         return STATUS_OK;
-    }
     status code = events_error(r, event->start_mark, "write the value itself where it is needed",
                                anchor ? "anchors and aliases (& and *) are not allowed" : "tags (!) are not allowed");
     yaml_event_delete(event);

@@ -43,15 +43,12 @@ static status check_sky(const scene_reader *r, const node *map)
 static status read_settings(const scene_reader *r, const char *name, param_group group, const node *map)
 {
     status code = read_expect_map(r, map, name);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_check_keys(r, group, map);
-    }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_entries(r, name, group, map);
-    }
-    if (code == STATUS_OK && group == PARAM_BACKGROUND) {
+    if (code == STATUS_OK && group == PARAM_BACKGROUND)
         code = check_sky(r, map);
-    }
     return code == STATUS_OK ? read_located(r, map, check_object(r->scene, group, 0, r->why)) : code;
 }
 
@@ -62,9 +59,8 @@ static status read_camera(const scene_reader *r, const char *name, param_group g
         return node_error(r->file, yaw ? yaw : pitch, r->why, "keep the target, or the angles",
                           "the camera has a target and %s too", yaw ? "yaw_deg" : "pitch_deg");
     }
-    if (yaw || pitch) { /* the angle left out is 0, not the default target's */
+    if (yaw || pitch) /* the angle left out is 0, not the default target's */
         r->scene->camera.aimed = 0;
-    }
     return read_settings(r, name, group, map);
 }
 
@@ -92,9 +88,8 @@ static status read_sections(const scene_reader *r)
     enum { COUNT = sizeof sections / sizeof sections[0] };
     const node *root = document_root(r->file);
     const char *names[COUNT];
-    for (size_t i = 0; i < COUNT; i++) {
+    for (size_t i = 0; i < COUNT; i++)
         names[i] = sections[i].name;
-    }
     if (root->kind != NODE_MAP) {
         return node_error(r->file, root, r->why,
                           "begin with keys such as camera:, lights: and solids:", "this is not a scene");
@@ -125,9 +120,8 @@ static status build(const document *file, scene **out, diagnostic *why)
     s->path = path;
     scene_reader r = {.file = file, .scene = s, .why = why};
     status code = read_sections(&r);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_located(&r, document_root(file), scene_check(s, why));
-    }
     if (code != STATUS_OK) {
         scene_destroy(s);
         return code;
@@ -153,9 +147,8 @@ status scene_read_below(const char *path, const char *root, scene **out, diagnos
     *out = NULL;
     document *file;
     status code = document_read_below(path, root, &file, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = build_and_release(file, out, why);
-    }
     if (code == STATUS_OK && (code = scene_limit(*out, root, 0, why)) != STATUS_OK) {
         scene_destroy(*out);
         *out = NULL;

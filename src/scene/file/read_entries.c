@@ -8,9 +8,8 @@
 
 status read_located(const scene_reader *r, const node *at, status code)
 {
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         diagnostic_locate(r->why, document_name(r->file), at->line, at->column);
-    }
     return code;
 }
 
@@ -21,18 +20,16 @@ static bool is_empty(const node *n)
 
 status read_expect_map(const scene_reader *r, const node *n, const char *name)
 {
-    if (n->kind == NODE_MAP || is_empty(n)) {
+    if (n->kind == NODE_MAP || is_empty(n))
         return STATUS_OK;
-    }
     return node_error(r->file, n, r->why, "write key: value lines, indented, below it",
                       "%.80s is not a map of keys and values", name);
 }
 
 status read_expect_word(const scene_reader *r, const node *n, const char *name)
 {
-    if (n->kind == NODE_SCALAR && n->text[0]) {
+    if (n->kind == NODE_SCALAR && n->text[0])
         return STATUS_OK;
-    }
     return node_error(r->file, n, r->why, "give one word", "%.80s is not a word", name);
 }
 
@@ -56,13 +53,11 @@ static status check_value_kind(const scene_reader *r, const param *row, const ch
 static status read_value(const scene_reader *r, const char *path, const param *row, const node *value)
 {
     status code = check_value_kind(r, row, path, value);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     char *text = node_value_text(value);
-    if (!text && node_is_value(value)) {
+    if (!text && node_is_value(value))
         return out_of_memory(r->why);
-    }
     if (!text) {
         return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",
                           "%.150s holds more than plain numbers", path);
@@ -77,19 +72,16 @@ status read_entries(const scene_reader *r, const char *name, param_group group, 
     for (size_t i = 0; i < map->count; i++) {
         const char *key = map->keys[i]->text;
         const param *row = param_find(group, key);
-        if (!row) {
+        if (!row)
             continue;
-        }
         char path[2 * SCENE_NAME_MAX + 2];
         snprintf(path, sizeof path, "%s.%s", name, key);
         place unused;
         status code = read_located(r, map->keys[i], place_find(r->scene, path, &unused, r->why));
-        if (code == STATUS_OK) {
+        if (code == STATUS_OK)
             code = read_value(r, path, row, map->items[i]);
-        }
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
     }
     return STATUS_OK;
 }
@@ -97,9 +89,8 @@ status read_entries(const scene_reader *r, const char *name, param_group group, 
 status read_one_medium(const scene_reader *r, const node *map)
 {
     const node *ior = node_get(map, "ior"), *medium = node_get(map, "medium");
-    if (ior && medium && strcmp(medium->text ? medium->text : "", "ior") != 0) {
+    if (ior && medium && strcmp(medium->text ? medium->text : "", "ior") != 0)
         return node_error(r->file, ior, r->why, "keep the ior, or the medium", "there is an ior and a medium too");
-    }
     return STATUS_OK;
 }
 
@@ -114,9 +105,8 @@ status read_check_keys(const scene_reader *r, param_group group, const node *map
     }
     for (size_t i = 0; i < param_count() && count < ROOM; i++) {
         const param *row = param_at(i);
-        if (row->group == group || (group == PARAM_SOLID && row->group == PARAM_MATERIAL)) {
+        if (row->group == group || (group == PARAM_SOLID && row->group == PARAM_MATERIAL))
             words[count++] = row->name;
-        }
     }
     return node_check_keys(r->file, map, words, count, r->why);
 }

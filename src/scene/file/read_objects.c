@@ -23,9 +23,8 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
 static status read_material_name(const scene_reader *r, const node *key, const node *map)
 {
     const node *word = node_get(map, "material");
-    if (!word) {
+    if (!word)
         return STATUS_OK;
-    }
     status code = read_expect_word(r, word, "material");
     return code == STATUS_OK ? read_located(r, word, scene_give_material(r->scene, key->text, word->text, r->why))
                              : code;
@@ -36,30 +35,24 @@ static status begin_solid(const scene_reader *r, const node *key, const node *ma
 {
     shape_kind shape = {0};
     status code = read_check_keys(r, PARAM_SOLID, map);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_one_medium(r, map);
-    }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_shape(r, key, map, &shape);
-    }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_located(r, key, scene_add_solid(r->scene, key->text, shape, index, r->why));
-    }
     return code == STATUS_OK ? read_material_name(r, key, map) : code;
 }
 
 static status begin_object(const scene_reader *r, param_group group, const node *key, const node *map, size_t *index)
 {
-    if (group == PARAM_SOLID) {
+    if (group == PARAM_SOLID)
         return begin_solid(r, key, map, index);
-    }
     status code = read_located(r, key, scene_add(r->scene, group, key->text, index, r->why));
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_check_keys(r, group, map);
-    }
-    if (code == STATUS_OK && group == PARAM_MATERIAL) {
+    if (code == STATUS_OK && group == PARAM_MATERIAL)
         code = read_one_medium(r, map);
-    }
     const node *generate = node_get(map, "generate");
     if (code == STATUS_OK && group == PARAM_MESH && generate && node_get(map, "file")) {
         return node_error(r->file, generate, r->why, "keep one of them", "%.80s has a file, and is generated too",
@@ -94,12 +87,10 @@ static status read_object(const scene_reader *r, param_group group, const node *
 {
     size_t index = 0;
     status code = begin_object(r, group, key, map, &index);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_entries(r, key->text, group, map);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     note_places(r, group, index, map);
     return read_located(r, key, check_object(r->scene, group, index, r->why));
 }
@@ -109,9 +100,8 @@ status read_objects(const scene_reader *r, const char *name, param_group group, 
     status code = read_expect_map(r, map, name);
     for (size_t i = 0; i < map->count && code == STATUS_OK; i++) {
         code = read_expect_map(r, map->items[i], map->keys[i]->text);
-        if (code == STATUS_OK) {
+        if (code == STATUS_OK)
             code = read_object(r, group, map->keys[i], map->items[i]);
-        }
     }
     return code;
 }

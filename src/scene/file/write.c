@@ -44,9 +44,8 @@ static void put_section(scene_writer *w)
 /* An object without lines is an empty map. */
 static void end_object(scene_writer *w)
 {
-    if (w->object[0] && w->empty) {
+    if (w->object[0] && w->empty)
         fputs(" {}\n", w->out);
-    }
     w->object[0] = 0;
 }
 
@@ -70,9 +69,8 @@ static void begin_object(scene_writer *w, const place *at)
     fputc(':', w->out);
     strcpy(w->object, name);
     w->empty = true;
-    if (at->group != PARAM_SOLID) {
+    if (at->group != PARAM_SOLID)
         return;
-    }
     const solid *owner = &w->s->solids[at->index];
     begin_line(w, "shape");
     fprintf(w->out, "%s\n", shape_name(owner->shape.kind));
@@ -102,12 +100,10 @@ static status put_path(scene_writer *w, const char *label, const param *row, con
 {
     char *there = NULL;
     status code = write_moved_path(value, w->s->path, w->path, &there, w->why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = write_check_text(label, there, w->why);
-    }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         put_value(w, row, there);
-    }
     free(there);
     return code;
 }
@@ -115,30 +111,24 @@ static status put_path(scene_writer *w, const char *label, const param *row, con
 static status visit(void *context, const char *path, const param *row, const char *value)
 {
     scene_writer *w = context;
-    if (row->group != w->group && !(w->group == PARAM_SOLID && row->group == PARAM_MATERIAL)) {
+    if (row->group != w->group && !(w->group == PARAM_SOLID && row->group == PARAM_MATERIAL))
         return STATUS_OK;
-    }
     place at;
     status code = place_find(w->s, path, &at, w->why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
-    if (at.group != w->group) {
+    if (at.group != w->group)
         return STATUS_OK;
-    }
-    if (is_section_of_objects(at.group) && strcmp(w->object, place_group_name(w->s, at.group, at.index)) != 0) {
+    if (is_section_of_objects(at.group) && strcmp(w->object, place_group_name(w->s, at.group, at.index)) != 0)
         begin_object(w, &at);
-    }
     bool wanted = false;
     code = write_is_wanted(w->s, &at, value, w->all, &wanted, w->why);
-    if (code != STATUS_OK || !wanted) {
+    if (code != STATUS_OK || !wanted)
         return code;
-    }
     put_section(w);
     begin_line(w, row->name);
-    if (row->type == PARAM_PATH) {
+    if (row->type == PARAM_PATH)
         return put_path(w, path, row, value);
-    }
     put_value(w, row, value);
     return STATUS_OK;
 }
@@ -170,9 +160,8 @@ static status put_scene(scene_writer *w)
     _Static_assert(sizeof order / sizeof *order == PARAM_GROUP_COUNT, "every group has its section");
     if (w->s->title[0]) {
         status code = write_check_text("title", w->s->title, w->why);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
         fputs("title: ", w->out);
         write_word(w->out, w->s->title);
         fputc('\n', w->out);
@@ -185,9 +174,8 @@ static status put_scene(scene_writer *w)
         code = scene_each_param(w->s, visit, w);
         end_object(w);
     }
-    if (!w->begun) {
+    if (!w->begun)
         fputs("solids: {}\n", w->out); /* an empty file is no scene */
-    }
     return code;
 }
 
@@ -196,14 +184,12 @@ status scene_write_text(const scene *s, const char *path, bool all, char **text,
     *text = NULL;
     text_writer writer;
     status code = text_writer_open(&writer, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     scene_writer w = {.s = s, .path = path ? path : "", .all = all, .out = writer.stream, .why = why};
     code = put_scene(&w);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         return text_writer_close(&writer, text, NULL, why);
-    }
     text_writer_abandon(&writer);
     /* Of a parameter whose text found no room, nothing has been said yet. */
     return code == STATUS_FAILURE ? diagnose(why, code, "", "out of memory") : code;
@@ -213,9 +199,8 @@ status scene_write(const scene *s, const char *path, bool all, diagnostic *why)
 {
     char *text;
     status code = scene_write_text(s, strcmp(path, "-") == 0 ? "" : path, all, &text, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     file_writer writer;
     code = file_writer_open(&writer, path, why);
     if (code == STATUS_OK) {

@@ -15,13 +15,11 @@ static char *real_folder(const char *file)
     const char *slash = strrchr(file, '/');
     char *folder = slash ? strndup(file, (size_t)(slash - file) + 1) : strdup("."), here[PATH_MAX];
     char *real = folder ? realpath(folder, NULL) : NULL;
-    if (folder && !real && errno != ENOMEM) { /* then the folder may well be there, elsewhere than it is spelt */
+    if (folder && !real && errno != ENOMEM) /* then the folder may well be there, elsewhere than it is spelt */
         real = folder[0] != '/' && getcwd(here, sizeof here) ? text_format("%s/%s", here, folder) : strdup(folder);
-    }
     free(folder);
-    for (size_t length = real ? strlen(real) : 0; length > 1 && real[length - 1] == '/'; length--) {
+    for (size_t length = real ? strlen(real) : 0; length > 1 && real[length - 1] == '/'; length--)
         real[length - 1] = 0;
-    }
     return real;
 }
 
@@ -49,15 +47,12 @@ static char *relative(const char *path, const char *folder)
 {
     size_t shared = 0; /* bytes, up to and with a slash */
     size_t at = 0;
-    for (; path[at] && path[at] == folder[at]; at++) {
+    for (; path[at] && path[at] == folder[at]; at++)
         shared = path[at] == '/' ? at + 1 : shared;
-    }
-    if (!folder[at] && path[at] == '/') { /* the whole of folder leads to path */
+    if (!folder[at] && path[at] == '/') /* the whole of folder leads to path */
         return text_format("%s%s", path[at + 1] == ' ' ? "./" : "", path + at + 1);
-    }
-    if (shared <= 1) {
+    if (shared <= 1)
         return strdup(path);
-    }
     char *steps = strdup("");
     for (const char *rest = folder + shared; steps && rest; rest = strchr(rest, '/')) {
         rest += *rest == '/';

@@ -13,9 +13,8 @@ static size_t decode(const char *text, uint32_t *out)
     const size_t length = b[0] < 0x80 ? 1 : b[0] >> 5 == 6 ? 2 : b[0] >> 4 == 14 ? 3 : b[0] >> 3 == 30 ? 4 : 0;
     uint32_t c = length < 2 ? b[0] : b[0] & (0x7fu >> length);
     for (size_t i = 1; i < length; i++) {
-        if ((b[i] & 0xc0) != 0x80) {
+        if ((b[i] & 0xc0) != 0x80)
             return 0;
-        }
         c = c << 6 | (b[i] & 0x3fu);
     }
     const bool right = length > 0 && c >= least[length] && c <= 0x10ffff && (c < 0xd800 || c > 0xdfff);
@@ -28,9 +27,8 @@ status write_check_text(const char *label, const char *text, diagnostic *why)
     uint32_t c;
     for (size_t length; *text; text += length) {
         length = decode(text, &c);
-        if (!length) {
+        if (!length)
             return diagnose(why, STATUS_BAD_INPUT, "rename it", "%.150s is not UTF-8, and a scene file is", label);
-        }
     }
     return STATUS_OK;
 }
@@ -46,11 +44,9 @@ static bool is_printable(uint32_t c)
 static bool is_taken(const char *text)
 {
     static const char *const words[] = {"y", "n", "yes", "no", "on", "off", "true", "false", "null", "~"};
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        if (strcasecmp(words[i], text) == 0) {
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        if (strcasecmp(words[i], text) == 0)
             return true;
-        }
-    }
     return false;
 }
 
@@ -63,15 +59,13 @@ static bool is_plain(const char *text)
                         (unsigned char)first >= 0x80;
     const size_t length = strlen(text);
     if (!letter || is_taken(text) || text[length - 1] == ' ' || text[length - 1] == ':' || strstr(text, ": ") ||
-        strstr(text, " #")) {
+        strstr(text, " #"))
         return false;
-    }
     uint32_t c;
     for (size_t step; *text; text += step) {
         step = decode(text, &c);
-        if (!step || !is_printable(c) || strchr("\"\\[]{}", (int)c)) {
+        if (!step || !is_printable(c) || strchr("\"\\[]{}", (int)c))
             return false;
-        }
     }
     return true;
 }
@@ -82,15 +76,14 @@ static void put_quoted(FILE *out, const char *text)
     uint32_t c;
     for (size_t length; *text; text += length) {
         length = decode(text, &c);
-        if (c == '"' || c == '\\') {
+        if (c == '"' || c == '\\')
             fprintf(out, "\\%c", (int)c);
-        } else if (c == '\n') {
+        else if (c == '\n')
             fputs("\\n", out);
-        } else if (is_printable(c)) {
+        else if (is_printable(c))
             fwrite(text, 1, length, out);
-        } else {
+        else
             fprintf(out, c < 0x100 ? "\\x%02X" : "\\u%04X", (unsigned)c);
-        }
         length += !length; /* goes on after what write_check_text would have refused */
     }
     fputc('"', out);
@@ -98,22 +91,19 @@ static void put_quoted(FILE *out, const char *text)
 
 void write_word(FILE *out, const char *text)
 {
-    if (is_plain(text)) {
+    if (is_plain(text))
         fputs(text, out);
-    } else {
+    else
         put_quoted(out, text);
-    }
 }
 
 void write_list(FILE *out, const char *numbers)
 {
     fputc('[', out);
-    for (const char *c = numbers; *c; c++) {
-        if (*c == ',') {
+    for (const char *c = numbers; *c; c++)
+        if (*c == ',')
             fputs(", ", out);
-        } else if (*c != '[' && *c != ']') {
+        else if (*c != '[' && *c != ']')
             fputc(*c, out);
-        }
-    }
     fputc(']', out);
 }

@@ -19,9 +19,8 @@ static bool is_background_row(const param *row, size_t offset)
 /* Of a mesh either the file is said or what generates it. */
 static bool is_other_source(const mesh_entry *m, const param *row)
 {
-    if (row->offset == offsetof(mesh_entry, script_path)) {
+    if (row->offset == offsetof(mesh_entry, script_path))
         return false;
-    }
     return m->source == MESH_FILE ? row->offset == offsetof(mesh_entry, source)
                                   : row->offset == offsetof(mesh_entry, path);
 }
@@ -29,15 +28,12 @@ static bool is_other_source(const mesh_entry *m, const param *row)
 /* The index of a material whose medium is another's has no effect, and its file would set that medium aside. */
 static bool is_without_effect(const scene *s, const place *at)
 {
-    if (at->group == PARAM_MESH) {
+    if (at->group == PARAM_MESH)
         return is_other_source(&s->meshes[at->index], at->row);
-    }
-    if (is_background_row(at->row, offsetof(background, ior))) {
+    if (is_background_row(at->row, offsetof(background, ior)))
         return s->background.medium != MEDIUM_IOR;
-    }
-    if (!is_material_row(at->row, offsetof(material, ior))) {
+    if (!is_material_row(at->row, offsetof(material, ior)))
         return false;
-    }
     const material *m = at->group == PARAM_SOLID ? &s->solids[at->index].surface : &s->materials[at->index].value;
     return m->medium != MEDIUM_IOR;
 }
@@ -48,9 +44,8 @@ static char *implied_text(const scene *s, const place *at)
 {
     const int index =
         at->group == PARAM_SOLID && at->row->group == PARAM_MATERIAL ? s->solids[at->index].material_index : -1;
-    if (index < 0) {
+    if (index < 0)
         return param_default_text(at->row);
-    }
     const place there = {.row = at->row, .group = PARAM_MATERIAL, .index = (size_t)index, .element = -1};
     const material *m = &s->materials[index].value;
     return is_without_effect(s, &there) ? param_default_text(at->row)
@@ -66,13 +61,11 @@ static bool is_needed(const param *row)
 status write_is_wanted(const scene *s, const place *at, const char *value, bool all, bool *wanted, diagnostic *why)
 {
     *wanted = false;
-    if (is_without_effect(s, at)) {
+    if (is_without_effect(s, at))
         return STATUS_OK;
-    }
     char *implied = implied_text(s, at);
-    if (!implied) {
+    if (!implied)
         return out_of_memory(why);
-    }
     /* An empty path says nothing, and none is visited where a file is named that is not in use. */
     *wanted = (all && value[0]) || is_needed(at->row) || strcmp(implied, value) != 0;
     free(implied);

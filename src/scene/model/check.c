@@ -17,16 +17,12 @@ _Static_assert((int)SCENE_PRIMITIVES_MAX <= (int)COUNTERS_SOLID_MAX, "a counter 
 static bool is_reserved(const char *name)
 {
     static const char *const sections[] = {"title", "meshes", "textures", "materials", "lights", "solids"};
-    for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
-        if (strcmp(name, sections[i]) == 0) {
+    for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
+        if (strcmp(name, sections[i]) == 0)
             return true;
-        }
-    }
-    for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
-        if (strcmp(name, param_group_name((param_group)g)) == 0) {
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++)
+        if (strcmp(name, param_group_name((param_group)g)) == 0)
             return true;
-        }
-    }
     return false;
 }
 
@@ -39,28 +35,24 @@ status check_name(const char *name, diagnostic *why)
 {
     size_t length = strlen(name);
     bool right = is_letter(name[0]) && length <= SCENE_NAME_MAX;
-    for (const char *c = name; right && *c; c++) {
+    for (const char *c = name; right && *c; c++)
         right = is_letter(*c) || (*c >= '0' && *c <= '9') || *c == '-';
-    }
     if (!right) {
         return diagnose(why, STATUS_BAD_INPUT,
                         "a name is letters, digits, _ and -, begins with a letter or _, and has at most 63 of them",
                         "'%.80s' cannot be a name", name);
     }
-    if (is_reserved(name)) {
+    if (is_reserved(name))
         return diagnose(why, STATUS_BAD_INPUT, "choose another one", "the name '%s' is a word of scene files", name);
-    }
     return STATUS_OK;
 }
 
 static size_t count_name(const scene *s, const char *name)
 {
     size_t count = 0;
-    for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++) {
-        for (size_t i = 0; i < place_group_size(s, (param_group)g); i++) {
+    for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++)
+        for (size_t i = 0; i < place_group_size(s, (param_group)g); i++)
             count += strcmp(place_group_name(s, (param_group)g, i), name) == 0;
-        }
-    }
     return count;
 }
 
@@ -184,9 +176,8 @@ static status unknown(const scene *s, param_group group, const char *owner, cons
 static status check_closed(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
 {
     const mesh *data = m->data;
-    if (!data || data->closed || material_is_opaque(&owner->surface) || s->render.transmission == TRANSMISSION_SIMPLE) {
+    if (!data || data->closed || material_is_opaque(&owner->surface) || s->render.transmission == TRANSMISSION_SIMPLE)
         return STATUS_OK;
-    }
     const vec3 a = data->vertices[data->hole.from], b = data->vertices[data->hole.to];
     return diagnose(why, STATUS_BAD_INPUT, "close the mesh, or make the solid opaque (transparency 0)",
                     "%.80s is clear, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, %g) of "
@@ -199,9 +190,8 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
 static status check_colors(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
 {
     const bool by_face = m && owner->material_index < 0 && (m->looks || (m->data && m->data->slot_count > 1));
-    if (s->render.spectrum != SPECTRUM_SPECTRAL || !(by_face || owner->surface.texture[0])) {
+    if (s->render.spectrum != SPECTRUM_SPECTRAL || !(by_face || owner->surface.texture[0]))
         return STATUS_OK;
-    }
     return diagnose(why, STATUS_BAD_INPUT,
                     by_face ? "set render.spectrum to rgb, or give the solid a material" : "set render.spectrum to rgb",
                     "%.80s: %s have no spectra", owner->name, by_face ? "materials by face" : "textures");
@@ -211,19 +201,16 @@ static status check_colors(const scene *s, const solid *owner, const mesh_entry 
 static status check_references(const scene *s, const solid *owner, diagnostic *why)
 {
     const mesh_entry *m = scene_mesh_of(s, owner);
-    if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture)) {
+    if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture))
         return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
-    }
-    if (!shape_of(&owner->shape)->triangles) {
+    if (!shape_of(&owner->shape)->triangles)
         return check_colors(s, owner, NULL, why);
-    }
     if (!owner->mesh[0]) {
         return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', of one in meshes",
                         "%.80s: which mesh it is is not said", owner->name);
     }
-    if (!m) {
+    if (!m)
         return unknown(s, PARAM_MESH, owner->name, owner->mesh, why);
-    }
     const status code = check_colors(s, owner, m, why);
     return code == STATUS_OK ? check_closed(s, owner, m, why) : code;
 }
@@ -249,21 +236,17 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
 {
     diagnostic shape = {.what = ""};
     status code = solid_shape_check(&owner->shape, &shape);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return diagnose(why, code, shape.remedy, "%.80s: %s", owner->name, shape.what);
-    }
     code = check_references(s, owner, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     index_law unused;
     code = material_index_law(&owner->surface, owner->name, &unused, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = material_absorption_check(&owner->surface, owner->name, why);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     /* What a surface hands on is at most what it gets; the slack is for sums like 0.7 + 0.2 + 0.1. Under Fresnel
      * weights R + T = 1 by themselves, and reflectivity counts for opaque surfaces alone. */
     double sum = owner->surface.reflectivity + owner->surface.transparency;
@@ -282,34 +265,29 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
 status check_limits(const scene *s, diagnostic *why)
 {
     size_t primitives = 0;
-    for (size_t i = 0; i < s->solid_count; i++) {
+    for (size_t i = 0; i < s->solid_count; i++)
         primitives += (size_t)shape_places(&s->solids[i].shape);
-    }
     if (primitives > SCENE_PRIMITIVES_MAX) {
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64; a cup and a torus count as two",
                         "more than 64 solids");
     }
-    if (s->light_count > SCENE_LIGHTS_MAX) {
+    if (s->light_count > SCENE_LIGHTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64", "more than 64 lights");
-    }
     if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX) {
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64 of each", "more than 64 %s",
                         s->mesh_count > SCENE_MESHES_MAX ? "meshes" : "textures");
     }
-    if (s->material_count > SCENE_MATERIALS_MAX) {
+    if (s->material_count > SCENE_MATERIALS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 256", "more than 256 materials");
-    }
     return STATUS_OK;
 }
 
 static status check_names(const scene *s, diagnostic *why)
 {
     status code = STATUS_OK;
-    for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++) {
-        for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++) {
+    for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++)
+        for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
             code = check_own_name(s, place_group_name(s, (param_group)g, i), why);
-        }
-    }
     return code;
 }
 
@@ -332,13 +310,10 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
 status scene_check(const scene *s, diagnostic *why)
 {
     status code = check_limits(s, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_names(s, why);
-    }
-    for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
-        for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++) {
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++)
+        for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
             code = check_object(s, (param_group)g, i, why);
-        }
-    }
     return code;
 }

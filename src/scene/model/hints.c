@@ -20,9 +20,8 @@ static bool is_inside_medium(const scene *s, const solid *bubble)
         const solid *other = &s->solids[i];
         if (other != bubble && other->visible && other->surface.transparency > 0.0 &&
             !material_matches_surroundings(s, &other->surface) &&
-            solid_shape_contains(&other->shape, bubble->shape.position)) {
+            solid_shape_contains(&other->shape, bubble->shape.position))
             return true;
-        }
     }
     return false;
 }
@@ -33,9 +32,8 @@ static bool cuts_another(const scene *s, const solid *cutter)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *other = &s->solids[i];
         const bool seen = other->surface.transparency == 0.0 || !material_matches_surroundings(s, &other->surface);
-        if (other->visible && seen && scene_wins(cutter, other) && !scene_apart(s, cutter, other)) {
+        if (other->visible && seen && scene_wins(cutter, other) && !scene_apart(s, cutter, other))
             return true;
-        }
     }
     return false;
 }
@@ -68,13 +66,11 @@ static bool hint_at_index(const scene *s, const solid *owner, const note_taker *
 {
     const material *m = &owner->surface;
     index_law law;
-    if (m->reflectivity > 0.0 || material_is_mirror(m) || material_index_law(m, "", &law, NULL) != STATUS_OK) {
+    if (m->reflectivity > 0.0 || material_is_mirror(m) || material_index_law(m, "", &law, NULL) != STATUS_OK)
         return false;
-    }
     const double index = index_law_at(&law, s->render.lambda_nm);
-    if (!(index > INDEX_MOST)) {
+    if (!(index > INDEX_MOST))
         return false;
-    }
     note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium",
               m->transparency > 0.0
                   ? "set its ior between 1 and 5; for a mirror set its reflectivity, and its transparency to 0"
@@ -88,9 +84,8 @@ static bool hint_at_index(const scene *s, const solid *owner, const note_taker *
 static void hint_at_solid(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    if (hint_at_index(s, owner, taker)) {
+    if (hint_at_index(s, owner, taker))
         return;
-    }
     if (m->transparency > 0.0) {
         hint_at_clear(s, owner, taker);
     } else if ((m->medium != MEDIUM_IOR || m->ior != 1.0) && !looks_by_face(s, owner)) {
@@ -123,9 +118,8 @@ static void hint_at_range(const scene *s, const char *where, const char *name, c
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
     const double low_nm = spectral ? VISIBLE_LOW_NM : s->render.lambda_nm,
                  high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
-    if (dispersion_covers(&law->law, low_nm, high_nm)) {
+    if (dispersion_covers(&law->law, low_nm, high_nm))
         return;
-    }
     if (law->law.kind == DISPERSION_TABLE) {
         note_give(taker, where, "coefficients", remedy,
                   "its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond",
@@ -161,9 +155,8 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
 {
     const bool path = integrator_of(&s->render)->by_chance;
     bool clear = false;
-    for (size_t i = 0; i < s->solid_count; i++) {
+    for (size_t i = 0; i < s->solid_count; i++)
         clear |= s->solids[i].visible && s->solids[i].surface.transparency > 0.0;
-    }
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
         if (lamp->radius > 0.0 && !path) {
@@ -183,9 +176,8 @@ void scene_range_hints(const scene *s, const note_taker *taker)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         if (one->visible && one->surface.transparency > 0.0 &&
-            material_index_law(&one->surface, "", &law, NULL) == STATUS_OK) {
+            material_index_law(&one->surface, "", &law, NULL) == STATUS_OK)
             hint_at_range(s, one->name, medium_words[one->surface.medium], &law, taker);
-        }
     }
 }
 
@@ -197,9 +189,8 @@ void scene_hints(const scene *s, const note_taker *taker)
         lit += s->solids[i].visible && is_lit(&s->solids[i].surface);
         shining += s->solids[i].visible && s->solids[i].surface.emission > 0.0;
     }
-    if (visible == 0) {
+    if (visible == 0)
         note_give(taker, "solids", NULL, "add solids:", "no visible solids: the picture shows the background alone");
-    }
     const bool emitters_light = shining > 0 && integrator_of(&s->render)->by_chance;
     if (lit > 0 && s->light_count == 0 && !emitters_light) {
         note_give(taker, "lights", NULL,

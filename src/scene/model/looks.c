@@ -42,9 +42,8 @@ static status read_picture(const mesh_import *imported, int slot, const char *ro
     texture *picture;
     const status code =
         texture_read_below(path, root, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &picture, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         looks->look[slot].picture = picture;
-    }
     return code;
 }
 
@@ -58,9 +57,8 @@ static double brightest(vec3 color)
 static void emit(face_look *look, const imported_material *m)
 {
     const vec3 sent = vec3_make(m->emissive[0], m->emissive[1], m->emissive[2]);
-    if (!(brightest(sent) > 0.0)) {
+    if (!(brightest(sent) > 0.0))
         return;
-    }
     if (brightest(look->color) == 0.0) {
         look->color = vec3_scale(sent, 1.0 / brightest(sent));
         look->diffuse = 0.0;
@@ -75,9 +73,8 @@ static face_look look_of(const imported_material *m)
     snprintf(look.name, sizeof look.name, "%s", m->name ? m->name : "");
     look.color = vec3_make(at_most_one(m->color[0]), at_most_one(m->color[1]), at_most_one(m->color[2]));
     /* A file that gives a highlight no exponent means none: to the power of 0 it would cover everything. */
-    for (int c = 0; c < 3 && m->shininess > 0.0; c++) {
+    for (int c = 0; c < 3 && m->shininess > 0.0; c++)
         look.specular = m->specular[c] > look.specular ? at_most_one(m->specular[c]) : look.specular;
-    }
     emit(&look, m);
     return look;
 }
@@ -85,9 +82,8 @@ static face_look look_of(const imported_material *m)
 status looks_create(const mesh_import *imported, const char *root, const face_looks **out, diagnostic *why)
 {
     face_looks *looks = calloc(1, sizeof *looks + (size_t)imported->material_count * sizeof looks->look[0]);
-    if (!looks) {
+    if (!looks)
         return out_of_memory(why);
-    }
     atomic_init(&looks->owners, 1);
     looks->count = imported->material_count;
     for (int i = 0; i < looks->count; i++) {
@@ -104,19 +100,16 @@ status looks_create(const mesh_import *imported, const char *root, const face_lo
 
 void looks_retain(const face_looks *l)
 {
-    if (l) {
+    if (l)
         atomic_fetch_add(&counted(l)->owners, 1);
-    }
 }
 
 void looks_release(const face_looks *l)
 {
-    if (!l || atomic_fetch_sub(&counted(l)->owners, 1) > 1) {
+    if (!l || atomic_fetch_sub(&counted(l)->owners, 1) > 1)
         return;
-    }
-    for (int i = 0; i < l->count; i++) {
+    for (int i = 0; i < l->count; i++)
         texture_release(l->look[i].picture);
-    }
     free(counted(l));
 }
 

@@ -7,11 +7,9 @@
 /* The material of that name in the scene, which goes before the file's. */
 static const material *named_material_of(const scene *s, const char *name)
 {
-    for (size_t i = 0; name[0] && i < s->material_count; i++) {
-        if (strcmp(s->materials[i].name, name) == 0) {
+    for (size_t i = 0; name[0] && i < s->material_count; i++)
+        if (strcmp(s->materials[i].name, name) == 0)
             return &s->materials[i].value;
-        }
-    }
     return NULL;
 }
 
@@ -49,11 +47,10 @@ surface_look looks_face(const scene *s, const solid *owner, const material *own,
     const face_look *given;
     looks_source(s, owner, slot, &named, &given);
     surface_look l = {.surface = *own, .picture = picture_of(s, named ? named : own)};
-    if (named) {
+    if (named)
         l.surface = *named;
-    } else if (given) {
+    else if (given)
         dress(&l, own, given);
-    }
     if (s->render.transmission == TRANSMISSION_SIMPLE) {
         l.surface.transparency = named                           ? named->transparency
                                  : given && given->opacity < 1.0 ? 1.0 - given->opacity
@@ -61,9 +58,8 @@ surface_look looks_face(const scene *s, const solid *owner, const material *own,
         return l;
     }
     l.surface.transparency = own->transparency;
-    if (!material_is_opaque(own)) { /* shares that add up to at most 1 */
+    if (!material_is_opaque(own)) /* shares that add up to at most 1 */
         l.surface.reflectivity = own->reflectivity;
-    }
     return l;
 }
 
@@ -81,9 +77,8 @@ bool looks_opaque(const scene *s, const solid *owner)
 {
     const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? looks_slots(s, owner) : 0;
     bool opaque = slots > 0 || material_is_opaque(&owner->surface);
-    for (int slot = 0; slot < slots; slot++) {
+    for (int slot = 0; slot < slots; slot++)
         opaque &= looks_face(s, owner, &owner->surface, slot).surface.transparency == 0.0;
-    }
     return opaque;
 }
 
@@ -98,9 +93,8 @@ bool looks_waste(const scene *s, const solid *owner)
         const bool clear = !material_is_opaque(own);
         if ((named &&
              (named->transparency != own->transparency || (clear && named->reflectivity != own->reflectivity))) ||
-            (!named && given && given->opacity < 1.0 && 1.0 - given->opacity != own->transparency)) {
+            (!named && given && given->opacity < 1.0 && 1.0 - given->opacity != own->transparency))
             return true;
-        }
     }
     return false;
 }

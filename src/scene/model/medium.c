@@ -57,14 +57,11 @@ double index_law_at(const index_law *law, double lambda_nm)
 
 static bool index_laws_equal(const index_law *a, const index_law *b)
 {
-    if (a->law.kind != b->law.kind || a->law.count != b->law.count || a->relative_to_air != b->relative_to_air) {
+    if (a->law.kind != b->law.kind || a->law.count != b->law.count || a->relative_to_air != b->relative_to_air)
         return false;
-    }
-    for (int i = 0; i < a->law.count; i++) {
-        if (a->law.coefficient[i] != b->law.coefficient[i]) {
+    for (int i = 0; i < a->law.count; i++)
+        if (a->law.coefficient[i] != b->law.coefficient[i])
             return false;
-        }
-    }
     return true;
 }
 
@@ -105,9 +102,8 @@ const char *surrounding_medium_name(const background *b)
 /* Linear between points x0, y0, x1, y1, ...; constant beyond the first and the last. */
 static double interpolate(const double *points, int64_t count, double x)
 {
-    if (x <= points[0]) {
+    if (x <= points[0])
         return points[1];
-    }
     for (int64_t i = 2; i < count; i += 2) {
         if (x <= points[i]) {
             const double share = (x - points[i - 2]) / (points[i] - points[i - 2]);
@@ -126,9 +122,8 @@ static double between_channels(vec3 a, double lambda_nm)
 
 double material_absorption_at(const material *m, double lambda_nm)
 {
-    if (m->absorb_spectrum.count > 0) {
+    if (m->absorb_spectrum.count > 0)
         return interpolate(m->absorb_spectrum.value, m->absorb_spectrum.count, lambda_nm);
-    }
     return between_channels(m->absorb_per_m, lambda_nm);
 }
 
@@ -140,9 +135,8 @@ double surrounding_absorption_at(const background *b, double lambda_nm)
 vec3 material_absorption(const material *m)
 {
     const double channel_nm[] = CHANNEL_LAMBDA_NM;
-    if (m->absorb_spectrum.count == 0) {
+    if (m->absorb_spectrum.count == 0)
         return m->absorb_per_m;
-    }
     return vec3_make(material_absorption_at(m, channel_nm[0]), material_absorption_at(m, channel_nm[1]),
                      material_absorption_at(m, channel_nm[2]));
 }
@@ -159,11 +153,9 @@ bool surroundings_absorb(const background *b)
 
 bool material_absorbs(const material *m)
 {
-    for (int64_t i = 1; i < m->absorb_spectrum.count; i += 2) {
-        if (m->absorb_spectrum.value[i] > 0.0) {
+    for (int64_t i = 1; i < m->absorb_spectrum.count; i += 2)
+        if (m->absorb_spectrum.value[i] > 0.0)
             return true;
-        }
-    }
     return m->absorb_spectrum.count == 0 && absorbs(m->absorb_per_m);
 }
 
@@ -175,9 +167,8 @@ bool material_tints(const material *m)
 double material_tint(const material *m, double share)
 {
     const double black = 1e9, ln_2 = 0.69314718055994530942;
-    if (share >= 1.0) {
+    if (share >= 1.0)
         return 0.0;
-    }
     return (share > DBL_MIN ? -ln_2 * elementary_log2_inline(share) : black) / m->tint_distance;
 }
 
@@ -189,9 +180,8 @@ bool material_dims(const material *m)
 vec3 material_extinction(const material *m, double unit_m)
 {
     const vec3 absorbed = vec3_scale(material_absorption(m), unit_m);
-    if (!material_tints(m)) {
+    if (!material_tints(m))
         return absorbed;
-    }
     return vec3_add(
         absorbed, vec3_make(material_tint(m, m->color.x), material_tint(m, m->color.y), material_tint(m, m->color.z)));
 }
@@ -205,9 +195,8 @@ status material_absorption_check(const material *m, const char *label, diagnosti
 {
     const number_list *list = &m->absorb_spectrum;
     bool right = list->count % 2 == 0;
-    for (int64_t i = 0; right && i < list->count; i += 2) {
+    for (int64_t i = 0; right && i < list->count; i += 2)
         right = list->value[i] > 0.0 && list->value[i + 1] >= 0.0 && (i == 0 || list->value[i] > list->value[i - 2]);
-    }
     return right ? STATUS_OK
                  : diagnose(why, STATUS_BAD_INPUT,
                             "write nm,1/m,nm,1/m.. with ascending wavelengths, as [400, 0.1, 700, 2]",

@@ -72,11 +72,9 @@ const char *place_group_name(const scene *s, param_group group, size_t index)
 
 int object_find(const scene *s, param_group group, const char *name)
 {
-    for (size_t i = 0; i < place_group_size(s, group); i++) {
-        if (strcmp(place_group_name(s, group, i), name) == 0) {
+    for (size_t i = 0; i < place_group_size(s, group); i++)
+        if (strcmp(place_group_name(s, group, i), name) == 0)
             return (int)i;
-        }
-    }
     return -1;
 }
 
@@ -86,9 +84,8 @@ static bool each_text(param_group group, void *object, bool (*act)(char **text))
     bool good = act(object);
     for (size_t i = 0; i < param_count(); i++) {
         const param *row = param_at(i);
-        if (row->group == group && row->type == PARAM_PATH) {
+        if (row->group == group && row->type == PARAM_PATH)
             good &= act((char **)((char *)object + lists[group].value + row->offset));
-        }
     }
     return good;
 }
@@ -107,11 +104,10 @@ static bool free_text(char **text)
 
 static void release(param_group group, void *object)
 {
-    if (group == PARAM_MESH) {
+    if (group == PARAM_MESH)
         mesh_entry_unload(object);
-    } else if (group == PARAM_TEXTURE) {
+    else if (group == PARAM_TEXTURE)
         texture_entry_unload(object);
-    }
     each_text(group, object, free_text);
 }
 
@@ -119,9 +115,8 @@ void *object_append(scene *s, param_group group, const char *name)
 {
     const size_t size = lists[group].size, count = *count_of(s, group);
     char *copy = strdup(name), *grown = realloc(array_of(s, group), (count + 1) * size);
-    if (grown) {
+    if (grown)
         set_array(s, group, grown);
-    }
     if (!copy || !grown) {
         free(copy);
         return NULL;
@@ -146,9 +141,8 @@ static bool own(param_group group, void *object)
     if (group == PARAM_MESH) {
         const mesh_entry *m = object;
         looks_retain(m->looks);
-        if (m->data) {
+        if (m->data)
             mesh_retain(m->data);
-        }
     } else if (group == PARAM_TEXTURE && ((const texture_entry *)object)->data) {
         texture_retain(((const texture_entry *)object)->data);
     }
@@ -170,34 +164,30 @@ static bool clone_list(scene *s, const scene *original, param_group group)
 {
     const size_t count = *count_of(original, group), size = lists[group].size;
     char *array = count ? malloc(count * size) : NULL;
-    if (!array) {
+    if (!array)
         return count == 0;
-    }
     memcpy(array, array_of(original, group), count * size);
     set_array(s, group, array);
     *count_of(s, group) = count;
     bool whole = true;
-    for (char *object = array; object < array + count * size; object += size) {
+    for (char *object = array; object < array + count * size; object += size)
         whole &= own(group, object);
-    }
     return whole;
 }
 
 bool objects_clone(scene *s, const scene *original)
 {
     bool whole = true;
-    for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++) {
+    for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++)
         whole &= clone_list(s, original, (param_group)g);
-    }
     return whole;
 }
 
 void objects_release(scene *s)
 {
     for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++) {
-        for (size_t i = 0; i < *count_of(s, (param_group)g); i++) {
+        for (size_t i = 0; i < *count_of(s, (param_group)g); i++)
             release((param_group)g, object_at(s, (param_group)g, i));
-        }
         free(array_of(s, (param_group)g));
     }
 }
@@ -207,14 +197,12 @@ char *object_remedy(const scene *s, param_group group, const char *wrong, char *
     enum { ROOM = 256 };
     const char *words[ROOM];
     size_t count = 0;
-    for (; count < place_group_size(s, group) && count < ROOM; count++) {
+    for (; count < place_group_size(s, group) && count < ROOM; count++)
         words[count] = place_group_name(s, group, count);
-    }
     const char *nearest = suggest_word(wrong, words, count);
-    if (nearest) {
+    if (nearest)
         snprintf(text, size, "did you mean '%s'?", nearest);
-    } else {
+    else
         snprintf(text, size, "add it to %s%s", param_group_name(group), group == PARAM_MESH ? "es" : "s");
-    }
     return text;
 }

@@ -52,22 +52,18 @@ static camera camera_with_both(camera c)
 /* A plain index takes the place of a medium that was named before. */
 static void forget_medium(scene *s, const place *at)
 {
-    if (at->row->group == PARAM_BACKGROUND && at->row->offset == offsetof(background, ior)) {
+    if (at->row->group == PARAM_BACKGROUND && at->row->offset == offsetof(background, ior))
         s->background.medium = MEDIUM_IOR;
-    }
-    if (at->row->group != PARAM_MATERIAL || at->row->offset != offsetof(material, ior)) {
+    if (at->row->group != PARAM_MATERIAL || at->row->offset != offsetof(material, ior))
         return;
-    }
     if (at->group == PARAM_SOLID) {
         s->solids[at->index].surface.medium = MEDIUM_IOR;
         return;
     }
     s->materials[at->index].value.medium = MEDIUM_IOR;
-    for (size_t i = 0; i < s->solid_count; i++) {
-        if (s->solids[i].material_index == (int)at->index) {
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (s->solids[i].material_index == (int)at->index)
             s->solids[i].surface.medium = MEDIUM_IOR;
-        }
-    }
 }
 
 /* What was loaded under the old value; a file that is named is also used. */
@@ -108,25 +104,21 @@ static void store(scene *s, const place *at, param_value value)
     }
     forget_loaded(s, at, value);
     param_value_store(row, at->element, (char *)place_base(s, at) + row->offset, value);
-    for (size_t i = 0; at->group == PARAM_MATERIAL && i < s->solid_count; i++) {
-        if (s->solids[i].material_index == (int)at->index) {
+    for (size_t i = 0; at->group == PARAM_MATERIAL && i < s->solid_count; i++)
+        if (s->solids[i].material_index == (int)at->index)
             param_value_store(row, at->element, (char *)&s->solids[i].surface + row->offset, value);
-        }
-    }
 }
 
 status scene_set(scene *s, const char *path, const char *value, diagnostic *why)
 {
     place at;
     status code = place_find(s, path, &at, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     param_value parsed;
     code = param_value_parse(at.row, at.element, path, value, &parsed, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         store(s, &at, parsed);
-    }
     return code;
 }
 
@@ -138,9 +130,8 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
                         assignment);
     }
     char *path = strndup(assignment, (size_t)(equals - assignment));
-    if (!path) {
+    if (!path)
         return out_of_memory(why);
-    }
     status code = scene_set(s, path, equals + 1, why);
     free(path);
     return code;
@@ -159,9 +150,8 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
     *value = NULL;
     place at;
     status code = place_find(s, path, &at, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     *value = place_text(s, &at);
     return *value ? STATUS_OK : out_of_memory(why);
 }
@@ -181,15 +171,12 @@ static status visit_one(const scene *s, const place *at, param_visit *visit, voi
 static bool is_in_use(const scene *s, const place *at)
 {
     const param *row = at->row;
-    if (row->group == PARAM_MESH && row->makers != 0) {
+    if (row->group == PARAM_MESH && row->makers != 0)
         return (row->makers & 1u << s->meshes[at->index].source) != 0;
-    }
-    if (row->type == PARAM_PATH && row->group == PARAM_MESH) {
+    if (row->type == PARAM_PATH && row->group == PARAM_MESH)
         return s->meshes[at->index].source == MESH_FILE;
-    }
-    if (row->type == PARAM_PATH && row->group == PARAM_BACKGROUND && s->background.kind != BACKGROUND_PICTURE) {
+    if (row->type == PARAM_PATH && row->group == PARAM_BACKGROUND && s->background.kind != BACKGROUND_PICTURE)
         return !s->background.picture_path[0];
-    }
     return s->camera.aimed ? !is_angle(row) : !is_target(row);
 }
 
@@ -200,9 +187,8 @@ static status visit_rows(const scene *s, place at, param_group rows, param_visit
     for (size_t i = 0; i < param_count() && code == STATUS_OK; i++) {
         at.row = param_at(i);
         if (at.row->group == rows && is_in_use(s, &at) &&
-            (at.group != PARAM_SOLID || solid_has(&s->solids[at.index], at.row))) {
+            (at.group != PARAM_SOLID || solid_has(&s->solids[at.index], at.row)))
             code = visit_one(s, &at, visit, context);
-        }
     }
     return code;
 }
@@ -214,9 +200,8 @@ status scene_each_param(const scene *s, param_visit *visit, void *context)
         place at = {.row = NULL, .group = (param_group)g, .index = 0, .element = -1};
         for (; at.index < place_group_size(s, at.group) && code == STATUS_OK; at.index++) {
             code = visit_rows(s, at, at.group, visit, context);
-            if (code == STATUS_OK && at.group == PARAM_SOLID) {
+            if (code == STATUS_OK && at.group == PARAM_SOLID)
                 code = visit_rows(s, at, PARAM_MATERIAL, visit, context);
-            }
         }
     }
     return code;

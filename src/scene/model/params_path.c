@@ -29,9 +29,8 @@ bool solid_has(const solid *owner, const param *row)
 
 static bool split_path(const char *path, path_words *words)
 {
-    if (strlen(path) >= sizeof words->text) {
+    if (strlen(path) >= sizeof words->text)
         return false;
-    }
     strcpy(words->text, path);
     words->group = words->text;
     words->name = words->element = NULL;
@@ -52,15 +51,12 @@ static bool split_path(const char *path, path_words *words)
 static const char **group_words(const scene *s, size_t *count)
 {
     size_t room = 0, used = 0;
-    for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++)
         room += place_group_size(s, (param_group)g);
-    }
     const char **words = malloc(room * sizeof *words);
-    for (int g = 0; words && g < PARAM_GROUP_COUNT; g++) {
-        for (size_t i = 0; i < place_group_size(s, (param_group)g); i++) {
+    for (int g = 0; words && g < PARAM_GROUP_COUNT; g++)
+        for (size_t i = 0; i < place_group_size(s, (param_group)g); i++)
             words[used++] = place_group_name(s, (param_group)g, i);
-        }
-    }
     *count = used;
     return words;
 }
@@ -83,9 +79,8 @@ static size_t row_words(const scene *s, const place *at, param_group rows, const
 {
     for (size_t i = 0; i < param_count() && count < WORDS_MAX; i++) {
         const param *row = param_at(i);
-        if (row->group == rows && (at->group != PARAM_SOLID || solid_has(&s->solids[at->index], row))) {
+        if (row->group == rows && (at->group != PARAM_SOLID || solid_has(&s->solids[at->index], row)))
             words[count++] = row->name;
-        }
     }
     return count;
 }
@@ -98,9 +93,8 @@ static const param *nearest_setting(const scene *s, const char *word)
         const char *words[WORDS_MAX];
         size_t count = row_words(s, &at, at.group, words, 0);
         const char *nearest = suggest_word(word, words, count);
-        if (nearest) {
+        if (nearest)
             return param_find(at.group, nearest);
-        }
     }
     return NULL;
 }
@@ -109,9 +103,8 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
 {
     size_t count;
     const char **words = group_words(s, &count);
-    if (!words) {
+    if (!words)
         return out_of_memory(why);
-    }
     const char *nearest = suggest_word(path->group, words, count);
     char remedy[300] = "a path is render.NAME, camera.NAME, background.NAME, or the name of a mesh, texture, light, "
                        "material or solid, a dot "
@@ -141,9 +134,8 @@ static status wrong_shape(const scene *s, const place *at, const path_words *pat
 
 static status unknown_name(const scene *s, const place *at, const path_words *path, diagnostic *why)
 {
-    if (path->name && at->row) {
+    if (path->name && at->row)
         return wrong_shape(s, at, path, why);
-    }
     const char *words[WORDS_MAX];
     size_t count = row_words(s, at, at->group, words, 0);
     count = at->group == PARAM_SOLID ? row_words(s, at, PARAM_MATERIAL, words, count) : count;
@@ -170,9 +162,8 @@ static status unknown_name(const scene *s, const place *at, const path_words *pa
 static status find_element(const path_words *path, place *out, diagnostic *why)
 {
     out->element = -1;
-    if (!path->element) {
+    if (!path->element)
         return STATUS_OK;
-    }
     bool color = out->row->type == PARAM_COLOR;
     if (!color && out->row->type != PARAM_VECTOR) {
         return diagnose(why, STATUS_BAD_INPUT, "leave out what follows the second dot", "%.80s.%.80s has no elements",
@@ -195,32 +186,27 @@ status place_find(const scene *s, const char *path, place *out, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "a path is group.name, such as render.depth",
                         "the path '%.60s...' is too long", path);
     }
-    if (!find_group(s, words.group, out)) {
+    if (!find_group(s, words.group, out))
         return unknown_group(s, &words, why);
-    }
     out->row = words.name ? param_find(out->group, words.name) : NULL;
-    if (!out->row || (out->group == PARAM_SOLID && !solid_has(&s->solids[out->index], out->row))) {
+    if (!out->row || (out->group == PARAM_SOLID && !solid_has(&s->solids[out->index], out->row)))
         return unknown_name(s, out, &words, why);
-    }
     return find_element(&words, out, why);
 }
 
 status place_find_object(const scene *s, const char *name, place *out, diagnostic *why)
 {
     *out = (place){.element = -1};
-    if (find_group(s, name, out)) {
+    if (find_group(s, name, out))
         return STATUS_OK;
-    }
     size_t count;
     const char **words = group_words(s, &count);
-    if (!words) {
+    if (!words)
         return out_of_memory(why);
-    }
     const char *nearest = suggest_word(name, words, count);
     char remedy[SCENE_NAME_MAX + 80] = "give the name of a light, material or solid";
-    if (nearest) {
+    if (nearest)
         snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
-    }
     free(words);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "nothing in the scene is named '%.80s'", name);
 }

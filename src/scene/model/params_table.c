@@ -356,11 +356,9 @@ const char *param_group_name(param_group group)
 
 static const param *find_own(param_group group, const char *name)
 {
-    for (size_t i = 0; i < TABLE_COUNT; i++) {
-        if (table[i].group == group && strcmp(table[i].name, name) == 0) {
+    for (size_t i = 0; i < TABLE_COUNT; i++)
+        if (table[i].group == group && strcmp(table[i].name, name) == 0)
             return &table[i];
-        }
-    }
     return NULL;
 }
 

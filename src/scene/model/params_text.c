@@ -25,28 +25,26 @@ static void interval_text(const param *row, char *text, size_t size)
 static void choice_text(const param *row, char *text, size_t size)
 {
     int used = snprintf(text, size, "one of: ");
-    for (size_t i = 0; row->choices[i] && used >= 0 && (size_t)used < size; i++) {
+    for (size_t i = 0; row->choices[i] && used >= 0 && (size_t)used < size; i++)
         used += snprintf(text + used, size - (size_t)used, "%s%s", i ? ", " : "", row->choices[i]);
-    }
 }
 
 static char *element_range_text(const param *row, bool one_element, char *text, size_t size)
 {
     char interval[2 * NUMBER_TEXT_MAX + 16];
     interval_text(row, interval, sizeof interval);
-    if (row->choices) {
+    if (row->choices)
         choice_text(row, text, size);
-    } else if (row->type == PARAM_PATH) {
+    else if (row->type == PARAM_PATH)
         snprintf(text, size, "path of a file");
-    } else if (row->type == PARAM_WORD) {
+    else if (row->type == PARAM_WORD)
         snprintf(text, size, "name of a %s", row->name);
-    } else if (row->type == PARAM_LIST && !one_element) {
+    else if (row->type == PARAM_LIST && !one_element)
         snprintf(text, size, "a list of at most %d numbers, each %s", (int)NUMBER_LIST_MAX, interval);
-    } else if (is_vector(row) && !one_element) {
+    else if (is_vector(row) && !one_element)
         snprintf(text, size, "3 numbers, each %s", interval);
-    } else {
+    else
         snprintf(text, size, "%s %s", row->type == PARAM_INT ? "integer" : "number", interval);
-    }
     return text;
 }
 
@@ -112,12 +110,10 @@ char *param_value_text(const param *row, int element, const void *field)
 char *param_default_text(const param *row)
 {
     param_value value;
-    if (param_value_parse(row, -1, row->name, row->fallback, &value, NULL) != STATUS_OK) {
+    if (param_value_parse(row, -1, row->name, row->fallback, &value, NULL) != STATUS_OK)
         return NULL;
-    }
     char *text = param_value_text(row, -1, &value);
-    if (row->type == PARAM_PATH) {
+    if (row->type == PARAM_PATH)
         free(value.path);
-    }
     return text;
 }

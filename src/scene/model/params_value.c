@@ -16,9 +16,8 @@
 static size_t count_words(const char *const *words)
 {
     size_t count = 0;
-    while (words && words[count]) {
+    while (words && words[count])
         count++;
-    }
     return count;
 }
 
@@ -36,9 +35,8 @@ static status wrong(const param *row, bool one_element, diagnostic *why, const c
     char text[300], remedy[420];
     va_list arguments;
     va_start(arguments, what);
-    if (vsnprintf(text, sizeof text, what, arguments) < 0) {
+    if (vsnprintf(text, sizeof text, what, arguments) < 0)
         text[0] = 0;
-    }
     va_end(arguments);
     return diagnose(why, STATUS_BAD_INPUT, param_remedy(row, one_element, remedy, sizeof remedy), "%s", text);
 }
@@ -55,29 +53,25 @@ static status not_a_number(const param *row, const char *label, const char *text
     bool comma = rest > digits && *rest == ',';
     bool unit =
         rest > digits && *rest && rest[strspn(rest, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ")] == 0;
-    if (!comma && !unit) {
+    if (!comma && !unit)
         return wrong(row, true, why, "%s: '" SHOWN "' is not a finite number", label, text);
-    }
     char remedy[120];
-    if (comma && strchr(rest + 1, ',')) {
+    if (comma && strchr(rest + 1, ','))
         snprintf(remedy, sizeof remedy, "give one number");
-    } else if (comma) {
+    else if (comma)
         snprintf(remedy, sizeof remedy, "a decimal comma? write 1.5");
-    } else {
+    else
         snprintf(remedy, sizeof remedy, "write the number alone%s%s", row->unit[0] ? ", in " : "", row->unit);
-    }
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s: '" SHOWN "' is not a finite number", label, text);
 }
 
 static status parse_real(const param *row, const char *label, const char *text, double *out, diagnostic *why)
 {
     double value;
-    if (!number_parse_real(text, &value)) {
+    if (!number_parse_real(text, &value))
         return not_a_number(row, label, text, why);
-    }
-    if (!in_range(row, value)) {
+    if (!in_range(row, value))
         return wrong(row, true, why, "%s: " SHOWN " is out of range", label, text);
-    }
     *out = value;
     return STATUS_OK;
 }
@@ -113,9 +107,8 @@ static bool choose(const param *row, const char *text, int64_t *index)
 
 static status parse_choice(const param *row, const char *label, const char *text, int64_t *out, diagnostic *why)
 {
-    if (choose(row, text, out) || (is_switch(row) && choose_switch(text, out))) {
+    if (choose(row, text, out) || (is_switch(row) && choose_switch(text, out)))
         return STATUS_OK;
-    }
     /* off and on are as near to each other as to a slip, and mean the opposite. */
     const char *nearest = is_switch(row) ? NULL : text_nearest(text, row->choices, count_words(row->choices));
     if (nearest) {
@@ -130,14 +123,12 @@ static status parse_choice(const param *row, const char *label, const char *text
 static status parse_integer(const param *row, const char *label, const char *text, int64_t *out, diagnostic *why)
 {
     int64_t value, index;
-    if (!number_parse_int(text, &value)) {
+    if (!number_parse_int(text, &value))
         return wrong(row, false, why, "%s: '" SHOWN "' is not an integer", label, text);
-    }
     char plain[NUMBER_TEXT_MAX];
     snprintf(plain, sizeof plain, "%lld", (long long)value);
-    if (!in_range(row, (double)value) || (row->choices && !choose(row, plain, &index))) {
+    if (!in_range(row, (double)value) || (row->choices && !choose(row, plain, &index)))
         return wrong(row, false, why, "%s: " SHOWN " is out of range", label, text);
-    }
     *out = value;
     return STATUS_OK;
 }
@@ -153,19 +144,15 @@ static size_t split_numbers(char *text, char **parts, size_t room)
     for (char *next = text; next; count++) {
         char *part = next, *comma = strchr(part, ',');
         next = comma ? comma + 1 : NULL;
-        if (comma) {
+        if (comma)
             *comma = 0;
-        }
-        while (is_blank(*part)) {
+        while (is_blank(*part))
             part++;
-        }
         char *end = part + strlen(part);
-        while (end > part && is_blank(end[-1])) {
+        while (end > part && is_blank(end[-1]))
             *--end = 0;
-        }
-        if (count < room) {
+        if (count < room)
             parts[count] = part;
-        }
     }
     return count;
 }
@@ -175,16 +162,14 @@ static status parse_vector(const param *row, const char *label, char *text, vec3
     char *parts[3];
     double values[3];
     size_t count = split_numbers(text, parts, 3);
-    if (count != 3) {
+    if (count != 3)
         return wrong(row, false, why, "%s: %zu value%s where 3 belong", label, count, count == 1 ? "" : "s");
-    }
     for (int i = 0; i < 3; i++) {
         char element[160];
         snprintf(element, sizeof element, "%s.%c", label, (row->type == PARAM_COLOR ? "rgb" : "xyz")[i]);
         status code = parse_real(row, element, parts[i], &values[i], why);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
     }
     *out = vec3_make(values[0], values[1], values[2]);
     return STATUS_OK;
@@ -194,18 +179,15 @@ static status parse_list(const param *row, const char *label, char *text, number
 {
     char *parts[NUMBER_LIST_MAX];
     size_t count = split_numbers(text, parts, NUMBER_LIST_MAX);
-    if (count == 1 && !*parts[0]) {
+    if (count == 1 && !*parts[0])
         count = 0;
-    }
-    if (count > NUMBER_LIST_MAX) {
+    if (count > NUMBER_LIST_MAX)
         return wrong(row, false, why, "%s: %zu numbers are too many", label, count);
-    }
     *out = (number_list){.count = (int64_t)count};
     for (size_t i = 0; i < count; i++) {
         status code = parse_real(row, label, parts[i], &out->value[i], why);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
     }
     return STATUS_OK;
 }
@@ -213,14 +195,11 @@ static status parse_list(const param *row, const char *label, char *text, number
 static status parse_path(const param *row, const char *label, char *text, char **out, diagnostic *why)
 {
     enum { PATH_LIMIT = 4095 };
-    if (strlen(text) > PATH_LIMIT) {
+    if (strlen(text) > PATH_LIMIT)
         return wrong(row, false, why, "%s: the path is longer than %d bytes", label, PATH_LIMIT);
-    }
-    for (const char *c = text; *c; c++) {
-        if ((unsigned char)*c < 0x20 || *c == 0x7f) {
+    for (const char *c = text; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
             return wrong(row, false, why, "%s: the path holds a control character", label);
-        }
-    }
     *out = strdup(text);
     return *out ? STATUS_OK : out_of_memory(why);
 }
@@ -229,14 +208,12 @@ static status parse_path(const param *row, const char *label, char *text, char *
 static status parse_word(const param *row, const char *label, const char *text, char word[SCENE_NAME_MAX + 1],
                          diagnostic *why)
 {
-    if (strlen(text) > SCENE_NAME_MAX) {
+    if (strlen(text) > SCENE_NAME_MAX)
         return wrong(row, false, why, "%s: the name is longer than %d bytes", label, (int)SCENE_NAME_MAX);
-    }
     if (*text) {
         const status code = check_name(text, why);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
     }
     strcpy(word, text);
     return STATUS_OK;
@@ -246,12 +223,10 @@ static status parse_word(const param *row, const char *label, const char *text, 
 static status parse_trimmed(const param *row, int element, const char *label, char *text, param_value *out,
                             diagnostic *why)
 {
-    if (!*text && row->type != PARAM_PATH && row->type != PARAM_LIST && row->type != PARAM_WORD) {
+    if (!*text && row->type != PARAM_PATH && row->type != PARAM_LIST && row->type != PARAM_WORD)
         return wrong(row, element >= 0, why, "%s has no value", label);
-    }
-    if (element >= 0) {
+    if (element >= 0)
         return parse_real(row, label, text, &out->real, why);
-    }
     switch (row->type) {
     case PARAM_INT: return parse_integer(row, label, text, &out->integer, why);
     case PARAM_REAL: return parse_real(row, label, text, &out->real, why);
@@ -268,17 +243,14 @@ static status parse_trimmed(const param *row, int element, const char *label, ch
 status param_value_parse(const param *row, int element, const char *label, const char *text, param_value *out,
                          diagnostic *why)
 {
-    while (is_blank(*text)) {
+    while (is_blank(*text))
         text++;
-    }
     size_t length = strlen(text);
-    while (length > 0 && is_blank(text[length - 1])) {
+    while (length > 0 && is_blank(text[length - 1]))
         length--;
-    }
     char *copy = strndup(text, length);
-    if (!copy) {
+    if (!copy)
         return out_of_memory(why);
-    }
     status code = parse_trimmed(row, element, label, copy, out, why);
     free(copy);
     return code;
@@ -297,11 +269,10 @@ void param_value_store(const param *row, int element, void *field, param_value v
     case PARAM_REAL: *(double *)field = value.real; break;
     case PARAM_VECTOR:
     case PARAM_COLOR:
-        if (element >= 0) {
+        if (element >= 0)
             *element_of(field, element) = value.real;
-        } else {
+        else
             *(vec3 *)field = value.vector;
-        }
         break;
     case PARAM_LIST: *(number_list *)field = value.list; break;
     case PARAM_WORD: strcpy(field, value.word); break;
@@ -316,14 +287,12 @@ status param_set_defaults(param_group group, void *base, diagnostic *why)
 {
     for (size_t i = 0; i < param_count(); i++) {
         const param *row = param_at(i);
-        if (row->group != group) {
+        if (row->group != group)
             continue;
-        }
         param_value value;
         status code = param_value_parse(row, -1, row->name, row->fallback, &value, why);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
         param_value_store(row, -1, (char *)base + row->offset, value);
     }
     return STATUS_OK;

@@ -11,9 +11,8 @@
 scene *scene_create(void)
 {
     scene *s = calloc(1, sizeof *s);
-    if (!s) {
+    if (!s)
         return NULL;
-    }
     s->path = strdup("");
     s->title = strdup("");
     s->camera.aimed = 1;
@@ -28,9 +27,8 @@ scene *scene_create(void)
 
 void scene_destroy(scene *s)
 {
-    if (!s) {
+    if (!s)
         return;
-    }
     objects_release(s);
     free(s->background.picture_path);
     image_destroy(s->background.picture);
@@ -44,21 +42,18 @@ static bool clone_picture(background *to, const background *from)
 {
     to->picture = NULL;
     to->picture_path = strdup(from->picture_path);
-    if (!to->picture_path) {
+    if (!to->picture_path)
         return false;
-    }
-    if (from->picture) {
+    if (from->picture)
         to->picture = image_share(from->picture); /* never changed once it is loaded */
-    }
     return true;
 }
 
 scene *scene_clone(const scene *original)
 {
     scene *s = calloc(1, sizeof *s);
-    if (!s) {
+    if (!s)
         return NULL;
-    }
     s->render = original->render;
     s->camera = original->camera;
     s->background = original->background;
@@ -117,9 +112,8 @@ const char *scene_light_name(const scene *s, int index)
 status scene_limit(scene *s, const char *root, size_t triangles, diagnostic *why)
 {
     char *copy = root ? strdup(root) : NULL;
-    if (root && !copy) {
+    if (root && !copy)
         return out_of_memory(why);
-    }
     free(s->limits.root);
     s->limits = (load_limits){.root = copy, .triangles = triangles};
     return STATUS_OK;

@@ -27,9 +27,8 @@ status slime_check(const mesh_entry *m, diagnostic *why)
     const softbody_settings settings = slime_settings(m);
     diagnostic bad = {.what = ""};
     const status code = softbody_check(&settings, &bad);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return diagnose(why, code, bad.remedy, "%.80s: %s", m->name, bad.what);
-    }
     return check_steps(m, m->time_s, "raise dt_s, or lower time_s", why);
 }
 
@@ -51,19 +50,16 @@ static status body_error(const scene *s, const mesh_entry *m, const diagnostic *
 status slime_read_script(const scene *s, const mesh_entry *m, hand_script **out, diagnostic *why)
 {
     *out = NULL;
-    if (!m->script_path[0]) {
+    if (!m->script_path[0])
         return STATUS_OK;
-    }
     char *path = scene_file_path(s, m->script_path);
-    if (!path) {
+    if (!path)
         return out_of_memory(why);
-    }
     diagnostic bad = {.what = ""};
     const status code = script_read_below(path, scene_root(s), out, &bad);
     free(path);
-    if (code != STATUS_OK && bad.line == 0) { /* no text to point at: wrong is what names it */
+    if (code != STATUS_OK && bad.line == 0) /* no text to point at: wrong is what names it */
         return asset_error(s, m->name, m->script_line, m->script_column, &bad, code, why);
-    }
     return code == STATUS_OK ? code : body_error(s, m, &bad, code, why);
 }
 
@@ -73,9 +69,8 @@ status slime_create(const scene *s, const mesh_entry *m, slime *out, diagnostic 
     const softbody_settings settings = slime_settings(m);
     hand_script *script;
     status code = slime_read_script(s, m, &script, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     diagnostic bad = {.what = ""};
     softbody *body = NULL;
     code = softbody_create(&settings, isa_best(), &body, &bad);
@@ -83,13 +78,11 @@ status slime_create(const scene *s, const mesh_entry *m, slime *out, diagnostic 
         hand_script_destroy(script);
         return body_error(s, m, &bad, code, why);
     }
-    if (script) {
+    if (script)
         code = softbody_follow(body, script, why);
-    }
     *out = (slime){.body = body, .script = script};
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         slime_destroy(out);
-    }
     return code;
 }
 
@@ -118,13 +111,11 @@ static status advance_watched(slime *x, const scene *s, const mesh_entry *m, dou
     double asked_s = clock_wall_s();
     for (status code; x->steps < last; x->steps += 1.0) {
         code = softbody_advance(x->body, (x->steps + 1.0) * m->slime.dt_s, bad);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
         const double now_s = clock_wall_s();
-        if (now_s - asked_s < ask_s) {
+        if (now_s - asked_s < ask_s)
             continue;
-        }
         asked_s = now_s;
         if (!watch->go_on(watch->context, (x->steps + 1.0 - first) / (last - first))) {
             x->steps += 1.0;
@@ -159,9 +150,8 @@ static status make_skin(const slime *x, const scene *s, mesh_entry *m, diagnosti
     diagnostic bad = {.what = ""};
     mesh *skin = NULL;
     const status code = softbody_skin(x->body, &skin, &bad);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return body_error(s, m, &bad, code, why);
-    }
     m->data = skin;
     m->account = softbody_measure(x->body);
     m->motion_s = x->motion_s;
@@ -172,13 +162,11 @@ status slime_make(const scene *s, mesh_entry *m, const load_watch *watch, diagno
 {
     slime x;
     status code = slime_create(s, m, &x, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     code = slime_advance(&x, s, m, m->time_s, watch, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = make_skin(&x, s, m, why);
-    }
     slime_destroy(&x);
     return code;
 }

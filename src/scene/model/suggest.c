@@ -14,11 +14,9 @@ static bool is_number(const char *text)
 
 static const char *find(const char *word, const char *const *words, size_t count)
 {
-    for (size_t i = 0; i < count; i++) {
-        if (strcmp(words[i], word) == 0) {
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(words[i], word) == 0)
             return words[i];
-        }
-    }
     return NULL;
 }
 
@@ -30,11 +28,9 @@ static const char *by_alias(const char *wrong, const char *const *words, size_t 
         {"type", "shape"},   {"kind", "shape"},     {"alpha", "transparency"},   {"colour", "color"},
         {"light", "lights"}, {"objects", "solids"}, {"shapes", "solids"},        {"spheres", "solids"},
     };
-    for (size_t i = 0; i < sizeof aliases / sizeof *aliases; i++) {
-        if (strcasecmp(aliases[i][0], wrong) == 0) {
+    for (size_t i = 0; i < sizeof aliases / sizeof *aliases; i++)
+        if (strcasecmp(aliases[i][0], wrong) == 0)
             return find(aliases[i][1], words, count);
-        }
-    }
     return NULL;
 }
 
@@ -43,9 +39,8 @@ static const char *by_beginning(const char *wrong, const char *const *words, siz
     const char *only = NULL;
     for (size_t i = 0; i < count; i++) {
         if (strncasecmp(words[i], wrong, strlen(wrong)) == 0) {
-            if (only) {
+            if (only)
                 return NULL;
-            }
             only = words[i];
         }
     }
@@ -56,9 +51,8 @@ const char *suggest_word(const char *wrong, const char *const *words, size_t cou
 {
     enum { TELLING = 3 }; /* characters */
     const char *meant = by_alias(wrong, words, count);
-    if (meant || strlen(wrong) < TELLING || is_number(wrong)) {
+    if (meant || strlen(wrong) < TELLING || is_number(wrong))
         return meant;
-    }
     meant = by_beginning(wrong, words, count);
     return meant ? meant : text_nearest(wrong, words, count);
 }
@@ -66,22 +60,20 @@ const char *suggest_word(const char *wrong, const char *const *words, size_t cou
 void suggest_list(const char *prefix, const char *const *words, size_t count, char *text, size_t size)
 {
     int used = snprintf(text, size, "%s", prefix);
-    for (size_t i = 0; i < count && used >= 0 && (size_t)used < size; i++) {
+    for (size_t i = 0; i < count && used >= 0 && (size_t)used < size; i++)
         used += snprintf(text + used, size - (size_t)used, "%s%s", i ? ", " : "", words[i]);
-    }
 }
 
 char *suggest_key(const char *wrong, const char *const *words, size_t count, char *text, size_t size)
 {
     const char *meant = suggest_word(wrong, words, count);
-    if (is_number(wrong)) { /* in braces a comma ends the entry: {radius: 1,5} has a key 5 */
+    if (is_number(wrong)) /* in braces a comma ends the entry: {radius: 1,5} has a key 5 */
         snprintf(text, size, "a decimal comma? write 1.5; a vector is [0, 1, 2]");
-    } else if (strchr(wrong, ':')) {
+    else if (strchr(wrong, ':'))
         snprintf(text, size, "put a space after the colon");
-    } else if (meant) {
+    else if (meant)
         snprintf(text, size, "did you mean '%s'?", meant);
-    } else {
+    else
         suggest_list("the keys here are: ", words, count, text, size);
-    }
     return text;
 }

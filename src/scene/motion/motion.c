@@ -8,9 +8,8 @@
 size_t motion_count_slimes(const scene *s)
 {
     size_t count = 0;
-    for (size_t i = 0; i < s->mesh_count; i++) {
+    for (size_t i = 0; i < s->mesh_count; i++)
         count += s->meshes[i].source == MESH_SLIME;
-    }
     return count;
 }
 
@@ -43,15 +42,13 @@ static void add_moves(hierarchy_moves *sum, const hierarchy_moves *more)
 static status move_skin(scene_motion *m, const moving_slime *one, diagnostic *why)
 {
     mesh_entry *entry = motion_entry(m, one);
-    if (!entry->data || mesh_owners(entry->data) > 1) {
+    if (!entry->data || mesh_owners(entry->data) > 1)
         return motion_give_skin(m, one, why);
-    }
     /* Made by motion_give_skin for this scene, which alone holds it. */
     status code = softbody_move_skin(one->x.body, (mesh *)(uintptr_t)entry->data, why);
     hierarchy_moves moves = {.refitted = 0};
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = hierarchy_follow(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why);
-    }
     if (code != STATUS_OK) {
         mesh_entry_unload(entry); /* triangles and hierarchies that do not fit each other */
         return code;
@@ -72,15 +69,13 @@ void motion_take_account(scene_motion *m, moving_slime *one, double time_s)
 static status begin(scene_motion *m, diagnostic *why)
 {
     for (size_t i = 0; i < m->s->mesh_count; i++) {
-        if (m->s->meshes[i].source != MESH_SLIME) {
+        if (m->s->meshes[i].source != MESH_SLIME)
             continue;
-        }
         moving_slime *one = &m->slimes[m->count];
         *one = (moving_slime){.entry = i};
         status code = slime_create(m->s, &m->s->meshes[i], &one->x, why);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
         code = motion_remember(m, one, why);
         if (code != STATUS_OK) {
             motion_forget(one);
@@ -88,9 +83,8 @@ static status begin(scene_motion *m, diagnostic *why)
         }
         m->count++;
         code = motion_give_skin(m, one, why);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
         motion_take_account(m, one, 0.0);
     }
     return scene_load(m->s, why); /* all else */
@@ -100,9 +94,8 @@ status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
 {
     *out = NULL;
     const size_t count = motion_count_slimes(s);
-    if (count == 0) {
+    if (count == 0)
         return diagnose(why, STATUS_BAD_INPUT, "give a mesh 'generate: slime'", "nothing moves in this scene");
-    }
     scene_motion *m = calloc(1, sizeof *m);
     moving_slime *slimes = calloc(count, sizeof *slimes);
     if (!m || !slimes) {
@@ -123,12 +116,10 @@ status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
 
 void scene_motion_destroy(scene_motion *m)
 {
-    if (!m) {
+    if (!m)
         return;
-    }
-    for (size_t i = 0; i < m->count; i++) {
+    for (size_t i = 0; i < m->count; i++)
         motion_forget(&m->slimes[i]);
-    }
     free(m->slimes);
     free(m);
 }
@@ -177,12 +168,10 @@ status scene_motion_advance_until(scene_motion *m, double time_s, bool skins, co
 {
     m->last = (scene_motion_report){.steps = 0};
     status code = STATUS_OK;
-    for (size_t i = 0; i < m->count && code == STATUS_OK; i++) {
+    for (size_t i = 0; i < m->count && code == STATUS_OK; i++)
         code = advance_one(m, i, time_s, watch, why);
-    }
-    for (size_t i = 0; i < m->count && code == STATUS_OK; i++) {
+    for (size_t i = 0; i < m->count && code == STATUS_OK; i++)
         code = show_one(m, &m->slimes[i], time_s, skins, why);
-    }
     return code;
 }
 

@@ -53,9 +53,8 @@ static void pick_copy(const search *q, vec3 copy, motion_place *best)
     const solid_shape *shape = q->shape;
     const vec3 o = over(vec3_sub(q->origin, copy), shape->scale), d = over(q->direction, shape->scale);
     vec3 met;
-    if (!passes(q->box, o, d) || !softbody_pick(q->body, o, d, &met)) {
+    if (!passes(q->box, o, d) || !softbody_pick(q->body, o, d, &met))
         return;
-    }
     const vec3 at = vec3_add(copy, times(met, shape->scale));
     const double distance = vec3_length(vec3_sub(at, q->origin)); /* the direction is a unit vector */
     if (distance < best->distance) {
@@ -71,11 +70,9 @@ static void pick_copies(const search *q, motion_place *best)
 {
     const vec3 copies = q->shape->copies;
     for (double z = 0.0; z < copies.z; z++) {
-        for (double y = 0.0; y < copies.y; y++) {
-            for (double x = 0.0; x < copies.x; x++) {
+        for (double y = 0.0; y < copies.y; y++)
+            for (double x = 0.0; x < copies.x; x++)
                 pick_copy(q, times(vec3_make(x, y, z), q->shape->spacing), best);
-            }
-        }
     }
 }
 
@@ -93,13 +90,11 @@ status scene_motion_pick(const scene_motion *m, size_t i, int solid_or_any, vec3
     const mesh_entry *entry = motion_entry(m, &m->slimes[i]);
     for (size_t k = 0; k < s->solid_count; k++) {
         const solid_shape *shape = &s->solids[k].shape;
-        if (!is_wanted(&s->solids[k], entry->name, solid_or_any, k)) {
+        if (!is_wanted(&s->solids[k], entry->name, solid_or_any, k))
             continue;
-        }
         const status code = solid_shape_check(shape, why);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
         const mat3 rotation = rotation_from_deg(shape->rotation_deg);
         const search q = {.body = m->slimes[i].x.body,
                           .box = entry->data->bounds,
@@ -118,9 +113,8 @@ status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, d
     const solid_shape *shape = &m->s->solids[place->solid].shape;
     const double largest = fmax(shape->scale.x, fmax(shape->scale.y, shape->scale.z));
     const int taken = softbody_grab(m->slimes[i].x.body, place->on_mesh, reach / largest);
-    if (taken == HAND_NO_MEMORY) {
+    if (taken == HAND_NO_MEMORY)
         return out_of_memory(why);
-    }
     if (taken < 0) {
         return diagnose(why, STATUS_BAD_INPUT, "let one release what it holds",
                         "no hand is free, or others hold all of it");
@@ -155,9 +149,8 @@ static void put_hands(softbody *body, const motion_hand *hands, double share)
     for (int i = 0; i < SOFTBODY_HANDS_MAX; i++) {
         const motion_hand *h = &hands[i];
         const vec3 offset = share >= 1.0 ? h->to : vec3_add(h->from, vec3_scale(vec3_sub(h->to, h->from), share));
-        if (is_moving(h)) {
+        if (is_moving(h))
             softbody_hold(body, i, vec3_add(h->where, offset));
-        }
     }
 }
 
@@ -167,21 +160,18 @@ status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, dou
     const mesh_entry *entry = motion_entry(m, &m->slimes[i]);
     const uint64_t begin = softbody_measure(body).steps, end = (uint64_t)floor(time_s / entry->slime.dt_s + 0.5);
     bool any = false;
-    for (int k = 0; k < SOFTBODY_HANDS_MAX; k++) {
+    for (int k = 0; k < SOFTBODY_HANDS_MAX; k++)
         any |= is_moving(&hands[k]);
-    }
     diagnostic bad = {.line = 0};
     status code = STATUS_OK;
     for (uint64_t step = begin; any && step < end && code == STATUS_OK; step++) {
         put_hands(body, hands, (double)(step + 1 - begin) / (double)(end - begin));
         code = softbody_step(body, &bad);
     }
-    for (int k = 0; k < SOFTBODY_HANDS_MAX && begin < end; k++) {
+    for (int k = 0; k < SOFTBODY_HANDS_MAX && begin < end; k++)
         hands[k].from = hands[k].to;
-    }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         return code;
-    }
     diagnostic_locate(why, bad.file, bad.line, bad.column);
     return diagnose(why, code, bad.remedy, "%.80s: %s", entry->name, bad.what);
 }

@@ -30,11 +30,10 @@ static char *motion_parameters(const scene *s, const mesh_entry *entry)
     }
     good = good && (!entry->script_path[0] || fprintf(writer.stream, "%s\n", script) >= 0);
     free(script);
-    if (good) {
+    if (good)
         text_writer_close(&writer, &text, NULL, NULL);
-    } else if (begun) {
+    else if (begun)
         text_writer_abandon(&writer);
-    }
     return text;
 }
 
@@ -60,9 +59,8 @@ status motion_remember(scene_motion *m, moving_slime *one, diagnostic *why)
     mesh_entry *entry = motion_entry(m, one);
     one->name = strdup(entry->name);
     one->parameters = motion_parameters(m->s, entry);
-    if (!one->name || !one->parameters) {
+    if (!one->name || !one->parameters)
         return out_of_memory(why);
-    }
     take_given(&one->given, entry);
     return STATUS_OK;
 }
@@ -102,13 +100,11 @@ static status find_same(const scene *s, const moving_slime *one, size_t *mesh_in
     *found = false;
     for (size_t i = 0; i < s->mesh_count; i++) {
         const mesh_entry *entry = &s->meshes[i];
-        if (entry->source != MESH_SLIME || strcmp(entry->name, one->name) != 0) {
+        if (entry->source != MESH_SLIME || strcmp(entry->name, one->name) != 0)
             continue;
-        }
         char *parameters = motion_parameters(s, entry);
-        if (!parameters) {
+        if (!parameters)
             return out_of_memory(why);
-        }
         *mesh_index = i;
         *found = strcmp(parameters, one->parameters) == 0;
         free(parameters);
@@ -132,9 +128,8 @@ status scene_motion_join(scene_motion *m, scene *s, bool *joined, diagnostic *wh
     *joined = motion_count_slimes(s) == m->count;
     size_t places[SCENE_MESHES_MAX];
     status code = STATUS_OK;
-    for (size_t i = 0; i < m->count && *joined && code == STATUS_OK; i++) {
+    for (size_t i = 0; i < m->count && *joined && code == STATUS_OK; i++)
         code = find_same(s, &m->slimes[i], &places[i], joined, why);
-    }
     if (code != STATUS_OK || !*joined) {
         *joined = false;
         return code;

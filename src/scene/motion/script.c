@@ -32,28 +32,24 @@ static status read_number(const script_reader *r, const char *label, const node 
 {
     char remedy[128];
     snprintf(remedy, sizeof remedy, "give a number %.0f..%.0f", low, high);
-    if (n->kind != NODE_SCALAR) {
+    if (n->kind != NODE_SCALAR)
         return node_error(r->file, n, r->why, remedy, "%s is %s", label, kind_name(n));
-    }
     if (!number_parse_real(n->text, out)) {
         return node_error(r->file, n, r->why, strchr(n->text, ',') ? "a decimal comma? write 1.5" : remedy,
                           "%s: '%.80s' is not a finite number", label, n->text);
     }
-    if (n->quoted) {
+    if (n->quoted)
         return node_error(r->file, n, r->why, "take the quotes away", "%s is a text, where a number belongs", label);
-    }
-    if (*out < low || *out > high) {
+    if (*out < low || *out > high)
         return node_error(r->file, n, r->why, remedy, "%s: %.80s is out of range", label, n->text);
-    }
     return STATUS_OK;
 }
 
 static status read_vector(const script_reader *r, const char *label, const node *n, vec3 *out)
 {
     static const char remedy[] = "give three numbers, as [0, 1, -6]";
-    if (n->kind != NODE_LIST) {
+    if (n->kind != NODE_LIST)
         return node_error(r->file, n, r->why, remedy, "%s is %s", label, kind_name(n));
-    }
     if (n->count != 3) {
         return node_error(r->file, n, r->why, remedy, "%s: %zu value%s where 3 belong", label, n->count,
                           n->count == 1 ? "" : "s");
@@ -63,9 +59,8 @@ static status read_vector(const script_reader *r, const char *label, const node 
         char element[32];
         snprintf(element, sizeof element, "%s.%c", label, "xyz"[i]);
         const status code = read_number(r, element, n->items[i], -FAR, FAR, &value[i]);
-        if (code != STATUS_OK) {
+        if (code != STATUS_OK)
             return code;
-        }
     }
     *out = vec3_make(value[0], value[1], value[2]);
     return STATUS_OK;
@@ -85,19 +80,16 @@ static status read_grab(const script_reader *r, const node *entry, hand_key *key
         return node_error(r->file, entry, r->why, "add how near the masses are that it takes, as 'reach: 0.3'",
                           "a grab, but how far the hand reaches is not said");
     }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_vector(r, "towards", towards, &key->direction);
-    }
     if (code == STATUS_OK && !(vec3_dot(key->direction, key->direction) > 0.0)) {
         return node_error(r->file, towards, r->why, "give three numbers that are not all 0",
                           "towards: it has no direction");
     }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_number(r, "reach", reach, 0.0, FAR, &key->reach);
-    }
-    if (code == STATUS_OK && !(key->reach > 0.0)) {
+    if (code == STATUS_OK && !(key->reach > 0.0))
         return node_error(r->file, reach, r->why, "give a length greater than 0", "reach: a hand that reaches nothing");
-    }
     return code;
 }
 
@@ -105,9 +97,8 @@ static status read_release(const script_reader *r, const node *value)
 {
     static const char *const words[] = {"on", "yes", "true"};
     bool is_on = false;
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         is_on |= value->kind == NODE_SCALAR && strcmp(value->text, words[i]) == 0;
-    }
     return is_on ? STATUS_OK : node_error(r->file, value, r->why, "write release: on", "release says nothing but on");
 }
 
@@ -157,9 +148,8 @@ static status read_key(const script_reader *r, const char *hand, const node *ent
                           "an entry of %.80s is no map", hand);
     }
     const status known = node_check_keys(r->file, entry, keys, sizeof keys / sizeof *keys, r->why);
-    if (known != STATUS_OK) {
+    if (known != STATUS_OK)
         return known;
-    }
     hand_key key = {.line = entry->line, .column = entry->column};
     const node *time = node_get(entry, "time_s");
     if (!time) {
@@ -167,19 +157,15 @@ static status read_key(const script_reader *r, const char *hand, const node *ent
                           "the entry does not say when");
     }
     status code = read_number(r, "time_s", time, 0.0, TIME_S_MAX, &key.time_s);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = find_act(r, entry, &key.act);
-    }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = read_act(r, entry, &key);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     code = hand_script_add(r->script, hand, &key, r->why);
-    if (code == STATUS_BAD_INPUT) {
+    if (code == STATUS_BAD_INPUT)
         diagnostic_locate(r->why, document_name(r->file), entry->line, entry->column);
-    }
     return code;
 }
 
@@ -195,9 +181,8 @@ static status read_hand(const script_reader *r, const node *name, const node *tr
                           name->text);
     }
     status code = STATUS_OK;
-    for (size_t i = 0; i < track->count && code == STATUS_OK; i++) {
+    for (size_t i = 0; i < track->count && code == STATUS_OK; i++)
         code = read_key(r, name->text, track->items[i]);
-    }
     return code;
 }
 
@@ -210,9 +195,8 @@ static status read_script(const script_reader *r)
                           "this is not a script");
     }
     const status known = node_check_keys(r->file, root, keys, sizeof keys / sizeof *keys, r->why);
-    if (known != STATUS_OK) {
+    if (known != STATUS_OK)
         return known;
-    }
     const node *title = node_get(root, "title"), *hands = node_get(root, "hands");
     if (title && (title->kind != NODE_SCALAR || !title->text[0])) {
         return node_error(r->file, title, r->why, "give some words, or leave it out", "title is %s",
@@ -223,9 +207,8 @@ static status read_script(const script_reader *r)
                           "write hands:, and below it a name with a list of entries", "the script has no hands");
     }
     status code = STATUS_OK;
-    for (size_t i = 0; i < hands->count && code == STATUS_OK; i++) {
+    for (size_t i = 0; i < hands->count && code == STATUS_OK; i++)
         code = read_hand(r, hands->keys[i], hands->items[i]);
-    }
     return code;
 }
 

@@ -23,16 +23,14 @@ static status remove_material(scene *s, size_t index, diagnostic *why)
     }
     if (user) {
         char others[48] = "";
-        if (users > 1) {
+        if (users > 1)
             snprintf(others, sizeof others, " and %zu more", users - 1);
-        }
         return diagnose(why, STATUS_BAD_INPUT, "give those another material first, or remove them",
                         "%.80s is the material of %.80s%s", s->materials[index].name, user, others);
     }
     object_remove(s, PARAM_MATERIAL, index);
-    for (size_t i = 0; i < s->solid_count; i++) {
+    for (size_t i = 0; i < s->solid_count; i++)
         s->solids[i].material_index -= s->solids[i].material_index > (int)index;
-    }
     return STATUS_OK;
 }
 
@@ -45,11 +43,9 @@ static status in_use(const char *what, const char *name, const char *user, diagn
 static status remove_mesh(scene *s, size_t index, diagnostic *why)
 {
     const mesh_entry *m = &s->meshes[index];
-    for (size_t i = 0; i < s->solid_count; i++) {
-        if (solid_shows(&s->solids[i], m->name)) {
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (solid_shows(&s->solids[i], m->name))
             return in_use("mesh", m->name, s->solids[i].name, why);
-        }
-    }
     object_remove(s, PARAM_MESH, index);
     return STATUS_OK;
 }
@@ -57,16 +53,12 @@ static status remove_mesh(scene *s, size_t index, diagnostic *why)
 static status remove_texture(scene *s, size_t index, diagnostic *why)
 {
     const texture_entry *t = &s->textures[index];
-    for (size_t i = 0; i < s->material_count; i++) {
-        if (strcmp(s->materials[i].value.texture, t->name) == 0) {
+    for (size_t i = 0; i < s->material_count; i++)
+        if (strcmp(s->materials[i].value.texture, t->name) == 0)
             return in_use("texture", t->name, s->materials[i].name, why);
-        }
-    }
-    for (size_t i = 0; i < s->solid_count; i++) {
-        if (strcmp(s->solids[i].surface.texture, t->name) == 0) {
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (strcmp(s->solids[i].surface.texture, t->name) == 0)
             return in_use("texture", t->name, s->solids[i].name, why);
-        }
-    }
     object_remove(s, PARAM_TEXTURE, index);
     return STATUS_OK;
 }
@@ -75,9 +67,8 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
 {
     place at;
     status code = place_find_object(s, name, &at, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     switch (at.group) {
     case PARAM_MESH: return remove_mesh(s, at.index, why);
     case PARAM_TEXTURE: return remove_texture(s, at.index, why);
@@ -101,42 +92,34 @@ static void follow_name(scene *s, const place *at, const char *from, const char 
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         solid *owner = &s->solids[i];
-        if (at->group == PARAM_MESH && strcmp(owner->mesh, from) == 0) {
+        if (at->group == PARAM_MESH && strcmp(owner->mesh, from) == 0)
             strcpy(owner->mesh, to);
-        }
-        if (at->group == PARAM_TEXTURE && strcmp(owner->surface.texture, from) == 0) {
+        if (at->group == PARAM_TEXTURE && strcmp(owner->surface.texture, from) == 0)
             strcpy(owner->surface.texture, to);
-        }
     }
-    for (size_t i = 0; at->group == PARAM_TEXTURE && i < s->material_count; i++) {
-        if (strcmp(s->materials[i].value.texture, from) == 0) {
+    for (size_t i = 0; at->group == PARAM_TEXTURE && i < s->material_count; i++)
+        if (strcmp(s->materials[i].value.texture, from) == 0)
             strcpy(s->materials[i].value.texture, to);
-        }
-    }
 }
 
 status scene_rename(scene *s, const char *name, const char *new_name, diagnostic *why)
 {
     place at;
     status code = place_find_object(s, name, &at, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     char *copy = NULL;
     if (!group_has_names(at.group)) {
         return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid",
                         "the %s has no name of its own", name);
     }
-    if (strcmp(name, new_name) == 0) {
+    if (strcmp(name, new_name) == 0)
         return STATUS_OK;
-    }
     code = check_name(new_name, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_name_is_free(s, new_name, why);
-    }
-    if (code == STATUS_OK && !(copy = strdup(new_name))) {
+    if (code == STATUS_OK && !(copy = strdup(new_name)))
         code = out_of_memory(why);
-    }
     if (code == STATUS_OK) {
         follow_name(s, &at, name, copy);
         char **field = object_at(s, at.group, at.index);
@@ -149,9 +132,8 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
 status scene_set_title(scene *s, const char *title, diagnostic *why)
 {
     char *copy = strdup(title);
-    if (!copy) {
+    if (!copy)
         return out_of_memory(why);
-    }
     free(s->title);
     s->title = copy;
     return STATUS_OK;

@@ -11,15 +11,12 @@ static status add(scene *s, param_group group, shape_kind shape, const char *nam
 {
     const size_t at = place_group_size(s, group);
     status code = check_name(name, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_name_is_free(s, name, why);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
-    if (!object_append(s, group, name)) {
+    if (!object_append(s, group, name))
         return out_of_memory(why);
-    }
     code = param_set_defaults(group, object_values(s, group, at), why);
     if (group == PARAM_SOLID && code == STATUS_OK) {
         solid *new = &s->solids[at];
@@ -27,14 +24,12 @@ static status add(scene *s, param_group group, shape_kind shape, const char *nam
         new->material_index = -1;
         code = param_set_defaults(PARAM_MATERIAL, &new->surface, why);
     }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_limits(s, why);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         object_remove(s, group, at);
-    } else if (index) {
+    else if (index)
         *index = at;
-    }
     return code;
 }
 

@@ -27,12 +27,10 @@ static status move_camera(scene *s, vec3 delta, diagnostic *why)
 {
     const camera before = s->camera;
     status code = edit_set_vector(s, "camera", "position", vec3_add(before.position, delta), why);
-    if (code == STATUS_OK && before.aimed) {
+    if (code == STATUS_OK && before.aimed)
         code = edit_set_vector(s, "camera", "target", vec3_add(before.target, delta), why);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         s->camera = before;
-    }
     return code;
 }
 
@@ -48,12 +46,10 @@ static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
     light *l = &s->lights[index];
     const light before = *l;
     status code = edit_set_vector(s, l->name, "position", vec3_add(before.position, delta), why);
-    if (code == STATUS_OK && before.kind != LIGHT_POINT) {
+    if (code == STATUS_OK && before.kind != LIGHT_POINT)
         code = edit_set_vector(s, l->name, "target", vec3_add(before.target, delta), why);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         *l = before;
-    }
     return code;
 }
 
@@ -61,31 +57,25 @@ status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
 {
     place at;
     scene_parts parts;
-    if (scene_parts_named(s, name, &parts)) {
+    if (scene_parts_named(s, name, &parts))
         return scene_move_parts(s, parts, delta, why);
-    }
     status code = edit_find(s, name, &at, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
-    if (at.group == PARAM_CAMERA) {
+    if (at.group == PARAM_CAMERA)
         return move_camera(s, delta, why);
-    }
-    if (at.group == PARAM_LIGHT) {
+    if (at.group == PARAM_LIGHT)
         return move_light(s, at.index, delta, why);
-    }
-    if (at.group == PARAM_SOLID) {
+    if (at.group == PARAM_SOLID)
         return edit_set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
-    }
     return has_no(name, at.group, "place", "move a solid, a light or the camera", why);
 }
 
 /* -180 < degrees <= 180 */
 static double wrap(double degrees)
 {
-    if (degrees > -180.0 && degrees <= 180.0) {
+    if (degrees > -180.0 && degrees <= 180.0)
         return degrees;
-    }
     double rest = degrees - 360.0 * floor(degrees / 360.0);
     return rest > 180.0 ? rest - 360.0 : rest;
 }
@@ -99,9 +89,8 @@ double edit_settle_deg(double degrees)
 static mat3 product(mat3 a, mat3 b)
 {
     mat3 c;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         c.row[i] = mat3_apply_transposed(b, a.row[i]);
-    }
     return c;
 }
 
@@ -129,18 +118,14 @@ static vec3 about(axis which, double degrees)
  * about y or x does where the angles after it are 0. Sums keep a person's numbers as they are. */
 static vec3 turned(vec3 angles, axis which, double degrees)
 {
-    if (degrees == 0.0) {
+    if (degrees == 0.0)
         return angles;
-    }
-    if (which == AXIS_Z) {
+    if (which == AXIS_Z)
         return vec3_make(angles.x, angles.y, wrap(angles.z + degrees));
-    }
-    if (which == AXIS_Y && angles.z == 0.0) {
+    if (which == AXIS_Y && angles.z == 0.0)
         return vec3_make(angles.x, wrap(angles.y + degrees), 0.0);
-    }
-    if (which == AXIS_X && angles.y == 0.0 && angles.z == 0.0) {
+    if (which == AXIS_X && angles.y == 0.0 && angles.z == 0.0)
         return vec3_make(wrap(angles.x + degrees), 0.0, 0.0);
-    }
     return angles_of(product(rotation_from_deg(about(which, degrees)), rotation_from_deg(angles)));
 }
 
@@ -188,25 +173,20 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
     scene_parts parts;
     const bool is_many = scene_parts_named(s, name, &parts);
     const status code = is_many ? STATUS_OK : edit_find(s, name, &at, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     if (!is_angle(degrees.x) || !is_angle(degrees.y) || !is_angle(degrees.z)) {
         return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees",
                         "%.80s cannot be turned so far", name);
     }
-    if (is_many) {
+    if (is_many)
         return scene_turn_parts(s, parts, degrees, why);
-    }
-    if (at.group == PARAM_CAMERA) {
+    if (at.group == PARAM_CAMERA)
         return turn_camera(s, degrees, why);
-    }
-    if (at.group == PARAM_LIGHT && s->lights[at.index].kind != LIGHT_POINT) {
+    if (at.group == PARAM_LIGHT && s->lights[at.index].kind != LIGHT_POINT)
         return turn_light(s, &s->lights[at.index], degrees, why);
-    }
-    if (at.group == PARAM_SOLID) {
+    if (at.group == PARAM_SOLID)
         return edit_set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
-    }
     return has_no(name, at.group, "direction", "turn a solid, a cone of light or the camera", why);
 }
 

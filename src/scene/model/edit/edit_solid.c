@@ -17,9 +17,8 @@ status scene_give_material(scene *s, const char *solid_name, const char *materia
 {
     place at;
     status code = place_find_object(s, solid_name, &at, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     if (at.group != PARAM_SOLID) {
         return diagnose(why, STATUS_BAD_INPUT, "name a solid", "%.80s is a %s, which has no material", solid_name,
                         param_group_name(at.group));
@@ -45,9 +44,8 @@ enum { SHAPES_MAX = 64 };
 static size_t shape_words(const char *words[SHAPES_MAX])
 {
     size_t count = 0;
-    for (const shape_rule *rule; count < SHAPES_MAX && (rule = shape_of_kind((shape_kind)count)); count++) {
+    for (const shape_rule *rule; count < SHAPES_MAX && (rule = shape_of_kind((shape_kind)count)); count++)
         words[count] = rule->word;
-    }
     return count;
 }
 
@@ -63,9 +61,8 @@ char *scene_shape_words(const char *conjunction, char *text, size_t size)
 
 status scene_shape_named(const char *word, shape_kind *out, diagnostic *why)
 {
-    if (shape_named(word, out)) {
+    if (shape_named(word, out))
         return STATUS_OK;
-    }
     const char *words[SHAPES_MAX], *nearest = text_nearest(word, words, shape_words(words));
     char remedy[200], all[160];
     snprintf(remedy, sizeof remedy, nearest ? "did you mean '%s'?" : "the shapes are %s",
@@ -77,12 +74,10 @@ static status put_shape(scene *s, solid *owner, const char *word, diagnostic *wh
 {
     const shape_kind before = owner->shape.kind;
     status code = scene_shape_named(word, &owner->shape.kind, why);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = check_limits(s, why);
-    }
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         owner->shape.kind = before;
-    }
     return code;
 }
 
@@ -90,11 +85,9 @@ static status put_shape(scene *s, solid *owner, const char *word, diagnostic *wh
 static solid *owner_of(const scene *s, const char *path)
 {
     const size_t length = strcspn(path, ".");
-    for (size_t i = 0; i < s->solid_count; i++) {
-        if (strlen(s->solids[i].name) == length && strncmp(s->solids[i].name, path, length) == 0) {
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (strlen(s->solids[i].name) == length && strncmp(s->solids[i].name, path, length) == 0)
             return &s->solids[i];
-        }
-    }
     return NULL;
 }
 
@@ -102,11 +95,9 @@ status scene_put(scene *s, const char *path, const char *value, diagnostic *why)
 {
     solid *owner = owner_of(s, path);
     const char *rest = path + strcspn(path, ".");
-    if (owner && strcmp(rest, ".material") == 0) {
+    if (owner && strcmp(rest, ".material") == 0)
         return scene_give_material(s, owner->name, value, why);
-    }
-    if (owner && strcmp(rest, ".shape") == 0) {
+    if (owner && strcmp(rest, ".shape") == 0)
         return put_shape(s, owner, value, why);
-    }
     return scene_set(s, path, value, why);
 }

@@ -39,18 +39,15 @@ bool scene_parts_named(const scene *s, const char *name, scene_parts *out)
 {
     place unused;
     *out = (scene_parts){.solids = false};
-    if (place_find_object(s, name, &unused, NULL) == STATUS_OK) {
+    if (place_find_object(s, name, &unused, NULL) == STATUS_OK)
         return false;
-    }
     for (const char *word = name;; word++) {
         const size_t length = strcspn(word, "+");
-        if (!add_word(word, length, out)) {
+        if (!add_word(word, length, out))
             return false;
-        }
         word += length;
-        if (!*word) {
+        if (!*word)
             return true;
-        }
     }
 }
 
@@ -76,9 +73,8 @@ static void put_back(scene *s, const scene *before)
         s->lights[i] = before->lights[i];
         s->lights[i].name = name;
     }
-    for (size_t i = 0; i < s->material_count; i++) {
+    for (size_t i = 0; i < s->material_count; i++)
         s->materials[i].value = before->materials[i].value;
-    }
     s->camera = before->camera;
     s->render.unit_m = before->render.unit_m;
 }
@@ -98,14 +94,12 @@ typedef struct whole_edit {
 static status apply(whole_edit *e)
 {
     scene *before = scene_clone(e->s);
-    if (!before) {
+    if (!before)
         return out_of_memory(e->why);
-    }
     e->before = before;
     const status code = e->act(e);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         put_back(e->s, before);
-    }
     scene_destroy(before);
     return code;
 }
@@ -113,12 +107,10 @@ static status apply(whole_edit *e)
 static status move_parts(whole_edit *e)
 {
     status code = STATUS_OK;
-    for (size_t i = 0; i < e->s->solid_count && e->parts.solids && code == STATUS_OK; i++) {
+    for (size_t i = 0; i < e->s->solid_count && e->parts.solids && code == STATUS_OK; i++)
         code = scene_move(e->s, e->s->solids[i].name, e->by, e->why);
-    }
-    for (size_t i = 0; i < e->s->light_count && e->parts.lights && code == STATUS_OK; i++) {
+    for (size_t i = 0; i < e->s->light_count && e->parts.lights && code == STATUS_OK; i++)
         code = scene_move(e->s, e->s->lights[i].name, e->by, e->why);
-    }
     return e->parts.camera && code == STATUS_OK ? scene_move(e->s, "camera", e->by, e->why) : code;
 }
 
@@ -149,14 +141,12 @@ static status turn_camera(whole_edit *e)
     const vec3 eye = s->camera.position, target = s->camera.target,
                up = mat3_apply(rotation_from_deg(e->by), camera_frame_of(s).up);
     status code = STATUS_OK;
-    if (s->camera.aimed) {
+    if (s->camera.aimed)
         code = turn_point(e, "camera", "target", target);
-    } else {
+    else
         code = scene_turn(s, "camera", e->by, e->why);
-    }
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         code = turn_point(e, "camera", "position", eye);
-    }
     if (code == STATUS_OK) {
         const camera_frame level = camera_frame_level(s);
         const double roll = edit_settle_deg(elementary_atan2_deg(vec3_dot(up, level.right), vec3_dot(up, level.up)));
@@ -168,12 +158,10 @@ static status turn_camera(whole_edit *e)
 static status turn_parts(whole_edit *e)
 {
     status code = STATUS_OK;
-    for (size_t i = 0; i < e->s->solid_count && e->parts.solids && code == STATUS_OK; i++) {
+    for (size_t i = 0; i < e->s->solid_count && e->parts.solids && code == STATUS_OK; i++)
         code = turn_solid(e, &e->s->solids[i]);
-    }
-    for (size_t i = 0; i < e->s->light_count && e->parts.lights && code == STATUS_OK; i++) {
+    for (size_t i = 0; i < e->s->light_count && e->parts.lights && code == STATUS_OK; i++)
         code = turn_light(e, &e->s->lights[i]);
-    }
     return e->parts.camera && code == STATUS_OK ? turn_camera(e) : code;
 }
 
@@ -181,18 +169,16 @@ static status turn_parts(whole_edit *e)
  * scale. */
 static bool is_length(const param *row)
 {
-    if (row->group == PARAM_SOLID && strcmp(row->name, "scale") == 0) {
+    if (row->group == PARAM_SOLID && strcmp(row->name, "scale") == 0)
         return true;
-    }
     return strcmp(row->unit, "scene units") == 0 && (row->type == PARAM_REAL || row->type == PARAM_VECTOR);
 }
 
 static bool is_scaled(const whole_edit *e, const char *name, const param *row)
 {
     place at;
-    if (!is_length(row) || place_find_object(e->s, name, &at, NULL) != STATUS_OK) {
+    if (!is_length(row) || place_find_object(e->s, name, &at, NULL) != STATUS_OK)
         return false;
-    }
     if (e->only) { /* its material stays what it is, as its absorption by render.unit_m does */
         return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 &&
                strcmp(row->name, "position") != 0 && strcmp(row->name, "target") != 0;
@@ -208,22 +194,18 @@ static status scale_row(void *context, const char *path, const param *row, const
     whole_edit *e = context;
     char name[SCENE_NAME_MAX + 1] = "";
     const size_t length = strcspn(path, ".");
-    if (length <= SCENE_NAME_MAX) {
+    if (length <= SCENE_NAME_MAX)
         memcpy(name, path, length);
-    }
-    if (!is_scaled(e, name, row)) {
+    if (!is_scaled(e, name, row))
         return STATUS_OK;
-    }
     param_value v;
     status code = param_value_parse(row, -1, path, value, &v, e->why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
-    if (row->type == PARAM_REAL) {
+    if (row->type == PARAM_REAL)
         v.real *= e->factor;
-    } else {
+    else
         v.vector = vec3_scale(v.vector, e->factor);
-    }
     char *text = param_value_text(row, -1, &v);
     code = text ? scene_set(e->s, path, text, e->why) : out_of_memory(e->why);
     free(text);
@@ -237,9 +219,8 @@ static void scale_unbounded(whole_edit *e)
         solid *one = &e->s->solids[i];
         const bool is_wanted = e->only ? strcmp(one->name, e->only) == 0 : e->parts.solids;
         if (is_wanted && shape_of(&one->shape)->unbounded && one->surface.texture[0] &&
-            one->surface.texture_size == 0.0) {
+            one->surface.texture_size == 0.0)
             one->surface.texture_size = e->factor;
-        }
     }
 }
 
@@ -253,9 +234,8 @@ static status keep_metres(whole_edit *e)
 static status scale_parts(whole_edit *e)
 {
     const status code = scene_each_param(e->before, scale_row, e);
-    if (code == STATUS_OK) {
+    if (code == STATUS_OK)
         scale_unbounded(e);
-    }
     return code == STATUS_OK && e->parts.solids ? keep_metres(e) : code;
 }
 
@@ -277,13 +257,11 @@ status scene_scale(scene *s, const char *name, double factor, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "give a factor above 0, at most 1e9", "%.80s cannot be scaled by %g",
                         name, factor);
     }
-    if (scene_parts_named(s, name, &e.parts)) {
+    if (scene_parts_named(s, name, &e.parts))
         return apply(&e);
-    }
     const status code = edit_find(s, name, &at, why);
-    if (code != STATUS_OK) {
+    if (code != STATUS_OK)
         return code;
-    }
     if (at.group != PARAM_SOLID && at.group != PARAM_LIGHT) {
         return diagnose(why, STATUS_BAD_INPUT, "scale a solid, a light, or all, solids, lights",
                         "%.80s has no size of its own", name);

@@ -48,11 +48,9 @@ bool inert_same(const inert_case *c, const char *format, ...)
 
 bool inert_by_name(const inert_row *rows, const inert_case *c)
 {
-    for (; rows->name; rows++) {
-        if (strcmp(rows->name, c->at.row->name) == 0) {
+    for (; rows->name; rows++)
+        if (strcmp(rows->name, c->at.row->name) == 0)
             return rows->rule(c);
-        }
-    }
     return false;
 }
 
@@ -78,13 +76,11 @@ bool inert_ask(const scene *s, const char *path, const inert_witness *witness, i
     inert_case c = {.s = s, .witness = witness ? witness : &nobody, .out = out};
     c.frame = c.witness->frame && c.witness->frame->camera > 0 ? c.witness->frame : NULL;
     *out = (inert_answer){.rule = ""};
-    if (place_find(s, path, &c.at, NULL) != STATUS_OK || c.at.row->is_how) {
+    if (place_find(s, path, &c.at, NULL) != STATUS_OK || c.at.row->is_how)
         return false;
-    }
     c.name = place_group_name(s, c.at.group, c.at.index);
-    if (!inert_layers(&c) && !ask_group(&c) && !inert_unmet(&c, path)) {
+    if (!inert_layers(&c) && !ask_group(&c) && !inert_unmet(&c, path))
         return false;
-    }
     snprintf(out->note.place, sizeof out->note.place, "%s", path);
     return true;
 }

@@ -29,15 +29,12 @@ static bool is_own(const inert_case *c, const material *named, const face_look *
 {
     static const char *const never_given[] = {"ambient", "reflectivity", "checker", "checker_color", NULL};
     const bool clear = !material_is_opaque(&c->owner->surface);
-    if (!named && !given) {
+    if (!named && !given)
         return true;
-    }
-    if (is_row(c, "transparency")) {
+    if (is_row(c, "transparency"))
         return !is_straight(c) || (!named && given->opacity == 1.0);
-    }
-    if (named) {
+    if (named)
         return is_row(c, "reflectivity") && !is_straight(c) && clear;
-    }
     return is_among(c, never_given) || (is_row(c, "emission") && given->emission == 0.0) ||
            (is_row(c, "color") && clear);
 }
@@ -60,9 +57,8 @@ static bool say_by_face(const inert_case *c)
 /* Before the mesh is there, nobody knows. */
 bool inert_faces(const inert_case *c)
 {
-    if (!looks_by_face(c->s, c->owner)) {
+    if (!looks_by_face(c->s, c->owner))
         return false;
-    }
     if (is_of_body(c)) { /* which is clear where a face is */
         material clear = *c->m;
         clear.transparency = 1.0;
@@ -75,13 +71,11 @@ bool inert_faces(const inert_case *c)
         const material *named;
         const face_look *given;
         looks_source(c->s, c->owner, slot, &named, &given);
-        if (!is_own(c, named, given)) {
+        if (!is_own(c, named, given))
             continue;
-        }
         some = true;
-        if (!inert_on_slot(c, slot)) {
+        if (!inert_on_slot(c, slot))
             return false;
-        }
     }
     return some || say_by_face(c);
 }
@@ -89,12 +83,10 @@ bool inert_faces(const inert_case *c)
 /* Of the scene's material that c is about: does a face that is named so take it? */
 static bool is_named_ones(const inert_case *c)
 {
-    if (is_of_body(c)) {
+    if (is_of_body(c))
         return false;
-    }
-    if (is_row(c, "transparency")) {
+    if (is_row(c, "transparency"))
         return is_straight(c);
-    }
     return !is_row(c, "reflectivity") || is_straight(c) || material_is_opaque(&c->owner->surface);
 }
 
@@ -106,19 +98,16 @@ static bool say_of_solid(const inert_case *c)
 
 bool inert_named_faces(const inert_case *c)
 {
-    if (!looks_by_face(c->s, c->owner)) {
+    if (!looks_by_face(c->s, c->owner))
         return false;
-    }
     for (int slot = 0; slot < looks_slots(c->s, c->owner); slot++) {
         const material *named;
         const face_look *given;
         looks_source(c->s, c->owner, slot, &named, &given);
-        if (named != &c->s->materials[c->at.index].value) {
+        if (named != &c->s->materials[c->at.index].value)
             continue;
-        }
-        if (is_named_ones(c) ? !inert_on_slot(c, slot) : !say_of_solid(c)) {
+        if (is_named_ones(c) ? !inert_on_slot(c, slot) : !say_of_solid(c))
             return false;
-        }
     }
     return true; /* without an answer where no face is named so */
 }

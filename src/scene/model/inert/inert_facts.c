@@ -78,19 +78,16 @@ bool shines(const light *l)
 size_t shining_lights(const scene *s)
 {
     size_t count = 0;
-    for (size_t i = 0; i < s->light_count; i++) {
+    for (size_t i = 0; i < s->light_count; i++)
         count += shines(&s->lights[i]);
-    }
     return count;
 }
 
 bool only_spheres_shine(const scene *s)
 {
-    for (size_t i = 0; i < s->light_count; i++) {
-        if (shines(&s->lights[i]) && s->lights[i].radius == 0.0) {
+    for (size_t i = 0; i < s->light_count; i++)
+        if (shines(&s->lights[i]) && s->lights[i].radius == 0.0)
             return false;
-        }
-    }
     return is_path(s);
 }
 
@@ -102,11 +99,9 @@ bool may_look_by_face(const scene *s, const solid *owner)
 
 const solid *first_visible(const scene *s, solid_is *is)
 {
-    for (size_t i = 0; i < s->solid_count; i++) {
-        if (s->solids[i].visible && (!is || is(s, &s->solids[i]))) {
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (s->solids[i].visible && (!is || is(s, &s->solids[i])))
             return &s->solids[i];
-        }
-    }
     return NULL;
 }
 
@@ -138,9 +133,8 @@ bool shows_diffuse(const scene *s, const material *m)
 
 bool shows_specular(const scene *s, const material *m)
 {
-    if (m->specular == 0.0 || shining_lights(s) == 0) {
+    if (m->specular == 0.0 || shining_lights(s) == 0)
         return false;
-    }
     return is_path(s) ? material_is_opaque(m) || !only_spheres_shine(s) : s->render.lighting != LIGHTING_LAMBERT;
 }
 
@@ -152,9 +146,8 @@ bool is_lit_by_lamps(const scene *s, const material *m)
 
 bool shows_color(const scene *s, const material *m)
 {
-    if (integrator_of(&s->render)->layers) {
+    if (integrator_of(&s->render)->layers)
         return s->render.layer == LAYER_ALBEDO;
-    }
     material white = *m;
     white.color = vec3_make(1.0, 1.0, 1.0);
     return m->emission > 0.0 || shows_ambient(s, &white) || shows_diffuse(s, &white);
@@ -171,27 +164,23 @@ inert_remedy lamp_remedy(const scene *s)
 {
     for (size_t i = 0; i < s->light_count; i++) {
         const light *l = &s->lights[i];
-        if (!shines(l)) {
+        if (!shines(l))
             return l->intensity > 0.0 ? inert_set("%s.color=1,1,1", l->name) : inert_set("%s.intensity=1", l->name);
-        }
     }
     return (inert_remedy){"add a light"};
 }
 
 inert_remedy color_remedy(const scene *s, const material *m, const char *name)
 {
-    if (integrator_of(&s->render)->layers) {
+    if (integrator_of(&s->render)->layers)
         return inert_set("render.layer=albedo");
-    }
     material coated = *m;
     coated.diffuse = 0.7;
-    if (shows_color(s, &coated)) {
+    if (shows_color(s, &coated))
         return inert_set("%s.diffuse=0.7", name);
-    }
     coated.ambient = 0.5;
-    if (shows_color(s, &coated)) {
+    if (shows_color(s, &coated))
         return inert_set("%s.ambient=0.5", name);
-    }
     return is_path(s) ? inert_set("%s.diffuse=0.7 and %s.transparency=0", name, name)
                       : inert_set("background.ambient=1,1,1 and %s.ambient=0.5", name);
 }

@@ -9,9 +9,8 @@
 static bool lights_nothing(const inert_case *c, const light *l)
 {
     const scene *s = c->s;
-    if (is_path(s) && l->radius > 0.0) {
+    if (is_path(s) && l->radius > 0.0)
         return false;
-    }
     scene lit = *s; /* borrows what s owns; a lamp alone, which shines */
     light white = *l;
     white.color = vec3_make(1.0, 1.0, 1.0), white.intensity = 1.0;
@@ -26,12 +25,10 @@ bool inert_light(const inert_case *c)
     const light *l = &c->s->lights[c->at.index];
     const char *name = c->at.row->name;
     const bool of_color = strcmp(name, "color") == 0, of_intensity = strcmp(name, "intensity") == 0;
-    if (!of_intensity && l->intensity == 0.0) {
+    if (!of_intensity && l->intensity == 0.0)
         return inert_say(c, "dark-lamp", inert_set("%s.intensity=1", c->name).text, "the light's intensity is 0");
-    }
-    if (!of_color && is_black(l->color)) {
+    if (!of_color && is_black(l->color))
         return inert_say(c, "dark-lamp", inert_set("%s.color=1,1,1", c->name).text, "the light's color is black");
-    }
     if ((strcmp(name, "target") == 0 || strcmp(name, "half_angle_deg") == 0) && l->kind == LIGHT_POINT) {
         return inert_say(c, "point-lamp", inert_set("%s.kind=cone", c->name).text,
                          "a point of light shines all around");
@@ -74,9 +71,8 @@ static bool has_ambient(const scene *s, const solid *one)
 static bool ambient(const inert_case *c)
 {
     const scene *s = c->s;
-    if (no_ambient_on_paths(c)) {
+    if (no_ambient_on_paths(c))
         return true;
-    }
     scene bright = *s; /* borrows what s owns */
     bright.background.ambient = vec3_make(1.0, 1.0, 1.0);
     const inert_remedy remedy = inert_set_on(first_visible(s, NULL), "ambient=0.5");

@@ -20,9 +20,8 @@ static bool is_open(const inert_case *c)
 
 static bool opaque_rule(const inert_case *c)
 {
-    if (c->m->transparency > 0.0) {
+    if (c->m->transparency > 0.0)
         return false;
-    }
     const inert_remedy remedy =
         is_open(c) ? (inert_remedy){"give it a closed mesh and a transparency"} : set_on(c, "transparency=0.9");
     return inert_say(c, "opaque", remedy.text, "the solid is opaque");
@@ -42,12 +41,10 @@ static int clear_users(const inert_case *c)
 static bool not_bent(const inert_case *c)
 {
     const scene *s = c->s;
-    if (material_is_mirror(c->m)) {
+    if (material_is_mirror(c->m))
         return false;
-    }
-    if (goes_straight(c)) {
+    if (goes_straight(c))
         return true;
-    }
     const bool makes_equal = c->at.group == PARAM_MATERIAL && clear_users(c) > 1;
     return !follows_rays(s) && !draws_through(s) && !s->render.radiance && !material_matches_surroundings(s, c->m) &&
            !makes_equal && say_not_bent(c);
@@ -115,9 +112,8 @@ static bool diffuse_rule(const inert_case *c)
 static bool specular_rule(const inert_case *c)
 {
     const scene *s = c->s;
-    if (!is_path(s) && s->render.lighting == LIGHTING_LAMBERT) {
+    if (!is_path(s) && s->render.lighting == LIGHTING_LAMBERT)
         return inert_say(c, "lambert", "set render.lighting=phong", "Lambert's lighting has no highlights");
-    }
     return no_lamp(c) || (only_spheres_shine(s) && !material_is_opaque(c->m) &&
                           inert_say(c, "sphere-highlight", "set render.integrator=whitted",
                                     "the light itself is what a clear surface reflects"));
@@ -165,21 +161,16 @@ static bool reflectivity_rule(const inert_case *c)
     const scene *s = c->s;
     /* The coating of a clear surface keeps light from shadow rays, too. */
     const bool coats = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
-    if (coats) {
+    if (coats)
         return (!material_matches_surroundings(s, c->m) && unpassed(c)) || mirrors_black(c);
-    }
-    if (integrator_of(&s->render)->drawn && !material_is_opaque(c->m)) {
+    if (integrator_of(&s->render)->drawn && !material_is_opaque(c->m))
         return false;
-    }
-    if (!follows_rays(s)) {
+    if (!follows_rays(s))
         return say_no_tree(c);
-    }
-    if (s->render.depth == 0 && is_dark_beyond(s)) {
+    if (s->render.depth == 0 && is_dark_beyond(s))
         return inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0, and what lies beyond it is black");
-    }
-    if (material_is_mirror(c->m) && !scene_has_constant_shares(&s->render)) {
+    if (material_is_mirror(c->m) && !scene_has_constant_shares(&s->render))
         return inert_say(c, "mirror", set_on(c, "transparency=0").text, "its index makes it a mirror already");
-    }
     return mirrors_black(c);
 }
 
@@ -244,9 +235,8 @@ static bool checker_color_rule(const inert_case *c)
 
 bool is_among(const inert_case *c, const char *const *names)
 {
-    while (*names && strcmp(*names, c->at.row->name) != 0) {
+    while (*names && strcmp(*names, c->at.row->name) != 0)
         names++;
-    }
     return *names != NULL;
 }
 
@@ -267,16 +257,14 @@ static bool unseen(const inert_case *c)
 static bool no_interface(const inert_case *c)
 {
     const scene *s = c->s;
-    if (scene_has_constant_shares(&s->render) || !is_among(c, of_surface)) {
+    if (scene_has_constant_shares(&s->render) || !is_among(c, of_surface))
         return false;
-    }
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         const material *m = &one->surface;
         const bool plain = m->reflectivity == 0.0 && m->emission == 0.0 && material_matches_surroundings(s, m);
-        if (one->visible && ((!material_is_opaque(m) && !plain) || may_look_by_face(s, one))) {
+        if (one->visible && ((!material_is_opaque(m) && !plain) || may_look_by_face(s, one)))
             return false;
-        }
     }
     return !material_is_opaque(c->m) && inert_say(c, "no-interface", set_on(c, "ior=1.5").text,
                                                   "its index is that of what is around it: it has no surface");
@@ -337,19 +325,16 @@ bool inert_material(const inert_case *c)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         const bool by_face = may_look_by_face(s, one);
-        if (one->material_index != (int)c->at.index && !by_face) {
+        if (one->material_index != (int)c->at.index && !by_face)
             continue;
-        }
         hidden = one->visible || by_face ? hidden : one;
         inert_case user = *c;
         user.owner = one, user.m = &one->surface, user.out = first.rule[0] ? &other : &first;
-        if (one->visible && !(by_face ? inert_named_faces(&user) : inert_look(&user))) {
+        if (one->visible && !(by_face ? inert_named_faces(&user) : inert_look(&user)))
             return false;
-        }
     }
-    if (!first.rule[0]) {
+    if (!first.rule[0])
         return unused(c, hidden);
-    }
     *c->out = first;
     return true;
 }

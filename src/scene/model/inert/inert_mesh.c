@@ -54,9 +54,8 @@ static bool unused_mesh(const inert_case *c)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         const bool shows = solid_shows(one, c->name);
-        if (shows && one->visible) {
+        if (shows && one->visible)
             return false;
-        }
         hidden = shows ? one : hidden;
         other = !shows && one->visible && shape_of(&one->shape)->triangles ? one : other;
     }
@@ -85,9 +84,8 @@ static bool no_floor(const inert_case *c, const mesh_entry *m)
 bool inert_mesh(const inert_case *c)
 {
     const mesh_entry *m = &c->s->meshes[c->at.index];
-    if (unused_mesh(c) || other_maker(c, m)) {
+    if (unused_mesh(c) || other_maker(c, m))
         return true;
-    }
     const bool of_slimes = c->at.row->makers != 0 && m->source == MESH_SLIME;
     return of_slimes && ((strcmp(c->at.row->name, "dt_s") == 0 && m->time_s == 0.0 &&
                           inert_say(c, "time-0", inert_set("%s.time_s=0.5", c->name).text,
@@ -107,9 +105,8 @@ static bool unused_texture(const inert_case *c)
     const solid *bare = NULL, *dull = NULL;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        if (uses_texture(s, one, c->name)) {
+        if (uses_texture(s, one, c->name))
             return false;
-        }
         const bool has = one->visible && strcmp(one->surface.texture, c->name) == 0;
         dull = has ? one : dull;
         bare = !has && one->visible ? one : bare;

@@ -23,9 +23,8 @@ static bool may_lie_in_dense(const scene *s, const solid *one)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *other = &s->solids[i];
-        if (is_dense(s, other) && (other == one || !scene_apart(s, one, other))) {
+        if (is_dense(s, other) && (other == one || !scene_apart(s, one, other)))
             return true;
-        }
     }
     return false;
 }
@@ -48,16 +47,13 @@ bool inert_radiance(const inert_case *c)
         return inert_say(c, "zbuffer-radiance", "set render.integrator=whitted",
                          "the depth buffer follows no light through a surface");
     }
-    if (goes_straight(c)) {
+    if (goes_straight(c))
         return true;
-    }
-    if (!is_bare(&s->background)) {
+    if (!is_bare(&s->background))
         return false;
-    }
     const solid *dense = first_visible(s, is_dense), *last = s->solid_count > 0 ? &s->solids[s->solid_count - 1] : NULL;
-    if (!dense) {
+    if (!dense)
         return inert_say(c, "no-dense", inert_set_clear(last).text, "no visible clear solid has an index of its own");
-    }
     return shining_lights(s) == 0 && !first_visible(s, may_hold_eye) && !first_visible(s, glows_in_dense) &&
            inert_say(c, "light-outside", inert_set("%s.emission=0.5", dense->name).text,
                      "all light begins and ends outside of clear solids");

@@ -24,9 +24,8 @@ static bool seed(const inert_case *c)
 static bool roulette(const inert_case *c)
 {
     enum { ROULETTE_DEPTH = 3 };
-    if (path_only(c)) {
+    if (path_only(c))
         return true;
-    }
     return c->s->render.depth <= ROULETTE_DEPTH &&
            inert_say(c, "roulette-depth", "set render.depth=8",
                      "paths may end by chance from depth %d on, and render.depth is %lld", ROULETTE_DEPTH + 1,
@@ -47,12 +46,10 @@ static inert_remedy mirror_remedy(const scene *s)
 static bool no_tree(const inert_case *c)
 {
     const scene *s = c->s;
-    if (draws_through(s)) {
+    if (draws_through(s))
         return false;
-    }
-    if (!follows_rays(s)) {
+    if (!follows_rays(s))
         return say_no_tree(c);
-    }
     return nothing_goes_on(s) &&
            inert_say(c, "no-branches", mirror_remedy(s).text, "nothing visible reflects or refracts");
 }
@@ -60,14 +57,12 @@ static bool no_tree(const inert_case *c)
 static bool beyond(const inert_case *c)
 {
     const scene *s = c->s;
-    if (no_tree(c)) {
+    if (no_tree(c))
         return true;
-    }
     scene sky = *s; /* borrows what s owns */
     sky.render.beyond = BEYOND_SKY;
-    if (is_dark_beyond(&sky)) {
+    if (is_dark_beyond(&sky))
         return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black, too");
-    }
     /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both
      * has no cut ray. */
     const bool nothing_cut = s->render.beyond != BEYOND_BLACK
@@ -81,9 +76,8 @@ static bool beyond(const inert_case *c)
 static bool lighting(const inert_case *c)
 {
     const scene *s = c->s;
-    if (is_path(s)) {
+    if (is_path(s))
         return inert_say(c, "not-path", WHITTED, "the path integrator has one lighting model");
-    }
     scene shiny = *s; /* borrows what s owns */
     shiny.render.lighting = LIGHTING_PHONG;
     bool highlight = integrator_of(&s->render)->drawn && first_visible(s, is_clear);
@@ -91,9 +85,8 @@ static bool lighting(const inert_case *c)
         const solid *one = &s->solids[i];
         highlight |= one->visible && (shows_specular(&shiny, &one->surface) || may_look_by_face(s, one));
     }
-    if (highlight) {
+    if (highlight)
         return false;
-    }
     if (!integrator_of(&s->render)->tree) {
         return inert_say(c, "no-highlight", WHITTED,
                          "no lamp makes a highlight, and no ray goes on under this render.integrator");
@@ -106,9 +99,8 @@ static bool lighting(const inert_case *c)
 static inert_remedy clear_remedy(const scene *s)
 {
     const solid *first = first_visible(s, NULL);
-    for (size_t i = 0; i < s->solid_count; i++) {
+    for (size_t i = 0; i < s->solid_count; i++)
         first = first && shape_of(&first->shape)->unbounded && s->solids[i].visible ? &s->solids[i] : first;
-    }
     return inert_set_clear(first);
 }
 
@@ -128,9 +120,8 @@ static bool same_but_for(const inert_case *c, const char *one, const char *other
 
 static bool transmission(const inert_case *c)
 {
-    if (first_visible(c->s, may_look_by_face)) {
+    if (first_visible(c->s, may_look_by_face))
         return false; /* a file's faces may be clear where light goes straight on */
-    }
     return no_clear(c) || same_but_for(c, "refract", "simple", c->s->render.transmission != TRANSMISSION_SIMPLE);
 }
 
@@ -158,9 +149,8 @@ static bool nothing_lit(const inert_case *c)
 static bool shadows(const inert_case *c)
 {
     const scene *s = c->s;
-    if (integrator_of(&s->render)->drawn) {
+    if (integrator_of(&s->render)->drawn)
         return inert_say(c, "no-shadows", WHITTED, "the depth buffer draws no shadows");
-    }
     return nothing_lit(c) ||
            (only_spheres_shine(s) &&
             inert_say(c, "spheres", WHITTED, "lights that are spheres are looked for along random paths"));
@@ -168,9 +158,8 @@ static bool shadows(const inert_case *c)
 
 static bool min_weight(const inert_case *c)
 {
-    if (is_path(c->s)) {
+    if (is_path(c->s))
         return inert_say(c, "whitted-only", WHITTED, "random paths are no tree: render.roulette ends faint ones");
-    }
     return no_tree(c) || (c->s->render.depth == 0 &&
                           inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0: no branch is followed"));
 }

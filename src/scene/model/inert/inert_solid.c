@@ -26,12 +26,10 @@ static bool priority_rule(const inert_case *c)
     const solid *hidden = NULL;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        if (one == c->owner || !one->visible || scene_apart(s, c->owner, one)) {
+        if (one == c->owner || !one->visible || scene_apart(s, c->owner, one))
             continue;
-        }
-        if (!is_opaque_pair(c->owner, one) || !meets_unseen(s, c->owner, one)) {
+        if (!is_opaque_pair(c->owner, one) || !meets_unseen(s, c->owner, one))
             return false;
-        }
         hidden = one;
     }
     if (hidden) {
@@ -52,9 +50,8 @@ static bool is_plain(const scene *s, const material *m)
 static bool rotation_rule(const inert_case *c)
 {
     /* The depth buffer draws a sphere of triangles, which turn with it. */
-    if (!shape_of(&c->owner->shape)->isotropic || !is_plain(c->s, c->m) || integrator_of(&c->s->render)->drawn) {
+    if (!shape_of(&c->owner->shape)->isotropic || !is_plain(c->s, c->m) || integrator_of(&c->s->render)->drawn)
         return false;
-    }
     const inert_remedy color = color_remedy(c->s, c->m, c->name);
     const inert_remedy remedy = shows_color(c->s, c->m)
                                     ? inert_set("%s.checker=0.2 and %s.checker_color=0.3,0.5,0.7", c->name, c->name)
@@ -75,9 +72,8 @@ static bool mesh_shading(const inert_case *c)
     const scene *s = c->s;
     const bool textured = c->m->texture[0] && shows_color(s, c->m); /* a texel's footprint depends on the normal */
     if (textured || is_lit_by_lamps(s, c->m) || may_look_by_face(s, c->owner) ||
-        (follows_rays(s) && sends_rays_on(s, c->owner))) {
+        (follows_rays(s) && sends_rays_on(s, c->owner)))
         return false;
-    }
     if (integrator_of(&s->render)->layers) {
         return s->render.layer != LAYER_NORMAL &&
                inert_say(c, "no-normals", "set render.layer=normal", "the layer that the image shows has no normals");
