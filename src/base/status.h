@@ -32,6 +32,14 @@ enum { DIAGNOSTIC_TEXT_MAX = 1792 };
 status diagnose(diagnostic *why, status code, const char *remedy, const char *what, ...)
     __attribute__((format(printf, 4, 5)));
 
+/* For steps that leave nothing to tidy up: goes on where the call is well, else returns what it returned. */
+#define TRY(call)                     \
+    do {                              \
+        const status tried_ = (call); \
+        if (tried_ != STATUS_OK)      \
+            return tried_;            \
+    } while (0)
+
 /* STATUS_FAILURE, and the same words for all that runs out of memory. */
 status out_of_memory(diagnostic *why);
 

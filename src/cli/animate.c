@@ -36,12 +36,10 @@ static status choose_duration(animate_request *request, const scene *s, diagnost
     const double rest_s = 2, without_script_s = 4;
     bool any;
     double end_s;
-    status result = animate_script_end_s(s, &any, &end_s, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(animate_script_end_s(s, &any, &end_s, why));
     if (request->duration_s < 0)
         request->duration_s = any ? fmax(0, end_s + rest_s - request->start_s) : without_script_s;
-    result = animate_check_length(request, why);
+    status result = animate_check_length(request, why);
     for (size_t i = 0; i < s->mesh_count && result == STATUS_OK; i++) {
         diagnostic_locate(why, request->input.path, 0, 0);
         if (s->meshes[i].source == MESH_SLIME)

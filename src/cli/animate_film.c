@@ -162,11 +162,9 @@ static status make_frames(film_job *f, diagnostic *why)
 static status open_stream(film_job *f, diagnostic *why)
 {
     const animate_request *request = f->request;
-    status result = file_writer_open(&f->stream, request->output, why);
-    if (result == STATUS_OK)
-        result = y4m_begin(f->stream.stream, (int)scene_settings(f->s)->width, (int)scene_settings(f->s)->height,
-                           request->fps_num, request->fps_den, why);
-    return result;
+    TRY(file_writer_open(&f->stream, request->output, why));
+    return y4m_begin(f->stream.stream, (int)scene_settings(f->s)->width, (int)scene_settings(f->s)->height,
+                     request->fps_num, request->fps_den, why);
 }
 
 static status close_stream(film_job *f, status ended, diagnostic *why)

@@ -101,8 +101,8 @@ static status check_rows(const animate_request *request, diagnostic *why)
     size_t which;
     if (!request->rows)
         return STATUS_OK;
-    status result = outputs_ending("--rows", request->rows, endings, 1, "end it in .csv", &which, why);
-    return result == STATUS_OK ? outputs_check_folder("--rows", request->rows, why) : result;
+    TRY(outputs_ending("--rows", request->rows, endings, 1, "end it in .csv", &which, why));
+    return outputs_check_folder("--rows", request->rows, why);
 }
 
 /* A script is named from the working folder, but the parameter's is looked for in the scene's. */
@@ -125,10 +125,9 @@ static status find_script(animate_request *request, diagnostic *why)
 static status check_request(void *asked, diagnostic *why)
 {
     animate_request *request = asked;
-    status result = check_output(request, why);
-    if (result == STATUS_OK)
-        result = check_rows(request, why);
-    return result == STATUS_OK ? find_script(request, why) : result;
+    TRY(check_output(request, why));
+    TRY(check_rows(request, why));
+    return find_script(request, why);
 }
 
 static const scene_command animate_command = {

@@ -130,9 +130,7 @@ static status note_in_all_cells(const study *s, const char *path, diagnostic *wh
     bool inert = true;
     for (size_t cell = 0; cell < study_cell_count(s) && inert; cell++) {
         scene *setting;
-        const status code = study_cell_scene(s, cell, &setting, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(study_cell_scene(s, cell, &setting, why));
         inert = inert_ask(setting, path, NULL, &answer);
         scene_destroy(setting);
     }
@@ -143,16 +141,15 @@ static status note_in_all_cells(const study *s, const char *path, diagnostic *wh
 
 static status note_point(const study *s, const study_point *point, diagnostic *why)
 {
-    status code = STATUS_OK;
-    for (size_t i = 0; i < point->count && code == STATUS_OK; i++)
-        code = note_in_all_cells(s, point->paths[i], why);
-    return code;
+    for (size_t i = 0; i < point->count; i++)
+        TRY(note_in_all_cells(s, point->paths[i], why));
+    return STATUS_OK;
 }
 
 status inert_note_study(const study *s, diagnostic *why)
 {
-    status code = note_point(s, &s->fixed, why);
-    for (size_t a = 0; a < s->axis_count && code == STATUS_OK; a++)
-        code = note_point(s, &s->axes[a].points[0], why);
-    return code;
+    TRY(note_point(s, &s->fixed, why));
+    for (size_t a = 0; a < s->axis_count; a++)
+        TRY(note_point(s, &s->axes[a].points[0], why));
+    return STATUS_OK;
 }

@@ -84,10 +84,10 @@ status command_media(int argc, char **argv, diagnostic *why)
 {
     media_request request = {0};
     const medium *only = NULL;
-    status result = command_form_read(&form, argc, argv, &request, why);
-    if (result == STATUS_OK && request.name)
-        result = find(&request, &only, why);
-    if (result == STATUS_OK && only)
-        result = check_range(only, request.at_nm, why);
-    return result == STATUS_OK ? print(&request, only, why) : result;
+    TRY(command_form_read(&form, argc, argv, &request, why));
+    if (request.name)
+        TRY(find(&request, &only, why));
+    if (only)
+        TRY(check_range(only, request.at_nm, why));
+    return print(&request, only, why);
 }

@@ -180,9 +180,7 @@ status command_form_read(const command_form *form, int argc, char **argv, void *
         options[i] = (struct argp_option){o->name, o->letter ? o->letter : KEY_FIRST + i, o->form, 0, o->purpose, 0};
     }
     const struct argp argp = {.options = options, .parser = take_key, .args_doc = form->words, .doc = form->about};
-    const status result = check(&argp, flags, argc, argv, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(check(&argp, flags, argc, argv, why));
     const error_t error = argp_parse(&argp, argc, argv, flags, NULL, &reading);
     if (error == EINVAL)
         return reading.wrong;

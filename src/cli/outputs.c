@@ -197,11 +197,9 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why)
     if (o->noise && (!integrator_of(&s->render)->by_chance || s->render.paths < 2))
         return wrong(&files[3], why, "set render.integrator to path and render.paths to 16 or more",
                      "nothing is drawn by chance");
-    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-        status result = files[i].path ? check_file(o, files, i, s, why) : STATUS_OK;
-        if (result != STATUS_OK)
-            return result;
-    }
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++)
+        if (files[i].path)
+            TRY(check_file(o, files, i, s, why));
     return o->layers ? check_layers(o, files, sizeof files / sizeof files[0], s, why) : STATUS_OK;
 }
 
@@ -240,8 +238,8 @@ status outputs_check_place(const char *option, const char *path, const scene *s,
     const named_file file = {option, path};
     if (strcmp(path, "-") == 0)
         return STATUS_OK;
-    status result = check_folder(&file, why);
-    return result == STATUS_OK ? check_not_read(&file, s, why) : result;
+    TRY(check_folder(&file, why));
+    return check_not_read(&file, s, why);
 }
 
 status outputs_check_script(const char *option, const char *path, const scene *s, diagnostic *why)
@@ -257,10 +255,8 @@ status outputs_write_text(const char *path, status (*write)(const void *content,
     if (!path || strcmp(path, "-") == 0)
         return write(content, stdout, why);
     file_writer writer;
-    status result = file_writer_open(&writer, path, why);
-    if (result != STATUS_OK)
-        return result;
-    result = write(content, writer.stream, why);
+    TRY(file_writer_open(&writer, path, why));
+    status result = write(content, writer.stream, why);
     if (result == STATUS_OK)
         return file_writer_commit(&writer, why);
     file_writer_abandon(&writer);

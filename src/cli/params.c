@@ -73,8 +73,8 @@ static status print(const params_request *request, const scene *s, diagnostic *w
     if (!request->json)
         return param_rows_print(stdout, s, request->filter, terminal_columns(STDOUT_FILENO), why);
     json_t *table = NULL;
-    const status result = param_rows_json(s, request->filter, &table, why);
-    return result == STATUS_OK ? json_print(table, why) : result;
+    TRY(param_rows_json(s, request->filter, &table, why));
+    return json_print(table, why);
 }
 
 status command_params(int argc, char **argv, diagnostic *why)

@@ -121,9 +121,7 @@ static status print_json(const realism_request *request, const realism_report *r
 static status print_curve(const scene *s, isa level, realism_curve which, diagnostic *why)
 {
     realism_points points;
-    const status result = realism_trace_curve(s, level, which, &points, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(realism_trace_curve(s, level, which, &points, why));
     printf("\"%s\",\"%s: measured\",\"theory\"\n", realism_curve_x(which), realism_curve_y(which));
     for (int i = 0; i < points.count; i++) {
         print_real(points.at[i].x, ",");
@@ -141,9 +139,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
     if (request->curve >= 0)
         return print_curve(s, level, (realism_curve)request->curve, why);
     realism_report report;
-    const status result = realism_measure(s, level, &report, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(realism_measure(s, level, &report, why));
     if (request->json)
         return print_json(request, &report, why);
     if (request->csv)

@@ -83,8 +83,8 @@ static status check_request(const scene_request *request, diagnostic *why)
         return misused(why, "leave out -o FILE", "--check and --list write no scene");
     if (!request->output || strcmp(request->output, "-") == 0)
         return STATUS_OK;
-    status result = outputs_ending("-o", request->output, endings, 2, "end it in .yaml or .yml", &unused, why);
-    return result == STATUS_OK ? outputs_check_folder("-o", request->output, why) : result;
+    TRY(outputs_ending("-o", request->output, endings, 2, "end it in .yaml or .yml", &unused, why));
+    return outputs_check_folder("-o", request->output, why);
 }
 
 static status make_scene(const scene_request *request, scene **out, diagnostic *why)
@@ -152,8 +152,8 @@ static status run(const scene_request *request, scene *s, diagnostic *why)
     if (request->only_lists)
         return print_list(s);
     const char *output = request->output ? request->output : "-";
-    status result = outputs_check_script("-o", output, s, why);
-    return result == STATUS_OK ? scene_write(s, output, request->writes_all, why) : result;
+    TRY(outputs_check_script("-o", output, s, why));
+    return scene_write(s, output, request->writes_all, why);
 }
 
 static const char about[] =

@@ -23,22 +23,22 @@ static status apply_set(scene *s, const scene_edit *edit, const char *path, cons
 static status apply_move(scene *s, const scene_edit *edit, const char *name, const char *text, diagnostic *why)
 {
     double v[3];
-    const status result = options_reals(edit->option, text, edit->form, 3, v, why);
-    return result == STATUS_OK ? scene_move(s, name, vec3_make(v[0], v[1], v[2]), why) : result;
+    TRY(options_reals(edit->option, text, edit->form, 3, v, why));
+    return scene_move(s, name, vec3_make(v[0], v[1], v[2]), why);
 }
 
 static status apply_turn(scene *s, const scene_edit *edit, const char *name, const char *text, diagnostic *why)
 {
     double v[3];
-    const status result = options_reals(edit->option, text, edit->form, 3, v, why);
-    return result == STATUS_OK ? scene_turn(s, name, vec3_make(v[0], v[1], v[2]), why) : result;
+    TRY(options_reals(edit->option, text, edit->form, 3, v, why));
+    return scene_turn(s, name, vec3_make(v[0], v[1], v[2]), why);
 }
 
 static status apply_scale(scene *s, const scene_edit *edit, const char *name, const char *text, diagnostic *why)
 {
     double factor;
-    const status result = options_reals(edit->option, text, edit->form, 1, &factor, why);
-    return result == STATUS_OK ? scene_scale(s, name, factor, why) : result;
+    TRY(options_reals(edit->option, text, edit->form, 1, &factor, why));
+    return scene_scale(s, name, factor, why);
 }
 
 static status apply_rename(scene *s, const scene_edit *edit, const char *name, const char *new_name, diagnostic *why)
@@ -103,8 +103,8 @@ static status put_parameters(scene *s, const char *name, const char *text, bool 
 static status add_solid(scene *s, const char *name, const char *shape, diagnostic *why)
 {
     shape_kind kind;
-    status result = scene_shape_named(shape, &kind, why);
-    return result == STATUS_OK ? scene_add_solid(s, name, kind, NULL, why) : result;
+    TRY(scene_shape_named(shape, &kind, why));
+    return scene_add_solid(s, name, kind, NULL, why);
 }
 
 static status add_object(scene *s, const char *kind, const char *name, const char *shape, diagnostic *why)

@@ -37,9 +37,7 @@ status scene_input_probe(const scene_input *input, const scene *s, isa level, pr
 status scene_command_read(const scene_command *command, int argc, char **argv, void *request, diagnostic *why)
 {
     const scene_input *input = request;
-    const status result = command_form_read(&command->form, argc, argv, request, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(command_form_read(&command->form, argc, argv, request, why));
     if (!input->path)
         return options_wrong(command->name, NULL, why, "name a scene file, as experiments/scenes/rod.yaml",
                              "no scene is named");
@@ -118,8 +116,8 @@ status scene_input_job(bool measured, job **out, diagnostic *why)
 {
     isa level = ISA_SSE2;
     const job_settings settings = {.level = &level, .measured = measured, .stop = terminal_stop_asked};
-    const status result = scene_input_isa(&level, why);
-    return result == STATUS_OK ? job_create(&settings, out, why) : result;
+    TRY(scene_input_isa(&level, why));
+    return job_create(&settings, out, why);
 }
 
 static void print_note(void *context, const scene_note *note)

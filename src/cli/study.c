@@ -135,21 +135,19 @@ static status run_one(const study *s, const study_request *request, diagnostic *
 static status print_status(const study *s, const study_request *request, diagnostic *why)
 {
     study_progress progress;
-    status result = study_status(s, request->results, &progress, why);
-    if (result == STATUS_OK)
-        printf("%s: %zu of %zu cells done, %zu rows and %zu warm-ups in %s/%s, %zu marked\n", s->name,
-               progress.cells_done, progress.cells, progress.rows - progress.warmups, progress.warmups,
-               request->results, s->name, progress.rows_marked);
-    return result;
+    TRY(study_status(s, request->results, &progress, why));
+    printf("%s: %zu of %zu cells done, %zu rows and %zu warm-ups in %s/%s, %zu marked\n", s->name, progress.cells_done,
+           progress.cells, progress.rows - progress.warmups, progress.warmups, request->results, s->name,
+           progress.rows_marked);
+    return STATUS_OK;
 }
 
 static status merge_one(const study *s, const study_request *request, diagnostic *why)
 {
     size_t rows = 0;
-    status result = study_merge(s, request->results, &rows, why);
-    if (result == STATUS_OK)
-        printf("%s: %zu rows in %s/%s/rows.csv\n", s->name, rows, request->results, s->name);
-    return result;
+    TRY(study_merge(s, request->results, &rows, why));
+    printf("%s: %zu rows in %s/%s/rows.csv\n", s->name, rows, request->results, s->name);
+    return STATUS_OK;
 }
 
 /* People see the columns that one looks at first, programs all of them. */
@@ -159,10 +157,8 @@ static status print_summary(const study *s, const study_request *request, diagno
         return study_summary(s, request->results, stdout, why);
     char *text = NULL;
     text_writer writer;
-    status result = text_writer_open(&writer, why);
-    if (result != STATUS_OK)
-        return result;
-    result = study_summary(s, request->results, writer.stream, why);
+    TRY(text_writer_open(&writer, why));
+    status result = study_summary(s, request->results, writer.stream, why);
     if (result == STATUS_OK)
         result = text_writer_close(&writer, &text, NULL, why);
     else

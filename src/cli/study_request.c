@@ -96,8 +96,8 @@ status study_request_parse(study_verb verb, int argc, char **argv, study_request
         .verb = verb, .results = "results", .shards = 1, .files = calloc((size_t)argc + 1, sizeof(char *))};
     if (!out->files)
         return out_of_memory(why);
-    status result = command_form_read(&forms[verb], argc, argv, out, why);
-    return result == STATUS_OK ? check_files(out, argv[0], why) : result;
+    TRY(command_form_read(&forms[verb], argc, argv, out, why));
+    return check_files(out, argv[0], why);
 }
 
 void study_request_release(study_request *request)

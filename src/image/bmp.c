@@ -72,17 +72,13 @@ static status check_kind(const unsigned char *bytes, size_t size, diagnostic *wh
 
 static status read_header(const unsigned char *bytes, size_t size, bmp_header *out, diagnostic *why)
 {
-    status code = check_kind(bytes, size, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(check_kind(bytes, size, why));
     const int64_t height = signed_at(bytes + 22);
     *out = (bmp_header){.width = signed_at(bytes + 18),
                         .height = height < 0 ? -height : height,
                         .from_top = height < 0,
                         .offset = number_at(bytes + 10, 4)};
-    code = codec_check_size(out->width, out->height, size, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(codec_check_size(out->width, out->height, size, why));
     out->row_bytes = ((size_t)out->width * 3 + 3) / 4 * 4;
     if (out->offset < FILE_HEADER + number_at(bytes + FILE_HEADER, 4) || out->offset > size) {
         return diagnose(why, STATUS_BAD_INPUT, DAMAGED,
@@ -102,12 +98,10 @@ status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diag
 {
     bmp_header header;
     *out = NULL;
-    status code = read_header(bytes, size, &header, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(read_header(bytes, size, &header, why));
     image *picture = NULL;
     float *linear = NULL;
-    code = codec_begin(header.width, header.height, size, 255, &picture, &linear, why);
+    status code = codec_begin(header.width, header.height, size, 255, &picture, &linear, why);
     if (code != STATUS_OK) {
         image_destroy(picture);
         return code;

@@ -30,8 +30,8 @@ status compare_check(const image *a, const image *b, diagnostic *why)
                         "a picture of %d x %d pixels cannot be compared with one of %d x %d", a->width, a->height,
                         b->width, b->height);
     }
-    status code = check_numbers(a, "first", why);
-    return code == STATUS_OK ? check_numbers(b, "second", why) : code;
+    TRY(check_numbers(a, "first", why));
+    return check_numbers(b, "second", why);
 }
 
 /* Luma of ITU-R BT.601. */

@@ -154,9 +154,7 @@ static double error_at(const sight *a, const sight *b, size_t at, double farthes
 status compare_flip(const image *a, const image *b, double *errors, diagnostic *why)
 {
     work_planes d;
-    status code = lay_out_planes(&d, a, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(lay_out_planes(&d, a, why));
     look_at(&d, a, &d.a);
     look_at(&d, b, &d.b);
     double farthest = flip_farthest();

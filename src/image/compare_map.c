@@ -17,13 +17,11 @@ status image_compare_map(const image *a, const image *b, image **map, diagnostic
 {
     image *picture = NULL;
     *map = NULL;
-    status code = compare_check(a, b, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(compare_check(a, b, why));
     size_t count = (size_t)a->width * (size_t)a->height;
     double *errors = malloc(count * sizeof *errors);
-    code = errors ? image_create(a->width, a->height, &picture, why)
-                  : diagnose(why, STATUS_FAILURE, NULL, "out of memory for the map of errors");
+    status code = errors ? image_create(a->width, a->height, &picture, why)
+                         : diagnose(why, STATUS_FAILURE, NULL, "out of memory for the map of errors");
     if (code == STATUS_OK)
         code = compare_flip(a, b, errors, why);
     for (size_t i = 0; code == STATUS_OK && i < count; i++)

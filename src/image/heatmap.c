@@ -201,9 +201,7 @@ static double nth_smallest(const double *values, size_t count, size_t rank)
 static status find_scale(const double *values, size_t count, key_scale *out, diagnostic *why)
 {
     double largest;
-    status code = inspect(values, count, &largest, &out->whole, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(inspect(values, count, &largest, &out->whole, why));
     double percentile = nth_smallest(values, count, count - 1 - count / 200); /* the 99.5th, by nearest rank */
     out->cut = percentile > 0 && largest > 2 * percentile; /* of little but zeros the percentile says nothing */
     out->end = out->cut ? percentile : largest;
@@ -238,16 +236,14 @@ status heatmap_create(const double *values, int width, int height, const char *t
         return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
                         "a heat map of %d x %d values is not possible", width, height);
     }
-    status code = find_scale(values, (size_t)width * (size_t)height, &scale, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(find_scale(values, (size_t)width * (size_t)height, &scale, why));
     int picture_width = width < WIDTH_MIN ? WIDTH_MIN : width;
     key_layout key = lay_out_key(picture_width);
     float *decoded = codec_decode_table(255);
     image *picture = NULL;
     if (!decoded)
         return out_of_memory(why);
-    code = image_create(picture_width, height + key.height, &picture, why);
+    status code = image_create(picture_width, height + key.height, &picture, why);
     if (code == STATUS_OK) {
         draw(&(canvas){picture, decoded}, values, width, height, &scale, title ? title : "", &key);
         *out = picture;

@@ -84,12 +84,11 @@ status codec_check_size(long long width, long long height, size_t file_bytes, di
 status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **picture,
                    float **linear, diagnostic *why)
 {
-    status code = codec_check_size(width, height, file_bytes, why);
-    if (code == STATUS_OK)
-        code = image_create((int)width, (int)height, picture, why);
-    if (code == STATUS_OK && !(*linear = codec_decode_table(maximum)))
-        code = out_of_memory(why);
-    return code;
+    TRY(codec_check_size(width, height, file_bytes, why));
+    TRY(image_create((int)width, (int)height, picture, why));
+    if (!(*linear = codec_decode_table(maximum)))
+        return out_of_memory(why);
+    return STATUS_OK;
 }
 
 static status write_as(const image *picture, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
@@ -110,10 +109,8 @@ status image_encode(const image *picture, image_format format, int bits, bool fa
     char *text = NULL;
     text_writer writer;
     *bytes = NULL;
-    status code = text_writer_open(&writer, why);
-    if (code != STATUS_OK)
-        return code;
-    code = write_as(picture, format, writer.stream, bits, fast, why);
+    TRY(text_writer_open(&writer, why));
+    status code = write_as(picture, format, writer.stream, bits, fast, why);
     if (code == STATUS_OK)
         code = text_writer_close(&writer, &text, size, why);
     else
@@ -134,10 +131,8 @@ status image_write(const image *picture, const char *path, int bits, diagnostic 
         return diagnose(why, STATUS_BAD_INPUT, "8 or 16", "a PNG picture cannot have %d bits", bits);
     }
     file_writer writer;
-    status code = file_writer_open(&writer, path, why);
-    if (code != STATUS_OK)
-        return code;
-    code = write_as(picture, format, writer.stream, bits, false, why);
+    TRY(file_writer_open(&writer, path, why));
+    status code = write_as(picture, format, writer.stream, bits, false, why);
     if (code == STATUS_OK || ferror(writer.stream))
         return file_writer_commit(&writer, why); /* knows best why the stream failed */
     file_writer_abandon(&writer);
@@ -183,10 +178,8 @@ status image_read_below(const char *path, const char *root, image **out, int *fi
     size_t size;
     int bits = 0;
     *out = NULL;
-    status code = file_read_below(path, root, FILE_BYTES_MAX, &bytes, &size, why);
-    if (code != STATUS_OK)
-        return code;
-    code = decode((const unsigned char *)bytes, size, out, &bits, why);
+    TRY(file_read_below(path, root, FILE_BYTES_MAX, &bytes, &size, why));
+    status code = decode((const unsigned char *)bytes, size, out, &bits, why);
     free(bytes);
     if (code != STATUS_OK) {
         diagnostic_locate(why, path, 0, 0);

@@ -95,19 +95,15 @@ status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diag
                         "the header of the PFM file is damaged");
     }
     c.at++;
-    status code = codec_check_size(width, height, size, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(codec_check_size(width, height, size, why));
     size_t expected = (size_t)width * (size_t)height * (size_t)channels * 4, got = (size_t)(c.end - c.at);
     if (got != expected) {
         return diagnose(why, STATUS_BAD_INPUT, NULL, "the PFM file is %s: %zu bytes of pixels where %zu should be",
                         got < expected ? "truncated" : "too long", got, expected);
     }
     image *picture;
-    code = image_create((int)width, (int)height, &picture, why);
-    if (code != STATUS_OK)
-        return code;
-    code = read_pixels(c.at, channels, scale < 0, picture, why);
+    TRY(image_create((int)width, (int)height, &picture, why));
+    status code = read_pixels(c.at, channels, scale < 0, picture, why);
     if (code != STATUS_OK) {
         image_destroy(picture);
         return code;

@@ -74,9 +74,7 @@ status texture_create(const image *picture, texture_space space, texture_wrap wr
                       texture_filter filter, texture **out, diagnostic *why)
 {
     *out = NULL;
-    status code = check(picture, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(check(picture, why));
     texture *t = calloc(1, sizeof *t);
     if (t) {
         t->wrap_u = wrap_u;
@@ -100,10 +98,8 @@ status texture_read_below(const char *path, const char *root, texture_space spac
 {
     image *picture;
     *out = NULL;
-    status code = image_read_below(path, root, &picture, NULL, why);
-    if (code != STATUS_OK)
-        return code;
-    code = texture_create(picture, space, wrap_u, wrap_v, filter, out, why);
+    TRY(image_read_below(path, root, &picture, NULL, why));
+    status code = texture_create(picture, space, wrap_u, wrap_v, filter, out, why);
     if (code != STATUS_OK)
         diagnostic_locate(why, path, 0, 0);
     image_destroy(picture);

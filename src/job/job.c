@@ -106,9 +106,7 @@ status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why)
     const load_watch watched = {go_on_loading, &l};
     if (job_must_stop(j))
         return interrupted(why);
-    const status code = scene_check(s, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(scene_check(s, why));
     return j->settings.keeps_meshes ? shelf_load(&j->meshes, s, &watched, why) : scene_load_until(s, &watched, why);
 }
 

@@ -140,8 +140,7 @@ static status check_visible(const dispersion *law, diagnostic *why)
 
 status dispersion_check(const dispersion *law, diagnostic *why)
 {
-    status result = check_numbers(law, why);
-    if (result == STATUS_OK)
-        result = check_own(law, why);
-    return result == STATUS_OK ? check_visible(law, why) : result;
+    TRY(check_numbers(law, why));
+    TRY(check_own(law, why));
+    return check_visible(law, why);
 }

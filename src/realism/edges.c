@@ -163,6 +163,6 @@ static status add_round(const metrics *m, diagnostic *why)
 
 status realism_edges(const metrics *m, diagnostic *why)
 {
-    const status code = add_edges(m, why);
-    return code == STATUS_OK ? add_round(m, why) : code;
+    TRY(add_edges(m, why));
+    return add_round(m, why);
 }

@@ -128,10 +128,9 @@ static status add_fresnel(const metrics *m, int which, diagnostic *why)
 
 status realism_interfaces(const metrics *m, diagnostic *why)
 {
-    status code = STATUS_OK;
-    for (int i = 0; i < 3 && code == STATUS_OK; i++)
-        code = add_critical(m, i, why);
-    for (int i = 0; i < 3 && code == STATUS_OK; i++)
-        code = add_fresnel(m, i, why);
-    return code;
+    for (int i = 0; i < 3; i++)
+        TRY(add_critical(m, i, why));
+    for (int i = 0; i < 3; i++)
+        TRY(add_fresnel(m, i, why));
+    return STATUS_OK;
 }

@@ -61,10 +61,9 @@ status realism_measure_against(const scene *traced, const scene *supposed, isa l
     for (size_t i = 0; i < sizeof arrangements / sizeof arrangements[0]; i++)
         if (arrangements[i].is_there(traced) && arrangements[i].is_there(supposed))
             return arrangements[i].measure(&m, why);
-    status code = setup_read(traced, &m.at, why);
-    if (code == STATUS_OK)
-        code = setup_read(supposed, &m.theory_at, why);
-    for (size_t i = 0; i < sizeof of_vessel / sizeof of_vessel[0] && code == STATUS_OK; i++)
-        code = of_vessel[i](&m, why);
-    return code;
+    TRY(setup_read(traced, &m.at, why));
+    TRY(setup_read(supposed, &m.theory_at, why));
+    for (size_t i = 0; i < sizeof of_vessel / sizeof of_vessel[0]; i++)
+        TRY(of_vessel[i](&m, why));
+    return STATUS_OK;
 }

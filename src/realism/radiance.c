@@ -49,9 +49,7 @@ static status hang_lamp(scene *s, diagnostic *why)
 {
     size_t at = 0;
     s->light_count = 0;
-    const status code = scene_add_light(s, "lamp", &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(scene_add_light(s, "lamp", &at, why));
     light *l = &s->lights[at];
     l->position = lamp_place;
     l->intensity = 1.0;

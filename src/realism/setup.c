@@ -25,10 +25,9 @@ static int find_visible(const scene *s, const char *name)
 static status index_of(const scene *s, int which, double *n, diagnostic *why)
 {
     index_law law;
-    const status code = material_index_law(&s->solids[which].surface, s->solids[which].name, &law, why);
-    if (code == STATUS_OK)
-        *n = index_law_at(&law, s->render.lambda_nm);
-    return code;
+    TRY(material_index_law(&s->solids[which].surface, s->solids[which].name, &law, why));
+    *n = index_law_at(&law, s->render.lambda_nm);
+    return STATUS_OK;
 }
 
 static status read_vessel(const scene *s, setup *out, diagnostic *why)

@@ -102,13 +102,11 @@ status realism_stack(const metrics *m, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "make both plates clear: transparency 1",
                         "the plates of the stack are not clear");
     double straight, whole, cut;
-    const status code = look_through(m, &straight, &whole, &cut, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(look_through(m, &straight, &whole, &cut, why));
     metrics_add(m, (realism_value){"stack.straight", "what comes straight through four interfaces", "", straight,
                                    of_both(&supposed, straight_through), WEIGHT_TOLERANCE});
     metrics_add(m, (realism_value){"stack.whole",
                                    "what comes through with all reflections; the tolerance is what depth 16 cuts off",
                                    "", whole, of_both(&supposed, through_two_plates), cut + WEIGHT_TOLERANCE});
-    return code;
+    return STATUS_OK;
 }

@@ -54,12 +54,10 @@ status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, cons
     *d = (diagram){.out = out, .p = p, .s = s, .plane = *plane, .frame = *frame};
     fit(d, box);
     const double longer = frame->width > frame->height ? frame->width : frame->height;
-    status result = section_cut(p, &d->plane, (int)(longer / 1.5), &d->cut, why);
-    if (result == STATUS_OK)
-        result = diagram_media(d, why);
-    if (result == STATUS_OK)
-        diagram_axes(d, caption);
-    return result;
+    TRY(section_cut(p, &d->plane, (int)(longer / 1.5), &d->cut, why));
+    TRY(diagram_media(d, why));
+    diagram_axes(d, caption);
+    return STATUS_OK;
 }
 
 void diagram_end(diagram *d)

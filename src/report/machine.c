@@ -26,9 +26,7 @@ status machine_look(machine_account *a, diagnostic *why)
         return result;
     }
     a->best = isa_best();
-    result = topology_create(&a->machine, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(topology_create(&a->machine, why));
     a->wall = clock_wall_quality();
     a->cpu = clock_thread_cpu_quality();
     a->has_hardware_counters = counts_cycles();

@@ -94,9 +94,7 @@ static status add_diameters(const softbody_settings *s, const vec3 *unit, toy_ne
 static status place_masses(const softbody_settings *s, const mesh *sphere, vec3 *unit, toy_net *n, diagnostic *why)
 {
     uint32_t *same;
-    const status code = mesh_weld(sphere, &same, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(mesh_weld(sphere, &same, why));
     for (size_t v = 0; v < sphere->vertex_count; v++) {
         if (same[v] != v) {
             n->mass_of[v] = n->mass_of[same[v]];

@@ -134,9 +134,7 @@ static int useful_threads(const softbody *b)
 
 static status fill(softbody *b, const softbody_net *net, diagnostic *why)
 {
-    status code = springs_build(&b->net, net, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(springs_build(&b->net, net, why));
     b->workers = team_start(useful_threads(b));
     if (!make_arrays(b) || !copy_net(b, net) || !b->workers)
         return diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");

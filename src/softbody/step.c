@@ -244,9 +244,7 @@ status softbody_step(softbody *b, diagnostic *why)
 {
     if (any_bad(b)) /* before this step; it has not come together since */
         return blown(b, why);
-    status code = softbody_play(b, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(softbody_play(b, why));
     softbody_aim_hands(b, b->set.dt_s);
     const double count = substeps_wanted(b);
     if (!(count <= SUBSTEPS_MAX))

@@ -14,8 +14,8 @@ static status free_toy(const trials *t, double damping, const trial_field *field
     softbody_settings s = trial_alone(t);
     s.adaptive = t->set->adaptive;
     s.damping = damping;
-    status code = softbody_create(&s, t->level, out, t->why);
-    return code == STATUS_OK ? trial_stir(*out, field, t->why) : code;
+    TRY(softbody_create(&s, t->level, out, t->why));
+    return trial_stir(*out, field, t->why);
 }
 
 typedef struct energies {

@@ -85,11 +85,10 @@ static status put_slime(const cell_lines *l, const mesh_entry *m, diagnostic *wh
 
 static status put_motion(const cell_lines *l, diagnostic *why)
 {
-    status code = STATUS_OK;
-    for (size_t i = 0; i < l->setting->mesh_count && code == STATUS_OK; i++)
+    for (size_t i = 0; i < l->setting->mesh_count; i++)
         if (l->setting->meshes[i].source == MESH_SLIME)
-            code = put_slime(l, &l->setting->meshes[i], why);
-    return code;
+            TRY(put_slime(l, &l->setting->meshes[i], why));
+    return STATUS_OK;
 }
 
 static const struct {

@@ -94,11 +94,8 @@ void axis_find_films(study_axis *axis)
 
 status grid_set_point(scene *to, const study_point *point, diagnostic *why)
 {
-    for (size_t i = 0; i < point->count; i++) {
-        status code = scene_set(to, point->paths[i], point->values[i], why);
-        if (code != STATUS_OK)
-            return code;
-    }
+    for (size_t i = 0; i < point->count; i++)
+        TRY(scene_set(to, point->paths[i], point->values[i], why));
     return STATUS_OK;
 }
 

@@ -93,9 +93,7 @@ bool ledger_cell_done(const ledger *l, size_t cell)
 status study_status(const study *s, const char *results, study_progress *out, diagnostic *why)
 {
     ledger *l;
-    status code = ledger_read(s, results, &l, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(ledger_read(s, results, &l, why));
     *out = (study_progress){.cells = l->cell_count, .rows = l->rows, .rows_marked = l->marked};
     for (size_t cell = 0; cell < l->cell_count; cell++) {
         out->cells_done += ledger_cell_done(l, cell);

@@ -139,9 +139,7 @@ static status load(const study *s, const char *path, const topology *machine, js
 {
     *out = NULL;
     if (access(path, F_OK) == 0) {
-        const status code = facts_read(path, scene_root(s->base), out, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(facts_read(path, scene_root(s->base), out, why));
         if (!json_is_array(json_object_get(*out, "runs"))) {
             json_decref(*out);
             diagnostic_locate(why, path, 0, 0);

@@ -30,9 +30,7 @@ status facts_read(const char *path, const char *root, json_t **out, diagnostic *
     char *text;
     size_t size;
     *out = NULL;
-    const status code = file_read_below(path, root, FACTS_BYTES_MAX, &text, &size, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(file_read_below(path, root, FACTS_BYTES_MAX, &text, &size, why));
     *out = json_loadb(text, size, 0, NULL);
     free(text);
     return STATUS_OK;
@@ -56,9 +54,7 @@ status manifest_read(const char *path, const char *root, manifest_study *out, di
 {
     json_t *whole;
     *out = (manifest_study){0};
-    const status code = facts_read(path, root, &whole, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(facts_read(path, root, &whole, why));
     const json_t *about = json_object_get(whole, "study");
     out->text = copy_text(about, "text");
     out->scene_text = copy_text(about, "scene_text");

@@ -50,52 +50,48 @@ static status add_param(void *context, const char *path, const param *row, const
 /* Every object is named in its place: one whose parameters all are at their defaults is there, too. */
 static status add_objects(meaning *m, const scene *of, param_group group)
 {
-    status code = STATUS_OK;
-    for (size_t i = 0; code == STATUS_OK && i < place_group_size(of, group); i++)
-        code = add(m, text_format("%s %zu", param_group_name(group), i), strdup(place_group_name(of, group, i)));
-    return code;
+    for (size_t i = 0; i < place_group_size(of, group); i++)
+        TRY(add(m, text_format("%s %zu", param_group_name(group), i), strdup(place_group_name(of, group, i))));
+    return STATUS_OK;
 }
 
 static status add_solid(meaning *m, const scene *of, const solid *owner)
 {
-    status code = add(m, text_format("shape of %s", owner->name), strdup(shape_name(owner->shape.kind)));
-    if (code == STATUS_OK && owner->material_index >= 0)
-        code = add(m, text_format("material of %s", owner->name), strdup(of->materials[owner->material_index].name));
-    return code;
+    TRY(add(m, text_format("shape of %s", owner->name), strdup(shape_name(owner->shape.kind))));
+    if (owner->material_index >= 0)
+        TRY(add(m, text_format("material of %s", owner->name), strdup(of->materials[owner->material_index].name)));
+    return STATUS_OK;
 }
 
 status meaning_of_scene(meaning *m, const scene *of, bool without_how)
 {
     static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE, PARAM_LIGHT, PARAM_MATERIAL, PARAM_SOLID};
     visit_state state = {m, without_how};
-    status code = scene_each_param(of, add_param, &state);
-    if (code == STATUS_OK)
-        code = add(m, strdup("the camera's direction"), strdup(of->camera.aimed ? "its target" : "its angles"));
-    for (size_t i = 0; code == STATUS_OK && i < sizeof groups / sizeof *groups; i++)
-        code = add_objects(m, of, groups[i]);
-    for (size_t i = 0; code == STATUS_OK && i < of->solid_count; i++)
-        code = add_solid(m, of, &of->solids[i]);
-    return code;
+    TRY(scene_each_param(of, add_param, &state));
+    TRY(add(m, strdup("the camera's direction"), strdup(of->camera.aimed ? "its target" : "its angles")));
+    for (size_t i = 0; i < sizeof groups / sizeof *groups; i++)
+        TRY(add_objects(m, of, groups[i]));
+    for (size_t i = 0; i < of->solid_count; i++)
+        TRY(add_solid(m, of, &of->solids[i]));
+    return STATUS_OK;
 }
 
 static status add_axis(meaning *m, const study_axis *axis, size_t number)
 {
-    status code = STATUS_OK;
-    for (size_t i = 0; code == STATUS_OK && i < axis->count; i++)
-        for (size_t k = 0; code == STATUS_OK && k < axis->points[i].count; k++)
-            code = add(m, text_format("%s of point %zu on axis %zu", axis->points[i].paths[k], i, number),
-                       strdup(axis->points[i].values[k]));
-    return code;
+    for (size_t i = 0; i < axis->count; i++)
+        for (size_t k = 0; k < axis->points[i].count; k++)
+            TRY(add(m, text_format("%s of point %zu on axis %zu", axis->points[i].paths[k], i, number),
+                    strdup(axis->points[i].values[k])));
+    return STATUS_OK;
 }
 
 status meaning_of_study(meaning *m, const study *s)
 {
-    status code = add(m, strdup("the study's name"), strdup(s->name));
-    if (code == STATUS_OK)
-        code = meaning_of_scene(m, s->base, false);
-    for (size_t axis = 0; code == STATUS_OK && axis < s->axis_count; axis++)
-        code = add_axis(m, &s->axes[axis], axis);
-    return code;
+    TRY(add(m, strdup("the study's name"), strdup(s->name)));
+    TRY(meaning_of_scene(m, s->base, false));
+    for (size_t axis = 0; axis < s->axis_count; axis++)
+        TRY(add_axis(m, &s->axes[axis], axis));
+    return STATUS_OK;
 }
 
 void meaning_free(meaning *m)

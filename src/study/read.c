@@ -178,10 +178,10 @@ static status read_keep(study *s, const document *d, const node *n, diagnostic *
         return STATUS_OK;
     if (n->kind != NODE_MAP)
         return node_error(d, n, why, "write {image: on}", "keep is not a map");
-    status code = node_check_keys(d, n, keys, COUNT(keys), why);
-    for (size_t i = 0; code == STATUS_OK && i < COUNT(keys); i++)
-        code = read_switch(d, node_get(n, keys[i]), keys[i], kept[i], why);
-    return code;
+    TRY(node_check_keys(d, n, keys, COUNT(keys), why));
+    for (size_t i = 0; i < COUNT(keys); i++)
+        TRY(read_switch(d, node_get(n, keys[i]), keys[i], kept[i], why));
+    return STATUS_OK;
 }
 
 /* The scene's file, its text for the manifest and its model. Errors inside it are located in it. */
@@ -214,10 +214,9 @@ static status read_scene(study *s, const document *d, const node *root, const st
                           "scene %s cannot be read", s->scene_path);
     size_t size;
     const char *below = guard ? guard->root : NULL;
-    status code = file_read_below(s->scene_path, below, FILE_BYTES_MAX, &s->scene_text, &size, why);
-    if (code == STATUS_OK)
-        code = scene_read_text(s->scene_path, s->scene_text, size, &s->base, why);
-    return code == STATUS_OK ? scene_limit(s->base, below, 0, why) : code;
+    TRY(file_read_below(s->scene_path, below, FILE_BYTES_MAX, &s->scene_text, &size, why));
+    TRY(scene_read_text(s->scene_path, s->scene_text, size, &s->base, why));
+    return scene_limit(s->base, below, 0, why);
 }
 
 static status check_loads(void *context, const study *s, size_t cell, scene *own, diagnostic *why)
@@ -245,32 +244,23 @@ static status read_root(study *s, const document *d, const void *context, diagno
         diagnostic_locate(why, s->path, 1, 1);
         return diagnose(why, STATUS_BAD_INPUT, "begin with study: NAME and scene: FILE", "the study is empty");
     }
-    status code = node_check_keys(d, root, keys, COUNT(keys), why);
-    if (code == STATUS_OK)
-        code = read_names(s, d, root, why);
-    if (code == STATUS_OK)
-        code = read_repetitions(s, d, node_get(root, "repetitions"), why);
-    if (code == STATUS_OK)
-        code = read_order(s, d, node_get(root, "warmups"), node_get(root, "order"), why);
-    if (code == STATUS_OK)
-        code = read_keep(s, d, node_get(root, "keep"), why);
-    if (code == STATUS_OK)
-        code = read_scene(s, d, root, guard, why);
-    if (code == STATUS_OK)
-        code = read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why);
-    if (code == STATUS_OK)
-        code = read_reference(s, d, node_get(root, "reference"), why);
-    for (size_t i = 0; code == STATUS_OK && i < COUNT(checks); i++)
-        code = checks[i](s, why);
-    if (code == STATUS_OK && guard)
-        code = guard->may_load(guard->context, s->base, why);
-    if (code == STATUS_OK && guard)
-        code = grid_each_cell(s, check_loads, (void *)(uintptr_t)guard, why);
-    if (code == STATUS_OK)
-        code = grid_definition(s, &s->definition_hash, why);
-    if (code == STATUS_OK)
-        s->compare_hash = reference_definition(s, s->definition_hash);
-    return code;
+    TRY(node_check_keys(d, root, keys, COUNT(keys), why));
+    TRY(read_names(s, d, root, why));
+    TRY(read_repetitions(s, d, node_get(root, "repetitions"), why));
+    TRY(read_order(s, d, node_get(root, "warmups"), node_get(root, "order"), why));
+    TRY(read_keep(s, d, node_get(root, "keep"), why));
+    TRY(read_scene(s, d, root, guard, why));
+    TRY(read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why));
+    TRY(read_reference(s, d, node_get(root, "reference"), why));
+    for (size_t i = 0; i < COUNT(checks); i++)
+        TRY(checks[i](s, why));
+    if (guard) {
+        TRY(guard->may_load(guard->context, s->base, why));
+        TRY(grid_each_cell(s, check_loads, (void *)(uintptr_t)guard, why));
+    }
+    TRY(grid_definition(s, &s->definition_hash, why));
+    s->compare_hash = reference_definition(s, s->definition_hash);
+    return STATUS_OK;
 }
 
 status study_parse(study *s, const char *text, size_t size, study_parts *read, const void *context, study **out,
@@ -310,10 +300,8 @@ status study_read_guarded(const char *path, const study_guard *guard, study **ou
     char *text;
     size_t size;
     *out = NULL;
-    status code = file_read_below(path, guard ? guard->root : NULL, FILE_BYTES_MAX, &text, &size, why);
-    if (code != STATUS_OK)
-        return code;
-    code = read_text(path, text, size, guard, out, why);
+    TRY(file_read_below(path, guard ? guard->root : NULL, FILE_BYTES_MAX, &text, &size, why));
+    status code = read_text(path, text, size, guard, out, why);
     free(text);
     return code;
 }

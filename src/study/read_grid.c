@@ -59,9 +59,7 @@ static status point_add(study_point *point, scene *on, const document *d, const 
                         diagnostic *why)
 {
     char *canonical;
-    status code = try_value(on, d, key, value, &canonical, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(try_value(on, d, key, value, &canonical, why));
     point->values[point->count] = canonical;
     point->paths[point->count] = strdup(key->text);
     return point->paths[point->count++] ? STATUS_OK : out_of_memory(why);
@@ -72,10 +70,10 @@ static status read_point(study_point *point, scene *on, const document *d, const
 {
     if (map->kind != NODE_MAP || map->count == 0)
         return node_error(d, map, why, "write {path: value}", "this sets no parameter");
-    status code = point_reserve(point, map, map->count, why);
-    for (size_t i = 0; code == STATUS_OK && i < map->count; i++)
-        code = point_add(point, on, d, map->keys[i], map->items[i], why);
-    return code;
+    TRY(point_reserve(point, map, map->count, why));
+    for (size_t i = 0; i < map->count; i++)
+        TRY(point_add(point, on, d, map->keys[i], map->items[i], why));
+    return STATUS_OK;
 }
 
 /* Brings the point's paths into the order of the axis' first point. */

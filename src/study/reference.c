@@ -85,14 +85,12 @@ static status damaged(const char *path, diagnostic *why)
 static status load_facts(const char *path, const char *root, reference *out, uint64_t *pixels, diagnostic *why)
 {
     json_t *facts;
-    status code = facts_read(path, root, &facts, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(facts_read(path, root, &facts, why));
     const json_t *noise = json_object_get(facts, "noise_rms");
     facts_get_hash(facts, "film_hash", &out->film_hash);
     facts_get_hash(facts, "pixel_hash", pixels);
     out->noise_rms = json_is_number(noise) ? json_number_value(noise) : NAN;
-    code = noise ? STATUS_OK : damaged(path, why);
+    status code = noise ? STATUS_OK : damaged(path, why);
     json_decref(facts);
     return code;
 }

@@ -130,9 +130,7 @@ static status run_rounds(run *r, diagnostic *why)
             if (r->done->cells[cell].counted > (size_t)round || ledger_cell_done(r->done, cell))
                 continue;
             progress_count(r->line, cell, r->done, r->cells, r->cell_count);
-            status code = measure_warm(r, cell, why);
-            if (code != STATUS_OK)
-                return code;
+            TRY(measure_warm(r, cell, why));
         }
     }
     progress_measured(r->line, r->done, r->cells, r->cell_count);

@@ -77,11 +77,9 @@ static status compare_cell(run *r, size_t cell, const scene *setting, const rend
 {
     csv_line line = {0};
     compare_row row = {.of = r->s, .cell = cell, .setting = setting, .against = &r->held};
-    status code = compare_row_measure(&row, frame, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(compare_row_measure(&row, frame, why));
     compare_row_write(&line, &row);
-    code = run_append(r->compares, &line, why);
+    status code = run_append(r->compares, &line, why);
     r->compared[cell] = code == STATUS_OK;
     return code;
 }

@@ -199,11 +199,11 @@ static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
 /* Sky and textures. */
 static status load_pictures(scene *s, diagnostic *why)
 {
-    status code = load_sky(s, why);
-    for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++)
+    TRY(load_sky(s, why));
+    for (size_t i = 0; i < s->texture_count; i++)
         if (!s->textures[i].data)
-            code = load_texture(s, &s->textures[i], why);
-    return code;
+            TRY(load_texture(s, &s->textures[i], why));
+    return STATUS_OK;
 }
 
 /* Of all slimes that are to move, what one of them does. */
@@ -245,8 +245,8 @@ static status load_meshes(scene *s, const load_watch *watch, diagnostic *why)
 
 status scene_load_until(scene *s, const load_watch *watch, diagnostic *why)
 {
-    const status code = load_pictures(s, why);
-    return code == STATUS_OK ? load_meshes(s, watch, why) : code;
+    TRY(load_pictures(s, why));
+    return load_meshes(s, watch, why);
 }
 
 status scene_load(scene *s, diagnostic *why)

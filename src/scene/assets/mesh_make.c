@@ -83,10 +83,8 @@ status mesh_make_from_file(mesh_entry *m, const char *path, const load_limits *l
 {
     const mesh_limits own = {.root = limits->root, .triangles = limits->triangles};
     mesh_import *imported;
-    status code = mesh_read_file(path, &own, &imported, why);
-    if (code != STATUS_OK)
-        return code;
-    code = looks_create(imported, limits->root, &m->looks, why);
+    TRY(mesh_read_file(path, &own, &imported, why));
+    status code = looks_create(imported, limits->root, &m->looks, why);
     if (code == STATUS_OK) {
         m->data = imported->mesh;
         mesh_retain(m->data);

@@ -51,9 +51,7 @@ static status no_room(diagnostic *why)
 static status read_header(const mesh_source *source, const mesh_limits *limits, mesh_wire_header *header,
                           diagnostic *why)
 {
-    status code = source->read(source->context, header, sizeof *header, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(source->read(source->context, header, sizeof *header, why));
     if (memcmp(header->magic, MESH_WIRE_MAGIC, sizeof header->magic) != 0 || header->version != MESH_WIRE_VERSION)
         return damaged(why, "its first bytes are not those of a mesh of this version");
     if (header->flags & ~(uint32_t)(MESH_WIRE_NORMALS | MESH_WIRE_UVS) || header->reserved)
@@ -88,11 +86,9 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
         {m->triangles, m->triangle_count * sizeof *m->triangles},
         {m->slots, m->triangle_count},
     };
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        status code = arrays[i].size ? source->read(source->context, arrays[i].bytes, arrays[i].size, why) : STATUS_OK;
-        if (code != STATUS_OK)
-            return code;
-    }
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        if (arrays[i].size)
+            TRY(source->read(source->context, arrays[i].bytes, arrays[i].size, why));
     for (size_t i = 0; m->uvs && i < m->vertex_count; i++) {
         if (!isfinite(m->uvs[i].u) || !isfinite(m->uvs[i].v)) {
             return diagnose(why, STATUS_BAD_INPUT, "texture coordinates are finite",
@@ -159,9 +155,7 @@ static status check_numbers(const imported_material *m, diagnostic *why)
 static status read_material(const mesh_source *source, imported_material *m, diagnostic *why)
 {
     mesh_wire_material record;
-    status code = source->read(source->context, &record, sizeof record, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(source->read(source->context, &record, sizeof record, why));
     if (record.flags & ~(uint32_t)(MESH_WIRE_GIVEN | MESH_WIRE_TEXTURE_INSIDE) || record.reserved)
         return damaged(why, "unknown flags of a material");
     m->given = record.flags & MESH_WIRE_GIVEN;
@@ -173,26 +167,21 @@ static status read_material(const mesh_source *source, imported_material *m, dia
     m->shininess = record.shininess;
     m->opacity = record.opacity;
     m->ior = record.ior;
-    code = read_text(source, record.name_length, &m->name, why);
-    if (code == STATUS_OK)
-        code = read_text(source, record.texture_length, &m->texture, why);
-    return code == STATUS_OK ? check_numbers(m, why) : code;
+    TRY(read_text(source, record.name_length, &m->name, why));
+    TRY(read_text(source, record.texture_length, &m->texture, why));
+    return check_numbers(m, why);
 }
 
 static status read_materials(const mesh_source *source, mesh_import *into, diagnostic *why)
 {
     for (int i = 0; i < into->material_count; i++) {
         imported_material *m = &into->materials[i];
-        status code = read_material(source, m, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(read_material(source, m, why));
         if (m->name && !(into->mesh->slot_names[i] = strdup(m->name)))
             return no_room(why);
     }
     char end[sizeof MESH_WIRE_END - 1];
-    status code = source->read(source->context, end, sizeof end, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(source->read(source->context, end, sizeof end, why));
     return memcmp(end, MESH_WIRE_END, sizeof end) == 0 ? source->end(source->context, why)
                                                        : damaged(why, "its end is not where it should be");
 }
@@ -200,21 +189,16 @@ static status read_materials(const mesh_source *source, mesh_import *into, diagn
 static status read_all(const mesh_source *source, const mesh_limits *limits, mesh_import *into, diagnostic *why)
 {
     mesh_wire_header header;
-    status code = read_header(source, limits, &header, why);
-    if (code != STATUS_OK)
-        return code;
-    code = mesh_create((size_t)header.vertex_count, (size_t)header.triangle_count, header.flags & MESH_WIRE_NORMALS,
-                       header.flags & MESH_WIRE_UVS, true, &into->mesh, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(read_header(source, limits, &header, why));
+    TRY(mesh_create((size_t)header.vertex_count, (size_t)header.triangle_count, header.flags & MESH_WIRE_NORMALS,
+                    header.flags & MESH_WIRE_UVS, true, &into->mesh, why));
     into->mesh->slot_count = into->material_count = (int)header.material_count;
     into->materials = calloc(header.material_count, sizeof *into->materials);
     if (!into->materials)
         return no_room(why);
-    code = read_arrays(source, into->mesh, why);
-    if (code == STATUS_OK)
-        code = read_materials(source, into, why);
-    return code == STATUS_OK ? mesh_finish(into->mesh, why) : code;
+    TRY(read_arrays(source, into->mesh, why));
+    TRY(read_materials(source, into, why));
+    return mesh_finish(into->mesh, why);
 }
 
 status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, mesh_import **out, diagnostic *why)

@@ -73,9 +73,7 @@ static status read_scalar(event_reader *r, const yaml_event_t *event, node **out
     if (memchr(value, 0, length))
         return events_error(r, event->start_mark, "remove it", "a text holds a NUL character");
     node *n = NULL;
-    status code = node_create(r, NODE_SCALAR, event->start_mark, &n);
-    if (code != STATUS_OK)
-        return code;
+    TRY(node_create(r, NODE_SCALAR, event->start_mark, &n));
     n->quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
     n->text = strdup(value);
     if (!n->text) {
@@ -170,10 +168,8 @@ static status read_node(event_reader *r, yaml_event_t *event, int depth, node **
     }
     bool map = event->type == YAML_MAPPING_START_EVENT;
     node *n = NULL;
-    status code = node_create(r, map ? NODE_MAP : NODE_LIST, event->start_mark, &n);
-    if (code != STATUS_OK)
-        return code;
-    code = read_entries(r, map ? YAML_MAPPING_END_EVENT : YAML_SEQUENCE_END_EVENT, depth, n);
+    TRY(node_create(r, map ? NODE_MAP : NODE_LIST, event->start_mark, &n));
+    status code = read_entries(r, map ? YAML_MAPPING_END_EVENT : YAML_SEQUENCE_END_EVENT, depth, n);
     if (code != STATUS_OK) {
         node_destroy(n);
         return code;
@@ -262,10 +258,8 @@ status document_read_below(const char *path, const char *root, document **out, d
     *out = NULL;
     char *text;
     size_t size;
-    status code = file_read_below(path, root, SIZE_LIMIT, &text, &size, why);
-    if (code != STATUS_OK)
-        return code;
-    code = document_parse(path, text, size, out, why);
+    TRY(file_read_below(path, root, SIZE_LIMIT, &text, &size, why));
+    status code = document_parse(path, text, size, out, why);
     free(text);
     return code;
 }

@@ -42,14 +42,12 @@ static status check_sky(const scene_reader *r, const node *map)
 /* A section that is one object. */
 static status read_settings(const scene_reader *r, const char *name, param_group group, const node *map)
 {
-    status code = read_expect_map(r, map, name);
-    if (code == STATUS_OK)
-        code = read_check_keys(r, group, map);
-    if (code == STATUS_OK)
-        code = read_entries(r, name, group, map);
-    if (code == STATUS_OK && group == PARAM_BACKGROUND)
-        code = check_sky(r, map);
-    return code == STATUS_OK ? read_located(r, map, check_object(r->scene, group, 0, r->why)) : code;
+    TRY(read_expect_map(r, map, name));
+    TRY(read_check_keys(r, group, map));
+    TRY(read_entries(r, name, group, map));
+    if (group == PARAM_BACKGROUND)
+        TRY(check_sky(r, map));
+    return read_located(r, map, check_object(r->scene, group, 0, r->why));
 }
 
 static status read_camera(const scene_reader *r, const char *name, param_group group, const node *map)
@@ -67,8 +65,8 @@ static status read_camera(const scene_reader *r, const char *name, param_group g
 static status read_title(const scene_reader *r, const char *name, param_group group, const node *value)
 {
     (void)group;
-    status code = read_expect_word(r, value, name);
-    return code == STATUS_OK ? scene_set_title(r->scene, value->text, r->why) : code;
+    TRY(read_expect_word(r, value, name));
+    return scene_set_title(r->scene, value->text, r->why);
 }
 
 static status read_sections(const scene_reader *r)
@@ -160,6 +158,6 @@ status scene_read_text(const char *name, const char *text, size_t size, scene **
 {
     *out = NULL;
     document *file;
-    status code = document_parse(name, text, size, &file, why);
-    return code == STATUS_OK ? build_and_release(file, out, why) : code;
+    TRY(document_parse(name, text, size, &file, why));
+    return build_and_release(file, out, why);
 }

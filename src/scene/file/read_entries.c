@@ -52,9 +52,7 @@ static status check_value_kind(const scene_reader *r, const param *row, const ch
 
 static status read_value(const scene_reader *r, const char *path, const param *row, const node *value)
 {
-    status code = check_value_kind(r, row, path, value);
-    if (code != STATUS_OK)
-        return code;
+    TRY(check_value_kind(r, row, path, value));
     char *text = node_value_text(value);
     if (!text && node_is_value(value))
         return out_of_memory(r->why);
@@ -62,7 +60,7 @@ static status read_value(const scene_reader *r, const char *path, const param *r
         return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",
                           "%.150s holds more than plain numbers", path);
     }
-    code = read_located(r, value, scene_set(r->scene, path, text, r->why));
+    status code = read_located(r, value, scene_set(r->scene, path, text, r->why));
     free(text);
     return code;
 }

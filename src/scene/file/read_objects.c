@@ -15,8 +15,8 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
         scene_shape_words("or", remedy + used, sizeof remedy - used);
         return node_error(r->file, key, r->why, remedy, "%s has no shape", key->text);
     }
-    status code = read_expect_word(r, shape, "shape");
-    return code == STATUS_OK ? read_located(r, shape, scene_shape_named(shape->text, out, r->why)) : code;
+    TRY(read_expect_word(r, shape, "shape"));
+    return read_located(r, shape, scene_shape_named(shape->text, out, r->why));
 }
 
 /* Gives the solid the material that its entry names, if any. */
@@ -25,23 +25,19 @@ static status read_material_name(const scene_reader *r, const node *key, const n
     const node *word = node_get(map, "material");
     if (!word)
         return STATUS_OK;
-    status code = read_expect_word(r, word, "material");
-    return code == STATUS_OK ? read_located(r, word, scene_give_material(r->scene, key->text, word->text, r->why))
-                             : code;
+    TRY(read_expect_word(r, word, "material"));
+    return read_located(r, word, scene_give_material(r->scene, key->text, word->text, r->why));
 }
 
 /* A new solid, whose shape and material are no rows of the table. */
 static status begin_solid(const scene_reader *r, const node *key, const node *map, size_t *index)
 {
     shape_kind shape = {0};
-    status code = read_check_keys(r, PARAM_SOLID, map);
-    if (code == STATUS_OK)
-        code = read_one_medium(r, map);
-    if (code == STATUS_OK)
-        code = read_shape(r, key, map, &shape);
-    if (code == STATUS_OK)
-        code = read_located(r, key, scene_add_solid(r->scene, key->text, shape, index, r->why));
-    return code == STATUS_OK ? read_material_name(r, key, map) : code;
+    TRY(read_check_keys(r, PARAM_SOLID, map));
+    TRY(read_one_medium(r, map));
+    TRY(read_shape(r, key, map, &shape));
+    TRY(read_located(r, key, scene_add_solid(r->scene, key->text, shape, index, r->why)));
+    return read_material_name(r, key, map);
 }
 
 static status begin_object(const scene_reader *r, param_group group, const node *key, const node *map, size_t *index)

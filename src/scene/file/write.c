@@ -114,15 +114,13 @@ static status visit(void *context, const char *path, const param *row, const cha
     if (row->group != w->group && !(w->group == PARAM_SOLID && row->group == PARAM_MATERIAL))
         return STATUS_OK;
     place at;
-    status code = place_find(w->s, path, &at, w->why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(place_find(w->s, path, &at, w->why));
     if (at.group != w->group)
         return STATUS_OK;
     if (is_section_of_objects(at.group) && strcmp(w->object, place_group_name(w->s, at.group, at.index)) != 0)
         begin_object(w, &at);
     bool wanted = false;
-    code = write_is_wanted(w->s, &at, value, w->all, &wanted, w->why);
+    status code = write_is_wanted(w->s, &at, value, w->all, &wanted, w->why);
     if (code != STATUS_OK || !wanted)
         return code;
     put_section(w);
@@ -159,9 +157,7 @@ static status put_scene(scene_writer *w)
                                         PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT,      PARAM_SOLID};
     _Static_assert(sizeof order / sizeof *order == PARAM_GROUP_COUNT, "every group has its section");
     if (w->s->title[0]) {
-        status code = write_check_text("title", w->s->title, w->why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(write_check_text("title", w->s->title, w->why));
         fputs("title: ", w->out);
         write_word(w->out, w->s->title);
         fputc('\n', w->out);
@@ -183,11 +179,9 @@ status scene_write_text(const scene *s, const char *path, bool all, char **text,
 {
     *text = NULL;
     text_writer writer;
-    status code = text_writer_open(&writer, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(text_writer_open(&writer, why));
     scene_writer w = {.s = s, .path = path ? path : "", .all = all, .out = writer.stream, .why = why};
-    code = put_scene(&w);
+    status code = put_scene(&w);
     if (code == STATUS_OK)
         return text_writer_close(&writer, text, NULL, why);
     text_writer_abandon(&writer);
@@ -198,11 +192,9 @@ status scene_write_text(const scene *s, const char *path, bool all, char **text,
 status scene_write(const scene *s, const char *path, bool all, diagnostic *why)
 {
     char *text;
-    status code = scene_write_text(s, strcmp(path, "-") == 0 ? "" : path, all, &text, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(scene_write_text(s, strcmp(path, "-") == 0 ? "" : path, all, &text, why));
     file_writer writer;
-    code = file_writer_open(&writer, path, why);
+    status code = file_writer_open(&writer, path, why);
     if (code == STATUS_OK) {
         fputs(text, writer.stream);
         code = file_writer_commit(&writer, why);

@@ -211,8 +211,8 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     }
     if (!m)
         return unknown(s, PARAM_MESH, owner->name, owner->mesh, why);
-    const status code = check_colors(s, owner, m, why);
-    return code == STATUS_OK ? check_closed(s, owner, m, why) : code;
+    TRY(check_colors(s, owner, m, why));
+    return check_closed(s, owner, m, why);
 }
 
 /* The same sum for each kind of face that has shares of its own. */
@@ -238,9 +238,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     status code = solid_shape_check(&owner->shape, &shape);
     if (code != STATUS_OK)
         return diagnose(why, code, shape.remedy, "%.80s: %s", owner->name, shape.what);
-    code = check_references(s, owner, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(check_references(s, owner, why));
     index_law unused;
     code = material_index_law(&owner->surface, owner->name, &unused, why);
     if (code == STATUS_OK)

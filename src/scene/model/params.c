@@ -112,14 +112,11 @@ static void store(scene *s, const place *at, param_value value)
 status scene_set(scene *s, const char *path, const char *value, diagnostic *why)
 {
     place at;
-    status code = place_find(s, path, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(place_find(s, path, &at, why));
     param_value parsed;
-    code = param_value_parse(at.row, at.element, path, value, &parsed, why);
-    if (code == STATUS_OK)
-        store(s, &at, parsed);
-    return code;
+    TRY(param_value_parse(at.row, at.element, path, value, &parsed, why));
+    store(s, &at, parsed);
+    return STATUS_OK;
 }
 
 status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
@@ -149,9 +146,7 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
 {
     *value = NULL;
     place at;
-    status code = place_find(s, path, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(place_find(s, path, &at, why));
     *value = place_text(s, &at);
     return *value ? STATUS_OK : out_of_memory(why);
 }

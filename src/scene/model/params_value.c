@@ -167,9 +167,7 @@ static status parse_vector(const param *row, const char *label, char *text, vec3
     for (int i = 0; i < 3; i++) {
         char element[160];
         snprintf(element, sizeof element, "%s.%c", label, (row->type == PARAM_COLOR ? "rgb" : "xyz")[i]);
-        status code = parse_real(row, element, parts[i], &values[i], why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(parse_real(row, element, parts[i], &values[i], why));
     }
     *out = vec3_make(values[0], values[1], values[2]);
     return STATUS_OK;
@@ -184,11 +182,8 @@ static status parse_list(const param *row, const char *label, char *text, number
     if (count > NUMBER_LIST_MAX)
         return wrong(row, false, why, "%s: %zu numbers are too many", label, count);
     *out = (number_list){.count = (int64_t)count};
-    for (size_t i = 0; i < count; i++) {
-        status code = parse_real(row, label, parts[i], &out->value[i], why);
-        if (code != STATUS_OK)
-            return code;
-    }
+    for (size_t i = 0; i < count; i++)
+        TRY(parse_real(row, label, parts[i], &out->value[i], why));
     return STATUS_OK;
 }
 
@@ -210,11 +205,8 @@ static status parse_word(const param *row, const char *label, const char *text, 
 {
     if (strlen(text) > SCENE_NAME_MAX)
         return wrong(row, false, why, "%s: the name is longer than %d bytes", label, (int)SCENE_NAME_MAX);
-    if (*text) {
-        const status code = check_name(text, why);
-        if (code != STATUS_OK)
-            return code;
-    }
+    if (*text)
+        TRY(check_name(text, why));
     strcpy(word, text);
     return STATUS_OK;
 }
@@ -290,9 +282,7 @@ status param_set_defaults(param_group group, void *base, diagnostic *why)
         if (row->group != group)
             continue;
         param_value value;
-        status code = param_value_parse(row, -1, row->name, row->fallback, &value, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(param_value_parse(row, -1, row->name, row->fallback, &value, why));
         param_value_store(row, -1, (char *)base + row->offset, value);
     }
     return STATUS_OK;

@@ -68,12 +68,10 @@ status slime_create(const scene *s, const mesh_entry *m, slime *out, diagnostic 
     *out = (slime){.body = NULL};
     const softbody_settings settings = slime_settings(m);
     hand_script *script;
-    status code = slime_read_script(s, m, &script, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(slime_read_script(s, m, &script, why));
     diagnostic bad = {.what = ""};
     softbody *body = NULL;
-    code = softbody_create(&settings, isa_best(), &body, &bad);
+    status code = softbody_create(&settings, isa_best(), &body, &bad);
     if (code != STATUS_OK) {
         hand_script_destroy(script);
         return body_error(s, m, &bad, code, why);
@@ -161,10 +159,8 @@ static status make_skin(const slime *x, const scene *s, mesh_entry *m, diagnosti
 status slime_make(const scene *s, mesh_entry *m, const load_watch *watch, diagnostic *why)
 {
     slime x;
-    status code = slime_create(s, m, &x, why);
-    if (code != STATUS_OK)
-        return code;
-    code = slime_advance(&x, s, m, m->time_s, watch, why);
+    TRY(slime_create(s, m, &x, why));
+    status code = slime_advance(&x, s, m, m->time_s, watch, why);
     if (code == STATUS_OK)
         code = make_skin(&x, s, m, why);
     slime_destroy(&x);

@@ -22,12 +22,10 @@ status motion_give_skin(const scene_motion *m, const moving_slime *one, diagnost
 {
     mesh_entry *entry = motion_entry(m, one);
     mesh *skin = NULL;
-    const status code = softbody_skin(one->x.body, &skin, why);
-    if (code == STATUS_OK) {
-        mesh_entry_unload(entry);
-        entry->data = skin;
-    }
-    return code;
+    TRY(softbody_skin(one->x.body, &skin, why));
+    mesh_entry_unload(entry);
+    entry->data = skin;
+    return STATUS_OK;
 }
 
 static void add_moves(hierarchy_moves *sum, const hierarchy_moves *more)
@@ -73,10 +71,8 @@ static status begin(scene_motion *m, diagnostic *why)
             continue;
         moving_slime *one = &m->slimes[m->count];
         *one = (moving_slime){.entry = i};
-        status code = slime_create(m->s, &m->s->meshes[i], &one->x, why);
-        if (code != STATUS_OK)
-            return code;
-        code = motion_remember(m, one, why);
+        TRY(slime_create(m->s, &m->s->meshes[i], &one->x, why));
+        status code = motion_remember(m, one, why);
         if (code != STATUS_OK) {
             motion_forget(one);
             return code;
@@ -167,12 +163,11 @@ static status show_one(scene_motion *m, moving_slime *one, double time_s, bool s
 status scene_motion_advance_until(scene_motion *m, double time_s, bool skins, const load_watch *watch, diagnostic *why)
 {
     m->last = (scene_motion_report){.steps = 0};
-    status code = STATUS_OK;
-    for (size_t i = 0; i < m->count && code == STATUS_OK; i++)
-        code = advance_one(m, i, time_s, watch, why);
-    for (size_t i = 0; i < m->count && code == STATUS_OK; i++)
-        code = show_one(m, &m->slimes[i], time_s, skins, why);
-    return code;
+    for (size_t i = 0; i < m->count; i++)
+        TRY(advance_one(m, i, time_s, watch, why));
+    for (size_t i = 0; i < m->count; i++)
+        TRY(show_one(m, &m->slimes[i], time_s, skins, why));
+    return STATUS_OK;
 }
 
 status scene_motion_advance(scene_motion *m, double time_s, bool skins, diagnostic *why)

@@ -92,9 +92,7 @@ status scene_motion_pick(const scene_motion *m, size_t i, int solid_or_any, vec3
         const solid_shape *shape = &s->solids[k].shape;
         if (!is_wanted(&s->solids[k], entry->name, solid_or_any, k))
             continue;
-        const status code = solid_shape_check(shape, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(solid_shape_check(shape, why));
         const mat3 rotation = rotation_from_deg(shape->rotation_deg);
         const search q = {.body = m->slimes[i].x.body,
                           .box = entry->data->bounds,

@@ -58,9 +58,7 @@ static status read_vector(const script_reader *r, const char *label, const node 
     for (int i = 0; i < 3; i++) {
         char element[32];
         snprintf(element, sizeof element, "%s.%c", label, "xyz"[i]);
-        const status code = read_number(r, element, n->items[i], -FAR, FAR, &value[i]);
-        if (code != STATUS_OK)
-            return code;
+        TRY(read_number(r, element, n->items[i], -FAR, FAR, &value[i]));
     }
     *out = vec3_make(value[0], value[1], value[2]);
     return STATUS_OK;
@@ -147,9 +145,7 @@ static status read_key(const script_reader *r, const char *hand, const node *ent
         return node_error(r->file, entry, r->why, "write '- {time_s: 1.5, move: [0, 1, 0]}' and the like",
                           "an entry of %.80s is no map", hand);
     }
-    const status known = node_check_keys(r->file, entry, keys, sizeof keys / sizeof *keys, r->why);
-    if (known != STATUS_OK)
-        return known;
+    TRY(node_check_keys(r->file, entry, keys, sizeof keys / sizeof *keys, r->why));
     hand_key key = {.line = entry->line, .column = entry->column};
     const node *time = node_get(entry, "time_s");
     if (!time) {
@@ -180,10 +176,9 @@ static status read_hand(const script_reader *r, const node *name, const node *tr
         return node_error(r->file, name, r->why, "a name has 63 bytes at most", "'%.80s' cannot be a hand's name",
                           name->text);
     }
-    status code = STATUS_OK;
-    for (size_t i = 0; i < track->count && code == STATUS_OK; i++)
-        code = read_key(r, name->text, track->items[i]);
-    return code;
+    for (size_t i = 0; i < track->count; i++)
+        TRY(read_key(r, name->text, track->items[i]));
+    return STATUS_OK;
 }
 
 static status read_script(const script_reader *r)
@@ -194,9 +189,7 @@ static status read_script(const script_reader *r)
         return node_error(r->file, root, r->why, "begin with hands:, and the name of one below it",
                           "this is not a script");
     }
-    const status known = node_check_keys(r->file, root, keys, sizeof keys / sizeof *keys, r->why);
-    if (known != STATUS_OK)
-        return known;
+    TRY(node_check_keys(r->file, root, keys, sizeof keys / sizeof *keys, r->why));
     const node *title = node_get(root, "title"), *hands = node_get(root, "hands");
     if (title && (title->kind != NODE_SCALAR || !title->text[0])) {
         return node_error(r->file, title, r->why, "give some words, or leave it out", "title is %s",
@@ -206,10 +199,9 @@ static status read_script(const script_reader *r)
         return node_error(r->file, hands ? hands : root, r->why,
                           "write hands:, and below it a name with a list of entries", "the script has no hands");
     }
-    status code = STATUS_OK;
-    for (size_t i = 0; i < hands->count && code == STATUS_OK; i++)
-        code = read_hand(r, hands->keys[i], hands->items[i]);
-    return code;
+    for (size_t i = 0; i < hands->count; i++)
+        TRY(read_hand(r, hands->keys[i], hands->items[i]));
+    return STATUS_OK;
 }
 
 static status build_and_release(document *file, hand_script **out, diagnostic *why)
@@ -229,14 +221,14 @@ status script_read_below(const char *path, const char *root, hand_script **out, 
 {
     *out = NULL;
     document *file;
-    const status code = document_read_below(path, root, &file, why);
-    return code == STATUS_OK ? build_and_release(file, out, why) : code;
+    TRY(document_read_below(path, root, &file, why));
+    return build_and_release(file, out, why);
 }
 
 status script_read_text(const char *name, const char *text, size_t size, hand_script **out, diagnostic *why)
 {
     *out = NULL;
     document *file;
-    const status code = document_parse(name, text, size, &file, why);
-    return code == STATUS_OK ? build_and_release(file, out, why) : code;
+    TRY(document_parse(name, text, size, &file, why));
+    return build_and_release(file, out, why);
 }

@@ -66,9 +66,7 @@ static status remove_texture(scene *s, size_t index, diagnostic *why)
 status scene_remove(scene *s, const char *name, diagnostic *why)
 {
     place at;
-    status code = place_find_object(s, name, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(place_find_object(s, name, &at, why));
     switch (at.group) {
     case PARAM_MESH: return remove_mesh(s, at.index, why);
     case PARAM_TEXTURE: return remove_texture(s, at.index, why);
@@ -105,9 +103,7 @@ static void follow_name(scene *s, const place *at, const char *from, const char 
 status scene_rename(scene *s, const char *name, const char *new_name, diagnostic *why)
 {
     place at;
-    status code = place_find_object(s, name, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(place_find_object(s, name, &at, why));
     char *copy = NULL;
     if (!group_has_names(at.group)) {
         return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid",
@@ -115,18 +111,15 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     }
     if (strcmp(name, new_name) == 0)
         return STATUS_OK;
-    code = check_name(new_name, why);
-    if (code == STATUS_OK)
-        code = check_name_is_free(s, new_name, why);
-    if (code == STATUS_OK && !(copy = strdup(new_name)))
-        code = out_of_memory(why);
-    if (code == STATUS_OK) {
-        follow_name(s, &at, name, copy);
-        char **field = object_at(s, at.group, at.index);
-        free(*field);
-        *field = copy;
-    }
-    return code;
+    TRY(check_name(new_name, why));
+    TRY(check_name_is_free(s, new_name, why));
+    if (!(copy = strdup(new_name)))
+        return out_of_memory(why);
+    follow_name(s, &at, name, copy);
+    char **field = object_at(s, at.group, at.index);
+    free(*field);
+    *field = copy;
+    return STATUS_OK;
 }
 
 status scene_set_title(scene *s, const char *title, diagnostic *why)

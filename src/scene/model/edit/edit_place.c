@@ -59,9 +59,7 @@ status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
     scene_parts parts;
     if (scene_parts_named(s, name, &parts))
         return scene_move_parts(s, parts, delta, why);
-    status code = edit_find(s, name, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(edit_find(s, name, &at, why));
     if (at.group == PARAM_CAMERA)
         return move_camera(s, delta, why);
     if (at.group == PARAM_LIGHT)
@@ -172,9 +170,8 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
     place at;
     scene_parts parts;
     const bool is_many = scene_parts_named(s, name, &parts);
-    const status code = is_many ? STATUS_OK : edit_find(s, name, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    if (!is_many)
+        TRY(edit_find(s, name, &at, why));
     if (!is_angle(degrees.x) || !is_angle(degrees.y) || !is_angle(degrees.z)) {
         return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees",
                         "%.80s cannot be turned so far", name);

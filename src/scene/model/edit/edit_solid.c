@@ -16,9 +16,7 @@
 status scene_give_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why)
 {
     place at;
-    status code = place_find_object(s, solid_name, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(place_find_object(s, solid_name, &at, why));
     if (at.group != PARAM_SOLID) {
         return diagnose(why, STATUS_BAD_INPUT, "name a solid", "%.80s is a %s, which has no material", solid_name,
                         param_group_name(at.group));

@@ -123,8 +123,8 @@ static status turn_point(const whole_edit *e, const char *name, const char *row,
 
 static status turn_solid(whole_edit *e, const solid *one)
 {
-    const status code = turn_point(e, one->name, "position", one->shape.position);
-    return code == STATUS_OK ? scene_turn(e->s, one->name, e->by, e->why) : code;
+    TRY(turn_point(e, one->name, "position", one->shape.position));
+    return scene_turn(e->s, one->name, e->by, e->why);
 }
 
 static status turn_light(whole_edit *e, const light *one)
@@ -199,15 +199,13 @@ static status scale_row(void *context, const char *path, const param *row, const
     if (!is_scaled(e, name, row))
         return STATUS_OK;
     param_value v;
-    status code = param_value_parse(row, -1, path, value, &v, e->why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(param_value_parse(row, -1, path, value, &v, e->why));
     if (row->type == PARAM_REAL)
         v.real *= e->factor;
     else
         v.vector = vec3_scale(v.vector, e->factor);
     char *text = param_value_text(row, -1, &v);
-    code = text ? scene_set(e->s, path, text, e->why) : out_of_memory(e->why);
+    status code = text ? scene_set(e->s, path, text, e->why) : out_of_memory(e->why);
     free(text);
     return code;
 }
@@ -259,9 +257,7 @@ status scene_scale(scene *s, const char *name, double factor, diagnostic *why)
     }
     if (scene_parts_named(s, name, &e.parts))
         return apply(&e);
-    const status code = edit_find(s, name, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(edit_find(s, name, &at, why));
     if (at.group != PARAM_SOLID && at.group != PARAM_LIGHT) {
         return diagnose(why, STATUS_BAD_INPUT, "scale a solid, a light, or all, solids, lights",
                         "%.80s has no size of its own", name);

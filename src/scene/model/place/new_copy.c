@@ -89,15 +89,13 @@ static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
     double radius;
     if (spot_ball(s, &s->solids[of], &centre, &radius))
         step = step_beside(s, &where, &s->solids[of], centre, radius);
-    const status code = copy_object(s, PARAM_SOLID, of, name, why);
-    return code == STATUS_OK ? scene_move(s, name, step, why) : code;
+    TRY(copy_object(s, PARAM_SOLID, of, name, why));
+    return scene_move(s, name, step, why);
 }
 
 static status copy_light(scene *s, size_t of, const char *name, diagnostic *why)
 {
-    const status code = copy_object(s, PARAM_LIGHT, of, name, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(copy_object(s, PARAM_LIGHT, of, name, why));
     const spot where = spot_of(s);
     return scene_move(s, name, rounded(vec3_scale(where.right, where.size), where.size), why);
 }

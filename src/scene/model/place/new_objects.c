@@ -30,10 +30,9 @@ static status name_for(const scene *s, const char *wanted, const char *base, obj
 {
     if (!wanted)
         return new_name(s, base, name, why);
-    const status code = check_name(wanted, why);
-    if (code == STATUS_OK)
-        strcpy(name, wanted);
-    return code;
+    TRY(check_name(wanted, why));
+    strcpy(name, wanted);
+    return STATUS_OK;
 }
 
 /* NAME.ROW as scene_put takes it; after an error it does nothing. */
