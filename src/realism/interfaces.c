@@ -45,9 +45,7 @@ static status bisect_critical(trial *t, double start_y, double *angle, diagnosti
     while (high - low > 1e-14) {
         const double middle = (low + high) / 2.0;
         const vec3 d = vec3_make(sin(middle), start_y > 0.0 ? -cos(middle) : cos(middle), 0.0);
-        const status code = probe_way(t->p, vec3_make(0.0, start_y, 0.0), d, -1, &t->tree, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(probe_way(t->p, vec3_make(0.0, start_y, 0.0), d, -1, &t->tree, why));
         if (t->tree.node[0].end == RAY_END_HIT && t->tree.node[0].hit.tir)
             high = middle;
         else

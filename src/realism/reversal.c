@@ -71,10 +71,8 @@ static status trace_back(trial *forth, trial *back, const setup *at, uint32_t nu
     const ray_node *last = &forth->tree.node[hits];
     const int asked = reflected_at(&forth->tree, w.reflect_at);
     const vec3 start = vec3_add(last->origin, vec3_scale(last->direction, 3.0 * at->outer));
-    code = probe_way(back->p, start, vec3_scale(last->direction, -1.0), asked < 0 ? -1 : hits - 1 - asked, &back->tree,
-                     why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(probe_way(back->p, start, vec3_scale(last->direction, -1.0), asked < 0 ? -1 : hits - 1 - asked, &back->tree,
+                  why));
     const ray_node *home = &back->tree.node[back->tree.count - 1];
     const vec3 away = vec3_sub(w.from, home->origin);
     out->done = true;

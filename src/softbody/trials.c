@@ -50,10 +50,10 @@ status softbody_trials(const softbody_settings *s, isa level, softbody_trial_rep
     const trials t = {s, level, out, why};
     for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++)
         out->value[i] = (softbody_trial){trial_table[i].name, trial_table[i].unit, trial_table[i].what, NAN, NAN};
-    status code = softbody_check(s, why);
-    for (size_t i = 0; i < sizeof all / sizeof all[0] && code == STATUS_OK; i++)
-        code = all[i](&t);
-    return code;
+    TRY(softbody_check(s, why));
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        TRY(all[i](&t));
+    return STATUS_OK;
 }
 
 double softbody_trial_error(const softbody_trial *t)

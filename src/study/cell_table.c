@@ -104,9 +104,7 @@ status cell_table_write(cell_table which, const study *s, size_t cell, const sce
                         const char *path, diagnostic *why)
 {
     file_writer file;
-    const status code = file_writer_open(&file, path, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(file_writer_open(&file, path, why));
     fputs("study\tcell", file.stream);
     grid_put_paths(s, file.stream);
     fprintf(file.stream, "\t%s\n", tables[which].columns);

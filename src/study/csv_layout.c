@@ -114,9 +114,7 @@ enum { TABLE_BYTES_MAX = 1 << 30 };
 static status widen(const char *path, const char *lines, const char *header, size_t added, diagnostic *why)
 {
     file_writer writer;
-    status code = file_writer_open(&writer, path, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(file_writer_open(&writer, path, why));
     fputs(header, writer.stream);
     for (const char *line = lines, *end; (end = strchr(line, '\n')); line = end + 1) {
         fwrite(line, 1, (size_t)(end - line), writer.stream);
